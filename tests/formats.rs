@@ -88,7 +88,7 @@ fn files_are_known_by_bytes_and_name() {
 fn products_have_the_extensions_that_they_had() {
     for (product, extensions) in [
         (Product::Points, &["las", "laz", "xyz", "txt", "csv"][..]),
-        (Product::Surface, &["ply", "obj", "off", "stl", "tin"]),
+        (Product::Surface, &["ply", "obj", "off", "stl", "tin", "tins"]),
         (Product::Contours, &["shp", "geojson", "json"]),
         (Product::Heights, &["tif", "tiff"]),
         (Product::Shades, &["tif", "tiff", "png"]),

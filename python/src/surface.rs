@@ -108,7 +108,7 @@ impl Surface {
     #[getter]
     fn kind(&self) -> &'static str {
         match &self.product.model {
-            Model::Tin(_) | Model::Compact(_) => "tin",
+            Model::Tin(_) | Model::Compact(_) | Model::Parts(_) => "tin",
             Model::Mesh(_) => "mesh",
             Model::Raster(_) => "raster",
         }
@@ -270,7 +270,7 @@ impl Surface {
         match &self.product.model {
             Model::Tin(_) => true,
             Model::Compact(tin) => !tin.has_fragments(),
-            Model::Mesh(_) | Model::Raster(_) => false,
+            Model::Parts(_) | Model::Mesh(_) | Model::Raster(_) => false,
         }
     }
 

@@ -143,6 +143,17 @@ pub fn map_tin(path: &Path) -> Option<Result<Mapped>> {
     }
 }
 
+/// Reads the index of a TIN in parts; `None` for a file of another format.
+///
+/// # Errors
+/// If the file cannot be read.
+pub fn read_tin_index(path: &Path) -> Option<Result<Vec<u8>>> {
+    match formats::detect_file(path).ok()??.reader {
+        Reader::Parts(read) => Some(read(path)),
+        _ => None,
+    }
+}
+
 /// Describes a file of unconnected triangles without exact coordinates (STL), which is not read as
 /// a surface. Returns `None` for a file of another format.
 ///
@@ -223,7 +234,7 @@ fn parse(path: &Path, watch: Watch) -> Result<Triangles> {
                 .in_file(path)
                 .cure("use PLY, which keeps coordinates, breaklines and the coordinate system"));
         }
-        Some((_, Reader::Tin(_))) => {
+        Some((_, Reader::Tin(_) | Reader::Parts(_))) => {
             return Err(Error::unsupported("a .tin is not read triangle by triangle").in_file(path));
         }
         _ => return Err(unknown(path)),

@@ -5,11 +5,23 @@ use std::path::Path;
 use super::listing::Listing;
 use super::mapped::{self, Mapped};
 use super::output::{Destination, Output};
-use crate::error::Result;
+use crate::error::{Error, Result};
 
 /// Maps a file to memory.
 pub(super) fn map(path: &Path) -> Result<Mapped> {
     mapped::open(path)
+}
+
+/// Reads the index of a TIN in parts.
+pub(super) fn index(path: &Path) -> Result<Vec<u8>> {
+    std::fs::read(path).map_err(|e| Error::from(e).in_file(path))
+}
+
+/// Returns the error for a surface that is in memory as a whole.
+#[cold]
+pub(super) fn needs_tiles() -> Error {
+    Error::unsupported("a TIN in parts is written tile by tile, from points")
+        .cure("use `breakline tin POINTS -o OUT.tins`, or write one .tin")
 }
 
 /// Writes the surface with its triangulation and its own coordinate system.

@@ -54,7 +54,8 @@ pub struct HillshadeOptions {
 /// larger than memory.
 pub struct CellProduct<'a> {
     source: Box<dyn BlockSource + 'a>,
-    /// The triangles that cells are computed from; `None` for cells of a raster.
+    /// The triangles that cells are computed from; `None` for those of a TIN in parts, and for
+    /// cells of a raster.
     surface: Option<&'a dyn Surface>,
     cells: CellFormat,
     /// What was assumed and what looks wrong, in the order in which it was found.
@@ -71,9 +72,8 @@ pub struct CellProduct<'a> {
 /// Linear in the triangles.
 pub fn dem<'a>(product: &'a SurfaceProduct, options: &DemOptions, context: &Context) -> Result<CellProduct<'a>> {
     let journal = Journal::new(context);
-    let surface = product.triangles()?;
-    let source = heights(product, surface, options, &journal)?;
-    Ok(CellProduct { source, surface: Some(surface), cells: CellFormat::Heights, notices: journal.take() })
+    let (source, surface) = heights(product, options, &journal)?;
+    Ok(CellProduct { source, surface, cells: CellFormat::Heights, notices: journal.take() })
 }
 
 /// Prepares a hillshade: whole numbers from 1 (dark) to 255 (facing the light), NaN where there is
@@ -96,27 +96,37 @@ pub fn hillshade<'a>(
             refuse_options(options)?;
             (Box::new(grid.as_ref()), None)
         }
-        Model::Tin(_) | Model::Mesh(_) | Model::Compact(_) => {
-            let surface = product.triangles()?;
+        Model::Tin(_) | Model::Mesh(_) | Model::Compact(_) | Model::Parts(_) => {
             let heights_by = DemOptions { frame: options.frame.clone(), method: options.method };
-            (heights(product, surface, &heights_by, &journal)?, Some(surface))
+            heights(product, &heights_by, &journal)?
         }
     };
     let shades = CellProduct::shades_of(source, &options.light, product.crs(), &journal)?;
     Ok(CellProduct { surface, ..shades })
 }
 
+/// Heights, and the triangles that they are computed from unless these are in parts.
+type HeightSource<'a> = (Box<dyn BlockSource + 'a>, Option<&'a dyn Surface>);
+
+/// Returns the heights of a surface.
 fn heights<'a>(
-    product: &SurfaceProduct,
-    surface: &'a dyn Surface,
+    product: &'a SurfaceProduct,
     DemOptions { frame, method }: &DemOptions,
     journal: &Journal,
-) -> Result<Box<dyn BlockSource + 'a>> {
+) -> Result<HeightSource<'a>> {
     journal.context.check()?;
+    if let Model::Parts(parts) = &product.model
+        && *method == Method::Linear
+    {
+        let placed = frame::placed(frame, product.extent(), product.crs(), journal)?;
+        frame::require_filled(frame, &placed, &product.extent(), || parts.index().area)?;
+        return Ok((parts.dem(placed)?, None));
+    }
+    let surface = product.triangles()?;
     let frame = frame::choose(frame, surface, product.extent(), journal)?;
     let dem = Dem::new(surface, frame)?;
     journal.context.check()?;
-    Ok(Box::new(dem.with_method(*method)?))
+    Ok((Box::new(dem.with_method(*method)?), Some(surface)))
 }
 
 /// Returns an error if options are given that only a TIN has a use for.

@@ -77,6 +77,7 @@ pub fn check(request: &SurfaceRequest, context: &Context) -> Result<CheckProduct
     let systems = SystemOptions { degrees: Degrees::Allow, ..request.systems.clone() };
     if let Source::Mesh(path) = &request.source
         && open::tin(path).is_none()
+        && open::tin_parts(path).is_none()
     {
         return check_mesh(path, &systems, context);
     }
@@ -91,8 +92,10 @@ pub fn check(request: &SurfaceRequest, context: &Context) -> Result<CheckProduct
 /// # Errors
 /// If the surface is a raster, the file of a TIN is damaged, or the run is canceled.
 pub fn surface_flaws(product: &SurfaceProduct, context: &Context) -> Result<Vec<LocatedFlaw>> {
-    if let Model::Compact(tin) = &product.model {
-        tin.check()?;
+    match &product.model {
+        Model::Compact(tin) => tin.check()?,
+        Model::Parts(parts) => parts.check()?,
+        Model::Tin(_) | Model::Mesh(_) | Model::Raster(_) => {}
     }
     let watched = checked(product.triangles()?, context)?;
     let flaws = flaws_beside(&[], &terrain::surface_flaws(&watched), &watched);

@@ -3,6 +3,7 @@
 use super::context::{Context, Journal, Size, Stage};
 use super::notice::Notice;
 use super::surface::{Model, SurfaceProduct};
+use super::tin_parts;
 use super::units::Units;
 use super::watched::Watched;
 use crate::crs::Crs;
@@ -119,6 +120,13 @@ impl ContourProduct<'_> {
     ) -> Result<T> {
         match &self.product.model {
             Model::Raster(grid) => draw(&GridSurface::new(grid)?, &self.levels, context, take),
+            Model::Parts(parts) => {
+                let finding = context.start(Stage::FindingContours, Size::Uncounted)?;
+                let lines = tin_parts::contours(parts, &self.levels, context)?;
+                finding.end()?;
+                let count = lines.iter().map(|line| line.points.len().saturating_sub(1) as u64).sum();
+                take(&mut lines.into_iter(), count)
+            }
             Model::Tin(_) | Model::Mesh(_) | Model::Compact(_) => {
                 draw(self.product.triangles()?, &self.levels, context, take)
             }

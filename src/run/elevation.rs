@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use super::context::{Context, Size, Stage};
 use super::surface::{Model, SurfaceProduct};
+use super::tin_parts;
 use crate::data::{Bounds, Surface};
 use crate::error::Result;
 use crate::terrain::{Interpolant, Method};
@@ -32,6 +33,15 @@ pub fn elevations(
     method: Method,
     context: &Context,
 ) -> Result<Vec<f64>> {
+    context.check()?;
+    if let Model::Parts(parts) = &product.model
+        && method == Method::Linear
+    {
+        let work = context.start(Stage::ComputingHeights, Size::Unknown)?;
+        let heights = tin_parts::elevations(parts, positions, &|count| work.add(count))?;
+        work.end()?;
+        return Ok(heights);
+    }
     let surface = product.triangles()?;
     context.check()?;
     let finder = Finder { product, interpolant: Interpolant::new(surface, method)? };
@@ -79,7 +89,7 @@ impl Finder<'_> {
             Model::Compact(tin) if self.is_linear() => {
                 tin.elevation_in_whole(q, near).or_else(|| if tin.has_fragments() { interpolated() } else { None })
             }
-            Model::Tin(_) | Model::Compact(_) | Model::Mesh(_) | Model::Raster(_) => interpolated(),
+            Model::Tin(_) | Model::Compact(_) | Model::Parts(_) | Model::Mesh(_) | Model::Raster(_) => interpolated(),
         };
         found.unwrap_or(f64::NAN)
     }

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use super::context::{Context, Size, Stage};
 use super::open::{self, Content, Raster};
+use super::tin_parts::TinParts;
 use crate::crs::Crs;
 use crate::data::{
     BlockSource, Bounds, Frame, LinkFlaw, PointBatch, PointFlags, PointInfo, Shape, ShapeKind, Surface, SurfaceFacts,
@@ -156,9 +157,10 @@ pub fn facts(path: &Path, read: points::Options, context: &Context) -> Result<Fa
         Content::Raster => Facts::Raster(Box::new(raster_facts(path, context)?)),
         Content::Mesh => match open::solid(path) {
             Some(solid) => Facts::Solid(Box::new(solid?)),
-            None => Facts::Mesh(Box::new(match open::tin(path) {
-                Some(tin) => tin_facts(&tin?),
-                None => mesh_facts(path, context)?,
+            None => Facts::Mesh(Box::new(match (open::tin(path), open::tin_parts(path)) {
+                (Some(tin), _) => tin_facts(&tin?),
+                (None, Some(parts)) => parts_facts(&parts?),
+                (None, None) => mesh_facts(path, context)?,
             })),
         },
         Content::Picture => Facts::Picture(Box::new(open::picture(path)?)),
@@ -285,6 +287,10 @@ fn mesh_facts(path: &Path, context: &Context) -> Result<MeshFacts> {
 
 fn tin_facts<S: AsRef<[u8]> + Sync>(tin: &CompactTin<S>) -> MeshFacts {
     MeshFacts { surface: tin.facts().clone(), crs: tin.crs().cloned(), flaw: None }
+}
+
+fn parts_facts(parts: &TinParts) -> MeshFacts {
+    MeshFacts { surface: parts.facts().clone(), crs: parts.crs().cloned(), flaw: None }
 }
 
 fn plane_facts(path: &Path, context: &Context) -> Result<PlaneFacts> {

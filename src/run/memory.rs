@@ -19,6 +19,10 @@ const BYTES_OF_COLUMNS: u64 = 27;
 /// 400 of the triangulation and 330 of the lists, where a point has seven cells.
 const BYTES_A_POINT_OF_SPACE: u64 = 730;
 
+/// Bytes per triangle while parts are joined to a mesh: its vertices, links and kinds, and the
+/// table of edges that finds the links.
+const BYTES_A_JOINED_TRIANGLE: u64 = 90;
+
 /// Bytes per byte of a mesh file while it is read, including the triangles.
 const BYTES_A_MESH_BYTE: u64 = 3;
 
@@ -78,6 +82,15 @@ pub(super) fn require_for_mesh(path: &Path) -> Result<()> {
     let length = std::fs::metadata(path).map_or(0, |data| data.len());
     require(length.saturating_mul(BYTES_A_MESH_BYTE), &format!("a mesh in a file of {}", bytes(length)))
         .map_err(|e| e.in_file(path).cure("build it from fewer points, or in parts"))
+}
+
+/// Returns an error if there is not enough memory to join parts with this many triangles.
+///
+/// # Errors
+/// Those of [`require_for_points`].
+pub(super) fn require_for_parts(triangles: usize) -> Result<()> {
+    require((triangles as u64).saturating_mul(BYTES_A_JOINED_TRIANGLE), &format!("a mesh of {triangles} triangles"))
+        .map_err(|e| e.cure("rasters with linear heights, contours and heights at positions need no mesh"))
 }
 
 /// Returns a notice if this many points, all used, would need more than the free memory.

@@ -21,12 +21,12 @@
 //! # A DEM of points in memory
 //!
 //! ```
-//! use breakline::data::Bounds;
-//! use breakline::run::{self, Context, DemOptions, FrameOptions, Input, Source, SurfaceRequest, TinRequest};
+//! use breakline::data::Bounds; use breakline::run::{self, Context, DemOptions, FrameOptions,
+//! Input, Source, SurfaceRequest, TinRequest};
 //!
-//! let points = [[0.0, 0.0, 1.0], [10.0, 0.0, 1.0], [10.0, 10.0, 3.0], [0.0, 10.0, 3.0]];
-//! let tin = TinRequest { points: vec![Input::of_points(&points, None)], ..TinRequest::default() };
-//! let request = SurfaceRequest { source: Source::Points(Box::new(tin)), ..SurfaceRequest::default() };
+//! let points = [[0.0, 0.0, 1.0], [10.0, 0.0, 1.0], [10.0, 10.0, 3.0], [0.0, 10.0, 3.0]]; let tin =
+//! TinRequest { points: vec![Input::of_points(&points, None)], ..TinRequest::default() }; let
+//! request = SurfaceRequest { source: Source::Points(Box::new(tin)), ..SurfaceRequest::default() };
 //!
 //! let context = Context::default(); // nothing is reported or canceled
 //! let surface = run::triangles(&request, &context)?;
@@ -94,6 +94,7 @@ mod space;
 mod surface;
 mod systems;
 mod tin;
+mod tin_parts;
 mod transforms;
 mod triangulate;
 pub(crate) mod units;
@@ -111,7 +112,8 @@ pub use input::{Input, MemoryPoints, STDIN};
 #[cfg(feature = "cli")]
 pub(crate) use job::not_in_tiles;
 pub use job::{
-    BadFiles, COMMAND, Division, Job, JobLock, JobReport, JobSize, TileOptions, TiledProduct, needs_tiles, remove_job,
+    BadFiles, COMMAND, Division, Job, JobLock, JobReport, JobSize, TileOptions, TiledProduct, WrittenParts,
+    needs_tiles, remove_job,
 };
 pub use line_notes::LineInput;
 pub use line_request::{FlatOptions, FlatRule, LineRequest, LineRole, LowerEdge, PerRecord, WallOptions};
@@ -125,6 +127,7 @@ pub use space::{
 pub use surface::{Model, Source, SurfaceProduct, SurfaceRequest, surface, triangles, write_mesh};
 pub use systems::{Degrees, SystemOptions};
 pub use tin::{BuildReport, EdgeLimit, ReplacedPoints, TinRequest};
+pub use tin_parts::TinParts;
 pub use triangulate::{
     Arithmetic, TriangulateOptions, TriangulateProduct, TriangulateReport, triangulate, triangulate_graph,
 };

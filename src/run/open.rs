@@ -7,6 +7,7 @@ use std::sync::Arc;
 use super::context::{Context, Journal, Size, Stage};
 use super::input::{Input, MemoryPoints, MemorySource};
 use super::memory;
+use super::tin_parts::TinParts;
 use crate::crs::Crs;
 use crate::data::{BlockSource, Frame, Grid, Layer, LinkFlaw, Mesh, PointSource, Triangles};
 use crate::error::{Error, Kind, Result};
@@ -189,6 +190,11 @@ fn reading<T>(stage: Stage, path: &Path, context: &Context, read: impl FnOnce(Wa
 /// Opens a TIN where its bytes are; `None` if the file has a different format.
 pub(super) fn tin(path: &Path) -> Option<Result<CompactTin<Mapped>>> {
     mesh::map_tin(path).map(|mapped| CompactTin::open(mapped?, path))
+}
+
+/// Opens a TIN in parts; `None` if the file is not the index of one.
+pub(super) fn tin_parts(path: &Path) -> Option<Result<TinParts>> {
+    mesh::read_tin_index(path).map(|text| TinParts::open(path, &text?))
 }
 
 /// Reads a mesh that may not be a surface: its triangles, linked where possible, and the flaws of

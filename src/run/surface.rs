@@ -8,6 +8,7 @@ use super::notice::Notice;
 use super::open::{self, Content, content};
 use super::systems::{self, Role, Stated, SystemOptions};
 use super::tin::{self, BuildReport, TinRequest};
+use super::tin_parts::TinParts;
 use super::watched::Watched;
 use crate::crs::Crs;
 use crate::data::{Bounds, Grid, Mesh, Surface, SurfaceFacts};
@@ -31,7 +32,7 @@ pub struct SurfaceRequest {
 pub enum Source {
     /// Points and lines, which it is built from.
     Points(Box<TinRequest>),
-    /// A file of triangles, which is read, or of a TIN, which is used where it is.
+    /// A file of triangles, which is read, or of a TIN, also in parts, which is used where it is.
     Mesh(PathBuf),
     /// A raster of heights, which is read.
     Raster(PathBuf),
@@ -80,7 +81,7 @@ pub struct SurfaceProduct {
     pub notices: Vec<Notice>,
 }
 
-/// A surface of one of four kinds.
+/// A surface of one of five kinds.
 #[derive(Debug)]
 pub enum Model {
     /// Built from points and lines.
@@ -89,6 +90,8 @@ pub enum Model {
     Mesh(Box<Mesh>),
     /// A TIN in a file, used where its bytes are.
     Compact(Box<CompactTin<Mapped>>),
+    /// A TIN in parts, each in a file.
+    Parts(Box<TinParts>),
     /// Cells from a raster.
     Raster(Box<Grid>),
 }
@@ -101,15 +104,16 @@ impl From<Model> for SurfaceProduct {
 }
 
 impl SurfaceProduct {
-    /// Returns the triangles.
+    /// Returns the triangles. Those of a TIN in parts are joined.
     ///
     /// # Errors
-    /// If the surface is a raster.
+    /// If the surface is a raster; and those of [`TinParts::joined`].
     pub fn triangles(&self) -> Result<&dyn Surface> {
         match &self.model {
             Model::Tin(tin) => Ok(tin.as_ref()),
             Model::Mesh(mesh) => Ok(mesh.as_ref()),
             Model::Compact(tin) => Ok(tin.as_ref()),
+            Model::Parts(parts) => Ok(parts.joined()?),
             Model::Raster(_) => Err(Error::usage("the surface is a raster; points, a .tin or a .ply are needed")),
         }
     }
@@ -120,6 +124,7 @@ impl SurfaceProduct {
             Model::Tin(tin) => tin.crs(),
             Model::Mesh(mesh) => mesh.crs(),
             Model::Compact(tin) => tin.crs(),
+            Model::Parts(parts) => parts.crs(),
             Model::Raster(grid) => grid.crs.as_ref(),
         }
     }
@@ -135,6 +140,7 @@ impl SurfaceProduct {
     pub fn facts(&self) -> Result<SurfaceFacts> {
         match &self.model {
             Model::Compact(tin) => Ok(tin.facts().clone()),
+            Model::Parts(parts) => Ok(parts.facts().clone()),
             Model::Tin(_) | Model::Mesh(_) | Model::Raster(_) => self.triangles().map(SurfaceFacts::of),
         }
     }
@@ -149,6 +155,7 @@ impl SurfaceProduct {
             Model::Tin(tin) => tin.report().extent,
             Model::Mesh(mesh) => SurfaceFacts::of(mesh.as_ref()).extent,
             Model::Compact(tin) => tin.facts().extent,
+            Model::Parts(parts) => parts.facts().extent,
             Model::Raster(grid) => grid.extent(),
         }
     }
@@ -182,9 +189,10 @@ pub fn surface(request: &SurfaceRequest, context: &Context) -> Result<SurfacePro
             (Model::Tin(Box::new(tin)), Some(Box::new(report)))
         }
         Source::Mesh(path) => {
-            let model = match open::tin(path) {
-                Some(tin) => tin_model(path, tin?, &request.systems, &journal)?,
-                None => mesh_model(path, open::mesh(path, &journal)?, &request.systems, &journal)?,
+            let model = match (open::tin(path), open::tin_parts(path)) {
+                (Some(tin), _) => tin_model(path, tin?, &request.systems, &journal)?,
+                (None, Some(parts)) => parts_model(path, parts?, &request.systems, &journal)?,
+                (None, None) => mesh_model(path, open::mesh(path, &journal)?, &request.systems, &journal)?,
             };
             (model, None)
         }
@@ -226,6 +234,12 @@ pub(super) fn tin_model(
 ) -> Result<Model> {
     tin.set_crs(one_system(path, tin.crs(), options, journal)?);
     Ok(Model::Compact(Box::new(tin)))
+}
+
+/// Returns a TIN in parts as a model, in the coordinate system that it states or that is assigned.
+fn parts_model(path: &Path, mut parts: TinParts, options: &SystemOptions, journal: &Journal) -> Result<Model> {
+    parts.set_crs(one_system(path, parts.crs(), options, journal)?);
+    Ok(Model::Parts(Box::new(parts)))
 }
 
 fn one_system(path: &Path, crs: Option<&Crs>, options: &SystemOptions, journal: &Journal) -> Result<Option<Crs>> {

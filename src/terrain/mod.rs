@@ -13,6 +13,7 @@
 //! | a TIN in a file | a surface, at once | [`CompactTin`] |
 //! | more points than fit into memory | their triangles, from tiles | [`tiles`] |
 //! | triangles from tiles | the contours of the whole | [`contour::parts`] |
+//! | a surface in parts | a DEM of the whole | [`DemOfParts`] |
 //! | any surface | a check that it is sound | [`surface_flaws`], [`shape_flaws`]; for a TIN also [`Tin::check`] |
 //!
 //! A surface is anything that implements [`Surface`](crate::data::Surface): a [`Tin`], a
@@ -62,7 +63,7 @@ mod tin_report;
 mod window;
 
 pub use builder::TinBuilder;
-pub use compact::CompactTin;
+pub use compact::{CompactTin, TinIndex, TinIndexPart};
 pub use contour::{Contours, contours};
 pub use crossings::{CrossingHeights, CrossingRule};
 pub use duplicates::DuplicateRule;
@@ -73,7 +74,7 @@ pub use inside::Inside;
 pub use interpolate::{Interpolant, Method};
 pub use levels::{Levels, MAX_LEVELS};
 pub use lines::{Flat, FlatHeight, HighSide, River, RiverHeights, Wall, densified};
-pub use rasterize::{Canvas, CanvasBlock, Dem};
+pub use rasterize::{Canvas, CanvasBlock, Dem, DemOfParts};
 pub use selection::{Classes, Selection, SelectionReport};
 pub use soundness::{SurfaceFlaw, shape_flaws, surface_flaws};
 pub use tin::Tin;

@@ -12,6 +12,7 @@ mod landscape;
 mod bad_input;
 mod equality;
 mod interruption;
+mod parts;
 mod real;
 
 use std::path::Path;

@@ -24,7 +24,7 @@ pub(in crate::cli) fn print_surface(product: &SurfaceProduct, console: &Console)
             console.line(format_args!("raster      {}", describe(&grid.frame, grid.crs.as_ref())));
             return print_extent(grid.extent(), grid.crs.as_ref(), console);
         }
-        (None, Model::Mesh(_) | Model::Tin(_) | Model::Compact(_)) => {
+        (None, Model::Mesh(_) | Model::Tin(_) | Model::Compact(_) | Model::Parts(_)) => {
             let Ok(facts) = product.facts() else { return };
             for (kind, edges) in facts.edges.kinds() {
                 console.line(format_args!("{:<11} {edges} edges", kind.noun()));

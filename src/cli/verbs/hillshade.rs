@@ -37,7 +37,7 @@ pub(in crate::cli) fn run(args: &HillshadeArgs, console: &Console) -> Result<Exi
     match &product.model {
         // The size of the raster is printed already.
         Model::Raster(grid) => print_extent(grid.extent(), grid.crs.as_ref(), console),
-        Model::Tin(_) | Model::Mesh(_) | Model::Compact(_) => print_surface(&product, console),
+        Model::Tin(_) | Model::Mesh(_) | Model::Compact(_) | Model::Parts(_) => print_surface(&product, console),
     }
     outputs.commit(console)?;
     Ok(Exit::Done)

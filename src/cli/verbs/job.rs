@@ -58,9 +58,13 @@ impl Command {
                 let (plan, options) = super::hillshade::requested(args, console)?;
                 (plan, TiledProduct::Shades(options), &args.output, &args.tiles)
             }
+            Verb::Tin(args) => {
+                let plan = super::tin::requested(args, console)?;
+                (plan, TiledProduct::Surface, &args.output, &args.tiles)
+            }
             _ => {
-                return Err(Error::usage("a job makes a DEM, contours or a hillshade")
-                    .cure("begin the command with `dem`, `contour` or `hillshade`"));
+                return Err(Error::usage("a job makes a DEM, contours, a hillshade or a TIN in parts")
+                    .cure("begin the command with `dem`, `contour`, `hillshade` or `tin`"));
             }
         };
         let own = [(tiles.dry_run, "--dry-run"), (tiles.resume, "--resume"), (tiles.job.is_some(), "--job")];
@@ -76,6 +80,7 @@ impl Command {
             Verb::Dem(args) => Some(&args.tiles),
             Verb::Contour(args) => Some(&args.tiles),
             Verb::Hillshade(args) => Some(&args.tiles),
+            Verb::Tin(args) => Some(&args.tiles),
             _ => None,
         }
     }
@@ -100,6 +105,7 @@ fn plan(job: &Path, words: &[String], console: &Console) -> Result<Exit> {
         Verb::Dem(args) => super::dem::outputs_of(args, &command.plan).map(drop)?,
         Verb::Contour(args) => super::contour::outputs_of(args, &command.plan).map(drop)?,
         Verb::Hillshade(args) => super::hillshade::outputs_of(args, &command.plan).map(drop)?,
+        Verb::Tin(args) => super::tin::outputs_of(args, &command.plan).map(drop)?,
         _ => {}
     }
     let options = tiled::options(&command.tile_args(job), &command.output);
@@ -166,6 +172,10 @@ fn work(job: &Path, task: Option<usize>, console: &Console) -> Result<Exit> {
         Verb::Hillshade(args) => {
             (args.tiles.job, args.tiles.resume) = (Some(job), true);
             super::hillshade::run(args, console)
+        }
+        Verb::Tin(args) => {
+            (args.tiles.job, args.tiles.resume) = (Some(job), true);
+            super::tin::run(args, console)
         }
         _ => Err(no_job(&job)),
     }

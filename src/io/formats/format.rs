@@ -129,6 +129,8 @@ pub(in crate::io) enum Reader {
     Mesh(fn(&Path, Watch) -> Result<Triangles>),
     /// A TIN, which is not read, but used where its bytes are.
     Tin(fn(&Path) -> Result<Mapped>),
+    /// The index of a surface in parts, each of which is a TIN.
+    Parts(fn(&Path) -> Result<Vec<u8>>),
     /// Triangles without exact coordinates: counted, but not read.
     Solid(fn(&Path) -> Result<Solid>),
     /// Points and segments of the plane, see [`triangle::read`](crate::io::triangle::read).

@@ -159,7 +159,7 @@ impl Reader {
             Reader::Points { .. } => "points",
             Reader::Layer(_) => "lines, polygons, points",
             Reader::Raster(_) => "heights",
-            Reader::Mesh(_) | Reader::Tin(_) => "surface",
+            Reader::Mesh(_) | Reader::Tin(_) | Reader::Parts(_) => "surface",
             Reader::Own => "points and segments",
             Reader::Solid(_) | Reader::InfoOnly => "by `info` only",
             Reader::Gdal => "with `gdal`",

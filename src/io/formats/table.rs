@@ -331,6 +331,20 @@ pub static FORMATS: &[Format] = &[
         ..ROW
     },
     Format {
+        name: "TIN in parts",
+        noun: "a TIN in parts",
+        extensions: &["tins"],
+        magic: &[Magic::At(0, b"{\"breakline_tin_parts\"")],
+        known_by: KnownBy::Bytes,
+        content: Content::Mesh,
+        holds: &[Holding::Mesh, Holding::Edges, Holding::Crs],
+        reader: Reader::Parts(tin::index),
+        writers: surface_writer(|_, _, _| Err(tin::needs_tiles())),
+        cure: AS_MESH,
+        help: "index of a TIN in parts, one file for each tile; for surfaces larger than memory",
+        ..ROW
+    },
+    Format {
         reader: Reader::Mesh(triangle::read_triangles_with),
         content: Content::Mesh,
         holds: &[Holding::Mesh, Holding::Edges],

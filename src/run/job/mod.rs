@@ -8,8 +8,8 @@
 //! 3. Each *step* triangulates a tile, or merges what tiles hand up, and draws the triangles that
 //!    are final; see [`tiles`](crate::terrain::tiles).
 //! 4. The *rim* is decided: triangles with edges over the limit wait until all others are known.
-//! 5. The product is composed of the cells that the tasks have drawn, or joined from their
-//!    contours.
+//! 5. The product is composed of the cells that the tasks have drawn, joined from their contours,
+//!    or consists of their triangulations.
 
 mod bytes;
 mod contours;
@@ -17,6 +17,7 @@ mod lines;
 mod plan;
 mod raster;
 mod schedule;
+mod surface;
 mod task_file;
 mod tasks;
 
@@ -32,6 +33,7 @@ use self::contours::DrawnContours;
 pub(crate) use self::plan::not_in_tiles;
 use self::plan::{Known, Plan, fingerprint};
 use self::raster::DrawnCells;
+pub use self::surface::WrittenParts;
 use self::task_file::{TaskFile, UNFINISHED, checksum};
 use super::cells::{CellProduct, DemOptions, HillshadeOptions};
 use super::context::{Context, Journal};
@@ -58,6 +60,9 @@ const LOCK: &str = "lock";
 
 /// The file that a program may keep its command in; it is removed with the job.
 pub const COMMAND: &str = "command.json";
+
+/// Bytes per point of a triangulation in its file; measured.
+const BYTES_A_POINT_OF_PART: u64 = 85;
 
 /// How a surface is divided into tiles.
 #[derive(Debug, Clone)]
@@ -102,6 +107,8 @@ pub enum TiledProduct {
     Shades(HillshadeOptions),
     /// Contours.
     Contours(ContourOptions),
+    /// The surface itself, as a TIN in parts.
+    Surface,
 }
 
 impl TiledProduct {
@@ -110,7 +117,7 @@ impl TiledProduct {
         match self {
             TiledProduct::Heights(options) => Some(&options.frame),
             TiledProduct::Shades(options) => Some(&options.frame),
-            TiledProduct::Contours(_) => None,
+            TiledProduct::Contours(_) | TiledProduct::Surface => None,
         }
     }
 
@@ -118,7 +125,7 @@ impl TiledProduct {
         match self {
             TiledProduct::Heights(options) => options.method,
             TiledProduct::Shades(options) => options.method,
-            TiledProduct::Contours(_) => Method::Linear,
+            TiledProduct::Contours(_) | TiledProduct::Surface => Method::Linear,
         }
     }
 
@@ -127,6 +134,7 @@ impl TiledProduct {
             TiledProduct::Heights(_) => "dem",
             TiledProduct::Shades(_) => "hillshade",
             TiledProduct::Contours(_) => "contour",
+            TiledProduct::Surface => "tin",
         }
     }
 }
@@ -333,6 +341,10 @@ impl<'a> Job<'a> {
         // Blocks at borders are written by each tile that they meet; measured.
         let cells = plan.frame.map_or(0, |frame| frame.width as u64 * frame.height as u64 * 8);
         let points = plan.point_count();
+        let drawn = match self.product {
+            TiledProduct::Surface => BYTES_A_POINT_OF_PART * points,
+            _ => cells,
+        };
         JobSize {
             files: plan.files.len(),
             points,
@@ -340,7 +352,7 @@ impl<'a> Job<'a> {
             divides: plan.divides,
             merges: plan.merge_count(),
             tasks: self.task_count(),
-            disk: cells + if plan.divides { 24 * points } else { 0 },
+            disk: drawn + if plan.divides { 24 * points } else { 0 },
             task_memory: plan.task_memory,
         }
     }
@@ -571,13 +583,13 @@ impl<'a> Job<'a> {
     /// Returns the cells of a raster, once all tasks are done.
     ///
     /// # Errors
-    /// If a task is not done, if no triangle is left, or if the job makes contours; and those of
+    /// If a task is not done, if no triangle is left, or if the job makes no raster; and those of
     /// [`dem`](super::dem).
     pub fn cells(&self, report: &JobReport, context: &Context) -> Result<CellProduct<'static>> {
         let journal = Journal::new(context);
         self.require_triangles(report)?;
         let (Some(options), Some(drawn)) = (self.product.frame(), self.plan.frame) else {
-            return Err(Error::usage("the job makes contours, not a raster"));
+            return Err(Error::usage("the job makes no raster"));
         };
         // Notices about the frame came with the plan.
         let quiet = Context::default();
@@ -588,7 +600,7 @@ impl<'a> Job<'a> {
             TiledProduct::Shades(HillshadeOptions { light, .. }) => {
                 CellProduct::shades_of(Box::new(drawn), light, report.crs.as_ref(), &journal)?
             }
-            TiledProduct::Heights(_) | TiledProduct::Contours(_) => {
+            TiledProduct::Heights(_) | TiledProduct::Contours(_) | TiledProduct::Surface => {
                 CellProduct::heights_of(Box::new(drawn), journal.take())
             }
         })
@@ -598,12 +610,12 @@ impl<'a> Job<'a> {
     /// names. They are drawn level by level, and not kept.
     ///
     /// # Errors
-    /// If a task is not done, if no triangle is left, or if the job makes a raster; and those of
+    /// If a task is not done, if no triangle is left, or if the job makes no contours; and those of
     /// [`ContourProduct::write`](super::ContourProduct::write).
     pub fn write_contours(&self, report: &JobReport, target: Destination, context: &Context) -> Result<ContourSummary> {
         self.require_triangles(report)?;
         let TiledProduct::Contours(options) = self.product else {
-            return Err(Error::usage("the job makes a raster, not contours"));
+            return Err(Error::usage("the job makes no contours"));
         };
         let drawn = DrawnContours::open(self.step_paths(), &options.to_levels()?)?;
         target.put_whole(|target| drawn.write(target, report.crs.as_ref(), context))

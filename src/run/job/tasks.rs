@@ -5,6 +5,7 @@ use serde_json::{Map, Value, json};
 use super::bytes::{self, Reader, put_u32, put_u64};
 use super::plan::Known;
 use super::raster::Drawing;
+use super::surface::PartFaces;
 use super::task_file::{TaskFile, TaskWriter};
 use super::{BadFiles, Job, Task, TiledProduct};
 use super::{contours, lines};
@@ -14,7 +15,7 @@ use crate::run::context::{Context, Journal};
 use crate::run::units::neat;
 use crate::run::{frame, open};
 use crate::terrain::contour::parts::{ContourCollector, LevelParts};
-use crate::terrain::tiles::{self, LongEdges, Rim, TileTriangle, Work, has_long_edge};
+use crate::terrain::tiles::{self, LongEdges, Rim, TileTriangle, TinPart, Work, has_long_edge};
 use crate::terrain::{Classes, Selection, SelectionReport, one_per_site};
 
 /// Points that are read before they are divided among tiles: 24 bytes each, and as much again while
@@ -197,12 +198,11 @@ impl Job<'_> {
             constraints = lines.constraints;
         }
         let rectangle = &self.steps[step].tile;
-        self.emitting(writer, facts, |emit| tiles::leaf(rectangle, tile, &points, &constraints, emit)).map_err(
-            |error| {
+        self.emitting(writer, facts, |emit| tiles::leaf_with_part(rectangle, tile, &points, &constraints, emit))
+            .map_err(|error| {
                 let error = error.within(format_args!("tile {tile}"));
                 if self.plan.divides { error } else { error.in_file(&self.plan.files[tile as usize].path) }
-            },
-        )
+            })
     }
 
     /// Returns the points of a tile from the divided files, in the order of the files.
@@ -240,28 +240,30 @@ impl Job<'_> {
             let bytes = file.section("residual")?;
             residuals.push(bytes::to_residual(&bytes).ok_or_else(|| file.damaged())?);
         }
-        self.emitting(writer, Map::new(), |emit| tiles::merge(&self.steps[step].tile, &residuals, emit))
+        self.emitting(writer, Map::new(), |emit| tiles::merge_with_part(&self.steps[step].tile, &residuals, emit))
             .map_err(|e| e.within(format_args!("merge {step}")))
     }
 
-    /// Runs a step and writes what becomes of its triangles: cells of those that are certain to
-    /// stay, and the triangles that wait for the decision about the rim.
+    /// Runs a step and writes what becomes of its triangles: what is made of those that are certain
+    /// to stay, and the triangles that wait for the decision about the rim.
     fn emitting(
         &self,
         writer: &mut TaskWriter,
         mut facts: Map<String, Value>,
-        run: impl FnOnce(&mut dyn FnMut(TileTriangle)) -> Result<tiles::Residual>,
+        run: impl FnOnce(&mut dyn FnMut(TileTriangle)) -> Result<(tiles::Residual, Option<TinPart>)>,
     ) -> Result<Map<String, Value>> {
         let mut kept = Kept::new(self, writer)?;
         let mut long = self.plan.max_edge.map(LongEdges::new);
         let mut failed = Ok(());
-        let residual = run(&mut |triangle| {
-            if failed.is_ok() && !long.as_mut().is_some_and(|long| long.take(&triangle)) {
+        let (residual, part) = run(&mut |triangle| {
+            if long.as_mut().is_some_and(|long| long.take(&triangle)) {
+                kept.wait();
+            } else if failed.is_ok() {
                 failed = kept.add(&triangle, writer);
             }
         })?;
         failed?;
-        kept.finish(writer, &mut facts)?;
+        kept.finish(part, writer, &mut facts)?;
         writer.begin("residual");
         writer.put(&bytes::of_residual(&residual))?;
         facts.insert("residual".to_owned(), json!(residual.vertices.len()));
@@ -297,14 +299,17 @@ impl Job<'_> {
                 let waiting = bytes::to_waiting(bytes);
                 let (triangle, group) = waiting.ok_or_else(|| file.damaged())?;
                 match is_removed.get(group as usize) {
-                    Some(true) => removed += 1,
+                    Some(true) => {
+                        removed += 1;
+                        kept.leave_out();
+                    }
                     Some(false) => kept.add(&triangle, writer)?,
                     None => return Err(file.damaged()),
                 }
             }
             context.check()?;
         }
-        kept.finish(writer, &mut facts)?;
+        kept.finish(None, writer, &mut facts)?;
         facts.insert("removed".to_owned(), json!(removed));
         Ok(facts)
     }
@@ -319,6 +324,8 @@ impl Job<'_> {
 enum Drawn {
     Cells(Drawing),
     Contours(ContourCollector),
+    /// Faces of the triangulation.
+    Faces(PartFaces),
 }
 
 /// The triangles of a task that stay in the surface: drawn and counted.
@@ -335,6 +342,7 @@ impl Kept {
     fn new(job: &Job, writer: &mut TaskWriter) -> Result<Self> {
         let drawn = match (job.product, job.plan.frame) {
             (TiledProduct::Contours(options), _) => Drawn::Contours(ContourCollector::new(&options.to_levels()?)),
+            (TiledProduct::Surface, _) => Drawn::Faces(PartFaces::default()),
             (_, Some(frame)) => Drawn::Cells(Drawing::new(frame, writer)?),
             (_, None) => return Err(Error::format("the plan of the job lacks the frame of the raster")),
         };
@@ -351,6 +359,7 @@ impl Kept {
     fn add(&mut self, triangle: &TileTriangle, writer: &mut TaskWriter) -> Result<()> {
         if self.max_edge_inside.is_some_and(|limit| has_long_edge(triangle, limit)) {
             self.long_inside += 1;
+            self.leave_out();
             return Ok(());
         }
         let corners = triangle.corners.map(|corner| corner.position);
@@ -363,12 +372,33 @@ impl Kept {
                 collector.add(triangle);
                 Ok(())
             }
+            Drawn::Faces(faces) => {
+                faces.keep();
+                Ok(())
+            }
         }
     }
 
-    fn finish(self, writer: &mut TaskWriter, facts: &mut Map<String, Value>) -> Result<()> {
+    /// Leaves out a triangle for good.
+    fn leave_out(&mut self) {
+        if let Drawn::Faces(faces) = &mut self.drawn {
+            faces.leave_out();
+        }
+    }
+
+    /// Leaves out a triangle until it is decided about the rim.
+    fn wait(&mut self) {
+        if let Drawn::Faces(faces) = &mut self.drawn {
+            faces.wait();
+        }
+    }
+
+    /// Writes what the triangles became; `part` is the triangulation that they come from, if they
+    /// are those of one.
+    fn finish(self, part: Option<TinPart>, writer: &mut TaskWriter, facts: &mut Map<String, Value>) -> Result<()> {
         match self.drawn {
             Drawn::Cells(drawing) => drawing.finish(writer)?,
+            Drawn::Faces(faces) => faces.finish(part, writer)?,
             Drawn::Contours(collector) => {
                 let parts = collector.finish()?;
                 writer.begin(contours::SECTION);

@@ -24,19 +24,21 @@ pub(super) struct Attributes {
 impl Attributes {
     /// Returns the attributes as JSON, which reads back as the same values, bit for bit.
     pub(super) fn to_json(&self) -> String {
+        self.to_value().to_string()
+    }
+
+    /// Returns the attributes as a value of JSON.
+    pub(super) fn to_value(&self) -> Value {
         let SurfaceFacts { vertices, triangles, edges, extent } = &self.facts;
         let lines: Map<String, Value> =
             edges.kinds().map(|(kind, count)| (kind.noun().to_owned(), count.into())).collect();
-        // JSON has no infinity, which an empty box consists of.
-        let extent = (!extent.is_empty()).then(|| json!([extent.min, extent.max]));
         json!({
             "vertices": vertices,
             "triangles": triangles,
             "lines": lines,
-            "extent": extent,
+            "extent": box_to_json(extent),
             "crs": self.crs.as_ref().map(crs_to_json),
         })
-        .to_string()
     }
 
     /// Reads the attributes.
@@ -44,14 +46,17 @@ impl Attributes {
     /// # Errors
     /// If the text is not JSON; the error names a value that is missing or wrong.
     pub(super) fn from_json(text: &[u8]) -> Result<Self> {
-        let value: Value = serde_json::from_slice(text).map_err(|e| Error::format(format!("not JSON: {e}")))?;
+        Self::from_value(&parse(text)?)
+    }
+
+    /// Reads the attributes from a value of JSON.
+    ///
+    /// # Errors
+    /// If a value is missing or wrong, which the error names.
+    pub(super) fn from_value(value: &Value) -> Result<Self> {
         let object = value.as_object().ok_or_else(|| wrong("the text"))?;
         let count = |name| object.get(name).and_then(Value::as_u64).and_then(|n| usize::try_from(n).ok());
         let count = |name| count(name).ok_or_else(|| wrong(name));
-        let extent = match object.get("extent") {
-            Some(Value::Null) => Bounds::default(),
-            extent => extent.and_then(bounds).ok_or_else(|| wrong("extent"))?,
-        };
         let crs = match object.get("crs") {
             Some(Value::Null) => None,
             Some(Value::Object(crs)) => Some(crs_from_json(crs)?),
@@ -61,10 +66,35 @@ impl Attributes {
             vertices: count("vertices")?,
             triangles: count("triangles")?,
             edges: edges(object.get("lines")).ok_or_else(|| wrong("lines"))?,
-            extent,
+            extent: object.get("extent").and_then(box_from_json).ok_or_else(|| wrong("extent"))?,
         };
         Ok(Attributes { crs, facts })
     }
+}
+
+/// Returns a text as JSON.
+///
+/// # Errors
+/// If it is not.
+pub(super) fn parse(text: &[u8]) -> Result<Value> {
+    serde_json::from_slice(text).map_err(|e| Error::format(format!("not JSON: {e}")))
+}
+
+/// Returns a box as JSON, which has no infinity: null if it is empty.
+pub(super) fn box_to_json(bounds: &Bounds) -> Value {
+    if bounds.is_empty() { Value::Null } else { json!([bounds.min, bounds.max]) }
+}
+
+/// Reads a box; `None` if it is none.
+pub(super) fn box_from_json(value: &Value) -> Option<Bounds> {
+    if value.is_null() {
+        return Some(Bounds::default());
+    }
+    let corner = |i: usize| {
+        let axis = |axis: usize| value.get(i)?.get(axis)?.as_f64();
+        Some([axis(0)?, axis(1)?, axis(2)?])
+    };
+    Some(Bounds { min: corner(0)?, max: corner(1)? })
 }
 
 /// Reads the numbers of edges on lines.
@@ -75,14 +105,6 @@ fn edges(value: Option<&Value>) -> Option<LineEdges> {
         edges.add_edges(kind, usize::try_from(count.as_u64()?).ok()?);
     }
     Some(edges)
-}
-
-fn bounds(value: &Value) -> Option<Bounds> {
-    let corner = |i: usize| {
-        let axis = |axis: usize| value.get(i)?.get(axis)?.as_f64();
-        Some([axis(0)?, axis(1)?, axis(2)?])
-    };
-    Some(Bounds { min: corner(0)?, max: corner(1)? })
 }
 
 fn crs_to_json(crs: &Crs) -> Value {
@@ -130,7 +152,7 @@ fn crs_from_json(object: &Map<String, Value>) -> Result<Crs> {
 }
 
 #[cold]
-fn wrong(name: &str) -> Error {
+pub(super) fn wrong(name: &str) -> Error {
     Error::format(format!("{name} is missing or wrong"))
 }
 

@@ -6,6 +6,7 @@
 
 mod attributes;
 mod check;
+mod index;
 mod layout;
 mod part;
 mod write;
@@ -26,6 +27,7 @@ use crate::triangulation::{Compact, CompactError, CompactSection, Location};
 
 use super::linear::linear;
 use attributes::Attributes;
+pub use index::{TinIndex, TinIndexPart};
 use layout::{ATTRIBUTES, FRAGMENT, FRAGMENTS, Fragment, INSIDE, NUMBER, NUMBERS, SIDE, SIDES, Side, VERTEX, VERTICES};
 pub(super) use write::{write, write_numbers};
 

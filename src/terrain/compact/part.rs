@@ -2,43 +2,23 @@
 
 use std::path::Path;
 
+use super::CompactTin;
 use super::layout::NUMBER;
-use super::{CompactTin, EdgeKind};
 use crate::data::{Surface, SurfaceFacts};
 use crate::error::{Error, Result};
-use crate::terrain::tiles::{TileTriangle, TileVertex};
 
 impl<B: AsRef<[u8]>> CompactTin<B> {
-    /// Returns true if the TIN is part of a larger surface: a [`TinPart`](crate::terrain::tiles::TinPart)
-    /// has written it.
+    /// Returns true if the TIN is part of a larger surface: a
+    /// [`TinPart`](crate::terrain::tiles::TinPart) has written it.
     pub fn is_part(&self) -> bool {
         !self.numbers.is_empty()
     }
 
-    /// Returns a vertex with the numbers that stand for it in all parts of a surface; `None` if the
-    /// TIN is not part of one, or there is no such vertex.
-    pub fn tile_vertex(&self, vertex: u32) -> Option<TileVertex> {
+    /// Returns the numbers that stand for a vertex in all parts of a surface: that of its tile, and
+    /// its own there. `None` if the TIN is not part of one, or there is no such vertex.
+    pub fn number_in_parts(&self, vertex: u32) -> Option<[u32; 2]> {
         let row: &[u8; NUMBER] = self.row(&self.numbers, vertex as usize)?;
-        let [tile, number] = [0, 4].map(|at| u32::from_le_bytes(std::array::from_fn(|i| row[at + i])));
-        let position = self.or_record(self.point(vertex).map(Some), None)?;
-        Some(TileVertex { tile, number, position })
-    }
-}
-
-impl<B: AsRef<[u8]> + Sync> CompactTin<B> {
-    /// Returns the triangles of a part, in the order of its faces. Their edges at the rim of the
-    /// part are plain.
-    ///
-    /// What is damaged is left out; see [`Surface::ensure_intact`].
-    pub fn tile_triangles(&self) -> impl Iterator<Item = TileTriangle> + '_ {
-        (0..self.face_count() as u32).filter_map(|face| {
-            let [a, b, c] = self.face(face)?.map(|vertex| self.tile_vertex(vertex));
-            let edges = [0, 1, 2].map(|i| match self.edge_kind(face, i) {
-                EdgeKind::Rim => EdgeKind::Plain,
-                kind => kind,
-            });
-            Some(TileTriangle { corners: [a?, b?, c?], edges })
-        })
+        Some([0, 4].map(|at| u32::from_le_bytes(std::array::from_fn(|i| row[at + i]))))
     }
 }
 

@@ -4,19 +4,20 @@ use rayon::prelude::*;
 
 use super::bins::bins_of;
 use super::placement::Placement;
-use crate::data::Surface;
+use crate::data::{Surface, Window};
 
 /// A spatial index that finds the faces which a rectangle of cells may meet.
 ///
-/// The raster is divided into square bins. A face is listed in each bin where it may contain the
-/// center of a cell. If a surface is finer than the raster, most faces contain none, and are not
-/// listed at all.
+/// The raster, or the window of it that a surface covers, is divided into square bins. A face is
+/// listed in each bin where it may contain the center of a cell. If a surface is finer than the
+/// raster, most faces contain none, and are not listed at all.
 #[derive(Debug)]
 pub(super) struct FaceIndex {
     /// Cells along a side of a bin.
     side: usize,
-    columns: usize,
-    rows: usize,
+    /// The columns and rows of bins, counted from those of the whole raster.
+    columns: Range<usize>,
+    rows: Range<usize>,
     /// Where the faces of each bin begin, bins row by row; one more entry than there are bins.
     first: Vec<usize>,
     faces: Vec<u32>,
@@ -30,15 +31,19 @@ const SMALLEST_BIN: f64 = 16.0;
 const CHUNK: u32 = 1 << 15;
 
 impl FaceIndex {
+    /// Lists the faces in a window, beyond which there are none.
+    ///
     /// # Complexity
     /// Linear in the faces and in the bins they meet. Takes 4 bytes for each face in each bin, and
     /// 12 during construction.
-    pub(super) fn new<S: Surface + ?Sized>(surface: &S, placement: &Placement) -> Self {
+    pub(super) fn new<S: Surface + ?Sized>(surface: &S, placement: &Placement, window: Window) -> Self {
         let face_count = surface.face_count() as u32;
-        let (width, height) = (placement.columns.count, placement.rows.count);
+        let Window { column, row, width, height } = window;
         let bins = (f64::from(face_count) / FACES_PER_BIN).max(1.0);
         let side = (width as f64 * height as f64 / bins).sqrt().max(SMALLEST_BIN).ceil() as usize;
-        let (columns, rows) = (width.div_ceil(side), height.div_ceil(side));
+        let (columns, rows) =
+            (column / side..(column + width).div_ceil(side), row / side..(row + height).div_ceil(side));
+        let number = |row: usize, column: usize| (row - rows.start) * columns.len() + column - columns.start;
         let chunks: Vec<Vec<(u32, u32)>> = (0..face_count.div_ceil(CHUNK))
             .into_par_iter()
             .map(|chunk| {
@@ -47,21 +52,24 @@ impl FaceIndex {
                     let Some(corners) = surface.triangle(face) else { continue };
                     let corners = corners.map(|p| placement.to_plane(p));
                     bins_of(&corners, placement, side, |row, column| {
-                        found.push(((row * columns + column) as u32, face))
+                        if rows.contains(&row) && columns.contains(&column) {
+                            found.push((number(row, column) as u32, face));
+                        }
                     });
                 }
                 found
             })
             .collect();
 
-        let mut first = vec![0; columns * rows + 1];
+        let count = columns.len() * rows.len();
+        let mut first = vec![0; count + 1];
         for (bin, _) in chunks.iter().flatten() {
             first[*bin as usize + 1] += 1;
         }
-        for bin in 0..columns * rows {
+        for bin in 0..count {
             first[bin + 1] += first[bin];
         }
-        let mut faces = vec![0; first[columns * rows]];
+        let mut faces = vec![0; first[count]];
         let mut next = first.clone();
         for chunk in chunks {
             for (bin, face) in chunk {
@@ -83,12 +91,14 @@ impl FaceIndex {
         let common = |bin: usize, cells: &Range<usize>| {
             (bin * self.side).max(cells.start)..((bin + 1) * self.side).min(cells.end)
         };
-        let bin_rows = rows.start / self.side..rows.end.div_ceil(self.side).min(self.rows);
-        let bin_columns = columns.start / self.side..columns.end.div_ceil(self.side).min(self.columns);
+        let bins = |cells: &Range<usize>, all: &Range<usize>| {
+            (cells.start / self.side).max(all.start)..cells.end.div_ceil(self.side).min(all.end)
+        };
+        let (bin_rows, bin_columns) = (bins(&rows, &self.rows), bins(&columns, &self.columns));
         bin_rows.flat_map(move |row| {
             let (rows, columns) = (common(row, &rows), columns.clone());
             bin_columns.clone().map(move |column| {
-                let bin = row * self.columns + column;
+                let bin = (row - self.rows.start) * self.columns.len() + column - self.columns.start;
                 let faces = &self.faces[self.first[bin]..self.first[bin + 1]];
                 (faces, rows.clone(), common(column, &columns))
             })

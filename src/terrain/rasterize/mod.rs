@@ -1,11 +1,13 @@
 mod bins;
 mod canvas;
 mod face_index;
+mod of_parts;
 mod placement;
 mod scan;
 
 pub use canvas::{Canvas, CanvasBlock};
 use face_index::FaceIndex;
+pub use of_parts::DemOfParts;
 use placement::{Centers, Placement};
 use scan::{Heights, Ink, Number, Scan};
 
@@ -47,7 +49,8 @@ impl<'a, S: Surface + ?Sized> Dem<'a, S> {
     pub fn new(surface: &'a S, frame: Frame) -> Result<Self> {
         let frame = frame.checked()?;
         let placement = Placement::new(&frame);
-        let index = FaceIndex::new(surface, &placement);
+        let all = Window { column: 0, row: 0, width: frame.width, height: frame.height };
+        let index = FaceIndex::new(surface, &placement, all);
         Ok(Dem { surface, frame, placement, index, interpolant: None })
     }
 
@@ -68,19 +71,7 @@ impl<'a, S: Surface + ?Sized> Dem<'a, S> {
 
     /// Draws the faces that meet a window into its cells.
     fn draw<T, I: Ink<T>>(&self, window: Window, cells: &mut [T], ink: impl Fn(u32) -> I) {
-        let Window { column, row, width, height } = window;
-        let columns = Centers::new(self.placement.columns, column, width);
-        let rows = Centers::new(self.placement.rows, row, height);
-        let mut scan = Scan { columns: &columns, rows: &rows, cells };
-        for (faces, rows, columns) in self.index.bins_in(row..row + height, column..column + width) {
-            let rows = rows.start - row..rows.end - row;
-            let columns = columns.start - column..columns.end - column;
-            for &face in faces {
-                let Some(corners) = self.surface.triangle(face) else { continue };
-                let corners = corners.map(|p| self.placement.to_plane(p));
-                scan.draw(corners, &rows, &columns, &ink(face));
-            }
-        }
+        draw(self.surface, &self.index, &self.placement, window, cells, ink);
     }
 
     /// Computes the heights of a window: finds the face of each cell, then goes from cell to cell.
@@ -93,6 +84,30 @@ impl<'a, S: Surface + ?Sized> Dem<'a, S> {
         for (i, (height, face)) in cells {
             let q = center(window.column + i % window.width, window.row + i / window.width);
             *height = interpolant.height_in(face, q, &mut scratch) as f32;
+        }
+    }
+}
+
+/// Draws the faces of a surface that meet a window into its cells.
+fn draw<T, I: Ink<T>, S: Surface + ?Sized>(
+    surface: &S,
+    index: &FaceIndex,
+    placement: &Placement,
+    window: Window,
+    cells: &mut [T],
+    ink: impl Fn(u32) -> I,
+) {
+    let Window { column, row, width, height } = window;
+    let columns = Centers::new(placement.columns, column, width);
+    let rows = Centers::new(placement.rows, row, height);
+    let mut scan = Scan { columns: &columns, rows: &rows, cells };
+    for (faces, rows, columns) in index.bins_in(row..row + height, column..column + width) {
+        let rows = rows.start - row..rows.end - row;
+        let columns = columns.start - column..columns.end - column;
+        for &face in faces {
+            let Some(corners) = surface.triangle(face) else { continue };
+            let corners = corners.map(|p| placement.to_plane(p));
+            scan.draw(corners, &rows, &columns, &ink(face));
         }
     }
 }

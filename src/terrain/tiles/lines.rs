@@ -73,8 +73,8 @@ pub(super) fn join_known(tile: &Tile, residual: &mut Residual) -> Result<()> {
     Ok(())
 }
 
-/// The lines of a task: the constraints of its triangulation, which are the edges of a residual, and
-/// what they mean for its triangles.
+/// The lines of a task: the constraints of its triangulation, which are the edges of a residual,
+/// and what they mean for its triangles.
 pub(super) struct Lines<'a> {
     t: &'a ConstrainedDelaunay<Terrain>,
     residual: &'a Residual,

@@ -4,23 +4,15 @@ use super::Tile;
 use super::disk::Disk;
 use super::lines::{self, Lines};
 use super::part::TinPart;
-use super::residual::{Residual, ResidualEdge, TileVertex};
+use super::residual::{Residual, ResidualEdge};
 use super::sub_constraint::SubConstraint;
+use super::triangle::{TileTriangle, TileVertex};
 use crate::data::EdgeKind;
 use crate::error::{Error, Result};
 use crate::terrain::admitted;
 use crate::triangulation::geometry::Terrain;
 use crate::triangulation::tds::{CellId, VertexId};
 use crate::triangulation::{ConstrainedDelaunay, InputError, OnCrossing};
-
-/// A triangle that is final.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TileTriangle {
-    /// The corners, counter-clockwise.
-    pub corners: [TileVertex; 3],
-    /// The kind of the edge opposite each corner.
-    pub edges: [EdgeKind; 3],
-}
 
 /// Triangulates the points of a tile, with lines. Calls `emit` for each final triangle, and returns
 /// what may still change.

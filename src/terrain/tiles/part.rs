@@ -2,18 +2,19 @@
 
 use std::io::Write;
 
+use super::triangle::{TileTriangle, TileVertex};
 use crate::data::{EdgeKind, Surface};
 use crate::error::Result;
 use crate::terrain::lines::kinds::LineKinds;
-use crate::terrain::{Tin, compact};
+use crate::terrain::{CompactTin, Tin, compact};
 use crate::triangulation::ConstrainedDelaunay;
 use crate::triangulation::geometry::Terrain;
 
 /// The triangulation of one task, with the triangles that were final there.
 ///
 /// Those of all tasks together are the surface; no triangle is in two of them. As a
-/// [`CompactTin`](crate::terrain::CompactTin) it answers queries where it is, and its vertices have
-/// the [numbers](crate::terrain::CompactTin::tile_vertex) that stand for them in all parts.
+/// [`CompactTin`] it answers queries where it is, and its vertices have
+/// the [numbers](CompactTin::number_in_parts) that stand for them in all parts.
 #[derive(Debug)]
 pub struct TinPart {
     tin: Tin,
@@ -60,11 +61,34 @@ impl TinPart {
     }
 }
 
+impl<B: AsRef<[u8]> + Sync> CompactTin<B> {
+    /// Returns a vertex of a part; `None` if the TIN is not part of a surface, or there is no such
+    /// vertex.
+    pub fn tile_vertex(&self, vertex: u32) -> Option<TileVertex> {
+        let [tile, number] = self.number_in_parts(vertex)?;
+        Some(TileVertex { tile, number, position: self.position(vertex) })
+    }
+
+    /// Returns the triangles of a part, in the order of its faces. Their edges at the rim of the
+    /// part are plain.
+    ///
+    /// What is damaged is left out; see [`Surface::ensure_intact`].
+    pub fn tile_triangles(&self) -> impl Iterator<Item = TileTriangle> + '_ {
+        (0..self.face_count() as u32).filter_map(|face| {
+            let [a, b, c] = self.face(face)?.map(|vertex| self.tile_vertex(vertex));
+            let edges = [0, 1, 2].map(|i| match self.edge_kind(face, i) {
+                EdgeKind::Rim => EdgeKind::Plain,
+                kind => kind,
+            });
+            Some(TileTriangle { corners: [a?, b?, c?], edges })
+        })
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::terrain::CompactTin;
-    use crate::terrain::tiles::{Residual, SubConstraint, Tile, TileTriangle, leaf_with_part, merge_with_part};
+    use crate::terrain::tiles::{Residual, SubConstraint, Tile, leaf_with_part, merge_with_part};
     use testkit::random::Random;
 
     fn key(triangle: &TileTriangle) -> ([[u32; 2]; 3], [u8; 3]) {
@@ -91,8 +115,8 @@ mod tests {
         CompactTin::open(copy, "copy").unwrap()
     }
 
-    /// The parts of all tasks have the triangles that were emitted, with their numbers and the kinds
-    /// of their edges.
+    /// The parts of all tasks have the triangles that were emitted, with their numbers and the
+    /// kinds of their edges.
     #[test]
     fn parts_have_the_triangles_of_their_tasks() {
         let mut random = Random(5);

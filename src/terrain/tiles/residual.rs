@@ -1,25 +1,9 @@
 //! What may still change of a part of the triangulation.
 
 use super::sub_constraint::SubConstraint;
+use super::triangle::TileVertex;
 use crate::data::EdgeKind;
 use crate::error::{Error, Result};
-
-/// A vertex, with numbers that stand for it everywhere.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TileVertex {
-    /// The number of its tile.
-    pub tile: u32,
-    /// The index of its point among those of the tile.
-    pub number: u32,
-    /// Its position and its height, in the units of the data.
-    pub position: [f64; 3],
-}
-
-impl TileVertex {
-    pub(super) fn site(&self) -> [f64; 2] {
-        [self.position[0], self.position[1]]
-    }
-}
 
 /// An edge of a residual: a seam, part of a line, or both.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

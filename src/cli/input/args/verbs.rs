@@ -149,16 +149,22 @@ pub(in crate::cli) struct PointsArgs {
 /// `contour`, `hillshade`, `check`, `info` and `tin`), .ply (binary, with breaklines and coordinate
 /// system; the same verbs read it), .obj, .off, and .stl (relative to a local origin, which is
 /// printed and written to a file next to it). A .tin must not change while a verb reads it.
+///
+/// A surface that is larger than memory is written in parts, to .tins: an index, and a folder with
+/// a .tin for each tile. All verbs read the index as one surface.
 #[derive(Debug, Clone, Args)]
 #[command(after_long_help = "\
 Example:
   breakline tin tiles/*.laz --breaklines edges.shp --boundary site.shp -o ground.ply
-  breakline tin tiles/*.laz -o ground.tin")]
+  breakline tin tiles/*.laz -o ground.tin
+  breakline tin country/*.laz -o country.tins --memory 8GB")]
 pub(in crate::cli) struct TinArgs {
     #[command(flatten)]
     pub(in crate::cli) surface: SurfaceArgs,
     #[command(flatten)]
     pub(in crate::cli) output: OutputArgs,
+    #[command(flatten)]
+    pub(in crate::cli) tiles: TileArgs,
 }
 
 /// Triangulate points and segments in the plane, or points in space; Triangle's and TetGen's files

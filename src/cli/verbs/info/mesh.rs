@@ -14,7 +14,12 @@ pub(super) fn sheet(path: &Path, facts: &MeshFacts) -> Sheet {
     let mut sheet = Sheet::with_warnings(no_surface.into_iter().collect());
     sheet.silent("kind", "mesh");
     let extension = path.extension().unwrap_or_default().to_string_lossy().to_ascii_uppercase();
-    sheet.plain("format", if extension == "TIN" { extension } else { format!("TIN, {extension}") });
+    let format = match extension.as_str() {
+        "TIN" => extension,
+        "TINS" => "TIN in parts".to_owned(),
+        _ => format!("TIN, {extension}"),
+    };
+    sheet.plain("format", format);
     sheet.plain("vertices", surface.vertices);
     sheet.plain("triangles", surface.triangles);
     let breaklines = surface.edges.of(EdgeKind::Breakline);

@@ -1,0 +1,308 @@
+//! The triangulations of the tasks as one surface: a TIN in parts.
+
+use std::fs::File;
+use std::io::{BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use flate2::Crc;
+use rayon::prelude::*;
+use rustc_hash::{FxHashMap, FxHashSet};
+
+use super::bytes::{Reader, put_u32};
+use super::task_file::{TaskWriter, UNFINISHED, checksum};
+use super::{Job, JobReport, TiledProduct};
+use crate::data::{EdgeKind, LineEdges, Surface, SurfaceFacts};
+use crate::error::{Error, Result};
+use crate::io::{Destination, Output};
+use crate::run::context::{Context, Size, Stage};
+use crate::run::open;
+use crate::terrain::tiles::{TinPart, Work};
+use crate::terrain::{CompactTin, TinIndex, TinIndexPart};
+
+/// The sections of a task: its triangulation, the faces in it that wait, and of the task that
+/// decides about these, whether each is kept.
+const PART: &str = "part";
+const WAITING: &str = "faces";
+const KEPT: &str = "kept";
+
+/// Which triangles of a task are faces of the surface, in the order in which they were found.
+#[derive(Debug, Default)]
+pub(super) struct PartFaces {
+    is_kept: Vec<bool>,
+    /// The positions of those that are decided later.
+    waiting: Vec<u32>,
+}
+
+impl PartFaces {
+    pub(super) fn keep(&mut self) {
+        self.is_kept.push(true);
+    }
+
+    pub(super) fn leave_out(&mut self) {
+        self.is_kept.push(false);
+    }
+
+    pub(super) fn wait(&mut self) {
+        self.waiting.push(self.is_kept.len() as u32);
+        self.is_kept.push(false);
+    }
+
+    /// Writes the triangulation and its faces. Triangles that are those of no triangulation waited
+    /// in others: then only what was decided is written.
+    pub(super) fn finish(self, part: Option<TinPart>, writer: &mut TaskWriter) -> Result<()> {
+        let Some(part) = part else {
+            writer.begin(KEPT);
+            return writer.put(&self.is_kept.iter().map(|&is_kept| u8::from(is_kept)).collect::<Vec<_>>());
+        };
+        let mut waiting = Vec::with_capacity(4 * self.waiting.len());
+        self.waiting.iter().for_each(|&at| put_u32(&mut waiting, part.faces()[at as usize]));
+        writer.begin(WAITING);
+        writer.put(&waiting)?;
+        writer.begin(PART);
+        part.write(self.is_kept, writer)
+    }
+}
+
+/// A vertex, by its tile and its number.
+type VertexKey = [u32; 2];
+
+/// An edge on a line, by its ends, the smaller first.
+type LineEdge = ([VertexKey; 2], EdgeKind);
+
+/// A part that was written, and what others may have, too.
+struct Written {
+    row: TinIndexPart,
+    facts: SurfaceFacts,
+    /// Vertices of triangles between tiles: those of this part.
+    shared: Vec<VertexKey>,
+    /// Edges on lines at the rim of the part.
+    at_rim: Vec<LineEdge>,
+}
+
+/// A surface in parts whose index was written.
+#[derive(Debug)]
+pub struct WrittenParts {
+    /// What the index says.
+    pub index: TinIndex,
+    /// The folder of the surface that the new one replaces.
+    superseded: Option<PathBuf>,
+}
+
+impl WrittenParts {
+    /// Removes the parts of the surface that this one replaces, once the index has appeared.
+    ///
+    /// # Errors
+    /// If they cannot be removed.
+    pub fn remove_superseded(&self) -> Result<()> {
+        match &self.superseded {
+            Some(folder) => std::fs::remove_dir_all(folder).map_err(|e| Error::from(e).in_file(folder)),
+            None => Ok(()),
+        }
+    }
+}
+
+impl Job<'_> {
+    /// Writes the surface as a TIN in parts, once all tasks are done: a folder with a file for each
+    /// task, and the index `target`, which appears last.
+    ///
+    /// # Errors
+    /// If a task is not done, if no triangle is left, if the job makes another product, if a file
+    /// cannot be written, or if the run is canceled.
+    pub fn write_surface(&self, report: &JobReport, target: Destination, context: &Context) -> Result<WrittenParts> {
+        self.require_triangles(report)?;
+        if !matches!(self.product, TiledProduct::Surface) {
+            return Err(Error::usage("the job makes no surface"));
+        }
+        let path = target.path();
+        let name = path.file_name().and_then(|name| name.to_str()).ok_or_else(|| {
+            Error::unsupported("the name is not valid Unicode, which the index of parts needs").in_file(path)
+        })?;
+        let replaced = open::tin_parts(path).and_then(|parts| Some(parts.ok()?.folder().to_path_buf()));
+        let unfinished = path.with_file_name(format!("{name}{UNFINISHED}"));
+        let named = |e: std::io::Error| Error::from(e).in_file(&unfinished);
+        if unfinished.exists() {
+            std::fs::remove_dir_all(&unfinished).map_err(named)?;
+        }
+        std::fs::create_dir(&unfinished).map_err(named)?;
+        let written = self.write_parts(&unfinished, report, context);
+        let named_by_contents = written.and_then(|parts| {
+            let mut index = self.index_of(parts, report);
+            index.folder = format!("{name}.{:08x}", checksum(&index.to_text()));
+            let folder = path.with_file_name(&index.folder);
+            if folder.exists() {
+                // Of the same contents.
+                std::fs::remove_dir_all(&folder).map_err(|e| Error::from(e).in_file(&folder))?;
+            }
+            std::fs::rename(&unfinished, &folder).map_err(named)?;
+            Ok((index, folder))
+        });
+        let (index, folder) = named_by_contents.inspect_err(|_| _ = std::fs::remove_dir_all(&unfinished))?;
+        let mut output = Output::create(path)?;
+        output.write_all(index.to_text().as_bytes()).map_err(|e| Error::from(e).in_file(path))?;
+        target.put(output)?;
+        Ok(WrittenParts { index, superseded: replaced.filter(|replaced| *replaced != folder && replaced.exists()) })
+    }
+
+    /// Writes the part of each step that has triangles, those between tiles first: what they share
+    /// with others is then known.
+    fn write_parts(&self, folder: &Path, report: &JobReport, context: &Context) -> Result<Vec<Written>> {
+        let kept = self.kept_at_rim()?;
+        let is_leaf = |step: &usize| matches!(self.steps[*step].work, Work::Leaf(_));
+        let (leaves, merges): (Vec<usize>, Vec<usize>) = (0..self.steps.len()).partition(is_leaf);
+        let writing = context.start(Stage::WritingFaces, Size::Items(report.triangles))?;
+        let write = |step: &usize, shared: &FxHashSet<VertexKey>| {
+            let part = self.write_part(*step, &kept[*step], shared, folder, report)?;
+            writing.add(part.as_ref().map_or(0, |part| part.row.triangles))?;
+            Ok(part)
+        };
+        let none = FxHashSet::default();
+        let mut written: Vec<Written> =
+            merges.par_iter().filter_map(|step| write(step, &none).transpose()).collect::<Result<_>>()?;
+        let shared: FxHashSet<VertexKey> = written.iter().flat_map(|part| part.shared.iter().copied()).collect();
+        let of_leaves: Vec<Written> =
+            leaves.par_iter().filter_map(|step| write(step, &shared).transpose()).collect::<Result<_>>()?;
+        written.extend(of_leaves);
+        writing.end()?;
+        Ok(written)
+    }
+
+    /// Returns, for each step, whether each of its triangles that waited is kept.
+    fn kept_at_rim(&self) -> Result<Vec<Vec<bool>>> {
+        let mut all = vec![Vec::new(); self.steps.len()];
+        if self.plan.max_edge.is_none() {
+            return Ok(all);
+        }
+        let mut rim = self.open_task(self.task_count() - 1)?;
+        let decided = rim.section(KEPT)?;
+        let mut rest = &decided[..];
+        for (step, kept) in all.iter_mut().enumerate() {
+            let count = self.open_task(self.task_of_step(step))?.count("waiting") as usize;
+            let (own, others) = rest.split_at_checked(count).ok_or_else(|| rim.damaged())?;
+            *kept = own.iter().map(|&is_kept| is_kept == 1).collect();
+            rest = others;
+        }
+        Ok(all)
+    }
+
+    fn write_part(
+        &self,
+        step: usize,
+        kept: &[bool],
+        shared: &FxHashSet<VertexKey>,
+        folder: &Path,
+        report: &JobReport,
+    ) -> Result<Option<Written>> {
+        let mut task = self.open_task(self.task_of_step(step))?;
+        let bytes = task.section(PART)?;
+        if bytes.is_empty() {
+            return Ok(None);
+        }
+        let waiting = task.section(WAITING)?;
+        let mut reader = Reader::new(&waiting);
+        let mut faces = Vec::new();
+        for &is_kept in kept {
+            match reader.u32() {
+                Some(face) if is_kept => faces.push(face),
+                Some(_) => {}
+                None => return Err(task.damaged()),
+            }
+        }
+        let mut tin = CompactTin::open_with_faces(bytes, self.task_path(self.task_of_step(step)), &faces)?;
+        tin.set_crs(report.crs.clone());
+        let facts = tin.facts().clone();
+        if facts.triangles == 0 {
+            return Ok(None);
+        }
+        let tile = match self.steps[step].work {
+            Work::Leaf(tile) => Some(tile),
+            Work::Merge(_) => None,
+        };
+        let file = format!("{step:06}.tin");
+        let path = folder.join(&file);
+        let written = || -> Result<Summed> {
+            let out = BufWriter::with_capacity(1 << 18, File::create_new(&path)?);
+            let mut out = Summed { out, sum: Crc::new(), length: 0 };
+            tin.write_tin(&mut out)?;
+            out.flush()?;
+            Ok(out)
+        };
+        let Summed { sum, length, .. } = written().map_err(|e| e.in_file(&path))?;
+        let (bytes, checksum) = (length, sum.sum());
+        let row = TinIndexPart { file, tile, bytes, checksum, triangles: facts.triangles as u64, extent: facts.extent };
+        let is_shared = |key: &VertexKey| tile.is_none() || shared.contains(key);
+        Ok(Some(Written { row, facts, shared: used_vertices(&tin, is_shared), at_rim: line_edges_at_rim(&tin) }))
+    }
+
+    /// Puts together what is true of the whole, without the name of the folder.
+    fn index_of(&self, parts: Vec<Written>, report: &JobReport) -> TinIndex {
+        let mut facts = SurfaceFacts { vertices: 0, triangles: 0, edges: LineEdges::default(), extent: report.extent };
+        let (mut shared, mut at_rim) = (FxHashSet::default(), FxHashMap::default());
+        let mut rows = Vec::with_capacity(parts.len());
+        for part in parts {
+            facts.triangles += part.facts.triangles;
+            facts.vertices += part.facts.vertices - part.shared.len();
+            shared.extend(part.shared);
+            for (kind, count) in part.facts.edges.kinds() {
+                let own = part.at_rim.iter().filter(|(_, of_edge)| *of_edge == kind).count();
+                facts.edges.add_edges(kind, count - own);
+            }
+            at_rim.extend(part.at_rim);
+            rows.push(part.row);
+        }
+        facts.vertices += shared.len();
+        at_rim.values().for_each(|kind| facts.edges.add_edges(*kind, 1));
+        rows.sort_unstable_by(|a: &TinIndexPart, b| a.file.cmp(&b.file));
+        TinIndex { crs: report.crs.clone(), facts, area: self.area(), folder: String::new(), parts: rows }
+    }
+}
+
+/// A file, and the sum over what was written.
+struct Summed {
+    out: BufWriter<File>,
+    sum: Crc,
+    length: u64,
+}
+
+impl Write for Summed {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        self.out.write_all(bytes)?;
+        self.sum.update(bytes);
+        self.length += bytes.len() as u64;
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        self.out.flush()
+    }
+}
+
+/// Returns the keys of those vertices that faces use and that others may have, too.
+fn used_vertices(tin: &CompactTin<Vec<u8>>, is_shared: impl Fn(&VertexKey) -> bool) -> Vec<VertexKey> {
+    let mut is_used = vec![false; tin.vertex_count()];
+    for face in 0..tin.face_count() as u32 {
+        tin.face(face).into_iter().flatten().for_each(|vertex| is_used[vertex as usize] = true);
+    }
+    let used = (0..).zip(is_used).filter(|(_, is_used)| *is_used).map(|(vertex, _)| vertex);
+    used.filter_map(|vertex| tin.number_in_parts(vertex)).filter(is_shared).collect()
+}
+
+/// Returns the edges on lines that have a face on one side only: another part may have one beyond.
+fn line_edges_at_rim(tin: &CompactTin<Vec<u8>>) -> Vec<LineEdge> {
+    let mut edges = Vec::new();
+    if !tin.has_lines() {
+        return edges;
+    }
+    for face in 0..tin.face_count() as u32 {
+        let Some(corners) = tin.face(face) else { continue };
+        for i in 0..3 {
+            let kind = tin.edge_kind(face, i);
+            if kind.is_constrained() && tin.neighbor(face, i).is_none() {
+                let ends = [corners[(i + 1) % 3], corners[(i + 2) % 3]].map(|vertex| tin.number_in_parts(vertex));
+                if let [Some(a), Some(b)] = ends {
+                    edges.push(([a.min(b), a.max(b)], kind));
+                }
+            }
+        }
+    }
+    edges
+}

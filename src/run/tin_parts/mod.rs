@@ -1,0 +1,164 @@
+//! A surface in parts: opened where it is, and asked as one.
+
+mod contours;
+mod heights;
+mod join;
+
+pub(super) use contours::contours;
+pub(super) use heights::elevations;
+
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+
+use flate2::Crc;
+
+use crate::crs::Crs;
+use crate::data::{BlockSource, Bounds, Frame, Mesh, SurfaceFacts};
+use crate::error::{Error, Result};
+use crate::io::mapped::{self, Mapped};
+use crate::run::memory;
+use crate::terrain::{CompactTin, DemOfParts, TinIndex};
+
+/// A surface in parts, each of which is a TIN in a file. [`TinIndex`] says which.
+///
+/// Rasters with linear heights, contours and heights at positions are computed from part to part,
+/// and so need not have the surface in memory. For all else the parts are joined.
+pub struct TinParts {
+    path: PathBuf,
+    folder: PathBuf,
+    index: TinIndex,
+    joined: OnceLock<Mesh>,
+    /// Opens a part, for rasters that outlive the call that asks for them.
+    open: Box<dyn Fn(usize) -> Result<CompactTin<Mapped>> + Send + Sync>,
+}
+
+impl TinParts {
+    /// Opens a surface by the text of its index.
+    ///
+    /// # Errors
+    /// If the index is damaged, or a part is missing or has another length.
+    pub(super) fn open(path: &Path, text: &[u8]) -> Result<Self> {
+        let index = TinIndex::from_text(text)
+            .map_err(|e| e.in_file(path).cure("write the surface again with `breakline tin`"))?;
+        let folder = path.with_file_name(&index.folder);
+        for part in &index.parts {
+            let file = folder.join(&part.file);
+            let length = std::fs::metadata(&file).map_err(|e| missing(e, path, &file))?.len();
+            if length != part.bytes {
+                return Err(Error::format(format!("{length} bytes, but the index states {}", part.bytes))
+                    .in_file(file)
+                    .cure("copy the index together with its folder, or write the surface again"));
+            }
+        }
+        let files: Vec<PathBuf> = index.parts.iter().map(|part| folder.join(&part.file)).collect();
+        let open = Box::new(move |part: usize| open_file(&files[part]));
+        Ok(TinParts { path: path.to_path_buf(), folder, index, joined: OnceLock::new(), open })
+    }
+
+    /// Returns what is true of the whole.
+    pub fn index(&self) -> &TinIndex {
+        &self.index
+    }
+
+    /// Returns the folder of the parts.
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// Returns the coordinate system, if it is known.
+    pub fn crs(&self) -> Option<&Crs> {
+        self.index.crs.as_ref()
+    }
+
+    /// Returns the counts and the extent that the index states.
+    pub fn facts(&self) -> &SurfaceFacts {
+        &self.index.facts
+    }
+
+    pub(super) fn set_crs(&mut self, crs: Option<Crs>) {
+        self.index.crs = crs;
+    }
+
+    /// Opens a part, by its position in the index.
+    ///
+    /// # Errors
+    /// If it is damaged, or not a part of a surface.
+    pub fn part(&self, number: usize) -> Result<CompactTin<Mapped>> {
+        (self.open)(number)
+    }
+
+    /// Returns all triangles as one mesh, which is kept.
+    ///
+    /// # Errors
+    /// If the parts do not fit into memory, a part is damaged, or the parts do not make a surface.
+    ///
+    /// # Complexity
+    /// Linear in the bytes of the parts.
+    pub fn joined(&self) -> Result<&Mesh> {
+        if let Some(mesh) = self.joined.get() {
+            return Ok(mesh);
+        }
+        memory::require_for_parts(self.index.facts.triangles).map_err(|e| e.in_file(&self.path))?;
+        let mesh = join::joined(self).map_err(|e| e.in_file(&self.path))?;
+        Ok(self.joined.get_or_init(|| mesh))
+    }
+
+    /// Checks all bytes of all parts, and that the counts and the extents that the index states are
+    /// those of the parts.
+    ///
+    /// # Errors
+    /// The first damage that is found; and those of [`joined`](Self::joined).
+    ///
+    /// # Complexity
+    /// Linear.
+    pub fn check(&self) -> Result<()> {
+        for (number, stated) in self.index.parts.iter().enumerate() {
+            let part = self.part(number)?;
+            part.check()?;
+            let mut sum = Crc::new();
+            sum.update(part.triangulation().bytes());
+            if sum.sum() != stated.checksum {
+                return Err(Error::format("the checksum is not that of the index")
+                    .in_file(self.folder.join(&stated.file))
+                    .cure("copy the index together with its folder, or write the surface again"));
+            }
+            let SurfaceFacts { triangles, extent, .. } = part.facts();
+            if (*triangles as u64, *extent) != (stated.triangles, stated.extent) {
+                return Err(Error::format(format!(
+                    "the counts or the extent of {} are not those of its file",
+                    stated.file
+                ))
+                .in_file(&self.path)
+                .cure("write the surface again with `breakline tin`"));
+            }
+        }
+        if SurfaceFacts::of(self.joined()?) != self.index.facts {
+            return Err(Error::format("the counts or the extent are not those of the parts")
+                .in_file(&self.path)
+                .cure("write the surface again with `breakline tin`"));
+        }
+        Ok(())
+    }
+
+    /// Returns a raster of linear heights.
+    pub(super) fn dem(&self, frame: Frame) -> Result<Box<dyn BlockSource + '_>> {
+        let extents: Vec<Bounds> = self.index.parts.iter().map(|part| part.extent).collect();
+        Ok(Box::new(DemOfParts::new(frame, self.index.crs.clone(), &extents, &*self.open)?))
+    }
+}
+
+impl std::fmt::Debug for TinParts {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("TinParts").field("path", &self.path).field("index", &self.index).finish_non_exhaustive()
+    }
+}
+
+fn open_file(file: &Path) -> Result<CompactTin<Mapped>> {
+    let tin = CompactTin::open(mapped::open(file)?, file)?;
+    if tin.is_part() { Ok(tin) } else { Err(Error::format("the TIN is not part of a larger one").in_file(file)) }
+}
+
+#[cold]
+fn missing(error: std::io::Error, index: &Path, part: &Path) -> Error {
+    Error::from(error).in_file(part).cure(format!("{} needs its folder next to it", index.display()))
+}

@@ -1,0 +1,29 @@
+//! What tasks find: triangles, whose vertices have numbers that hold everywhere.
+
+use crate::data::EdgeKind;
+
+/// A vertex, with numbers that stand for it everywhere.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TileVertex {
+    /// The number of its tile.
+    pub tile: u32,
+    /// The index of its point among those of the tile.
+    pub number: u32,
+    /// Its position and its height, in the units of the data.
+    pub position: [f64; 3],
+}
+
+impl TileVertex {
+    pub(super) fn site(&self) -> [f64; 2] {
+        [self.position[0], self.position[1]]
+    }
+}
+
+/// A triangle that is final.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TileTriangle {
+    /// The corners, counter-clockwise.
+    pub corners: [TileVertex; 3],
+    /// The kind of the edge opposite each corner.
+    pub edges: [EdgeKind; 3],
+}
