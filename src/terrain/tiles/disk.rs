@@ -1,6 +1,7 @@
 //! A closed disk that contains the circumscribed one of a triangle, whatever rounding does.
 
 use super::Tile;
+use super::traps::{self, Rule};
 
 /// The unit roundoff of an `f64`.
 const U: f64 = f64::EPSILON / 2.0;
@@ -61,6 +62,9 @@ impl Disk {
         let center = [a[0] + offset[0], a[1] + offset[1]];
         let rounded = 2.0 * U * (center[0].abs() + center[1].abs());
         let length = (offset[0] * offset[0] + offset[1] * offset[1]).sqrt();
+        if traps::is_off(Rule::DiskBound) {
+            return Some(Disk { center, radius: length });
+        }
         let radius = (length * (1.0 + 8.0 * U) + 2.0 * error + rounded) * (1.0 + 8.0 * U);
         radius.is_finite().then_some(Disk { center, radius })
     }

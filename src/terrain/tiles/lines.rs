@@ -6,6 +6,7 @@ use super::Tile;
 use super::disk::Disk;
 use super::residual::{Residual, ResidualEdge};
 use super::sub_constraint::SubConstraint;
+use super::traps::{self, Rule};
 use crate::data::EdgeKind;
 use crate::error::{Error, Result};
 use crate::triangulation::geometry::Terrain;
@@ -88,7 +89,10 @@ impl<'a> Lines<'a> {
     /// of the edges.
     pub(super) fn new(tile: &Tile, t: &'a ConstrainedDelaunay<Terrain>, residual: &'a Residual) -> Self {
         let tds = t.tds();
-        let mut entered = vec![false; if residual.has_lines { tds.cell_slots() } else { 0 }];
+        if !residual.has_lines {
+            return Lines { t, residual, entered: Vec::new() };
+        }
+        let mut entered = vec![false; tds.cell_slots()];
         for constraint in &residual.pending {
             // From a known end, if there is one: finding the way into the hull takes longer.
             let [a, b] = constraint.ends;
@@ -97,6 +101,7 @@ impl<'a> Lines<'a> {
             for passage in t.along([&from, &to], None) {
                 match passage {
                     Passage::Face(cell) => entered[cell.index()] = true,
+                    Passage::Along(_) if traps::is_off(Rule::AlongEdges) => {}
                     Passage::Along([from, to]) => {
                         for (cell, _) in [tds.edge(from, to), tds.edge(to, from)].into_iter().flatten() {
                             entered[cell.index()] = true;
@@ -133,7 +138,7 @@ impl<'a> Lines<'a> {
     /// too. So where the disk misses the edge, or is within the tile beyond its line, there is
     /// nothing to be seen. The search ends there. It fails where it leaves the hull.
     pub(super) fn hide_all_outside(&self, tile: &Tile, disk: &Disk, cell: CellId) -> bool {
-        if !self.residual.has_lines {
+        if !self.residual.has_lines || traps::is_off(Rule::VisiblePart) {
             return false;
         }
         let tds = self.t.tds();

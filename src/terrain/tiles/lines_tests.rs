@@ -2,9 +2,10 @@
 
 use rustc_hash::FxHashMap;
 
-use super::tests::{Triangle, canonical, count, tiled};
+use super::tests::{Found, Tasks, Triangle, Unchanged, canonical, count, tiled, tiled_by};
 use super::*;
 use crate::data::EdgeKind;
+use crate::error::Result;
 use crate::triangulation::geometry::{Geometry, Plane};
 use crate::triangulation::num::Sign;
 use crate::triangulation::{ConstrainedDelaunay2, OnCrossing};
@@ -13,7 +14,7 @@ use testkit::random::Random;
 const KINDS: [EdgeKind; 4] = [EdgeKind::Breakline, EdgeKind::Soft, EdgeKind::Wall, EdgeKind::Clip];
 
 /// The constrained triangulation of all points and lines, whose ends are points.
-fn whole(points: &[[f64; 3]], constraints: &[SubConstraint]) -> Vec<Triangle> {
+pub(super) fn whole(points: &[[f64; 3]], constraints: &[SubConstraint]) -> Vec<Triangle> {
     let sites: Vec<[f64; 2]> = points.iter().map(|p| [p[0], p[1]]).collect();
     let numbers: FxHashMap<[u64; 2], u32> = (0..).zip(&sites).map(|(k, site)| (site.map(f64::to_bits), k)).collect();
     let number = |end: [f64; 2]| numbers[&end.map(f64::to_bits)];
@@ -46,15 +47,15 @@ fn cross(s: &SubConstraint, t: &SubConstraint) -> bool {
 }
 
 /// A set of points and lines on a small grid, and where it is cut.
-struct Case {
-    points: Vec<[f64; 3]>,
-    constraints: Vec<SubConstraint>,
-    cuts: [Vec<f64>; 2],
-    fan: usize,
+pub(super) struct Case {
+    pub points: Vec<[f64; 3]>,
+    pub constraints: Vec<SubConstraint>,
+    pub cuts: [Vec<f64>; 2],
+    pub fan: usize,
 }
 
 impl Case {
-    fn of(round: usize, random: &mut Random) -> Self {
+    pub(super) fn of(round: usize, random: &mut Random) -> Self {
         let side = [3, 6, 12, 40][round % 4];
         let far = [0.0, 1e6, -0.3][round % 3];
         let scale = [1.0, 0.1, 1e-3][round / 4 % 3];
@@ -111,8 +112,9 @@ impl Case {
         Case { points, constraints, cuts, fan: 2 + round % 3 }
     }
 
-    fn found(&self) -> (Vec<Triangle>, usize) {
-        tiled(&self.points, &self.constraints, self.cuts.each_ref().map(|cuts| &cuts[..]), self.fan)
+    pub(super) fn found(&self, tasks: &impl Tasks) -> Result<Found> {
+        let cuts = self.cuts.each_ref().map(|cuts| &cuts[..]);
+        tiled_by(tasks, &self.points, &self.constraints, cuts, self.fan)
     }
 }
 
@@ -125,8 +127,9 @@ fn tiles_with_lines_give_the_triangles_of_the_whole() {
         let Case { points, constraints, cuts, fan } = &case;
         let expected = whole(points, constraints);
         held += usize::from(expected != whole(points, &[]));
-        let (found, _) = case.found();
-        assert_eq!(found, expected, "round {round}: {points:?}, {constraints:?}, cut at {cuts:?}, fan {fan}");
+        let found = case.found(&Unchanged).unwrap();
+        assert_eq!(found.doubled, 0, "a site has two vertices");
+        assert_eq!(found.triangles, expected, "round {round}: {points:?}, {constraints:?}, cut at {cuts:?}, fan {fan}");
     }
     assert!(held > count() / 2, "lines matter in {held} sets only");
 }
@@ -187,7 +190,7 @@ fn a_tile_is_met_if_a_position_in_it_is_on_the_line() {
     assert!(met.iter().all(|&count| count > 500), "{met:?}");
 }
 
-fn message(result: crate::error::Result<Residual>) -> String {
+fn message(result: Result<Residual>) -> String {
     result.unwrap_err().to_string()
 }
 

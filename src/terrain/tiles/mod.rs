@@ -78,6 +78,9 @@ mod residual;
 mod sub_constraint;
 #[cfg(test)]
 mod tests;
+mod traps;
+#[cfg(test)]
+mod traps_tests;
 mod triangle;
 
 pub use layout::{Layout, Node, Spread, Step, Work};

@@ -1,7 +1,10 @@
 //! Tiles of small integer grids, where ties are the rule, against the triangulation in one piece.
 
+use rustc_hash::FxHashMap;
+
 use super::*;
 use crate::data::EdgeKind;
+use crate::error::Result;
 use crate::triangulation::Delaunay2;
 use crate::triangulation::geometry::Plane;
 use testkit::random::Random;
@@ -38,30 +41,91 @@ fn parts(cuts: &[f64]) -> Vec<[f64; 2]> {
     bounds.windows(2).map(|pair| [pair[0], pair[1]]).collect()
 }
 
-/// Returns the triangles that tiles find, and the number of vertices that leaves hand up. Each
-/// merge joins `fan` by `fan` tiles, until one is left.
+/// The tasks that a triangulation in tiles consists of. A test that breaks a rule overrides one.
+pub(super) trait Tasks {
+    /// Returns the tile of a task, from the one between the cuts.
+    fn tile(&self, tile: Tile) -> Tile {
+        tile
+    }
+
+    fn leaf(
+        &self,
+        tile: &Tile,
+        number: u32,
+        points: &[[f64; 3]],
+        constraints: &[SubConstraint],
+        emit: &mut dyn FnMut(TileTriangle),
+    ) -> Result<Residual> {
+        leaf(tile, number, points, constraints, emit)
+    }
+
+    fn merge(&self, tile: &Tile, parts: &[Residual], emit: &mut dyn FnMut(TileTriangle)) -> Result<Residual> {
+        merge(tile, parts, emit)
+    }
+}
+
+/// The tasks as they should be.
+pub(super) struct Unchanged;
+
+impl Tasks for Unchanged {}
+
+/// What all tasks find together.
+pub(super) struct Found {
+    pub triangles: Vec<Triangle>,
+    /// The number of vertices that leaves hand up.
+    pub handed_up: usize,
+    /// The number of vertices that the root gets.
+    pub at_root: usize,
+    /// The number of corners at a site where other triangles have another vertex.
+    pub doubled: usize,
+}
+
+/// Returns the triangles that tiles find, and the number of vertices that leaves hand up.
 pub(super) fn tiled(
     points: &[[f64; 3]],
     constraints: &[SubConstraint],
     cuts: [&[f64]; 2],
     fan: usize,
 ) -> (Vec<Triangle>, usize) {
+    let found = tiled_by(&Unchanged, points, constraints, cuts, fan).unwrap();
+    assert_eq!(found.doubled, 0, "a site has two vertices");
+    (found.triangles, found.handed_up)
+}
+
+/// Runs tasks. Each merge joins `fan` by `fan` tiles, until one is left.
+pub(super) fn tiled_by(
+    tasks: &impl Tasks,
+    points: &[[f64; 3]],
+    constraints: &[SubConstraint],
+    cuts: [&[f64]; 2],
+    fan: usize,
+) -> Result<Found> {
     let mut triangles = Vec::new();
+    let mut vertex_at: FxHashMap<[u64; 2], [u32; 2]> = FxHashMap::default();
+    let mut doubled = 0;
     let mut emit = |TileTriangle { corners, edges }| {
-        triangles.push(canonical(corners.map(|corner| [corner.position[0], corner.position[1]]), edges));
+        for corner in corners {
+            let vertex = [corner.tile, corner.number];
+            let first = vertex_at.entry(corner.site().map(f64::to_bits)).or_insert(vertex);
+            doubled += usize::from(*first != vertex);
+        }
+        triangles.push(canonical(corners.map(|corner| corner.site()), edges));
     };
     let [mut columns, mut rows] = cuts.map(parts);
     let mut level: Vec<Residual> = Vec::new();
     for row in &rows {
         for column in &columns {
-            let tile = Tile { min: [column[0], row[0]], max: [column[1], row[1]] };
+            let tile = tasks.tile(Tile { min: [column[0], row[0]], max: [column[1], row[1]] });
             let own: Vec<[f64; 3]> = points.iter().copied().filter(|p| tile.holds([p[0], p[1]])).collect();
-            level.push(leaf(&tile, level.len() as u32, &own, constraints, &mut emit).unwrap());
+            level.push(tasks.leaf(&tile, level.len() as u32, &own, constraints, &mut emit)?);
         }
     }
-    let handed_up = level.iter().map(|residual| residual.vertices.len()).sum();
+    let vertices = |level: &[Residual]| level.iter().map(|residual| residual.vertices.len()).sum();
+    let handed_up = vertices(&level);
+    let mut at_root = 0;
     let joined = |parts: &[[f64; 2]]| [parts[0][0], parts[parts.len() - 1][1]];
     while level.len() > 1 {
+        at_root = vertices(&level);
         let width = columns.len();
         let mut above = Vec::new();
         for i in (0..rows.len()).step_by(fan) {
@@ -69,10 +133,10 @@ pub(super) fn tiled(
             for j in (0..width).step_by(fan) {
                 let j = j..width.min(j + fan);
                 let (row, column) = (joined(&rows[i.clone()]), joined(&columns[j.clone()]));
-                let tile = Tile { min: [column[0], row[0]], max: [column[1], row[1]] };
+                let tile = tasks.tile(Tile { min: [column[0], row[0]], max: [column[1], row[1]] });
                 let of = i.clone().flat_map(|i| j.clone().map(move |j| i * width + j));
                 let parts: Vec<Residual> = of.map(|k| level[k].clone()).collect();
-                above.push(merge(&tile, &parts, &mut emit).unwrap());
+                above.push(tasks.merge(&tile, &parts, &mut emit)?);
             }
         }
         columns = columns.chunks(fan).map(joined).collect();
@@ -81,7 +145,7 @@ pub(super) fn tiled(
     }
     assert!(level.iter().all(|rest| *rest == Residual::default()));
     triangles.sort_unstable();
-    (triangles, handed_up)
+    Ok(Found { triangles, handed_up, at_root, doubled })
 }
 
 /// The number of sets, which the environment sets:
