@@ -88,6 +88,21 @@ pub enum ReplacedPoints {
 }
 
 impl TinRequest {
+    /// Returns an error unless the bounds contain an area.
+    ///
+    /// # Errors
+    /// Names the bounds.
+    pub(super) fn check_bounds(&self) -> Result<()> {
+        match self.bounds {
+            Some(Bounds { min, max })
+                if !(0..2).all(|i| min[i] < max[i] && min[i].is_finite() && max[i].is_finite()) =>
+            {
+                Err(Error::usage(format!("the bounds go from {} {} to {} {}", min[0], min[1], max[0], max[1])))
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// Returns an error if a file that is given as a layer is known to be of a kind without lines
     /// or polygons, such as a raster.
     ///
@@ -193,11 +208,7 @@ impl BuildReport {
 
 /// Reads the points and lines of a request and builds the TIN.
 pub(super) fn build(request: &TinRequest, options: &SystemOptions, journal: &Journal) -> Result<(Tin, BuildReport)> {
-    if let Some(Bounds { min, max }) = request.bounds
-        && !(0..2).all(|i| min[i] < max[i] && min[i].is_finite() && max[i].is_finite())
-    {
-        return Err(Error::usage(format!("the bounds go from {} {} to {} {}", min[0], min[1], max[0], max[1])));
-    }
+    request.check_bounds()?;
     request.check_layers()?;
     let mut files = PointFiles::open(&request.points, request.read, journal)?;
     let layers = LineLayers::read(&request.lines, &request.breaklines, &request.boundary, journal)?;

@@ -39,7 +39,7 @@ impl Extent {
         self.min[axis] / 2.0 + self.max[axis] / 2.0
     }
 
-    fn overlaps(&self, other: &Extent) -> bool {
+    pub(super) fn overlaps(&self, other: &Extent) -> bool {
         (0..2).all(|i| self.min[i] <= other.max[i] && other.min[i] <= self.max[i])
     }
 

@@ -226,6 +226,16 @@ impl TinBuilder {
         self.boundaries.push(rings.to_vec());
     }
 
+    /// Takes what the surface is cut along; the bounds stay.
+    pub(super) fn take_clip(&mut self) -> Clip {
+        Clip {
+            polygons: std::mem::take(&mut self.boundaries),
+            bounds: self.bounds,
+            holes: std::mem::take(&mut self.holes),
+            draped: std::mem::take(&mut self.draped),
+        }
+    }
+
     /// Builds the TIN.
     ///
     /// # Errors
@@ -322,12 +332,7 @@ impl TinBuilder {
             report.faces_with_long_edges = tin.leave_out_long(limit, &is_water);
         }
         let is_whole = report.faces_beyond_max_edge + report.faces_with_long_edges == 0;
-        let clip = Clip {
-            polygons: std::mem::take(&mut self.boundaries),
-            bounds: self.bounds,
-            holes: std::mem::take(&mut self.holes),
-            draped: std::mem::take(&mut self.draped),
-        };
+        let clip = self.take_clip();
         // Counted only if it does not follow from the final counts.
         let mut left = None;
         if !clip.is_everything() {

@@ -2,12 +2,12 @@
 
 use crate::data::Bounds;
 use crate::error::Result;
-use crate::triangulation::geometry::Geometry;
+use crate::triangulation::geometry::{Geometry, Terrain};
 use crate::triangulation::kernel::RANGE;
 
 use super::Tin;
 use super::admitted::refused;
-use super::cut::{Cut, DRAPED, cut};
+use super::cut::{Cut, DRAPED, cut, reach_of};
 use super::regions::{Domain, Segment};
 
 /// The number of the domain of the bounds, and that of the first polygon; holes follow the
@@ -17,6 +17,7 @@ const POLYGONS: Domain = 1;
 
 /// What a surface is cut along. It is kept where it is inside the box, inside any of the polygons
 /// (without polygons, everywhere) and in no hole. Draped lines cut it, too, and leave all of it.
+#[derive(Debug, Clone)]
 pub(super) struct Clip {
     /// The rings of each polygon. The even-odd rule applies, so holes need not be marked.
     pub(super) polygons: Vec<Vec<Vec<[f64; 2]>>>,
@@ -54,17 +55,17 @@ impl Clip {
         rings
     }
 
-    /// Clips the surface. Returns the number of triangles that were removed, and of those that were
-    /// cut to fragments.
+    /// The straight parts of the lines to cut along, each with the number of the domain that it
+    /// bounds.
     ///
     /// # Errors
     /// If a vertex of a line or a bound is outside of the range of the arithmetic.
-    pub(super) fn apply(&self, tin: &mut Tin) -> Result<(usize, usize)> {
+    pub(super) fn segments(&self) -> Result<Vec<(Domain, Segment)>> {
         let rings = self.curves();
         let holes = POLYGONS + self.polygons.len();
+        let geometry: Terrain = Terrain::default();
         for (domain, ring) in &rings {
-            let is_bad = |&&[x, y]: &&[f64; 2]| !tin.triangulation.geometry().admits(&[x, y, 0.0]);
-            if let Some(&[x, y]) = ring.iter().find(is_bad) {
+            if let Some(&[x, y]) = ring.iter().find(|&&[x, y]| !geometry.admits(&[x, y, 0.0])) {
                 let what = match *domain {
                     DRAPED => "draped line",
                     domain if domain >= holes => "hole",
@@ -77,7 +78,31 @@ impl Clip {
             let domain = *domain;
             ring.windows(2).map(move |pair| (domain, [pair[0], pair[1]])).collect::<Vec<_>>()
         };
-        let curves: Vec<(Domain, Segment)> = rings.iter().flat_map(segments).collect();
+        Ok(rings.iter().flat_map(segments).collect())
+    }
+
+    /// Clips the surface. Returns the number of triangles that were removed, and of those that were
+    /// cut to fragments.
+    ///
+    /// # Errors
+    /// Those of [`segments`](Self::segments).
+    pub(super) fn apply(&self, tin: &mut Tin) -> Result<(usize, usize)> {
+        let reach = reach_of(&tin.triangulation);
+        self.apply_to_part(tin, &self.segments()?, reach)
+    }
+
+    /// Clips a part of a surface: the triangles that the lines meet, and those around them. `reach`
+    /// has the largest coordinates of the whole, without their signs.
+    ///
+    /// # Errors
+    /// If there are more vertices than can be numbered.
+    pub(super) fn apply_to_part(
+        &self,
+        tin: &mut Tin,
+        segments: &[(Domain, Segment)],
+        reach: [f64; 2],
+    ) -> Result<(usize, usize)> {
+        let holes = POLYGONS + self.polygons.len();
         let in_polygon = |within: &[Domain]| {
             self.polygons.is_empty() || within.iter().any(|domain| (POLYGONS..holes).contains(domain))
         };
@@ -86,7 +111,7 @@ impl Clip {
         let whole = |tin: &Tin| tin.inside.iter().filter(|&&inside| inside).count();
         let before = whole(tin);
         let is_kept = |within: &[Domain]| in_polygon(within) && in_bounds(within) && !in_hole(within);
-        tin.cut = cut(&tin.triangulation, &tin.kinds, &mut tin.inside, &curves, is_kept)?;
+        tin.cut = cut(&tin.triangulation, &tin.kinds, &mut tin.inside, segments, reach, is_kept)?;
         let in_fragments = tin.cut.as_ref().map_or(0, Cut::cut_count);
         Ok((before - whole(tin) - in_fragments, in_fragments))
     }

@@ -1,5 +1,6 @@
 //! A file that is damaged, or lies about its extent, among others.
 
+use breakline::io::geotiff;
 use tempfile::TempDir;
 
 use super::{bytes, landscape, lidar, output_of, program};
@@ -63,9 +64,62 @@ fn a_header_that_lies_is_an_error_that_names_tile_and_file() {
         let words = format!("dem {files} --tiles {tiles} --job {tiles} --resume --skip-bad");
         let (_, said_then) = output_of(&folder, &words, "hole.tif");
         assert!(said_then.contains(&format!("skipped: 1.las: {said}")), "{said_then}");
+        // No triangle spans the file that is missing; around it all is there.
+        assert!(said_then.contains("left out over skipped files"), "{said_then}");
+        let grid = geotiff::open(folder.path().join("hole.tif")).unwrap().read_grid().unwrap();
+        let height = |x: f64, y: f64| {
+            let [column, row] = grid.frame.inverse().apply(x, y);
+            grid.values[row as usize * grid.frame.width + column as usize]
+        };
+        assert!(height(11.5, 1.5).is_nan() && !height(1.5, 1.5).is_nan() && !height(11.5, 11.5).is_nan());
     }
+    // A file with another extent is not the one that was planned with.
     std::fs::remove_dir_all(folder.path().join("auto")).unwrap();
     std::fs::write(folder.path().join("1.las"), good).unwrap();
     let (tiled, _) = output_of(&folder, &format!("dem {files} --tiles auto"), "dem.tif");
     assert!(tiled == whole);
+}
+
+/// A file that was damaged, and was replaced by the good one, is taken as it is now; finished tasks
+/// are not done again. One that tasks have read may not change.
+#[test]
+fn a_file_that_was_repaired_goes_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut names = Vec::new();
+    for i in 0..4 {
+        let name = format!("{i}.las");
+        let corner = [f64::from(i % 2) * 10.0, f64::from(i / 2) * 10.0];
+        std::fs::write(folder.path().join(&name), lidar::las(&lidar::tile(corner, 2), Some(25832))).unwrap();
+        names.push(name);
+    }
+    let files = names.join(" ");
+    let (whole, _) = output_of(&folder, &format!("dem {files}"), "whole.tif");
+    let path = folder.path().join("3.las");
+    let good = bytes(&path);
+    // The x of the last point, far outside.
+    let mut damaged = good.clone();
+    let record = good.len() - lidar_record(&good);
+    damaged[record..record + 4].copy_from_slice(&i32::MAX.to_le_bytes());
+    std::fs::write(&path, &damaged).unwrap();
+    let words = format!("dem {files} --tiles auto -o dem.tif --threads 1");
+    let run = |words: &str| run_in(&folder, &words.split(' ').collect::<Vec<_>>());
+    run(&words).fails(1, &["3.las: tile 3", "there is a point at"]);
+    let tasks = folder.path().join("dem.tif.job/tasks");
+    let times = || -> Vec<_> {
+        files_of(&tasks).iter().map(|name| tasks.join(name).metadata().unwrap().modified().unwrap()).collect()
+    };
+    let before = times();
+    std::fs::write(&path, &good).unwrap();
+    let (tiled, said) =
+        output_of(&folder, &format!("{words} --resume").replace(" -o dem.tif", " --job dem.tif.job"), "dem.tif");
+    assert!(tiled == whole && said.contains("resumed"), "{said}");
+    assert!(times()[..before.len()] == before[..]);
+    // Once it is read, it must stay.
+    std::fs::write(&path, &damaged).unwrap();
+    run(&format!("{words} --resume --overwrite")).fails(2, &["3.las", "has changed since the job was planned"]);
+}
+
+/// The length of a point's record.
+fn lidar_record(file: &[u8]) -> usize {
+    usize::from(u16::from_le_bytes([file[105], file[106]]))
 }

@@ -156,6 +156,32 @@ fn lines_of_all_kinds_are_the_same_in_any_tiles() {
     assert!(built * 2 > rounds(), "{built}");
 }
 
+/// Surfaces that are cut: the lines cross tiles, cuts and seams, and run beyond the points.
+#[test]
+fn clipped_surfaces_are_the_same_in_tiles() {
+    let folder = tempfile::tempdir().unwrap();
+    let valley = valley();
+    let [lines, boundary] = ["breaklines.shp", "boundary.shp"].map(|name| valley.replace("valley.laz", name));
+    let bounds = "--bounds 688100.3,5261050.2,688300.7,5261222.9";
+    for (words, tiles) in [
+        (format!("--boundary {boundary} --resolution 0.7"), "4x4"),
+        (format!("{bounds} --resolution 0.5"), "auto"),
+        (format!("{bounds} --boundary {boundary} --breaklines {lines} --max-edge 3"), "7x5"),
+        (format!("--holes {boundary} --soft-lines {lines} --max-edge-inside 3"), "5x5"),
+        (format!("--draped-lines {lines} {bounds}"), "3x9"),
+    ] {
+        assert_same(&folder, &format!("dem {valley} {words}"), &[&format!("--tiles {tiles}")]);
+    }
+    for words in [format!("--boundary {boundary}"), format!("{bounds} --draped-lines {lines}")] {
+        let words = format!("contour {valley} {words} --interval 0.5");
+        let (whole, _) = output_of(&folder, &words, "whole.geojson");
+        let (tiled, _) = output_of(&folder, &format!("{words} --tiles 6x4"), "tiled.geojson");
+        assert!(tiled == whole, "{words}");
+    }
+    let nothing = format!("dem {valley} --bounds 0,0,1,1 --resolution 1 --tiles 2x2 -o out.tif");
+    run_in(&folder, &nothing.split(' ').collect::<Vec<_>>()).fails(1, &["lie outside of the boundary or the bounds"]);
+}
+
 /// The number of sets of lines, which the environment sets: `BREAKLINE_JOBS=2000 cargo test
 /// --release --test tiles`.
 fn rounds() -> usize {
@@ -211,17 +237,20 @@ fn what_tiles_do_not_have_is_refused() {
     let valley = valley();
     let lines = valley.replace("valley.laz", "breaklines.shp");
     for (words, said) in [
-        (format!("{valley} --draped-lines {lines}"), "--draped-lines does not work with tiles yet"),
-        (format!("{valley} --boundary {lines}"), "--boundary does not work with tiles yet"),
-        (format!("{valley} --bounds 0,0,1,1"), "--bounds does not work with tiles yet"),
         (format!("{valley} --crossing-report a.csv"), "--crossing-report does not work with tiles yet"),
         (format!("{valley} --max-edge auto"), "--max-edge auto does not work with tiles yet"),
         (format!("{valley} --method natural"), "tiles have linear heights only"),
+        (format!("{valley} --flat {lines} --max-edge-inside 3"), "--max-edge-inside together with --flat"),
         ("-".to_owned(), "tiles are made of files"),
     ] {
         let words = format!("dem {words} --tiles 2x2 -o out.tif");
         run_in(&folder, &words.split(' ').collect::<Vec<_>>())
             .fails(if said.contains("made of") { 2 } else { 1 }, &[said]);
+    }
+    for (words, said) in [("--bounds 5,5,1,1", "the bounds go from"), ("--boundary fixtures", "cannot")] {
+        let words = format!("dem {valley} {words} --tiles 2x2 -o out.tif");
+        let run = run_in(&folder, &words.split(' ').collect::<Vec<_>>());
+        assert!(run.code != 0, "{said}: {}", run.stderr);
     }
     assert!(files_of(folder.path()).is_empty());
 }

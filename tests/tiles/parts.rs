@@ -65,6 +65,9 @@ fn the_valley_in_parts_is_the_valley() {
     // Triangles that wait for the rim: few, many; some are left out inside.
     assert_same(&folder, &format!("{valley} --soft-lines {lines} --max-edge 3"), &["--tiles 5x3"]);
     assert_same(&folder, &format!("{valley} --max-edge 9 --max-edge-inside 3"), &["--tiles 2x7"]);
+    // Fragments are in a part of their own.
+    let boundary = valley.replace("valley.laz", "boundary.shp");
+    assert_same(&folder, &format!("{valley} --breaklines {lines} --boundary {boundary}"), &["--tiles 4x6"]);
 }
 
 /// Lines of several kinds on grids, where ties are the rule: along cuts, across them, and at seams.
@@ -196,12 +199,15 @@ fn parts_come_from_a_job_like_all_else() {
     assert_eq!(run("job run j").code, 0);
     assert!(run("job status j --json").stdout.contains("\"output\""));
     assert_eq!(run("check v.tins").code, 0);
+    // The last task can be repeated, as all others can.
+    let repeated = run("job run j");
+    assert!(repeated.code == 0 && repeated.stderr.contains("v.tins is written"), "{}", repeated.stderr);
     assert_eq!(run("job clean j").code, 0);
     run(&format!("tin {valley} -o v.ply --tiles 2x2"))
         .fails(2, &["tiles make a TIN in parts", "name the output .tins"]);
     run(&format!("tin {valley} -o w.tins -o v.ply")).fails(2, &["written alone"]);
     run("tin v.tins -o w.tins").fails(2, &["tiles are made of points"]);
-    run(&format!("tin {valley} -o w.tins --bounds 0,0,1,1")).fails(1, &["--bounds does not work with tiles yet"]);
+    run(&format!("tin {valley} -o w.tins --max-edge auto")).fails(1, &["--max-edge auto does not work with tiles yet"]);
     let planned = run(&format!("tin {valley} -o w.tins --dry-run"));
     assert!(planned.code == 0 && planned.stderr.contains("on the disk"), "{}", planned.stderr);
     assert_eq!(files_of(folder.path()).iter().filter(|name| name.starts_with("v.tins")).count(), 2);

@@ -151,8 +151,8 @@ fn no_job(job: &Path) -> Error {
 
 fn work(job: &Path, task: Option<usize>, console: &Console) -> Result<Exit> {
     let (job, mut command, _) = stored(job, console)?;
+    let open = command.open(&job)?;
     if let Some(task) = task {
-        let open = command.open(&job)?;
         if task < open.task_count() {
             open.run_task(task, &console.context())?;
             console.line(format_args!("task {task}      {} is done", open.task_name(task)));
@@ -160,6 +160,12 @@ fn work(job: &Path, task: Option<usize>, console: &Console) -> Result<Exit> {
         }
         open.require_done(task)?;
     }
+    // Like any task, the last one may be repeated: its process may have been killed after it.
+    if (0..open.task_count()).all(|task| open.is_done(task)) && open.is_older_than(&command.output) {
+        console.line(format_args!("output      {} is written", command.output.display()));
+        return Ok(Exit::Done);
+    }
+    drop(open);
     match &mut command.verb {
         Verb::Dem(args) => {
             (args.tiles.job, args.tiles.resume) = (Some(job), true);

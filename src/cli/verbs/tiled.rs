@@ -141,11 +141,18 @@ impl Ran<'_> {
         if report.line_edges > 0 {
             console.line(format_args!("lines       {} edges", report.line_edges));
         }
-        let rim = match report.beyond_max_edge {
-            0 => String::new(),
-            count => format!(" ({count} left out at the rim; {} waited for that)", report.waited),
-        };
-        console.line(format_args!("triangles   {}{rim}", report.triangles));
+        let mut left_out = Vec::new();
+        if report.beyond_max_edge > 0 {
+            left_out.push(format!("{} left out at the rim; {} waited for that", report.beyond_max_edge, report.waited));
+        }
+        if report.over_skipped > 0 {
+            left_out.push(format!("{} left out over skipped files", report.over_skipped));
+        }
+        if report.clipped > 0 {
+            left_out.push(format!("{} clipped", report.clipped));
+        }
+        let left_out = if left_out.is_empty() { String::new() } else { format!(" ({})", left_out.join(", ")) };
+        console.line(format_args!("triangles   {}{left_out}", report.triangles));
         console.line(format_args!("handed up   {} vertices", report.handed_up));
         report.warnings.iter().for_each(|text| console.warning(text));
         report.skipped.iter().for_each(|text| console.warning(format_args!("skipped: {text}")));

@@ -145,11 +145,16 @@ pub(super) fn of_waiting(waiting: &Waiting) -> [Vec<u8>; 2] {
         put_u32(&mut gates, *group);
     }
     for (triangle, group) in waiting.triangles.iter().zip(&waiting.group_of) {
-        triangle.corners.iter().for_each(|corner| put_vertex(&mut triangles, corner));
-        triangles.extend(triangle.edges.map(EdgeKind::number));
-        put_u32(&mut triangles, *group);
+        put_waiting(&mut triangles, triangle, *group);
     }
     [gates, triangles]
+}
+
+/// Appends the bytes of a triangle that waits, with a number.
+pub(super) fn put_waiting(to: &mut Vec<u8>, triangle: &TileTriangle, number: u32) {
+    triangle.corners.iter().for_each(|corner| put_vertex(to, corner));
+    to.extend(triangle.edges.map(EdgeKind::number));
+    put_u32(to, number);
 }
 
 /// Returns the gates with these bytes; `None` if they are not those of gates.
@@ -165,7 +170,7 @@ pub(super) fn to_gates(bytes: &[u8]) -> Option<Vec<Gate>> {
 /// The bytes of a triangle that waits.
 pub(super) const WAITING_BYTES: usize = 3 * 32 + 3 + 4;
 
-/// Returns the triangle with these bytes and its group; `None` if they are damaged.
+/// Returns the triangle with these bytes and its number; `None` if they are damaged.
 pub(super) fn to_waiting(bytes: &[u8]) -> Option<(TileTriangle, u32)> {
     let mut reader = Reader::new(bytes);
     let corners = [reader.vertex()?, reader.vertex()?, reader.vertex()?];

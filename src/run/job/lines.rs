@@ -19,7 +19,7 @@ use crate::run::line_notes;
 use crate::run::tin::{TinRequest, builder_of};
 use crate::run::transforms::Transforms;
 use crate::run::units::Units;
-use crate::terrain::tiles::{Layout, SubConstraint};
+use crate::terrain::tiles::{Layout, SubConstraint, TileClip};
 use crate::terrain::{Inside, Tin, TinBuilder};
 
 /// How far from a line a point may matter to it, in units in the last place of the largest
@@ -41,34 +41,47 @@ pub(super) struct JobLines {
     pub(super) extent: Bounds,
 }
 
+/// Returns the lines of the layers of a request, and what the surface is cut along; `None` if there
+/// are none. `extent` is that of all points.
+///
+/// # Errors
+/// If a layer is not what its option takes.
+pub(super) fn of_layers(
+    layers: &LineLayers,
+    request: &TinRequest,
+    crs: Option<&Crs>,
+    extent: &Bounds,
+    journal: &Journal,
+) -> Result<(Option<JobLines>, Option<TileClip>)> {
+    let from = vec![None; layers.stated().count()];
+    let transforms = Transforms::new(&from, crs, journal)?;
+    let units = Units::of(crs);
+    let mut builder = builder_of(request, &units, crs.cloned());
+    let added = layers.add_to(&mut builder, &transforms.by_file, &transforms, &units)?;
+    line_notes::note_uneven(&added.uneven, &units, journal);
+    line_notes::note_overlaps(&added.overlaps, journal);
+    let of_lines = lines_extent(&builder);
+    let mut all = *extent;
+    all.merge(&of_lines);
+    let clip = TileClip::take_from(&mut builder, &all)?;
+    let lines = layers.has_lines_with_heights().then(|| JobLines::new(builder, added.names, of_lines));
+    Ok((lines, clip))
+}
+
+/// Returns the box in plan around all lines of a builder.
+fn lines_extent(builder: &TinBuilder) -> Bounds {
+    let mut extent = Bounds::default();
+    builder.lines_in_plan().iter().flatten().for_each(|&[x, y]| extent.add([x, y, 0.0]));
+    extent
+}
+
 impl JobLines {
-    /// Returns the lines of the layers of a request; `None` if there are none.
-    ///
-    /// # Errors
-    /// If a layer is not what its option takes.
-    pub(super) fn new(
-        layers: &LineLayers,
-        request: &TinRequest,
-        crs: Option<&Crs>,
-        journal: &Journal,
-    ) -> Result<Option<Self>> {
-        if !layers.has_lines_with_heights() {
-            return Ok(None);
-        }
-        let from = vec![None; layers.stated().count()];
-        let transforms = Transforms::new(&from, crs, journal)?;
-        let units = Units::of(crs);
-        let mut builder = builder_of(request, &units, crs.cloned());
-        let added = layers.add_to(&mut builder, &transforms.by_file, &transforms, &units)?;
-        line_notes::note_uneven(&added.uneven, &units, journal);
-        line_notes::note_overlaps(&added.overlaps, journal);
+    fn new(builder: TinBuilder, names: LineNames, extent: Bounds) -> Self {
         let lines = builder.lines_in_plan();
-        let mut extent = Bounds::default();
-        lines.iter().flatten().for_each(|&[x, y]| extent.add([x, y, 0.0]));
         let largest = lines.iter().flatten().flatten().fold(0.0_f64, |most, c| most.max(c.abs()));
         let sites = lines.iter().flatten().map(|p| p.map(f64::to_bits)).collect();
         let index = Inside::new(&[lines]);
-        Ok(Some(JobLines { builder, names: added.names, index, sites, near: NEAR * f64::EPSILON * largest, extent }))
+        JobLines { builder, names, index, sites, near: NEAR * f64::EPSILON * largest, extent }
     }
 
     /// Removes the points that water and walls replace, and returns those of the others that may

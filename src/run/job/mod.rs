@@ -8,12 +8,15 @@
 //! 3. Each *step* triangulates a tile, or merges what tiles hand up, and draws the triangles that
 //!    are final; see [`tiles`](crate::terrain::tiles).
 //! 4. The *rim* is decided: triangles with edges over the limit wait until all others are known.
-//! 5. The product is composed of the cells that the tasks have drawn, joined from their contours,
+//! 5. Triangles that clip lines come near are *cut*, all of them together.
+//! 6. The product is composed of the cells that the tasks have drawn, joined from their contours,
 //!    or consists of their triangulations.
 
 mod bytes;
 mod contours;
+mod holes;
 mod lines;
+mod lock;
 mod plan;
 mod raster;
 mod schedule;
@@ -21,14 +24,15 @@ mod surface;
 mod task_file;
 mod tasks;
 
-use std::fs::{File, TryLockError};
+use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
-use std::time::{Duration, Instant};
 
 use serde_json::Value;
 
 use self::contours::DrawnContours;
+use self::lock::remove_files;
+pub use self::lock::{JobLock, remove_job};
 #[cfg(feature = "cli")]
 pub(crate) use self::plan::not_in_tiles;
 use self::plan::{Known, Plan, fingerprint};
@@ -54,9 +58,6 @@ use crate::terrain::tiles::{Step, Work};
 
 /// The file of the plan in the folder of a job.
 const PLAN: &str = "plan.json";
-
-/// The file that is locked while a process works on the job.
-const LOCK: &str = "lock";
 
 /// The file that a program may keep its command in; it is removed with the job.
 pub const COMMAND: &str = "command.json";
@@ -150,6 +151,8 @@ enum Task {
     Triangulate(usize),
     /// Decides about the triangles at the rim.
     Rim,
+    /// Cuts the triangles that clip lines come near.
+    Cut,
 }
 
 /// A surface in tiles, and what is made of it.
@@ -166,12 +169,6 @@ pub struct Job<'a> {
     known: OnceLock<Known>,
     /// What was assumed and what looks wrong, in the order in which it was found.
     pub notices: Vec<Notice>,
-}
-
-/// A job that a process works on.
-#[derive(Debug)]
-pub struct JobLock {
-    _file: File,
 }
 
 /// What a plan consists of.
@@ -219,6 +216,10 @@ pub struct JobReport {
     pub triangles: u64,
     /// Triangles that were left out at the rim.
     pub beyond_max_edge: u64,
+    /// Triangles that no clip line comes near and that were left out.
+    pub clipped: u64,
+    /// Triangles that were left out because they reach into the extents of skipped files.
+    pub over_skipped: u64,
     /// Triangles that waited for the decision about the rim.
     pub waited: u64,
     /// Vertices that were handed up in all.
@@ -298,17 +299,17 @@ impl<'a> Job<'a> {
         if let Some(command) = command {
             std::fs::write(self.folder.join(COMMAND), command).map_err(named)?;
         }
-        let plan = self.plan.to_json().to_string();
-        let unfinished = self.folder.join(format!("{PLAN}{UNFINISHED}"));
-        std::fs::write(&unfinished, format!("{:08x}\n{plan}", checksum(&plan))).map_err(named)?;
         // Last, because a folder is a job from here on.
-        std::fs::rename(&unfinished, &path).map_err(named)
+        self.write_plan()
     }
 
     /// Opens the job of a request in its folder; `None` if there is none.
     ///
+    /// A file that has changed since the job was planned is taken as it is now, if no task has read
+    /// it and its header states the same: it was damaged, and was replaced.
+    ///
     /// # Errors
-    /// If the job is that of another request, or damaged.
+    /// If the job is that of another request, or damaged, or a file has changed otherwise.
     pub fn open(request: &'a SurfaceRequest, product: &'a TiledProduct, options: &TileOptions) -> Result<Option<Self>> {
         let (request, systems) = tiled(request, product)?;
         let path = options.folder.join(PLAN);
@@ -331,8 +332,42 @@ impl<'a> Job<'a> {
                 .in_file(&options.folder)
                 .cure("repeat that command, or name another folder (--job)"));
         }
-        plan.require_all_unchanged()?;
-        Ok(Some(Self::of_plan(request, systems, product, options, plan)))
+        let mut job = Self::of_plan(request, systems, product, options, plan);
+        if job.take_replaced_files()? {
+            job.write_plan()?;
+        }
+        job.plan.require_all_unchanged()?;
+        Ok(Some(job))
+    }
+
+    /// Takes files that were replaced, and that no task has read, as they are now. Returns true if
+    /// there are some.
+    fn take_replaced_files(&mut self) -> Result<bool> {
+        let mut is_any = false;
+        for number in 0..self.plan.files.len() {
+            if self.plan.require_unchanged(number).is_err() && !self.is_done(self.reader_of(number)) {
+                self.plan.replace_file(number, self.request)?;
+                is_any = true;
+            }
+        }
+        Ok(is_any)
+    }
+
+    /// The task that reads a file.
+    fn reader_of(&self, file: usize) -> usize {
+        let is_own = |step: &Step| step.work == Work::Leaf(file as u32);
+        match self.steps.iter().position(is_own) {
+            Some(step) if !self.plan.divides => self.task_of_step(step),
+            _ => file,
+        }
+    }
+
+    fn write_plan(&self) -> Result<()> {
+        let named = |e: std::io::Error| Error::from(e).in_file(&self.folder);
+        let plan = self.plan.to_json().to_string();
+        let unfinished = self.folder.join(format!("{PLAN}{UNFINISHED}"));
+        std::fs::write(&unfinished, format!("{:08x}\n{plan}", checksum(&plan))).map_err(named)?;
+        std::fs::rename(&unfinished, self.folder.join(PLAN)).map_err(named)
     }
 
     /// Returns the numbers of the plan.
@@ -359,7 +394,17 @@ impl<'a> Job<'a> {
 
     /// Returns the number of tasks.
     pub fn task_count(&self) -> usize {
-        self.first_step() + self.steps.len() + usize::from(self.plan.max_edge.is_some())
+        self.after_steps() + usize::from(self.plan.max_edge.is_some()) + usize::from(self.plan.has_clip)
+    }
+
+    /// The number of the task after the last step.
+    fn after_steps(&self) -> usize {
+        self.first_step() + self.steps.len()
+    }
+
+    /// The task that decides about the rim, if there is a longest edge.
+    fn rim_task(&self) -> Option<usize> {
+        self.plan.max_edge.map(|_| self.after_steps())
     }
 
     /// The number of the task of the first step.
@@ -377,7 +422,8 @@ impl<'a> Job<'a> {
             None if number < self.divided() => Task::Divide(number),
             None => Task::Lines,
             Some(step) if step < self.steps.len() => Task::Triangulate(step),
-            Some(_) => Task::Rim,
+            Some(_) if Some(number) == self.rim_task() => Task::Rim,
+            Some(_) => Task::Cut,
         }
     }
 
@@ -397,7 +443,8 @@ impl<'a> Job<'a> {
         }
         // What there is to say about the files was said with the plan.
         let quiet = Context { cancel: context.cancel, ..Context::default() };
-        let known = Known::read(self.request, self.systems, &self.plan.skipped, &Journal::new(&quiet))?;
+        let known =
+            Known::read(self.request, self.systems, &self.plan.skipped, &self.plan.extent(), &Journal::new(&quiet))?;
         Ok(self.known.get_or_init(|| known))
     }
 
@@ -411,7 +458,8 @@ impl<'a> Job<'a> {
                 Work::Leaf(_) => Vec::new(),
                 Work::Merge(parts) => parts.iter().map(|&part| self.task_of_step(part)).collect(),
             },
-            Task::Rim => (0..self.steps.len()).map(|step| self.task_of_step(step)).collect(),
+            Task::Rim => (self.first_step()..self.after_steps()).collect(),
+            Task::Cut => (self.first_step()..task).collect(),
         }
     }
 
@@ -464,6 +512,7 @@ impl<'a> Job<'a> {
                 Work::Merge(parts) => format!("merge of {}", parts.len()),
             },
             Task::Rim => "rim".to_owned(),
+            Task::Cut => "cut".to_owned(),
         }
     }
 
@@ -566,6 +615,8 @@ impl<'a> Job<'a> {
             report.line_edges += file.count("line_edges");
             report.triangles += file.count("triangles");
             report.beyond_max_edge += file.count("removed");
+            report.clipped += file.count("clipped");
+            report.over_skipped += file.count("over_skipped");
             report.waited += file.count("waiting");
             report.handed_up += file.count("residual");
             if let Some(text) = file.facts.get("skipped").and_then(Value::as_str) {
@@ -625,8 +676,12 @@ impl<'a> Job<'a> {
         if report.triangles > 0 {
             return Ok(());
         }
-        let JobReport { read, used, beyond_max_edge, .. } = report;
+        let JobReport { read, used, beyond_max_edge, clipped, .. } = report;
         Err(match (used, beyond_max_edge) {
+            _ if *clipped > 0 => {
+                Error::format(format!("no triangle is left: {clipped} lie outside of the boundary or the bounds"))
+                    .cure("check them, and the coordinate systems: `breakline info` shows the extent of each file")
+            }
             (0, _) => Error::usage(format!("no point is left of {read} read"))
                 .cure("`breakline info` shows the classes of each file: choose with --class"),
             (_, 0) => Error::format(format!("{used} points on one line, or fewer than three, do not span a surface"))
@@ -653,56 +708,6 @@ impl<'a> Job<'a> {
     pub fn remove(&self, _lock: &JobLock) -> Result<()> {
         remove_files(&self.folder)
     }
-}
-
-impl JobLock {
-    fn take(folder: &Path, lock: impl Fn(&File) -> std::result::Result<(), TryLockError>) -> Result<Self> {
-        let path = folder.join(LOCK);
-        let file = File::create(&path).map_err(|e| Error::from(e).in_file(&path))?;
-        let start = Instant::now();
-        loop {
-            match lock(&file) {
-                Err(TryLockError::WouldBlock) if start.elapsed() < PATIENCE => std::thread::sleep(PATIENCE / 50),
-                Err(TryLockError::WouldBlock) => {
-                    return Err(Error::usage("another process works on this job")
-                        .in_file(folder)
-                        .cure("wait for it, or name another folder (--job)"));
-                }
-                // Some shared file systems have no locks.
-                Ok(()) | Err(TryLockError::Error(_)) => return Ok(JobLock { _file: file }),
-            }
-        }
-    }
-}
-
-/// How long a lock is waited for: a worker that was killed may leave a process that ends its task.
-const PATIENCE: Duration = Duration::from_secs(10);
-
-/// Removes the files of a job and its folder, if nothing else is in it.
-///
-/// # Errors
-/// If the folder has no job, or the job cannot be removed.
-pub fn remove_job(folder: &Path) -> Result<()> {
-    if !folder.join(PLAN).is_file() {
-        return Err(Error::usage("there is no job in this folder").in_file(folder));
-    }
-    let _lock = JobLock::take(folder, File::try_lock)?;
-    remove_files(folder)
-}
-
-fn remove_files(folder: &Path) -> Result<()> {
-    let named = |e: std::io::Error| Error::from(e).in_file(folder);
-    // The plan last: a removal that was interrupted can be repeated.
-    let tasks = folder.join("tasks");
-    if tasks.exists() {
-        std::fs::remove_dir_all(&tasks).map_err(named)?;
-    }
-    std::fs::remove_file(folder.join(PLAN)).map_err(named)?;
-    for name in [LOCK, COMMAND] {
-        let _ = std::fs::remove_file(folder.join(name));
-    }
-    let is_empty = std::fs::read_dir(folder).map_err(named)?.next().is_none();
-    if is_empty { std::fs::remove_dir(folder).map_err(named) } else { Ok(()) }
 }
 
 /// Returns true if a request would need more memory than there is.

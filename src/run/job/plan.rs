@@ -5,7 +5,7 @@ use std::time::UNIX_EPOCH;
 
 use serde_json::{Value, json};
 
-use super::lines::JobLines;
+use super::lines::{self, JobLines};
 use super::task_file::checksum;
 use super::{BadFiles, Division, TileOptions, TiledProduct};
 use crate::crs::Crs;
@@ -24,7 +24,7 @@ use crate::run::systems::{self, SystemOptions, Systems};
 use crate::run::tin::{EdgeLimit, TinRequest};
 use crate::run::units::Units;
 use crate::terrain::Classes;
-use crate::terrain::tiles::{Layout, Node, Spread, Work};
+use crate::terrain::tiles::{Layout, Node, Spread, TileClip, Work};
 
 /// Bytes per point of a tile while it is triangulated and drawn; measured.
 pub(super) const BYTES_A_POINT: u64 = 220;
@@ -78,6 +78,8 @@ pub(super) struct Plan {
     pub(super) divides: bool,
     /// True if there are lines, which one task arranges.
     pub(super) has_lines: bool,
+    /// True if the surface is cut along lines, which one task does.
+    pub(super) has_clip: bool,
     pub(super) layout: Layout,
     /// The classes that are used.
     pub(super) classes: Vec<u8>,
@@ -113,12 +115,8 @@ pub(crate) fn not_in_tiles(option: &str) -> Error {
 /// Returns an error if the request has something that tiles do not have yet.
 pub(super) fn require_tiled(request: &TinRequest, systems: &SystemOptions) -> Result<()> {
     let refused = [
-        (!request.boundary.is_empty(), "--boundary"),
-        (request.bounds.is_some(), "--bounds"),
         (request.max_edge == EdgeLimit::Auto, "--max-edge auto"),
         (systems.target.is_some(), "--t-srs"),
-        (!request.lines.draped.is_empty(), "--draped-lines"),
-        (!request.lines.holes.is_empty(), "--holes"),
         (
             request.max_edge_inside.is_some() && !(request.lines.flats.is_empty() && request.lines.rivers.is_empty()),
             "--max-edge-inside together with --flat or --rivers",
@@ -127,6 +125,8 @@ pub(super) fn require_tiled(request: &TinRequest, systems: &SystemOptions) -> Re
     if let Some((_, option)) = refused.iter().find(|(is_given, _)| *is_given) {
         return Err(not_in_tiles(option));
     }
+    request.check_bounds()?;
+    request.check_layers()?;
     if let Some(input) = request.points.iter().find(|input| !matches!(input, Input::File(_)) || input.is_read_once()) {
         return Err(Error::usage("tiles are made of files, which can be read again after an interruption")
             .in_file(input.path())
@@ -140,27 +140,35 @@ pub(super) fn require_tiled(request: &TinRequest, systems: &SystemOptions) -> Re
 pub(super) struct Known {
     pub(super) crs: Option<Crs>,
     pub(super) lines: Option<JobLines>,
+    pub(super) clip: Option<TileClip>,
 }
 
 impl Known {
-    /// Opens all files but those that the plan skips.
+    /// Opens all files but those that the plan skips. `extent` is that of their points.
     pub(super) fn read(
         request: &TinRequest,
         systems: &SystemOptions,
         skipped: &[(usize, String)],
+        extent: &Bounds,
         journal: &Journal,
     ) -> Result<Self> {
         let (_, inputs) = opened(request, skipped);
-        Self::of(&PointFiles::open(&inputs, request.read, journal)?, request, systems, journal)
+        Self::of(&PointFiles::open(&inputs, request.read, journal)?, request, systems, extent, journal)
     }
 
-    fn of(points: &PointFiles, request: &TinRequest, systems: &SystemOptions, journal: &Journal) -> Result<Self> {
+    fn of(
+        points: &PointFiles,
+        request: &TinRequest,
+        systems: &SystemOptions,
+        extent: &Bounds,
+        journal: &Journal,
+    ) -> Result<Self> {
         let layers = LineLayers::read(&request.lines, &request.breaklines, &request.boundary, journal)?;
         let mut stated = points.stated(&request.classes, journal)?;
         stated.extend(layers.stated());
         let Systems { crs, .. } = systems::reconcile_some(&stated, systems, journal)?;
-        let lines = JobLines::new(&layers, request, crs.as_ref(), journal)?;
-        Ok(Known { crs, lines })
+        let (lines, clip) = lines::of_layers(&layers, request, crs.as_ref(), extent, journal)?;
+        Ok(Known { crs, lines, clip })
     }
 }
 
@@ -181,8 +189,6 @@ impl Plan {
         };
         let (numbers, inputs) = opened(request, &skipped);
         let points = PointFiles::open(&inputs, request.read, journal)?;
-        let known = Known::of(&points, request, systems, journal)?;
-        let Known { crs, lines } = &known;
         let classes = points.used_classes(&request.classes, journal)?;
         if request.classes == Classes::GroundOrAll {
             journal.add(if classes.len() == 1 { Notice::GroundUsed } else { Notice::AllClassesUsed });
@@ -191,19 +197,21 @@ impl Plan {
         for ((number, input), stated) in numbers.into_iter().zip(&inputs).zip(points.stated_extents()) {
             files.extend(planned(number, input, request, stated, &journal.context)?);
         }
+        let extent = extent_of(&files);
+        let known = Known::of(&points, request, systems, &extent, journal)?;
+        let Known { crs, lines, clip } = &known;
         drop(points);
 
         let spreads: Vec<Spread> = files.iter().map(PlannedFile::spread).collect();
         if spreads.is_empty() {
             return Err(Error::format("no points in the input").cure("pass files that contain points"));
         }
-        let mut extent = Bounds::default();
-        for Spread { min, max, .. } in &spreads {
-            [min, max].into_iter().for_each(|&[x, y]| extent.add([x, y, 0.0]));
-        }
         let mut drawn_extent = extent;
         if let Some(lines) = lines {
             [lines.extent.min, lines.extent.max].into_iter().for_each(|corner| drawn_extent.add(corner));
+        }
+        if let Some(bounds) = request.bounds.map(|bounds| common(&bounds, &drawn_extent)).filter(|b| !b.is_empty()) {
+            drawn_extent = bounds;
         }
         let workers = rayon::current_num_threads() as u64;
         let task_memory = options.memory.unwrap_or_else(memory::half_of_free) / workers;
@@ -231,15 +239,32 @@ impl Plan {
         let units = Units::of(crs.as_ref());
         let max_edge = request.max_edge.length(&units);
         journal.add(request.max_edge.notice(&units));
-        let has_lines = lines.is_some();
+        let (has_lines, has_clip) = (lines.is_some(), clip.is_some());
         let others = others(request, product)?;
         if let Some(path) = files.iter().map(|file| &file.path).find(|path| path.to_str().is_none()) {
             return Err(Error::unsupported("the name is not valid Unicode, which a plan needs").in_file(path));
         }
         let request = fingerprint(request, systems, product, options);
-        let plan =
-            Plan { request, files, others, skipped, divides, has_lines, layout, classes, max_edge, frame, task_memory };
+        let plan = Plan {
+            request,
+            files,
+            others,
+            skipped,
+            divides,
+            has_lines,
+            has_clip,
+            layout,
+            classes,
+            max_edge,
+            frame,
+            task_memory,
+        };
         Ok((plan, known))
+    }
+
+    /// Returns the box in plan around all points, as the files state it.
+    pub(super) fn extent(&self) -> Bounds {
+        extent_of(&self.files)
     }
 
     /// Returns the number of points that the files state.
@@ -264,6 +289,27 @@ impl Plan {
         require_state(&file.path, (file.size, file.modified))
     }
 
+    /// Takes a file as it is now.
+    ///
+    /// # Errors
+    /// If it does not have the points that the plan expects, by their number and extent.
+    pub(super) fn replace_file(&mut self, number: usize, request: &TinRequest) -> Result<()> {
+        let file = &self.files[number];
+        let (input, context) = (&request.points[file.input], Context::default());
+        let source = open::points(input, request.read, &context)?;
+        let info = source.info();
+        let found = planned(file.input, input, request, (info.count, info.bounds), &context)?;
+        match found {
+            Some(found) if (found.count, found.min, found.max) == (file.count, file.min, file.max) => {
+                self.files[number] = found;
+                Ok(())
+            }
+            _ => Err(Error::usage("the file was replaced by one of another extent or number of points")
+                .in_file(&file.path)
+                .cure("plan the job again: `breakline job clean` removes this one")),
+        }
+    }
+
     pub(super) fn to_json(&self) -> Value {
         let file = |file: &PlannedFile| {
             json!({
@@ -283,6 +329,7 @@ impl Plan {
             "skipped": self.skipped,
             "divides": self.divides,
             "has_lines": self.has_lines,
+            "has_clip": self.has_clip,
             "layout": self.layout.nodes().iter().map(node).collect::<Vec<_>>(),
             "classes": self.classes,
             "max_edge": self.max_edge,
@@ -330,6 +377,7 @@ impl Plan {
             skipped: serde_json::from_value(value["skipped"].clone()).ok()?,
             divides: value["divides"].as_bool()?,
             has_lines: value["has_lines"].as_bool()?,
+            has_clip: value["has_clip"].as_bool()?,
             layout: Layout::from_nodes(nodes)?,
             classes: value["classes"].as_array()?.iter().map(class).collect::<Option<_>>()?,
             max_edge: value["max_edge"].as_f64(),
@@ -351,6 +399,24 @@ impl PlannedFile {
         let (low, high) = ([0, 1].map(|k| min[k] - rounding[k]), [0, 1].map(|k| max[k] + rounding[k]));
         Spread { min: low, max: high, count: self.count as f64 }
     }
+}
+
+/// Returns the box in plan around the points of files.
+fn extent_of(files: &[PlannedFile]) -> Bounds {
+    let mut extent = Bounds::default();
+    for Spread { min, max, .. } in files.iter().map(PlannedFile::spread) {
+        [min, max].into_iter().for_each(|[x, y]| extent.add([x, y, 0.0]));
+    }
+    extent
+}
+
+/// Returns what two boxes have in common in plan.
+fn common(a: &Bounds, b: &Bounds) -> Bounds {
+    let (mut min, mut max) = (b.min, b.max);
+    for k in 0..2 {
+        (min[k], max[k]) = (min[k].max(a.min[k]), max[k].min(a.max[k]));
+    }
+    Bounds { min, max }
 }
 
 /// Returns a description of everything that the files of the tasks depend on.
@@ -440,12 +506,13 @@ fn require_state(path: &Path, planned: (u64, u64)) -> Result<()> {
     }
     Err(Error::usage("the file has changed since the job was planned")
         .in_file(path)
-        .cure("plan the job again, in another folder"))
+        .cure("plan the job again: `breakline job clean` removes this one"))
 }
 
 /// Returns the states of the files that are read beside the points.
 fn others(request: &TinRequest, product: &TiledProduct) -> Result<Vec<OtherFile>> {
-    let layers = request.lines.inputs().into_iter().flat_map(|(_, inputs)| inputs).chain(&request.breaklines);
+    let layers = request.lines.inputs().into_iter().flat_map(|(_, inputs)| inputs);
+    let layers = layers.chain(&request.breaklines).chain(&request.boundary);
     let layers = layers.filter_map(|input| match input {
         Input::File(path) => Some(path),
         Input::Memory(_) => None,

@@ -10,7 +10,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::bytes::{Reader, put_u32};
 use super::task_file::{TaskWriter, UNFINISHED, checksum};
-use super::{Job, JobReport, TiledProduct};
+use super::{Job, JobReport, Task, TiledProduct};
 use crate::data::{EdgeKind, LineEdges, Surface, SurfaceFacts};
 use crate::error::{Error, Result};
 use crate::io::{Destination, Output};
@@ -143,36 +143,46 @@ impl Job<'_> {
         Ok(WrittenParts { index, superseded: replaced.filter(|replaced| *replaced != folder && replaced.exists()) })
     }
 
-    /// Writes the part of each step that has triangles, those between tiles first: what they share
+    /// Writes the part of each task that has triangles, those between tiles first: what they share
     /// with others is then known.
     fn write_parts(&self, folder: &Path, report: &JobReport, context: &Context) -> Result<Vec<Written>> {
         let kept = self.kept_at_rim()?;
-        let is_leaf = |step: &usize| matches!(self.steps[*step].work, Work::Leaf(_));
-        let (leaves, merges): (Vec<usize>, Vec<usize>) = (0..self.steps.len()).partition(is_leaf);
+        let is_leaf = |task: &usize| self.tile_of(*task).is_some();
+        let (leaves, others): (Vec<usize>, Vec<usize>) = (self.first_step()..self.task_count()).partition(is_leaf);
         let writing = context.start(Stage::WritingFaces, Size::Items(report.triangles))?;
-        let write = |step: &usize, shared: &FxHashSet<VertexKey>| {
-            let part = self.write_part(*step, &kept[*step], shared, folder, report)?;
+        let write = |task: &usize, shared: &FxHashSet<VertexKey>| {
+            let kept = kept.get(*task - self.first_step()).map(Vec::as_slice).unwrap_or_default();
+            let part = self.write_part(*task, kept, shared, folder, report)?;
             writing.add(part.as_ref().map_or(0, |part| part.row.triangles))?;
             Ok(part)
         };
         let none = FxHashSet::default();
         let mut written: Vec<Written> =
-            merges.par_iter().filter_map(|step| write(step, &none).transpose()).collect::<Result<_>>()?;
+            others.par_iter().filter_map(|task| write(task, &none).transpose()).collect::<Result<_>>()?;
         let shared: FxHashSet<VertexKey> = written.iter().flat_map(|part| part.shared.iter().copied()).collect();
         let of_leaves: Vec<Written> =
-            leaves.par_iter().filter_map(|step| write(step, &shared).transpose()).collect::<Result<_>>()?;
+            leaves.par_iter().filter_map(|task| write(task, &shared).transpose()).collect::<Result<_>>()?;
         written.extend(of_leaves);
         writing.end()?;
         Ok(written)
     }
 
+    /// The tile that a task triangulates; `None` for other tasks.
+    fn tile_of(&self, task: usize) -> Option<u32> {
+        match self.task(task) {
+            Task::Triangulate(step) => match self.steps[step].work {
+                Work::Leaf(tile) => Some(tile),
+                Work::Merge(_) => None,
+            },
+            Task::Divide(_) | Task::Lines | Task::Rim | Task::Cut => None,
+        }
+    }
+
     /// Returns, for each step, whether each of its triangles that waited is kept.
     fn kept_at_rim(&self) -> Result<Vec<Vec<bool>>> {
         let mut all = vec![Vec::new(); self.steps.len()];
-        if self.plan.max_edge.is_none() {
-            return Ok(all);
-        }
-        let mut rim = self.open_task(self.task_count() - 1)?;
+        let Some(rim) = self.rim_task() else { return Ok(all) };
+        let mut rim = self.open_task(rim)?;
         let decided = rim.section(KEPT)?;
         let mut rest = &decided[..];
         for (step, kept) in all.iter_mut().enumerate() {
@@ -186,38 +196,35 @@ impl Job<'_> {
 
     fn write_part(
         &self,
-        step: usize,
+        task: usize,
         kept: &[bool],
         shared: &FxHashSet<VertexKey>,
         folder: &Path,
         report: &JobReport,
     ) -> Result<Option<Written>> {
-        let mut task = self.open_task(self.task_of_step(step))?;
-        let bytes = task.section(PART)?;
+        let mut file_of_task = self.open_task(task)?;
+        let bytes = file_of_task.section(PART)?;
         if bytes.is_empty() {
             return Ok(None);
         }
-        let waiting = task.section(WAITING)?;
+        let waiting = file_of_task.section(WAITING)?;
         let mut reader = Reader::new(&waiting);
         let mut faces = Vec::new();
         for &is_kept in kept {
             match reader.u32() {
                 Some(face) if is_kept => faces.push(face),
                 Some(_) => {}
-                None => return Err(task.damaged()),
+                None => return Err(file_of_task.damaged()),
             }
         }
-        let mut tin = CompactTin::open_with_faces(bytes, self.task_path(self.task_of_step(step)), &faces)?;
+        let mut tin = CompactTin::open_with_faces(bytes, self.task_path(task), &faces)?;
         tin.set_crs(report.crs.clone());
         let facts = tin.facts().clone();
         if facts.triangles == 0 {
             return Ok(None);
         }
-        let tile = match self.steps[step].work {
-            Work::Leaf(tile) => Some(tile),
-            Work::Merge(_) => None,
-        };
-        let file = format!("{step:06}.tin");
+        let tile = self.tile_of(task);
+        let file = format!("{:06}.tin", task - self.first_step());
         let path = folder.join(&file);
         let written = || -> Result<Summed> {
             let out = BufWriter::with_capacity(1 << 18, File::create_new(&path)?);

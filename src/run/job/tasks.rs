@@ -3,6 +3,7 @@
 use serde_json::{Map, Value, json};
 
 use super::bytes::{self, Reader, put_u32, put_u64};
+use super::holes::Holes;
 use super::plan::Known;
 use super::raster::Drawing;
 use super::surface::PartFaces;
@@ -15,7 +16,7 @@ use crate::run::context::{Context, Journal};
 use crate::run::units::neat;
 use crate::run::{frame, open};
 use crate::terrain::contour::parts::{ContourCollector, LevelParts};
-use crate::terrain::tiles::{self, LongEdges, Rim, TileTriangle, TinPart, Work, has_long_edge};
+use crate::terrain::tiles::{self, ClipSide, LongEdges, Rim, TileClip, TileTriangle, TinPart, Work, has_long_edge};
 use crate::terrain::{Classes, Selection, SelectionReport, one_per_site};
 
 /// Points that are read before they are divided among tiles: 24 bytes each, and as much again while
@@ -38,9 +39,10 @@ impl Job<'_> {
             Task::Lines => self.arrange(&mut writer, context)?,
             Task::Triangulate(step) => match &self.steps[step].work {
                 Work::Leaf(tile) => self.leaf(step, *tile, &mut writer, context)?,
-                Work::Merge(parts) => self.merge(step, parts, &mut writer)?,
+                Work::Merge(parts) => self.merge(step, parts, &mut writer, context)?,
             },
             Task::Rim => self.rim(&mut writer, context)?,
+            Task::Cut => self.cut(&mut writer, context)?,
         };
         context.check()?;
         writer.finish(facts)
@@ -103,7 +105,7 @@ impl Job<'_> {
     /// Arranges the lines, with the points next to them from all files.
     fn arrange(&self, writer: &mut TaskWriter, context: &Context) -> Result<Map<String, Value>> {
         let journal = Journal::new(context);
-        let Known { crs, lines } = self.known(context)?;
+        let Known { crs, lines, .. } = self.known(context)?;
         let Some(lines) = lines else { return Ok(Map::new()) };
         let mut near = Vec::new();
         let mut extent = Bounds::default();
@@ -173,7 +175,13 @@ impl Job<'_> {
 
     /// Triangulates the points of a tile.
     fn leaf(&self, step: usize, tile: u32, writer: &mut TaskWriter, context: &Context) -> Result<Map<String, Value>> {
+        let mut holes = Holes::default();
         let (points, mut facts) = if self.plan.divides {
+            for number in self.files_of(step) {
+                if self.open_task(number)?.facts.contains_key("skipped") {
+                    holes.add_file(self, number);
+                }
+            }
             (self.divided_points(step, tile)?, Map::new())
         } else {
             let file = tile as usize;
@@ -185,6 +193,7 @@ impl Job<'_> {
             let facts = facts.map_err(|e| e.within(format_args!("tile {tile}")))?;
             if facts.contains_key("skipped") {
                 all.clear();
+                holes.add_file(self, file);
             }
             (all, facts)
         };
@@ -198,11 +207,14 @@ impl Job<'_> {
             constraints = lines.constraints;
         }
         let rectangle = &self.steps[step].tile;
-        self.emitting(writer, facts, |emit| tiles::leaf_with_part(rectangle, tile, &points, &constraints, emit))
-            .map_err(|error| {
-                let error = error.within(format_args!("tile {tile}"));
-                if self.plan.divides { error } else { error.in_file(&self.plan.files[tile as usize].path) }
-            })
+        facts.insert("reach".to_owned(), json!(reach_of(&points)));
+        self.emitting(writer, context, &holes, facts, |emit| {
+            tiles::leaf_with_part(rectangle, tile, &points, &constraints, emit)
+        })
+        .map_err(|error| {
+            let error = error.within(format_args!("tile {tile}"));
+            if self.plan.divides { error } else { error.in_file(&self.plan.files[tile as usize].path) }
+        })
     }
 
     /// Returns the points of a tile from the divided files, in the order of the files.
@@ -233,15 +245,25 @@ impl Job<'_> {
         Ok(all)
     }
 
-    fn merge(&self, step: usize, parts: &[usize], writer: &mut TaskWriter) -> Result<Map<String, Value>> {
+    fn merge(
+        &self,
+        step: usize,
+        parts: &[usize],
+        writer: &mut TaskWriter,
+        context: &Context,
+    ) -> Result<Map<String, Value>> {
         let mut residuals = Vec::new();
+        let mut holes = Holes::default();
         for &part in parts {
             let mut file = self.open_task(self.task_of_step(part))?;
             let bytes = file.section("residual")?;
             residuals.push(bytes::to_residual(&bytes).ok_or_else(|| file.damaged())?);
+            holes.add_known(&file);
         }
-        self.emitting(writer, Map::new(), |emit| tiles::merge_with_part(&self.steps[step].tile, &residuals, emit))
-            .map_err(|e| e.within(format_args!("merge {step}")))
+        self.emitting(writer, context, &holes, Map::new(), |emit| {
+            tiles::merge_with_part(&self.steps[step].tile, &residuals, emit)
+        })
+        .map_err(|e| e.within(format_args!("merge {step}")))
     }
 
     /// Runs a step and writes what becomes of its triangles: what is made of those that are certain
@@ -249,14 +271,20 @@ impl Job<'_> {
     fn emitting(
         &self,
         writer: &mut TaskWriter,
+        context: &Context,
+        holes: &Holes,
         mut facts: Map<String, Value>,
         run: impl FnOnce(&mut dyn FnMut(TileTriangle)) -> Result<(tiles::Residual, Option<TinPart>)>,
     ) -> Result<Map<String, Value>> {
-        let mut kept = Kept::new(self, writer)?;
+        let mut kept = Kept::new(self, writer, self.clip(context)?)?;
         let mut long = self.plan.max_edge.map(LongEdges::new);
         let mut failed = Ok(());
+        let mut over_skipped = 0_u64;
         let (residual, part) = run(&mut |triangle| {
-            if long.as_mut().is_some_and(|long| long.take(&triangle)) {
+            if holes.meet(triangle.corners.map(|corner| corner.position)) {
+                over_skipped += 1;
+                kept.add_removed(&triangle);
+            } else if long.as_mut().is_some_and(|long| long.take(&triangle)) {
                 kept.wait();
             } else if failed.is_ok() {
                 failed = kept.add(&triangle, writer);
@@ -264,6 +292,8 @@ impl Job<'_> {
         })?;
         failed?;
         kept.finish(part, writer, &mut facts)?;
+        holes.note(&mut facts);
+        facts.insert("over_skipped".to_owned(), json!(over_skipped));
         writer.begin("residual");
         writer.put(&bytes::of_residual(&residual))?;
         facts.insert("residual".to_owned(), json!(residual.vertices.len()));
@@ -292,7 +322,7 @@ impl Job<'_> {
         }
         let mut facts = Map::new();
         let mut removed = 0_u64;
-        let mut kept = Kept::new(self, writer)?;
+        let mut kept = Kept::new(self, writer, self.clip(context)?)?;
         for (step, is_removed) in rim.removed().into_iter().enumerate() {
             let mut file = self.open_task(self.task_of_step(step))?;
             for bytes in file.section("waiting")?.chunks(bytes::WAITING_BYTES) {
@@ -301,7 +331,7 @@ impl Job<'_> {
                 match is_removed.get(group as usize) {
                     Some(true) => {
                         removed += 1;
-                        kept.leave_out();
+                        kept.add_removed(&triangle);
                     }
                     Some(false) => kept.add(&triangle, writer)?,
                     None => return Err(file.damaged()),
@@ -311,6 +341,39 @@ impl Job<'_> {
         }
         kept.finish(None, writer, &mut facts)?;
         facts.insert("removed".to_owned(), json!(removed));
+        Ok(facts)
+    }
+
+    /// What the surface is cut along, if it is.
+    fn clip(&self, context: &Context) -> Result<Option<&TileClip>> {
+        if self.plan.has_clip { Ok(self.known(context)?.clip.as_ref()) } else { Ok(None) }
+    }
+
+    /// Cuts the triangles of all tasks that clip lines come near.
+    fn cut(&self, writer: &mut TaskWriter, context: &Context) -> Result<Map<String, Value>> {
+        let mut triangles = Vec::new();
+        let mut reach = [0.0_f64; 2];
+        for task in self.first_step()..self.after_steps() + usize::from(self.rim_task().is_some()) {
+            let mut file = self.open_task(task)?;
+            for bytes in file.section(NEAR_CLIP)?.chunks(bytes::WAITING_BYTES) {
+                let (triangle, is_inside) = bytes::to_waiting(bytes).ok_or_else(|| file.damaged())?;
+                triangles.push((triangle, is_inside == 1));
+            }
+            let own = file.facts.get("reach").and_then(|reach| serde_json::from_value::<[f64; 2]>(reach.clone()).ok());
+            own.into_iter().for_each(|own| reach = [0, 1].map(|k| reach[k].max(own[k])));
+        }
+        context.check()?;
+        let mut facts = Map::new();
+        let mut kept = Kept::new(self, writer, None)?;
+        let part = match self.clip(context)? {
+            Some(clip) => clip.cut(&triangles, reach)?,
+            None => None,
+        };
+        drop(triangles);
+        for triangle in part.iter().flat_map(TinPart::triangles) {
+            kept.keep(&triangle, writer)?;
+        }
+        kept.finish(part, writer, &mut facts)?;
         Ok(facts)
     }
 
@@ -328,9 +391,17 @@ enum Drawn {
     Faces(PartFaces),
 }
 
+/// The name of the section of triangles that clip lines come near, each with whether it is in the
+/// surface.
+const NEAR_CLIP: &str = "clip";
+
 /// The triangles of a task that stay in the surface: drawn and counted.
-struct Kept {
+struct Kept<'a> {
     drawn: Drawn,
+    clip: Option<&'a TileClip>,
+    /// The bytes of the triangles that clip lines come near.
+    near_clip: Vec<u8>,
+    clipped: u64,
     max_edge_inside: Option<f64>,
     triangles: u64,
     long_inside: u64,
@@ -338,8 +409,8 @@ struct Kept {
     extent: Bounds,
 }
 
-impl Kept {
-    fn new(job: &Job, writer: &mut TaskWriter) -> Result<Self> {
+impl<'a> Kept<'a> {
+    fn new(job: &Job, writer: &mut TaskWriter, clip: Option<&'a TileClip>) -> Result<Self> {
         let drawn = match (job.product, job.plan.frame) {
             (TiledProduct::Contours(options), _) => Drawn::Contours(ContourCollector::new(&options.to_levels()?)),
             (TiledProduct::Surface, _) => Drawn::Faces(PartFaces::default()),
@@ -348,6 +419,9 @@ impl Kept {
         };
         Ok(Kept {
             drawn,
+            clip,
+            near_clip: Vec::new(),
+            clipped: 0,
             max_edge_inside: job.request.max_edge_inside,
             triangles: 0,
             long_inside: 0,
@@ -356,12 +430,43 @@ impl Kept {
         })
     }
 
+    /// Adds a triangle that is in the surface, unless an edge of it is too long.
     fn add(&mut self, triangle: &TileTriangle, writer: &mut TaskWriter) -> Result<()> {
-        if self.max_edge_inside.is_some_and(|limit| has_long_edge(triangle, limit)) {
-            self.long_inside += 1;
-            self.leave_out();
-            return Ok(());
+        let is_long = self.max_edge_inside.is_some_and(|limit| has_long_edge(triangle, limit));
+        self.long_inside += u64::from(is_long);
+        match self.clip.map_or(ClipSide::Kept, |clip| clip.side_of_triangle(triangle)) {
+            ClipSide::Kept if !is_long => self.keep(triangle, writer),
+            ClipSide::Kept => {
+                self.leave_out();
+                Ok(())
+            }
+            ClipSide::Outside => {
+                self.clipped += 1;
+                self.leave_out();
+                Ok(())
+            }
+            ClipSide::Near => {
+                self.add_near_clip(triangle, !is_long);
+                Ok(())
+            }
         }
+    }
+
+    /// Adds a triangle that is not in the surface: a cut may need it.
+    fn add_removed(&mut self, triangle: &TileTriangle) {
+        match self.clip.map(|clip| clip.side_of_triangle(triangle)) {
+            Some(ClipSide::Near) => self.add_near_clip(triangle, false),
+            Some(ClipSide::Kept | ClipSide::Outside) | None => self.leave_out(),
+        }
+    }
+
+    fn add_near_clip(&mut self, triangle: &TileTriangle, is_inside: bool) {
+        bytes::put_waiting(&mut self.near_clip, triangle, u32::from(is_inside));
+        self.leave_out();
+    }
+
+    /// Draws and counts a triangle.
+    fn keep(&mut self, triangle: &TileTriangle, writer: &mut TaskWriter) -> Result<()> {
         let corners = triangle.corners.map(|corner| corner.position);
         self.triangles += 1;
         self.area += frame::area_of(corners);
@@ -407,6 +512,11 @@ impl Kept {
                 facts.insert("edges".to_owned(), json!(edges));
             }
         }
+        if self.clip.is_some() {
+            writer.begin(NEAR_CLIP);
+            writer.put(&self.near_clip)?;
+            facts.insert("clipped".to_owned(), json!(self.clipped));
+        }
         facts.insert("triangles".to_owned(), json!(self.triangles));
         facts.insert("long_inside".to_owned(), json!(self.long_inside));
         facts.insert("area".to_owned(), json!(self.area));
@@ -416,6 +526,11 @@ impl Kept {
         }
         Ok(())
     }
+}
+
+/// Returns the largest coordinates of points on both axes, without their signs.
+fn reach_of(points: &[[f64; 3]]) -> [f64; 2] {
+    points.iter().fold([0.0, 0.0], |most, p| [0, 1].map(|k: usize| f64::max(most[k], p[k].abs())))
 }
 
 fn facts_of(report: &SelectionReport) -> Map<String, Value> {

@@ -67,6 +67,9 @@ impl Joined {
                 }
             }
             let of_face = corners.map(|vertex| number_of[vertex as usize]);
+            if part.is_fragment(face) {
+                triangles.fragments.push(triangles.faces.len() as u32);
+            }
             triangles.faces.push(of_face);
             for i in 0..3 {
                 let kind = part.edge_kind(face, i);

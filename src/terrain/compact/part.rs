@@ -17,14 +17,19 @@ impl<B: AsRef<[u8]>> CompactTin<B> {
     /// Returns the numbers that stand for a vertex in all parts of a surface: that of its tile, and
     /// its own there. `None` if the TIN is not part of one, or there is no such vertex.
     pub fn number_in_parts(&self, vertex: u32) -> Option<[u32; 2]> {
+        // Vertices of fragments are in no other part.
+        if let Some(added) = (vertex as usize).checked_sub(self.triangulation.vertex_count()) {
+            let is_there = self.is_part() && (vertex as usize) < self.vertex_numbers();
+            return is_there.then_some([u32::MAX, added as u32]);
+        }
         let row: &[u8; NUMBER] = self.row(&self.numbers, vertex as usize)?;
         Some([0, 4].map(|at| u32::from_le_bytes(std::array::from_fn(|i| row[at + i]))))
     }
 }
 
 impl CompactTin<Vec<u8>> {
-    /// Opens a TIN without fragments, with more faces than its bytes state: the cells with these
-    /// numbers. Its counts and its extent are found anew.
+    /// Opens a TIN with more faces than its bytes state: the whole cells with these numbers. Its
+    /// counts and its extent are found anew.
     ///
     /// # Errors
     /// Those of [`open`](Self::open), and if there is no cell with one of these numbers.

@@ -11,7 +11,7 @@ use super::super::regions::{Domain, Segment};
 const REACH: f64 = 2.0;
 
 /// Divides segments where they leave the box that reaches [`REACH`] times as far from zero as the
-/// triangulation.
+/// surface, whose largest coordinates are `reach`.
 ///
 /// The grid to which crossings are rounded is as coarse as the largest coordinate of a segment
 /// requires. With a corner at 2^52, as a stand-in for "no limit", it would consist of whole
@@ -19,12 +19,12 @@ const REACH: f64 = 2.0;
 ///
 /// # Complexity
 /// Linear.
-pub(super) fn divided(base: &ConstrainedDelaunay<Terrain>, curves: &[(Domain, Segment)]) -> Vec<(Domain, Segment)> {
-    let mut limits = [0.0_f64; 2];
-    for vertex in base.tds().vertices().filter(|&vertex| vertex != VertexId::INFINITE) {
-        let p = base.point(vertex);
-        limits = [0, 1].map(|k| limits[k].max(REACH * p[k].abs()));
-    }
+pub(super) fn divided(
+    base: &ConstrainedDelaunay<Terrain>,
+    curves: &[(Domain, Segment)],
+    reach: [f64; 2],
+) -> Vec<(Domain, Segment)> {
+    let limits = reach.map(|most| REACH * most);
     let mut divided = Vec::with_capacity(curves.len());
     for &(domain, [a, b]) in curves {
         let is_far = (0..2).any(|k| a[k].abs().max(b[k].abs()) > limits[k]);
@@ -45,6 +45,15 @@ pub(super) fn divided(base: &ConstrainedDelaunay<Terrain>, curves: &[(Domain, Se
         divided.extend(ends.windows(2).map(|pair| (domain, [pair[0], pair[1]])));
     }
     divided
+}
+
+/// Returns the largest coordinates of a triangulation on both axes, without their signs.
+pub(in crate::terrain) fn reach_of(base: &ConstrainedDelaunay<Terrain>) -> [f64; 2] {
+    let vertices = base.tds().vertices().filter(|&vertex| vertex != VertexId::INFINITE);
+    vertices.fold([0.0, 0.0], |most, vertex| {
+        let p = base.point(vertex);
+        [0, 1].map(|k: usize| f64::max(most[k], p[k].abs()))
+    })
 }
 
 /// The point at which a segment crosses a line perpendicular to an axis, strictly between its ends.

@@ -34,6 +34,7 @@
 
 mod far;
 mod met;
+mod order;
 mod patch;
 mod patched;
 mod snap;
@@ -49,6 +50,7 @@ use super::linear::linear;
 use super::lines::kinds::LineKinds;
 use super::regions::{self, Domain, Segment};
 use far::divided;
+pub(super) use far::reach_of;
 use patch::Patch;
 use patched::{Patched, Remains};
 use snap::snapped;
@@ -76,6 +78,9 @@ pub(super) struct Cut {
 /// A face is kept if `is_kept` returns true for the sorted domains that contain it. On return,
 /// `inside` contains the triangles that stay whole; the fragments of the others are returned.
 ///
+/// The triangulation may have only a part of a surface: the triangles that the lines meet, and
+/// those around them. `reach` has the largest coordinates of the whole, without their signs.
+///
 /// # Errors
 /// If there are more vertices than can be numbered.
 ///
@@ -86,11 +91,12 @@ pub(super) fn cut(
     kinds: &LineKinds,
     inside: &mut [bool],
     curves: &[(Domain, Segment)],
+    reach: [f64; 2],
     is_kept: impl Fn(&[Domain]) -> bool,
 ) -> Result<Option<Cut>> {
-    let curves = &snapped(base, &divided(base, curves));
+    let curves = &snapped(base, &divided(base, curves, reach));
     let segments: Vec<Segment> = curves.iter().map(|(_, segment)| *segment).collect();
-    let Some(patch) = Patch::new(base, &segments)? else {
+    let Some(patch) = Patch::new(base, kinds, &segments)? else {
         let start = base.finite_cells().next();
         let corners = start.map(|cell| base.tds().corners(cell).map(|vertex| *base.point(vertex)));
         let within = corners.map(|corners| closed_around(base, corners, curves));
@@ -132,6 +138,17 @@ impl Cut {
     /// some neighbors. Not all of them are cut.
     pub(super) fn replaced(&self) -> &[CellId] {
         &self.patch.replaced
+    }
+
+    /// Calls `each` with each position that divides an edge of a triangle.
+    pub(super) fn each_divided(&self, mut each: impl FnMut([f64; 2])) {
+        for edge in 0..self.patch.edges.len() {
+            let chain = self.patch.chain_of_edge(edge);
+            for &vertex in chain.iter().skip(1).rev().skip(1) {
+                let [x, y, _] = self.point(vertex);
+                each([x, y]);
+            }
+        }
     }
 
     /// One more than the largest number of a face.

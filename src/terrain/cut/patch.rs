@@ -11,9 +11,11 @@ use crate::triangulation::tds::{CellId, VertexId};
 use crate::triangulation::{ConstrainedDelaunay, LineId, OnCrossing};
 
 use super::super::linear::linear;
+use super::super::lines::kinds::LineKinds;
 use super::super::regions::Segment;
 use super::met::met;
-use super::steps::{Arranged, is_breakline};
+use super::order::{compare, corners};
+use super::steps::Arranged;
 
 /// The part of a triangulation that lines meet, divided so that the lines cross no face.
 ///
@@ -40,16 +42,6 @@ pub(super) struct Patch {
     pub(super) segments: Vec<Option<LineId>>,
 }
 
-/// The corners of a triangle, counter-clockwise from the lexicographically smallest, so that
-/// results do not depend on the numbering of the triangles.
-fn corners(base: &ConstrainedDelaunay<Terrain>, cell: CellId) -> [[f64; 3]; 3] {
-    let mut corners = base.tds().corners(cell).map(|corner| *base.point(corner));
-    let order = |p: &[f64; 3], q: &[f64; 3]| base.geometry().compare(p, q);
-    let first = (0..3).min_by(|&i, &j| order(&corners[i], &corners[j])).unwrap_or_default();
-    corners.rotate_left(first);
-    corners
-}
-
 /// A segment to arrange, as indices of points.
 type Ends = [u32; 2];
 
@@ -74,7 +66,8 @@ impl Drawing {
     ) -> Self {
         let tds = base.tds();
         let mut corners: Vec<VertexId> = cells.iter().flat_map(|&cell| *tds.corners(cell)).collect();
-        corners.sort_unstable();
+        // By position, so that results do not depend on the numbering of the vertices.
+        corners.sort_unstable_by(|&u, &v| base.geometry().compare(base.point(u), base.point(v)));
         corners.dedup();
         let mut points: Vec<[f64; 3]> = corners.iter().map(|&vertex| *base.point(vertex)).collect();
         let key = |x: f64, y: f64| [x.to_bits(), y.to_bits()];
@@ -96,7 +89,7 @@ impl Drawing {
             }));
         }
         let first_edge = lines.len();
-        let position = |vertex: VertexId| corners.partition_point(|&corner| corner < vertex) as u32;
+        let position: FxHashMap<VertexId, u32> = corners.iter().copied().zip(0..).collect();
         let mut edges: Vec<[VertexId; 2]> = Vec::new();
         for &cell in cells {
             let [u, v, w] = *tds.corners(cell);
@@ -104,7 +97,7 @@ impl Drawing {
         }
         edges.sort_unstable();
         edges.dedup();
-        lines.extend(edges.iter().map(|&[u, v]| [position(u), position(v)]));
+        lines.extend(edges.iter().map(|edge| edge.map(|vertex| position[&vertex])));
         Drawing { points, corners, lines, first_edge, edges, segments: drawn }
     }
 
@@ -134,7 +127,11 @@ impl Patch {
     ///
     /// # Errors
     /// If there are more points than can be numbered.
-    pub(super) fn new(base: &ConstrainedDelaunay<Terrain>, segments: &[Segment]) -> Result<Option<Self>> {
+    pub(super) fn new(
+        base: &ConstrainedDelaunay<Terrain>,
+        kinds: &LineKinds,
+        segments: &[Segment],
+    ) -> Result<Option<Self>> {
         let mut cells: FxHashSet<CellId> = FxHashSet::default();
         let mut is_met = vec![false; segments.len()];
         for (of_segment, is_met) in met(base, segments.iter().copied()).zip(&mut is_met) {
@@ -147,7 +144,7 @@ impl Patch {
         // If an edge is divided, the triangles on both of its sides belong to the patch.
         loop {
             let drawing = Drawing::new(base, &cells, segments, &is_met);
-            let patch = Self::triangulated(base, &cells, drawing)?;
+            let patch = Self::triangulated(base, kinds, &cells, drawing)?;
             let divided = (0..patch.edges.len()).filter(|&edge| patch.chain_of_edge(edge).len() > 2);
             let beside = divided.map(|edge| patch.edges[edge]);
             let beside = beside.flat_map(|[u, v]| [base.tds().edge(u, v), base.tds().edge(v, u)]);
@@ -160,7 +157,12 @@ impl Patch {
         }
     }
 
-    fn triangulated(base: &ConstrainedDelaunay<Terrain>, cells: &FxHashSet<CellId>, drawing: Drawing) -> Result<Self> {
+    fn triangulated(
+        base: &ConstrainedDelaunay<Terrain>,
+        kinds: &LineKinds,
+        cells: &FxHashSet<CellId>,
+        drawing: Drawing,
+    ) -> Result<Self> {
         let (arrangement, at) = drawing.arrange(base.geometry().step());
         let Drawing { mut points, corners, lines, first_edge, edges, segments } = drawing;
         points.extend(arrangement.added().iter().map(|&[x, y]| [x, y, f64::NAN]));
@@ -170,7 +172,7 @@ impl Patch {
         });
         let chains: Vec<Vec<u32>> = chains.collect();
         let unit = arrangement.unit();
-        let mut arranged = Arranged { base, corners: &corners, edges: &edges, unit, points, chains };
+        let mut arranged = Arranged { base, kinds, corners: &corners, edges: &edges, unit, points, chains };
         arranged.separate();
         let Arranged { points, chains, .. } = arranged;
         let (triangulation, numbers) =
@@ -193,7 +195,7 @@ impl Patch {
             first_edge,
         };
         patch.cells = patch.find_cells(base, cells);
-        patch.heights = patch.find_heights(base);
+        patch.heights = patch.find_heights(base, kinds);
         Ok(patch)
     }
 
@@ -233,7 +235,8 @@ impl Patch {
                 left.extend(both.into_iter().zip(sides).filter_map(|(edge, side)| Some((edge, side?.0))));
             }
         }
-        left.sort_unstable();
+        // By position, so that results do not depend on the numbering of the triangles.
+        left.sort_unstable_by(|a, b| a.0.cmp(&b.0).then_with(|| compare(base, a.1, b.1)));
         let all_left = |[p, q]: [VertexId; 2]| {
             let from = left.partition_point(|(edge, _)| *edge < [p, q]);
             let count = left[from..].partition_point(|(edge, _)| *edge == [p, q]);
@@ -273,11 +276,11 @@ impl Patch {
     /// a triangle that of its plane. If several edges are so close that they share a vertex,
     /// breaklines precede other edges, level ones precede those with a slope (a shore stays level
     /// where a line crosses it), and then the lowest is used.
-    fn find_heights(&self, base: &ConstrainedDelaunay<Terrain>) -> Vec<f64> {
+    fn find_heights(&self, base: &ConstrainedDelaunay<Terrain>, kinds: &LineKinds) -> Vec<f64> {
         let slots = self.triangulation.tds().vertex_slots();
         let mut on_edges: Vec<Option<(bool, bool, f64)>> = vec![None; slots];
         for (edge, &[u, v]) in self.edges.iter().enumerate() {
-            let is_plain = !is_breakline(base, [u, v]);
+            let is_plain = kinds.between(base, [u, v]).is_none();
             let has_slope = base.point(u)[2] != base.point(v)[2];
             let chain = self.chain_of_edge(edge);
             for &vertex in chain.iter().skip(1).rev().skip(1) {

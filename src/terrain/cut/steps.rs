@@ -14,6 +14,7 @@
 //!
 //! If the side itself runs in that direction, to another vertex, it uses the vertex of that one.
 
+use std::cmp::Ordering;
 use std::collections::HashSet;
 
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -23,9 +24,13 @@ use crate::triangulation::geometry::{Geometry, Terrain, height_along};
 use crate::triangulation::num::{Sign, unsigned_zero};
 use crate::triangulation::tds::{CellId, VertexId};
 
+use super::super::lines::kinds::LineKinds;
+use super::order::{compare, first_corner};
+
 /// Cut lines and edges of triangles after their arrangement.
 pub(super) struct Arranged<'a> {
     pub(super) base: &'a ConstrainedDelaunay<Terrain>,
+    pub(super) kinds: &'a LineKinds,
     /// The vertices of the triangles, which are the first points.
     pub(super) corners: &'a [VertexId],
     /// The edges of the triangles, from the smaller vertex to the larger, sorted.
@@ -67,7 +72,9 @@ impl Arranged<'_> {
         }
         let mut shared: Vec<(u32, Vec<usize>)> = edges_at.into_iter().collect();
         shared.retain(|(site, edges)| edges.len() > usize::from(self.corner(*site).is_none()));
-        shared.sort_unstable();
+        // Not by number: that of a crossing depends on the numbering of the edges.
+        let position = |points: &[[f64; 3]], site: u32| points[site as usize].map(f64::to_bits);
+        shared.sort_unstable_by_key(|(site, _)| position(&self.points, *site));
         let mut taken: HashSet<[u64; 2]> = self.points.iter().map(bits).collect();
         let mut steps: Steps = FxHashMap::default();
         for (site, edges) in shared {
@@ -79,7 +86,8 @@ impl Arranged<'_> {
         if steps.is_empty() {
             return;
         }
-        let steps = followed(steps);
+        let order = |site: &u32| position(&self.points, *site);
+        let steps = followed(steps, &order);
         for line in 0..first_edge {
             self.chains[line] = self.through_steps(&self.chains[line], &steps, first_edge);
         }
@@ -96,6 +104,21 @@ impl Arranged<'_> {
         self.corners.get(site as usize).copied()
     }
 
+    fn is_breakline(&self, edge: usize) -> bool {
+        self.kinds.between(self.base, self.edges[edge]).is_some()
+    }
+
+    /// Compares edges by the positions of their ends.
+    fn compare_edges(&self, a: usize, b: usize) -> Ordering {
+        let geometry = self.base.geometry();
+        let ends = |edge: usize| {
+            let [p, q] = self.edges[edge].map(|vertex| self.base.point(vertex));
+            if geometry.compare(p, q) == Ordering::Greater { [q, p] } else { [p, q] }
+        };
+        let ([a, b], [c, d]) = (ends(a), ends(b));
+        geometry.compare(a, c).then_with(|| geometry.compare(b, d))
+    }
+
     fn height_on(&self, edge: usize, site: u32) -> f64 {
         let [u, v] = self.edges[edge].map(|vertex| *self.base.point(vertex));
         let [x, y, _] = self.points[site as usize];
@@ -107,13 +130,16 @@ impl Arranged<'_> {
     fn steps_at(&mut self, site: u32, edges: &[usize], first_edge: usize, taken: &mut HashSet<[u64; 2]>) -> Vec<Step> {
         let tds = self.base.tds();
         // Start at the triangles of the vertex or edge that the point has its height from.
-        let (start, height, own) = match self.corner(site) {
+        let (mut start, height, own) = match self.corner(site) {
             Some(vertex) => (tds.around(vertex).collect::<Vec<CellId>>(), self.base.point(vertex)[2], None),
             None => {
                 let Some((_, height, own)) = edges
                     .iter()
-                    .map(|&edge| (!is_breakline(self.base, self.edges[edge]), self.height_on(edge, site), edge))
-                    .min_by(|p, q| p.0.cmp(&q.0).then(p.1.total_cmp(&q.1)))
+                    .map(|&edge| (!self.is_breakline(edge), self.height_on(edge, site), edge))
+                    .min_by(|p, q| {
+                        let by_height = p.0.cmp(&q.0).then(p.1.total_cmp(&q.1));
+                        by_height.then_with(|| self.compare_edges(p.2, q.2))
+                    })
                 else {
                     return Vec::new();
                 };
@@ -122,6 +148,8 @@ impl Arranged<'_> {
                 (sides.into_iter().flatten().map(|(cell, _)| cell).collect(), height, Some(own))
             }
         };
+        // The order must not depend on the numbering of the triangles.
+        start.sort_unstable_by(|&a, &b| compare(self.base, a, b));
         let mut steps: Vec<Step> = Vec::new();
         let mut seen: FxHashSet<CellId> = start.iter().copied().collect();
         let mut ahead: Vec<(CellId, u32, f64, u32)> = start.into_iter().map(|cell| (cell, site, height, 0)).collect();
@@ -129,7 +157,8 @@ impl Arranged<'_> {
             if tds.is_infinite(cell) {
                 continue;
             }
-            for i in 0..3 {
+            let first = first_corner(self.base, cell);
+            for i in [0, 1, 2].map(|k| (first + k) % 3) {
                 let [u, v] = tds.edge_ends(cell, i);
                 let edge = self.edges.binary_search(&[u.min(v), u.max(v)]);
                 let Some(edge) = edge.ok().filter(|edge| edges.contains(edge) && Some(*edge) != own) else { continue };
@@ -287,13 +316,13 @@ impl Arranged<'_> {
 }
 
 /// Resolves steps whose vertex is itself a site on the same edge: each gets the final vertex, and
-/// the vertices passed on the way.
-fn followed(mut steps: Steps) -> Steps {
+/// the vertices passed on the way. `order` is that of the sites.
+fn followed(mut steps: Steps, order: &dyn Fn(&u32) -> [u64; 3]) -> Steps {
     let on = |steps: &Steps, site: u32, edge: usize| {
         steps.get(&site)?.iter().find(|step| step.edge == edge).map(|step| step.vertex)
     };
     let mut sites: Vec<u32> = steps.keys().copied().collect();
-    sites.sort_unstable();
+    sites.sort_unstable_by_key(order);
     for site in sites {
         for at in 0..steps[&site].len() {
             let Step { edge, mut vertex, .. } = steps[&site][at];
@@ -308,9 +337,4 @@ fn followed(mut steps: Steps) -> Steps {
         }
     }
     steps
-}
-
-/// Returns true if an edge of a triangulation is constrained.
-pub(super) fn is_breakline(base: &ConstrainedDelaunay<Terrain>, [u, v]: [VertexId; 2]) -> bool {
-    base.tds().edge(u, v).is_some_and(|(cell, i)| base.is_constrained(cell, i))
 }

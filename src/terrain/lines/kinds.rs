@@ -41,7 +41,8 @@ impl LineKinds {
         } else if self.are_breaklines {
             Some(EdgeKind::Breakline)
         } else {
-            Some(self.first_of(base, base.tds().edge_ends(cell, i)))
+            // A seam of a part of a surface is an edge as any other.
+            Some(self.first_of(base, base.tds().edge_ends(cell, i))).filter(|kind| kind.is_constrained())
         }
     }
 

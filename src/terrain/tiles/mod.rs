@@ -66,6 +66,9 @@
 //! Sources: Isenburg, Liu, Shewchuk and Snoeyink, *Streaming computation of Delaunay
 //! triangulations* (2006); Caraffa, Memari, Yirci and Bredif, *Tile & merge* (2019).
 
+mod clip;
+#[cfg(test)]
+mod clip_tests;
 mod disk;
 mod layout;
 mod lines;
@@ -83,6 +86,7 @@ mod traps;
 mod traps_tests;
 mod triangle;
 
+pub use clip::{ClipSide, TileClip};
 pub use layout::{Layout, Node, Spread, Step, Work};
 pub use long_edges::{EdgeKey, Gate, LongEdges, Rim, Waiting, has_long_edge};
 pub use node::{leaf, leaf_with_part, merge, merge_with_part};

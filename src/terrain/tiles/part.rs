@@ -17,7 +17,7 @@ use crate::triangulation::geometry::Terrain;
 /// the [numbers](CompactTin::number_in_parts) that stand for them in all parts.
 #[derive(Debug)]
 pub struct TinPart {
-    tin: Tin,
+    pub(super) tin: Tin,
     /// The cells of the triangles that were emitted, in that order, as the file numbers them.
     emitted: Vec<u32>,
     /// The tile and the number of each vertex.
@@ -40,6 +40,23 @@ impl TinPart {
     /// Returns the faces that the triangles became, in the order in which they were emitted.
     pub fn faces(&self) -> &[u32] {
         &self.emitted
+    }
+
+    /// Returns the triangles of the part, in the order of its faces. Their edges at the rim of the
+    /// part are plain. Vertices of fragments have numbers of their own: no other part has them.
+    pub fn triangles(&self) -> impl Iterator<Item = TileTriangle> + '_ {
+        let tds = self.tin.triangulation.tds();
+        let mut number_of = vec![[u32::MAX; 2]; tds.vertex_slots()];
+        tds.vertices().zip(&self.numbers).for_each(|(id, number)| number_of[id.index()] = *number);
+        let vertex = move |tin: &Tin, vertex: u32| {
+            let added = [u32::MAX, vertex.wrapping_sub(number_of.len() as u32)];
+            let [tile, number] = number_of.get(vertex as usize).copied().unwrap_or(added);
+            TileVertex { tile, number, position: tin.position(vertex) }
+        };
+        (0..self.tin.face_count() as u32).filter_map(move |face| {
+            let corners = self.tin.face(face)?.map(|corner| vertex(&self.tin, corner));
+            Some(TileTriangle { corners, edges: [0, 1, 2].map(|i| plain_at_rim(self.tin.edge_kind(face, i))) })
+        })
     }
 
     /// Writes a file `.tin` with some of the triangles. `kept` tells for each triangle that was
@@ -76,13 +93,17 @@ impl<B: AsRef<[u8]> + Sync> CompactTin<B> {
     pub fn tile_triangles(&self) -> impl Iterator<Item = TileTriangle> + '_ {
         (0..self.face_count() as u32).filter_map(|face| {
             let [a, b, c] = self.face(face)?.map(|vertex| self.tile_vertex(vertex));
-            let edges = [0, 1, 2].map(|i| match self.edge_kind(face, i) {
-                EdgeKind::Rim => EdgeKind::Plain,
-                kind => kind,
-            });
-            Some(TileTriangle { corners: [a?, b?, c?], edges })
+            Some(TileTriangle {
+                corners: [a?, b?, c?],
+                edges: [0, 1, 2].map(|i| plain_at_rim(self.edge_kind(face, i))),
+            })
         })
     }
+}
+
+/// What is at the rim of a part need not be at that of the surface.
+fn plain_at_rim(kind: EdgeKind) -> EdgeKind {
+    if kind == EdgeKind::Rim { EdgeKind::Plain } else { kind }
 }
 
 #[cfg(test)]

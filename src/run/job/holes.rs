@@ -1,0 +1,91 @@
+//! The extents of files that were skipped. No triangle is drawn over them.
+
+use serde_json::{Map, Value, json};
+
+use super::Job;
+use super::task_file::TaskFile;
+
+/// The corners of a box in plan.
+type Hole = [[f64; 2]; 2];
+
+/// The name of the fact.
+const HOLES: &str = "holes";
+
+/// The extents of files that were skipped, as far as a task knows.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(super) struct Holes(Vec<Hole>);
+
+impl Holes {
+    /// Adds the extent of a file that is skipped, unless other files have points there, too.
+    pub(super) fn add_file(&mut self, job: &Job, number: usize) {
+        let files = &job.plan.files;
+        let (min, max) = (files[number].min, files[number].max);
+        let meets = |other: &super::plan::PlannedFile| (0..2).all(|k| other.min[k] <= max[k] && min[k] <= other.max[k]);
+        let is_alone = files.iter().enumerate().all(|(at, other)| at == number || !meets(other));
+        if is_alone {
+            self.add([min, max]);
+        }
+    }
+
+    /// Adds what another task knows.
+    pub(super) fn add_known(&mut self, task: &TaskFile) {
+        let known = task.facts.get(HOLES).and_then(|holes| serde_json::from_value::<Vec<Hole>>(holes.clone()).ok());
+        known.into_iter().flatten().for_each(|hole| self.add(hole));
+    }
+
+    fn add(&mut self, hole: Hole) {
+        if !self.0.contains(&hole) {
+            self.0.push(hole);
+        }
+    }
+
+    /// Writes down what the task knows.
+    pub(super) fn note(&self, facts: &mut Map<String, Value>) {
+        if !self.0.is_empty() {
+            facts.insert(HOLES.to_owned(), json!(self.0));
+        }
+    }
+
+    /// Returns true if a triangle reaches into one of the extents.
+    pub(super) fn meet(&self, corners: [[f64; 3]; 3]) -> bool {
+        self.0.iter().any(|hole| reaches_into(corners, *hole))
+    }
+}
+
+/// Returns true unless a side of the box, or an edge of the triangle, has the two on different
+/// sides.
+fn reaches_into(corners: [[f64; 3]; 3], [min, max]: Hole) -> bool {
+    let is_beside = (0..2).any(|k| corners.iter().all(|p| p[k] <= min[k]) || corners.iter().all(|p| p[k] >= max[k]));
+    if is_beside {
+        return false;
+    }
+    let of_box = [min, [max[0], min[1]], max, [min[0], max[1]]];
+    // The corners are counter-clockwise.
+    let is_beyond = |i: usize| {
+        let (a, b) = (corners[i], corners[(i + 1) % 3]);
+        of_box.iter().all(|p| (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]) <= 0.0)
+    };
+    !(0..3).any(is_beyond)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn triangles_beside_a_hole_do_not_reach_into_it() {
+        let hole = [[2.0, 2.0], [4.0, 3.0]];
+        for (corners, expected) in [
+            ([[0.0, 0.0], [9.0, 0.0], [0.0, 9.0]], true),
+            ([[2.5, 2.1], [3.5, 2.1], [3.0, 2.9]], true),
+            ([[0.0, 0.0], [2.0, 0.0], [2.0, 9.0]], false),
+            ([[0.0, 0.0], [9.0, 0.0], [9.0, 2.0]], false),
+            ([[0.0, 0.0], [3.0, 0.0], [0.0, 4.5]], false),
+            ([[0.0, 9.0], [1.0, 2.5], [3.0, 2.5]], true),
+            ([[4.0, 3.0], [9.0, 3.0], [9.0, 9.0]], false),
+        ] {
+            let corners: [[f64; 2]; 3] = corners;
+            assert_eq!(reaches_into(corners.map(|[x, y]| [x, y, 0.0]), hole), expected, "{corners:?}");
+        }
+    }
+}
