@@ -34,6 +34,17 @@ fn a_town_with_breaklines() {
     assert_same("contour", &files, lines, "5x5");
 }
 
+/// Bounds that cut breaklines, and a boundary.
+#[test]
+#[cfg_attr(not(has_shared), ignore = "needs ../shared")]
+fn a_part_of_a_town() {
+    let files = ["lidar/delft_ahn3_bgt/ahn3_cropped_1.laz", "lidar/delft_ahn3_bgt/ahn3_cropped_2.laz"];
+    let lines = "--breaklines @delft_ahn3_bgt/breaklines_z_derived.shp";
+    let bounds = "84850.1,447450.3,84960.7,447600.9";
+    assert_same("dem", &files, &format!("{lines} --bounds {bounds} --resolution 0.25"), "9x7");
+    assert_same("contour", &files, &format!("{lines} --bounds {bounds} --interval 0.25"), "4x11");
+}
+
 #[test]
 #[cfg_attr(not(has_shared), ignore = "needs ../shared")]
 fn a_lake_that_is_level() {

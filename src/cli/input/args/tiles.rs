@@ -12,8 +12,7 @@ pub(in crate::cli) struct TileArgs {
     /// Work in tiles: `auto`, or columns and rows such as `8x8` [default: if memory is short]
     ///
     /// The result is the same, byte for byte. `auto` takes the files as tiles if they are separate
-    /// and small; else their points are divided among tiles first. Without boundary and bounds so
-    /// far, and with linear heights.
+    /// and small; else their points are divided among tiles first. With linear heights.
     #[arg(long, value_name = "auto|COLUMNSxROWS")]
     pub(in crate::cli) tiles: Option<TilesArg>,
 
