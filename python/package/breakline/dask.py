@@ -6,7 +6,8 @@ PosixPath('dem.tif')
 
 The work is the job that ``breakline job plan`` makes: a folder with a file for each task that is done. Inputs, output and
 that folder must have the same paths on all workers. The result is the same, byte for byte, as on one machine: tasks
-may be repeated, and a task that was done before is not done again.
+may be repeated, and a task that was done before is not done again. Workers may be lost: what they were doing is
+repeated, what they have done is kept.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ import os
 import subprocess
 import sys
 import uuid
+from collections import Counter, defaultdict
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Union
@@ -34,6 +36,15 @@ _OPTIONS["extent"] = "te"
 
 #: Options that take several values in one word; others are repeated.
 _IN_ONE_WORD = {"--class", "--te", "--levels"}
+
+#: How often a task is submitted again after Dask gave it up because its workers died.
+_AGAIN = 20
+
+#: What to do when that was not enough.
+_LOST = (
+    "see the logs of the workers, which may lack memory: give them more, or fewer threads; "
+    "tasks that are done are kept, and the same call goes on"
+)
 
 
 def dem(
@@ -59,7 +70,9 @@ def dem(
         The folder for the files of the tasks; by default the output's name with ``.job``. If it has the job of the same
         call already, that goes on.
     retries : int
-        How often a task that fails is repeated.
+        How often a task that fails with an error is repeated. Tasks that lose their worker do not count here: Dask
+        repeats such a task as often as its setting ``distributed.scheduler.allowed-failures`` says, and when it gives
+        the task up, the task is submitted again, up to 20 times.
     **options
         The other options of ``breakline dem`` by their names, such as ``resolution=0.5``, ``tiles="8x8"``,
         ``max_edge=50``.
@@ -72,7 +85,8 @@ def dem(
     Raises
     ------
     BreaklineError
-        If the job cannot be planned, or a task fails more often than it is repeated.
+        If the job cannot be planned, or a task fails, or loses its workers, more often than it is repeated. The tasks
+        that wait are canceled then, as they are by Ctrl-C; those that are done are kept, and the same call goes on.
     """
     return _run("dem", inputs, output, client, job, retries, options)
 
@@ -112,22 +126,88 @@ def _run(
         raise usage(f"the job in {folder} is that of another call", folder, "pass another job, or remove the folder")
     # New in each call: a scheduler keeps what failed under its key.
     name = f"{verb}-{uuid.uuid4().hex[:8]}"
-    futures: "dict[int, Any]" = {}
-    for number, task in enumerate(status["tasks"]):
-        if task["done"]:
-            continue
-        needs = [futures[needed] for needed in task["needs"] if needed in futures]
-        # "tile 17, a.laz" becomes "tile-17-...": the dashboard groups tasks by the first word.
-        title = "-".join(task["name"].split(",")[0].split(" ")[:2]).replace(os.sep, "_")
-        # Later tasks first: merges come soon after what they merge.
-        futures[number] = client.submit(
-            _task, folder, number, _threads(task), needs, key=f"{title}-{name}-{number}", priority=number, retries=retries, pure=False
-        )
-    if futures:
-        futures[max(futures)].result()
+    cluster = _Cluster(client, folder, status["tasks"], name, retries)
+    try:
+        _finish(cluster, status["tasks"])
+    except BaseException:
+        cluster.release()
+        raise
     if job is None:
         _program("job", "clean", folder)
     return Path(output)
+
+
+def _finish(cluster: "_Cluster", tasks: "list[dict[str, Any]]") -> None:
+    """Start each task that is left when those that it needs are done, until all are done."""
+    left = {number for number, task in enumerate(tasks) if not task["done"]}
+    missing = {number: left.intersection(tasks[number]["needs"]) for number in left}
+    users: "dict[int, list[int]]" = defaultdict(list)
+    for number in sorted(left):
+        for needed in missing[number]:
+            users[needed].append(number)
+        if not missing[number]:
+            cluster.start(number)
+    while left:
+        done = cluster.wait()
+        left.remove(done)
+        for number in users[done]:
+            missing[number].remove(done)
+            if not missing[number]:
+                cluster.start(number)
+
+
+class _Cluster:
+    """The tasks that the cluster has.
+
+    A future is dropped as soon as its task is done. What is done is in its file, but what Dask keeps, it computes again
+    when it loses the worker.
+    """
+
+    def __init__(self, client: Any, folder: str, tasks: "list[dict[str, Any]]", name: str, retries: int) -> None:
+        from distributed import as_completed
+
+        self._client, self._folder, self._tasks, self._name, self._retries = client, folder, tasks, name, retries
+        self._completed = as_completed(loop=client.loop)
+        self._numbers: "dict[Any, int]" = {}
+        self._deaths: "Counter[int]" = Counter()
+
+    def start(self, number: int) -> None:
+        """Submit a task, of which all that it needs is done."""
+        task = self._tasks[number]
+        # "tile 17, a.laz" becomes "tile-17-...": the dashboard groups tasks by the first word.
+        title = "-".join(task["name"].split(",")[0].split(" ")[:2]).replace(os.sep, "_")
+        key = f"{title}-{self._name}-{number}-{self._deaths[number]}"
+        words = [self._folder, number, _threads(task)]
+        # Later tasks first: merges come soon after what they merge.
+        future = self._client.submit(_task, *words, key=key, priority=number, retries=self._retries, pure=False)
+        self._numbers[future] = number
+        self._completed.add(future)
+
+    def wait(self) -> int:
+        """Wait until a task is done, and return its number. Tasks whose workers died are started again."""
+        from distributed import KilledWorker
+
+        while True:
+            future = next(self._completed)
+            number = self._numbers.pop(future)
+            try:
+                future.result()
+            except KilledWorker as killed:
+                self._restart(number, killed)
+            else:
+                return number
+
+    def release(self) -> None:
+        """Let the scheduler forget all tasks: those that no worker has begun are canceled."""
+        for future in self._numbers:
+            future.release()
+
+    def _restart(self, number: int, killed: Exception) -> None:
+        if self._deaths[number] == _AGAIN:
+            name = self._tasks[number]["name"]
+            raise _error(f"{name}: {_AGAIN + 1} times all workers that were given this task died", _LOST) from killed
+        self._deaths[number] += 1
+        self.start(number)
 
 
 def _threads(task: "dict[str, Any]") -> "list[str]":
@@ -135,10 +215,9 @@ def _threads(task: "dict[str, Any]") -> "list[str]":
     return [] if task["name"] == "output" else ["--threads", "1"]
 
 
-def _task(folder: str, number: int, threads: "list[str]", needs: "list[int]") -> int:
+def _task(folder: str, number: int, threads: "list[str]") -> None:
     """Do a task on a worker."""
     _program("job", "run", folder, "--task", str(number), *threads)
-    return number
 
 
 def _found(file: PathLike) -> "list[str]":
@@ -154,11 +233,14 @@ def _program(*words: str) -> str:
         lines = ran.stderr.splitlines()
         said = [line.removeprefix("error: ") for line in lines if line.startswith("error: ")]
         cures = [line.removeprefix("hint: ") for line in lines if line.startswith("hint: ")]
-        error = BreaklineError()
-        error.message = said[0] if said else ran.stderr.strip()
-        error.cure = cures[0] if cures else None
-        raise error
+        raise _error(said[0] if said else ran.stderr.strip(), cures[0] if cures else None)
     return ran.stdout
+
+
+def _error(message: str, cure: "Union[str, None]") -> BreaklineError:
+    error = BreaklineError()
+    error.message, error.cure = message, cure
+    return error
 
 
 def _path(path: PathLike) -> str:
