@@ -1,5 +1,7 @@
 """The graph of a job on a cluster of Dask."""
 
+import contextlib
+import json
 import os
 import random
 import signal
@@ -7,6 +9,7 @@ import subprocess
 import sys
 import threading
 import time
+from collections import defaultdict
 from pathlib import Path
 
 import breakline
@@ -15,6 +18,7 @@ import pytest
 distributed = pytest.importorskip("distributed")
 
 import breakline.dask  # noqa: E402
+import psutil  # noqa: E402
 
 FIXTURES = Path(__file__).parents[2] / "fixtures"
 VALLEY = FIXTURES / "valley.laz"
@@ -24,8 +28,15 @@ VALLEY = FIXTURES / "valley.laz"
 def client(tmp_path):
     import dask
 
-    dask.config.set({"distributed.scheduler.allowed-failures": 100, "temporary-directory": str(tmp_path / "scratch")})
+    settings = {
+        # One kill is too many for Dask.
+        "distributed.scheduler.allowed-failures": 0,
+        # A cluster on one machine else gives up a worker that is killed again soon.
+        "distributed.deploy.lost-worker-timeout": "1 hour",
+        "temporary-directory": str(tmp_path / "scratch"),
+    }
     with (
+        dask.config.set(settings),
         distributed.LocalCluster(n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None) as cluster,
         distributed.Client(cluster) as client,
     ):
@@ -37,6 +48,12 @@ def whole(tmp_path):
     path = tmp_path / "whole.tif"
     run("dem", str(VALLEY), "-o", str(path), "-q")
     return path.read_bytes()
+
+
+def tasks(job):
+    """The tasks of a job, as the program tells."""
+    words = [sys.executable, "-m", "breakline", "job", "status", str(job), "--json"]
+    return json.loads(subprocess.run(words, check=True, capture_output=True).stdout)["tasks"]
 
 
 def run(*words):
@@ -52,27 +69,116 @@ def test_a_cluster_writes_the_bytes_of_one_machine(client, whole, tmp_path):
     assert made.read_bytes() == (tmp_path / "one.tif").read_bytes()
 
 
-def test_workers_may_be_killed(client, whole, tmp_path):
-    done = threading.Event()
-    kills, count = 0, int(os.environ.get("BREAKLINE_KILLS", 2))
+class Transitions(distributed.SchedulerPlugin):
+    """The tasks that came to each state of Dask."""
 
-    def kill():
-        nonlocal kills
-        while not done.wait(random.uniform(0.5, 1.0)) and kills < count:
-            pids = [pid for pid in client.run(os.getpid, on_error="ignore").values() if isinstance(pid, int)]
-            if pids:
-                os.kill(random.choice(pids), signal.SIGKILL)
-                kills += 1
+    def __init__(self, client):
+        self.tasks = defaultdict(list)
+        client.cluster.scheduler.add_plugin(self)
 
-    killer = threading.Thread(target=kill)
-    killer.start()
+    def transition(self, key, start, finish, *args, **kwargs):
+        self.tasks[finish].append(key)
+
+
+class Killer(threading.Thread):
+    """Kills workers while they do a task; every second time only the worker, and its task goes on."""
+
+    def __init__(self, client, count):
+        super().__init__()
+        self.workers, self.count = client.cluster.workers, count
+        self.kills, self.done = 0, threading.Event()
+
+    def __enter__(self):
+        self.start()
+
+    def __exit__(self, *error):
+        self.done.set()
+        self.join()
+
+    def run(self):
+        while self.kills < self.count and not self.done.wait(random.uniform(0.1, 0.4)):
+            victims = [found for nanny in self.workers.values() for found in tasks_of(nanny.pid)]
+            if victims:
+                self.kill(*random.choice(victims))
+
+    def kill(self, worker, task):
+        worker.kill()
+        if self.kills % 2 == 0:
+            with contextlib.suppress(psutil.NoSuchProcess):
+                task.kill()
+        self.kills += 1
+
+
+def tasks_of(pid):
+    """The worker, with each program that does a task for it."""
     try:
-        made = breakline.dask.dem(VALLEY, tmp_path / "dem.tif", client=client, tiles="8x8", job=tmp_path / "job")
-    finally:
-        done.set()
-        killer.join()
-    assert kills > 0
+        worker = psutil.Process(pid)
+        return [(worker, child) for child in worker.children() if "--task" in child.cmdline()]
+    except psutil.Error:
+        return []
+
+
+def wait_until(is_so):
+    end = time.monotonic() + 10
+    while not is_so():
+        assert time.monotonic() < end
+        time.sleep(0.01)
+
+
+def test_workers_may_be_killed(client, whole, tmp_path):
+    transitions, job = Transitions(client), tmp_path / "job"
+    with (killer := Killer(client, int(os.environ.get("BREAKLINE_KILLS", 5)))):
+        made = breakline.dask.dem(VALLEY, tmp_path / "dem.tif", client=client, tiles="8x8", job=job)
+    assert killer.kills > 0 and transitions.tasks["erred"]
     assert made.read_bytes() == whole
+    # What is done does not begin again when the worker that did it is killed, or only if that is at once.
+    assert len(transitions.tasks["memory"]) <= len(tasks(job)) + killer.kills
+
+
+def test_a_task_that_kills_its_workers_is_an_error(client, tmp_path, monkeypatch):
+    monkeypatch.setattr(breakline.dask, "_AGAIN", 0)
+    said = r"(divide|tile|merge|rim|output).*: the workers that did this task died .*\n  cure: .* memory"
+    with pytest.raises(breakline.BreaklineError, match=said), Killer(client, 100):
+        breakline.dask.dem(VALLEY, tmp_path / "dem.tif", client=client, tiles="8x8")
+    wait_until(lambda: not client.cluster.scheduler.tasks)
+
+
+def test_an_error_of_a_task_ends_the_run(client, tmp_path):
+    files = [tmp_path / f"{letter}.laz" for letter in "abcd"]
+    for file in files:
+        file.write_bytes(VALLEY.read_bytes())
+    job, output = tmp_path / "job", tmp_path / "dem.tif"
+    run("job", "plan", str(job), "--", "dem", *map(str, files), "-o", str(output), "--tiles=3x3")
+    damage(files[2])
+    with pytest.raises(breakline.BreaklineError, match="c.laz.*damaged"):
+        breakline.dask.dem(files, output, client=client, tiles="3x3", job=job, retries=1)
+    wait_until(lambda: not client.cluster.scheduler.tasks)
+    assert not output.exists()
+
+
+def damage(file):
+    """Change bytes in the middle, and not the time: a job looks at that only."""
+    time, data = file.stat().st_mtime_ns, bytearray(file.read_bytes())
+    middle = len(data) // 2
+    data[middle : middle + 16] = bytes(16)
+    file.write_bytes(data)
+    os.utime(file, ns=(time, time))
+
+
+def test_ctrl_c_cancels_what_waits(client, tmp_path):
+    scheduler, job = client.cluster.scheduler, tmp_path / "job"
+
+    def interrupt():
+        wait_until(lambda: len(scheduler.tasks) > 3)
+        os.kill(os.getpid(), signal.SIGINT)
+
+    thread = threading.Thread(target=interrupt)
+    thread.start()
+    with pytest.raises(KeyboardInterrupt):
+        breakline.dask.dem(VALLEY, tmp_path / "dem.tif", client=client, tiles="8x8", job=job)
+    thread.join()
+    wait_until(lambda: not scheduler.tasks)
+    assert not all(task["done"] for task in tasks(job))
 
 
 def test_a_job_goes_on_with_what_is_done(client, whole, tmp_path):

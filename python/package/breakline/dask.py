@@ -189,12 +189,14 @@ class _Cluster:
 
         while True:
             future = next(self._completed)
-            number = self._numbers.pop(future)
+            number = self._numbers[future]
             try:
                 future.result()
             except KilledWorker as killed:
                 self._restart(number, killed)
+                del self._numbers[future]
             else:
+                del self._numbers[future]
                 return number
 
     def release(self) -> None:
@@ -205,7 +207,7 @@ class _Cluster:
     def _restart(self, number: int, killed: Exception) -> None:
         if self._deaths[number] == _AGAIN:
             name = self._tasks[number]["name"]
-            raise _error(f"{name}: {_AGAIN + 1} times all workers that were given this task died", _LOST) from killed
+            raise _error(f"{name}: the workers that did this task died ({_AGAIN + 1} times)", _LOST) from killed
         self._deaths[number] += 1
         self.start(number)
 
