@@ -235,7 +235,9 @@ fn parse(path: &Path, watch: Watch) -> Result<Triangles> {
                 .cure("use PLY, which keeps coordinates, breaklines and the coordinate system"));
         }
         Some((_, Reader::Tin(_) | Reader::Parts(_))) => {
-            return Err(Error::unsupported("a .tin is not read triangle by triangle").in_file(path));
+            return Err(Error::unsupported("a TIN is not read triangle by triangle")
+                .in_file(path)
+                .cure("write it as .ply first: breakline tin IN -o OUT.ply"));
         }
         _ => return Err(unknown(path)),
     };

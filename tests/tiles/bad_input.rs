@@ -80,6 +80,28 @@ fn a_header_that_lies_is_an_error_that_names_tile_and_file() {
     assert!(tiled == whole);
 }
 
+/// Files that touch are usual: the hole is that of the one that is missing.
+#[test]
+fn a_file_that_touches_others_leaves_a_hole() {
+    let folder = tempfile::tempdir().unwrap();
+    for i in 0..3 {
+        let corner = [f64::from(i) * 3.0, 0.0];
+        let points = lidar::las(&lidar::tile(corner, 2), Some(25832));
+        std::fs::write(folder.path().join(format!("{i}.las")), points).unwrap();
+    }
+    // The largest y of the file in the middle, which is 3 in truth.
+    let path = folder.path().join("1.las");
+    let mut lying = bytes(&path);
+    lying[195..203].copy_from_slice(&2.5f64.to_le_bytes());
+    std::fs::write(&path, lying).unwrap();
+    for tiles in ["auto", "3x1", "2x2"] {
+        let (_, said) = output_of(&folder, &format!("dem 0.las 1.las 2.las --tiles {tiles} --skip-bad"), "hole.tif");
+        let grid = geotiff::open(folder.path().join("hole.tif")).unwrap().read_grid().unwrap();
+        let [column, row] = grid.frame.inverse().apply(4.5, 1.5);
+        assert!(grid.values[row as usize * grid.frame.width + column as usize].is_nan(), "{tiles}: {said}");
+    }
+}
+
 /// A file that was damaged, and was replaced by the good one, is taken as it is now; finished tasks
 /// are not done again. One that tasks have read may not change.
 #[test]

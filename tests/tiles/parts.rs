@@ -102,8 +102,16 @@ fn grids_with_lines_are_the_same_in_parts() {
 fn heights_of_parts_are_those_of_the_whole() {
     let folder = tempfile::tempdir().unwrap();
     let valley = valley();
-    output_of(&folder, &format!("tin {valley} --tiles 6x5"), "parts.tins");
-    output_of(&folder, &format!("tin {valley}"), "whole.tin");
+    let boundary = valley.replace("valley.laz", "boundary.shp");
+    for cut in ["", &format!(" --boundary {boundary}")] {
+        assert_same_heights(&folder, &format!("tin {valley}{cut}"));
+    }
+}
+
+#[track_caller]
+fn assert_same_heights(folder: &TempDir, words: &str) {
+    output_of(folder, &format!("{words} --tiles 6x5"), "parts.tins");
+    output_of(folder, words, "whole.tin");
     let open = |name: &str| {
         let source = Source::of_files(&[folder.path().join(name)]).unwrap();
         run::surface(&SurfaceRequest { source, ..SurfaceRequest::default() }, &Context::default()).unwrap()
@@ -147,6 +155,36 @@ fn a_surface_in_parts_is_replaced_as_a_whole() {
     assert_eq!(run_in(&folder, &["check", "v.tins"]).code, 0);
 }
 
+/// An index that names what is not its own does not remove it.
+#[test]
+fn only_own_parts_are_removed() {
+    let folder = tempfile::tempdir().unwrap();
+    let valley = valley();
+    let at = |name: &str| folder.path().join(name);
+    output_of(&folder, &format!("tin {valley} --tiles 2x2"), "v.tins");
+    std::fs::copy(at("v.tins"), at("copy.tins")).unwrap();
+    output_of(&folder, &format!("tin {valley} --tiles 1x2"), "copy.tins");
+    assert_eq!(run_in(&folder, &["check", "v.tins"]).code, 0);
+    // A folder of somebody else.
+    std::fs::create_dir(at("keep")).unwrap();
+    std::fs::write(at("keep/me.txt"), "me").unwrap();
+    let index = String::from_utf8(bytes(at("v.tins"))).unwrap();
+    let own = files_of(folder.path()).into_iter().find(|name| name.starts_with("v.tins.")).unwrap();
+    std::fs::write(at("v.tins"), index.replace(&own, "keep")).unwrap();
+    output_of(&folder, &format!("tin {valley} --tiles 3x1"), "v.tins");
+    assert!(at("keep/me.txt").exists());
+    // A part that is missing, and one that is damaged, are written again.
+    for damage in [|path: &Path| std::fs::remove_file(path).unwrap(), |path: &Path| std::fs::write(path, "x").unwrap()]
+    {
+        let own = files_of(folder.path()).into_iter().filter(|name| name.starts_with("copy.tins.")).collect::<Vec<_>>();
+        assert_eq!(own.len(), 1, "{own:?}");
+        damage(&at(&own[0]).join("000000.tin"));
+        output_of(&folder, &format!("tin {valley} --tiles 1x2"), "copy.tins");
+        assert_eq!(run_in(&folder, &["check", "copy.tins"]).code, 0);
+    }
+    assert!(files_of(folder.path()).iter().all(|name| !name.ends_with(".unfinished")));
+}
+
 /// Damage of the index and of parts is found by all that reads them.
 #[test]
 fn damage_is_an_error_that_names_the_file() {
@@ -174,10 +212,11 @@ fn damage_is_an_error_that_names_the_file() {
         std::fs::write(folder.path().join("v.tins"), index.replace(from, to)).unwrap();
         assert_fails("missing or wrong");
     }
-    // A count that is wrong is found by a check alone.
-    let counted = index.replace("\"triangles\":", "\"triangles\":1");
-    std::fs::write(folder.path().join("v.tins"), counted).unwrap();
-    run_in(&folder, &["check", "v.tins"]).fails(1, &["the counts or the extent of"]);
+    std::fs::write(folder.path().join("v.tins"), index.replacen("\"triangles\":", "\"triangles\":1", 1)).unwrap();
+    assert_fails("the counts of the parts are not those of the surface");
+    // A count that is wrong in a part alone is found by a check.
+    std::fs::write(folder.path().join("v.tins"), index.replace("\"vertices\":", "\"vertices\":1")).unwrap();
+    run_in(&folder, &["check", "v.tins"]).fails(1, &["the counts or the extent are not those of the parts"]);
     // A byte that no law of triangulations knows of: the number of a vertex.
     std::fs::write(folder.path().join("v.tins"), &index).unwrap();
     let mut damaged = whole.clone();

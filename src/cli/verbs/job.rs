@@ -4,7 +4,7 @@ use clap::Parser;
 use serde_json::{Value, json};
 
 use super::tiled;
-use crate::cli::input::args::{Cli, JobAction, JobArgs, TileArgs, Verb};
+use crate::cli::input::args::{Cli, JobAction, JobArgs, TileArgs, TinArgs, Verb};
 use crate::cli::input::plan::SurfacePlan;
 use crate::cli::report::console::Console;
 use crate::cli::{Exit, print};
@@ -105,7 +105,10 @@ fn plan(job: &Path, words: &[String], console: &Console) -> Result<Exit> {
         Verb::Dem(args) => super::dem::outputs_of(args, &command.plan).map(drop)?,
         Verb::Contour(args) => super::contour::outputs_of(args, &command.plan).map(drop)?,
         Verb::Hillshade(args) => super::hillshade::outputs_of(args, &command.plan).map(drop)?,
-        Verb::Tin(args) => super::tin::outputs_of(args, &command.plan).map(drop)?,
+        Verb::Tin(args) => {
+            let args = TinArgs { tiles: command.tile_args(job), ..args.clone() };
+            super::tin::outputs_of(&args, &command.plan).map(drop)?;
+        }
         _ => {}
     }
     let options = tiled::options(&command.tile_args(job), &command.output);

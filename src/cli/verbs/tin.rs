@@ -69,6 +69,6 @@ fn run_in_parts(args: &TinArgs, plan: &SurfacePlan, outputs: Outputs<()>, consol
     let (folder, count) = (&written.index.folder, written.index.parts.len());
     console.line(format_args!("parts       {count}, in {}", target.path.with_file_name(folder).display()));
     let exit = ran.commit(outputs, console)?;
-    written.remove_superseded()?;
+    written.keep()?;
     Ok(exit)
 }

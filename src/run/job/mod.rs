@@ -25,6 +25,7 @@ mod task_file;
 mod tasks;
 
 use std::fs::File;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
@@ -165,6 +166,8 @@ pub struct Job<'a> {
     folder: PathBuf,
     plan: Plan,
     steps: Vec<Step>,
+    /// True if the plan has files that were replaced since it was written.
+    has_replaced_files: bool,
     /// Read by the first task that needs it, unless the plan was made by this process.
     known: OnceLock<Known>,
     /// What was assumed and what looks wrong, in the order in which it was found.
@@ -271,6 +274,7 @@ impl<'a> Job<'a> {
             folder: options.folder.clone(),
             plan,
             steps,
+            has_replaced_files: false,
             known: OnceLock::new(),
             notices: Vec::new(),
         }
@@ -333,24 +337,14 @@ impl<'a> Job<'a> {
                 .cure("repeat that command, or name another folder (--job)"));
         }
         let mut job = Self::of_plan(request, systems, product, options, plan);
-        if job.take_replaced_files()? {
-            job.write_plan()?;
+        for number in 0..job.plan.files.len() {
+            if job.plan.require_unchanged(number).is_err() && !job.is_done(job.reader_of(number)) {
+                job.plan.replace_file(number, job.request)?;
+                job.has_replaced_files = true;
+            }
         }
         job.plan.require_all_unchanged()?;
         Ok(Some(job))
-    }
-
-    /// Takes files that were replaced, and that no task has read, as they are now. Returns true if
-    /// there are some.
-    fn take_replaced_files(&mut self) -> Result<bool> {
-        let mut is_any = false;
-        for number in 0..self.plan.files.len() {
-            if self.plan.require_unchanged(number).is_err() && !self.is_done(self.reader_of(number)) {
-                self.plan.replace_file(number, self.request)?;
-                is_any = true;
-            }
-        }
-        Ok(is_any)
     }
 
     /// The task that reads a file.
@@ -365,9 +359,17 @@ impl<'a> Job<'a> {
     fn write_plan(&self) -> Result<()> {
         let named = |e: std::io::Error| Error::from(e).in_file(&self.folder);
         let plan = self.plan.to_json().to_string();
-        let unfinished = self.folder.join(format!("{PLAN}{UNFINISHED}"));
-        std::fs::write(&unfinished, format!("{:08x}\n{plan}", checksum(&plan))).map_err(named)?;
-        std::fs::rename(&unfinished, self.folder.join(PLAN)).map_err(named)
+        let path = self.folder.join(PLAN);
+        // Several processes may write the same plan at the same time.
+        let mut file = task_file::unfinished_in(&self.folder).map_err(named)?;
+        write!(file, "{:08x}\n{plan}", checksum(&plan)).map_err(named)?;
+        file.persist(&path).map(drop).map_err(|e| Error::from(e.error).in_file(&path))
+    }
+
+    /// Writes the plan again if files were replaced: whoever opens the job after their tasks has to
+    /// know them.
+    fn store_replaced_files(&self) -> Result<()> {
+        if self.has_replaced_files { self.write_plan() } else { Ok(()) }
     }
 
     /// Returns the numbers of the plan.
@@ -539,11 +541,15 @@ impl<'a> Job<'a> {
         JobLock::take(&self.folder, File::try_lock_shared)
     }
 
-    /// Returns true if a file was written after all tasks.
+    /// Returns true if an output was written after all tasks, and is there whole.
     pub fn is_older_than(&self, output: &Path) -> bool {
         let time = |path: &Path| std::fs::metadata(path).and_then(|about| about.modified()).ok();
-        let written = time(output);
-        written.is_some() && (0..self.task_count()).all(|task| time(&self.task_path(task)) <= written)
+        let Some(written) = time(output) else { return false };
+        let is_whole = match self.product {
+            TiledProduct::Surface => super::open::tin_parts(output).is_some_and(|parts| parts.is_ok()),
+            TiledProduct::Heights(_) | TiledProduct::Shades(_) | TiledProduct::Contours(_) => true,
+        };
+        is_whole && (0..self.task_count()).all(|task| time(&self.task_path(task)).is_some_and(|time| time <= written))
     }
 
     /// Removes files that a run left when it was killed, and files of tasks that are damaged.
@@ -552,6 +558,7 @@ impl<'a> Job<'a> {
     /// # Errors
     /// If a file cannot be removed.
     pub fn clear_up(&self, _lock: &JobLock) -> Result<usize> {
+        self.store_replaced_files()?;
         let folder = self.folder.join("tasks");
         let named = |e: std::io::Error| Error::from(e).in_file(&folder);
         // An interrupted removal may have taken it.
@@ -592,6 +599,7 @@ impl<'a> Job<'a> {
             return Err(self.no_task(task));
         }
         let _lock = self.lock_shared()?;
+        self.store_replaced_files()?;
         self.require_each(self.needs(task).into_iter())?;
         if self.is_done(task) { Ok(()) } else { self.do_task(task, context) }
     }

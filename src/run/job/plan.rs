@@ -441,7 +441,10 @@ fn closed(request: &TinRequest, context: &Context) -> Result<Vec<(usize, String)
         match opened {
             Ok(_) => {}
             Err(error) if error.kind() == Kind::Canceled => return Err(error),
-            Err(error) => closed.push((number, error.in_file(input.path()).to_string())),
+            Err(error) => {
+                let error = error.in_file(input.path());
+                closed.push((number, format!("{error} (its extent is not known: triangles may span it)")));
+            }
         }
     }
     Ok(closed)

@@ -15,7 +15,6 @@ use crate::data::{EdgeKind, LineEdges, Surface, SurfaceFacts};
 use crate::error::{Error, Result};
 use crate::io::{Destination, Output};
 use crate::run::context::{Context, Size, Stage};
-use crate::run::open;
 use crate::terrain::tiles::{TinPart, Work};
 use crate::terrain::{CompactTin, TinIndex, TinIndexPart};
 
@@ -79,26 +78,64 @@ struct Written {
     at_rim: Vec<LineEdge>,
 }
 
-/// A surface in parts whose index was written.
+/// A surface in parts whose files were written. Its folder is removed again, unless it is
+/// [kept](Self::keep).
 #[derive(Debug)]
 pub struct WrittenParts {
     /// What the index says.
     pub index: TinIndex,
-    /// The folder of the surface that the new one replaces.
-    superseded: Option<PathBuf>,
+    /// The folder of the parts, unless it was there before.
+    folder: Option<PathBuf>,
+    /// The files of the surface that the new one replaces, and their folder.
+    superseded: Option<(PathBuf, Vec<PathBuf>)>,
 }
 
 impl WrittenParts {
-    /// Removes the parts of the surface that this one replaces, once the index has appeared.
+    /// Keeps the parts, once the index has appeared, and removes those of the surface that this one
+    /// replaces.
     ///
     /// # Errors
     /// If they cannot be removed.
-    pub fn remove_superseded(&self) -> Result<()> {
-        match &self.superseded {
-            Some(folder) => std::fs::remove_dir_all(folder).map_err(|e| Error::from(e).in_file(folder)),
-            None => Ok(()),
+    pub fn keep(mut self) -> Result<()> {
+        self.folder = None;
+        let Some((folder, files)) = self.superseded.take() else { return Ok(()) };
+        for file in files.iter().filter(|file| file.exists()) {
+            std::fs::remove_file(file).map_err(|e| Error::from(e).in_file(file))?;
+        }
+        // It stays if somebody has put something else there.
+        let _ = std::fs::remove_dir(&folder);
+        Ok(())
+    }
+}
+
+impl Drop for WrittenParts {
+    fn drop(&mut self) {
+        if let Some(folder) = &self.folder {
+            let _ = std::fs::remove_dir_all(folder);
         }
     }
+}
+
+/// Returns the folder and the files of the surface in parts that an index names, if they are its
+/// own: an index may have been copied, or damaged.
+fn parts_of(index: &Path, name: &str) -> Option<(PathBuf, Vec<PathBuf>)> {
+    let TinIndex { folder, parts, .. } = TinIndex::from_text(&std::fs::read(index).ok()?).ok()?;
+    let sum = folder.strip_prefix(name)?.strip_prefix('.')?;
+    let is_own = sum.len() == 8 && sum.bytes().all(|byte| byte.is_ascii_hexdigit());
+    let folder = index.with_file_name(folder);
+    let files = parts.into_iter().map(|part| folder.join(part.file)).collect();
+    is_own.then_some((folder, files))
+}
+
+/// Returns true if a folder has all parts of an index, with their checksums.
+fn has_all(folder: &Path, index: &TinIndex) -> bool {
+    index.parts.iter().all(|part| {
+        std::fs::read(folder.join(&part.file)).is_ok_and(|bytes| {
+            let mut sum = Crc::new();
+            sum.update(&bytes);
+            bytes.len() as u64 == part.bytes && sum.sum() == part.checksum
+        })
+    })
 }
 
 impl Job<'_> {
@@ -117,30 +154,38 @@ impl Job<'_> {
         let name = path.file_name().and_then(|name| name.to_str()).ok_or_else(|| {
             Error::unsupported("the name is not valid Unicode, which the index of parts needs").in_file(path)
         })?;
-        let replaced = open::tin_parts(path).and_then(|parts| Some(parts.ok()?.folder().to_path_buf()));
-        let unfinished = path.with_file_name(format!("{name}{UNFINISHED}"));
-        let named = |e: std::io::Error| Error::from(e).in_file(&unfinished);
-        if unfinished.exists() {
-            std::fs::remove_dir_all(&unfinished).map_err(named)?;
-        }
-        std::fs::create_dir(&unfinished).map_err(named)?;
-        let written = self.write_parts(&unfinished, report, context);
-        let named_by_contents = written.and_then(|parts| {
-            let mut index = self.index_of(parts, report);
-            index.folder = format!("{name}.{:08x}", checksum(&index.to_text()));
-            let folder = path.with_file_name(&index.folder);
+        let superseded = parts_of(path, name);
+        let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let mut builder = tempfile::Builder::new();
+        let prefix = format!(".{name}.");
+        builder.prefix(&prefix).suffix(UNFINISHED);
+        // Others may read the parts: only the umask limits who.
+        #[cfg(unix)]
+        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o777));
+        let staged = builder.tempdir_in(parent).map_err(|e| Error::from(e).in_file(path))?;
+        let parts = self.write_parts(staged.path(), report, context)?;
+        let mut index = self.index_of(parts, report);
+        index.folder = format!("{name}.{:08x}", checksum(&index.to_text()));
+        let folder = path.with_file_name(&index.folder);
+        let is_there = folder.exists() && has_all(&folder, &index);
+        if !is_there {
+            let named = |e: std::io::Error| Error::from(e).in_file(&folder);
             if folder.exists() {
-                // Of the same contents.
-                std::fs::remove_dir_all(&folder).map_err(|e| Error::from(e).in_file(&folder))?;
+                // What is damaged goes with the temporary folder.
+                let aside = builder.tempdir_in(parent).map_err(named)?;
+                std::fs::rename(&folder, aside.path().join("damaged")).map_err(named)?;
             }
-            std::fs::rename(&unfinished, &folder).map_err(named)?;
-            Ok((index, folder))
-        });
-        let (index, folder) = named_by_contents.inspect_err(|_| _ = std::fs::remove_dir_all(&unfinished))?;
+            std::fs::rename(staged.keep(), &folder).map_err(named)?;
+        }
+        let written = WrittenParts {
+            superseded: superseded.filter(|(old, _)| *old != folder),
+            folder: (!is_there).then_some(folder),
+            index,
+        };
         let mut output = Output::create(path)?;
-        output.write_all(index.to_text().as_bytes()).map_err(|e| Error::from(e).in_file(path))?;
+        output.write_all(written.index.to_text().as_bytes()).map_err(|e| Error::from(e).in_file(path))?;
         target.put(output)?;
-        Ok(WrittenParts { index, superseded: replaced.filter(|replaced| *replaced != folder && replaced.exists()) })
+        Ok(written)
     }
 
     /// Writes the part of each task that has triangles, those between tiles first: what they share
@@ -190,6 +235,9 @@ impl Job<'_> {
             let (own, others) = rest.split_at_checked(count).ok_or_else(|| rim.damaged())?;
             *kept = own.iter().map(|&is_kept| is_kept == 1).collect();
             rest = others;
+        }
+        if !rest.is_empty() {
+            return Err(rim.damaged());
         }
         Ok(all)
     }

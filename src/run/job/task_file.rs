@@ -30,6 +30,16 @@ pub(super) fn checksum(text: &str) -> u32 {
     sum.sum()
 }
 
+/// Creates a file that is not complete, under a name of its own.
+pub(super) fn unfinished_in(folder: &Path) -> std::io::Result<NamedTempFile> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".").suffix(UNFINISHED);
+    // Others may go on with the job: only the umask limits who may read the file.
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    builder.tempfile_in(folder)
+}
+
 /// Writes the file of a task.
 pub(super) struct TaskWriter {
     out: BufWriter<NamedTempFile>,
@@ -57,12 +67,7 @@ impl Write for TaskWriter {
 impl TaskWriter {
     pub(super) fn create(target: &Path) -> Result<Self> {
         let folder = target.parent().unwrap_or(Path::new("."));
-        let mut builder = tempfile::Builder::new();
-        builder.prefix(".").suffix(UNFINISHED);
-        // Others may go on with the job: only the umask limits who may read the file.
-        #[cfg(unix)]
-        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-        let file = builder.tempfile_in(folder).map_err(|e| Error::from(e).in_file(target))?;
+        let file = unfinished_in(folder).map_err(|e| Error::from(e).in_file(target))?;
         let out = BufWriter::with_capacity(1 << 18, file);
         Ok(TaskWriter { out, checksum: Crc::new(), at: 0, sections: Vec::new(), target: target.to_path_buf() })
     }

@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use super::TinParts;
 use crate::data::Surface;
 use crate::error::Result;
+use crate::terrain::{Interpolant, Method};
 
 /// Returns the linear height at each position in plan; NaN outside of the surface. `done` is called
 /// after each part, with the number of heights that were found there.
@@ -23,7 +24,13 @@ pub(in crate::run) fn elevations(
             return Ok(Vec::new());
         }
         let (part, mut near) = (parts.part(number)?, None);
-        let found = own.filter_map(|(at, &q)| Some((at, part.elevation_in_whole(q, &mut near)?))).collect::<Vec<_>>();
+        // What is in no whole triangle may be in a fragment.
+        let in_fragments = part.has_fragments().then(|| Interpolant::new(&part, Method::Linear)).transpose()?;
+        let mut height = |q: [f64; 2]| {
+            let in_whole = part.elevation_in_whole(q, &mut near);
+            in_whole.or_else(|| in_fragments.as_ref()?.height(q[0], q[1]))
+        };
+        let found = own.filter_map(|(at, &q)| Some((at, height(q)?))).collect::<Vec<_>>();
         part.ensure_intact()?;
         done(found.len() as u64)?;
         Ok(found)

@@ -40,6 +40,21 @@ impl TinParts {
     pub(super) fn open(path: &Path, text: &[u8]) -> Result<Self> {
         let index = TinIndex::from_text(text)
             .map_err(|e| e.in_file(path).cure("write the surface again with `breakline tin`"))?;
+        let wrong = |what: &str| {
+            Error::format(format!("{what} of the parts are not those of the surface"))
+                .in_file(path)
+                .cure("write the surface again with `breakline tin`")
+        };
+        if index.parts.iter().fold(0_u64, |sum, part| sum.saturating_add(part.triangles))
+            != index.facts.triangles as u64
+        {
+            return Err(wrong("the counts"));
+        }
+        let mut extent = Bounds::default();
+        index.parts.iter().for_each(|part| extent.merge(&part.extent));
+        if extent != index.facts.extent {
+            return Err(wrong("the extents"));
+        }
         let folder = path.with_file_name(&index.folder);
         for part in &index.parts {
             let file = folder.join(&part.file);

@@ -42,7 +42,7 @@ impl CompactTin<Vec<u8>> {
         let (inside, count) = (opened.inside.clone(), opened.triangulation.cell_count());
         for &face in faces {
             if face as usize >= count {
-                return Err(Error::format(format!("there is no cell {face}: the last is {}", count - 1)).in_file(path));
+                return Err(Error::format(format!("there is no cell {face}: there are {count}")).in_file(path));
             }
             bytes[inside.start + face as usize / 8] |= 1 << (face % 8);
         }

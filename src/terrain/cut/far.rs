@@ -19,11 +19,8 @@ const REACH: f64 = 2.0;
 ///
 /// # Complexity
 /// Linear.
-pub(super) fn divided(
-    base: &ConstrainedDelaunay<Terrain>,
-    curves: &[(Domain, Segment)],
-    reach: [f64; 2],
-) -> Vec<(Domain, Segment)> {
+pub(in crate::terrain) fn divided(curves: &[(Domain, Segment)], reach: [f64; 2]) -> Vec<(Domain, Segment)> {
+    let geometry: Terrain = Terrain::default();
     let limits = reach.map(|most| REACH * most);
     let mut divided = Vec::with_capacity(curves.len());
     for &(domain, [a, b]) in curves {
@@ -31,8 +28,8 @@ pub(super) fn divided(
         let mut ends = vec![a, b];
         if is_far {
             for (axis, limit) in [(0, -limits[0]), (0, limits[0]), (1, -limits[1]), (1, limits[1])] {
-                let site = crossing([a, b], axis, limit).map(|site| base.geometry().on_step(site));
-                let admitted = site.filter(|&[x, y]| base.geometry().admits(&[x, y, 0.0]));
+                let site = crossing([a, b], axis, limit).map(|site| geometry.on_step(site));
+                let admitted = site.filter(|&[x, y]| geometry.admits(&[x, y, 0.0]));
                 ends.extend(admitted.filter(|site| (0..2).all(|k| site[k].abs() <= limits[k])));
             }
         }

@@ -49,8 +49,7 @@ use crate::triangulation::{ConstrainedDelaunay, Location};
 use super::linear::linear;
 use super::lines::kinds::LineKinds;
 use super::regions::{self, Domain, Segment};
-use far::divided;
-pub(super) use far::reach_of;
+pub(super) use far::{divided, reach_of};
 use patch::Patch;
 use patched::{Patched, Remains};
 use snap::snapped;
@@ -94,7 +93,7 @@ pub(super) fn cut(
     reach: [f64; 2],
     is_kept: impl Fn(&[Domain]) -> bool,
 ) -> Result<Option<Cut>> {
-    let curves = &snapped(base, &divided(base, curves, reach));
+    let curves = &snapped(base, &divided(curves, reach));
     let segments: Vec<Segment> = curves.iter().map(|(_, segment)| *segment).collect();
     let Some(patch) = Patch::new(base, kinds, &segments)? else {
         let start = base.finite_cells().next();

@@ -8,6 +8,7 @@ use crate::data::{Bounds, EdgeKind};
 use crate::error::{Error, Result};
 use crate::terrain::boxes::{Boxed, Boxes, Extent};
 use crate::terrain::clip::Clip;
+use crate::terrain::cut::divided;
 use crate::terrain::regions::{Domain, Segment};
 use crate::terrain::{Inside, TinBuilder};
 use crate::triangulation::geometry::Terrain;
@@ -76,7 +77,9 @@ impl TileClip {
         let segments = clip.segments()?;
         let largest = [extent.min, extent.max].as_flattened().iter().fold(0.0_f64, |most, c| most.max(c.abs()));
         let margin = NEAR * f64::EPSILON * largest.max(f64::MIN_POSITIVE);
-        let near = Boxes::new(boxes(&segments, extent, margin));
+        // Rounding depends on the lines' ends; those far away are left out.
+        let reach = [0, 1].map(|k: usize| extent.min[k].abs().max(extent.max[k].abs()));
+        let near = Boxes::new(boxes(&divided(&segments, reach), extent, margin));
         let (polygons, holes) = (Inside::new(&clip.polygons), Inside::new(&clip.holes));
         Ok(Some(TileClip { clip, segments, near, polygons, holes }))
     }

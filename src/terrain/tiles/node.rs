@@ -39,7 +39,7 @@ pub fn leaf(
     constraints: &[SubConstraint],
     emit: &mut dyn FnMut(TileTriangle),
 ) -> Result<Residual> {
-    leaf_with_part(tile, number, points, constraints, emit).map(|(residual, _)| residual)
+    reduce(tile, of_points(tile, number, points, constraints)?, emit, |_| ()).map(|(residual, _)| residual)
 }
 
 /// Like [`leaf`], also returns the triangulation; `None` if there is no triangle.
@@ -56,6 +56,11 @@ pub fn leaf_with_part(
     constraints: &[SubConstraint],
     emit: &mut dyn FnMut(TileTriangle),
 ) -> Result<(Residual, Option<TinPart>)> {
+    reduce(tile, of_points(tile, number, points, constraints)?, emit, |finished| finished.into_part())
+}
+
+/// Returns the points of a tile and the sub-constraints that meet it as a residual.
+fn of_points(tile: &Tile, number: u32, points: &[[f64; 3]], constraints: &[SubConstraint]) -> Result<Residual> {
     if let Some(at) = points.iter().position(|&[x, y, _]| !tile.holds([x, y])) {
         let ([x, y, _], Tile { min, max }) = (points[at], tile);
         return Err(Error::format(format!(
@@ -68,7 +73,7 @@ pub fn leaf_with_part(
     let vertices = points.iter().enumerate().map(vertex).collect();
     let pending = lines::of_tile(tile, constraints)?;
     let has_lines = !pending.is_empty();
-    reduce(tile, Residual { vertices, edges: Vec::new(), pending, has_lines }, emit)
+    Ok(Residual { vertices, edges: Vec::new(), pending, has_lines })
 }
 
 /// Merges the residuals of parts of a tile. Calls `emit` for each triangle that is final now, and
@@ -84,7 +89,7 @@ pub fn leaf_with_part(
 /// # Complexity
 /// That of [`leaf`], for the vertices and edges of the residuals.
 pub fn merge(tile: &Tile, parts: &[Residual], emit: &mut dyn FnMut(TileTriangle)) -> Result<Residual> {
-    merge_with_part(tile, parts, emit).map(|(residual, _)| residual)
+    reduce(tile, Residual::joined(parts)?, emit, |_| ()).map(|(residual, _)| residual)
 }
 
 /// Like [`merge`], also returns the triangulation; `None` if there is no triangle.
@@ -99,10 +104,39 @@ pub fn merge_with_part(
     parts: &[Residual],
     emit: &mut dyn FnMut(TileTriangle),
 ) -> Result<(Residual, Option<TinPart>)> {
-    reduce(tile, Residual::joined(parts)?, emit)
+    reduce(tile, Residual::joined(parts)?, emit, |finished| finished.into_part())
 }
 
-fn reduce(tile: &Tile, mut input: Residual, emit: &mut dyn FnMut(TileTriangle)) -> Result<(Residual, Option<TinPart>)> {
+/// A triangulation whose final triangles were emitted.
+struct Finished<'a> {
+    t: ConstrainedDelaunay<Terrain>,
+    input: &'a Residual,
+    /// For each vertex, the first one of the input at its site.
+    input_of: Vec<u32>,
+    /// The positions among all cells of the triangles that were emitted.
+    emitted: Vec<u32>,
+}
+
+impl Finished<'_> {
+    fn into_part(self) -> TinPart {
+        let number = |id: VertexId| {
+            let TileVertex { tile, number, .. } = self.input.vertices[self.input_of[id.index()] as usize];
+            [tile, number]
+        };
+        let numbers = self.t.tds().vertices().map(number).collect();
+        let kinds = self.input.edges.iter().filter(|_| self.input.has_lines).map(|edge| edge.kind).collect();
+        TinPart::new(self.t, kinds, self.emitted, numbers)
+    }
+}
+
+/// Triangulates a residual, and emits what is final. `keep` makes something of the triangulation,
+/// if there is a triangle.
+fn reduce<T>(
+    tile: &Tile,
+    mut input: Residual,
+    emit: &mut dyn FnMut(TileTriangle),
+    keep: impl FnOnce(Finished) -> T,
+) -> Result<(Residual, Option<T>)> {
     if let Some(at) = input.vertices.iter().position(|vertex| !vertex.position[2].is_finite()) {
         return Err(refused(InputError::Coordinate(at), &input));
     }
@@ -120,9 +154,8 @@ fn reduce(tile: &Tile, mut input: Residual, emit: &mut dyn FnMut(TileTriangle)) 
     }
     let task = Task::new(tile, &t, &ids, &input);
     let (residual, emitted) = task.run(&Lines::new(tile, &t, &input), emit)?;
-    let numbers = task.numbers();
-    let kinds = input.edges.iter().filter(|_| input.has_lines).map(|edge| edge.kind).collect();
-    Ok((residual, Some(TinPart::new(t, kinds, emitted, numbers))))
+    let input_of = task.input_of;
+    Ok((residual, Some(keep(Finished { t, input: &input, input_of, emitted }))))
 }
 
 /// A triangulation of the vertices of a residual.
@@ -148,12 +181,6 @@ impl<'a> Task<'a> {
 
     fn vertex(&self, id: VertexId) -> TileVertex {
         self.input.vertices[self.input_of[id.index()] as usize]
-    }
-
-    /// Returns the tile and the number of each vertex, in the order of the vertices.
-    fn numbers(&self) -> Vec<[u32; 2]> {
-        let of = |id: VertexId| self.vertex(id);
-        self.t.tds().vertices().map(of).map(|TileVertex { tile, number, .. }| [tile, number]).collect()
     }
 
     /// Emits the triangles that are final now. Returns what is left, and the positions of these
