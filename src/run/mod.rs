@@ -21,12 +21,12 @@
 //! # A DEM of points in memory
 //!
 //! ```
-//! use breakline::data::Bounds; use breakline::run::{self, Context, DemOptions, FrameOptions,
-//! Input, Source, SurfaceRequest, TinRequest};
+//! use breakline::data::Bounds;
+//! use breakline::run::{self, Context, DemOptions, FrameOptions, Input, Source, SurfaceRequest, TinRequest};
 //!
-//! let points = [[0.0, 0.0, 1.0], [10.0, 0.0, 1.0], [10.0, 10.0, 3.0], [0.0, 10.0, 3.0]]; let tin =
-//! TinRequest { points: vec![Input::of_points(&points, None)], ..TinRequest::default() }; let
-//! request = SurfaceRequest { source: Source::Points(Box::new(tin)), ..SurfaceRequest::default() };
+//! let points = [[0.0, 0.0, 1.0], [10.0, 0.0, 1.0], [10.0, 10.0, 3.0], [0.0, 10.0, 3.0]];
+//! let tin = TinRequest { points: vec![Input::of_points(&points, None)], ..TinRequest::default() };
+//! let request = SurfaceRequest { source: Source::Points(Box::new(tin)), ..SurfaceRequest::default() };
 //!
 //! let context = Context::default(); // nothing is reported or canceled
 //! let surface = run::triangles(&request, &context)?;
