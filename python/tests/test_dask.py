@@ -201,7 +201,7 @@ def test_what_is_wrong_is_an_error_with_its_cure(client, tmp_path):
     with pytest.raises(breakline.BreaklineError, match="none.laz"):
         breakline.dask.dem(tmp_path / "none.laz", tmp_path / "dem.tif", client=client)
     with pytest.raises(breakline.BreaklineError, match="does not work with tiles yet"):
-        breakline.dask.dem(VALLEY, tmp_path / "dem.tif", client=client, boundary=FIXTURES / "boundary.shp")
+        breakline.dask.dem(VALLEY, tmp_path / "dem.tif", client=client, max_edge="auto")
     with pytest.raises(breakline.UsageError, match="client"):
         breakline.dask.dem(VALLEY, tmp_path / "dem.tif", client=None)
     assert list(tmp_path.glob("*.tif")) == []
