@@ -208,8 +208,9 @@ impl Job<'_> {
         }
         let rectangle = &self.steps[step].tile;
         facts.insert("reach".to_owned(), json!(reach_of(&points)));
-        self.emitting(writer, context, &holes, facts, |emit| {
-            tiles::leaf_with_part(rectangle, tile, &points, &constraints, emit)
+        self.emitting(writer, context, &holes, facts, |emit| match self.product {
+            TiledProduct::Surface => tiles::leaf_with_part(rectangle, tile, &points, &constraints, emit),
+            _ => tiles::leaf(rectangle, tile, &points, &constraints, emit).map(|residual| (residual, None)),
         })
         .map_err(|error| {
             let error = error.within(format_args!("tile {tile}"));
@@ -260,8 +261,10 @@ impl Job<'_> {
             residuals.push(bytes::to_residual(&bytes).ok_or_else(|| file.damaged())?);
             holes.add_known(&file);
         }
-        self.emitting(writer, context, &holes, Map::new(), |emit| {
-            tiles::merge_with_part(&self.steps[step].tile, &residuals, emit)
+        let tile = &self.steps[step].tile;
+        self.emitting(writer, context, &holes, Map::new(), |emit| match self.product {
+            TiledProduct::Surface => tiles::merge_with_part(tile, &residuals, emit),
+            _ => tiles::merge(tile, &residuals, emit).map(|residual| (residual, None)),
         })
         .map_err(|e| e.within(format_args!("merge {step}")))
     }
