@@ -309,8 +309,8 @@ impl<'a> Job<'a> {
 
     /// Opens the job of a request in its folder; `None` if there is none.
     ///
-    /// A file that has changed since the job was planned is taken as it is now, if no task has read
-    /// it and its header states the same: it was damaged, and was replaced.
+    /// A file that has changed since the job was planned counts as repaired if no task has read it
+    /// and its header states the same number and extent; then it is taken as it is now.
     ///
     /// # Errors
     /// If the job is that of another request, or damaged, or a file has changed otherwise.
@@ -366,8 +366,8 @@ impl<'a> Job<'a> {
         file.persist(&path).map(drop).map_err(|e| Error::from(e.error).in_file(&path))
     }
 
-    /// Writes the plan again if files were replaced: whoever opens the job after their tasks has to
-    /// know them.
+    /// Writes the plan again if files were replaced. It has to be written before they are read: a
+    /// file that has changed since the plan, and that a task has read, is refused.
     fn store_replaced_files(&self) -> Result<()> {
         if self.has_replaced_files { self.write_plan() } else { Ok(()) }
     }

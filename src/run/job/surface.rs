@@ -46,8 +46,8 @@ impl PartFaces {
         self.is_kept.push(false);
     }
 
-    /// Writes the triangulation and its faces. Triangles that are those of no triangulation waited
-    /// in others: then only what was decided is written.
+    /// Writes the triangulation and its faces. Without a triangulation, the triangles waited in
+    /// other tasks, and only the decision about each is written.
     pub(super) fn finish(self, part: Option<TinPart>, writer: &mut TaskWriter) -> Result<()> {
         let Some(part) = part else {
             writer.begin(KEPT);
@@ -145,6 +145,9 @@ impl Job<'_> {
     /// # Errors
     /// If a task is not done, if no triangle is left, if the job makes another product, if a file
     /// cannot be written, or if the run is canceled.
+    ///
+    /// # Complexity
+    /// Linear in the triangles; in memory is one part for each thread.
     pub fn write_surface(&self, report: &JobReport, target: Destination, context: &Context) -> Result<WrittenParts> {
         self.require_triangles(report)?;
         if !matches!(self.product, TiledProduct::Surface) {

@@ -98,6 +98,9 @@ impl TinParts {
     ///
     /// # Errors
     /// If it is damaged, or not a part of a surface.
+    ///
+    /// # Complexity
+    /// Constant: the file is mapped to memory.
     pub fn part(&self, number: usize) -> Result<CompactTin<Mapped>> {
         (self.open)(number)
     }

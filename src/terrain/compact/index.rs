@@ -50,6 +50,9 @@ pub struct TinIndexPart {
 
 impl TinIndex {
     /// Returns the index as text: JSON, with a line for each part.
+    ///
+    /// # Complexity
+    /// Linear in the parts.
     pub fn to_text(&self) -> String {
         let TinIndex { crs, facts, area, folder, parts } = self;
         let attributes = Attributes { crs: crs.clone(), facts: facts.clone() };
@@ -72,6 +75,9 @@ impl TinIndex {
     /// # Errors
     /// If the text is not that of an index, or has another version; the error names a value that is
     /// missing or wrong.
+    ///
+    /// # Complexity
+    /// Linear in the bytes.
     pub fn from_text(text: &[u8]) -> Result<Self> {
         if !text.starts_with(VERSION.as_bytes()) {
             return Err(wrong("the version of the index"));

@@ -14,8 +14,9 @@ impl<B: AsRef<[u8]>> CompactTin<B> {
         !self.numbers.is_empty()
     }
 
-    /// Returns the numbers that stand for a vertex in all parts of a surface: that of its tile, and
-    /// its own there. `None` if the TIN is not part of one, or there is no such vertex.
+    /// Returns the number of the tile of a vertex, and the number of the vertex in that tile: both
+    /// are the same in all parts of a surface. Returns `None` if the TIN is no part of a surface,
+    /// or has no such vertex.
     pub fn number_in_parts(&self, vertex: u32) -> Option<[u32; 2]> {
         // Vertices of fragments are in no other part.
         if let Some(added) = (vertex as usize).checked_sub(self.triangulation.vertex_count()) {
@@ -32,7 +33,7 @@ impl CompactTin<Vec<u8>> {
     /// counts and its extent are found anew.
     ///
     /// # Errors
-    /// Those of [`open`](Self::open), and if there is no cell with one of these numbers.
+    /// If the bytes cannot be [opened](Self::open), or one of the numbers is not that of a cell.
     ///
     /// # Complexity
     /// Linear.

@@ -107,9 +107,11 @@ impl TileClip {
         self.side_of(min, max)
     }
 
-    /// Cuts the triangles that lines come near, all of them together, each with whether it is in
-    /// the surface. `reach` has the largest coordinates of all points on both axes, without their
-    /// signs. Returns the triangles and fragments that are kept; `None` if there is no triangle.
+    /// Cuts all triangles that lines come near, and returns the triangles and fragments that are
+    /// kept, or `None` if `triangles` is empty.
+    ///
+    /// Each triangle comes with true if it is in the surface before the cut. `reach` is the largest
+    /// absolute coordinate of all points on each axis, in the units of the data.
     ///
     /// # Errors
     /// If an edge would bend away from all lines, if the triangles are not some of one

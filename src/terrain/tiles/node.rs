@@ -42,7 +42,8 @@ pub fn leaf(
     reduce(tile, of_points(tile, number, points, constraints)?, emit, |_| ()).map(|(residual, _)| residual)
 }
 
-/// Like [`leaf`], also returns the triangulation; `None` if there is no triangle.
+/// Does what [`leaf`] does, and also returns the triangulation of the tile, or `None` if it has no
+/// triangle.
 ///
 /// # Errors
 /// Those of [`leaf`].
@@ -92,7 +93,8 @@ pub fn merge(tile: &Tile, parts: &[Residual], emit: &mut dyn FnMut(TileTriangle)
     reduce(tile, Residual::joined(parts)?, emit, |_| ()).map(|(residual, _)| residual)
 }
 
-/// Like [`merge`], also returns the triangulation; `None` if there is no triangle.
+/// Does what [`merge`] does, and also returns the triangulation of the residuals, or `None` if it
+/// has no triangle.
 ///
 /// # Errors
 /// Those of [`merge`].

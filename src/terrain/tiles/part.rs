@@ -44,6 +44,9 @@ impl TinPart {
 
     /// Returns the triangles of the part, in the order of its faces. Their edges at the rim of the
     /// part are plain. Vertices of fragments have numbers of their own: no other part has them.
+    ///
+    /// # Complexity
+    /// Linear in the vertices once, then constant for each triangle.
     pub fn triangles(&self) -> impl Iterator<Item = TileTriangle> + '_ {
         let tds = self.tin.triangulation.tds();
         let mut number_of = vec![[u32::MAX; 2]; tds.vertex_slots()];
@@ -59,8 +62,8 @@ impl TinPart {
         })
     }
 
-    /// Writes a file `.tin` with some of the triangles. `kept` tells for each triangle that was
-    /// emitted, in that order, whether it is a face.
+    /// Writes the part as a `.tin`. `kept` has a value for each triangle that was emitted, in the
+    /// same order: the triangle becomes a face if the value is true.
     ///
     /// # Errors
     /// Those of `out`, and if there are too many faces or vertices to be numbered.
@@ -79,8 +82,8 @@ impl TinPart {
 }
 
 impl<B: AsRef<[u8]> + Sync> CompactTin<B> {
-    /// Returns a vertex of a part; `None` if the TIN is not part of a surface, or there is no such
-    /// vertex.
+    /// Returns a vertex with the numbers that are the same in all parts of a surface. Returns
+    /// `None` if the TIN is no part of a surface, or has no such vertex.
     pub fn tile_vertex(&self, vertex: u32) -> Option<TileVertex> {
         let [tile, number] = self.number_in_parts(vertex)?;
         Some(TileVertex { tile, number, position: self.position(vertex) })
@@ -90,6 +93,9 @@ impl<B: AsRef<[u8]> + Sync> CompactTin<B> {
     /// part are plain.
     ///
     /// What is damaged is left out; see [`Surface::ensure_intact`].
+    ///
+    /// # Complexity
+    /// Constant for each triangle.
     pub fn tile_triangles(&self) -> impl Iterator<Item = TileTriangle> + '_ {
         (0..self.face_count() as u32).filter_map(|face| {
             let [a, b, c] = self.face(face)?.map(|vertex| self.tile_vertex(vertex));

@@ -8,7 +8,7 @@ pub(super) enum Rule {
     DiskBound,
     /// Triangles wait for a pending sub-constraint that runs along their edge.
     AlongEdges,
-    /// Of a disk, only what is visible past constraints has to lie in the tile.
+    /// Only the part of a disk that is visible past constraints has to lie in the tile.
     VisiblePart,
 }
 

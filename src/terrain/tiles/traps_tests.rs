@@ -128,7 +128,7 @@ fn merges_without_a_flood_are_seen() {
 }
 
 /// Seams are no constraints once no line is open, although lines were there. Seen in about 280 sets
-/// of 400, always by an error: a seam is no edge.
+/// of 400, always by an error: a seam is not an edge of the triangulation.
 ///
 /// It takes a line that is final on both sides, and points beyond it that it hides.
 ///
