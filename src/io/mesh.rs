@@ -132,6 +132,13 @@ pub fn edges(surface: &dyn Surface) -> Result<Vec<([u32; 2], EdgeKind)>> {
     Ok(edges)
 }
 
+/// Returns true if a file is a TIN, or the index of one in parts, by its first bytes and its
+/// extension.
+pub fn is_tin(path: &Path) -> bool {
+    let format = formats::detect_file(path).ok().flatten();
+    format.is_some_and(|format| matches!(format.reader, Reader::Tin(_) | Reader::Parts(_)))
+}
+
 /// Maps a TIN to memory; `None` for a file of another format, by its first bytes and its extension.
 ///
 /// # Errors

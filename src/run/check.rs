@@ -76,8 +76,7 @@ pub struct CheckProduct {
 pub fn check(request: &SurfaceRequest, context: &Context) -> Result<CheckProduct> {
     let systems = SystemOptions { degrees: Degrees::Allow, ..request.systems.clone() };
     if let Source::Mesh(path) = &request.source
-        && open::tin(path).is_none()
-        && open::tin_parts(path).is_none()
+        && !open::is_tin(path)
     {
         return check_mesh(path, &systems, context);
     }

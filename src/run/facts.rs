@@ -157,10 +157,12 @@ pub fn facts(path: &Path, read: points::Options, context: &Context) -> Result<Fa
         Content::Raster => Facts::Raster(Box::new(raster_facts(path, context)?)),
         Content::Mesh => match open::solid(path) {
             Some(solid) => Facts::Solid(Box::new(solid?)),
-            None => Facts::Mesh(Box::new(match (open::tin(path), open::tin_parts(path)) {
-                (Some(tin), _) => tin_facts(&tin?),
-                (None, Some(parts)) => parts_facts(&parts?),
-                (None, None) => mesh_facts(path, context)?,
+            None => Facts::Mesh(Box::new(if let Some(tin) = open::tin(path) {
+                tin_facts(&tin?)
+            } else if let Some(parts) = open::tin_parts(path) {
+                parts_facts(&parts?)
+            } else {
+                mesh_facts(path, context)?
             })),
         },
         Content::Picture => Facts::Picture(Box::new(open::picture(path)?)),

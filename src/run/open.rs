@@ -187,6 +187,11 @@ fn reading<T>(stage: Stage, path: &Path, context: &Context, read: impl FnOnce(Wa
     Ok(found)
 }
 
+/// Returns true if a file is a TIN, or the index of one in parts.
+pub(super) fn is_tin(path: &Path) -> bool {
+    mesh::is_tin(path)
+}
+
 /// Opens a TIN where its bytes are; `None` if the file has a different format.
 pub(super) fn tin(path: &Path) -> Option<Result<CompactTin<Mapped>>> {
     mesh::map_tin(path).map(|mapped| CompactTin::open(mapped?, path))

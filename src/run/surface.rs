@@ -189,10 +189,12 @@ pub fn surface(request: &SurfaceRequest, context: &Context) -> Result<SurfacePro
             (Model::Tin(Box::new(tin)), Some(Box::new(report)))
         }
         Source::Mesh(path) => {
-            let model = match (open::tin(path), open::tin_parts(path)) {
-                (Some(tin), _) => tin_model(path, tin?, &request.systems, &journal)?,
-                (None, Some(parts)) => parts_model(path, parts?, &request.systems, &journal)?,
-                (None, None) => mesh_model(path, open::mesh(path, &journal)?, &request.systems, &journal)?,
+            let model = if let Some(tin) = open::tin(path) {
+                tin_model(path, tin?, &request.systems, &journal)?
+            } else if let Some(parts) = open::tin_parts(path) {
+                parts_model(path, parts?, &request.systems, &journal)?
+            } else {
+                mesh_model(path, open::mesh(path, &journal)?, &request.systems, &journal)?
             };
             (model, None)
         }
