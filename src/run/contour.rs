@@ -79,11 +79,11 @@ pub fn write_contours(
     target: Destination,
     context: &Context,
 ) -> Result<ContourSummary> {
-    let count = lines.iter().map(|line| line.points.len().saturating_sub(1) as u64).sum();
+    let count = lines.iter().map(edge_count).sum();
     target.put_whole(|target| {
         contours::check_size(target, count)?;
         let drawing = context.start(Stage::DrawingContours, Size::Items(count))?;
-        let is_wanted = |line: &&ContourLine| drawing.add(line.points.len().saturating_sub(1) as u64).is_ok();
+        let is_wanted = |line: &&ContourLine| drawing.add(edge_count(line)).is_ok();
         let written = contours::write(target, &mut lines.iter().take_while(is_wanted).cloned(), crs);
         drawing.end()?;
         written
@@ -124,7 +124,7 @@ impl ContourProduct<'_> {
                 let finding = context.start(Stage::FindingContours, Size::Uncounted)?;
                 let lines = tin_parts::contours(parts, &self.levels, context)?;
                 finding.end()?;
-                let count = lines.iter().map(|line| line.points.len().saturating_sub(1) as u64).sum();
+                let count = lines.iter().map(edge_count).sum();
                 take(&mut lines.into_iter(), count)
             }
             Model::Tin(_) | Model::Mesh(_) | Model::Compact(_) => {
@@ -132,6 +132,11 @@ impl ContourProduct<'_> {
             }
         }
     }
+}
+
+/// Returns the number of edges of a line.
+pub(super) fn edge_count(line: &ContourLine) -> u64 {
+    line.points.len().saturating_sub(1) as u64
 }
 
 /// Calls `take` for the lines, with the number of their edges.
@@ -147,7 +152,7 @@ fn draw<S: Surface + ?Sized, T>(
     finding.end()?;
     let count = lines.arc_count() as u64;
     let drawing = context.start(Stage::DrawingContours, Size::Items(count))?;
-    let is_wanted = |line: &ContourLine| drawing.add(line.points.len().saturating_sub(1) as u64).is_ok();
+    let is_wanted = |line: &ContourLine| drawing.add(edge_count(line)).is_ok();
     let taken = take(&mut lines.take_while(is_wanted), count);
     drawing.end()?;
     polled.end()?;

@@ -10,6 +10,7 @@ use crate::error::Result;
 use crate::io::Destination;
 use crate::io::contours::{self, ContourSummary};
 use crate::run::context::{Context, Size, Stage};
+use crate::run::contour::edge_count;
 use crate::terrain::Levels;
 use crate::terrain::contour::parts::{LevelParts, PartsTable, join_level};
 
@@ -59,9 +60,7 @@ impl DrawnContours {
                 Vec::new()
             }
         };
-        let is_wanted = |line: &ContourLine| {
-            failed.borrow().is_ok() && drawing.add(line.points.len().saturating_sub(1) as u64).is_ok()
-        };
+        let is_wanted = |line: &ContourLine| failed.borrow().is_ok() && drawing.add(edge_count(line)).is_ok();
         let mut lines = self.levels.iter().flat_map(lines_of).take_while(is_wanted);
         let written = contours::write(target, &mut lines, crs);
         drop(lines);
