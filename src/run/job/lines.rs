@@ -60,24 +60,18 @@ pub(super) fn of_layers(
     let added = layers.add_to(&mut builder, &transforms.by_file, &transforms, &units)?;
     line_notes::note_uneven(&added.uneven, &units, journal);
     line_notes::note_overlaps(&added.overlaps, journal);
-    let of_lines = lines_extent(&builder);
+    let in_plan = builder.lines_in_plan();
+    let mut of_lines = Bounds::default();
+    in_plan.iter().flatten().for_each(|&[x, y]| of_lines.add([x, y, 0.0]));
     let mut all = *extent;
     all.merge(&of_lines);
     let clip = TileClip::take_from(&mut builder, &all)?;
-    let lines = layers.has_lines_with_heights().then(|| JobLines::new(builder, added.names, of_lines));
+    let lines = layers.has_lines_with_heights().then(|| JobLines::new(builder, added.names, in_plan, of_lines));
     Ok((lines, clip))
 }
 
-/// Returns the box in plan around all lines of a builder.
-fn lines_extent(builder: &TinBuilder) -> Bounds {
-    let mut extent = Bounds::default();
-    builder.lines_in_plan().iter().flatten().for_each(|&[x, y]| extent.add([x, y, 0.0]));
-    extent
-}
-
 impl JobLines {
-    fn new(builder: TinBuilder, names: LineNames, extent: Bounds) -> Self {
-        let lines = builder.lines_in_plan();
+    fn new(builder: TinBuilder, names: LineNames, lines: Vec<Vec<[f64; 2]>>, extent: Bounds) -> Self {
         let largest = lines.iter().flatten().flatten().fold(0.0_f64, |most, c| most.max(c.abs()));
         let sites = lines.iter().flatten().map(|p| p.map(f64::to_bits)).collect();
         let index = Inside::new(&[lines]);
