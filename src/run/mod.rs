@@ -67,6 +67,7 @@
 
 mod cells;
 mod check;
+mod checksum;
 mod context;
 mod contour;
 mod crossings;

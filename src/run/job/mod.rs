@@ -39,8 +39,9 @@ pub(crate) use self::plan::not_in_tiles;
 use self::plan::{Known, Plan, fingerprint};
 use self::raster::DrawnCells;
 pub use self::surface::WrittenParts;
-use self::task_file::{TaskFile, UNFINISHED, checksum};
+use self::task_file::{TaskFile, UNFINISHED};
 use super::cells::{CellProduct, DemOptions, HillshadeOptions};
+use super::checksum::checksum;
 use super::context::{Context, Journal};
 use super::contour::ContourOptions;
 use super::frame::{self, FrameOptions};
@@ -322,7 +323,7 @@ impl<'a> Job<'a> {
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
             Err(error) => return Err(Error::from(error).in_file(path)),
         };
-        let plan = text.split_once('\n').filter(|(sum, plan)| *sum == format!("{:08x}", checksum(plan)));
+        let plan = text.split_once('\n').filter(|(sum, plan)| *sum == format!("{:08x}", checksum(plan.as_bytes())));
         let value: Option<Value> = plan.and_then(|(_, plan)| serde_json::from_str(plan).ok());
         let plan = value.as_ref().and_then(Plan::from_json).ok_or_else(|| {
             Error::format("the plan of the job is damaged, or that of another version")
@@ -362,7 +363,7 @@ impl<'a> Job<'a> {
         let path = self.folder.join(PLAN);
         // Several processes may write the same plan at the same time.
         let mut file = task_file::unfinished_in(&self.folder).map_err(named)?;
-        write!(file, "{:08x}\n{plan}", checksum(&plan)).map_err(named)?;
+        write!(file, "{:08x}\n{plan}", checksum(plan.as_bytes())).map_err(named)?;
         file.persist(&path).map(drop).map_err(|e| Error::from(e.error).in_file(&path))
     }
 

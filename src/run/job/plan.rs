@@ -6,12 +6,12 @@ use std::time::UNIX_EPOCH;
 use serde_json::{Value, json};
 
 use super::lines::{self, JobLines};
-use super::task_file::checksum;
 use super::{BadFiles, Division, TileOptions, TiledProduct};
 use crate::crs::Crs;
 use crate::data::{Bounds, Frame, PointBatch};
 use crate::error::{Error, Kind, Result};
 use crate::io::layer;
+use crate::run::checksum::checksum;
 use crate::run::context::{Context, Journal, Size, Stage};
 use crate::run::frame::{self, FrameOptions};
 use crate::run::input::{Input, MemoryPoints};
@@ -427,7 +427,7 @@ pub(super) fn fingerprint(
     options: &TileOptions,
 ) -> String {
     let all = format!("{request:?} {systems:?} {product:?} {:?} {:?}", options.division, options.memory);
-    format!("{} {:08x}", product.name(), checksum(&all))
+    format!("{} {:08x}", product.name(), checksum(all.as_bytes()))
 }
 
 /// Returns the files that cannot be planned with, and why.

@@ -4,16 +4,16 @@ use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use flate2::Crc;
 use rayon::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::bytes::{Reader, put_u32};
-use super::task_file::{TaskWriter, UNFINISHED, checksum};
+use super::task_file::{TaskWriter, UNFINISHED};
 use super::{Job, JobReport, Task, TiledProduct};
 use crate::data::{EdgeKind, LineEdges, Surface, SurfaceFacts};
 use crate::error::{Error, Result};
 use crate::io::{Destination, Output};
+use crate::run::checksum::{Summed, checksum};
 use crate::run::context::{Context, Size, Stage};
 use crate::terrain::tiles::{TinPart, Work};
 use crate::terrain::{CompactTin, TinIndex, TinIndexPart};
@@ -130,11 +130,8 @@ fn parts_of(index: &Path, name: &str) -> Option<(PathBuf, Vec<PathBuf>)> {
 /// Returns true if a folder has all parts of an index, with their checksums.
 fn has_all(folder: &Path, index: &TinIndex) -> bool {
     index.parts.iter().all(|part| {
-        std::fs::read(folder.join(&part.file)).is_ok_and(|bytes| {
-            let mut sum = Crc::new();
-            sum.update(&bytes);
-            bytes.len() as u64 == part.bytes && sum.sum() == part.checksum
-        })
+        let bytes = std::fs::read(folder.join(&part.file));
+        bytes.is_ok_and(|bytes| bytes.len() as u64 == part.bytes && checksum(&bytes) == part.checksum)
     })
 }
 
@@ -168,7 +165,7 @@ impl Job<'_> {
         let staged = builder.tempdir_in(parent).map_err(|e| Error::from(e).in_file(path))?;
         let parts = self.write_parts(staged.path(), report, context)?;
         let mut index = self.index_of(parts, report);
-        index.folder = format!("{name}.{:08x}", checksum(&index.to_text()));
+        index.folder = format!("{name}.{:08x}", checksum(index.to_text().as_bytes()));
         let folder = path.with_file_name(&index.folder);
         let is_there = folder.exists() && has_all(&folder, &index);
         if !is_there {
@@ -277,15 +274,14 @@ impl Job<'_> {
         let tile = self.tile_of(task);
         let file = format!("{:06}.tin", task - self.first_step());
         let path = folder.join(&file);
-        let written = || -> Result<Summed> {
-            let out = BufWriter::with_capacity(1 << 18, File::create_new(&path)?);
-            let mut out = Summed { out, sum: Crc::new(), length: 0 };
+        let written = || -> Result<Summed<_>> {
+            let mut out = Summed::new(BufWriter::with_capacity(1 << 18, File::create_new(&path)?));
             tin.write_tin(&mut out)?;
             out.flush()?;
             Ok(out)
         };
-        let Summed { sum, length, .. } = written().map_err(|e| e.in_file(&path))?;
-        let (bytes, checksum) = (length, sum.sum());
+        let out = written().map_err(|e| e.in_file(&path))?;
+        let (bytes, checksum) = (out.length(), out.sum());
         let row = TinIndexPart { file, tile, bytes, checksum, triangles: facts.triangles as u64, extent: facts.extent };
         let is_shared = |key: &VertexKey| tile.is_none() || shared.contains(key);
         Ok(Some(Written { row, facts, shared: used_vertices(&tin, is_shared), at_rim: line_edges_at_rim(&tin) }))
@@ -311,26 +307,6 @@ impl Job<'_> {
         at_rim.values().for_each(|kind| facts.edges.add_edges(*kind, 1));
         rows.sort_unstable_by(|a: &TinIndexPart, b| a.file.cmp(&b.file));
         TinIndex { crs: report.crs.clone(), facts, area: self.area(), folder: String::new(), parts: rows }
-    }
-}
-
-/// A file, and the sum over what was written.
-struct Summed {
-    out: BufWriter<File>,
-    sum: Crc,
-    length: u64,
-}
-
-impl Write for Summed {
-    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
-        self.out.write_all(bytes)?;
-        self.sum.update(bytes);
-        self.length += bytes.len() as u64;
-        Ok(bytes.len())
-    }
-
-    fn flush(&mut self) -> std::io::Result<()> {
-        self.out.flush()
     }
 }
 

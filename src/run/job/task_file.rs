@@ -13,6 +13,7 @@ use serde_json::{Map, Value, json};
 use tempfile::NamedTempFile;
 
 use crate::error::{Error, Result};
+use crate::run::checksum::Summed;
 
 /// The last bytes of a complete file.
 const MAGIC: &[u8; 8] = b"BRKTASK1";
@@ -22,13 +23,6 @@ pub(super) const UNFINISHED: &str = ".unfinished";
 
 /// The bytes after the facts: their length, the checksum, the magic.
 const END: u64 = 8 + 4 + 8;
-
-/// Returns the CRC-32 of a text.
-pub(super) fn checksum(text: &str) -> u32 {
-    let mut sum = Crc::new();
-    sum.update(text.as_bytes());
-    sum.sum()
-}
 
 /// Creates a file that is not complete, under a name of its own.
 pub(super) fn unfinished_in(folder: &Path) -> std::io::Result<NamedTempFile> {
@@ -42,9 +36,7 @@ pub(super) fn unfinished_in(folder: &Path) -> std::io::Result<NamedTempFile> {
 
 /// Writes the file of a task.
 pub(super) struct TaskWriter {
-    out: BufWriter<NamedTempFile>,
-    checksum: Crc,
-    at: u64,
+    out: Summed<BufWriter<NamedTempFile>>,
     /// Names, with the positions of their first bytes.
     sections: Vec<(&'static str, u64)>,
     target: PathBuf,
@@ -53,10 +45,7 @@ pub(super) struct TaskWriter {
 /// The checksum covers what is written.
 impl Write for TaskWriter {
     fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
-        self.out.write_all(bytes)?;
-        self.checksum.update(bytes);
-        self.at += bytes.len() as u64;
-        Ok(bytes.len())
+        self.out.write(bytes)
     }
 
     fn flush(&mut self) -> std::io::Result<()> {
@@ -68,18 +57,18 @@ impl TaskWriter {
     pub(super) fn create(target: &Path) -> Result<Self> {
         let folder = target.parent().unwrap_or(Path::new("."));
         let file = unfinished_in(folder).map_err(|e| Error::from(e).in_file(target))?;
-        let out = BufWriter::with_capacity(1 << 18, file);
-        Ok(TaskWriter { out, checksum: Crc::new(), at: 0, sections: Vec::new(), target: target.to_path_buf() })
+        let out = Summed::new(BufWriter::with_capacity(1 << 18, file));
+        Ok(TaskWriter { out, sections: Vec::new(), target: target.to_path_buf() })
     }
 
     /// Begins a section; it ends where the next one begins.
     pub(super) fn begin(&mut self, name: &'static str) {
-        self.sections.push((name, self.at));
+        self.sections.push((name, self.position()));
     }
 
     /// Returns the position of the next byte.
     pub(super) fn position(&self) -> u64 {
-        self.at
+        self.out.length()
     }
 
     pub(super) fn put(&mut self, bytes: &[u8]) -> Result<()> {
@@ -93,19 +82,19 @@ impl TaskWriter {
 
     /// Writes the facts and gives the file its name.
     pub(super) fn finish(mut self, facts: Map<String, Value>) -> Result<()> {
-        let end = self.at;
+        let end = self.position();
         let ends = self.sections.iter().skip(1).map(|(_, at)| *at).chain([end]);
         let sections: Vec<Value> =
             self.sections.iter().zip(ends).map(|((name, from), to)| json!([name, from, to])).collect();
         let facts = json!({ "sections": sections, "facts": facts }).to_string();
         self.put(facts.as_bytes())?;
         self.put(&(facts.len() as u64).to_le_bytes())?;
-        let checksum = self.checksum.sum();
+        let checksum = self.out.sum();
         self.put(&checksum.to_le_bytes())?;
         self.put(MAGIC)?;
         let target = self.target;
         let named = |e: std::io::Error| Error::from(e).in_file(&target);
-        let file = self.out.into_inner().map_err(|e| named(e.into_error()))?;
+        let file = self.out.into_inner().into_inner().map_err(|e| named(e.into_error()))?;
         file.persist(&target).map(drop).map_err(|e| named(e.error))
     }
 }

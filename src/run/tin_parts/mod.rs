@@ -10,12 +10,11 @@ pub(super) use heights::elevations;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-use flate2::Crc;
-
 use crate::crs::Crs;
 use crate::data::{BlockSource, Bounds, Frame, Mesh, SurfaceFacts};
 use crate::error::{Error, Result};
 use crate::io::mapped::{self, Mapped};
+use crate::run::checksum::checksum;
 use crate::run::memory;
 use crate::terrain::{CompactTin, DemOfParts, TinIndex};
 
@@ -133,9 +132,7 @@ impl TinParts {
         for (number, stated) in self.index.parts.iter().enumerate() {
             let part = self.part(number)?;
             part.check()?;
-            let mut sum = Crc::new();
-            sum.update(part.triangulation().bytes());
-            if sum.sum() != stated.checksum {
+            if checksum(part.triangulation().bytes()) != stated.checksum {
                 return Err(Error::format("the checksum is not that of the index")
                     .in_file(self.folder.join(&stated.file))
                     .cure("copy the index together with its folder, or write the surface again"));

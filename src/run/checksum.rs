@@ -1,0 +1,52 @@
+//! Checksums of what jobs and surfaces in parts write.
+
+use std::io::{Result, Write};
+
+use flate2::Crc;
+
+/// Returns the CRC-32 of some bytes.
+pub(super) fn checksum(bytes: &[u8]) -> u32 {
+    let mut sum = Crc::new();
+    sum.update(bytes);
+    sum.sum()
+}
+
+/// A writer that sums up what goes through it.
+pub(super) struct Summed<W> {
+    out: W,
+    sum: Crc,
+    length: u64,
+}
+
+impl<W: Write> Summed<W> {
+    pub(super) fn new(out: W) -> Self {
+        Summed { out, sum: Crc::new(), length: 0 }
+    }
+
+    /// Returns the CRC-32 of all bytes so far.
+    pub(super) fn sum(&self) -> u32 {
+        self.sum.sum()
+    }
+
+    /// Returns the number of bytes so far. It is counted here because a checksum counts in 32 bits.
+    pub(super) fn length(&self) -> u64 {
+        self.length
+    }
+
+    pub(super) fn into_inner(self) -> W {
+        self.out
+    }
+}
+
+impl<W: Write> Write for Summed<W> {
+    fn write(&mut self, bytes: &[u8]) -> Result<usize> {
+        self.out.write_all(bytes)?;
+        self.sum.update(bytes);
+        self.length += bytes.len() as u64;
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> Result<()> {
+        self.out.flush()
+    }
+}
