@@ -19,12 +19,8 @@ use crate::run::line_notes;
 use crate::run::tin::{TinRequest, builder_of};
 use crate::run::transforms::Transforms;
 use crate::run::units::Units;
-use crate::terrain::tiles::{Layout, SubConstraint, TileClip};
+use crate::terrain::tiles::{self, Layout, SubConstraint, TileClip};
 use crate::terrain::{Inside, Tin, TinBuilder};
-
-/// How far from a line a point may matter to it, in units in the last place of the largest
-/// coordinate. Lines are rounded by half a unit, and bent by points within one.
-const NEAR: f64 = 1024.0;
 
 /// The lines of a request, and what points have to do with them.
 #[derive(Debug)]
@@ -75,7 +71,7 @@ impl JobLines {
         let largest = lines.iter().flatten().flatten().fold(0.0_f64, |most, c| most.max(c.abs()));
         let sites = lines.iter().flatten().map(|p| p.map(f64::to_bits)).collect();
         let index = Inside::new(&[lines]);
-        JobLines { builder, names, index, sites, near: NEAR * f64::EPSILON * largest, extent }
+        JobLines { builder, names, index, sites, near: tiles::rounding_reach(largest), extent }
     }
 
     /// Removes the points that water and walls replace, and returns those of the others that may

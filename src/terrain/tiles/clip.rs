@@ -3,20 +3,17 @@
 use rustc_hash::FxHashMap;
 
 use super::part::TinPart;
+use super::sub_constraint::rounding_reach;
 use super::triangle::{TileTriangle, TileVertex};
 use crate::data::{Bounds, EdgeKind};
 use crate::error::{Error, Result};
 use crate::terrain::boxes::{Boxed, Boxes, Extent};
 use crate::terrain::clip::Clip;
-use crate::terrain::cut::divided;
+use crate::terrain::cut::{Cut, divided};
 use crate::terrain::regions::{Domain, Segment};
 use crate::terrain::{Inside, TinBuilder};
 use crate::triangulation::geometry::Terrain;
 use crate::triangulation::{ConstrainedDelaunay, OnCrossing};
-
-/// How far from a line a triangle may matter to its cut, in units in the last place of the largest
-/// coordinate. Lines and edges are rounded by a unit or two.
-const NEAR: f64 = 1024.0;
 
 /// A line is divided into about as many boxes as this for each surface, so that boxes are small
 /// where it is long.
@@ -76,7 +73,7 @@ impl TileClip {
         }
         let segments = clip.segments()?;
         let largest = [extent.min, extent.max].as_flattened().iter().fold(0.0_f64, |most, c| most.max(c.abs()));
-        let margin = NEAR * f64::EPSILON * largest.max(f64::MIN_POSITIVE);
+        let margin = rounding_reach(largest.max(f64::MIN_POSITIVE));
         // Rounding depends on the lines' ends; those far away are left out.
         let reach = [0, 1].map(|k: usize| extent.min[k].abs().max(extent.max[k].abs()));
         let near = Boxes::new(boxes(&divided(&segments, reach), extent, margin));
@@ -123,39 +120,77 @@ impl TileClip {
         if triangles.is_empty() {
             return Ok(None);
         }
+        let mut part = Uncut::new(triangles).triangulated()?;
+        self.clip.apply_to_part(&mut part.tin, &self.segments, reach)?;
+        match part.tin.cut.as_ref().and_then(|cut| self.bend_away_from_lines(cut)) {
+            Some(at) => Err(bends(at)),
+            None => Ok(Some(part)),
+        }
+    }
+
+    /// Returns a position that divides an edge and that no line is near. At a line, all triangles
+    /// are known; elsewhere, the one beyond the edge may be missing.
+    fn bend_away_from_lines(&self, cut: &Cut) -> Option<[f64; 2]> {
+        let mut bend = None;
+        cut.each_divided(|at| {
+            if self.side_of(at, at) != ClipSide::Near {
+                bend = Some(at);
+            }
+        });
+        bend
+    }
+}
+
+/// Triangles that lines come near, as the input of a triangulation.
+struct Uncut<'a> {
+    triangles: &'a [(TileTriangle, bool)],
+    vertices: Vec<TileVertex>,
+    /// The corners of each triangle, as indices of vertices.
+    corners: Vec<[u32; 3]>,
+}
+
+impl<'a> Uncut<'a> {
+    fn new(triangles: &'a [(TileTriangle, bool)]) -> Self {
         let mut vertices: Vec<TileVertex> = Vec::new();
         let mut known: FxHashMap<[u32; 2], u32> = FxHashMap::default();
-        let mut corners = Vec::with_capacity(triangles.len());
-        for (triangle, _) in triangles {
-            corners.push(triangle.corners.map(|corner| {
-                *known.entry([corner.tile, corner.number]).or_insert_with(|| {
-                    vertices.push(corner);
-                    vertices.len() as u32 - 1
-                })
-            }));
-        }
+        let mut index = |corner: TileVertex| {
+            *known.entry([corner.tile, corner.number]).or_insert_with(|| {
+                vertices.push(corner);
+                vertices.len() as u32 - 1
+            })
+        };
+        let corners = triangles.iter().map(|(triangle, _)| triangle.corners.map(&mut index)).collect();
+        Uncut { triangles, vertices, corners }
+    }
+
+    /// Returns the edges on lines, and those with a triangle on one side only, with their kinds.
+    /// Others are edges of the triangulation by themselves.
+    fn constraints(&self) -> Vec<([u32; 2], EdgeKind)> {
         // The kind of each edge, and the directions in which triangles pass it.
         let mut edges: FxHashMap<[u32; 2], (EdgeKind, u8)> = FxHashMap::default();
-        for (corners, (triangle, _)) in corners.iter().zip(triangles) {
+        for (corners, (triangle, _)) in self.corners.iter().zip(self.triangles) {
             for i in 0..3 {
                 let [a, b] = [corners[(i + 1) % 3], corners[(i + 2) % 3]];
                 let (_, directions) = edges.entry([a.min(b), a.max(b)]).or_insert((triangle.edges[i], 0));
                 *directions |= if a < b { 1 } else { 2 };
             }
         }
-        // Those on lines, and those with a triangle on one side only: others are edges by
-        // themselves.
         let is_constraint =
             |(_, (kind, directions)): &([u32; 2], (EdgeKind, u8))| kind.is_constrained() || *directions != 3;
-        let mut constrained: Vec<([u32; 2], EdgeKind)> =
+        let mut constraints: Vec<([u32; 2], EdgeKind)> =
             edges.into_iter().filter(is_constraint).map(|(edge, (kind, _))| (edge, kind)).collect();
-        constrained.sort_unstable_by_key(|(edge, _)| *edge);
-        let points: Vec<[f64; 3]> = vertices.iter().map(|vertex| vertex.position).collect();
-        let lines: Vec<[u32; 2]> = constrained.iter().map(|(edge, _)| *edge).collect();
+        constraints.sort_unstable_by_key(|(edge, _)| *edge);
+        constraints
+    }
+
+    /// Triangulates the vertices. The triangles that are in the surface are the faces.
+    fn triangulated(&self) -> Result<TinPart> {
+        let (lines, kinds): (Vec<[u32; 2]>, Vec<EdgeKind>) = self.constraints().into_iter().unzip();
+        let points: Vec<[f64; 3]> = self.vertices.iter().map(|vertex| vertex.position).collect();
         let (t, ids) = ConstrainedDelaunay::from_lines(Terrain::default(), &points, &lines, OnCrossing::Reject)
             .map_err(|_| contradiction())?;
         let mut inside = vec![false; t.tds().cell_slots()];
-        for (corners, (_, is_inside)) in corners.iter().zip(triangles) {
+        for (corners, (_, is_inside)) in self.corners.iter().zip(self.triangles) {
             let [a, b, c] = corners.map(|corner| ids[corner as usize]);
             match t.tds().edge(a, b) {
                 Some((cell, i)) if t.tds().vertex(cell, i) == c => inside[cell.index()] = *is_inside,
@@ -163,27 +198,13 @@ impl TileClip {
             }
         }
         let mut numbers = vec![[u32::MAX; 2]; t.tds().vertex_slots()];
-        for (id, vertex) in ids.iter().zip(&vertices) {
+        for (id, vertex) in ids.iter().zip(&self.vertices) {
             numbers[id.index()] = [vertex.tile, vertex.number];
         }
         let numbers = t.tds().vertices().map(|id| numbers[id.index()]).collect();
-        let kinds = constrained.into_iter().map(|(_, kind)| kind).collect();
         let mut part = TinPart::new(t, kinds, Vec::new(), numbers);
         part.tin.inside = inside;
-        self.clip.apply_to_part(&mut part.tin, &self.segments, reach)?;
-        let mut bent = None;
-        if let Some(cut) = &part.tin.cut {
-            cut.each_divided(|at| {
-                // At a line, all triangles are here. Elsewhere, one beyond may be missing.
-                if self.side_of(at, at) != ClipSide::Near {
-                    bent = Some(at);
-                }
-            });
-        }
-        match bent {
-            Some(at) => Err(bends(at)),
-            None => Ok(Some(part)),
-        }
+        Ok(part)
     }
 }
 

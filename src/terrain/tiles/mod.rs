@@ -94,7 +94,7 @@ pub use long_edges::{EdgeKey, Gate, LongEdges, Rim, Waiting, has_long_edge};
 pub use node::{leaf, leaf_with_part, merge, merge_with_part};
 pub use part::TinPart;
 pub use residual::{Residual, ResidualEdge};
-pub use sub_constraint::SubConstraint;
+pub use sub_constraint::{SubConstraint, rounding_reach};
 pub use triangle::{TileTriangle, TileVertex};
 
 /// A rectangle in plan that owns the points in it: each axis includes its lowest coordinate and

@@ -8,6 +8,15 @@ use crate::triangulation::geometry::{Geometry, Plane};
 use crate::triangulation::kernel::{Kernel, Orientation2, Wide};
 use crate::triangulation::num::{Sign, unsigned_zero};
 
+/// Returns how far from a line something may matter to how it is rounded, or bent, or cut: a
+/// thousand units in the last place of the largest coordinate, in the units of the data.
+///
+/// Lines and edges are rounded by a unit or two, and bent by points within one. What is farther
+/// away decides nothing.
+pub fn rounding_reach(largest: f64) -> f64 {
+    1024.0 * f64::EPSILON * largest
+}
+
 /// A part of a line that crosses no other one between its ends.
 ///
 /// Points may lie on it; they split it. Others may end on it or overlap it; where they overlap, the
