@@ -1,12 +1,9 @@
 //! Clips of tiles, against the clip of the surface in one piece.
 
-use std::cell::RefCell;
-
 use super::lines_tests::Case;
-use super::tests::{Tasks, count};
+use super::tests::{Unchanged, count};
 use super::*;
 use crate::data::{Bounds, EdgeKind, Surface};
-use crate::error::Result;
 use crate::terrain::TinBuilder;
 use crate::triangulation::OnCrossing;
 use testkit::random::Random;
@@ -25,33 +22,6 @@ fn canonical(corners: [[f64; 3]; 3], edges: [EdgeKind; 3]) -> Face {
 
 fn of_tile(triangle: &TileTriangle) -> Face {
     canonical(triangle.corners.map(|corner| corner.position), triangle.edges)
-}
-
-/// Keeps what tasks find.
-#[derive(Default)]
-struct Kept(RefCell<Vec<TileTriangle>>);
-
-impl Tasks for Kept {
-    fn leaf(
-        &self,
-        tile: &Tile,
-        number: u32,
-        points: &[[f64; 3]],
-        constraints: &[SubConstraint],
-        emit: &mut dyn FnMut(TileTriangle),
-    ) -> Result<Residual> {
-        leaf(tile, number, points, constraints, &mut |triangle| {
-            self.0.borrow_mut().push(triangle);
-            emit(triangle);
-        })
-    }
-
-    fn merge(&self, tile: &Tile, parts: &[Residual], emit: &mut dyn FnMut(TileTriangle)) -> Result<Residual> {
-        merge(tile, parts, &mut |triangle| {
-            self.0.borrow_mut().push(triangle);
-            emit(triangle);
-        })
-    }
 }
 
 /// Adds rings, bounds and lines to a builder: through points, along edges, over each other, and
@@ -119,10 +89,8 @@ fn clipped_tiles_are_the_clipped_whole() {
         let of_face = |face: u32| Some(canonical(tin.triangle(face)?, [0, 1, 2].map(|i| tin.edge_kind(face, i))));
         let mut expected: Vec<Face> = (0..tin.face_count() as u32).filter_map(of_face).collect();
 
-        let kept = Kept::default();
-        case.found(&kept).unwrap();
         let (mut found, mut beside) = (Vec::new(), Vec::new());
-        for triangle in kept.0.into_inner() {
+        for triangle in case.found(&Unchanged).unwrap().emitted {
             all += 1;
             match clip.side_of_triangle(&triangle) {
                 ClipSide::Kept => found.push(of_tile(&triangle)),

@@ -72,6 +72,8 @@ impl Tasks for Unchanged {}
 /// What all tasks find together.
 pub(super) struct Found {
     pub triangles: Vec<Triangle>,
+    /// The same triangles, in the order in which tasks emit them.
+    pub emitted: Vec<TileTriangle>,
     /// The number of vertices that leaves hand up.
     pub handed_up: usize,
     /// The number of vertices that the root gets.
@@ -100,16 +102,16 @@ pub(super) fn tiled_by(
     cuts: [&[f64]; 2],
     fan: usize,
 ) -> Result<Found> {
-    let mut triangles = Vec::new();
+    let mut emitted: Vec<TileTriangle> = Vec::new();
     let mut vertex_at: FxHashMap<[u64; 2], [u32; 2]> = FxHashMap::default();
     let mut doubled = 0;
-    let mut emit = |TileTriangle { corners, edges }| {
-        for corner in corners {
+    let mut emit = |triangle: TileTriangle| {
+        for corner in triangle.corners {
             let vertex = [corner.tile, corner.number];
             let first = vertex_at.entry(corner.site().map(f64::to_bits)).or_insert(vertex);
             doubled += usize::from(*first != vertex);
         }
-        triangles.push(canonical(corners.map(|corner| corner.site()), edges));
+        emitted.push(triangle);
     };
     let [mut columns, mut rows] = cuts.map(parts);
     let mut level: Vec<Residual> = Vec::new();
@@ -144,8 +146,10 @@ pub(super) fn tiled_by(
         level = above;
     }
     assert!(level.iter().all(|rest| *rest == Residual::default()));
+    let of = |triangle: &TileTriangle| canonical(triangle.corners.map(|corner| corner.site()), triangle.edges);
+    let mut triangles: Vec<Triangle> = emitted.iter().map(of).collect();
     triangles.sort_unstable();
-    Ok(Found { triangles, handed_up, at_root, doubled })
+    Ok(Found { triangles, emitted, handed_up, at_root, doubled })
 }
 
 /// The number of sets, which the environment sets:
