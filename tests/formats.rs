@@ -89,7 +89,7 @@ fn products_have_the_extensions_that_they_had() {
     for (product, extensions) in [
         (Product::Points, &["las", "laz", "xyz", "txt", "csv"][..]),
         (Product::Surface, &["ply", "obj", "off", "stl", "tin", "tins"]),
-        (Product::Contours, &["shp", "geojson", "json"]),
+        (Product::Contours, &["shp", "geojson", "json", "geojsonl", "geojsons"]),
         (Product::Heights, &["tif", "tiff"]),
         (Product::Shades, &["tif", "tiff", "png"]),
         (Product::Plane, &["ele", "node", "poly", "edge", "neigh"]),

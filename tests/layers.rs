@@ -462,7 +462,7 @@ fn expected() -> Vec<Vec<[f64; 3]>> {
 #[test]
 fn contours_come_back_from_both_formats() {
     let folder = tempfile::tempdir().unwrap();
-    for name in ["c.shp", "c.geojson", "c.JSON"] {
+    for name in ["c.shp", "c.geojson", "c.JSON", "c.geojsonl"] {
         let target = folder.path().join(name);
         let summary = contours::write(&target, &mut lines().into_iter(), None).unwrap();
         assert_eq!((summary.lines, summary.vertices, summary.closed), (3, 10, 1));
@@ -475,7 +475,9 @@ fn contours_come_back_from_both_formats() {
         }
     }
     let error = contours::write(&folder.path().join("c.dxf"), &mut lines().into_iter(), None).unwrap_err();
-    assert!(error.to_string().ends_with("c.dxf: contours are written as .shp, .geojson or .json"));
+    assert!(
+        error.to_string().ends_with("c.dxf: contours are written as .shp, .geojson, .json, .geojsonl or .geojsons")
+    );
 }
 
 #[test]

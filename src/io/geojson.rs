@@ -1,4 +1,5 @@
-//! GeoJSON (RFC 7946, and the 2008 draft with its `crs` member).
+//! GeoJSON (RFC 7946, and the 2008 draft with its `crs` member), and GeoJSON lines (RFC 8142): a
+//! feature on each line of the file.
 
 use std::collections::BTreeSet;
 use std::io::Write;
@@ -20,6 +21,9 @@ use crate::triangulation::num::unsigned_zero;
 
 /// Longitude and latitude on WGS 84, the default of GeoJSON.
 const WGS_84: u32 = 4326;
+
+/// The separator of records in RFC 8142.
+const RECORD: u8 = 0x1e;
 
 type Object = Map<String, Value>;
 
@@ -70,10 +74,7 @@ fn parse(bytes: &[u8], stem: &str, options: &Options, watch: Watch) -> Result<La
         Some(name) if name != stem => options.check_layer(&[name, stem])?,
         _ => options.check_layer(&[stem])?,
     }
-    let columns = options.columns.iter().map(|&name| Column { name: name.to_owned(), ..Column::default() });
-    let layer = Layer { format: "GeoJSON".to_owned(), columns: columns.collect(), ..Layer::default() };
-    let has_column = vec![false; options.columns.len()];
-    let mut reader = Reader { layer, has_column, ..Reader::default() };
+    let mut reader = Reader::new("GeoJSON", options);
     let z_field = options.height_field;
     match kind(&root)? {
         "FeatureCollection" => {
@@ -90,6 +91,39 @@ fn parse(bytes: &[u8], stem: &str, options: &Options, watch: Watch) -> Result<La
     reader.finish(&root, z_field)
 }
 
+/// Reads a file of GeoJSON lines (GDAL's GeoJSONSeq) with the numbers of properties, and watched: a
+/// feature or geometry on each line, or behind each record separator (0x1e) if the file begins with
+/// one, as in RFC 8142. All else is as in [`read_layer_with`].
+///
+/// # Errors
+/// Those of [`read_layer_with`]; the message names the line or the record.
+pub fn read_lines_with(path: &Path, options: &Options, watch: Watch) -> Result<Layer> {
+    let bytes = bytes_of(path, watch)?;
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    options.check_layer(&[&stem]).and_then(|()| parse_lines(&bytes, options, watch)).map_err(|e| e.in_file(path))
+}
+
+fn parse_lines(bytes: &[u8], options: &Options, watch: Watch) -> Result<Layer> {
+    let mut reader = Reader::new("GeoJSON lines", options);
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    let (separator, noun) = match bytes.first() {
+        Some(&RECORD) => (RECORD, "record"),
+        _ => (b'\n', "line"),
+    };
+    // Nothing is before the first separator.
+    let first = usize::from(separator == b'\n');
+    for (number, text) in (first..).zip(bytes.split(|&byte| byte == separator)) {
+        if number % watched_value::VALUES_AT_ONCE == 0 {
+            watch(0)?;
+        }
+        let text = text.trim_ascii();
+        if !text.is_empty() {
+            reader.record(text, options.height_field).map_err(|e| e.at(format!("{noun} {number}")))?;
+        }
+    }
+    reader.finish(&Map::new(), options.height_field)
+}
+
 #[derive(Default)]
 struct Reader {
     layer: Layer,
@@ -103,6 +137,30 @@ struct Reader {
 }
 
 impl Reader {
+    fn new(format: &str, options: &Options) -> Self {
+        let columns = options.columns.iter().map(|&name| Column { name: name.to_owned(), ..Column::default() });
+        let layer = Layer { format: format.to_owned(), columns: columns.collect(), ..Layer::default() };
+        Reader { layer, has_column: vec![false; options.columns.len()], ..Reader::default() }
+    }
+
+    /// Adds the feature or geometry in a record of GeoJSON lines. A geometry alone has no
+    /// properties.
+    fn record(&mut self, text: &[u8], z_field: Option<&str>) -> Result<()> {
+        let value = serde_json::from_slice(text).map_err(|e| Error::format(format!("not JSON: {e}")))?;
+        let Value::Object(object) = value else {
+            return Err(Error::format("not an object"));
+        };
+        match kind(&object)? {
+            "Feature" => self.feature_object(&object, z_field),
+            "FeatureCollection" => Err(Error::format("a FeatureCollection, where each line is one feature")
+                .cure("give it the extension geojson")),
+            _ => {
+                self.geometry(&object, z_field.map(|_| f64::NAN))?;
+                self.add_to_columns(&Map::new())
+            }
+        }
+    }
+
     fn feature(&mut self, feature: &Value, z_field: Option<&str>) -> Result<()> {
         match feature {
             Value::Object(object) if kind(object)? == "Feature" => self.feature_object(object, z_field),
@@ -341,11 +399,57 @@ pub fn write_contours<'a>(
     lines: &mut dyn Iterator<Item = ContourLine>,
     crs: Option<&Crs>,
 ) -> Result<ContourSummary> {
+    put_contours(target.into(), |out| write(out, lines, crs))
+}
+
+/// Writes contours as GeoJSON lines (GDAL's GeoJSONSeq): a feature on each line, as
+/// [`write_contours`] has them, so that programs can read them one by one. In a file with the
+/// extension `geojsons` each begins with the record separator of RFC 8142.
+///
+/// The format names no system: readers take coordinates as longitude and latitude. If they are not,
+/// the summary warns.
+///
+/// # Errors
+/// As [`write_contours`].
+pub fn write_contour_lines<'a>(
+    target: impl Into<Destination<'a>>,
+    lines: &mut dyn Iterator<Item = ContourLine>,
+    crs: Option<&Crs>,
+) -> Result<ContourSummary> {
     let target = target.into();
+    let is_sequence = target.format_path().extension().is_some_and(|known| known.eq_ignore_ascii_case("geojsons"));
+    put_contours(target, |out| {
+        let mut summary = ContourSummary::default();
+        if crs.is_none_or(|crs| !is_default(crs)) {
+            let name = crs.map_or_else(|| "unknown".to_owned(), ToString::to_string);
+            summary.warnings.push(format!(
+                "GeoJSON lines state no system, and readers take degrees: tell them that it is {name} (ogr2ogr -s_srs)"
+            ));
+        }
+        for line in lines.filter(|line| line.points.len() > 1) {
+            summary.add(&line);
+            if is_sequence {
+                out.write_all(&[RECORD])?;
+            }
+            write_feature(out, &line, summary.lines)?;
+            out.write_all(b"\n")?;
+        }
+        Ok(summary)
+    })
+}
+
+fn put_contours(
+    target: Destination,
+    write: impl FnOnce(&mut Output) -> std::io::Result<ContourSummary>,
+) -> Result<ContourSummary> {
     let mut output = Output::create(target.path())?;
-    let summary = write(&mut output, lines, crs).map_err(|e| Error::from(e).in_file(target.path()))?;
+    let summary = write(&mut output).map_err(|e| Error::from(e).in_file(target.path()))?;
     target.put(output)?;
     Ok(summary)
+}
+
+fn is_default(crs: &Crs) -> bool {
+    crs.kind == CrsKind::Geographic && crs.epsg == Some(WGS_84)
 }
 
 fn write(
@@ -355,8 +459,7 @@ fn write(
 ) -> std::io::Result<ContourSummary> {
     let mut summary = ContourSummary::default();
     out.write_all(b"{\"type\":\"FeatureCollection\",")?;
-    match crs.map(|crs| (crs, crs.epsg)) {
-        Some((crs, Some(WGS_84))) if crs.kind == CrsKind::Geographic => {}
+    match crs.filter(|crs| !is_default(crs)).map(|crs| (crs, crs.epsg)) {
         Some((_, Some(code))) => {
             let name = format!("urn:ogc:def:crs:EPSG::{code}");
             write!(out, "\"crs\":{{\"type\":\"name\",\"properties\":{{\"name\":\"{name}\"}}}},")?;
@@ -365,24 +468,26 @@ fn write(
         None => {}
     }
     out.write_all(b"\"features\":[")?;
-    for line in lines {
-        if line.points.len() < 2 {
-            continue;
-        }
-        let comma = if summary.lines == 0 { "" } else { "," };
+    for line in lines.filter(|line| line.points.len() > 1) {
+        out.write_all(if summary.lines == 0 { b"\n" } else { b",\n" })?;
         summary.add(&line);
-        let level = unsigned_zero(line.level);
-        // `800.0` and not `800`, so that readers infer a field of real numbers.
-        write!(out, "{comma}\n{{\"type\":\"Feature\",\"properties\":{{\"ID\":{},\"ELEV\":{level:?}}},", summary.lines)?;
-        out.write_all(b"\"geometry\":{\"type\":\"LineString\",\"coordinates\":[")?;
-        for (i, [x, y]) in line.points.iter().enumerate() {
-            let comma = if i == 0 { "" } else { "," };
-            write!(out, "{comma}[{x},{y},{level}]")?;
-        }
-        out.write_all(b"]}}")?;
+        write_feature(out, &line, summary.lines)?;
     }
     out.write_all(b"\n]}\n")?;
     Ok(summary)
+}
+
+/// Writes a contour as a feature, without a line break.
+fn write_feature(out: &mut impl Write, line: &ContourLine, number: usize) -> std::io::Result<()> {
+    let level = unsigned_zero(line.level);
+    // `800.0` and not `800`, so that readers infer a field of real numbers.
+    write!(out, "{{\"type\":\"Feature\",\"properties\":{{\"ID\":{number},\"ELEV\":{level:?}}},")?;
+    out.write_all(b"\"geometry\":{\"type\":\"LineString\",\"coordinates\":[")?;
+    for (i, [x, y]) in line.points.iter().enumerate() {
+        let comma = if i == 0 { "" } else { "," };
+        write!(out, "{comma}[{x},{y},{level}]")?;
+    }
+    out.write_all(b"]}}")
 }
 
 #[cfg(test)]
@@ -555,5 +660,64 @@ mod tests {
         let mut bytes = Vec::new();
         write(&mut bytes, &mut std::iter::empty(), None).unwrap();
         assert!(read(std::str::from_utf8(&bytes).unwrap()).unwrap().shapes.is_empty());
+    }
+
+    #[test]
+    fn lines_are_read_one_by_one() {
+        let read = |text: &str| parse_lines(text.as_bytes(), &Options::default(), &unwatched);
+        let feature = format!(r#"{{"type":"Feature","properties":{{"Z":1}},"geometry":{LINE}}}"#);
+        let spread = feature.replace(',', ",\n");
+        for text in [
+            format!("\u{feff}{feature}\r\n\n{feature}\n{LINE}"),
+            format!("\u{feff}\x1e{spread}\n\x1e{feature}\x1e\x1e{LINE}"),
+        ] {
+            let layer = read(&text).unwrap();
+            assert_eq!((layer.format.as_str(), layer.shapes.len()), ("GeoJSON lines", 3));
+            assert!(layer.crs.is_some() && layer.shapes.iter().all(|shape| *shape == layer.shapes[0]));
+        }
+        // A geometry alone has no properties, also not those of the feature behind it.
+        let options = Options { columns: &["Z"], height_field: Some("z"), ..Options::default() };
+        let layer = parse_lines(format!("{LINE}\n{feature}").as_bytes(), &options, &unwatched).unwrap();
+        assert!(layer.columns[0].values[0].is_nan() && layer.columns[0].values[1] == 1.0);
+        assert!(layer.shapes[0].vertices().all(|v| v[2].is_nan()));
+        let with_z = Options { height_field: Some("z"), ..Options::default() };
+        let layer = parse_lines(feature.as_bytes(), &with_z, &unwatched).unwrap();
+        assert!(layer.shapes[0].vertices().all(|v| v[2] == 1.0));
+        for (second, message) in [
+            ("{", "line 2: not JSON: EOF while parsing an object at line 1 column 1"),
+            ("7", "line 2: not an object"),
+            ("{}", "line 2: not GeoJSON: an object without a type"),
+            (r#"{"type":"Point","coordinates":[1]}"#, "line 2: a position of 1 numbers"),
+            (&features(&[LINE]).replace('\n', ""), "line 2: a FeatureCollection, where each line is one feature"),
+        ] {
+            assert_eq!(read(&format!("{LINE}\n{second}")).unwrap_err().to_string(), message);
+        }
+        let error = read(&format!("\x1e{LINE}\n\x1e7")).unwrap_err();
+        assert_eq!(error.to_string(), "record 2: not an object");
+        assert!(read("").unwrap().shapes.is_empty());
+    }
+
+    #[test]
+    fn contours_come_back_from_lines() {
+        let folder = tempfile::tempdir().unwrap();
+        let target = folder.path().join("a.geojsonl");
+        let line = |level| ContourLine { level, points: vec![[0.5, 1.0], [2.0, 3.0]] };
+        let short = ContourLine { level: 1.0, points: vec![[0.0, 0.0]] };
+        let mut lines = vec![line(1.0), short, line(2.5)].into_iter();
+        let summary = write_contour_lines(&target, &mut lines, None).unwrap();
+        assert_eq!((summary.lines, summary.vertices, summary.warnings.len()), (2, 4, 1));
+        let text = std::fs::read_to_string(&target).unwrap();
+        assert_eq!(text.lines().count(), 2);
+        assert!(text.lines().all(|line| line.starts_with(r#"{"type":"Feature""#) && line.ends_with("]}}")));
+        let with_level = Options { height_field: Some("ELEV"), ..Options::default() };
+        let layer = read_lines_with(&target, &with_level, &unwatched).unwrap();
+        let expected = [1.0, 2.5].map(|z| Shape::Lines(vec![vec![[0.5, 1.0, z], [2.0, 3.0, z]]]));
+        assert_eq!(layer.shapes, expected);
+        let sequence = target.with_extension("geojsons");
+        write_contour_lines(&sequence, &mut vec![line(1.0), line(2.5)].into_iter(), None).unwrap();
+        assert!(std::fs::read_to_string(&sequence).unwrap().lines().all(|line| line.starts_with("\x1e{")));
+        assert_eq!(read_lines_with(&sequence, &with_level, &unwatched).unwrap().shapes, layer.shapes);
+        let degrees = Crs::from_epsg(WGS_84).unwrap();
+        assert!(write_contour_lines(&target, &mut std::iter::empty(), Some(&degrees)).unwrap().warnings.is_empty());
     }
 }

@@ -1,6 +1,6 @@
 //! Rasters of a surface: heights and hillshades.
 
-use super::context::{Context, Journal, Stage};
+use super::context::{Context, Journal, Size, Stage};
 use super::frame::{self, FrameOptions};
 use super::notice::Notice;
 use super::surface::{Model, SurfaceProduct};
@@ -8,7 +8,7 @@ use super::watched::Watched;
 use crate::crs::Crs;
 use crate::data::{self, BlockSource, Frame, Grid, Surface, Window};
 use crate::error::{Error, Result};
-use crate::io::geotiff::{self, CellFormat, RasterSummary};
+use crate::io::geotiff::{self, CellFormat, RasterSummary, WriteOptions};
 use crate::io::{Destination, png};
 use crate::terrain::{Dem, Hillshade, Light, Method};
 
@@ -208,7 +208,10 @@ impl CellProduct<'_> {
     /// # Errors
     /// If the file cannot be written, or the run is canceled.
     pub fn write(&self, target: Destination, context: &Context) -> Result<RasterSummary> {
-        geotiff::write(target, &self.watched(context)?, self.cells.into())
+        let cells = geotiff::cells_written(self.frame());
+        let work = context.start(self.stage(), Size::Items(cells))?;
+        let options = WriteOptions { cells: self.cells, watch: &|cells| work.add(cells) };
+        geotiff::write(target, self.source.as_ref(), options)
     }
 
     /// Computes all cells, on all cores, and writes them as a gray PNG, 0 to 255.
@@ -220,11 +223,14 @@ impl CellProduct<'_> {
     }
 
     fn watched<'b>(&'b self, context: &Context<'b>) -> Result<Watched<'b, dyn BlockSource + 'b>> {
-        let stage = match self.cells {
+        Watched::cells(self.source.as_ref(), self.stage(), context)
+    }
+
+    fn stage(&self) -> Stage {
+        match self.cells {
             CellFormat::Heights => Stage::WritingCells,
             CellFormat::Shades => Stage::ShadingCells,
-        };
-        Watched::cells(self.source.as_ref(), stage, context)
+        }
     }
 }
 

@@ -114,6 +114,9 @@ const AS_WRITTEN: &[&str] = &[
     "BIGTIFF=IF_NEEDED",
     "BIGTIFF=IF_SAFER",
     "NUM_THREADS=ALL_CPUS",
+    "PREDICTOR=YES",
+    "OVERVIEWS=AUTO",
+    "OVERVIEW_RESAMPLING=AVERAGE",
 ];
 
 /// Translates habits to options of this program where the meaning is certain; leaves all other
@@ -220,7 +223,7 @@ fn translated(verb: &str, words: Vec<OsString>) -> Result<(Vec<OsString>, Vec<St
                 let value = value();
                 if !AS_WRITTEN.iter().any(|known| known.eq_ignore_ascii_case(&value)) {
                     return Err(Error::usage(format!("{name} {value}: there are no creation options")).cure(
-                        "leave it out: a GeoTIFF is tiled, DEFLATE with predictor 3, BigTIFF if necessary; \
+                        "leave it out: a GeoTIFF is tiled, with overviews, DEFLATE with predictor 3, BigTIFF if necessary; \
                          `gdal_translate -co` converts it",
                     ));
                 }
@@ -324,7 +327,7 @@ fn written(verb: &str) -> Vec<&'static str> {
 
 /// Returns an error unless there are outputs and all have the extension of this format.
 fn confirm(format: &str, targets: &[PathBuf]) -> Result<()> {
-    let is_named = |known: &&formats::Format| known.gdal_name.is_some_and(|name| name.eq_ignore_ascii_case(format));
+    let is_named = |known: &&formats::Format| known.gdal_names.iter().any(|name| name.eq_ignore_ascii_case(format));
     let extensions = formats::FORMATS.iter().find(is_named).map_or(&[][..], |known| known.extensions);
     let is_of = |target: &PathBuf| {
         extensions.iter().any(|known| target.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(known)))

@@ -90,35 +90,37 @@ impl<F> Outputs<F> {
     }
 
     /// Prints the size of the raster, and makes sure that the disk has room for its cells.
-    /// `cell_bytes` returns the bytes of a cell before compression. Of a surface, only the cells
-    /// that it covers count.
+    /// `cell_bytes` returns the bytes of a cell before compression, and how many times they are on
+    /// the disk. Of a surface, only the cells that it covers count.
     ///
     /// # Errors
     /// If the cells cannot fit, however well they are compressed.
     pub(in crate::cli) fn announce(
         &self,
         cells: &CellProduct,
-        cell_bytes: impl Fn(&F) -> u64,
+        cell_bytes: impl Fn(&F) -> (u64, f64),
         console: &Console,
     ) -> Result<()> {
         let frame = cells.frame();
-        let a_cell: u64 = self.targets.iter().map(|target| cell_bytes(&target.kind)).sum();
-        let of = |cells: f64| (cells * a_cell as f64) as u64;
-        let most = of(frame.width as f64 * frame.height as f64);
-        console.line(format_args!("raster      {}, {} before compression", describe(&frame, cells.crs()), bytes(most)));
-        let Some((free, target)) = self.free_space().filter(|(free, _)| *free < most) else { return Ok(()) };
-        let likely = most.min(of(cells.covered()));
+        let sizes: Vec<(u64, f64)> = self.targets.iter().map(|target| cell_bytes(&target.kind)).collect();
+        let all = frame.width as f64 * frame.height as f64;
+        let a_cell = sizes.iter().map(|&(bytes, _)| bytes as f64).sum::<f64>();
+        let on_disk = sizes.iter().map(|&(bytes, copies)| bytes as f64 * copies).sum::<f64>();
+        let stated = bytes((all * a_cell) as u64);
+        console.line(format_args!("raster      {}, {stated} before compression", describe(&frame, cells.crs())));
+        let Some((free, target)) = self.free_space().filter(|(free, _)| (*free as f64) < all * on_disk) else {
+            return Ok(());
+        };
+        let covered = all.min(cells.covered());
+        let stated = bytes((covered * a_cell) as u64);
         let room = format!("{} are free on the disk", bytes(free));
-        if likely as f64 / BEST_COMPRESSION > free as f64 {
-            return Err(Error::limit(format!(
-                "the cells with a value take {} before compression, {room}",
-                bytes(likely)
-            ))
-            .in_file(target)
-            .cure("choose larger cells (--resolution), a smaller extent (--te), or another disk"));
+        if covered * on_disk / BEST_COMPRESSION > free as f64 {
+            return Err(Error::limit(format!("the cells with a value take {stated} before compression, {room}"))
+                .in_file(target)
+                .cure("choose larger cells (--resolution), a smaller extent (--te), or another disk"));
         }
-        if likely > free {
-            console.warning(format_args!("the output may not fit: {} before compression, {room}", bytes(likely)));
+        if covered * on_disk > free as f64 {
+            console.warning(format_args!("the output may not fit: {stated} before compression, {room}"));
         }
         Ok(())
     }

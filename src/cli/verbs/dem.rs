@@ -8,7 +8,7 @@ use crate::cli::verbs::tiled::{self, Tiled};
 use crate::crs::Crs;
 use crate::error::Result;
 use crate::io::formats::Product;
-use crate::io::geotiff::RasterSummary;
+use crate::io::geotiff::{COPIES_ON_DISK, RasterSummary};
 use crate::run::units::Units;
 use crate::run::{self, CellProduct, DemOptions, TiledProduct};
 
@@ -50,7 +50,7 @@ pub(super) fn requested(args: &DemArgs, console: &Console) -> Result<(SurfacePla
 }
 
 fn write(cells: &CellProduct, outputs: &Outputs<()>, console: &Console) -> Result<Option<RasterSummary>> {
-    outputs.announce(cells, |()| 4, console)?;
+    outputs.announce(cells, |()| (4, COPIES_ON_DISK), console)?;
     let mut written = None;
     for target in &outputs.targets {
         written = Some(cells.write(target.within(&outputs.set), &console.context())?);

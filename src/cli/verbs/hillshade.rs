@@ -7,6 +7,7 @@ use crate::cli::report::summary::{print_extent, print_surface};
 use crate::cli::verbs::tiled::{self, Tiled};
 use crate::error::Result;
 use crate::io::formats::{Content, Product};
+use crate::io::geotiff::COPIES_ON_DISK;
 use crate::run::{self, CellProduct, HillshadeOptions, LightOptions, Model, TiledProduct};
 
 /// The file formats of a hillshade.
@@ -72,11 +73,11 @@ fn write(cells: &CellProduct, outputs: &Outputs<ShadeFormat>, console: &Console)
     Ok(())
 }
 
-/// Returns the bytes of a cell before compression.
-fn cell_bytes(format: &ShadeFormat) -> u64 {
+/// Returns the bytes of a cell before compression, and how many times they are on the disk.
+fn cell_bytes(format: &ShadeFormat) -> (u64, f64) {
     match format {
-        ShadeFormat::GeoTiff => 1,
+        ShadeFormat::GeoTiff => (1, COPIES_ON_DISK),
         // Gray and alpha.
-        ShadeFormat::Png => 2,
+        ShadeFormat::Png => (2, 1.0),
     }
 }

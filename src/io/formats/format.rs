@@ -199,8 +199,8 @@ pub struct Format {
     pub beside: &'static [&'static str],
     /// Extensions of files that belong to a file of this format, whichever program wrote them.
     pub parts: &'static [&'static str],
-    /// GDAL's name for the format, if breakline writes it.
-    pub gdal_name: Option<&'static str>,
+    /// GDAL's names for the format, if breakline writes it.
+    pub gdal_names: &'static [&'static str],
     pub(in crate::io) reader: Reader,
     pub(in crate::io) writers: Writers,
     /// What to do with such a file where points are expected.

@@ -39,7 +39,7 @@ const ROW: Format = Format {
     holds: &[],
     beside: &[],
     parts: &[],
-    gdal_name: None,
+    gdal_names: &[],
     reader: Reader::Gdal,
     writers: NOT_WRITTEN,
     cure: WITH_GDAL,
@@ -203,7 +203,7 @@ pub static FORMATS: &[Format] = &[
         holds: &[Holding::Points, Holding::Lines, Holding::Polygons, Holding::Crs],
         beside: &["shx", "dbf", "prj", "cpg"],
         parts: &["shx", "dbf", "prj", "cpg", "qpj", "qix", "sbn", "sbx"],
-        gdal_name: Some("ESRI Shapefile"),
+        gdal_names: &["ESRI Shapefile"],
         reader: Reader::Layer(shapefile::read_layer_with),
         writers: Writers {
             contours: Some(|target, lines, crs| shapefile::write_contours(target, lines, crs)),
@@ -220,13 +220,28 @@ pub static FORMATS: &[Format] = &[
         magic: &[Magic::At(0, b"{")],
         content: Content::Layer,
         holds: &[Holding::Points, Holding::Lines, Holding::Polygons, Holding::Crs],
-        gdal_name: Some("GeoJSON"),
+        gdal_names: &["GeoJSON"],
         reader: Reader::Layer(geojson::read_layer_with),
         writers: Writers {
             contours: Some(|target, lines, crs| geojson::write_contours(target, lines, crs)),
             ..NOT_WRITTEN
         },
         help: "lines, polygons and points; contours",
+        ..ROW
+    },
+    Format {
+        name: "GeoJSON lines",
+        noun: "a file of GeoJSON lines",
+        extensions: &["geojsonl", "geojsons"],
+        content: Content::Layer,
+        holds: &[Holding::Points, Holding::Lines, Holding::Polygons],
+        gdal_names: &["GeoJSONSeq"],
+        reader: Reader::Layer(geojson::read_lines_with),
+        writers: Writers {
+            contours: Some(|target, lines, crs| geojson::write_contour_lines(target, lines, crs)),
+            ..NOT_WRITTEN
+        },
+        help: "lines, polygons and points; contours; one feature a line",
         ..ROW
     },
     Format {
@@ -238,7 +253,7 @@ pub static FORMATS: &[Format] = &[
         known_by: KnownBy::Bytes,
         content: Content::Raster,
         holds: &[Holding::Raster, Holding::Crs, Holding::Compression],
-        gdal_name: Some("GTiff"),
+        gdal_names: &["GTiff", "COG"],
         reader: Reader::Raster(|path| geotiff::open(path)),
         writers: Writers {
             heights: Some(|target, source| geotiff::write(target, source, CellFormat::Heights.into())),
@@ -258,7 +273,7 @@ pub static FORMATS: &[Format] = &[
         holds: &[Holding::Raster, Holding::Crs, Holding::Compression],
         beside: &["pgw", "png.aux.xml"],
         parts: &["pgw", "png.aux.xml"],
-        gdal_name: Some("PNG"),
+        gdal_names: &["PNG"],
         reader: Reader::InfoOnly,
         writers: Writers { shades: Some(|target, source| png::write_gray(target, source)), ..NOT_WRITTEN },
         cure: AS_RASTER,

@@ -1,4 +1,4 @@
-//! Writes the header of a TIFF or BigTIFF file with one directory, little-endian.
+//! Writes the header of a TIFF or BigTIFF file, little-endian: the directories of all its images.
 
 use super::tags;
 use crate::crs::GeoKeys;
@@ -11,6 +11,16 @@ pub(super) enum Offsets {
     Bits32,
     /// BigTIFF.
     Bits64,
+}
+
+impl Offsets {
+    /// Returns the bytes of an offset.
+    fn width(self) -> usize {
+        match self {
+            Offsets::Bits32 => 4,
+            Offsets::Bits64 => 8,
+        }
+    }
 }
 
 /// The values of one tag.
@@ -50,14 +60,18 @@ impl Values {
     }
 }
 
-/// Returns the header, the directory and all its values. The length depends only on the number of
-/// values, so the header can be rewritten once they are known.
-pub(super) fn header(offsets: Offsets, tags: &[(u16, Values)]) -> Vec<u8> {
-    debug_assert!(tags.is_sorted_by_key(|(tag, _)| *tag));
-    let (start, width) = match offsets {
-        Offsets::Bits32 => (8, 4),
-        Offsets::Bits64 => (16, 8),
-    };
+/// What GDAL writes behind the header of a cloud-optimized GeoTIFF: readers need not look for
+/// directories elsewhere, and can read a tile with its length at once. The number is that of the
+/// bytes after its line.
+const LAYOUT: &[u8] = b"GDAL_STRUCTURAL_METADATA_SIZE=000140 bytes\n\
+    LAYOUT=IFDS_BEFORE_DATA\nBLOCK_ORDER=ROW_MAJOR\nBLOCK_LEADER=SIZE_AS_UINT4\n\
+    BLOCK_TRAILER=LAST_4_BYTES_REPEATED\nKNOWN_INCOMPATIBLE_EDITION=NO\n ";
+
+/// Returns the header, and the directories of all images with their values, the largest image
+/// first. The length depends only on the number of values, so the header can be rewritten once they
+/// are known.
+pub(super) fn header(offsets: Offsets, images: &[Vec<(u16, Values)>]) -> Vec<u8> {
+    let width = offsets.width();
     let number = |out: &mut Vec<u8>, value: usize| out.extend_from_slice(&(value as u64).to_le_bytes()[..width]);
     let mut out = Vec::new();
     out.extend_from_slice(b"II");
@@ -65,14 +79,32 @@ pub(super) fn header(offsets: Offsets, tags: &[(u16, Values)]) -> Vec<u8> {
         Offsets::Bits32 => out.extend_from_slice(&42u16.to_le_bytes()),
         Offsets::Bits64 => [43u16, 8, 0].iter().for_each(|field| out.extend_from_slice(&field.to_le_bytes())),
     }
-    number(&mut out, start);
+    let first = (out.len() + width + LAYOUT.len()).next_multiple_of(8);
+    number(&mut out, first);
+    out.extend_from_slice(LAYOUT);
+    for (i, tags) in images.iter().enumerate() {
+        out.resize(out.len().next_multiple_of(8), 0);
+        let at = out.len();
+        let is_last = i + 1 == images.len();
+        out.extend_from_slice(&directory(offsets, tags, at, is_last));
+    }
+    out
+}
+
+/// Returns a directory that begins at byte `at`, and its values. The next one follows, unless it is
+/// the last.
+fn directory(offsets: Offsets, tags: &[(u16, Values)], at: usize, is_last: bool) -> Vec<u8> {
+    debug_assert!(tags.is_sorted_by_key(|(tag, _)| *tag));
+    let width = offsets.width();
+    let number = |out: &mut Vec<u8>, value: usize| out.extend_from_slice(&(value as u64).to_le_bytes()[..width]);
     let (count_size, entry_size) = match offsets {
         Offsets::Bits32 => (2, 12),
         Offsets::Bits64 => (8, 20),
     };
-    out.extend_from_slice(&(tags.len() as u64).to_le_bytes()[..count_size]);
-    let mut values_at = (start + count_size + tags.len() * entry_size + width).next_multiple_of(8);
-    let mut behind = vec![0; values_at - (start + count_size + tags.len() * entry_size + width)];
+    let mut out = (tags.len() as u64).to_le_bytes()[..count_size].to_vec();
+    let end = at + count_size + tags.len() * entry_size + width;
+    let mut values_at = end.next_multiple_of(8);
+    let mut behind = vec![0; values_at - end];
     for (tag, values) in tags {
         let (kind, count) = values.kind_and_count(offsets);
         out.extend_from_slice(&tag.to_le_bytes());
@@ -89,8 +121,7 @@ pub(super) fn header(offsets: Offsets, tags: &[(u16, Values)]) -> Vec<u8> {
             behind.extend_from_slice(&bytes);
         }
     }
-    // No further directory.
-    number(&mut out, 0);
+    number(&mut out, if is_last { 0 } else { values_at });
     out.extend_from_slice(&behind);
     out
 }

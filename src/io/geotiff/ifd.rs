@@ -41,7 +41,10 @@ pub(super) struct Bytes {
 
 impl Bytes {
     pub(super) fn open(path: &Path) -> Result<Self> {
-        let file = File::open(path)?;
+        Self::of_file(File::open(path)?)
+    }
+
+    pub(super) fn of_file(file: File) -> Result<Self> {
         let metadata = file.metadata()?;
         if metadata.is_dir() {
             return Err(Error::usage("is a folder, not a raster file"));

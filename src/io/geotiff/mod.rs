@@ -3,7 +3,8 @@
 //! Reading takes three layers: `ifd` fetches raw tags and trusts no offset; `layout` checks and
 //! bounds what they say about blocks; `block` turns one block into values with the decoders of the
 //! `tiff` crate. `georeference` and `nodata` give the numbers their meaning. Writing is [`write()`]
-//! on top of `directory` (the header) and `tile` (the cells).
+//! on top of `image` (one per level, the raster or an overview), `directory` (the header) and
+//! `tile` (the cells).
 //!
 //! Conventions:
 //! - Band 1 of the first image is read.
@@ -22,8 +23,10 @@ mod cell_format;
 mod directory;
 mod georeference;
 mod ifd;
+mod image;
 mod layout;
 mod nodata;
+mod overview;
 mod read;
 mod tags;
 mod tile;
@@ -31,9 +34,10 @@ mod write;
 
 pub use cell_format::CellFormat;
 pub use ifd::ByteOrder;
+pub use image::RasterSummary;
 pub use layout::{SampleKind, SampleType};
 pub use read::{Extremes, GeoTiffInfo, GeoTiffReader, open};
-pub use write::{RasterSummary, WriteOptions, write};
+pub use write::{COPIES_ON_DISK, WriteOptions, cells_written, write};
 
 /// Limit for the cells of one read (4 GiB of values).
 pub const MAX_CELLS: usize = 1 << 29;

@@ -1,4 +1,5 @@
 use std::collections::BTreeSet;
+use std::fs::File;
 use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
@@ -103,7 +104,12 @@ pub struct GeoTiffReader {
 /// message names.
 pub fn open(path: impl AsRef<Path>) -> Result<GeoTiffReader> {
     let path = path.as_ref();
-    read_header(path).map_err(|e| with_file(e, path))
+    Bytes::open(path).and_then(|bytes| read_header(bytes, path)).map_err(|e| with_file(e, path))
+}
+
+/// Reads the header of a file that has no name; `path` is for messages.
+pub(super) fn of_file(file: File, path: &Path) -> Result<GeoTiffReader> {
+    Bytes::of_file(file).and_then(|bytes| read_header(bytes, path)).map_err(|e| with_file(e, path))
 }
 
 /// Adds the file to an error and, if the file is damaged, the cure.
@@ -116,8 +122,7 @@ fn with_file(error: Error, path: &Path) -> Error {
     }
 }
 
-fn read_header(path: &Path) -> Result<GeoTiffReader> {
-    let bytes = Bytes::open(path)?;
+fn read_header(bytes: Bytes, path: &Path) -> Result<GeoTiffReader> {
     let directory = Directory::first(&bytes)?;
     let layout = Layout::read(&bytes, &directory)?;
     let mut warnings = Vec::new();

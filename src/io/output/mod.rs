@@ -152,6 +152,15 @@ pub fn require_absent(target: &Path) -> Result<()> {
     Err(Error::from(exists).in_file(target).cure("give it another name, or add --overwrite"))
 }
 
+/// Returns an empty file without a name on the disk of a target; for a pipe or a device, in the
+/// system's folder for such files.
+fn scratch_for(target: &Path) -> Result<File> {
+    Ok(match TargetKind::of(target)? {
+        TargetKind::File(path) => tempfile::tempfile_in(target::folder_of(&path))?,
+        TargetKind::Stream => tempfile::tempfile()?,
+    })
+}
+
 fn temporary_for(path: &Path) -> Result<(File, Temporary)> {
     let replaced = target::replaceable(path)?;
     let (file, temporary) = Temporary::create(path)?;

@@ -1,4 +1,5 @@
 use std::cell::RefCell;
+use std::fs::File;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
@@ -113,6 +114,15 @@ impl<'a> Destination<'a> {
             Some(extension) => self.path.with_extension(extension),
             None => self.path.to_path_buf(),
         }
+    }
+
+    /// Returns an empty file without a name, on the disk of the output, for what is needed until it
+    /// is complete.
+    ///
+    /// # Errors
+    /// If it cannot be created.
+    pub(crate) fn scratch(self) -> Result<File> {
+        super::scratch_for(self.path).map_err(|e| e.in_file(self.path))
     }
 
     /// Runs a writer and takes the files that it has written, unless it fails. This covers writers

@@ -37,6 +37,11 @@ impl TargetKind {
     }
 }
 
+/// Returns the folder that a file is in.
+pub(super) fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
 /// Returns the number in `/proc/self/fd/1` and the like. `/dev/stdout` links to such a path,
 /// whatever that links to.
 fn open_file(path: &Path) -> Option<u32> {

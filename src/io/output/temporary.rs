@@ -5,6 +5,8 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
+use super::target::folder_of;
+
 /// All temporary files of the process. Locked while one is created and while a set is renamed.
 static ALL: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
@@ -37,10 +39,7 @@ pub(super) struct Temporary {
 impl Temporary {
     /// Creates a hidden file in the folder of `target`.
     pub(super) fn create(target: &Path) -> io::Result<(File, Self)> {
-        let folder = match target.parent() {
-            Some(folder) if !folder.as_os_str().is_empty() => folder,
-            _ => Path::new("."),
-        };
+        let folder = folder_of(target);
         let mut builder = tempfile::Builder::new();
         builder.prefix(".breakline-");
         #[cfg(unix)]
