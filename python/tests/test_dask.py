@@ -5,6 +5,7 @@ import json
 import os
 import random
 import signal
+import struct
 import subprocess
 import sys
 import threading
@@ -19,6 +20,7 @@ distributed = pytest.importorskip("distributed")
 
 import breakline.dask  # noqa: E402
 import psutil  # noqa: E402
+from breakline._objects import Objects  # noqa: E402
 
 FIXTURES = Path(__file__).parents[2] / "fixtures"
 VALLEY = FIXTURES / "valley.laz"
@@ -205,3 +207,81 @@ def test_what_is_wrong_is_an_error_with_its_cure(client, tmp_path):
     with pytest.raises(breakline.UsageError, match="client"):
         breakline.dask.dem(VALLEY, tmp_path / "dem.tif", client=None)
     assert list(tmp_path.glob("*.tif")) == []
+
+
+def test_objects_are_copied_for_the_tasks_that_read_them(client, whole, tmp_path, monkeypatch):
+    # Else such small ones are copied whole, for planning, too.
+    monkeypatch.setattr(breakline._objects, "_SMALL", 0)
+    store, scratch, planned = tmp_path / "store", tmp_path / "copies", []
+    store.mkdir()
+    for letter in "ab":
+        (store / f"{letter}.laz").write_bytes(VALLEY.read_bytes())
+    program = breakline.dask._program
+
+    def watched(*words):
+        if "plan" in words:
+            planned.extend(path.stat() for path in scratch.rglob("*.laz"))
+        return program(*words)
+
+    monkeypatch.setattr(breakline.dask, "_program", watched)
+    options = {"client": client, "scratch": scratch, "tiles": "3x3", "job": tmp_path / "job"}
+    made = breakline.dask.dem(f"file://{store}/*.laz", tmp_path / "dem.tif", classes=2, **options)
+    assert made.read_bytes() == whole
+    # What was planned with is as long as the objects, but most of it is a hole.
+    assert [about.st_size for about in planned] == [VALLEY.stat().st_size] * 2
+    assert all(about.st_blocks * 512 < about.st_size / 2 for about in planned)
+    assert [path for path in scratch.rglob("*") if path.is_file()] == []
+    done = {path: path.stat().st_mtime_ns for path in (tmp_path / "job" / "tasks").iterdir()}
+    breakline.dask.dem(f"file://{store}/*.laz", tmp_path / "dem.tif", classes=2, **options)
+    assert all(path.stat().st_mtime_ns == time for path, time in done.items())
+    for name in ["*.las", "c.laz"]:
+        with pytest.raises(breakline.UsageError, match="no object has such a name"):
+            breakline.dask.dem(f"file://{store}/{name}", tmp_path / "other.tif", classes=2, **options)
+    with pytest.raises(breakline.UsageError, match="one store within another"):
+        breakline.dask.dem(f"zip://a.laz::file://{store}/a.zip", tmp_path / "other.tif", classes=2, **options)
+    with pytest.raises(breakline.UsageError, match="classes=2"):
+        breakline.dask.dem(f"file://{store}/a.laz", tmp_path / "other.tif", **options)
+    with pytest.raises(breakline.UsageError, match="output is an object"):
+        breakline.dask.dem(f"file://{store}/a.laz", f"file://{store}/dem.tif", classes=2, **options)
+
+
+def test_objects_that_change_are_refused(tmp_path):
+    stored, job = tmp_path / "a.laz", tmp_path / "job"
+    stored.write_bytes(VALLEY.read_bytes())
+    (one,) = Objects([f"file://{stored}"], str(tmp_path / "copies"), None, str(job)).at.values()
+    with one.copied():
+        assert Path(one.path).read_bytes() == VALLEY.read_bytes()
+        assert Path(one.path).stat().st_mtime_ns == one.time
+    assert not Path(one.path).exists()
+    stored.write_bytes(VALLEY.read_bytes()[:-1])
+    with pytest.raises(breakline.UsageError, match="has changed"), one.copied():
+        pass
+
+
+def test_keys_of_a_store_are_in_no_log(tmp_path):
+    (tmp_path / "a.laz").write_bytes(VALLEY.read_bytes())
+    (one,) = Objects([f"file://{tmp_path}/a.laz"], None, {"auto_mkdir": "SECRET"}, "job").at.values()
+    assert "SECRET" not in repr(one)
+
+
+@pytest.mark.parametrize("place", ["before", "behind", "nowhere"])
+def test_of_laz_all_but_the_points_is_read_to_plan(tmp_path, monkeypatch, place):
+    monkeypatch.setattr(breakline._objects, "_SMALL", 0)
+    data = bytearray(VALLEY.read_bytes())
+    (start,) = struct.unpack_from("<I", data, 96)
+    if place != "before":
+        # As a stream is written: the place of the chunk table is at the end.
+        data += data[start : start + 8] if place == "behind" else bytes(8)
+        data[start : start + 8] = struct.pack("<q", -1)
+    (tmp_path / "a.laz").write_bytes(data)
+    objects = Objects([f"file://{tmp_path}/a.laz"], str(tmp_path / "copies"), None, "job")
+    (path,) = objects.at
+    with objects.headers():
+        about = os.stat(path)
+        assert about.st_size == len(data)
+        is_whole = about.st_blocks * 512 >= len(data)
+        assert is_whole == (place == "nowhere")
+        output, job = str(tmp_path / "dem.tif"), str(tmp_path / "job")
+        run("job", "plan", job, "--headers-only", "--", "dem", path, "-o", output, "--class=2", "--tiles=auto")
+        assert json.loads((tmp_path / "job" / "plan.json").read_text().splitlines()[1])["files"][0]["count"] == 62776
+    assert not os.path.exists(path)

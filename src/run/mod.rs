@@ -113,7 +113,7 @@ pub use input::{Input, MemoryPoints, STDIN};
 #[cfg(feature = "cli")]
 pub(crate) use job::not_in_tiles;
 pub use job::{
-    BadFiles, COMMAND, Division, Job, JobLock, JobReport, JobSize, TileOptions, TiledProduct, WrittenParts,
+    BadFiles, COMMAND, Division, Job, JobLock, JobReport, JobSize, Look, TileOptions, TiledProduct, WrittenParts,
     needs_tiles, remove_job,
 };
 pub use line_notes::LineInput;

@@ -54,10 +54,7 @@ impl Source {
     pub fn of_files(files: &[PathBuf]) -> Result<Self> {
         let ready = files.iter().find(|path| matches!(content(path), Content::Mesh | Content::Raster));
         match ready {
-            None => {
-                let points = files.iter().cloned().map(Input::<MemoryPoints>::File).collect();
-                Ok(Source::Points(Box::new(TinRequest { points, ..TinRequest::default() })))
-            }
+            None => Ok(Self::of_points(files)),
             Some(path) if files.len() > 1 => {
                 Err(Error::usage("the file is a surface, and cannot be combined with other files")
                     .in_file(path)
@@ -66,6 +63,12 @@ impl Source {
             Some(path) if content(path) == Content::Mesh => Ok(Source::Mesh(path.clone())),
             Some(path) => Ok(Source::Raster(path.clone())),
         }
+    }
+
+    /// Returns files of points as a source. They are not looked at.
+    pub fn of_points(files: &[PathBuf]) -> Self {
+        let points = files.iter().cloned().map(Input::<MemoryPoints>::File).collect();
+        Source::Points(Box::new(TinRequest { points, ..TinRequest::default() }))
     }
 }
 

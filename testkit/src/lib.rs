@@ -3,6 +3,7 @@
 pub mod case;
 pub mod cells;
 pub mod judge;
+pub mod lidar;
 pub mod picture;
 pub mod random;
 pub mod subject;

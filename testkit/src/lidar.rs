@@ -1,7 +1,7 @@
 //! Small LAS files.
 
 /// A LAS 1.2 file of point format 0, in steps of 0.01: points as x, y, z and class.
-pub(crate) fn las(points: &[([f64; 3], u8)], epsg: Option<u16>) -> Vec<u8> {
+pub fn las(points: &[([f64; 3], u8)], epsg: Option<u16>) -> Vec<u8> {
     let keys: Vec<u16> = epsg.map_or(Vec::new(), |code| vec![1, 1, 0, 2, 1024, 0, 1, 1, 3072, 0, 1, code]);
     let records = if keys.is_empty() { 0u32 } else { 1 };
     let points_start = 227 + records * (54 + 2 * keys.len() as u32);
@@ -41,6 +41,6 @@ pub(crate) fn las(points: &[([f64; 3], u8)], epsg: Option<u16>) -> Vec<u8> {
 }
 
 /// A square of points a metre apart, all of one class.
-pub(crate) fn tile([x, y]: [f64; 2], class: u8) -> Vec<([f64; 3], u8)> {
+pub fn tile([x, y]: [f64; 2], class: u8) -> Vec<([f64; 3], u8)> {
     (0..16).map(|i| ([x + f64::from(i % 4), y + f64::from(i / 4), f64::from(i)], class)).collect()
 }

@@ -1,7 +1,7 @@
 //! Inputs that are odd together, and sums that add up.
 
-use super::lidar::{las, tile};
 use super::{SLOPE, fixture, folder_with, geojson, run_in};
+use testkit::lidar::{las, tile};
 
 #[test]
 fn a_file_that_gives_no_points_is_named_and_not_asked_for_its_system() {

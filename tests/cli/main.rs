@@ -7,7 +7,6 @@ mod columns;
 mod crossings;
 mod habits;
 mod inputs;
-mod lidar;
 mod lines;
 mod methods;
 #[cfg(unix)]

@@ -1,6 +1,7 @@
 //! What runs leave and say.
 
-use super::{SLOPE, bytes, files_of, fixture, folder_with, geojson, lidar, run_in, run_with};
+use super::{SLOPE, bytes, files_of, fixture, folder_with, geojson, run_in, run_with};
+use testkit::lidar;
 
 #[test]
 fn a_run_ends_with_a_summary_on_stderr_and_nothing_on_stdout() {

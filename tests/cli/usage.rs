@@ -1,7 +1,7 @@
 //! What is asked for and makes no sense, and what is refused; help, lists and `info`.
 
-use super::lidar::{las, tile};
 use super::{Run, SLOPE, files_of, folder_with, geojson, run_in, run_with};
+use testkit::lidar::{las, tile};
 
 #[test]
 fn help_goes_to_stdout_and_tells_each_verb_with_an_example() {

@@ -3,8 +3,9 @@
 use breakline::io::geotiff;
 use tempfile::TempDir;
 
-use super::{bytes, landscape, lidar, output_of, program};
+use super::{bytes, landscape, output_of, program};
 use program::{files_of, run_in};
+use testkit::lidar;
 
 /// A landscape in 4 by 4 files, of which one is cut off.
 fn folder_with_a_bad_file() -> TempDir {

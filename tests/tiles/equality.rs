@@ -2,8 +2,9 @@
 
 use testkit::random::Random;
 
-use super::{landscape, layer, lidar, output_of, program, valley};
+use super::{landscape, layer, output_of, program, valley};
 use program::{files_of, run_in};
+use testkit::lidar;
 
 /// Fails unless the verb with these words gives the same file with and without each of the options
 /// of tiles.

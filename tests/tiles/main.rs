@@ -1,8 +1,6 @@
 //! Surfaces in tiles: the bytes of the surface in one piece, whatever the tiles, whatever happens
 //! to the job in between.
 
-#[path = "../cli/lidar.rs"]
-mod lidar;
 #[path = "../common/program.rs"]
 mod program;
 

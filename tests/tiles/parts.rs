@@ -11,7 +11,8 @@ use tempfile::TempDir;
 use testkit::random::Random;
 
 use super::program::{files_of, run_in};
-use super::{bytes, layer, lidar, output_of, valley};
+use super::{bytes, layer, output_of, valley};
+use testkit::lidar;
 
 /// The triangles of a PLY, each from its smallest corner on, with the kinds of its edges.
 fn triangles(path: &Path) -> BTreeSet<([[u64; 3]; 3], [u8; 3])> {

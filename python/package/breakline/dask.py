@@ -5,13 +5,15 @@
 PosixPath('dem.tif')
 
 The work is the job that ``breakline job plan`` makes: a folder with a file for each task that is done. Inputs, output and
-that folder must have the same paths on all workers. The result is the same, byte for byte, as on one machine: tasks
-may be repeated, and a task that was done before is not done again. Workers may be lost: what they were doing is
-repeated, what they have done is kept.
+that folder must have the same paths on all workers. Points may also be objects in a store that ``fsspec`` knows
+(``s3://bucket/tiles/*.laz``): a worker copies an object when a task reads it, and removes the copy afterwards. The result
+is the same, byte for byte, as on one machine: tasks may be repeated, and a task that was done before is not done again.
+Workers may be lost: what they were doing is repeated, what they have done is kept.
 """
 
 from __future__ import annotations
 
+import contextlib
 import glob
 import json
 import os
@@ -24,6 +26,7 @@ from pathlib import Path
 from typing import Any, Union
 
 from ._errors import RENAMED, BreaklineError, usage
+from ._objects import Objects, StoredObject, is_url
 
 __all__ = ["dem", "hillshade"]
 
@@ -54,14 +57,16 @@ def dem(
     client: Any,
     job: "Union[PathLike, None]" = None,
     retries: int = 3,
+    scratch: "Union[PathLike, None]" = None,
+    storage_options: "Union[dict[str, Any], None]" = None,
     **options: Any,
 ) -> Path:
     """Write a DEM of points, with the workers of a Dask cluster.
 
     Parameters
     ----------
-    inputs : path or list of paths
-        Files of points; globs are understood.
+    inputs : path or URL, or list of them
+        Files of points, or objects; globs are understood.
     output : path
         The GeoTIFF to write.
     client : dask.distributed.Client
@@ -73,6 +78,11 @@ def dem(
         How often a task that fails with an error is repeated. Tasks that lose their worker do not count here: Dask
         repeats such a task as often as its setting ``distributed.scheduler.allowed-failures`` says, and when it gives
         the task up, the task is submitted again, up to 20 times.
+    scratch : path, optional
+        A folder for copies of objects, with the same path on the workers and here; by default one of the user in the
+        system's folder for temporary files. On each worker it has as many copies as the worker has threads.
+    storage_options : dict, optional
+        What ``fsspec`` needs to open objects, such as keys and endpoints.
     **options
         The other options of ``breakline dem`` by their names, such as ``resolution=0.5``, ``tiles="8x8"``,
         ``max_edge=50``.
@@ -88,7 +98,7 @@ def dem(
         If the job cannot be planned, or a task fails, or loses its workers, more often than it is repeated. The tasks
         that wait are canceled then, as they are by Ctrl-C; those that are done are kept, and the same call goes on.
     """
-    return _run("dem", inputs, output, client, job, retries, options)
+    return _run("dem", inputs, output, client, job, retries, (scratch, storage_options), options)
 
 
 def hillshade(
@@ -98,10 +108,12 @@ def hillshade(
     client: Any,
     job: "Union[PathLike, None]" = None,
     retries: int = 3,
+    scratch: "Union[PathLike, None]" = None,
+    storage_options: "Union[dict[str, Any], None]" = None,
     **options: Any,
 ) -> Path:
     """Write a hillshade of points, with the workers of a Dask cluster; see :func:`dem`."""
-    return _run("hillshade", inputs, output, client, job, retries, options)
+    return _run("hillshade", inputs, output, client, job, retries, (scratch, storage_options), options)
 
 
 def _run(
@@ -111,22 +123,34 @@ def _run(
     client: Any,
     job: "Union[PathLike, None]",
     retries: int,
+    store: "tuple[Union[PathLike, None], Union[dict[str, Any], None]]",
     options: "dict[str, Any]",
 ) -> Path:
     if not hasattr(client, "submit"):
         raise usage("client is not a client of dask.distributed", client, "pass dask.distributed.Client()")
+    for name, path in [("output", output), ("job", job)]:
+        if path is not None and is_url(os.fspath(path)):
+            raise usage(f"{name} is an object in a store", path, "name a path that all workers share")
     files = [inputs] if isinstance(inputs, (str, os.PathLike)) else list(inputs)
-    command = [verb, *(_path(found) for file in files for found in _found(file)), "-o", _path(output), *_words(options)]
+    urls = [text for text in map(os.fspath, files) if is_url(text)]
+    if urls and options.get("classes") is None:
+        cure = "pass classes=2 for ground: else points would be read to find out"
+        raise usage("of objects, only the headers are read to plan", urls[0], cure)
     folder = _path(f"{os.fspath(output)}.job" if job is None else job)
+    scratch, storage_options = store
+    objects = Objects(urls, None if scratch is None else _path(scratch), storage_options, folder)
+    paths = [path for file in files for path in _paths(file, objects)]
+    command = [verb, *paths, "-o", _path(output), *_words(options)]
     if not os.path.exists(os.path.join(folder, "plan.json")):
-        _program("job", "plan", folder, "--", *command)
+        with objects.headers():
+            _program("job", "plan", folder, *(["--headers-only"] if urls else []), "--", *command)
     # What is there is verified: a task that is done is not repeated.
     status = json.loads(_program("job", "status", folder, "--json", "--verify"))
     if status["command"] != command:
         raise usage(f"the job in {folder} is that of another call", folder, "pass another job, or remove the folder")
     # New in each call: a scheduler keeps what failed under its key.
     name = f"{verb}-{uuid.uuid4().hex[:8]}"
-    cluster = _Cluster(client, folder, status["tasks"], name, retries)
+    cluster = _Cluster(client, folder, status["tasks"], objects.at, name, retries)
     try:
         _finish(cluster, status["tasks"])
     except BaseException:
@@ -135,6 +159,12 @@ def _run(
     if job is None:
         _program("job", "clean", folder)
     return Path(output)
+
+
+def _paths(file: PathLike, objects: Objects) -> "list[str]":
+    """Return the paths that a task finds files or copies of objects at."""
+    text = os.fspath(file)
+    return objects.paths(text) if is_url(text) else [_path(path) for path in _found(text)]
 
 
 def _finish(cluster: "_Cluster", tasks: "list[dict[str, Any]]") -> None:
@@ -163,10 +193,19 @@ class _Cluster:
     when it loses the worker.
     """
 
-    def __init__(self, client: Any, folder: str, tasks: "list[dict[str, Any]]", name: str, retries: int) -> None:
+    def __init__(
+        self,
+        client: Any,
+        folder: str,
+        tasks: "list[dict[str, Any]]",
+        objects: "dict[str, StoredObject]",
+        name: str,
+        retries: int,
+    ) -> None:
         from distributed import as_completed
 
-        self._client, self._folder, self._tasks, self._name, self._retries = client, folder, tasks, name, retries
+        self._client, self._folder, self._name, self._retries = client, folder, name, retries
+        self._tasks, self._objects = tasks, objects
         self._completed = as_completed(loop=client.loop)
         self._numbers: "dict[Any, int]" = {}
         self._deaths: "Counter[int]" = Counter()
@@ -177,7 +216,7 @@ class _Cluster:
         # "tile 17, a.laz" becomes "tile-17-...": the dashboard groups tasks by the first word.
         title = "-".join(task["name"].split(",")[0].split(" ")[:2]).replace(os.sep, "_")
         key = f"{title}-{self._name}-{number}-{self._deaths[number]}"
-        words = [self._folder, number, _threads(task)]
+        words = [self._folder, number, _threads(task), self._objects.get(task["input"])]
         # Later tasks first: merges come soon after what they merge.
         future = self._client.submit(_task, *words, key=key, priority=number, retries=self._retries, pure=False)
         self._numbers[future] = number
@@ -217,9 +256,10 @@ def _threads(task: "dict[str, Any]") -> "list[str]":
     return [] if task["name"] == "output" else ["--threads", "1"]
 
 
-def _task(folder: str, number: int, threads: "list[str]") -> None:
-    """Do a task on a worker."""
-    _program("job", "run", folder, "--task", str(number), *threads)
+def _task(folder: str, number: int, threads: "list[str]", read: "Union[StoredObject, None]") -> None:
+    """Do a task on a worker, which copies the object that the task reads."""
+    with contextlib.nullcontext() if read is None else read.copied():
+        _program("job", "run", folder, "--task", str(number), *threads)
 
 
 def _found(file: PathLike) -> "list[str]":

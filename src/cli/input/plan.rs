@@ -33,7 +33,10 @@ impl SurfacePlan {
     /// # Errors
     /// If files are missing, kinds of input are mixed or options do not go together.
     pub(in crate::cli) fn resolve(args: &SurfaceArgs, console: &Console) -> Result<Self> {
-        let files = inputs::expand(&args.inputs, console)?;
+        let files = match &args.planned {
+            Some(planned) => planned.clone(),
+            None => inputs::expand(&args.inputs, console)?,
+        };
         let degrees = if args.force_degrees { Degrees::Allow } else { Degrees::Refuse };
         let systems = SystemOptions { degrees, ..systems(&args.systems)? };
         let line_files: Vec<PathBuf> = args.lines.files().iter().flat_map(|(_, paths)| paths.iter().cloned()).collect();
@@ -42,7 +45,11 @@ impl SurfacePlan {
         let lines = line_request(&args.lines);
         let building = TinRequest { breaklines, boundary, lines, ..TinRequest::default() };
         building.check_layers()?;
-        let source = match Source::of_files(&files)? {
+        let source = match &args.planned {
+            Some(_) => Source::of_points(&files),
+            None => Source::of_files(&files)?,
+        };
+        let source = match source {
             Source::Points(points) => Source::Points(Box::new(tin_request(points.points, building, args))),
             Source::Mesh(path) => Source::Mesh(as_it_is(path, args)?),
             Source::Raster(path) => Source::Raster(as_it_is(path, args)?),

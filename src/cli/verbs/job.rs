@@ -4,21 +4,23 @@ use clap::Parser;
 use serde_json::{Value, json};
 
 use super::tiled;
-use crate::cli::input::args::{Cli, JobAction, JobArgs, TileArgs, TinArgs, Verb};
+use crate::cli::input::args::{Cli, JobAction, JobArgs, SurfaceArgs, TileArgs, TinArgs, Verb};
 use crate::cli::input::plan::SurfacePlan;
 use crate::cli::report::console::Console;
 use crate::cli::{Exit, print};
 use crate::error::{Error, Result};
-use crate::run::{self, COMMAND, Job, TiledProduct};
+use crate::run::{self, COMMAND, Input, Job, Look, Source, TileOptions, TiledProduct};
 
 /// Plans a run in tiles, or does its tasks.
 pub(in crate::cli) fn run(args: &JobArgs, console: &Console) -> Result<Exit> {
     match &args.action {
-        JobAction::Plan { job, command } => plan(job, command, console),
+        JobAction::Plan { job, headers_only, command } => {
+            plan(job, if *headers_only { Look::Headers } else { Look::Points }, command, console)
+        }
         JobAction::Run { job, task } => work(job, *task, console),
         JobAction::Status { job, json, verify } => {
             let (job, command, words) = stored(job, console)?;
-            let open = command.open(&job)?;
+            let open = command.stored(&job)?;
             if *verify {
                 open.remove_damaged()?;
             }
@@ -38,13 +40,17 @@ struct Command {
 }
 
 impl Command {
-    fn parse(words: &[String], console: &Console) -> Result<Self> {
+    /// Understands the words of a command; `planned` are the files that it was planned with.
+    fn parse(words: &[String], planned: Option<Vec<PathBuf>>, console: &Console) -> Result<Self> {
         let name = ["breakline".to_owned()];
-        let cli = Cli::try_parse_from(name.iter().chain(words)).map_err(|e| {
+        let mut cli = Cli::try_parse_from(name.iter().chain(words)).map_err(|e| {
             let text = e.to_string();
             let first = text.lines().next().unwrap_or_default().trim_start_matches("error: ").to_owned();
             Error::usage(format!("the command of the job: {first}")).cure("`breakline dem --help` lists its options")
         })?;
+        if let Some(surface) = surface_of(&mut cli.verb) {
+            surface.planned = planned;
+        }
         let (plan, product, output, tiles) = match &cli.verb {
             Verb::Dem(args) => {
                 let (plan, options) = super::dem::requested(args, console)?;
@@ -96,10 +102,33 @@ impl Command {
         let options = tiled::options(&self.tile_args(job), &self.output);
         Job::open(&self.plan.request, &self.product, &options)?.ok_or_else(|| no_job(job))
     }
+
+    /// Opens a job to see what is done.
+    fn stored(&self, job: &Path) -> Result<Job<'_>> {
+        let options = tiled::options(&self.tile_args(job), &self.output);
+        Job::stored(&self.plan.request, &self.product, &options)?.ok_or_else(|| no_job(job))
+    }
+
+    /// Opens a job to do one task.
+    fn open_for(&self, job: &Path, task: usize) -> Result<Job<'_>> {
+        let options = tiled::options(&self.tile_args(job), &self.output);
+        Job::open_for(&self.plan.request, &self.product, &options, task)?.ok_or_else(|| no_job(job))
+    }
 }
 
-fn plan(job: &Path, words: &[String], console: &Console) -> Result<Exit> {
-    let command = Command::parse(words, console)?;
+/// Returns the options of the surface that a verb builds in tiles.
+fn surface_of(verb: &mut Verb) -> Option<&mut SurfaceArgs> {
+    match verb {
+        Verb::Dem(args) => Some(&mut args.surface),
+        Verb::Contour(args) => Some(&mut args.surface),
+        Verb::Hillshade(args) => Some(&mut args.surface),
+        Verb::Tin(args) => Some(&mut args.surface),
+        _ => None,
+    }
+}
+
+fn plan(job: &Path, look: Look, words: &[String], console: &Console) -> Result<Exit> {
+    let command = Command::parse(words, None, console)?;
     // What cannot be written is better known before all tasks are done.
     match &command.verb {
         Verb::Dem(args) => super::dem::outputs_of(args, &command.plan).map(drop)?,
@@ -111,13 +140,17 @@ fn plan(job: &Path, words: &[String], console: &Console) -> Result<Exit> {
         }
         _ => {}
     }
-    let options = tiled::options(&command.tile_args(job), &command.output);
+    let options = TileOptions { look, ..tiled::options(&command.tile_args(job), &command.output) };
     let planned = Job::plan(&command.plan.request, &command.product, &options, &console.context())?;
     let folder = std::env::current_dir()?;
     let Some(folder) = folder.to_str() else {
         return Err(Error::unsupported("the name is not valid Unicode, which a job needs").in_file(folder));
     };
-    planned.create(Some(&json!({ "command": words, "folder": folder }).to_string()))?;
+    let files: Vec<&Path> = match &command.plan.request.source {
+        Source::Points(request) => request.points.iter().map(Input::path).collect(),
+        Source::Mesh(_) | Source::Raster(_) => Vec::new(),
+    };
+    planned.create(Some(&json!({ "command": words, "folder": folder, "files": files }).to_string()))?;
     tiled::print_size(&planned.size(), console);
     console.line(format_args!(
         "next        breakline job run {0}, or {0} --task 0 to {1}",
@@ -139,11 +172,12 @@ fn stored(job: &Path, console: &Console) -> Result<(PathBuf, Command, Vec<String
     let value: Value = serde_json::from_slice(&text).unwrap_or_default();
     let words = serde_json::from_value::<Vec<String>>(value["command"].clone());
     let folder = serde_json::from_value::<PathBuf>(value["folder"].clone());
-    let (Ok(words), Ok(folder)) = (words, folder) else {
+    let files = serde_json::from_value::<Vec<PathBuf>>(value["files"].clone());
+    let (Ok(words), Ok(folder), Ok(files)) = (words, folder, files) else {
         return Err(Error::format("the command of the job is damaged").in_file(path).cure("plan it again"));
     };
     std::env::set_current_dir(&folder).map_err(|e| Error::from(e).in_file(folder))?;
-    let command = Command::parse(&words, console)?;
+    let command = Command::parse(&words, Some(files), console)?;
     Ok((job, command, words))
 }
 
@@ -154,7 +188,10 @@ fn no_job(job: &Path) -> Error {
 
 fn work(job: &Path, task: Option<usize>, console: &Console) -> Result<Exit> {
     let (job, mut command, _) = stored(job, console)?;
-    let open = command.open(&job)?;
+    let open = match task {
+        Some(task) => command.open_for(&job, task)?,
+        None => command.open(&job)?,
+    };
     if let Some(task) = task {
         if task < open.task_count() {
             open.run_task(task, &console.context())?;
@@ -204,10 +241,14 @@ fn print_status(open: &Job) -> Result<()> {
 /// Prints all tasks as a JSON object; the last one writes the output.
 fn print_tasks(open: &Job, words: &[String], output: &Path) -> Result<()> {
     let count = open.task_count();
-    let of_task =
-        |task: usize| json!({ "name": open.task_name(task), "needs": open.needs(task), "done": open.is_done(task) });
+    let of_task = |task: usize| {
+        json!({
+            "name": open.task_name(task), "needs": open.needs(task), "input": open.input(task),
+            "done": open.is_done(task),
+        })
+    };
     let mut tasks: Vec<Value> = (0..count).map(of_task).collect();
     let is_written = tasks.iter().all(|task| task["done"] == true) && open.is_older_than(output);
-    tasks.push(json!({ "name": "output", "needs": open.last_needs(), "done": is_written }));
+    tasks.push(json!({ "name": "output", "needs": open.last_needs(), "input": null, "done": is_written }));
     print(&format!("{}\n", json!({ "command": words, "tasks": tasks })))
 }

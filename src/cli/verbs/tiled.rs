@@ -10,7 +10,7 @@ use crate::cli::report::console::Console;
 use crate::cli::report::summary::print_extent;
 use crate::error::{Error, Result};
 use crate::run::units::bytes;
-use crate::run::{self, BadFiles, Job, JobLock, JobReport, JobSize, TileOptions, TiledProduct};
+use crate::run::{self, BadFiles, Job, JobLock, JobReport, JobSize, Look, TileOptions, TiledProduct};
 
 /// What becomes of a request.
 pub(super) enum Tiled<'a> {
@@ -115,6 +115,7 @@ pub(super) fn options(args: &TileArgs, target: &Path) -> TileOptions {
         memory: args.memory,
         folder: folder(args, target),
         bad: if args.skip_bad { BadFiles::Skip } else { BadFiles::Refuse },
+        look: Look::default(),
     }
 }
 

@@ -14,12 +14,19 @@ use crate::error::Result;
 const BATCH_POINTS: usize = 1 << 17;
 const BATCH_BYTES: usize = 1 << 22;
 
+/// Points that are read together when most are passed over, as many as LASzip has in a chunk.
+const PART_POINTS: u64 = 50_000;
+
 /// Reads records in order, as many as the file contains.
 #[derive(Debug)]
 pub(super) struct Plain {
     input: Input,
     layout: RecordLayout,
     left: u64,
+    /// Points between two batches that are not read.
+    passed_over: u64,
+    /// The most points in a batch.
+    most: u64,
     cut: Cut,
     buffer: Vec<u8>,
 }
@@ -53,13 +60,19 @@ impl Plain {
             ));
         }
         input.file.seek(SeekFrom::Start(start))?;
-        Ok(Plain { input, layout, left: room.min(header.count), cut, buffer: Vec::new() })
+        let most = (BATCH_BYTES / layout.stride).clamp(1, BATCH_POINTS) as u64;
+        Ok(Plain { input, layout, left: room.min(header.count), passed_over: 0, most, cut, buffer: Vec::new() })
+    }
+
+    pub(super) fn thin(&mut self, spacing: u64) -> bool {
+        self.most = self.most.min(PART_POINTS).min(spacing.max(1));
+        self.passed_over = spacing.saturating_sub(self.most);
+        true
     }
 
     pub(super) fn read(&mut self, batch: &mut PointBatch, warnings: &mut Vec<String>) -> Result<()> {
         let stride = self.layout.stride;
-        let most = (BATCH_BYTES / stride).clamp(1, BATCH_POINTS);
-        let count = self.left.min(most as u64) as usize;
+        let count = self.left.min(self.most) as usize;
         self.buffer.clear();
         (&self.input.file).take((count * stride) as u64).read_to_end(&mut self.buffer)?;
         let whole = self.buffer.len() / stride;
@@ -69,6 +82,11 @@ impl Plain {
             let missing = std::mem::take(&mut self.left);
             let text = format!("the file became shorter while it was read: {missing} points are missing");
             self.cut.refuse_or_warn(text, self.input.length, warnings)?;
+        }
+        let passed_over = self.left.min(self.passed_over);
+        if passed_over > 0 {
+            self.input.file.seek_relative((passed_over * stride as u64) as i64)?;
+            self.left -= passed_over;
         }
         Ok(())
     }

@@ -91,6 +91,14 @@ impl PointSource for LasReader {
         result.map_err(|error| error.in_file(&self.name))
     }
 
+    fn thin(&mut self, spacing: u64) -> bool {
+        match &mut self.points {
+            Points::Plain(plain) => plain.thin(spacing),
+            Points::Compressed(laz) => laz.thin(spacing),
+            Points::Done => true,
+        }
+    }
+
     fn warnings(&self) -> &[String] {
         &self.warnings
     }

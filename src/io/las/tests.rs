@@ -185,6 +185,37 @@ fn many_chunks_come_in_order() {
 }
 
 #[test]
+fn thinned_sources_have_parts_all_over() {
+    for (format, is_compressed) in [(1, false), (1, true), (6, true)] {
+        let bytes = Spec { is_compressed, points: 420_001, ..Spec::new((1, 4), format) }.write();
+        for (spacing, firsts) in [
+            (100_000, &[0, 100_000, 200_000, 300_000, 400_000][..]),
+            (150_000, &[0, 150_000, 300_000]),
+            (1 << 40, &[0]),
+        ] {
+            let mut reader = from_stream(&bytes[..], "test").unwrap();
+            assert!(reader.thin(spacing));
+            let mut batch = PointBatch::default();
+            let mut found = Vec::new();
+            loop {
+                reader.read(&mut batch).unwrap();
+                if batch.is_empty() {
+                    break;
+                }
+                found.extend(batch.x.iter().copied());
+            }
+            let parts = firsts.iter().flat_map(|&first| first..(first + 50_000).min(420_001));
+            assert!(found.into_iter().eq(parts.map(|i| coordinates(i)[0])), "{format} {spacing}");
+        }
+        let mut reader = from_stream(&bytes[..], "test").unwrap();
+        assert!(reader.thin(0) && reader.warnings().is_empty());
+        let mut batch = PointBatch::default();
+        reader.read(&mut batch).unwrap();
+        assert!(!batch.is_empty());
+    }
+}
+
+#[test]
 fn one_thread_gives_what_many_give() {
     let bytes = Spec { is_compressed: true, points: 120_000, ..Spec::new((1, 4), 7) }.write();
     for threads in [1, 3] {

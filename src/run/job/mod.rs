@@ -17,9 +17,13 @@ mod contours;
 mod holes;
 mod lines;
 mod lock;
+mod output;
 mod plan;
+mod planned_file;
 mod raster;
+mod sampled;
 mod schedule;
+mod stored;
 mod surface;
 mod task_file;
 mod tasks;
@@ -31,30 +35,25 @@ use std::sync::OnceLock;
 
 use serde_json::Value;
 
-use self::contours::DrawnContours;
 use self::lock::remove_files;
 pub use self::lock::{JobLock, remove_job};
+pub use self::output::JobReport;
 #[cfg(feature = "cli")]
 pub(crate) use self::plan::not_in_tiles;
 use self::plan::{Known, Plan, fingerprint};
-use self::raster::DrawnCells;
 pub use self::surface::WrittenParts;
 use self::task_file::{TaskFile, UNFINISHED};
-use super::cells::{CellProduct, DemOptions, HillshadeOptions};
+use super::cells::{DemOptions, HillshadeOptions};
 use super::checksum::checksum;
 use super::context::{Context, Journal};
 use super::contour::ContourOptions;
-use super::frame::{self, FrameOptions};
+use super::frame::FrameOptions;
 use super::notice::Notice;
 use super::point_files::PointFiles;
 use super::surface::{Source, SurfaceRequest};
 use super::systems::SystemOptions;
 use super::tin::TinRequest;
-use crate::crs::Crs;
-use crate::data::Bounds;
 use crate::error::{Error, Result};
-use crate::io::Destination;
-use crate::io::contours::ContourSummary;
 use crate::terrain::Method;
 use crate::terrain::tiles::{Step, Work};
 
@@ -78,6 +77,18 @@ pub struct TileOptions {
     pub folder: PathBuf,
     /// What becomes of files that cannot be read.
     pub bad: BadFiles,
+    /// How far files are read to plan.
+    pub look: Look,
+}
+
+/// How far files are read to plan.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Look {
+    /// A sample of the points of large files.
+    #[default]
+    Points,
+    /// Their headers: points are taken to be spread evenly.
+    Headers,
 }
 
 /// Which tiles there are.
@@ -161,14 +172,12 @@ enum Task {
 #[derive(Debug)]
 pub struct Job<'a> {
     request: &'a TinRequest,
-    systems: &'a SystemOptions,
     product: &'a TiledProduct,
     bad: BadFiles,
     folder: PathBuf,
     plan: Plan,
     steps: Vec<Step>,
     /// True if the plan has files that were replaced since it was written.
-    has_replaced_files: bool,
     /// Read by the first task that needs it, unless the plan was made by this process.
     known: OnceLock<Known>,
     /// What was assumed and what looks wrong, in the order in which it was found.
@@ -198,44 +207,6 @@ pub struct JobSize {
     pub task_memory: u64,
 }
 
-/// Counts of a job that is done.
-#[derive(Debug, Clone, Default, PartialEq)]
-#[non_exhaustive]
-pub struct JobReport {
-    /// Points read.
-    pub read: u64,
-    /// Points used.
-    pub used: u64,
-    /// Points left out because they are flagged as withheld.
-    pub withheld: u64,
-    /// Points left out because of their class.
-    pub other_class: u64,
-    /// What readers found wrong in files.
-    pub warnings: Vec<String>,
-    /// Points at the position of another.
-    pub duplicates: u64,
-    /// Edges on lines.
-    pub line_edges: u64,
-    /// Triangles of the surface.
-    pub triangles: u64,
-    /// Triangles that were left out at the rim.
-    pub beyond_max_edge: u64,
-    /// Triangles that no clip line comes near and that were left out.
-    pub clipped: u64,
-    /// Triangles that were left out because they reach into the extents of skipped files.
-    pub over_skipped: u64,
-    /// Triangles that waited for the decision about the rim.
-    pub waited: u64,
-    /// Vertices that were handed up in all.
-    pub handed_up: u64,
-    /// The box around the surface.
-    pub extent: Bounds,
-    /// The files that were skipped, with the reasons.
-    pub skipped: Vec<String>,
-    /// The coordinate system.
-    pub crs: Option<Crs>,
-}
-
 impl<'a> Job<'a> {
     /// Plans a job. Nothing is written.
     ///
@@ -256,26 +227,18 @@ impl<'a> Job<'a> {
         let journal = Journal::new(context);
         let (plan, known) = Plan::new(request, systems, product, options, &journal)?;
         let known = OnceLock::from(known);
-        Ok(Job { known, notices: journal.take(), ..Self::of_plan(request, systems, product, options, plan) })
+        Ok(Job { known, notices: journal.take(), ..Self::of_plan(request, product, options, plan) })
     }
 
-    fn of_plan(
-        request: &'a TinRequest,
-        systems: &'a SystemOptions,
-        product: &'a TiledProduct,
-        options: &TileOptions,
-        plan: Plan,
-    ) -> Self {
+    fn of_plan(request: &'a TinRequest, product: &'a TiledProduct, options: &TileOptions, plan: Plan) -> Self {
         let steps = plan.layout.steps();
         Job {
             request,
-            systems,
             product,
             bad: options.bad,
             folder: options.folder.clone(),
             plan,
             steps,
-            has_replaced_files: false,
             known: OnceLock::new(),
             notices: Vec::new(),
         }
@@ -308,14 +271,64 @@ impl<'a> Job<'a> {
         self.write_plan()
     }
 
-    /// Opens the job of a request in its folder; `None` if there is none.
+    /// Opens the job of a request in its folder, to do what is left; `None` if there is none.
     ///
     /// A file that has changed since the job was planned counts as repaired if no task has read it
-    /// and its header states the same number and extent; then it is taken as it is now.
+    /// and its header states the same number and extent; then it is taken as it is now. One that a
+    /// task has read may be missing.
     ///
     /// # Errors
     /// If the job is that of another request, or damaged, or a file has changed otherwise.
     pub fn open(request: &'a SurfaceRequest, product: &'a TiledProduct, options: &TileOptions) -> Result<Option<Self>> {
+        let Some(job) = Self::stored(request, product, options)? else { return Ok(None) };
+        for number in 0..job.plan.files.len() {
+            job.check_file(number)?;
+        }
+        job.plan.require_others_unchanged()?;
+        Ok(Some(job))
+    }
+
+    /// Like [`open`](Self::open), to do one task, or to write the output as the last one: of the
+    /// files of points, only the one that it reads is looked at.
+    ///
+    /// # Errors
+    /// Those of [`open`](Self::open), or if there is no such task.
+    pub fn open_for(
+        request: &'a SurfaceRequest,
+        product: &'a TiledProduct,
+        options: &TileOptions,
+        task: usize,
+    ) -> Result<Option<Self>> {
+        let Some(job) = Self::stored(request, product, options)? else { return Ok(None) };
+        if task > job.task_count() {
+            return Err(job.no_task(task));
+        }
+        if let Some(number) = job.file_of(task) {
+            job.check_file(number)?;
+        }
+        job.plan.require_others_unchanged()?;
+        Ok(Some(job))
+    }
+
+    /// Checks that a file is as its task has read it, or as the plan expects it.
+    fn check_file(&self, number: usize) -> Result<()> {
+        let path = &self.plan.files[number].path;
+        let Ok(Some(task)) = TaskFile::open(&self.task_path(self.reader_of(number))) else {
+            return self.plan.require_same_points(number, self.request);
+        };
+        // What a task has read is not needed any more.
+        if path.exists() { planned_file::require_state(path, task.state_of_input()) } else { Ok(()) }
+    }
+
+    /// Like [`open`](Self::open), to see what is done: no other files are looked at.
+    ///
+    /// # Errors
+    /// If the job is that of another request, or damaged.
+    pub fn stored(
+        request: &'a SurfaceRequest,
+        product: &'a TiledProduct,
+        options: &TileOptions,
+    ) -> Result<Option<Self>> {
         let (request, systems) = tiled(request, product)?;
         let path = options.folder.join(PLAN);
         let text = match std::fs::read_to_string(&path) {
@@ -337,15 +350,24 @@ impl<'a> Job<'a> {
                 .in_file(&options.folder)
                 .cure("repeat that command, or name another folder (--job)"));
         }
-        let mut job = Self::of_plan(request, systems, product, options, plan);
-        for number in 0..job.plan.files.len() {
-            if job.plan.require_unchanged(number).is_err() && !job.is_done(job.reader_of(number)) {
-                job.plan.replace_file(number, job.request)?;
-                job.has_replaced_files = true;
-            }
+        Ok(Some(Self::of_plan(request, product, options, plan)))
+    }
+
+    /// Returns the file of points that a task reads, if it reads one.
+    pub fn input(&self, task: usize) -> Option<&Path> {
+        self.file_of(task).map(|number| self.plan.files[number].path.as_path())
+    }
+
+    /// The number of the file of points that a task reads.
+    fn file_of(&self, task: usize) -> Option<usize> {
+        match self.task(task) {
+            Task::Divide(file) => Some(file),
+            Task::Triangulate(step) if !self.plan.divides => match self.steps[step].work {
+                Work::Leaf(tile) => Some(tile as usize),
+                Work::Merge(_) => None,
+            },
+            Task::Triangulate(_) | Task::Lines | Task::Rim | Task::Cut => None,
         }
-        job.plan.require_all_unchanged()?;
-        Ok(Some(job))
     }
 
     /// The task that reads a file.
@@ -365,12 +387,6 @@ impl<'a> Job<'a> {
         let mut file = task_file::unfinished_in(&self.folder).map_err(named)?;
         write!(file, "{:08x}\n{plan}", checksum(plan.as_bytes())).map_err(named)?;
         file.persist(&path).map(drop).map_err(|e| Error::from(e.error).in_file(&path))
-    }
-
-    /// Writes the plan again if files were replaced. It has to be written before they are read: a
-    /// file that has changed since the plan, and that a task has read, is refused.
-    fn store_replaced_files(&self) -> Result<()> {
-        if self.has_replaced_files { self.write_plan() } else { Ok(()) }
     }
 
     /// Returns the numbers of the plan.
@@ -444,10 +460,10 @@ impl<'a> Job<'a> {
         if let Some(known) = self.known.get() {
             return Ok(known);
         }
-        // What there is to say about the files was said with the plan.
+        // What there is to say about the layers was said with the plan.
         let quiet = Context { cancel: context.cancel, ..Context::default() };
-        let known =
-            Known::read(self.request, self.systems, &self.plan.skipped, &self.plan.extent(), &Journal::new(&quiet))?;
+        let (crs, extent) = (self.plan.crs.as_ref(), self.plan.extent());
+        let known = Known::read(self.request, crs, &extent, &Journal::new(&quiet))?;
         Ok(self.known.get_or_init(|| known))
     }
 
@@ -559,7 +575,6 @@ impl<'a> Job<'a> {
     /// # Errors
     /// If a file cannot be removed.
     pub fn clear_up(&self, _lock: &JobLock) -> Result<usize> {
-        self.store_replaced_files()?;
         let folder = self.folder.join("tasks");
         let named = |e: std::io::Error| Error::from(e).in_file(&folder);
         // An interrupted removal may have taken it.
@@ -600,114 +615,8 @@ impl<'a> Job<'a> {
             return Err(self.no_task(task));
         }
         let _lock = self.lock_shared()?;
-        self.store_replaced_files()?;
         self.require_each(self.needs(task).into_iter())?;
         if self.is_done(task) { Ok(()) } else { self.do_task(task, context) }
-    }
-
-    /// Returns counts of all tasks, which must be done.
-    ///
-    /// # Errors
-    /// If a task is not done.
-    pub fn report(&self) -> Result<JobReport> {
-        let skipped = self.plan.skipped.iter().map(|(_, text)| text.clone()).collect();
-        let mut report = JobReport { skipped, ..JobReport::default() };
-        for task in 0..self.task_count() {
-            let file = self.open_task(task)?;
-            report.read += file.count("read");
-            report.used += file.count("used");
-            report.withheld += file.count("withheld");
-            report.other_class += file.count("other_class");
-            let warnings = file.facts.get("warnings").and_then(Value::as_array).into_iter().flatten();
-            report.warnings.extend(warnings.filter_map(|text| text.as_str().map(str::to_owned)));
-            report.duplicates += file.count("duplicates");
-            report.line_edges += file.count("line_edges");
-            report.triangles += file.count("triangles");
-            report.beyond_max_edge += file.count("removed");
-            report.clipped += file.count("clipped");
-            report.over_skipped += file.count("over_skipped");
-            report.waited += file.count("waiting");
-            report.handed_up += file.count("residual");
-            if let Some(text) = file.facts.get("skipped").and_then(Value::as_str) {
-                report.skipped.push(text.to_owned());
-            }
-            for corner in file.facts.get("extent").and_then(Value::as_array).into_iter().flatten() {
-                let coordinate = |k: usize| corner[k].as_f64().unwrap_or(f64::NAN);
-                report.extent.add([coordinate(0), coordinate(1), coordinate(2)]);
-            }
-        }
-        report.crs.clone_from(&self.known(&Context::default())?.crs);
-        Ok(report)
-    }
-
-    /// Returns the cells of a raster, once all tasks are done.
-    ///
-    /// # Errors
-    /// If a task is not done, if no triangle is left, or if the job makes no raster; and those of
-    /// [`dem`](super::dem).
-    pub fn cells(&self, report: &JobReport, context: &Context) -> Result<CellProduct<'static>> {
-        let journal = Journal::new(context);
-        self.require_triangles(report)?;
-        let (Some(options), Some(drawn)) = (self.product.frame(), self.plan.frame) else {
-            return Err(Error::usage("the job makes no raster"));
-        };
-        // Notices about the frame came with the plan.
-        let quiet = Context::default();
-        let frame = frame::placed(options, report.extent, report.crs.as_ref(), &Journal::new(&quiet))?;
-        frame::require_filled(options, &frame, &report.extent, || self.area())?;
-        let drawn = DrawnCells::open(self.step_paths(), drawn, frame, report.crs.clone())?;
-        Ok(match self.product {
-            TiledProduct::Shades(HillshadeOptions { light, .. }) => {
-                CellProduct::shades_of(Box::new(drawn), light, report.crs.as_ref(), &journal)?
-            }
-            TiledProduct::Heights(_) | TiledProduct::Contours(_) | TiledProduct::Surface => {
-                CellProduct::heights_of(Box::new(drawn), journal.take())
-            }
-        })
-    }
-
-    /// Writes the contours, once all tasks are done, in the format that the extension of `target`
-    /// names. They are drawn level by level, and not kept.
-    ///
-    /// # Errors
-    /// If a task is not done, if no triangle is left, or if the job makes no contours; and those of
-    /// [`ContourProduct::write`](super::ContourProduct::write).
-    pub fn write_contours(&self, report: &JobReport, target: Destination, context: &Context) -> Result<ContourSummary> {
-        self.require_triangles(report)?;
-        let TiledProduct::Contours(options) = self.product else {
-            return Err(Error::usage("the job makes no contours"));
-        };
-        let drawn = DrawnContours::open(self.step_paths(), &options.to_levels()?)?;
-        target.put_whole(|target| drawn.write(target, report.crs.as_ref(), context))
-    }
-
-    fn require_triangles(&self, report: &JobReport) -> Result<()> {
-        if report.triangles > 0 {
-            return Ok(());
-        }
-        let JobReport { read, used, beyond_max_edge, clipped, .. } = report;
-        Err(match (used, beyond_max_edge) {
-            _ if *clipped > 0 => {
-                Error::format(format!("no triangle is left: {clipped} lie outside of the boundary or the bounds"))
-                    .cure("check them, and the coordinate systems: `breakline info` shows the extent of each file")
-            }
-            (0, _) => Error::usage(format!("no point is left of {read} read"))
-                .cure("`breakline info` shows the classes of each file: choose with --class"),
-            (_, 0) => Error::format(format!("{used} points on one line, or fewer than three, do not span a surface"))
-                .cure("check the inputs and the classes (--class)"),
-            _ => Error::format(format!("no triangle is left: {beyond_max_edge} have edges over the limit at the rim"))
-                .cure("allow longer edges with --max-edge LENGTH or --max-edge none"),
-        })
-    }
-
-    /// The files of all tasks that have triangles.
-    fn step_paths(&self) -> Vec<PathBuf> {
-        (self.first_step()..self.task_count()).map(|task| self.task_path(task)).collect()
-    }
-
-    fn area(&self) -> f64 {
-        let of_task = |task| self.open_task(task).ok()?.facts.get("area")?.as_f64();
-        (0..self.task_count()).filter_map(of_task).sum()
     }
 
     /// Removes the folder of the job, which must be [locked](Self::lock).
@@ -734,7 +643,7 @@ pub fn needs_tiles(
     let memory = memory.unwrap_or_else(super::memory::half_of_free);
     // Opening a layer reads it. A point takes a byte at least, so the lengths nearly always
     // suffice.
-    let bytes: u64 = points.points.iter().map(|input| plan::length_of(input.path())).sum();
+    let bytes: u64 = points.points.iter().map(|input| planned_file::length_of(input.path())).sum();
     if super::memory::need_of(bytes) <= memory {
         return Ok(false);
     }
@@ -742,7 +651,7 @@ pub fn needs_tiles(
     let files = PointFiles::open(&points.points, points.read, &Journal::new(&quiet))?;
     let stated = points.points.iter().zip(files.stated_extents());
     let count: u64 =
-        stated.map(|(input, (count, _))| count.unwrap_or_else(|| plan::points_of_text(input.path()))).sum();
+        stated.map(|(input, (count, _))| count.unwrap_or_else(|| planned_file::points_of_text(input.path()))).sum();
     Ok(super::memory::need_of(count) > memory)
 }
 

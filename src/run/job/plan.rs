@@ -1,18 +1,16 @@
 //! The plan of a job: which tiles there are, and what all tasks must agree on.
 
-use std::path::{Path, PathBuf};
-use std::time::UNIX_EPOCH;
-
-use serde_json::{Value, json};
+use std::path::PathBuf;
 
 use super::lines::{self, JobLines};
-use super::{BadFiles, Division, TileOptions, TiledProduct};
+use super::planned_file::{PlannedFile, planned, require_state, state_of};
+use super::sampled;
+use super::{BadFiles, Division, Look, TileOptions, TiledProduct};
 use crate::crs::Crs;
-use crate::data::{Bounds, Frame, PointBatch};
+use crate::data::{Bounds, Frame};
 use crate::error::{Error, Kind, Result};
-use crate::io::layer;
 use crate::run::checksum::checksum;
-use crate::run::context::{Context, Journal, Size, Stage};
+use crate::run::context::{Context, Journal};
 use crate::run::frame::{self, FrameOptions};
 use crate::run::input::{Input, MemoryPoints};
 use crate::run::line_inputs::LineLayers;
@@ -24,7 +22,7 @@ use crate::run::systems::{self, SystemOptions, Systems};
 use crate::run::tin::{EdgeLimit, TinRequest};
 use crate::run::units::Units;
 use crate::terrain::Classes;
-use crate::terrain::tiles::{Layout, Node, Spread, TileClip, Work};
+use crate::terrain::tiles::{Layout, Spread, TileClip, Work};
 
 /// Bytes per point of a tile while it is triangulated and drawn; measured.
 pub(super) const BYTES_A_POINT: u64 = 220;
@@ -37,26 +35,6 @@ const LEAST_POINTS: u64 = 10_000;
 
 /// The share of the most points that a tile has on average: files may be denser in one place.
 const AVERAGE: f64 = 0.5;
-
-/// The rounding of the coordinates that headers state, in units of the last place.
-const HEADER_ROUNDING: f64 = 8.0;
-
-/// A file of points as the plan knows it.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct PlannedFile {
-    /// The position of the file in the request.
-    pub(super) input: usize,
-    pub(super) path: PathBuf,
-    /// Length in bytes and time of the last change in nanoseconds: a file that changes later is
-    /// refused.
-    pub(super) size: u64,
-    pub(super) modified: u64,
-    /// The number of its points.
-    pub(super) count: u64,
-    /// The box around its points in plan, as its header states it.
-    pub(super) min: [f64; 2],
-    pub(super) max: [f64; 2],
-}
 
 /// The path of a file, its length in bytes, and the time of its last change in nanoseconds.
 type OtherFile = (PathBuf, u64, u64);
@@ -81,6 +59,8 @@ pub(super) struct Plan {
     /// True if the surface is cut along lines, which one task does.
     pub(super) has_clip: bool,
     pub(super) layout: Layout,
+    /// The coordinate system of the result.
+    pub(super) crs: Option<Crs>,
     /// The classes that are used.
     pub(super) classes: Vec<u8>,
     /// The longest edge at the rim.
@@ -90,19 +70,6 @@ pub(super) struct Plan {
     pub(super) frame: Option<Frame>,
     /// The memory of one task.
     pub(super) task_memory: u64,
-}
-
-/// Returns the length of a file in bytes; 0 if it cannot be asked for.
-pub(super) fn length_of(path: &Path) -> u64 {
-    state_of(path).map_or(0, |(size, _)| size)
-}
-
-/// The bytes of a point in a text, at least.
-const BYTES_A_POINT_OF_TEXT: u64 = 24;
-
-/// Returns about how many points a file has that does not state it.
-pub(super) fn points_of_text(path: &Path) -> u64 {
-    length_of(path) / BYTES_A_POINT_OF_TEXT
 }
 
 /// Returns the error for an option that tiles do not have yet.
@@ -135,41 +102,33 @@ pub(super) fn require_tiled(request: &TinRequest, systems: &SystemOptions) -> Re
     Ok(())
 }
 
-/// What the tasks get from the headers of all files and from the layers of lines.
+/// What the tasks get from the layers of lines.
 #[derive(Debug)]
 pub(super) struct Known {
-    pub(super) crs: Option<Crs>,
     pub(super) lines: Option<JobLines>,
     pub(super) clip: Option<TileClip>,
 }
 
 impl Known {
-    /// Opens all files but those that the plan skips. `extent` is that of their points.
-    pub(super) fn read(
-        request: &TinRequest,
-        systems: &SystemOptions,
-        skipped: &[(usize, String)],
-        extent: &Bounds,
-        journal: &Journal,
-    ) -> Result<Self> {
-        let (_, inputs) = opened(request, skipped);
-        Self::of(&PointFiles::open(&inputs, request.read, journal)?, request, systems, extent, journal)
+    /// Reads the layers. `crs` is the system of the result, `extent` that of all points.
+    pub(super) fn read(request: &TinRequest, crs: Option<&Crs>, extent: &Bounds, journal: &Journal) -> Result<Self> {
+        Self::of(&layers_of(request, journal)?, request, crs, extent, journal)
     }
 
     fn of(
-        points: &PointFiles,
+        layers: &LineLayers,
         request: &TinRequest,
-        systems: &SystemOptions,
+        crs: Option<&Crs>,
         extent: &Bounds,
         journal: &Journal,
     ) -> Result<Self> {
-        let layers = LineLayers::read(&request.lines, &request.breaklines, &request.boundary, journal)?;
-        let mut stated = points.stated(&request.classes, journal)?;
-        stated.extend(layers.stated());
-        let Systems { crs, .. } = systems::reconcile_some(&stated, systems, journal)?;
-        let (lines, clip) = lines::of_layers(&layers, request, crs.as_ref(), extent, journal)?;
-        Ok(Known { crs, lines, clip })
+        let (lines, clip) = lines::of_layers(layers, request, crs, extent, journal)?;
+        Ok(Known { lines, clip })
     }
+}
+
+fn layers_of<'a>(request: &'a TinRequest, journal: &Journal) -> Result<LineLayers<'a>> {
+    LineLayers::read(&request.lines, &request.breaklines, &request.boundary, journal)
 }
 
 impl Plan {
@@ -188,6 +147,10 @@ impl Plan {
             BadFiles::Refuse => Vec::new(),
         };
         let (numbers, inputs) = opened(request, &skipped);
+        if options.look == Look::Headers && request.classes == Classes::GroundOrAll {
+            return Err(Error::usage("which classes are used is not known from headers alone")
+                .cure("state them, such as --class 2 for ground"));
+        }
         let points = PointFiles::open(&inputs, request.read, journal)?;
         let classes = points.used_classes(&request.classes, journal)?;
         if request.classes == Classes::GroundOrAll {
@@ -198,9 +161,13 @@ impl Plan {
             files.extend(planned(number, input, request, stated, &journal.context)?);
         }
         let extent = extent_of(&files);
-        let known = Known::of(&points, request, systems, &extent, journal)?;
-        let Known { crs, lines, clip } = &known;
+        let layers = layers_of(request, journal)?;
+        let mut stated = points.stated(&request.classes, journal)?;
         drop(points);
+        stated.extend(layers.stated());
+        let Systems { crs, .. } = systems::reconcile_some(&stated, systems, journal)?;
+        let known = Known::of(&layers, request, crs.as_ref(), &extent, journal)?;
+        let Known { lines, clip } = &known;
 
         let spreads: Vec<Spread> = files.iter().map(PlannedFile::spread).collect();
         if spreads.is_empty() {
@@ -224,7 +191,14 @@ impl Plan {
             }
             Division::Auto => match Layout::of_boxes(&spreads).filter(|_| are_small && lines.is_none()) {
                 Some(layout) => (layout, false),
-                None => (Layout::balanced(&spreads, most as f64 * AVERAGE), true),
+                None => {
+                    let average = most as f64 * AVERAGE;
+                    let spreads = match options.look {
+                        Look::Points => sampled::spreads(&files, request, &classes, average, &journal.context)?,
+                        Look::Headers => spreads,
+                    };
+                    (Layout::balanced(&spreads, average), true)
+                }
             },
         };
         let placed = |options: &FrameOptions| {
@@ -254,6 +228,7 @@ impl Plan {
             has_lines,
             has_clip,
             layout,
+            crs,
             classes,
             max_edge,
             frame,
@@ -277,127 +252,28 @@ impl Plan {
         self.layout.steps().iter().filter(|step| matches!(step.work, Work::Merge(_))).count()
     }
 
-    /// Returns an error if any file has changed since the plan was made.
-    pub(super) fn require_all_unchanged(&self) -> Result<()> {
-        (0..self.files.len()).try_for_each(|number| self.require_unchanged(number))?;
+    /// Returns an error if any file but those of points has changed since the plan was made.
+    pub(super) fn require_others_unchanged(&self) -> Result<()> {
         self.others.iter().try_for_each(|(path, size, modified)| require_state(path, (*size, *modified)))
     }
 
-    /// Returns an error if a file of points has changed since the plan was made.
-    pub(super) fn require_unchanged(&self, number: usize) -> Result<()> {
+    /// Returns an error if a file does not have the points that the plan expects, as far as their
+    /// number and extent tell: it may have been repaired.
+    pub(super) fn require_same_points(&self, number: usize, request: &TinRequest) -> Result<()> {
         let file = &self.files[number];
-        require_state(&file.path, (file.size, file.modified))
-    }
-
-    /// Takes a file as it is now.
-    ///
-    /// # Errors
-    /// If it does not have the points that the plan expects, by their number and extent.
-    pub(super) fn replace_file(&mut self, number: usize, request: &TinRequest) -> Result<()> {
-        let file = &self.files[number];
+        if state_of(&file.path)? == (file.size, file.modified) {
+            return Ok(());
+        }
         let (input, context) = (&request.points[file.input], Context::default());
         let source = open::points(input, request.read, &context)?;
         let info = source.info();
         let found = planned(file.input, input, request, (info.count, info.bounds), &context)?;
         match found {
-            Some(found) if (found.count, found.min, found.max) == (file.count, file.min, file.max) => {
-                self.files[number] = found;
-                Ok(())
-            }
+            Some(found) if (found.count, found.min, found.max) == (file.count, file.min, file.max) => Ok(()),
             _ => Err(Error::usage("the file was replaced by one of another extent or number of points")
                 .in_file(&file.path)
                 .cure("plan the job again: `breakline job clean` removes this one")),
         }
-    }
-
-    pub(super) fn to_json(&self) -> Value {
-        let file = |file: &PlannedFile| {
-            json!({
-                "path": file.path, "input": file.input, "size": file.size, "modified": file.modified,
-                "count": file.count, "min": file.min, "max": file.max,
-            })
-        };
-        let node = |node: &Node| match node {
-            Node::Tile(number) => json!(number),
-            Node::Cut { axis, at, parts } => json!([axis, at, parts[0], parts[1]]),
-        };
-        json!({
-            "version": env!("CARGO_PKG_VERSION"),
-            "request": self.request,
-            "files": self.files.iter().map(file).collect::<Vec<_>>(),
-            "others": self.others,
-            "skipped": self.skipped,
-            "divides": self.divides,
-            "has_lines": self.has_lines,
-            "has_clip": self.has_clip,
-            "layout": self.layout.nodes().iter().map(node).collect::<Vec<_>>(),
-            "classes": self.classes,
-            "max_edge": self.max_edge,
-            "frame": self.frame.map(|frame| json!([frame.width, frame.height, frame.transform])),
-            "task_memory": self.task_memory,
-        })
-    }
-
-    /// Returns the plan that a value states; `None` if it does not, or is that of another version.
-    pub(super) fn from_json(value: &Value) -> Option<Self> {
-        if value["version"] != env!("CARGO_PKG_VERSION") {
-            return None;
-        }
-        let whole = |value: &Value| usize::try_from(value.as_u64()?).ok();
-        let number = |value: &Value| u32::try_from(value.as_u64()?).ok();
-        let file = |value: &Value| {
-            Some(PlannedFile {
-                path: serde_json::from_value(value["path"].clone()).ok()?,
-                input: whole(&value["input"])?,
-                size: value["size"].as_u64()?,
-                modified: value["modified"].as_u64()?,
-                count: value["count"].as_u64()?,
-                min: serde_json::from_value(value["min"].clone()).ok()?,
-                max: serde_json::from_value(value["max"].clone()).ok()?,
-            })
-        };
-        let node = |value: &Value| match value {
-            Value::Array(parts) if parts.len() == 4 => Some(Node::Cut {
-                axis: whole(&parts[0])?,
-                at: parts[1].as_f64()?,
-                parts: [number(&parts[2])?, number(&parts[3])?],
-            }),
-            value => number(value).map(Node::Tile),
-        };
-        let nodes = value["layout"].as_array()?.iter().map(node).collect::<Option<_>>()?;
-        let class = |value: &Value| u8::try_from(value.as_u64()?).ok();
-        let frame = |value: &Value| {
-            let transform = serde_json::from_value(value[2].clone()).ok()?;
-            Frame { width: whole(&value[0])?, height: whole(&value[1])?, transform }.checked().ok()
-        };
-        Some(Plan {
-            request: value["request"].as_str()?.to_owned(),
-            files: value["files"].as_array()?.iter().map(file).collect::<Option<_>>()?,
-            others: serde_json::from_value(value["others"].clone()).ok()?,
-            skipped: serde_json::from_value(value["skipped"].clone()).ok()?,
-            divides: value["divides"].as_bool()?,
-            has_lines: value["has_lines"].as_bool()?,
-            has_clip: value["has_clip"].as_bool()?,
-            layout: Layout::from_nodes(nodes)?,
-            classes: value["classes"].as_array()?.iter().map(class).collect::<Option<_>>()?,
-            max_edge: value["max_edge"].as_f64(),
-            frame: match &value["frame"] {
-                Value::Null => None,
-                value => Some(frame(value)?),
-            },
-            task_memory: value["task_memory"].as_u64()?,
-        })
-        .filter(|plan| plan.divides || plan.files.len() == plan.layout.tile_count())
-    }
-}
-
-impl PlannedFile {
-    /// Returns the box around its points, with what rounding may add to a header.
-    pub(super) fn spread(&self) -> Spread {
-        let PlannedFile { min, max, .. } = *self;
-        let rounding = [0, 1].map(|k: usize| HEADER_ROUNDING * f64::EPSILON * min[k].abs().max(max[k].abs()));
-        let (low, high) = ([0, 1].map(|k| min[k] - rounding[k]), [0, 1].map(|k| max[k] + rounding[k]));
-        Spread { min: low, max: high, count: self.count as f64 }
     }
 }
 
@@ -457,61 +333,6 @@ fn opened(request: &TinRequest, skipped: &[(usize, String)]) -> (Vec<usize>, Vec
     inputs.filter(|(number, _)| !is_skipped(number)).unzip()
 }
 
-/// Returns what the plan has to know of a file; `None` if it has no points.
-fn planned(
-    number: usize,
-    input: &Input<MemoryPoints>,
-    request: &TinRequest,
-    stated: (Option<u64>, Option<Bounds>),
-    context: &Context,
-) -> Result<Option<PlannedFile>> {
-    let path = input.path();
-    let (size, modified) = state_of(path)?;
-    let (count, bounds) = match stated {
-        (Some(count), Some(bounds)) => (count, bounds),
-        (Some(0), None) => (0, Bounds::default()),
-        _ => measured(input, request, context).map_err(|e| e.in_file(path))?,
-    };
-    if count == 0 {
-        return Ok(None);
-    }
-    let is_finite = (0..2).all(|k| bounds.min[k].is_finite() && bounds.max[k].is_finite());
-    if !is_finite {
-        return Err(Error::format("the header states an extent that is not finite")
-            .in_file(path)
-            .cure("`breakline points` writes a file with a true header"));
-    }
-    let [min, max] = [bounds.min, bounds.max].map(|[x, y, _]| [x, y]);
-    Ok(Some(PlannedFile { input: number, path: path.to_path_buf(), size, modified, count, min, max }))
-}
-
-/// Counts the points of a file that does not state their number or extent.
-fn measured(input: &Input<MemoryPoints>, request: &TinRequest, context: &Context) -> Result<(u64, Bounds)> {
-    let mut source = open::points(input, request.read, context)?;
-    let work = context.start(Stage::ReadingPoints, Size::Unknown)?;
-    let (mut count, mut bounds) = (0, Bounds::default());
-    let mut batch = PointBatch::default();
-    loop {
-        source.read(&mut batch)?;
-        if batch.is_empty() {
-            return Ok((count, bounds));
-        }
-        count += batch.len() as u64;
-        (0..batch.len()).for_each(|i| bounds.add([batch.x[i], batch.y[i], batch.z[i]]));
-        work.add(batch.len() as u64)?;
-    }
-}
-
-/// Returns an error unless a file has this length and this time of its last change.
-fn require_state(path: &Path, planned: (u64, u64)) -> Result<()> {
-    if state_of(path)? == planned {
-        return Ok(());
-    }
-    Err(Error::usage("the file has changed since the job was planned")
-        .in_file(path)
-        .cure("plan the job again: `breakline job clean` removes this one"))
-}
-
 /// Returns the states of the files that are read beside the points.
 fn others(request: &TinRequest, product: &TiledProduct) -> Result<Vec<OtherFile>> {
     let layers = request.lines.inputs().into_iter().flat_map(|(_, inputs)| inputs);
@@ -526,22 +347,4 @@ fn others(request: &TinRequest, product: &TiledProduct) -> Result<Vec<OtherFile>
         Ok((path.clone(), size, modified))
     };
     layers.chain(raster).map(state).collect()
-}
-
-/// Returns the length of a file, which may be named together with a layer, and the time of its last
-/// change.
-fn state_of(path: &Path) -> Result<(u64, u64)> {
-    let about = match std::fs::metadata(path) {
-        Ok(about) => about,
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
-            let spec = path.to_str().and_then(|text| layer::Spec::parse(text).ok());
-            match spec.map(|spec| std::fs::metadata(spec.path)) {
-                Some(Ok(about)) => about,
-                _ => return Err(Error::from(error).in_file(path)),
-            }
-        }
-        Err(error) => return Err(Error::from(error).in_file(path)),
-    };
-    let modified = about.modified().ok().and_then(|time| time.duration_since(UNIX_EPOCH).ok());
-    Ok((about.len(), modified.map_or(0, |time| time.as_nanos() as u64)))
 }

@@ -21,6 +21,9 @@ const MAGIC: &[u8; 8] = b"BRKTASK1";
 /// The end of names of files that are not complete.
 pub(super) const UNFINISHED: &str = ".unfinished";
 
+/// The fact that has the state of the file of points that a task has read.
+pub(super) const INPUT: &str = "input";
+
 /// The bytes after the facts: their length, the checksum, the magic.
 const END: u64 = 8 + 4 + 8;
 
@@ -153,6 +156,13 @@ impl TaskFile {
         let facts = value.get_mut("facts").map(Value::take);
         let (Some(sections), Some(Value::Object(facts))) = (sections, facts) else { return Err(damaged()) };
         Ok(TaskFile { file, path: path.to_path_buf(), sections, facts })
+    }
+
+    /// Returns the length of the file of points that the task has read, and the time of its last
+    /// change in nanoseconds.
+    pub(super) fn state_of_input(&self) -> (u64, u64) {
+        let number = |k: usize| self.facts.get(INPUT).and_then(|state| state[k].as_u64()).unwrap_or_default();
+        (number(0), number(1))
     }
 
     /// Returns an error if the checksum is not that of the bytes.

@@ -4,10 +4,10 @@ use serde_json::{Map, Value, json};
 
 use super::bytes::{self, Reader, put_u32, put_u64};
 use super::holes::Holes;
-use super::plan::Known;
+use super::planned_file::{require_state, state_of};
 use super::raster::Drawing;
 use super::surface::PartFaces;
-use super::task_file::{TaskFile, TaskWriter};
+use super::task_file::{INPUT, TaskFile, TaskWriter};
 use super::{BadFiles, Job, Task, TiledProduct};
 use super::{contours, lines};
 use crate::data::{Bounds, PointBatch};
@@ -105,8 +105,8 @@ impl Job<'_> {
     /// Arranges the lines, with the points next to them from all files.
     fn arrange(&self, writer: &mut TaskWriter, context: &Context) -> Result<Map<String, Value>> {
         let journal = Journal::new(context);
-        let Known { crs, lines, .. } = self.known(context)?;
-        let Some(lines) = lines else { return Ok(Map::new()) };
+        let crs = self.plan.crs.as_ref();
+        let Some(lines) = &self.known(context)?.lines else { return Ok(Map::new()) };
         let mut near = Vec::new();
         let mut extent = Bounds::default();
         for (number, file) in self.plan.files.iter().enumerate() {
@@ -118,7 +118,7 @@ impl Job<'_> {
             }
             [file.min, file.max].into_iter().for_each(|[x, y]| extent.add([x, y, 0.0]));
         }
-        let tin = lines.build(near, &extent, crs.as_ref(), &journal)?;
+        let tin = lines.build(near, &extent, crs, &journal)?;
         let edges = lines::write(lines, &tin, &self.plan.layout, writer)?;
         Ok(Map::from_iter([("line_edges".to_owned(), json!(edges))]))
     }
@@ -128,8 +128,9 @@ impl Job<'_> {
         let path = &self.plan.files[file].path;
         match read {
             Err(error) if self.bad == BadFiles::Skip && matches!(error.kind(), Kind::Format | Kind::Unsupported) => {
+                let state = state_of(path)?;
                 let error = error.in_file(path);
-                Ok(Map::from_iter([("skipped".to_owned(), json!(error.to_string()))]))
+                Ok(Map::from_iter([("skipped".to_owned(), json!(error.to_string())), (INPUT.to_owned(), json!(state))]))
             }
             read => read.map_err(|e| e.in_file(path)),
         }
@@ -142,8 +143,9 @@ impl Job<'_> {
         context: &Context,
         take: &mut dyn FnMut(Vec<[f64; 3]>),
     ) -> Result<Map<String, Value>> {
-        self.plan.require_unchanged(number)?;
+        self.plan.require_same_points(number, self.request)?;
         let file = &self.plan.files[number];
+        let state = state_of(&file.path)?;
         let mut source = open::points(&self.request.points[file.input], self.request.read, context)?;
         let mut selection = Selection::new(Classes::Only(self.plan.classes.clone()), None);
         let spread = file.spread();
@@ -151,11 +153,12 @@ impl Job<'_> {
         loop {
             source.read(&mut batch)?;
             if batch.is_empty() {
-                self.plan.require_unchanged(number)?;
+                require_state(&file.path, state)?;
                 let mut facts = facts_of(&selection.finish().1);
                 let name = file.path.display();
                 let warnings: Vec<String> = source.warnings().iter().map(|text| format!("{name}: {text}")).collect();
                 facts.insert("warnings".to_owned(), json!(warnings));
+                facts.insert(INPUT.to_owned(), json!(state));
                 return Ok(facts);
             }
             selection.add(&batch)?;

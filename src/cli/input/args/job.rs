@@ -28,6 +28,10 @@ pub(in crate::cli) enum JobAction {
         /// Folder to create
         #[arg(value_name = "JOB")]
         job: PathBuf,
+        /// Read no points to plan, only headers: points are taken to be spread evenly over their
+        /// files. Classes have to be stated
+        #[arg(long)]
+        headers_only: bool,
         /// The command, after `--`
         #[arg(required = true, last = true, value_name = "COMMAND")]
         command: Vec<String>,

@@ -24,6 +24,11 @@ pub(in crate::cli) struct SurfaceArgs {
     #[arg(required = true, value_name = "IN")]
     pub(in crate::cli) inputs: Vec<PathBuf>,
 
+    /// The files that a job was planned with, instead of the inputs that were typed: those that
+    /// were read may be missing.
+    #[arg(skip)]
+    pub(in crate::cli) planned: Option<Vec<PathBuf>>,
+
     #[command(flatten)]
     pub(in crate::cli) read: ReadArgs,
 

@@ -113,8 +113,19 @@ impl Laz {
             waiting: chunks.into(),
             decoded: VecDeque::new(),
             spare: Vec::new(),
-            next: 1,
         }))
+    }
+
+    pub(super) fn thin(&mut self, spacing: u64) -> bool {
+        match self {
+            Laz::Chunks(chunks) => {
+                // Those that have the first of each `spacing` points.
+                let part = |point: u64| point.div_ceil(spacing.max(1));
+                chunks.waiting.retain(|chunk| part(chunk.first) < part(chunk.first + chunk.points));
+                true
+            }
+            Laz::Stream(_) => false,
+        }
     }
 
     pub(super) fn read(&mut self, batch: &mut PointBatch, warnings: &mut Vec<String>) -> Result<()> {
@@ -150,8 +161,6 @@ pub(super) struct Chunks {
     decoded: VecDeque<Result<PointBatch>>,
     /// Batches whose memory is reused.
     spare: Vec<PointBatch>,
-    /// Index of the first chunk that is not decoded yet.
-    next: usize,
 }
 
 impl Chunks {
@@ -167,22 +176,19 @@ impl Chunks {
 
     fn decode_ahead(&mut self) -> Result<()> {
         let group = self.take_group();
-        let (Some(first), Some(last)) = (group.first(), group.last()) else { return Ok(()) };
-        let start = first.start;
-        let bytes = self.input.bytes(start, (last.start + last.bytes - start) as usize)?;
-        let (compression, layout, number) = (&self.compression, self.layout, self.next);
-        self.next += group.len();
-        self.spare.resize_with(group.len(), PointBatch::default);
-        let work: Vec<_> = group.iter().zip(self.spare.drain(..)).enumerate().collect();
+        let mut work = Vec::with_capacity(group.len());
+        for chunk in group {
+            let bytes = self.input.bytes(chunk.start, chunk.bytes as usize)?;
+            work.push((chunk, bytes, self.spare.pop().unwrap_or_default()));
+        }
+        let (compression, layout) = (&self.compression, self.layout);
         let decoded: Vec<_> = work
             .into_par_iter()
-            .map(|(i, (chunk, mut batch))| {
+            .map(|(chunk, bytes, mut batch)| {
                 batch.clear();
-                let offset = (chunk.start - start) as usize;
-                let bytes = bytes.get(offset..offset + chunk.bytes as usize).unwrap_or_default();
-                match chunk::decode(bytes, chunk.points, compression, layout, &mut batch) {
+                match chunk::decode(&bytes, chunk.points, compression, layout, &mut batch) {
                     Ok(()) => Ok(batch),
-                    Err(reason) => Err(damaged(chunk, number + i, &reason)),
+                    Err(reason) => Err(damaged(&chunk, &reason)),
                 }
             })
             .collect();
@@ -190,7 +196,7 @@ impl Chunks {
         Ok(())
     }
 
-    /// Takes the chunks to decode next, which are contiguous in the file.
+    /// Takes the chunks to decode next.
     fn take_group(&mut self) -> Vec<Chunk> {
         let threads = rayon::current_num_threads();
         let mut group = Vec::new();
@@ -208,8 +214,8 @@ impl Chunks {
     }
 }
 
-fn damaged(chunk: &Chunk, number: usize, reason: &str) -> Error {
-    let Chunk { start, first, points, .. } = *chunk;
+fn damaged(chunk: &Chunk, reason: &str) -> Error {
+    let Chunk { number, start, first, points, .. } = *chunk;
     Error::format(format!("the compressed points are damaged: {reason}"))
         .at(format!("chunk {number} at byte {start} (points {first} to {})", first + points - 1))
         .cure("copy or download the file again")

@@ -16,6 +16,8 @@ pub(super) const POINTER: u64 = 8;
 /// A sequence of points that is compressed on its own.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Chunk {
+    /// Its position in the file, from 1.
+    pub(super) number: usize,
     pub(super) start: u64,
     pub(super) bytes: u64,
     /// Index of its first point in the file.
@@ -71,7 +73,7 @@ pub(super) fn read(input: &mut Input, compression: &Compression, header: &Header
         if bytes < compression.stride as u64 || (bytes > largest && !is_last) {
             return Err(damaged(format!("states {bytes} bytes for the {points} points of chunk {number}")));
         }
-        chunks.push(Chunk { start, bytes, first, points });
+        chunks.push(Chunk { number: chunks.len() + 1, start, bytes, first, points });
         start += bytes;
         first += points;
     }
@@ -110,7 +112,7 @@ pub(super) fn walk(input: &mut Input, compression: &Compression, header: &Header
             break;
         }
         let points = points.min(header.count - first);
-        chunks.push(Chunk { start, bytes, first, points });
+        chunks.push(Chunk { number: chunks.len() + 1, start, bytes, first, points });
         start += bytes;
         first += points;
     }

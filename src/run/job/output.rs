@@ -1,0 +1,161 @@
+//! What is made of a job whose tasks are all done: counts, a raster, contours.
+
+use std::path::PathBuf;
+
+use serde_json::Value;
+
+use super::contours::DrawnContours;
+use super::raster::DrawnCells;
+use super::{Job, TiledProduct};
+use crate::crs::Crs;
+use crate::data::Bounds;
+use crate::error::{Error, Result};
+use crate::io::Destination;
+use crate::io::contours::ContourSummary;
+use crate::run::cells::{CellProduct, HillshadeOptions};
+use crate::run::context::{Context, Journal};
+use crate::run::frame;
+
+/// Counts of a job that is done.
+#[derive(Debug, Clone, Default, PartialEq)]
+#[non_exhaustive]
+pub struct JobReport {
+    /// Points read.
+    pub read: u64,
+    /// Points used.
+    pub used: u64,
+    /// Points left out because they are flagged as withheld.
+    pub withheld: u64,
+    /// Points left out because of their class.
+    pub other_class: u64,
+    /// What readers found wrong in files.
+    pub warnings: Vec<String>,
+    /// Points at the position of another.
+    pub duplicates: u64,
+    /// Edges on lines.
+    pub line_edges: u64,
+    /// Triangles of the surface.
+    pub triangles: u64,
+    /// Triangles that were left out at the rim.
+    pub beyond_max_edge: u64,
+    /// Triangles that no clip line comes near and that were left out.
+    pub clipped: u64,
+    /// Triangles that were left out because they reach into the extents of skipped files.
+    pub over_skipped: u64,
+    /// Triangles that waited for the decision about the rim.
+    pub waited: u64,
+    /// Vertices that were handed up in all.
+    pub handed_up: u64,
+    /// The box around the surface.
+    pub extent: Bounds,
+    /// The files that were skipped, with the reasons.
+    pub skipped: Vec<String>,
+    /// The coordinate system.
+    pub crs: Option<Crs>,
+}
+
+impl Job<'_> {
+    /// Returns counts of all tasks, which must be done.
+    ///
+    /// # Errors
+    /// If a task is not done.
+    pub fn report(&self) -> Result<JobReport> {
+        let skipped = self.plan.skipped.iter().map(|(_, text)| text.clone()).collect();
+        let mut report = JobReport { skipped, crs: self.plan.crs.clone(), ..JobReport::default() };
+        for task in 0..self.task_count() {
+            let file = self.open_task(task)?;
+            report.read += file.count("read");
+            report.used += file.count("used");
+            report.withheld += file.count("withheld");
+            report.other_class += file.count("other_class");
+            let warnings = file.facts.get("warnings").and_then(Value::as_array).into_iter().flatten();
+            report.warnings.extend(warnings.filter_map(|text| text.as_str().map(str::to_owned)));
+            report.duplicates += file.count("duplicates");
+            report.line_edges += file.count("line_edges");
+            report.triangles += file.count("triangles");
+            report.beyond_max_edge += file.count("removed");
+            report.clipped += file.count("clipped");
+            report.over_skipped += file.count("over_skipped");
+            report.waited += file.count("waiting");
+            report.handed_up += file.count("residual");
+            if let Some(text) = file.facts.get("skipped").and_then(Value::as_str) {
+                report.skipped.push(text.to_owned());
+            }
+            for corner in file.facts.get("extent").and_then(Value::as_array).into_iter().flatten() {
+                let coordinate = |k: usize| corner[k].as_f64().unwrap_or(f64::NAN);
+                report.extent.add([coordinate(0), coordinate(1), coordinate(2)]);
+            }
+        }
+        Ok(report)
+    }
+
+    /// Returns the cells of a raster, once all tasks are done.
+    ///
+    /// # Errors
+    /// If a task is not done, if no triangle is left, or if the job makes no raster; and those of
+    /// [`dem`](crate::run::dem).
+    pub fn cells(&self, report: &JobReport, context: &Context) -> Result<CellProduct<'static>> {
+        let journal = Journal::new(context);
+        self.require_triangles(report)?;
+        let (Some(options), Some(drawn)) = (self.product.frame(), self.plan.frame) else {
+            return Err(Error::usage("the job makes no raster"));
+        };
+        // Notices about the frame came with the plan.
+        let quiet = Context::default();
+        let frame = frame::placed(options, report.extent, report.crs.as_ref(), &Journal::new(&quiet))?;
+        frame::require_filled(options, &frame, &report.extent, || self.area())?;
+        let drawn = DrawnCells::open(self.step_paths(), drawn, frame, report.crs.clone())?;
+        Ok(match self.product {
+            TiledProduct::Shades(HillshadeOptions { light, .. }) => {
+                CellProduct::shades_of(Box::new(drawn), light, report.crs.as_ref(), &journal)?
+            }
+            TiledProduct::Heights(_) | TiledProduct::Contours(_) | TiledProduct::Surface => {
+                CellProduct::heights_of(Box::new(drawn), journal.take())
+            }
+        })
+    }
+
+    /// Writes the contours, once all tasks are done, in the format that the extension of `target`
+    /// names. They are drawn level by level, and not kept.
+    ///
+    /// # Errors
+    /// If a task is not done, if no triangle is left, or if the job makes no contours; and those of
+    /// [`ContourProduct::write`](crate::run::ContourProduct::write).
+    pub fn write_contours(&self, report: &JobReport, target: Destination, context: &Context) -> Result<ContourSummary> {
+        self.require_triangles(report)?;
+        let TiledProduct::Contours(options) = self.product else {
+            return Err(Error::usage("the job makes no contours"));
+        };
+        let drawn = DrawnContours::open(self.step_paths(), &options.to_levels()?)?;
+        target.put_whole(|target| drawn.write(target, report.crs.as_ref(), context))
+    }
+
+    pub(super) fn require_triangles(&self, report: &JobReport) -> Result<()> {
+        if report.triangles > 0 {
+            return Ok(());
+        }
+        let JobReport { read, used, beyond_max_edge, clipped, .. } = report;
+        Err(match (used, beyond_max_edge) {
+            _ if *clipped > 0 => {
+                Error::format(format!("no triangle is left: {clipped} lie outside of the boundary or the bounds"))
+                    .cure("check them, and the coordinate systems: `breakline info` shows the extent of each file")
+            }
+            (0, _) => Error::usage(format!("no point is left of {read} read"))
+                .cure("`breakline info` shows the classes of each file: choose with --class"),
+            (_, 0) => Error::format(format!("{used} points on one line, or fewer than three, do not span a surface"))
+                .cure("check the inputs and the classes (--class)"),
+            _ => Error::format(format!("no triangle is left: {beyond_max_edge} have edges over the limit at the rim"))
+                .cure("allow longer edges with --max-edge LENGTH or --max-edge none"),
+        })
+    }
+
+    /// The files of all tasks that have triangles.
+    pub(super) fn step_paths(&self) -> Vec<PathBuf> {
+        (self.first_step()..self.task_count()).map(|task| self.task_path(task)).collect()
+    }
+
+    pub(super) fn area(&self) -> f64 {
+        let of_task = |task| self.open_task(task).ok()?.facts.get("area")?.as_f64();
+        (0..self.task_count()).filter_map(of_task).sum()
+    }
+}

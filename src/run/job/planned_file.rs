@@ -1,0 +1,129 @@
+//! Files of points as a plan knows them, and the states of files.
+
+use std::path::{Path, PathBuf};
+use std::time::UNIX_EPOCH;
+
+use crate::data::{Bounds, PointBatch};
+use crate::error::{Error, Result};
+use crate::io::layer;
+use crate::run::context::{Context, Size, Stage};
+use crate::run::input::{Input, MemoryPoints};
+use crate::run::open;
+use crate::run::tin::TinRequest;
+use crate::terrain::tiles::Spread;
+
+/// The rounding of the coordinates that headers state, in units of the last place.
+const HEADER_ROUNDING: f64 = 8.0;
+
+/// A file of points as the plan knows it.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct PlannedFile {
+    /// The position of the file in the request.
+    pub(super) input: usize,
+    pub(super) path: PathBuf,
+    /// Length in bytes and time of the last change in nanoseconds: a file that changes later is
+    /// refused.
+    pub(super) size: u64,
+    pub(super) modified: u64,
+    /// The number of its points.
+    pub(super) count: u64,
+    /// The box around its points in plan, as its header states it.
+    pub(super) min: [f64; 2],
+    pub(super) max: [f64; 2],
+}
+
+impl PlannedFile {
+    /// Returns the box around its points, with what rounding may add to a header.
+    pub(super) fn spread(&self) -> Spread {
+        let PlannedFile { min, max, .. } = *self;
+        let rounding = [0, 1].map(|k: usize| HEADER_ROUNDING * f64::EPSILON * min[k].abs().max(max[k].abs()));
+        let (low, high) = ([0, 1].map(|k| min[k] - rounding[k]), [0, 1].map(|k| max[k] + rounding[k]));
+        Spread { min: low, max: high, count: self.count as f64 }
+    }
+}
+
+/// Returns the length of a file in bytes; 0 if it cannot be asked for.
+pub(super) fn length_of(path: &Path) -> u64 {
+    state_of(path).map_or(0, |(size, _)| size)
+}
+
+/// The bytes of a point in a text, at least.
+const BYTES_A_POINT_OF_TEXT: u64 = 24;
+
+/// Returns about how many points a file has that does not state it.
+pub(super) fn points_of_text(path: &Path) -> u64 {
+    length_of(path) / BYTES_A_POINT_OF_TEXT
+}
+
+/// Returns what the plan has to know of a file; `None` if it has no points.
+pub(super) fn planned(
+    number: usize,
+    input: &Input<MemoryPoints>,
+    request: &TinRequest,
+    stated: (Option<u64>, Option<Bounds>),
+    context: &Context,
+) -> Result<Option<PlannedFile>> {
+    let path = input.path();
+    let (size, modified) = state_of(path)?;
+    let (count, bounds) = match stated {
+        (Some(count), Some(bounds)) => (count, bounds),
+        (Some(0), None) => (0, Bounds::default()),
+        _ => measured(input, request, context).map_err(|e| e.in_file(path))?,
+    };
+    if count == 0 {
+        return Ok(None);
+    }
+    let is_finite = (0..2).all(|k| bounds.min[k].is_finite() && bounds.max[k].is_finite());
+    if !is_finite {
+        return Err(Error::format("the header states an extent that is not finite")
+            .in_file(path)
+            .cure("`breakline points` writes a file with a true header"));
+    }
+    let [min, max] = [bounds.min, bounds.max].map(|[x, y, _]| [x, y]);
+    Ok(Some(PlannedFile { input: number, path: path.to_path_buf(), size, modified, count, min, max }))
+}
+
+/// Counts the points of a file that does not state their number or extent.
+fn measured(input: &Input<MemoryPoints>, request: &TinRequest, context: &Context) -> Result<(u64, Bounds)> {
+    let mut source = open::points(input, request.read, context)?;
+    let work = context.start(Stage::ReadingPoints, Size::Unknown)?;
+    let (mut count, mut bounds) = (0, Bounds::default());
+    let mut batch = PointBatch::default();
+    loop {
+        source.read(&mut batch)?;
+        if batch.is_empty() {
+            return Ok((count, bounds));
+        }
+        count += batch.len() as u64;
+        (0..batch.len()).for_each(|i| bounds.add([batch.x[i], batch.y[i], batch.z[i]]));
+        work.add(batch.len() as u64)?;
+    }
+}
+
+/// Returns an error unless a file has this length and this time of its last change.
+pub(super) fn require_state(path: &Path, planned: (u64, u64)) -> Result<()> {
+    if state_of(path)? == planned {
+        return Ok(());
+    }
+    Err(Error::usage("the file has changed since the job was planned")
+        .in_file(path)
+        .cure("plan the job again: `breakline job clean` removes this one"))
+}
+
+/// Returns the length of a file, which may be named together with a layer, and the time of its last
+/// change.
+pub(super) fn state_of(path: &Path) -> Result<(u64, u64)> {
+    let about = match std::fs::metadata(path) {
+        Ok(about) => about,
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
+            let spec = path.to_str().and_then(|text| layer::Spec::parse(text).ok());
+            match spec.map(|spec| std::fs::metadata(spec.path)) {
+                Some(Ok(about)) => about,
+                _ => return Err(Error::from(error).in_file(path)),
+            }
+        }
+        Err(error) => return Err(Error::from(error).in_file(path)),
+    };
+    let modified = about.modified().ok().and_then(|time| time.duration_since(UNIX_EPOCH).ok());
+    Ok((about.len(), modified.map_or(0, |time| time.as_nanos() as u64)))
+}

@@ -1,0 +1,153 @@
+//! The plan of a job as it is stored: JSON.
+
+use serde_json::{Value, json};
+
+use super::plan::Plan;
+use super::planned_file::PlannedFile;
+use crate::crs::{Crs, CrsKind, Unit};
+use crate::data::Frame;
+use crate::terrain::tiles::{Layout, Node};
+
+impl Plan {
+    pub(super) fn to_json(&self) -> Value {
+        let file = |file: &PlannedFile| {
+            json!({
+                "path": file.path, "input": file.input, "size": file.size, "modified": file.modified,
+                "count": file.count, "min": file.min, "max": file.max,
+            })
+        };
+        let node = |node: &Node| match node {
+            Node::Tile(number) => json!(number),
+            Node::Cut { axis, at, parts } => json!([axis, at, parts[0], parts[1]]),
+        };
+        json!({
+            "version": env!("CARGO_PKG_VERSION"),
+            "request": self.request,
+            "files": self.files.iter().map(file).collect::<Vec<_>>(),
+            "others": self.others,
+            "skipped": self.skipped,
+            "divides": self.divides,
+            "has_lines": self.has_lines,
+            "has_clip": self.has_clip,
+            "layout": self.layout.nodes().iter().map(node).collect::<Vec<_>>(),
+            "crs": self.crs.as_ref().map(of_crs),
+            "classes": self.classes,
+            "max_edge": self.max_edge,
+            "frame": self.frame.map(|frame| json!([frame.width, frame.height, frame.transform])),
+            "task_memory": self.task_memory,
+        })
+    }
+
+    /// Returns the plan that a value states; `None` if it does not, or is that of another version.
+    pub(super) fn from_json(value: &Value) -> Option<Self> {
+        if value["version"] != env!("CARGO_PKG_VERSION") {
+            return None;
+        }
+        let whole = |value: &Value| usize::try_from(value.as_u64()?).ok();
+        let number = |value: &Value| u32::try_from(value.as_u64()?).ok();
+        let file = |value: &Value| {
+            Some(PlannedFile {
+                path: serde_json::from_value(value["path"].clone()).ok()?,
+                input: whole(&value["input"])?,
+                size: value["size"].as_u64()?,
+                modified: value["modified"].as_u64()?,
+                count: value["count"].as_u64()?,
+                min: serde_json::from_value(value["min"].clone()).ok()?,
+                max: serde_json::from_value(value["max"].clone()).ok()?,
+            })
+        };
+        let node = |value: &Value| match value {
+            Value::Array(parts) if parts.len() == 4 => Some(Node::Cut {
+                axis: whole(&parts[0])?,
+                at: parts[1].as_f64()?,
+                parts: [number(&parts[2])?, number(&parts[3])?],
+            }),
+            value => number(value).map(Node::Tile),
+        };
+        let nodes = value["layout"].as_array()?.iter().map(node).collect::<Option<_>>()?;
+        let class = |value: &Value| u8::try_from(value.as_u64()?).ok();
+        let frame = |value: &Value| {
+            let transform = serde_json::from_value(value[2].clone()).ok()?;
+            Frame { width: whole(&value[0])?, height: whole(&value[1])?, transform }.checked().ok()
+        };
+        Some(Plan {
+            request: value["request"].as_str()?.to_owned(),
+            files: value["files"].as_array()?.iter().map(file).collect::<Option<_>>()?,
+            others: serde_json::from_value(value["others"].clone()).ok()?,
+            skipped: serde_json::from_value(value["skipped"].clone()).ok()?,
+            divides: value["divides"].as_bool()?,
+            has_lines: value["has_lines"].as_bool()?,
+            has_clip: value["has_clip"].as_bool()?,
+            layout: Layout::from_nodes(nodes)?,
+            crs: match &value["crs"] {
+                Value::Null => None,
+                value => Some(to_crs(value)?),
+            },
+            classes: value["classes"].as_array()?.iter().map(class).collect::<Option<_>>()?,
+            max_edge: value["max_edge"].as_f64(),
+            frame: match &value["frame"] {
+                Value::Null => None,
+                value => Some(frame(value)?),
+            },
+            task_memory: value["task_memory"].as_u64()?,
+        })
+        .filter(|plan| plan.divides || plan.files.len() == plan.layout.tile_count())
+    }
+}
+
+/// The kinds of coordinates by their names in the file.
+const KINDS: [(&str, CrsKind); 4] = [
+    ("projected", CrsKind::Projected),
+    ("geographic", CrsKind::Geographic),
+    ("geocentric", CrsKind::Geocentric),
+    ("local", CrsKind::Local),
+];
+
+fn of_crs(crs: &Crs) -> Value {
+    let Crs { name, epsg, vertical_epsg, kind, unit, vertical_unit, wkt } = crs;
+    let unit_of = |unit: &Unit| json!([unit.name, unit.factor]);
+    json!({
+        "name": name, "epsg": epsg, "vertical_epsg": vertical_epsg, "wkt": wkt,
+        "kind": KINDS.iter().find(|(_, known)| known == kind).map(|(name, _)| name),
+        "unit": unit_of(unit), "vertical_unit": vertical_unit.as_ref().map(unit_of),
+    })
+}
+
+fn to_crs(value: &Value) -> Option<Crs> {
+    let code = |value: &Value| match value {
+        Value::Null => Some(None),
+        value => u32::try_from(value.as_u64()?).ok().map(Some),
+    };
+    let unit = |value: &Value| Some(Unit { name: value[0].as_str()?.to_owned(), factor: value[1].as_f64()? });
+    Some(Crs {
+        name: value["name"].as_str()?.to_owned(),
+        epsg: code(&value["epsg"])?,
+        vertical_epsg: code(&value["vertical_epsg"])?,
+        kind: KINDS.into_iter().find(|(name, _)| value["kind"] == *name)?.1,
+        unit: unit(&value["unit"])?,
+        vertical_unit: match &value["vertical_unit"] {
+            Value::Null => None,
+            value => Some(unit(value)?),
+        },
+        wkt: value["wkt"].as_str().map(str::to_owned),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn systems_come_back_as_they_were() {
+        let of_wkt = |wkt: &str| Crs::from_user(wkt).unwrap();
+        let local = r#"LOCAL_CS["mine",UNIT["US survey foot",0.304800609601219]]"#;
+        let mut all: Vec<Crs> = [25832, 4326, 4979, 2994, 7415].map(|code| Crs::from_epsg(code).unwrap()).into();
+        all.push(of_wkt(local));
+        all.push(of_wkt("EPSG:25832+7837"));
+        for crs in all {
+            let text = of_crs(&crs).to_string();
+            assert_eq!(to_crs(&serde_json::from_str(&text).unwrap()), Some(crs));
+        }
+        assert_eq!(to_crs(&json!({"name": "a", "kind": "round", "unit": ["metre", 1.0]})), None);
+    }
+}
