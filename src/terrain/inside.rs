@@ -1,6 +1,5 @@
 //! Point in polygon tests.
 
-use super::nearest::squared_distance;
 use crate::data::orientation;
 use crate::triangulation::num::Sign;
 
@@ -31,8 +30,7 @@ impl Inside {
         let mut edges: Vec<(usize, Edge)> = Vec::new();
         for (number, ring) in polygons.iter().enumerate().flat_map(|(i, rings)| rings.iter().map(move |ring| (i, ring)))
         {
-            let closed = ring.iter().chain(ring.first()).copied().collect::<Vec<_>>();
-            edges.extend(closed.windows(2).map(|pair| (number, [pair[0], pair[1]])));
+            edges.extend(sides(ring).map(|side| (number, side)));
         }
         let ys = || edges.iter().flat_map(|(_, edge)| edge.map(|p| p[1]));
         let (low, high) = (ys().fold(f64::INFINITY, f64::min), ys().fold(f64::NEG_INFINITY, f64::max));
@@ -51,20 +49,6 @@ impl Inside {
     /// The band of a height; monotone in the height.
     fn band(&self, y: f64) -> usize {
         if self.height > 0.0 { ((y - self.low) / self.height).clamp(0.0, 2.0 * MOST) as usize } else { 0 }
-    }
-
-    /// Returns true if a ring passes a point at no more than a distance.
-    ///
-    /// # Complexity
-    /// Linear in the edges at about the height of the point.
-    pub fn is_near(&self, [x, y]: [f64; 2], distance: f64) -> bool {
-        if self.bands.is_empty() || ![x, y, distance].iter().all(|c| c.is_finite()) || y + distance < self.low {
-            return false;
-        }
-        let last = self.bands.len() - 1;
-        let bands = self.band(y - distance).min(last)..=self.band(y + distance).min(last);
-        let is_near = |(_, edge): &(usize, Edge)| squared_distance(*edge, [x, y]) <= distance * distance;
-        self.bands[bands].iter().flatten().any(is_near)
     }
 
     /// Returns true if a point lies in a polygon or on one of its rings.
@@ -110,6 +94,11 @@ impl Inside {
         }
         is_odd.then_some(number)
     }
+}
+
+/// Returns the sides of a ring. One that does not end where it begins is closed.
+pub(super) fn sides(ring: &[[f64; 2]]) -> impl Iterator<Item = Edge> + '_ {
+    ring.iter().zip(ring.iter().skip(1).chain(ring.first())).map(|(&a, &b)| [a, b])
 }
 
 #[cfg(test)]

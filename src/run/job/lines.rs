@@ -20,7 +20,7 @@ use crate::run::tin::{TinRequest, builder_of};
 use crate::run::transforms::Transforms;
 use crate::run::units::Units;
 use crate::terrain::tiles::{self, Layout, SubConstraint, TileClip};
-use crate::terrain::{Inside, Tin, TinBuilder};
+use crate::terrain::{NearLines, Tin, TinBuilder};
 
 /// The lines of a request, and what points have to do with them.
 #[derive(Debug)]
@@ -28,11 +28,11 @@ pub(super) struct JobLines {
     /// Lines without points.
     builder: TinBuilder,
     names: LineNames,
-    /// The lines in plan, as rings.
-    index: Inside,
+    /// The lines in plan.
+    near: NearLines,
     /// The bits of the sites of their vertices.
     sites: FxHashSet<[u64; 2]>,
-    near: f64,
+    reach: f64,
     /// The box around all lines.
     pub(super) extent: Bounds,
 }
@@ -70,15 +70,15 @@ impl JobLines {
     fn new(builder: TinBuilder, names: LineNames, lines: Vec<Vec<[f64; 2]>>, extent: Bounds) -> Self {
         let largest = lines.iter().flatten().flatten().fold(0.0_f64, |most, c| most.max(c.abs()));
         let sites = lines.iter().flatten().map(|p| p.map(f64::to_bits)).collect();
-        let index = Inside::new(&[lines]);
-        JobLines { builder, names, index, sites, near: tiles::rounding_reach(largest), extent }
+        let near = NearLines::new(lines.iter().flat_map(|line| line.windows(2)).map(|ends| [ends[0], ends[1]]));
+        JobLines { builder, names, near, sites, reach: tiles::rounding_reach(largest), extent }
     }
 
     /// Removes the points that water and walls replace, and returns those of the others that may
     /// matter to a line.
     pub(super) fn take_points(&self, points: &mut Vec<[f64; 3]>) -> Vec<[f64; 3]> {
         self.builder.take_replaced(points);
-        points.iter().copied().filter(|&[x, y, _]| self.index.is_near([x, y], self.near)).collect()
+        points.iter().copied().filter(|&[x, y, _]| self.near.pass([x, y], self.reach)).collect()
     }
 
     /// Builds the lines with the points next to them. `extent` is that of all points.

@@ -6,7 +6,8 @@ use std::cell::OnceCell;
 
 use super::{Flat, River, RiverWater, Wall};
 use crate::error::{Error, Result};
-use crate::terrain::Inside;
+use crate::terrain::inside::{Inside, sides};
+use crate::terrain::near_lines::NearLines;
 use crate::terrain::regions::{self, Domain, Faces};
 use crate::triangulation::ConstrainedDelaunay;
 use crate::triangulation::LineId;
@@ -78,12 +79,12 @@ impl Replaced {
         let largest = self.computed.iter().flatten().flatten().flatten().fold(0.0_f64, |most, c| most.max(c.abs()));
         let rounded = (ROUNDING * f64::EPSILON * largest, &self.computed);
         let buffers = self.buffers.iter().map(|(buffer, shores)| (*buffer, shores)).chain([rounded]);
-        let near: Vec<(f64, Inside)> = buffers.map(|(distance, rings)| (distance, Inside::new(rings))).collect();
+        let sides_of = |rings: &[Rings]| NearLines::new(rings.iter().flatten().flat_map(|ring| sides(ring)));
+        let near: Vec<(f64, NearLines)> = buffers.map(|(distance, rings)| (distance, sides_of(rings))).collect();
         let mut replaced = Vec::new();
         points.retain(|&p| {
             let site = [p[0], p[1]];
-            let is_replaced =
-                inside.contains(site) || near.iter().any(|(buffer, shores)| shores.is_near(site, *buffer));
+            let is_replaced = inside.contains(site) || near.iter().any(|(buffer, shores)| shores.pass(site, *buffer));
             if is_replaced {
                 replaced.push(p);
             }
