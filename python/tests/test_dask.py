@@ -69,6 +69,12 @@ def test_a_cluster_writes_the_bytes_of_one_machine(client, whole, tmp_path):
     made = breakline.dask.hillshade([VALLEY], tmp_path / "shade.tif", client=client, tiles="2x2", azimuth=200)
     run("hillshade", str(VALLEY), "-o", str(tmp_path / "one.tif"), "--azimuth", "200", "-q")
     assert made.read_bytes() == (tmp_path / "one.tif").read_bytes()
+    made = breakline.dask.contour(VALLEY, tmp_path / "lines.geojson", client=client, tiles="2x2", interval=5)
+    run("contour", str(VALLEY), "-o", str(tmp_path / "one.geojson"), "--interval", "5", "-q")
+    assert made.read_bytes() == (tmp_path / "one.geojson").read_bytes()
+    made = breakline.dask.tin(VALLEY, tmp_path / "valley.tins", client=client, tiles="2x2")
+    run("dem", str(made), "-o", str(tmp_path / "of_parts.tif"), "-q")
+    assert (tmp_path / "of_parts.tif").read_bytes() == whole
 
 
 class Transitions(distributed.SchedulerPlugin):

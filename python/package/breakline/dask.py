@@ -1,4 +1,4 @@
-"""Write rasters of points that do not fit into memory, with the workers of a Dask cluster.
+"""Write surfaces of points that do not fit into memory, with the workers of a Dask cluster.
 
 >>> import breakline.dask
 >>> breakline.dask.dem("tiles/*.laz", "dem.tif", resolution=1, client=client)  # doctest: +SKIP
@@ -28,7 +28,7 @@ from typing import Any, Union
 from ._errors import RENAMED, BreaklineError, usage
 from ._objects import Objects, StoredObject, is_url
 
-__all__ = ["dem", "hillshade"]
+__all__ = ["contour", "dem", "hillshade", "tin"]
 
 PathLike = Union[str, "os.PathLike[str]"]
 
@@ -114,6 +114,36 @@ def hillshade(
 ) -> Path:
     """Write a hillshade of points, with the workers of a Dask cluster; see :func:`dem`."""
     return _run("hillshade", inputs, output, client, job, retries, (scratch, storage_options), options)
+
+
+def contour(
+    inputs: "Union[PathLike, Sequence[PathLike]]",
+    output: PathLike,
+    *,
+    client: Any,
+    job: "Union[PathLike, None]" = None,
+    retries: int = 3,
+    scratch: "Union[PathLike, None]" = None,
+    storage_options: "Union[dict[str, Any], None]" = None,
+    **options: Any,
+) -> Path:
+    """Write contours of points, with the workers of a Dask cluster; see :func:`dem`."""
+    return _run("contour", inputs, output, client, job, retries, (scratch, storage_options), options)
+
+
+def tin(
+    inputs: "Union[PathLike, Sequence[PathLike]]",
+    output: PathLike,
+    *,
+    client: Any,
+    job: "Union[PathLike, None]" = None,
+    retries: int = 3,
+    scratch: "Union[PathLike, None]" = None,
+    storage_options: "Union[dict[str, Any], None]" = None,
+    **options: Any,
+) -> Path:
+    """Write a TIN of points in parts (``.tins``), with the workers of a Dask cluster; see :func:`dem`."""
+    return _run("tin", inputs, output, client, job, retries, (scratch, storage_options), options)
 
 
 def _run(
