@@ -240,6 +240,9 @@ def test_objects_are_copied_for_the_tasks_that_read_them(client, whole, tmp_path
     done = {path: path.stat().st_mtime_ns for path in (tmp_path / "job" / "tasks").iterdir()}
     breakline.dask.dem(f"file://{store}/*.laz", tmp_path / "dem.tif", classes=2, **options)
     assert all(path.stat().st_mtime_ns == time for path, time in done.items())
+    (store / "b.laz").write_bytes(VALLEY.read_bytes()[:-1])
+    with pytest.raises(breakline.UsageError, match="changed since the job has read it"):
+        breakline.dask.dem(f"file://{store}/*.laz", tmp_path / "dem.tif", classes=2, **options)
     for name in ["*.las", "c.laz"]:
         with pytest.raises(breakline.UsageError, match="no object has such a name"):
             breakline.dask.dem(f"file://{store}/{name}", tmp_path / "other.tif", classes=2, **options)

@@ -131,9 +131,9 @@ pub trait PointSource {
     /// If the data is damaged. Points returned before are valid.
     fn read(&mut self, batch: &mut PointBatch) -> Result<()>;
 
-    /// Leaves out most points: of each `spacing` ones, the first few ten thousand are read, to find
-    /// out where points are in a fraction of the time. Returns false, and changes nothing, if the
-    /// source cannot pass over points.
+    /// Leaves out most points: of about `spacing` ones, some ten thousand in sequence are read, to
+    /// find out where points are in a fraction of the time. Each point is as likely to be read.
+    /// Returns false, and changes nothing, if the source cannot pass over points.
     fn thin(&mut self, spacing: u64) -> bool {
         let _ = spacing;
         false

@@ -106,7 +106,7 @@ pub fn read_lines_with(path: &Path, options: &Options, watch: Watch) -> Result<L
 fn parse_lines(bytes: &[u8], options: &Options, watch: Watch) -> Result<Layer> {
     let mut reader = Reader::new("GeoJSON lines", options);
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-    let (separator, noun) = match bytes.first() {
+    let (separator, noun) = match bytes.trim_ascii_start().first() {
         Some(&RECORD) => (RECORD, "record"),
         _ => (b'\n', "line"),
     };
@@ -146,7 +146,10 @@ impl Reader {
     /// Adds the feature or geometry in a record of GeoJSON lines. A geometry alone has no
     /// properties.
     fn record(&mut self, text: &[u8], z_field: Option<&str>) -> Result<()> {
-        let value = serde_json::from_slice(text).map_err(|e| Error::format(format!("not JSON: {e}")))?;
+        let value = serde_json::from_slice(text).map_err(|e| {
+            Error::format(format!("not JSON: {e}"))
+                .cure("each line is one feature: if the file is one document, give it the extension geojson")
+        })?;
         let Value::Object(object) = value else {
             return Err(Error::format("not an object"));
         };
@@ -669,7 +672,7 @@ mod tests {
         let spread = feature.replace(',', ",\n");
         for text in [
             format!("\u{feff}{feature}\r\n\n{feature}\n{LINE}"),
-            format!("\u{feff}\x1e{spread}\n\x1e{feature}\x1e\x1e{LINE}"),
+            format!("\u{feff}\n\x1e{spread}\n\x1e{feature}\x1e\x1e{LINE}"),
         ] {
             let layer = read(&text).unwrap();
             assert_eq!((layer.format.as_str(), layer.shapes.len()), ("GeoJSON lines", 3));

@@ -90,6 +90,11 @@ impl PointFiles {
         self.files.len()
     }
 
+    /// Returns true if the points of any file have classes.
+    pub(super) fn have_classes(&self) -> bool {
+        self.files.iter().any(|file| file.has_classes)
+    }
+
     /// Returns the coordinate system of each file; `None` for one of several files that has no
     /// point to use.
     ///

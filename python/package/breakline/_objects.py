@@ -70,11 +70,12 @@ class StoredObject:
     def copied(self) -> "Iterator[None]":
         """Have a copy of the object at the path."""
         store, name = _opened(self.url, self.storage_options)
-        store.invalidate_cache()
-        if _state(store.info(name)) != (self.size, self.time):
-            raise usage("the object has changed since the call began", self.url, "repeat the call")
         with self._placed() as path:
             store.get_file(name, path)
+            # Afterwards: it may have changed meanwhile.
+            store.invalidate_cache()
+            if _state(store.info(name)) != (self.size, self.time):
+                raise usage("the object has changed since the call began", self.url, "repeat the call")
         try:
             yield
         finally:
@@ -83,21 +84,22 @@ class StoredObject:
     @contextlib.contextmanager
     def _placed(self) -> "Iterator[str]":
         """Give a path for a file that then appears, whole, at the path of the copies."""
-        folder = os.path.dirname(self.path)
+        folder, path = os.path.dirname(self.path), f"{self.path}.part"
         os.makedirs(folder, mode=0o700, exist_ok=True)
-        with tempfile.TemporaryDirectory(dir=folder) as beside:
-            path = os.path.join(beside, "copy")
+        try:
             yield path
             os.utime(path, ns=(self.time, self.time))
             os.replace(path, self.path)
+        finally:
+            Path(path).unlink(missing_ok=True)
 
 
 class Objects:
     """The objects that the URLs of a job stand for."""
 
     def __init__(self, urls: "list[str]", scratch: "str | None", storage_options: "dict[str, Any] | None", job: str) -> None:
-        default = os.path.join(tempfile.gettempdir(), f"breakline-{getpass.getuser()}") if urls else ""
-        self._folder = os.path.join(scratch or default, hashlib.sha256(job.encode()).hexdigest()[:16])
+        scratch = _default_scratch() if scratch is None else scratch
+        self._folder = os.path.join(scratch, hashlib.sha256(job.encode()).hexdigest()[:16])
         self._of_url = {url: _found(url, self._folder, storage_options or {}) for url in urls}
         #: The objects by the paths of their copies.
         self.at = {one.path: one for of_url in self._of_url.values() for one in of_url}
@@ -122,6 +124,12 @@ class Objects:
             shutil.rmtree(self._folder, ignore_errors=True)
 
 
+def _default_scratch() -> str:
+    """Return a folder of the user in the system's folder for temporary files."""
+    user = os.getuid() if hasattr(os, "getuid") else getpass.getuser()
+    return os.path.join(tempfile.gettempdir(), f"breakline-{user}")
+
+
 def _found(url: str, folder: str, storage_options: "dict[str, Any]") -> "list[StoredObject]":
     """Return the objects that a URL with wildcards stands for now; their copies are in a folder."""
     if "::" in url:
@@ -142,11 +150,11 @@ def _found(url: str, folder: str, storage_options: "dict[str, Any]") -> "list[St
     objects = []
     for info in infos:
         whole = store.unstrip_protocol(info["name"])
-        parent, base = whole.rsplit("/", 1)
+        base = whole.rsplit("/", 1)[1].split("?")[0]
         if info.get("size") is None:
             raise usage("the store does not state how long the object is", whole, "download it")
         size, time = _state(info)
-        path = os.path.join(folder, hashlib.sha256(parent.encode()).hexdigest()[:16], base.split("?")[0])
+        path = os.path.join(folder, hashlib.sha256(whole.encode()).hexdigest()[:16], base)
         objects.append(StoredObject(whole, path, size, time, storage_options))
     return objects
 

@@ -178,6 +178,10 @@ def _run(
     status = json.loads(_program("job", "status", folder, "--json", "--verify"))
     if status["command"] != command:
         raise usage(f"the job in {folder} is that of another call", folder, "pass another job, or remove the folder")
+    for task in status["tasks"]:
+        read = objects.at.get(task["input"])
+        if read is not None and task["has_read"] not in (None, [read.size, read.time]):
+            raise usage("the object has changed since the job has read it", read.url, "remove the job, and begin anew")
     # New in each call: a scheduler keeps what failed under its key.
     name = f"{verb}-{uuid.uuid4().hex[:8]}"
     cluster = _Cluster(client, folder, status["tasks"], objects.at, name, retries)

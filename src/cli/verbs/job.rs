@@ -208,19 +208,19 @@ fn work(job: &Path, task: Option<usize>, console: &Console) -> Result<Exit> {
     drop(open);
     match &mut command.verb {
         Verb::Dem(args) => {
-            (args.tiles.job, args.tiles.resume) = (Some(job), true);
+            args.tiles.go_on(job, task);
             super::dem::run(args, console)
         }
         Verb::Contour(args) => {
-            (args.tiles.job, args.tiles.resume) = (Some(job), true);
+            args.tiles.go_on(job, task);
             super::contour::run(args, console)
         }
         Verb::Hillshade(args) => {
-            (args.tiles.job, args.tiles.resume) = (Some(job), true);
+            args.tiles.go_on(job, task);
             super::hillshade::run(args, console)
         }
         Verb::Tin(args) => {
-            (args.tiles.job, args.tiles.resume) = (Some(job), true);
+            args.tiles.go_on(job, task);
             super::tin::run(args, console)
         }
         _ => Err(no_job(&job)),
@@ -244,11 +244,13 @@ fn print_tasks(open: &Job, words: &[String], output: &Path) -> Result<()> {
     let of_task = |task: usize| {
         json!({
             "name": open.task_name(task), "needs": open.needs(task), "input": open.input(task),
-            "done": open.is_done(task),
+            "has_read": open.state_of_input(task), "done": open.is_done(task),
         })
     };
     let mut tasks: Vec<Value> = (0..count).map(of_task).collect();
     let is_written = tasks.iter().all(|task| task["done"] == true) && open.is_older_than(output);
-    tasks.push(json!({ "name": "output", "needs": open.last_needs(), "input": null, "done": is_written }));
+    tasks.push(
+        json!({ "name": "output", "needs": open.last_needs(), "input": null, "has_read": null, "done": is_written }),
+    );
     print(&format!("{}\n", json!({ "command": words, "tasks": tasks })))
 }

@@ -66,7 +66,11 @@ pub(super) fn run<'a>(
     if options.folder == target {
         return Err(Error::usage("the output and the folder of the job have the same name").in_file(target));
     }
-    let resumed = if args.resume { Job::open(&plan.request, product, &options)? } else { None };
+    let resumed = match (args.resume, args.last_task) {
+        (true, Some(last)) => Job::open_for(&plan.request, product, &options, last)?,
+        (true, None) => Job::open(&plan.request, product, &options)?,
+        (false, _) => None,
+    };
     let is_new = resumed.is_none();
     let job = match resumed {
         Some(job) => job,

@@ -87,7 +87,7 @@ pub enum Look {
     /// A sample of the points of large files.
     #[default]
     Points,
-    /// Their headers: points are taken to be spread evenly.
+    /// Their headers, if these state number and extent: points are taken to be spread evenly.
     Headers,
 }
 
@@ -358,6 +358,13 @@ impl<'a> Job<'a> {
         self.file_of(task).map(|number| self.plan.files[number].path.as_path())
     }
 
+    /// Returns the length of the file of points that a task has read, and the time of its last
+    /// change in nanoseconds; `None` if it is not done, or reads none.
+    pub fn state_of_input(&self, task: usize) -> Option<(u64, u64)> {
+        self.file_of(task)?;
+        Some(TaskFile::open(&self.task_path(task)).ok()??.state_of_input())
+    }
+
     /// The number of the file of points that a task reads.
     fn file_of(&self, task: usize) -> Option<usize> {
         match self.task(task) {
@@ -372,10 +379,13 @@ impl<'a> Job<'a> {
 
     /// The task that reads a file.
     fn reader_of(&self, file: usize) -> usize {
+        if self.plan.divides {
+            return file;
+        }
         let is_own = |step: &Step| step.work == Work::Leaf(file as u32);
         match self.steps.iter().position(is_own) {
-            Some(step) if !self.plan.divides => self.task_of_step(step),
-            _ => file,
+            Some(step) => self.task_of_step(step),
+            None => file,
         }
     }
 

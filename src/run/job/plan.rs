@@ -147,11 +147,11 @@ impl Plan {
             BadFiles::Refuse => Vec::new(),
         };
         let (numbers, inputs) = opened(request, &skipped);
-        if options.look == Look::Headers && request.classes == Classes::GroundOrAll {
+        let points = PointFiles::open(&inputs, request.read, journal)?;
+        if options.look == Look::Headers && request.classes == Classes::GroundOrAll && points.have_classes() {
             return Err(Error::usage("which classes are used is not known from headers alone")
                 .cure("state them, such as --class 2 for ground"));
         }
-        let points = PointFiles::open(&inputs, request.read, journal)?;
         let classes = points.used_classes(&request.classes, journal)?;
         if request.classes == Classes::GroundOrAll {
             journal.add(if classes.len() == 1 { Notice::GroundUsed } else { Notice::AllClassesUsed });

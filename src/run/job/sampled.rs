@@ -20,7 +20,8 @@ const POSITIONS_A_TILE: f64 = 100.0;
 /// some of them. A tile shall have about `average` points.
 ///
 /// # Complexity
-/// Linear in the files. Of large ones, a part of some 50 000 points is read for each tile.
+/// Linear in the files. Of large ones, some 50 000 points are read for each tile: a tenth if a tile
+/// has 500 000, all if it has 50 000.
 pub(super) fn spreads(
     files: &[PlannedFile],
     request: &TinRequest,

@@ -73,7 +73,7 @@ impl Replaced {
     /// Removes the points that are replaced, and returns them in order.
     ///
     /// # Complexity
-    /// For each point, linear in the sides of the areas at about its y.
+    /// O(n log n) for n sides of areas, and for each point linear in the sides at about its y.
     pub(in crate::terrain) fn split_off(&self, points: &mut Vec<[f64; 3]>) -> Vec<[f64; 3]> {
         let inside = Inside::new(&self.polygons);
         let largest = self.computed.iter().flatten().flatten().flatten().fold(0.0_f64, |most, c| most.max(c.abs()));

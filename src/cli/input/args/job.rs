@@ -28,8 +28,8 @@ pub(in crate::cli) enum JobAction {
         /// Folder to create
         #[arg(value_name = "JOB")]
         job: PathBuf,
-        /// Read no points to plan, only headers: points are taken to be spread evenly over their
-        /// files. Classes have to be stated
+        /// Read only headers to plan, where they state number and extent (LAS, LAZ): points are
+        /// taken to be spread evenly over their files. Classes have to be stated
         #[arg(long)]
         headers_only: bool,
         /// The command, after `--`

@@ -119,9 +119,7 @@ impl Laz {
     pub(super) fn thin(&mut self, spacing: u64) -> bool {
         match self {
             Laz::Chunks(chunks) => {
-                // Those that have the first of each `spacing` points.
-                let part = |point: u64| point.div_ceil(spacing.max(1));
-                chunks.waiting.retain(|chunk| part(chunk.first) < part(chunk.first + chunk.points));
+                thin_out(&mut chunks.waiting, spacing);
                 true
             }
             Laz::Stream(_) => false,
@@ -214,6 +212,15 @@ impl Chunks {
     }
 }
 
+/// Leaves of about `spacing` points one chunk. It goes by numbers, not by points: chunks may differ
+/// in size, and each shall be as likely.
+fn thin_out(chunks: &mut VecDeque<Chunk>, spacing: u64) {
+    let count = chunks.len() as u64;
+    let average = (chunks.iter().map(|chunk| chunk.points).sum::<u64>() / count.max(1)).max(1);
+    let every = (spacing.saturating_add(average / 2) / average).max(1);
+    chunks.retain(|chunk| (chunk.number as u64 - 1).is_multiple_of(every));
+}
+
 fn damaged(chunk: &Chunk, reason: &str) -> Error {
     let Chunk { number, start, first, points, .. } = *chunk;
     Error::format(format!("the compressed points are damaged: {reason}"))
@@ -233,4 +240,27 @@ pub(super) fn chunks_of(bytes: &[u8]) -> Vec<u64> {
         assert_eq!(table::walk(&mut input, &compression, &header).unwrap(), chunks);
     }
     chunks.iter().map(|chunk| chunk.start).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn small_chunks_are_as_likely_as_large_ones() {
+        let sizes = (0..4_000).map(|i| if i < 40 { 50_000 } else { 1_000 });
+        let chunks = (1..).zip(sizes).map(|(number, points)| Chunk { number, start: 0, bytes: 1, first: 0, points });
+        let all: VecDeque<Chunk> = chunks.collect();
+        for spacing in [0, 1, 3_000, 15_000, 60_000, u64::MAX] {
+            let mut kept = all.clone();
+            thin_out(&mut kept, spacing);
+            let share = |size: u64| {
+                let count =
+                    |chunks: &VecDeque<Chunk>| chunks.iter().filter(|chunk| chunk.points == size).count() as f64;
+                count(&kept) / count(&all)
+            };
+            assert!(!kept.is_empty() && (share(50_000) - share(1_000)).abs() < 0.026, "{spacing}");
+            assert!(spacing > 1 || kept.len() == all.len());
+        }
+    }
 }
