@@ -177,7 +177,6 @@ pub struct Job<'a> {
     folder: PathBuf,
     plan: Plan,
     steps: Vec<Step>,
-    /// True if the plan has files that were replaced since it was written.
     /// Read by the first task that needs it, unless the plan was made by this process.
     known: OnceLock<Known>,
     /// What was assumed and what looks wrong, in the order in which it was found.
@@ -281,9 +280,7 @@ impl<'a> Job<'a> {
     /// If the job is that of another request, or damaged, or a file has changed otherwise.
     pub fn open(request: &'a SurfaceRequest, product: &'a TiledProduct, options: &TileOptions) -> Result<Option<Self>> {
         let Some(job) = Self::stored(request, product, options)? else { return Ok(None) };
-        for number in 0..job.plan.files.len() {
-            job.check_file(number)?;
-        }
+        (0..job.task_count()).try_for_each(|task| job.check_input(task))?;
         job.plan.require_others_unchanged()?;
         Ok(Some(job))
     }
@@ -292,7 +289,7 @@ impl<'a> Job<'a> {
     /// files of points, only the one that it reads is looked at.
     ///
     /// # Errors
-    /// Those of [`open`](Self::open), or if there is no such task.
+    /// As [`open`](Self::open); also if the job has no task with this number.
     pub fn open_for(
         request: &'a SurfaceRequest,
         product: &'a TiledProduct,
@@ -303,21 +300,22 @@ impl<'a> Job<'a> {
         if task > job.task_count() {
             return Err(job.no_task(task));
         }
-        if let Some(number) = job.file_of(task) {
-            job.check_file(number)?;
-        }
+        job.check_input(task)?;
         job.plan.require_others_unchanged()?;
         Ok(Some(job))
     }
 
-    /// Checks that a file is as its task has read it, or as the plan expects it.
-    fn check_file(&self, number: usize) -> Result<()> {
+    /// Checks that the file of points that a task reads, if it reads one, is as the task has read it
+    /// or as the plan expects it.
+    fn check_input(&self, task: usize) -> Result<()> {
+        let Some(number) = self.file_of(task) else { return Ok(()) };
         let path = &self.plan.files[number].path;
-        let Ok(Some(task)) = TaskFile::open(&self.task_path(self.reader_of(number))) else {
-            return self.plan.require_same_points(number, self.request);
-        };
-        // What a task has read is not needed any more.
-        if path.exists() { planned_file::require_state(path, task.state_of_input()) } else { Ok(()) }
+        match self.state_of_input(task) {
+            None => self.plan.require_same_points(number, self.request),
+            Some(state) if path.exists() => planned_file::require_state(path, state),
+            // What a task has read is not needed any more.
+            Some(_) => Ok(()),
+        }
     }
 
     /// Like [`open`](Self::open), to see what is done: no other files are looked at.
@@ -374,18 +372,6 @@ impl<'a> Job<'a> {
                 Work::Merge(_) => None,
             },
             Task::Triangulate(_) | Task::Lines | Task::Rim | Task::Cut => None,
-        }
-    }
-
-    /// The task that reads a file.
-    fn reader_of(&self, file: usize) -> usize {
-        if self.plan.divides {
-            return file;
-        }
-        let is_own = |step: &Step| step.work == Work::Leaf(file as u32);
-        match self.steps.iter().position(is_own) {
-            Some(step) => self.task_of_step(step),
-            None => file,
         }
     }
 
