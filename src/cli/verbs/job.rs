@@ -48,7 +48,7 @@ impl Command {
             let first = text.lines().next().unwrap_or_default().trim_start_matches("error: ").to_owned();
             Error::usage(format!("the command of the job: {first}")).cure("`breakline dem --help` lists its options")
         })?;
-        if let Some(surface) = surface_of(&mut cli.verb) {
+        if let Some((surface, _)) = args_of(&mut cli.verb) {
             surface.planned = planned;
         }
         let (plan, product, output, tiles) = match &cli.verb {
@@ -98,31 +98,33 @@ impl Command {
         tiles
     }
 
-    fn open(&self, job: &Path) -> Result<Job<'_>> {
-        let options = tiled::options(&self.tile_args(job), &self.output);
-        Job::open(&self.plan.request, &self.product, &options)?.ok_or_else(|| no_job(job))
+    /// Opens a job to do one task, or all that are left.
+    fn open(&self, job: &Path, task: Option<usize>) -> Result<Job<'_>> {
+        let options = self.options(job);
+        let opened = match task {
+            Some(task) => Job::open_for(&self.plan.request, &self.product, &options, task),
+            None => Job::open(&self.plan.request, &self.product, &options),
+        };
+        opened?.ok_or_else(|| no_job(job))
     }
 
     /// Opens a job to see what is done.
     fn stored(&self, job: &Path) -> Result<Job<'_>> {
-        let options = tiled::options(&self.tile_args(job), &self.output);
-        Job::stored(&self.plan.request, &self.product, &options)?.ok_or_else(|| no_job(job))
+        Job::stored(&self.plan.request, &self.product, &self.options(job))?.ok_or_else(|| no_job(job))
     }
 
-    /// Opens a job to do one task.
-    fn open_for(&self, job: &Path, task: usize) -> Result<Job<'_>> {
-        let options = tiled::options(&self.tile_args(job), &self.output);
-        Job::open_for(&self.plan.request, &self.product, &options, task)?.ok_or_else(|| no_job(job))
+    fn options(&self, job: &Path) -> TileOptions {
+        tiled::options(&self.tile_args(job), &self.output)
     }
 }
 
-/// Returns the options of the surface that a verb builds in tiles.
-fn surface_of(verb: &mut Verb) -> Option<&mut SurfaceArgs> {
+/// Returns the options of the surface that a verb builds in tiles, and those of the tiles.
+fn args_of(verb: &mut Verb) -> Option<(&mut SurfaceArgs, &mut TileArgs)> {
     match verb {
-        Verb::Dem(args) => Some(&mut args.surface),
-        Verb::Contour(args) => Some(&mut args.surface),
-        Verb::Hillshade(args) => Some(&mut args.surface),
-        Verb::Tin(args) => Some(&mut args.surface),
+        Verb::Dem(args) => Some((&mut args.surface, &mut args.tiles)),
+        Verb::Contour(args) => Some((&mut args.surface, &mut args.tiles)),
+        Verb::Hillshade(args) => Some((&mut args.surface, &mut args.tiles)),
+        Verb::Tin(args) => Some((&mut args.surface, &mut args.tiles)),
         _ => None,
     }
 }
@@ -140,7 +142,7 @@ fn plan(job: &Path, look: Look, words: &[String], console: &Console) -> Result<E
         }
         _ => {}
     }
-    let options = TileOptions { look, ..tiled::options(&command.tile_args(job), &command.output) };
+    let options = TileOptions { look, ..command.options(job) };
     let planned = Job::plan(&command.plan.request, &command.product, &options, &console.context())?;
     let folder = std::env::current_dir()?;
     let Some(folder) = folder.to_str() else {
@@ -188,10 +190,7 @@ fn no_job(job: &Path) -> Error {
 
 fn work(job: &Path, task: Option<usize>, console: &Console) -> Result<Exit> {
     let (job, mut command, _) = stored(job, console)?;
-    let open = match task {
-        Some(task) => command.open_for(&job, task)?,
-        None => command.open(&job)?,
-    };
+    let open = command.open(&job, task)?;
     if let Some(task) = task {
         if task < open.task_count() {
             open.run_task(task, &console.context())?;
@@ -206,23 +205,14 @@ fn work(job: &Path, task: Option<usize>, console: &Console) -> Result<Exit> {
         return Ok(Exit::Done);
     }
     drop(open);
-    match &mut command.verb {
-        Verb::Dem(args) => {
-            args.tiles.go_on(job, task);
-            super::dem::run(args, console)
-        }
-        Verb::Contour(args) => {
-            args.tiles.go_on(job, task);
-            super::contour::run(args, console)
-        }
-        Verb::Hillshade(args) => {
-            args.tiles.go_on(job, task);
-            super::hillshade::run(args, console)
-        }
-        Verb::Tin(args) => {
-            args.tiles.go_on(job, task);
-            super::tin::run(args, console)
-        }
+    if let Some((_, tiles)) = args_of(&mut command.verb) {
+        (tiles.job, tiles.resume, tiles.last_task) = (Some(job.clone()), true, task);
+    }
+    match &command.verb {
+        Verb::Dem(args) => super::dem::run(args, console),
+        Verb::Contour(args) => super::contour::run(args, console),
+        Verb::Hillshade(args) => super::hillshade::run(args, console),
+        Verb::Tin(args) => super::tin::run(args, console),
         _ => Err(no_job(&job)),
     }
 }

@@ -49,11 +49,6 @@ pub(in crate::cli) struct TileArgs {
 }
 
 impl TileArgs {
-    /// Asks to go on with the job in a folder; `last_task` as in [`last_task`](Self::last_task).
-    pub(in crate::cli) fn go_on(&mut self, job: PathBuf, last_task: Option<usize>) {
-        (self.job, self.resume, self.last_task) = (Some(job), true, last_task);
-    }
-
     /// Returns true if any option asks for tiles.
     pub(in crate::cli) fn are_asked_for(&self) -> bool {
         self.tiles.is_some() || self.job.is_some() || self.resume || self.dry_run || self.skip_bad
