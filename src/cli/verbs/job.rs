@@ -9,7 +9,7 @@ use crate::cli::input::plan::SurfacePlan;
 use crate::cli::report::console::Console;
 use crate::cli::{Exit, print};
 use crate::error::{Error, Result};
-use crate::run::{self, COMMAND, Input, Job, Look, Source, TileOptions, TiledProduct};
+use crate::run::{self, COMMAND, Job, Look, Source, TileOptions, TiledProduct};
 
 /// Plans a run in tiles, or does its tasks.
 pub(in crate::cli) fn run(args: &JobArgs, console: &Console) -> Result<Exit> {
@@ -145,14 +145,12 @@ fn plan(job: &Path, look: Look, words: &[String], console: &Console) -> Result<E
     let options = TileOptions { look, ..command.options(job) };
     let planned = Job::plan(&command.plan.request, &command.product, &options, &console.context())?;
     let folder = std::env::current_dir()?;
-    let Some(folder) = folder.to_str() else {
-        return Err(Error::unsupported("the name is not valid Unicode, which a job needs").in_file(folder));
-    };
-    let files: Vec<&Path> = match &command.plan.request.source {
-        Source::Points(request) => request.points.iter().map(Input::path).collect(),
+    let files = match &command.plan.request.source {
+        Source::Points(request) => request.points.iter().map(|input| unicode(input.path())).collect::<Result<_>>()?,
         Source::Mesh(_) | Source::Raster(_) => Vec::new(),
     };
-    planned.create(Some(&json!({ "command": words, "folder": folder, "files": files }).to_string()))?;
+    let command_text = json!({ "command": words, "folder": unicode(&folder)?, "files": files }).to_string();
+    planned.create(Some(&command_text))?;
     tiled::print_size(&planned.size(), console);
     console.line(format_args!(
         "next        breakline job run {0}, or {0} --task 0 to {1}",
@@ -160,6 +158,12 @@ fn plan(job: &Path, look: Look, words: &[String], console: &Console) -> Result<E
         planned.task_count()
     ));
     Ok(Exit::Done)
+}
+
+/// Returns a name as it can be stored with a job.
+fn unicode(path: &Path) -> Result<&str> {
+    let named = || Error::unsupported("the name is not valid Unicode, which a job needs").in_file(path);
+    path.to_str().ok_or_else(named)
 }
 
 /// Returns the command of a job, and goes to the folder in which it was typed.
