@@ -21,6 +21,11 @@ impl Offsets {
             Offsets::Bits64 => 8,
         }
     }
+
+    /// Appends a number as wide as an offset.
+    fn put(self, out: &mut Vec<u8>, value: usize) {
+        out.extend_from_slice(&(value as u64).to_le_bytes()[..self.width()]);
+    }
 }
 
 /// The values of one tag.
@@ -71,16 +76,14 @@ const LAYOUT: &[u8] = b"GDAL_STRUCTURAL_METADATA_SIZE=000140 bytes\n\
 /// first. The length depends only on the number of values, so the header can be rewritten once they
 /// are known.
 pub(super) fn header(offsets: Offsets, images: &[Vec<(u16, Values)>]) -> Vec<u8> {
-    let width = offsets.width();
-    let number = |out: &mut Vec<u8>, value: usize| out.extend_from_slice(&(value as u64).to_le_bytes()[..width]);
     let mut out = Vec::new();
     out.extend_from_slice(b"II");
     match offsets {
         Offsets::Bits32 => out.extend_from_slice(&42u16.to_le_bytes()),
         Offsets::Bits64 => [43u16, 8, 0].iter().for_each(|field| out.extend_from_slice(&field.to_le_bytes())),
     }
-    let first = (out.len() + width + LAYOUT.len()).next_multiple_of(8);
-    number(&mut out, first);
+    let first = (out.len() + offsets.width() + LAYOUT.len()).next_multiple_of(8);
+    offsets.put(&mut out, first);
     out.extend_from_slice(LAYOUT);
     for (i, tags) in images.iter().enumerate() {
         out.resize(out.len().next_multiple_of(8), 0);
@@ -96,7 +99,6 @@ pub(super) fn header(offsets: Offsets, images: &[Vec<(u16, Values)>]) -> Vec<u8>
 fn directory(offsets: Offsets, tags: &[(u16, Values)], at: usize, is_last: bool) -> Vec<u8> {
     debug_assert!(tags.is_sorted_by_key(|(tag, _)| *tag));
     let width = offsets.width();
-    let number = |out: &mut Vec<u8>, value: usize| out.extend_from_slice(&(value as u64).to_le_bytes()[..width]);
     let (count_size, entry_size) = match offsets {
         Offsets::Bits32 => (2, 12),
         Offsets::Bits64 => (8, 20),
@@ -109,19 +111,19 @@ fn directory(offsets: Offsets, tags: &[(u16, Values)], at: usize, is_last: bool)
         let (kind, count) = values.kind_and_count(offsets);
         out.extend_from_slice(&tag.to_le_bytes());
         out.extend_from_slice(&kind.to_le_bytes());
-        number(&mut out, count);
+        offsets.put(&mut out, count);
         let mut bytes = values.bytes(offsets);
         if bytes.len() <= width {
             bytes.resize(width, 0);
             out.extend_from_slice(&bytes);
         } else {
-            number(&mut out, values_at);
+            offsets.put(&mut out, values_at);
             bytes.resize(bytes.len().next_multiple_of(8), 0);
             values_at += bytes.len();
             behind.extend_from_slice(&bytes);
         }
     }
-    number(&mut out, if is_last { 0 } else { values_at });
+    offsets.put(&mut out, if is_last { 0 } else { values_at });
     out.extend_from_slice(&behind);
     out
 }

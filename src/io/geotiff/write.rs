@@ -87,7 +87,7 @@ pub fn cells_written(frame: Frame) -> u64 {
         .fold(0, u64::saturating_add)
 }
 
-/// Returns the frame of a raster, and those of its overviews, without their transforms.
+/// Returns the frame of a raster, and frames with the sizes of its overviews.
 fn levels(frame: Frame) -> impl Iterator<Item = Frame> {
     std::iter::successors(Some(frame), |&Frame { width, height, transform }| {
         let is_large = width.max(height) > LARGEST_WITHOUT;
@@ -117,21 +117,14 @@ fn write_levels(
         let finer = images[images.len() - 1].reader(target)?;
         images.push(Image::pack(target, &Halved::new(finer), cells, watch)?);
     }
-    let header = |mut first: u64| {
-        let mut all: Vec<_> = (0..images.len())
-            .rev()
-            .map(|level| {
-                let image = &images[level];
-                let at = first;
-                first += image.byte_count();
-                match level {
-                    0 => image.tags(source, cells, at),
-                    _ => image.overview_tags(source, cells, at),
-                }
-            })
-            .collect();
-        all.reverse();
-        directory::header(offsets, &all)
+    // The raster itself is the last in the file, and the first in the header.
+    let header = |first: u64| {
+        let mut at = first + images.iter().map(Image::byte_count).sum::<u64>();
+        let tags_of = |(level, image): (usize, &Image)| {
+            at -= image.byte_count();
+            if level == 0 { image.tags(source, cells, at) } else { image.overview_tags(source, cells, at) }
+        };
+        directory::header(offsets, &images.iter().enumerate().map(tags_of).collect::<Vec<_>>())
     };
     let head = header(header(0).len() as u64);
     output.write_all(&head)?;

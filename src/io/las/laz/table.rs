@@ -73,7 +73,7 @@ pub(super) fn read(input: &mut Input, compression: &Compression, header: &Header
         if bytes < compression.stride as u64 || (bytes > largest && !is_last) {
             return Err(damaged(format!("states {bytes} bytes for the {points} points of chunk {number}")));
         }
-        chunks.push(Chunk { number: chunks.len() + 1, start, bytes, first, points });
+        chunks.push(Chunk { number, start, bytes, first, points });
         start += bytes;
         first += points;
     }
