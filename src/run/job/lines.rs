@@ -37,33 +37,53 @@ pub(super) struct JobLines {
     pub(super) extent: Bounds,
 }
 
-/// Returns the lines of the layers of a request, and what the surface is cut along; `None` if there
-/// are none. `extent` is that of all points.
-///
-/// # Errors
-/// If a layer is not what its option takes.
-pub(super) fn of_layers(
-    layers: &LineLayers,
-    request: &TinRequest,
-    crs: Option<&Crs>,
-    extent: &Bounds,
-    journal: &Journal,
-) -> Result<(Option<JobLines>, Option<TileClip>)> {
-    let from = vec![None; layers.stated().count()];
-    let transforms = Transforms::new(&from, crs, journal)?;
-    let units = Units::of(crs);
-    let mut builder = builder_of(request, &units, crs.cloned());
-    let added = layers.add_to(&mut builder, &transforms.by_file, &transforms, &units)?;
-    line_notes::note_uneven(&added.uneven, &units, journal);
-    line_notes::note_overlaps(&added.overlaps, journal);
-    let in_plan = builder.lines_in_plan();
-    let mut of_lines = Bounds::default();
-    in_plan.iter().flatten().for_each(|&[x, y]| of_lines.add([x, y, 0.0]));
-    let mut all = *extent;
-    all.merge(&of_lines);
-    let clip = TileClip::take_from(&mut builder, &all)?;
-    let lines = layers.has_lines_with_heights().then(|| JobLines::new(builder, added.names, in_plan, of_lines));
-    Ok((lines, clip))
+/// What the tasks get from the layers of lines.
+#[derive(Debug)]
+pub(super) struct Known {
+    pub(super) lines: Option<JobLines>,
+    /// What the surface is cut along.
+    pub(super) clip: Option<TileClip>,
+}
+
+impl Known {
+    /// Reads the layers of a request. `crs` is the system of the result, `extent` the box around all
+    /// points.
+    ///
+    /// # Errors
+    /// If a layer cannot be read, or is not what its option takes.
+    pub(super) fn read(request: &TinRequest, crs: Option<&Crs>, extent: &Bounds, journal: &Journal) -> Result<Self> {
+        Self::of_layers(&layers_of(request, journal)?, request, crs, extent, journal)
+    }
+
+    /// Like [`read`](Self::read), of layers that were read.
+    pub(super) fn of_layers(
+        layers: &LineLayers,
+        request: &TinRequest,
+        crs: Option<&Crs>,
+        extent: &Bounds,
+        journal: &Journal,
+    ) -> Result<Self> {
+        let from = vec![None; layers.stated().count()];
+        let transforms = Transforms::new(&from, crs, journal)?;
+        let units = Units::of(crs);
+        let mut builder = builder_of(request, &units, crs.cloned());
+        let added = layers.add_to(&mut builder, &transforms.by_file, &transforms, &units)?;
+        line_notes::note_uneven(&added.uneven, &units, journal);
+        line_notes::note_overlaps(&added.overlaps, journal);
+        let in_plan = builder.lines_in_plan();
+        let mut of_lines = Bounds::default();
+        in_plan.iter().flatten().for_each(|&[x, y]| of_lines.add([x, y, 0.0]));
+        let mut all = *extent;
+        all.merge(&of_lines);
+        let clip = TileClip::take_from(&mut builder, &all)?;
+        let lines = layers.has_lines_with_heights().then(|| JobLines::new(builder, added.names, in_plan, of_lines));
+        Ok(Known { lines, clip })
+    }
+}
+
+/// Reads the layers of lines of a request.
+pub(super) fn layers_of<'a>(request: &'a TinRequest, journal: &Journal) -> Result<LineLayers<'a>> {
+    LineLayers::read(&request.lines, &request.breaklines, &request.boundary, journal)
 }
 
 impl JobLines {

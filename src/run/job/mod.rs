@@ -35,12 +35,13 @@ use std::sync::OnceLock;
 
 use serde_json::Value;
 
+use self::lines::Known;
 use self::lock::remove_files;
 pub use self::lock::{JobLock, remove_job};
 pub use self::output::JobReport;
 #[cfg(feature = "cli")]
 pub(crate) use self::plan::not_in_tiles;
-use self::plan::{Known, Plan, fingerprint};
+use self::plan::{Plan, fingerprint};
 pub use self::surface::WrittenParts;
 use self::task_file::{TaskFile, UNFINISHED};
 use super::cells::{DemOptions, HillshadeOptions};

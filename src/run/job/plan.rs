@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::lines::{self, JobLines};
+use super::lines::{self, Known};
 use super::planned_file::{PlannedFile, planned, require_state, state_of};
 use super::sampled;
 use super::{BadFiles, Division, Look, TileOptions, TiledProduct};
@@ -13,7 +13,6 @@ use crate::run::checksum::checksum;
 use crate::run::context::{Context, Journal};
 use crate::run::frame::{self, FrameOptions};
 use crate::run::input::{Input, MemoryPoints};
-use crate::run::line_inputs::LineLayers;
 use crate::run::memory;
 use crate::run::notice::Notice;
 use crate::run::open;
@@ -22,7 +21,7 @@ use crate::run::systems::{self, SystemOptions, Systems};
 use crate::run::tin::{EdgeLimit, TinRequest};
 use crate::run::units::Units;
 use crate::terrain::Classes;
-use crate::terrain::tiles::{Layout, Spread, TileClip, Work};
+use crate::terrain::tiles::{Layout, Spread, Work};
 
 /// Bytes per point of a tile while it is triangulated and drawn; measured.
 pub(super) const BYTES_A_POINT: u64 = 220;
@@ -102,35 +101,6 @@ pub(super) fn require_tiled(request: &TinRequest, systems: &SystemOptions) -> Re
     Ok(())
 }
 
-/// What the tasks get from the layers of lines.
-#[derive(Debug)]
-pub(super) struct Known {
-    pub(super) lines: Option<JobLines>,
-    pub(super) clip: Option<TileClip>,
-}
-
-impl Known {
-    /// Reads the layers. `crs` is the system of the result, `extent` that of all points.
-    pub(super) fn read(request: &TinRequest, crs: Option<&Crs>, extent: &Bounds, journal: &Journal) -> Result<Self> {
-        Self::of(&layers_of(request, journal)?, request, crs, extent, journal)
-    }
-
-    fn of(
-        layers: &LineLayers,
-        request: &TinRequest,
-        crs: Option<&Crs>,
-        extent: &Bounds,
-        journal: &Journal,
-    ) -> Result<Self> {
-        let (lines, clip) = lines::of_layers(layers, request, crs, extent, journal)?;
-        Ok(Known { lines, clip })
-    }
-}
-
-fn layers_of<'a>(request: &'a TinRequest, journal: &Journal) -> Result<LineLayers<'a>> {
-    LineLayers::read(&request.lines, &request.breaklines, &request.boundary, journal)
-}
-
 impl Plan {
     /// Chooses the tiles for the files of a request, by what their headers state; files that do not
     /// state it are read once. Also returns what was found out on the way.
@@ -161,12 +131,12 @@ impl Plan {
             files.extend(planned(number, input, request, stated, &journal.context)?);
         }
         let extent = extent_of(&files);
-        let layers = layers_of(request, journal)?;
+        let layers = lines::layers_of(request, journal)?;
         let mut stated = points.stated(&request.classes, journal)?;
         drop(points);
         stated.extend(layers.stated());
         let Systems { crs, .. } = systems::reconcile_some(&stated, systems, journal)?;
-        let known = Known::of(&layers, request, crs.as_ref(), &extent, journal)?;
+        let known = Known::of_layers(&layers, request, crs.as_ref(), &extent, journal)?;
         let Known { lines, clip } = &known;
 
         let spreads: Vec<Spread> = files.iter().map(PlannedFile::spread).collect();
