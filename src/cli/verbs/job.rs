@@ -238,7 +238,7 @@ fn print_tasks(open: &Job, words: &[String], output: &Path) -> Result<()> {
     let of_task = |task: usize| {
         json!({
             "name": open.task_name(task), "needs": open.needs(task), "input": open.input(task),
-            "has_read": open.state_of_input(task), "done": open.is_done(task),
+            "has_read": open.state_of_input(task).map(|state| [state.size, state.modified]), "done": open.is_done(task),
         })
     };
     let mut tasks: Vec<Value> = (0..count).map(of_task).collect();

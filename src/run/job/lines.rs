@@ -46,8 +46,8 @@ pub(super) struct Known {
 }
 
 impl Known {
-    /// Reads the layers of a request. `crs` is the system of the result, `extent` the box around all
-    /// points.
+    /// Reads the layers of a request. `crs` is the system of the result, `extent` the box around
+    /// all points.
     ///
     /// # Errors
     /// If a layer cannot be read, or is not what its option takes.

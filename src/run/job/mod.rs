@@ -42,6 +42,7 @@ pub use self::output::JobReport;
 #[cfg(feature = "cli")]
 pub(crate) use self::plan::not_in_tiles;
 use self::plan::{Plan, fingerprint};
+pub use self::planned_file::FileState;
 pub use self::surface::WrittenParts;
 use self::task_file::{TaskFile, UNFINISHED};
 use super::cells::{DemOptions, HillshadeOptions};
@@ -306,8 +307,8 @@ impl<'a> Job<'a> {
         Ok(Some(job))
     }
 
-    /// Checks that the file of points that a task reads, if it reads one, is as the task has read it
-    /// or as the plan expects it.
+    /// Checks that the file of points that a task reads, if any, is as the task has read it or as
+    /// the plan expects it.
     fn check_input(&self, task: usize) -> Result<()> {
         let Some(number) = self.file_of(task) else { return Ok(()) };
         let path = &self.plan.files[number].path;
@@ -357,11 +358,10 @@ impl<'a> Job<'a> {
         self.file_of(task).map(|number| self.plan.files[number].path.as_path())
     }
 
-    /// Returns the length of the file of points that a task has read, and the time of its last
-    /// change in nanoseconds; `None` if it is not done, or reads none.
-    pub fn state_of_input(&self, task: usize) -> Option<(u64, u64)> {
-        self.file_of(task)?;
-        Some(TaskFile::open(&self.task_path(task)).ok()??.state_of_input())
+    /// Returns the state in which a task has read its file of points; `None` if it is not done, or
+    /// reads none.
+    pub fn state_of_input(&self, task: usize) -> Option<FileState> {
+        TaskFile::open(&self.task_path(task)).ok()??.state_of_input()
     }
 
     /// The number of the file of points that a task reads.

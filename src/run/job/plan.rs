@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::lines::{self, Known};
-use super::planned_file::{PlannedFile, planned, require_state, state_of};
+use super::planned_file::{FileState, PlannedFile, planned, require_state, state_of};
 use super::sampled;
 use super::{BadFiles, Division, Look, TileOptions, TiledProduct};
 use crate::crs::Crs;
@@ -35,8 +35,8 @@ const LEAST_POINTS: u64 = 10_000;
 /// The share of the most points that a tile has on average: files may be denser in one place.
 const AVERAGE: f64 = 0.5;
 
-/// The path of a file, its length in bytes, and the time of its last change in nanoseconds.
-type OtherFile = (PathBuf, u64, u64);
+/// A file that is read beside the points, as it was planned with.
+type OtherFile = (PathBuf, FileState);
 
 /// What all tasks of a job must agree on.
 #[derive(Debug, Clone, PartialEq)]
@@ -224,14 +224,14 @@ impl Plan {
 
     /// Returns an error if any file but those of points has changed since the plan was made.
     pub(super) fn require_others_unchanged(&self) -> Result<()> {
-        self.others.iter().try_for_each(|(path, size, modified)| require_state(path, (*size, *modified)))
+        self.others.iter().try_for_each(|(path, state)| require_state(path, *state))
     }
 
-    /// Returns an error if a file does not have the points that the plan expects, as far as their
-    /// number and extent tell: it may have been repaired.
+    /// Returns an error if a file is not the one that was planned with. One that was changed
+    /// afterwards counts as repaired if it has as many points, and the same extent.
     pub(super) fn require_same_points(&self, number: usize, request: &TinRequest) -> Result<()> {
         let file = &self.files[number];
-        if state_of(&file.path)? == (file.size, file.modified) {
+        if state_of(&file.path)? == file.state {
             return Ok(());
         }
         let (input, context) = (&request.points[file.input], Context::default());
@@ -312,9 +312,6 @@ fn others(request: &TinRequest, product: &TiledProduct) -> Result<Vec<OtherFile>
         Input::Memory(_) => None,
     });
     let raster = product.frame().and_then(|frame| frame.align_to.as_ref());
-    let state = |path: &PathBuf| {
-        let (size, modified) = state_of(path)?;
-        Ok((path.clone(), size, modified))
-    };
+    let state = |path: &PathBuf| Ok((path.clone(), state_of(path)?));
     layers.chain(raster).map(state).collect()
 }

@@ -3,6 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::time::UNIX_EPOCH;
 
+use serde_json::{Value, json};
+
 use crate::data::{Bounds, PointBatch};
 use crate::error::{Error, Result};
 use crate::io::layer;
@@ -15,16 +17,34 @@ use crate::terrain::tiles::Spread;
 /// The rounding of the coordinates that headers state, in units of the last place.
 const HEADER_ROUNDING: f64 = 8.0;
 
+/// What tells whether a file has changed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct FileState {
+    /// The length in bytes.
+    pub size: u64,
+    /// The time of the last change, in nanoseconds since 1970.
+    pub modified: u64,
+}
+
+impl FileState {
+    pub(super) fn to_json(self) -> Value {
+        json!([self.size, self.modified])
+    }
+
+    /// Returns the state that a value states.
+    pub(super) fn from_json(value: &Value) -> Option<Self> {
+        Some(FileState { size: value[0].as_u64()?, modified: value[1].as_u64()? })
+    }
+}
+
 /// A file of points as the plan knows it.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct PlannedFile {
     /// The position of the file in the request.
     pub(super) input: usize,
     pub(super) path: PathBuf,
-    /// Length in bytes and time of the last change in nanoseconds: a file that changes later is
-    /// refused.
-    pub(super) size: u64,
-    pub(super) modified: u64,
+    /// As it was planned with.
+    pub(super) state: FileState,
     /// The number of its points.
     pub(super) count: u64,
     /// The box around its points in plan, as its header states it.
@@ -44,7 +64,7 @@ impl PlannedFile {
 
 /// Returns the length of a file in bytes; 0 if it cannot be asked for.
 pub(super) fn length_of(path: &Path) -> u64 {
-    state_of(path).map_or(0, |(size, _)| size)
+    state_of(path).map_or(0, |state| state.size)
 }
 
 /// The bytes of a point in a text, at least.
@@ -64,7 +84,7 @@ pub(super) fn planned(
     context: &Context,
 ) -> Result<Option<PlannedFile>> {
     let path = input.path();
-    let (size, modified) = state_of(path)?;
+    let state = state_of(path)?;
     let (count, bounds) = match stated {
         (Some(count), Some(bounds)) => (count, bounds),
         (Some(0), None) => (0, Bounds::default()),
@@ -80,7 +100,7 @@ pub(super) fn planned(
             .cure("`breakline points` writes a file with a true header"));
     }
     let [min, max] = [bounds.min, bounds.max].map(|[x, y, _]| [x, y]);
-    Ok(Some(PlannedFile { input: number, path: path.to_path_buf(), size, modified, count, min, max }))
+    Ok(Some(PlannedFile { input: number, path: path.to_path_buf(), state, count, min, max }))
 }
 
 /// Counts the points of a file that does not state their number or extent.
@@ -100,8 +120,8 @@ fn measured(input: &Input<MemoryPoints>, request: &TinRequest, context: &Context
     }
 }
 
-/// Returns an error unless a file has this length and this time of its last change.
-pub(super) fn require_state(path: &Path, planned: (u64, u64)) -> Result<()> {
+/// Returns an error unless a file is as it was planned with.
+pub(super) fn require_state(path: &Path, planned: FileState) -> Result<()> {
     if state_of(path)? == planned {
         return Ok(());
     }
@@ -110,9 +130,8 @@ pub(super) fn require_state(path: &Path, planned: (u64, u64)) -> Result<()> {
         .cure("plan the job again: `breakline job clean` removes this one"))
 }
 
-/// Returns the length of a file, which may be named together with a layer, and the time of its last
-/// change.
-pub(super) fn state_of(path: &Path) -> Result<(u64, u64)> {
+/// Returns the state of a file, which may be named together with a layer.
+pub(super) fn state_of(path: &Path) -> Result<FileState> {
     let about = match std::fs::metadata(path) {
         Ok(about) => about,
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
@@ -125,5 +144,5 @@ pub(super) fn state_of(path: &Path) -> Result<(u64, u64)> {
         Err(error) => return Err(Error::from(error).in_file(path)),
     };
     let modified = about.modified().ok().and_then(|time| time.duration_since(UNIX_EPOCH).ok());
-    Ok((about.len(), modified.map_or(0, |time| time.as_nanos() as u64)))
+    Ok(FileState { size: about.len(), modified: modified.map_or(0, |time| time.as_nanos() as u64) })
 }

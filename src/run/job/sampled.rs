@@ -94,6 +94,7 @@ fn scattered(k: usize) -> usize {
 mod tests {
     use std::slice::from_ref;
 
+    use super::super::planned_file::FileState;
     use super::*;
     use crate::run::input::Input;
     use crate::terrain::tiles::Layout;
@@ -122,8 +123,7 @@ mod tests {
         let file = PlannedFile {
             input: 0,
             path: path.clone(),
-            size: 0,
-            modified: 0,
+            state: FileState { size: 0, modified: 0 },
             count: points.len() as u64,
             min: [0.0; 2],
             max: [402.0; 2],

@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use super::plan::Plan;
-use super::planned_file::PlannedFile;
+use super::planned_file::{FileState, PlannedFile};
 use crate::crs::{Crs, CrsKind, Unit};
 use crate::data::Frame;
 use crate::terrain::tiles::{Layout, Node};
@@ -12,7 +12,7 @@ impl Plan {
     pub(super) fn to_json(&self) -> Value {
         let file = |file: &PlannedFile| {
             json!({
-                "path": file.path, "input": file.input, "size": file.size, "modified": file.modified,
+                "path": file.path, "input": file.input, "state": file.state.to_json(),
                 "count": file.count, "min": file.min, "max": file.max,
             })
         };
@@ -24,7 +24,7 @@ impl Plan {
             "version": env!("CARGO_PKG_VERSION"),
             "request": self.request,
             "files": self.files.iter().map(file).collect::<Vec<_>>(),
-            "others": self.others,
+            "others": self.others.iter().map(|(path, state)| json!([path, state.to_json()])).collect::<Vec<_>>(),
             "skipped": self.skipped,
             "divides": self.divides,
             "has_lines": self.has_lines,
@@ -49,13 +49,14 @@ impl Plan {
             Some(PlannedFile {
                 path: serde_json::from_value(value["path"].clone()).ok()?,
                 input: whole(&value["input"])?,
-                size: value["size"].as_u64()?,
-                modified: value["modified"].as_u64()?,
+                state: FileState::from_json(&value["state"])?,
                 count: value["count"].as_u64()?,
                 min: serde_json::from_value(value["min"].clone()).ok()?,
                 max: serde_json::from_value(value["max"].clone()).ok()?,
             })
         };
+        let other =
+            |value: &Value| Some((serde_json::from_value(value[0].clone()).ok()?, FileState::from_json(&value[1])?));
         let node = |value: &Value| match value {
             Value::Array(parts) if parts.len() == 4 => Some(Node::Cut {
                 axis: whole(&parts[0])?,
@@ -73,7 +74,7 @@ impl Plan {
         Some(Plan {
             request: value["request"].as_str()?.to_owned(),
             files: value["files"].as_array()?.iter().map(file).collect::<Option<_>>()?,
-            others: serde_json::from_value(value["others"].clone()).ok()?,
+            others: value["others"].as_array()?.iter().map(other).collect::<Option<_>>()?,
             skipped: serde_json::from_value(value["skipped"].clone()).ok()?,
             divides: value["divides"].as_bool()?,
             has_lines: value["has_lines"].as_bool()?,

@@ -12,6 +12,7 @@ use flate2::Crc;
 use serde_json::{Map, Value, json};
 use tempfile::NamedTempFile;
 
+use super::planned_file::FileState;
 use crate::error::{Error, Result};
 use crate::run::checksum::Summed;
 
@@ -158,11 +159,9 @@ impl TaskFile {
         Ok(TaskFile { file, path: path.to_path_buf(), sections, facts })
     }
 
-    /// Returns the length of the file of points that the task has read, and the time of its last
-    /// change in nanoseconds.
-    pub(super) fn state_of_input(&self) -> (u64, u64) {
-        let number = |k: usize| self.facts.get(INPUT).and_then(|state| state[k].as_u64()).unwrap_or_default();
-        (number(0), number(1))
+    /// Returns the state of the file of points that the task has read; `None` if it reads none.
+    pub(super) fn state_of_input(&self) -> Option<FileState> {
+        self.facts.get(INPUT).and_then(FileState::from_json)
     }
 
     /// Returns an error if the checksum is not that of the bytes.

@@ -130,7 +130,10 @@ impl Job<'_> {
             Err(error) if self.bad == BadFiles::Skip && matches!(error.kind(), Kind::Format | Kind::Unsupported) => {
                 let state = state_of(path)?;
                 let error = error.in_file(path);
-                Ok(Map::from_iter([("skipped".to_owned(), json!(error.to_string())), (INPUT.to_owned(), json!(state))]))
+                Ok(Map::from_iter([
+                    ("skipped".to_owned(), json!(error.to_string())),
+                    (INPUT.to_owned(), state.to_json()),
+                ]))
             }
             read => read.map_err(|e| e.in_file(path)),
         }
@@ -158,7 +161,7 @@ impl Job<'_> {
                 let name = file.path.display();
                 let warnings: Vec<String> = source.warnings().iter().map(|text| format!("{name}: {text}")).collect();
                 facts.insert("warnings".to_owned(), json!(warnings));
-                facts.insert(INPUT.to_owned(), json!(state));
+                facts.insert(INPUT.to_owned(), state.to_json());
                 return Ok(facts);
             }
             selection.add(&batch)?;
