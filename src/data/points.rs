@@ -131,9 +131,11 @@ pub trait PointSource {
     /// If the data is damaged. Points returned before are valid.
     fn read(&mut self, batch: &mut PointBatch) -> Result<()>;
 
-    /// Leaves out most points: of about `spacing` ones, some ten thousand in sequence are read, to
-    /// find out where points are in a fraction of the time. Each point is as likely to be read.
-    /// Returns false, and changes nothing, if the source cannot pass over points.
+    /// Restricts reading to a sample, which shows where points are in a fraction of the time.
+    ///
+    /// The sample consists of runs of some 50 000 points that follow each other in the file. One
+    /// run begins every `spacing` points. All points are equally likely to be in it. Returns false,
+    /// and changes nothing, if the source cannot skip points.
     fn thin(&mut self, spacing: u64) -> bool {
         let _ = spacing;
         false

@@ -97,6 +97,9 @@ fn parse(bytes: &[u8], stem: &str, options: &Options, watch: Watch) -> Result<La
 ///
 /// # Errors
 /// Those of [`read_layer_with`]; the message names the line or the record.
+///
+/// # Complexity
+/// Linear. In memory are the bytes of the file, and the values of one line at a time.
 pub fn read_lines_with(path: &Path, options: &Options, watch: Watch) -> Result<Layer> {
     let bytes = bytes_of(path, watch)?;
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();

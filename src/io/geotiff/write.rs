@@ -56,6 +56,9 @@ const LARGEST_WITHOUT: usize = 512;
 /// # Errors
 /// If the raster has no cells or too many, the source fails, or the file cannot be written; and
 /// that of the watch.
+///
+/// # Complexity
+/// Linear in the cells, each of which is asked for once.
 pub fn write<'a>(
     target: impl Into<Destination<'a>>,
     source: &dyn BlockSource,

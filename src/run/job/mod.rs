@@ -274,9 +274,9 @@ impl<'a> Job<'a> {
 
     /// Opens the job of a request in its folder, to do what is left; `None` if there is none.
     ///
-    /// A file that has changed since the job was planned counts as repaired if no task has read it
-    /// and its header states the same number and extent; then it is taken as it is now. One that a
-    /// task has read may be missing.
+    /// A file that has changed since the job was planned is accepted if no task has read it, and if
+    /// its header states as many points and the same extent as before: it was damaged, and was
+    /// replaced. A file that a task has read may be missing.
     ///
     /// # Errors
     /// If the job is that of another request, or damaged, or a file has changed otherwise.
@@ -287,8 +287,9 @@ impl<'a> Job<'a> {
         Ok(Some(job))
     }
 
-    /// Like [`open`](Self::open), to do one task, or to write the output as the last one: of the
-    /// files of points, only the one that it reads is looked at.
+    /// Opens the job of a request to do one task; `None` if there is no job. The last task writes
+    /// the output. Unlike with [`open`](Self::open), the only file of points that is looked at is
+    /// the one that the task reads.
     ///
     /// # Errors
     /// As [`open`](Self::open); also if the job has no task with this number.
@@ -320,7 +321,8 @@ impl<'a> Job<'a> {
         }
     }
 
-    /// Like [`open`](Self::open), to see what is done: no other files are looked at.
+    /// Opens the job of a request to see what is done; `None` if there is no job. Unlike with
+    /// [`open`](Self::open), no input is looked at.
     ///
     /// # Errors
     /// If the job is that of another request, or damaged.

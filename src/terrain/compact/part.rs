@@ -14,9 +14,10 @@ impl<B: AsRef<[u8]>> CompactTin<B> {
         !self.numbers.is_empty()
     }
 
-    /// Returns the number of the tile of a vertex, and the number of the vertex in that tile: both
-    /// are the same in all parts of a surface. Returns `None` if the TIN is no part of a surface,
-    /// or has no such vertex.
+    /// Returns the number of the tile of a vertex, and the number of the vertex in that tile. A
+    /// vertex that several parts of a surface share has the same two numbers in each of them.
+    ///
+    /// Returns `None` if the vertex does not exist, or the file is not a part of a larger surface.
     pub fn number_in_parts(&self, vertex: u32) -> Option<[u32; 2]> {
         // Vertices of fragments are in no other part.
         if let Some(added) = (vertex as usize).checked_sub(self.triangulation.vertex_count()) {

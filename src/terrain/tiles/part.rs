@@ -82,8 +82,10 @@ impl TinPart {
 }
 
 impl<B: AsRef<[u8]> + Sync> CompactTin<B> {
-    /// Returns a vertex with the numbers that are the same in all parts of a surface. Returns
-    /// `None` if the TIN is no part of a surface, or has no such vertex.
+    /// Returns the position of a vertex, with its numbers: see
+    /// [`number_in_parts`](Self::number_in_parts).
+    ///
+    /// Returns `None` if the vertex does not exist, or the file is not a part of a larger surface.
     pub fn tile_vertex(&self, vertex: u32) -> Option<TileVertex> {
         let [tile, number] = self.number_in_parts(vertex)?;
         Some(TileVertex { tile, number, position: self.position(vertex) })

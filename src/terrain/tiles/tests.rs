@@ -72,7 +72,7 @@ impl Tasks for Unchanged {}
 /// What all tasks find together.
 pub(super) struct Found {
     pub triangles: Vec<Triangle>,
-    /// The same triangles, in the order in which tasks emit them.
+    /// What the tasks emit, in order.
     pub emitted: Vec<TileTriangle>,
     /// The number of vertices that leaves hand up.
     pub handed_up: usize,

@@ -24,8 +24,8 @@ pub(in crate::cli) struct SurfaceArgs {
     #[arg(required = true, value_name = "IN")]
     pub(in crate::cli) inputs: Vec<PathBuf>,
 
-    /// The files that a job was planned with, instead of the inputs that were typed: those that
-    /// were read may be missing.
+    /// The files that a job was planned with, which count instead of what was typed. Those that
+    /// tasks have read may be missing by now.
     #[arg(skip)]
     pub(in crate::cli) planned: Option<Vec<PathBuf>>,
 

@@ -42,8 +42,8 @@ pub(in crate::cli) struct TileArgs {
     #[arg(long)]
     pub(in crate::cli) skip_bad: bool,
 
-    /// The number of the task that writes the output, if that alone shall be done: what was read
-    /// is not looked at then.
+    /// The number of the last task, if only that one is to be done. It writes the output, and looks
+    /// at no input.
     #[arg(skip)]
     pub(in crate::cli) last_task: Option<usize>,
 }

@@ -212,8 +212,8 @@ impl Chunks {
     }
 }
 
-/// Leaves of about `spacing` points one chunk. It goes by numbers, not by points: chunks may differ
-/// in size, and each shall be as likely.
+/// Keeps one chunk for every `spacing` points, on average. Chunks are counted, and not their
+/// points, because those of COPC differ in size, and large ones must not be more likely.
 fn thin_out(chunks: &mut VecDeque<Chunk>, spacing: u64) {
     let count = chunks.len() as u64;
     let average = (chunks.iter().map(|chunk| chunk.points).sum::<u64>() / count.max(1)).max(1);
