@@ -32,7 +32,8 @@ _HEADER = 375
 _AT_ONCE = 16
 
 #: What stores call the version of an object: the first of these that is stated tells whether it has changed.
-_VERSIONS = ("ETag", "etag", "content_md5", "md5Hash", "mtime", "LastModified", "last_modified", "Last-Modified", "updated")
+_TIMES = ("mtime", "LastModified", "last_modified", "Last-Modified", "updated")
+_VERSIONS = ("ETag", "etag", "content_md5", "md5Hash", *_TIMES)
 
 
 def is_url(text: str) -> bool:
@@ -97,7 +98,9 @@ class StoredObject:
 class Objects:
     """The objects that the URLs of a job stand for."""
 
-    def __init__(self, urls: "list[str]", scratch: "str | None", storage_options: "dict[str, Any] | None", job: str) -> None:
+    def __init__(
+        self, urls: "list[str]", scratch: "str | None", storage_options: "dict[str, Any] | None", job: str
+    ) -> None:
         scratch = _default_scratch() if scratch is None else scratch
         self._folder = os.path.join(scratch, hashlib.sha256(job.encode()).hexdigest()[:16])
         self._of_url = {url: _found(url, self._folder, storage_options or {}) for url in urls}

@@ -4,11 +4,11 @@
 >>> breakline.dask.dem("tiles/*.laz", "dem.tif", resolution=1, client=client)  # doctest: +SKIP
 PosixPath('dem.tif')
 
-The work is the job that ``breakline job plan`` makes: a folder with a file for each task that is done. Inputs, output and
-that folder must have the same paths on all workers. Points may also be objects in a store that ``fsspec`` knows
-(``s3://bucket/tiles/*.laz``): a worker copies an object when a task reads it, and removes the copy afterwards. The result
-is the same, byte for byte, as on one machine: tasks may be repeated, and a task that was done before is not done again.
-Workers may be lost: what they were doing is repeated, what they have done is kept.
+The work is the job that ``breakline job plan`` makes: a folder with a file for each task that is done. Inputs, output
+and that folder must have the same paths on all workers. Points may also be objects in a store that ``fsspec`` knows
+(``s3://bucket/tiles/*.laz``): a worker copies an object when a task reads it, and removes the copy afterwards. The
+result is the same, byte for byte, as on one machine: tasks may be repeated, and a task that was done before is not
+done again. Workers may be lost: what they were doing is repeated, what they have done is kept.
 """
 
 from __future__ import annotations
@@ -98,63 +98,36 @@ def dem(
         If the job cannot be planned, or a task fails, or loses its workers, more often than it is repeated. The tasks
         that wait are canceled then, as they are by Ctrl-C; those that are done are kept, and the same call goes on.
     """
-    return _run("dem", inputs, output, client, job, retries, (scratch, storage_options), options)
+    places = {"job": job, "scratch": scratch, "storage_options": storage_options}
+    return _run("dem", inputs, output, client=client, retries=retries, **places, **options)
 
 
-def hillshade(
-    inputs: "Union[PathLike, Sequence[PathLike]]",
-    output: PathLike,
-    *,
-    client: Any,
-    job: "Union[PathLike, None]" = None,
-    retries: int = 3,
-    scratch: "Union[PathLike, None]" = None,
-    storage_options: "Union[dict[str, Any], None]" = None,
-    **options: Any,
-) -> Path:
-    """Write a hillshade of points, with the workers of a Dask cluster; see :func:`dem`."""
-    return _run("hillshade", inputs, output, client, job, retries, (scratch, storage_options), options)
+def hillshade(inputs: "Union[PathLike, Sequence[PathLike]]", output: PathLike, *, client: Any, **options: Any) -> Path:
+    """Write a hillshade of points, with the workers of a Dask cluster; parameters as for :func:`dem`."""
+    return _run("hillshade", inputs, output, client=client, **options)
 
 
-def contour(
-    inputs: "Union[PathLike, Sequence[PathLike]]",
-    output: PathLike,
-    *,
-    client: Any,
-    job: "Union[PathLike, None]" = None,
-    retries: int = 3,
-    scratch: "Union[PathLike, None]" = None,
-    storage_options: "Union[dict[str, Any], None]" = None,
-    **options: Any,
-) -> Path:
-    """Write contours of points, with the workers of a Dask cluster; see :func:`dem`."""
-    return _run("contour", inputs, output, client, job, retries, (scratch, storage_options), options)
+def contour(inputs: "Union[PathLike, Sequence[PathLike]]", output: PathLike, *, client: Any, **options: Any) -> Path:
+    """Write contours of points, with the workers of a Dask cluster; parameters as for :func:`dem`."""
+    return _run("contour", inputs, output, client=client, **options)
 
 
-def tin(
-    inputs: "Union[PathLike, Sequence[PathLike]]",
-    output: PathLike,
-    *,
-    client: Any,
-    job: "Union[PathLike, None]" = None,
-    retries: int = 3,
-    scratch: "Union[PathLike, None]" = None,
-    storage_options: "Union[dict[str, Any], None]" = None,
-    **options: Any,
-) -> Path:
-    """Write a TIN of points in parts (``.tins``), with the workers of a Dask cluster; see :func:`dem`."""
-    return _run("tin", inputs, output, client, job, retries, (scratch, storage_options), options)
+def tin(inputs: "Union[PathLike, Sequence[PathLike]]", output: PathLike, *, client: Any, **options: Any) -> Path:
+    """Write a TIN of points in parts (``.tins``), with the workers of a Dask cluster; parameters as for :func:`dem`."""
+    return _run("tin", inputs, output, client=client, **options)
 
 
 def _run(
     verb: str,
     inputs: "Union[PathLike, Sequence[PathLike]]",
     output: PathLike,
+    *,
     client: Any,
-    job: "Union[PathLike, None]",
-    retries: int,
-    store: "tuple[Union[PathLike, None], Union[dict[str, Any], None]]",
-    options: "dict[str, Any]",
+    job: "Union[PathLike, None]" = None,
+    retries: int = 3,
+    scratch: "Union[PathLike, None]" = None,
+    storage_options: "Union[dict[str, Any], None]" = None,
+    **options: Any,
 ) -> Path:
     if not hasattr(client, "submit"):
         raise usage("client is not a client of dask.distributed", client, "pass dask.distributed.Client()")
@@ -167,7 +140,6 @@ def _run(
         cure = "pass classes=2 for ground: else points would be read to find out"
         raise usage("of objects, only the headers are read to plan", urls[0], cure)
     folder = _path(f"{os.fspath(output)}.job" if job is None else job)
-    scratch, storage_options = store
     objects = Objects(urls, None if scratch is None else _path(scratch), storage_options, folder)
     paths = [path for file in files for path in _paths(file, objects)]
     command = [verb, *paths, "-o", _path(output), *_words(options)]
