@@ -384,10 +384,10 @@ fn images(bytes: &[u8]) -> Vec<(usize, usize, Vec<f32>)> {
     }
 }
 
-/// Heights without gaps: the `tiff` crate does not read sparse files.
-struct Waves(Frame);
+/// A raster whose cells are computed from their columns and rows.
+struct Cells(Frame, fn(usize, usize) -> f32);
 
-impl BlockSource for Waves {
+impl BlockSource for Cells {
     fn frame(&self) -> Frame {
         self.0
     }
@@ -398,39 +398,33 @@ impl BlockSource for Waves {
 
     fn fill(&self, window: Window, out: &mut [f32]) -> Result<()> {
         for (i, cell) in out.iter_mut().enumerate() {
-            let (column, row) = (window.column + i % window.width, window.row + i / window.width);
-            let noise = (column * 31 + row * 17) % 53;
-            *cell = if noise == 0 { f32::NAN } else { (column as f32 * 0.05).sin() * 40.0 + row as f32 + noise as f32 };
+            *cell = self.1(window.column + i % window.width, window.row + i / window.width);
         }
         Ok(())
     }
+}
+
+/// Heights with gaps, but none as large as a tile: the `tiff` crate does not read sparse files.
+fn wave(column: usize, row: usize) -> f32 {
+    let noise = (column * 31 + row * 17) % 53;
+    if noise == 0 { f32::NAN } else { (column as f32 * 0.05).sin() * 40.0 + row as f32 + noise as f32 }
 }
 
 /// Shades from 1 to 200 by columns, none in every third.
-struct Shades(Frame);
-
-impl BlockSource for Shades {
-    fn frame(&self) -> Frame {
-        self.0
-    }
-
-    fn crs(&self) -> Option<&Crs> {
-        None
-    }
-
-    fn fill(&self, window: Window, out: &mut [f32]) -> Result<()> {
-        for (i, cell) in out.iter_mut().enumerate() {
-            let column = window.column + i % window.width;
-            *cell = if column % 3 == 2 { f32::NAN } else { (column % 200 + 1) as f32 };
-        }
-        Ok(())
-    }
+fn shade(column: usize, _: usize) -> f32 {
+    if column % 3 == 2 { f32::NAN } else { (column % 200 + 1) as f32 }
 }
+
+/// A ramp over and beyond the range of a byte, without a value in every third column.
+const RAMP: Cells =
+    Cells(Frame { width: 400, height: 300, transform: [100.0, 2.0, 0.0, 200.0, 0.0, -2.0] }, |column, _| {
+        if column % 3 == 2 { f32::NAN } else { column as f32 - 20.0 }
+    });
 
 #[test]
 fn an_overview_has_the_means_of_four_cells_each() {
     for (width, height) in [(512, 512), (513, 2), (1, 1025), (1301, 700)] {
-        let waves = Waves(Frame::north_up(0.0, 0.0, 1.0, width, height));
+        let waves = Cells(Frame::north_up(0.0, 0.0, 1.0, width, height), wave);
         let (reader, _, bytes) = written(&waves, CellFormat::Heights);
         let images = images(&bytes);
         assert_eq!(images.len(), 1 + reader.info().overviews.len());
@@ -458,14 +452,14 @@ fn overviews_of_shades_are_shades_and_holes_stay() {
     assert_eq!(reader.info().overviews, [[350, 600], [175, 300]]);
     assert_eq!(reader.info().warnings, Vec::<String>::new());
     // No value in every third column: where a pair of columns has one, it counts alone.
-    let (reader, _, bytes) = written(&Shades(Frame::north_up(0.0, 0.0, 1.0, 700, 100)), CellFormat::Shades);
+    let (reader, _, bytes) = written(&Cells(Frame::north_up(0.0, 0.0, 1.0, 700, 100), shade), CellFormat::Shades);
     assert_eq!(reader.info().overviews, [[350, 50]]);
     let mut decoder = tiff::decoder::Decoder::new(std::io::Cursor::new(bytes)).unwrap();
     decoder.next_image().unwrap();
     let tiff::decoder::DecodingResult::U8(shades) = decoder.read_image().unwrap() else { panic!("not bytes") };
-    let shade = |column: usize| if column % 3 == 2 { 0.0 } else { (column % 200 + 1) as f32 };
     for (x, found) in shades[..350].iter().enumerate() {
-        let [a, b] = [2 * x, 2 * x + 1].map(shade);
+        let [a, b] =
+            [2 * x, 2 * x + 1].map(|column| shade(column, 0)).map(|shade| if shade.is_nan() { 0.0 } else { shade });
         let mean = if a == 0.0 || b == 0.0 { a + b } else { (a + b) / 2.0 };
         assert_eq!(f32::from(*found), mean.round(), "column {x}");
     }
@@ -517,30 +511,9 @@ fn bytes_do_not_depend_on_the_number_of_threads() {
     assert!(threads(1) == threads(2));
 }
 
-/// A ramp over and beyond the range of a byte, without a value in every third column.
-struct Ramp;
-
-impl BlockSource for Ramp {
-    fn frame(&self) -> Frame {
-        Frame::north_up(100.0, 200.0, 2.0, 400, 300)
-    }
-
-    fn crs(&self) -> Option<&Crs> {
-        None
-    }
-
-    fn fill(&self, window: Window, out: &mut [f32]) -> Result<()> {
-        for (i, cell) in out.iter_mut().enumerate() {
-            let column = window.column + i % window.width;
-            *cell = if column % 3 == 2 { f32::NAN } else { column as f32 - 20.0 };
-        }
-        Ok(())
-    }
-}
-
 #[test]
 fn shades_are_bytes_from_one() {
-    let (reader, summary, _) = written(&Ramp, CellFormat::Shades);
+    let (reader, summary, _) = written(&RAMP, CellFormat::Shades);
     assert_eq!(reader.info().sample.to_string(), "uint8");
     assert_eq!((summary.min, summary.max), (1.0, 255.0));
     let grid = reader.read_grid().unwrap();
@@ -552,7 +525,7 @@ fn shades_are_bytes_from_one() {
 fn a_picture_is_gray_and_knows_its_place() {
     let folder = tempfile::tempdir().unwrap();
     let target = folder.path().join("relief.png");
-    png::write_gray(&target, &Ramp).unwrap();
+    png::write_gray(&target, &RAMP).unwrap();
     let file = std::io::BufReader::new(std::fs::File::open(&target).unwrap());
     let mut reader = ::png::Decoder::new(file).read_info().unwrap();
     let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
