@@ -37,7 +37,9 @@ fn wait_until(what: &str, mut is_so: impl FnMut() -> bool) {
 }
 
 fn send(signal: &str, child: &Child) {
-    assert!(Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap().success());
+    // The one of the shell: not every system has a program `kill`.
+    let words = ["-c", "kill \"$0\" \"$1\"", signal, &child.id().to_string()];
+    assert!(Command::new("sh").args(words).status().unwrap().success());
 }
 
 #[test]
