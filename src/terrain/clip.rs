@@ -76,7 +76,9 @@ impl Clip {
         }
         let segments = |(domain, ring): &(Domain, Vec<[f64; 2]>)| {
             let domain = *domain;
-            ring.windows(2).map(move |pair| (domain, [pair[0], pair[1]])).collect::<Vec<_>>()
+            // Bounds that are one position have sides without length, which bound nothing.
+            let bounds_something = move |pair: &&[[f64; 2]]| domain != BOUNDS || pair[0] != pair[1];
+            ring.windows(2).filter(bounds_something).map(move |pair| (domain, [pair[0], pair[1]])).collect::<Vec<_>>()
         };
         Ok(rings.iter().flat_map(segments).collect())
     }

@@ -91,8 +91,10 @@ impl TileClip {
         if self.near.find_in(extent, is_met).is_some() {
             return ClipSide::Near;
         }
-        // Without a line near, each position of the box is as good.
-        let is_kept = self.clip.bounds.as_ref().is_none_or(|bounds| bounds.holds(min[0], min[1]))
+        // Without a line near, each position of the box is as good, and none is on the border of
+        // the bounds; if they are one position, they have no inside.
+        let is_within = |bounds: &Bounds| (0..2).all(|k| bounds.min[k] < min[k] && min[k] < bounds.max[k]);
+        let is_kept = self.clip.bounds.as_ref().is_none_or(is_within)
             && (self.clip.polygons.is_empty() || self.polygons.contains(min))
             && !self.holes.contains(min);
         if is_kept { ClipSide::Kept } else { ClipSide::Outside }

@@ -127,6 +127,33 @@ fn clipped_tiles_are_the_clipped_whole() {
     assert!(refused * 40 <= count(), "{refused} sets are refused");
 }
 
+/// Bounds without an area keep nothing, wherever they are.
+#[test]
+fn bounds_without_an_area_keep_nothing() {
+    let at = |i: usize| 1e6 + (i % 5) as f64;
+    let points: Vec<[f64; 3]> = (0..25).map(|i| [at(i), at(i / 5), at(i * 3)]).collect();
+    let extent = Bounds { min: [1e6, 1e6, 1e6], max: [1e6 + 4.0; 3] };
+    for (a, b) in (0..50).map(|i| 1e6 + f64::from(i % 10) * 0.5).zip((0..50).map(|i| 1e6 + f64::from(i / 10))) {
+        for far in [[a, b], [a + 1.0, b], [a, b + 1.5]] {
+            let mut builder = TinBuilder::default();
+            builder.add_owned_points(points.clone());
+            builder.bounds = Some(Bounds { min: [a, b, f64::NEG_INFINITY], max: [far[0], far[1], f64::INFINITY] });
+            let clip = TileClip::take_from(&mut builder.clone(), &extent).unwrap().unwrap();
+            let whole = builder.build().map_or(0, |tin| tin.report().triangles);
+            let (mut beside, mut kept) = (Vec::new(), 0);
+            let mut sort = |triangle| match clip.side_of_triangle(&triangle) {
+                ClipSide::Kept => kept += 1,
+                ClipSide::Outside => {}
+                ClipSide::Near => beside.push((triangle, true)),
+            };
+            leaf(&Tile::PLANE, 0, &points, &[], &mut sort).unwrap();
+            let part = clip.cut(&beside, [1e6 + 4.0; 2]).unwrap();
+            kept += part.iter().flat_map(TinPart::triangles).count();
+            assert_eq!((kept, whole), (0, 0), "{a} {b} {far:?}");
+        }
+    }
+}
+
 /// Far from lines, nothing waits; a line has many boxes where it is long.
 #[test]
 fn only_triangles_at_lines_wait() {
