@@ -23,12 +23,16 @@ pub fn open(path: impl AsRef<Path>) -> Result<GeoTiffReader> {
 }
 
 fn first_bytes(path: &Path) -> Result<Vec<u8>> {
-    let mut head = Vec::new();
-    let file = File::open(path)?;
-    if file.metadata()?.is_dir() {
+    let about = std::fs::metadata(path)?;
+    if about.is_dir() {
         return Err(Error::usage("is a folder, not a raster file"));
     }
-    file.take(HEAD as u64).read_to_end(&mut head)?;
+    // Its bytes are needed in any order. Opening a pipe would take its writer.
+    if !about.is_file() {
+        return Err(Error::usage("a raster is not read from a pipe or a device").cure("write it to a file first"));
+    }
+    let mut head = Vec::new();
+    File::open(path)?.take(HEAD as u64).read_to_end(&mut head)?;
     Ok(head)
 }
 

@@ -129,6 +129,8 @@ pub use surface::{Model, Source, SurfaceProduct, SurfaceRequest, surface, triang
 pub use systems::{Degrees, SystemOptions};
 pub use tin::{BuildReport, EdgeLimit, ReplacedPoints, TinRequest};
 pub use tin_parts::TinParts;
+#[cfg(feature = "cli")]
+pub(crate) use tin_parts::parts_folder;
 pub use triangulate::{
     Arithmetic, TriangulateOptions, TriangulateProduct, TriangulateReport, triangulate, triangulate_graph,
 };

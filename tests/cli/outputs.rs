@@ -255,3 +255,99 @@ fn too_little_memory_is_told_before_the_work() {
         assert!(said.contains("are left by the limit of the address space (ulimit -v)"), "{said}");
     }
 }
+
+/// The program looks at the kind of a file before it reads it: a pipe can be opened only once.
+#[test]
+fn a_pipe_is_opened_once_and_read_to_its_end() {
+    // More than a pipe holds: a writer whose reader is gone is killed.
+    let text: String = (0..2500).map(|i| format!("{:.9} {:.9} {:.9}\n", i % 50, i / 50, i % 7)).collect();
+    let folder = folder_with(&[("a.xyz", &text), ("b.xyz", SLOPE)]);
+    let line = geojson(25832, "LineString", "[[5.5,5.5,1],[70.5,80.5,1]]");
+    std::fs::write(folder.path().join("l.geojson"), line).unwrap();
+    let lidar = testkit::lidar::las(&testkit::lidar::tile([0.0, 0.0], 2), Some(25832));
+    std::fs::write(folder.path().join("a.las"), lidar).unwrap();
+    run_in(&folder, &["tin", "a.xyz", "-o", "a.ply"]).works(&[]);
+    run_in(&folder, &["tin", "a.xyz", "-o", "a.tin"]).works(&[]);
+    run_in(&folder, &["dem", "a.xyz", "-o", "a.tif"]).works(&[]);
+    run_in(&folder, &["hillshade", "a.xyz", "-o", "a.png"]).works(&[]);
+    for (from, pipe, words, code) in [
+        ("a.xyz", "p", "tin p -o t.ply", 0),
+        ("a.xyz", "p.xyz", "tin p.xyz b.xyz -o t.ply", 0),
+        ("a.xyz", "p.xyz", "dem p.xyz -o t.tif --memory 100MB", 0),
+        ("a.xyz", "p.xyz", "dem p.xyz -o t.tif --tiles 2x2", 2),
+        ("a.xyz", "p.txt", "info p.txt", 0),
+        ("a.xyz", "p.txt", "points p.txt -o t.xyz", 0),
+        ("a.xyz", "p.xyz", "check p.xyz", 0),
+        ("a.las", "p.las", "tin p.las -o t.ply", 0),
+        ("a.las", "p.laz", "dem p.laz -o t.tif", 0),
+        ("a.las", "p.las", "info p.las", 0),
+        ("a.ply", "p.ply", "dem p.ply -o t.tif", 0),
+        ("a.ply", "p.ply", "info p.ply", 0),
+        ("a.ply", "p.ply", "check p.ply", 0),
+        ("a.tin", "p.tin", "dem p.tin -o t.tif", 2),
+        ("a.tif", "p.tif", "hillshade p.tif -o t.png", 2),
+        ("a.tif", "p.tif", "dem a.xyz --align-to p.tif -o t.tif", 2),
+        ("a.tif", "p.tif", "info p.tif", 1),
+        ("a.png", "p.png", "info p.png", 0),
+        ("l.geojson", "p.geojson", "tin a.xyz --breaklines p.geojson -o t.ply", 0),
+        ("l.geojson", "p.geojson", "tin a.xyz --boundary p.geojson -o t.ply", 1),
+        ("l.geojson", "p.geojson", "info p.geojson", 0),
+        ("l.geojson", "p.shp", "tin a.xyz --breaklines p.shp -o t.ply", 1),
+    ] {
+        make_fifo(&folder, pipe);
+        let line = format!("cat {from} > {pipe}");
+        let mut cat = Command::new("sh").args(["-c", &line]).current_dir(folder.path()).spawn().unwrap();
+        let words: Vec<&str> =
+            words.split(' ').chain(["--overwrite"].into_iter().filter(|_| words.contains("-o "))).collect();
+        let mut run = assert_cmd::Command::new(assert_cmd::cargo::cargo_bin!("breakline"));
+        // Only a program that waits for a second writer takes that long.
+        let run = run.current_dir(folder.path()).args(&words).timeout(Duration::from_secs(120)).output().unwrap();
+        assert_eq!(run.status.code(), Some(code), "{words:?}: {}", String::from_utf8_lossy(&run.stderr));
+        // Nobody may have read it.
+        let _ = cat.kill();
+        cat.wait().unwrap();
+        std::fs::remove_file(folder.path().join(pipe)).unwrap();
+    }
+}
+
+/// The files that are read along with an input are inputs, whatever the case of their names, and
+/// whether they exist or not: one that appears is read from then on.
+#[test]
+fn what_is_read_along_with_an_input_is_not_replaced() {
+    let folder = folder_with(&[("a.xyz", SLOPE), ("list.txt", "a.xyz\n"), ("o/x", "")]);
+    run_in(&folder, &["contour", "a.xyz", "--a-srs", "EPSG:25832", "-o", "q.shp"]).works(&[]);
+    let path = |name: &str| folder.path().join(name);
+    std::fs::rename(path("q.shp"), path("q.SHP")).unwrap();
+    std::fs::rename(path("q.prj"), path("q.PRJ")).unwrap();
+    std::fs::remove_file(path("q.cpg")).unwrap();
+    std::fs::write(path("n.node"), "4 2 0 0\n1 0 0\n2 9 0\n3 9 9\n4 0 9\n").unwrap();
+    std::fs::write(path("n.POLY"), "0 2 0 0\n4 0\n1 1 2\n2 2 3\n3 3 4\n4 4 1\n0\n").unwrap();
+    run_in(&folder, &["tin", "a.xyz", "--tiles", "2x2", "-o", "s.tins"]).works(&[]);
+    let parts = files_of(folder.path()).into_iter().find(|name| name.starts_with("s.tins.")).unwrap();
+    let part = format!("{parts}/{}", files_of(&path(&parts))[0]);
+    let lines = "--breaklines q.SHP --a-srs EPSG:25832";
+    for (words, refused, why) in [
+        (format!("contour a.xyz {lines} -o q.shp"), "q.shx", "a file of this name is read with an input, q.SHP"),
+        (format!("contour a.xyz {lines} -o ./o/../q.shp"), "q.shx", "read with an input, q.SHP"),
+        (format!("contour a.xyz {lines} -o o/../Q.shp"), "Q.shx", "read with an input, q.SHP"),
+        (format!("contour a.xyz {lines} -o q.SHP"), "q.SHP", "the output is one of the inputs"),
+        ("contour a.xyz --boundary q.SHP::Z -o q.shp".to_owned(), "q.shx", "read with an input, q.SHP"),
+        ("triangulate n.POLY -o n.ele".to_owned(), "n.node", "a file of this name is read with an input, n.POLY"),
+        ("triangulate n.POLY -o N.node".to_owned(), "N.node", "read with an input, n.POLY"),
+        (format!("tin s.tins -o {part}"), ".tin", "read with an input, s.tins"),
+        ("points @list.txt -o list.txt".to_owned(), "list.txt", "the output is one of the inputs"),
+        ("check @list.txt --crossing-report list.txt".to_owned(), "list.txt", "is not a format"),
+    ] {
+        let contents = || -> Vec<Vec<u8>> {
+            let own = files_of(folder.path()).into_iter().filter(|name| path(name).is_file());
+            own.map(|name| bytes(&folder, &name)).chain([bytes(&folder, &part)]).collect()
+        };
+        let before = (files_of(folder.path()), contents());
+        let words: Vec<&str> = words.split(' ').chain(["--overwrite"]).collect();
+        run_in(&folder, &words).fails(2, &[refused, why]);
+        assert!((files_of(folder.path()), contents()) == before, "{words:?}");
+    }
+    // Elsewhere the name is free.
+    let words = format!("contour a.xyz {lines} -o o/q.shp");
+    run_in(&folder, &words.split(' ').collect::<Vec<_>>()).works(&[]);
+}

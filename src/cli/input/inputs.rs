@@ -16,9 +16,9 @@ use crate::run::STDIN;
 pub(in crate::cli) fn expand(typed: &[PathBuf], console: &Console) -> Result<Vec<PathBuf>> {
     let mut found = Vec::new();
     for path in typed {
-        match path.to_str().and_then(|text| text.strip_prefix('@')) {
-            Some(list) if !path.exists() => read_list(Path::new(list), &mut found)?,
-            _ => expand_one(path, &mut found)?,
+        match list_of(path) {
+            Some(list) => read_list(list, &mut found)?,
+            None => expand_one(path, &mut found)?,
         }
     }
     let mut seen = HashSet::new();
@@ -37,6 +37,17 @@ pub(in crate::cli) fn expand(typed: &[PathBuf], console: &Console) -> Result<Vec
     Ok(found)
 }
 
+/// Returns the lists of files among the inputs as typed; they are read, too.
+pub(in crate::cli) fn lists(typed: &[PathBuf]) -> impl Iterator<Item = PathBuf> {
+    typed.iter().filter_map(|path| list_of(path)).map(Path::to_path_buf)
+}
+
+/// Returns the list that `@LIST` names, unless a file has that name.
+fn list_of(path: &Path) -> Option<&Path> {
+    let list = path.to_str()?.strip_prefix('@')?;
+    (!path.exists()).then_some(Path::new(list))
+}
+
 /// Returns a path that is the same for all names of one file.
 pub(in crate::cli) fn identity(path: &Path) -> PathBuf {
     let file = file_of(path).unwrap_or(path);
@@ -44,7 +55,7 @@ pub(in crate::cli) fn identity(path: &Path) -> PathBuf {
 }
 
 /// Returns the path of an existing file, without the layer and the field that may follow its name.
-fn file_of(path: &Path) -> Option<&Path> {
+pub(super) fn file_of(path: &Path) -> Option<&Path> {
     if path.exists() {
         return Some(path);
     }

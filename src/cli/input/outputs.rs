@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::args::OutputArgs;
-use super::inputs::identity;
+use super::inputs::{file_of, identity};
 use super::plan::SurfacePlan;
 use crate::cli::report::console::Console;
 use crate::cli::report::summary::describe;
@@ -13,7 +13,7 @@ use crate::io::formats::{self, Product};
 use crate::io::mesh::MeshSummary;
 use crate::io::{self, Destination, Output, OutputSet};
 use crate::run::units::bytes;
-use crate::run::{CellProduct, SurfaceProduct};
+use crate::run::{self, CellProduct, SurfaceProduct};
 
 /// DEFLATE seldom makes heights smaller than by this factor.
 const BEST_COMPRESSION: f64 = 10.0;
@@ -234,10 +234,10 @@ fn require_free<F>(path: &Path, format: &Format<F>, existing: Existing, inputs: 
         let missing = std::io::Error::new(std::io::ErrorKind::NotFound, "the folder does not exist");
         return Err(Error::from(missing).in_file(path).cure(format!("mkdir -p {}", folder.display())));
     }
-    for (file, _) in formats::with_companions(path, format.extension, format.companions) {
-        if inputs.iter().any(|input| identity(input) == identity(&file)) {
-            return Err(Error::usage("the output is one of the inputs").in_file(&file).cure("give it another name"));
-        }
+    let files = formats::with_companions(path, format.extension, format.companions);
+    files.iter().try_for_each(|(file, _)| require_no_input(file, inputs))?;
+    files.iter().try_for_each(|(file, _)| require_not_read_along(file, inputs))?;
+    for (file, _) in files {
         if existing == Existing::Keep {
             io::require_absent(&file)?;
         }
@@ -246,6 +246,35 @@ fn require_free<F>(path: &Path, format: &Format<F>, existing: Existing, inputs: 
         }
     }
     Ok(())
+}
+
+/// Returns an error if a file is one of the inputs.
+fn require_no_input(file: &Path, inputs: &[PathBuf]) -> Result<()> {
+    let own = identity(file);
+    match inputs.iter().any(|input| identity(input) == own) {
+        true => Err(Error::usage("the output is one of the inputs").in_file(file).cure("give it another name")),
+        false => Ok(()),
+    }
+}
+
+/// Returns an error if a file is read along with an input, as `roads.dbf` is with `roads.shp`: also
+/// one that does not exist yet, since it would be read from then on.
+fn require_not_read_along(file: &Path, inputs: &[PathBuf]) -> Result<()> {
+    let (own, folder) = (identity(file), identity(folder_of(file)));
+    let is_own = |along: &PathBuf| {
+        let [name, own_name] = [along, file].map(|path| path.file_name().unwrap_or_default());
+        identity(along) == own || name.eq_ignore_ascii_case(own_name) && identity(folder_of(along)) == folder
+    };
+    let is_along = |main: &Path| {
+        let is_part = || run::parts_folder(main).is_some_and(|parts| identity(&parts) == folder);
+        formats::read_along_with(main).iter().any(is_own) || is_part()
+    };
+    match inputs.iter().map(|input| file_of(input).unwrap_or(input)).find(|main| is_along(main)) {
+        Some(main) => Err(Error::usage(format!("a file of this name is read with an input, {}", main.display()))
+            .in_file(file)
+            .cure("give it another name")),
+        None => Ok(()),
+    }
 }
 
 /// Returns the companions of a target, then the target itself.

@@ -55,6 +55,7 @@ impl SurfacePlan {
             Source::Raster(path) => Source::Raster(as_it_is(path, args)?),
         };
         let mut inputs = files;
+        inputs.extend(inputs::lists(&args.inputs));
         inputs.extend(args.breaklines.iter().chain(&line_files).chain(&args.boundary).cloned());
         let request = SurfaceRequest { source, systems };
         Ok(SurfacePlan {

@@ -13,7 +13,7 @@ use crate::run::{PointsRequest, Withheld, write_points};
 pub(in crate::cli) fn run(args: &PointsArgs, console: &Console) -> Result<Exit> {
     let files = inputs::expand(&args.inputs, console)?;
     inputs::require(&args.boundary)?;
-    let all: Vec<_> = files.iter().chain(&args.boundary).cloned().collect();
+    let all: Vec<_> = files.iter().chain(&args.boundary).cloned().chain(inputs::lists(&args.inputs)).collect();
     let outputs = outputs::resolve(&args.output, &outputs::formats_of(Product::Points, |_| ()), &all)?;
     let [target] = outputs.targets.as_slice() else {
         return Err(

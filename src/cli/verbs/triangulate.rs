@@ -44,10 +44,7 @@ pub(in crate::cli) fn run(args: &TriangulateArgs, console: &Console) -> Result<E
     }
     let is_poly = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("poly"));
     let formats = formats(is_poly);
-    // The vertices of a .poly may be in the .node next to it.
-    let mut read = vec![path.clone()];
-    read.extend(Some(path.with_extension("node")).filter(|node| is_poly && node.exists()));
-    let outputs = outputs::resolve(&args.output, &formats, &read)?;
+    let outputs = outputs::resolve(&args.output, &formats, std::slice::from_ref(path))?;
     let product = run::triangulate(path, &options(args), &console.context())?;
     if product.report.triangles_built == 0
         && let Some(mesh) = outputs.targets.iter().find(|target| target.kind == Family::Mesh)

@@ -199,6 +199,9 @@ pub struct Format {
     pub beside: &'static [&'static str],
     /// Extensions of files that belong to a file of this format, whichever program wrote them.
     pub parts: &'static [&'static str],
+    /// Extensions of files that are read along with a file of this format, in any case. As in
+    /// `beside`, one that starts with the format's own extension is appended to the file name.
+    pub read_along: &'static [&'static str],
     /// GDAL's names for the format, if breakline writes it.
     pub gdal_names: &'static [&'static str],
     pub(in crate::io) reader: Reader,

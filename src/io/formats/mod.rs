@@ -53,17 +53,17 @@ pub fn detect(head: &[u8], path: &Path) -> Option<&'static Format> {
         .or_else(|| find(KnownBy::Rest, &|_| !is_binary(head) && of_bytes(head).is_none()))
 }
 
-/// Like [`detect`], but opens the file. Input that cannot be read twice (a pipe) is recognized by
-/// its name only.
+/// Like [`detect`], but opens the file. Input that cannot be read twice (a pipe) is not opened, and
+/// recognized by its name only.
 ///
 /// # Errors
-/// If the file cannot be opened.
+/// If the file does not exist or cannot be opened.
 pub fn detect_file(path: &Path) -> Result<Option<&'static Format>> {
     let read = || -> std::io::Result<Vec<u8>> {
-        let file = File::open(path)?;
         let mut head = Vec::new();
-        if file.metadata()?.is_file() {
-            file.take(HEAD as u64).read_to_end(&mut head)?;
+        // Opening a pipe takes its writer, who would not write again.
+        if std::fs::metadata(path)?.is_file() {
+            File::open(path)?.take(HEAD as u64).read_to_end(&mut head)?;
         }
         Ok(head)
     };
@@ -191,6 +191,15 @@ pub fn markdown() -> String {
         let _ = writeln!(text, "| {} |", cells.join(" | ").replace("|  |", "| |"));
     }
     text
+}
+
+/// Returns the paths at which files are read along with a file, if they exist: `roads.dbf` with
+/// `roads.shp`. The case of their extensions may differ.
+pub fn read_along_with(path: &Path) -> Vec<PathBuf> {
+    let format = of_name(path).or_else(|| detect_file(path).ok().flatten());
+    let Some(Format { extensions: [extension, ..], read_along, .. }) = format else { return Vec::new() };
+    let files = with_companions(path, extension, read_along);
+    files.into_iter().skip(1).map(|(path, _)| path).collect()
 }
 
 /// Returns a file and its companions, each with the extension of its format. `companions` are

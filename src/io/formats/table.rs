@@ -39,6 +39,7 @@ const ROW: Format = Format {
     holds: &[],
     beside: &[],
     parts: &[],
+    read_along: &[],
     gdal_names: &[],
     reader: Reader::Gdal,
     writers: NOT_WRITTEN,
@@ -203,6 +204,7 @@ pub static FORMATS: &[Format] = &[
         holds: &[Holding::Points, Holding::Lines, Holding::Polygons, Holding::Crs],
         beside: &["shx", "dbf", "prj", "cpg"],
         parts: &["shx", "dbf", "prj", "cpg", "qpj", "qix", "sbn", "sbx"],
+        read_along: &["shx", "dbf", "prj", "cpg"],
         gdal_names: &["ESRI Shapefile"],
         reader: Reader::Layer(shapefile::read_layer_with),
         writers: Writers {
@@ -253,6 +255,7 @@ pub static FORMATS: &[Format] = &[
         known_by: KnownBy::Bytes,
         content: Content::Raster,
         holds: &[Holding::Raster, Holding::Crs, Holding::Compression],
+        read_along: &["tfw", "tifw", "tiffw", "wld"],
         gdal_names: &["GTiff", "COG"],
         reader: Reader::Raster(|path| geotiff::open(path)),
         writers: Writers {
@@ -273,6 +276,7 @@ pub static FORMATS: &[Format] = &[
         holds: &[Holding::Raster, Holding::Crs, Holding::Compression],
         beside: &["pgw", "png.aux.xml"],
         parts: &["pgw", "png.aux.xml"],
+        read_along: &["pgw", "pngw", "wld", "png.aux.xml"],
         gdal_names: &["PNG"],
         reader: Reader::InfoOnly,
         writers: Writers { shades: Some(|target, source| png::write_gray(target, source)), ..NOT_WRITTEN },
@@ -325,6 +329,7 @@ pub static FORMATS: &[Format] = &[
         holds: &[Holding::Mesh],
         beside: &["stl.origin.txt"],
         parts: &["stl.origin.txt"],
+        read_along: &["stl.origin.txt"],
         reader: Reader::Solid(stl::describe),
         writers: surface_writer(|target, mesh, _| stl::write(target, mesh).map(Some)),
         cure: AS_MESH,
@@ -364,6 +369,7 @@ pub static FORMATS: &[Format] = &[
         content: Content::Mesh,
         holds: &[Holding::Mesh, Holding::Edges],
         beside: &["node"],
+        read_along: &["node", "poly", "edge", "neigh"],
         writers: PLANE_OR_SPACE,
         ..plane(
             "Triangle .ele",
@@ -380,6 +386,7 @@ pub static FORMATS: &[Format] = &[
     Format {
         holds: &[Holding::Points, Holding::Lines],
         beside: &["node"],
+        read_along: &["node"],
         ..plane("Triangle .poly", "a .poly file of Triangle", &["poly"], "points and segments in the plane (Triangle)")
     },
     Format {

@@ -31,6 +31,15 @@ pub struct TinParts {
     open: Box<dyn Fn(usize) -> Result<CompactTin<Mapped>> + Send + Sync>,
 }
 
+/// Returns the folder of the parts of a surface; `None` unless a file is the index of one.
+#[cfg(feature = "cli")]
+pub(crate) fn parts_folder(path: &Path) -> Option<PathBuf> {
+    // By its name first: other inputs may be many, and far away.
+    let format = crate::io::formats::of_name(path).filter(|format| format.extensions.contains(&"tins"));
+    let text = format.and_then(|_| crate::io::mesh::read_tin_index(path))?.ok()?;
+    TinIndex::from_text(&text).ok().map(|index| path.with_file_name(index.folder))
+}
+
 impl TinParts {
     /// Opens a surface by the text of its index.
     ///
