@@ -3,8 +3,6 @@
 use std::ops::Range;
 use std::path::Path;
 
-use rustc_hash::FxHashMap;
-
 use super::context::Journal;
 use super::crossings::LineNames;
 use super::input::Input;
@@ -18,7 +16,6 @@ use super::units::Units;
 use crate::data::{Bounds, Layer, Shape};
 use crate::error::{Error, Result};
 use crate::terrain::{Flat, FlatHeight, River, RiverHeights, TinBuilder, Wall, densified};
-use crate::triangulation::num::unsigned_zero;
 
 /// The default distance between the upper and the lower edge of a wall.
 const WALL_WIDTH_METRES: f64 = 0.01;
@@ -113,13 +110,18 @@ impl<'a> LineLayers<'a> {
         let mut by_file = by_file.iter();
         for (role, layers) in &self.groups {
             let by_layer: Vec<Option<usize>> = by_file.by_ref().take(layers.len()).copied().collect();
-            let rivers = if *role == LineRole::Rivers { adding.rivers(layers, &by_layer)? } else { Vec::new() };
-            let mut rivers = rivers.into_iter();
+            // Lines that depend on those of other layers.
+            let mut joined = match role {
+                LineRole::Rivers => Joined::Rivers(adding.rivers(layers, &by_layer)?.into_iter()),
+                LineRole::Walls => Joined::Walls(adding.walls(layers, &by_layer)?.into_iter()),
+                _ => Joined::Nothing,
+            };
             for ((path, layer), transform) in layers.iter().zip(by_layer) {
                 let first = adding.next;
-                let lines = match rivers.next() {
-                    Some(rivers) => adding.add_rivers(rivers),
-                    None => adding.add_layer(*role, layer, path, transform)?,
+                let lines = match &mut joined {
+                    Joined::Rivers(by_layer) => adding.add_rivers(by_layer.next().unwrap_or_default()),
+                    Joined::Walls(by_layer) => adding.add_walls(by_layer.next().unwrap_or_default()),
+                    Joined::Nothing => adding.add_layer(*role, layer, path, transform)?,
                 };
                 let numbers = first..adding.next;
                 let path = path.to_path_buf();
@@ -129,6 +131,13 @@ impl<'a> LineLayers<'a> {
         }
         Ok(adding.added)
     }
+}
+
+/// Lines that depend on those of other layers, by layer.
+enum Joined {
+    Walls(std::vec::IntoIter<Vec<(Drawn, Wall)>>),
+    Rivers(std::vec::IntoIter<Vec<(Drawn, River)>>),
+    Nothing,
 }
 
 /// Lines on their way from layers to a builder.
@@ -188,9 +197,8 @@ impl Adding<'_> {
                 }
                 Ok(drawn.len())
             }
-            LineRole::Walls => self.add_walls(layer, path, transform),
             LineRole::Flats => self.add_flats(layer, path, transform),
-            LineRole::Rivers => Ok(0), // joined with those of other layers
+            LineRole::Walls | LineRole::Rivers => Ok(0), // joined with those of other layers
         }
     }
 
@@ -211,46 +219,71 @@ impl Adding<'_> {
         self.request.flat.tolerance.unwrap_or_else(|| self.units.height_of_metres(FLAT_TOLERANCE_METRES))
     }
 
-    fn add_walls(&mut self, layer: &Layer, path: &Path, transform: Option<usize>) -> Result<usize> {
-        let WallOptions { lower, width, high } = &self.request.wall;
-        let width = width.unwrap_or_else(|| self.units.of_metres(WALL_WIDTH_METRES));
-        let drawn = lines::with_heights(layer, path, LineRole::Walls.option())?;
-        let mut walls: Vec<(Drawn, Wall)> = Vec::new();
-        if let Some(edge) = lower {
-            let mut edges: Vec<(Drawn, Vec<f64>)> = Vec::with_capacity(drawn.len());
-            for mut line in drawn {
-                let lower = self.lower_edge(&mut line, edge, layer, path, transform)?;
-                edges.push((line, lower));
-            }
-            let uppers: Vec<&[[f64; 3]]> = edges.iter().map(|(line, _)| line.points.as_slice()).collect();
-            let neighbors = wall_neighbors(&uppers);
-            for ((line, lower), neighbors) in edges.into_iter().zip(neighbors) {
-                let wall = Wall::continued(&line.points, &lower, width, *high, neighbors);
-                let wall = wall.map_err(|error| lines::at_record(error, path, line.fid + 1))?;
-                walls.push((line, wall));
-            }
-        } else {
-            for mut parts in records(drawn) {
-                for part in &mut parts {
-                    self.transform(part, path, transform)?;
-                }
-                let wall = match parts.as_slice() {
-                    [upper, lower] => Wall::between(&upper.points, &lower.points),
-                    _ => Err(Error::format("the lower edge of the wall is not known").cure(
-                        "give its height with --wall-bottom or --wall-drop, or make each record of two parts: the \
-                         upper and the lower edge",
-                    )),
-                };
-                let line = parts.swap_remove(0);
-                let wall = wall.map_err(|error| lines::at_record(error, path, line.fid + 1))?;
-                walls.push((line, wall));
+    /// The walls of all layers, by layer: where one ends, others may go on.
+    fn walls(&mut self, layers: &Layers, by_layer: &[Option<usize>]) -> Result<Vec<Vec<(Drawn, Wall)>>> {
+        match &self.request.wall.lower {
+            Some(edge) => self.walls_above(edge, layers, by_layer),
+            None => {
+                let layers = layers.iter().zip(by_layer);
+                layers.map(|((path, layer), transform)| self.walls_between(layer, path, *transform)).collect()
             }
         }
+    }
+
+    /// Walls of which the upper edges are drawn.
+    fn walls_above(
+        &mut self,
+        edge: &LowerEdge,
+        layers: &Layers,
+        by_layer: &[Option<usize>],
+    ) -> Result<Vec<Vec<(Drawn, Wall)>>> {
+        let WallOptions { width, high, .. } = self.request.wall;
+        let width = width.unwrap_or_else(|| self.units.of_metres(WALL_WIDTH_METRES));
+        let mut edges: Vec<(usize, Drawn, Vec<f64>)> = Vec::new();
+        for (number, ((path, layer), transform)) in layers.iter().zip(by_layer).enumerate() {
+            for mut line in lines::with_heights(layer, path, LineRole::Walls.option())? {
+                let lower = self.lower_edge(&mut line, edge, layer, path, *transform)?;
+                edges.push((number, line, lower));
+            }
+        }
+        let uppers: Vec<&[[f64; 3]]> = edges.iter().map(|(_, line, _)| line.points.as_slice()).collect();
+        let neighbors = Wall::neighbors(&uppers, high);
+        let mut walls: Vec<Vec<(Drawn, Wall)>> = layers.iter().map(|_| Vec::new()).collect();
+        for ((number, line, lower), neighbors) in edges.into_iter().zip(neighbors) {
+            let wall = Wall::continued(&line.points, &lower, width, high, neighbors);
+            let wall = wall.map_err(|error| lines::at_record(error, layers[number].0, line.fid + 1))?;
+            walls[number].push((line, wall));
+        }
+        Ok(walls)
+    }
+
+    /// Walls of which both edges are drawn.
+    fn walls_between(&mut self, layer: &Layer, path: &Path, transform: Option<usize>) -> Result<Vec<(Drawn, Wall)>> {
+        let mut walls: Vec<(Drawn, Wall)> = Vec::new();
+        for mut parts in records(lines::with_heights(layer, path, LineRole::Walls.option())?) {
+            for part in &mut parts {
+                self.transform(part, path, transform)?;
+            }
+            let wall = match parts.as_slice() {
+                [upper, lower] => Wall::between(&upper.points, &lower.points),
+                _ => Err(Error::format("the lower edge of the wall is not known").cure(
+                    "give its height with --wall-bottom or --wall-drop, or make each record of two parts: the \
+                     upper and the lower edge",
+                )),
+            };
+            let line = parts.swap_remove(0);
+            let wall = wall.map_err(|error| lines::at_record(error, path, line.fid + 1))?;
+            walls.push((line, wall));
+        }
+        Ok(walls)
+    }
+
+    fn add_walls(&mut self, walls: Vec<(Drawn, Wall)>) -> usize {
         for (line, wall) in &walls {
             let numbers = self.builder.add_wall(wall);
             self.name(line, numbers);
         }
-        Ok(walls.len())
+        walls.len()
     }
 
     /// Transforms the upper edge of a wall to the coordinate system of the result; returns the
@@ -455,32 +488,6 @@ const FLAT_TOLERANCE_METRES: f64 = 0.01;
 /// The lines of each record.
 fn records(drawn: Vec<Drawn>) -> Vec<Vec<Drawn>> {
     drawn.chunk_by(|p, q| p.fid == q.fid).map(<[Drawn]>::to_vec).collect()
-}
-
-/// The vertices before and after each upper edge: those of the one edge that ends where it begins,
-/// and of the one that begins where it ends. Where more meet, none continues another.
-fn wall_neighbors(edges: &[&[[f64; 3]]]) -> Vec<[Option<[f64; 2]>; 2]> {
-    let flat = |p: &[f64; 3]| [p[0], p[1]];
-    let key = |p: Option<&[f64; 3]>| p.map(|p| flat(p).map(|c| unsigned_zero(c).to_bits()));
-    let mut starts: FxHashMap<[u64; 2], Vec<usize>> = FxHashMap::default();
-    let mut ends: FxHashMap<[u64; 2], Vec<usize>> = FxHashMap::default();
-    for (number, edge) in edges.iter().enumerate() {
-        key(edge.first()).into_iter().for_each(|key| starts.entry(key).or_default().push(number));
-        key(edge.last()).into_iter().for_each(|key| ends.entry(key).or_default().push(number));
-    }
-    let only = |table: &FxHashMap<[u64; 2], Vec<usize>>, at: Option<[u64; 2]>| match table.get(&at?)?.as_slice() {
-        [only] => Some(*only),
-        _ => None,
-    };
-    let of_edge = |edge: &&[[f64; 3]]| {
-        let [first, last] = [edge.first(), edge.last()];
-        let pair = |joint: Option<&[f64; 3]>| Some((only(&ends, key(joint))?, only(&starts, key(joint))?));
-        let away = |from: Option<&[f64; 3]>, p: &&[f64; 3]| from.is_some_and(|from| flat(from) != flat(p));
-        let before = pair(first).and_then(|(ending, _)| edges[ending].iter().rev().find(|p| away(first, p)));
-        let after = pair(last).and_then(|(_, starting)| edges[starting].iter().find(|p| away(last, p)));
-        [before.map(flat), after.map(flat)]
-    };
-    edges.iter().map(of_edge).collect()
 }
 
 fn distance(p: [f64; 3], q: [f64; 3]) -> f64 {

@@ -13,7 +13,7 @@ use super::admitted::refused;
 use super::clip::Clip;
 use super::crossings::{Pass, choose_heights, refuse};
 use super::lines::areas::{self, Level, Leveled, Replaced, Water};
-use super::lines::kinds::LineKinds;
+use super::lines::kinds::{LineKinds, Precedence};
 use super::tin::Count;
 use super::window::uncertain;
 use super::{CrossingRule, DuplicateRule, Flat, River, Tin, TinReport, Wall, Window};
@@ -76,6 +76,8 @@ pub struct TinBuilder {
     line_ends: Vec<usize>,
     /// For each line, the kind of its edges.
     line_kinds: Vec<EdgeKind>,
+    /// For each line, which others it counts before.
+    precedences: Vec<Precedence>,
     /// Areas with heights of their own, and the points that they replace.
     waters: Vec<Water>,
     replaced: Replaced,
@@ -142,7 +144,8 @@ impl TinBuilder {
     pub fn add_wall(&mut self, wall: &Wall) -> Range<usize> {
         self.replaced.add_wall(wall);
         let first = self.line_count();
-        [&wall.upper, &wall.lower].into_iter().for_each(|edge| self.add_line(edge, EdgeKind::Wall));
+        self.add_line(&wall.upper, EdgeKind::Wall);
+        self.add_line_as(&wall.lower, EdgeKind::Wall, Precedence::of_lower_edge());
         first..self.line_count()
     }
 
@@ -207,9 +210,14 @@ impl TinBuilder {
     }
 
     fn add_line(&mut self, line: &[[f64; 3]], kind: EdgeKind) {
+        self.add_line_as(line, kind, Precedence::of(kind));
+    }
+
+    fn add_line_as(&mut self, line: &[[f64; 3]], kind: EdgeKind, precedence: Precedence) {
         self.line_points.extend(line.iter().copied().map(positive_zero));
         self.line_ends.push(self.line_points.len());
         self.line_kinds.push(kind);
+        self.precedences.push(precedence);
     }
 
     /// The number of lines so far.
@@ -297,7 +305,7 @@ impl TinBuilder {
         report.rounding = triangulation.rounding();
         report.crossing_heights = choose_heights(
             &mut triangulation,
-            &self.line_kinds,
+            &self.precedences,
             disputed,
             self.crossing_heights,
             self.crossing_tolerance,
@@ -407,17 +415,17 @@ impl TinBuilder {
             let first_of_lines = group.partition_point(|&i| (i as usize) < lines_from);
             let (points, lines) = group.split_at(first_of_lines);
             let line_of = |i: u32| self.line_ends.partition_point(|&end| end <= i as usize - lines_from);
-            let rank = |i: u32| self.line_kinds[line_of(i)].rank();
+            let precedence = |i: u32| self.precedences[line_of(i)];
             let standing = if lines.is_empty() {
                 report.duplicates += points.len() - 1;
                 points
             } else {
                 report.points_on_breaklines += points.len();
                 report.breakline_vertices += 1;
-                // Lines of the kind that comes first.
+                // Those that count before all others.
                 first_lines.clear();
-                let first = lines.iter().map(|&i| rank(i)).min();
-                first_lines.extend(lines.iter().copied().filter(|&i| lines.len() == 1 || Some(rank(i)) == first));
+                let first = lines.iter().map(|&i| precedence(i)).min();
+                first_lines.extend(lines.iter().copied().filter(|&i| lines.len() == 1 || Some(precedence(i)) == first));
                 &first_lines
             };
             heights.clear();

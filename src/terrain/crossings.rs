@@ -3,13 +3,13 @@
 use std::cmp::Ordering;
 use std::collections::HashSet;
 
-use crate::data::EdgeKind;
 use crate::error::{Error, Result};
 use crate::triangulation::geometry::{Terrain, height_along};
 use crate::triangulation::tds::VertexId;
 use crate::triangulation::{ConstrainedDelaunay, LineId};
 
 use super::DuplicateRule;
+use super::lines::kinds::Precedence;
 
 /// Which height a vertex gets where breaklines with different heights cross between their vertices.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -82,7 +82,7 @@ pub(super) struct Pass {
 /// `disputed` contains the lines at vertices that were given with different heights.
 pub(super) fn choose_heights(
     triangulation: &mut ConstrainedDelaunay<Terrain>,
-    kinds: &[EdgeKind],
+    precedences: &[Precedence],
     disputed: Vec<Pass>,
     rule: CrossingRule,
     tolerance: f64,
@@ -96,10 +96,10 @@ pub(super) fn choose_heights(
         let vertex = at_vertex[0].vertex;
         let [x, y, mut chosen] = *triangulation.point(vertex);
         let is_added = triangulation.is_added(vertex);
-        let rank = |pass: &Pass| kinds[pass.line.index()].rank();
-        let first = at_vertex.iter().map(rank).min();
-        let own = at_vertex.iter().filter(|pass| pass.is_own).map(rank).min();
-        let standing: Vec<&Pass> = at_vertex.iter().filter(|pass| Some(rank(pass)) == first).collect();
+        let precedence = |pass: &Pass| precedences[pass.line.index()];
+        let first = at_vertex.iter().map(precedence).min();
+        let own = at_vertex.iter().filter(|pass| pass.is_own).map(precedence).min();
+        let standing: Vec<&Pass> = at_vertex.iter().filter(|pass| Some(precedence(pass)) == first).collect();
         if is_added || own.is_some() && first < own {
             chosen = choice.choose(&mut standing.iter().map(|pass| pass.height).collect::<Vec<f64>>());
             triangulation.replace_point(vertex, [x, y, chosen]);

@@ -9,6 +9,7 @@
 mod judge;
 mod known;
 mod scene;
+mod walls;
 
 use std::path::Path;
 

@@ -63,7 +63,7 @@ impl Replaced {
     }
 
     pub(in crate::terrain) fn add_wall(&mut self, wall: &Wall) {
-        self.polygons.push(wall.rings());
+        self.polygons.extend(wall.areas.iter().cloned());
     }
 
     pub(in crate::terrain) fn is_empty(&self) -> bool {

@@ -5,6 +5,27 @@ use crate::triangulation::ConstrainedDelaunay;
 use crate::triangulation::geometry::Terrain;
 use crate::triangulation::tds::{CellId, VertexId};
 
+/// Which of the lines that meet at a vertex has its height there: the least.
+///
+/// That is the one of the kind that comes first; of walls, an upper edge, so that no lower edge
+/// that crosses it tilts it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(in crate::terrain) struct Precedence {
+    rank: u8,
+    is_lower_edge: bool,
+}
+
+impl Precedence {
+    pub(in crate::terrain) fn of(kind: EdgeKind) -> Self {
+        Precedence { rank: kind.rank(), is_lower_edge: false }
+    }
+
+    /// That of the lower edge of a wall.
+    pub(in crate::terrain) fn of_lower_edge() -> Self {
+        Precedence { is_lower_edge: true, ..Precedence::of(EdgeKind::Wall) }
+    }
+}
+
 /// The kind of each line of a triangulation, by its number.
 #[derive(Debug, Default)]
 pub(in crate::terrain) struct LineKinds {

@@ -14,6 +14,7 @@
 pub(super) mod areas;
 mod densify;
 mod flat;
+mod joints;
 pub(super) mod kinds;
 mod offset;
 mod river;

@@ -1,37 +1,60 @@
 //! Lines parallel to others.
 
+use crate::data::orientation;
+use crate::triangulation::num::Sign;
+
 /// How much farther than the distance a corner may be, as a factor: sharper corners are cut off.
 const LONGEST_MITER: f64 = 2.0;
+
+/// The cosine of half a turn, below which the sum of normals says little about its direction.
+const TURNS_BACK: f64 = 1e-6;
 
 /// Returns a line parallel to one in plan, at a distance to its left (to its right if negative),
 /// with a vertex for each of its vertices. A line that ends where it begins stays closed.
 ///
-/// Corners are mitered. Consecutive vertices must differ in plan.
+/// Corners are mitered. A line that turns back on itself turns left. Consecutive vertices must
+/// differ in plan.
 ///
 /// # Complexity
 /// Linear.
 pub(super) fn offset(line: &[[f64; 2]], distance: f64) -> Vec<[f64; 2]> {
-    let normals: Vec<[f64; 2]> = line.windows(2).map(|pair| normal([pair[0], pair[1]])).collect();
-    let (Some(&first), Some(&last)) = (normals.first(), normals.last()) else { return Vec::new() };
-    let is_closed = line.len() > 2 && line.first() == line.last();
-    let at = |k: usize| {
-        let before = k.checked_sub(1).map_or(if is_closed { last } else { first }, |k| normals[k]);
-        let after = normals.get(k).copied().unwrap_or(if is_closed { first } else { last });
-        let sum = [before[0] + after[0], before[1] + after[1]];
-        // The miter is 1 / cos(half the turn), and the sum of the normals twice that cosine.
-        let half_cosine = sum[0].hypot(sum[1]) / 2.0;
-        let scale = distance / half_cosine.max(1.0 / LONGEST_MITER);
-        let direction = if half_cosine > 0.0 { sum.map(|c| c / (2.0 * half_cosine)) } else { after };
-        [line[k][0] + scale * direction[0], line[k][1] + scale * direction[1]]
-    };
-    (0..line.len()).map(at).collect()
+    offset_between(line, [None; 2], distance)
 }
 
-/// Returns true if a parallel line has a miter at the second of three points; otherwise the corner
-/// is cut off.
-pub(super) fn is_mitered([p, q, r]: [[f64; 2]; 3]) -> bool {
-    let [before, after] = [normal([p, q]), normal([q, r])];
-    (before[0] + after[0]).hypot(before[1] + after[1]) / 2.0 >= 1.0 / LONGEST_MITER
+/// Like [`offset`], for a line that continues others: `neighbors` are the vertices before and after
+/// it, to which its ends are mitered.
+pub(super) fn offset_between(line: &[[f64; 2]], neighbors: [Option<[f64; 2]>; 2], distance: f64) -> Vec<[f64; 2]> {
+    let is_closed = line.len() > 2 && line.first() == line.last();
+    let [before, after] = if is_closed { [Some(line[line.len() - 2]), Some(line[1])] } else { neighbors };
+    let at = |k: usize| {
+        let from = k.checked_sub(1).map(|k| line[k]).or(before);
+        let to = line.get(k + 1).copied().or(after);
+        beside([from, to], line[k], distance)
+    };
+    (0..line.len()).filter_map(at).collect()
+}
+
+/// The vertex of a parallel line beside a vertex, by the vertices before and after it; `None` if
+/// there are none.
+fn beside([from, to]: [Option<[f64; 2]>; 2], vertex: [f64; 2], distance: f64) -> Option<[f64; 2]> {
+    let (arriving, leaving) = (from.map(|from| normal([from, vertex])), to.map(|to| normal([vertex, to])));
+    let (before, after) = (arriving.or(leaving)?, leaving.or(arriving)?);
+    let sum = [before[0] + after[0], before[1] + after[1]];
+    // The miter is 1 / cos(half the turn), and the sum of the normals twice that cosine.
+    let half_cosine = sum[0].hypot(sum[1]) / 2.0;
+    let scale = distance / half_cosine.max(1.0 / LONGEST_MITER);
+    let direction = match (from, to) {
+        (Some(from), Some(to)) if half_cosine < TURNS_BACK => {
+            // Along the line, beyond its tip on the outer side of the turn.
+            let inward = [after[1] - before[1], before[0] - after[0]];
+            let length = inward[0].hypot(inward[1]);
+            let turn = orientation([from, vertex, to].map(|[x, y]| [x, y, 0.0]));
+            let sign = if turn == Sign::Negative { -1.0 } else { 1.0 };
+            inward.map(|c| sign * c / length)
+        }
+        _ => sum.map(|c| c / (2.0 * half_cosine)),
+    };
+    Some([vertex[0] + scale * direction[0], vertex[1] + scale * direction[1]])
 }
 
 /// Returns a parallel line without folds: where it runs against its line, as it does on the inside
@@ -126,8 +149,28 @@ mod tests {
         assert_eq!(inner, [[1.0, 1.0], [3.0, 1.0], [3.0, 3.0], [1.0, 3.0], [1.0, 1.0]].map(near(&inner)));
         let hairpin = offset(&[[0.0, 0.0], [4.0, 0.0], [0.0, 0.0001]], 1.0);
         assert!((hairpin[1][0] - 4.0).hypot(hairpin[1][1]) < 2.001);
-        assert!(offset(&[[0.0, 0.0], [4.0, 0.0], [0.0, 0.0]], 1.0).iter().flatten().all(|c| c.is_finite()));
+        // A line that turns back, or nearly so, is passed beyond its tip on its outer side.
+        for y in [0.0, 1e-9, 1e-300] {
+            let tip = offset(&[[0.0, 0.0], [4.0, 0.0], [0.5, y]], -1.0)[1];
+            assert!((tip[0] - 6.0).hypot(tip[1]) < 1e-6, "{y}: {tip:?}");
+        }
+        let within = offset(&[[0.0, 0.0], [4.0, 0.0], [0.5, -1e-9]], -1.0)[1];
+        assert!((within[0] - 2.0).hypot(within[1]) < 1e-6, "{within:?}");
         assert!(offset(&[[1.0, 1.0]], 1.0).is_empty());
+    }
+
+    /// Parts of a line that know each other have the vertices of the whole, to the last bit.
+    #[test]
+    fn parts_of_a_line_continue_each_other() {
+        let line = [[0.1, 0.2], [10.0, 0.3], [1.0, 5.0], [1.5, 5.0], [1.0, 5.0], [4.0, -0.7], [0.1, 0.2]];
+        for distance in [0.3, -0.3] {
+            let whole = offset(&line, distance);
+            for k in 1..line.len() - 1 {
+                let first = offset_between(&line[..=k], [Some(line[5]), Some(line[k + 1])], distance);
+                let second = offset_between(&line[k..], [Some(line[k - 1]), Some(line[1])], distance);
+                assert_eq!([first.as_slice(), &second[1..]].concat(), whole, "{k}");
+            }
+        }
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! Walls: an upper and a lower edge next to each other.
 
-use super::offset::{is_mitered, offset};
+use super::joints;
+use super::offset::offset_between;
 use crate::error::{Error, Result};
 
 /// On which side of a wall, seen in the direction of its line, the ground is higher.
@@ -29,6 +30,8 @@ pub enum HighSide {
 pub struct Wall {
     pub(in crate::terrain) upper: Vec<[f64; 3]>,
     pub(in crate::terrain) lower: Vec<[f64; 3]>,
+    /// Polygons between the edges, as rings; each point in one of them is left out.
+    pub(in crate::terrain) areas: Vec<Vec<Vec<[f64; 2]>>>,
 }
 
 /// The narrowest wall, in units in the last place of the largest coordinate: crossings are rounded
@@ -46,9 +49,9 @@ impl Wall {
         Self::continued(upper, lower, width, high, [None, None])
     }
 
-    /// Like [`new`](Wall::new), for one of several walls that continue each other: their lower
-    /// edges meet, too. `neighbors` are the vertices before and after the line, in other walls (no
-    /// difference where a wall turns back).
+    /// Like [`new`](Wall::new), for one of several walls that meet at their ends: their lower edges
+    /// meet, too. `neighbors` are those of [`neighbors`](Wall::neighbors). The edges are those of
+    /// one wall with the vertices of all, at any angle.
     ///
     /// # Errors
     /// Those of [`new`](Wall::new).
@@ -83,20 +86,30 @@ impl Wall {
         if !(width >= narrowest && width.is_finite()) {
             return Err(Error::usage(format!("a wall of width {width}, expected at least {narrowest:e}")));
         }
-        let site = |(p, _): &([f64; 3], f64)| [p[0], p[1]];
-        let own: Vec<[f64; 2]> = vertices.iter().map(site).collect();
-        let [before, after] = neighbors;
-        let before = before.filter(|p| is_mitered([*p, own[0], own[1]]));
-        let after = after.filter(|p| is_mitered([own[own.len() - 2], own[own.len() - 1], *p]));
-        let sites: Vec<[f64; 2]> = before.into_iter().chain(own).chain(after).collect();
-        let distance = match high {
-            HighSide::Left => -width,
-            HighSide::Right => width,
-        };
-        let beside = offset(&sites, distance);
-        let beside = &beside[usize::from(before.is_some())..];
-        let lower = beside.iter().zip(&vertices).map(|(&[x, y], &(_, low))| [x, y, low]).collect();
-        Ok(Wall { upper: vertices.into_iter().map(|(p, _)| p).collect(), lower })
+        let sites: Vec<[f64; 2]> = vertices.iter().map(|(p, _)| [p[0], p[1]]).collect();
+        // The lower edge is on the right, also where the wall turns back.
+        let parallel = offset_between(&low_on_the_right(sites, high), low_on_the_right(neighbors, high), -width);
+        let beside = low_on_the_right(parallel, high);
+        let lower: Vec<[f64; 3]> = beside.into_iter().zip(&vertices).map(|([x, y], &(_, low))| [x, y, low]).collect();
+        let upper: Vec<[f64; 3]> = vertices.into_iter().map(|(p, _)| p).collect();
+        // One for each segment: in a sharp bend they overlap.
+        let area = |(p, q): (&[[f64; 3]], &[[f64; 3]])| vec![in_plan(&[p[0], p[1], q[1], q[0]])];
+        let areas = upper.windows(2).zip(lower.windows(2)).map(area).collect();
+        Ok(Wall { upper, lower, areas })
+    }
+
+    /// Returns, for each of several upper edges, the vertices before and after it that
+    /// [`continued`](Wall::continued) needs.
+    ///
+    /// At a vertex where edges end, each lower edge meets that of the next wall on its side, by
+    /// angle. If that one has its lower edge on its other side, the lower edge ends short of it.
+    /// Corners within an edge, closed ones included, depend on nothing else.
+    ///
+    /// # Complexity
+    /// O(n) for n vertices, if few walls meet at one of them.
+    pub fn neighbors(uppers: &[&[[f64; 3]]], high: HighSide) -> Vec<[Option<[f64; 2]>; 2]> {
+        let lines: Vec<Vec<[f64; 2]>> = uppers.iter().map(|upper| low_on_the_right(in_plan(upper), high)).collect();
+        joints::neighbors(&lines).into_iter().map(|ends| low_on_the_right(ends, high)).collect()
     }
 
     /// Returns a wall from both of its edges, which may be drawn in opposite directions.
@@ -133,19 +146,32 @@ impl Wall {
             ))
             .cure("the first part of the record is the upper edge"));
         }
-        Ok(Wall { upper, lower })
+        let areas = vec![rings(&upper, &lower)];
+        Ok(Wall { upper, lower, areas })
     }
+}
 
-    /// The rings around the area between the edges.
-    pub(in crate::terrain) fn rings(&self) -> Vec<Vec<[f64; 2]>> {
-        let [upper, mut lower] =
-            [&self.upper, &self.lower].map(|edge| edge.iter().map(|p| [p[0], p[1]]).collect::<Vec<_>>());
-        if upper.len() > 2 && upper.first() == upper.last() {
-            return vec![upper, lower];
-        }
-        lower.reverse();
-        vec![[upper, lower].concat()]
+/// The rings around the area between two edges.
+fn rings(upper: &[[f64; 3]], lower: &[[f64; 3]]) -> Vec<Vec<[f64; 2]>> {
+    let [upper, mut lower] = [upper, lower].map(in_plan);
+    if upper.len() > 2 && upper.first() == upper.last() {
+        return vec![upper, lower];
     }
+    lower.reverse();
+    vec![[upper, lower].concat()]
+}
+
+fn in_plan(line: &[[f64; 3]]) -> Vec<[f64; 2]> {
+    line.iter().map(|p| [p[0], p[1]]).collect()
+}
+
+/// Returns a list along a wall in the direction in which the lower edge is on the right; maps it
+/// back, too.
+fn low_on_the_right<T, List: AsMut<[T]>>(mut list: List, high: HighSide) -> List {
+    if high == HighSide::Right {
+        list.as_mut().reverse();
+    }
+    list
 }
 
 #[cfg(test)]
@@ -159,7 +185,7 @@ mod tests {
         let wall = Wall::new(&LINE, &[3.0, 3.0, 4.0], 0.5, HighSide::Left).unwrap();
         assert_eq!(wall.upper, LINE);
         assert_eq!(wall.lower, [[0.0, -0.5, 3.0], [4.0, -0.5, 3.0], [8.0, -0.5, 4.0]]);
-        assert_eq!(wall.rings(), [[[0.0, 0.0], [4.0, 0.0], [8.0, 0.0], [8.0, -0.5], [4.0, -0.5], [0.0, -0.5]]]);
+        assert_eq!(wall.areas[0], [[[0.0, 0.0], [4.0, 0.0], [4.0, -0.5], [0.0, -0.5]]]);
         let wall = Wall::new(&LINE, &[3.0, 3.0, 4.0], 0.5, HighSide::Right).unwrap();
         assert_eq!(wall.lower[0], [0.0, 0.5, 3.0]);
     }
@@ -173,11 +199,45 @@ mod tests {
         let joined = [LINE.as_slice(), &corner[1..]].concat();
         let whole = Wall::new(&joined, &[1.0; 4], 0.5, HighSide::Left).unwrap();
         assert_eq!([first.lower.as_slice(), &second.lower[1..]].concat(), whole.lower);
-        // Drawn twice, in both directions: a wall with two sides.
+        // Drawn in both directions: a wall with two sides, whose lower edges meet around its ends.
         let back = [LINE[2], LINE[0]];
-        let there = Wall::continued(&LINE, &[1.0; 3], 0.5, HighSide::Left, [Some([8.0, 0.0]), Some([0.0, 0.0])]);
+        let there = Wall::continued(&LINE, &[1.0; 3], 0.5, HighSide::Left, [Some([4.0, 0.0]), Some([4.0, 0.0])]);
         let back = Wall::continued(&back, &[1.0; 2], 0.5, HighSide::Left, [Some([4.0, 0.0]), Some([4.0, 0.0])]);
-        assert!(there.unwrap().lower.iter().all(|p| p[1] == -0.5) && back.unwrap().lower.iter().all(|p| p[1] == 0.5));
+        let [there, back] = [there, back].map(|wall| wall.unwrap().lower);
+        assert_eq!(there, [[-1.0, 0.0, 1.0], [4.0, -0.5, 1.0], [9.0, 0.0, 1.0]]);
+        assert_eq!(back, [there[2], there[0]]);
+    }
+
+    /// The lower edges of the parts of a line, in any order and direction of the whole, are those
+    /// of the whole.
+    #[test]
+    fn a_wall_in_parts_is_that_in_one() {
+        // Sharp turns to both sides, back on itself, a segment shorter than the width, and around.
+        let line = [[0.0, 0.0], [10.0, 0.0], [1.0, -5.0], [4.0, 9.0], [4.0, 3.0], [4.0, 7.0], [4.001, 7.0], [0.0, 0.0]]
+            .map(|[x, y]| [x, y, 10.0]);
+        for high in [HighSide::Left, HighSide::Right] {
+            let open = Wall::new(&line[..7], &[5.0; 7], 0.1, high).unwrap().lower;
+            let ring = Wall::new(&line, &[5.0; 8], 0.1, high).unwrap().lower;
+            for cuts in 0..1 << 6 {
+                let mut cuts: Vec<usize> = (1..7).filter(|k| cuts >> (k - 1) & 1 == 1).collect();
+                for (count, whole) in [(7, &open), (8, &ring)] {
+                    cuts.retain(|&cut| cut < count - 1);
+                    let from = std::iter::once(0).chain(cuts.iter().copied());
+                    let to = cuts.iter().copied().chain([count - 1]);
+                    let mut parts: Vec<&[[f64; 3]]> = from.zip(to).map(|(from, to)| &line[from..=to]).collect();
+                    parts.reverse();
+                    let neighbors = Wall::neighbors(&parts, high);
+                    let lower = parts.iter().zip(neighbors).map(|(part, ends)| {
+                        Wall::continued(part, &vec![5.0; part.len()], 0.1, high, ends).unwrap().lower
+                    });
+                    let mut lower: Vec<Vec<[f64; 3]>> = lower.collect();
+                    lower.reverse();
+                    let mut joined = lower.concat();
+                    joined.dedup();
+                    assert_eq!(&joined, whole, "{cuts:?} {high:?}");
+                }
+            }
+        }
     }
 
     #[test]
