@@ -25,6 +25,8 @@ pub enum Kind {
     Io,
     /// The caller canceled the work.
     Canceled,
+    /// Something that has to be done before is not done: the same may work later.
+    NotYet,
 }
 
 /// What went wrong, where, and what to do about it.
@@ -82,6 +84,12 @@ impl Error {
     #[cold]
     pub fn canceled() -> Self {
         Self::new(Kind::Canceled, "canceled".to_owned())
+    }
+
+    /// Creates an error for work that needs other work, which is not done.
+    #[cold]
+    pub fn not_yet(message: impl Into<String>) -> Self {
+        Self::new(Kind::NotYet, message.into())
     }
 
     /// Wraps an error of the operating system or of a library; its text becomes the message.

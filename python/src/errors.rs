@@ -25,7 +25,8 @@ impl From<Failure> for PyErr {
         let class = match error.kind() {
             Kind::Format => "FormatError",
             Kind::Unsupported => "UnsupportedError",
-            Kind::Usage => "UsageError",
+            // Tasks are done by the program only, which ends with a status of its own.
+            Kind::Usage | Kind::NotYet => "UsageError",
             Kind::Limit => "LimitError",
             Kind::Io => "FileError",
             Kind::Canceled => "CanceledError",

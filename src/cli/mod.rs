@@ -32,6 +32,18 @@ pub enum Exit {
     Failed = 1,
     /// The command line is wrong.
     Usage = 2,
+    /// A task needs others that are not done.
+    NotYet = 4,
+}
+
+impl Exit {
+    /// What each exit code means, for the help.
+    const ALL: [(Exit, &str); 4] = [
+        (Exit::Done, "done"),
+        (Exit::Failed, "failed"),
+        (Exit::Usage, "wrong usage"),
+        (Exit::NotYet, "a task of a job needs others that are not done: later the same may work"),
+    ];
 }
 
 impl From<Exit> for ExitCode {
@@ -76,6 +88,7 @@ pub fn run(args: impl IntoIterator<Item = OsString>) -> Exit {
             console.error(&error);
             match error.kind() {
                 Kind::Usage => Exit::Usage,
+                Kind::NotYet => Exit::NotYet,
                 Kind::Format | Kind::Unsupported | Kind::Limit | Kind::Io | Kind::Canceled => Exit::Failed,
             }
         }

@@ -448,7 +448,7 @@ fn put_contours(
     target: Destination,
     write: impl FnOnce(&mut Output) -> std::io::Result<ContourSummary>,
 ) -> Result<ContourSummary> {
-    let mut output = Output::create(target.path())?;
+    let mut output = target.create()?;
     let summary = write(&mut output).map_err(|e| Error::from(e).in_file(target.path()))?;
     target.put(output)?;
     Ok(summary)

@@ -75,5 +75,7 @@ mod world_file;
 
 pub(crate) use contain::contain;
 pub use contain::is_contained;
-pub use output::{Abandoned, Destination, Output, OutputSet, abandon_outputs, is_stream, probe, require_absent};
+pub use output::{
+    Abandoned, Destination, Output, OutputSet, abandon_outputs, is_stream, probe, remove_abandoned, require_absent,
+};
 pub use watch::Watch;

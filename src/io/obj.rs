@@ -9,12 +9,12 @@ use crate::crs::Crs;
 use crate::data::Triangles;
 use crate::error::{Error, Result};
 use crate::io::watch::Meter;
-use crate::io::{Destination, Output, Watch};
+use crate::io::{Destination, Watch};
 
 /// Writes `v x y z` and `f a b c`, numbered from 1. Decimals are the shortest that read back as the
 /// same double.
 pub(super) fn write(target: Destination, mesh: &Listing, crs: Option<&Crs>) -> Result<()> {
-    let mut output = Output::create(target.path())?;
+    let mut output = target.create()?;
     writeln!(output, "# breakline")?;
     for line in crs_text::comments(crs) {
         writeln!(output, "# {line}")?;

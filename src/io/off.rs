@@ -13,12 +13,12 @@ use crate::data::Triangles;
 use crate::error::{Error, Result};
 use crate::io::decimal::Decimal;
 use crate::io::rows::{Row, Rows, shown};
-use crate::io::{Destination, Output, Watch};
+use crate::io::{Destination, Watch};
 
 /// Writes vertices, faces and the coordinate system. The number of edges, which no reader uses, is
 /// written as 0.
 pub(super) fn write(target: Destination, mesh: &Listing, crs: Option<&Crs>) -> Result<()> {
-    let mut output = Output::create(target.path())?;
+    let mut output = target.create()?;
     writeln!(output, "OFF")?;
     for line in crs_text::comments(crs) {
         writeln!(output, "# {line}")?;

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use super::listing::Listing;
 use crate::data::Bounds;
 use crate::error::{Error, Result};
-use crate::io::{Destination, Output};
+use crate::io::Destination;
 
 /// Writes the triangles, and their origin as three numbers in `TARGET.origin.txt`. Returns the
 /// origin and the path of that file.
@@ -26,7 +26,7 @@ pub(super) fn write(target: Destination, mesh: &Listing) -> Result<([f64; 3], Pa
     let title = format!("breakline; add the origin {x} {y} {z}");
     let length = title.len().min(header.len());
     header[..length].copy_from_slice(&title.as_bytes()[..length]);
-    let mut output = Output::create(target.path())?;
+    let mut output = target.create()?;
     output.write_all(&header)?;
     output.write_all(&count.to_le_bytes())?;
     for corners in mesh.triangles() {
@@ -40,7 +40,7 @@ pub(super) fn write(target: Destination, mesh: &Listing) -> Result<([f64; 3], Pa
     }
 
     let beside = origin_file(target.path());
-    let mut note = Output::create(&beside)?;
+    let mut note = target.create_beside(&beside)?;
     writeln!(note, "{x} {y} {z}")?;
     target.put_all([note], output, [])?;
     Ok((origin, beside))

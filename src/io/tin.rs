@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::listing::Listing;
 use super::mapped::{self, Mapped};
-use super::output::{Destination, Output};
+use super::output::Destination;
 use crate::error::{Error, Result};
 
 /// Maps a file to memory.
@@ -26,7 +26,7 @@ pub(super) fn needs_tiles() -> Error {
 
 /// Writes the surface with its triangulation and its own coordinate system.
 pub(super) fn write(target: Destination, mesh: &Listing) -> Result<()> {
-    let mut output = Output::create(target.path())?;
+    let mut output = target.create()?;
     mesh.surface.write_tin(&mut output)?;
     target.put(output)
 }

@@ -1,6 +1,6 @@
 //! Checksums of what jobs and surfaces in parts write.
 
-use std::io::{Result, Write};
+use std::io::{Read, Result, Write};
 
 use flate2::Crc;
 
@@ -9,6 +9,13 @@ pub(super) fn checksum(bytes: &[u8]) -> u32 {
     let mut sum = Crc::new();
     sum.update(bytes);
     sum.sum()
+}
+
+/// Returns the length and the CRC-32 of what is left to read of a file.
+pub(super) fn sum_of_file(file: &mut impl Read) -> Result<(u64, u32)> {
+    let mut summed = Summed::new(std::io::sink());
+    std::io::copy(&mut std::io::BufReader::with_capacity(1 << 18, file), &mut summed)?;
+    Ok((summed.length(), summed.sum()))
 }
 
 /// A writer that sums up what goes through it.
@@ -26,6 +33,13 @@ impl<W: Write> Summed<W> {
     /// Returns the CRC-32 of all bytes so far.
     pub(super) fn sum(&self) -> u32 {
         self.sum.sum()
+    }
+
+    /// Returns the CRC-32 of the bytes since it was called last.
+    pub(super) fn take_sum(&mut self) -> u32 {
+        let sum = self.sum.sum();
+        self.sum.reset();
+        sum
     }
 
     /// Returns the number of bytes so far. It is counted here because a checksum counts in 32 bits.

@@ -29,7 +29,7 @@ fn what_is_missing_or_damaged_is_done_again_and_nothing_else() {
     std::fs::write(tasks.join("000007.task"), damaged).unwrap();
     let cut = bytes(tasks.join("000002.task"));
     std::fs::write(tasks.join("000002.task"), &cut[..cut.len() - 3]).unwrap();
-    std::fs::write(tasks.join(".x.unfinished"), "x").unwrap();
+    std::fs::write(tasks.join(".breakline-x.unfinished"), "x").unwrap();
 
     let run = run_in(&folder, &words.split(' ').chain(["-o", "again.tif"]).collect::<Vec<_>>());
     run.fails(2, &["there is a job in this folder already", "--resume"]);
@@ -45,7 +45,7 @@ fn what_is_missing_or_damaged_is_done_again_and_nothing_else() {
     std::fs::write(folder.path().join("kept/plan.json"), "{}").unwrap();
     let resumed = format!("{words} --resume -o other.tif");
     run_in(&folder, &resumed.split(' ').collect::<Vec<_>>())
-        .fails(1, &["kept/plan.json: the plan of the job is damaged"]);
+        .fails(1, &["kept/plan.json: this is not the plan of a job, or it is damaged"]);
 }
 
 /// What is left of a job whose plan is gone belongs to no other one.
@@ -193,8 +193,8 @@ fn tasks_run_one_by_one_from_anywhere() {
     let elsewhere = tempfile::tempdir().unwrap();
     let job = folder.path().join("j").to_str().unwrap().to_owned();
     let task = |number: &str| run_in(&elsewhere, &["job", "run", &job, "--task", number]);
-    task("2").fails(2, &["task 0 (divide", "is not done"]);
-    task("7").fails(2, &["task 0 (divide", "is not done"]);
+    task("2").fails(4, &["task 0 (divide", "is not done"]);
+    task("7").fails(4, &["task 0 (divide", "is not done"]);
     task("8").fails(2, &["there is no task 8: the last is 7, which writes the output"]);
     for number in 0..8 {
         task(&number.to_string()).works(&[]);
@@ -205,6 +205,8 @@ fn tasks_run_one_by_one_from_anywhere() {
     let tasks = status["tasks"].as_array().unwrap();
     assert!(tasks.len() == 8 && tasks.iter().all(|task| task["done"] == true), "{status}");
     assert_eq!(tasks[5]["needs"], serde_json::json!([1, 2, 3, 4]));
+    let stages: Vec<u64> = tasks.iter().map(|task| task["stage"].as_u64().unwrap()).collect();
+    assert_eq!(stages, [0, 1, 1, 1, 1, 2, 3, 4]);
     assert_eq!(run_in(&elsewhere, &["job", "status", &job]).stdout, "7 of 7 tasks are done\n");
     run_in(&elsewhere, &["job", "clean", &job]).works(&[]);
     assert_eq!(files_of(folder.path()), ["dem.tif", "whole.tif"]);

@@ -12,6 +12,7 @@ mod equality;
 mod interruption;
 mod parts;
 mod real;
+mod trust;
 
 use std::path::Path;
 

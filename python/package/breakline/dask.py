@@ -22,6 +22,7 @@ import sys
 import uuid
 from collections import Counter, defaultdict
 from collections.abc import Sequence
+from concurrent.futures import CancelledError
 from pathlib import Path
 from typing import Any, Union
 
@@ -48,6 +49,10 @@ _LOST = (
     "see the logs of the workers, which may lack memory: give them more, or fewer threads; "
     "tasks that are done are kept, and the same call goes on"
 )
+
+
+#: What to do when the cluster has ended.
+_ENDED = "start the cluster again: tasks that are done are kept, and the same call goes on"
 
 
 def dem(
@@ -95,8 +100,9 @@ def dem(
     Raises
     ------
     BreaklineError
-        If the job cannot be planned, or a task fails, or loses its workers, more often than it is repeated. The tasks
-        that wait are canceled then, as they are by Ctrl-C; those that are done are kept, and the same call goes on.
+        If the job cannot be planned, if a task fails, or loses its workers, more often than it is repeated, or if the
+        scheduler is lost. The tasks that wait are canceled then, as they are by Ctrl-C; those that are done are kept,
+        and the same call goes on.
     """
     places = {"job": job, "scratch": scratch, "storage_options": storage_options}
     return _run("dem", inputs, output, client=client, retries=retries, **places, **options)
@@ -159,9 +165,10 @@ def _run(
     cluster = _Cluster(client, folder, status["tasks"], objects.at, name, retries)
     try:
         _finish(cluster, status["tasks"])
-    except BaseException:
+    except (CancelledError, OSError, TimeoutError) as error:
+        raise _error("the scheduler of the cluster was lost, or canceled the tasks", _ENDED) from error
+    finally:
         cluster.release()
-        raise
     if job is None:
         _program("job", "clean", folder)
     return Path(output)

@@ -18,7 +18,7 @@ pub(in crate::cli) fn run(args: &ContourArgs, console: &Console) -> Result<Exit>
     let (plan, options) = requested(args, console)?;
     let outputs = outputs_of(args, &plan)?;
     let tiled = TiledProduct::Contours(options.clone());
-    match tiled::run(&args.tiles, &plan, &tiled, &args.output.output[0], console)? {
+    match tiled::run(&args.tiles, &plan, &tiled, &outputs, console)? {
         Tiled::Whole => {}
         Tiled::Planned => return Ok(Exit::Done),
         Tiled::Ran(ran) => {

@@ -17,7 +17,7 @@ pub(in crate::cli) fn run(args: &DemArgs, console: &Console) -> Result<Exit> {
     let (plan, options) = requested(args, console)?;
     let outputs = outputs_of(args, &plan)?;
     let tiled = TiledProduct::Heights(options.clone());
-    match tiled::run(&args.tiles, &plan, &tiled, &args.output.output[0], console)? {
+    match tiled::run(&args.tiles, &plan, &tiled, &outputs, console)? {
         Tiled::Whole => {}
         Tiled::Planned => return Ok(Exit::Done),
         Tiled::Ran(ran) => {

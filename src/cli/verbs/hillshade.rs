@@ -22,7 +22,7 @@ pub(in crate::cli) fn run(args: &HillshadeArgs, console: &Console) -> Result<Exi
     let (plan, options) = requested(args, console)?;
     let outputs = outputs_of(args, &plan)?;
     let tiled = TiledProduct::Shades(options.clone());
-    match tiled::run(&args.tiles, &plan, &tiled, &args.output.output[0], console)? {
+    match tiled::run(&args.tiles, &plan, &tiled, &outputs, console)? {
         Tiled::Whole => {}
         Tiled::Planned => return Ok(Exit::Done),
         Tiled::Ran(ran) => {

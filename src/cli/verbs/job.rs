@@ -143,14 +143,14 @@ fn plan(job: &Path, look: Look, words: &[String], console: &Console) -> Result<E
         _ => {}
     }
     let options = TileOptions { look, ..command.options(job) };
-    let planned = Job::plan(&command.plan.request, &command.product, &options, &console.context())?;
+    let mut planned = Job::plan(&command.plan.request, &command.product, &options, &console.context())?;
     let folder = std::env::current_dir()?;
     let files = match &command.plan.request.source {
         Source::Points(request) => request.points.iter().map(|input| unicode(input.path())).collect::<Result<_>>()?,
         Source::Mesh(_) | Source::Raster(_) => Vec::new(),
     };
     let command_text = json!({ "command": words, "folder": unicode(&folder)?, "files": files }).to_string();
-    planned.create(Some(&command_text))?;
+    drop(planned.create(Some(&command_text))?);
     tiled::print_size(&planned.size(), console);
     console.line(format_args!(
         "next        breakline job run {0}, or {0} --task 0 to {1}",
@@ -204,7 +204,7 @@ fn work(job: &Path, task: Option<usize>, console: &Console) -> Result<Exit> {
         open.require_done(task)?;
     }
     // Like any task, the last one may be repeated: its process may have been killed after it.
-    if (0..open.task_count()).all(|task| open.is_done(task)) && open.is_older_than(&command.output) {
+    if open.has_written(&command.output) {
         console.line(format_args!("output      {} is written", command.output.display()));
         return Ok(Exit::Done);
     }
@@ -224,10 +224,11 @@ fn work(job: &Path, task: Option<usize>, console: &Console) -> Result<Exit> {
 /// Prints which tasks are done.
 fn print_status(open: &Job) -> Result<()> {
     let count = open.task_count();
-    let left: Vec<usize> = (0..count).filter(|&task| !open.is_done(task)).collect();
-    print(&format!("{} of {count} tasks are done\n", count - left.len()))?;
-    match left.first() {
-        Some(&next) => print(&format!("next: {next}, {}\n", open.task_name(next))),
+    let done = open.done();
+    let finished = done.iter().filter(|is_done| **is_done).count();
+    print(&format!("{finished} of {count} tasks are done\n"))?;
+    match done.iter().position(|is_done| !is_done) {
+        Some(next) => print(&format!("next: {next}, {}\n", open.task_name(next))),
         None => Ok(()),
     }
 }
@@ -235,16 +236,18 @@ fn print_status(open: &Job) -> Result<()> {
 /// Prints all tasks as a JSON object; the last one writes the output.
 fn print_tasks(open: &Job, words: &[String], output: &Path) -> Result<()> {
     let count = open.task_count();
+    let (done, stages) = (open.done(), open.stages());
+    let last_stage = stages.iter().max().map_or(0, |stage| stage + 1);
     let of_task = |task: usize| {
         json!({
-            "name": open.task_name(task), "needs": open.needs(task), "input": open.input(task),
-            "has_read": open.state_of_input(task).map(|state| [state.size, state.modified]), "done": open.is_done(task),
+            "name": open.task_name(task), "stage": stages[task], "needs": open.needs(task), "input": open.input(task),
+            "has_read": open.state_of_input(task).map(|state| [state.size, state.modified]), "done": done[task],
         })
     };
     let mut tasks: Vec<Value> = (0..count).map(of_task).collect();
-    let is_written = tasks.iter().all(|task| task["done"] == true) && open.is_older_than(output);
-    tasks.push(
-        json!({ "name": "output", "needs": open.last_needs(), "input": null, "has_read": null, "done": is_written }),
-    );
+    tasks.push(json!({
+        "name": "output", "stage": last_stage, "needs": open.last_needs(), "input": null,
+        "has_read": null, "done": open.has_written(output),
+    }));
     print(&format!("{}\n", json!({ "command": words, "tasks": tasks })))
 }

@@ -32,13 +32,14 @@ pub(super) struct Ran<'a> {
 }
 
 /// Runs the tasks of a request, if tiles are asked for or memory would not suffice.
-pub(super) fn run<'a>(
+pub(super) fn run<'a, F>(
     args: &TileArgs,
     plan: &'a SurfacePlan,
     product: &'a TiledProduct,
-    target: &Path,
+    outputs: &Outputs<F>,
     console: &Console,
 ) -> Result<Tiled<'a>> {
+    let target = &outputs.targets[0].path;
     let context = console.context();
     let tables = [(&plan.crossing_report, "--crossing-report"), (&plan.replaced_report, "--flat-points")];
     let table = tables.iter().find(|(table, _)| table.is_some());
@@ -63,7 +64,7 @@ pub(super) fn run<'a>(
         return Err(error);
     }
     let options = options(args, target);
-    if options.folder == target {
+    if options.folder == *target {
         return Err(Error::usage("the output and the folder of the job have the same name").in_file(target));
     }
     let resumed = match (args.resume, args.last_task) {
@@ -72,7 +73,7 @@ pub(super) fn run<'a>(
         (false, _) => None,
     };
     let is_new = resumed.is_none();
-    let job = match resumed {
+    let mut job = match resumed {
         Some(job) => job,
         None => Job::plan(&plan.request, product, &options, &context)?,
     };
@@ -82,12 +83,11 @@ pub(super) fn run<'a>(
         console.line(format_args!("folder      {}", options.folder.display()));
         return Ok(Tiled::Planned);
     }
-    if is_new {
-        job.create(None)?;
-    }
-    let lock = job.lock()?;
+    let lock = if is_new { job.create(None)? } else { job.lock()? };
+    outputs.set.mark(job.mark());
     if !is_new {
         let done = job.clear_up(&lock)?;
+        outputs.targets.iter().try_for_each(|target| job.remove_abandoned(&target.path, &lock))?;
         console.line(format_args!("resumed     {done} of {} tasks are done", size.tasks));
     }
     job.run(&context).inspect_err(|_| {
@@ -166,6 +166,9 @@ impl Ran<'_> {
 
     /// Makes the output appear, and removes the files of the tasks unless their folder was named.
     pub(super) fn commit<F>(self, outputs: Outputs<F>, console: &Console) -> Result<Exit> {
+        if self.is_kept {
+            self.job.record(&outputs.set, &self.report, &self.lock)?;
+        }
         outputs.commit(console)?;
         if !self.is_kept {
             self.job.remove(&self.lock)?;

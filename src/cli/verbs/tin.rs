@@ -60,7 +60,7 @@ fn run_in_parts(args: &TinArgs, plan: &SurfacePlan, outputs: Outputs<()>, consol
     let target = &outputs.targets[0];
     // Parts are those of tiles, even if all would fit into memory.
     let tiles = TileArgs { tiles: Some(args.tiles.tiles.unwrap_or(TilesArg(Division::Auto))), ..args.tiles.clone() };
-    let Tiled::Ran(ran) = tiled::run(&tiles, plan, &TiledProduct::Surface, &target.path, console)? else {
+    let Tiled::Ran(ran) = tiled::run(&tiles, plan, &TiledProduct::Surface, &outputs, console)? else {
         return Ok(Exit::Done);
     };
     let Ran { job, report, .. } = ran.as_ref();

@@ -114,7 +114,7 @@ fn write_levels(
     offsets: Offsets,
 ) -> Result<(RasterSummary, Output)> {
     let WriteOptions { cells, watch } = options;
-    let mut output = Output::create(target.path())?;
+    let mut output = target.create()?;
     let mut images = vec![Image::pack(target, source, cells, watch)?];
     for _ in levels(source.frame()).skip(1) {
         let finer = images[images.len() - 1].reader(target)?;

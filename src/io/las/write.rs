@@ -107,7 +107,7 @@ pub fn create<'a>(
     let points_start = u32::try_from(head.header.len() + records.len())
         .map_err(|_| Error::limit("the records before the points exceed 4 GB"))?;
 
-    let mut output = Output::create_seekable(target.path())?;
+    let mut output = target.create_seekable_beside(target.path())?;
     let write = |output: &mut Output| -> std::io::Result<()> {
         output.write_all(&head.header)?;
         output.write_all(&records)

@@ -41,6 +41,13 @@ enum Sink {
     Copied(File),
 }
 
+/// In which order the bytes of an [`Output`] are written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Writing {
+    InOrder,
+    AnyOrder,
+}
+
 /// An output whose bytes are on the disk or in their stream.
 struct Flushed {
     renamed: Option<(Temporary, PathBuf)>,
@@ -55,8 +62,7 @@ impl Output {
     /// If the folder does not exist or is not writable, if `target` is a folder, or if a file
     /// exists there that is read-only.
     pub fn create(target: impl AsRef<Path>) -> Result<Self> {
-        let target = target.as_ref();
-        Self::open(target, false).map_err(|e| e.in_file(target))
+        Self::open(target.as_ref(), None, Writing::InOrder)
     }
 
     /// Like [`create`](Output::create), but for formats whose first bytes are known last. Output to
@@ -65,20 +71,39 @@ impl Output {
     /// # Errors
     /// As [`create`](Output::create).
     pub fn create_seekable(target: impl AsRef<Path>) -> Result<Self> {
-        let target = target.as_ref();
-        Self::open(target, true).map_err(|e| e.in_file(target))
+        Self::open(target.as_ref(), None, Writing::AnyOrder)
     }
 
-    fn open(target: &Path, is_seekable: bool) -> Result<Self> {
-        let (file, sink) = match TargetKind::of(target)? {
-            TargetKind::File(path) => {
-                let (file, temporary) = temporary_for(&path)?;
-                (file, Sink::Renamed(temporary, path))
-            }
-            TargetKind::Stream if is_seekable => (tempfile::tempfile()?, Sink::Copied(target::open_stream(target)?)),
-            TargetKind::Stream => (target::open_stream(target)?, Sink::Stream),
+    /// Opens a hidden file whose name has the mark of its set, if there is one.
+    fn open(target: &Path, mark: Option<&str>, writing: Writing) -> Result<Self> {
+        let open = || -> Result<(File, Sink)> {
+            Ok(match (TargetKind::of(target)?, writing) {
+                (TargetKind::File(path), _) => {
+                    let (file, temporary) = temporary_for(&path, mark)?;
+                    (file, Sink::Renamed(temporary, path))
+                }
+                (TargetKind::Stream, Writing::AnyOrder) => {
+                    (tempfile::tempfile()?, Sink::Copied(target::open_stream(target)?))
+                }
+                (TargetKind::Stream, Writing::InOrder) => (target::open_stream(target)?, Sink::Stream),
+            })
         };
+        let (file, sink) = open().map_err(|e| e.in_file(target))?;
         Ok(Output { file: BufWriter::with_capacity(1 << 18, file), target: target.to_path_buf(), sink })
+    }
+
+    /// Returns the file with all bytes that were written, from its beginning; `None` if they go to
+    /// a pipe or a device.
+    fn read_back(&mut self) -> io::Result<Option<&mut File>> {
+        match self.sink {
+            Sink::Renamed(..) => {
+                self.file.flush()?;
+                let file = self.file.get_mut();
+                file.rewind()?;
+                Ok(Some(file))
+            }
+            Sink::Stream | Sink::Copied(_) => Ok(None),
+        }
     }
 
     /// Flushes the file and renames it to the target, replacing any file there.
@@ -128,7 +153,7 @@ impl Output {
 /// As [`Output::create`].
 pub fn probe(target: &Path) -> Result<()> {
     let probe = || match TargetKind::of(target)? {
-        TargetKind::File(path) => temporary_for(&path).map(drop),
+        TargetKind::File(path) => temporary_for(&path, None).map(drop),
         TargetKind::Stream => Ok(()),
     };
     probe().map_err(|e: Error| e.in_file(target))
@@ -161,9 +186,21 @@ fn scratch_for(target: &Path) -> Result<File> {
     })
 }
 
-fn temporary_for(path: &Path) -> Result<(File, Temporary)> {
+/// Removes the temporary files that a program left next to an output when it was killed, of sets
+/// with this [mark](OutputSet::mark). No program may be writing such a set.
+///
+/// # Errors
+/// If one cannot be removed.
+pub fn remove_abandoned(target: &Path, mark: &str) -> Result<()> {
+    match TargetKind::of(target)? {
+        TargetKind::File(path) => Ok(temporary::remove_all(target::folder_of(&path), &temporary::prefix(Some(mark)))?),
+        TargetKind::Stream => Ok(()),
+    }
+}
+
+fn temporary_for(path: &Path, mark: Option<&str>) -> Result<(File, Temporary)> {
     let replaced = target::replaceable(path)?;
-    let (file, temporary) = Temporary::create(path)?;
+    let (file, temporary) = Temporary::create(path, &temporary::prefix(mark))?;
     if let Some(old) = replaced {
         target::take_over(&file, &old)?;
     }

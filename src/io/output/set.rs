@@ -1,10 +1,10 @@
-use std::cell::RefCell;
+use std::cell::{OnceCell, RefCell};
 use std::fs::File;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use super::temporary::{Renames, Temporary};
-use super::{Flushed, Output, target};
+use super::{Flushed, Output, Writing, target, temporary};
 use crate::error::{Error, Result};
 
 /// Outputs that appear together or not at all.
@@ -16,12 +16,9 @@ use crate::error::{Error, Result};
 /// use breakline::data::Mesh;
 /// use breakline::io::{OutputSet, mesh};
 ///
-/// let surface = Mesh::new(vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], vec![[0, 1, 2]], &[], None)?;
-/// let set = OutputSet::default();
-/// mesh::write(set.at(&ply), &surface)?;
-/// mesh::write(set.at(&obj), &surface)?;
-/// assert!(!ply.exists() && !obj.exists());
-/// set.commit()?;
+/// let surface = Mesh::new(vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], vec![[0, 1, 2]], &[],
+/// None)?; let set = OutputSet::default(); mesh::write(set.at(&ply), &surface)?;
+/// mesh::write(set.at(&obj), &surface)?; assert!(!ply.exists() && !obj.exists()); set.commit()?;
 /// assert!(ply.exists() && obj.exists());
 /// # Ok(())
 /// # }
@@ -30,6 +27,7 @@ use crate::error::{Error, Result};
 #[must_use = "nothing appears at the targets before `commit`"]
 pub struct OutputSet {
     staged: RefCell<Staged>,
+    mark: OnceCell<String>,
 }
 
 #[derive(Debug, Default)]
@@ -43,6 +41,28 @@ impl OutputSet {
     /// Returns a destination at `path` within this set, for a writer.
     pub fn at<'a>(&'a self, path: &'a Path) -> Destination<'a> {
         Destination { path, extension: None, set: Some(self) }
+    }
+
+    /// Puts a mark into the names of the temporary files that are created from now on, so that
+    /// those of a program that is killed can be [recognized](super::remove_abandoned). The first
+    /// mark stays.
+    pub fn mark(&self, mark: String) {
+        let _ = self.mark.set(mark);
+    }
+
+    /// Calls a function with the target of each complete output and the file that will appear
+    /// there. Bytes for pipes and devices cannot be read.
+    ///
+    /// # Errors
+    /// Those of the function, and if a file cannot be read.
+    pub fn read_back(&self, read: &mut dyn FnMut(&Path, &mut File) -> Result<()>) -> Result<()> {
+        let Staged { companions, outputs, .. } = &mut *self.staged.borrow_mut();
+        for output in companions.iter_mut().chain(outputs) {
+            let target = output.target.clone();
+            let file = output.read_back().map_err(|e| Error::from(e).in_file(&target))?;
+            file.map_or(Ok(()), |file| read(&target, file)).map_err(|e| e.in_file(&target))?;
+        }
+        Ok(())
     }
 
     /// Adds a complete output.
@@ -106,6 +126,39 @@ impl<'a> Destination<'a> {
     #[must_use]
     pub fn in_format(self, extension: &'a str) -> Self {
         Destination { extension: Some(extension), ..self }
+    }
+
+    /// Opens the output, as [`Output::create`] does.
+    ///
+    /// # Errors
+    /// As [`Output::create`].
+    pub fn create(self) -> Result<Output> {
+        self.create_beside(self.path)
+    }
+
+    /// Opens another output of the same set.
+    ///
+    /// # Errors
+    /// As [`Output::create`].
+    pub(crate) fn create_beside(self, path: &Path) -> Result<Output> {
+        Output::open(path, self.mark(), Writing::InOrder)
+    }
+
+    /// Opens another output of the same set, as [`Output::create_seekable`] does.
+    ///
+    /// # Errors
+    /// As [`Output::create`].
+    pub(crate) fn create_seekable_beside(self, path: &Path) -> Result<Output> {
+        Output::open(path, self.mark(), Writing::AnyOrder)
+    }
+
+    /// Returns how the name of a temporary file or folder next to the output begins.
+    pub(crate) fn temporary_prefix(self) -> String {
+        temporary::prefix(self.mark())
+    }
+
+    fn mark(self) -> Option<&'a str> {
+        self.set.and_then(|set| set.mark.get()).map(String::as_str)
     }
 
     /// Returns a path whose extension names the format.

@@ -7,6 +7,12 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use super::target::folder_of;
 
+/// How the names of all temporary files begin.
+const PREFIX: &str = ".breakline-";
+
+/// What the names of files that are set aside contain.
+const BACKUP: &str = ".old";
+
 /// All temporary files of the process. Locked while one is created and while a set is renamed.
 static ALL: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
@@ -37,11 +43,11 @@ pub(super) struct Temporary {
 }
 
 impl Temporary {
-    /// Creates a hidden file in the folder of `target`.
-    pub(super) fn create(target: &Path) -> io::Result<(File, Self)> {
+    /// Creates a hidden file in the folder of `target`, whose name begins with `prefix`.
+    pub(super) fn create(target: &Path, prefix: &str) -> io::Result<(File, Self)> {
         let folder = folder_of(target);
         let mut builder = tempfile::Builder::new();
-        builder.prefix(".breakline-");
+        builder.prefix(prefix);
         #[cfg(unix)]
         {
             use std::os::unix::fs::PermissionsExt;
@@ -57,7 +63,7 @@ impl Temporary {
 
     /// Returns a name next to this file that is equally unlikely to be taken.
     pub(super) fn backup(&self) -> PathBuf {
-        self.path.with_extension("old")
+        self.path.with_extension(BACKUP.trim_start_matches('.'))
     }
 }
 
@@ -69,6 +75,32 @@ impl Drop for Temporary {
             let _ = std::fs::remove_file(&self.path);
         }
     }
+}
+
+/// Returns how the names of temporary files begin, with the mark of their set.
+pub(super) fn prefix(mark: Option<&str>) -> String {
+    match mark {
+        Some(mark) => format!("{PREFIX}{mark}-"),
+        None => PREFIX.to_owned(),
+    }
+}
+
+/// Removes temporary files and folders from a folder by the begin of their names. What a commit had
+/// set aside stays: it may be the only copy of a file.
+pub(super) fn remove_all(folder: &Path, prefix: &str) -> io::Result<()> {
+    for entry in std::fs::read_dir(folder)? {
+        let entry = entry?;
+        let name = entry.file_name();
+        let name = name.to_string_lossy();
+        if name.starts_with(prefix) && !name.contains(BACKUP) {
+            if entry.file_type()?.is_dir() {
+                std::fs::remove_dir_all(entry.path())?;
+            } else {
+                std::fs::remove_file(entry.path())?;
+            }
+        }
+    }
+    Ok(())
 }
 
 /// A guard: while it exists, no output can be created or renamed.

@@ -17,7 +17,7 @@ use super::listing::{Listing, crs_text, polygon};
 use crate::crs::Crs;
 use crate::data::{EdgeKind, Triangles};
 use crate::error::{Error, Result};
-use crate::io::{Destination, Output, Watch};
+use crate::io::{Destination, Watch};
 
 /// The properties for the kinds of a face's edges. The first edge goes from the first corner to the
 /// second, and so on.
@@ -30,7 +30,7 @@ pub(super) fn write(target: Destination, mesh: &Listing, crs: Option<&Crs>) -> R
     if i32::try_from(vertex_count).is_err() {
         return Err(Error::limit(format!("{vertex_count} vertices; a PLY file with int numbers has {}", i32::MAX)));
     }
-    let mut output = Output::create(target.path())?;
+    let mut output = target.create()?;
     write!(output, "ply\nformat binary_little_endian 1.0\ncomment breakline\n")?;
     for line in crs_text::comments(crs) {
         writeln!(output, "comment {line}")?;

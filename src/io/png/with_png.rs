@@ -6,7 +6,7 @@ use std::path::Path;
 use ::png::{BitDepth, ColorType, Compression, Decoder, Encoder};
 use rayon::prelude::*;
 
-use super::super::{Destination, Output, world_file};
+use super::super::{Destination, world_file};
 use super::{Picture, auxiliary, world_file_of};
 use crate::data::{BlockSource, Frame, Window};
 use crate::error::{Error, Kind, Result};
@@ -38,7 +38,7 @@ fn write(target: Destination, source: &dyn BlockSource) -> Result<()> {
     let (Some(columns), Some(rows)) = (side(width), side(height)) else {
         return Err(Error::usage(format!("a picture of {width} x {height} cells, expected 1 to {} a side", i32::MAX)));
     };
-    let mut out = Output::create(target.path())?;
+    let mut out = target.create()?;
     let mut encoder = Encoder::new(&mut out, columns, rows);
     encoder.set_color(ColorType::GrayscaleAlpha);
     encoder.set_depth(BitDepth::Eight);
@@ -55,11 +55,11 @@ fn write(target: Destination, source: &dyn BlockSource) -> Result<()> {
     }
     stream.finish().map_err(from_png)?;
     writer.finish().map_err(from_png)?;
-    let mut beside = Output::create(world_file_of(target.path()))?;
+    let mut beside = target.create_beside(&world_file_of(target.path()))?;
     beside.write_all(world_file::text(&frame).as_bytes())?;
     let auxiliary = auxiliary::path_of(target.path());
     let Some(crs) = source.crs() else { return target.put_all([beside], out, [auxiliary]) };
-    let mut system = Output::create(auxiliary)?;
+    let mut system = target.create_beside(&auxiliary)?;
     system.write_all(auxiliary::text(crs).as_bytes())?;
     target.put_all([beside, system], out, [])
 }

@@ -56,7 +56,7 @@ pub fn write_contours<'a>(
 ) -> Result<ContourSummary> {
     let target = target.into();
     let fields = [field("ID", ID_WIDTH, 0)?, field("ELEV", NUMBER_WIDTH, NUMBER_DECIMALS)?];
-    let mut set = FileSet::create(target.path(), 13, &fields)?;
+    let mut set = FileSet::create(target, 13, &fields)?;
     let mut summary = ContourSummary::default();
     let mut record = Vec::new();
     // `PERF:` consecutive lines have the same level; formatting its number for each would take
@@ -102,7 +102,7 @@ pub fn write_layer<'a>(target: impl Into<Destination<'a>>, layer: &Layer, column
         [] => vec![field("ID", ID_WIDTH, 0)?],
         _ => columns.iter().map(|c| field(c.name, NUMBER_WIDTH, NUMBER_DECIMALS)).collect::<Result<_>>()?,
     };
-    let mut set = FileSet::create(target.path(), code, &fields)?;
+    let mut set = FileSet::create(target, code, &fields)?;
     let mut record = Vec::new();
     for (i, shape) in layer.shapes.iter().enumerate() {
         record.clear();
@@ -273,11 +273,12 @@ struct FileSet {
 }
 
 impl FileSet {
-    fn create(target: &Path, code: i32, fields: &[[u8; 32]]) -> Result<Self> {
+    fn create(destination: Destination, code: i32, fields: &[[u8; 32]]) -> Result<Self> {
+        let target = destination.path();
         let mut set = FileSet {
-            shp: Output::create_seekable(target)?,
-            shx: Output::create_seekable(target.with_extension("shx"))?,
-            dbf: Output::create_seekable(target.with_extension("dbf"))?,
+            shp: destination.create_seekable_beside(target)?,
+            shx: destination.create_seekable_beside(&target.with_extension("shx"))?,
+            dbf: destination.create_seekable_beside(&target.with_extension("dbf"))?,
             code,
             fields: fields.to_vec(),
             shp_bytes: HEADER,
@@ -340,8 +341,8 @@ impl FileSet {
     fn finish(mut self, destination: Destination, crs: Option<&Crs>) -> Result<()> {
         let target = destination.path();
         let prj = crs.map(Crs::to_prj).filter(|text| !text.is_empty());
-        let prj = prj.map(|text| text_file(&target.with_extension("prj"), &text)).transpose()?;
-        let cpg = text_file(&target.with_extension("cpg"), "UTF-8")?;
+        let prj = prj.map(|text| text_file(destination, "prj", &text)).transpose()?;
+        let cpg = text_file(destination, "cpg", "UTF-8")?;
 
         let shp_header = self.header(self.shp_bytes);
         rewrite(&mut self.shp, &shp_header)?;
@@ -397,9 +398,10 @@ fn rewrite(output: &mut Output, header: &[u8]) -> Result<()> {
         .map_err(|e| failed(e, output.target()))
 }
 
-fn text_file(path: &Path, text: &str) -> Result<Output> {
-    let mut output = Output::create(path)?;
-    output.write_all(text.as_bytes()).map_err(|e| failed(e, path))?;
+fn text_file(destination: Destination, extension: &str, text: &str) -> Result<Output> {
+    let path = destination.path().with_extension(extension);
+    let mut output = destination.create_beside(&path)?;
+    output.write_all(text.as_bytes()).map_err(|e| failed(e, &path))?;
     Ok(output)
 }
 
@@ -480,7 +482,7 @@ mod tests {
     fn limits_are_checked_before_the_bytes_are_written() {
         let folder = tempfile::tempdir().unwrap();
         let target = folder.path().join("x.shp");
-        let mut set = FileSet::create(&target, 13, &[field("ID", ID_WIDTH, 0).unwrap()]).unwrap();
+        let mut set = FileSet::create((&target).into(), 13, &[field("ID", ID_WIDTH, 0).unwrap()]).unwrap();
         set.shp_bytes = MAX_BYTES - 100;
         assert!(set.write(&[0; 40], std::iter::empty(), &[id(1)]).is_ok());
         let error = set.write(&[0; 60], std::iter::empty(), &[id(2)]).unwrap_err();

@@ -24,9 +24,9 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use crate::error::{Error, Result};
+use crate::io::Destination;
 use crate::io::triangle::{Nodes, Numbering, counted, extension, listed, node, read_rows};
 use crate::io::watch::{Watch, unwatched};
-use crate::io::{Destination, Output};
 
 /// The corners of the facet opposite each corner, counter-clockwise as seen from outside.
 pub(crate) const FACETS: [[usize; 3]; 4] = [[1, 2, 3], [2, 0, 3], [0, 1, 3], [1, 0, 2]];
@@ -163,7 +163,7 @@ fn read_neighbors(path: &Path, first: u32, count: usize, watch: Watch) -> Result
 /// If an extension is not one of those [above](self) or a file cannot be written.
 pub fn write(targets: &[Destination], triangulated: &Tetrahedralized) -> Result<()> {
     for target in targets {
-        let mut output = Output::create(target.path())?;
+        let mut output = target.create()?;
         let written = match extension(&target.format_path()).as_str() {
             "node" => node::write(&mut output, &triangulated.nodes).and_then(|()| sign(&mut output)),
             "ele" => write_tetrahedra(&mut output, triangulated).and_then(|()| sign(&mut output)),

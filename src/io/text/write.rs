@@ -29,7 +29,7 @@ pub fn create<'a>(target: impl Into<Destination<'a>>, sources: &[&PointInfo]) ->
     let target = target.into();
     let is_table = target.format_path().extension().is_some_and(|e| e.eq_ignore_ascii_case("csv"));
     let has_classes = is_table && sources.iter().all(|info| info.has_classes);
-    let mut output = Output::create(target.path())?;
+    let mut output = target.create()?;
     let header = match (is_table, has_classes) {
         (false, _) => "",
         (true, false) => "x,y,z\n",

@@ -47,9 +47,9 @@ use std::path::{Path, PathBuf};
 
 use crate::data::Triangles;
 use crate::error::{Error, Result};
+use crate::io::Destination;
 use crate::io::rows::{Row, Rows};
 use crate::io::watch::{Watch, bytes_of, unwatched};
-use crate::io::{Destination, Output};
 
 /// Vertices as in a `.node` file.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -205,7 +205,7 @@ pub fn read_triangles_with(path: &Path, watch: Watch) -> Result<Triangles> {
 /// If an extension is not one of Triangle's or a file cannot be written.
 pub fn write(targets: &[Destination], triangulated: &Triangulated) -> Result<()> {
     for target in targets {
-        let mut output = Output::create(target.path())?;
+        let mut output = target.create()?;
         let written = match extension(&target.format_path()).as_str() {
             "node" => node::write(&mut output, &triangulated.nodes),
             "ele" => ele::write(&mut output, triangulated),

@@ -1,5 +1,6 @@
 //! Numbers in the sections of a task's file, little-endian.
 
+use super::task_file::Block;
 use crate::data::EdgeKind;
 use crate::terrain::tiles::{Gate, Residual, ResidualEdge, SubConstraint, TileTriangle, TileVertex, Waiting};
 
@@ -11,7 +12,14 @@ pub(super) fn put_u64(to: &mut Vec<u8>, value: u64) {
     to.extend_from_slice(&value.to_le_bytes());
 }
 
-fn put_numbers(to: &mut Vec<u8>, values: &[f64]) {
+/// Appends where a block is, and its checksum.
+pub(super) fn put_block(to: &mut Vec<u8>, block: Block) {
+    put_u64(to, block.at);
+    put_u64(to, block.length);
+    put_u32(to, block.sum);
+}
+
+pub(super) fn put_numbers(to: &mut Vec<u8>, values: &[f64]) {
     values.iter().for_each(|value| to.extend_from_slice(&value.to_le_bytes()));
 }
 
@@ -53,6 +61,10 @@ impl<'a> Reader<'a> {
         self.take().map(f64::from_le_bytes)
     }
 
+    pub(super) fn block(&mut self) -> Option<Block> {
+        Some(Block { at: self.u64()?, length: self.u64()?, sum: self.u32()? })
+    }
+
     pub(super) fn point(&mut self) -> Option<[f64; 3]> {
         Some([self.f64()?, self.f64()?, self.f64()?])
     }
@@ -80,6 +92,16 @@ pub(super) fn of_points(points: &[[f64; 3]]) -> Vec<u8> {
     let mut bytes = Vec::with_capacity(24 * points.len());
     put_numbers(&mut bytes, points.as_flattened());
     bytes
+}
+
+/// Appends the points with these bytes; `None` if they are not those of points.
+pub(super) fn add_points(bytes: &[u8], to: &mut Vec<[f64; 3]>) -> Option<()> {
+    let mut reader = Reader::new(bytes);
+    to.reserve(bytes.len() / 24);
+    while !reader.is_empty() {
+        to.push(reader.point()?);
+    }
+    Some(())
 }
 
 /// Returns the bytes of sub-constraints.

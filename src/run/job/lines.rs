@@ -7,7 +7,7 @@
 
 use rustc_hash::FxHashSet;
 
-use super::bytes::{self, CONSTRAINT_BYTES, Reader, put_u32, put_u64};
+use super::bytes::{self, Reader, put_block, put_u32};
 use super::task_file::{TaskFile, TaskWriter};
 use crate::crs::Crs;
 use crate::data::{Bounds, Surface};
@@ -173,11 +173,8 @@ pub(super) fn write(lines: &JobLines, tin: &Tin, layout: &Layout, writer: &mut T
             continue;
         }
         put_u32(&mut table, tile);
-        put_u64(&mut table, writer.position());
-        put_u64(&mut table, vertices.len() as u64);
-        put_u64(&mut table, constraints.len() as u64);
-        writer.put(&bytes::of_points(vertices))?;
-        writer.put(&bytes::of_constraints(constraints))?;
+        put_block(&mut table, writer.put_block(&bytes::of_points(vertices))?);
+        put_block(&mut table, writer.put_block(&bytes::of_constraints(constraints))?);
     }
     writer.begin("table");
     writer.put(&table)?;
@@ -187,30 +184,21 @@ pub(super) fn write(lines: &JobLines, tin: &Tin, layout: &Layout, writer: &mut T
 /// Reads what the lines give to a tile.
 pub(super) fn read(file: &mut TaskFile, tile: u32) -> Result<LinesOfTile> {
     let table = file.section("table")?;
-    let (from, length) = file.range("lines");
-    let mut reader = Reader::new(&table);
-    while let Some(of_tile) = reader.u32() {
-        let [Some(at), Some(vertices), Some(constraints)] = [(); 3].map(|()| reader.u64()) else {
+    let mut entries = Reader::new(&table);
+    while let Some(of_tile) = entries.u32() {
+        let [Some(vertices), Some(constraints)] = [(); 2].map(|()| entries.block()) else {
             return Err(file.damaged());
         };
         if of_tile != tile {
             continue;
         }
-        let sizes = (vertices.checked_mul(24), constraints.checked_mul(CONSTRAINT_BYTES as u64));
-        let (Some(first), Some(second)) = sizes else { return Err(file.damaged()) };
-        let end = first.checked_add(second).and_then(|size| size.checked_add(at));
-        if at < from || end.is_none_or(|end| end > from + length) {
-            return Err(file.damaged());
-        }
-        let mut points = vec![0; first as usize];
-        file.read(at, &mut points)?;
-        let mut edges = vec![0; second as usize];
-        file.read(at + first, &mut edges)?;
-        let mut reader = Reader::new(&points);
-        return Ok(LinesOfTile {
-            vertices: (0..vertices).filter_map(|_| reader.point()).collect(),
-            constraints: bytes::to_constraints(&edges).ok_or_else(|| file.damaged())?,
-        });
+        let mut lines = LinesOfTile::default();
+        let mut bytes = Vec::new();
+        file.read(vertices, &mut bytes)?;
+        bytes::add_points(&bytes, &mut lines.vertices).ok_or_else(|| file.damaged())?;
+        file.read(constraints, &mut bytes)?;
+        lines.constraints = bytes::to_constraints(&bytes).ok_or_else(|| file.damaged())?;
+        return Ok(lines);
     }
     Ok(LinesOfTile::default())
 }

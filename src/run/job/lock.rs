@@ -1,14 +1,13 @@
-//! The folder of a job, for one process or several, and its removal.
+//! The right to work on a job, for one process or several.
 
-use std::fs::{File, TryLockError};
+use std::fs::{File, Metadata, TryLockError};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use super::{COMMAND, PLAN};
 use crate::error::{Error, Result};
 
-/// The file that is locked while a process works on the job.
-const LOCK: &str = "lock";
+/// The file that is locked while a process works on the job; it is empty.
+pub(super) const LOCK: &str = "lock";
 
 /// A job that a process works on.
 #[derive(Debug)]
@@ -17,11 +16,15 @@ pub struct JobLock {
 }
 
 impl JobLock {
+    /// Waits for the lock of a folder, for some seconds. What was read of the folder before may
+    /// have changed meanwhile.
     pub(super) fn take(folder: &Path, lock: impl Fn(&File) -> std::result::Result<(), TryLockError>) -> Result<Self> {
         let path = folder.join(LOCK);
-        let file = File::create(&path).map_err(|e| Error::from(e).in_file(&path))?;
+        let named = |e: std::io::Error| Error::from(e).in_file(&path);
         let start = Instant::now();
         loop {
+            // Nothing is written to it: a folder that is no job yet may have such a file.
+            let file = File::options().write(true).create(true).truncate(false).open(&path).map_err(named)?;
             match lock(&file) {
                 Err(TryLockError::WouldBlock) if start.elapsed() < PATIENCE => std::thread::sleep(PATIENCE / 50),
                 Err(TryLockError::WouldBlock) => {
@@ -29,6 +32,8 @@ impl JobLock {
                         .in_file(folder)
                         .cure("wait for it, or name another folder (--job)"));
                 }
+                // The job may have been removed, and planned again, while this one waited.
+                Ok(()) if !is_at(&file.metadata().map_err(named)?, &path) => {}
                 // Some shared file systems have no locks.
                 Ok(()) | Err(TryLockError::Error(_)) => return Ok(JobLock { _file: file }),
             }
@@ -39,30 +44,15 @@ impl JobLock {
 /// How long a lock is waited for: a worker that was killed may leave a process that ends its task.
 const PATIENCE: Duration = Duration::from_secs(10);
 
-/// Removes the files of a job and its folder, if nothing else is in it.
-///
-/// # Errors
-/// If the folder has no job, or the job cannot be removed.
-pub fn remove_job(folder: &Path) -> Result<()> {
-    if !folder.join(PLAN).is_file() {
-        return Err(Error::usage("there is no job in this folder").in_file(folder));
-    }
-    let _lock = JobLock::take(folder, File::try_lock)?;
-    remove_files(folder)
+/// Returns true if an open file is the one at this path.
+#[cfg(unix)]
+fn is_at(open: &Metadata, path: &Path) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    std::fs::metadata(path).is_ok_and(|there| (there.dev(), there.ino()) == (open.dev(), open.ino()))
 }
 
-/// Removes the files of a job and its folder, if nothing else is in it.
-pub(super) fn remove_files(folder: &Path) -> Result<()> {
-    let named = |e: std::io::Error| Error::from(e).in_file(folder);
-    // The plan last: a removal that was interrupted can be repeated.
-    let tasks = folder.join("tasks");
-    if tasks.exists() {
-        std::fs::remove_dir_all(&tasks).map_err(named)?;
-    }
-    std::fs::remove_file(folder.join(PLAN)).map_err(named)?;
-    for name in [LOCK, COMMAND] {
-        let _ = std::fs::remove_file(folder.join(name));
-    }
-    let is_empty = std::fs::read_dir(folder).map_err(named)?.next().is_none();
-    if is_empty { std::fs::remove_dir(folder).map_err(named) } else { Ok(()) }
+/// Returns true: an open file cannot be removed here.
+#[cfg(not(unix))]
+fn is_at(_open: &Metadata, _path: &Path) -> bool {
+    true
 }

@@ -14,6 +14,8 @@
 
 mod bytes;
 mod contours;
+mod done;
+mod folder;
 mod holes;
 mod lines;
 mod lock;
@@ -27,26 +29,26 @@ mod stored;
 mod surface;
 mod task_file;
 mod tasks;
+mod written;
 
-use std::fs::File;
-use std::io::Write;
+use std::fs::{File, TryLockError};
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-use serde_json::Value;
+use serde_json::json;
 
+pub use self::folder::{COMMAND, remove_job};
+use self::folder::{StoredPlan, tasks_in};
 use self::lines::Known;
-use self::lock::remove_files;
-pub use self::lock::{JobLock, remove_job};
+pub use self::lock::JobLock;
 pub use self::output::JobReport;
 #[cfg(feature = "cli")]
 pub(crate) use self::plan::not_in_tiles;
 use self::plan::{Plan, fingerprint};
 pub use self::planned_file::FileState;
 pub use self::surface::WrittenParts;
-use self::task_file::{TaskFile, UNFINISHED};
+use self::task_file::TaskName;
 use super::cells::{DemOptions, HillshadeOptions};
-use super::checksum::checksum;
 use super::context::{Context, Journal};
 use super::contour::ContourOptions;
 use super::frame::FrameOptions;
@@ -58,12 +60,6 @@ use super::tin::TinRequest;
 use crate::error::{Error, Result};
 use crate::terrain::Method;
 use crate::terrain::tiles::{Step, Work};
-
-/// The file of the plan in the folder of a job.
-const PLAN: &str = "plan.json";
-
-/// The file that a program may keep its command in; it is removed with the job.
-pub const COMMAND: &str = "command.json";
 
 /// Bytes per point of a triangulation in its file; measured.
 const BYTES_A_POINT_OF_PART: u64 = 85;
@@ -177,6 +173,8 @@ pub struct Job<'a> {
     product: &'a TiledProduct,
     bad: BadFiles,
     folder: PathBuf,
+    /// The checksum of the plan in the folder; 0 until it is there.
+    sum: u32,
     plan: Plan,
     steps: Vec<Step>,
     /// Read by the first task that needs it, unless the plan was made by this process.
@@ -238,6 +236,7 @@ impl<'a> Job<'a> {
             product,
             bad: options.bad,
             folder: options.folder.clone(),
+            sum: 0,
             plan,
             steps,
             known: OnceLock::new(),
@@ -246,30 +245,27 @@ impl<'a> Job<'a> {
     }
 
     /// Creates the folder of the job, with the plan; `command` is kept with it, see [`COMMAND`].
+    /// The whole job is taken for this process, as long as the result lives.
     ///
     /// # Errors
-    /// If the folder has a job already, or cannot be written.
-    pub fn create(&self, command: Option<&str>) -> Result<()> {
-        let path = self.folder.join(PLAN);
-        if path.exists() {
-            return Err(Error::usage("there is a job in this folder already")
-                .in_file(&self.folder)
-                .cure("go on with it (--resume), remove it (`breakline job clean`), or name another folder (--job)"));
-        }
+    /// If the folder has a job already, or files of something else that have the same names, or
+    /// cannot be written; or if another process works on it.
+    pub fn create(&mut self, command: Option<&str>) -> Result<JobLock> {
+        folder::require_no_job(&self.folder)?;
         let named = |e: std::io::Error| Error::from(e).in_file(&self.folder);
         std::fs::create_dir_all(&self.folder).map_err(named)?;
-        let _lock = self.lock()?;
-        // Tasks of a job that was not removed to its end would count as done.
-        let tasks = self.folder.join("tasks");
-        if tasks.exists() {
-            std::fs::remove_dir_all(&tasks).map_err(named)?;
-        }
-        std::fs::create_dir(&tasks).map_err(named)?;
+        let lock = JobLock::take(&self.folder, File::try_lock)?;
+        // Another process may have created one meanwhile.
+        folder::require_no_job(&self.folder)?;
+        std::fs::create_dir_all(tasks_in(&self.folder)).map_err(named)?;
         if let Some(command) = command {
             std::fs::write(self.folder.join(COMMAND), command).map_err(named)?;
         }
         // Last, because a folder is a job from here on.
-        self.write_plan()
+        let mut plan = self.plan.to_json();
+        plan["tasks"] = json!(self.task_count());
+        self.sum = folder::write_plan(&self.folder, &plan.to_string())?;
+        Ok(lock)
     }
 
     /// Opens the job of a request in its folder, to do what is left; `None` if there is none.
@@ -332,18 +328,11 @@ impl<'a> Job<'a> {
         options: &TileOptions,
     ) -> Result<Option<Self>> {
         let (request, systems) = tiled(request, product)?;
-        let path = options.folder.join(PLAN);
-        let text = match std::fs::read_to_string(&path) {
-            Ok(text) => text,
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
-            Err(error) => return Err(Error::from(error).in_file(path)),
-        };
-        let plan = text.split_once('\n').filter(|(sum, plan)| *sum == format!("{:08x}", checksum(plan.as_bytes())));
-        let value: Option<Value> = plan.and_then(|(_, plan)| serde_json::from_str(plan).ok());
-        let plan = value.as_ref().and_then(Plan::from_json).ok_or_else(|| {
-            Error::format("the plan of the job is damaged, or that of another version")
-                .in_file(&path)
-                .cure("remove the folder, and begin anew")
+        let Some(stored) = StoredPlan::read(&options.folder)? else { return Ok(None) };
+        let plan = Plan::from_json(&stored.plan).ok_or_else(|| {
+            Error::format("the job was planned by another version of this program")
+                .in_file(&options.folder)
+                .cure("remove it (`breakline job clean`), or name another folder (--job)")
         })?;
         if plan.files.iter().any(|file| file.input >= request.points.len())
             || plan.request != fingerprint(request, systems, product, options)
@@ -352,18 +341,12 @@ impl<'a> Job<'a> {
                 .in_file(&options.folder)
                 .cure("repeat that command, or name another folder (--job)"));
         }
-        Ok(Some(Self::of_plan(request, product, options, plan)))
+        Ok(Some(Job { sum: stored.sum, ..Self::of_plan(request, product, options, plan) }))
     }
 
     /// Returns the file of points that a task reads, if it reads one.
     pub fn input(&self, task: usize) -> Option<&Path> {
         self.file_of(task).map(|number| self.plan.files[number].path.as_path())
-    }
-
-    /// Returns the state in which a task has read its file of points; `None` if it is not done, or
-    /// reads none.
-    pub fn state_of_input(&self, task: usize) -> Option<FileState> {
-        TaskFile::open(&self.task_path(task)).ok()??.state_of_input()
     }
 
     /// The number of the file of points that a task reads.
@@ -376,16 +359,6 @@ impl<'a> Job<'a> {
             },
             Task::Triangulate(_) | Task::Lines | Task::Rim | Task::Cut => None,
         }
-    }
-
-    fn write_plan(&self) -> Result<()> {
-        let named = |e: std::io::Error| Error::from(e).in_file(&self.folder);
-        let plan = self.plan.to_json().to_string();
-        let path = self.folder.join(PLAN);
-        // Several processes may write the same plan at the same time.
-        let mut file = task_file::unfinished_in(&self.folder).map_err(named)?;
-        write!(file, "{:08x}\n{plan}", checksum(plan.as_bytes())).map_err(named)?;
-        file.persist(&path).map(drop).map_err(|e| Error::from(e.error).in_file(&path))
     }
 
     /// Returns the numbers of the plan.
@@ -481,35 +454,20 @@ impl<'a> Job<'a> {
         }
     }
 
+    /// Returns the stage of each task, from 0: a task needs only those of earlier stages, so that
+    /// all of one stage can be done at the same time.
+    pub fn stages(&self) -> Vec<usize> {
+        let mut stages: Vec<usize> = Vec::with_capacity(self.task_count());
+        for task in 0..self.task_count() {
+            let before = self.needs(task).into_iter().map(|needed| stages[needed] + 1).max();
+            stages.push(before.unwrap_or(0));
+        }
+        stages
+    }
+
     /// Returns the tasks that must be done before the output is written.
     pub fn last_needs(&self) -> Vec<usize> {
         (self.first_step()..self.task_count()).collect()
-    }
-
-    /// Returns an error unless all tasks are done; `last` is the number of the one that writes the
-    /// output.
-    ///
-    /// # Errors
-    /// Names a task that is not done, or says that there is none with this number.
-    pub fn require_done(&self, last: usize) -> Result<()> {
-        if last > self.task_count() {
-            return Err(self.no_task(last));
-        }
-        self.require_each(0..self.task_count())
-    }
-
-    fn require_each(&self, mut tasks: impl Iterator<Item = usize>) -> Result<()> {
-        match tasks.find(|&task| !self.is_done(task)) {
-            Some(task) => {
-                Err(Error::usage(format!("task {task} ({}) is not done", self.task_name(task))).cure("do it first"))
-            }
-            None => Ok(()),
-        }
-    }
-
-    #[cold]
-    fn no_task(&self, task: usize) -> Error {
-        Error::usage(format!("there is no task {task}: the last is {}, which writes the output", self.task_count()))
     }
 
     /// Returns the files that may have points of the tile of a step.
@@ -534,96 +492,45 @@ impl<'a> Job<'a> {
         }
     }
 
-    fn task_path(&self, number: usize) -> PathBuf {
-        self.folder.join("tasks").join(format!("{number:06}.task"))
-    }
-
-    /// Returns true if a task is done: its file is there and complete.
-    pub fn is_done(&self, task: usize) -> bool {
-        matches!(TaskFile::open(&self.task_path(task)), Ok(Some(_)))
+    /// Returns what the file of a task is called.
+    fn task_file(&self, task: usize) -> TaskName {
+        TaskName { path: folder::task_path(&self.folder, task), job: self.sum, task }
     }
 
     /// Takes the whole job for this process, as long as the result lives. A task that still runs is
     /// waited for, for some seconds.
     ///
     /// # Errors
-    /// If another process works on it.
+    /// If another process works on it, or has removed it, or put another job in its place.
     pub fn lock(&self) -> Result<JobLock> {
-        JobLock::take(&self.folder, File::try_lock)
+        self.lock_with(File::try_lock)
     }
 
     /// Takes part in the job, together with other processes that do single tasks.
     fn lock_shared(&self) -> Result<JobLock> {
-        JobLock::take(&self.folder, File::try_lock_shared)
+        self.lock_with(File::try_lock_shared)
     }
 
-    /// Returns true if an output was written after all tasks, and is there whole.
-    pub fn is_older_than(&self, output: &Path) -> bool {
-        let time = |path: &Path| std::fs::metadata(path).and_then(|about| about.modified()).ok();
-        let Some(written) = time(output) else { return false };
-        let is_whole = match self.product {
-            TiledProduct::Surface => super::open::tin_parts(output).is_some_and(|parts| parts.is_ok()),
-            TiledProduct::Heights(_) | TiledProduct::Shades(_) | TiledProduct::Contours(_) => true,
-        };
-        is_whole && (0..self.task_count()).all(|task| time(&self.task_path(task)).is_some_and(|time| time <= written))
-    }
-
-    /// Removes files that a run left when it was killed, and files of tasks that are damaged.
-    /// Returns the number of tasks that are done. The job must be [locked](Self::lock).
-    ///
-    /// # Errors
-    /// If a file cannot be removed.
-    pub fn clear_up(&self, _lock: &JobLock) -> Result<usize> {
-        let folder = self.folder.join("tasks");
-        let named = |e: std::io::Error| Error::from(e).in_file(&folder);
-        // An interrupted removal may have taken it.
-        std::fs::create_dir_all(&folder).map_err(named)?;
-        for entry in std::fs::read_dir(&folder).map_err(named)? {
-            let path = entry.map_err(named)?.path();
-            if path.to_string_lossy().ends_with(UNFINISHED) {
-                std::fs::remove_file(&path).map_err(|e| Error::from(e).in_file(&path))?;
-            }
+    fn lock_with(&self, lock: fn(&File) -> std::result::Result<(), TryLockError>) -> Result<JobLock> {
+        let taken = JobLock::take(&self.folder, lock)?;
+        // What was read of the job before may be that of another one, whose end was waited for.
+        match StoredPlan::read(&self.folder)? {
+            Some(stored) if stored.sum == self.sum => Ok(taken),
+            _ => Err(Error::usage("the job was removed or replaced by another process")
+                .in_file(&self.folder)
+                .cure("begin again, or name another folder (--job)")),
         }
-        self.remove_damaged()
-    }
-
-    /// Removes the files of tasks that are damaged, by their checksums. Returns the number of tasks
-    /// that are done.
-    ///
-    /// # Errors
-    /// If a file cannot be removed.
-    pub fn remove_damaged(&self) -> Result<usize> {
-        let mut done = 0;
-        for task in 0..self.task_count() {
-            let path = self.task_path(task);
-            let checked = TaskFile::open(&path).and_then(|file| file.map(|mut file| file.verify()).transpose());
-            match checked {
-                Ok(found) => done += usize::from(found.is_some()),
-                Err(_) => std::fs::remove_file(&path).map_err(|e| Error::from(e).in_file(&path))?,
-            }
-        }
-        Ok(done)
-    }
-
-    /// Does one task, unless it is done. Needs the files of the tasks before it.
-    ///
-    /// # Errors
-    /// If the input cannot be read, if a task that it needs is not done, or if the run is canceled.
-    pub fn run_task(&self, task: usize, context: &Context) -> Result<()> {
-        if task >= self.task_count() {
-            return Err(self.no_task(task));
-        }
-        let _lock = self.lock_shared()?;
-        self.require_each(self.needs(task).into_iter())?;
-        if self.is_done(task) { Ok(()) } else { self.do_task(task, context) }
     }
 
     /// Removes the folder of the job, which must be [locked](Self::lock).
     ///
     /// # Errors
     /// If it cannot be removed.
-    pub fn remove(&self, _lock: &JobLock) -> Result<()> {
-        remove_files(&self.folder)
+    pub fn remove(&self, lock: &JobLock) -> Result<()> {
+        match StoredPlan::read(&self.folder)? {
+            Some(stored) => folder::remove_files(&self.folder, &stored, lock),
+            None => Ok(()),
+        }
     }
 }
 

@@ -1,11 +1,10 @@
 //! What is made of a job whose tasks are all done: counts, a raster, contours.
 
-use std::path::PathBuf;
-
 use serde_json::Value;
 
 use super::contours::DrawnContours;
 use super::raster::DrawnCells;
+use super::task_file::TaskName;
 use super::{Job, TiledProduct};
 use crate::crs::Crs;
 use crate::data::Bounds;
@@ -48,6 +47,10 @@ pub struct JobReport {
     pub handed_up: u64,
     /// The box around the surface.
     pub extent: Bounds,
+    /// Its area in plan, in square units of the data.
+    pub area: f64,
+    /// The checksum of the files of the tasks.
+    pub(super) sources: u32,
     /// The files that were skipped, with the reasons.
     pub skipped: Vec<String>,
     /// The coordinate system.
@@ -62,8 +65,7 @@ impl Job<'_> {
     pub fn report(&self) -> Result<JobReport> {
         let skipped = self.plan.skipped.iter().map(|(_, text)| text.clone()).collect();
         let mut report = JobReport { skipped, crs: self.plan.crs.clone(), ..JobReport::default() };
-        for task in 0..self.task_count() {
-            let file = self.open_task(task)?;
+        report.sources = self.open_all(|file| {
             report.read += file.count("read");
             report.used += file.count("used");
             report.withheld += file.count("withheld");
@@ -78,6 +80,7 @@ impl Job<'_> {
             report.over_skipped += file.count("over_skipped");
             report.waited += file.count("waiting");
             report.handed_up += file.count("residual");
+            report.area += file.facts.get("area").and_then(Value::as_f64).unwrap_or(0.0);
             if let Some(text) = file.facts.get("skipped").and_then(Value::as_str) {
                 report.skipped.push(text.to_owned());
             }
@@ -85,7 +88,7 @@ impl Job<'_> {
                 let coordinate = |k: usize| corner[k].as_f64().unwrap_or(f64::NAN);
                 report.extent.add([coordinate(0), coordinate(1), coordinate(2)]);
             }
-        }
+        })?;
         Ok(report)
     }
 
@@ -103,8 +106,8 @@ impl Job<'_> {
         // Notices about the frame came with the plan.
         let quiet = Context::default();
         let frame = frame::placed(options, report.extent, report.crs.as_ref(), &Journal::new(&quiet))?;
-        frame::require_filled(options, &frame, &report.extent, || self.area())?;
-        let drawn = DrawnCells::open(self.step_paths(), drawn, frame, report.crs.clone())?;
+        frame::require_filled(options, &frame, &report.extent, || report.area)?;
+        let drawn = DrawnCells::open(self.step_files(), drawn, frame, report.crs.clone())?;
         Ok(match self.product {
             TiledProduct::Shades(HillshadeOptions { light, .. }) => {
                 CellProduct::shades_of(Box::new(drawn), light, report.crs.as_ref(), &journal)?
@@ -126,7 +129,7 @@ impl Job<'_> {
         let TiledProduct::Contours(options) = self.product else {
             return Err(Error::usage("the job makes no contours"));
         };
-        let drawn = DrawnContours::open(self.step_paths(), &options.to_levels()?)?;
+        let drawn = DrawnContours::open(self.step_files(), &options.to_levels()?)?;
         target.put_whole(|target| drawn.write(target, report.crs.as_ref(), context))
     }
 
@@ -150,12 +153,7 @@ impl Job<'_> {
     }
 
     /// The files of all tasks that have triangles.
-    pub(super) fn step_paths(&self) -> Vec<PathBuf> {
-        (self.first_step()..self.task_count()).map(|task| self.task_path(task)).collect()
-    }
-
-    pub(super) fn area(&self) -> f64 {
-        let of_task = |task| self.open_task(task).ok()?.facts.get("area")?.as_f64();
-        (0..self.task_count()).filter_map(of_task).sum()
+    fn step_files(&self) -> Vec<TaskName> {
+        (self.first_step()..self.task_count()).map(|task| self.task_file(task)).collect()
     }
 }

@@ -1,12 +1,11 @@
 //! The cells that tasks have drawn: as they are written, and as one raster.
 
-use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use rustc_hash::FxHashMap;
 
-use super::bytes::{Reader, put_u64};
-use super::task_file::{TaskFile, TaskWriter};
+use super::bytes::{Reader, put_block, put_u64};
+use super::task_file::{Block, TaskFile, TaskName, TaskWriter};
 use crate::crs::Crs;
 use crate::data::{BlockSource, Frame, Window};
 use crate::error::Result;
@@ -18,8 +17,8 @@ const MOST_OPEN: usize = 64;
 /// A canvas whose blocks go to the file of a task when they become many.
 pub(super) struct Drawing {
     canvas: Canvas,
-    /// Column, row and position in the file of each block.
-    table: Vec<[u64; 3]>,
+    /// Column and row of the first cell of each block, and where its heights are.
+    table: Vec<([u64; 2], Block)>,
 }
 
 /// Blocks on a canvas before they are written: 32 MB.
@@ -51,10 +50,10 @@ impl Drawing {
     fn write_blocks(&mut self, writer: &mut TaskWriter) -> Result<()> {
         let mut bytes = Vec::new();
         for block in self.canvas.take_blocks() {
-            self.table.push([block.window.column as u64, block.window.row as u64, writer.position()]);
             bytes.clear();
             block.heights.iter().for_each(|height| bytes.extend_from_slice(&height.to_le_bytes()));
-            writer.put(&bytes)?;
+            let first = [block.window.column as u64, block.window.row as u64];
+            self.table.push((first, writer.put_block(&bytes)?));
         }
         Ok(())
     }
@@ -64,7 +63,10 @@ impl Drawing {
         self.write_blocks(writer)?;
         writer.begin("table");
         let mut bytes = Vec::new();
-        self.table.iter().flatten().for_each(|&number| put_u64(&mut bytes, number));
+        for (first, block) in self.table {
+            first.iter().for_each(|&at| put_u64(&mut bytes, at));
+            put_block(&mut bytes, block);
+        }
         writer.put(&bytes)
     }
 }
@@ -79,26 +81,25 @@ pub(super) struct DrawnCells {
     drawn: Frame,
     first: [i64; 2],
     crs: Option<Crs>,
-    paths: Vec<PathBuf>,
+    tasks: Vec<TaskName>,
     /// For each block, by its column and row: the files that have it, and where.
-    blocks: FxHashMap<[u32; 2], Vec<(u32, u64)>>,
+    blocks: FxHashMap<[u32; 2], Vec<(u32, Block)>>,
     open: Mutex<FxHashMap<u32, Arc<Mutex<TaskFile>>>>,
 }
 
 impl DrawnCells {
-    /// Opens the cells of the tasks with these files.
+    /// Opens the cells of these tasks.
     ///
     /// # Errors
     /// If a file is missing or damaged.
-    pub(super) fn open(paths: Vec<PathBuf>, drawn: Frame, frame: Frame, crs: Option<Crs>) -> Result<Self> {
-        let mut blocks: FxHashMap<[u32; 2], Vec<(u32, u64)>> = FxHashMap::default();
-        for (number, path) in (0..).zip(&paths) {
-            let mut file = TaskFile::open_done(path)?;
+    pub(super) fn open(tasks: Vec<TaskName>, drawn: Frame, frame: Frame, crs: Option<Crs>) -> Result<Self> {
+        let mut blocks: FxHashMap<[u32; 2], Vec<(u32, Block)>> = FxHashMap::default();
+        for (number, name) in (0..).zip(&tasks) {
+            let mut file = TaskFile::open_done(name)?;
             let table = file.section("table")?;
-            let (from, length) = file.range("cells");
             let mut reader = Reader::new(&table);
             while !reader.is_empty() {
-                let [Some(column), Some(row), Some(at)] = [(); 3].map(|()| reader.u64()) else {
+                let (Some(column), Some(row), Some(block)) = (reader.u64(), reader.u64(), reader.block()) else {
                     return Err(file.damaged());
                 };
                 let side = Canvas::SIDE as u64;
@@ -107,15 +108,15 @@ impl DrawnCells {
                     return Err(file.damaged());
                 }
                 let size = 4 * side.min(drawn.width as u64 - column) * side.min(drawn.height as u64 - row);
-                if at < from || at.checked_add(size).is_none_or(|end| end > from + length) {
+                if block.length != size {
                     return Err(file.damaged());
                 }
-                blocks.entry([column, row].map(|at| (at / side) as u32)).or_default().push((number, at));
+                blocks.entry([column, row].map(|at| (at / side) as u32)).or_default().push((number, block));
             }
         }
         let [column, row] = drawn.inverse().apply(frame.transform[0], frame.transform[3]);
         let first = [column.round() as i64, row.round() as i64];
-        Ok(DrawnCells { frame, drawn, first, crs, paths, blocks, open: Mutex::default() })
+        Ok(DrawnCells { frame, drawn, first, crs, tasks, blocks, open: Mutex::default() })
     }
 
     fn file(&self, number: u32) -> Result<Arc<Mutex<TaskFile>>> {
@@ -123,8 +124,7 @@ impl DrawnCells {
         if let Some(file) = open.get(&number) {
             return Ok(Arc::clone(file));
         }
-        let path = &self.paths[number as usize];
-        let file = TaskFile::open_done(path)?;
+        let file = TaskFile::open_done(&self.tasks[number as usize])?;
         if open.len() >= MOST_OPEN {
             open.clear();
         }
@@ -133,10 +133,10 @@ impl DrawnCells {
         Ok(file)
     }
 
-    /// Returns the heights of a block in one of the files.
-    fn heights(&self, number: u32, at: u64, bytes: &mut [u8]) -> Result<()> {
+    /// Reads the heights of a block from one of the files.
+    fn heights(&self, number: u32, block: Block, bytes: &mut Vec<u8>) -> Result<()> {
         let file = self.file(number)?;
-        file.lock().unwrap_or_else(PoisonError::into_inner).read(at, bytes)
+        file.lock().unwrap_or_else(PoisonError::into_inner).read(block, bytes)
     }
 }
 
@@ -168,9 +168,8 @@ impl BlockSource for DrawnCells {
                 let Some(parts) = self.blocks.get(&[block_column as u32, block_row as u32]) else { continue };
                 let [width, height] =
                     [limits[0] - block_column * side, limits[1] - block_row * side].map(|n| n.min(side));
-                bytes.resize((width * height) as usize * 4, 0);
-                for &(number, at) in parts {
-                    self.heights(number, at, &mut bytes)?;
+                for &(number, block) in parts {
+                    self.heights(number, block, &mut bytes)?;
                     for row in rows.start.max(block_row * side)..rows.end.min(block_row * side + height) {
                         let first = columns.start.max(block_column * side);
                         let end = columns.end.min(block_column * side + width);

@@ -70,7 +70,8 @@ impl Job<'_> {
                             continue;
                         };
                         drop(now);
-                        let run = || pool.install(|| self.do_task(task, context)).and_then(|()| progress.add(1));
+                        let run =
+                            || pool.install(|| self.do_unless_current(task, context)).and_then(|()| progress.add(1));
                         let done = catch_unwind(AssertUnwindSafe(run));
                         now = lock();
                         match done {
@@ -95,7 +96,7 @@ impl Job<'_> {
         let count = self.task_count();
         let mut after = vec![Vec::new(); count];
         let mut states = vec![State::Done; count];
-        let is_done: Vec<bool> = (0..count).map(|task| self.is_done(task)).collect();
+        let is_done = self.done();
         for task in (0..count).filter(|&task| !is_done[task]) {
             let needed: Vec<usize> = self.needs(task).into_iter().filter(|&before| !is_done[before]).collect();
             needed.iter().for_each(|&before| after[before].push(task));

@@ -12,7 +12,7 @@ use super::task_file::{TaskWriter, UNFINISHED};
 use super::{Job, JobReport, Task, TiledProduct};
 use crate::data::{EdgeKind, LineEdges, Surface, SurfaceFacts};
 use crate::error::{Error, Result};
-use crate::io::{Destination, Output};
+use crate::io::Destination;
 use crate::run::checksum::{Summed, checksum};
 use crate::run::context::{Context, Size, Stage};
 use crate::terrain::tiles::{TinPart, Work};
@@ -135,6 +135,13 @@ fn has_all(folder: &Path, index: &TinIndex) -> bool {
     })
 }
 
+/// Returns true if an index and all its parts are there as they were written.
+pub(super) fn has_all_parts(index: &Path) -> bool {
+    let text = std::fs::read(index).ok();
+    let read = text.and_then(|text| TinIndex::from_text(&text).ok());
+    read.is_some_and(|read| has_all(&index.with_file_name(&read.folder), &read))
+}
+
 impl Job<'_> {
     /// Writes the surface as a TIN in parts, once all tasks are done: a folder with a file for each
     /// task, and the index `target`, which appears last.
@@ -157,7 +164,7 @@ impl Job<'_> {
         let superseded = parts_of(path, name);
         let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let mut builder = tempfile::Builder::new();
-        let prefix = format!(".{name}.");
+        let prefix = target.temporary_prefix();
         builder.prefix(&prefix).suffix(UNFINISHED);
         // Others may read the parts: only the umask limits who.
         #[cfg(unix)]
@@ -182,7 +189,7 @@ impl Job<'_> {
             folder: (!is_there).then_some(folder),
             index,
         };
-        let mut output = Output::create(path)?;
+        let mut output = target.create()?;
         output.write_all(written.index.to_text().as_bytes()).map_err(|e| Error::from(e).in_file(path))?;
         target.put(output)?;
         Ok(written)
@@ -265,7 +272,7 @@ impl Job<'_> {
                 None => return Err(file_of_task.damaged()),
             }
         }
-        let mut tin = CompactTin::open_with_faces(bytes, self.task_path(task), &faces)?;
+        let mut tin = CompactTin::open_with_faces(bytes, &self.task_file(task).path, &faces)?;
         tin.set_crs(report.crs.clone());
         let facts = tin.facts().clone();
         if facts.triangles == 0 {
@@ -306,7 +313,7 @@ impl Job<'_> {
         facts.vertices += shared.len();
         at_rim.values().for_each(|kind| facts.edges.add_edges(*kind, 1));
         rows.sort_unstable_by(|a: &TinIndexPart, b| a.file.cmp(&b.file));
-        TinIndex { crs: report.crs.clone(), facts, area: self.area(), folder: String::new(), parts: rows }
+        TinIndex { crs: report.crs.clone(), facts, area: report.area, folder: String::new(), parts: rows }
     }
 }
 

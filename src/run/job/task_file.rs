@@ -1,8 +1,10 @@
-//! The file that a task writes: named sections, facts, and a checksum over all of it.
+//! The file that a task writes: named sections, facts, and checksums of all of it.
 //!
 //! A task is done when its file has its name. It gets it by a rename, once it is complete, so a
-//! task that is killed leaves nothing that counts. The length and the checksum at the end reveal a
-//! file that was damaged later.
+//! task that is killed leaves nothing that counts. The end names the job and the task, so that no
+//! file counts in the place of another, and has the checksums of what the task was made from.
+//! Whatever is read in one go has a checksum of its own: bytes are compared with it as they are
+//! read, and no byte is read for that alone.
 
 use std::fs::File;
 use std::io::{BufWriter, Read, Seek, SeekFrom, Write};
@@ -14,39 +16,76 @@ use tempfile::NamedTempFile;
 
 use super::planned_file::FileState;
 use crate::error::{Error, Result};
-use crate::run::checksum::Summed;
+use crate::run::checksum::{Summed, checksum};
 
 /// The last bytes of a complete file.
-const MAGIC: &[u8; 8] = b"BRKTASK1";
+const MAGIC: &[u8; 8] = b"BRKTASK2";
 
 /// The end of names of files that are not complete.
 pub(super) const UNFINISHED: &str = ".unfinished";
 
+/// The begin of the names of such files.
+const UNFINISHED_BEGIN: &str = ".breakline-";
+
 /// The fact that has the state of the file of points that a task has read.
 pub(super) const INPUT: &str = "input";
 
-/// The bytes after the facts: their length, the checksum, the magic.
+/// The bytes after the facts: their length, the checksum of both, the magic.
 const END: u64 = 8 + 4 + 8;
 
 /// Creates a file that is not complete, under a name of its own.
 pub(super) fn unfinished_in(folder: &Path) -> std::io::Result<NamedTempFile> {
     let mut builder = tempfile::Builder::new();
-    builder.prefix(".").suffix(UNFINISHED);
+    builder.prefix(UNFINISHED_BEGIN).suffix(UNFINISHED);
     // Others may go on with the job: only the umask limits who may read the file.
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     builder.tempfile_in(folder)
 }
 
+/// Returns true if a file has a name that [`unfinished_in`] gives.
+pub(super) fn is_unfinished(path: &Path) -> bool {
+    let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
+    name.starts_with(UNFINISHED_BEGIN) && name.ends_with(UNFINISHED)
+}
+
+/// Whose file it is.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct TaskName {
+    pub(super) path: PathBuf,
+    /// The checksum of the plan.
+    pub(super) job: u32,
+    /// The number of the task.
+    pub(super) task: usize,
+}
+
+/// Bytes that are read in one go.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Block {
+    /// The position of the first one.
+    pub(super) at: u64,
+    pub(super) length: u64,
+    /// Their CRC-32.
+    pub(super) sum: u32,
+}
+
+impl Block {
+    fn end(&self) -> Option<u64> {
+        self.at.checked_add(self.length)
+    }
+}
+
 /// Writes the file of a task.
 pub(super) struct TaskWriter {
     out: Summed<BufWriter<NamedTempFile>>,
-    /// Names, with the positions of their first bytes.
-    sections: Vec<(&'static str, u64)>,
-    target: PathBuf,
+    /// The sections that are complete.
+    sections: Vec<(&'static str, Block)>,
+    /// The section that is being written, and where it begins.
+    open: Option<(&'static str, u64)>,
+    name: TaskName,
 }
 
-/// The checksum covers what is written.
+/// The checksums cover what is written.
 impl Write for TaskWriter {
     fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
         self.out.write(bytes)
@@ -58,45 +97,56 @@ impl Write for TaskWriter {
 }
 
 impl TaskWriter {
-    pub(super) fn create(target: &Path) -> Result<Self> {
-        let folder = target.parent().unwrap_or(Path::new("."));
-        let file = unfinished_in(folder).map_err(|e| Error::from(e).in_file(target))?;
+    pub(super) fn create(name: TaskName) -> Result<Self> {
+        let folder = name.path.parent().unwrap_or(Path::new("."));
+        let file = unfinished_in(folder).map_err(|e| Error::from(e).in_file(&name.path))?;
         let out = Summed::new(BufWriter::with_capacity(1 << 18, file));
-        Ok(TaskWriter { out, sections: Vec::new(), target: target.to_path_buf() })
+        Ok(TaskWriter { out, sections: Vec::new(), open: None, name })
     }
 
     /// Begins a section; it ends where the next one begins.
     pub(super) fn begin(&mut self, name: &'static str) {
-        self.sections.push((name, self.position()));
+        self.end_section();
+        self.open = Some((name, self.out.length()));
     }
 
-    /// Returns the position of the next byte.
-    pub(super) fn position(&self) -> u64 {
-        self.out.length()
+    fn end_section(&mut self) {
+        let (end, sum) = (self.out.length(), self.out.take_sum());
+        if let Some((name, at)) = self.open.take() {
+            self.sections.push((name, Block { at, length: end - at, sum }));
+        }
     }
 
     pub(super) fn put(&mut self, bytes: &[u8]) -> Result<()> {
         self.put_with(|out| out.write_all(bytes))
     }
 
-    /// Writes what a function writes.
-    pub(super) fn put_with(&mut self, write: impl FnOnce(&mut Self) -> std::io::Result<()>) -> Result<()> {
-        write(self).map_err(|e| Error::from(e).in_file(&self.target))
+    /// Writes bytes that will be read in one go, and not with the rest of the section.
+    pub(super) fn put_block(&mut self, bytes: &[u8]) -> Result<Block> {
+        let block = Block { at: self.out.length(), length: bytes.len() as u64, sum: checksum(bytes) };
+        self.put(bytes).map(|()| block)
     }
 
-    /// Writes the facts and gives the file its name.
-    pub(super) fn finish(mut self, facts: Map<String, Value>) -> Result<()> {
-        let end = self.position();
-        let ends = self.sections.iter().skip(1).map(|(_, at)| *at).chain([end]);
-        let sections: Vec<Value> =
-            self.sections.iter().zip(ends).map(|((name, from), to)| json!([name, from, to])).collect();
-        let facts = json!({ "sections": sections, "facts": facts }).to_string();
-        self.put(facts.as_bytes())?;
-        self.put(&(facts.len() as u64).to_le_bytes())?;
-        let checksum = self.out.sum();
-        self.put(&checksum.to_le_bytes())?;
+    /// Writes what a function writes.
+    pub(super) fn put_with(&mut self, write: impl FnOnce(&mut Self) -> std::io::Result<()>) -> Result<()> {
+        write(self).map_err(|e| Error::from(e).in_file(&self.name.path))
+    }
+
+    /// Writes the facts and gives the file its name. `sources` is the checksum of what the task was
+    /// made from.
+    pub(super) fn finish(mut self, facts: Map<String, Value>, sources: u32) -> Result<()> {
+        self.end_section();
+        let section = |(name, block): &(&str, Block)| json!([name, block.at, block.length, block.sum]);
+        let sections: Vec<Value> = self.sections.iter().map(section).collect();
+        let TaskName { job, task, .. } = self.name;
+        let end = json!({ "job": job, "task": task, "sources": sources, "sections": sections, "facts": facts });
+        let end = end.to_string();
+        self.put(end.as_bytes())?;
+        self.put(&(end.len() as u64).to_le_bytes())?;
+        let sum = self.out.take_sum();
+        self.put(&sum.to_le_bytes())?;
         self.put(MAGIC)?;
-        let target = self.target;
+        let target = self.name.path;
         let named = |e: std::io::Error| Error::from(e).in_file(&target);
         let file = self.out.into_inner().into_inner().map_err(|e| named(e.into_error()))?;
         file.persist(&target).map(drop).map_err(|e| named(e.error))
@@ -108,7 +158,13 @@ impl TaskWriter {
 pub(super) struct TaskFile {
     file: File,
     path: PathBuf,
-    sections: Vec<(String, u64, u64)>,
+    sections: Vec<(String, Block)>,
+    /// The bytes before the end.
+    length: u64,
+    /// The checksum of the end, and so of all that it has checksums of.
+    pub(super) sum: u32,
+    /// The checksum of what the task was made from.
+    pub(super) sources: u32,
     /// What the task found out.
     pub(super) facts: Map<String, Value>,
 }
@@ -117,46 +173,65 @@ impl TaskFile {
     /// Opens a file; `None` if there is none.
     ///
     /// # Errors
-    /// If it is not complete.
-    pub(super) fn open(path: &Path) -> Result<Option<Self>> {
-        match File::open(path) {
-            Ok(file) => Self::read_end(file, path).map(Some).map_err(|e| e.in_file(path)),
+    /// If it is not complete, or the file of another job or task.
+    pub(super) fn open(name: &TaskName) -> Result<Option<Self>> {
+        match File::open(&name.path) {
+            Ok(file) => Self::read_end(file, name).map(Some).map_err(|e| e.in_file(&name.path)),
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
-            Err(error) => Err(Error::from(error).in_file(path)),
+            Err(error) => Err(Error::from(error).in_file(&name.path)),
         }
     }
 
     /// Opens the file of a task that is done.
     ///
     /// # Errors
-    /// If the file is missing or not complete.
-    pub(super) fn open_done(path: &Path) -> Result<Self> {
-        Self::open(path)?.ok_or_else(|| {
-            Error::format("the file of a task is missing").in_file(path).cure("run the job again with --resume")
+    /// If the file is missing, not complete, or that of another job or task.
+    pub(super) fn open_done(name: &TaskName) -> Result<Self> {
+        Self::open(name)?.ok_or_else(|| {
+            Error::format("the file of a task is missing").in_file(&name.path).cure("run the job again with --resume")
         })
     }
 
-    fn read_end(mut file: File, path: &Path) -> Result<Self> {
+    fn read_end(mut file: File, name: &TaskName) -> Result<Self> {
         let length = file.metadata()?.len();
         let mut end = [0; END as usize];
         let from = length.checked_sub(END).ok_or_else(damaged)?;
         read_at(&mut file, from, &mut end)?;
-        let facts_length = u64::from_le_bytes(std::array::from_fn(|i| end[i]));
-        let facts_from = from.checked_sub(facts_length).ok_or_else(damaged)?;
-        if &end[12..] != MAGIC || facts_length > 1 << 26 {
+        let text_length = u64::from_le_bytes(std::array::from_fn(|i| end[i]));
+        let stated = u32::from_le_bytes(std::array::from_fn(|i| end[8 + i]));
+        let text_from = from.checked_sub(text_length).ok_or_else(damaged)?;
+        if &end[12..] != MAGIC || text_length > 1 << 26 {
             return Err(damaged());
         }
-        let mut text = vec![0; facts_length as usize];
-        read_at(&mut file, facts_from, &mut text)?;
+        let mut text = vec![0; text_length as usize];
+        read_at(&mut file, text_from, &mut text)?;
+        let mut sum = Crc::new();
+        sum.update(&text);
+        sum.update(&end[..8]);
+        if sum.sum() != stated {
+            return Err(damaged());
+        }
         let mut value: Value = serde_json::from_slice(&text).map_err(|_| damaged())?;
+        let (Some(job), Some(task)) = (value["job"].as_u64(), value["task"].as_u64()) else { return Err(damaged()) };
+        if job != u64::from(name.job) {
+            return Err(Error::usage("this is the file of another job").cure(MAKE_AGAIN));
+        }
+        if task != name.task as u64 {
+            let message = format!("this is the file of task {task}, and not of task {}", name.task);
+            return Err(Error::usage(message).cure(MAKE_AGAIN));
+        }
+        let number = |value: &Value| u32::try_from(value.as_u64()?).ok();
         let section = |value: &Value| {
-            let (from, to) = (value[1].as_u64()?, value[2].as_u64()?);
-            (from <= to && to <= facts_from).then(|| Some((value[0].as_str()?.to_owned(), from, to)))?
+            let block = Block { at: value[1].as_u64()?, length: value[2].as_u64()?, sum: number(&value[3])? };
+            Some((value[0].as_str()?.to_owned(), block))
         };
         let sections: Option<Vec<_>> = value["sections"].as_array().and_then(|all| all.iter().map(section).collect());
+        let sources = number(&value["sources"]);
         let facts = value.get_mut("facts").map(Value::take);
-        let (Some(sections), Some(Value::Object(facts))) = (sections, facts) else { return Err(damaged()) };
-        Ok(TaskFile { file, path: path.to_path_buf(), sections, facts })
+        let (Some(sections), Some(sources), Some(Value::Object(facts))) = (sections, sources, facts) else {
+            return Err(damaged());
+        };
+        Ok(TaskFile { file, path: name.path.clone(), sections, length: text_from, sum: stated, sources, facts })
     }
 
     /// Returns the state of the file of points that the task has read; `None` if it reads none.
@@ -164,51 +239,54 @@ impl TaskFile {
         self.facts.get(INPUT).and_then(FileState::from_json)
     }
 
-    /// Returns an error if the checksum is not that of the bytes.
+    /// Returns an error unless all bytes are those that were written.
     pub(super) fn verify(&mut self) -> Result<()> {
-        self.checked().map_err(|e| e.in_file(&self.path))
-    }
-
-    fn checked(&mut self) -> Result<()> {
-        let length = self.file.metadata()?.len();
-        self.file.seek(SeekFrom::Start(0))?;
-        let mut checksum = Crc::new();
+        let mut end = 0;
         let mut buffer = vec![0; 1 << 18];
-        // All but the checksum itself and the magic.
-        let mut left = length.saturating_sub(END - 8);
-        while left > 0 {
-            let count = left.min(buffer.len() as u64) as usize;
-            self.file.read_exact(&mut buffer[..count])?;
-            checksum.update(&buffer[..count]);
-            left -= count as u64;
+        for (_, section) in &self.sections {
+            if section.at != end || section.end().is_none_or(|end| end > self.length) {
+                return Err(self.damaged());
+            }
+            end += section.length;
+            let mut sum = Crc::new();
+            let mut left = section.length;
+            while left > 0 {
+                let count = left.min(buffer.len() as u64) as usize;
+                let at = end - left;
+                read_at(&mut self.file, at, &mut buffer[..count]).map_err(|e| e.in_file(&self.path))?;
+                sum.update(&buffer[..count]);
+                left -= count as u64;
+            }
+            if sum.sum() != section.sum {
+                return Err(self.damaged());
+            }
         }
-        let mut stated = [0; 4];
-        self.file.read_exact(&mut stated)?;
-        if checksum.sum() == u32::from_le_bytes(stated) { Ok(()) } else { Err(damaged()) }
-    }
-
-    /// Returns the position and the length of a section; both 0 if there is none.
-    pub(super) fn range(&self, name: &str) -> (u64, u64) {
-        self.sections.iter().find(|(known, ..)| known == name).map_or((0, 0), |(_, from, to)| (*from, to - from))
+        if end == self.length { Ok(()) } else { Err(self.damaged()) }
     }
 
     /// Returns the bytes of a section; none if it does not exist.
+    ///
+    /// # Errors
+    /// If they cannot be read, or are not those that were written.
     pub(super) fn section(&mut self, name: &str) -> Result<Vec<u8>> {
-        let (from, length) = self.range(name);
-        let mut bytes = vec![0; length as usize];
-        self.read(from, &mut bytes)?;
+        let mut bytes = Vec::new();
+        if let Some(&(_, block)) = self.sections.iter().find(|(known, _)| known == name) {
+            self.read(block, &mut bytes)?;
+        }
         Ok(bytes)
     }
 
-    /// Reads bytes from a position on.
-    pub(super) fn read(&mut self, from: u64, bytes: &mut [u8]) -> Result<()> {
-        read_at(&mut self.file, from, bytes).map_err(|e| e.in_file(&self.path))
-    }
-
-    /// Returns a reader of the bytes from a position on.
-    pub(super) fn reader(&mut self, from: u64) -> Result<impl Read + '_> {
-        self.file.seek(SeekFrom::Start(from)).map_err(|e| Error::from(e).in_file(&self.path))?;
-        Ok(std::io::BufReader::new(&mut self.file))
+    /// Reads the bytes of a block, which replace those in `bytes`.
+    ///
+    /// # Errors
+    /// If they cannot be read, or are not those that were written.
+    pub(super) fn read(&mut self, block: Block, bytes: &mut Vec<u8>) -> Result<()> {
+        if block.end().is_none_or(|end| end > self.length) {
+            return Err(self.damaged());
+        }
+        bytes.resize(block.length as usize, 0);
+        read_at(&mut self.file, block.at, bytes).map_err(|e| e.in_file(&self.path))?;
+        if checksum(bytes) == block.sum { Ok(()) } else { Err(self.damaged()) }
     }
 
     /// Returns a number among the facts; 0 if there is none.
@@ -216,7 +294,7 @@ impl TaskFile {
         self.facts.get(name).and_then(Value::as_u64).unwrap_or(0)
     }
 
-    /// Returns an error that says that a section contains something else than was written.
+    /// Returns an error that says that the file contains something else than was written.
     #[cold]
     pub(super) fn damaged(&self) -> Error {
         damaged().in_file(&self.path)
@@ -228,57 +306,112 @@ fn read_at(file: &mut File, from: u64, bytes: &mut [u8]) -> Result<()> {
     Ok(file.read_exact(bytes)?)
 }
 
+/// What makes a file again.
+const MAKE_AGAIN: &str = "run the job again with --resume, or do this task again (`breakline job run`)";
+
 #[cold]
 fn damaged() -> Error {
-    Error::format("the file of a task is damaged").cure("remove it, and run the job again with --resume")
+    Error::format("the file of a task is damaged")
+        .cure("run the job again with --resume; or `breakline job status --verify` removes it, so that the task is done again")
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn written(path: &Path) {
-        let mut writer = TaskWriter::create(path).unwrap();
+    fn name(folder: &Path) -> TaskName {
+        TaskName { path: folder.join("1.task"), job: 0xfeed_beef, task: 1 }
+    }
+
+    /// A file with two blocks in its first section.
+    fn written(name: &TaskName) -> [Block; 2] {
+        let mut writer = TaskWriter::create(name.clone()).unwrap();
         writer.begin("one");
-        writer.put(b"abc").unwrap();
+        let blocks = [b"ab", b"cd"].map(|bytes| writer.put_block(bytes).unwrap());
         writer.begin("none");
         writer.begin("two");
-        writer.put(b"defgh").unwrap();
+        writer.put(b"efgh").unwrap();
         let facts = Map::from_iter([("points".to_owned(), json!(7))]);
-        writer.finish(facts).unwrap();
+        writer.finish(facts, 5).unwrap();
+        blocks
     }
 
     #[test]
     fn sections_and_facts_come_back() {
         let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("1.task");
-        assert!(TaskFile::open(&path).unwrap().is_none());
-        drop(TaskWriter::create(&path).unwrap());
+        let name = name(folder.path());
+        assert!(TaskFile::open(&name).unwrap().is_none());
+        drop(TaskWriter::create(name.clone()).unwrap());
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
-        written(&path);
-        let mut file = TaskFile::open(&path).unwrap().unwrap();
+        let blocks = written(&name);
+        let mut file = TaskFile::open(&name).unwrap().unwrap();
         file.verify().unwrap();
-        assert_eq!(file.section("one").unwrap(), b"abc");
-        assert_eq!(file.section("two").unwrap(), b"defgh");
+        assert_eq!(file.section("one").unwrap(), b"abcd");
+        assert_eq!(file.section("two").unwrap(), b"efgh");
         assert!(file.section("none").unwrap().is_empty() && file.section("three").unwrap().is_empty());
-        assert_eq!((file.count("points"), file.count("lines")), (7, 0));
+        assert_eq!((file.count("points"), file.count("lines"), file.sources), (7, 0, 5));
+        let mut bytes = b"what was there before".to_vec();
+        file.read(blocks[1], &mut bytes).unwrap();
+        assert_eq!(bytes, b"cd");
     }
 
-    /// Every byte that changes and every end that is missing is noticed.
+    /// Reads all of a file, as tasks do.
+    fn read(name: &TaskName, blocks: [Block; 2]) -> Result<()> {
+        let mut file = TaskFile::open_done(name)?;
+        blocks.iter().try_for_each(|block| file.read(*block, &mut Vec::new()))?;
+        file.section("two").map(drop)
+    }
+
+    /// Every byte that changes and every end that is missing is noticed, by whoever reads it.
     #[test]
     fn damage_is_an_error() {
         let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("1.task");
-        written(&path);
-        let whole = std::fs::read(&path).unwrap();
+        let name = name(folder.path());
+        let blocks = written(&name);
+        read(&name, blocks).unwrap();
+        let whole = std::fs::read(&name.path).unwrap();
+        let is_damaged = |bytes: &[u8]| {
+            std::fs::write(&name.path, bytes).unwrap();
+            let verified = TaskFile::open_done(&name).and_then(|mut file| file.verify());
+            [verified, read(&name, blocks)].iter().all(|checked| {
+                checked
+                    .as_ref()
+                    .is_err_and(|error| error.to_string().ends_with("1.task: the file of a task is damaged"))
+            })
+        };
         for i in 0..whole.len() {
             let mut bytes = whole.clone();
             bytes[i] ^= 0x11;
-            std::fs::write(&path, &bytes).unwrap();
-            let checked = TaskFile::open(&path).and_then(|file| file.unwrap().verify());
-            assert!(checked.is_err(), "byte {i}");
-            std::fs::write(&path, &whole[..i]).unwrap();
-            assert!(TaskFile::open(&path).and_then(|file| file.unwrap().verify()).is_err(), "length {i}");
+            assert!(is_damaged(&bytes), "byte {i}");
+            assert!(is_damaged(&whole[..i]), "length {i}");
+        }
+        // What was written is where it was, but there is more.
+        std::fs::write(&name.path, [&whole[..], &whole[..]].concat()).unwrap();
+        assert!(TaskFile::open_done(&name).unwrap().verify().is_err());
+    }
+
+    #[test]
+    fn a_file_counts_for_its_own_job_and_task_only() {
+        let folder = tempfile::tempdir().unwrap();
+        let name = name(folder.path());
+        written(&name);
+        let said = |name: TaskName| TaskFile::open(&name).unwrap_err().to_string();
+        let of_other_job = said(TaskName { job: 0xfeed_beee, ..name.clone() });
+        assert!(of_other_job.ends_with("1.task: this is the file of another job"), "{of_other_job}");
+        let of_other_task = said(TaskName { task: 2, ..name.clone() });
+        assert!(of_other_task.ends_with("this is the file of task 1, and not of task 2"), "{of_other_task}");
+    }
+
+    #[test]
+    fn a_block_beyond_the_file_is_an_error() {
+        let folder = tempfile::tempdir().unwrap();
+        let name = name(folder.path());
+        let [block, _] = written(&name);
+        let mut file = TaskFile::open_done(&name).unwrap();
+        for block in
+            [Block { length: u64::MAX, ..block }, Block { at: u64::MAX, ..block }, Block { at: 1 << 40, ..block }]
+        {
+            assert!(file.read(block, &mut Vec::new()).is_err());
         }
     }
 }

@@ -2,12 +2,13 @@
 
 use serde_json::{Map, Value, json};
 
-use super::bytes::{self, Reader, put_u32, put_u64};
+use super::bytes::{self, Reader, put_block, put_u32};
+use super::done::Sources;
 use super::holes::Holes;
 use super::planned_file::{require_state, state_of};
 use super::raster::Drawing;
 use super::surface::PartFaces;
-use super::task_file::{INPUT, TaskFile, TaskWriter};
+use super::task_file::{INPUT, TaskWriter};
 use super::{BadFiles, Job, Task, TiledProduct};
 use super::{contours, lines};
 use crate::data::{Bounds, PointBatch};
@@ -27,25 +28,23 @@ const DIVIDED_AT_ONCE: u64 = 1 << 20;
 /// written.
 const BYTES_A_DIVIDED_POINT: u64 = 120;
 
-/// Bytes of an entry in the table of a divided file.
-const ENTRY: usize = 4 + 8 + 8;
-
 impl Job<'_> {
     /// Does a task and writes its file.
     pub(super) fn do_task(&self, number: usize, context: &Context) -> Result<()> {
-        let mut writer = TaskWriter::create(&self.task_path(number))?;
+        let mut writer = TaskWriter::create(self.task_file(number))?;
+        let sources = Sources::new(self);
         let facts = match self.task(number) {
             Task::Divide(file) => self.divide(file, &mut writer, context)?,
-            Task::Lines => self.arrange(&mut writer, context)?,
+            Task::Lines => self.arrange(&sources, &mut writer, context)?,
             Task::Triangulate(step) => match &self.steps[step].work {
-                Work::Leaf(tile) => self.leaf(step, *tile, &mut writer, context)?,
-                Work::Merge(parts) => self.merge(step, parts, &mut writer, context)?,
+                Work::Leaf(tile) => self.leaf(step, *tile, &sources, &mut writer, context)?,
+                Work::Merge(parts) => self.merge(step, parts, &sources, &mut writer, context)?,
             },
-            Task::Rim => self.rim(&mut writer, context)?,
-            Task::Cut => self.cut(&mut writer, context)?,
+            Task::Rim => self.rim(&sources, &mut writer, context)?,
+            Task::Cut => self.cut(&sources, &mut writer, context)?,
         };
         context.check()?;
-        writer.finish(facts)
+        writer.finish(facts, sources.sum(self.needs(number))?)
     }
 
     /// Divides the points of a file among the tiles.
@@ -66,12 +65,11 @@ impl Job<'_> {
             // By tiles, and within each in the order of the file.
             tiles.sort_unstable();
             for of_tile in tiles.chunk_by(|a, b| a.0 == b.0) {
-                put_u32(&mut table, of_tile[0].0);
-                put_u64(&mut table, writer.position());
-                put_u64(&mut table, of_tile.len() as u64);
                 own.clear();
                 own.extend(of_tile.iter().map(|(_, i)| points[*i as usize]));
-                writer.put(&bytes::of_points(&own))?;
+                let block = writer.put_block(&bytes::of_points(&own))?;
+                put_u32(&mut table, of_tile[0].0);
+                put_block(&mut table, block);
             }
             points.clear();
             Ok(())
@@ -103,19 +101,16 @@ impl Job<'_> {
     }
 
     /// Arranges the lines, with the points next to them from all files.
-    fn arrange(&self, writer: &mut TaskWriter, context: &Context) -> Result<Map<String, Value>> {
+    fn arrange(&self, sources: &Sources, writer: &mut TaskWriter, context: &Context) -> Result<Map<String, Value>> {
         let journal = Journal::new(context);
         let crs = self.plan.crs.as_ref();
         let Some(lines) = &self.known(context)?.lines else { return Ok(Map::new()) };
         let mut near = Vec::new();
         let mut extent = Bounds::default();
         for (number, file) in self.plan.files.iter().enumerate() {
-            let mut divided = self.open_task(number)?;
+            let mut divided = sources.open(number)?;
             let bytes = divided.section("near")?;
-            let mut reader = Reader::new(&bytes);
-            while let Some(point) = reader.point() {
-                near.push(point);
-            }
+            bytes::add_points(&bytes, &mut near).ok_or_else(|| divided.damaged())?;
             [file.min, file.max].into_iter().for_each(|[x, y]| extent.add([x, y, 0.0]));
         }
         let tin = lines.build(near, &extent, crs, &journal)?;
@@ -180,15 +175,22 @@ impl Job<'_> {
     }
 
     /// Triangulates the points of a tile.
-    fn leaf(&self, step: usize, tile: u32, writer: &mut TaskWriter, context: &Context) -> Result<Map<String, Value>> {
+    fn leaf(
+        &self,
+        step: usize,
+        tile: u32,
+        sources: &Sources,
+        writer: &mut TaskWriter,
+        context: &Context,
+    ) -> Result<Map<String, Value>> {
         let mut holes = Holes::default();
         let (points, mut facts) = if self.plan.divides {
             for number in self.files_of(step) {
-                if self.open_task(number)?.facts.contains_key("skipped") {
+                if sources.open(number)?.facts.contains_key("skipped") {
                     holes.add_file(self, number);
                 }
             }
-            (self.divided_points(step, tile)?, Map::new())
+            (self.divided_points(step, tile, sources)?, Map::new())
         } else {
             let file = tile as usize;
             let mut all: Vec<[f64; 3]> = Vec::new();
@@ -208,7 +210,7 @@ impl Job<'_> {
         facts.insert("duplicates".to_owned(), json!(count - points.len()));
         let mut constraints = Vec::new();
         if let Some(task) = self.lines_task() {
-            let lines = lines::read(&mut self.open_task(task)?, tile)?;
+            let lines = lines::read(&mut sources.open(task)?, tile)?;
             points = lines.join(points);
             constraints = lines.constraints;
         }
@@ -225,28 +227,21 @@ impl Job<'_> {
     }
 
     /// Returns the points of a tile from the divided files, in the order of the files.
-    fn divided_points(&self, step: usize, tile: u32) -> Result<Vec<[f64; 3]>> {
+    fn divided_points(&self, step: usize, tile: u32, sources: &Sources) -> Result<Vec<[f64; 3]>> {
         let mut all = Vec::new();
+        let mut bytes = Vec::new();
         for number in self.files_of(step) {
-            let mut divided = self.open_task(number)?;
+            let mut divided = sources.open(number)?;
             let table = divided.section("table")?;
-            let (from, length) = divided.range("points");
-            for entry in table.chunks(ENTRY) {
-                let mut reader = Reader::new(entry);
-                let (Some(of_tile), Some(at), Some(count)) = (reader.u32(), reader.u64(), reader.u64()) else {
+            let mut entries = Reader::new(&table);
+            while !entries.is_empty() {
+                let (Some(of_tile), Some(block)) = (entries.u32(), entries.block()) else {
                     return Err(divided.damaged());
                 };
-                if of_tile != tile {
-                    continue;
+                if of_tile == tile {
+                    divided.read(block, &mut bytes)?;
+                    bytes::add_points(&bytes, &mut all).ok_or_else(|| divided.damaged())?;
                 }
-                let end = count.checked_mul(24).and_then(|bytes| at.checked_add(bytes));
-                if at < from || end.is_none_or(|end| end > from + length) {
-                    return Err(divided.damaged());
-                }
-                let mut bytes = vec![0; count as usize * 24];
-                divided.read(at, &mut bytes)?;
-                let mut reader = Reader::new(&bytes);
-                all.extend((0..count).filter_map(|_| reader.point()));
             }
         }
         Ok(all)
@@ -256,13 +251,14 @@ impl Job<'_> {
         &self,
         step: usize,
         parts: &[usize],
+        sources: &Sources,
         writer: &mut TaskWriter,
         context: &Context,
     ) -> Result<Map<String, Value>> {
         let mut residuals = Vec::new();
         let mut holes = Holes::default();
         for &part in parts {
-            let mut file = self.open_task(self.task_of_step(part))?;
+            let mut file = sources.open(self.task_of_step(part))?;
             let bytes = file.section("residual")?;
             residuals.push(bytes::to_residual(&bytes).ok_or_else(|| file.damaged())?);
             holes.add_known(&file);
@@ -320,10 +316,10 @@ impl Job<'_> {
     }
 
     /// Decides which of the triangles that wait are removed at the rim, and draws the others.
-    fn rim(&self, writer: &mut TaskWriter, context: &Context) -> Result<Map<String, Value>> {
+    fn rim(&self, sources: &Sources, writer: &mut TaskWriter, context: &Context) -> Result<Map<String, Value>> {
         let mut rim = Rim::default();
         for step in 0..self.steps.len() {
-            let mut file = self.open_task(self.task_of_step(step))?;
+            let mut file = sources.open(self.task_of_step(step))?;
             let bytes = file.section("gates")?;
             let groups = file.count("groups") as u32;
             let gates = bytes::to_gates(&bytes).filter(|gates| gates.iter().all(|gate| gate.group < groups));
@@ -333,7 +329,7 @@ impl Job<'_> {
         let mut removed = 0_u64;
         let mut kept = Kept::new(self, writer, self.clip(context)?)?;
         for (step, is_removed) in rim.removed().into_iter().enumerate() {
-            let mut file = self.open_task(self.task_of_step(step))?;
+            let mut file = sources.open(self.task_of_step(step))?;
             for bytes in file.section("waiting")?.chunks(bytes::WAITING_BYTES) {
                 let waiting = bytes::to_waiting(bytes);
                 let (triangle, group) = waiting.ok_or_else(|| file.damaged())?;
@@ -359,11 +355,11 @@ impl Job<'_> {
     }
 
     /// Cuts the triangles of all tasks that clip lines come near.
-    fn cut(&self, writer: &mut TaskWriter, context: &Context) -> Result<Map<String, Value>> {
+    fn cut(&self, sources: &Sources, writer: &mut TaskWriter, context: &Context) -> Result<Map<String, Value>> {
         let mut triangles = Vec::new();
         let mut reach = [0.0_f64; 2];
         for task in self.first_step()..self.after_steps() + usize::from(self.rim_task().is_some()) {
-            let mut file = self.open_task(task)?;
+            let mut file = sources.open(task)?;
             for bytes in file.section(NEAR_CLIP)?.chunks(bytes::WAITING_BYTES) {
                 let (triangle, is_inside) = bytes::to_waiting(bytes).ok_or_else(|| file.damaged())?;
                 triangles.push((triangle, is_inside == 1));
@@ -384,11 +380,6 @@ impl Job<'_> {
         }
         kept.finish(part, writer, &mut facts)?;
         Ok(facts)
-    }
-
-    /// Opens the file of a task that is done.
-    pub(super) fn open_task(&self, number: usize) -> Result<TaskFile> {
-        TaskFile::open_done(&self.task_path(number))
     }
 }
 
@@ -515,8 +506,7 @@ impl<'a> Kept<'a> {
             Drawn::Faces(faces) => faces.finish(part, writer)?,
             Drawn::Contours(collector) => {
                 let parts = collector.finish()?;
-                writer.begin(contours::SECTION);
-                writer.put_with(|out| parts.write(out))?;
+                contours::write(&parts, writer)?;
                 let edges: usize = parts.levels().iter().map(LevelParts::edge_count).sum();
                 facts.insert("edges".to_owned(), json!(edges));
             }

@@ -41,7 +41,8 @@ pub(in crate::cli) enum JobAction {
         /// Folder of the job
         #[arg(value_name = "JOB")]
         job: PathBuf,
-        /// Number of the task, from 0; the last one writes the output
+        /// Number of the task, from 0; the last one writes the output. The exit code is 4 while
+        /// tasks that it needs are not done
         #[arg(long, value_name = "N")]
         task: Option<usize>,
     },
@@ -50,14 +51,15 @@ pub(in crate::cli) enum JobAction {
         /// Folder of the job
         #[arg(value_name = "JOB")]
         job: PathBuf,
-        /// Print a JSON object, with what each task needs
+        /// Print a JSON object, with what each task needs, and its stage: tasks of one stage need
+        /// only those of earlier ones
         #[arg(long)]
         json: bool,
         /// Read the files of the tasks, and remove those that are damaged
         #[arg(long)]
         verify: bool,
     },
-    /// Remove the files of the tasks
+    /// Remove the files that the job has written, except the output
     Clean {
         /// Folder of the job
         #[arg(value_name = "JOB")]

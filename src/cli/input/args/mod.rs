@@ -15,6 +15,7 @@ use std::num::NonZeroUsize;
 
 use clap::{Args, Parser, Subcommand};
 
+use crate::cli::Exit;
 use crate::cli::report::console::Level;
 use crate::io::formats;
 
@@ -35,8 +36,6 @@ pub(in crate::cli) use verbs::{
 /// Reads points (LAS, LAZ, COPC, text, shapefiles), builds a TIN that follows every breakline, and
 /// writes meshes, rasters and contours. Lengths are in the units of the coordinate system and are
 /// printed with their unit. Data goes to files (`info`: to stdout), messages to stderr.
-///
-/// Exit codes: 0 done, 1 failed, 2 wrong usage.
 #[derive(Debug, Parser)]
 #[command(name = "breakline", version, max_term_width = 100, after_long_help = examples())]
 pub(in crate::cli) struct Cli {
@@ -57,9 +56,10 @@ Examples:
 
 `breakline VERB --help` lists the options of a verb, with defaults and an example.";
 
-/// Returns the end of the long help: the table of formats, then examples.
+/// Returns the end of the long help: the tables of formats and of exit codes, then examples.
 fn examples() -> String {
-    formats::help() + EXAMPLES
+    let exits: String = Exit::ALL.iter().map(|(exit, meaning)| format!("  {}  {meaning}\n", *exit as u8)).collect();
+    format!("{}\nExit codes:\n{exits}{EXAMPLES}", formats::help())
 }
 
 /// How much is printed, and how many threads are used.

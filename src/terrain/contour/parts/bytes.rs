@@ -10,7 +10,7 @@
 
 use super::{ContourParts, LevelParts, LevelSide, LineEnd, NO_HEIGHTS, OpenLine};
 use crate::error::{Error, Result};
-use std::io::{Read, Write};
+use std::io::Write;
 use std::ops::Range;
 
 const MAGIC: [u8; 8] = *b"blparts1";
@@ -21,48 +21,23 @@ const HEAD: usize = 8 + 16 + 8;
 /// The bytes of a level in the table.
 const ENTRY: usize = 16;
 
-/// The table of parts in bytes or in a file: the levels that there are, and where their parts are.
+/// The levels that there are, and where their parts are.
 #[derive(Debug, Clone, PartialEq)]
-pub struct PartsTable {
+struct PartsTable {
     heights: [f64; 2],
     /// Each level with the range of its bytes, ascending.
     levels: Vec<(f64, Range<u64>)>,
 }
 
 impl PartsTable {
-    /// Reads the table of parts that fill `length` bytes of a source, from their beginning.
-    ///
-    /// # Errors
-    /// If the source cannot be read, or the bytes are not those that [`ContourParts::write`] wrote.
-    pub fn read(source: &mut impl Read, length: u64) -> Result<Self> {
-        let mut head = [0; HEAD];
-        let mut read = |bytes: &mut [u8]| source.read_exact(bytes).map_err(|_| damaged());
-        read(&mut head)?;
+    /// Reads the table of parts; `None` if the bytes are not those that [`ContourParts::write`]
+    /// wrote.
+    fn read(bytes: &[u8]) -> Option<Self> {
+        let (head, rest) = bytes.split_at_checked(HEAD)?;
         let count = u64::from_le_bytes(std::array::from_fn(|i| head[HEAD - 8 + i]));
-        if count > length / ENTRY as u64 {
-            return Err(damaged());
-        }
-        let mut table = vec![0; count as usize * ENTRY];
-        read(&mut table)?;
-        Reader(&head).table(&table, length).ok_or_else(damaged)
-    }
-
-    /// Returns the lowest and the highest height of the triangles; without triangles, infinity and
-    /// its negative.
-    pub fn heights(&self) -> [f64; 2] {
-        self.heights
-    }
-
-    /// Returns the levels that have parts, ascending.
-    pub fn levels(&self) -> impl Iterator<Item = f64> {
-        self.levels.iter().map(|(level, _)| *level)
-    }
-
-    /// Returns where the bytes of a level are, from the beginning of the parts; `None` if it has no
-    /// parts. [`LevelParts::read`] reads them.
-    pub fn range(&self, level: f64) -> Option<Range<u64>> {
-        let at = self.levels.binary_search_by(|(own, _)| own.total_cmp(&level)).ok()?;
-        Some(self.levels[at].1.clone())
+        let size = usize::try_from(count).ok()?.checked_mul(ENTRY)?;
+        let (table, _) = rest.split_at_checked(size)?;
+        Reader(head).table(table, bytes.len() as u64)
     }
 }
 
@@ -78,7 +53,7 @@ impl<'a> StoredParts<'a> {
     /// # Errors
     /// If the bytes are not those that [`ContourParts::write`] wrote.
     pub fn new(bytes: &'a [u8]) -> Result<Self> {
-        Ok(StoredParts { table: PartsTable::read(&mut &bytes[..], bytes.len() as u64)?, bytes })
+        Ok(StoredParts { table: PartsTable::read(bytes).ok_or_else(damaged)?, bytes })
     }
 
     /// Returns the lowest and the highest height of the triangles; without triangles, infinity and
@@ -89,7 +64,7 @@ impl<'a> StoredParts<'a> {
 
     /// Returns the levels that have parts, ascending.
     pub fn levels(&self) -> impl Iterator<Item = f64> {
-        self.table.levels()
+        self.table.levels.iter().map(|(level, _)| *level)
     }
 
     /// Reads the parts of a level; `None` if there are none.
@@ -97,8 +72,10 @@ impl<'a> StoredParts<'a> {
     /// # Errors
     /// If the bytes are damaged.
     pub fn level(&self, level: f64) -> Result<Option<LevelParts>> {
-        let range = self.table.range(level);
-        range.map(|range| LevelParts::read(level, &self.bytes[range.start as usize..range.end as usize])).transpose()
+        let levels = &self.table.levels;
+        let Ok(at) = levels.binary_search_by(|(own, _)| own.total_cmp(&level)) else { return Ok(None) };
+        let range = &levels[at].1;
+        LevelParts::read(level, &self.bytes[range.start as usize..range.end as usize]).map(Some)
     }
 }
 
@@ -134,7 +111,7 @@ impl ContourParts {
 }
 
 impl LevelParts {
-    /// Reads the parts of a level from the [range](PartsTable::range) of their bytes.
+    /// Reads the parts of a level from their bytes.
     ///
     /// # Errors
     /// If the bytes are damaged.
@@ -142,7 +119,11 @@ impl LevelParts {
         Reader(bytes).level_parts(level).ok_or_else(|| damaged().at(format!("level {level}")))
     }
 
-    fn write(&self, out: &mut impl Write) -> std::io::Result<()> {
+    /// Writes the parts of the level, which [`read`](Self::read) reads; `out` should have a buffer.
+    ///
+    /// # Errors
+    /// Those of `out`.
+    pub fn write(&self, out: &mut impl Write) -> std::io::Result<()> {
         out.write_all(&[u8::from(self.touches_vertices)])?;
         write_count(out, self.closed.len())?;
         for points in &self.closed {

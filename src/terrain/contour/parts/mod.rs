@@ -75,7 +75,7 @@ mod patch;
 #[cfg(test)]
 mod tests;
 
-pub use bytes::{PartsTable, StoredParts};
+pub use bytes::StoredParts;
 pub use collect::ContourCollector;
 pub use join::join_level;
 

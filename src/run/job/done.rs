@@ -1,0 +1,229 @@
+//! Which tasks are done: by their own files, and by those that they were made from.
+
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+
+use flate2::Crc;
+
+use super::folder::{remove_unfinished, tasks_in};
+use super::lock::JobLock;
+use super::task_file::TaskFile;
+use super::{FileState, Job};
+use crate::error::{Error, Kind, Result};
+use crate::run::context::Context;
+
+/// The files of other tasks, for a task that reads them.
+pub(super) struct Sources<'j, 'a> {
+    job: &'j Job<'a>,
+    /// The checksums of those that were opened, by the numbers of their tasks.
+    sums: RefCell<BTreeMap<usize, u32>>,
+}
+
+impl<'j, 'a> Sources<'j, 'a> {
+    pub(super) fn new(job: &'j Job<'a>) -> Self {
+        Sources { job, sums: RefCell::default() }
+    }
+
+    /// Opens the file of a task that is done.
+    ///
+    /// # Errors
+    /// If it is missing, damaged, or that of another job or task, or if it has changed since it was
+    /// opened before.
+    pub(super) fn open(&self, task: usize) -> Result<TaskFile> {
+        let file = self.job.open_task(task)?;
+        match self.sums.borrow_mut().insert(task, file.sum) {
+            Some(before) if before != file.sum => {
+                Err(Error::format("the file of a task was made again while another one read it")
+                    .in_file(self.job.task_file(task).path)
+                    .cure("run the job again with --resume"))
+            }
+            _ => Ok(file),
+        }
+    }
+
+    /// Returns the checksum of what a task was made from that needs these tasks.
+    pub(super) fn sum(&self, needed: Vec<usize>) -> Result<u32> {
+        for task in needed {
+            if !self.sums.borrow().contains_key(&task) {
+                self.open(task)?;
+            }
+        }
+        Ok(sum_of(self.sums.borrow().iter().map(|(task, sum)| (*task, *sum))))
+    }
+}
+
+/// Returns the checksum of what a task was made from: tasks, ascending, with the checksums of their
+/// files.
+fn sum_of(sources: impl Iterator<Item = (usize, u32)>) -> u32 {
+    let mut all = Crc::new();
+    for (task, sum) in sources {
+        all.update(&(task as u64).to_le_bytes());
+        all.update(&sum.to_le_bytes());
+    }
+    all.sum()
+}
+
+impl Job<'_> {
+    /// Opens the file of a task that is done.
+    ///
+    /// # Errors
+    /// If it is missing, damaged, or that of another job or task.
+    pub(super) fn open_task(&self, task: usize) -> Result<TaskFile> {
+        TaskFile::open_done(&self.task_file(task))
+    }
+
+    /// Returns which tasks are done: the file of the task is there, and complete, and so are those
+    /// that it was made from, which have not been made anew since.
+    pub fn done(&self) -> Vec<bool> {
+        self.sums().iter().map(Option::is_some).collect()
+    }
+
+    /// Returns the checksum of what an output would be made from now; `None` if a task is not done.
+    pub(super) fn sources(&self) -> Option<u32> {
+        let sums: Option<Vec<u32>> = self.sums().into_iter().collect();
+        sums.map(|sums| sum_of((0..).zip(sums)))
+    }
+
+    /// Opens the files of all tasks, for an output. Returns also the checksum of what it is made
+    /// from.
+    ///
+    /// # Errors
+    /// If a task is not done, or its file is damaged, or that of another job or task.
+    pub(super) fn open_all(&self, mut take: impl FnMut(TaskFile)) -> Result<u32> {
+        let mut sums = Vec::with_capacity(self.task_count());
+        for task in 0..self.task_count() {
+            let file = self.open_task(task)?;
+            if self.sources_of(task, &sums) != Some(file.sources) {
+                return Err(self.why_not_done(task));
+            }
+            sums.push(Some(file.sum));
+            take(file);
+        }
+        Ok(sum_of((0..).zip(sums.into_iter().flatten())))
+    }
+
+    /// Returns the checksum of the file of each task that is done.
+    fn sums(&self) -> Vec<Option<u32>> {
+        let mut sums = Vec::with_capacity(self.task_count());
+        for task in 0..self.task_count() {
+            let file = TaskFile::open(&self.task_file(task)).ok().flatten();
+            let is_of_these = |file: &TaskFile| self.sources_of(task, &sums) == Some(file.sources);
+            sums.push(file.filter(is_of_these).map(|file| file.sum));
+        }
+        sums
+    }
+
+    /// Returns the checksum of what a task would be made from now; `None` if something is missing.
+    fn sources_of(&self, task: usize, sums: &[Option<u32>]) -> Option<u32> {
+        let mut needed = self.needs(task);
+        needed.sort_unstable();
+        let sources: Option<Vec<_>> = needed.into_iter().map(|task| Some((task, sums[task]?))).collect();
+        sources.map(|sources| sum_of(sources.into_iter()))
+    }
+
+    /// Returns true if the file of a task is there, and was made from the files that are there now.
+    fn is_current(&self, task: usize) -> Result<bool> {
+        match TaskFile::open(&self.task_file(task)) {
+            Ok(Some(file)) => Ok(Sources::new(self).sum(self.needs(task))? == file.sources),
+            // What is damaged, or belongs to another task, is replaced.
+            Ok(None) | Err(_) => Ok(false),
+        }
+    }
+
+    /// Returns the state in which a task has read its file of points; `None` if it is not done, or
+    /// reads none.
+    pub fn state_of_input(&self, task: usize) -> Option<FileState> {
+        TaskFile::open(&self.task_file(task)).ok()??.state_of_input()
+    }
+
+    /// Returns an error unless all tasks are done; `last` is the number of the one that writes the
+    /// output.
+    ///
+    /// # Errors
+    /// Names a task that is not done, or a file of a task that is damaged or another's, or says
+    /// that there is no task with this number.
+    pub fn require_done(&self, last: usize) -> Result<()> {
+        if last > self.task_count() {
+            return Err(self.no_task(last));
+        }
+        match self.done().iter().position(|is_done| !is_done) {
+            Some(task) => Err(self.why_not_done(task)),
+            None => Ok(()),
+        }
+    }
+
+    /// Returns why a task does not count as done.
+    #[cold]
+    pub(super) fn why_not_done(&self, task: usize) -> Error {
+        let name = self.task_name(task);
+        match TaskFile::open(&self.task_file(task)) {
+            Err(error) => error,
+            Ok(None) => Error::not_yet(format!("task {task} ({name}) is not done")).cure("do it first"),
+            Ok(Some(_)) => {
+                Error::not_yet(format!("task {task} ({name}) is not done: what it was made from was made again"))
+                    .cure("do it again")
+            }
+        }
+    }
+
+    #[cold]
+    pub(super) fn no_task(&self, task: usize) -> Error {
+        Error::usage(format!("there is no task {task}: the last is {}, which writes the output", self.task_count()))
+    }
+
+    /// Removes files that a run left when it was killed, and files of tasks that are damaged.
+    /// Returns the number of tasks whose files are whole. The job must be [locked](Self::lock).
+    ///
+    /// # Errors
+    /// If a file cannot be removed.
+    pub fn clear_up(&self, _lock: &JobLock) -> Result<usize> {
+        let tasks = tasks_in(&self.folder);
+        // An interrupted removal may have taken it.
+        std::fs::create_dir_all(&tasks).map_err(|e| Error::from(e).in_file(&tasks))?;
+        remove_unfinished(&self.folder)?;
+        self.remove_damaged()
+    }
+
+    /// Removes the files of tasks that are damaged, by their checksums. Returns the number of tasks
+    /// whose files are whole. A file of another job, or of another task, stays until the task is
+    /// done.
+    ///
+    /// # Errors
+    /// If a file cannot be read or removed.
+    pub fn remove_damaged(&self) -> Result<usize> {
+        let mut whole = 0;
+        for task in 0..self.task_count() {
+            let name = self.task_file(task);
+            match TaskFile::open(&name).and_then(|file| file.map(|mut file| file.verify()).transpose()) {
+                Ok(found) => whole += usize::from(found.is_some()),
+                Err(error) if error.kind() == Kind::Format => {
+                    std::fs::remove_file(&name.path).map_err(|e| Error::from(e).in_file(&name.path))?;
+                }
+                Err(error) if error.kind() == Kind::Usage => {}
+                Err(error) => return Err(error),
+            }
+        }
+        Ok(whole)
+    }
+
+    /// Does one task, unless it is done. Needs the files of the tasks before it.
+    ///
+    /// # Errors
+    /// If the input cannot be read, if a task that it needs is not done, or if the run is canceled.
+    pub fn run_task(&self, task: usize, context: &Context) -> Result<()> {
+        if task >= self.task_count() {
+            return Err(self.no_task(task));
+        }
+        let _lock = self.lock_shared()?;
+        let is_there = |task: &usize| matches!(TaskFile::open(&self.task_file(*task)), Ok(Some(_)));
+        match self.needs(task).into_iter().find(|needed| !is_there(needed)) {
+            Some(needed) => Err(self.why_not_done(needed)),
+            None => self.do_unless_current(task, context),
+        }
+    }
+
+    /// Does a task that needs no other one any more, unless its file is there.
+    pub(super) fn do_unless_current(&self, task: usize, context: &Context) -> Result<()> {
+        if self.is_current(task)? { Ok(()) } else { self.do_task(task, context) }
+    }
+}

@@ -1,0 +1,203 @@
+//! The folder of a job: which files in it are the job's own, and their removal.
+
+use std::fs::File;
+use std::io::{ErrorKind, Write};
+use std::path::{Path, PathBuf};
+
+use serde_json::Value;
+
+use super::lock::{JobLock, LOCK};
+use super::task_file::{is_unfinished, unfinished_in};
+use crate::error::{Error, Result};
+use crate::run::checksum::checksum;
+
+/// The file of the plan in the folder of a job.
+const PLAN: &str = "plan.json";
+
+/// The file that a program may keep its command in; it is removed with the job.
+pub const COMMAND: &str = "command.json";
+
+/// The file that says which files were written as the output.
+pub(super) const WRITTEN: &str = "output.json";
+
+/// The folder of the files of tasks.
+const TASKS: &str = "tasks";
+
+/// The plan of a job as it is in its folder.
+#[derive(Debug)]
+pub(super) struct StoredPlan {
+    /// The checksum of the plan, which names the job.
+    pub(super) sum: u32,
+    pub(super) plan: Value,
+    /// The number of tasks.
+    tasks: u64,
+}
+
+impl StoredPlan {
+    /// Reads the plan in a folder; `None` if there is none.
+    ///
+    /// # Errors
+    /// If the file is not the plan of a job, or is damaged.
+    pub(super) fn read(folder: &Path) -> Result<Option<Self>> {
+        let path = folder.join(PLAN);
+        let text = match std::fs::read(&path) {
+            Ok(text) => text,
+            Err(error) if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => return Ok(None),
+            Err(error) => return Err(Error::from(error).in_file(path)),
+        };
+        // The folder may be that of somebody else: to remove it is no cure.
+        Self::parse(&text).map(Some).ok_or_else(|| {
+            Error::format("this is not the plan of a job, or it is damaged")
+                .in_file(path)
+                .cure("name another folder (--job)")
+        })
+    }
+
+    fn parse(text: &[u8]) -> Option<Self> {
+        let (stated, plan) = std::str::from_utf8(text).ok()?.split_once('\n')?;
+        let sum = checksum(plan.as_bytes());
+        let value: Value = serde_json::from_str(plan).ok().filter(|_| stated == format!("{sum:08x}"))?;
+        let is_plan = ["version", "request"].iter().all(|name| value[name].is_string());
+        let tasks = value["tasks"].as_u64().filter(|_| is_plan && value["layout"].is_array())?;
+        Some(StoredPlan { sum, plan: value, tasks })
+    }
+}
+
+/// Writes a plan into a folder that has none, and returns its checksum.
+///
+/// # Errors
+/// If there is a plan already, or it cannot be written.
+pub(super) fn write_plan(folder: &Path, plan: &str) -> Result<u32> {
+    let path = folder.join(PLAN);
+    let named = |e: std::io::Error| Error::from(e).in_file(&path);
+    let sum = checksum(plan.as_bytes());
+    let mut file = unfinished_in(folder).map_err(named)?;
+    write!(file, "{sum:08x}\n{plan}").map_err(named)?;
+    match file.persist_noclobber(&path) {
+        Ok(_) => Ok(sum),
+        Err(error) if error.error.kind() == ErrorKind::AlreadyExists => Err(there_is_a_job(folder)),
+        Err(error) => Err(named(error.error)),
+    }
+}
+
+/// Writes a file of the job, in the place of an older one.
+///
+/// # Errors
+/// If it cannot be written.
+pub(super) fn replace(path: &Path, text: &str) -> Result<()> {
+    let named = |e: std::io::Error| Error::from(e).in_file(path);
+    let mut file = unfinished_in(path.parent().unwrap_or(Path::new("."))).map_err(named)?;
+    file.write_all(text.as_bytes()).map_err(named)?;
+    file.persist(path).map(drop).map_err(|e| named(e.error))
+}
+
+#[cold]
+fn there_is_a_job(folder: &Path) -> Error {
+    Error::usage("there is a job in this folder already")
+        .in_file(folder)
+        .cure("go on with it (--resume), remove it (`breakline job clean`), or name another folder (--job)")
+}
+
+/// Returns an error if the folder of a new job has a file that the job would replace.
+///
+/// # Errors
+/// If there is a job, or the plan, the command or the output of something else.
+pub(super) fn require_no_job(folder: &Path) -> Result<()> {
+    if StoredPlan::read(folder)?.is_some() {
+        return Err(there_is_a_job(folder));
+    }
+    for name in [COMMAND, WRITTEN] {
+        let path = folder.join(name);
+        if path.exists() && !is_note(&path) {
+            return Err(Error::usage("this was not written by a job")
+                .in_file(path)
+                .cure("name another folder (--job)"));
+        }
+    }
+    Ok(())
+}
+
+/// Returns true if a file is a command as a program keeps it with a job, or the record of an
+/// output.
+fn is_note(path: &Path) -> bool {
+    let value: Option<Value> = std::fs::read(path).ok().and_then(|text| serde_json::from_slice(&text).ok());
+    value.is_some_and(|value| value["files"].is_array() && (value["command"].is_array() || value["job"].is_u64()))
+}
+
+/// Returns the folder of the files of tasks.
+pub(super) fn tasks_in(folder: &Path) -> PathBuf {
+    folder.join(TASKS)
+}
+
+/// Returns the path of the file of a task.
+pub(super) fn task_path(folder: &Path, task: usize) -> PathBuf {
+    tasks_in(folder).join(format!("{task:06}.task"))
+}
+
+/// Removes the files that a process left when it was killed.
+///
+/// # Errors
+/// If one cannot be removed.
+pub(super) fn remove_unfinished(folder: &Path) -> Result<()> {
+    for folder in [folder, &tasks_in(folder)] {
+        let named = |e: std::io::Error| Error::from(e).in_file(folder);
+        for entry in std::fs::read_dir(folder).map_err(named)? {
+            let path = entry.map_err(named)?.path();
+            if is_unfinished(&path) {
+                remove(&path)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Removes the files of a job and its folder, if nothing else is in it.
+///
+/// # Errors
+/// If the folder has no job, or the job cannot be removed.
+pub fn remove_job(folder: &Path) -> Result<()> {
+    let no_job = || Error::usage("there is no job in this folder").in_file(folder);
+    StoredPlan::read(folder)?.ok_or_else(no_job)?;
+    let lock = JobLock::take(folder, File::try_lock)?;
+    let stored = StoredPlan::read(folder)?.ok_or_else(no_job)?;
+    remove_files(folder, &stored, &lock)
+}
+
+/// Removes the files of a job, by their names, and its folder, if nothing else is in it.
+pub(super) fn remove_files(folder: &Path, stored: &StoredPlan, _lock: &JobLock) -> Result<()> {
+    let tasks = tasks_in(folder);
+    if tasks.is_dir() {
+        remove_unfinished(folder)?;
+        for task in 0..stored.tasks {
+            remove(&task_path(folder, task as usize))?;
+        }
+        remove_if_empty(&tasks)?;
+    }
+    for path in [COMMAND, WRITTEN].map(|name| folder.join(name)) {
+        if is_note(&path) {
+            remove(&path)?;
+        }
+    }
+    // Late, so that a removal that was interrupted can be repeated.
+    remove(&folder.join(PLAN))?;
+    let lock = folder.join(LOCK);
+    if std::fs::metadata(&lock).is_ok_and(|about| about.is_file() && about.len() == 0) {
+        remove(&lock)?;
+    }
+    remove_if_empty(folder)
+}
+
+/// Removes a file, which may be gone already.
+fn remove(path: &Path) -> Result<()> {
+    match std::fs::remove_file(path) {
+        Err(error) if error.kind() != ErrorKind::NotFound => Err(Error::from(error).in_file(path)),
+        _ => Ok(()),
+    }
+}
+
+/// Removes a folder, unless something is in it.
+fn remove_if_empty(folder: &Path) -> Result<()> {
+    let named = |e: std::io::Error| Error::from(e).in_file(folder);
+    let is_empty = std::fs::read_dir(folder).map_err(named)?.next().is_none();
+    if is_empty { std::fs::remove_dir(folder).map_err(named) } else { Ok(()) }
+}

@@ -1,0 +1,71 @@
+//! The output of a job as it was written, so that it is not written twice.
+
+use std::path::Path;
+
+use serde_json::{Value, json};
+
+use super::folder::{self, WRITTEN};
+use super::lock::JobLock;
+use super::surface::has_all_parts;
+use super::{Job, JobReport, TiledProduct};
+use crate::error::{Error, Result};
+use crate::io::{OutputSet, remove_abandoned};
+use crate::run::checksum::sum_of_file;
+
+impl Job<'_> {
+    /// Records the files that are about to appear. Afterwards
+    /// [`has_written`](Self::has_written) recognizes them, also if this process ends between the
+    /// two.
+    ///
+    /// # Errors
+    /// If a file cannot be read, or the record cannot be written.
+    ///
+    /// # Complexity
+    /// Linear in the bytes of the files.
+    pub fn record(&self, outputs: &OutputSet, report: &JobReport, _lock: &JobLock) -> Result<()> {
+        let mut files = Vec::new();
+        outputs.read_back(&mut |path, file| {
+            let (length, sum) = sum_of_file(file)?;
+            files.push(json!([std::path::absolute(path)?.to_string_lossy(), length, sum]));
+            Ok(())
+        })?;
+        let record = json!({ "job": self.sum, "sources": report.sources, "files": files });
+        folder::replace(&self.folder.join(WRITTEN), &record.to_string())
+    }
+
+    /// Returns true if an output is there as it was written from the tasks that are done.
+    ///
+    /// # Complexity
+    /// Linear in the bytes of the output, which is read.
+    pub fn has_written(&self, output: &Path) -> bool {
+        let record = std::fs::read(self.folder.join(WRITTEN)).ok().and_then(|text| serde_json::from_slice(&text).ok());
+        let record: Value = record.unwrap_or_default();
+        let files = record["files"].as_array().map(Vec::as_slice).unwrap_or_default();
+        let is_of_these = record["job"] == self.sum && self.sources().is_some_and(|sum| record["sources"] == sum);
+        let Ok(output) = std::path::absolute(output) else { return false };
+        let is_there = |file: &Value| {
+            let path = Path::new(file[0].as_str().unwrap_or_default());
+            let state = std::fs::File::open(path).and_then(|mut file| sum_of_file(&mut file));
+            state.is_ok_and(|(length, sum)| file[1] == length && file[2] == sum)
+        };
+        is_of_these
+            && files.iter().any(|file| file[0] == output.to_string_lossy().as_ref())
+            && files.iter().all(is_there)
+            && (!matches!(self.product, TiledProduct::Surface) || has_all_parts(&output))
+    }
+
+    /// Returns what the names of temporary files of outputs contain, for
+    /// [`OutputSet::mark`](crate::io::OutputSet::mark): a process that goes on with the job can
+    /// then remove those of one that was killed.
+    pub fn mark(&self) -> String {
+        format!("{:08x}", self.sum)
+    }
+
+    /// Removes the temporary files that a process left next to an output when it was killed.
+    ///
+    /// # Errors
+    /// If one cannot be removed.
+    pub fn remove_abandoned(&self, output: &Path, _lock: &JobLock) -> Result<()> {
+        remove_abandoned(output, &self.mark()).map_err(|e: Error| e.in_file(output))
+    }
+}
