@@ -1,5 +1,6 @@
 //! What the integration tests share.
 
+pub mod boxes;
 pub mod case;
 pub mod cells;
 pub mod judge;

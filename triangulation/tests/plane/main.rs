@@ -2,6 +2,7 @@
 //! the triangulations that all of these tests use are compiled once.
 
 mod around;
+mod boxes;
 mod center;
 mod chosen;
 mod compact;

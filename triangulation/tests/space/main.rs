@@ -2,6 +2,7 @@
 
 mod along;
 mod alpha;
+mod boxes;
 mod bulk;
 mod bulk_regular;
 mod compact;

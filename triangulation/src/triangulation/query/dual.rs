@@ -64,27 +64,69 @@ impl<const D: usize> HalfSpace<D> {
         HalfSpace { normal: p, offset: (dot(p, p) + by) / 2.0 }
     }
 
-    /// Returns the part of a convex polygon in the half space (Sutherland and Hodgman 1974, for one
-    /// line).
+    /// Returns how far a point lies beyond the border, times the length of the normal.
+    pub(super) fn excess(&self, p: [f64; D]) -> f64 {
+        dot(self.normal, p) - self.offset
+    }
+
+    /// Returns the part of a convex polygon in the half space.
     pub(super) fn clip(&self, polygon: Vec<[f64; D]>) -> Vec<[f64; D]> {
-        let beyond = |p: [f64; D]| dot(self.normal, p) - self.offset;
-        if polygon.iter().all(|&p| beyond(p) <= 0.0) {
+        self.clip_with_sides(polygon, |_| ())
+    }
+
+    /// Returns the part of a convex polygon in the half space, and reports its new sides, which run
+    /// along the border (Sutherland and Hodgman 1974, for one line). Polygons that share a side are
+    /// cut at the same point of it.
+    pub(super) fn clip_with_sides(
+        &self,
+        polygon: Vec<[f64; D]>,
+        mut new_side: impl FnMut([[f64; D]; 2]),
+    ) -> Vec<[f64; D]> {
+        if polygon.iter().all(|&p| self.excess(p) <= 0.0) {
             return polygon;
         }
         let mut clipped = Vec::with_capacity(polygon.len() + 1);
+        // Where the polygon leaves the half space, and where it returned before it ever left.
+        let (mut exit, mut first_return) = (None, None);
         for (k, &p) in polygon.iter().enumerate() {
             let q = polygon[(k + 1) % polygon.len()];
-            let (at_p, at_q) = (beyond(p), beyond(q));
+            let (at_p, at_q) = (self.excess(p), self.excess(q));
             if at_p <= 0.0 {
                 clipped.push(p);
             }
-            if at_p < 0.0 && at_q > 0.0 || at_p > 0.0 && at_q < 0.0 {
-                let along = at_p / (at_p - at_q);
-                clipped.push(plus(p, minus(q, p).map(|x| along * x)));
+            if at_p <= 0.0 && at_q > 0.0 {
+                let border = between((p, at_p), (q, at_q));
+                if at_p < 0.0 {
+                    clipped.push(border);
+                }
+                exit = Some(border);
+            } else if at_p > 0.0 && at_q <= 0.0 {
+                let border = between((q, at_q), (p, at_p));
+                if at_q < 0.0 {
+                    clipped.push(border);
+                }
+                match exit.take() {
+                    Some(exit) => new_side([exit, border]),
+                    None => first_return = Some(border),
+                }
             }
+        }
+        if let (Some(exit), Some(border)) = (exit, first_return) {
+            new_side([exit, border]);
         }
         clipped
     }
+}
+
+/// Returns the point of a segment on the border of a half space, given how far a point within and
+/// one beyond it lie beyond the border. The direction is fixed, so that it is one point for all
+/// polygons with this side.
+fn between<const D: usize>((inside, below): ([f64; D], f64), (beyond, above): ([f64; D], f64)) -> [f64; D] {
+    if below == 0.0 {
+        return inside;
+    }
+    let along = below / (below - above);
+    plus(inside, minus(beyond, inside).map(|x| along * x))
 }
 
 pub(super) fn dot<const D: usize>(p: [f64; D], q: [f64; D]) -> f64 {

@@ -21,8 +21,9 @@ use super::dual::{HalfSpace, VoronoiEdge, dot, minus, plus};
 /// The part of a box that is nearest to one vertex.
 #[derive(Debug, Clone, PartialEq)]
 pub struct VoronoiSolid {
-    /// The facets, those towards neighbors in order of their numbers, then those on the box. None
-    /// if the cell lies outside of the box.
+    /// The facets, those towards neighbors in order of their numbers, then those on the box. What
+    /// lies in a side of the box is on the box; up to rounding, it may be in parts, of which some
+    /// are on the box. None if the cell has no volume in the box.
     pub facets: Vec<VoronoiFacet>,
     /// The volume, in cubic units of the coordinates.
     pub volume: f64,
@@ -46,11 +47,68 @@ pub(super) fn cross(p: [f64; 3], q: [f64; 3]) -> [f64; 3] {
     [(1, 2), (2, 0), (0, 1)].map(|(i, j)| p[i] * q[j] - p[j] * q[i])
 }
 
-/// Returns six times the volume between a polygon and the origin, positive if the polygon is
-/// counter-clockwise as seen from beyond.
-fn six_volumes(polygon: &[[f64; 3]]) -> f64 {
-    let [first, others @ ..] = polygon else { return 0.0 };
-    others.windows(2).map(|pair| dot(*first, cross(pair[0], pair[1]))).sum()
+/// What half spaces leave of a box: a surface that is closed, however its corners are rounded.
+struct Polyhedron {
+    facets: Vec<VoronoiFacet>,
+}
+
+impl Polyhedron {
+    /// Removes what is beyond a half space, which is bounded by the cell of a vertex.
+    ///
+    /// Each corner is on one side for all facets that it belongs to, and each side is cut at one
+    /// point. So the new sides of the facets close up to the facet in the plane of the cut, also
+    /// where that plane is the one of another facet up to rounding: neither is lost, or counted
+    /// twice.
+    fn cut(&mut self, half_space: &HalfSpace<3>, beyond: VertexId) {
+        let corners = || self.facets.iter().flat_map(|facet| &facet.corners).map(|&p| half_space.excess(p));
+        if corners().all(|excess| excess <= 0.0) {
+            return;
+        }
+        if corners().all(|excess| excess >= 0.0) {
+            return self.facets.clear();
+        }
+        let mut sides = Vec::new();
+        for facet in &mut self.facets {
+            // The new facet has the side in the other direction.
+            let new_side = |[from, to]: [[f64; 3]; 2]| {
+                if from != to {
+                    sides.push([to, from]);
+                }
+            };
+            facet.corners = half_space.clip_with_sides(std::mem::take(&mut facet.corners), new_side);
+        }
+        let new = polygons(sides).into_iter().map(|corners| VoronoiFacet { beyond: Some(beyond), corners });
+        self.facets.extend(new);
+        // What has no area has its sides in both directions: the surface remains closed without it.
+        self.facets.retain(|facet| facet.corners.len() > 2);
+    }
+
+    /// Returns the volume: that of the pyramids over the facets, from one of the corners.
+    fn volume(&self) -> f64 {
+        let Some(&apex) = self.facets.first().and_then(|facet| facet.corners.first()) else { return 0.0 };
+        let six_volumes = |facet: &VoronoiFacet| -> f64 {
+            let mut corners = facet.corners.iter().map(|&p| minus(p, apex));
+            let Some(first) = corners.next() else { return 0.0 };
+            let others: Vec<[f64; 3]> = corners.collect();
+            others.windows(2).map(|pair| dot(first, cross(pair[0], pair[1]))).sum()
+        };
+        (self.facets.iter().map(six_volumes).sum::<f64>() / 6.0).max(0.0)
+    }
+}
+
+/// Joins sides to polygons: each begins where another ends. There are few.
+fn polygons(mut sides: Vec<[[f64; 3]; 2]>) -> Vec<Vec<[f64; 3]>> {
+    let mut polygons = Vec::new();
+    while let Some([start, mut end]) = sides.pop() {
+        let mut polygon = vec![start];
+        // No side follows if a corner is not a number, because a product overflowed.
+        while let Some(next) = sides.iter().position(|side| end != start && side[0] == end) {
+            polygon.push(end);
+            end = sides.swap_remove(next)[1];
+        }
+        polygons.push(polygon);
+    }
+    polygons
 }
 
 /// Returns the part of a polygon in all half spaces.
@@ -216,24 +274,18 @@ impl<G: Geometry<4>, V, C: Copy + Default, W: Fn(&G::Point) -> [f64; 4]> Diagram
         }
         let of = self.point(vertex);
         let Some(within) = Box3::new(within, site(of)) else { return VoronoiSolid::EMPTY };
-        let mut edges: Vec<(VertexId, Edge)> = Vec::new();
-        for (cell, i) in tds.cells_around(vertex) {
-            let others =
-                tds.cell_vertices(cell).iter().enumerate().filter(|&(j, &other)| j != i && other != VertexId::INFINITE);
-            edges.extend(others.map(|(j, &other)| (other, (cell, i, j))));
+        let sides = within.sides().map(|corners| VoronoiFacet { beyond: None, corners });
+        let mut polyhedron = Polyhedron { facets: sides.collect() };
+        for other in tds.vertices_around(vertex).into_iter().filter(|&other| other != VertexId::INFINITE) {
+            polyhedron.cut(&self.half_space(of, other), other);
         }
-        edges.sort_unstable_by_key(|&(other, _)| other);
-        edges.dedup_by_key(|&mut (other, _)| other);
-        let inner = edges.iter().map(|&(other, edge)| (Some(other), self.facet(edge, within)));
-        let nearer = || edges.iter().map(|&(other, _)| self.half_space(of, other));
-        let outer = within.sides().map(|side| (None, clipped(side, nearer())));
-        let mut solid = VoronoiSolid::EMPTY;
-        for (beyond, polygon) in inner.chain(outer).filter(|(_, polygon)| polygon.len() > 2) {
-            solid.volume += six_volumes(&polygon) / 6.0;
-            let corners = polygon.into_iter().map(|p| plus(p, site(of))).collect();
-            solid.facets.push(VoronoiFacet { beyond, corners });
+        let volume = polyhedron.volume();
+        let mut facets = polyhedron.facets;
+        for facet in &mut facets {
+            facet.corners.iter_mut().for_each(|p| *p = plus(*p, site(of)));
         }
-        solid
+        facets.sort_by_key(|facet| (facet.beyond.is_none(), facet.beyond));
+        VoronoiSolid { facets, volume }
     }
 }
 
@@ -288,8 +340,8 @@ impl<G: Coordinates<4>, V, C: Copy + Default> Delaunay<G, 4, V, C> {
     /// no facets if the vertex does not exist or a corner of the box is not finite.
     ///
     /// # Complexity
-    /// For each of the facets, the number of its corners squared: about 15 facets of 5 corners for
-    /// points that fill a volume evenly.
+    /// The number of neighbors times that of the corners: about 15 and 25 for points that fill a
+    /// volume evenly.
     ///
     /// ```
     /// use breakline_triangulation::{geometry::Space, Delaunay};
