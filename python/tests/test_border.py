@@ -33,7 +33,7 @@ SQUARE = np.array([[0, 0, 1], [10, 0, 1], [10, 10, 3], [0, 10, 3]], dtype=float)
         (np.empty((0, 3)), ValueError),
         (SQUARE[:2], ValueError),
         (np.zeros((5, 3)), ValueError),
-        (np.ma.masked_array(SQUARE, SQUARE == 3), ValueError),
+        (np.ma.masked_array(SQUARE, SQUARE >= 0), ValueError),
         ({"x": [1, 2], "y": [1, 2]}, ValueError),
         ({"x": [1, 2], "y": [1, 2], "z": [1]}, ValueError),
         ([], ValueError),

@@ -9,7 +9,7 @@ from typing import Any, Optional
 
 import numpy as np
 
-from . import _breakline
+from . import _breakline, _masked
 from ._errors import ArgumentTypeError, usage
 
 _POINT_KINDS = "an array (n, 3), columns x, y and z, a laspy or PDAL record, a GeoDataFrame of points, or paths"
@@ -108,17 +108,17 @@ def whole_numbers(values: Any, parameter: str, largest: int) -> "list[int]":
 
 
 def _floats(values: Any, what: str) -> np.ndarray:
-    """Return numbers as float64; a view if they are already."""
+    """Return numbers as float64; a view if they are already. Masked if the numbers are."""
     try:
-        array = np.asarray(values)
+        array = _masked.as_array(values)
     except ValueError as error:  # rows of different lengths
         raise usage(f"{what} is not an array: {error}", None, "pass rows of equal length", ArgumentTypeError) from None
-    if np.ma.isMaskedArray(values) and np.ma.is_masked(values):
-        raise usage(f"{what} has masked values", None, "leave them out: a[~a.mask], or a.filled(nan)")
     if array.dtype.kind not in "fiub":
         raise usage(
             f"{what} has the type {array.dtype}", None, "convert it: numpy.asarray(a, float)", ArgumentTypeError
         )
+    if isinstance(array, np.ma.MaskedArray):
+        return array.astype(np.float64)
     return _aligned(array, np.float64)
 
 
@@ -127,15 +127,16 @@ def _aligned(array: np.ndarray, dtype: Any) -> np.ndarray:
     return np.require(array, dtype=dtype, requirements="A")
 
 
-def positions(values: Any, what: str = "positions", width: int = 2) -> np.ndarray:
-    """Return positions as an array (n, width) of float64."""
+def positions(values: Any, what: str = "positions") -> np.ndarray:
+    """Return positions as an array (..., 2) of float64; a masked one is not a number, and counted in a warning."""
     array = _floats(values, what)
-    if array.ndim == 1 and array.size == 0:
-        array = array.reshape(0, width)
-    if array.ndim != 2 or array.shape[1] != width:
-        shape = tuple(array.shape)
-        raise usage(f"{what} has the shape {shape}, expected (n, {width})", None, f"pass an array (n, {width})")
-    return array
+    if array.ndim < 1 or array.shape[-1] != 2:
+        if array.size:
+            raise usage(f"{what} have the shape {array.shape}, expected (n, 2)", None, "pass an array (n, 2)")
+        array = array.reshape(*array.shape[:-1], 0, 2)
+    if _masked.without_value(what, array) is None:
+        return np.asarray(array)
+    return np.ma.filled(array, np.nan)
 
 
 def crs_text(crs: Any) -> Optional[str]:
@@ -176,21 +177,20 @@ def bounds(values: Any, parameter: str = "bounds") -> "Optional[list[float]]":
 
 
 def _columns(x: Any, y: Any, z: Any, **others: Any) -> "dict[str, Any]":
-    found = {"axes": [x, y, z], "scale": [1.0] * 3, "offset": [0.0] * 3, "classes": None, "flags": None, "crs": None}
-    found.update(others)
-    lengths = [len(axis) for axis in found["axes"]]
-    for name in ("classes", "flags"):
-        if found[name] is not None:
-            found[name] = _bytes(found[name], name)
-            lengths.append(len(found[name]))
+    found = {"scale": [1.0] * 3, "offset": [0.0] * 3, "classes": None, "flags": None, "crs": None, **others}
+    columns = {"x": x, "y": y, "z": z}
+    columns.update({name: _bytes(found[name], name) for name in ("classes", "flags") if found[name] is not None})
+    lengths = [len(column) for column in columns.values()]
     if len(set(lengths)) > 1:
         raise usage("columns of points differ in length", lengths, "pass columns of equal length")
-    return found
+    columns = dict(zip(columns, _masked.rows("points", *columns.values())))
+    axes = [columns.pop(axis) for axis in "xyz"]
+    return {**found, "axes": axes, "masked": lengths[0] - len(axes[0]), **columns}
 
 
 def _bytes(values: Any, name: str) -> Any:
-    """Return whole numbers from 0 to 255 as uint8, without a copy if they are that already."""
-    values = np.asarray(values)
+    """Return whole numbers from 0 to 255 as uint8, without a copy if they are that already. Masked if they are."""
+    values = _masked.as_array(values)
     if values.dtype == np.uint8:
         return values
     if values.size and (values.dtype.kind not in "biu" or values.min() < 0 or values.max() > 255):
@@ -230,18 +230,29 @@ def _system_of_laspy(header: Any) -> Optional[str]:
 
 def _of_fields(points: Any, names: "Iterable[str]") -> "dict[str, Any]":
     """Return the points of a structured array, a DataFrame or a dictionary of columns."""
-    known = {name.lower(): name for name in reversed(list(names))}
+    known: "dict[str, list[str]]" = {}
+    for name in names:
+        known.setdefault(name.lower(), []).append(name)
 
     def column(*spellings: str) -> Any:
-        return next((points[known[spelling]] for spelling in spellings if spelling in known), None)
+        found = next((known[spelling] for spelling in spellings if spelling in known), [None])
+        if len(found) > 1:
+            raise usage(f"the points have the columns {' and '.join(found)}", None, "leave one of them out")
+        return None if found[0] is None else points[found[0]]
 
     axes = [column(axis) for axis in "xyz"]
     if any(axis is None for axis in axes):
-        raise usage("the points have no columns x, y and z", sorted(known.values()), "name the columns x, y and z")
+        raise usage("the points have no columns x, y and z", sorted(map(str, names)), "name the columns x, y and z")
+    if all("XYZ"[k] in known["xyz"[k]] and np.asarray(axis).dtype == np.int32 for k, axis in enumerate(axes)):
+        raise usage(
+            "X, Y and Z of the points are whole steps, as in a LAS file, whose scale and offset are not known",
+            None,
+            "pass the record itself (las.points, not las.points.array); if they are coordinates, convert them to float",
+        )
     axes = [_floats(axis, f"column {name}") for axis, name in zip(axes, "xyz")]
     withheld = column("withheld")  # as PDAL names it
     if withheld is not None:
-        withheld = (np.asarray(withheld) != 0).astype(np.uint8) * np.uint8(4)
+        withheld = (_masked.as_array(withheld) != 0).astype(np.uint8) * np.uint8(4)
     return _columns(*axes, classes=column("classification", "class"), flags=withheld)
 
 
@@ -259,6 +270,11 @@ def _of_frame(frame: Any) -> "dict[str, Any]":
     return _columns(*coordinates.T, crs=crs_text(getattr(frame, "crs", None)))
 
 
+def _fields(value: Any) -> "tuple[str, ...]":
+    """Return the names of the fields of a structured array."""
+    return getattr(getattr(value, "dtype", None), "names", None) or ()
+
+
 def _points_of(value: Any) -> "dict[str, Any]":
     from ._points import Points
 
@@ -268,9 +284,8 @@ def _points_of(value: Any) -> "dict[str, Any]":
         return _of_laspy(value)
     if hasattr(value, "geometry"):
         return _of_frame(value)
-    names = getattr(getattr(value, "dtype", None), "names", None)
-    if names:
-        return _of_fields(value, names)
+    if _fields(value):
+        return _of_fields(value, _fields(value))
     if isinstance(value, dict) or hasattr(value, "columns"):
         return _of_fields(value, [str(name) for name in (value if isinstance(value, dict) else value.columns)])
     array = _floats(value, "points")
@@ -280,6 +295,11 @@ def _points_of(value: Any) -> "dict[str, Any]":
     return _columns(*array.T)
 
 
+def masked_rows(inputs: "Iterable[Any]") -> int:
+    """Return how many rows of inputs of points or lines were masked."""
+    return sum(item["masked"] for item in inputs if isinstance(item, dict))
+
+
 def points(value: Any) -> "list[Any]":
     """Return the inputs of points: paths, or columns."""
     if is_path(value):
@@ -287,11 +307,8 @@ def points(value: Any) -> "list[Any]":
     if isinstance(value, (list, tuple)) and value:
         if all(is_path(item) for item in value):
             return list(files(value, "points"))
-        if (
-            not np.isscalar(value[0])
-            and (hasattr(value[0], "dtype") or hasattr(value[0], "geometry"))
-            and np.ndim(value[0]) != 1
-        ):
+        is_row = np.isscalar(value[0]) or np.ndim(value[0]) == 1 and not _fields(value[0])
+        if not is_row and (hasattr(value[0], "dtype") or hasattr(value[0], "geometry")):
             return [_points_of(item) for item in value]
     if value is None:
         raise usage("points is None", None, f"pass {_POINT_KINDS}", ArgumentTypeError)
@@ -307,6 +324,7 @@ class _Shapes:
         self.shapes: "list[tuple[int, int]]" = []
         self.columns: "list[tuple[str, list[float]]]" = []
         self.crs: Optional[str] = None
+        self.masked = 0
 
     def add(self, kind: int, parts: "Sequence[np.ndarray]") -> None:
         self.vertices.extend(parts)
@@ -318,6 +336,9 @@ class _Shapes:
         if array.ndim != 2 or array.shape[1] not in (2, 3):
             shape = tuple(array.shape)
             raise usage(f"a line of {parameter} has the shape {shape}, expected (n, 3)", None, f"pass {_LINE_KINDS}")
+        given = len(array)
+        (array,) = _masked.rows(f"vertices of {parameter}", array)
+        self.masked += given - len(array)
         if array.shape[1] == 2:
             array = np.column_stack([array, np.full(len(array), np.nan)])
         self.add(kind, [array])
@@ -348,7 +369,7 @@ class _Shapes:
 
     def as_dict(self) -> "dict[str, Any]":
         vertices = np.concatenate(self.vertices) if self.vertices else np.empty((0, 3))
-        names = ("parts", "shapes", "columns", "crs")
+        names = ("parts", "shapes", "columns", "crs", "masked")
         return {"vertices": np.ascontiguousarray(vertices), **{name: getattr(self, name) for name in names}}
 
 

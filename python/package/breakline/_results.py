@@ -8,7 +8,7 @@ from typing import Any, NamedTuple, Optional
 
 import numpy as np
 
-from . import _breakline, _inputs
+from . import _breakline, _inputs, _masked
 from ._call import Progress, call
 from ._errors import UnsupportedError, usage
 
@@ -52,7 +52,8 @@ class Raster:
     ----------
     array : ndarray, (rows, columns)
         Heights as float32, nan where there is none; or shades as uint8 from 1 to 255, 0 where there is none. The first
-        row is the northernmost, unless the raster is aligned to one that is not.
+        row is the northernmost, unless the raster is aligned to one that is not. Of an array of your own, masked cells
+        have no height either.
     transform : affine.Affine
         From column and row to coordinates, at the corners of cells.
     crs : str or None
@@ -127,7 +128,7 @@ class Raster:
             If the file exists and ``overwrite`` is False.
         """
         shades = self.array.dtype == np.uint8
-        cells = self.array.astype(np.float64)
+        cells = self._cells()
         if shades:
             cells[cells == 0] = np.nan
         with call(threads, progress) as request:
@@ -135,8 +136,12 @@ class Raster:
                 cells, self._gdal, self.crs, bool(shades), _inputs.path(path, "path"), bool(overwrite), request
             )
 
+    def _cells(self) -> np.ndarray:
+        """The cells as a new array of float64; masked ones have no height."""
+        return np.ma.filled(self.array.astype(np.float64), np.nan)
+
     def _surface(self) -> Any:
-        return _breakline.Surface.of_cells(self.array.astype(np.float64), self._gdal, self.crs)
+        return _breakline.Surface.of_cells(self._cells(), self._gdal, self.crs)
 
     def contours(
         self,
@@ -301,7 +306,8 @@ class Contours:
 
 def draw(surface: Any, crs: Any, interval: Any, base: Any, levels: Any, threads: Any, progress: Any) -> Contours:
     """Draw the contours of a surface of the library."""
-    levels = [_inputs.number(level, "levels") for level in np.atleast_1d(np.asarray(levels)).ravel()]
+    (levels,) = _masked.rows("levels", np.atleast_1d(_masked.as_array(levels)).ravel())
+    levels = [_inputs.number(level, "levels") for level in levels]
     if interval is not None and levels:
         raise usage("interval and levels are given", None, "use one of them")
     interval, base = _inputs.optional_number(interval, "interval"), _inputs.number(base, "base")

@@ -46,13 +46,14 @@ class Tin:
     into the bytes of a ``.tin`` file, which open in milliseconds.
     """
 
-    __slots__ = ("_surface", "_report", "_lists", "_edges", "__weakref__")
+    __slots__ = ("_surface", "_report", "_masked", "_lists", "_edges", "__weakref__")
 
-    def __init__(self, surface: Any, report: "Optional[dict[str, Any]]" = None) -> None:
+    def __init__(self, surface: Any, report: "Optional[dict[str, Any]]" = None, masked: int = 0) -> None:
         if not isinstance(surface, _breakline.Surface):
             raise usage("a Tin is made by breakline.tin", surface, "call breakline.tin(points)", ArgumentTypeError)
         self._surface = surface
         self._report = report
+        self._masked = masked
         self._lists: Any = None
         self._edges: Any = None
 
@@ -98,9 +99,12 @@ class Tin:
 
     @property
     def report(self) -> "dict[str, Any]":
-        """Counts of vertices, triangles and edges, and of what was done with the input."""
+        """Counts of vertices, triangles and edges, and of what was done with the input.
+
+        ``masked_rows`` are the points and vertices of lines in arrays that were left out because they are masked.
+        """
         if self._report is None:
-            self._report = self._surface.report()
+            self._report = {**self._surface.report(), "masked_rows": self._masked}
         return self._report
 
     @property
@@ -168,23 +172,17 @@ class Tin:
         Returns
         -------
         ndarray of float64, (...)
-            nan outside of the surface, and where a coordinate is not finite. A single height for a single position.
+            nan outside of the surface, and where a coordinate is masked or not finite. A single height for a single position.
 
         Notes
         -----
         O(n log n) for n positions with ``"linear"``. Other methods first prepare the whole surface, with each call.
         """
-        if np.ma.is_masked(xy):
-            raise usage("positions have masked values", None, "leave them out: xy[~xy.mask.any(axis=1)]")
-        array = np.asarray(xy)
-        if array.ndim < 1 or array.shape[-1] != 2:
-            if array.size:
-                raise usage(f"positions have the shape {array.shape}, expected (n, 2)", None, "pass an array (n, 2)")
-            array = array.reshape(*array.shape[:-1], 0, 2)
-        flat = _inputs.positions(array.reshape(-1, 2))
+        positions = _inputs.positions(xy)
+        flat = positions.reshape(-1, 2)
         with call(threads, progress) as request:
             heights = self._surface.elevations(flat, _inputs.name(method, "method"), request)
-        return heights.reshape(array.shape[:-1])[()]
+        return heights.reshape(positions.shape[:-1])[()]
 
     def dem(
         self,
@@ -376,7 +374,7 @@ def tin(
         Points with heights: an array of x, y, z; columns (:class:`Points`, a structured array such as PDAL's, a
         DataFrame or a dict with x, y, z and Classification); a laspy record, whose integers are taken as they are; a
         GeoDataFrame of points; or files, also by globs. Or one file of a surface (``.tin``, ``.ply``, ...), which is
-        then opened. Arrays are copied.
+        then opened. Arrays are copied. Masked rows are left out, and counted in a warning and in the report.
     breaklines : paths, arrays (k, 3), shapely geometries or GeoDataFrame, or a list of these, optional
         Lines with heights that the surface must follow. ``"edges.shp:FIELD"`` takes heights from an attribute.
     boundary : as breaklines, optional
@@ -477,7 +475,9 @@ def tin(
             "flat_buffer": _inputs.number(flat_buffer, "flat_buffer"),
             "flat_points": bool(flat_points),
         }
-        return Tin(_breakline.Surface.build(found, _read(columns, partial), systems, arguments, request))
+        masked = _inputs.masked_rows([*found, *(layer for several in lines.values() for layer in several)])
+        built = _breakline.Surface.build(found, _read(columns, partial), systems, arguments, request)
+        return Tin(built, masked=masked)
 
 
 #: Parameters that take lines or areas, and those of them whose arrays are rings.

@@ -21,6 +21,7 @@ from typing import Any, NoReturn
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from . import _masked
 from ._breakline import Tessellation, Values
 from ._call import call
 from ._errors import ArgumentTypeError, UnsupportedError, UsageError, usage
@@ -84,7 +85,8 @@ class Delaunay:
     ----------
     points : array_like of float, shape (npoints, 2) or (npoints, 3)
         Coordinates. Any finite numbers of magnitudes up to 1e60 (0 included). An array that is
-        C-contiguous and float64 is not copied, and must not change while it is in use.
+        C-contiguous and float64 is not copied, and must not change while it is in use. Masked rows
+        are left out, and counted in a warning: `points` has the others, and numbers count these.
     furthest_site : bool, optional
         Only False is supported.
     incremental : bool, optional
@@ -272,19 +274,23 @@ class Delaunay:
             Accepted and ignored: the search is exact.
         tol : float, optional
             How far outside of the hull, in barycentric coordinates, still counts as inside;
-            100 roundings by default, as in scipy. 0 makes the test exact.
+            100 roundings by default, as in scipy. 0 makes the test exact. Inside of the hull it
+            changes nothing: the simplex is the one that contains the position, by exact predicates.
 
         Returns
         -------
         ndarray of int32, shape (...)
-            Simplices; -1 outside of the hull, and where a coordinate is not finite. On an edge or a
-            corner, one of the simplices there.
+            Simplices; -1 outside of the hull, and where a coordinate is masked or not finite. On an
+            edge or a corner, one of the simplices there.
         """
-        xi = np.asanyarray(xi)
+        xi = _masked.as_array(xi)
         if xi.shape[-1] != self.ndim:
             raise usage(f"wrong dimensionality in xi: shape {xi.shape}, expected (..., {self.ndim})")
         tolerance = _TOLERANCE if tol is None else float(tol)
-        return self._core.find(_rows(xi, self.ndim), tolerance, self._call).reshape(xi.shape[:-1])
+        if not tolerance >= 0:
+            raise usage(f"tol is {tol}", tol, "pass 0 or more")
+        flat, _ = _positions(xi, self.ndim)
+        return self._core.find(flat, tolerance, self._call).reshape(xi.shape[:-1])
 
     def add_points(self, points: ArrayLike, restart: bool = False) -> None:
         """Add points.
@@ -292,7 +298,7 @@ class Delaunay:
         Parameters
         ----------
         points : array_like of float, shape (n, ndim)
-            The points; their numbers follow those of the points so far.
+            The points; their numbers follow those of the points so far. Masked rows are left out.
         restart : bool, optional
             Triangulate all points anew. The triangulation is the same in both cases, but the order
             of simplices may differ.
@@ -354,13 +360,18 @@ class _Interpolator:
                     cure="pass the points",
                 )
             self.tri = points
+            values = _masked.as_array(values)
+            if np.ma.is_masked(values):
+                raise usage("values at a triangulation are masked", cure="pass the points: rows are left out of both")
         else:
-            points = _points_of(_joined(points))
+            points, values = _joined(points), _masked.as_array(values)
+            if points.ndim and values.ndim and len(points) == len(values):
+                points, values = _masked.rows("points", points, values)
+            points = _points_of(points)
             if rescale and len(points):
                 points = self._rescaled(points)
             self.tri = self._triangulation(points)
         self.points = self._points()
-        values = np.asarray(values)
         if values.ndim == 0 or values.shape[0] != len(self.points):
             raise usage(
                 f"different number of values and points: values of shape {values.shape}, {len(self.points)} points"
@@ -438,10 +449,10 @@ class _SmoothInterpolator(_Interpolator):
         Returns
         -------
         ndarray of float64 or complex128, shape (...) + values.shape[1:]
-            ``fill_value`` outside of the convex hull.
+            ``fill_value`` outside of the convex hull, and where a coordinate is masked.
         """
         xi = self._positions(args)
-        flat = _rows(xi, self.points.shape[1])
+        flat, _ = _positions(xi, self.points.shape[1])
         values = self._evaluate(flat, (self.threads, None))
         return values.view(self.values.dtype).reshape(xi.shape[:-1] + self.values_shape)
 
@@ -593,13 +604,14 @@ class NearestNDInterpolator(_Interpolator):
         Returns
         -------
         ndarray of float64 or complex128, shape (...) + values.shape[1:]
+            NaN where a coordinate is masked.
         """
         bound, threads = self._options(query_options)
         xi = self._positions(args)
-        flat = _rows(xi, self.points.shape[1])
+        flat, masked = _positions(xi, self.points.shape[1])
         core = self.tri._core if isinstance(self.tri, Delaunay) else self.tri
         nearest = core.nearest(flat, len(self.values), (threads, None))
-        wrong = nearest < 0
+        wrong = (nearest < 0) & ~masked
         if wrong.any():
             row = int(np.argmax(wrong))
             raise usage(f"position {row} is {flat[row].tolist()}, which is not finite or too large to compute with")
@@ -607,6 +619,7 @@ class NearestNDInterpolator(_Interpolator):
         if bound < np.inf:
             distance = np.sqrt(((flat - self.points[nearest]) ** 2).sum(axis=1))
             values[distance >= bound] = np.nan
+        values[masked] = np.nan
         return values.reshape(xi.shape[:-1] + self.values_shape)
 
     def _options(self, options: dict[str, Any]) -> tuple[float, int | None]:
@@ -650,40 +663,52 @@ def _unsupported(message: str, cure: str) -> UnsupportedError:
 
 
 def _numbers(array: Any) -> NDArray[np.float64]:
-    """Return an array as float64; without a copy if it is that already."""
-    array = np.asarray(array)
+    """Return an array as float64, masked if it is; without a copy if it is that already."""
+    array = _masked.as_array(array)
     if array.dtype.kind not in "biuf" and array.size:
         raise usage(f"coordinates of dtype {array.dtype}, expected real numbers", kind=ArgumentTypeError)
+    if isinstance(array, np.ma.MaskedArray):
+        return array.astype(np.float64)
     return np.require(array, np.float64, "A")
 
 
 def _points_of(points: Any) -> NDArray[np.float64]:
-    if np.ma.isMaskedArray(points):
-        raise usage("points cannot be a masked array", cure="pass those that are not masked")
-    points = np.ascontiguousarray(_numbers(points))
+    """Return points as a C-contiguous array, without those that are masked."""
+    points = _numbers(points)
     if points.ndim != 2:
         raise usage(f"points of shape {points.shape}, expected (npoints, ndim)")
     if points.shape[1] < 2:
         raise usage(f"points of shape {points.shape}: need at least 2-D data", cure="use numpy.interp")
     if points.shape[1] > 3:
         raise _unsupported(f"points of shape {points.shape}: there are 2 and 3 dimensions here", "use scipy")
-    return points
+    (points,) = _masked.rows("points", points)
+    return np.ascontiguousarray(points)
 
 
-def _rows(xi: Any, ndim: int) -> NDArray[np.float64]:
-    """Return positions as a C-contiguous array of shape (n, ndim)."""
-    return np.ascontiguousarray(_numbers(xi)).reshape(-1, ndim)
+def _positions(xi: Any, ndim: int) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+    """Return positions as a C-contiguous array of shape (n, ndim), and which of them are masked; these are NaN."""
+    xi = _numbers(xi).reshape(-1, ndim)
+    masked = _masked.without_value("positions", xi)
+    if masked is None:
+        return np.ascontiguousarray(np.asarray(xi)), np.zeros(len(xi), bool)
+    return np.ma.filled(xi, np.nan), masked
 
 
 def _joined(coordinates: Any, ndim: int | None = None) -> NDArray[Any]:
-    """Return coordinates of shape (..., ndim) from a tuple of one array for each axis, or from one array."""
+    """Return coordinates of shape (..., ndim) from a tuple of one array for each axis, or from one array.
+
+    Masked where any of them is.
+    """
     if isinstance(coordinates, tuple) and len(coordinates) == 1:
         coordinates = coordinates[0]
     if isinstance(coordinates, tuple):
-        return np.stack(np.broadcast_arrays(*map(_numbers, coordinates)), axis=-1)
-    if np.ma.isMaskedArray(coordinates):
-        raise usage("coordinates cannot be a masked array", cure="pass those that are not masked")
-    coordinates = np.asanyarray(coordinates)
+        axes = list(map(_numbers, coordinates))
+        joined = np.stack(np.broadcast_arrays(*axes), axis=-1)
+        if not any(map(np.ma.is_masked, axes)):
+            return joined
+        masks = np.broadcast_arrays(*map(np.ma.getmaskarray, axes))
+        return np.ma.masked_array(joined, np.stack(masks, axis=-1))
+    coordinates = _masked.as_array(coordinates)
     if coordinates.ndim == 1:
         return coordinates.reshape(-1, ndim or 1)
     return coordinates

@@ -18,6 +18,7 @@ from typing import Any, NoReturn
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from . import _masked
 from ._breakline import triangulate_arrays
 from ._call import call
 from ._errors import ArgumentTypeError, BreaklineWarning, FormatError, LimitError, UnsupportedError, UsageError, usage
@@ -103,7 +104,8 @@ def triangulate(tri: Mapping[str, Any], opts: str = "", *, threads: int | None =
         ``regions`` : (r, 4) floats, optional. A site, an attribute (used with ``A``) and a largest
         area (used with ``a`` without a number) of each region.
 
-        Other keys of the package are accepted, and ignored.
+        Other keys of the package are accepted, and ignored. Masked rows are left out, and counted
+        in warnings; numbers count the vertices that remain, and segments to others are left out.
     opts : str, optional
         Switches of Triangle:
 
@@ -249,48 +251,71 @@ def _graph(tri: Mapping[str, Any], switches: Mapping[str, Any]) -> dict[str, NDA
     lines = tri if "p" in switches else {}
     vertices = _floats(tri, "vertices", 2)
     count = len(vertices)
+    attributes = _masked.as_array(tri.get("vertex_attributes", np.empty((count, 0)))).astype(np.float64)
+    if len(attributes) != count:
+        raise usage(f"{len(attributes)} vertex_attributes, expected one row for each of {count} vertices")
+    markers = _markers(tri, "vertex_markers", count)
+    kept = _masked.kept("vertices", vertices, attributes, markers)
+    vertices, attributes, markers = _finite(vertices, "vertices"), np.asarray(attributes), np.asarray(markers)
+    segments, segment_markers = _segments(lines, count)
+    if kept is not None:
+        vertices, attributes, markers = vertices[kept], attributes[kept], markers[kept]
+        remain = kept[segments].all(axis=1)
+        segments, segment_markers = (np.cumsum(kept) - 1)[segments[remain]], segment_markers[remain]
+    return {
+        "vertices": vertices,
+        "vertex_attributes": attributes.reshape(len(vertices), attributes.size // max(len(vertices), 1)),
+        "vertex_markers": markers,
+        "segments": segments.astype(np.uint32),
+        "segment_markers": segment_markers,
+        "holes": _rows({} if "O" in switches else lines, "holes", 2),
+        "regions": _rows(lines, "regions", 4),
+    }
+
+
+def _segments(lines: Mapping[str, Any], count: int) -> tuple[NDArray[Any], NDArray[np.int32]]:
+    """Return the segments between so many vertices, and their markers."""
     segments = _integers(lines, "segments")
     if segments.ndim != 2 or segments.shape[1] != 2:
         raise usage(f"segments of shape {segments.shape}, expected (m, 2)")
+    markers = _markers(lines, "segment_markers", len(segments))
+    segments, markers = _masked.rows("segments", segments, markers)
     outside = (segments < 0) | (segments >= count)
     if outside.any():
         row = int(np.nonzero(outside.any(axis=1))[0][0])
         raise usage(f"segment {row} joins vertices {segments[row].tolist()}, expected 0 to {count - 1}")
-    attributes = np.asarray(tri.get("vertex_attributes", np.empty((count, 0))), dtype=np.float64)
-    if len(attributes) != count:
-        raise usage(f"{len(attributes)} vertex_attributes, expected one row for each of {count} vertices")
-    return {
-        "vertices": vertices,
-        "vertex_attributes": attributes.reshape(count, attributes.size // max(count, 1)),
-        "vertex_markers": _markers(tri, "vertex_markers", count),
-        "segments": segments.astype(np.uint32),
-        "segment_markers": _markers(lines, "segment_markers", len(segments)),
-        "holes": _floats({} if "O" in switches else lines, "holes", 2),
-        "regions": _floats(lines, "regions", 4),
-    }
+    return segments, markers
+
+
+def _rows(tri: Mapping[str, Any], key: str, width: int) -> NDArray[np.float64]:
+    """Return rows of finite numbers, without those that are masked."""
+    (rows,) = _masked.rows(key, _floats(tri, key, width))
+    return _finite(rows, key)
 
 
 def _floats(tri: Mapping[str, Any], key: str, width: int) -> NDArray[np.float64]:
-    values = tri.get(key, ())
-    if np.ma.isMaskedArray(values):
-        raise usage(f"{key} cannot be a masked array", cure="pass those that are not masked")
-    values = np.asarray(values)
+    """Return rows of numbers, masked if they are."""
+    values = _masked.as_array(tri.get(key, ()))
     if values.size == 0:
         return np.empty((0, width))
     if values.dtype.kind not in "biuf":
         raise usage(f"{key} of dtype {values.dtype}, expected real numbers", kind=ArgumentTypeError)
     if values.ndim != 2 or values.shape[1] != width:
         raise usage(f"{key} of shape {values.shape}, expected (n, {width})")
-    values = values.astype(np.float64)
-    wrong = ~np.isfinite(values).all(axis=1)
+    return values.astype(np.float64)
+
+
+def _finite(values: NDArray[np.float64], key: str) -> NDArray[np.float64]:
+    """Return rows as a plain array; what is masked may be any number, the others are finite."""
+    wrong = ~(np.isfinite(np.asarray(values)) | np.ma.getmaskarray(values)).all(axis=1)
     if wrong.any():
         row = int(np.nonzero(wrong)[0][0])
-        raise usage(f"row {row} of {key} is {values[row].tolist()}, expected finite numbers")
-    return values
+        raise usage(f"row {row} of {key} is {np.asarray(values)[row].tolist()}, expected finite numbers")
+    return np.asarray(values)
 
 
 def _integers(tri: Mapping[str, Any], key: str) -> NDArray[Any]:
-    values = np.asarray(tri.get(key, ()))
+    values = _masked.as_array(tri.get(key, ()))
     if values.size == 0:
         return np.empty((0, 2), np.int64)
     if values.dtype.kind not in "iu":
@@ -299,7 +324,7 @@ def _integers(tri: Mapping[str, Any], key: str) -> NDArray[Any]:
 
 
 def _markers(tri: Mapping[str, Any], key: str, count: int) -> NDArray[np.int32]:
-    values = np.asarray(tri.get(key, ()))
+    values = _masked.as_array(tri.get(key, ()))
     if values.size == 0:
         return np.zeros(count, np.int32)
     if values.dtype.kind not in "iu":
@@ -338,7 +363,8 @@ def _selected(
             wanted.remove(dropped)
     selected = {name: arrays[name] for name in wanted}
     if "p" in switches and "P" not in switches:
-        given = {"holes": _floats(tri, "holes", 2), "regions": graph["regions"]}
+        holes = _rows(tri, "holes", 2) if "O" in switches else graph["holes"]
+        given = {"holes": holes, "regions": graph["regions"]}
         selected.update({name: given[name] for name in given if name in tri})
     return selected
 

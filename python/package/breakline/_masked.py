@@ -1,0 +1,63 @@
+"""Masked arrays, treated alike by all functions: rows with a masked value are left out, and counted."""
+
+from __future__ import annotations
+
+from typing import Any, Optional
+
+import numpy as np
+
+from ._errors import usage, warn
+
+
+def as_array(values: Any) -> np.ndarray:
+    """Return an array, without a copy if it is one; a masked one if the values, or items of a list, are masked."""
+    if isinstance(values, np.ma.MaskedArray):
+        return values
+    if isinstance(values, (list, tuple)) and any(isinstance(item, np.ma.MaskedArray) for item in values):
+        return np.ma.array(values)
+    return np.asarray(values)
+
+
+def kept(what: str, *columns: Any) -> Optional[np.ndarray]:
+    """Return which rows of arrays of one length have no masked value, as an array of bool; None if all rows.
+
+    The number of other rows is a warning.
+
+    Raises
+    ------
+    UsageError
+        If no row is left.
+    """
+    masked = _masked_rows(*columns)
+    if masked is None:
+        return None
+    count, of = int(masked.sum()), len(masked)
+    if count == of:
+        raise usage(f"all {of} {what} are masked", None, "unmask those that are to be used")
+    warn([f"{count} of {of} {what} are masked, and left out"])
+    return ~masked
+
+
+def rows(what: str, *columns: Any) -> "list[np.ndarray]":
+    """Return arrays of one length as plain ones, without the rows in which one of them is masked; see `kept`."""
+    keep = kept(what, *columns)
+    return [np.asarray(column) if keep is None else np.asarray(column)[keep] for column in columns]
+
+
+def without_value(what: str, positions: np.ndarray) -> Optional[np.ndarray]:
+    """Return which of some positions, (..., n), are masked, and get no value; None if none is. Their number is a warning."""
+    masked = _masked_rows(positions.reshape(-1, positions.shape[-1]))
+    if masked is None:
+        return None
+    warn([f"{int(masked.sum())} of {len(masked)} {what} are masked, and have no value"])
+    return masked
+
+
+def _masked_rows(*columns: Any) -> Optional[np.ndarray]:
+    masked = None
+    for column in columns:
+        mask = np.ma.getmask(column)
+        if mask is not np.ma.nomask and mask.any():
+            of_rows = mask.reshape(len(mask), -1).any(axis=1)
+            masked = of_rows if masked is None else masked | of_rows
+    return masked
