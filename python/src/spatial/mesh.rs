@@ -24,6 +24,10 @@ pub(super) trait Dimension<const N: usize, const D: usize>:
     /// Returns Sibson's coordinates, see [`Delaunay::sibson`].
     fn sibson(t: &Delaunay<Self, N>, q: &[f64; D], near: Option<CellId>) -> Option<Vec<(VertexId, f64)>>;
 
+    /// Returns how far a position lies inside of each facet of a positively oriented simplex: the
+    /// volumes, times `D!`, that both span, each right to the last bits.
+    fn sides(simplex: [[f64; D]; N], q: [f64; D]) -> [f64; N];
+
     /// Returns the inverse of the matrix whose rows are these; `None` if it is nearly singular.
     fn inverse(rows: [[f64; D]; D]) -> Option<[[f64; D]; D]>;
 }

@@ -23,13 +23,21 @@ const SAMPLES: usize = 1 << 10;
 /// The most simplices that a search for one within a tolerance looks at.
 const PATIENCE: usize = 1 << 8;
 
-/// A simplex is flat if its volume, times `D!`, is at most this part of that of a cube around it.
-/// Along a straight side whose points are rounded, all simplices at the hull are. Barycentric
-/// coordinates in them are mere rounding errors.
+/// Barycentric coordinates are computed exactly in a simplex whose volume, times `D!`, is at most
+/// this part of that of a cube around it: doubles would keep fewer than 40 bits of them.
+const THIN: f64 = 1e-3;
+
+/// In thinner simplices at the hull, natural neighbors are linear: the areas (volumes) that they
+/// are differences of are so large that nothing would be left.
 const FLAT: f64 = 1e-10;
 
-/// How far outside of a neighbor of a flat simplex a position in that simplex may be, in
-/// barycentric coordinates; as in scipy.
+/// A simplex is there by rounding if it would have no volume with corners moved along each axis by
+/// about as many roundings of the largest coordinate. Along a straight side whose points are
+/// rounded, all simplices at the hull are.
+const ROUNDINGS: f64 = 4.0;
+
+/// How far outside of a neighbor of such a simplex a position in it may be, in barycentric
+/// coordinates; as in scipy.
 const BROAD: f64 = 1.5e-8;
 
 /// Values at the vertices: `width` numbers for each.
@@ -80,16 +88,23 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
         Field { values: of_vertices, width }
     }
 
-    /// Returns the simplex at each position; [`NONE`] outside of the hull. Outside by at most a
-    /// tolerance, in barycentric coordinates, counts as inside.
+    /// Returns the simplex at each position, which is the one that contains it; [`NONE`] outside of
+    /// the hull. Outside by at most a tolerance, in barycentric coordinates, counts as inside.
     pub(super) fn find(&self, queries: &[[f64; D]], tolerance: f64, cancel: &AtomicBool) -> Vec<i32> {
         self.each(queries, &[NONE], cancel, |q, near, found| {
-            let (site, near) = self.site(q, near, tolerance);
-            found[0] = match site {
-                Site::Vertex(_) => near.map_or(NONE, |cell| self.simplex(cell)),
-                Site::Cell(cell, _) => self.simplex(cell),
-                Site::Outside => NONE,
+            let (cell, near) = match self.t.locate(q, near) {
+                Location::Cell { cell, .. } => (Some(cell), Some(cell)),
+                Location::Vertex(vertex) => {
+                    let cell = self.inside_at(vertex);
+                    (cell, cell)
+                }
+                Location::OutsideHull { cell } => {
+                    let inside = self.inside_of(cell);
+                    (self.within_tolerance(q, inside, tolerance), Some(inside))
+                }
+                Location::OutsideAffineHull | Location::Nowhere => (None, None),
             };
+            found[0] = cell.map_or(NONE, |cell| self.simplex(cell));
             near
         })
     }
@@ -233,31 +248,40 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
         spatial_order(queries.len(), within).ok()
     }
 
-    /// Returns where a position is, and a finite cell there or nearby.
+    /// Returns where a position has its value, and a finite cell there or nearby.
+    ///
+    /// That is where it is, except in simplices that are at the hull by rounding: values there are
+    /// those of a neighbor, so that they do not depend on which points of a straight side are
+    /// rounded inward.
     fn site(&self, q: &[f64; D], near: Option<CellId>, tolerance: f64) -> (Site<N>, Option<CellId>) {
-        let tds = self.t.tds();
+        let in_cell = |cell: CellId| Site::Cell(cell, weights(self.sides(cell, q)));
         match self.t.locate(q, near) {
-            Location::Vertex(vertex) => {
-                let cell = tds.cell_of(vertex).map(|cell| self.inside_of(cell));
-                (Site::Vertex(vertex), cell)
-            }
+            Location::Vertex(vertex) => (Site::Vertex(vertex), self.inside_at(vertex)),
             Location::Cell { cell, facets } => {
                 let mut sides = self.sides(cell, q);
-                if facets.is_empty() && self.is_flat(cell, &sides) {
-                    let beside = self.within_tolerance(q, cell, BROAD);
-                    if let Site::Cell(..) = beside {
-                        return (beside, Some(cell));
-                    }
+                let mut on = (0..N).filter(|&i| facets.contains(i));
+                let is_not_shared = on.all(|i| self.t.tds().is_infinite(self.t.tds().neighbor(cell, i)));
+                if is_not_shared
+                    && self.is_by_rounding(cell, &sides)
+                    && self.is_at_hull_by_rounding(cell, q)
+                    && let Some(beside) = self.within_tolerance(q, cell, BROAD)
+                {
+                    return (in_cell(beside), Some(cell));
                 }
                 (0..N).filter(|&i| facets.contains(i)).for_each(|i| sides[i] = 0.0);
                 (Site::Cell(cell, weights(sides)), Some(cell))
             }
             Location::OutsideHull { cell } => {
                 let inside = self.inside_of(cell);
-                (self.within_tolerance(q, inside, tolerance), Some(inside))
+                (self.within_tolerance(q, inside, tolerance).map_or(Site::Outside, in_cell), Some(inside))
             }
             Location::OutsideAffineHull | Location::Nowhere => (Site::Outside, None),
         }
+    }
+
+    /// Returns a finite cell at a vertex.
+    fn inside_at(&self, vertex: VertexId) -> Option<CellId> {
+        self.t.tds().cell_of(vertex).map(|cell| self.inside_of(cell))
     }
 
     /// Returns the cell itself if it is finite, or the finite one across the hull.
@@ -266,24 +290,61 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
         inside
     }
 
-    /// Returns about how far a position lies inside of each facet of a finite cell: volumes.
+    /// Returns how far a position lies inside of each facet of a finite cell, as the volume, times
+    /// `D!`, that both span. For a position in the cell, each is right to 12 digits of their sum,
+    /// the volume of the cell.
     fn sides(&self, cell: CellId, q: &[f64; D]) -> [f64; N] {
         let corners = self.t.tds().corners(cell).map(|v| self.t.point(v));
-        self.t.geometry().rough_sides(corners, q).unwrap_or([f64::NAN; N])
+        let rough = self.t.geometry().rough_sides(corners, q);
+        rough.filter(|sides| !self.is_thin(cell, sides, THIN)).unwrap_or_else(|| G::sides(corners.map(|p| *p), *q))
     }
 
-    /// Returns true if barycentric coordinates in a cell are not reliable; given its volumes.
-    fn is_flat(&self, cell: CellId, sides: &[f64; N]) -> bool {
+    /// Returns how wide a cell is along each axis.
+    fn widths(&self, cell: CellId) -> [f64; D] {
         let corners = self.t.tds().corners(cell).map(|v| self.t.point(v));
-        let width = |axis: usize| {
-            let (low, high) = corners
-                .iter()
-                .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| (low.min(p[axis]), high.max(p[axis])));
-            high - low
+        std::array::from_fn(|axis| {
+            let along = corners.iter().map(|p| p[axis]);
+            along.clone().fold(f64::NEG_INFINITY, f64::max) - along.fold(f64::INFINITY, f64::min)
+        })
+    }
+
+    /// Returns true if the volume of a cell, the sum of some volumes, is at most a part of that of
+    /// a cube around it.
+    fn is_thin(&self, cell: CellId, sides: &[f64; N], part: f64) -> bool {
+        let width = self.widths(cell).into_iter().fold(0.0, f64::max);
+        sides.iter().sum::<f64>() <= part * width.powi(D as i32)
+    }
+
+    /// Returns true if a cell would not be there if its corners were not rounded, for all that is
+    /// known; given its volumes.
+    fn is_by_rounding(&self, cell: CellId, sides: &[f64; N]) -> bool {
+        let widths = self.widths(cell);
+        let [low, high] = &self.bounds;
+        let moved = |axis: usize| {
+            let rounding = low[axis].abs().max(high[axis].abs()) * f64::EPSILON;
+            (0..D).filter(|&other| other != axis).fold(rounding, |volume, other| volume * widths[other])
         };
-        let width = (0..D).map(width).fold(0.0, f64::max);
-        let volume: f64 = sides.iter().sum();
-        volume <= FLAT * width.powi(D as i32)
+        sides.iter().sum::<f64>() <= ROUNDINGS * (0..D).map(moved).sum::<f64>()
+    }
+
+    /// Returns true if cells that are there by rounding lead from one of them to the hull.
+    fn is_at_hull_by_rounding(&self, start: CellId, q: &[f64; D]) -> bool {
+        let tds = self.t.tds();
+        let mut seen = vec![start];
+        let mut next = 0;
+        while next < seen.len().min(PATIENCE) {
+            let cell = seen[next];
+            next += 1;
+            if tds.is_infinite(cell) {
+                return true;
+            }
+            if self.is_by_rounding(cell, &self.sides(cell, q)) {
+                let beside = (0..N).map(|i| tds.neighbor(cell, i));
+                let new: Vec<CellId> = beside.filter(|beyond| !seen.contains(beyond)).collect();
+                seen.extend(new);
+            }
+        }
+        false
     }
 
     /// Returns true if a position in a cell is at the hull, or in or beside a flat cell there, up
@@ -291,43 +352,48 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
     fn is_at_rim(&self, cell: CellId, q: &[f64; D]) -> bool {
         let sides = self.sides(cell, q);
         let sum: f64 = sides.iter().sum();
-        let is_rim = |beyond: CellId| self.t.tds().is_infinite(beyond) || self.is_flat(beyond, &self.sides(beyond, q));
-        self.is_flat(cell, &sides) || (0..N).any(|i| sides[i] <= BROAD * sum && is_rim(self.t.tds().neighbor(cell, i)))
+        let is_rim =
+            |beyond: CellId| self.t.tds().is_infinite(beyond) || self.is_thin(beyond, &self.sides(beyond, q), FLAT);
+        self.is_thin(cell, &sides, FLAT)
+            || (0..N).any(|i| sides[i] <= BROAD * sum && is_rim(self.t.tds().neighbor(cell, i)))
     }
 
-    /// Searches near a cell for one that is not flat and that contains a position, up to a
-    /// tolerance; flat cells are passed to all sides.
-    fn within_tolerance(&self, q: &[f64; D], start: CellId, tolerance: f64) -> Site<N> {
+    /// Searches near a cell for one that contains a position up to a tolerance, and is not there by
+    /// rounding; those that are there by rounding are passed to all sides, and are second choice.
+    fn within_tolerance(&self, q: &[f64; D], start: CellId, tolerance: f64) -> Option<CellId> {
+        if tolerance == 0.0 {
+            return None;
+        }
         let tds = self.t.tds();
+        let mut second = None;
         let mut seen = vec![start];
         let mut next = 0;
         while next < seen.len().min(PATIENCE) {
             let cell = seen[next];
             next += 1;
             let sides = self.sides(cell, q);
-            let is_flat = self.is_flat(cell, &sides);
+            let is_by_rounding = self.is_by_rounding(cell, &sides);
             let least = (0..N).min_by(|&i, &j| sides[i].total_cmp(&sides[j])).unwrap_or(0);
-            if !is_flat && sides[least] >= -tolerance * sides.iter().sum::<f64>() {
-                return Site::Cell(cell, weights(sides));
+            if sides[least] >= -tolerance * sides.iter().sum::<f64>() {
+                if !is_by_rounding {
+                    return Some(cell);
+                }
+                second = second.or(Some(cell));
             }
-            for i in (0..N).filter(|&i| is_flat || i == least) {
+            for i in (0..N).filter(|&i| is_by_rounding || i == least) {
                 let beyond = tds.neighbor(cell, i);
                 if !tds.is_infinite(beyond) && !seen.contains(&beyond) {
                     seen.push(beyond);
                 }
             }
         }
-        Site::Outside
+        second
     }
 }
 
-/// Returns barycentric coordinates in proportion to volumes. In a cell that is too small for a
-/// double to hold its volume, all corners are as good as one.
+/// Returns barycentric coordinates in proportion to volumes.
 fn weights<const N: usize>(sides: [f64; N]) -> [f64; N] {
     let sides = sides.map(|side| side.max(0.0));
     let sum: f64 = sides.iter().sum();
-    if sum > 0.0 && sum.is_finite() {
-        return sides.map(|side| side / sum);
-    }
-    std::array::from_fn(|i| if i == 0 { 1.0 } else { 0.0 })
+    sides.map(|side| side / sum)
 }
