@@ -1,6 +1,6 @@
 //! Each kind of line with a known answer, and pairs of kinds that cross.
 
-use breakline::data::EdgeKind;
+use breakline::data::{EdgeKind, Surface};
 use breakline::terrain::{Flat, FlatHeight, HighSide, River, TinBuilder, Wall};
 
 /// A plateau at 10 with points 1 apart, 20 wide, centered at the origin.
@@ -113,6 +113,27 @@ fn a_river_falls_evenly_and_is_level_across() {
     }
     assert_eq!(tin.elevation(0.0, 9.0), Some(20.0));
     assert_eq!(tin.report().points_replaced, 5 * 17);
+}
+
+/// Where a line crosses a bank at a slant, rounding puts the vertex beside the water; its height is
+/// that of the bank there.
+#[test]
+fn lines_that_cross_a_river_have_the_height_of_its_banks_there() {
+    let mut builder = TinBuilder::default();
+    builder.add_points(&[0.0, 60.0, 0.0, 60.0], &[0.0, 0.0, 60.0, 60.0], &[25.0; 4]);
+    let banks = [[[5.0, 30.0, 20.0], [55.0, 35.0, 10.0]], [[5.0, 26.0, 20.0], [55.0, 31.0, 10.0]]];
+    builder.add_river(River::between(&banks[0], &banks[1]).unwrap());
+    builder.add_breakline(&[[28.0, 20.0, 30.0], [35.0, 40.0, 30.0]]);
+    let tin = builder.build().unwrap();
+    let crossings: Vec<[f64; 3]> = (0..tin.vertex_count() as u32)
+        .map(|vertex| tin.position(vertex))
+        .filter(|[x, _, _]| *x > 28.0 && *x < 35.0)
+        .collect();
+    assert_eq!(crossings.len(), 2);
+    for [x, y, z] in crossings {
+        let expected = 20.0 - (x - 5.0) / 5.0;
+        assert!((z - expected).abs() < 1e-9, "the vertex at {x} {y} is at {z}, expected {expected}");
+    }
 }
 
 #[test]

@@ -142,6 +142,17 @@ impl River {
         river
     }
 
+    /// The number of stretches between level lines.
+    fn stretch_count(&self) -> usize {
+        self.stations.len() - 1
+    }
+
+    /// The triangles on which the water between a level line and the next is linear.
+    fn triangles(&self, stretch: usize) -> [[[f64; 3]; 3]; 2] {
+        let [[a, b], [c, d]] = [self.stations[stretch], self.stations[stretch + 1]];
+        [[a, b, c], [b, d, c]]
+    }
+
     /// Exchanges upstream and downstream.
     fn reverse(&mut self) {
         self.stations.reverse();
@@ -324,6 +335,25 @@ mod tests {
         upstream.reverse();
         let other = River::along(&upstream, 4.0).unwrap();
         assert_eq!(other.stations, river.stations);
+    }
+
+    /// Beside a bank, the height is that of the bank there, and not that of a level line.
+    #[test]
+    fn a_position_beside_the_water_has_the_nearest_height() {
+        let river = River::along(&[[0.0, 0.0, 5.0], [10.0, 0.0, 3.0], [20.0, 0.0, 3.0]], 4.0).unwrap();
+        let water = RiverWater::new(&river);
+        for (q, expected) in [
+            ([2.5, 2.0_f64.next_up()], 4.5),
+            ([7.5, (-2.0_f64).next_down()], 3.5),
+            ([5.0, 9.0], 4.0),
+            ([-3.0, 1.0], 5.0),
+            ([15.0, 2.5], 3.0),
+            ([23.0, -4.0], 3.0),
+        ] {
+            assert_eq!(water.height(q), expected, "{q:?}");
+            assert_eq!(water.height_within(q), None);
+        }
+        assert_eq!(water.height_within([5.0, 2.0]), Some(4.0));
     }
 
     /// On random banks, stations advance on both and every vertex has one.
