@@ -87,5 +87,14 @@ fn of_building(report: &Bound<'_, PyDict>, built: &BuildReport) -> PyResult<()> 
         found.set_item("lines", heights.collect::<Vec<_>>())?;
         differing.append(found)?;
     }
-    report.set_item("crossing_heights", differing)
+    report.set_item("crossing_heights", differing)?;
+    let overlaps = PyList::empty(py);
+    for overlap in &tin.water_overlaps {
+        let found = PyDict::new(py);
+        found.set_item("at", overlap.at)?;
+        found.set_item("step", overlap.step)?;
+        found.set_item("lines", overlap.lines.map(|line| built.line_names.name(line)))?;
+        overlaps.append(found)?;
+    }
+    report.set_item("water_overlaps", overlaps)
 }

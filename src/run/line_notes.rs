@@ -6,10 +6,10 @@ use std::path::PathBuf;
 use super::context::Journal;
 use super::crossings::LineNames;
 use super::line_request::LineRole;
-use super::notice::Notice;
+use super::notice::{Notice, WaterStep};
 use super::units::Units;
 use crate::data::EdgeKind;
-use crate::terrain::{Inside, RiverHeights, Tin, TinReport};
+use crate::terrain::{Inside, RiverHeights, Tin, TinReport, WaterOverlap};
 use crate::triangulation::LineId;
 
 /// How many lines of an input were used.
@@ -53,6 +53,22 @@ impl LevelRing {
 pub(super) fn note_overlaps(overlaps: &[(String, [f64; 2])], journal: &Journal) {
     if let Some((name, at)) = overlaps.first() {
         journal.add(Notice::RiverOverlap { rivers: overlaps.len(), name: name.clone(), at: *at });
+    }
+}
+
+/// The number of steps in a notice.
+const LISTED: usize = 5;
+
+/// Adds a notice about waters of different heights that overlap.
+pub(super) fn note_water_overlaps(report: &TinReport, names: &LineNames, units: &Units, journal: &Journal) {
+    let step = |overlap: &WaterOverlap| {
+        let [inner, outer] = overlap.lines.map(|line| names.name(line));
+        WaterStep { inner, outer, step: units.height(overlap.step), at: overlap.at }
+    };
+    let overlaps = &report.water_overlaps;
+    if !overlaps.is_empty() {
+        let first = overlaps.iter().take(LISTED).map(step).collect();
+        journal.add(Notice::WaterOverlaps { count: overlaps.len(), first });
     }
 }
 

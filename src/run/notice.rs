@@ -147,6 +147,13 @@ pub enum Notice {
         /// A position near which the banks meet.
         at: [f64; 2],
     },
+    /// Waters of different heights overlap: the lower one counts there.
+    WaterOverlaps {
+        /// The number of pairs that do.
+        count: usize,
+        /// The pairs with the largest steps, at most five.
+        first: Vec<WaterStep>,
+    },
     /// Vertices of walls do not have the heights of their walls, since water counts first.
     WallsInWater {
         /// The number of such vertices.
@@ -194,6 +201,19 @@ pub struct CrossingNote {
     pub high: (f64, String),
     /// The height of the surface.
     pub chosen: f64,
+}
+
+/// A step between two waters that overlap.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WaterStep {
+    /// The water whose height counts.
+    pub inner: String,
+    /// The river that goes on at another height outside of the overlap.
+    pub outer: String,
+    /// The difference.
+    pub step: Quantity,
+    /// Where it is.
+    pub at: [f64; 2],
 }
 
 /// A point of a `.poly` file that names an area.
@@ -264,6 +284,7 @@ impl Notice {
             | Notice::LevelRings { .. }
             | Notice::RiverHeights { .. }
             | Notice::RiverOverlap { .. }
+            | Notice::WaterOverlaps { .. }
             | Notice::WallsInWater { .. }
             | Notice::LinesApart(_)
             | Notice::ExtentApart

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::notice::{CrossingNote, Notice, Seed, SeedFlaw};
+use super::notice::{CrossingNote, Notice, Seed, SeedFlaw, WaterStep};
 use super::units::{Quantity, bytes, neat, number};
 
 /// Formats the notice as the program prints it, without its [details](Notice::details). Options are
@@ -16,7 +16,11 @@ impl fmt::Display for Notice {
 impl Notice {
     /// Returns the lines that explain the notice further, if any.
     pub fn details(&self) -> Vec<String> {
-        let Notice::CrossingHeights { count, first, .. } = self else { return Vec::new() };
+        let (count, first) = match self {
+            Notice::CrossingHeights { count, first, .. } => (count, first),
+            Notice::WaterOverlaps { count, first } if *count > 1 => return steps(*count, first),
+            _ => return Vec::new(),
+        };
         let each = first.iter().map(|CrossingNote { at, low, high, chosen }| {
             let [x, y] = at.map(neat);
             let [low, high] = [low, high].map(|(z, line)| format!("{} of {line}", neat(*z)));
@@ -28,6 +32,20 @@ impl Notice {
         }
         lines
     }
+}
+
+/// The lines that list steps between waters that overlap.
+fn steps(count: usize, first: &[WaterStep]) -> Vec<String> {
+    let mut lines: Vec<String> = first.iter().map(step).collect();
+    if count > first.len() {
+        lines.push(format!("and {} more pairs", count - first.len()));
+    }
+    lines
+}
+
+fn step(WaterStep { inner, outer, step, at }: &WaterStep) -> String {
+    let [x, y] = at.map(neat);
+    format!("a step of {step} at {x} {y}, from {outer} to {inner}")
 }
 
 fn text(notice: &Notice) -> String {
@@ -137,6 +155,13 @@ fn text(notice: &Notice) -> String {
                 "{count} of walls have the height of water, which counts first (at {x} {y} of {name}): draw walls behind \
                  the shore, by more than their width"
             )
+        }
+        Notice::WaterOverlaps { count: 1, first } => {
+            let steps: Vec<String> = first.iter().map(step).collect();
+            format!("two waters overlap, and the lower height, or that of the lake, counts: {}", steps.join(", "))
+        }
+        Notice::WaterOverlaps { count, .. } => {
+            format!("{count} pairs of waters overlap, and the lower height, or that of the lake, counts")
         }
         Notice::LinesApart(role) => format!("nothing of {} lies on the surface", role.option()),
         Notice::CrossingHeights { count, largest, at, .. } => {

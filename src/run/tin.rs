@@ -228,6 +228,7 @@ pub(super) fn build(request: &TinRequest, options: &SystemOptions, journal: &Jou
         layers.add_to(&mut builder, of_layers, &transforms, &units)?;
     line_notes::note_uneven(&uneven, &units, journal);
     line_notes::note_overlaps(&overlaps, journal);
+    builder.mark_overlaps();
 
     let paths: Vec<&Path> = request.points.iter().map(Input::path).collect();
     let mut reach = Reach::new(request, &rim);
@@ -274,6 +275,7 @@ pub(super) fn build(request: &TinRequest, options: &SystemOptions, journal: &Jou
         reach.grow();
     };
     line_notes::count_edges(&mut inputs, &tin);
+    line_notes::note_water_overlaps(tin.report(), &names, &units, journal);
     line_notes::note_walls_in_water(tin.report(), &names, journal);
     if request.bounds.is_none() && !layers.has_boundary() {
         line_notes::note_apart(&inputs, tin.report(), journal);
@@ -310,11 +312,15 @@ pub(super) fn builder_of(request: &TinRequest, units: &Units, crs: Option<Crs>) 
     builder.on_crossing = request.on_crossing;
     builder.crossing_heights = request.crossing_heights;
     builder.crossing_tolerance = request.crossing_tolerance.unwrap_or_else(|| default_tolerance(units));
+    builder.step_width = Some(units.of_metres(STEP_METRES));
     builder.max_edge_inside = request.max_edge_inside;
     builder.bounds = request.bounds.map(|bounds| grown(bounds, 0.0));
     builder.crs = crs;
     builder
 }
+
+/// The distance within which heights change where waters overlap: the default width of a wall.
+const STEP_METRES: f64 = 0.01;
 
 fn default_tolerance(units: &Units) -> f64 {
     units.height_of_metres(DEFAULT_CROSSING_TOLERANCE_METRES)

@@ -28,6 +28,11 @@ impl Extent {
         sites.into_iter().fold(Self::EMPTY, |extent, site| extent.with(Extent { min: site, max: site }))
     }
 
+    /// Returns the box and a distance around it.
+    pub(super) fn grown(self, by: f64) -> Self {
+        Extent { min: self.min.map(|c| c - by), max: self.max.map(|c| c + by) }
+    }
+
     fn with(self, other: Extent) -> Self {
         Extent {
             min: [0, 1].map(|i| self.min[i].min(other.min[i])),

@@ -1,6 +1,8 @@
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use rustc_hash::FxHashMap;
+
 use crate::crs::Crs;
 use crate::data::{Bounds, EdgeKind};
 use crate::error::{Error, Result};
@@ -14,9 +16,11 @@ use super::clip::Clip;
 use super::crossings::{Pass, choose_heights, refuse};
 use super::lines::areas::{self, Level, Leveled, Replaced, Water};
 use super::lines::kinds::{LineKinds, Precedence};
+use super::lines::narrowest;
+use super::lines::overlap::{self, Marks};
 use super::tin::Count;
 use super::window::uncertain;
-use super::{CrossingRule, DuplicateRule, Flat, River, Tin, TinReport, Wall, Window};
+use super::{CrossingRule, DuplicateRule, Flat, River, Tin, TinReport, Wall, WaterOverlap, Window};
 
 /// Builds a [`Tin`] from points and breaklines.
 ///
@@ -61,6 +65,10 @@ pub struct TinBuilder {
     /// The longest edge (in plan, in the units of the data) anywhere: faces with a longer
     /// unconstrained edge are left out, except in water. `None` keeps them.
     pub max_edge_inside: Option<f64>,
+    /// The distance in plan within which heights change where waters of different heights overlap:
+    /// outside of the overlap, a river has its own heights from there on. `None` is 0.01. It is at
+    /// least 1000 units in the last place of the largest coordinate.
+    pub step_width: Option<f64>,
     /// Clips the surface to this box in plan.
     pub bounds: Option<Bounds>,
     /// What was read, if not all points are added but those needed for [`bounds`](Self::bounds).
@@ -80,6 +88,8 @@ pub struct TinBuilder {
     precedences: Vec<Precedence>,
     /// Areas with heights of their own, and the points that they replace.
     waters: Vec<Water>,
+    /// What waters that overlap need; `None` as long as that is not known.
+    overlaps: Option<Overlaps>,
     replaced: Replaced,
     replaced_count: usize,
     /// Lines in plan that the finished surface is cut along.
@@ -89,6 +99,26 @@ pub struct TinBuilder {
     /// The polygons to clip to, as rings in plan.
     boundaries: Vec<Vec<Vec<[f64; 2]>>>,
 }
+
+/// What waters that overlap have added to the lines.
+#[derive(Debug, Clone, Default)]
+struct Overlaps {
+    /// The number of lines before.
+    given: usize,
+    /// For each line that was added, one of the same water that was given.
+    named: Vec<usize>,
+    found: Vec<WaterOverlap>,
+}
+
+impl Overlaps {
+    /// The line that names a line.
+    fn named(&self, line: usize) -> usize {
+        line.checked_sub(self.given).and_then(|added| self.named.get(added).copied()).unwrap_or(line)
+    }
+}
+
+/// The default of [`TinBuilder::step_width`].
+const STEP_WIDTH: f64 = 0.01;
 
 /// The number of vertices that are merged between two looks at the flag that cancels the work.
 const POLL: usize = 1 << 16;
@@ -156,7 +186,7 @@ impl TinBuilder {
         let first = self.line_count();
         flat.rings.iter().for_each(|ring| self.add_line(ring, EdgeKind::Shore));
         let lines = first..self.line_count();
-        self.waters.push(Water { rim: lines.clone().collect(), level: Level::Flat(flat) });
+        self.waters.push(Water { lines: lines.clone(), rim: lines.clone().collect(), level: Level::Flat(flat) });
         lines
     }
 
@@ -170,7 +200,7 @@ impl TinBuilder {
         let lines = first..self.line_count();
         // The banks, and the level lines at both ends.
         let rim = vec![first, first + 1, first + 2, lines.end - 1];
-        self.waters.push(Water { rim, level: Level::River(river) });
+        self.waters.push(Water { lines: lines.clone(), rim, level: Level::River(river) });
         lines
     }
 
@@ -207,6 +237,54 @@ impl TinBuilder {
         let starts = std::iter::once(&0).chain(&self.line_ends);
         let lines = starts.zip(&self.line_ends).map(|(&start, &end)| &self.line_points[start..end]);
         lines.map(|line| line.iter().map(|p| [p[0], p[1]]).collect()).collect()
+    }
+
+    /// Adds the lines that waters need where they overlap, once all of them are known. Building
+    /// does that, too.
+    pub(crate) fn mark_overlaps(&mut self) {
+        let geometry: Terrain = Terrain::default();
+        // What is refused is refused when the surface is built.
+        if self.overlaps.is_some() || !self.line_points.iter().all(|p| geometry.admits(p) && p[2].is_finite()) {
+            return;
+        }
+        let line = |line: usize| self.line(line).to_vec();
+        let Marks { replaced, added, overlaps } = overlap::mark(&self.waters, &line, self.step());
+        self.replace_lines(replaced);
+        let given = self.line_count();
+        let named = added.iter().map(|(line, _)| *line).collect();
+        added.iter().for_each(|(_, line)| self.add_line(line, EdgeKind::Bank));
+        self.overlaps = Some(Overlaps { given, named, found: overlaps });
+    }
+
+    /// The distance within which heights change where waters overlap.
+    fn step(&self) -> f64 {
+        let wanted = self.step_width.unwrap_or(STEP_WIDTH);
+        let largest = self.line_points.iter().flat_map(|p| [p[0].abs(), p[1].abs()]).fold(0.0, f64::max);
+        let narrowest = narrowest(largest);
+        if wanted.is_finite() { wanted.max(narrowest) } else { narrowest }
+    }
+
+    /// The vertices of a line.
+    fn line(&self, number: usize) -> &[[f64; 3]] {
+        let start = if number == 0 { 0 } else { self.line_ends[number - 1] };
+        &self.line_points[start..self.line_ends[number]]
+    }
+
+    /// Gives some lines other vertices.
+    fn replace_lines(&mut self, replaced: Vec<(usize, Vec<[f64; 3]>)>) {
+        if replaced.is_empty() {
+            return;
+        }
+        let mut replaced: FxHashMap<usize, Vec<[f64; 3]>> = replaced.into_iter().collect();
+        let lines: Vec<Vec<[f64; 3]>> = (0..self.line_count())
+            .map(|number| replaced.remove(&number).unwrap_or_else(|| self.line(number).to_vec()))
+            .collect();
+        self.line_points.clear();
+        self.line_ends.clear();
+        for line in lines {
+            self.line_points.extend(line.into_iter().map(positive_zero));
+            self.line_ends.push(self.line_points.len());
+        }
     }
 
     fn add_line(&mut self, line: &[[f64; 3]], kind: EdgeKind) {
@@ -267,8 +345,11 @@ impl TinBuilder {
     /// [`Canceled`](crate::error::Kind::Canceled).
     pub fn build_named(mut self, name: &dyn Fn(usize) -> String, cancel: &AtomicBool) -> Result<Tin> {
         let go_on = || if cancel.load(Ordering::Relaxed) { Err(Error::canceled()) } else { Ok(()) };
-        let mut report =
-            TinReport { points: self.points.len(), breaklines: self.line_ends.len(), ..Default::default() };
+        self.mark_overlaps();
+        let given = self.line_count();
+        let overlaps = self.overlaps.take().unwrap_or_else(|| Overlaps { given, ..Overlaps::default() });
+        let name: &dyn Fn(usize) -> String = &|line| name(overlaps.named(line));
+        let mut report = TinReport { points: self.points.len(), breaklines: overlaps.given, ..Default::default() };
         let geometry: Terrain = Terrain::default();
         let bad = |p: &[f64; 3]| !geometry.admits(p) || !p[2].is_finite();
         if let Some(at) = self.points.iter().position(bad) {
@@ -279,9 +360,10 @@ impl TinBuilder {
             return Err(refused(self.line_points[at]).at(name(line)));
         }
 
+        report.water_overlaps.clone_from(&overlaps.found);
         self.take_replaced_points();
         report.points_replaced = self.replaced_count;
-        let walls = self.walls();
+        let [walls, rims] = [self.walls(), self.rims()];
         // One vertex per site, in spatial order.
         let Sites { vertices, line_vertices, mut disputed } = self.merge(&mut report, &go_on)?;
         go_on()?;
@@ -313,7 +395,7 @@ impl TinBuilder {
         if let Some(bounds) = &self.bounds {
             report.crossing_heights.retain(|crossing| bounds.holds(crossing.site[0], crossing.site[1]));
         }
-        let Leveled { is_water, sites } = areas::level(&mut triangulation, &self.waters, name)?;
+        let Leveled { is_water, sites } = areas::level(&mut triangulation, &self.waters, &rims, name)?;
         for (line, heights) in walls {
             let vertices = triangulation.line_vertices(LineId::new(line)).iter().zip(heights);
             let at = vertices.map(|(vertex, height)| (*triangulation.point(*vertex), height));
@@ -326,6 +408,9 @@ impl TinBuilder {
         }
         // In water, no line decides.
         report.crossing_heights.retain(|crossing| !sites.contains(&crossing.site.map(f64::to_bits)));
+        report.crossing_heights.iter_mut().flat_map(|crossing| &mut crossing.heights).for_each(|(line, _)| {
+            *line = overlaps.named(*line);
+        });
         if self.crossing_heights == CrossingRule::Refuse {
             refuse(&report.crossing_heights, self.crossing_tolerance, name)?;
         }
@@ -370,15 +455,17 @@ impl TinBuilder {
     /// The numbers of the edges of walls, with the heights of their vertices; none if there is no
     /// water.
     fn walls(&self) -> Vec<(usize, Vec<f64>)> {
-        if self.waters.is_empty() {
-            return Vec::new();
-        }
-        let walls = (0..self.line_count()).filter(|&line| self.line_kinds[line] == EdgeKind::Wall);
-        let heights = |line: usize| {
-            let start = if line == 0 { 0 } else { self.line_ends[line - 1] };
-            (line, self.line_points[start..self.line_ends[line]].iter().map(|p| p[2]).collect())
-        };
-        walls.map(heights).collect()
+        let is_wall = |line: &usize| self.line_kinds[*line] == EdgeKind::Wall;
+        if self.waters.is_empty() { Vec::new() } else { self.heights_of((0..self.line_count()).filter(is_wall)) }
+    }
+
+    /// The numbers of the lines around waters, with the heights of their vertices.
+    fn rims(&self) -> Vec<(usize, Vec<f64>)> {
+        self.heights_of(self.waters.iter().flat_map(|water| water.rim.iter().copied()))
+    }
+
+    fn heights_of(&self, lines: impl Iterator<Item = usize>) -> Vec<(usize, Vec<f64>)> {
+        lines.map(|line| (line, self.line(line).iter().map(|p| p[2]).collect())).collect()
     }
 
     /// Merges the points and vertices that share a site, by the rules. Leaves `self.points` empty.

@@ -208,8 +208,8 @@ fn the_kind_that_comes_first_decides_where_two_cross() {
     let tin = builder.build().unwrap();
     assert_eq!(
         (tin.elevation(0.5, 0.5), tin.elevation(0.5, 5.0)),
-        (Some(4.0), Some(4.5)),
-        "it falls from its end to the lake"
+        (Some(4.0), Some(5.0)),
+        "it is level up to the step at the shore"
     );
     // A hole over a lake.
     let mut builder = plateau();

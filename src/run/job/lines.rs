@@ -70,6 +70,7 @@ impl Known {
         let added = layers.add_to(&mut builder, &transforms.by_file, &transforms, &units)?;
         line_notes::note_uneven(&added.uneven, &units, journal);
         line_notes::note_overlaps(&added.overlaps, journal);
+        builder.mark_overlaps();
         let in_plan = builder.lines_in_plan();
         let mut of_lines = Bounds::default();
         in_plan.iter().flatten().for_each(|&[x, y]| of_lines.add([x, y, 0.0]));
@@ -122,8 +123,10 @@ impl JobLines {
         builder.add_owned_points(sides[0].iter().flat_map(|&x| sides[1].map(|y| [x, y, 0.0])).collect());
         builder.max_edge_inside = None;
         let tin = builder.build_named(&|line| self.names.name(line), journal.context.cancel)?;
+        let units = Units::of(crs);
+        line_notes::note_water_overlaps(tin.report(), &self.names, &units, journal);
         line_notes::note_walls_in_water(tin.report(), &self.names, journal);
-        crossings::note(tin.report(), &self.names, &Units::of(crs), journal);
+        crossings::note(tin.report(), &self.names, &units, journal);
         Ok(tin)
     }
 }

@@ -3,6 +3,7 @@
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use std::cell::OnceCell;
+use std::ops::Range;
 
 use super::{Flat, River, RiverWater, Wall};
 use crate::error::{Error, Result};
@@ -17,6 +18,8 @@ use crate::triangulation::tds::{CellId, VertexId};
 /// An area of water, and the numbers of the lines around it.
 #[derive(Debug, Clone)]
 pub(in crate::terrain) struct Water {
+    /// All lines of the water.
+    pub(in crate::terrain) lines: Range<usize>,
     /// The lines that bound the area together.
     pub(in crate::terrain) rim: Vec<usize>,
     pub(in crate::terrain) level: Level,
@@ -29,8 +32,18 @@ pub(in crate::terrain) enum Level {
     River(River),
 }
 
+impl Level {
+    /// The rings around the water, in plan.
+    pub(in crate::terrain) fn rings(&self) -> Rings {
+        match self {
+            Level::Flat(flat) => flat.rings.iter().map(|ring| ring.iter().map(|p| [p[0], p[1]]).collect()).collect(),
+            Level::River(river) => vec![river.ring()],
+        }
+    }
+}
+
 /// The rings of a polygon, in plan.
-type Rings = Vec<Vec<[f64; 2]>>;
+pub(in crate::terrain) type Rings = Vec<Vec<[f64; 2]>>;
 
 /// The points that areas of water and walls replace.
 #[derive(Debug, Clone, Default)]
@@ -127,6 +140,9 @@ pub(in crate::terrain) struct Leveled {
 /// In a lake that is the height of the lake, to the last bit. In a river it is the height between
 /// the level lines; where rivers overlap, the lowest. A lake counts before a river.
 ///
+/// `given` are the heights that the vertices of the lines around rivers were given with, by the
+/// numbers of the lines.
+///
 /// # Errors
 /// If lakes of different heights overlap or touch.
 ///
@@ -135,6 +151,7 @@ pub(in crate::terrain) struct Leveled {
 pub(in crate::terrain) fn level(
     triangulation: &mut ConstrainedDelaunay<Terrain>,
     waters: &[Water],
+    given: &[(usize, Vec<f64>)],
     name: &dyn Fn(usize) -> String,
 ) -> Result<Leveled> {
     if waters.is_empty() {
@@ -160,13 +177,7 @@ pub(in crate::terrain) fn level(
         regions.len() as u32 - 1
     });
 
-    // The vertices that the lines around rivers were given with.
-    let rivers = waters.iter().enumerate().filter(|(_, water)| matches!(water.level, Level::River(_)));
-    let given = rivers.flat_map(|(area, water)| {
-        let lines = water.rim.iter().flat_map(|&line| triangulation.line_vertices(LineId::new(line)));
-        lines.map(move |vertex| (area, *vertex))
-    });
-    let own: FxHashSet<(Domain, VertexId)> = given.collect();
+    let own = own_heights(triangulation, waters, given);
     // The areas around each vertex, in order.
     let mut around: FxHashMap<VertexId, Vec<Domain>> = FxHashMap::default();
     for cell in tds.cells().filter(|cell| region[cell.index()] != 0) {
@@ -182,7 +193,7 @@ pub(in crate::terrain) fn level(
     for (vertex, mut areas) in vertices {
         areas.sort_unstable();
         areas.dedup();
-        let [x, y, z] = *triangulation.point(vertex);
+        let [x, y, _] = *triangulation.point(vertex);
         let lakes = areas.iter().filter_map(|&area| match &waters[area].level {
             Level::Flat(flat) => Some((area, flat.height)),
             Level::River(_) => None,
@@ -196,8 +207,10 @@ pub(in crate::terrain) fn level(
             continue;
         }
         let rivers = areas.iter().filter_map(|&area| match &waters[area].level {
-            Level::River(_) if own.contains(&(area, vertex)) => Some(z),
-            Level::River(river) => Some(surfaces[area].get_or_init(|| RiverWater::new(river)).height([x, y])),
+            Level::River(river) => Some(match own.get(&(area, vertex)) {
+                Some(height) => *height,
+                None => surfaces[area].get_or_init(|| RiverWater::new(river)).height([x, y]),
+            }),
             Level::Flat(_) => None,
         });
         let lowest = rivers.fold(f64::INFINITY, f64::min);
@@ -213,6 +226,27 @@ pub(in crate::terrain) fn level(
         triangulation.replace_point(vertex, [x, y, height]);
     }
     Ok(Leveled { is_water, sites })
+}
+
+/// The heights that the lines around each river were given with at their vertices; the lowest if
+/// they differ.
+fn own_heights(
+    triangulation: &ConstrainedDelaunay<Terrain>,
+    waters: &[Water],
+    given: &[(usize, Vec<f64>)],
+) -> FxHashMap<(Domain, VertexId), f64> {
+    let rivers = waters.iter().enumerate().filter(|(_, water)| matches!(water.level, Level::River(_)));
+    let areas: FxHashMap<usize, Domain> =
+        rivers.flat_map(|(area, water)| water.rim.iter().map(move |&line| (line, area))).collect();
+    let mut own: FxHashMap<(Domain, VertexId), f64> = FxHashMap::default();
+    for (line, heights) in given {
+        let Some(&area) = areas.get(line) else { continue };
+        for (&vertex, &height) in triangulation.line_vertices(LineId::new(*line)).iter().zip(heights) {
+            let lowest = own.entry((area, vertex)).or_insert(height);
+            *lowest = lowest.min(height);
+        }
+    }
+    own
 }
 
 #[cold]

@@ -17,11 +17,14 @@ mod flat;
 mod joints;
 pub(super) mod kinds;
 mod offset;
+pub(super) mod overlap;
 mod river;
 mod wall;
 
 pub use densify::densified;
 pub use flat::{Flat, FlatHeight};
+pub use overlap::WaterOverlap;
 pub(super) use river::RiverWater;
 pub use river::{River, RiverHeights};
+pub(super) use wall::narrowest;
 pub use wall::{HighSide, Wall};

@@ -38,6 +38,11 @@ pub struct Wall {
 /// to such units, and must not exchange the edges.
 const NARROWEST: f64 = 1000.0;
 
+/// The least distance between lines next to each other, for a largest coordinate.
+pub(in crate::terrain) fn narrowest(largest: f64) -> f64 {
+    NARROWEST * (largest.next_up() - largest)
+}
+
 impl Wall {
     /// Returns a wall from its upper edge and the height of the lower edge at each of its vertices.
     ///
@@ -82,7 +87,7 @@ impl Wall {
                 .cure("give the lower edge with --wall-bottom or --wall-drop, or use --breaklines"));
         }
         let largest = vertices.iter().flat_map(|(p, _)| [p[0].abs(), p[1].abs()]).fold(0.0, f64::max);
-        let narrowest = NARROWEST * (largest.next_up() - largest);
+        let narrowest = narrowest(largest);
         if !(width >= narrowest && width.is_finite()) {
             return Err(Error::usage(format!("a wall of width {width}, expected at least {narrowest:e}")));
         }

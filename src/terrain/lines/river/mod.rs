@@ -143,14 +143,27 @@ impl River {
     }
 
     /// The number of stretches between level lines.
-    fn stretch_count(&self) -> usize {
+    pub(in crate::terrain) fn stretch_count(&self) -> usize {
         self.stations.len() - 1
     }
 
-    /// The triangles on which the water between a level line and the next is linear.
-    fn triangles(&self, stretch: usize) -> [[[f64; 3]; 3]; 2] {
+    /// The ends of the level lines before and after a stretch: left, right, left, right.
+    pub(in crate::terrain) fn corners(&self, stretch: usize) -> [[f64; 3]; 4] {
         let [[a, b], [c, d]] = [self.stations[stretch], self.stations[stretch + 1]];
-        [[a, b, c], [b, d, c]]
+        [a, b, c, d]
+    }
+
+    /// The triangles on which the water between a level line and the next is linear.
+    pub(in crate::terrain) fn triangles(&self, stretch: usize) -> Vec<[[f64; 3]; 3]> {
+        let [a, b, c, d] = self.corners(stretch);
+        vec![[a, b, c], [b, d, c]]
+    }
+
+    /// The edges between the triangles of a stretch, if they are within it.
+    pub(in crate::terrain) fn diagonals(&self, stretch: usize) -> Vec<[[f64; 3]; 2]> {
+        let [a, b, c, d] = self.corners(stretch);
+        let is_within = orientation([b, c, a]) * orientation([b, c, d]) == Sign::Negative;
+        if is_within { vec![[b, c]] } else { Vec::new() }
     }
 
     /// Exchanges upstream and downstream.
@@ -274,7 +287,7 @@ fn distance(p: [f64; 3], q: [f64; 3]) -> f64 {
 }
 
 /// Returns true if two segments share a point other than a common end.
-fn cross([a, b]: &[[f64; 3]; 2], [c, d]: &[[f64; 3]; 2]) -> bool {
+pub(in crate::terrain) fn cross([a, b]: &[[f64; 3]; 2], [c, d]: &[[f64; 3]; 2]) -> bool {
     let is_apart = |k: usize| a[k].max(b[k]) < c[k].min(d[k]) || c[k].max(d[k]) < a[k].min(b[k]);
     if is_apart(0) || is_apart(1) {
         return false;

@@ -7,31 +7,30 @@ use crate::terrain::nearest::{nearest_part, squared_distance};
 
 /// The surface of a river, prepared for queries.
 #[derive(Debug)]
-pub(in crate::terrain) struct RiverWater<'a> {
-    river: &'a River,
-    stretches: Boxes<Stretch>,
-}
+pub(in crate::terrain) struct RiverWater(Boxes<Part>);
 
-/// What lies between two level lines, with the number of the first.
+/// A triangle on which the height is linear.
 #[derive(Debug, Clone, Copy)]
-struct Stretch {
-    number: usize,
-    extent: Extent,
-}
+struct Part([[f64; 3]; 3]);
 
-impl Boxed for Stretch {
+impl Boxed for Part {
     fn extent(&self) -> Extent {
-        self.extent
+        Extent::of(self.0)
     }
 }
 
-impl<'a> RiverWater<'a> {
+impl Part {
+    fn sides(&self) -> [[[f64; 3]; 2]; 3] {
+        let [a, b, c] = self.0;
+        [[a, b], [b, c], [c, a]]
+    }
+}
+
+impl RiverWater {
     /// # Complexity
     /// O(n log n) for n level lines.
-    pub(in crate::terrain) fn new(river: &'a River) -> Self {
-        let boxed =
-            |number: usize| Stretch { number, extent: Extent::of(river.triangles(number).into_iter().flatten()) };
-        RiverWater { river, stretches: Boxes::new((0..river.stretch_count()).map(boxed).collect()) }
+    pub(in crate::terrain) fn new(river: &River) -> Self {
+        RiverWater(Boxes::new((0..river.stretch_count()).flat_map(|k| river.triangles(k)).map(Part).collect()))
     }
 
     /// The height of the water at a position, the lowest if the river overlaps itself there;
@@ -48,9 +47,9 @@ impl<'a> RiverWater<'a> {
     /// outside of it.
     pub(in crate::terrain) fn height_within(&self, q: [f64; 2]) -> Option<f64> {
         let mut lowest = f64::INFINITY;
-        self.stretches.find(q, |stretch| {
-            for corners in self.river.triangles(stretch.number).into_iter().filter(|corners| contains(*corners, q)) {
-                lowest = lowest.min(linear(corners, q));
+        self.0.find(q, |Part(corners)| {
+            if contains(*corners, q) {
+                lowest = lowest.min(linear(*corners, q));
             }
             None::<()>
         });
@@ -59,19 +58,31 @@ impl<'a> RiverWater<'a> {
 
     /// The height at the nearest position; of several, the lowest.
     fn nearest_height(&self, q: [f64; 2]) -> f64 {
-        let mut nearest = (f64::INFINITY, f64::NAN);
-        self.stretches.around(q, &mut Vec::new(), |stretch| {
-            for [a, b, c] in self.river.triangles(stretch.number) {
-                for [from, to] in [[a, b], [b, c], [c, a]] {
-                    let found = (squared_distance([flat(from), flat(to)], q), height_near([from, to], q));
-                    if found < nearest || nearest.1.is_nan() {
-                        nearest = found;
-                    }
+        let mut nearest = (f64::INFINITY, f64::INFINITY);
+        self.0.around(q, &mut Vec::new(), |part| {
+            for side in part.sides() {
+                let found = (squared_distance(side.map(flat), q), height_near(side, q));
+                if found < nearest {
+                    nearest = found;
                 }
             }
             nearest.0
         });
         nearest.1
+    }
+
+    /// The parts of a segment, from 0 to 1, between which the height along it is linear.
+    pub(in crate::terrain) fn parts_of(&self, [from, to]: [[f64; 2]; 2]) -> Vec<f64> {
+        let mut parts = Vec::new();
+        self.0.find_in(Extent::of_plan([from, to]), |part| {
+            for [a, b] in part.sides() {
+                let turn = |p: [f64; 2]| (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]);
+                let [before, after] = [turn(from), turn(to)];
+                parts.extend([before / (before - after)].into_iter().filter(|part| *part > 0.0 && *part < 1.0));
+            }
+            None::<()>
+        });
+        parts
     }
 }
 

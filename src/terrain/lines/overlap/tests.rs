@@ -1,0 +1,223 @@
+//! Known answers and a random law: the lower height in overlaps, own heights outside.
+
+use crate::data::{Surface, orientation};
+use crate::terrain::linear::linear;
+use crate::terrain::lines::RiverWater;
+use crate::terrain::nearest::squared_distance;
+use crate::terrain::{Flat, FlatHeight, River, Tin, TinBuilder};
+use crate::triangulation::num::Sign;
+use testkit::random::Random;
+
+const STEP: f64 = 1.0 / 1024.0;
+
+fn over_ground(rivers: &[River], side: f64) -> TinBuilder {
+    let mut builder = TinBuilder::default();
+    builder.step_width = Some(STEP);
+    builder.add_points(&[-1.0, side, -1.0, side], &[-1.0, -1.0, side, side], &[30.0; 4]);
+    rivers.iter().for_each(|river| drop(builder.add_river(river.clone())));
+    builder
+}
+
+fn along(line: &[[f64; 3]], width: f64) -> River {
+    River::along(line, width).unwrap()
+}
+
+fn is_at(tin: &Tin, at: [f64; 2], expected: f64) {
+    let found = tin.elevation(at[0], at[1]).unwrap();
+    assert!((found - expected).abs() < 1e-9, "{at:?} is at {found}, expected {expected}");
+}
+
+#[test]
+fn a_river_over_a_lower_one_has_a_step_at_both_of_its_banks() {
+    let rivers = [
+        along(&[[0.0, 10.0, 8.0], [20.0, 10.0, 8.0]], 4.0), // higher, from west to east
+        along(&[[10.0, 20.0, 6.0], [10.0, 0.0, 4.0]], 2.0),
+    ];
+    let tin = over_ground(&rivers, 21.0).build().unwrap();
+    for (x, y) in [(9.0, 10.0), (11.0, 10.0), (10.0, 12.0), (10.0, 8.0), (9.5, 11.5), (10.0, 15.0), (10.25, 10.3)] {
+        is_at(&tin, [x, y], 4.0 + y / 10.0);
+    }
+    for x in [9.0 - STEP, 11.0 + STEP] {
+        for y in [8.0, 8.3, 10.0, 12.0] {
+            is_at(&tin, [x, y], 8.0);
+            is_at(&tin, [20.0 - 1.5 * x, y], 8.0);
+        }
+    }
+    let [overlap] = tin.report().water_overlaps.as_slice() else { panic!() };
+    assert_eq!(overlap.lines, [4, 0]);
+    assert!((overlap.step - 3.2).abs() < 1e-9 && overlap.at[1] == 8.0, "{overlap:?}");
+    assert!([9.0, 11.0].contains(&overlap.at[0]));
+}
+
+#[test]
+fn where_two_rivers_have_the_same_height_there_is_a_crease() {
+    // Both fall across the overlap, and are equal on its diagonal.
+    let rivers =
+        [along(&[[0.0, 10.0, 20.0], [20.0, 10.0, 0.0]], 4.0), along(&[[10.0, 0.0, 20.0], [10.0, 20.0, 0.0]], 4.0)];
+    let tin = over_ground(&rivers, 21.0).build().unwrap();
+    for i in 0..=16 {
+        for j in 0..=16 {
+            let [x, y] = [i, j].map(|k| 8.0 + f64::from(k) / 4.0);
+            is_at(&tin, [x, y], (20.0 - x).min(20.0 - y));
+        }
+    }
+    for along in [8.0, 9.0, 10.0, 12.0] {
+        is_at(&tin, [8.0 - STEP, along], 12.0 + STEP);
+        is_at(&tin, [12.0 + STEP, along], 8.0 - STEP);
+        is_at(&tin, [along, 8.0 - STEP], 12.0 + STEP);
+    }
+    // The step grows from nothing at one corner to 4 at the next.
+    let [overlap] = tin.report().water_overlaps.as_slice() else { panic!() };
+    assert!((overlap.step - 4.0).abs() < 1e-9, "{overlap:?}");
+}
+
+#[test]
+fn a_river_given_twice_is_one_river() {
+    let river = along(&[[0.0, 10.0, 20.0], [10.0, 10.0, 5.0], [20.0, 13.0, 0.0]], 4.0);
+    let once = over_ground(std::slice::from_ref(&river), 21.0).build().unwrap();
+    let twice = over_ground(&[river.clone(), river.clone()], 21.0).build().unwrap();
+    assert_eq!(twice.report().water_overlaps, []);
+    assert_eq!(once.vertex_count(), twice.vertex_count());
+    let water = RiverWater::new(&river);
+    for k in 0..200 {
+        let q = [f64::from(k) / 10.0, 8.5 + f64::from(k % 7) / 3.0];
+        if let Some(height) = water.height_within(q) {
+            is_at(&twice, q, height);
+        }
+    }
+}
+
+#[test]
+fn a_river_through_a_lake_is_level_up_to_its_shore() {
+    for height in [3.0, 5.0, 9.0] {
+        let mut builder = over_ground(&[along(&[[0.0, 10.0, 5.0], [20.0, 10.0, 5.0]], 4.0)], 21.0);
+        let corners = [[8.0, 6.0], [12.0, 6.0], [13.0, 14.0], [8.0, 14.0], [8.0, 6.0]];
+        let shore: Vec<[f64; 3]> = corners.iter().map(|[x, y]| [*x, *y, height]).collect();
+        builder.add_flat(Flat::new(&[shore], FlatHeight::Lowest).unwrap());
+        let tin = builder.build().unwrap();
+        for (x, y) in [(8.0, 10.0), (10.0, 9.0), (12.25, 8.0), (12.75, 12.0)] {
+            is_at(&tin, [x, y], height);
+        }
+        for (x, y) in [(8.0 - STEP, 8.0), (8.0 - STEP, 12.0), (7.5, 9.0), (12.26, 8.0), (12.76, 12.0), (19.0, 10.0)] {
+            is_at(&tin, [x, y], 5.0);
+        }
+        let steps: Vec<f64> = tin.report().water_overlaps.iter().map(|overlap| overlap.step).collect();
+        assert_eq!(steps, if height == 5.0 { vec![] } else { vec![(height - 5.0_f64).abs()] });
+    }
+}
+
+#[test]
+fn coordinates_of_a_country_are_as_good_as_small_ones() {
+    let [east, north] = [4_649_000.123, 5_400_000.457];
+    let at = |x: f64, y: f64, z: f64| [east + x, north + y, z];
+    let rivers =
+        [along(&[at(0.0, 10.0, 8.0), at(20.0, 11.0, 8.0)], 4.0), along(&[at(10.0, 20.0, 6.0), at(9.0, 0.0, 4.0)], 2.0)];
+    let mut builder = TinBuilder::default();
+    builder.add_points(
+        &[-1.0, 21.0, -1.0, 21.0].map(|x| east + x),
+        &[-1.0, -1.0, 21.0, 21.0].map(|y| north + y),
+        &[30.0; 4],
+    );
+    rivers.iter().for_each(|river| drop(builder.add_river(river.clone())));
+    let tin = builder.build().unwrap();
+    let waters = [RiverWater::new(&rivers[0]), RiverWater::new(&rivers[1])];
+    let mut judged = 0;
+    for k in 0..4000 {
+        let q = [east + f64::from(k % 61) / 3.0, north + f64::from(k / 61) / 3.1];
+        let found = tin.elevation(q[0], q[1]).unwrap();
+        let heights = waters.each_ref().map(|water| water.height_within(q));
+        let expected = match heights {
+            [Some(p), Some(q)] => p.min(q),
+            [Some(_), None] if (q[0] - east - 9.5).abs() < 2.0 => continue,
+            [Some(p), None] | [None, Some(p)] => p,
+            [None, None] => continue,
+        };
+        judged += 1;
+        assert!((found - expected).abs() < 1e-6, "{q:?}: {found}, expected {expected}");
+    }
+    assert!(judged > 500);
+}
+
+/// The height in a stretch if it is divided along its other diagonal.
+fn other_height(river: &River, q: [f64; 2]) -> Option<f64> {
+    let holds = |[a, b, c]: [[f64; 3]; 3]| {
+        let q = [q[0], q[1], 0.0];
+        let turn = orientation([a, b, c]);
+        turn != Sign::Zero
+            && [[a, b], [b, c], [c, a]].iter().all(|[p, r]| turn * orientation([*p, *r, q]) != Sign::Negative)
+    };
+    (0..river.stretch_count()).find_map(|k| {
+        let [a, b, c, d] = river.corners(k);
+        [[a, b, d], [a, d, c]].into_iter().find(|corners| holds(*corners)).map(|corners| linear(corners, q))
+    })
+}
+
+/// What is wrong with a surface of rivers at a position.
+fn flaw(tin: &Tin, rivers: &[River], waters: &[RiverWater], q: [f64; 2], reach: f64) -> Option<String> {
+    let inside: Vec<usize> = (0..rivers.len()).filter(|&k| waters[k].height_within(q).is_some()).collect();
+    let [first, ..] = inside.as_slice() else { return None };
+    let is_beside = |k: &usize| {
+        let ring = rivers[*k].ring();
+        let sides = ring.iter().zip(ring.iter().cycle().skip(1)).map(|(p, r)| [*p, *r]);
+        sides.map(|side| squared_distance(side, q).sqrt()).fold(f64::INFINITY, f64::min) < reach
+    };
+    if (0..rivers.len()).filter(|k| !inside.contains(k)).any(|k| is_beside(&k)) {
+        return None;
+    }
+    let found = tin.elevation(q[0], q[1])?;
+    let own = inside.iter().filter_map(|&k| waters[k].height_within(q)).fold(f64::INFINITY, f64::min);
+    let other = if inside.len() == 1 { other_height(&rivers[*first], q).unwrap_or(own) } else { own };
+    let is_right = own.min(other) - 1e-6 <= found && found <= own.max(other) + 1e-6;
+    (!is_right).then(|| format!("{q:?} in {inside:?} is at {found}, expected {own} to {other}"))
+}
+
+/// Returns true if two rivers touch at a vertex, or a stretch is not convex.
+fn is_special(rivers: &[River]) -> bool {
+    let turn = |a: [f64; 2], b: [f64; 2], c: [f64; 2]| orientation([a, b, c].map(|[x, y]| [x, y, 0.0]));
+    let is_on = |[from, to]: [[f64; 2]; 2], p: [f64; 2]| {
+        turn(from, to, p) == Sign::Zero && squared_distance([from, to], p) <= f64::EPSILON
+    };
+    let rings: Vec<Vec<[f64; 2]>> = rivers.iter().map(River::ring).collect();
+    let touch = |p: &[[f64; 2]], q: &[[f64; 2]]| {
+        q.iter().zip(q.iter().cycle().skip(1)).any(|(a, b)| p.iter().any(|vertex| is_on([*a, *b], *vertex)))
+    };
+    let is_concave = |[a, b, c, d]: [[f64; 3]; 4]| {
+        [[a, b, c], [b, d, c], [a, b, d], [a, d, c]].map(orientation).windows(2).any(|pair| pair[0] != pair[1])
+    };
+    (0..rings.len()).any(|i| (0..rings.len()).any(|j| i != j && touch(&rings[i], &rings[j])))
+        || rivers.iter().any(|river| (0..river.stretch_count()).any(|k| is_concave(river.corners(k))))
+}
+
+/// The number of random sets of rivers.
+fn count() -> u64 {
+    std::env::var("BREAKLINE_OVERLAPS").ok().and_then(|n| n.parse().ok()).unwrap_or(150)
+}
+
+#[test]
+fn random_rivers_keep_their_heights() {
+    let mut judged = 0;
+    let mut wrong: Vec<String> = Vec::new();
+    for seed in 0..count() {
+        let mut random = Random(seed);
+        let mut line = |count: usize| -> Vec<[f64; 3]> {
+            (0..count).map(|_| [random.index(13) as f64, random.index(13) as f64, random.index(9) as f64]).collect()
+        };
+        let lines: Vec<Vec<[f64; 3]>> = (0..2 + seed as usize % 3).map(|k| line(2 + k % 2)).collect();
+        let rivers: Vec<River> =
+            lines.iter().filter_map(|line| River::along(line, 1.0 + (seed % 2) as f64).ok()).collect();
+        if rivers.len() < 2 || rivers.iter().any(|river| river.overlap().is_some()) || is_special(&rivers) {
+            continue;
+        }
+        let tin = over_ground(&rivers, 14.0).build().unwrap();
+        let waters: Vec<RiverWater> = rivers.iter().map(RiverWater::new).collect();
+        let vertices = (0..tin.vertex_count() as u32).map(|vertex| tin.position(vertex)).map(|[x, y, _]| [x, y]);
+        let cells = (0..50 * 50).map(|k| [f64::from(k % 50), f64::from(k / 50)].map(|c| c / 4.0 + 0.0625));
+        let flaws = vertices.chain(cells).filter_map(|q| flaw(&tin, &rivers, &waters, q, STEP * 1.001));
+        judged += 1;
+        if let Some(first) = flaws.into_iter().next() {
+            wrong.push(format!("seed {seed}: {first}\n{lines:?}"));
+        }
+    }
+    assert!(wrong.is_empty(), "{} of {judged} are wrong:\n{}", wrong.len(), wrong[..wrong.len().min(5)].join("\n"));
+    assert!(judged * 3 > count(), "{judged}");
+}
