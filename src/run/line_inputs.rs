@@ -17,8 +17,9 @@ use crate::data::{Bounds, Layer, Shape};
 use crate::error::{Error, Result};
 use crate::terrain::{Flat, FlatHeight, River, RiverHeights, TinBuilder, Wall, densified};
 
-/// The default distance between the upper and the lower edge of a wall.
-const WALL_WIDTH_METRES: f64 = 0.01;
+/// The default distance between the upper and the lower edge of a wall. Steps between waters are as
+/// wide.
+pub(super) const WALL_WIDTH_METRES: f64 = 0.01;
 
 /// The layers of a request, by what they are used as.
 pub(super) struct LineLayers<'a> {
@@ -383,7 +384,7 @@ impl Adding<'_> {
                 rivers.push(river);
             }
         }
-        River::join(&mut rivers);
+        River::join(&mut rivers, self.units.of_metres(WALL_WIDTH_METRES));
         let mut by_number: Vec<Vec<(Drawn, River)>> = layers.iter().map(|_| Vec::new()).collect();
         for ((number, line), river) in lines.into_iter().zip(rivers) {
             by_number[number].push((line, river));

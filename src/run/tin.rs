@@ -9,7 +9,7 @@ use super::context::{Journal, Size, Stage};
 use super::crossings::{self, LineNames};
 use super::extents;
 use super::input::{Input, MemoryPoints};
-use super::line_inputs::{Added, LineLayers};
+use super::line_inputs::{Added, LineLayers, WALL_WIDTH_METRES};
 use super::line_notes::{self, LineInput};
 use super::line_request::{LineRequest, LineRole};
 use super::memory;
@@ -312,15 +312,12 @@ pub(super) fn builder_of(request: &TinRequest, units: &Units, crs: Option<Crs>) 
     builder.on_crossing = request.on_crossing;
     builder.crossing_heights = request.crossing_heights;
     builder.crossing_tolerance = request.crossing_tolerance.unwrap_or_else(|| default_tolerance(units));
-    builder.step_width = Some(units.of_metres(STEP_METRES));
+    builder.step_width = Some(units.of_metres(WALL_WIDTH_METRES));
     builder.max_edge_inside = request.max_edge_inside;
     builder.bounds = request.bounds.map(|bounds| grown(bounds, 0.0));
     builder.crs = crs;
     builder
 }
-
-/// The distance within which heights change where waters overlap: the default width of a wall.
-const STEP_METRES: f64 = 0.01;
 
 fn default_tolerance(units: &Units) -> f64 {
     units.height_of_metres(DEFAULT_CROSSING_TOLERANCE_METRES)

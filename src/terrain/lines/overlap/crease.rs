@@ -68,8 +68,8 @@ impl Sketch {
                 }
             }
         }
-        let made = ConstrainedDelaunay::from_lines(Terrain::default(), &points, &lines, OnCrossing::Split);
-        let (triangulation, _) = made.ok()?;
+        let built = ConstrainedDelaunay::from_lines(Terrain::default(), &points, &lines, OnCrossing::Split);
+        let (triangulation, _) = built.ok()?;
         (triangulation.dimension() == 2).then(|| Sketch { triangulation, segments, heights: FxHashMap::default() })
     }
 
@@ -112,8 +112,8 @@ impl Sketch {
 
     /// Returns true if a crease runs along an edge on which a line runs already.
     fn is_along_line(&self, cell: CellId, passages: [&Passage; 2]) -> bool {
-        let edge = 3 - passages.iter().map(|passage| passage.corner).sum::<usize>();
-        passages.iter().all(|passage| passage.is_at_corner) && self.triangulation.is_constrained(cell, edge)
+        passages.iter().all(|passage| passage.is_at_corner)
+            && self.triangulation.is_constrained(cell, 3 - passages[0].corner - passages[1].corner)
     }
 
     /// Asks for a vertex on the lines that a crease meets.

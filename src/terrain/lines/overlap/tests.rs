@@ -173,13 +173,11 @@ fn flaw(tin: &Tin, rivers: &[River], waters: &[RiverWater], q: [f64; 2], reach: 
 
 /// Returns true if two rivers touch at a vertex, or a stretch is not convex.
 fn is_special(rivers: &[River]) -> bool {
-    let turn = |a: [f64; 2], b: [f64; 2], c: [f64; 2]| orientation([a, b, c].map(|[x, y]| [x, y, 0.0]));
-    let is_on = |[from, to]: [[f64; 2]; 2], p: [f64; 2]| {
-        turn(from, to, p) == Sign::Zero && squared_distance([from, to], p) <= f64::EPSILON
-    };
     let rings: Vec<Vec<[f64; 2]>> = rivers.iter().map(River::ring).collect();
     let touch = |p: &[[f64; 2]], q: &[[f64; 2]]| {
-        q.iter().zip(q.iter().cycle().skip(1)).any(|(a, b)| p.iter().any(|vertex| is_on([*a, *b], *vertex)))
+        q.iter()
+            .zip(q.iter().cycle().skip(1))
+            .any(|(a, b)| p.iter().any(|vertex| squared_distance([*a, *b], *vertex) < 1e-18))
     };
     let is_concave = |[a, b, c, d]: [[f64; 3]; 4]| {
         [[a, b, c], [b, d, c], [a, b, d], [a, d, c]].map(orientation).windows(2).any(|pair| pair[0] != pair[1])

@@ -1,6 +1,8 @@
 //! Rivers: two banks, level from one to the other, never rising downstream.
 
+mod confluence;
 mod downstream;
+mod ears;
 mod stations;
 mod water;
 
@@ -9,6 +11,7 @@ use crate::data::orientation;
 use crate::error::{Error, Result};
 use crate::terrain::boxes::{Boxed, Boxes, Extent};
 use crate::triangulation::num::Sign;
+use ears::ears;
 use stations::stations;
 
 pub(in crate::terrain) use water::RiverWater;
@@ -35,6 +38,10 @@ pub struct River {
     middles: Vec<[f64; 2]>,
     /// The middles of the first and the last level line: where other rivers may continue it.
     ends: [[f64; 2]; 2],
+    /// The vertices of the first and the last level line between their ends, from left to right:
+    /// those of the bank of another river that they follow. There the heights are those of that
+    /// river.
+    along_banks: [Option<Vec<[f64; 3]>>; 2],
     heights: RiverHeights,
 }
 
@@ -113,7 +120,7 @@ impl River {
     /// Gives each station the lower height of its ends, but no more than upstream.
     fn leveled(stations: Vec<[[f64; 3]; 2]>, middles: Vec<[f64; 2]>, ends: [[f64; 2]; 2]) -> Self {
         let lower = |[left, right]: &[[f64; 3]; 2]| left[2].min(right[2]);
-        let mut river = River { stations, middles, ends, heights: RiverHeights::default() };
+        let mut river = River { stations, middles, ends, along_banks: [None, None], heights: RiverHeights::default() };
         if let (Some(first), Some(last)) = (river.stations.first(), river.stations.last())
             && lower(first) < lower(last)
         {
@@ -156,14 +163,37 @@ impl River {
     /// The triangles on which the water between a level line and the next is linear.
     pub(in crate::terrain) fn triangles(&self, stretch: usize) -> Vec<[[f64; 3]; 3]> {
         let [a, b, c, d] = self.corners(stretch);
-        vec![[a, b, c], [b, d, c]]
+        let outline = self.outline(stretch);
+        let of_outline = if outline.len() > 4 { ears(&outline) } else { None };
+        of_outline.unwrap_or_else(|| vec![[a, b, c], [b, d, c]])
     }
 
     /// The edges between the triangles of a stretch, if they are within it.
     pub(in crate::terrain) fn diagonals(&self, stretch: usize) -> Vec<[[f64; 3]; 2]> {
         let [a, b, c, d] = self.corners(stretch);
-        let is_within = orientation([b, c, a]) * orientation([b, c, d]) == Sign::Negative;
-        if is_within { vec![[b, c]] } else { Vec::new() }
+        let outline = self.outline(stretch);
+        if outline.len() == 4 {
+            let is_within = orientation([b, c, a]) * orientation([b, c, d]) == Sign::Negative;
+            return if is_within { vec![[b, c]] } else { Vec::new() };
+        }
+        let is_side = |[p, q]: [[f64; 3]; 2]| {
+            outline
+                .iter()
+                .zip(outline.iter().cycle().skip(1))
+                .any(|(from, to)| [*from, *to] == [p, q] || [*to, *from] == [p, q])
+        };
+        let edges = self.triangles(stretch).into_iter().flat_map(|[a, b, c]| [[a, b], [b, c], [c, a]]);
+        edges.filter(|edge| !is_side(*edge)).collect()
+    }
+
+    /// The border of a stretch: four corners, and more where an end follows the bank of another
+    /// river.
+    fn outline(&self, stretch: usize) -> Vec<[f64; 3]> {
+        let [a, b, c, d] = self.corners(stretch);
+        let inner = |is_there: bool, end: usize| if is_there { self.along_bank(end) } else { &[] };
+        let first = inner(stretch == 0, 0).iter().copied();
+        let last = inner(stretch + 1 == self.stretch_count(), 1).iter().rev().copied();
+        [a].into_iter().chain(first).chain([b, d]).chain(last).chain([c]).collect()
     }
 
     /// Exchanges upstream and downstream.
@@ -172,6 +202,8 @@ impl River {
         self.stations.iter_mut().for_each(|ends| ends.swap(0, 1));
         self.middles.reverse();
         self.ends.reverse();
+        self.along_banks.reverse();
+        self.along_banks.iter_mut().flatten().for_each(|line| line.reverse());
     }
 
     /// The heights at both ends.
@@ -180,9 +212,21 @@ impl River {
         [level(self.stations.first()), level(self.stations.last())]
     }
 
-    /// Lowers what is above a level.
-    fn lower_to(&mut self, level: f64) {
-        self.stations.iter_mut().flatten().for_each(|end| end[2] = end[2].min(level));
+    /// Lets the first (0) or the last (1) level line follow the bank of another river, from left to
+    /// right, with its heights.
+    fn set_end_line(&mut self, end: usize, line: Vec<[f64; 3]>) {
+        let at = if end == 0 { 0 } else { self.stations.len() - 1 };
+        if let [left, inner @ .., right] = line.as_slice() {
+            self.stations[at] = [*left, *right];
+            let is_along = line.len() > 2 || left[2] != right[2];
+            self.along_banks[end] = is_along.then(|| inner.to_vec());
+        }
+    }
+
+    /// The vertices between the ends of the first (0) or the last (1) level line on the bank of
+    /// another river.
+    fn along_bank(&self, end: usize) -> &[[f64; 3]] {
+        self.along_banks[end].as_deref().unwrap_or_default()
     }
 
     /// The banks, in order downstream.
@@ -215,8 +259,12 @@ impl River {
             };
             if is_end || is_free() {
                 let [left, right] = *line;
-                let middle = self.middles.get(number).map(|&[x, y]| [x, y, left[2]]);
-                lines.push(std::iter::once(left).chain(middle).chain([right]).collect());
+                let end = if number == 0 { 0 } else { 1 };
+                let inner = match &self.along_banks[end] {
+                    Some(along) if is_end => along.clone(),
+                    _ => self.middles.get(number).map(|&[x, y]| [x, y, left[2]]).into_iter().collect(),
+                };
+                lines.push(std::iter::once(left).chain(inner).chain([right]).collect());
                 before = Some(*line);
             }
         }
@@ -229,8 +277,7 @@ impl River {
     /// # Complexity
     /// O(n log n) for n stations, if few segments of banks are close to each other.
     pub fn overlap(&self) -> Option<[f64; 2]> {
-        let [left, right] = self.banks();
-        let mut ring: Vec<[f64; 3]> = left.into_iter().chain(right.into_iter().rev()).collect();
+        let mut ring = self.ring_with_heights();
         ring.extend(ring.first().copied());
         let all = sides(&ring);
         let boxes = Boxes::new(all.clone());
@@ -240,8 +287,13 @@ impl River {
 
     /// The ring around the water.
     pub(in crate::terrain) fn ring(&self) -> Vec<[f64; 2]> {
+        self.ring_with_heights().into_iter().map(flat).collect()
+    }
+
+    fn ring_with_heights(&self) -> Vec<[f64; 3]> {
         let [left, right] = self.banks();
-        left.into_iter().chain(right.into_iter().rev()).map(flat).collect()
+        let [first, last] = [0, 1].map(|end| self.along_bank(end).iter().copied());
+        left.into_iter().chain(last).chain(right.into_iter().rev()).chain(first.rev()).collect()
     }
 }
 
@@ -280,6 +332,11 @@ fn flat([x, y, _]: [f64; 3]) -> [f64; 2] {
 /// The middle of a segment.
 fn middle([a, b]: &[[f64; 3]; 2]) -> [f64; 2] {
     [(a[0] + b[0]) / 2.0, (a[1] + b[1]) / 2.0]
+}
+
+/// The point at a part of a segment, from 0 to 1.
+fn side_between([from, to]: [[f64; 2]; 2], part: f64) -> [f64; 2] {
+    if part == 1.0 { to } else { [0, 1].map(|axis| from[axis] + part * (to[axis] - from[axis])) }
 }
 
 fn distance(p: [f64; 3], q: [f64; 3]) -> f64 {
@@ -415,7 +472,7 @@ mod tests {
             reach([0.0, 10.0], [5.0, 4.0]),
             reach([50.0, 60.0], [9.0, 8.0]),
         ];
-        River::join(&mut rivers);
+        River::join(&mut rivers, 0.01);
         let levels = rivers.each_ref().map(River::levels);
         assert_eq!(levels, [[4.0, 3.0], [4.0, 4.0], [5.0, 4.0], [9.0, 8.0]]);
         assert_eq!(rivers.each_ref().map(|river| river.heights().rising), [1, 1, 0, 0]);
@@ -434,7 +491,7 @@ mod tests {
         let joined = |order: [usize; 5]| {
             let all = set();
             let mut rivers: Vec<River> = order.map(|k| all[k].clone()).to_vec();
-            River::join(&mut rivers);
+            River::join(&mut rivers, 0.01);
             let mut found: Vec<String> = rivers.iter().map(|river| format!("{river:?}")).collect();
             found.sort();
             (rivers, found)
@@ -452,7 +509,7 @@ mod tests {
             River::along(&[[pair[0][0], pair[0][1], 5.0], [pair[1][0], pair[1][1], 4.0]], 1.0).unwrap()
         };
         let mut ring: Vec<River> = corners.windows(2).map(side).collect();
-        River::join(&mut ring);
+        River::join(&mut ring, 0.01);
         assert!(ring.iter().all(|river| river.levels() == [4.0, 4.0]));
     }
 

@@ -1,0 +1,264 @@
+//! Rivers that end or begin at the banks of others.
+
+use std::cmp::Ordering;
+use std::collections::BTreeMap;
+
+use super::{River, flat, side_between};
+use crate::terrain::boxes::{Boxed, Boxes, Extent};
+use crate::terrain::nearest::{nearest_part, squared_distance};
+
+/// An end of a river on the bank of another one.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Joint {
+    /// The river that ends or begins there.
+    pub(super) branch: usize,
+    /// Its first level line (0), or its last (1).
+    pub(super) end: usize,
+    /// The other river.
+    pub(super) main: usize,
+    /// The stations of the other river at the left and the right end of that level line.
+    pub(super) stations: [Option<usize>; 2],
+    side: usize,
+}
+
+impl Joint {
+    /// The first and the last station of the other river.
+    pub(super) fn range(&self) -> [usize; 2] {
+        let all = self.stations.iter().flatten();
+        [all.clone().copied().min().unwrap_or_default(), all.copied().max().unwrap_or_default()]
+    }
+}
+
+/// A segment of a bank: river, side, and the number of its stretch.
+#[derive(Debug, Clone, Copy)]
+struct BankSide {
+    river: usize,
+    side: usize,
+    stretch: usize,
+    ends: [[f64; 2]; 2],
+}
+
+impl Boxed for BankSide {
+    fn extent(&self) -> Extent {
+        Extent::of_plan(self.ends)
+    }
+}
+
+/// A position on a bank.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Spot {
+    /// The square of the distance to the position that was asked for.
+    squared: f64,
+    stretch: usize,
+    /// The part of the stretch before it.
+    part: f64,
+    at: [f64; 2],
+    is_vertex: bool,
+}
+
+/// An end of a river, and where its level line touches the bank of another one.
+#[derive(Debug, Clone, Copy)]
+struct Touch {
+    branch: usize,
+    end: usize,
+    main: usize,
+    side: usize,
+    spots: [Option<Spot>; 2],
+}
+
+/// Finds the ends of rivers on banks of others, by `reach` at most from them. The banks get
+/// vertices there. Ends that `continue` another river are left out.
+///
+/// # Complexity
+/// O(n log n) for n level lines.
+pub(super) fn join_banks(
+    rivers: &mut [River],
+    reach: f64,
+    continues: &dyn Fn(usize, usize, usize) -> bool,
+) -> Vec<Joint> {
+    let touches = touches(rivers, reach, continues);
+    let mut wanted: BTreeMap<usize, Vec<(usize, Spot)>> = BTreeMap::new();
+    for touch in &touches {
+        let new = touch.spots.iter().flatten().filter(|spot| !spot.is_vertex);
+        wanted.entry(touch.main).or_default().extend(new.map(|spot| (touch.side, *spot)));
+    }
+    for (river, spots) in &mut wanted {
+        spots.sort_by(|(side, p), (other, q)| {
+            (p.stretch.cmp(&q.stretch)).then(p.part.total_cmp(&q.part)).then(side.cmp(other)).then(by_site(p.at, q.at))
+        });
+        spots.dedup_by(|p, q| p.0 == q.0 && p.1.at == q.1.at);
+        rivers[*river].insert_stations(spots);
+    }
+    let joint = |touch: &Touch| {
+        let river = &rivers[touch.main];
+        let station = |spot: Spot| river.stations.iter().position(|ends| flat(ends[touch.side]) == spot.at);
+        let Touch { branch, end, main, side, spots } = *touch;
+        Joint { branch, end, main, side, stations: spots.map(|spot| spot.and_then(station)) }
+    };
+    touches.iter().map(joint).collect()
+}
+
+fn by_site(p: [f64; 2], q: [f64; 2]) -> Ordering {
+    p[0].total_cmp(&q[0]).then(p[1].total_cmp(&q[1]))
+}
+
+/// The heights at which level rivers that touch others could begin or end there: river, end, and
+/// the height of the other one.
+pub(super) fn heights_at_banks(
+    rivers: &[River],
+    reach: f64,
+    continues: &dyn Fn(usize, usize, usize) -> bool,
+) -> Vec<(usize, usize, f64)> {
+    let height = |touch: &Touch| {
+        let spots = touch.spots.iter().flatten();
+        let lowest =
+            spots.map(|spot| rivers[touch.main].level_at(spot.stretch, spot.part)).fold(f64::INFINITY, f64::min);
+        (touch.branch, touch.end, lowest)
+    };
+    touches(rivers, reach, continues).iter().map(height).collect()
+}
+
+fn touches(rivers: &[River], reach: f64, continues: &dyn Fn(usize, usize, usize) -> bool) -> Vec<Touch> {
+    let mut sides = Vec::new();
+    for (river, of) in rivers.iter().enumerate() {
+        for (stretch, pair) in of.stations.windows(2).enumerate() {
+            let side =
+                |side: usize| BankSide { river, side, stretch, ends: [flat(pair[0][side]), flat(pair[1][side])] };
+            sides.extend([side(0), side(1)].into_iter().filter(|side| side.ends[0] != side.ends[1]));
+        }
+    }
+    let sides = Boxes::new(sides);
+    let mut touches = Vec::new();
+    for (branch, river) in rivers.iter().enumerate() {
+        for (end, line) in [river.stations.first(), river.stations.last()].into_iter().flatten().enumerate() {
+            let mut found: BTreeMap<[usize; 2], [Option<Spot>; 2]> = BTreeMap::new();
+            for corner in 0..2 {
+                for (bank, spot) in spots(&sides, flat(line[corner]), reach) {
+                    if bank[0] != branch {
+                        found.entry(bank).or_default()[corner] = Some(spot);
+                    }
+                }
+            }
+            for ([main, side], spots) in found {
+                let is_joined = spots.iter().flatten().any(|spot| spot.is_vertex) || spots.iter().all(Option::is_some);
+                if is_joined && !continues(branch, end, main) {
+                    // Without a vertex there, one of two ends is not on the bank.
+                    let spots = if spots.iter().all(Option::is_some) { spots } else { spots.map(vertex_only) };
+                    touches.push(Touch { branch, end, main, side, spots });
+                }
+            }
+        }
+    }
+    touches
+}
+
+fn vertex_only(spot: Option<Spot>) -> Option<Spot> {
+    spot.filter(|spot| spot.is_vertex)
+}
+
+/// The nearest position on each bank that is close to a position: at a vertex, if it is one.
+fn spots(sides: &Boxes<BankSide>, q: [f64; 2], reach: f64) -> BTreeMap<[usize; 2], Spot> {
+    let mut nearest: BTreeMap<[usize; 2], Spot> = BTreeMap::new();
+    sides.find_in(Extent::of_plan([q]).grown(reach), |side| {
+        let (squared, part) = (squared_distance(side.ends, q), nearest_part(side.ends, q));
+        let vertex = side.ends.iter().position(|end| *end == q);
+        let spot = match vertex {
+            Some(end) => Spot { squared, stretch: side.stretch + end, part: 0.0, at: q, is_vertex: true },
+            None => Spot { squared, stretch: side.stretch, part, at: q, is_vertex: false },
+        };
+        if squared <= reach * reach {
+            let found = nearest.entry([side.river, side.side]).or_insert(spot);
+            if (spot.squared, spot.stretch) < (found.squared, found.stretch) {
+                *found = spot;
+            }
+        }
+        None::<()>
+    });
+    nearest
+}
+
+impl River {
+    /// The height of the water within a stretch.
+    fn level_at(&self, stretch: usize, part: f64) -> f64 {
+        let level = |k: usize| self.stations.get(k).map_or(f64::NAN, |ends| ends[0][2]);
+        if part == 0.0 { level(stretch) } else { level(stretch) + part * (level(stretch + 1) - level(stretch)) }
+    }
+
+    /// Inserts level lines from positions on banks, sorted downstream, to the opposite points.
+    fn insert_stations(&mut self, spots: &[(usize, Spot)]) {
+        let mut stations = Vec::with_capacity(self.stations.len() + spots.len());
+        let mut middles = Vec::with_capacity(self.middles.len() + spots.len());
+        let mut spots = spots.iter().peekable();
+        for (stretch, &station) in self.stations.iter().enumerate() {
+            stations.push(station);
+            middles.extend(self.middles.get(stretch).copied());
+            while let Some((side, Spot { part, at, .. })) = spots.next_if(|(_, spot)| spot.stretch == stretch) {
+                let Some(&next) = self.stations.get(stretch + 1) else { continue };
+                let level = self.level_at(stretch, *part);
+                let between = |k: usize| side_between([flat(station[k]), flat(next[k])], *part);
+                let opposite = between(1 - side);
+                let ends = if *side == 0 { [*at, opposite] } else { [opposite, *at] };
+                stations.push(ends.map(|[x, y]| [x, y, level]));
+                if let (Some(&from), Some(&to)) = (self.middles.get(stretch), self.middles.get(stretch + 1)) {
+                    middles.push(side_between([from, to], *part));
+                }
+            }
+        }
+        (self.stations, self.middles) = (stations, middles);
+    }
+}
+
+/// Gives the ends of rivers that join others the heights of those: they follow their banks.
+pub(super) fn fit_ends(rivers: &mut [River], joints: &[Joint]) {
+    let mut fitted: BTreeMap<[usize; 2], Vec<(bool, Vec<[f64; 3]>)>> = BTreeMap::new();
+    for joint in joints {
+        let is_along = joint.stations.iter().all(Option::is_some);
+        fitted.entry([joint.branch, joint.end]).or_default().push((is_along, end_line(rivers, joint)));
+    }
+    for ([branch, end], mut lines) in fitted {
+        // The one along most of a bank, and of several the lowest, whatever their order.
+        lines.sort_by(|(is_along, p), (other, q)| {
+            other.cmp(is_along).then(q.len().cmp(&p.len())).then_with(|| by_height(p, q))
+        });
+        if let Some((_, line)) = lines.into_iter().next() {
+            rivers[branch].set_end_line(end, line);
+        }
+    }
+}
+
+fn by_height(p: &[[f64; 3]], q: &[[f64; 3]]) -> Ordering {
+    let pairs = p.iter().zip(q).map(|(p, q)| p[2].total_cmp(&q[2]).then(by_site(flat(*p), flat(*q))));
+    pairs.fold(Ordering::Equal, Ordering::then)
+}
+
+/// The level line at the end of a river, with the heights of the other one, along its bank.
+fn end_line(rivers: &[River], joint: &Joint) -> Vec<[f64; 3]> {
+    let (branch, main) = (&rivers[joint.branch], &rivers[joint.main]);
+    let own = branch.stations[if joint.end == 0 { 0 } else { branch.stations.len() - 1 }];
+    let height = |station: usize| {
+        let level = main.stations[station][0][2];
+        let is_end = station == 0 || station + 1 == main.stations.len();
+        if is_end { level.min(own[0][2]) } else { level }
+    };
+    match joint.stations {
+        [Some(left), Some(right)] => {
+            let along: Vec<usize> =
+                if left <= right { (left..=right).collect() } else { (right..=left).rev().collect() };
+            let mut line: Vec<[f64; 3]> = along
+                .into_iter()
+                .map(|station| {
+                    let [x, y, _] = main.stations[station][joint.side];
+                    [x, y, height(station)]
+                })
+                .collect();
+            line.dedup_by(|p, q| flat(*p) == flat(*q));
+            line
+        }
+        [Some(station), None] | [None, Some(station)] => own.map(|[x, y, _]| [x, y, height(station)]).to_vec(),
+        [None, None] => own.to_vec(),
+    }
+}
+
+#[cfg(test)]
+#[path = "confluence_tests.rs"]
+mod tests;

@@ -1,0 +1,159 @@
+use super::*;
+use crate::data::Surface;
+use crate::terrain::{Tin, TinBuilder};
+use testkit::random::Random;
+
+/// Flows from west to east, at 10 - x / 5.
+fn main_river() -> River {
+    River::between(&[[0.0, 4.0, 10.0], [20.0, 4.0, 6.0]], &[[0.0, 0.0, 10.0], [20.0, 0.0, 6.0]]).unwrap()
+}
+
+/// From or to the north, between heights at its north and its south, which is at the main river.
+fn northern(north: f64, south: f64, y: f64) -> River {
+    let bank = |x: f64| [[x, 14.0, north], [x, y, south]];
+    River::between(&bank(11.0), &bank(9.0)).unwrap()
+}
+
+fn built(rivers: &[River]) -> Tin {
+    let mut builder = TinBuilder::default();
+    builder.add_points(&[-9.0, 30.0, -9.0, 30.0], &[-9.0, -9.0, 30.0, 30.0], &[40.0; 4]);
+    rivers.iter().for_each(|river| drop(builder.add_river(river.clone())));
+    let tin = builder.build().unwrap();
+    assert_eq!(tin.report().water_overlaps, []);
+    tin
+}
+
+fn are_at(tin: &Tin, expected: &[([f64; 2], f64)]) {
+    for ([x, y], z) in expected {
+        let found = tin.elevation(*x, *y).unwrap();
+        assert!((found - z).abs() < 1e-9, "{x} {y} is at {found}, expected {z}");
+    }
+}
+
+#[test]
+fn a_higher_tributary_falls_to_the_main_river() {
+    let mut rivers = [main_river(), northern(12.0, 9.0, 4.0)];
+    River::join(&mut rivers, 0.01);
+    assert_eq!(rivers.each_ref().map(|river| river.heights().rising), [0, 0]);
+    assert_eq!((rivers[0].stations.len(), rivers[1].stations.len()), (4, 2));
+    let tin = built(&rivers);
+    let main = [[9.0, 4.0], [10.0, 4.0], [11.0, 4.0], [9.0, 0.0], [4.0, 3.0], [15.0, 1.0]];
+    are_at(&tin, &main.map(|[x, y]| ([x, y], 10.0 - x / 5.0)));
+    are_at(&tin, &[([9.0, 14.0], 12.0), ([10.0, 14.0], 12.0), ([9.0, 9.0], (12.0 + 8.2) / 2.0)]);
+}
+
+#[test]
+fn a_lower_tributary_lowers_the_main_river_from_there_on() {
+    let mut rivers = [northern(12.0, 7.0, 4.0), main_river()];
+    River::join(&mut rivers, 0.01);
+    let heights = rivers[1].heights();
+    assert_eq!((rivers[0].heights().rising, heights.rising, heights.rise_at), (0, 1, [9.0, 2.0]));
+    assert!((heights.largest_rise - 1.2).abs() < 1e-9);
+    let tin = built(&rivers);
+    are_at(&tin, &[([0.0, 2.0], 10.0), ([4.5, 4.0], 8.5), ([9.0, 0.0], 7.0), ([10.0, 4.0], 7.0), ([11.0, 1.0], 7.0)]);
+    are_at(&tin, &[([20.0, 3.0], 6.0), ([10.0, 14.0], 12.0), ([9.0, 9.0], 9.5)]);
+}
+
+#[test]
+fn a_branch_begins_at_the_height_of_the_main_river() {
+    // Higher than the main river: lowered. Lower: it falls from there.
+    for (own, rising) in [(9.0, 1), (7.0, 0)] {
+        let mut rivers = [main_river(), northern(5.0, own, 4.0)];
+        River::join(&mut rivers, 0.01);
+        assert_eq!(rivers.each_ref().map(|river| river.heights().rising), [0, rising]);
+        if rising == 1 {
+            assert!((rivers[1].heights().largest_rise - 1.2).abs() < 1e-9);
+        }
+        let tin = built(&rivers);
+        are_at(
+            &tin,
+            &[([9.0, 4.0], 8.2), ([10.0, 4.0], 8.0), ([11.0, 4.0], 7.8), ([10.0, 14.0], 5.0), ([9.0, 9.0], 6.6)],
+        );
+    }
+}
+
+#[test]
+fn a_shared_vertex_joins_two_rivers() {
+    let left = [[0.0, 4.0, 10.0], [10.0, 4.0, 8.0], [20.0, 4.0, 6.0]];
+    let main = River::between(&left, &[[0.0, 0.0, 10.0], [20.0, 0.0, 6.0]]).unwrap();
+    let tributary =
+        River::between(&[[10.0, 14.0, 12.0], [10.0, 4.0, 9.0]], &[[7.0, 14.0, 12.0], [7.0, 5.0, 9.0]]).unwrap();
+    let mut rivers = [tributary, main];
+    River::join(&mut rivers, 0.01);
+    assert_eq!(rivers.each_ref().map(|river| river.heights().rising), [0, 0]);
+    let tin = built(&rivers);
+    are_at(&tin, &[([10.0, 4.0], 8.0), ([7.0, 5.0], 8.0), ([8.5, 4.5], 8.0), ([10.0, 0.0], 8.0), ([8.0, 14.0], 12.0)]);
+}
+
+/// Coordinates in files are rounded, and banks bend between the ends of a tributary.
+#[test]
+fn ends_near_a_bent_bank_follow_it() {
+    for (bend, y) in [(4.0, 4.004), (4.0, 3.996), (4.5, 4.0), (3.5, 4.0)] {
+        let left = [[0.0, 4.0, 10.0], [9.5, 4.0, 8.1], [10.0, bend, 8.0], [10.5, 4.0, 7.9], [20.0, 4.0, 6.0]];
+        let main = River::between(&left, &[[0.0, 0.0, 10.0], [20.0, 0.0, 6.0]]).unwrap();
+        let mut rivers = [main, northern(12.0, 9.0, y)];
+        River::join(&mut rivers, 0.01);
+        assert!(rivers.iter().all(|river| river.overlap().is_none()));
+        let tin = built(&rivers);
+        for at in [[9.0, y], [9.5, 4.0], [10.0, bend], [10.5, 4.0], [11.0, y]] {
+            let station = rivers[0].stations.iter().find(|ends| flat(ends[0]) == at).unwrap();
+            let found = tin.elevation(at[0], at[1]).unwrap();
+            assert!((found - station[0][2]).abs() < 1e-9, "{at:?}: {found}, expected {station:?}");
+        }
+        are_at(&tin, &[([9.0, 14.0], 12.0), ([10.0, 14.0], 12.0)]);
+    }
+    let mut apart = [main_river(), northern(12.0, 9.0, 4.02)];
+    let before = apart.clone();
+    River::join(&mut apart, 0.01);
+    assert_eq!(apart, before);
+}
+
+#[test]
+fn level_rivers_are_turned_to_fit() {
+    for (level, expected) in [(9.0, [9.0, 8.2]), (6.0, [8.2, 6.0])] {
+        for is_drawn_south in [true, false] {
+            let mut river = northern(level, level, 4.0);
+            if is_drawn_south {
+                river.reverse();
+            }
+            let mut rivers = [river, main_river()];
+            River::join(&mut rivers, 0.01);
+            let ends = [rivers[0].stations[0], rivers[0].stations[1]]
+                .map(|ends| ends.iter().map(|p| p[2]).fold(0.0, f64::max));
+            assert_eq!(ends, expected, "{level}");
+            assert_eq!(rivers.each_ref().map(|river| river.heights().rising), [0, 0]);
+        }
+    }
+}
+
+/// A network of random rivers on a grid: any order gives the same, and no water rises.
+#[test]
+fn the_order_of_rivers_changes_nothing() {
+    for seed in 0..200 {
+        let mut random = Random(seed);
+        let mut rivers = vec![main_river()];
+        for _ in 0..4 {
+            let x = 1.0 + random.index(17) as f64;
+            let mut z = || random.index(12) as f64;
+            let bank = |x: f64, ends: [f64; 2]| [[x, 14.0, ends[0]], [x, 4.0, ends[1]]];
+            let ends = [z(), z()];
+            rivers.push(River::between(&bank(x, ends), &bank(x + 1.0, ends)).unwrap());
+        }
+        let joined = |order: &[usize]| {
+            let mut shuffled: Vec<River> = order.iter().map(|&k| rivers[k].clone()).collect();
+            River::join(&mut shuffled, 0.01);
+            let mut texts: Vec<String> = shuffled.iter().map(|river| format!("{river:?}")).collect();
+            texts.sort();
+            (texts, shuffled)
+        };
+        let (expected, found) = joined(&[0, 1, 2, 3, 4]);
+        for order in [[4, 3, 2, 1, 0], [2, 4, 0, 1, 3], [1, 0, 3, 4, 2]] {
+            assert_eq!(joined(&order).0, expected, "seed {seed}");
+        }
+        for river in found {
+            let heights: Vec<[f64; 2]> = river.stations.iter().map(|ends| ends.map(|end| end[2])).collect();
+            let is_falling = |pair: &[[f64; 2]]| pair[0][0].min(pair[0][1]) >= pair[1][0].max(pair[1][1]);
+            assert!(heights.windows(2).all(is_falling), "seed {seed}: {heights:?}");
+        }
+    }
+}
