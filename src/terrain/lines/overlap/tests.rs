@@ -14,7 +14,9 @@ fn over_ground(rivers: &[River], side: f64) -> TinBuilder {
     let mut builder = TinBuilder::default();
     builder.step_width = Some(STEP);
     builder.add_points(&[-1.0, side, -1.0, side], &[-1.0, -1.0, side, side], &[30.0; 4]);
-    rivers.iter().for_each(|river| drop(builder.add_river(river.clone())));
+    for river in rivers {
+        builder.add_river(river.clone());
+    }
     builder
 }
 
@@ -118,7 +120,9 @@ fn coordinates_of_a_country_are_as_good_as_small_ones() {
         &[-1.0, -1.0, 21.0, 21.0].map(|y| north + y),
         &[30.0; 4],
     );
-    rivers.iter().for_each(|river| drop(builder.add_river(river.clone())));
+    for river in &rivers {
+        builder.add_river(river.clone());
+    }
     let tin = builder.build().unwrap();
     let waters = [RiverWater::new(&rivers[0]), RiverWater::new(&rivers[1])];
     let mut judged = 0;

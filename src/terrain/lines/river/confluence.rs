@@ -3,7 +3,9 @@
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
-use super::{River, flat, side_between};
+use rustc_hash::FxHashMap;
+
+use super::{Key, River, flat, key, side_between};
 use crate::terrain::boxes::{Boxed, Boxes, Extent};
 use crate::terrain::nearest::{nearest_part, squared_distance};
 
@@ -89,10 +91,15 @@ pub(super) fn join_banks(
         spots.dedup_by(|p, q| p.0 == q.0 && p.1.at == q.1.at);
         rivers[*river].insert_stations(spots);
     }
+    let mut stations: FxHashMap<(usize, usize, Key), usize> = FxHashMap::default();
+    for &river in wanted.keys() {
+        for (station, ends) in rivers[river].stations.iter().enumerate().rev() {
+            stations.extend([0, 1].map(|side| ((river, side, key(flat(ends[side]))), station)));
+        }
+    }
     let joint = |touch: &Touch| {
-        let river = &rivers[touch.main];
-        let station = |spot: Spot| river.stations.iter().position(|ends| flat(ends[touch.side]) == spot.at);
         let Touch { branch, end, main, side, spots } = *touch;
+        let station = |spot: Spot| stations.get(&(main, side, key(spot.at))).copied();
         Joint { branch, end, main, side, stations: spots.map(|spot| spot.and_then(station)) }
     };
     touches.iter().map(joint).collect()
@@ -132,8 +139,8 @@ fn touches(rivers: &[River], reach: f64, continues: &dyn Fn(usize, usize, usize)
     for (branch, river) in rivers.iter().enumerate() {
         for (end, line) in [river.stations.first(), river.stations.last()].into_iter().flatten().enumerate() {
             let mut found: BTreeMap<[usize; 2], [Option<Spot>; 2]> = BTreeMap::new();
-            for corner in 0..2 {
-                for (bank, spot) in spots(&sides, flat(line[corner]), reach) {
+            for (corner, at) in line.iter().enumerate() {
+                for (bank, spot) in spots(&sides, flat(*at), reach) {
                     if bank[0] != branch {
                         found.entry(bank).or_default()[corner] = Some(spot);
                     }
@@ -210,19 +217,17 @@ impl River {
 
 /// Gives the ends of rivers that join others the heights of those: they follow their banks.
 pub(super) fn fit_ends(rivers: &mut [River], joints: &[Joint]) {
-    let mut fitted: BTreeMap<[usize; 2], Vec<(bool, Vec<[f64; 3]>)>> = BTreeMap::new();
-    for joint in joints {
-        let is_along = joint.stations.iter().all(Option::is_some);
-        fitted.entry([joint.branch, joint.end]).or_default().push((is_along, end_line(rivers, joint)));
-    }
-    for ([branch, end], mut lines) in fitted {
-        // The one along most of a bank, and of several the lowest, whatever their order.
-        lines.sort_by(|(is_along, p), (other, q)| {
-            other.cmp(is_along).then(q.len().cmp(&p.len())).then_with(|| by_height(p, q))
-        });
-        if let Some((_, line)) = lines.into_iter().next() {
-            rivers[branch].set_end_line(end, line);
-        }
+    let is_along = |joint: &Joint| joint.stations.iter().all(Option::is_some);
+    let mut lines: Vec<(&Joint, Vec<[f64; 3]>)> = joints.iter().map(|joint| (joint, end_line(rivers, joint))).collect();
+    // Of several for one end, the one along most of a bank, or else the lowest, whatever their order.
+    lines.sort_by(|(joint, p), (other, q)| {
+        let by_end = [joint.branch, joint.end].cmp(&[other.branch, other.end]);
+        let by_length = is_along(other).cmp(&is_along(joint)).then(q.len().cmp(&p.len()));
+        by_end.then(by_length).then_with(|| by_height(p, q))
+    });
+    lines.dedup_by(|(joint, _), (first, _)| [joint.branch, joint.end] == [first.branch, first.end]);
+    for (joint, line) in lines {
+        rivers[joint.branch].set_end_line(joint.end, line);
     }
 }
 

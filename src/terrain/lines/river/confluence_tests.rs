@@ -1,5 +1,4 @@
 use super::*;
-use crate::data::Surface;
 use crate::terrain::{Tin, TinBuilder};
 use testkit::random::Random;
 
@@ -17,7 +16,9 @@ fn northern(north: f64, south: f64, y: f64) -> River {
 fn built(rivers: &[River]) -> Tin {
     let mut builder = TinBuilder::default();
     builder.add_points(&[-9.0, 30.0, -9.0, 30.0], &[-9.0, -9.0, 30.0, 30.0], &[40.0; 4]);
-    rivers.iter().for_each(|river| drop(builder.add_river(river.clone())));
+    for river in rivers {
+        builder.add_river(river.clone());
+    }
     let tin = builder.build().unwrap();
     assert_eq!(tin.report().water_overlaps, []);
     tin

@@ -3,15 +3,7 @@
 use rustc_hash::FxHashMap;
 
 use super::confluence::{self, Joint};
-use super::{River, flat, middle};
-use crate::triangulation::num::unsigned_zero;
-
-/// A position, compared bit by bit.
-type Key = [u64; 2];
-
-fn key(end: [f64; 2]) -> Key {
-    end.map(|c| unsigned_zero(c).to_bits())
-}
+use super::{Key, River, flat, key, middle};
 
 /// The rivers that end or begin at each position.
 type Meeting = FxHashMap<Key, Vec<usize>>;

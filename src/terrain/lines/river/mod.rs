@@ -10,7 +10,7 @@ use super::offset::{offset, unfolded};
 use crate::data::orientation;
 use crate::error::{Error, Result};
 use crate::terrain::boxes::{Boxed, Boxes, Extent};
-use crate::triangulation::num::Sign;
+use crate::triangulation::num::{Sign, unsigned_zero};
 use ears::ears;
 use stations::stations;
 
@@ -295,6 +295,13 @@ impl River {
         let [first, last] = [0, 1].map(|end| self.along_bank(end).iter().copied());
         left.into_iter().chain(last).chain(right.into_iter().rev()).chain(first.rev()).collect()
     }
+}
+
+/// A position, compared bit by bit.
+type Key = [u64; 2];
+
+fn key(at: [f64; 2]) -> Key {
+    at.map(|c| unsigned_zero(c).to_bits())
 }
 
 /// A segment of a bank.
