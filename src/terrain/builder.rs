@@ -243,8 +243,9 @@ impl TinBuilder {
     /// does that, too.
     pub(crate) fn mark_overlaps(&mut self) {
         let geometry: Terrain = Terrain::default();
-        // What is refused is refused when the surface is built.
-        if self.overlaps.is_some() || !self.line_points.iter().all(|p| geometry.admits(p) && p[2].is_finite()) {
+        let is_admitted = |p: &[f64; 3]| geometry.admits(p) && p[2].is_finite();
+        // What is not admitted is refused when the surface is built.
+        if self.overlaps.is_some() || self.waters.len() < 2 || !self.line_points.iter().all(is_admitted) {
             return;
         }
         let line = |line: usize| self.line(line).to_vec();

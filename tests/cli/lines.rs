@@ -154,3 +154,33 @@ fn what_looks_wrong_is_a_warning() {
         run.works(&[&format!("warning: nothing of {option} lies on the surface")]);
     }
 }
+
+/// Steps between waters, and confluences.
+#[test]
+fn waters_that_meet_are_reported_where_they_contradict_each_other() {
+    let across = ("LineString", "[[0.2,1,5],[2.8,1,5]]", "{}");
+    let over = ("LineString", "[[1.5,2.8,8],[1.5,0.2,7]]", "{}");
+    let args = ["tin", "p.xyz", "--rivers", "l.geojson", "--river-width", "0.5", "-o", "t.ply"];
+    run_in(&folder(&[across, over]), &args).works(&[
+        "warning: two waters overlap, and the lower height, or that of the lake, counts: a step of 2.5 m at",
+        ", from l.geojson fid 1 to l.geojson fid 0",
+    ]);
+    let lake = features(&[("Polygon", LAKE, "{}")]);
+    let folder_of = |rivers: &[(&str, &str, &str)]| {
+        folder_with(&[("p.xyz", SLOPE), ("l.geojson", &features(rivers)), ("lake.geojson", &lake)])
+    };
+    let run = run_in(&folder_of(&[across, over]), &[&args[..], &["--flat", "lake.geojson"]].concat());
+    run.works(&["3 pairs of waters overlap", "a step of 4 m at", "from l.geojson fid 0 to lake.geojson fid 0"]);
+    // A tributary from the north, which ends on the bank of the first river, rounded to mm.
+    let main = ("MultiLineString", "[[[0.2,1.2,5],[2.8,1.2,4]],[[0.2,0.6,5],[2.8,0.6,4]]]", "{}");
+    for (south, said) in [(4.9, None), (4.2, Some("rise downstream at 1 vertices, by up to 0.3"))] {
+        let bank = |x: f64| format!("[[{x},2.8,6],[{x},1.201,{south}]]");
+        let tributary = format!("[{},{}]", bank(1.7), bank(1.5));
+        let rivers = folder(&[main, ("MultiLineString", &tributary, "{}")]);
+        let run = run_in(&rivers, &["tin", "p.xyz", "--rivers", "l.geojson", "-o", "t.ply"]);
+        run.works(said.as_slice());
+        let is_reported = run.stderr.contains("warning: the banks") || run.stdout.contains("warning: the banks");
+        assert_eq!(is_reported, said.is_some(), "{}{}", run.stdout, run.stderr);
+        assert!(!run.stderr.contains("overlap") && !run.stdout.contains("overlap"), "{}{}", run.stdout, run.stderr);
+    }
+}

@@ -134,6 +134,15 @@ fn lines_of_all_kinds_are_the_same_in_any_tiles() {
         if words.contains("--walls") {
             words += " --wall-drop 2";
         }
+        if round % 3 == 2 {
+            // They cross each other, and overlap the lake.
+            let lines: Vec<Vec<[f64; 3]>> = (0..2 + round % 2)
+                .map(|_| (0..2 + random.index(2)).map(|_| [0, 1, 2].map(|_| random.below(side) as f64)).collect())
+                .filter(|line: &Vec<[f64; 3]>| line.windows(2).any(|pair| pair[0][..2] != pair[1][..2]))
+                .collect();
+            std::fs::write(folder.path().join("rivers.geojson"), layer(&lines, "LineString")).unwrap();
+            words += " --rivers rivers.geojson --river-width 1.5";
+        }
         if round % 4 == 1 {
             let [x, y, z] = [0, 1, 2].map(|_| random.below(side) as f64);
             let lake = vec![[x, y, z], [x + 3.0, y, z], [x + 4.0, y + 3.0, z], [x, y + 2.0, z], [x, y, z]];

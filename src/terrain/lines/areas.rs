@@ -186,6 +186,15 @@ pub(in crate::terrain) fn level(
             around.entry(vertex).or_default().extend(within);
         }
     }
+    // A line around water may run to a vertex and back along the same edges, where rounding brought
+    // banks together.
+    for (edge, areas) in &divided.domains {
+        for vertex in edge {
+            if let Some(others) = around.get_mut(vertex) {
+                others.extend(areas);
+            }
+        }
+    }
     let mut vertices: Vec<(VertexId, Vec<Domain>)> = around.into_iter().collect();
     vertices.sort_unstable_by_key(|(vertex, _)| *vertex);
     let mut new_heights: Vec<(VertexId, f64)> = Vec::with_capacity(vertices.len());

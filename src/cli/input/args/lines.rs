@@ -101,8 +101,9 @@ pub(in crate::cli) struct LineArgs {
     /// A record with two parts is one river; otherwise two consecutive records are. The water is
     /// level from bank to bank, at the lower of the two, and never rises downstream (as in
     /// hydro-flattening by the USGS Lidar Base Specification); the end with the lower water is
-    /// downstream. Where the banks contradict that, a warning says how far. Points inside are left
-    /// out.
+    /// downstream. Where the banks contradict that, a warning says how far. Where rivers overlap,
+    /// the lower height counts; one that ends or begins at the bank of another is joined to it.
+    /// Points inside are left out.
     #[arg(long, value_name = "FILE[:NAME]")]
     pub(in crate::cli) rivers: Vec<PathBuf>,
 

@@ -2,8 +2,8 @@
 
 use rustc_hash::FxHashMap;
 
+use super::Scene;
 use super::strand::Strand;
-use super::{Body, Scene};
 use crate::terrain::boxes::Extent;
 use crate::triangulation::geometry::Terrain;
 use crate::triangulation::tds::{CellId, VertexId};
@@ -30,14 +30,12 @@ struct Passage {
 /// they cross get vertices there.
 pub(super) fn add(scene: &Scene, strands: &mut Vec<Strand>) {
     let Some(mut sketch) = Sketch::new(scene, strands) else { return };
-    let rivers: Vec<usize> =
-        (0..scene.bodies.len()).filter(|&water| matches!(scene.bodies[water], Some(Body::River(_)))).collect();
     let mut creases: Vec<Strand> = Vec::new();
     let cells: Vec<CellId> = sketch.triangulation.tds().cells().collect();
     for cell in cells {
         let Some(corners) = sketch.corners(cell) else { continue };
         let middle = [0, 1].map(|axis| corners.iter().map(|p| p[axis]).sum::<f64>() / 3.0);
-        let here: Vec<usize> = rivers.iter().copied().filter(|&river| scene.contains(river, middle)).collect();
+        let here = scene.meetings.rivers_at(middle);
         for (k, &river) in here.iter().enumerate() {
             for &other in &here[..k] {
                 let passages = sketch.passages(scene, cell, [river, other]);

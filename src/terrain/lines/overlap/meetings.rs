@@ -6,6 +6,7 @@ use super::Zone;
 use crate::data::orientation;
 use crate::terrain::boxes::{Boxed, Boxes, Extent};
 use crate::terrain::lines::areas::{Level, Water};
+use crate::terrain::lines::river::contains;
 use crate::triangulation::num::Sign;
 
 /// A triangle of a river.
@@ -23,7 +24,7 @@ impl Boxed for Part {
 }
 
 /// The waters that overlap, by their numbers.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct Meetings {
     /// Pairs of a water whose height may count at the border of an overlap, and a river that may go
     /// on outside.
@@ -31,6 +32,8 @@ pub(super) struct Meetings {
     /// The stretches of rivers that take part: river, stretch.
     pub(super) stretches: BTreeSet<[usize; 2]>,
     taking_part: BTreeSet<usize>,
+    /// The triangles of all rivers.
+    parts: Boxes<Part>,
 }
 
 impl Meetings {
@@ -38,10 +41,6 @@ impl Meetings {
     /// O(n log n) for n level lines and vertices of shores, if few stretches are close to each
     /// other.
     pub(super) fn find(waters: &[Water]) -> Self {
-        let mut found = Meetings::default();
-        if waters.len() < 2 {
-            return found;
-        }
         let mut all: Vec<Part> = Vec::new();
         for (water, Water { level, .. }) in waters.iter().enumerate() {
             let Level::River(river) = level else { continue };
@@ -50,11 +49,12 @@ impl Meetings {
             }
         }
         let parts = Boxes::new(all.clone());
+        let (mut pairs, mut stretches) = (BTreeSet::new(), BTreeSet::new());
         for part in &all {
             parts.find_in(part.extent(), |other| {
                 if other.water > part.water && overlap(&part.corners, &other.corners) {
-                    found.pairs.extend([[part.water, other.water], [other.water, part.water]]);
-                    found.stretches.extend([[part.water, part.stretch], [other.water, other.stretch]]);
+                    pairs.extend([[part.water, other.water], [other.water, part.water]]);
+                    stretches.extend([[part.water, part.stretch], [other.water, other.stretch]]);
                 }
                 None::<()>
             });
@@ -64,15 +64,15 @@ impl Meetings {
             for side in lake.rings.iter().flat_map(|ring| ring.windows(2)).map(|pair| [pair[0], pair[1]]) {
                 parts.find_in(Extent::of(side), |part| {
                     if passes(side, &part.corners) {
-                        found.pairs.insert([water, part.water]);
-                        found.stretches.insert([part.water, part.stretch]);
+                        pairs.insert([water, part.water]);
+                        stretches.insert([part.water, part.stretch]);
                     }
                     None::<()>
                 });
             }
         }
-        found.taking_part = found.pairs.iter().flatten().copied().collect();
-        found
+        let taking_part = pairs.iter().flatten().copied().collect();
+        Meetings { pairs, stretches, taking_part, parts }
     }
 
     pub(super) fn is_empty(&self) -> bool {
@@ -81,6 +81,20 @@ impl Meetings {
 
     pub(super) fn takes_part(&self, water: usize) -> bool {
         self.taking_part.contains(&water)
+    }
+
+    /// The rivers at a position, in order.
+    pub(super) fn rivers_at(&self, q: [f64; 2]) -> Vec<usize> {
+        let mut rivers = Vec::new();
+        self.parts.find(q, |part| {
+            if contains(part.corners, q) {
+                rivers.push(part.water);
+            }
+            None::<()>
+        });
+        rivers.sort_unstable();
+        rivers.dedup();
+        rivers
     }
 
     /// The rivers that may go on outside of a water.

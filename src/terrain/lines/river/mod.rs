@@ -368,7 +368,7 @@ pub(in crate::terrain) fn cross([a, b]: &[[f64; 3]; 2], [c, d]: &[[f64; 3]; 2]) 
 }
 
 /// Returns true if a position lies in a triangle or on its border, in either orientation.
-fn contains(corners: [[f64; 3]; 3], [x, y]: [f64; 2]) -> bool {
+pub(in crate::terrain) fn contains(corners: [[f64; 3]; 3], [x, y]: [f64; 2]) -> bool {
     let [a, b, c] = corners;
     let q = [x, y, 0.0];
     let turn = orientation(corners);
