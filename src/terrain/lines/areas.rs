@@ -186,8 +186,8 @@ pub(in crate::terrain) fn level(
             around.entry(vertex).or_default().extend(within);
         }
     }
-    // A line around water may run to a vertex and back along the same edges, where rounding brought
-    // banks together.
+    // Where rounding brought banks together, a line around water may reach a vertex by the edges on
+    // which it leaves it, so that no water lies between them.
     for (edge, areas) in &divided.domains {
         for vertex in edge {
             if let Some(others) = around.get_mut(vertex) {

@@ -219,7 +219,8 @@ impl River {
 pub(super) fn fit_ends(rivers: &mut [River], joints: &[Joint]) {
     let is_along = |joint: &Joint| joint.stations.iter().all(Option::is_some);
     let mut lines: Vec<(&Joint, Vec<[f64; 3]>)> = joints.iter().map(|joint| (joint, end_line(rivers, joint))).collect();
-    // Of several for one end, the one along most of a bank, or else the lowest, whatever their order.
+    // Of several for one end, the one along most of a bank, or else the lowest, whatever their
+    // order.
     lines.sort_by(|(joint, p), (other, q)| {
         let by_end = [joint.branch, joint.end].cmp(&[other.branch, other.end]);
         let by_length = is_along(other).cmp(&is_along(joint)).then(q.len().cmp(&p.len()));
@@ -265,5 +266,4 @@ fn end_line(rivers: &[River], joint: &Joint) -> Vec<[f64; 3]> {
 }
 
 #[cfg(test)]
-#[path = "confluence_tests.rs"]
 mod tests;
