@@ -162,7 +162,7 @@ fn waters_that_meet_are_reported_where_they_contradict_each_other() {
     let over = ("LineString", "[[1.5,2.8,8],[1.5,0.2,7]]", "{}");
     let args = ["tin", "p.xyz", "--rivers", "l.geojson", "--river-width", "0.5", "-o", "t.ply"];
     run_in(&folder(&[across, over]), &args).works(&[
-        "warning: two waters overlap, and the lower height, or that of the lake, counts: a step of 2.5 m at",
+        "warning: two waters overlap, and the lower height, or that of the lake, counts: a step of 2.4 m at",
         ", from l.geojson fid 1 to l.geojson fid 0",
     ]);
     let lake = features(&[("Polygon", LAKE, "{}")]);
