@@ -113,8 +113,8 @@ pub use input::{Input, MemoryPoints, STDIN};
 #[cfg(feature = "cli")]
 pub(crate) use job::not_in_tiles;
 pub use job::{
-    BadFiles, COMMAND, Division, FileState, Job, JobLock, JobReport, JobSize, Look, TileOptions, TiledProduct,
-    WrittenParts, needs_tiles, remove_job,
+    BadFiles, Division, FileState, Job, JobLock, JobReport, JobSize, Look, TileOptions, TiledProduct, WrittenParts,
+    job_command, needs_tiles, remove_job,
 };
 pub use line_notes::LineInput;
 pub use line_request::{FlatOptions, FlatRule, LineRequest, LineRole, LowerEdge, PerRecord, WallOptions};

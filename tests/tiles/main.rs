@@ -8,6 +8,7 @@ mod program;
 mod landscape;
 
 mod bad_input;
+mod damage;
 mod equality;
 mod interruption;
 mod parts;

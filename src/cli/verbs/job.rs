@@ -9,7 +9,7 @@ use crate::cli::input::plan::SurfacePlan;
 use crate::cli::report::console::Console;
 use crate::cli::{Exit, print};
 use crate::error::{Error, Result};
-use crate::run::{self, COMMAND, Job, Look, Source, TileOptions, TiledProduct};
+use crate::run::{self, Job, Look, Source, TileOptions, TiledProduct};
 
 /// Plans a run in tiles, or does its tasks.
 pub(in crate::cli) fn run(args: &JobArgs, console: &Console) -> Result<Exit> {
@@ -168,19 +168,14 @@ fn unicode(path: &Path) -> Result<&str> {
 
 /// Returns the command of a job, and goes to the folder in which it was typed.
 fn stored(job: &Path, console: &Console) -> Result<(PathBuf, Command, Vec<String>)> {
-    let path = job.join(COMMAND);
-    let text = match std::fs::read(&path) {
-        Ok(text) => text,
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Err(no_job(job)),
-        Err(error) => return Err(Error::from(error).in_file(path)),
-    };
+    let text = run::job_command(job)?.ok_or_else(|| no_job(job))?;
     let job = std::path::absolute(job)?;
-    let value: Value = serde_json::from_slice(&text).unwrap_or_default();
+    let value: Value = serde_json::from_str(&text).unwrap_or_default();
     let words = serde_json::from_value::<Vec<String>>(value["command"].clone());
     let folder = serde_json::from_value::<PathBuf>(value["folder"].clone());
     let files = serde_json::from_value::<Vec<PathBuf>>(value["files"].clone());
     let (Ok(words), Ok(folder), Ok(files)) = (words, folder, files) else {
-        return Err(Error::format("the command of the job is damaged").in_file(path).cure("plan it again"));
+        return Err(Error::format("the command of the job is damaged").in_file(job).cure("plan it again"));
     };
     std::env::set_current_dir(&folder).map_err(|e| Error::from(e).in_file(folder))?;
     let command = Command::parse(&words, Some(files), console)?;

@@ -37,8 +37,8 @@ use std::sync::OnceLock;
 
 use serde_json::json;
 
-pub use self::folder::{COMMAND, remove_job};
-use self::folder::{StoredPlan, tasks_in};
+use self::folder::{COMMAND, StoredPlan, tasks_in};
+pub use self::folder::{job_command, remove_job};
 use self::lines::Known;
 pub use self::lock::JobLock;
 pub use self::output::JobReport;
@@ -49,6 +49,7 @@ pub use self::planned_file::FileState;
 pub use self::surface::WrittenParts;
 use self::task_file::TaskName;
 use super::cells::{DemOptions, HillshadeOptions};
+use super::checksum::checksum;
 use super::context::{Context, Journal};
 use super::contour::ContourOptions;
 use super::frame::FrameOptions;
@@ -244,8 +245,8 @@ impl<'a> Job<'a> {
         }
     }
 
-    /// Creates the folder of the job, with the plan; `command` is kept with it, see [`COMMAND`].
-    /// The whole job is taken for this process, as long as the result lives.
+    /// Creates the folder of the job, with the plan; `command` is kept with it, see
+    /// [`job_command`]. The whole job is taken for this process, as long as the result lives.
     ///
     /// # Errors
     /// If the folder has a job already, or files of something else that have the same names, or
@@ -264,6 +265,7 @@ impl<'a> Job<'a> {
         // Last, because a folder is a job from here on.
         let mut plan = self.plan.to_json();
         plan["tasks"] = json!(self.task_count());
+        plan["command"] = json!(command.map(|command| checksum(command.as_bytes())));
         self.sum = folder::write_plan(&self.folder, &plan.to_string())?;
         Ok(lock)
     }
