@@ -59,7 +59,7 @@ impl StoredPlan {
         let (stated, plan) = std::str::from_utf8(text).ok()?.split_once('\n')?;
         let sum = checksum(plan.as_bytes());
         let value: Value = serde_json::from_str(plan).ok().filter(|_| stated == format!("{sum:08x}"))?;
-        let is_plan = ["version", "request"].iter().all(|name| value[name].is_string());
+        let is_plan = value["version"].is_string() && value["request"].is_object();
         let tasks = value["tasks"].as_u64().filter(|_| is_plan && value["layout"].is_array())?;
         let command = value["command"].as_u64();
         Some(StoredPlan { sum, plan: value, tasks, command })
