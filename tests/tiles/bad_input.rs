@@ -157,6 +157,8 @@ fn damaged_files_do_not_stop_planning() {
         "{}",
         ran.stderr
     );
+    let status = run("job status j --json");
+    assert!(status.stdout.contains(r#""holes":true"#), "{}", status.stdout);
     let first = bytes(folder.path().join("dem.tif"));
     let again = run("job run j");
     assert_eq!(again.code, 3, "{}", again.stderr);

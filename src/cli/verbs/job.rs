@@ -266,5 +266,5 @@ fn print_tasks(open: &Job, words: &[String], output: &Path) -> Result<()> {
         "name": "output", "stage": last_stage, "needs": open.last_needs(), "input": null,
         "has_read": null, "done": open.has_written(output),
     }));
-    print(&format!("{}\n", json!({ "command": words, "tasks": tasks })))
+    print(&format!("{}\n", json!({ "command": words, "tasks": tasks, "holes": open.has_holes() })))
 }
