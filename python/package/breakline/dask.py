@@ -180,7 +180,8 @@ def _run(
         cluster.release()
     if json.loads(_program("job", "status", folder, "--json"))["holes"]:
         cure = f"repair them, then `breakline job run {folder}` goes on"
-        warnings.warn(f"files were skipped, so that {os.fspath(output)} has holes: {cure}", BreaklineWarning, stacklevel=3)
+        text = f"files were skipped, so that {os.fspath(output)} has holes: {cure}"
+        warnings.warn(text, BreaklineWarning, stacklevel=3)
     elif job is None:
         _program("job", "clean", folder)
     return Path(output)
