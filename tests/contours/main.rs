@@ -177,6 +177,22 @@ fn contours_of_a_cone_are_circles() {
     }
 }
 
+/// Along the edge of the data there is ground on one side only: no contour, even where the edge
+/// lies exactly on the level. The same edge inside of the data is one if ground falls there.
+#[test]
+fn no_contour_runs_along_the_edge_of_the_data() {
+    let whole = grid(3, &[1, 1, 1, 2, 2, 2, 3, 3, 3], |_| true);
+    assert!(draw(&whole, &[1.0, 3.0]).is_empty());
+    assert_eq!(draw(&whole, &[2.0]).len(), 1);
+    // The upper half: what was the middle is the edge of the data now.
+    let upper = grid(3, &[2, 2, 2, 3, 3, 3], |_| true);
+    assert!(draw(&upper, &[1.0, 2.0, 3.0]).is_empty());
+    assert_eq!(draw(&upper, &[2.5]).len(), 1);
+    for surface in [whole, upper] {
+        (2..7).for_each(|half_level| drop(check(&surface, half_level)));
+    }
+}
+
 #[test]
 fn a_flat_surface_has_no_contour() {
     assert!(draw(&grid(4, &[2; 16], |_| true), &[1.0, 2.0, 3.0]).is_empty());
