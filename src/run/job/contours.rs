@@ -6,7 +6,7 @@ use super::bytes::{Reader, put_block, put_numbers};
 use super::task_file::{Block, TaskFile, TaskName, TaskWriter};
 use crate::crs::Crs;
 use crate::data::ContourLine;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::io::Destination;
 use crate::io::contours::{self, ContourSummary};
 use crate::run::context::{Context, Size, Stage};
@@ -49,12 +49,16 @@ fn to_table(bytes: &[u8]) -> Option<([f64; 2], LevelTable)> {
     table.is_sorted_by(|a, b| a.0 < b.0).then_some((heights, table))
 }
 
+/// The bytes of parts that are read at once, unless one level has more. The file of each task is
+/// opened once for them.
+const BAND: u64 = 32 << 20;
+
 /// The parts of contours in the files of all tasks.
 pub(super) struct DrawnContours {
     /// The files, with the positions of their parts.
     tasks: Vec<(TaskName, LevelTable)>,
-    /// All levels within the heights of the surface.
-    levels: Vec<f64>,
+    /// The levels that have parts, ascending, each with the number of their bytes.
+    levels: Vec<(f64, u64)>,
     /// The number of edges of all lines.
     edges: u64,
 }
@@ -64,6 +68,10 @@ impl DrawnContours {
     ///
     /// # Errors
     /// If a file is missing or damaged, or there are too many levels (see [`Levels::within`]).
+    ///
+    /// # Complexity
+    /// O(n log m) for n levels in the tables of all files, of which m differ. The tables stay in
+    /// memory, 32 bytes for each level.
     pub(super) fn open(names: Vec<TaskName>, levels: &Levels) -> Result<Self> {
         let mut tasks = Vec::new();
         let mut edges = 0;
@@ -75,7 +83,15 @@ impl DrawnContours {
             (low, high) = (low.min(heights[0]), high.max(heights[1]));
             tasks.push((name, table));
         }
-        Ok(DrawnContours { tasks, levels: levels.within(low, high)?, edges })
+        let mut levels: Vec<(f64, u64)> = levels.within(low, high)?.into_iter().map(|level| (level, 0)).collect();
+        for (name, table) in &tasks {
+            for (level, block) in table {
+                let at = position(&levels, *level).ok_or_else(|| no_level(*level).in_file(&name.path))?;
+                levels[at].1 = levels[at].1.saturating_add(block.length);
+            }
+        }
+        levels.retain(|(_, bytes)| *bytes > 0);
+        Ok(DrawnContours { tasks, levels, edges })
     }
 
     /// Joins the lines of all levels and writes them one after another.
@@ -84,15 +100,11 @@ impl DrawnContours {
         let drawing = context.start(Stage::DrawingContours, Size::Items(self.edges))?;
         // The writer takes lines, so an error has to wait until it ends.
         let failed = RefCell::new(Ok(()));
-        let lines_of = |&level: &f64| match self.lines(level) {
-            Ok(lines) => lines,
-            Err(error) => {
-                *failed.borrow_mut() = Err(error);
-                Vec::new()
-            }
-        };
+        let fail = |error: Error| *failed.borrow_mut() = Err(error);
+        let read = |band| self.read(band).map_err(fail).unwrap_or_default();
+        let join = |(level, parts)| join_level(level, parts).map_err(fail).unwrap_or_default();
         let is_wanted = |line: &ContourLine| failed.borrow().is_ok() && drawing.add(edge_count(line)).is_ok();
-        let mut lines = self.levels.iter().flat_map(lines_of).take_while(is_wanted);
+        let mut lines = bands(&self.levels).flat_map(read).flat_map(join).take_while(is_wanted);
         let written = contours::write(target, &mut lines, crs);
         drop(lines);
         failed.into_inner()?;
@@ -100,15 +112,66 @@ impl DrawnContours {
         written
     }
 
-    /// Returns the lines of a level, sorted by their points.
-    fn lines(&self, level: f64) -> Result<Vec<ContourLine>> {
-        let mut parts = Vec::new();
+    /// Returns the parts of each level of a band.
+    fn read(&self, band: &[(f64, u64)]) -> Result<Vec<(f64, Vec<LevelParts>)>> {
+        let mut parts: Vec<(f64, Vec<LevelParts>)> = band.iter().map(|(level, _)| (*level, Vec::new())).collect();
+        let Some((first, _)) = band.first() else { return Ok(parts) };
         let mut bytes = Vec::new();
         for (name, table) in &self.tasks {
-            let Ok(at) = table.binary_search_by(|(own, _)| own.total_cmp(&level)) else { continue };
-            TaskFile::open_done(name)?.read(table[at].1, &mut bytes)?;
-            parts.push(LevelParts::read(level, &bytes).map_err(|e| e.in_file(&name.path))?);
+            let from = table.partition_point(|(level, _)| level.total_cmp(first).is_lt());
+            let stored = table[from..].iter().map_while(|(level, block)| Some((position(band, *level)?, block)));
+            let mut file = None;
+            for (at, &block) in stored {
+                let file = match &mut file {
+                    Some(file) => file,
+                    None => file.insert(TaskFile::open_done(name)?),
+                };
+                file.read(block, &mut bytes)?;
+                parts[at].1.push(LevelParts::read(band[at].0, &bytes).map_err(|e| e.in_file(&name.path))?);
+            }
         }
-        join_level(level, parts)
+        Ok(parts)
+    }
+}
+
+/// Divides levels into bands whose parts are read together: of [`BAND`] bytes, or of one level.
+fn bands(levels: &[(f64, u64)]) -> impl Iterator<Item = &[(f64, u64)]> {
+    let mut rest = levels;
+    std::iter::from_fn(move || {
+        let mut bytes = 0_u64;
+        let fits = |(_, of_level): &&(f64, u64)| {
+            bytes = bytes.saturating_add(*of_level);
+            bytes <= BAND
+        };
+        let count = rest.iter().take_while(fits).count().max(1);
+        let (band, others) = rest.split_at_checked(count)?;
+        rest = others;
+        Some(band)
+    })
+}
+
+/// Returns where a level is among others, ascending.
+fn position(levels: &[(f64, u64)], level: f64) -> Option<usize> {
+    levels.binary_search_by(|(other, _)| other.total_cmp(&level)).ok()
+}
+
+#[cold]
+fn no_level(level: f64) -> Error {
+    Error::format(format!("the file of a task has contours at {level}, which is none of the levels"))
+        .cure("remove it, and run the job again with --resume")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Each file is opened once a band: many levels with few bytes are one.
+    #[test]
+    fn levels_are_read_in_bands() {
+        let of = |levels: &[(f64, u64)]| bands(levels).map(<[_]>::len).collect::<Vec<_>>();
+        let levels = |bytes: &[u64]| (0..).map(f64::from).zip(bytes.iter().copied()).collect::<Vec<_>>();
+        assert!(of(&[]).is_empty());
+        assert_eq!(of(&levels(&[5000; 6000])), [6000]);
+        assert_eq!(of(&levels(&[BAND / 2, BAND / 2, 1, BAND, 2 * BAND, 7, 7])), [2, 1, 1, 1, 2]);
     }
 }
