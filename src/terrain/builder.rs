@@ -75,9 +75,6 @@ pub struct TinBuilder {
     ///
     /// [`TinReport::uncertain`] then says whether they suffice.
     pub window: Option<Window>,
-    /// The box in plan within which crossings and walls are judged, if the surface is clipped to
-    /// it later, by somebody else; with [`bounds`](Self::bounds), these count.
-    pub(crate) judged: Option<Bounds>,
     /// The coordinate system of all points and lines.
     pub crs: Option<Crs>,
     points: Vec<[f64; 3]>,
@@ -318,12 +315,12 @@ impl TinBuilder {
 
     /// Takes what the surface is cut along; the bounds stay.
     pub(super) fn take_clip(&mut self) -> Clip {
-        Clip {
-            polygons: std::mem::take(&mut self.boundaries),
-            bounds: self.bounds,
-            holes: std::mem::take(&mut self.holes),
-            draped: std::mem::take(&mut self.draped),
-        }
+        Clip::new(
+            std::mem::take(&mut self.boundaries),
+            self.bounds,
+            std::mem::take(&mut self.holes),
+            std::mem::take(&mut self.draped),
+        )
     }
 
     /// Builds the TIN.
@@ -396,8 +393,7 @@ impl TinBuilder {
             self.crossing_heights,
             self.crossing_tolerance,
         );
-        let judged = self.bounds.or(self.judged);
-        if let Some(bounds) = &judged {
+        if let Some(bounds) = &self.bounds {
             report.crossing_heights.retain(|crossing| bounds.holds(crossing.site[0], crossing.site[1]));
         }
         let Leveled { is_water, sites } = areas::level(&mut triangulation, &self.waters, &rims, name)?;
@@ -407,7 +403,7 @@ impl TinBuilder {
             let flooded = at.filter(|([x, y, z], height)| {
                 z != height
                     && sites.contains(&[x.to_bits(), y.to_bits()])
-                    && judged.as_ref().is_none_or(|bounds| bounds.holds(*x, *y))
+                    && self.bounds.as_ref().is_none_or(|bounds| bounds.holds(*x, *y))
             });
             report.walls_in_water.extend(flooded.map(|([x, y, _], _)| (line, [x, y])));
         }
