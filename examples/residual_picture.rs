@@ -39,7 +39,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     for step in layout.steps() {
         let Work::Leaf(number) = &step.work else { continue };
         let own: Vec<[f64; 3]> = all.iter().copied().filter(|p| step.tile.holds([p[0], p[1]])).collect();
-        let rest = leaf(&step.tile, *number, &own, &[], &mut |_| ())?;
+        let rest = leaf(&step.tile, *number, &own, &[], 0.0, &mut |_| ())?;
         let vertices: Vec<[f64; 3]> = rest.vertices.iter().map(|vertex| vertex.position).collect();
         svg.push_str("<path fill=\"none\" stroke=\"#1f6fb2\" stroke-width=\"0.8\" d=\"");
         for edge in &rest.edges {

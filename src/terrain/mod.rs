@@ -64,7 +64,7 @@ mod tin_report;
 mod window;
 
 pub use builder::TinBuilder;
-pub use compact::{CompactTin, TinIndex, TinIndexPart};
+pub use compact::{CompactTin, PartCell, TinIndex, TinIndexPart};
 pub use contour::{Contours, contours};
 pub use crossings::{CrossingHeights, CrossingRule};
 pub use duplicates::DuplicateRule;

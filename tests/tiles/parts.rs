@@ -71,6 +71,27 @@ fn the_valley_in_parts_is_the_valley() {
     assert_same(&folder, &format!("{valley} --breaklines {lines} --boundary {boundary}"), &["--tiles 4x6"]);
 }
 
+/// Methods other than linear use the triangles under the surface, also those that the rim or a clip
+/// has left out.
+#[test]
+fn heights_of_all_methods_are_those_of_one_piece() {
+    let folder = tempfile::tempdir().unwrap();
+    let valley = valley();
+    let [lines, boundary] = ["breaklines.shp", "boundary.shp"].map(|name| valley.replace("valley.laz", name));
+    for words in [
+        format!("--boundary {boundary} --walls {lines} --wall-drop 1 --max-edge 3"),
+        format!("--holes {boundary} --draped-lines {lines}"),
+    ] {
+        output_of(&folder, &format!("tin {valley} {words}"), "whole.tin");
+        output_of(&folder, &format!("tin {valley} {words} --tiles 3x2"), "parts.tins");
+        for method in ["nearest", "natural", "laplace", "smooth", "idw"] {
+            let dem = format!("dem --resolution 2.9 --method {method}");
+            let of_parts = output_of(&folder, &format!("{dem} parts.tins"), "a.tif").0;
+            assert!(of_parts == output_of(&folder, &format!("{dem} whole.tin"), "a.tif").0, "{method}: {words}");
+        }
+    }
+}
+
 /// Lines of several kinds on grids, where ties are the rule: along cuts, across them, and at seams.
 #[test]
 fn grids_with_lines_are_the_same_in_parts() {
@@ -209,7 +230,7 @@ fn damage_is_an_error_that_names_the_file() {
     std::fs::remove_file(&part).unwrap();
     assert_fails("v.tins needs its folder next to it");
     std::fs::write(&part, &whole).unwrap();
-    for (from, to) in [("parts\":1", "parts\":9"), ("\"area\":", "\"era\":"), (parts.as_str(), "/tmp")] {
+    for (from, to) in [("parts\":2", "parts\":9"), ("\"area\":", "\"era\":"), (parts.as_str(), "/tmp")] {
         std::fs::write(folder.path().join("v.tins"), index.replace(from, to)).unwrap();
         assert_fails("missing or wrong");
     }

@@ -27,7 +27,11 @@ fn put_vertex(to: &mut Vec<u8>, vertex: &TileVertex) {
     put_u32(to, vertex.tile);
     put_u32(to, vertex.number);
     put_numbers(to, &vertex.position);
+    to.push(u8::from(vertex.is_tight));
 }
+
+/// The bytes of a vertex.
+const VERTEX_BYTES: usize = 4 + 4 + 24 + 1;
 
 /// Takes numbers from bytes; `None` where they end.
 pub(super) struct Reader<'a> {
@@ -70,7 +74,8 @@ impl<'a> Reader<'a> {
     }
 
     fn vertex(&mut self) -> Option<TileVertex> {
-        Some(TileVertex { tile: self.u32()?, number: self.u32()?, position: self.point()? })
+        let (tile, number, position) = (self.u32()?, self.u32()?, self.point()?);
+        Some(TileVertex { tile, number, position, is_tight: self.boolean()? })
     }
 
     fn boolean(&mut self) -> Option<bool> {
@@ -131,7 +136,7 @@ pub(super) fn to_constraints(bytes: &[u8]) -> Option<Vec<SubConstraint>> {
 /// Returns the bytes of a residual.
 pub(super) fn of_residual(residual: &Residual) -> Vec<u8> {
     let Residual { vertices, edges, pending, has_lines } = residual;
-    let mut bytes = Vec::with_capacity(17 + 32 * vertices.len() + 10 * edges.len());
+    let mut bytes = Vec::with_capacity(17 + VERTEX_BYTES * vertices.len() + 10 * edges.len());
     bytes.push(u8::from(*has_lines));
     put_u64(&mut bytes, vertices.len() as u64);
     put_u64(&mut bytes, edges.len() as u64);
@@ -149,7 +154,7 @@ pub(super) fn to_residual(bytes: &[u8]) -> Option<Residual> {
     let mut reader = Reader::new(bytes);
     let has_lines = reader.boolean()?;
     let mut count = |size: usize| usize::try_from(reader.u64()?).ok().filter(|&count| count <= bytes.len() / size);
-    let (vertex_count, edge_count) = (count(32)?, count(10)?);
+    let (vertex_count, edge_count) = (count(VERTEX_BYTES)?, count(10)?);
     let vertices = (0..vertex_count).map(|_| reader.vertex()).collect::<Option<_>>()?;
     let mut edge = || {
         let ends = [reader.u32()?, reader.u32()?];
@@ -190,7 +195,7 @@ pub(super) fn to_gates(bytes: &[u8]) -> Option<Vec<Gate>> {
 }
 
 /// The bytes of a triangle that waits.
-pub(super) const WAITING_BYTES: usize = 3 * 32 + 3 + 4;
+pub(super) const WAITING_BYTES: usize = 3 * VERTEX_BYTES + 3 + 4;
 
 /// Returns the triangle with these bytes and its number; `None` if they are damaged.
 pub(super) fn to_waiting(bytes: &[u8]) -> Option<(TileTriangle, u32)> {

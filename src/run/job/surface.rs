@@ -16,34 +16,30 @@ use crate::io::Destination;
 use crate::run::checksum::{Summed, checksum};
 use crate::run::context::{Context, Size, Stage};
 use crate::terrain::tiles::{TinPart, Work};
-use crate::terrain::{CompactTin, TinIndex, TinIndexPart};
+use crate::terrain::{CompactTin, PartCell, TinIndex, TinIndexPart};
 
-/// The sections of a task: its triangulation, the faces in it that wait, and of the task that
-/// decides about these, whether each is kept.
+/// The sections of a task: its triangulation, the cells in it that wait, and of the task that
+/// decides about these, what each is.
 const PART: &str = "part";
 const WAITING: &str = "faces";
 const KEPT: &str = "kept";
 
-/// Which triangles of a task are faces of the surface, in the order in which they were found.
+/// What the triangles of a task are in the surface, in the order in which they were found.
 #[derive(Debug, Default)]
 pub(super) struct PartFaces {
-    is_kept: Vec<bool>,
+    decided: Vec<PartCell>,
     /// The positions of those that are decided later.
     waiting: Vec<u32>,
 }
 
 impl PartFaces {
-    pub(super) fn keep(&mut self) {
-        self.is_kept.push(true);
-    }
-
-    pub(super) fn leave_out(&mut self) {
-        self.is_kept.push(false);
+    pub(super) fn add(&mut self, decided: PartCell) {
+        self.decided.push(decided);
     }
 
     pub(super) fn wait(&mut self) {
-        self.waiting.push(self.is_kept.len() as u32);
-        self.is_kept.push(false);
+        self.waiting.push(self.decided.len() as u32);
+        self.decided.push(PartCell::Elsewhere);
     }
 
     /// Writes the triangulation and its faces. Without a triangulation, the triangles waited in
@@ -51,15 +47,28 @@ impl PartFaces {
     pub(super) fn finish(self, part: Option<TinPart>, writer: &mut TaskWriter) -> Result<()> {
         let Some(part) = part else {
             writer.begin(KEPT);
-            return writer.put(&self.is_kept.iter().map(|&is_kept| u8::from(is_kept)).collect::<Vec<_>>());
+            return writer.put(&self.decided.into_iter().map(to_byte).collect::<Vec<_>>());
         };
         let mut waiting = Vec::with_capacity(4 * self.waiting.len());
         self.waiting.iter().for_each(|&at| put_u32(&mut waiting, part.faces()[at as usize]));
         writer.begin(WAITING);
         writer.put(&waiting)?;
         writer.begin(PART);
-        part.write(self.is_kept, writer)
+        part.write(self.decided, writer)
     }
+}
+
+/// The byte that stands for what a cell is.
+fn to_byte(decided: PartCell) -> u8 {
+    match decided {
+        PartCell::Under => 0,
+        PartCell::Face => 1,
+        PartCell::Elsewhere => 2,
+    }
+}
+
+fn from_byte(byte: u8) -> Option<PartCell> {
+    [PartCell::Under, PartCell::Face, PartCell::Elsewhere].into_iter().find(|&decided| to_byte(decided) == byte)
 }
 
 /// A vertex, by its tile and its number.
@@ -195,16 +204,16 @@ impl Job<'_> {
         Ok(written)
     }
 
-    /// Writes the part of each task that has triangles, those between tiles first: what they share
-    /// with others is then known.
+    /// Writes the part of each task that has triangles, be they faces or not, those between tiles
+    /// first: what they share with others is then known.
     fn write_parts(&self, folder: &Path, report: &JobReport, context: &Context) -> Result<Vec<Written>> {
-        let kept = self.kept_at_rim()?;
+        let decided = self.decided_at_rim()?;
         let is_leaf = |task: &usize| self.tile_of(*task).is_some();
         let (leaves, others): (Vec<usize>, Vec<usize>) = (self.first_step()..self.task_count()).partition(is_leaf);
         let writing = context.start(Stage::WritingFaces, Size::Items(report.triangles))?;
         let write = |task: &usize, shared: &FxHashSet<VertexKey>| {
-            let kept = kept.get(*task - self.first_step()).map(Vec::as_slice).unwrap_or_default();
-            let part = self.write_part(*task, kept, shared, folder, report)?;
+            let decided = decided.get(*task - self.first_step()).map(Vec::as_slice).unwrap_or_default();
+            let part = self.write_part(*task, decided, shared, folder, report)?;
             writing.add(part.as_ref().map_or(0, |part| part.row.triangles))?;
             Ok(part)
         };
@@ -230,17 +239,17 @@ impl Job<'_> {
         }
     }
 
-    /// Returns, for each step, whether each of its triangles that waited is kept.
-    fn kept_at_rim(&self) -> Result<Vec<Vec<bool>>> {
+    /// Returns, for each step, what each of its triangles that waited is.
+    fn decided_at_rim(&self) -> Result<Vec<Vec<PartCell>>> {
         let mut all = vec![Vec::new(); self.steps.len()];
         let Some(rim) = self.rim_task() else { return Ok(all) };
         let mut rim = self.open_task(rim)?;
         let decided = rim.section(KEPT)?;
         let mut rest = &decided[..];
-        for (step, kept) in all.iter_mut().enumerate() {
+        for (step, cells) in all.iter_mut().enumerate() {
             let count = self.open_task(self.task_of_step(step))?.count("waiting") as usize;
             let (own, others) = rest.split_at_checked(count).ok_or_else(|| rim.damaged())?;
-            *kept = own.iter().map(|&is_kept| is_kept == 1).collect();
+            *cells = own.iter().map(|&byte| from_byte(byte)).collect::<Option<_>>().ok_or_else(|| rim.damaged())?;
             rest = others;
         }
         if !rest.is_empty() {
@@ -252,7 +261,7 @@ impl Job<'_> {
     fn write_part(
         &self,
         task: usize,
-        kept: &[bool],
+        decided: &[PartCell],
         shared: &FxHashSet<VertexKey>,
         folder: &Path,
         report: &JobReport,
@@ -264,18 +273,14 @@ impl Job<'_> {
         }
         let waiting = file_of_task.section(WAITING)?;
         let mut reader = Reader::new(&waiting);
-        let mut faces = Vec::new();
-        for &is_kept in kept {
-            match reader.u32() {
-                Some(face) if is_kept => faces.push(face),
-                Some(_) => {}
-                None => return Err(file_of_task.damaged()),
-            }
+        let mut cells = Vec::with_capacity(decided.len());
+        for &decided in decided {
+            cells.push((reader.u32().ok_or_else(|| file_of_task.damaged())?, decided));
         }
-        let mut tin = CompactTin::open_with_faces(bytes, &self.task_file(task).path, &faces)?;
+        let mut tin = CompactTin::open_with_cells(bytes, &self.task_file(task).path, &cells)?;
         tin.set_crs(report.crs.clone());
         let facts = tin.facts().clone();
-        if facts.triangles == 0 {
+        if !tin.has_triangles() {
             return Ok(None);
         }
         let tile = self.tile_of(task);

@@ -8,19 +8,17 @@ use super::holes::Holes;
 use super::planned_file::{require_state, state_of};
 use super::raster::Drawing;
 use super::surface::PartFaces;
-use super::task_file::{INPUT, SKIPPED, TaskWriter};
-use super::{Job, Task, TiledProduct};
-use super::{contours, lines, notes};
-use crate::data::{Bounds, EdgeKind, PointBatch};
-use crate::error::{Error, Result};
+use super::task_file::{INPUT, TaskWriter};
+use super::{BadFiles, Job, Task, TiledProduct};
+use super::{contours, lines};
+use crate::data::{Bounds, PointBatch};
+use crate::error::{Error, Kind, Result};
 use crate::run::context::{Context, Journal};
-use crate::run::line_notes::LevelRings;
-use crate::run::notice::Notice;
 use crate::run::units::neat;
 use crate::run::{frame, open};
 use crate::terrain::contour::parts::{ContourCollector, LevelParts};
 use crate::terrain::tiles::{self, ClipSide, LongEdges, Rim, TileClip, TileTriangle, TinPart, Work, has_long_edge};
-use crate::terrain::{Classes, Selection, SelectionReport, one_per_site};
+use crate::terrain::{Classes, PartCell, Selection, SelectionReport, one_per_site};
 
 /// Points that are read before they are divided among tiles: 24 bytes each, and as much again while
 /// they are sorted.
@@ -35,36 +33,29 @@ impl Job<'_> {
     pub(super) fn do_task(&self, number: usize, context: &Context) -> Result<()> {
         let mut writer = TaskWriter::create(self.task_file(number))?;
         let sources = Sources::new(self);
-        let journal = Journal::new(context);
-        let mut facts = match self.task(number) {
-            Task::Divide(file) => self.divide(file, &mut writer, &journal)?,
-            Task::Lines => self.arrange(&sources, &mut writer, &journal)?,
+        let facts = match self.task(number) {
+            Task::Divide(file) => self.divide(file, &mut writer, context)?,
+            Task::Lines => self.arrange(&sources, &mut writer, context)?,
             Task::Triangulate(step) => match &self.steps[step].work {
-                Work::Leaf(tile) => self.leaf(step, *tile, &sources, &mut writer, &journal)?,
+                Work::Leaf(tile) => self.leaf(step, *tile, &sources, &mut writer, context)?,
                 Work::Merge(parts) => self.merge(step, parts, &sources, &mut writer, context)?,
             },
             Task::Rim => self.rim(&sources, &mut writer, context)?,
             Task::Cut => self.cut(&sources, &mut writer, context)?,
         };
         context.check()?;
-        notes::put_notices(&mut facts, &journal.take());
         writer.finish(facts, sources.sum(self.needs(number))?)
     }
 
     /// Divides the points of a file among the tiles.
-    fn divide(&self, file: usize, writer: &mut TaskWriter, journal: &Journal) -> Result<Map<String, Value>> {
+    fn divide(&self, file: usize, writer: &mut TaskWriter, context: &Context) -> Result<Map<String, Value>> {
         let mut table = Vec::new();
         writer.begin("points");
         let mut waiting: Vec<[f64; 3]> = Vec::new();
         let layout = &self.plan.layout;
-        let lines = if self.plan.has_lines { self.known(&journal.context)?.lines.as_ref() } else { None };
-        let rings = lines.and_then(|lines| lines.rings.as_ref());
+        let lines = if self.plan.has_lines { self.known(context)?.lines.as_ref() } else { None };
         let mut near = Vec::new();
-        let mut of_rings = rings.map(LevelRings::none_found).unwrap_or_default();
         let mut write_run = |points: &mut Vec<[f64; 3]>| -> Result<()> {
-            if let Some(rings) = rings {
-                rings.count(points, &mut of_rings);
-            }
             if let Some(lines) = lines {
                 near.append(&mut lines.take_points(points));
             }
@@ -85,7 +76,7 @@ impl Job<'_> {
         };
         let most = (self.plan.task_memory / BYTES_A_DIVIDED_POINT).clamp(1 << 14, DIVIDED_AT_ONCE) as usize;
         let mut written = Ok(());
-        let read = self.read_file(file, journal, &mut |mut points| {
+        let read = self.read_file(file, context, &mut |mut points| {
             if waiting.is_empty() {
                 waiting = points
             } else {
@@ -97,12 +88,10 @@ impl Job<'_> {
         });
         written.and_then(|()| write_run(&mut waiting))?;
         // Of a bad file, nothing counts.
-        let mut facts = self.facts_of_file(file, read)?;
-        if facts.contains_key(SKIPPED) {
+        let facts = self.facts_of_file(file, read)?;
+        if facts.contains_key("skipped") {
             table.clear();
             near.clear();
-        } else {
-            notes::put_rings(&mut facts, &of_rings);
         }
         writer.begin("table");
         writer.put(&table)?;
@@ -112,9 +101,10 @@ impl Job<'_> {
     }
 
     /// Arranges the lines, with the points next to them from all files.
-    fn arrange(&self, sources: &Sources, writer: &mut TaskWriter, journal: &Journal) -> Result<Map<String, Value>> {
+    fn arrange(&self, sources: &Sources, writer: &mut TaskWriter, context: &Context) -> Result<Map<String, Value>> {
+        let journal = Journal::new(context);
         let crs = self.plan.crs.as_ref();
-        let Some(lines) = &self.known(&journal.context)?.lines else { return Ok(Map::new()) };
+        let Some(lines) = &self.known(context)?.lines else { return Ok(Map::new()) };
         let mut near = Vec::new();
         let mut extent = Bounds::default();
         for (number, file) in self.plan.files.iter().enumerate() {
@@ -123,7 +113,7 @@ impl Job<'_> {
             bytes::add_points(&bytes, &mut near).ok_or_else(|| divided.damaged())?;
             [file.min, file.max].into_iter().for_each(|[x, y]| extent.add([x, y, 0.0]));
         }
-        let tin = lines.build(near, &extent, crs, journal)?;
+        let tin = lines.build(near, &extent, crs, &journal)?;
         let edges = lines::write(lines, &tin, &self.plan.layout, writer)?;
         Ok(Map::from_iter([("line_edges".to_owned(), json!(edges))]))
     }
@@ -132,39 +122,40 @@ impl Job<'_> {
     fn facts_of_file(&self, file: usize, read: Result<Map<String, Value>>) -> Result<Map<String, Value>> {
         let path = &self.plan.files[file].path;
         match read {
-            Err(error) if self.bad.skips(&error) => {
-                Ok(Map::from_iter([(SKIPPED.to_owned(), json!(error.in_file(path).to_string()))]))
+            Err(error) if self.bad == BadFiles::Skip && matches!(error.kind(), Kind::Format | Kind::Unsupported) => {
+                let state = state_of(path)?;
+                let error = error.in_file(path);
+                Ok(Map::from_iter([
+                    ("skipped".to_owned(), json!(error.to_string())),
+                    (INPUT.to_owned(), state.to_json()),
+                ]))
             }
             read => read.map_err(|e| e.in_file(path)),
         }
     }
 
     /// Reads the points of a file that are used, some at a time.
-    pub(super) fn read_file(
+    fn read_file(
         &self,
         number: usize,
-        journal: &Journal,
+        context: &Context,
         take: &mut dyn FnMut(Vec<[f64; 3]>),
     ) -> Result<Map<String, Value>> {
         self.plan.require_same_points(number, self.request)?;
         let file = &self.plan.files[number];
         let state = state_of(&file.path)?;
-        let mut source = open::points(&self.request.points[file.input], self.request.read, &journal.context)?;
-        self.plan.require_system(number, source.info().crs.as_ref())?;
+        let mut source = open::points(&self.request.points[file.input], self.request.read, context)?;
         let mut selection = Selection::new(Classes::Only(self.plan.classes.clone()), None);
         let spread = file.spread();
         let mut batch = PointBatch::default();
-        let mut extent = Bounds::default();
         loop {
             source.read(&mut batch)?;
             if batch.is_empty() {
                 require_state(&file.path, state)?;
-                let report = selection.finish().1;
-                self.plan.require_classes(&report, self.request)?;
-                let mut facts = facts_of(&report);
-                notes::put_points(&mut facts, &report, &extent);
-                journal.add(Notice::PointsRead(file.path.clone(), report.read));
-                journal.add_warnings(&file.path, source.warnings());
+                let mut facts = facts_of(&selection.finish().1);
+                let name = file.path.display();
+                let warnings: Vec<String> = source.warnings().iter().map(|text| format!("{name}: {text}")).collect();
+                facts.insert("warnings".to_owned(), json!(warnings));
                 facts.insert(INPUT.to_owned(), state.to_json());
                 return Ok(facts);
             }
@@ -178,9 +169,8 @@ impl Job<'_> {
                 ))
                 .cure("`breakline points` writes a file with a true header"));
             }
-            points.iter().for_each(|point| extent.add(*point));
             take(points);
-            journal.context.check()?;
+            context.check()?;
         }
     }
 
@@ -191,12 +181,12 @@ impl Job<'_> {
         tile: u32,
         sources: &Sources,
         writer: &mut TaskWriter,
-        journal: &Journal,
+        context: &Context,
     ) -> Result<Map<String, Value>> {
         let mut holes = Holes::default();
         let (points, mut facts) = if self.plan.divides {
             for number in self.files_of(step) {
-                if sources.open(number)?.facts.contains_key(SKIPPED) {
+                if sources.open(number)?.facts.contains_key("skipped") {
                     holes.add_file(self, number);
                 }
             }
@@ -204,12 +194,12 @@ impl Job<'_> {
         } else {
             let file = tile as usize;
             let mut all: Vec<[f64; 3]> = Vec::new();
-            let read = self.read_file(file, journal, &mut |mut points| {
+            let read = self.read_file(file, context, &mut |mut points| {
                 if all.is_empty() { all = points } else { all.append(&mut points) }
             });
             let facts = self.facts_of_file(file, read);
             let facts = facts.map_err(|e| e.within(format_args!("tile {tile}")))?;
-            if facts.contains_key(SKIPPED) {
+            if facts.contains_key("skipped") {
                 all.clear();
                 holes.add_file(self, file);
             }
@@ -225,10 +215,11 @@ impl Job<'_> {
             constraints = lines.constraints;
         }
         let rectangle = &self.steps[step].tile;
+        let tight = self.tight(context)?;
         facts.insert("reach".to_owned(), json!(reach_of(&points)));
-        self.emitting(writer, &journal.context, &holes, facts, |emit| match self.product {
-            TiledProduct::Surface => tiles::leaf_with_part(rectangle, tile, &points, &constraints, emit),
-            _ => tiles::leaf(rectangle, tile, &points, &constraints, emit).map(|residual| (residual, None)),
+        self.emitting(writer, context, &holes, facts, |emit| match self.product {
+            TiledProduct::Surface => tiles::leaf_with_part(rectangle, tile, &points, &constraints, tight, emit),
+            _ => tiles::leaf(rectangle, tile, &points, &constraints, tight, emit).map(|residual| (residual, None)),
         })
         .map_err(|error| {
             let error = error.within(format_args!("tile {tile}"));
@@ -274,9 +265,10 @@ impl Job<'_> {
             holes.add_known(&file);
         }
         let tile = &self.steps[step].tile;
+        let tight = self.tight(context)?;
         self.emitting(writer, context, &holes, Map::new(), |emit| match self.product {
-            TiledProduct::Surface => tiles::merge_with_part(tile, &residuals, emit),
-            _ => tiles::merge(tile, &residuals, emit).map(|residual| (residual, None)),
+            TiledProduct::Surface => tiles::merge_with_part(tile, &residuals, tight, emit),
+            _ => tiles::merge(tile, &residuals, tight, emit).map(|residual| (residual, None)),
         })
         .map_err(|e| e.within(format_args!("merge {step}")))
     }
@@ -364,6 +356,11 @@ impl Job<'_> {
         if self.plan.has_clip { Ok(self.known(context)?.clip.as_ref()) } else { Ok(None) }
     }
 
+    /// The width of triangles at which a cut may bend an edge; zero without a clip.
+    fn tight(&self, context: &Context) -> Result<f64> {
+        Ok(self.clip(context)?.map_or(0.0, TileClip::tight))
+    }
+
     /// Cuts the triangles of all tasks that clip lines come near.
     fn cut(&self, sources: &Sources, writer: &mut TaskWriter, context: &Context) -> Result<Map<String, Value>> {
         let mut triangles = Vec::new();
@@ -384,16 +381,10 @@ impl Job<'_> {
             Some(clip) => clip.cut(&triangles, reach)?,
             None => None,
         };
-        let inside = triangles.iter().filter(|(_, is_inside)| *is_inside).count() as u64;
         drop(triangles);
-        let (mut whole, mut draped) = (0_u64, 0_u64);
         for triangle in part.iter().flat_map(TinPart::triangles) {
-            whole += u64::from(triangle.corners.iter().all(|corner| !corner.is_added()));
-            draped += u64::from(triangle.edges.contains(&EdgeKind::Draped));
             kept.keep(&triangle, writer)?;
         }
-        facts.insert(notes::MET.to_owned(), json!(inside.saturating_sub(whole)));
-        facts.insert(notes::DRAPED.to_owned(), json!(draped));
         kept.finish(part, writer, &mut facts)?;
         Ok(facts)
     }
@@ -478,7 +469,7 @@ impl<'a> Kept<'a> {
 
     fn add_near_clip(&mut self, triangle: &TileTriangle, is_inside: bool) {
         bytes::put_waiting(&mut self.near_clip, triangle, u32::from(is_inside));
-        self.leave_out();
+        self.add_left_out(PartCell::Elsewhere);
     }
 
     /// Draws and counts a triangle.
@@ -494,7 +485,7 @@ impl<'a> Kept<'a> {
                 Ok(())
             }
             Drawn::Faces(faces) => {
-                faces.keep();
+                faces.add(PartCell::Face);
                 Ok(())
             }
         }
@@ -502,8 +493,13 @@ impl<'a> Kept<'a> {
 
     /// Leaves out a triangle for good.
     fn leave_out(&mut self) {
+        self.add_left_out(PartCell::Under);
+    }
+
+    /// Adds a triangle that is not a face of the surface here.
+    fn add_left_out(&mut self, decided: PartCell) {
         if let Drawn::Faces(faces) = &mut self.drawn {
-            faces.leave_out();
+            faces.add(decided);
         }
     }
 

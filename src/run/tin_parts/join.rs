@@ -1,9 +1,12 @@
-//! All parts as one mesh.
+//! All parts as one surface.
+
+use std::ops::Range;
 
 use rustc_hash::FxHashMap;
 
 use super::TinParts;
-use crate::data::{Mesh, Surface, Triangles};
+use crate::crs::Crs;
+use crate::data::{BaseFace, EdgeKind, Mesh, Surface, Triangles};
 use crate::error::{Error, Result};
 use crate::io::mapped::Mapped;
 use crate::terrain::CompactTin;
@@ -12,14 +15,88 @@ use crate::terrain::tiles::TileVertex;
 /// Stands for a vertex that no face has used so far.
 const UNUSED: u32 = u32::MAX;
 
-/// Joins the parts: vertices that stand for the same point are one.
-pub(super) fn joined(parts: &TinParts) -> Result<Mesh> {
-    let shared = shared_vertices(parts)?;
-    let mut joined = Joined { shared, triangles: Triangles { crs: parts.crs().cloned(), ..Triangles::default() } };
-    for number in 0..parts.index().parts.len() {
-        joined.add(&parts.part(number)?)?;
+/// All parts as one surface, with the triangles under it: so each method of interpolation gives the
+/// heights of the surface in one piece.
+///
+/// Whole faces are numbered first, then the triangles that are only under the surface, then
+/// fragments.
+#[derive(Debug)]
+pub(in crate::run) struct JoinedTin {
+    /// The whole faces, then the fragments.
+    faces: Mesh,
+    /// The whole faces, then the other triangles under the surface; `None` if the faces are all.
+    under: Option<Mesh>,
+    /// The number of whole faces.
+    whole: u32,
+}
+
+impl JoinedTin {
+    /// The position of a face in the list of faces.
+    fn listed(&self, face: u32) -> Option<u32> {
+        match face.checked_sub(self.base_count() as u32) {
+            Some(fragment) => Some(self.whole + fragment),
+            None => Some(face).filter(|&face| face < self.whole),
+        }
     }
-    Mesh::of(joined.triangles)
+
+    /// The number of a face in the list of faces.
+    fn number(&self, listed: u32) -> u32 {
+        match listed.checked_sub(self.whole) {
+            Some(fragment) => self.base_count() as u32 + fragment,
+            None => listed,
+        }
+    }
+}
+
+impl Surface for JoinedTin {
+    fn vertex_count(&self) -> usize {
+        self.faces.vertex_count()
+    }
+
+    fn position(&self, vertex: u32) -> [f64; 3] {
+        self.faces.position(vertex)
+    }
+
+    fn face_count(&self) -> usize {
+        self.base_count() + self.faces.face_count() - self.whole as usize
+    }
+
+    fn face(&self, face: u32) -> Option<[u32; 3]> {
+        self.faces.face(self.listed(face)?)
+    }
+
+    fn neighbor(&self, face: u32, i: usize) -> Option<u32> {
+        self.faces.neighbor(self.listed(face)?, i).map(|listed| self.number(listed))
+    }
+
+    fn edge_kind(&self, face: u32, i: usize) -> EdgeKind {
+        self.listed(face).map_or(EdgeKind::Rim, |listed| self.faces.edge_kind(listed, i))
+    }
+
+    fn is_fragment(&self, face: u32) -> bool {
+        face as usize >= self.base_count()
+    }
+
+    fn crs(&self) -> Option<&Crs> {
+        self.faces.crs()
+    }
+
+    fn base_count(&self) -> usize {
+        self.under.as_ref().map_or(self.whole as usize, Surface::face_count)
+    }
+
+    fn base_faces_in(&self, numbers: Range<u32>, faces: &mut Vec<BaseFace>) {
+        self.under.as_ref().unwrap_or(&self.faces).base_faces_in(numbers, faces);
+    }
+}
+
+/// Joins the parts: vertices that stand for the same point are one.
+pub(super) fn joined(parts: &TinParts) -> Result<JoinedTin> {
+    let mut joining = Joining { shared: shared_vertices(parts)?, ..Joining::default() };
+    for number in 0..parts.index().parts.len() {
+        joining.add(&parts.part(number)?)?;
+    }
+    joining.finish(parts.crs().cloned())
 }
 
 /// The vertices of triangles between tiles. They may be vertices of several parts; all others are
@@ -35,54 +112,94 @@ fn shared_vertices(parts: &TinParts) -> Result<FxHashMap<[u32; 2], u32>> {
     Ok(shared)
 }
 
-struct Joined {
-    /// The number of each shared vertex in the mesh.
+/// An edge on a line, by its vertices.
+type Line = ([u32; 2], EdgeKind);
+
+/// What of the parts was joined so far.
+#[derive(Default)]
+struct Joining {
+    /// The number of each shared vertex.
     shared: FxHashMap<[u32; 2], u32>,
-    triangles: Triangles,
+    vertices: Vec<[f64; 3]>,
+    whole: Vec<[u32; 3]>,
+    fragments: Vec<[u32; 3]>,
+    lines: Vec<Line>,
+    /// The triangles that are only under the surface, and the lines under it.
+    left_out: Vec<[u32; 3]>,
+    lines_under: Vec<Line>,
 }
 
-impl Joined {
+impl Joining {
     fn add(&mut self, part: &CompactTin<Mapped>) -> Result<()> {
-        let Joined { shared, triangles } = self;
         let mut number_of = vec![UNUSED; part.vertex_count()];
         for face in 0..part.face_count() as u32 {
             let Some(corners) = part.face(face) else { continue };
-            for vertex in corners {
-                let number = &mut number_of[vertex as usize];
-                if *number != UNUSED {
-                    continue;
-                }
-                let Some(TileVertex { tile, number: own, position }) = part.tile_vertex(vertex) else { continue };
-                let next = triangles.vertices.len() as u32;
-                *number = match shared.get_mut(&[tile, own]) {
-                    Some(number) if *number != UNUSED => *number,
-                    Some(number) => {
-                        *number = next;
-                        next
-                    }
-                    None => next,
-                };
-                if *number == next {
-                    triangles.vertices.push(position);
-                }
+            let of_face = corners.map(|vertex| self.number(part, vertex, &mut number_of));
+            let faces = if part.is_fragment(face) { &mut self.fragments } else { &mut self.whole };
+            faces.push(of_face);
+            let is_listed = |i: &usize| part.neighbor(face, *i).is_none_or(|other| face < other);
+            let kinds = (0..3).filter(is_listed).map(|i| (i, part.edge_kind(face, i)));
+            self.lines.extend(kinds.filter_map(|(i, kind)| line(of_face, i, kind)));
+        }
+        for BaseFace { number, corners, edges, .. } in part.faces_under_whole() {
+            let of_face = corners.map(|vertex| self.number(part, vertex, &mut number_of));
+            if part.face(number).is_none() {
+                self.left_out.push(of_face);
             }
-            let of_face = corners.map(|vertex| number_of[vertex as usize]);
-            if part.is_fragment(face) {
-                triangles.fragments.push(triangles.faces.len() as u32);
-            }
-            triangles.faces.push(of_face);
-            for i in 0..3 {
-                let kind = part.edge_kind(face, i);
-                if kind.is_constrained() && part.neighbor(face, i).is_none_or(|other| face < other) {
-                    triangles.lines.push(([of_face[(i + 1) % 3], of_face[(i + 2) % 3]], kind));
-                }
-            }
+            self.lines_under.extend((0..3).filter_map(|i| line(of_face, i, edges[i])));
         }
         part.ensure_intact()?;
-        if triangles.vertices.len() >= UNUSED as usize || triangles.faces.len() >= UNUSED as usize {
+        let faces = self.whole.len().max(self.fragments.len()).max(self.left_out.len());
+        if self.vertices.len() >= UNUSED as usize || faces >= UNUSED as usize {
             return Err(Error::limit("the parts have more triangles than one mesh can number")
                 .cure("make the raster or the contours of the parts as they are, with linear heights"));
         }
         Ok(())
     }
+
+    /// Returns the number of a vertex of a part, which is given one with its first use.
+    fn number(&mut self, part: &CompactTin<Mapped>, vertex: u32, number_of: &mut [u32]) -> u32 {
+        let number = &mut number_of[vertex as usize];
+        if *number != UNUSED {
+            return *number;
+        }
+        // What is damaged is an error after the part.
+        let Some(TileVertex { tile, number: own, position, .. }) = part.tile_vertex(vertex) else { return 0 };
+        let next = self.vertices.len() as u32;
+        *number = match self.shared.get_mut(&[tile, own]) {
+            Some(number) if *number != UNUSED => *number,
+            Some(number) => {
+                *number = next;
+                next
+            }
+            None => next,
+        };
+        if *number == next {
+            self.vertices.push(position);
+        }
+        *number
+    }
+
+    fn finish(self, crs: Option<Crs>) -> Result<JoinedTin> {
+        let Joining { vertices, mut whole, mut fragments, lines, mut left_out, lines_under, .. } = self;
+        let count = whole.len() as u32;
+        let under = match (fragments.is_empty(), left_out.is_empty()) {
+            (true, true) => None,
+            _ => {
+                left_out.splice(0..0, whole.iter().copied());
+                let (vertices, faces) = (vertices.clone(), left_out);
+                Some(Mesh::of(Triangles { vertices, faces, lines: lines_under, ..Triangles::default() })?)
+            }
+        };
+        let numbers = (count..).take(fragments.len()).collect();
+        whole.append(&mut fragments);
+        let faces =
+            Mesh::of(Triangles { vertices, faces: whole, lines, fragments: numbers, crs, ..Triangles::default() })?;
+        Ok(JoinedTin { faces, under, whole: count })
+    }
+}
+
+/// Returns the edge opposite corner `i` of a face, if it is on a line.
+fn line(face: [u32; 3], i: usize, kind: EdgeKind) -> Option<Line> {
+    kind.is_constrained().then_some(([face[(i + 1) % 3], face[(i + 2) % 3]], kind))
 }

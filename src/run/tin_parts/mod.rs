@@ -6,12 +6,13 @@ mod join;
 
 pub(super) use contours::contours;
 pub(super) use heights::elevations;
+use join::JoinedTin;
 
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 use crate::crs::Crs;
-use crate::data::{BlockSource, Bounds, Frame, Mesh, SurfaceFacts};
+use crate::data::{BlockSource, Bounds, Frame, Surface, SurfaceFacts};
 use crate::error::{Error, Result};
 use crate::io::mapped::{self, Mapped};
 use crate::run::checksum::checksum;
@@ -26,7 +27,7 @@ pub struct TinParts {
     path: PathBuf,
     folder: PathBuf,
     index: TinIndex,
-    joined: OnceLock<Mesh>,
+    joined: OnceLock<JoinedTin>,
     /// Opens a part, for rasters that outlive the call that asks for them.
     open: Box<dyn Fn(usize) -> Result<CompactTin<Mapped>> + Send + Sync>,
 }
@@ -113,20 +114,24 @@ impl TinParts {
         (self.open)(number)
     }
 
-    /// Returns all triangles as one mesh, which is kept.
+    /// Returns all parts as one surface, which is kept.
     ///
     /// # Errors
     /// If the parts do not fit into memory, a part is damaged, or the parts do not make a surface.
     ///
     /// # Complexity
     /// Linear in the bytes of the parts.
-    pub fn joined(&self) -> Result<&Mesh> {
-        if let Some(mesh) = self.joined.get() {
-            return Ok(mesh);
+    pub(super) fn joined(&self) -> Result<&JoinedTin> {
+        if let Some(joined) = self.joined.get() {
+            return Ok(joined);
         }
-        memory::require_for_parts(self.index.facts.triangles).map_err(|e| e.in_file(&self.path))?;
-        let mesh = join::joined(self).map_err(|e| e.in_file(&self.path))?;
-        Ok(self.joined.get_or_init(|| mesh))
+        let mut triangles = 0;
+        for number in 0..self.index.parts.len() {
+            triangles += self.part(number)?.face_count();
+        }
+        memory::require_for_parts(triangles).map_err(|e| e.in_file(&self.path))?;
+        let joined = join::joined(self).map_err(|e| e.in_file(&self.path))?;
+        Ok(self.joined.get_or_init(|| joined))
     }
 
     /// Checks all bytes of all parts, and that the counts and the extents that the index states are

@@ -11,7 +11,7 @@ use crate::data::{Bounds, SurfaceFacts};
 use crate::error::Result;
 
 /// The version of the index, which is also what it begins with.
-const VERSION: &str = "{\"breakline_tin_parts\":1,";
+const VERSION: &str = "{\"breakline_tin_parts\":2,";
 
 /// A surface in parts: what is true of the whole, and the file of each part.
 ///
@@ -160,7 +160,7 @@ mod tests {
             ("1.tin", ""),
             ("hills.tins.0f", "/etc"),
             ("hills.tins.0f", "."),
-            ("parts\":1", "parts\":2"),
+            ("parts\":2", "parts\":1"),
             ("\"tile\":1", "\"tile\":-1"),
             ("\"area\":0", "\"area\":\"a"),
         ] {

@@ -18,6 +18,9 @@ pub(super) const SIDES: [u8; 8] = *b"sides   ";
 /// The tile and the number of each vertex of the triangulation, in a TIN that is part of a larger
 /// surface.
 pub(super) const NUMBERS: [u8; 8] = *b"numbers ";
+/// A bit for each cell, in such a TIN: set if the whole cell is a triangle of the larger surface
+/// before anything was left out of it, and of no other part.
+pub(super) const UNDER: [u8; 8] = *b"under   ";
 
 /// Stands for the neighbor of an edge at the rim.
 const NONE: u32 = u32::MAX;

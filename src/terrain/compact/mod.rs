@@ -28,8 +28,11 @@ use crate::triangulation::{Compact, CompactError, CompactSection, Location};
 use super::linear::linear;
 use attributes::Attributes;
 pub use index::{TinIndex, TinIndexPart};
-use layout::{ATTRIBUTES, FRAGMENT, FRAGMENTS, Fragment, INSIDE, NUMBER, NUMBERS, SIDE, SIDES, Side, VERTEX, VERTICES};
-pub(super) use write::{write, write_numbers};
+use layout::{
+    ATTRIBUTES, FRAGMENT, FRAGMENTS, Fragment, INSIDE, NUMBER, NUMBERS, SIDE, SIDES, Side, UNDER, VERTEX, VERTICES,
+};
+pub use part::PartCell;
+pub(super) use write::{write, write_part};
 
 /// A TIN that is used where its bytes are, without being loaded.
 ///
@@ -69,6 +72,8 @@ pub struct CompactTin<B> {
     sides: Range<usize>,
     /// Empty unless it is part of a larger surface.
     numbers: Range<usize>,
+    /// Empty as well, then.
+    under: Range<usize>,
     /// For messages.
     path: PathBuf,
     damage: OnceLock<Damage>,
@@ -146,11 +151,12 @@ impl<B: AsRef<[u8]>> CompactTin<B> {
             range => Err(Error::format(format!("{} bytes of rows of {size}", range.len()))
                 .at(format!("section `{}`", tag.escape_ascii().to_string().trim_end()))),
         };
-        let inside = section(INSIDE)?;
-        let bits = triangulation.cell_count().div_ceil(8);
-        if inside.len() != bits {
-            return Err(Error::format(format!("{} bytes, expected {bits}", inside.len())).at("section `inside`"));
-        }
+        let bits = |tag: [u8; 8]| match (section(tag)?, triangulation.cell_count().div_ceil(8)) {
+            (range, expected) if range.len() == expected => Ok(range),
+            (range, expected) => Err(Error::format(format!("{} bytes, expected {expected}", range.len()))
+                .at(format!("section `{}`", tag.escape_ascii().to_string().trim_end()))),
+        };
+        let inside = bits(INSIDE)?;
         let vertices = rows(VERTICES, VERTEX)?;
         let fragments = rows(FRAGMENTS, FRAGMENT)?;
         let sides = rows(SIDES, SIDE)?;
@@ -161,6 +167,7 @@ impl<B: AsRef<[u8]>> CompactTin<B> {
                 Error::format(format!("{} bytes for {vertex_count} vertices", numbers.len())).at("section `numbers`")
             );
         }
+        let under = if numbers.is_empty() { 0..0 } else { bits(UNDER)? };
         let attributes = &triangulation.bytes()[section(ATTRIBUTES)?];
         let attributes = Attributes::from_json(attributes).map_err(|e| e.at("section `tin`"))?;
         let tin = CompactTin {
@@ -170,6 +177,7 @@ impl<B: AsRef<[u8]>> CompactTin<B> {
             fragments,
             sides,
             numbers,
+            under,
             path: path.to_path_buf(),
             damage: OnceLock::new(),
             triangulation,
@@ -247,8 +255,14 @@ impl<B: AsRef<[u8]>> CompactTin<B> {
     /// Returns true if a whole cell is a face.
     #[inline]
     fn is_inside(&self, cell: usize) -> bool {
+        self.has_bit(&self.inside, cell)
+    }
+
+    /// Returns the bit of a cell in a section; false beyond all cells.
+    #[inline]
+    fn has_bit(&self, section: &Range<usize>, cell: usize) -> bool {
         cell < self.triangulation.cell_count()
-            && self.row(&self.inside, cell / 8).is_some_and(|[bits]| bits >> (cell % 8) & 1 == 1)
+            && self.row(section, cell / 8).is_some_and(|[bits]| bits >> (cell % 8) & 1 == 1)
     }
 
     /// The number of a fragment; `None` for whole cells.
@@ -462,9 +476,9 @@ impl<B: AsRef<[u8]> + Sync> Surface for CompactTin<B> {
             CompactSection { tag, contents }.write(&mut out)?;
         }
         write::write_attributes(&self.attributes, &mut out)?;
-        if !self.numbers.is_empty() {
-            let contents = self.triangulation.bytes().get(self.numbers.clone()).unwrap_or_default();
-            CompactSection { tag: NUMBERS, contents }.write(&mut out)?;
+        for (tag, range) in [(NUMBERS, &self.numbers), (UNDER, &self.under)].into_iter().filter(|_| self.is_part()) {
+            let contents = self.triangulation.bytes().get(range.clone()).unwrap_or_default();
+            CompactSection { tag, contents }.write(&mut out)?;
         }
         Ok(())
     }

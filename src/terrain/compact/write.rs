@@ -3,7 +3,7 @@
 use std::io::{self, BufWriter, Write};
 
 use super::attributes::Attributes;
-use super::layout::{ATTRIBUTES, FRAGMENTS, Fragment, INSIDE, NUMBERS, SIDES, Side, VERTICES};
+use super::layout::{ATTRIBUTES, FRAGMENTS, Fragment, INSIDE, NUMBERS, SIDES, Side, UNDER, VERTICES};
 use crate::data::{EdgeKind, Face, Surface, SurfaceFacts};
 use crate::error::{Error, Result};
 use crate::terrain::lines::kinds::LineKinds;
@@ -36,14 +36,22 @@ pub(in crate::terrain) fn write(
     Ok(out.flush()?)
 }
 
-/// Writes the section of a TIN that is part of a larger surface, after the others: the tile and the
-/// number of each vertex.
+/// Writes the sections of a TIN that is part of a larger surface, after the others: the tile and
+/// the number of each vertex, and for each cell, true for a triangle that is
+/// [under](super::PartCell::Under) the surface or a face of it.
 ///
 /// # Errors
 /// Those of `out`.
-pub(in crate::terrain) fn write_numbers(numbers: &[[u32; 2]], mut out: &mut dyn Write) -> Result<()> {
+pub(in crate::terrain) fn write_part(
+    numbers: &[[u32; 2]],
+    under: impl ExactSizeIterator<Item = bool>,
+    mut out: &mut dyn Write,
+) -> Result<()> {
     let contents: Vec<u8> = numbers.as_flattened().iter().flat_map(|number| number.to_le_bytes()).collect();
-    Ok(CompactSection { tag: NUMBERS, contents: &contents }.write(&mut out)?)
+    CompactSection { tag: NUMBERS, contents: &contents }.write(&mut out)?;
+    let mut bits = vec![0_u8; under.len().div_ceil(8)];
+    under.enumerate().for_each(|(at, is_under)| bits[at / 8] |= u8::from(is_under) << (at % 8));
+    Ok(CompactSection { tag: UNDER, contents: &bits }.write(&mut out)?)
 }
 
 /// Writes the section of coordinate system, counts and extent.

@@ -139,15 +139,10 @@ impl Cut {
         &self.patch.replaced
     }
 
-    /// Calls `each` with each position that divides an edge of a triangle.
-    pub(super) fn each_divided(&self, mut each: impl FnMut([f64; 2])) {
-        for edge in 0..self.patch.edges.len() {
-            let chain = self.patch.chain_of_edge(edge);
-            for &vertex in chain.iter().skip(1).rev().skip(1) {
-                let [x, y, _] = self.point(vertex);
-                each([x, y]);
-            }
-        }
+    /// Returns the ends of each edge of a triangle that is divided.
+    pub(super) fn divided_edges(&self) -> impl Iterator<Item = [VertexId; 2]> + '_ {
+        let is_divided = |&edge: &usize| self.patch.chain_of_edge(edge).len() > 2;
+        (0..self.patch.edges.len()).filter(is_divided).map(|edge| self.patch.edges[edge])
     }
 
     /// One more than the largest number of a face.

@@ -80,6 +80,9 @@ impl<'a, S: Surface> DemOfParts<'a, S> {
 
 /// Returns the window of the cells whose centers a part may contain; `None` if there are none.
 fn window_of(extent: &Bounds, placement: &Placement) -> Option<Window> {
+    if extent.is_empty() {
+        return None;
+    }
     let Bounds { min: [x0, y0, _], max: [x1, y1, _] } = *extent;
     let corners = [[x0, y0], [x1, y0], [x1, y1], [x0, y1]].map(|[x, y]| placement.to_plane([x, y, 0.0]));
     let cells = |k: usize| {

@@ -11,7 +11,7 @@ use crate::terrain::boxes::{Boxed, Boxes, Extent};
 use crate::terrain::clip::Clip;
 use crate::terrain::cut::{Cut, divided};
 use crate::terrain::regions::{Domain, Segment};
-use crate::terrain::{Inside, TinBuilder};
+use crate::terrain::{Inside, Tin, TinBuilder};
 use crate::triangulation::geometry::Terrain;
 use crate::triangulation::{ConstrainedDelaunay, OnCrossing};
 
@@ -23,14 +23,19 @@ const BOXES: f64 = 65_536.0;
 ///
 /// Triangles that no line comes near are kept or left out whole, each by itself. All others are
 /// [cut](Self::cut) together, once they are known, as the whole surface would be: a fragment
-/// depends only on lines, and on triangles that lines come near. There is one exception, which is
-/// refused: an edge that a line crosses, and that has a vertex within a rounding error of it
-/// elsewhere, bends there, and the triangle beyond it matters, too.
+/// depends only on lines, and on triangles that lines come near.
+///
+/// There is one exception. An edge that a line crosses, and that has a vertex within a rounding
+/// error of it elsewhere, bends there. So may other edges at that vertex, which no line comes near,
+/// and then the triangles beyond them matter. Therefore all triangles at a [tight](Self::tight)
+/// vertex are cut with those that lines come near.
 #[derive(Debug)]
 pub struct TileClip {
     clip: Clip,
     segments: Vec<(Domain, Segment)>,
     near: Boxes<LineBox>,
+    /// How far from a line something may matter.
+    margin: f64,
     polygons: Inside,
     holes: Inside,
 }
@@ -78,7 +83,7 @@ impl TileClip {
         let reach = [0, 1].map(|k: usize| extent.min[k].abs().max(extent.max[k].abs()));
         let near = Boxes::new(boxes(&divided(&segments, reach), extent, margin));
         let (polygons, holes) = (Inside::new(&clip.polygons), Inside::new(&clip.holes));
-        Ok(Some(TileClip { clip, segments, near, polygons, holes }))
+        Ok(Some(TileClip { clip, segments, near, margin, polygons, holes }))
     }
 
     /// Returns where a box in plan lies.
@@ -100,21 +105,30 @@ impl TileClip {
         if is_kept { ClipSide::Kept } else { ClipSide::Outside }
     }
 
-    /// Returns where a triangle lies.
+    /// Returns the width below which a triangle makes its vertices
+    /// [tight](TileVertex::is_tight): several times what rounding may bend.
+    pub fn tight(&self) -> f64 {
+        8.0 * self.margin
+    }
+
+    /// Returns where a triangle lies; near, if a vertex of it is tight.
     pub fn side_of_triangle(&self, triangle: &TileTriangle) -> ClipSide {
+        if triangle.corners.iter().any(|corner| corner.is_tight) {
+            return ClipSide::Near;
+        }
         let Extent { min, max } = Extent::of(triangle.corners.map(|corner| corner.position));
         self.side_of(min, max)
     }
 
-    /// Cuts all triangles that lines come near, and returns the triangles and fragments that are
-    /// kept, or `None` if `triangles` is empty.
+    /// Cuts all triangles that are [near](ClipSide::Near), and returns the triangles and fragments
+    /// that are kept, or `None` if `triangles` is empty.
     ///
     /// Each triangle comes with true if it is in the surface before the cut. `reach` is the largest
     /// absolute coordinate of all points on each axis, in the units of the data.
     ///
     /// # Errors
-    /// If an edge would bend away from all lines, if the triangles are not some of one
-    /// triangulation, or if there are too many.
+    /// If the triangles are not all those of one triangulation that are near, or if there are too
+    /// many.
     ///
     /// # Complexity
     /// O(n log n) for n triangles and segments.
@@ -122,25 +136,36 @@ impl TileClip {
         if triangles.is_empty() {
             return Ok(None);
         }
-        let mut part = Uncut::new(triangles).triangulated()?;
+        let uncut = Uncut::new(triangles);
+        let (mut part, given) = uncut.triangulated()?;
         self.clip.apply_to_part(&mut part.tin, &self.segments, reach)?;
-        match part.tin.cut.as_ref().and_then(|cut| self.bend_away_from_lines(cut)) {
-            Some(at) => Err(bends(at)),
-            None => Ok(Some(part)),
+        match part.tin.cut.as_ref() {
+            Some(cut) if self.lacks_triangles(cut, &part.tin, &given) => Err(contradiction()),
+            Some(_) | None => Ok(Some(part)),
         }
     }
 
-    /// Returns a position that divides an edge and that no line is near. At a line, all triangles
-    /// are known; elsewhere, the one beyond the edge may be missing.
-    fn bend_away_from_lines(&self, cut: &Cut) -> Option<[f64; 2]> {
-        let mut bend = None;
-        cut.each_divided(|at| {
-            if self.side_of(at, at) != ClipSide::Near {
-                bend = Some(at);
-            }
-        });
-        bend
+    /// Returns true if an edge was divided of which only one triangle was given, though no line is
+    /// near and no end tight. With either, the other triangle would have been given, unless the
+    /// edge is at the hull.
+    fn lacks_triangles(&self, cut: &Cut, tin: &Tin, given: &Given) -> bool {
+        let tds = tin.triangulation.tds();
+        cut.divided_edges().any(|[u, v]| {
+            let sides = [tds.edge(u, v), tds.edge(v, u)].into_iter().flatten();
+            let is_whole = sides.filter(|(cell, _)| given.is_given[cell.index()]).count() == 2;
+            let is_tight = [u, v].iter().any(|end| given.is_tight[end.index()]);
+            let Extent { min, max } = Extent::of([u, v].map(|end| *tin.triangulation.point(end)));
+            !is_whole && !is_tight && self.side_of(min, max) != ClipSide::Near
+        })
     }
+}
+
+/// What of a triangulation was given.
+struct Given {
+    /// For each cell, true for a triangle that was given.
+    is_given: Vec<bool>,
+    /// For each vertex, true for a [tight](TileVertex::is_tight) one.
+    is_tight: Vec<bool>,
 }
 
 /// Triangles that lines come near, as the input of a triangulation.
@@ -156,10 +181,13 @@ impl<'a> Uncut<'a> {
         let mut vertices: Vec<TileVertex> = Vec::new();
         let mut known: FxHashMap<[u32; 2], u32> = FxHashMap::default();
         let mut index = |corner: TileVertex| {
-            *known.entry([corner.tile, corner.number]).or_insert_with(|| {
+            let at = *known.entry([corner.tile, corner.number]).or_insert_with(|| {
                 vertices.push(corner);
                 vertices.len() as u32 - 1
-            })
+            });
+            // Tasks know of different triangles at it.
+            vertices[at as usize].is_tight |= corner.is_tight;
+            at
         };
         let corners = triangles.iter().map(|(triangle, _)| triangle.corners.map(&mut index)).collect();
         Uncut { triangles, vertices, corners }
@@ -186,27 +214,32 @@ impl<'a> Uncut<'a> {
     }
 
     /// Triangulates the vertices. The triangles that are in the surface are the faces.
-    fn triangulated(&self) -> Result<TinPart> {
+    fn triangulated(&self) -> Result<(TinPart, Given)> {
         let (lines, kinds): (Vec<[u32; 2]>, Vec<EdgeKind>) = self.constraints().into_iter().unzip();
         let points: Vec<[f64; 3]> = self.vertices.iter().map(|vertex| vertex.position).collect();
         let (t, ids) = ConstrainedDelaunay::from_lines(Terrain::default(), &points, &lines, OnCrossing::Reject)
             .map_err(|_| contradiction())?;
         let mut inside = vec![false; t.tds().cell_slots()];
+        let mut is_given = inside.clone();
         for (corners, (_, is_inside)) in self.corners.iter().zip(self.triangles) {
             let [a, b, c] = corners.map(|corner| ids[corner as usize]);
             match t.tds().edge(a, b) {
-                Some((cell, i)) if t.tds().vertex(cell, i) == c => inside[cell.index()] = *is_inside,
+                Some((cell, i)) if t.tds().vertex(cell, i) == c => {
+                    (is_given[cell.index()], inside[cell.index()]) = (true, *is_inside);
+                }
                 _ => return Err(contradiction()),
             }
         }
         let mut numbers = vec![[u32::MAX; 2]; t.tds().vertex_slots()];
+        let mut is_tight = vec![false; numbers.len()];
         for (id, vertex) in ids.iter().zip(&self.vertices) {
             numbers[id.index()] = [vertex.tile, vertex.number];
+            is_tight[id.index()] = vertex.is_tight;
         }
         let numbers = t.tds().vertices().map(|id| numbers[id.index()]).collect();
         let mut part = TinPart::new(t, kinds, Vec::new(), numbers);
-        part.tin.inside = inside;
-        Ok(part)
+        part.take_over(&is_given, inside);
+        Ok((part, Given { is_given, is_tight }))
     }
 }
 
@@ -247,15 +280,6 @@ fn boxes(segments: &[(Domain, Segment)], extent: &Bounds, margin: f64) -> Vec<Li
         }
     }
     boxes
-}
-
-#[cold]
-fn bends([x, y]: [f64; 2]) -> Error {
-    Error::unsupported(format!(
-        "the cut is not local: a triangle that is cut has an edge with a point next to it, at {x} {y}, closer than \
-         numbers resolve"
-    ))
-    .cure("move the boundary a little, or build the surface without --tiles")
 }
 
 #[cold]

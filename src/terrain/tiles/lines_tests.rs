@@ -199,7 +199,7 @@ fn lines_that_make_no_sense_are_refused() {
     let tile = Tile { min: [0.0, 0.0], max: [8.0, 8.0] };
     let points = [[1.0, 1.0, 0.0], [5.0, 1.0, 0.0], [5.0, 5.0, 0.0], [1.0, 5.0, 0.0]];
     let line = |a, b| SubConstraint { ends: [a, b], kind: EdgeKind::Breakline };
-    let leaf = |lines: &[SubConstraint]| message(leaf(&tile, 0, &points, lines, &mut |_| ()));
+    let leaf = |lines: &[SubConstraint]| message(leaf(&tile, 0, &points, lines, 0.0, &mut |_| ()));
 
     let error = leaf(&[line([1.0, 1.0], [4.0, 4.0])]);
     assert_eq!(error, "a line ends at [4.0, 4.0], where its tile has no point");
@@ -210,9 +210,9 @@ fn lines_that_make_no_sense_are_refused() {
     let error = leaf(&[SubConstraint { kind: EdgeKind::Rim, ..line([1.0, 1.0], [5.0, 5.0]) }]);
     assert_eq!(error, "the line from [1.0, 1.0] to [5.0, 5.0] has the kind Rim");
     // At the root no end can be missing.
-    let rest = super::leaf(&tile, 0, &points, &[line([1.0, 1.0], [9.0, 9.0])], &mut |_| ()).unwrap();
+    let rest = super::leaf(&tile, 0, &points, &[line([1.0, 1.0], [9.0, 9.0])], 0.0, &mut |_| ()).unwrap();
     assert_eq!(rest.pending.len(), 1);
-    let error = message(merge(&Tile::PLANE, &[rest], &mut |_| ()));
+    let error = message(merge(&Tile::PLANE, &[rest], 0.0, &mut |_| ()));
     assert_eq!(error, "a line ends at [9.0, 9.0], where its tile has no point");
 }
 
@@ -230,7 +230,7 @@ fn damaged_residuals_with_lines_do_not_panic() {
         (left.max[0], right.min[0]) = (middle, middle);
         let mut parts = [left, right].map(|tile| {
             let own: Vec<[f64; 3]> = points.iter().copied().filter(|p| tile.holds([p[0], p[1]])).collect();
-            leaf(&tile, 0, &own, &constraints, &mut |_| ()).unwrap()
+            leaf(&tile, 0, &own, &constraints, 0.0, &mut |_| ()).unwrap()
         });
         let part = &mut parts[random.index(2)];
         let [vertices, edges, pending] = [part.vertices.len(), part.edges.len(), part.pending.len()];
@@ -242,7 +242,7 @@ fn damaged_residuals_with_lines_do_not_panic() {
             4 if vertices > 0 => part.vertices[random.index(vertices)].position[0] += 1.0,
             _ => part.has_lines ^= true,
         }
-        refused += usize::from(merge(&Tile::PLANE, &parts, &mut |_| ()).is_err());
+        refused += usize::from(merge(&Tile::PLANE, &parts, 0.0, &mut |_| ()).is_err());
     }
     assert!(refused > count() / 10, "{refused}");
 }

@@ -182,7 +182,7 @@ mod tests {
 
     /// The triangles of a TIN, with vertices of different tiles.
     fn triangles(tin: &Tin) -> Vec<(u32, TileTriangle)> {
-        let vertex = |v: u32| TileVertex { tile: v % 3, number: v, position: tin.position(v) };
+        let vertex = |v: u32| TileVertex { tile: v % 3, number: v, position: tin.position(v), is_tight: false };
         let of = |face: u32| {
             let corners = tin.face(face)?.map(vertex);
             let edges = [0, 1, 2].map(|i| match tin.edge_kind(face, i) {

@@ -58,9 +58,9 @@
 //! let line = SubConstraint { ends: [[2.0, 2.0], [18.0, 3.0]], kind: EdgeKind::Breakline };
 //! let mut found = Vec::new();
 //! let mut emit = |triangle| found.push(triangle);
-//! let a = leaf(&left, 0, &[[2.0, 2.0, 5.0], [8.0, 0.0, 1.0], [9.0, 6.0, 2.0]], &[line], &mut emit)?;
-//! let b = leaf(&right, 1, &[[18.0, 3.0, 4.0], [12.0, 1.0, 1.0], [11.0, 5.0, 2.0]], &[line], &mut emit)?;
-//! merge(&Tile::PLANE, &[a, b], &mut emit)?;
+//! let a = leaf(&left, 0, &[[2.0, 2.0, 5.0], [8.0, 0.0, 1.0], [9.0, 6.0, 2.0]], &[line], 0.0, &mut emit)?;
+//! let b = leaf(&right, 1, &[[18.0, 3.0, 4.0], [12.0, 1.0, 1.0], [11.0, 5.0, 2.0]], &[line], 0.0, &mut emit)?;
+//! merge(&Tile::PLANE, &[a, b], 0.0, &mut emit)?;
 //! assert_eq!(found.iter().flat_map(|triangle| triangle.edges).filter(|&kind| kind == line.kind).count(), 2);
 //! # Ok::<(), breakline::error::Error>(())
 //! ```

@@ -24,6 +24,10 @@ use crate::triangulation::{ConstrainedDelaunay, InputError, OnCrossing};
 /// [`Arrangement`](crate::triangulation::arrangement::Arrangement) of all lines makes such ones.
 /// Their ends must be points, too, of the tiles that these are in.
 ///
+/// Vertices at triangles that are narrower than `tight` are marked, see [`TileVertex::is_tight`].
+/// Only a clip needs them: [`TileClip::tight`](super::TileClip::tight) returns the width, and zero
+/// marks none.
+///
 /// # Errors
 /// If a point lies outside of the tile, whose extent is then wrong; if a point or an end of a line
 /// has a coordinate that is not finite or outside of the range of the arithmetic; if a line ends in
@@ -37,9 +41,10 @@ pub fn leaf(
     number: u32,
     points: &[[f64; 3]],
     constraints: &[SubConstraint],
+    tight: f64,
     emit: &mut dyn FnMut(TileTriangle),
 ) -> Result<Residual> {
-    reduce(tile, of_points(tile, number, points, constraints)?, emit, |_| ()).map(|(residual, _)| residual)
+    reduce(tile, of_points(tile, number, points, constraints)?, tight, emit, |_| ()).map(|(residual, _)| residual)
 }
 
 /// Does what [`leaf`] does, and also returns the triangulation of the tile, or `None` if it has no
@@ -55,9 +60,10 @@ pub fn leaf_with_part(
     number: u32,
     points: &[[f64; 3]],
     constraints: &[SubConstraint],
+    tight: f64,
     emit: &mut dyn FnMut(TileTriangle),
 ) -> Result<(Residual, Option<TinPart>)> {
-    reduce(tile, of_points(tile, number, points, constraints)?, emit, |finished| finished.into_part())
+    reduce(tile, of_points(tile, number, points, constraints)?, tight, emit, |finished| finished.into_part())
 }
 
 /// Returns the points of a tile and the sub-constraints that meet it as a residual.
@@ -70,7 +76,8 @@ fn of_points(tile: &Tile, number: u32, points: &[[f64; 3]], constraints: &[SubCo
         ))
         .cure("the extent of the tile is wrong: take it from the points, not from the header"));
     }
-    let vertex = |(at, &position): (usize, &[f64; 3])| TileVertex { tile: number, number: at as u32, position };
+    let vertex =
+        |(at, &position): (usize, &[f64; 3])| TileVertex { tile: number, number: at as u32, position, is_tight: false };
     let vertices = points.iter().enumerate().map(vertex).collect();
     let pending = lines::of_tile(tile, constraints)?;
     let has_lines = !pending.is_empty();
@@ -81,7 +88,7 @@ fn of_points(tile: &Tile, number: u32, points: &[[f64; 3]], constraints: &[SubCo
 /// returns what may still change.
 ///
 /// The tile is the union of those of the parts; with [`Tile::PLANE`] all triangles are final, and
-/// nothing is left.
+/// nothing is left. `tight` is that of [`leaf`], the same in all tasks.
 ///
 /// # Errors
 /// If an edge names a vertex that does not exist, or the residuals contradict each other: they are
@@ -89,8 +96,8 @@ fn of_points(tile: &Tile, number: u32, points: &[[f64; 3]], constraints: &[SubCo
 ///
 /// # Complexity
 /// That of [`leaf`], for the vertices and edges of the residuals.
-pub fn merge(tile: &Tile, parts: &[Residual], emit: &mut dyn FnMut(TileTriangle)) -> Result<Residual> {
-    reduce(tile, Residual::joined(parts)?, emit, |_| ()).map(|(residual, _)| residual)
+pub fn merge(tile: &Tile, parts: &[Residual], tight: f64, emit: &mut dyn FnMut(TileTriangle)) -> Result<Residual> {
+    reduce(tile, Residual::joined(parts)?, tight, emit, |_| ()).map(|(residual, _)| residual)
 }
 
 /// Does what [`merge`] does, and also returns the triangulation of the residuals, or `None` if it
@@ -104,9 +111,10 @@ pub fn merge(tile: &Tile, parts: &[Residual], emit: &mut dyn FnMut(TileTriangle)
 pub fn merge_with_part(
     tile: &Tile,
     parts: &[Residual],
+    tight: f64,
     emit: &mut dyn FnMut(TileTriangle),
 ) -> Result<(Residual, Option<TinPart>)> {
-    reduce(tile, Residual::joined(parts)?, emit, |finished| finished.into_part())
+    reduce(tile, Residual::joined(parts)?, tight, emit, |finished| finished.into_part())
 }
 
 /// A triangulation whose final triangles were emitted.
@@ -136,6 +144,7 @@ impl Finished<'_> {
 fn reduce<T>(
     tile: &Tile,
     mut input: Residual,
+    tight: f64,
     emit: &mut dyn FnMut(TileTriangle),
     keep: impl FnOnce(Finished) -> T,
 ) -> Result<(Residual, Option<T>)> {
@@ -154,10 +163,43 @@ fn reduce<T>(
         // Nothing is final before there is a triangle.
         return Ok((if tile.is_plane() { Residual::default() } else { input }, None));
     }
+    mark_tight(tile, &t, &ids, &mut input, tight);
     let task = Task::new(tile, &t, &ids, &input);
     let (residual, emitted) = task.run(&Lines::new(tile, &t, &input), emit)?;
     let input_of = task.input_of;
     Ok((residual, Some(keep(Finished { t, input: &input, input_of, emitted }))))
+}
+
+/// Marks the vertices at which an edge may bend where it is cut: those of triangles that are
+/// narrower than `width`, and of lines that end at the border of the tile, beyond which a vertex
+/// may be next to them.
+///
+/// An edge bends at vertices within a rounding error of it. Between the edge and such a vertex lies
+/// a triangle that is as narrow, at one of the ends of the edge. So both triangles at the edge have
+/// a marked corner, even if they are found by different tasks: marks are handed up.
+fn mark_tight(tile: &Tile, t: &ConstrainedDelaunay<Terrain>, ids: &[VertexId], input: &mut Residual, width: f64) {
+    if width <= 0.0 {
+        return;
+    }
+    let tds = t.tds();
+    let mut is_tight = vec![false; tds.vertex_slots()];
+    for cell in tds.cells().filter(|&cell| !tds.is_infinite(cell)) {
+        let corners = tds.corners(cell);
+        let [a, b, c] = corners.map(|id| *t.point(id));
+        let [u, v, w] = [[a, b], [b, c], [c, a]].map(|[p, q]| [q[0] - p[0], q[1] - p[1]]);
+        let longest = [u, v, w].map(|[x, y]| x.hypot(y)).into_iter().fold(0.0, f64::max);
+        if (u[0] * v[1] - u[1] * v[0]).abs() < width * longest {
+            corners.iter().for_each(|id| is_tight[id.index()] = true);
+        }
+    }
+    let ends = input.edges.iter().filter(|edge| edge.kind.is_constrained()).flat_map(|edge| edge.ends);
+    for id in ends.map(|end| ids[end as usize]) {
+        let p = t.point(id);
+        is_tight[id.index()] |= (0..2).any(|k| p[k] - tile.min[k] < width || tile.max[k] - p[k] < width);
+    }
+    for (vertex, id) in input.vertices.iter_mut().zip(ids) {
+        vertex.is_tight |= is_tight[id.index()];
+    }
 }
 
 /// A triangulation of the vertices of a residual.

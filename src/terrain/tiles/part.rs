@@ -6,7 +6,7 @@ use super::triangle::{TileTriangle, TileVertex};
 use crate::data::{EdgeKind, Surface};
 use crate::error::Result;
 use crate::terrain::lines::kinds::LineKinds;
-use crate::terrain::{CompactTin, Tin, compact};
+use crate::terrain::{CompactTin, PartCell, Tin, compact};
 use crate::triangulation::ConstrainedDelaunay;
 use crate::triangulation::geometry::Terrain;
 
@@ -22,6 +22,9 @@ pub struct TinPart {
     emitted: Vec<u32>,
     /// The tile and the number of each vertex.
     numbers: Vec<[u32; 2]>,
+    /// The cells that are triangles of the whole, beside those that were emitted: positions among
+    /// all cells.
+    given: Vec<u32>,
 }
 
 impl TinPart {
@@ -34,7 +37,15 @@ impl TinPart {
     ) -> Self {
         let mut tin = Tin::new(triangulation, LineKinds::new(kinds), None);
         tin.inside.fill(false);
-        TinPart { tin, emitted, numbers }
+        TinPart { tin, emitted, numbers, given: Vec::new() }
+    }
+
+    /// Makes triangles that other tasks have found those of this part: cells for which `is_given`
+    /// is true, and as faces those that are `inside`.
+    pub(super) fn take_over(&mut self, is_given: &[bool], inside: Vec<bool>) {
+        let cells = (0..).zip(self.tin.triangulation.tds().cells());
+        self.given = cells.filter(|(_, cell)| is_given[cell.index()]).map(|(at, _)| at).collect();
+        self.tin.inside = inside;
     }
 
     /// Returns the faces that the triangles became, in the order in which they were emitted.
@@ -54,7 +65,7 @@ impl TinPart {
         let vertex = move |tin: &Tin, vertex: u32| {
             let added = [u32::MAX, vertex.wrapping_sub(number_of.len() as u32)];
             let [tile, number] = number_of.get(vertex as usize).copied().unwrap_or(added);
-            TileVertex { tile, number, position: tin.position(vertex) }
+            TileVertex { tile, number, position: tin.position(vertex), is_tight: false }
         };
         (0..self.tin.face_count() as u32).filter_map(move |face| {
             let corners = self.tin.face(face)?.map(|corner| vertex(&self.tin, corner));
@@ -62,22 +73,25 @@ impl TinPart {
         })
     }
 
-    /// Writes the part as a `.tin`. `kept` has a value for each triangle that was emitted, in the
-    /// same order: the triangle becomes a face if the value is true.
+    /// Writes the part as a `.tin`. `decided` says of each triangle that was emitted, in the same
+    /// order, what it is in the larger surface.
     ///
     /// # Errors
     /// Those of `out`, and if there are too many faces or vertices to be numbered.
     ///
     /// # Complexity
     /// Linear.
-    pub fn write(mut self, kept: impl IntoIterator<Item = bool>, out: &mut dyn Write) -> Result<()> {
+    pub fn write(mut self, decided: impl IntoIterator<Item = PartCell>, out: &mut dyn Write) -> Result<()> {
         let cells: Vec<_> = self.tin.triangulation.tds().cells().collect();
-        for (&at, is_kept) in self.emitted.iter().zip(kept) {
-            self.tin.inside[cells[at as usize].index()] = is_kept;
+        let mut is_under = vec![false; cells.len()];
+        self.given.iter().for_each(|&at| is_under[at as usize] = true);
+        for (&at, decided) in self.emitted.iter().zip(decided) {
+            self.tin.inside[cells[at as usize].index()] = decided == PartCell::Face;
+            is_under[at as usize] = decided != PartCell::Elsewhere;
         }
         drop(cells);
         self.tin.write_tin(out)?;
-        compact::write_numbers(&self.numbers, out)
+        compact::write_part(&self.numbers, is_under.into_iter(), out)
     }
 }
 
@@ -88,7 +102,7 @@ impl<B: AsRef<[u8]> + Sync> CompactTin<B> {
     /// Returns `None` if the vertex does not exist, or the file is not a part of a larger surface.
     pub fn tile_vertex(&self, vertex: u32) -> Option<TileVertex> {
         let [tile, number] = self.number_in_parts(vertex)?;
-        Some(TileVertex { tile, number, position: self.position(vertex) })
+        Some(TileVertex { tile, number, position: self.position(vertex), is_tight: false })
     }
 
     /// Returns the triangles of a part, in the order of its faces. Their edges at the rim of the
@@ -127,17 +141,24 @@ mod tests {
         (order.map(|i| numbers[i]), order.map(|i| triangle.edges[i].rank()))
     }
 
-    /// Writes a part with every second of its triangles, and opens it with all of them.
+    /// Writes a part with every second of its triangles, some of which are under the surface, and
+    /// opens it with all of them.
     fn opened(part: TinPart) -> CompactTin<Vec<u8>> {
         let faces = part.faces().to_vec();
         let mut bytes = Vec::new();
-        part.write((0..faces.len()).map(|at| at % 2 == 0), &mut bytes).unwrap();
+        let decided = |at: usize| [PartCell::Face, PartCell::Elsewhere, PartCell::Under, PartCell::Elsewhere][at % 4];
+        part.write((0..faces.len()).map(decided), &mut bytes).unwrap();
         let some = CompactTin::open(bytes.clone(), "part").unwrap();
         some.check().unwrap();
-        assert_eq!(some.tile_triangles().count(), faces.len().div_ceil(2));
-        let all = CompactTin::open_with_faces(bytes, "part", &faces).unwrap();
+        assert_eq!(some.tile_triangles().count(), faces.len().div_ceil(4));
+        assert_eq!(some.faces_under_whole().count(), faces.len().div_ceil(2));
+        assert_eq!(some.has_triangles(), !faces.is_empty());
+        let cells: Vec<(u32, PartCell)> = faces.iter().map(|&face| (face, PartCell::Face)).collect();
+        let all = CompactTin::open_with_cells(bytes, "part", &cells).unwrap();
         all.check().unwrap();
-        assert!(CompactTin::open_with_faces(all.triangulation().bytes().to_vec(), "part", &[u32::MAX]).is_err());
+        assert_eq!(all.faces_under_whole().count(), faces.len());
+        let beyond = [(u32::MAX, PartCell::Face)];
+        assert!(CompactTin::open_with_cells(all.triangulation().bytes().to_vec(), "part", &beyond).is_err());
         // A copy has the numbers, too.
         let mut copy = Vec::new();
         all.write_tin(&mut copy).unwrap();
@@ -172,12 +193,12 @@ mod tests {
                 .map(|k| {
                     let tile = Tile { min: [cut[k], cut[0]], max: [cut[k + 1], cut[2]] };
                     let own: Vec<[f64; 3]> = points.iter().copied().filter(|p| tile.holds([p[0], p[1]])).collect();
-                    let (residual, part) = leaf_with_part(&tile, k as u32, &own, &lines, &mut emit).unwrap();
+                    let (residual, part) = leaf_with_part(&tile, k as u32, &own, &lines, 0.0, &mut emit).unwrap();
                     parts.extend(part);
                     residual
                 })
                 .collect();
-            parts.extend(merge_with_part(&Tile::PLANE, &residuals, &mut emit).unwrap().1);
+            parts.extend(merge_with_part(&Tile::PLANE, &residuals, 0.0, &mut emit).unwrap().1);
             let opened: Vec<CompactTin<Vec<u8>>> = parts.into_iter().map(opened).collect();
             let mut found: Vec<_> = opened.iter().flat_map(|part| part.tile_triangles()).map(|t| key(&t)).collect();
             found.sort_unstable();

@@ -56,11 +56,11 @@ pub(super) trait Tasks {
         constraints: &[SubConstraint],
         emit: &mut dyn FnMut(TileTriangle),
     ) -> Result<Residual> {
-        leaf(tile, number, points, constraints, emit)
+        leaf(tile, number, points, constraints, 0.0, emit)
     }
 
     fn merge(&self, tile: &Tile, parts: &[Residual], emit: &mut dyn FnMut(TileTriangle)) -> Result<Residual> {
-        merge(tile, parts, emit)
+        merge(tile, parts, 0.0, emit)
     }
 }
 
@@ -206,18 +206,18 @@ fn few_vertices_are_handed_up() {
 #[test]
 fn a_point_outside_of_its_tile_is_named() {
     let tile = Tile { min: [0.0, 0.0], max: [4.0, 4.0] };
-    let error = leaf(&tile, 7, &[[1.0, 1.0, 0.0], [4.0, 1.0, 0.0]], &[], &mut |_| ()).unwrap_err().to_string();
+    let error = leaf(&tile, 7, &[[1.0, 1.0, 0.0], [4.0, 1.0, 0.0]], &[], 0.0, &mut |_| ()).unwrap_err().to_string();
     assert!(error.starts_with("point 1 of tile 7 is at 4 1, expected x from 0 to below 4"), "{error}");
 }
 
 #[test]
 fn heights_and_seams_that_make_no_sense_are_refused() {
-    let error = leaf(&Tile::PLANE, 0, &[[1.0, 2.0, f64::NAN]], &[], &mut |_| ()).unwrap_err().to_string();
+    let error = leaf(&Tile::PLANE, 0, &[[1.0, 2.0, f64::NAN]], &[], 0.0, &mut |_| ()).unwrap_err().to_string();
     assert_eq!(error, "point 0: [1.0, 2.0, NaN] is not a finite point");
-    let vertex = TileVertex { tile: 0, number: 0, position: [0.0; 3] };
+    let vertex = TileVertex { tile: 0, number: 0, position: [0.0; 3], is_tight: false };
     let seam = ResidualEdge { ends: [0, 1], is_seam: true, kind: EdgeKind::Plain };
     let damaged = Residual { vertices: vec![vertex], edges: vec![seam], ..Residual::default() };
-    let error = merge(&Tile::PLANE, &[damaged], &mut |_| ()).unwrap_err().to_string();
+    let error = merge(&Tile::PLANE, &[damaged], 0.0, &mut |_| ()).unwrap_err().to_string();
     assert_eq!(error, "an edge of part 0 ends at vertex 1, expected less than 1");
 }
 
@@ -227,13 +227,13 @@ fn residuals_that_contradict_each_other_are_refused() {
     let mut random = Random(9);
     let mut points = || (0..60).map(|_| [8.0 * random.unit(), 8.0 * random.unit(), 0.0]).collect::<Vec<_>>();
     let tile = Tile { min: [0.0, 0.0], max: [8.0, 8.0] };
-    let rest = leaf(&tile, 0, &points(), &[], &mut |_| ()).unwrap();
+    let rest = leaf(&tile, 0, &points(), &[], 0.0, &mut |_| ()).unwrap();
     assert!(!rest.edges.is_empty());
-    let other = leaf(&tile, 1, &points(), &[], &mut |_| ()).unwrap();
-    let error = merge(&Tile::PLANE, &[rest.clone(), other], &mut |_| ()).unwrap_err().to_string();
+    let other = leaf(&tile, 1, &points(), &[], 0.0, &mut |_| ()).unwrap();
+    let error = merge(&Tile::PLANE, &[rest.clone(), other], 0.0, &mut |_| ()).unwrap_err().to_string();
     assert!(error.contains("no edge joins") || error.contains("do not close"), "{error}");
     let mut turned = rest;
     turned.edges.iter_mut().for_each(|seam| seam.ends.reverse());
-    let error = merge(&Tile::PLANE, &[turned], &mut |_| ()).unwrap_err().to_string();
+    let error = merge(&Tile::PLANE, &[turned], 0.0, &mut |_| ()).unwrap_err().to_string();
     assert!(error.contains("do not close"), "{error}");
 }

@@ -59,7 +59,7 @@ impl Tasks for Altered {
     fn merge(&self, tile: &Tile, parts: &[Residual], emit: &mut dyn FnMut(TileTriangle)) -> Result<Residual> {
         let mut parts = parts.to_vec();
         parts.iter_mut().for_each(self.0);
-        merge(tile, &parts, emit)
+        merge(tile, &parts, 0.0, emit)
     }
 }
 
@@ -191,7 +191,7 @@ impl Tasks for Hasty {
         emit: &mut dyn FnMut(TileTriangle),
     ) -> Result<Residual> {
         let (known, pending) = Self::divided(tile, constraints);
-        let mut rest = leaf(tile, number, points, &known, emit)?;
+        let mut rest = leaf(tile, number, points, &known, 0.0, emit)?;
         rest.pending = lines::of_tile(tile, &pending)?;
         rest.has_lines |= !rest.pending.is_empty();
         Ok(rest)
@@ -204,7 +204,7 @@ impl Tasks for Hasty {
             part.pending = known;
             all_pending.extend(pending);
         }
-        let rest = merge(tile, &parts, emit)?;
+        let rest = merge(tile, &parts, 0.0, emit)?;
         Ok(Residual { pending: all_pending, ..rest })
     }
 }
@@ -272,9 +272,9 @@ impl Tasks for Misplaced {
         constraints: &[SubConstraint],
         emit: &mut dyn FnMut(TileTriangle),
     ) -> Result<Residual> {
-        let vertex = TileVertex { tile: 0, number: u32::MAX, position: self.0 };
+        let vertex = TileVertex { tile: 0, number: u32::MAX, position: self.0, is_tight: false };
         let own: Vec<[f64; 3]> = points.iter().copied().filter(|p| p[..2] != vertex.site()).collect();
-        let mut rest = leaf(tile, number, &own, constraints, emit)?;
+        let mut rest = leaf(tile, number, &own, constraints, 0.0, emit)?;
         if number == 0 {
             // A leaf refuses it; so it is added to what may still change.
             rest.vertices.push(vertex);

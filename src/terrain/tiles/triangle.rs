@@ -11,14 +11,12 @@ pub struct TileVertex {
     pub number: u32,
     /// Its position and its height, in the units of the data.
     pub position: [f64; 3],
+    /// True if an edge here may bend where it is cut, because a vertex or another edge is next to
+    /// it. A [clip](super::TileClip) needs all triangles around such a vertex.
+    pub is_tight: bool,
 }
 
 impl TileVertex {
-    /// Returns true for a vertex that a cut has added: no tile has it.
-    pub fn is_added(&self) -> bool {
-        self.tile == u32::MAX
-    }
-
     pub(super) fn site(&self) -> [f64; 2] {
         [self.position[0], self.position[1]]
     }

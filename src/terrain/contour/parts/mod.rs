@@ -15,7 +15,7 @@
 //! // A task: its parts go to a file.
 //! let mut collector = ContourCollector::new(&levels);
 //! let points = [[0.0, 0.0, 0.0], [4.0, 0.0, 2.0], [0.0, 4.0, 0.0]];
-//! tiles::leaf(&tiles::Tile::PLANE, 0, &points, &[], &mut |triangle| collector.add(&triangle))?;
+//! tiles::leaf(&tiles::Tile::PLANE, 0, &points, &[], 0.0, &mut |triangle| collector.add(&triangle))?;
 //! let mut file = Vec::new();
 //! collector.finish()?.write(&mut file)?;
 //!

@@ -30,7 +30,7 @@ pub(super) struct LinkedPatch {
 impl Patch {
     pub(super) fn push(&mut self, triangle: &TileTriangle) {
         let Patch { number_of, vertices, keys, faces } = self;
-        faces.push(triangle.corners.map(|TileVertex { tile, number, position }| {
+        faces.push(triangle.corners.map(|TileVertex { tile, number, position, .. }| {
             *number_of.entry([tile, number]).or_insert_with(|| {
                 vertices.push(position);
                 keys.push([tile, number]);

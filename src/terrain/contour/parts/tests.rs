@@ -76,7 +76,7 @@ fn split(random: &mut Random, points: &[[f64; 3]]) -> Vec<Vec<TileTriangle>> {
         }
         split[task].push(triangle);
     };
-    tiles::leaf(&Tile::PLANE, 0, points, &[], &mut emit).unwrap();
+    tiles::leaf(&Tile::PLANE, 0, points, &[], 0.0, &mut emit).unwrap();
     split
 }
 
@@ -106,13 +106,13 @@ fn tiled(random: &mut Random, points: &[[f64; 3]]) -> Vec<Vec<TileTriangle>> {
         for column in columns.windows(2) {
             let tile = Tile { min: [column[0], row[0]], max: [column[1], row[1]] };
             let own: Vec<[f64; 3]> = points.iter().copied().filter(|p| tile.holds([p[0], p[1]])).collect();
-            of_leaves.push(task(&mut |emit| tiles::leaf(&tile, number, &own, &[], emit).unwrap()));
+            of_leaves.push(task(&mut |emit| tiles::leaf(&tile, number, &own, &[], 0.0, emit).unwrap()));
             number += 1;
         }
         let tile = Tile { min: [f64::NEG_INFINITY, row[0]], max: [f64::INFINITY, row[1]] };
-        of_rows.push(task(&mut |emit| tiles::merge(&tile, &of_leaves, emit).unwrap()));
+        of_rows.push(task(&mut |emit| tiles::merge(&tile, &of_leaves, 0.0, emit).unwrap()));
     }
-    task(&mut |emit| tiles::merge(&Tile::PLANE, &of_rows, emit).unwrap());
+    task(&mut |emit| tiles::merge(&Tile::PLANE, &of_rows, 0.0, emit).unwrap());
     tasks
 }
 
@@ -251,7 +251,7 @@ fn numbers_of_vertices_decide_and_not_coordinates() {
     let at = |x: i32, y: i32, z: f64| [FAR[0] + STEP * f64::from(x), FAR[1] + STEP * f64::from(y), z];
     let low = 1.0 - 0.5 / 0.15;
     let all = [at(0, 0, 1.0), at(4, 1, 3.0), at(8, 1, low), at(8, 3, low), at(4, -8, low), at(0, 8, low)];
-    let vertex = |number: u32| TileVertex { tile: 0, number, position: all[number as usize] };
+    let vertex = |number: u32| TileVertex { tile: 0, number, position: all[number as usize], is_tight: false };
     let triangles = [[0, 2, 1], [1, 2, 3], [0, 1, 3], [0, 4, 2], [0, 3, 5]]
         .map(|corners| TileTriangle { corners: corners.map(vertex), edges: [EdgeKind::Plain; 3] });
     let levels = Levels::listed(&[0.5]).unwrap();
@@ -275,9 +275,9 @@ fn wheels_from_parts() {
     for number in (0..3_u32.pow(8)).step_by(2) {
         let corner = |at: u32| {
             let ([x, y], height) = (RING[at as usize], number / 3_u32.pow(at) % 3);
-            TileVertex { tile: at % 2, number: at, position: [x, y, f64::from(height) - 1.0] }
+            TileVertex { tile: at % 2, number: at, position: [x, y, f64::from(height) - 1.0], is_tight: false }
         };
-        let center = TileVertex { tile: 1, number: 8, position: [0.0; 3] };
+        let center = TileVertex { tile: 1, number: 8, position: [0.0; 3], is_tight: false };
         let [keep, tasks] = [random.bits() | random.bits(), random.bits()];
         let all: Vec<(usize, TileTriangle)> = (0..8)
             .filter(|at| keep >> at & 1 == 1)
@@ -302,7 +302,7 @@ fn rich() -> ContourParts {
     let points: Vec<[f64; 3]> =
         (0..144).map(|i| [f64::from(i % 12), f64::from(i / 12), random.below(4) as f64]).collect();
     let mut triangles = Vec::new();
-    tiles::leaf(&Tile::PLANE, 0, &points, &[], &mut |triangle| triangles.push(triangle)).unwrap();
+    tiles::leaf(&Tile::PLANE, 0, &points, &[], 0.0, &mut |triangle| triangles.push(triangle)).unwrap();
     triangles.retain(|_| random.below(10) > 0);
     let parts = collected(&Levels::every(0.5, 0.0).unwrap(), &triangles, 1000);
     let has_all = |parts: &LevelParts| !(parts.closed.is_empty() || parts.open.is_empty() || parts.sides.is_empty());
@@ -350,7 +350,7 @@ fn what_is_given_twice_is_refused() {
     let error = join_level(17.0, vec![level]).unwrap_err().to_string();
     assert_eq!(error, "parts of several levels are joined, expected level 17 only");
 
-    let vertex = |number, position| TileVertex { tile: 0, number, position };
+    let vertex = |number, position| TileVertex { tile: 0, number, position, is_tight: false };
     let corners = [vertex(0, [0.0, 0.0, 0.0]), vertex(1, [1.0, 0.0, 0.0]), vertex(2, [0.0, 1.0, 2.0])];
     let triangle = TileTriangle { corners, edges: [EdgeKind::Plain; 3] };
     let mut collector = ContourCollector::new(&Levels::every(1.0, 0.0).unwrap());
@@ -365,7 +365,7 @@ fn what_is_given_twice_is_refused() {
 fn levels_are_found_while_heights_rise() {
     let mut triangles = Vec::new();
     let points: Vec<[f64; 3]> = (0..2000).map(|i| [f64::from(i % 2), f64::from(i / 2), 1e-3 * f64::from(i)]).collect();
-    tiles::leaf(&Tile::PLANE, 0, &points, &[], &mut |triangle| triangles.push(triangle)).unwrap();
+    tiles::leaf(&Tile::PLANE, 0, &points, &[], 0.0, &mut |triangle| triangles.push(triangle)).unwrap();
     triangles.sort_by(|a, b| a.corners[0].position[2].total_cmp(&b.corners[0].position[2]));
     let many: Vec<f64> = (0..3000).map(|i| 1e-3 * f64::from(i)).collect();
     for levels in [Levels::every(1e-4, 0.0), Levels::every(0.1, 7.0), Levels::listed(&many)] {
@@ -384,7 +384,7 @@ fn levels_are_found_while_heights_rise() {
 
 #[test]
 fn too_many_levels_and_invalid_heights_are_refused() {
-    let vertex = |number, position| TileVertex { tile: 0, number, position };
+    let vertex = |number, position| TileVertex { tile: 0, number, position, is_tight: false };
     let finished = |height| {
         let corners = [vertex(0, [0.0, 0.0, 0.0]), vertex(1, [1.0, 0.0, 0.0]), vertex(2, [0.0, 1.0, height])];
         let mut collector = ContourCollector::new(&Levels::every(0.1, 0.0).unwrap());
