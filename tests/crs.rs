@@ -263,12 +263,38 @@ fn what_users_type() {
         " 25832 ",
         "urn:ogc:def:crs:EPSG::25832",
         "urn:ogc:def:crs:EPSG:9.8:25832",
+        "urn:x-ogc:def:crs:EPSG:25832",
         "http://www.opengis.net/def/crs/EPSG/0/25832",
+        "https://www.opengis.net/def/crs/EPSG/9.8/25832/",
+        "http://www.opengis.net/def/crs?authority=EPSG&version=0&code=25832",
+        "http://www.opengis.net/gml/srs/epsg.xml#25832",
     ] {
         assert_eq!(Crs::from_user(text).unwrap().epsg, Some(25832), "{text}");
     }
+    for text in [
+        "OGC:CRS84",
+        "CRS84",
+        "urn:ogc:def:crs:OGC:1.3:CRS84",
+        "urn:ogc:def:crs:OGC::CRS84",
+        "http://www.opengis.net/def/crs/OGC/1.3/CRS84",
+    ] {
+        assert_eq!(Crs::from_user(text).unwrap().epsg, Some(4326), "{text}");
+    }
+    assert_eq!(Crs::from_user("urn:ogc:def:crs:OGC:1.3:CRS83").unwrap().epsg, Some(4269));
+    assert_eq!(Crs::from_user("urn:ogc:def:crs:OGC:1.3:CRS27").unwrap().epsg, Some(4267));
     let both = Crs::from_user("EPSG:25832+7837").unwrap();
     assert_eq!((both.epsg, both.vertical_epsg), (Some(25832), Some(7837)));
+    for text in [
+        "epsg:25832+epsg:7837",
+        "urn:ogc:def:crs,crs:EPSG::25832,crs:EPSG::7837",
+        "urn:ogc:def:crs,crs:EPSG:9.8:25832,crs:EPSG:9.8:7837",
+        "URN:OGC:DEF:CRS,CRS:EPSG::25832, CRS:EPSG::7837",
+        "urn:x-ogc:def:crs,crs:EPSG:25832,crs:EPSG:7837",
+        "http://www.opengis.net/def/crs-compound?1=http://www.opengis.net/def/crs/EPSG/0/25832&2=http://www.opengis.net/def/crs/EPSG/0/7837",
+        "https://www.opengis.net/def/crs-compound?2=https%3A%2F%2Fwww.opengis.net%2Fdef%2Fcrs%2FEPSG%2F0%2F7837&1=http://opengis.net/def/crs/EPSG/0/25832",
+    ] {
+        assert_eq!(Crs::from_user(text).unwrap(), both, "{text}");
+    }
     assert_eq!(both.vertical_unit, Some(Unit::metre()));
     assert_eq!(both.name, "ETRS89 / UTM zone 32N + DHHN2016 height");
     assert!(both.is_same(&Crs::from_epsg(25832).unwrap()));
@@ -280,6 +306,33 @@ fn what_users_type() {
     {
         let error = Crs::from_user(text).unwrap_err().to_string();
         assert!(!error.is_empty(), "{text}");
+    }
+}
+
+#[test]
+fn identifiers_that_are_not_understood_say_why() {
+    for (text, why) in [
+        ("urn:ogc:def:crs:IGNF::LAMB93", "the codes of IGNF are not known"),
+        ("urn:ogc:def:crs:OGC:1.3:AUTO42001", "OGC's AUTO42001 is not a system in plan"),
+        ("urn:ogc:def:crs:OGC:1.3:AUTO42001:99:8888", "is not a coordinate system"),
+        ("urn:ogc:def:crs:OGC:1.3:CRS88", "OGC's CRS88 is not a system in plan"),
+        ("urn:ogc:def:crs,crs:EPSG::4979,cs:PROJ::ENh,coordinateOperation:EPSG::16031", "together from a cs"),
+        ("urn:ogc:def:crs,datum:EPSG::6326,cs:EPSG::6422", "together from a datum"),
+        ("urn:ogc:def:crs,crs:EPSG::25832,crs:EPSG::7837,crs:EPSG::5783", "has 3 parts"),
+        ("urn:ogc:def:crs,crs:EPSG::25832,crs:EPSG::25833", "EPSG:25833 is not the code of a vertical"),
+        ("urn:ogc:def:crs,crs:EPSG::7415,crs:EPSG::7837", "has heights of its own"),
+        ("urn:ogc:def:crs,crs:EPSG::5783", "EPSG:5783"),
+        ("urn:ogc:def:datum:EPSG::6326", "together from a datum"),
+        ("urn:adv:crs:ETRS89_UTM32", "is not a coordinate system"),
+        ("http://www.opengis.net/def/crs/EPSG", "is not a coordinate system"),
+        ("http://www.opengis.net/def/crs-compound?EPSG:25832", "is not a coordinate system"),
+        ("http://spatialreference.org/ref/epsg/25832/", "is not a coordinate system"),
+        ("urn:ogc:def:crs", "is not a coordinate system"),
+        ("urn:ogc:def:crs,", "is not a coordinate system"),
+    ] {
+        let error = Crs::from_user(text).unwrap_err();
+        assert!(error.to_string().contains(why), "{text}: {error}");
+        assert!(error.cure_text().is_some(), "{text}");
     }
 }
 

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use breakline::crs::Crs;
 use breakline::data::{Bounds, ContourLine, Layer, Shape};
 use breakline::error::Result;
-use breakline::io::{contours, layer, shapefile};
+use breakline::io::{Cut, contours, layer, shapefile};
 use serde_json::Value;
 
 fn facts() -> serde_json::Map<String, Value> {
@@ -22,6 +22,11 @@ fn facts() -> serde_json::Map<String, Value> {
 
 fn read(path: &Path) -> Result<Layer> {
     layer::read(path.to_str().unwrap())
+}
+
+/// What is whole of a damaged file.
+fn read_what_is_there(path: &Path) -> Result<Layer> {
+    layer::read_with(path, &layer::Options { cut: Cut::Accept, ..layer::Options::default() }, &|_| Ok(()))
 }
 
 fn parts(layer: &Layer) -> usize {
@@ -99,7 +104,7 @@ fn every_sound_shapefile_has_the_facts() {
 enum Outcome {
     /// Everything; it is only odd. Shapes, vertices, and what the warnings say, if anything.
     Full(usize, usize, &'static [&'static str]),
-    /// What is whole. Shapes, vertices, and what the warnings say.
+    /// An error, unless what is whole is asked for. Shapes, vertices, and what the warnings say.
     Partial(usize, usize, &'static [&'static str]),
     /// Nothing; what the message says.
     Refused(&'static [&'static str]),
@@ -136,7 +141,7 @@ const DAMAGED: &[(&str, Outcome)] = &[
     ("broken_mut/brklinz__no_dbf.shp", Full(122, 1736, &[])),
     ("broken_mut/brklinz__no_shx.shp", Full(122, 1736, &[])),
     ("broken_mut/brklinz__nodata_z.shp", Full(122, 1736, &["1 points have no height"])),
-    ("broken_mut/brklinz__null_record_with_body.shp", Full(122, 1644, &[])),
+    ("broken_mut/brklinz__null_record_with_body.shp", Full(122, 1644, &["1 records are of the type null, but"])),
     ("broken_mut/brklinz__numpoints_huge.shp", Partial(121, 1644, &["record 1 (byte 100): 1000092 points"])),
     (
         "broken_mut/brklinz__part_index_out_of_range.shp",
@@ -178,6 +183,15 @@ fn every_damaged_shapefile_is_in_the_table() {
         let start = Instant::now();
         let result = read(&folder.join(name));
         assert!(start.elapsed() < Duration::from_secs(5), "{name} took {:?}", start.elapsed());
+        let result = match outcome {
+            Partial(_, _, words) => {
+                let error = result.expect_err(name);
+                assert!(words.iter().any(|word| error.to_string().contains(word)), "{name}: {error}");
+                assert!(error.cure_text().is_some_and(|cure| cure.contains("--partial")), "{name}");
+                read_what_is_there(&folder.join(name))
+            }
+            Full(..) | Refused(_) => result,
+        };
         match (outcome, result) {
             (Full(shapes, vertices, words) | Partial(shapes, vertices, words), Ok(layer)) => {
                 assert_eq!(layer.shapes.len(), *shapes, "{name}");
@@ -355,12 +369,18 @@ fn reading_goes_on_at_the_next_record_of_the_index() {
         three_lines(folder.path());
         let second = SECOND.0;
         change(&path, |bytes| bytes[second + 4..second + 8].copy_from_slice(&length.to_be_bytes()));
-        let layer = shapefile::read_layer(&path, Some("H")).unwrap();
+        let read = |cut| {
+            let options = layer::Options { height_field: Some("H"), cut, ..layer::Options::default() };
+            layer::read_with(&path, &options, &|_| Ok(()))
+        };
+        let error = read(Cut::Refuse).unwrap_err().to_string();
+        assert!(error.contains("three.shp: record 2 (byte 220): content of"), "{error}");
+        let layer = read(Cut::Accept).unwrap();
         assert_eq!(x_and_height(&layer), [(1., 10.), (3., 30.)], "{length}");
         assert!(layer.warnings[0].starts_with("record 2 (byte 220): content of"), "{:?}", layer.warnings);
         std::fs::remove_file(path.with_extension("shx")).unwrap();
-        let layer = shapefile::read_layer(&path, Some("H")).unwrap();
-        assert_eq!(x_and_height(&layer), [(1., 10.)], "{length}");
+        assert!(read(Cut::Refuse).is_err());
+        assert_eq!(x_and_height(&read(Cut::Accept).unwrap()), [(1., 10.)], "{length}");
     }
 }
 
@@ -372,7 +392,13 @@ fn the_first_damaged_records_are_told_the_rest_counted() {
     shapefile::write_layer(&path, &Layer { shapes, ..Layer::default() }, &[]).unwrap();
     // Every type code but the first one's.
     change(&path, |bytes| (1..15).for_each(|i| bytes[100 + 28 * i + 8] = 99));
-    let layer = shapefile::read_layer(&path, None).unwrap();
+    let error = shapefile::read_layer(&path, None).unwrap_err().to_string();
+    assert!(
+        error.ends_with(
+            "record 2 (byte 128): shape type 99 is not one of the format's; and 13 more parts cannot be read"
+        )
+    );
+    let layer = read_what_is_there(&path).unwrap();
     assert_eq!((layer.shapes.len(), layer.warnings.len()), (1, 11));
     assert_eq!(layer.warnings[0], "record 2 (byte 128): shape type 99 is not one of the format's");
     assert_eq!(layer.warnings[10], "and 4 more parts that could not be read");
@@ -438,7 +464,11 @@ fn no_byte_can_make_the_reader_panic_or_invent_shapes() {
                 }
             }
             replace(&part, &good[..at]);
-            if let Ok(layer) = shapefile::read_layer(&path, None) {
+            match shapefile::read_layer(&path, None) {
+                Ok(layer) => assert!(layer.shapes.len() == 3 && extension != "shp", "{extension} cut at byte {at}"),
+                Err(_) => assert_eq!(extension, "shp", "cut at byte {at}"),
+            }
+            if let Ok(layer) = read_what_is_there(&path) {
                 let whole = layer.shapes.len() == 3 && extension != "shp";
                 assert!(whole || !layer.warnings.is_empty(), "{extension} cut at byte {at}");
             }

@@ -100,7 +100,8 @@ fn every_lidar_file_gives_what_is_known_of_it() {
             continue;
         }
         // Its header counts points that are not there.
-        let cut = if path.ends_with("1.2-no-points.las") { las::Cut::Accept } else { las::Cut::Refuse };
+        let cut =
+            if path.ends_with("1.2-no-points.las") { breakline::io::Cut::Accept } else { breakline::io::Cut::Refuse };
         let mut source = las::open_with(testkit::shared(path), cut).unwrap();
         let found = summarize(&mut source).unwrap_or_else(|error| panic!("{path}: {error}"));
         let info = source.info();
@@ -266,7 +267,7 @@ fn every_broken_file_has_its_fate() {
             assert_eq!((error.kind(), error.path()), (Kind::Format, Some(path.as_path())), "{error}");
             assert!(error.to_string().contains(words), "{error}");
             assert!(error.cure_text().unwrap().contains("--partial"), "{error}");
-            result = las::open_with(&path, las::Cut::Accept).and_then(|mut source| summarize(&mut source));
+            result = las::open_with(&path, breakline::io::Cut::Accept).and_then(|mut source| summarize(&mut source));
         } else {
             assert!(!matches!(fate, Cut(..)), "{name}");
         }
@@ -298,7 +299,7 @@ fn every_broken_file_has_its_fate() {
 
 /// Where another reader got all the points, ours are the same.
 fn compare_with_fact(path: &Path, found: &Summary, fact: &Value) {
-    check_crs(&path.to_string_lossy(), las::open_with(path, las::Cut::Accept).unwrap().info(), fact);
+    check_crs(&path.to_string_lossy(), las::open_with(path, breakline::io::Cut::Accept).unwrap().info(), fact);
     if fact.get("sum_int_xyz").is_none() {
         return;
     }
@@ -329,7 +330,7 @@ fn points_before_the_damage_are_good() {
 
 /// All points of a file that are there.
 fn columns(path: &Path) -> PointBatch {
-    let mut source = las::open_with(path, las::Cut::Accept).unwrap();
+    let mut source = las::open_with(path, breakline::io::Cut::Accept).unwrap();
     let (mut all, mut batch) = (PointBatch::default(), PointBatch::default());
     loop {
         source.read(&mut batch).unwrap();
@@ -397,13 +398,16 @@ fn text_of_real_points_is_read_back() {
     let all = columns(&testkit::shared("lidar/lake_breakline/lake.laz"));
     let mut text = String::from("Easting;Northing;Height;Class\n");
     for i in 0..all.len() {
-        let line = format!("{};{};{};{}", all.x[i], all.y[i], all.z[i], all.class[i]);
-        // A decimal comma in every other line.
-        writeln!(text, "{}", if i % 2 == 0 { line } else { line.replace('.', ",") }).unwrap();
+        writeln!(text, "{};{};{};{}", all.x[i], all.y[i], all.z[i], all.class[i]).unwrap();
     }
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("lake.csv");
-    std::fs::write(&path, text).unwrap();
+    // One line with a decimal comma among lines with points.
+    let (first, rest) = text.split_at(text.len() / 2);
+    std::fs::write(&path, format!("{first}{}", rest.replace('.', ","))).unwrap();
+    let error = summarize(&mut *points::open(&path).unwrap()).unwrap_err().to_string();
+    assert!(error.contains("has a comma and") && error.contains("has a point"), "{error}");
+    std::fs::write(&path, text.replace('.', ",")).unwrap();
     let mut source = points::open(&path).unwrap();
     assert!(source.info().has_classes);
     let (mut read, mut batch) = (PointBatch::default(), PointBatch::default());

@@ -7,7 +7,8 @@ use std::path::{Path, PathBuf};
 
 use breakline::crs::Crs;
 use breakline::data::{LasHead, PointBatch, PointSource};
-use breakline::io::las::{Cut, Detail, ReadOptions, Rounding};
+use breakline::io::Cut;
+use breakline::io::las::{Detail, ReadOptions, Rounding};
 use breakline::io::{OutputSet, las as ours, points};
 use breakline::run::{Context, PointsReport, PointsRequest, SystemOptions, Withheld, write_points};
 use las::{Builder, Point, Transform, Vector, Version, Vlr, Writer};

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use breakline::crs::Crs;
 use breakline::data::{Bounds, Column, Lattice, Layer, PointBatch, PointFlags, Shape};
-use breakline::io::las::Cut;
+use breakline::io::Cut;
 use breakline::io::points;
 use breakline::run::{
     Degrees, EdgeLimit, FlatOptions, FlatRule, FrameOptions, Input, LineRequest, LowerEdge, MemoryPoints, PerRecord,

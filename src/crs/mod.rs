@@ -1,7 +1,6 @@
 //! Coordinate systems: names, codes, units, and how formats write them.
 //!
 //! Nothing here reprojects; that is the task of PROJ, behind [`Transform`].
-
 //!
 //! Every form that a format uses (a code, WKT of any kind, GeoKeys) is converted to a `Definition`:
 //! datum, projection with its parameters, unit. Two systems are the same if their definitions are;
@@ -11,6 +10,7 @@
 mod definition;
 mod esri;
 mod geokeys;
+mod identifier;
 mod names;
 mod projection;
 mod registry;
@@ -99,44 +99,27 @@ impl Crs {
         wkt_read::read(text).map(|(crs, _)| crs)
     }
 
-    /// Parses the input of a user: `EPSG:25832`, `EPSG:25832+7837`, `25832`,
-    /// `urn:ogc:def:crs:EPSG::25832`, or WKT.
+    /// Parses the input of a user, or an identifier in a file: `EPSG:25832`, `EPSG:25832+7837`,
+    /// `25832`, `OGC:CRS84`, a URN of OGC 07-092 or its http form, or WKT.
+    ///
+    /// | identifier | example |
+    /// |---|---|
+    /// | URN, with or without a version | `urn:ogc:def:crs:EPSG::25832` |
+    /// | URN of a compound system | `urn:ogc:def:crs,crs:EPSG::25832,crs:EPSG::7837` |
+    /// | http | `http://www.opengis.net/def/crs/EPSG/0/25832` |
+    /// | http of a compound system | `http://www.opengis.net/def/crs-compound?1=http:...&2=http:...` |
+    ///
+    /// Systems with longitude and latitude have longitude as x, whatever the identifier says of the
+    /// order of axes.
     ///
     /// # Errors
-    /// If the text has none of these forms; the error lists them.
+    /// If the text has none of these forms, or names no system that is known.
     pub fn from_user(text: &str) -> Result<Self> {
         let text = text.trim();
         if text.contains(['[', '(']) {
             return Self::from_wkt(text);
         }
-        let lower = text.to_ascii_lowercase();
-        let prefixes = [
-            "epsg:",
-            "urn:ogc:def:crs:epsg:",
-            "http://www.opengis.net/def/crs/epsg/",
-            "https://www.opengis.net/def/crs/epsg/",
-        ];
-        let rest = prefixes.iter().find_map(|prefix| lower.strip_prefix(prefix)).unwrap_or(&lower);
-        // The version of the registry precedes the code; in URNs it is often empty.
-        let codes = if lower.len() == rest.len() { rest } else { rest.rsplit([':', '/']).next().unwrap_or(rest) };
-        let (horizontal, vertical) = match codes.split_once('+') {
-            Some((horizontal, vertical)) => (horizontal, Some(vertical)),
-            None => (codes, None),
-        };
-        let unknown = |_| {
-            Error::usage(format!("\"{text}\" is not a coordinate system"))
-                .cure("write EPSG:25832, EPSG:25832+7837 (with heights), or WKT")
-        };
-        let mut crs = Self::from_epsg(horizontal.trim().parse().map_err(unknown)?)?;
-        if let Some(vertical) = vertical {
-            let code = vertical.trim().trim_start_matches("epsg:").parse().map_err(unknown)?;
-            let found = registry::find_vertical(code)
-                .ok_or_else(|| Error::usage(format!("EPSG:{code} is not the code of a vertical coordinate system")))?;
-            crs.name = format!("{} + {}", crs.name, found.name);
-            crs.vertical_epsg = found.code;
-            crs.vertical_unit = Some(found.unit);
-        }
-        Ok(crs)
+        identifier::read(text)
     }
 
     /// Returns the definition for a `.prj` file: WKT 1 with Esri's names, which GDAL, QGIS and

@@ -94,17 +94,21 @@ impl Mesh {
     /// [`Triangles::neighbors`] is ignored.
     ///
     /// # Errors
-    /// Those of [`new`](Self::new), and if a clip edge is not an edge of a face.
+    /// Those of [`new`](Self::new), and if a clip edge is not an edge of a face, or two faces state
+    /// different kinds for the edge that they share.
     pub fn of(triangles: Triangles) -> Result<Self> {
-        let Triangles { vertices, mut faces, lines, fragments, crs, .. } = triangles;
+        let Triangles { vertices, mut faces, lines, fragments, mut sides, crs, .. } = triangles;
         check_numbers(&vertices, &faces)?;
         check_values(&vertices, &faces)?;
-        turn_counter_clockwise(&vertices, &mut faces)?;
+        turn_counter_clockwise(&vertices, &mut faces, sides.as_deref_mut().unwrap_or_default())?;
         let edges = EdgeTable::new(vertices.len(), &faces);
         let neighbors = match edges.neighbors(&faces) {
             (neighbors, flaws) if flaws.is_empty() => neighbors,
             (_, flaws) => return Err(folded(flaws[0])),
         };
+        if let Some(flaw) = different_kinds(&faces, &neighbors, sides.as_deref().unwrap_or_default()).next() {
+            return Err(Error::format(flaw.to_string()).cure("write the mesh again with the program that made it"));
+        }
         let (kinds, unmet) = edges.kinds(faces.len(), &lines);
         if let Some(flaw) = unmet.first() {
             return Err(Error::format(flaw.to_string()));
@@ -124,15 +128,17 @@ impl Mesh {
     /// # Complexity
     /// That of [`new`](Self::new).
     pub fn link(triangles: Triangles) -> Result<(Self, Vec<LinkFlaw>)> {
-        let Triangles { vertices, mut faces, lines, fragments, neighbors: stated, crs } = triangles;
+        let Triangles { vertices, mut faces, lines, fragments, mut sides, neighbors: stated, crs, .. } = triangles;
         check_numbers(&vertices, &faces)?;
         let is_turned = is_clockwise(&vertices, &faces);
         if is_turned {
             faces.iter_mut().for_each(|face| face.swap(1, 2));
+            sides.iter_mut().flatten().for_each(|kinds| kinds.swap(1, 2));
         }
         let edges = EdgeTable::new(vertices.len(), &faces);
         let (neighbors, mut flaws) = edges.neighbors(&faces);
         flaws.extend(strays(&vertices, &faces));
+        flaws.extend(different_kinds(&faces, &neighbors, sides.as_deref().unwrap_or_default()));
         let (kinds, unmet) = edges.kinds(faces.len(), &lines);
         flaws.extend(unmet);
         for (face, mut stated) in (0u32..).zip(stated.into_iter().flatten()).take(faces.len()) {
@@ -206,11 +212,15 @@ fn is_clockwise(vertices: &[[f64; 3]], faces: &[[u32; 3]]) -> bool {
     signs.peek().is_some() && signs.all(|sign| sign == Sign::Negative)
 }
 
-fn turn_counter_clockwise(vertices: &[[f64; 3]], faces: &mut [[u32; 3]]) -> Result<()> {
+/// Turns faces, and the kinds of their edges if there are any.
+fn turn_counter_clockwise(vertices: &[[f64; 3]], faces: &mut [[u32; 3]], sides: &mut [[EdgeKind; 3]]) -> Result<()> {
     for (i, face) in faces.iter_mut().enumerate() {
         match orientation(face.map(|v| vertices[v as usize])) {
             Sign::Positive => (),
-            Sign::Negative => face.swap(1, 2),
+            Sign::Negative => {
+                face.swap(1, 2);
+                sides.get_mut(i).into_iter().for_each(|kinds| kinds.swap(1, 2));
+            }
             Sign::Zero => {
                 let [a, b, c] = *face;
                 return Err(Error::format(format!("face {i} ({a} {b} {c}) has no area in plan"))
@@ -219,6 +229,25 @@ fn turn_counter_clockwise(vertices: &[[f64; 3]], faces: &mut [[u32; 3]]) -> Resu
         }
     }
     Ok(())
+}
+
+/// Returns the edges between two faces for which these state different kinds. An edge on no line is
+/// plain for a face, or at the rim: some programs that divide a mesh know no difference.
+fn different_kinds(
+    faces: &[[u32; 3]],
+    neighbors: &[[u32; 3]],
+    sides: &[[EdgeKind; 3]],
+) -> impl Iterator<Item = LinkFlaw> {
+    let line = |kind: EdgeKind| Some(kind).filter(|kind| kind.is_constrained());
+    let all = (0u32..).zip(sides).flat_map(|(face, kinds)| (0..3).map(move |i| (face, i, kinds[i])));
+    all.filter_map(move |(face, i, kind)| {
+        let beside = neighbors.get(face as usize)?[i];
+        let theirs = neighbors.get(beside as usize).filter(|_| face < beside)?;
+        let other = sides.get(beside as usize)?[theirs.iter().position(|&back| back == face)?];
+        let corners = faces.get(face as usize)?;
+        let edge = [corners[(i + 1) % 3], corners[(i + 2) % 3]];
+        (line(kind) != line(other)).then_some(LinkFlaw::Kinds { faces: [face, beside], edge, kinds: [kind, other] })
+    })
 }
 
 /// One side of a face: an edge as seen from one of its faces.

@@ -108,6 +108,8 @@ pub struct PointInfo {
     pub bounds: Option<Bounds>,
     /// Coordinate system.
     pub crs: Option<Crs>,
+    /// What the file states as its coordinate system, if that is not understood.
+    pub unread_crs: Option<String>,
     /// True if the points have classes.
     pub has_classes: bool,
     /// The columns that are read, for text files.

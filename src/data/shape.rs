@@ -84,6 +84,8 @@ pub struct Layer {
     pub shapes: Vec<Shape>,
     /// Coordinate system, if known.
     pub crs: Option<Crs>,
+    /// What the file states as its coordinate system, if that is not understood.
+    pub unread_crs: Option<String>,
     /// The names of the attributes.
     pub fields: Vec<String>,
     /// The numbers of the attributes that were requested, in the order of the request.

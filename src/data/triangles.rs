@@ -12,10 +12,14 @@ pub struct Triangles {
     pub lines: Vec<([u32; 2], EdgeKind)>,
     /// The indices of the faces that are fragments of triangles that were cut, in ascending order.
     pub fragments: Vec<u32>,
+    /// The kind of the edge opposite each corner of each face, if the file states kinds by faces.
+    pub sides: Option<Vec<[EdgeKind; 3]>>,
     /// The face opposite each corner of each face, if the file states neighbors.
     pub neighbors: Option<Vec<[Option<u32>; 3]>>,
     /// The coordinate system, if known.
     pub crs: Option<Crs>,
+    /// Warnings for the user.
+    pub warnings: Vec<String>,
 }
 
 /// Why triangles do not form a surface, found by [`Mesh::link`](super::Mesh::link). Numbers count
@@ -33,6 +37,15 @@ pub enum LinkFlaw {
     StrayVertex(u32),
     /// A constrained edge between these vertices that is not an edge of any face.
     NoEdge([u32; 2]),
+    /// Two faces state different kinds for the edge that they share.
+    Kinds {
+        /// The faces.
+        faces: [u32; 2],
+        /// The vertices of the edge.
+        edge: [u32; 2],
+        /// The kind that each face states.
+        kinds: [EdgeKind; 2],
+    },
     /// The file states a neighbor other than the face that shares the edge.
     Neighbor {
         /// The face.
@@ -52,7 +65,7 @@ impl LinkFlaw {
     /// The ends of a constrained edge that is not an edge of any face may not exist.
     pub fn vertices(&self, surface: &dyn Surface) -> Vec<u32> {
         match *self {
-            LinkFlaw::Folded { edge, .. } | LinkFlaw::NoEdge(edge) => edge.to_vec(),
+            LinkFlaw::Folded { edge, .. } | LinkFlaw::NoEdge(edge) | LinkFlaw::Kinds { edge, .. } => edge.to_vec(),
             LinkFlaw::StrayVertex(vertex) => vec![vertex],
             LinkFlaw::Neighbor { face, corner, .. } => {
                 let corners = surface.face(face).into_iter();
@@ -73,6 +86,10 @@ impl std::fmt::Display for LinkFlaw {
                 write!(f, "vertex {vertex}: a coordinate is not finite (no face uses it, but no reader can take it)")
             }
             LinkFlaw::NoEdge([a, b]) => write!(f, "the constrained edge {a} {b} is not an edge of any face"),
+            LinkFlaw::Kinds { faces: [one, other], edge: [a, b], kinds } => {
+                let [first, second] = kinds.map(EdgeKind::noun);
+                write!(f, "faces {one} and {other}: their edge {a} {b} is of {first} in one, of {second} in the other")
+            }
             LinkFlaw::Neighbor { face, corner, stated, found } => {
                 let (stated, found) = (name(stated), name(found));
                 write!(f, "face {face}, edge {corner}: its neighbor is stated as {stated}, by its edges it is {found}")

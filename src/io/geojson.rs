@@ -8,6 +8,7 @@ use std::path::Path;
 use serde_json::{Map, Value};
 
 use super::contour_summary::ContourSummary;
+use super::decimal_mark::DecimalMark;
 use super::field::{no_such_field, not_a_number};
 use super::layer_options::Options;
 use super::shapefile::parse_number;
@@ -135,15 +136,19 @@ struct Reader {
     found: usize,
     not_numbers: usize,
     first_text: Option<String>,
-    /// For each column, true if a feature has it.
-    has_column: Vec<bool>,
+    height_mark: DecimalMark,
+    /// Features that lack the member `geometry`.
+    without_geometry: usize,
+    /// For each column, true if a feature has it, and the decimal mark of its texts.
+    found_columns: Vec<(bool, DecimalMark)>,
 }
 
 impl Reader {
     fn new(format: &str, options: &Options) -> Self {
         let columns = options.columns.iter().map(|&name| Column { name: name.to_owned(), ..Column::default() });
         let layer = Layer { format: format.to_owned(), columns: columns.collect(), ..Layer::default() };
-        Reader { layer, has_column: vec![false; options.columns.len()], ..Reader::default() }
+        let found_columns = options.columns.iter().map(|_| Default::default()).collect();
+        Reader { layer, found_columns, ..Reader::default() }
     }
 
     /// Adds the feature or geometry in a record of GeoJSON lines. A geometry alone has no
@@ -185,33 +190,46 @@ impl Reader {
                 self.fields.insert(name.clone());
             }
         }
-        let height = z_field.map(|name| self.height(properties, name));
+        let height = z_field.map(|name| self.height(properties, name)).transpose()?;
         match feature.get("geometry") {
             Some(Value::Object(geometry)) => self.geometry(geometry, height)?,
-            Some(Value::Null) | None => self.layer.shapes.push(Shape::Null),
+            Some(Value::Null) => self.layer.shapes.push(Shape::Null),
+            None => {
+                self.without_geometry += 1;
+                self.layer.shapes.push(Shape::Null);
+            }
             Some(_) => return Err(Error::format("its geometry is not an object")),
         }
         self.add_to_columns(properties)
     }
 
-    fn height(&mut self, properties: &Object, name: &str) -> f64 {
-        let value = property(properties, name);
-        self.found += usize::from(value.is_some());
-        value.map_or(Ok(f64::NAN), number).unwrap_or_else(|text| {
-            self.not_numbers += 1;
-            self.first_text.get_or_insert(text);
-            f64::NAN
-        })
+    fn height(&mut self, properties: &Object, name: &str) -> Result<f64> {
+        let Some(value) = property(properties, name) else { return Ok(f64::NAN) };
+        self.found += 1;
+        match number(value) {
+            Ok(height) => {
+                add_mark(&mut self.height_mark, value, height).map_err(|e| e.within(format!("property {name}")))?;
+                Ok(height)
+            }
+            Err(text) => {
+                self.not_numbers += 1;
+                self.first_text.get_or_insert(text);
+                Ok(f64::NAN)
+            }
+        }
     }
 
     /// Adds the properties of a feature to the columns, once for each of its shapes.
     fn add_to_columns(&mut self, properties: &Object) -> Result<()> {
         let shapes = self.layer.shapes.len();
-        for (column, has_column) in self.layer.columns.iter_mut().zip(&mut self.has_column) {
-            let value = property(properties, &column.name);
-            *has_column |= value.is_some();
-            let value = value.map_or(Ok(f64::NAN), number).map_err(|text| not_a_number(&column.name, &text))?;
-            column.values.resize(shapes, value);
+        for (column, (is_there, mark)) in self.layer.columns.iter_mut().zip(&mut self.found_columns) {
+            let mut found = f64::NAN;
+            if let Some(value) = property(properties, &column.name) {
+                *is_there = true;
+                found = number(value).map_err(|text| not_a_number(&column.name, &text))?;
+                add_mark(mark, value, found).map_err(|e| e.within(format!("property {}", column.name)))?;
+            }
+            column.values.resize(shapes, found);
         }
         Ok(())
     }
@@ -255,8 +273,11 @@ impl Reader {
     }
 
     fn finish(self, root: &Object, z_field: Option<&str>) -> Result<Layer> {
-        let Reader { mut layer, fields, found, not_numbers, first_text, has_column } = self;
-        if let Some((column, _)) = layer.columns.iter().zip(has_column).find(|&(_, has_column)| !has_column)
+        let Reader { mut layer, fields, found, not_numbers, first_text, found_columns, without_geometry, .. } = self;
+        if without_geometry > 0 {
+            layer.warnings.push(format!("features without a member geometry: {without_geometry}"));
+        }
+        if let Some((column, _)) = layer.columns.iter().zip(found_columns).find(|(_, (is_there, _))| !is_there)
             && !layer.shapes.is_empty()
         {
             return Err(no_such_field(&column.name, fields.iter().map(String::as_str)));
@@ -278,7 +299,14 @@ impl Reader {
         layer.fields = fields.into_iter().collect();
         layer.crs = match root.get("crs") {
             Some(Value::Null) => None,
-            Some(crs) => named_crs(crs).map_err(|e| layer.warnings.push(format!("crs not used: {e}"))).ok(),
+            Some(crs) => match stated_crs(crs) {
+                Ok(crs) => Some(crs),
+                Err(e) => {
+                    layer.warnings.push(format!("crs not used: {e}"));
+                    layer.unread_crs = Some(crs["properties"]["name"].as_str().map_or(crs.to_string(), str::to_owned));
+                    None
+                }
+            },
             None if layer
                 .shapes
                 .iter()
@@ -316,18 +344,19 @@ fn number(value: &Value) -> std::result::Result<f64, String> {
     }
 }
 
+/// Adds the decimal mark of a number in a text; a number of JSON always has a point.
+fn add_mark(mark: &mut DecimalMark, value: &Value, number: f64) -> Result<()> {
+    match value {
+        Value::String(text) if !number.is_nan() => mark.add(text.trim().as_bytes(), || format!("\"{text}\"")),
+        _ => Ok(()),
+    }
+}
+
 /// Parses a system such as
 /// `{"type": "name", "properties": {"name": "urn:ogc:def:crs:EPSG::25832"}}`.
-fn named_crs(member: &Value) -> Result<Crs> {
-    let name =
-        member["properties"]["name"].as_str().ok_or_else(|| Error::unsupported("a crs that is not given by name"))?;
-    if name.ends_with("CRS84") {
-        return Crs::from_epsg(WGS_84);
-    }
-    match name.rsplit(':').next().map(str::parse) {
-        Some(Ok(code)) if name.to_ascii_uppercase().contains("EPSG") => Crs::from_epsg(code),
-        _ => Crs::from_user(name),
-    }
+fn stated_crs(member: &Value) -> Result<Crs> {
+    let name = member["properties"]["name"].as_str();
+    Crs::from_user(name.ok_or_else(|| Error::unsupported("a crs that is not given by name"))?)
 }
 
 fn kind(object: &Object) -> Result<&str> {
@@ -644,6 +673,48 @@ mod tests {
         assert!(unknown.crs.is_none() && unknown.warnings.is_empty());
         let linked = read(r#"{"type":"Point","coordinates":[1,2],"crs":{"type":"link"}}"#).unwrap();
         assert!(linked.warnings[0].contains("not given by name"));
+        assert_eq!(linked.unread_crs.as_deref(), Some(r#"{"type":"link"}"#));
+    }
+
+    #[test]
+    fn systems_that_are_stated() {
+        let system = |name: &str| {
+            let crs = format!(r#"{{"type":"name","properties":{{"name":"{name}"}}}}"#);
+            read(&format!(r#"{{"type":"Point","coordinates":[500000,2],"crs":{crs}}}"#)).unwrap()
+        };
+        for (name, codes) in [
+            ("urn:ogc:def:crs:EPSG::32633", (Some(32633), None)),
+            ("EPSG:32633", (Some(32633), None)),
+            ("urn:ogc:def:crs,crs:EPSG::32633,crs:EPSG::5783", (Some(32633), Some(5783))),
+            ("urn:ogc:def:crs:OGC:1.3:CRS84", (Some(4326), None)),
+        ] {
+            let Layer { crs, unread_crs, warnings, .. } = system(name);
+            let crs = crs.unwrap_or_else(|| panic!("{name}: {warnings:?}"));
+            assert_eq!((crs.epsg, crs.vertical_epsg), codes, "{name}");
+            assert!(unread_crs.is_none() && warnings.is_empty());
+        }
+        let unknown = system("urn:ogc:def:crs:IGNF::LAMB93");
+        assert_eq!((unknown.crs, unknown.unread_crs.as_deref()), (None, Some("urn:ogc:def:crs:IGNF::LAMB93")));
+        assert!(unknown.warnings[0].contains("the codes of IGNF are not known"), "{:?}", unknown.warnings);
+    }
+
+    #[test]
+    fn texts_with_different_decimal_marks_are_refused() {
+        let feature = |z: &str| {
+            format!(
+                r#"{{"type":"Feature","geometry":{{"type":"Point","coordinates":[1,2]}},"properties":{{"z":"{z}"}}}}"#
+            )
+        };
+        let collection = |z: &[&str]| {
+            let list: Vec<String> = z.iter().map(|z| feature(z)).collect();
+            format!(r#"{{"type":"FeatureCollection","features":[{}]}}"#, list.join(","))
+        };
+        for read in [read_heights as fn(&str, &str) -> Result<Layer>, |text, name| read_columns(text, &[name])] {
+            assert!(read(&collection(&["1,5", "500,000", "", "7"]), "z").is_ok());
+            let error = read(&collection(&["500,000", "3.5"]), "z").unwrap_err().to_string();
+            assert!(error.starts_with("feature 2: ") || error.contains("property z"), "{error}");
+            assert!(error.contains("3.5 has a point and 500,000"), "{error}");
+        }
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use super::cut::Cut;
 use super::formats::{self, Reader};
 pub use super::layer_options::Options;
 use super::watch::{Watch, unwatched};
@@ -59,8 +60,8 @@ impl Spec {
     }
 
     /// Returns what to read of the layer, with these columns.
-    pub(crate) fn options<'a>(&'a self, columns: &'a [&'a str]) -> Options<'a> {
-        Options { layer: self.layer.as_deref(), height_field: self.field.as_deref(), columns }
+    pub(crate) fn options<'a>(&'a self, columns: &'a [&'a str], cut: Cut) -> Options<'a> {
+        Options { layer: self.layer.as_deref(), height_field: self.field.as_deref(), columns, cut }
     }
 }
 
@@ -106,17 +107,17 @@ fn has_one_layer(path: &Path) -> bool {
 /// # Errors
 /// If the file does not exist or is not a vector layer; if it has no such layer or attribute.
 pub fn read(text: &str) -> Result<Layer> {
-    read_with(&Spec::parse(text)?, &[], &unwatched)
+    let spec = Spec::parse(text)?;
+    read_with(&spec.path, &spec.options(&[], Cut::Refuse), &unwatched)
 }
 
-/// Like [`read`], but with the numbers of the attributes that `columns` names, and watched: the
-/// bytes that were parsed are counted, if the format allows it.
+/// Like [`read`], but of a file, with options, and watched: the bytes that were parsed are counted,
+/// if the format allows it.
 ///
 /// # Errors
 /// Those of [`read`], and that of the watch; if an attribute does not exist, or a value is not a
 /// number.
-pub fn read_with(spec: &Spec, columns: &[&str], watch: Watch) -> Result<Layer> {
-    let path = &spec.path;
+pub fn read_with(path: &Path, options: &Options, watch: Watch) -> Result<Layer> {
     if let Some((whole, part)) = formats::format_of_part(path) {
         let whole_path = path.with_extension(whole.extensions[0]);
         return Err(Error::usage(format!("a .{part} is part of {}", whole.noun)).in_file(path).cure(format!(
@@ -126,7 +127,7 @@ pub fn read_with(spec: &Spec, columns: &[&str], watch: Watch) -> Result<Layer> {
         )));
     }
     match formats::detect_file(path)?.map(|format| format.reader) {
-        Some(Reader::Layer(read)) => read(path, &spec.options(columns), watch),
+        Some(Reader::Layer(read)) => read(path, options, watch),
         _ => Err(unsupported(path)),
     }
 }

@@ -1,5 +1,6 @@
 //! What is read of a vector file.
 
+use super::cut::Cut;
 use crate::error::{Error, Result};
 
 /// The layer and the attributes to read of a vector file. Names are compared as written, else in
@@ -15,6 +16,8 @@ pub struct Options<'a> {
     /// [`Layer::columns`](crate::data::Layer::columns), in this order. One that does not exist is
     /// an error, and so is a value that is not a number.
     pub columns: &'a [&'a str],
+    /// What to do with files of which a part is missing or damaged.
+    pub cut: Cut,
 }
 
 impl Options<'_> {

@@ -223,12 +223,13 @@ pub fn read_triangles_with(path: &Path, watch: Watch) -> Result<Triangles> {
     Ok(triangles)
 }
 
-/// Reads the vertices of a mesh, or the points of a cloud in the format of a mesh.
+/// Reads the vertices of a mesh, or the points of a cloud in the format of a mesh; returns them
+/// with warnings.
 ///
 /// # Errors
 /// As [`read_triangles_with`], except that there need not be any faces.
-pub fn read_vertices(path: &Path, watch: Watch) -> Result<Vec<[f64; 3]>> {
-    parse(path, watch).map(|triangles| triangles.vertices)
+pub fn read_vertices(path: &Path, watch: Watch) -> Result<(Vec<[f64; 3]>, Vec<String>)> {
+    parse(path, watch).map(|triangles| (triangles.vertices, triangles.warnings))
 }
 
 /// Reads a mesh, which may have no faces.

@@ -41,7 +41,9 @@
 mod contain;
 mod contour_summary;
 pub mod contours;
+mod cut;
 mod decimal;
+mod decimal_mark;
 mod field;
 pub mod formats;
 pub mod gdal;
@@ -75,6 +77,7 @@ mod world_file;
 
 pub(crate) use contain::contain;
 pub use contain::is_contained;
+pub use cut::Cut;
 pub use output::{
     Abandoned, Destination, Output, OutputSet, abandon_outputs, is_stream, probe, remove_abandoned, require_absent,
 };

@@ -8,6 +8,7 @@ use super::listing::{Listing, crs_text, polygon};
 use crate::crs::Crs;
 use crate::data::Triangles;
 use crate::error::{Error, Result};
+use crate::io::cut::open_line;
 use crate::io::watch::Meter;
 use crate::io::{Destination, Watch};
 
@@ -29,7 +30,8 @@ pub(super) fn write(target: Destination, mesh: &Listing, crs: Option<&Crs>) -> R
 }
 
 /// Reads `v` and `f` lines (with texture and normal numbers, and numbers counted from the end), and
-/// comments that begin with `crs`. Everything else is skipped.
+/// comments that begin with `crs`. Other statements of the format are skipped; a line that begins
+/// with anything else is an error, since it may be a damaged vertex.
 pub(super) fn read(bytes: &[u8], watch: Watch) -> Result<Triangles> {
     let mut vertices = Vec::new();
     // Faces may precede their vertices, so they are assembled at the end.
@@ -52,6 +54,10 @@ pub(super) fn read(bytes: &[u8], watch: Watch) -> Result<Triangles> {
                 polygons.push((number, first..corners.len()));
             }
             Some("#") => crs.push_str(line.strip_prefix("# ").and_then(crs_text::crs_comment).unwrap_or_default()),
+            Some(word) if !word.starts_with('#') && !STATEMENTS.contains(&word) => {
+                let error = Error::format(format!("'{}' is not a statement of OBJ", shortened(word)));
+                return Err(at_line(error.cure("correct the line, or make it a comment with # at its beginning")));
+            }
             _ => (),
         }
     }
@@ -63,8 +69,57 @@ pub(super) fn read(bytes: &[u8], watch: Watch) -> Result<Triangles> {
         let at_line = |e: Error| e.at(format!("line {number}"));
         polygon::add_polygon(&vertices, &corners[range], &mut faces).map_err(at_line)?;
     }
-    Ok(Triangles { vertices, faces, crs: crs_text::parse(&crs)?, ..Default::default() })
+    let warnings = open_line(bytes).into_iter().collect();
+    Ok(Triangles { vertices, faces, crs: crs_text::parse(&crs)?, warnings, ..Default::default() })
 }
+
+/// The statements that are skipped (Wavefront, Appendix B1, and what later programs write).
+const STATEMENTS: &[&str] = &[
+    "vt",
+    "vn",
+    "vp",
+    "p",
+    "l",
+    "o",
+    "g",
+    "s",
+    "mg",
+    "usemtl",
+    "mtllib",
+    "usemap",
+    "maplib",
+    "cstype",
+    "deg",
+    "bmat",
+    "step",
+    "curv",
+    "curv2",
+    "surf",
+    "parm",
+    "trim",
+    "hole",
+    "scrv",
+    "sp",
+    "end",
+    "con",
+    "bevel",
+    "c_interp",
+    "d_interp",
+    "lod",
+    "shadow_obj",
+    "trace_obj",
+    "ctech",
+    "stech",
+    "call",
+    "csh",
+    "fo",
+    "bsp",
+    "bzp",
+    "cdc",
+    "cdp",
+    "res",
+    "refl",
+];
 
 /// Returns the lines, numbered from 1. Lines that end in a backslash are joined with the next and
 /// have the number of the first.

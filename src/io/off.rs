@@ -11,6 +11,7 @@ use super::listing::{Listing, crs_text, polygon};
 use crate::crs::Crs;
 use crate::data::Triangles;
 use crate::error::{Error, Result};
+use crate::io::cut::open_line;
 use crate::io::decimal::Decimal;
 use crate::io::rows::{Row, Rows, shown};
 use crate::io::{Destination, Watch};
@@ -39,6 +40,7 @@ pub(super) fn read(bytes: &[u8], watch: Watch) -> Result<Triangles> {
     let mut vertices = Vec::with_capacity(vertex_count.min(bytes.len() / MIN_BYTES));
     for i in 0..vertex_count {
         let mut row = rows.expect(|| format!("vertex {i} of {vertex_count}"), "X Y Z")?;
+        row.refuse_commas()?;
         vertices.push([row.finite("x coordinate")?, row.finite("y coordinate")?, row.finite("z coordinate")?]);
     }
     let mut faces = Vec::with_capacity(face_count.min(bytes.len() / MIN_BYTES));
@@ -56,7 +58,8 @@ pub(super) fn read(bytes: &[u8], watch: Watch) -> Result<Triangles> {
     let comments = bytes.split(|&b| b == b'\n').filter_map(|line| line.strip_prefix(b"# "));
     let comments = comments.map(|text| String::from_utf8_lossy(text).trim_end_matches('\r').to_owned());
     let crs: String = comments.filter_map(|text| crs_text::crs_comment(&text).map(str::to_owned)).collect();
-    Ok(Triangles { vertices, faces, crs: crs_text::parse(&crs)?, ..Default::default() })
+    let warnings = open_line(bytes).into_iter().collect();
+    Ok(Triangles { vertices, faces, crs: crs_text::parse(&crs)?, warnings, ..Default::default() })
 }
 
 /// The fewest bytes of a vertex or a face, which limit the memory allocated for a stated count.

@@ -1,4 +1,5 @@
-use super::las::{Cut, Detail, ReadOptions};
+use super::cut::Cut;
+use super::las::{Detail, ReadOptions};
 use crate::data::Columns;
 
 /// How points are read where a file leaves that open.
@@ -6,7 +7,7 @@ use crate::data::Columns;
 pub struct Options {
     /// The columns of text; if `None`, a header or the first three columns are used.
     pub columns: Option<Columns>,
-    /// What to do with LAS and LAZ files that were cut short.
+    /// What to do with files of which a part is missing or damaged.
     pub cut: Cut,
     /// How much is read of each point of LAS and LAZ.
     pub detail: Detail,

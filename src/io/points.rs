@@ -48,9 +48,10 @@ pub fn open_with(path: impl AsRef<Path>, options: Options) -> Result<Box<dyn Poi
     let head = head(&mut file).map_err(named)?;
     match formats::detect(&head, path).map(|format| format.reader) {
         Some(Reader::Points { file, .. }) => file(path, options),
-        Some(Reader::Layer(read)) => Ok(Box::new(
-            from_layer(read(path, &layer_options::Options::default(), &unwatched)?).map_err(|e| e.in_file(path))?,
-        )),
+        Some(Reader::Layer(read)) => {
+            let of_layer = layer_options::Options { cut: options.cut, ..layer_options::Options::default() };
+            Ok(Box::new(from_layer(read(path, &of_layer, &unwatched)?).map_err(|e| e.in_file(path))?))
+        }
         _ => Err(refusal(&head, path)),
     }
 }
@@ -125,7 +126,7 @@ fn refusal(head: &[u8], path: &Path) -> Error {
 /// # Errors
 /// If the layer has shapes but no points, or a point has no height.
 pub fn from_layer(layer: Layer) -> Result<LayerPoints> {
-    let Layer { format, shapes, crs, mut warnings, .. } = layer;
+    let Layer { format, shapes, crs, unread_crs, mut warnings, .. } = layer;
     let mut points = Vec::new();
     let mut others = 0_usize;
     let total = shapes.iter().filter(|shape| !matches!(shape, Shape::Null)).count();
@@ -150,7 +151,8 @@ pub fn from_layer(layer: Layer) -> Result<LayerPoints> {
     if others > 0 {
         warnings.push(format!("shapes that are not points are left out: {others}"));
     }
-    let info = PointInfo { format, count: Some(points.len() as u64), crs, warnings, ..PointInfo::default() };
+    let count = Some(points.len() as u64);
+    let info = PointInfo { format, count, crs, unread_crs, warnings, ..PointInfo::default() };
     Ok(LayerPoints { info, points: points.into_iter() })
 }
 

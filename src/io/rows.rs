@@ -96,6 +96,19 @@ impl<'a> Row<'a> {
         Some(word)
     }
 
+    /// Returns an error if the line has a comma, for formats that separate words by blanks only: it
+    /// may be a decimal comma.
+    ///
+    /// # Errors
+    /// Names the word.
+    pub(super) fn refuse_commas(&self) -> Result<()> {
+        let mut words = self.rest.split(u8::is_ascii_whitespace);
+        match words.find(|word| word.contains(&b',')) {
+            Some(word) => Err(self.wrong(format!("'{}' has a comma, expected a decimal point", shown(word)))),
+            None => Ok(()),
+        }
+    }
+
     /// Returns true if there are words left.
     pub(super) fn has_more(&self) -> bool {
         self.clone_of_rest().word().is_some()

@@ -110,7 +110,7 @@ fn check_mesh(path: &Path, systems: &SystemOptions, context: &Context) -> Result
     }
     // The Delaunay law cannot be checked without the lines.
     let find = if keeps_lines { terrain::surface_flaws } else { terrain::shape_flaws };
-    let triangles = open::mesh_triangles(path, &journal.context)?;
+    let triangles = open::mesh_triangles(path, &journal)?;
     let (mesh, flaws) = flaws_by(find, triangles, context).map_err(|e| e.in_file(path))?;
     let model = surface::mesh_model(path, mesh, systems, &journal)?;
     Ok(CheckProduct { product: SurfaceProduct { model, built: None, notices: journal.take() }, flaws })
@@ -135,10 +135,10 @@ fn flaws_by(
     Ok((mesh, flaws))
 }
 
-/// Returns the surface with progress, for a check that visits its faces once for each of five laws
+/// Returns the surface with progress, for a check that visits its faces once for each of seven laws
 /// and once for overlaps.
 fn checked<'a>(surface: &'a dyn Surface, context: &Context<'a>) -> Result<Watched<'a, dyn Surface + 'a>> {
-    Watched::faces(surface, 6, Stage::CheckingFaces, context)
+    Watched::faces(surface, 8, Stage::CheckingFaces, context)
 }
 
 /// Returns the flaws that were found, and overlaps if these are defined: if faces are linked and
@@ -147,7 +147,11 @@ fn flaws_beside(links: &[LinkFlaw], found: &[SurfaceFlaw], surface: &dyn Surface
     let of_surface = |flaw: &SurfaceFlaw| located(FlawKind::Surface(*flaw), &flaw.vertices(surface), surface);
     let mut flaws: Vec<LocatedFlaw> = found.iter().map(of_surface).collect();
     let is_folded = links.iter().any(|flaw| matches!(flaw, LinkFlaw::Folded { .. }));
-    if !is_folded && found.iter().all(|flaw| matches!(flaw, SurfaceFlaw::NotDelaunay(..))) {
+    let is_harmless = |flaw: &SurfaceFlaw| {
+        use SurfaceFlaw::{Crack, Kinds, NotDelaunay, TwoHeights};
+        matches!(flaw, TwoHeights(_) | Crack { .. } | Kinds(..) | NotDelaunay(..))
+    };
+    if !is_folded && found.iter().all(is_harmless) {
         let of_overlap = |flaw: &Overlap| located(FlawKind::Overlap(*flaw), &flaw.vertices(surface), surface);
         flaws.extend(overlaps(surface).iter().map(of_overlap));
     }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use super::context::{Context, Size, Stage};
+use super::context::{Context, Journal, Size, Stage};
 use super::open::{self, Content, Raster};
 use super::tin_parts::TinParts;
 use crate::crs::Crs;
@@ -13,7 +13,7 @@ use crate::data::{
 use crate::error::Result;
 use crate::io::mesh::Solid;
 use crate::io::png::Picture;
-use crate::io::points;
+use crate::io::{Cut, points};
 use crate::terrain::CompactTin;
 
 /// The contents of a file, by its kind.
@@ -153,7 +153,7 @@ pub enum PlaneFacts {
 pub fn facts(path: &Path, read: points::Options, context: &Context) -> Result<Facts> {
     let facts = match open::content(path) {
         Content::Points => Facts::Points(Box::new(point_facts(path, read, context)?)),
-        Content::Layer => Facts::Layer(Box::new(layer_facts(path, context)?)),
+        Content::Layer => Facts::Layer(Box::new(layer_facts(path, read.cut, context)?)),
         Content::Raster => Facts::Raster(Box::new(raster_facts(path, context)?)),
         Content::Mesh => match open::solid(path) {
             Some(solid) => Facts::Solid(Box::new(solid?)),
@@ -218,8 +218,8 @@ impl PointFacts {
     }
 }
 
-fn layer_facts(path: &Path, context: &Context) -> Result<LayerFacts> {
-    let layer = open::layer(path, &[], context)?;
+fn layer_facts(path: &Path, cut: Cut, context: &Context) -> Result<LayerFacts> {
+    let layer = open::layer(path, &[], cut, context)?;
     let mut facts = LayerFacts { records: layer.shapes.len(), ..LayerFacts::default() };
     for shape in &layer.shapes {
         *facts.kinds.entry(shape.kind()).or_default() += 1;
@@ -283,7 +283,7 @@ fn raster_facts(path: &Path, context: &Context) -> Result<RasterFacts> {
 }
 
 fn mesh_facts(path: &Path, context: &Context) -> Result<MeshFacts> {
-    let (mesh, flaws) = open::linked_mesh(path, context)?;
+    let (mesh, flaws) = open::linked_mesh(path, &Journal::new(context))?;
     Ok(MeshFacts { surface: SurfaceFacts::of(&mesh), crs: mesh.crs().cloned(), flaw: flaws.first().copied() })
 }
 

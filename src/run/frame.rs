@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use super::context::Journal;
 use super::notice::Notice;
-use super::open;
+use super::open::{self, RasterFrame};
+use super::systems::quoted;
 use super::units::{Units, neat, number};
 use crate::crs::Crs;
 use crate::data::{self, Bounds, Frame, Surface};
@@ -100,6 +101,23 @@ fn cell_area(frame: &Frame) -> f64 {
     (t[1] * t[5] - t[2] * t[4]).abs()
 }
 
+/// Returns an error if a raster states a system other than that of the surface, or one that is not
+/// understood.
+fn require_same(raster: &RasterFrame, ours: &Crs) -> Result<()> {
+    match (&raster.crs, &raster.unread_crs) {
+        (Some(theirs), _) if !theirs.is_same(ours) => {
+            Err(Error::unsupported(format!("the raster is in {theirs}, the surface in {ours}"))
+                .cure("build the surface of points in the raster's system, or match another raster"))
+        }
+        (None, Some(stated)) => Err(Error::unsupported(format!(
+            "the raster states a coordinate system that is not understood, {}; the surface is in {ours}",
+            quoted(stated)
+        ))
+        .cure("match another raster, or give the raster with --te and --resolution")),
+        _ => Ok(()),
+    }
+}
+
 /// Chooses the frame of a raster over an extent, whatever part of it has a value.
 ///
 /// # Errors
@@ -119,15 +137,11 @@ pub(super) fn placed(options: &FrameOptions, extent: Bounds, crs: Option<&Crs>, 
         None => extent,
     };
     if let Some(path) = &options.align_to {
-        let (frame, theirs) = open::raster_frame(path)?;
-        if let (Some(theirs), Some(ours)) = (theirs, crs)
-            && !theirs.is_same(ours)
-        {
-            return Err(Error::unsupported(format!("the raster is in {theirs}, the surface in {ours}"))
-                .in_file(path)
-                .cure("build the surface of points in the raster's system, or match another raster"));
+        let theirs = open::raster_frame(path)?;
+        if let Some(ours) = crs {
+            require_same(&theirs, ours).map_err(|e| e.in_file(path))?;
         }
-        return Frame::aligned_to(&frame, &extent);
+        return Frame::aligned_to(&theirs.frame, &extent);
     }
     let resolution = match options.resolution {
         Some(resolution) => resolution,

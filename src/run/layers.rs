@@ -11,6 +11,7 @@ use super::open;
 use super::transforms::Transforms;
 use crate::data::Layer;
 use crate::error::Result;
+use crate::io::Cut;
 
 /// Layers, each with its path.
 pub(super) type Layers<'a> = Vec<(&'a Path, Cow<'a, Layer>)>;
@@ -19,12 +20,17 @@ pub(super) type Layers<'a> = Vec<(&'a Path, Cow<'a, Layer>)>;
 ///
 /// # Errors
 /// If one cannot be read or lacks a column, or the run is canceled.
-pub(super) fn read<'a>(inputs: &'a [Input<Layer>], columns: &[&str], journal: &Journal) -> Result<Layers<'a>> {
+pub(super) fn read<'a>(
+    inputs: &'a [Input<Layer>],
+    columns: &[&str],
+    cut: Cut,
+    journal: &Journal,
+) -> Result<Layers<'a>> {
     let mut layers = Vec::with_capacity(inputs.len());
     for input in inputs {
         journal.context.check()?;
         let path = input.path();
-        let layer = open::layer_of(input, columns, &journal.context).map_err(|e| e.in_file(path))?;
+        let layer = open::layer_of(input, columns, cut, &journal.context).map_err(|e| e.in_file(path))?;
         let (format, records) = (layer.format.clone(), layer.shapes.len());
         journal.add(Notice::LayerRead { path: path.to_path_buf(), format, records });
         journal.add_warnings(path, &layer.warnings);

@@ -10,11 +10,12 @@ use super::layers::{self, Layers};
 use super::line_notes::{LevelRing, LineInput};
 use super::line_request::{FlatRule, LineRequest, LineRole, LowerEdge, PerRecord, WallOptions};
 use super::lines::{self, Drawn};
-use super::systems::{Role, Stated};
+use super::systems::Stated;
 use super::transforms::Transforms;
 use super::units::Units;
 use crate::data::{Bounds, Layer, Shape};
 use crate::error::{Error, Result};
+use crate::io::Cut;
 use crate::terrain::{Flat, FlatHeight, River, RiverHeights, TinBuilder, Wall, densified};
 
 /// The default distance between the upper and the lower edge of a wall. Steps between waters are as
@@ -50,23 +51,21 @@ impl<'a> LineLayers<'a> {
         request: &'a LineRequest,
         breaklines: &'a [Input<Layer>],
         boundary: &'a [Input<Layer>],
+        cut: Cut,
         journal: &Journal,
     ) -> Result<Self> {
         let all = [(LineRole::Breaklines, breaklines)].into_iter().chain(request.inputs());
         let mut groups = Vec::new();
         for (role, inputs) in all.chain([(LineRole::Boundary, boundary)]) {
             let columns: Vec<&str> = request.column(role).into_iter().collect();
-            groups.push((role, layers::read(inputs, &columns, journal)?));
+            groups.push((role, layers::read(inputs, &columns, cut, journal)?));
         }
         Ok(LineLayers { request, groups })
     }
 
     /// Returns the coordinate systems that the layers state, in order.
     pub(super) fn stated(&self) -> impl Iterator<Item = Option<Stated>> + '_ {
-        self.groups
-            .iter()
-            .flat_map(|(_, layers)| layers)
-            .map(|(path, layer)| Some(Stated { path: path.to_path_buf(), crs: layer.crs.clone(), role: Role::Lines }))
+        self.groups.iter().flat_map(|(_, layers)| layers).map(|(path, layer)| Some(Stated::by_layer(path, layer)))
     }
 
     /// Returns true if there are lines or areas that points are not needed for.

@@ -20,7 +20,7 @@ use crate::io::mesh::{self, Solid};
 use crate::io::png::{self, Picture};
 use crate::io::points::Options;
 use crate::io::triangle::{self, LineGraph};
-use crate::io::{Watch, gdal, layer, points, raster};
+use crate::io::{Cut, Watch, gdal, layer, points, raster};
 use crate::terrain::CompactTin;
 
 /// Returns true if a file is LAS, LAZ or COPC.
@@ -56,8 +56,9 @@ pub(super) fn points(
 /// Opens points of any format; of a vector file, the layer and the attribute with the heights may
 /// be named, see [`layer::Spec`].
 pub(super) fn points_of_file(path: &Path, options: Options, context: &Context) -> Result<Box<dyn PointSource + Send>> {
-    let of_layer =
-        || -> Result<Box<dyn PointSource + Send>> { Ok(Box::new(points::from_layer(layer(path, &[], context)?)?)) };
+    let of_layer = || -> Result<Box<dyn PointSource + Send>> {
+        Ok(Box::new(points::from_layer(layer(path, &[], options.cut, context)?)?))
+    };
     match content(path) {
         Content::Layer => of_layer(),
         Content::Points | Content::Raster | Content::Mesh | Content::Picture | Content::Plane => {
@@ -72,9 +73,14 @@ pub(super) fn points_of_file(path: &Path, options: Options, context: &Context) -
 
 /// Returns a vector layer, from memory or from a file, with these columns: [`Layer::column`] finds
 /// each, and it has a number for each shape.
-pub(super) fn layer_of<'a>(input: &'a Input<Layer>, columns: &[&str], context: &Context) -> Result<Cow<'a, Layer>> {
+pub(super) fn layer_of<'a>(
+    input: &'a Input<Layer>,
+    columns: &[&str],
+    cut: Cut,
+    context: &Context,
+) -> Result<Cow<'a, Layer>> {
     match input {
-        Input::File(path) => layer(path, columns, context).map(Cow::Owned),
+        Input::File(path) => layer(path, columns, cut, context).map(Cow::Owned),
         Input::Memory(layer) => {
             columns.iter().try_for_each(|name| check_column(layer, name))?;
             Ok(Cow::Borrowed(layer))
@@ -99,15 +105,16 @@ fn check_column(layer: &Layer, name: &str) -> Result<()> {
 }
 
 /// Reads a vector layer, named as in [`layer::Spec`]. It has these columns, in this order.
-pub(super) fn layer(path: &Path, columns: &[&str], context: &Context) -> Result<Layer> {
+pub(super) fn layer(path: &Path, columns: &[&str], cut: Cut, context: &Context) -> Result<Layer> {
     let Some(text) = path.to_str() else {
         return Err(Error::unsupported("the name is not valid Unicode").in_file(path));
     };
     let spec = layer::Spec::parse(text)?;
     let work = context.start(Stage::ReadingLayer, size(&spec.path))?;
     let watch = |bytes| work.add(bytes);
-    layer::read_with(&spec, columns, &watch).or_else(|error| match gdal_may_help(&error) {
-        true => gdal::read_layer_with(&spec.path, &spec.options(columns), &watch),
+    let options = spec.options(columns, cut);
+    layer::read_with(&spec.path, &options, &watch).or_else(|error| match gdal_may_help(&error) {
+        true => gdal::read_layer_with(&spec.path, &options, &watch),
         false => Err(error),
     })
 }
@@ -160,18 +167,30 @@ pub(super) fn raster(path: &Path, journal: &Journal) -> Result<(Grid, Vec<String
     }
 }
 
+/// The frame of a raster, and the coordinate system that it states.
+pub(super) struct RasterFrame {
+    pub(super) frame: Frame,
+    pub(super) crs: Option<Crs>,
+    /// What is stated, if it is not understood.
+    pub(super) unread_crs: Option<String>,
+}
+
 /// Returns the frame of a raster and its coordinate system, without reading cells.
-pub(super) fn raster_frame(path: &Path) -> Result<(Frame, Option<Crs>)> {
-    match Raster::open(path)? {
-        Raster::GeoTiff(reader) => Ok((reader.frame(), reader.info().crs.clone())),
-        Raster::Gdal(raster) => Ok((raster.frame(), raster.crs().cloned())),
-    }
+pub(super) fn raster_frame(path: &Path) -> Result<RasterFrame> {
+    Ok(match Raster::open(path)? {
+        Raster::GeoTiff(reader) => {
+            let (frame, info) = (reader.frame(), reader.info());
+            RasterFrame { frame, crs: info.crs.clone(), unread_crs: info.unread_crs.clone() }
+        }
+        Raster::Gdal(raster) => RasterFrame { frame: raster.frame(), crs: raster.crs().cloned(), unread_crs: None },
+    })
 }
 
 /// Reads a mesh; an error if it is not a surface.
 pub(super) fn mesh(path: &Path, journal: &Journal) -> Result<Mesh> {
     memory::require_for_mesh(path)?;
-    reading(Stage::ReadingTriangles, path, &journal.context, |watch| mesh::read_with(path, watch))
+    let triangles = mesh_triangles(path, journal)?;
+    Mesh::of(triangles).map_err(|e| e.in_file(path))
 }
 
 /// Reads vertices, cells or their values under watch.
@@ -204,8 +223,8 @@ pub(super) fn tin_parts(path: &Path) -> Option<Result<TinParts>> {
 
 /// Reads a mesh that may not be a surface: its triangles, linked where possible, and the flaws of
 /// the links.
-pub(super) fn linked_mesh(path: &Path, context: &Context) -> Result<(Mesh, Vec<LinkFlaw>)> {
-    Mesh::link(mesh_triangles(path, context)?).map_err(|e| e.in_file(path))
+pub(super) fn linked_mesh(path: &Path, journal: &Journal) -> Result<(Mesh, Vec<LinkFlaw>)> {
+    Mesh::link(mesh_triangles(path, journal)?).map_err(|e| e.in_file(path))
 }
 
 /// Reads an STL file; `None` if the mesh has a different format.
@@ -229,13 +248,19 @@ pub(super) fn line_graph(path: &Path, context: &Context) -> Result<LineGraph> {
 }
 
 /// Reads the vertices of a mesh, or of a cloud in the format of a mesh.
-pub(super) fn mesh_vertices(path: &Path, context: &Context) -> Result<Vec<[f64; 3]>> {
-    reading(Stage::ReadingTriangles, path, context, |watch| mesh::read_vertices(path, watch))
+pub(super) fn mesh_vertices(path: &Path, journal: &Journal) -> Result<Vec<[f64; 3]>> {
+    let read = |watch: Watch| mesh::read_vertices(path, watch);
+    let (vertices, warnings) = reading(Stage::ReadingTriangles, path, &journal.context, read)?;
+    journal.add_warnings(path, &warnings);
+    Ok(vertices)
 }
 
 /// Reads the triangles of a mesh, in the order of the file.
-pub(super) fn mesh_triangles(path: &Path, context: &Context) -> Result<Triangles> {
-    reading(Stage::ReadingTriangles, path, context, |watch| mesh::read_triangles_with(path, watch))
+pub(super) fn mesh_triangles(path: &Path, journal: &Journal) -> Result<Triangles> {
+    let read = |watch: Watch| mesh::read_triangles_with(path, watch);
+    let triangles = reading(Stage::ReadingTriangles, path, &journal.context, read)?;
+    journal.add_warnings(path, &triangles.warnings);
+    Ok(triangles)
 }
 
 #[cfg(test)]
@@ -251,7 +276,7 @@ mod tests {
         ];
         let shapes = vec![Shape::Null, Shape::Null];
         let input = Input::Memory(Arc::new(Layer { shapes, columns, ..Layer::default() }));
-        let open = |columns: &[&str]| layer_of(&input, columns, &Context::default());
+        let open = |columns: &[&str]| layer_of(&input, columns, Cut::Refuse, &Context::default());
         assert_eq!(open(&["WIDTH"]).unwrap().column("WIDTH").unwrap().values[0], 1.0);
         let error = open(&["Width", "right"]).unwrap_err();
         assert_eq!(error.to_string(), "there is no column right");

@@ -3,10 +3,9 @@
 use super::context::{Context, Journal, Size, Stage};
 use super::input::{Input, MemoryPoints};
 use super::notice::Notice;
-use super::systems::{Role, Stated};
+use super::systems::Stated;
 use super::transforms::Transforms;
 use super::{memory, open};
-use crate::crs::Crs;
 use crate::data::{Bounds, Columns, PointBatch, PointSource};
 use crate::error::{Error, Result};
 use crate::io::points::Options;
@@ -73,7 +72,7 @@ impl PointFiles {
             if !info.has_classes && inputs.len() > 1 {
                 journal.add(Notice::WithoutClasses(path.to_path_buf()));
             }
-            let stated = Stated { path: path.to_path_buf(), crs: info.crs.clone(), role: Role::Ground };
+            let stated = Stated::by_points(path, info);
             let (count, bounds, columns) = (info.count, info.bounds, info.columns);
             let keep = inputs.len() <= FILES_KEPT_OPEN || input.is_read_once();
             let has_classes = info.has_classes;
@@ -105,12 +104,7 @@ impl PointFiles {
     /// If a file cannot be read.
     pub(super) fn stated(&self, classes: &Classes, journal: &Journal) -> Result<Vec<Option<Stated>>> {
         let mut stated: Vec<Option<Stated>> = self.files.iter().map(|file| Some(file.stated.clone())).collect();
-        let is_same = |a: &Option<Crs>, b: &Option<Crs>| match (a, b) {
-            (Some(a), Some(b)) => a.is_same(b),
-            (None, None) => true,
-            _ => false,
-        };
-        let is_one = self.files.iter().all(|file| is_same(&file.stated.crs, &self.files[0].stated.crs));
+        let is_one = self.files.iter().all(|file| file.stated.agrees_with(&self.files[0].stated));
         // A pipe can be read only once.
         if is_one || self.files.iter().any(|file| file.input.is_read_once()) {
             return Ok(stated);

@@ -7,7 +7,7 @@ use super::input::{Input, is_read_once};
 use super::layers::{self, Layers};
 use super::notice::Notice;
 use super::point_files::{ASK_EVERY, FILES_KEPT_OPEN};
-use super::systems::{self, Role, Stated, SystemOptions, Systems};
+use super::systems::{self, Stated, SystemOptions, Systems};
 use super::transforms::Transforms;
 use super::{lattice, memory, open};
 use crate::crs::Crs;
@@ -133,7 +133,7 @@ fn transfer<'s>(
         sources.push(Some(source).filter(|_| keep));
     }
     let boundary: Vec<Input<Layer>> = request.boundary.iter().cloned().map(Input::File).collect();
-    let boundary = layers::read(&boundary, &[], &journal)?;
+    let boundary = layers::read(&boundary, &[], request.read.cut, &journal)?;
     let plan = Plan::new(request, &infos, &boundary, &journal)?;
     let (of_points, of_boundary) = plan.transforms.by_file.split_at(infos.len());
     let polygons = layers::boundaries(&boundary, of_boundary, &plan.transforms)?;
@@ -233,9 +233,8 @@ struct Plan {
 
 impl Plan {
     fn new(request: &PointsRequest, infos: &[PointInfo], boundary: &Layers, journal: &Journal) -> Result<Self> {
-        let stated = |path: &Path, crs: &Option<Crs>, role| Stated { path: path.to_path_buf(), crs: crs.clone(), role };
-        let points = request.files.iter().zip(infos).map(|(path, info)| stated(path, &info.crs, Role::Ground));
-        let lines = boundary.iter().map(|(path, layer)| stated(path, &layer.crs, Role::Lines));
+        let points = request.files.iter().zip(infos).map(|(path, info)| Stated::by_points(path, info));
+        let lines = boundary.iter().map(|(path, layer)| Stated::by_layer(path, layer));
         let stated: Vec<Stated> = points.chain(lines).collect();
         let SystemOptions { assign, target, .. } = &request.systems;
         let Systems { from, crs } = systems::unify(&stated, &request.systems, journal)?;

@@ -248,6 +248,6 @@ fn parts_model(path: &Path, mut parts: TinParts, options: &SystemOptions, journa
 }
 
 fn one_system(path: &Path, crs: Option<&Crs>, options: &SystemOptions, journal: &Journal) -> Result<Option<Crs>> {
-    let stated = [Stated { path: path.to_path_buf(), crs: crs.cloned(), role: Role::Whole }];
+    let stated = [Stated { path: path.to_path_buf(), crs: crs.cloned(), unread: None, role: Role::Whole }];
     Ok(systems::reconcile(&stated, options, journal)?.crs)
 }

@@ -6,6 +6,7 @@ use super::context::Journal;
 use super::notice::Notice;
 use super::units::Units;
 use crate::crs::{Crs, CrsKind};
+use crate::data::{Layer, PointInfo};
 use crate::error::{Error, Result};
 
 /// Options of coordinate systems. By default all files that state a system must state the same,
@@ -43,7 +44,32 @@ const REPROJECT: &str = if cfg!(feature = "proj") {
 pub(super) struct Stated {
     pub(super) path: PathBuf,
     pub(super) crs: Option<Crs>,
+    /// What it states, if that is not understood.
+    pub(super) unread: Option<String>,
     pub(super) role: Role,
+}
+
+impl Stated {
+    /// Returns what a file of points states.
+    pub(super) fn by_points(path: &Path, info: &PointInfo) -> Self {
+        let (crs, unread) = (info.crs.clone(), info.unread_crs.clone());
+        Stated { path: path.to_path_buf(), crs, unread, role: Role::Ground }
+    }
+
+    /// Returns what a file of lines or polygons states.
+    pub(super) fn by_layer(path: &Path, layer: &Layer) -> Self {
+        let (crs, unread) = (layer.crs.clone(), layer.unread_crs.clone());
+        Stated { path: path.to_path_buf(), crs, unread, role: Role::Lines }
+    }
+
+    /// Returns true if the file states the same system as another one, or neither states any.
+    pub(super) fn agrees_with(&self, other: &Stated) -> bool {
+        match (&self.crs, &other.crs) {
+            (Some(a), Some(b)) => a.is_same(b),
+            (None, None) => self.unread == other.unread,
+            _ => false,
+        }
+    }
 }
 
 /// The role of a file in the input. If all else is equal, the definition of the later role is used:
@@ -117,13 +143,14 @@ fn assigned(files: &[Stated], options: &SystemOptions, journal: &Journal) -> Vec
                 let (stated, assigned) = (Box::new(crs.clone()), Box::new(assign.clone()));
                 journal.add(Notice::Reassigned { path: file.path.clone(), stated, assigned });
             }
-            Stated { crs: Some(assign.clone()), ..file.clone() }
+            Stated { crs: Some(assign.clone()), unread: None, ..file.clone() }
         })
         .collect()
 }
 
 /// Returns the common system of all files that state one.
 fn agree(files: &[Stated], journal: &Journal) -> Result<Option<Crs>> {
+    require_understood(files)?;
     let mut known = files.iter().filter_map(|file| file.crs.as_ref().map(|crs| (file, crs)));
     let Some(mut best) = known.next() else { return Ok(None) };
     for (file, crs) in known {
@@ -140,6 +167,32 @@ fn agree(files: &[Stated], journal: &Journal) -> Result<Option<Crs>> {
         journal.add(Notice::SystemOfOthers(file.path.clone(), Box::new(best.clone())));
     }
     Ok(Some(best.clone()))
+}
+
+/// Returns an error if a file states something that is not understood, and another file states
+/// something else: whether they agree is not known.
+fn require_understood(files: &[Stated]) -> Result<()> {
+    let stating = |file: &&Stated| file.crs.is_some() || file.unread.is_some();
+    let Some((file, text)) = files.iter().find_map(|file| Some((file, file.unread.as_ref()?))) else { return Ok(()) };
+    let Some(other) = files.iter().filter(stating).find(|other| !file.agrees_with(other)) else { return Ok(()) };
+    let theirs = match (&other.crs, &other.unread) {
+        (Some(crs), _) => format!("is in {crs}"),
+        (None, stated) => format!("states {}", quoted(stated.as_deref().unwrap_or_default())),
+    };
+    Err(Error::unsupported(format!(
+        "a coordinate system that is not understood: {} states {}, {} {theirs}",
+        file.path.display(),
+        quoted(text),
+        other.path.display()
+    ))
+    .cure("state the system of all files with --a-srs CRS"))
+}
+
+/// Returns what a file states as its coordinate system, as messages show it.
+pub(super) fn quoted(stated: &str) -> String {
+    const MAX_SHOWN: usize = 100;
+    let dots = if stated.chars().count() > MAX_SHOWN { "..." } else { "" };
+    format!("\"{}{dots}\"", stated.chars().take(MAX_SHOWN).collect::<String>().escape_debug())
 }
 
 fn rank<'a>(file: &Stated, crs: &'a Crs) -> impl PartialOrd + use<'a> {
@@ -159,7 +212,8 @@ fn reproject(files: &[Stated], target: &Crs, journal: &Journal) -> Result<System
     let mut from = Vec::with_capacity(files.len());
     let common = if files.iter().any(|file| file.crs.is_none()) { agree(files, journal)? } else { None };
     for file in files {
-        let Some(crs) = file.crs.as_ref().or(common.as_ref()) else {
+        let common = common.as_ref().filter(|_| file.unread.is_none());
+        let Some(crs) = file.crs.as_ref().or(common) else {
             return Err(Error::unsupported("the file states no coordinate system to reproject from")
                 .in_file(&file.path)
                 .cure("state its system with --a-srs CRS"));
@@ -235,6 +289,7 @@ mod tests {
             .map(|(i, &code)| Stated {
                 path: format!("f{i}").into(),
                 crs: code.map(|code| crs(code, CrsKind::Projected)),
+                unread: None,
                 role: Role::Ground,
             })
             .collect()
@@ -262,6 +317,37 @@ mod tests {
     }
 
     #[test]
+    fn what_is_not_understood_is_an_error_where_it_decides() {
+        let with = |systems: &[Option<u32>], unread: &[Option<&str>]| {
+            let mut files = files(systems);
+            files.iter_mut().zip(unread).for_each(|(file, unread)| file.unread = unread.map(str::to_owned));
+            files
+        };
+        let options = SystemOptions::default();
+        for (systems, unread) in [
+            (&[Some(25832), None][..], &[None, Some("urn:x")][..]),
+            (&[None, Some(25832)], &[Some("urn:x"), None]),
+            (&[None, None], &[Some("urn:x"), Some("urn:y")]),
+            (&[None, None, Some(25832)], &[Some("urn:x"), None, None]),
+        ] {
+            let error = reconcile(&with(systems, unread), &options, &quiet()).unwrap_err();
+            assert!(
+                error.to_string().contains("not understood: f") && error.to_string().contains("\"urn:x\""),
+                "{error}"
+            );
+            assert!(error.cure_text().unwrap().contains("--a-srs"));
+            let assigned = SystemOptions { assign: Some(crs(1, CrsKind::Projected)), ..SystemOptions::default() };
+            assert!(reconcile(&with(systems, unread), &assigned, &quiet()).is_ok());
+            let target = SystemOptions { target: Some(crs(1, CrsKind::Projected)), ..SystemOptions::default() };
+            assert!(reconcile(&with(systems, unread), &target, &quiet()).is_err());
+        }
+        // Nothing to decide: no other file states a system, or all state the same.
+        for unread in [&[Some("urn:x"), None], &[Some("urn:x"), Some("urn:x")]] {
+            assert_eq!(reconcile(&with(&[None, None], unread), &options, &quiet()).unwrap().crs, None);
+        }
+    }
+
+    #[test]
     fn what_is_assigned_stands_for_what_is_stated() {
         let options = SystemOptions { assign: Some(crs(1, CrsKind::Projected)), ..SystemOptions::default() };
         let systems = reconcile(&files(&[None, Some(25832), Some(3005)]), &options, &quiet()).unwrap();
@@ -281,7 +367,7 @@ mod tests {
     #[test]
     fn degrees_and_geocentric_are_refused() {
         let of = |kind, degrees| {
-            let stated = [Stated { path: "f".into(), crs: Some(crs(1, kind)), role: Role::Ground }];
+            let stated = [Stated { path: "f".into(), crs: Some(crs(1, kind)), unread: None, role: Role::Ground }];
             reconcile(&stated, &SystemOptions { degrees, ..SystemOptions::default() }, &quiet())
         };
         assert!(of(CrsKind::Geographic, Degrees::Refuse).unwrap_err().cure_text().unwrap().contains("--force-degrees"));

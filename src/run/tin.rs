@@ -211,7 +211,7 @@ pub(super) fn build(request: &TinRequest, options: &SystemOptions, journal: &Jou
     request.check_bounds()?;
     request.check_layers()?;
     let mut files = PointFiles::open(&request.points, request.read, journal)?;
-    let layers = LineLayers::read(&request.lines, &request.breaklines, &request.boundary, journal)?;
+    let layers = LineLayers::read(&request.lines, &request.breaklines, &request.boundary, request.read.cut, journal)?;
 
     let mut stated = files.stated(&request.classes, journal)?;
     stated.extend(layers.stated());

@@ -214,9 +214,9 @@ mod tests {
             mesh::write(folder.path().join(name).as_path(), &watched).unwrap();
             assert_eq!(done(), 4, "{name}");
         }
-        let watched = Watched::faces(&square, 5, Stage::CheckingFaces, &context).unwrap();
+        let watched = Watched::faces(&square, 7, Stage::CheckingFaces, &context).unwrap();
         assert_eq!(terrain::surface_flaws(&watched), []);
-        assert_eq!(done(), 10);
+        assert_eq!(done(), 14);
 
         let frame = Frame::north_up(0.0, 0.0, 1.0, 300, 20);
         let grid = Grid { frame, crs: None, values: vec![1.0; 6000] };

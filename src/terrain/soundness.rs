@@ -1,7 +1,9 @@
-use crate::data::{self, Surface};
+use std::cmp::Ordering;
+
+use crate::data::{self, EdgeKind, Surface};
 use crate::triangulation::geometry::{Geometry, Terrain};
 use crate::triangulation::kernel::Wide;
-use crate::triangulation::num::Sign;
+use crate::triangulation::num::{Sign, unsigned_zero};
 
 /// A flaw of a surface of triangles, found with exact predicates.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -16,6 +18,18 @@ pub enum SurfaceFlaw {
     Orientation(u32),
     /// A vertex whose faces do not form a single fan.
     NotManifold(u32),
+    /// Two vertices at the rim, with the same position in plan and different heights.
+    TwoHeights([u32; 2]),
+    /// Two faces whose edges at the rim have the same ends in plan, but other heights: the surface
+    /// has a crack between them.
+    Crack {
+        /// The faces.
+        faces: [u32; 2],
+        /// The corner of the first face that is opposite the edge.
+        corner: usize,
+    },
+    /// A face whose neighbor across edge `i` has a different kind for the edge.
+    Kinds(u32, usize),
     /// A face whose circumcircle contains the vertex across its unconstrained edge `i`.
     NotDelaunay(u32, usize),
 }
@@ -27,6 +41,15 @@ impl std::fmt::Display for SurfaceFlaw {
             SurfaceFlaw::NotMutual(face, i) => write!(f, "face {face}, edge {i}: its neighbor does not share the edge"),
             SurfaceFlaw::Orientation(face) => write!(f, "face {face}: no area in plan, or clockwise"),
             SurfaceFlaw::NotManifold(v) => write!(f, "vertex {v}: its faces do not form a single fan"),
+            SurfaceFlaw::TwoHeights([a, b]) => {
+                write!(f, "vertices {a} and {b}: one position, but different heights")
+            }
+            SurfaceFlaw::Crack { faces: [one, other], .. } => {
+                write!(f, "faces {one} and {other}: their edges have one position, but different heights: a crack")
+            }
+            SurfaceFlaw::Kinds(face, i) => {
+                write!(f, "face {face}, edge {i}: for its neighbor the edge is of another kind")
+            }
             SurfaceFlaw::NotDelaunay(face, i) => {
                 write!(f, "face {face}, edge {i}: the vertex beyond lies in the circumcircle")
             }
@@ -41,9 +64,11 @@ impl SurfaceFlaw {
         match *self {
             SurfaceFlaw::Vertex(v) | SurfaceFlaw::NotManifold(v) => vec![v],
             SurfaceFlaw::Orientation(face) => corners(face).flatten().collect(),
-            SurfaceFlaw::NotMutual(face, i) | SurfaceFlaw::NotDelaunay(face, i) => {
-                corners(face).flat_map(|corners| edge(corners, i)).collect()
-            }
+            SurfaceFlaw::TwoHeights([a, _]) => vec![a],
+            SurfaceFlaw::NotMutual(face, i)
+            | SurfaceFlaw::Kinds(face, i)
+            | SurfaceFlaw::Crack { faces: [face, _], corner: i }
+            | SurfaceFlaw::NotDelaunay(face, i) => corners(face).flat_map(|corners| edge(corners, i)).collect(),
         }
     }
 }
@@ -56,7 +81,7 @@ impl SurfaceFlaw {
 /// kind that has any are returned, but all of these.
 ///
 /// # Complexity
-/// Linear.
+/// That of [`shape_flaws`].
 #[must_use]
 pub fn surface_flaws(surface: &dyn Surface) -> Vec<SurfaceFlaw> {
     let flaws = shape_flaws(surface);
@@ -65,15 +90,18 @@ pub fn surface_flaws(surface: &dyn Surface) -> Vec<SurfaceFlaw> {
 
 /// Returns the flaws of a surface in its shape.
 ///
-/// The checks are: finite vertices, mutual links, orientation, and fans around the vertices. These
-/// hold for any surface, even if its constrained edges are unknown. All flaws of the first kind
-/// that has any are returned.
+/// The checks are: finite vertices, mutual links, orientation, fans around the vertices, one height
+/// at each position, and one kind for each edge. These hold for any surface, even if its
+/// constrained edges are unknown. All flaws of the first kind that has any are returned.
+///
+/// Two vertices at one position are both at the rim, unless faces overlap.
 ///
 /// # Complexity
-/// Linear.
+/// Linear, and O(n log n) in the edges at the rim.
 #[must_use]
 pub fn shape_flaws(surface: &dyn Surface) -> Vec<SurfaceFlaw> {
-    let checks: [fn(&dyn Surface) -> Vec<SurfaceFlaw>; 4] = [bad_vertices, bad_links, bad_orientations, bad_fans];
+    let checks: [fn(&dyn Surface) -> Vec<SurfaceFlaw>; 6] =
+        [bad_vertices, bad_links, bad_orientations, bad_fans, bad_heights, bad_kinds];
     checks.iter().map(|check| check(surface)).find(|flaws| !flaws.is_empty()).unwrap_or_default()
 }
 
@@ -152,6 +180,69 @@ fn bad_fans(surface: &dyn Surface) -> Vec<SurfaceFlaw> {
     (0..surface.vertex_count() as u32)
         .filter(|&v| !border[v as usize] && start[v as usize].is_some_and(|face| fan(v, face) != degree[v as usize]))
         .map(SurfaceFlaw::NotManifold)
+        .collect()
+}
+
+/// An edge at the rim, from the lower to the higher of its ends in the order of their positions.
+struct RimEdge {
+    ends: [[f64; 2]; 2],
+    heights: [f64; 2],
+    vertices: [u32; 2],
+    face: u32,
+    corner: usize,
+}
+
+impl RimEdge {
+    fn new(surface: &dyn Surface, face: u32, corners: [u32; 3], corner: usize) -> Self {
+        let mut vertices = edge(corners, corner);
+        let in_plan = |[x, y, _]: [f64; 3]| [unsigned_zero(x), unsigned_zero(y)];
+        if order(&in_plan(surface.position(vertices[0])), &in_plan(surface.position(vertices[1]))).is_gt() {
+            vertices.reverse();
+        }
+        let points = vertices.map(|v| surface.position(v));
+        RimEdge { ends: points.map(in_plan), heights: points.map(|[_, _, z]| z), vertices, face, corner }
+    }
+}
+
+fn order(a: &[f64; 2], b: &[f64; 2]) -> Ordering {
+    a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1]))
+}
+
+/// Finds cracks, and vertices with the same position and different heights that are not at a crack.
+fn bad_heights(surface: &dyn Surface) -> Vec<SurfaceFlaw> {
+    let sides = data::corners(surface).flat_map(|(face, corners)| (0..3).map(move |i| (face, corners, i)));
+    let rim = sides.filter(|&(face, _, i)| surface.neighbor(face, i).is_none());
+    let mut rim: Vec<RimEdge> = rim.map(|(face, corners, i)| RimEdge::new(surface, face, corners, i)).collect();
+    rim.sort_by(|a, b| order(&a.ends[0], &b.ends[0]).then(order(&a.ends[1], &b.ends[1])).then(a.face.cmp(&b.face)));
+    let mut flaws = Vec::new();
+    let mut cracked = Vec::new();
+    for pair in rim.windows(2).filter(|pair| pair[0].ends == pair[1].ends && pair[0].heights != pair[1].heights) {
+        flaws.push(SurfaceFlaw::Crack { faces: [pair[0].face, pair[1].face], corner: pair[0].corner });
+        cracked.extend(pair[0].ends);
+    }
+    cracked.sort_by(order);
+    let of_edge = |edge: &RimEdge| [0, 1].map(|k| (edge.ends[k], edge.heights[k], edge.vertices[k]));
+    let mut vertices: Vec<([f64; 2], f64, u32)> = rim.iter().flat_map(of_edge).collect();
+    vertices.sort_by(|a, b| order(&a.0, &b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2)));
+    for pair in vertices.windows(2).filter(|pair| pair[0].0 == pair[1].0 && pair[0].1 != pair[1].1) {
+        if cracked.binary_search_by(|end| order(end, &pair[0].0)).is_err() {
+            flaws.push(SurfaceFlaw::TwoHeights([pair[0].2, pair[1].2]));
+        }
+    }
+    flaws
+}
+
+/// Finds edges for which the faces on both sides have different kinds.
+fn bad_kinds(surface: &dyn Surface) -> Vec<SurfaceFlaw> {
+    let line = |kind: EdgeKind| Some(kind).filter(|kind| kind.is_constrained());
+    data::corners(surface)
+        .flat_map(|(face, corners)| (0..3).map(move |i| (face, corners, i)))
+        .filter(|&(face, corners, i)| {
+            mirror(surface, face, corners, i).is_some_and(|(beside, j)| {
+                face < beside && line(surface.edge_kind(face, i)) != line(surface.edge_kind(beside, j))
+            })
+        })
+        .map(|(face, _, i)| SurfaceFlaw::Kinds(face, i))
         .collect()
 }
 

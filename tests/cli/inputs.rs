@@ -71,6 +71,55 @@ fn half_a_file_is_an_error_unless_that_is_wanted() {
         .works(&["states 62776 points, but the file holds 50000", "50000 read"]);
 }
 
+#[test]
+fn half_a_shapefile_is_an_error_unless_that_is_wanted() {
+    let folder = folder_with(&[]);
+    for extension in ["shp", "dbf", "prj"] {
+        let bytes = std::fs::read(fixture(&format!("breaklines.{extension}"))).unwrap();
+        let end = if extension == "shp" { bytes.len() / 2 } else { bytes.len() };
+        std::fs::write(folder.path().join(format!("half.{extension}")), &bytes[..end]).unwrap();
+    }
+    let points = fixture("valley.laz");
+    let tin = |more: &[&str]| {
+        run_in(&folder, &[&["tin", &points, "--breaklines", "half.shp", "-o", "t.ply", "--overwrite"], more].concat())
+    };
+    tin(&[]).fails(1, &["half.shp: byte ", "its header states ", "hint: ", "--partial"]);
+    assert!(!folder.path().join("t.ply").exists());
+    tin(&["--partial"]).works(&["warning: half.shp: its header states ", "warning: half.shp: record "]);
+    run_in(&folder, &["info", "half.shp"]).fails(1, &["half.shp: ", "--partial"]);
+    run_in(&folder, &["info", "half.shp", "--partial"]).works(&["warning: "]);
+    run_in(&folder, &["tin", &points, "--boundary", "half.shp", "-o", "u.ply"]).fails(1, &["half.shp: byte "]);
+}
+
+#[test]
+fn systems_with_heights_are_compared_and_what_is_not_understood_is_not_joined() {
+    let named = |name: &str| {
+        format!(
+            r#"{{"type":"FeatureCollection","crs":{{"type":"name","properties":{{"name":"{name}"}}}},"features":[{{"type":
+            "Feature","properties":{{}},"geometry":{{"type":"LineString","coordinates":[[0.5,0.5,1],[2.5,2,2]]}}}}]}}"#
+        )
+    };
+    let folder = folder_with(&[
+        ("33.geojson", &named("urn:ogc:def:crs,crs:EPSG::32633,crs:EPSG::5783")),
+        ("32.geojson", &named("urn:ogc:def:crs,crs:EPSG::32632,crs:EPSG::5783")),
+        ("ign.geojson", &named("urn:ogc:def:crs:IGNF::LAMB93")),
+        ("plain.xyz", SLOPE),
+    ]);
+    std::fs::write(folder.path().join("utm.las"), las(&tile([0.0, 0.0], 2), Some(32632))).unwrap();
+    let tin = |points: &str, lines: &str, more: &[&str]| {
+        run_in(&folder, &[&["tin", points, "--breaklines", lines, "-o", "t.ply", "--overwrite"], more].concat())
+    };
+    tin("utm.las", "33.geojson", &[]).fails(1, &["two coordinate systems", "EPSG:32632", "EPSG:32633"]);
+    tin("utm.las", "32.geojson", &[]).works(&["EPSG:32632", "EPSG:5783"]);
+    tin("utm.las", "ign.geojson", &[]).fails(
+        1,
+        &["a coordinate system that is not understood: ign.geojson states \"urn:ogc:def:crs:IGNF::LAMB93\", utm.las is in"],
+    );
+    let assigned = ["--a-srs", "http://www.opengis.net/def/crs/EPSG/0/32632"];
+    tin("utm.las", "ign.geojson", &assigned).works(&["warning: ign.geojson: crs not used", "EPSG:32632"]);
+    tin("plain.xyz", "ign.geojson", &[]).works(&["warning: ign.geojson: crs not used"]);
+}
+
 /// The first number behind some words in a text.
 fn number_before(text: &str, what: &str) -> i64 {
     let Some(at) = text.find(what) else { return 0 };

@@ -3,7 +3,7 @@ use std::collections::BTreeSet;
 use super::{bytes_of, frame_over, open, tin_of};
 use breakline::data::{Frame, Grid, Surface};
 use breakline::io::mesh;
-use breakline::terrain::{self, Dem, Levels};
+use breakline::terrain::{self, Dem, Levels, SurfaceFlaw};
 use testkit::random::Random;
 
 /// Uses a file in every way; returns true if any damage was noticed.
@@ -128,4 +128,38 @@ fn messages_name_file_and_cure() {
     let error = opened.ensure_intact().unwrap_err();
     assert!(error.to_string().starts_with(&format!("some.tin: vertex {vertex} ")), "{error}");
     assert!(error.cure_text().is_some_and(|cure| cure.contains("breakline check some.tin")));
+}
+
+/// Where the rows of a section begin, and how many bytes they have together.
+fn section(bytes: &[u8], tag: &[u8; 8]) -> (usize, usize) {
+    let at = bytes.windows(8).rposition(|word| word == tag).unwrap();
+    (at + 16, u64::from_le_bytes(bytes[at + 8..at + 16].try_into().unwrap()) as usize)
+}
+
+#[test]
+fn a_kind_that_differs_between_the_two_faces_of_an_edge_is_found() {
+    let mut changed = 0;
+    for (bytes, _) in intact().into_iter().take(12) {
+        let opened = open(bytes.clone()).unwrap();
+        assert!(!terrain::surface_flaws(&opened).iter().any(|flaw| matches!(flaw, SurfaceFlaw::Kinds(..))));
+        let (first, length) = section(&bytes, b"fragment");
+        // Some rows of each file: every change is a check of the whole.
+        for row in (first..first + length).step_by(28).step_by(17) {
+            for side in 0..3 {
+                let neighbor = &bytes[row + 12 + 4 * side..][..4];
+                if neighbor == [0xFF; 4] {
+                    continue;
+                }
+                let mut bad = bytes.clone();
+                let kind = &mut bad[row + 24 + side];
+                *kind = u8::from(*kind == 0);
+                let opened = open(bad).unwrap();
+                let flaws = terrain::surface_flaws(&opened);
+                let is_found = flaws.iter().any(|flaw| matches!(flaw, SurfaceFlaw::Kinds(..)));
+                assert!(is_found || opened.check().is_err(), "{flaws:?}");
+                changed += 1;
+            }
+        }
+    }
+    assert!(changed > 15, "{changed}");
 }

@@ -426,7 +426,7 @@ def tin(
     columns : str or (x, y, z), optional
         Columns of text files: ``"PNEZD"``, ``"XYZ"``, or numbers from 1.
     partial : bool
-        Use the remaining points of truncated LAS and LAZ files.
+        Use what is left of files that are cut or damaged: LAS, LAZ, text with a count, shapefiles.
     threads : int, optional
         Number of threads; one per core by default. Results do not depend on it.
     progress : bool or callable, optional

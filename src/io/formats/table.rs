@@ -53,8 +53,8 @@ const LIDAR: Reader = Reader::Points {
 };
 
 const TEXT: Reader = Reader::Points {
-    file: |path, options| Ok(Box::new(text::open(path, options.columns)?)),
-    stream: |stream, name, options| Ok(Box::new(text::from_stream(stream, name, options.columns)?)),
+    file: |path, options| Ok(Box::new(text::open(path, options)?)),
+    stream: |stream, name, options| Ok(Box::new(text::from_stream(stream, name, options)?)),
 };
 
 const fn lidar_writer(create: for<'a> fn(Destination<'a>, &[&PointInfo], Rounding) -> Sink<'a>) -> Writers {

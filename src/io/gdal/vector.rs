@@ -65,7 +65,9 @@ pub fn read_layer_with(path: &Path, options: &Options, watch: Watch) -> Result<L
     };
     let reference = source.spatial_ref();
     let is_swapped = reference.as_ref().is_some_and(is_north_first);
-    layer.crs = reference.and_then(|reference| crs(&reference, &mut layer.warnings));
+    if let Some(reference) = reference {
+        read_crs(&reference, &mut layer);
+    }
     let mut without_height = 0;
     for (record, feature) in (1..).zip(source.features()) {
         watch(0)?;
@@ -145,13 +147,17 @@ fn position(names: &[String], wanted: &str) -> Option<usize> {
     exact.or_else(|| names.iter().position(|name| name.eq_ignore_ascii_case(wanted)))
 }
 
-fn crs(reference: &SpatialRef, warnings: &mut Vec<String>) -> Option<Crs> {
-    let read = reference.to_wkt().map_err(|error| error.to_string());
-    match read.and_then(|wkt| Crs::from_wkt(&wkt).map_err(|error| error.to_string())) {
-        Ok(crs) => crs.unless_undefined(),
+/// Sets the coordinate system of a layer.
+fn read_crs(reference: &SpatialRef, layer: &mut Layer) {
+    let (stated, read) = match reference.to_wkt() {
+        Ok(wkt) => (wkt.clone(), Crs::from_wkt(&wkt).map_err(|error| error.to_string())),
+        Err(error) => ("a system that GDAL cannot write as WKT".to_owned(), Err(error.to_string())),
+    };
+    match read {
+        Ok(crs) => layer.crs = crs.unless_undefined(),
         Err(reason) => {
-            warnings.push(format!("the coordinate system is not understood: {reason}"));
-            None
+            layer.warnings.push(format!("the coordinate system is not understood: {reason}"));
+            layer.unread_crs = Some(stated);
         }
     }
 }

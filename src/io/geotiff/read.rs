@@ -52,6 +52,8 @@ pub struct GeoTiffInfo {
     pub transform: Option<[f64; 6]>,
     /// Coordinate system, if the file states one.
     pub crs: Option<Crs>,
+    /// What the file states as its coordinate system, if that is not understood.
+    pub unread_crs: Option<String>,
     /// Columns and rows of the overviews: further images in the file with fewer cells.
     pub overviews: Vec<[u64; 2]>,
     /// Warnings for the user.
@@ -149,10 +151,18 @@ fn read_header(bytes: Bytes, path: &Path) -> Result<GeoTiffReader> {
         transformation: floats(tags::MODEL_TRANSFORMATION),
         is_point: false,
     };
-    let (keys, crs) = geo_keys(&bytes, &directory).unwrap_or_else(|e| {
+    let keys = geo_keys(&bytes, &directory).unwrap_or_else(|e| {
         optional(e);
-        (GeoKeys::default(), None)
+        GeoKeys::default()
     });
+    // The type of the raster is known even if the system is not.
+    let (crs, unread_crs) = keys.crs().map_or_else(
+        |e| {
+            optional(e);
+            (None, Some(format!("{keys:?}")))
+        },
+        |crs| (crs, None),
+    );
     model.is_point = raster_type(&keys) == Some(2);
 
     let nodata = match nodata_text.as_deref().map(|text| (text, Nodata::parse(text))) {
@@ -201,23 +211,22 @@ fn read_header(bytes: Bytes, path: &Path) -> Result<GeoTiffReader> {
         is_point: model.is_point,
         transform,
         crs,
+        unread_crs,
         overviews,
         warnings,
     };
     Ok(GeoTiffReader { path: path.to_path_buf(), bytes, layout, nodata, info })
 }
 
-fn geo_keys(bytes: &Bytes, directory: &Directory) -> Result<(GeoKeys, Option<Crs>)> {
+fn geo_keys(bytes: &Bytes, directory: &Directory) -> Result<GeoKeys> {
     let Some(values) = directory.unsigned(bytes, tags::GEO_KEY_DIRECTORY)? else {
-        return Ok((GeoKeys::default(), None));
+        return Ok(GeoKeys::default());
     };
-    let keys = GeoKeys {
+    Ok(GeoKeys {
         directory: values.iter().map(|&value| value as u16).collect(),
         doubles: directory.floats(bytes, tags::GEO_DOUBLE_PARAMS)?.unwrap_or_default(),
         ascii: directory.text(bytes, tags::GEO_ASCII_PARAMS)?.unwrap_or_default(),
-    };
-    let crs = keys.crs()?;
-    Ok((keys, crs))
+    })
 }
 
 /// Returns PixelIsArea (1) or PixelIsPoint (2), if the keys state it.

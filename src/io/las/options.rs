@@ -1,4 +1,4 @@
-use super::cut::Cut;
+use crate::io::Cut;
 
 /// How a LAS or LAZ file is read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

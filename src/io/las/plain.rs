@@ -2,13 +2,13 @@
 
 use std::io::{Read, Seek, SeekFrom};
 
-use super::cut::Cut;
 use super::header::Header;
 use super::input::Input;
 use super::options::ReadOptions;
 use super::record::RecordLayout;
 use crate::data::PointBatch;
 use crate::error::Result;
+use crate::io::Cut;
 
 /// Limit for the points in a batch, and for the bytes of their records.
 const BATCH_POINTS: usize = 1 << 17;
@@ -52,11 +52,17 @@ impl Plain {
                 "the header states {} points, but the file holds {room}{torn}: it was cut, or its header is wrong",
                 header.count
             );
-            cut.refuse_or_warn(text, header.layout.points_end, warnings)?;
+            cut.refuse_or_warn(text, &format!("byte {}", header.layout.points_end), warnings)?;
         } else if header.count == 0 && room > 0 {
             warnings.push(format!(
                 "the header states 0 points, but {bytes} bytes follow it, room for {room}: the file may be \
                  unfinished; nothing is read"
+            ));
+        } else if header.count < room {
+            let more = room - header.count;
+            warnings.push(format!(
+                "the header states {} points, but there is room for {more} more before the end: they are not read",
+                header.count
             ));
         }
         input.file.seek(SeekFrom::Start(start))?;
@@ -81,7 +87,7 @@ impl Plain {
         if whole < count {
             let missing = std::mem::take(&mut self.left);
             let text = format!("the file became shorter while it was read: {missing} points are missing");
-            self.cut.refuse_or_warn(text, self.input.length, warnings)?;
+            self.cut.refuse_or_warn(text, &format!("byte {}", self.input.length), warnings)?;
         }
         let passed_over = self.left.min(self.passed_over);
         if passed_over > 0 {

@@ -41,7 +41,7 @@ impl LasReader {
         let bytes = input.bytes(0, MAX_HEADER)?;
         let mut header = Header::check(&bytes, input.length, &mut warnings)?;
         let payloads = records::read(&input, &mut header, &mut warnings)?;
-        let crs = reference::choose(&payloads, header.says_wkt, &mut warnings);
+        let (crs, unread_crs) = reference::choose(&payloads, header.says_wkt, &mut warnings);
         let head = match options.detail {
             Detail::Columns => None,
             Detail::Records => Some(head::read(&mut input, &header)?),
@@ -59,6 +59,7 @@ impl LasReader {
             count: Some(header.count),
             bounds: header.bounds,
             crs,
+            unread_crs,
             has_classes: true,
             lattice: Some(Lattice { scale: header.scale, offset: header.offset }),
             head,
@@ -116,7 +117,7 @@ pub fn open(path: impl AsRef<Path>) -> Result<LasReader> {
     open_with(path, ReadOptions::default())
 }
 
-/// Like [`open`], but with options; a [`Cut`](super::Cut) can be passed in their stead.
+/// Like [`open`], but with options; a [`Cut`](crate::io::Cut) can be passed in their stead.
 ///
 /// # Errors
 /// As [`open`].
@@ -132,7 +133,7 @@ pub fn from_stream(stream: impl Read, name: impl AsRef<Path>) -> Result<LasReade
     from_stream_with(stream, name, ReadOptions::default())
 }
 
-/// Like [`from_stream`], but with options; a [`Cut`](super::Cut) can be passed in their stead.
+/// Like [`from_stream`], but with options; a [`Cut`](crate::io::Cut) can be passed in their stead.
 ///
 /// # Errors
 /// As [`open`].

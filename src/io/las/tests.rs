@@ -5,10 +5,11 @@ use std::io::Cursor;
 use las::point::{Classification, Format};
 use las::{Builder, Color, Point, Transform, Vector, Version, Vlr, Writer};
 
-use super::{Cut, LasReader, from_stream, from_stream_with};
+use super::{LasReader, from_stream, from_stream_with};
 use crate::crs::{Crs, GeoKeys};
 use crate::data::{Lattice, PointBatch, PointFlags, PointSource};
 use crate::error::{Kind, Result};
+use crate::io::Cut;
 
 const SCALE: [f64; 3] = [0.01, 0.001, 0.1];
 const OFFSET: [f64; 3] = [500_000.0, -5_300_000.0, 12.5];

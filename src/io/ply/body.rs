@@ -65,6 +65,18 @@ impl<'a> Body<'a> {
         Ok(())
     }
 
+    /// Checks that nothing follows the last element, except for blanks.
+    ///
+    /// # Errors
+    /// If more follows: then a count in the header is too small.
+    pub(super) fn end(&self) -> Result<()> {
+        match self.rest.trim_ascii_start().len() {
+            0 => Ok(()),
+            left => Err(Error::format(format!("{left} bytes follow the last element that the header states"))
+                .cure("a count in the header is wrong: write the file again")),
+        }
+    }
+
     fn list_length(&mut self, length: Scalar, kind: Scalar) -> Result<usize> {
         let length = self.value(length)?;
         if length < 0.0 || length.fract() != 0.0 {

@@ -10,13 +10,14 @@ mod header;
 use std::io::Write;
 
 use body::Body;
-use header::{Element, Header, Property, Scalar};
+use header::{Element, Encoding, Header, Property, Scalar};
 
 use super::listing::polygon::POLYGONS_AT_ONCE;
 use super::listing::{Listing, crs_text, polygon};
 use crate::crs::Crs;
 use crate::data::{EdgeKind, Triangles};
 use crate::error::{Error, Result};
+use crate::io::cut::open_line;
 use crate::io::{Destination, Watch};
 
 /// The properties for the kinds of a face's edges. The first edge goes from the first corner to the
@@ -89,10 +90,14 @@ pub(super) fn read(bytes: &[u8], watch: Watch) -> Result<Triangles> {
             _ => body.rows(element, |_, _| Ok(()))?,
         }
     }
+    body.end()?;
+    let open = if header.encoding == Encoding::Ascii { open_line(bytes) } else { None };
     let crs = crs_text::parse(&header.crs)?;
     let mut lines = std::mem::take(&mut polygons.lines);
     lines.extend(listed.into_iter().map(|edge| (edge, EdgeKind::Breakline)));
-    let mut triangles = Triangles { vertices, lines, crs, ..Triangles::default() };
+    let sides = polygons.take_sides();
+    let warnings = open.into_iter().collect();
+    let mut triangles = Triangles { vertices, lines, sides, crs, warnings, ..Triangles::default() };
     triangles.faces.reserve_exact(polygons.ends.len());
     let mut start = 0;
     let mut fragments = polygons.fragments.into_iter().peekable();
@@ -131,8 +136,24 @@ struct Polygons {
     ends: Vec<usize>,
     /// Edges on lines, with their kinds.
     lines: Vec<([u32; 2], EdgeKind)>,
+    /// For each face, the kinds of its first three edges, if the file states them.
+    kinds: Vec<[EdgeKind; 3]>,
     /// Indices of the faces that are fragments of cut triangles.
     fragments: Vec<usize>,
+}
+
+impl Polygons {
+    /// Returns the kind of the edge opposite each corner of each face, if the file states the kinds
+    /// and all faces are triangles.
+    fn take_sides(&mut self) -> Option<Vec<[EdgeKind; 3]>> {
+        if self.kinds.is_empty() || self.corners.len() != 3 * self.ends.len() {
+            return None;
+        }
+        let mut sides = std::mem::take(&mut self.kinds);
+        // The first edge, from corner 0 to corner 1, is opposite corner 2.
+        sides.iter_mut().for_each(|kinds| kinds.rotate_left(1));
+        Some(sides)
+    }
 }
 
 fn read_faces(body: &mut Body, element: &Element) -> Result<Polygons> {
@@ -150,9 +171,11 @@ fn read_faces(body: &mut Body, element: &Element) -> Result<Polygons> {
         }
         polygons.ends.push(polygons.corners.len());
         let corners = &polygons.corners[first..];
-        let Some((kinds, fragment)) = lines else { return Ok(()) };
-        for (i, property) in kinds.into_iter().enumerate() {
+        let Some((properties, fragment)) = lines else { return Ok(()) };
+        let mut kinds = [EdgeKind::Plain; 3];
+        for (i, property) in properties.into_iter().enumerate() {
             let kind = edge_kind(EDGES[i], row[property][0])?;
+            kinds[i] = kind;
             if !kind.is_constrained() {
                 continue;
             }
@@ -160,6 +183,7 @@ fn read_faces(body: &mut Body, element: &Element) -> Result<Polygons> {
                 polygons.lines.push(([a.min(b), a.max(b)], kind));
             }
         }
+        polygons.kinds.push(kinds);
         if row[fragment][0] != 0.0 {
             polygons.fragments.push(number);
         }

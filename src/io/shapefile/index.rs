@@ -47,6 +47,11 @@ impl Index {
         Ok(Index { entries, sorted })
     }
 
+    /// Returns true if a record at `offset` or after it is listed.
+    pub(super) fn lists_from(&self, offset: u64) -> bool {
+        self.sorted.last().is_some_and(|last| last.0 >= offset)
+    }
+
     /// Returns the first listed record after `offset`.
     pub(super) fn next_after(&self, offset: u64) -> Option<(u64, u64)> {
         self.sorted.get(self.sorted.partition_point(|entry| entry.0 <= offset)).copied()

@@ -5,7 +5,7 @@
 //!
 //! | file | supplies | if missing | if damaged |
 //! |---|---|---|---|
-//! | `.shp` | shapes | error | complete records are read, a warning names each damaged one; an error if none is complete |
+//! | `.shp` | shapes | error | an error; with [`Cut::Accept`] complete records are read, and a warning names each damaged one; an error if none is complete |
 //! | `.shx` | a record's attribute row; where to continue after damage | order of the `.shp` | not used, a warning |
 //! | `.dbf` | names, heights and numbers if requested, deleted rows | no fields | a warning; an error if heights or numbers are requested |
 //! | `.prj` | coordinate system | unknown | unknown, a warning |
@@ -15,12 +15,15 @@
 //!
 //! | found | result |
 //! |---|---|
-//! | counts, part indices or a type that make no sense, in a record of plausible length | the record is left out, a warning |
-//! | a record header that makes no sense | reading continues at the next record of the `.shx`, or ends; a warning |
+//! | counts, part indices or a type that make no sense, in a record of plausible length | an error; with [`Cut::Accept`] the record is left out, a warning |
+//! | a record header that makes no sense | an error; with [`Cut::Accept`] reading continues at the next record of the `.shx`, or ends; a warning |
 //! | a record that extends beyond the end of the file | the same |
+//! | bytes after all records that the `.shx` lists; without it, after the length that the header states, or too few for a record | a warning |
+//! | a header that states more bytes than there are | an error, with [`Cut::Accept`] a warning; a warning, if the `.shx` lists exactly the records that are there |
 //! | x or y not a finite number | an error: the record is well formed, so the value was wrong before it was written |
 //! | z not finite or "no data" (below -1e38) | no height (NaN), a warning with the count |
-//! | null shapes, also with a body; no parts, no points | read as they are |
+//! | null shapes; no parts, no points | read as they are |
+//! | a null shape with coordinates | read as null, a warning with the count |
 //! | a ring that is not closed | closed, a warning |
 //! | types that differ from the header's, or mixed | read, a warning |
 //! | an older copy of a record that the `.shx` lists elsewhere | left out, a warning |
@@ -47,6 +50,7 @@ use std::path::{Path, PathBuf};
 use crate::crs::Crs;
 use crate::data::{Column as Attribute, Layer, Shape};
 use crate::error::{Error, Result};
+use crate::io::Cut;
 use crate::io::field;
 use crate::io::layer_options::Options;
 use crate::io::watch::{Watch, unwatched};
@@ -54,7 +58,7 @@ use index::Index;
 use record::type_name;
 pub(in crate::io) use table::parse_number;
 use table::{Field, Numbers, Table};
-use walk::{Record, Walk};
+use walk::{Record, Shp, Walk};
 pub use write::{Column, check_size, write_contours, write_layer};
 
 /// The first four bytes of a `.shp` and a `.shx`, big-endian.
@@ -76,7 +80,7 @@ const MAX_PRJ: u64 = 1 << 20;
 /// The tables of this module list what is read of damaged files, and what leads to an error.
 ///
 /// # Errors
-/// If the file cannot be read, is not a shapefile, has records but no complete one, or has a plan
+/// If the file cannot be read, is not a shapefile, is damaged or has been cut, or has a plan
 /// coordinate that is not finite; if there is no such field.
 ///
 /// # Complexity
@@ -102,7 +106,7 @@ fn read(path: &Path, options: &Options, watch: Watch) -> Result<Layer> {
     let size = file.metadata()?.len();
     let mut file = BufReader::with_capacity(1 << 16, file);
     let header_type = read_header(&mut file, size)?;
-    let mut warnings = header_type.warnings;
+    let mut warnings = Vec::new();
 
     let index = match sibling(path, "shx").map(|path| Index::read(&path)) {
         Some(Ok(index)) => Some(index),
@@ -112,16 +116,25 @@ fn read(path: &Path, options: &Options, watch: Watch) -> Result<Layer> {
         }
         None => None,
     };
-    let Walk { records, types, damage, end, mut odd } = walk::walk(&mut file, size, index.as_ref(), watch)?;
+    let mut file = Shp { file, size, stated: header_type.stated, code: header_type.code };
+    let Walk { records, types, damage, end, trailing, mut odd } = walk::walk(&mut file, index.as_ref(), watch)?;
     if let Some(first) = damage.reported.first()
         && records.iter().all(|record| record.shape.is_none())
     {
         return Err(Error::format(format!("no record can be read: {first}")).cure("ask for the file again"));
     }
-    warnings.extend(damage.reported);
-    if damage.more > 0 {
-        warnings.push(format!("and {} more parts that could not be read", damage.more));
+    let rows = index.as_ref().map(|index| {
+        let starts: Vec<u64> = records.iter().map(|record| record.offset).collect();
+        index.rows(&starts, end)
+    });
+    if file.stated > size {
+        let text = format!("its header states {} bytes, the file has {size}", file.stated);
+        // An index of exactly these records shows that the header is wrong, and no record missing.
+        let cut = if matches!(rows, Some(Ok(_))) && end.is_none() { Cut::Accept } else { options.cut };
+        cut.refuse_or_warn(text, &format!("byte {size}"), &mut warnings)?;
     }
+    damage.refuse_or_warn(options.cut, &mut warnings)?;
+    warnings.extend(trailing);
     warn_of_types(&mut warnings, header_type.code, &types);
     if options.height_field.is_some() {
         // Heights of the geometry are then irrelevant.
@@ -129,15 +142,12 @@ fn read(path: &Path, options: &Options, watch: Watch) -> Result<Layer> {
     }
     warn_of_oddities(&mut warnings, &odd);
 
-    let rows = index.and_then(|index| {
-        let starts: Vec<u64> = records.iter().map(|record| record.offset).collect();
-        index.rows(&starts, end).map_err(|e| warnings.push(format!(".shx not used: {e}"))).ok()
-    });
+    let rows = rows.and_then(|rows| rows.map_err(|e| warnings.push(format!(".shx not used: {e}"))).ok());
     let mut layer = Layer {
         format: format!("shapefile {}", type_name(header_type.code).unwrap_or("of unknown type")),
-        crs: read_prj(path, &mut warnings)?,
         ..Layer::default()
     };
+    read_prj(path, &mut layer, &mut warnings)?;
     watch(0)?;
     let attributes = read_table(path, options, records.len(), &mut layer.fields, &mut warnings)?;
     let mut origins = Vec::new();
@@ -149,9 +159,12 @@ fn read(path: &Path, options: &Options, watch: Watch) -> Result<Layer> {
     Ok(layer)
 }
 
+/// What the header of a `.shp` states.
 struct Header {
+    /// The type of the shapes.
     code: i32,
-    warnings: Vec<String>,
+    /// The length of the file in bytes.
+    stated: u64,
 }
 
 fn read_header(file: &mut impl Read, size: u64) -> Result<Header> {
@@ -165,13 +178,7 @@ fn read_header(file: &mut impl Read, size: u64) -> Result<Header> {
             u32::from_be_bytes(word(0))
         )));
     }
-    let stated = u64::from(u32::from_be_bytes(word(24))) * 2;
-    let mut warnings = Vec::new();
-    // If a file is longer than it states, its records show it, if it matters.
-    if stated > size {
-        warnings.push(format!("its header states {stated} bytes, the file has {size}"));
-    }
-    Ok(Header { code: i32::from_le_bytes(word(32)), warnings })
+    Ok(Header { code: i32::from_le_bytes(word(32)), stated: u64::from(u32::from_be_bytes(word(24))) * 2 })
 }
 
 /// Returns the file next to `path` with this extension, in lower, upper or mixed case.
@@ -195,17 +202,24 @@ fn sibling(path: &Path, extension: &str) -> Option<PathBuf> {
     found.into_iter().next()
 }
 
-fn read_prj(path: &Path, warnings: &mut Vec<String>) -> Result<Option<Crs>> {
-    let Some(path) = sibling(path, "prj") else { return Ok(None) };
+/// Sets the coordinate system of a layer to that of the `.prj`.
+fn read_prj(path: &Path, layer: &mut Layer, warnings: &mut Vec<String>) -> Result<()> {
+    let Some(path) = sibling(path, "prj") else { return Ok(()) };
     let mut bytes = Vec::new();
     File::open(&path)?.take(MAX_PRJ).read_to_end(&mut bytes).map_err(|e| Error::from(e).in_file(&path))?;
     let text = String::from_utf8_lossy(&bytes);
     let text = text.trim_start_matches('\u{feff}').trim();
     if text.is_empty() {
-        return Ok(None);
+        return Ok(());
     }
-    let crs = Crs::from_wkt(text).map_err(|e| warnings.push(format!(".prj not used: {e}"))).ok();
-    Ok(crs.and_then(Crs::unless_undefined))
+    match Crs::from_wkt(text) {
+        Ok(crs) => layer.crs = crs.unless_undefined(),
+        Err(e) => {
+            warnings.push(format!(".prj not used: {e}"));
+            layer.unread_crs = Some(text.to_owned());
+        }
+    }
+    Ok(())
 }
 
 /// What was read of the `.dbf`, by its rows.
@@ -358,6 +372,7 @@ fn warn_of_oddities(warnings: &mut Vec<String>, odd: &record::Oddities) {
         (odd.loose, "points belong to no part; left out"),
         (odd.no_height, "points have no height (not a number, or \"no data\")"),
         (odd.unfilled, "parts of multipatches give no triangles; left out"),
+        (odd.full_nulls, "records are of the type null, but have coordinates; these are left out"),
     ] {
         if count > 0 {
             warnings.push(format!("{count} {what}"));

@@ -27,6 +27,20 @@ pub(super) fn type_name(code: i32) -> Option<&'static str> {
     })
 }
 
+/// Returns the bytes that a record with a shape of this type has at least, with its header.
+pub(super) fn least_bytes(code: i32) -> u64 {
+    // The type, then a box, counts, the start of one part, and positions.
+    8 + 4
+        + match code {
+            1 | 11 | 21 => 16,
+            8 | 18 | 28 => 32 + 4 + 16,
+            3 | 13 | 23 => 32 + 8 + 4 + 2 * 16,
+            5 | 15 | 25 => 32 + 8 + 4 + 4 * 16,
+            31 => 32 + 8 + 8 + 3 * 16,
+            _ => 0,
+        }
+}
+
 fn has_z(code: i32) -> bool {
     (11..=18).contains(&code) || code == 31
 }
@@ -54,6 +68,8 @@ pub(super) struct Oddities {
     pub(super) no_height: usize,
     /// Parts of multipatches that have no triangles.
     pub(super) unfilled: usize,
+    /// Null shapes with bytes after their type, which are dropped.
+    pub(super) full_nulls: usize,
 }
 
 /// The content of a record.
@@ -71,7 +87,10 @@ pub(super) fn parse(content: &[u8], odd: &mut Oddities) -> Result<Parsed, Flaw> 
     // Counted separately, so that a record that fails halfway changes no count.
     let mut found = *odd;
     let shape = match code {
-        0 => Shape::Null,
+        0 => {
+            found.full_nulls += usize::from(!bytes.0.is_empty());
+            Shape::Null
+        }
         1 | 11 | 21 => Shape::Points(read_point(&mut bytes, code, &mut found)?),
         8 | 18 | 28 => {
             bytes.take(32, "box")?;
@@ -101,6 +120,7 @@ fn read_point(bytes: &mut Bytes<'_>, code: i32, odd: &mut Oddities) -> Result<Ve
     // the ranges.
     let xy = bytes.take(16, "the point")?;
     let z = if has_z(code) { Some(bytes.take(8, "the height")?) } else { None };
+    bytes.require_end(1, 8)?;
     gather(xy, z, odd)
 }
 
@@ -150,6 +170,8 @@ fn read_vertices(bytes: &mut Bytes<'_>, count: usize, code: i32, odd: &mut Oddit
         }
         false => None,
     };
+    // The types with heights or measures may have measures at their end.
+    bytes.require_end(count, if code > 10 { 16 + 8 * count } else { 0 })?;
     gather(xy, z, odd)
 }
 
@@ -206,6 +228,17 @@ impl<'a> Bytes<'a> {
                 Ok(taken)
             }
             None => Err(Flaw::Damaged(format!("{what} take {count} bytes, the record has {} left", self.0.len()))),
+        }
+    }
+
+    /// Returns an error if more bytes are left after `count` points than some writers add, unless
+    /// they are measures of this length: then the count is wrong.
+    fn require_end(&self, count: usize, measures: usize) -> Result<(), Flaw> {
+        /// The bytes of a position in plan. Real files have fewer after their last one.
+        const POSITION: usize = 16;
+        match self.0.len() {
+            left if left < POSITION || left == measures => Ok(()),
+            left => Err(Flaw::Damaged(format!("{left} bytes are left after its points, which are stated as {count}"))),
         }
     }
 

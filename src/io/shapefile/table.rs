@@ -9,10 +9,14 @@ use std::io::{BufReader, Read, Seek, SeekFrom};
 use std::path::Path;
 
 use crate::error::{Error, Result};
+use crate::io::decimal_mark::DecimalMark;
 
 const END_OF_FIELDS: u8 = 0x0D;
 const END_OF_FILE: u8 = 0x1A;
 const DELETED: u8 = b'*';
+
+/// The type of text, in which people write numbers as they like.
+const TEXT: u8 = b'C';
 
 /// A column.
 #[derive(Debug, Clone, PartialEq)]
@@ -112,10 +116,11 @@ impl Table {
     /// in these fields.
     ///
     /// # Errors
-    /// If reading fails.
+    /// If reading fails, or numbers of a field have different decimal marks.
     pub(super) fn rows(&mut self, fields: &[Field], limit: usize) -> Result<Rows> {
         let mut rows = Rows::default();
         rows.numbers.resize_with(fields.len(), Numbers::default);
+        let mut marks: Vec<DecimalMark> = fields.iter().map(|_| DecimalMark::default()).collect();
         let needed = fields.iter().map(|field| field.at + field.width).min().unwrap_or(1);
         let mut row = vec![0; self.row];
         while rows.deleted.len() < limit {
@@ -126,12 +131,22 @@ impl Table {
                 break;
             }
             rows.deleted.push(row[0] == DELETED);
-            for (field, numbers) in fields.iter().zip(&mut rows.numbers) {
+            for ((field, numbers), mark) in fields.iter().zip(&mut rows.numbers).zip(&mut marks) {
                 let cell = row[..got].get(field.at..field.at + field.width).unwrap_or_default();
-                let value = number(field.kind, cell).unwrap_or_else(|text| {
-                    numbers.texts.push((numbers.values.len(), text));
-                    f64::NAN
-                });
+                let location = || format!("row {}", numbers.values.len() + 1);
+                let value = match number(field.kind, cell) {
+                    Ok(value) => {
+                        if field.kind == TEXT && !value.is_nan() && mark.concerns(cell) {
+                            mark.add(cell.trim_ascii(), location)
+                                .map_err(|e| e.within(format!("field {}", field.name)))?;
+                        }
+                        value
+                    }
+                    Err(text) => {
+                        numbers.texts.push((numbers.values.len(), text));
+                        f64::NAN
+                    }
+                };
                 numbers.values.push(value);
             }
         }
@@ -291,6 +306,15 @@ mod tests {
         assert_eq!(texts.texts, [(0, "ab".to_owned()), (3, "no".to_owned())]);
         assert_eq!((texts.text(3), texts.text(1)), (Some("no"), None));
         assert_eq!((texts.values[1], texts.values[4]), (100.0, 7.0));
+    }
+
+    #[test]
+    fn texts_with_different_decimal_marks_are_refused() {
+        let file = table(&[("TEXT", b'C', 7)], b"\r", &[" 500,000", "        ", " 3.5    "], 3);
+        let mut opened = Table::open(file.path(), None).unwrap();
+        let field = opened.find("TEXT").unwrap();
+        let error = opened.rows(&[field], 100).unwrap_err().to_string();
+        assert!(error.starts_with("field TEXT, row 3: 3.5 has a point and 500,000, in row 1, has a comma"), "{error}");
     }
 
     #[test]

@@ -8,6 +8,7 @@ use super::index::Index;
 use super::record::{self, Flaw, Oddities, Parsed};
 use crate::data::Shape;
 use crate::error::{Error, Result};
+use crate::io::Cut;
 use crate::io::watch::{Meter, Watch};
 
 /// A record that was found, readable or not.
@@ -32,6 +33,8 @@ pub(super) struct Walk {
     pub(super) damage: Damage,
     /// Where reading ended, if that was before the end of the file.
     pub(super) end: Option<u64>,
+    /// A warning about what follows the last record, if the header does not count it.
+    pub(super) trailing: Option<String>,
     pub(super) odd: Oddities,
 }
 
@@ -40,6 +43,17 @@ pub(super) struct Walk {
 pub(super) struct Damage {
     pub(super) reported: Vec<String>,
     pub(super) more: usize,
+}
+
+/// A `.shp` that is read.
+pub(super) struct Shp {
+    pub(super) file: BufReader<File>,
+    /// Its length in bytes.
+    pub(super) size: u64,
+    /// The length that its header states.
+    pub(super) stated: u64,
+    /// The type of shapes that its header states.
+    pub(super) code: i32,
 }
 
 impl Damage {
@@ -52,16 +66,42 @@ impl Damage {
             self.more += 1;
         }
     }
+
+    /// Reports the damage: as an error, or as warnings.
+    ///
+    /// # Errors
+    /// If there is damage and it is not accepted.
+    pub(super) fn refuse_or_warn(self, cut: Cut, warnings: &mut Vec<String>) -> Result<()> {
+        let Damage { reported, more } = self;
+        if let (Cut::Refuse, [first, others @ ..]) = (cut, &reported[..]) {
+            let text = match others.len() + more {
+                0 => first.clone(),
+                count => format!("{first}; and {count} more parts cannot be read"),
+            };
+            return Err(
+                Error::format(text).cure("copy or download the file again, or use what is there with --partial")
+            );
+        }
+        warnings.extend(reported);
+        if more > 0 {
+            warnings.push(format!("and {more} more parts that could not be read"));
+        }
+        Ok(())
+    }
 }
 
 /// Reads the records after the header.
 ///
 /// A damaged record is left out and reported. After a header that makes no sense, reading continues
 /// at the next record that `index` lists and whose length agrees; without an index it ends there.
+/// If that is after all records that the index lists, nothing is missing; without an index, if it
+/// is beyond the length that the header states, or too short for a record of the file's type.
 ///
 /// # Errors
 /// If reading fails, or a coordinate is not a number; that of the watch.
-pub(super) fn walk(file: &mut BufReader<File>, size: u64, index: Option<&Index>, watch: Watch) -> Result<Walk> {
+pub(super) fn walk(shp: &mut Shp, index: Option<&Index>, watch: Watch) -> Result<Walk> {
+    let Shp { file, size, stated, code } = shp;
+    let size = *size;
     let mut walk = Walk::default();
     let mut meter = Meter::new(watch, size as usize);
     let mut content = Vec::new();
@@ -74,6 +114,15 @@ pub(super) fn walk(file: &mut BufReader<File>, size: u64, index: Option<&Index>,
         let (id, length) = match header(file, size - at)? {
             Ok(header) => header,
             Err(why) => {
+                let is_beyond = match index {
+                    Some(index) => !index.lists_from(at),
+                    None => at >= *stated || size - at < record::least_bytes(*code),
+                };
+                if is_beyond && !walk.records.is_empty() {
+                    walk.trailing = Some(format!("{}: {why}", location()));
+                    walk.end = Some(at);
+                    break;
+                }
                 walk.damage.add(&location(), &why);
                 let Some((skipped, next)) = resync(file, size, at, index)? else {
                     walk.end = Some(at);

@@ -76,44 +76,45 @@ impl Tetrahedralized {
 /// # Errors
 /// If the file cannot be read or does not begin with the number of vertices.
 pub fn dimension(path: &Path) -> Result<u32> {
-    read_rows(path, &unwatched, |mut rows| node::dimension(&mut rows))
+    read_rows(path, &unwatched, &mut Vec::new(), |mut rows| node::dimension(&mut rows))
 }
 
-/// Reads a `.node` file of dimension 3; returns a warning if there are more values than announced.
+/// Reads a `.node` file of dimension 3; returns it with warnings.
 ///
 /// # Errors
 /// If the file is damaged; the error names the file and the line.
-pub fn read_nodes(path: &Path, watch: Watch) -> Result<(Nodes<3>, Option<String>)> {
-    let listed = node::read_alone(path, watch)?;
-    let warning = listed.warning();
-    Ok((listed.nodes, warning))
+pub fn read_nodes(path: &Path, watch: Watch) -> Result<(Nodes<3>, Vec<String>)> {
+    let (listed, warnings) = node::read_alone(path, watch)?;
+    Ok((listed.nodes, warnings))
 }
 
-/// Reads a `.weights` file: one number a line, `count` of them.
+/// Reads a `.weights` file: one number a line, `count` of them; returns them with warnings.
 ///
 /// # Errors
 /// If there are fewer or more, or one is not a finite number; the error names the file and the
 /// line.
-pub fn read_weights(path: &Path, count: usize, watch: Watch) -> Result<Vec<f64>> {
-    read_rows(path, watch, |mut rows| {
+pub fn read_weights(path: &Path, count: usize, watch: Watch) -> Result<(Vec<f64>, Vec<String>)> {
+    let mut warnings = Vec::new();
+    let weights = read_rows(path, watch, &mut warnings, |mut rows| {
         let mut weights = Vec::new();
         for i in 0..count {
             weights.push(rows.expect(|| format!("weight {} of {count}", i + 1), "WEIGHT")?.finite("weight")?);
         }
         rows.end("the last weight")?;
         Ok(weights)
-    })
+    })?;
+    Ok((weights, warnings))
 }
 
 /// Reads an `.ele` file of tetrahedra and the `.node` next to it, with the neighbors that the
-/// `.neigh` next to it states; without one there are none.
+/// `.neigh` next to it states; without one there are none. Returns them with warnings.
 ///
 /// # Errors
 /// If a file is damaged; the error names the file and the line.
-pub fn read(path: &Path, watch: Watch) -> Result<Tetrahedralized> {
-    let nodes = read_nodes(&path.with_extension("node"), watch)?.0;
+pub fn read(path: &Path, watch: Watch) -> Result<(Tetrahedralized, Vec<String>)> {
+    let (nodes, mut warnings) = read_nodes(&path.with_extension("node"), watch)?;
     let numbering = Numbering { first: nodes.first_number, count: nodes.points.len() };
-    let tetrahedra = read_rows(path, watch, |mut rows| {
+    let tetrahedra = read_rows(path, watch, &mut warnings, |mut rows| {
         let (mut header, count) = counted(&mut rows, "tetrahedra", "TETRAHEDRA 4 ATTRIBUTES")?;
         let corner_count: usize = header.within_or("number of vertices of a tetrahedron", 4)?;
         if corner_count != 4 && corner_count != 10 {
@@ -131,15 +132,21 @@ pub fn read(path: &Path, watch: Watch) -> Result<Tetrahedralized> {
     })?;
     let beside = path.with_extension("neigh");
     let neighbors = match beside.exists() {
-        true => read_neighbors(&beside, nodes.first_number, tetrahedra.len(), watch)?,
+        true => read_neighbors(&beside, nodes.first_number, tetrahedra.len(), watch, &mut warnings)?,
         false => Vec::new(),
     };
-    Ok(Tetrahedralized { nodes, tetrahedra, neighbors })
+    Ok((Tetrahedralized { nodes, tetrahedra, neighbors }, warnings))
 }
 
-fn read_neighbors(path: &Path, first: u32, count: usize, watch: Watch) -> Result<Vec<[Option<u32>; 4]>> {
+fn read_neighbors(
+    path: &Path,
+    first: u32,
+    count: usize,
+    watch: Watch,
+    warnings: &mut Vec<String>,
+) -> Result<Vec<[Option<u32>; 4]>> {
     let numbering = Numbering { first, count };
-    read_rows(path, watch, |mut rows| {
+    read_rows(path, watch, warnings, |mut rows| {
         let (header, stated) = counted(&mut rows, "tetrahedra", "TETRAHEDRA 4")?;
         if stated != count {
             return Err(header.wrong(format!("there are {stated} tetrahedra, but the .ele file has {count}")));

@@ -41,22 +41,25 @@ impl Layout {
         Layout { separator: Separator::Blanks, columns: Columns { x: 1, y: 2, z: 3, class: None } };
 
     /// Returns the layout of a header line, by the names of the columns.
-    pub(super) fn named(header: &[u8], separator: Separator) -> Result<Self> {
+    ///
+    /// # Errors
+    /// Says which column is missing, or which two have the same name.
+    pub(super) fn named(header: &[u8], separator: Separator) -> std::result::Result<Self, NameFlaw> {
         let names: Vec<String> = separator.fields(header).map(bare_name).collect();
-        let find =
-            |known: &[&str]| known.iter().find_map(|known| names.iter().position(|name| name == known)).map(|i| i + 1);
+        let find = |known: &[&str]| known.iter().find_map(|known| numbers(&names, known));
         let need = |axis: &str, known: &[&str]| {
             find(known).ok_or_else(|| {
-                Error::format(format!("no column for {axis} in the header {}", quote(header)))
-                    .cure(format!("call it one of {}, or name the columns with --columns", known.join(", ")))
+                let error = Error::format(format!("no column for {axis} in the header {}", quote(header)))
+                    .cure(format!("call it one of {}, or name the columns with --columns", known.join(", ")));
+                NameFlaw::Missing(error)
             })
         };
-        let columns = Columns {
-            x: need("x", X_NAMES)?,
-            y: need("y", Y_NAMES)?,
-            z: need("z", Z_NAMES)?,
-            class: find(CLASS_NAMES),
+        let one = |numbers: Vec<usize>| match numbers[..] {
+            [number] => Ok(number),
+            _ => Err(NameFlaw::Repeated(repeated(&numbers, &names, header))),
         };
+        let (x, y, z) = (need("x", X_NAMES)?, need("y", Y_NAMES)?, need("z", Z_NAMES)?);
+        let columns = Columns { x: one(x)?, y: one(y)?, z: one(z)?, class: find(CLASS_NAMES).map(one).transpose()? };
         Ok(Layout { separator, columns })
     }
 
@@ -102,6 +105,38 @@ impl Layout {
                 .cure(CURE)
         })
     }
+}
+
+/// Why a line does not name the columns of points.
+#[derive(Debug)]
+pub(super) enum NameFlaw {
+    /// No column has a name for one of the coordinates.
+    Missing(Error),
+    /// Two columns have the same name, and it is one of those that are used.
+    Repeated(Error),
+}
+
+impl From<NameFlaw> for Error {
+    fn from(flaw: NameFlaw) -> Self {
+        match flaw {
+            NameFlaw::Missing(error) | NameFlaw::Repeated(error) => error,
+        }
+    }
+}
+
+/// Returns the numbers of the columns with a name, from 1; `None` if there are none.
+fn numbers(names: &[String], wanted: &str) -> Option<Vec<usize>> {
+    let found: Vec<usize> = (1..).zip(names).filter(|(_, name)| *name == wanted).map(|(number, _)| number).collect();
+    (!found.is_empty()).then_some(found)
+}
+
+#[cold]
+fn repeated(numbers: &[usize], names: &[String], header: &[u8]) -> Error {
+    let name = numbers.first().and_then(|first| names.get(first - 1)).map_or("", String::as_str);
+    let list: Vec<String> = numbers.iter().map(usize::to_string).collect();
+    let list = list.join(" and ");
+    Error::format(format!("columns {list} are both called \"{name}\" in the header {}", quote(header)))
+        .cure("rename one of them, or say which columns to take: --columns 1,2,3 names those of x, y and z")
 }
 
 /// Returns a name in lower case, without text in brackets.

@@ -19,11 +19,17 @@
 //!
 //! A unit in brackets after a name is ignored: `Height (m)`. Comments begin with `#` or `//`. A
 //! comment before the points may be the header if it has no more names than a line has fields
-//! (words up to a colon do not count). Fields may be in double quotes. A decimal comma is accepted
-//! unless commas separate the fields. A first line with a single number is the count of points at
-//! the start of `.pts` files. The text may be UTF-8 or a compatible encoding, with or without a
-//! byte order mark and with any line ends. A line that is not a point leads to an error with its
-//! number: no line is dropped silently.
+//! (words up to a colon do not count). Of several names for one axis, the first of the table
+//! counts; a name that two columns have is an error. Fields may be in double quotes.
+//!
+//! A decimal comma is accepted unless commas separate the fields; numbers with a comma and numbers
+//! with a point in one file are an error, since one of the marks groups digits. A first line with a
+//! single number is the count of points at the start of `.pts` files. The text may be UTF-8 or a
+//! compatible encoding, with or without a byte order mark. Lines end with LF, CR LF or CR. A line
+//! that is not a point leads to an error with its number: no line is dropped silently.
+//!
+//! Text has no end mark, so a file that was cut between two lines looks whole, unless its first
+//! line is a count. If the last line has no line end, there is a warning: it may have been cut.
 
 mod columns;
 mod numbering;
@@ -34,19 +40,22 @@ use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 
-use self::columns::{Layout, Point};
+use self::columns::{Layout, NameFlaw, Point};
 use self::numbering::{Guess, Numbering};
 use self::separator::Separator;
 pub use self::write::{TextWriter, create};
 use crate::data::{Columns, PointBatch, PointInfo, PointSource};
 use crate::error::{Error, Result};
+use crate::io::cut::{Cut, OPEN_LINE};
+use crate::io::decimal_mark::DecimalMark;
+use crate::io::points::Options;
 
 /// Points in a batch.
 const BATCH: usize = 1 << 16;
 
 /// Limit for the bytes of a line; text for people has shorter lines, and a binary file may have no
 /// line ends.
-const MAX_LINE_BYTES: u64 = 1 << 16;
+const MAX_LINE_BYTES: usize = 1 << 16;
 
 /// A reader of points from text, made by [`open`].
 pub struct TextReader {
@@ -57,6 +66,9 @@ pub struct TextReader {
     first: Option<Point>,
     /// Present while the first column may still be the number of the point.
     numbering: Option<Numbering>,
+    mark: DecimalMark,
+    /// What to do if there are fewer points than the first line states.
+    cut: Cut,
     read: u64,
     is_done: bool,
     warnings: Vec<String>,
@@ -68,36 +80,34 @@ impl std::fmt::Debug for TextReader {
     }
 }
 
-/// Opens a text file of points; `-` is the standard input. Without `columns`, a header or the first
-/// three columns are used.
+/// Opens a text file of points; `-` is the standard input. Unless the options name the columns, a
+/// header or the first three columns are used.
 ///
 /// # Errors
 /// If the file cannot be read, or its first lines are neither a header nor a point.
-pub fn open(path: impl AsRef<Path>, columns: Option<Columns>) -> Result<TextReader> {
+pub fn open(path: impl AsRef<Path>, options: Options) -> Result<TextReader> {
     let path = path.as_ref();
     if path.as_os_str() == "-" {
-        return from_stream(io::stdin(), "standard input", columns);
+        return from_stream(io::stdin(), "standard input", options);
     }
     let file = File::open(path).map_err(|error| Error::from(error).in_file(path))?;
-    from_stream(file, path, columns)
+    from_stream(file, path, options)
 }
 
 /// Reads points from a stream; messages call it `name`.
 ///
 /// # Errors
 /// As [`open`].
-pub fn from_stream(
-    stream: impl Read + Send + 'static,
-    name: impl AsRef<Path>,
-    columns: Option<Columns>,
-) -> Result<TextReader> {
+pub fn from_stream(stream: impl Read + Send + 'static, name: impl AsRef<Path>, options: Options) -> Result<TextReader> {
     let mut lines = Lines {
         source: BufReader::with_capacity(1 << 17, Box::new(stream)),
         name: name.as_ref().to_path_buf(),
         line: Vec::new(),
         number: 0,
+        is_after_return: false,
+        is_open: false,
     };
-    let start = start(&mut lines, columns).map_err(|error| lines.locate(error))?;
+    let start = start(&mut lines, options.columns).map_err(|error| lines.locate(error))?;
     let header = if start.has_header { ", with header" } else { "" };
     let info = PointInfo {
         format: format!("text, separated by {}{header}", start.layout.separator.name()),
@@ -112,6 +122,8 @@ pub fn from_stream(
         info,
         first: start.first,
         numbering: start.numbering,
+        mark: start.mark,
+        cut: options.cut,
         read: 0,
         is_done: false,
         warnings: Vec::new(),
@@ -131,7 +143,10 @@ impl PointSource for TextReader {
         while !self.is_done && batch.len() < BATCH {
             match self.next_point() {
                 Ok(Some(point)) => point.push(batch),
-                Ok(None) => self.finish(self.read + batch.len() as u64),
+                Ok(None) => {
+                    self.is_done = true;
+                    self.finish(self.read + batch.len() as u64)?;
+                }
                 Err(error) => {
                     self.is_done = true;
                     return Err(self.lines.locate(error));
@@ -162,6 +177,7 @@ impl TextReader {
         while self.lines.next()? {
             if let Line::Data(line) = Line::new(&self.lines.line) {
                 let separator = self.layout.separator;
+                add_marks(&mut self.mark, separator, line, self.lines.number)?;
                 self.numbering = self.numbering.take().and_then(|numbering| numbering.next(separator, line));
                 return self.layout.point(line).map(Some);
             }
@@ -169,11 +185,16 @@ impl TextReader {
         Ok(None)
     }
 
-    fn finish(&mut self, total: u64) {
-        self.is_done = true;
-        if let Some(stated) = self.info.count.filter(|&stated| stated != total) {
-            self.warnings.push(format!("the first line states {stated} points, but there are {total}"));
+    /// Reports what the end of the file shows.
+    fn finish(&mut self, total: u64) -> Result<()> {
+        if self.lines.is_open {
+            self.warnings.push(OPEN_LINE.to_owned());
         }
+        let Some(stated) = self.info.count.filter(|&stated| stated != total) else { return Ok(()) };
+        let text = format!("the first line states {stated} points, but there are {total}");
+        // More points than stated are not a file that was cut.
+        let cut = if total < stated { self.cut } else { Cut::Accept };
+        cut.refuse_or_warn(text, "the end", &mut self.warnings).map_err(|e| e.in_file(&self.lines.name))
     }
 }
 
@@ -184,6 +205,7 @@ struct Start {
     count: Option<u64>,
     first: Option<Point>,
     numbering: Option<Numbering>,
+    mark: DecimalMark,
 }
 
 fn start(lines: &mut Lines, columns: Option<Columns>) -> Result<Start> {
@@ -191,16 +213,20 @@ fn start(lines: &mut Lines, columns: Option<Columns>) -> Result<Start> {
     let asked = columns.map(|columns| Layout { columns, ..Layout::FIRST });
     let mut named: Option<Layout> = None;
     // The layout that a comment names, and its number of names.
-    let mut commented: Option<(Layout, usize)> = None;
+    let mut commented: Option<(std::result::Result<Layout, NameFlaw>, usize)> = None;
     let mut is_header_passed = false;
     let mut count = None;
+    let mut mark = DecimalMark::default();
     while lines.next()? {
         let line = match Line::new(&lines.line) {
             Line::Blank => continue,
             Line::Comment(text) => {
                 let names = text.rsplit(|&byte| byte == b':').next().unwrap_or(text);
-                let layout = Separator::guess(names).and_then(|separator| Layout::named(names, separator).ok());
-                commented = layout.map(|layout| (layout, layout.separator.fields(names).count())).or(commented);
+                if let Some(separator) = Separator::guess(names)
+                    && let layout @ (Ok(_) | Err(NameFlaw::Repeated(_))) = Layout::named(names, separator)
+                {
+                    commented = Some((layout, separator.fields(names).count()));
+                }
                 continue;
             }
             Line::Data(line) => line,
@@ -210,6 +236,10 @@ fn start(lines: &mut Lines, columns: Option<Columns>) -> Result<Start> {
             continue;
         }
         let separator = Separator::guess(line).ok_or_else(|| not_a_point(line))?;
+        if separator.has_two_uses(line) {
+            return Err(Error::format(format!("{}: commas separate numbers and stand before decimals", quote(line)))
+                .cure("separate the numbers by semicolons, or write decimal points"));
+        }
         if separator.fields(line).all(|field| separator.number(field).is_none()) {
             // The points may have another separator than the names.
             named = match asked {
@@ -222,7 +252,12 @@ fn start(lines: &mut Lines, columns: Option<Columns>) -> Result<Start> {
         }
         // A comment with more words than a line has fields is prose.
         let commented = commented.filter(|(_, names)| *names <= separator.fields(line).count());
-        let named = named.or(commented.map(|(layout, _)| layout));
+        let has_header = is_header_passed || named.is_some() || commented.is_some();
+        let named = match commented {
+            Some((layout, _)) if named.is_none() && asked.is_none() => Some(layout?),
+            _ => named,
+        };
+        add_marks(&mut mark, separator, line, lines.number)?;
         let known = asked.or(named);
         let layout = Layout { separator, ..known.unwrap_or(Layout::FIRST) };
         let first = layout.point(line).map_err(|error| match known {
@@ -232,13 +267,22 @@ fn start(lines: &mut Lines, columns: Option<Columns>) -> Result<Start> {
             ),
         })?;
         let numbering = if known.is_none() { Numbering::start(separator, line) } else { None };
-        let has_header = is_header_passed || named.is_some();
-        return Ok(Start { layout, has_header, count, first: Some(first), numbering });
+        return Ok(Start { layout, has_header, count, first: Some(first), numbering, mark });
     }
-    let named = named.or(commented.map(|(layout, _)| layout));
+    let named = named.or(commented.and_then(|(layout, _)| layout.ok()));
     let has_header = is_header_passed || named.is_some();
     let layout = asked.or(named).unwrap_or(Layout::FIRST);
-    Ok(Start { layout, has_header, count, first: None, numbering: None })
+    Ok(Start { layout, has_header, count, first: None, numbering: None, mark })
+}
+
+/// Adds the decimal marks of the numbers in a line.
+fn add_marks(mark: &mut DecimalMark, separator: Separator, line: &[u8], number: u64) -> Result<()> {
+    // A comma that separates is never before decimals.
+    if separator == Separator::Comma || !mark.concerns(line) {
+        return Ok(());
+    }
+    let mut numbers = separator.fields(line).filter(|field| separator.number(field).is_some());
+    numbers.try_for_each(|text| mark.add(text, || format!("line {number}")))
 }
 
 /// Returns true if the line is a single integer.
@@ -263,6 +307,10 @@ struct Lines {
     line: Vec<u8>,
     /// The number of the current line, from 1.
     number: u64,
+    /// True after a carriage return, which a line feed may follow.
+    is_after_return: bool,
+    /// True if the last line has a point, but no end.
+    is_open: bool,
 }
 
 impl Lines {
@@ -270,14 +318,34 @@ impl Lines {
     fn next(&mut self) -> Result<bool> {
         self.line.clear();
         self.number += 1;
-        let length = (&mut self.source).take(MAX_LINE_BYTES).read_until(b'\n', &mut self.line)?;
-        if length as u64 == MAX_LINE_BYTES && !self.line.ends_with(b"\n") {
-            return Err(Error::format(format!(
-                "a line of more than {MAX_LINE_BYTES} bytes, which begins {}",
-                quote(&self.line)
-            ))
-            .cure("this may not be a text file"));
+        let mut is_ended = false;
+        while !is_ended {
+            let bytes = match self.source.fill_buf() {
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
+                bytes => bytes?,
+            };
+            if std::mem::take(&mut self.is_after_return) && bytes.first() == Some(&b'\n') {
+                self.source.consume(1);
+                continue;
+            }
+            if bytes.is_empty() {
+                break;
+            }
+            let end = bytes.iter().position(|&byte| byte == b'\n' || byte == b'\r');
+            self.line.extend_from_slice(&bytes[..end.unwrap_or(bytes.len())]);
+            is_ended = end.is_some();
+            self.is_after_return = end.is_some_and(|end| bytes[end] == b'\r');
+            let read = end.map_or(bytes.len(), |end| end + 1);
+            self.source.consume(read);
+            if self.line.len() > MAX_LINE_BYTES {
+                return Err(Error::format(format!(
+                    "a line of more than {MAX_LINE_BYTES} bytes, which begins {}",
+                    quote(&self.line)
+                ))
+                .cure("this may not be a text file"));
+            }
         }
+        let is_there = is_ended || !self.line.is_empty();
         if self.number == 1 {
             if self.line.starts_with(b"\xff\xfe") || self.line.starts_with(b"\xfe\xff") {
                 return Err(Error::unsupported("text in UTF-16").cure("save it as UTF-8"));
@@ -286,10 +354,8 @@ impl Lines {
                 self.line.drain(..3);
             }
         }
-        while let Some(b'\n' | b'\r') = self.line.last() {
-            self.line.pop();
-        }
-        Ok(length > 0)
+        self.is_open |= !is_ended && matches!(Line::new(&self.line), Line::Data(_));
+        Ok(is_there)
     }
 
     /// Adds the file and the line to an error.
@@ -330,7 +396,7 @@ mod tests {
     use super::*;
 
     fn read(text: &str) -> Result<(TextReader, PointBatch)> {
-        let mut reader = from_stream(io::Cursor::new(text.as_bytes().to_vec()), "points.txt", None)?;
+        let mut reader = from_stream(io::Cursor::new(text.as_bytes().to_vec()), "points.txt", Options::default())?;
         let (mut all, mut batch) = (PointBatch::default(), PointBatch::default());
         loop {
             reader.read(&mut batch)?;
@@ -402,13 +468,95 @@ mod tests {
         assert_eq!(all.class, [2, 9]);
         assert!(reader.info().has_classes);
         assert_eq!(reader.info().format, "text, separated by commas, with header");
-        let (reader, all) = read("3\n1 2 3\n4 5 6\n").unwrap();
+        let (reader, all) = read("2\n1 2 3\n4 5 6\n").unwrap();
         assert!(all.class.is_empty() && !reader.info().has_classes);
-        assert_eq!(reader.info().count, Some(3));
-        assert_eq!(reader.warnings(), ["the first line states 3 points, but there are 2"]);
+        assert_eq!(reader.info().count, Some(2));
+        assert!(reader.warnings().is_empty());
         for empty in ["", "\n\n", "# nothing\n", "x y z\n"] {
             assert!(points(empty).is_empty());
         }
+    }
+
+    #[test]
+    fn any_line_end_ends_a_line() {
+        let lines = ["x y z", "1.5 2.25 -3", "", "4 5 6.5"];
+        for end in ["\n", "\r\n", "\r"] {
+            assert_eq!(points(&format!("{}{end}", lines.join(end))), TWO, "{end:?}");
+            let error = read(&["1 2 3", "4 5 6", "7 8"].join(end)).map(|_| ()).unwrap_err();
+            assert!(error.to_string().starts_with("points.txt: line 3: 2 fields"), "{error}");
+        }
+        assert_eq!(points("1.5 2.25 -3 a\r4 5 6.5 b\n"), TWO);
+        // A pair that two parts of the file share.
+        for length in [(1 << 17) - 12, (1 << 17) - 11, (1 << 17) - 10] {
+            let comments = format!("#{}\n", "-".repeat(62)).repeat(length / 64);
+            let comment = format!("#{}\n", "-".repeat(length - comments.len() - 2));
+            let text = format!("{comments}{comment}1.5 2.25 -3\r\n4 5 6.5\r\nx");
+            let error = read(&text).map(|_| ()).unwrap_err().to_string();
+            assert!(error.contains(&format!("line {}:", length / 64 + 4)), "{error}");
+        }
+    }
+
+    #[test]
+    fn a_last_line_without_an_end_is_a_warning() {
+        for (text, count) in
+            [("1 2 3\n4 5 6\n", 0), ("1 2 3\n4 5 6\r", 0), ("1 2 3\n4 5 6", 1), ("1 2 3\n4 5 6\n# e", 0)]
+        {
+            assert_eq!(read(text).unwrap().0.warnings().len(), count, "{text:?}");
+        }
+    }
+
+    #[test]
+    fn numbers_with_a_comma_and_numbers_with_a_point_are_refused() {
+        for (text, message) in [
+            ("500,000;600,000;3.5\n", "line 1: 3.5 has a point and 500,000, in line 1, has a comma"),
+            ("500,000;600,000;3\n1;2;3\n1;2.5;3\n", "line 3: 2.5 has a point and 500,000, in line 1, has a comma"),
+            ("1 2.5 3\n1 2 3,5\n", "line 2: 3,5 has a comma and 2.5, in line 1, has a point"),
+            ("x;y;z;i\n\n500,000;600,000;3;0.5\n", "line 3: 0.5 has a point and 500,000, in line 3, has a comma"),
+            ("500.000\t600.000\t3,5\n", "line 1: 3,5 has a comma and 500.000, in line 1, has a point"),
+            ("500,5, 600,5, 3,5\n", "line 1: \"500,5, 600,5, 3,5\": commas separate numbers and stand before decimals"),
+        ] {
+            let error = read(text).map(|_| ()).expect_err(text);
+            assert!(error.to_string().starts_with(&format!("points.txt: {message}")), "{error}");
+            assert!(error.cure_text().is_some(), "{error}");
+        }
+        assert_eq!(points("1,5;2,25;-3;v1.2;A.1;1.2.3\n4;5;6,5;;;\n"), TWO, "these are not numbers");
+        assert_eq!(points("1.5,2.25,-3\n4,5,6.5\n"), TWO);
+    }
+
+    #[test]
+    fn a_name_of_two_columns_is_refused() {
+        for (text, message) in [
+            ("x,y,z,z\n1,2,3,4\n", "line 1: columns 3 and 4 are both called \"z\" in the header \"x,y,z,z\""),
+            ("Height (m);n;e;height [ft]\n1;2;3;4\n", "line 1: columns 1 and 4 are both called \"height\" in"),
+            ("x y x z\n1 2 3 4\n", "line 1: columns 1 and 3 are both called \"x\""),
+            ("x y z class class\n1 2 3 4 5\n", "line 1: columns 4 and 5 are both called \"class\""),
+            ("# x y z z\n1 2 3 4\n", "line 2: columns 3 and 4 are both called \"z\""),
+        ] {
+            let error = read(text).map(|_| ()).expect_err(text);
+            assert!(error.to_string().starts_with(&format!("points.txt: {message}")), "{error}");
+            assert!(error.cure_text().unwrap().contains("--columns"));
+        }
+        let columns = "1,2,4".parse().ok();
+        let named = Options { columns, ..Options::default() };
+        let mut reader = from_stream(io::Cursor::new("x,y,z,z\n1,2,3,4\n"), "points.txt", named).unwrap();
+        let mut batch = PointBatch::default();
+        reader.read(&mut batch).unwrap();
+        assert_eq!(batch.z, [4.0]);
+        // Other columns may share a name; of two names for an axis the first of the table counts.
+        assert_eq!(points("x y z r r\n1 2 3 4 5\n"), [[1.0, 2.0, 3.0]]);
+        assert_eq!(points("lon lat x y z\n1 2 3 4 5\n"), [[3.0, 4.0, 5.0]]);
+    }
+
+    #[test]
+    fn fewer_points_than_stated_are_an_error_unless_a_part_is_accepted() {
+        let error = read("3\n1 2 3\n4 5 6\n").map(|_| ()).unwrap_err();
+        assert_eq!(error.to_string(), "points.txt: the end: the first line states 3 points, but there are 2");
+        assert!(error.cure_text().unwrap().contains("--partial"));
+        let (reader, all) = read("1\n1 2 3\n4 5 6\n").unwrap();
+        assert_eq!(
+            (all.len(), reader.warnings()),
+            (2, &["the first line states 1 points, but there are 2".to_owned()][..])
+        );
     }
 
     #[test]
@@ -439,7 +587,7 @@ mod tests {
     fn points_before_a_bad_line_are_handed_out() {
         let mut text = "1 2 3\n".repeat(BATCH + 10);
         text.push_str("end\n");
-        let mut reader = from_stream(io::Cursor::new(text.into_bytes()), "points.txt", None).unwrap();
+        let mut reader = from_stream(io::Cursor::new(text.into_bytes()), "points.txt", Options::default()).unwrap();
         let mut batch = PointBatch::default();
         reader.read(&mut batch).unwrap();
         assert_eq!(batch.len(), BATCH);
@@ -451,9 +599,11 @@ mod tests {
 
     #[test]
     fn a_file_without_lines_is_refused_early() {
-        let error = from_stream(io::repeat(b'1'), "endless", None).map(|_| ()).unwrap_err();
+        let error = from_stream(io::repeat(b'1'), "endless", Options::default()).map(|_| ()).unwrap_err();
         assert!(error.to_string().contains("a line of more than 65536 bytes"), "{error}");
-        let error = from_stream(io::Cursor::new(b"\xff\xfe1\0 \0".to_vec()), "wide", None).map(|_| ()).unwrap_err();
+        let error = from_stream(io::Cursor::new(b"\xff\xfe1\0 \0".to_vec()), "wide", Options::default())
+            .map(|_| ())
+            .unwrap_err();
         assert!(error.to_string().contains("UTF-16"), "{error}");
     }
 }

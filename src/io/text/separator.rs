@@ -20,6 +20,17 @@ impl Separator {
         all.into_iter().find(has_numbers).or_else(|| all.into_iter().find(has_fields))
     }
 
+    /// Returns true if commas do two things in a line of numbers: they separate them, and stand
+    /// before their decimals, as in `1,5, 2,5, 3,5`.
+    pub(super) fn has_two_uses(self, line: &[u8]) -> bool {
+        let words = line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
+        let is_decimal = |word: &[u8]| {
+            let number = word.strip_suffix(b",").unwrap_or(word);
+            number.contains(&b',') && Self::Blanks.number(number).is_some()
+        };
+        self == Self::Comma && words.map(is_decimal).take(3).filter(|is_decimal| *is_decimal).count() == 3
+    }
+
     pub(super) fn name(self) -> &'static str {
         match self {
             Self::Semicolon => "semicolons",

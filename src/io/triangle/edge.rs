@@ -17,8 +17,13 @@ const COUNTS: &str = "EDGES MARKERS";
 const EDGE: &str = "NUMBER VERTEX VERTEX MARKER";
 
 /// Returns the edges whose marker is not 0: sub-constraints, and edges of the boundary.
-pub(super) fn read_marked(path: &Path, numbering: Numbering, watch: Watch) -> Result<Vec<[u32; 2]>> {
-    read_rows(path, watch, |rows| read(rows, numbering))
+pub(super) fn read_marked(
+    path: &Path,
+    numbering: Numbering,
+    watch: Watch,
+    warnings: &mut Vec<String>,
+) -> Result<Vec<[u32; 2]>> {
+    read_rows(path, watch, warnings, |rows| read(rows, numbering))
 }
 
 fn read(mut rows: Rows, numbering: Numbering) -> Result<Vec<[u32; 2]>> {

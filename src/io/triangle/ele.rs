@@ -10,7 +10,7 @@
 use std::io::{self, Write};
 use std::path::Path;
 
-use super::{Numbering, Triangulated, counted, edge, listed, neigh, node, poly, read_rows};
+use super::{LineGraph, Numbering, Triangulated, counted, edge, listed, neigh, node, poly, read_rows};
 use crate::data::{EdgeKind, Triangles};
 use crate::error::Result;
 use crate::io::Watch;
@@ -21,28 +21,28 @@ const COUNTS: &str = "TRIANGLES 3 ATTRIBUTES";
 const TRIANGLE: &str = "NUMBER VERTEX VERTEX VERTEX ATTRIBUTES";
 
 pub(super) fn read_file(path: &Path, watch: Watch) -> Result<Triangles> {
-    let nodes = node::read_beside(path, watch)?.nodes;
+    let LineGraph { nodes, mut warnings, .. } = node::read_beside(path, watch)?;
     let numbering = Numbering { first: nodes.first_number, count: nodes.points.len() };
-    let faces = read_rows(path, watch, |rows| read(rows, numbering))?;
+    let faces = read_rows(path, watch, &mut warnings, |rows| read(rows, numbering))?;
     let beside = |extension: &str| Some(path.with_extension(extension)).filter(|path| path.exists());
     let segments = match beside("poly") {
-        Some(path) => poly::read_segments_alone(&path, numbering, watch)?,
+        Some(path) => poly::read_segments_alone(&path, numbering, watch, &mut warnings)?,
         None => None,
     };
     let edges = match (segments, beside("edge")) {
         // Segments between collinear points have no adjacent triangles.
         _ if faces.is_empty() => Vec::new(),
         (Some(segments), _) => segments.into_iter().map(|segment| segment.ends).collect(),
-        (None, Some(path)) => edge::read_marked(&path, numbering, watch)?,
+        (None, Some(path)) => edge::read_marked(&path, numbering, watch, &mut warnings)?,
         (None, None) => Vec::new(),
     };
     let lines = edges.into_iter().map(|edge| (edge, EdgeKind::Breakline)).collect();
     let neighbors = match beside("neigh") {
-        Some(path) => Some(neigh::read_file(&path, numbering.first, faces.len(), watch)?),
+        Some(path) => Some(neigh::read_file(&path, numbering.first, faces.len(), watch, &mut warnings)?),
         None => None,
     };
     let vertices = nodes.points.into_iter().map(|[x, y]| [x, y, 0.0]).collect();
-    Ok(Triangles { vertices, faces, lines, neighbors, ..Triangles::default() })
+    Ok(Triangles { vertices, faces, lines, neighbors, warnings, ..Triangles::default() })
 }
 
 fn read(mut rows: Rows, numbering: Numbering) -> Result<Vec<[u32; 3]>> {

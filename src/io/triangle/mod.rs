@@ -48,6 +48,7 @@ use std::path::{Path, PathBuf};
 use crate::data::Triangles;
 use crate::error::{Error, Result};
 use crate::io::Destination;
+use crate::io::cut::open_line;
 use crate::io::rows::{Row, Rows};
 use crate::io::watch::{Watch, bytes_of, unwatched};
 
@@ -230,9 +231,16 @@ pub(super) fn extension(path: &Path) -> String {
     path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase()
 }
 
-/// Runs `read` on the lines of a file and returns its result; errors name the file.
-pub(super) fn read_rows<T>(path: &Path, watch: Watch, read: impl FnOnce(Rows) -> Result<T>) -> Result<T> {
+/// Runs `read` on the lines of a file and returns its result; errors name the file. Adds a warning
+/// if the last line has no end.
+pub(super) fn read_rows<T>(
+    path: &Path,
+    watch: Watch,
+    warnings: &mut Vec<String>,
+    read: impl FnOnce(Rows) -> Result<T>,
+) -> Result<T> {
     let bytes = bytes_of(path, watch)?;
+    warnings.extend(open_line(&bytes).map(|text| format!(".{}: {text}", extension(path))));
     read(Rows::new(&bytes, watch)).map_err(|e| e.in_file(path))
 }
 
@@ -241,7 +249,7 @@ pub(super) fn read_rows<T>(path: &Path, watch: Watch, read: impl FnOnce(Rows) ->
 /// # Errors
 /// If the file does not begin with a count, or has fewer or more lines.
 pub fn count(path: &Path) -> Result<usize> {
-    read_rows(path, &unwatched, |mut rows| {
+    read_rows(path, &unwatched, &mut Vec::new(), |mut rows| {
         let (_, count) = counted(&mut rows, "items", "ITEMS ...")?;
         for i in 0..count {
             rows.expect(|| format!("item {} of {count}", i + 1), "NUMBER ...")?;

@@ -16,8 +16,14 @@ use crate::io::rows::Rows;
 const COUNTS: &str = "TRIANGLES 3";
 const NEIGHBORS: &str = "NUMBER NEIGHBOR NEIGHBOR NEIGHBOR, -1 for none";
 
-pub(super) fn read_file(path: &Path, first: u32, triangle_count: usize, watch: Watch) -> Result<Vec<[Option<u32>; 3]>> {
-    read_rows(path, watch, |rows| read(rows, first, triangle_count))
+pub(super) fn read_file(
+    path: &Path,
+    first: u32,
+    triangle_count: usize,
+    watch: Watch,
+    warnings: &mut Vec<String>,
+) -> Result<Vec<[Option<u32>; 3]>> {
+    read_rows(path, watch, warnings, |rows| read(rows, first, triangle_count))
 }
 
 fn read(mut rows: Rows, first: u32, triangle_count: usize) -> Result<Vec<[Option<u32>; 3]>> {

@@ -27,32 +27,26 @@ pub(in crate::io) struct Listed<const D: usize = 2> {
     pub(super) surplus: Surplus,
 }
 
-impl<const D: usize> Listed<D> {
-    /// Returns a warning if lines have more values than announced.
-    pub(in crate::io) fn warning(&self) -> Option<String> {
-        self.surplus.warning()
-    }
-}
-
 /// Returns the dimension that the first line states.
 pub(in crate::io) fn dimension(rows: &mut Rows) -> Result<u32> {
     counted(rows, "vertices", COUNTS)?.0.within_or("dimension", 2)
 }
 
 pub(super) fn read_file(path: &Path, watch: Watch) -> Result<LineGraph> {
-    let listed: Listed = read_alone(path, watch)?;
-    let warnings = listed.warning().into_iter().collect();
-    let Listed { nodes, lines, .. } = listed;
+    let (Listed { nodes, lines, .. }, warnings) = read_alone(path, watch)?;
     Ok(LineGraph { nodes, node_file: path.to_path_buf(), node_lines: lines, warnings, ..Default::default() })
 }
 
-/// Reads a file that contains vertices and nothing else.
-pub(in crate::io) fn read_alone<const D: usize>(path: &Path, watch: Watch) -> Result<Listed<D>> {
-    read_rows(path, watch, |mut rows| {
-        let vertices = read(&mut rows)?;
+/// Reads a file that contains vertices and nothing else; returns them with warnings.
+pub(in crate::io) fn read_alone<const D: usize>(path: &Path, watch: Watch) -> Result<(Listed<D>, Vec<String>)> {
+    let mut warnings = Vec::new();
+    let listed = read_rows(path, watch, &mut warnings, |mut rows| {
+        let vertices: Listed<D> = read(&mut rows)?;
         rows.end("the last vertex")?;
         Ok(vertices)
-    })
+    })?;
+    warnings.extend(listed.surplus.warning());
+    Ok((listed, warnings))
 }
 
 /// Reads the `.node` file that contains the vertices of another file.

@@ -16,6 +16,7 @@ use super::node::{self, Listed};
 use super::{Hole, LineGraph, Numbering, Region, Segment, Surplus, Triangulated};
 use super::{counted, listed, marker, read_rows, site};
 use crate::error::{Error, Result};
+use crate::io::cut::open_line;
 use crate::io::decimal::Decimal;
 use crate::io::rows::{Row, Rows};
 use crate::io::watch::{Watch, bytes_of};
@@ -42,12 +43,18 @@ pub(super) fn read_file(path: &Path, watch: Watch) -> Result<LineGraph> {
     graph.regions = read_regions(&mut rows, &mut surplus).map_err(here)?;
     rows.end("the last list").map_err(here)?;
     graph.warnings.extend(surplus.warning());
+    graph.warnings.extend(open_line(&bytes));
     Ok(graph)
 }
 
 /// Returns the segments of a file that has no vertices of its own; `None` if it has some.
-pub(super) fn read_segments_alone(path: &Path, numbering: Numbering, watch: Watch) -> Result<Option<Vec<Segment>>> {
-    read_rows(path, watch, |mut rows| {
+pub(super) fn read_segments_alone(
+    path: &Path,
+    numbering: Numbering,
+    watch: Watch,
+    warnings: &mut Vec<String>,
+) -> Result<Option<Vec<Segment>>> {
+    read_rows(path, watch, warnings, |mut rows| {
         if !node::read::<2>(&mut rows)?.nodes.points.is_empty() {
             return Ok(None);
         }

@@ -84,7 +84,7 @@ impl Known {
 
 /// Reads the layers of lines of a request.
 pub(super) fn layers_of<'a>(request: &'a TinRequest, journal: &Journal) -> Result<LineLayers<'a>> {
-    LineLayers::read(&request.lines, &request.breaklines, &request.boundary, journal)
+    LineLayers::read(&request.lines, &request.breaklines, &request.boundary, request.read.cut, journal)
 }
 
 impl JobLines {

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::fmt;
 use std::path::Path;
 
-use super::super::context::{Context, Size, Stage};
+use super::super::context::{Context, Journal, Size, Stage};
 use super::super::open;
 use super::{FACETS, weights};
 use crate::error::Result;
@@ -93,10 +93,12 @@ pub struct SpaceCheck {
 /// # Errors
 /// If a file is damaged, weights are missing, or the run is canceled.
 pub fn check_space(path: &Path, law: SpaceLaw, context: &Context) -> Result<SpaceCheck> {
-    let triangulated = open::reading_stage(path, context, |watch: Watch| tetgen::read(path, watch))?;
+    let journal = Journal::new(context);
+    let (triangulated, warnings) = open::reading_stage(path, context, |watch: Watch| tetgen::read(path, watch))?;
+    journal.add_warnings(path, &warnings);
     let weights = match law {
         SpaceLaw::Delaunay => None,
-        SpaceLaw::Regular => Some(weights(path, &triangulated.nodes, context)?),
+        SpaceLaw::Regular => Some(weights(path, &triangulated.nodes, &journal)?),
     };
     let work = context.start(Stage::CheckingFaces, Size::Uncounted)?;
     let flaws = flaws(&triangulated, weights.as_deref());

@@ -168,7 +168,7 @@ pub fn triangulate_space(path: &Path, options: &SpaceOptions, context: &Context)
     let weights = match (options.weighted, weight_column) {
         (false, _) => None,
         (true, Some(columns)) if !weights_beside(path).exists() => Some(column_of_weights(path, columns, &journal)?),
-        (true, _) => Some(weights(path, &nodes, context)?),
+        (true, _) => Some(weights(path, &nodes, &journal)?),
     };
     memory::require_for_space(nodes.points.len()).map_err(|e| e.in_file(path))?;
     let triangulating = context.start(Stage::Triangulating, Size::Uncounted)?;
@@ -235,13 +235,13 @@ impl Cloud {
 
 fn read(path: &Path, journal: &Journal) -> Result<Cloud> {
     if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("node")) {
-        let (nodes, warning) =
+        let (nodes, warnings) =
             open::reading_stage(path, &journal.context, |watch: Watch| tetgen::read_nodes(path, watch))?;
-        journal.add_warnings(path, warning.as_slice());
+        journal.add_warnings(path, &warnings);
         return Ok(Cloud { nodes, ..Cloud::default() });
     }
     if open::content(path) == open::Content::Mesh {
-        return open::mesh_vertices(path, &journal.context).map(Cloud::of);
+        return open::mesh_vertices(path, journal).map(Cloud::of);
     }
     let source = open::points_of_file(path, Options::default(), &journal.context)?;
     let info = source.info();
@@ -301,11 +301,14 @@ fn put_first(nodes: &mut Nodes<3>, numbers: &[f64]) {
 }
 
 /// Returns the weights of vertices: those next to the file, else their first attribute.
-fn weights(path: &Path, nodes: &Nodes<3>, context: &Context) -> Result<Vec<f64>> {
+fn weights(path: &Path, nodes: &Nodes<3>, journal: &Journal) -> Result<Vec<f64>> {
     let beside = weights_beside(path);
     let count = nodes.points.len();
     if beside.exists() {
-        return open::reading_stage(&beside, context, |watch: Watch| tetgen::read_weights(&beside, count, watch));
+        let read = |watch: Watch| tetgen::read_weights(&beside, count, watch);
+        let (weights, warnings) = open::reading_stage(&beside, &journal.context, read)?;
+        journal.add_warnings(&beside, &warnings);
+        return Ok(weights);
     }
     if nodes.attribute_count > 0 {
         return Ok((0..count).map(|i| nodes.attributes_of(i)[0]).collect());

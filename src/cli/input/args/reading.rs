@@ -3,7 +3,7 @@
 use clap::Args;
 
 use crate::data::Columns;
-use crate::io::las::Cut;
+use crate::io::Cut;
 use crate::io::points::Options;
 
 /// Options of reading points.
@@ -26,10 +26,11 @@ pub(in crate::cli) struct ReadArgs {
     #[arg(long, value_name = "sxyz", value_parser = Columns::of_las_tools)]
     pub(in crate::cli) parse: Option<Columns>,
 
-    /// Use the remaining points of truncated LAS and LAZ files
+    /// Use what is left of LAS, LAZ and shapefiles that are cut or damaged
     ///
-    /// A warning says how many points there are. Without this option it is an error if a file has
-    /// fewer points than its header states.
+    /// A warning says what is missing. Without this option it is an error if a file has fewer
+    /// points than its header (of text: its first line) states, or a shapefile has a record that
+    /// cannot be read.
     #[arg(long)]
     pub(in crate::cli) partial: bool,
 }

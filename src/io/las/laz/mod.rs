@@ -96,7 +96,7 @@ impl Laz {
                  is wrong",
                 header.count
             );
-            options.cut.refuse_or_warn(text, input.length, warnings)?;
+            options.cut.refuse_or_warn(text, &format!("byte {}", input.length), warnings)?;
         }
         if let Some(chunk) = chunks.iter().find(|chunk| chunk.points > MAX_CHUNK_POINTS) {
             return Err(Error::limit(format!(

@@ -10,8 +10,8 @@ use super::compression::{ChunkSize, Compression};
 use super::table::POINTER;
 use crate::data::PointBatch;
 use crate::error::{Error, Result};
+use crate::io::Cut;
 use crate::io::contain;
-use crate::io::las::cut::Cut;
 use crate::io::las::header::Header;
 use crate::io::las::input::Input;
 use crate::io::las::options::ReadOptions;
@@ -91,7 +91,7 @@ impl Stream {
                 Some(Err(Stop::End)) => {
                     let total = std::mem::replace(&mut self.total, self.done);
                     let text = format!("the file ends within its compressed points: {} of {total} are read", self.done);
-                    self.cut.refuse_or_warn(text, self.length, warnings)?;
+                    self.cut.refuse_or_warn(text, &format!("byte {}", self.length), warnings)?;
                 }
                 Some(Err(Stop::Failed(error))) => {
                     return Err(Error::from(error).at(format!("point {}", self.done)));
