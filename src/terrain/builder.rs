@@ -55,7 +55,8 @@ pub struct TinBuilder {
     /// A vertex that several breaklines were given with gets its height by
     /// [`duplicates`](Self::duplicates).
     pub crossing_heights: CrossingRule,
-    /// The largest difference of heights at a crossing that is not reported, in units of height.
+    /// The largest difference of heights at a crossing of breaklines, or of waters that overlap,
+    /// that is not reported, in units of height.
     pub crossing_tolerance: f64,
     /// The longest edge (in plan, in the units of the data) at the rim of the surface.
     ///
@@ -362,6 +363,7 @@ impl TinBuilder {
         }
 
         report.water_overlaps.clone_from(&overlaps.found);
+        report.water_overlaps.retain(|overlap| overlap.step > self.crossing_tolerance);
         self.take_replaced_points();
         report.points_replaced = self.replaced_count;
         let [walls, rims] = [self.walls(), self.rims()];

@@ -161,10 +161,16 @@ fn waters_that_meet_are_reported_where_they_contradict_each_other() {
     let across = ("LineString", "[[0.2,1,5],[2.8,1,5]]", "{}");
     let over = ("LineString", "[[1.5,2.8,8],[1.5,0.2,7]]", "{}");
     let args = ["tin", "p.xyz", "--rivers", "l.geojson", "--river-width", "0.5", "-o", "t.ply"];
-    run_in(&folder(&[across, over]), &args).works(&[
+    let said = [
         "warning: two waters overlap, and the lower height, or that of the lake, counts: a step of 2.4 m at",
         ", from l.geojson fid 1 to l.geojson fid 0",
-    ]);
+    ];
+    let crossing = folder(&[across, over]);
+    run_in(&crossing, &args).works(&said);
+    let tiled = ["dem", "p.xyz", "--tiles", "2x2", "--resolution", "0.5", "-o", "t.tif"];
+    run_in(&crossing, &[&tiled[..], &args[2..6]].concat()).works(&said);
+    let tolerant = [&args[..], &["--crossing-tolerance", "2.5", "--overwrite"]].concat();
+    assert!(!run_in(&crossing, &tolerant).stderr.contains("overlap"));
     let lake = features(&[("Polygon", LAKE, "{}")]);
     let folder_of = |rivers: &[(&str, &str, &str)]| {
         folder_with(&[("p.xyz", SLOPE), ("l.geojson", &features(rivers)), ("lake.geojson", &lake)])

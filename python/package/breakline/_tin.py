@@ -102,6 +102,7 @@ class Tin:
         """Counts of vertices, triangles and edges, and of what was done with the input.
 
         ``masked_rows`` are the points and vertices of lines in arrays that were left out because they are masked.
+        ``crossing_heights`` and ``water_overlaps`` are where breaklines meet, and waters overlap, at different heights.
         """
         if self._report is None:
             self._report = {**self._surface.report(), "masked_rows": self._masked}
@@ -401,7 +402,8 @@ def tin(
     crossing_z : str
         Which height is used there: as ``duplicates``, or ``"error"``.
     crossing_tolerance : float, optional
-        Largest difference of heights where breaklines meet that is not reported; 0.01 metres by default.
+        Largest difference of heights where breaklines meet, or rivers overlap, that is not reported; 0.01 metres by
+        default.
     soft_lines, draped_lines, walls, holes, flat, rivers : as breaklines, optional
         Lines and areas of other kinds: lines that smooth methods pass over; lines without heights, draped over the
         surface; upper edges of walls; areas without data; lakes, level to the last bit; rivers, two banks each.
