@@ -158,3 +158,45 @@ fn the_order_of_rivers_changes_nothing() {
         }
     }
 }
+
+/// Tributaries and branches on both sides of a winding river, with ends rounded to millimeters: the
+/// surface has the heights of all stations, and no step.
+#[test]
+fn random_networks_have_no_step() {
+    for seed in 0..100 {
+        let mut random = Random(seed);
+        let mut bend = |y: f64| -> Vec<[f64; 3]> {
+            (0..=40).map(|x| [f64::from(x), y + random.index(100) as f64 / 100.0, 20.0 - f64::from(x) / 4.0]).collect()
+        };
+        let banks = [bend(10.0), bend(4.0)];
+        let mut rivers = vec![River::between(&banks[0], &banks[1]).unwrap()];
+        for k in 0..6 {
+            let (bank, far) = (&banks[k % 2], [25.0, -11.0][k % 2]);
+            let on_bank = |x: f64| {
+                let [p, q] = [bank[x as usize], bank[x as usize + 1]];
+                let y = p[1] + (x - p[0]) * (q[1] - p[1]);
+                if x.fract() == 0.0 { p[1] } else { (y * 1000.0).round() / 1000.0 }
+            };
+            let west = 1.0 + 6.0 * k as f64 + random.index(8) as f64 / 4.0;
+            let east = west + 1.0 + random.index(8) as f64 / 4.0;
+            let [north, south] = [0, 0].map(|_: u8| random.index(30) as f64);
+            let side = |x: f64| [[x, far, north], [x, on_bank(x), south]];
+            rivers.push(River::between(&side(west), &side(east)).unwrap());
+        }
+        River::join(&mut rivers, 0.01);
+        let tin = built(&rivers);
+        for (number, river) in rivers.iter().enumerate() {
+            assert_eq!(river.overlap(), None, "seed {seed}");
+            for [x, y, z] in river.stations.iter().flatten() {
+                let found = tin.elevation(*x, *y).unwrap();
+                assert!((found - z).abs() < 1e-9, "seed {seed}: {x} {y} of {number} is at {found}, expected {z}");
+            }
+            let lines = river.level_lines();
+            for line in &lines[usize::from(number > 0)..lines.len() - usize::from(number > 0)] {
+                let middle = [0, 1].map(|axis| (line[0][axis] + line[1][axis]) / 2.0);
+                let found = tin.elevation(middle[0], middle[1]).unwrap();
+                assert!((found - line[0][2]).abs() < 1e-9, "seed {seed}: {middle:?} of {number} is at {found}");
+            }
+        }
+    }
+}
