@@ -108,6 +108,8 @@ struct Overlaps {
     given: usize,
     /// For each line that was added, one of the same water that was given.
     named: Vec<usize>,
+    /// The pairs of waters that overlap, by their positions in the list of all.
+    pairs: Vec<[usize; 2]>,
     found: Vec<WaterOverlap>,
 }
 
@@ -250,12 +252,12 @@ impl TinBuilder {
             return;
         }
         let line = |line: usize| self.line(line).to_vec();
-        let Marks { replaced, added, overlaps } = overlap::mark(&self.waters, &line, self.step());
+        let Marks { replaced, added, pairs, overlaps } = overlap::mark(&self.waters, &line, self.step());
         self.replace_lines(replaced);
         let given = self.line_count();
         let named = added.iter().map(|(line, _)| *line).collect();
         added.iter().for_each(|(_, line)| self.add_line(line, EdgeKind::Bank));
-        self.overlaps = Some(Overlaps { given, named, found: overlaps });
+        self.overlaps = Some(Overlaps { given, named, pairs, found: overlaps });
     }
 
     /// The distance within which heights change where waters overlap.
@@ -398,7 +400,7 @@ impl TinBuilder {
         if let Some(bounds) = &self.bounds {
             report.crossing_heights.retain(|crossing| bounds.holds(crossing.site[0], crossing.site[1]));
         }
-        let Leveled { is_water, sites } = areas::level(&mut triangulation, &self.waters, &rims, name)?;
+        let Leveled { is_water, sites } = areas::level(&mut triangulation, &self.waters, &rims, &overlaps.pairs, name)?;
         for (line, heights) in walls {
             let vertices = triangulation.line_vertices(LineId::new(line)).iter().zip(heights);
             let at = vertices.map(|(vertex, height)| (*triangulation.point(*vertex), height));

@@ -141,7 +141,8 @@ pub(in crate::terrain) struct Leveled {
 /// the level lines; where rivers overlap, the lowest. A lake counts before a river.
 ///
 /// `given` are the heights that the vertices of the lines around rivers were given with, by the
-/// numbers of the lines.
+/// numbers of the lines. `overlapping` are the pairs of rivers that overlap: where their banks lie
+/// on each other, rounding decides which of them is outside.
 ///
 /// # Errors
 /// If lakes of different heights overlap or touch.
@@ -152,6 +153,7 @@ pub(in crate::terrain) fn level(
     triangulation: &mut ConstrainedDelaunay<Terrain>,
     waters: &[Water],
     given: &[(usize, Vec<f64>)],
+    overlapping: &[[usize; 2]],
     name: &dyn Fn(usize) -> String,
 ) -> Result<Leveled> {
     if waters.is_empty() {
@@ -199,10 +201,22 @@ pub(in crate::terrain) fn level(
     vertices.sort_unstable_by_key(|(vertex, _)| *vertex);
     let mut new_heights: Vec<(VertexId, f64)> = Vec::with_capacity(vertices.len());
     let surfaces: Vec<OnceCell<RiverWater>> = waters.iter().map(|_| OnceCell::new()).collect();
+    let surface = |area: Domain, river| surfaces[area].get_or_init(|| RiverWater::new(river));
+    let mut partners: FxHashMap<Domain, Vec<Domain>> = FxHashMap::default();
+    overlapping.iter().for_each(|[area, other]| partners.entry(*area).or_default().push(*other));
+    let rounding = rounding_of(vertices.iter().map(|(vertex, _)| *triangulation.point(*vertex)));
     for (vertex, mut areas) in vertices {
+        let [x, y, _] = *triangulation.point(vertex);
+        let others =
+            areas.iter().filter_map(|area| partners.get(area)).flatten().filter(|other| !areas.contains(other));
+        let is_near = |area: &Domain| match &waters[*area].level {
+            Level::River(river) => surface(*area, river).is_near([x, y], rounding),
+            Level::Flat(_) => false,
+        };
+        let near: Vec<Domain> = others.copied().filter(is_near).collect();
+        areas.extend(near);
         areas.sort_unstable();
         areas.dedup();
-        let [x, y, _] = *triangulation.point(vertex);
         let lakes = areas.iter().filter_map(|&area| match &waters[area].level {
             Level::Flat(flat) => Some((area, flat.height)),
             Level::River(_) => None,
@@ -218,7 +232,7 @@ pub(in crate::terrain) fn level(
         let rivers = areas.iter().filter_map(|&area| match &waters[area].level {
             Level::River(river) => Some(match own.get(&(area, vertex)) {
                 Some(height) => *height,
-                None => surfaces[area].get_or_init(|| RiverWater::new(river)).height([x, y]),
+                None => surface(area, river).height([x, y]),
             }),
             Level::Flat(_) => None,
         });
@@ -235,6 +249,12 @@ pub(in crate::terrain) fn level(
         triangulation.replace_point(vertex, [x, y, height]);
     }
     Ok(Leveled { is_water, sites })
+}
+
+/// How far rounding moves computed vertices among these.
+pub(in crate::terrain) fn rounding_of(vertices: impl Iterator<Item = [f64; 3]>) -> f64 {
+    let largest = vertices.fold(0.0_f64, |most, [x, y, _]| most.max(x.abs()).max(y.abs()));
+    ROUNDING * f64::EPSILON * largest
 }
 
 /// The heights that the lines around each river were given with at their vertices; the lowest if

@@ -5,19 +5,17 @@ use std::collections::BTreeMap;
 use super::parallel::{Beside, beside};
 use super::strand::Strand;
 use super::{Body, Scene, WaterOverlap};
-use crate::data::orientation;
 use crate::terrain::boxes::{Boxed, Boxes, Extent};
 use crate::terrain::lines::river::cross;
-use crate::terrain::nearest::nearest_part;
-use crate::triangulation::num::Sign;
+use crate::terrain::nearest::{nearest_part, squared_distance};
 
 /// A segment of the border of a river.
 #[derive(Debug, Clone, Copy)]
-struct BorderSide {
-    strand: usize,
-    segment: usize,
-    water: usize,
-    ends: [[f64; 3]; 2],
+pub(super) struct BorderSide {
+    pub(super) strand: usize,
+    pub(super) segment: usize,
+    pub(super) water: usize,
+    pub(super) ends: [[f64; 3]; 2],
 }
 
 impl Boxed for BorderSide {
@@ -49,7 +47,8 @@ pub(super) fn add(scene: &Scene, strands: &mut Vec<Strand>) -> Vec<WaterOverlap>
         }
         let is_near = |side: [[f64; 2]; 2]| zones.find_in(Extent::of_plan(side), |_| Some(())).is_some();
         for line in scene.waters[inner].level.rings().iter().flat_map(|ring| beside(ring, scene.width, is_near)) {
-            for pair in cuts(&line, &borders, &outer).windows(2) {
+            let cuts = cuts(&line, &borders, &outer, scene.rounding);
+            for pair in cuts.windows(2) {
                 let portion = portion(&line, [pair[0], pair[1]]);
                 let found = steps_of(scene, &portion, inner, &outer);
                 let Some(&(river, ..)) = found.first() else { continue };
@@ -62,7 +61,7 @@ pub(super) fn add(scene: &Scene, strands: &mut Vec<Strand>) -> Vec<WaterOverlap>
                 }
                 let ends = portion.ends.map(|[x, y]| [x, y, scene.height(river, [x, y])]);
                 added.push(Strand::new(river, ends));
-                for Cut { at, on, .. } in pair {
+                for Cut { at, on, .. } in cuts.iter().filter(|cut| portion.ends.contains(&cut.at)) {
                     if let Some([strand, segment]) = *on {
                         strands[strand].want(segment, *at);
                     }
@@ -88,7 +87,8 @@ fn largest_steps(scene: &Scene, steps: BTreeMap<[usize; 2], (f64, [f64; 2])>) ->
     found
 }
 
-fn border_sides(strands: &[Strand]) -> Vec<BorderSide> {
+/// The segments of the borders of all rivers.
+pub(super) fn border_sides(strands: &[Strand]) -> Vec<BorderSide> {
     let mut sides = Vec::new();
     for (number, strand) in strands.iter().enumerate().filter(|(_, strand)| strand.is_border) {
         let side = |(segment, ends)| BorderSide { strand: number, segment, water: strand.water, ends };
@@ -98,12 +98,12 @@ fn border_sides(strands: &[Strand]) -> Vec<BorderSide> {
 }
 
 /// The ends of a line and where it meets the borders of some rivers, in order.
-fn cuts(line: &Beside, borders: &Boxes<BorderSide>, rivers: &[usize]) -> Vec<Cut> {
+fn cuts(line: &Beside, borders: &Boxes<BorderSide>, rivers: &[usize], rounding: f64) -> Vec<Cut> {
     let [from, to] = line.ends;
     let mut cuts = vec![Cut { part: 0.0, at: from, on: None }, Cut { part: 1.0, at: to, on: None }];
-    borders.find_in(Extent::of_plan(line.ends), |side| {
+    borders.find_in(Extent::of_plan(line.ends).grown(rounding), |side| {
         if rivers.contains(&side.water) {
-            let met = meeting_points(line.ends, side.ends).into_iter();
+            let met = meeting_points(line.ends, side.ends, rounding).into_iter();
             let on = Some([side.strand, side.segment]);
             cuts.extend(met.map(|at| Cut { part: nearest_part(line.ends, at), at, on }));
         }
@@ -115,11 +115,12 @@ fn cuts(line: &Beside, borders: &Boxes<BorderSide>, rivers: &[usize]) -> Vec<Cut
     cuts
 }
 
-/// The points that a line shares with a side: those of their ends that lie on the other one, or
-/// else where they cross, computed on the side.
-fn meeting_points(line: [[f64; 2]; 2], side: [[f64; 3]; 2]) -> Vec<[f64; 2]> {
+/// The points that a line shares with a side: those of their ends that lie on the other one, but for
+/// rounding, or else where they cross, computed on the side.
+fn meeting_points(line: [[f64; 2]; 2], side: [[f64; 3]; 2], rounding: f64) -> Vec<[f64; 2]> {
     let line = line.map(|[x, y]| [x, y, 0.0]);
     let flat = |[x, y, _]: [f64; 3]| [x, y];
+    let is_on = move |on: [[f64; 3]; 2], p: [f64; 3]| squared_distance(on.map(flat), flat(p)) <= rounding * rounding;
     let ends = |of: [[f64; 3]; 2], on: [[f64; 3]; 2]| of.into_iter().filter(move |p| is_on(on, *p)).map(flat);
     let touching: Vec<[f64; 2]> = ends(line, side).chain(ends(side, line)).collect();
     if !touching.is_empty() || !cross(&line, &side) {
@@ -134,12 +135,6 @@ fn meeting_points(line: [[f64; 2]; 2], side: [[f64; 3]; 2]) -> Vec<[f64; 2]> {
     let at = [0, 1].map(|axis| p[axis] + part * (q[axis] - p[axis]));
     let along_side = nearest_part([[0.0; 2], along], at);
     vec![[0, 1].map(|axis| side[0][axis] + along_side * along[axis])]
-}
-
-/// Returns true if a point lies on a segment.
-fn is_on([from, to]: [[f64; 3]; 2], p: [f64; 3]) -> bool {
-    let is_within = |axis: usize| from[axis].min(to[axis]) <= p[axis] && p[axis] <= from[axis].max(to[axis]);
-    is_within(0) && is_within(1) && orientation([from, to, p]) == Sign::Zero
 }
 
 /// The part of a line between two cuts.

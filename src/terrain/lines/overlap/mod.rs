@@ -21,10 +21,11 @@ mod band;
 mod crease;
 mod meetings;
 mod parallel;
+mod shared;
 mod strand;
 
 use super::RiverWater;
-use super::areas::{Level, Water};
+use super::areas::{Level, Water, rounding_of};
 use crate::terrain::boxes::{Boxed, Extent};
 use crate::terrain::inside::Inside;
 use meetings::Meetings;
@@ -49,6 +50,8 @@ pub(in crate::terrain) struct Marks {
     pub(in crate::terrain) replaced: Vec<(usize, Vec<[f64; 3]>)>,
     /// New lines, each with the number of a line of the same water.
     pub(in crate::terrain) added: Vec<(usize, Vec<[f64; 3]>)>,
+    /// The pairs of a water and a river that overlap, by their numbers.
+    pub(in crate::terrain) pairs: Vec<[usize; 2]>,
     /// The waters that overlap with a step.
     pub(in crate::terrain) overlaps: Vec<WaterOverlap>,
 }
@@ -74,13 +77,17 @@ pub(in crate::terrain) fn mark(waters: &[Water], line: &dyn Fn(usize) -> Vec<[f6
             strands.extend(lines.map(|of| Strand::given(number, of, line(of), water.rim.contains(&of))));
         }
     }
-    let scene = Scene { waters, bodies, meetings, tolerance: tolerance(&strands), width };
+    let rounding = rounding_of(strands.iter().flat_map(|strand| &strand.points).copied());
+    let scene = Scene { waters, bodies, meetings, tolerance: tolerance(&strands), rounding, width };
+    shared::add(&scene, &mut strands);
+    strands.iter_mut().for_each(|strand| strand.insert(&scene));
     strands.extend(scene.diagonals());
     let overlaps = band::add(&scene, &mut strands);
     strands.iter_mut().for_each(|strand| strand.insert(&scene));
     crease::add(&scene, &mut strands);
     strands.iter_mut().for_each(|strand| strand.insert(&scene));
-    let mut marks = Marks { overlaps, ..Marks::default() };
+    let pairs = scene.meetings.pairs.iter().copied().collect();
+    let mut marks = Marks { overlaps, pairs, ..Marks::default() };
     for strand in strands {
         match strand.line {
             Some(of) if strand.is_changed => marks.replaced.push((of, strand.points)),
@@ -99,6 +106,8 @@ struct Scene<'a> {
     meetings: Meetings,
     /// Heights that differ by no more are equal: less than that is rounding.
     tolerance: f64,
+    /// Positions that are no farther apart are the same but for rounding.
+    rounding: f64,
     width: f64,
 }
 

@@ -56,8 +56,19 @@ impl RiverWater {
         lowest.is_finite().then_some(lowest)
     }
 
-    /// The height at the nearest position; of several, the lowest.
+    /// Returns true if a position is in the water or no farther from it than a distance.
+    pub(in crate::terrain) fn is_near(&self, q: [f64; 2], distance: f64) -> bool {
+        self.nearest(q).0 <= distance * distance || self.height_within(q).is_some()
+    }
+
+    /// The height at the nearest position of the borders of triangles; of several, the lowest.
     fn nearest_height(&self, q: [f64; 2]) -> f64 {
+        self.nearest(q).1
+    }
+
+    /// The square of the distance to the nearest position of the borders of triangles, and the
+    /// height there.
+    fn nearest(&self, q: [f64; 2]) -> (f64, f64) {
         let mut nearest = (f64::INFINITY, f64::INFINITY);
         self.0.around(q, &mut Vec::new(), |part| {
             for side in part.sides() {
@@ -68,7 +79,7 @@ impl RiverWater {
             }
             nearest.0
         });
-        nearest.1
+        nearest
     }
 
     /// The parts of a segment, from 0 to 1, between which the height along it is linear.

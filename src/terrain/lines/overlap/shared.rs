@@ -1,0 +1,26 @@
+//! Banks that lie on each other, but for rounding.
+
+use super::Scene;
+use super::band::border_sides;
+use super::strand::Strand;
+use crate::terrain::boxes::{Boxes, Extent};
+use crate::terrain::nearest::squared_distance;
+
+/// Asks for the vertices of each border on those of other rivers that pass them within rounding, so
+/// that both have the same edges.
+pub(super) fn add(scene: &Scene, strands: &mut [Strand]) {
+    let sides = border_sides(strands);
+    let borders = Boxes::new(sides.clone());
+    for own in &sides {
+        for [x, y, _] in own.ends {
+            borders.find_in(Extent::of_plan([[x, y]]).grown(scene.rounding), |side| {
+                let ends = side.ends.map(|[x, y, _]| [x, y]);
+                let is_met = scene.meetings.pairs.contains(&[own.water, side.water]) && !ends.contains(&[x, y]);
+                if is_met && squared_distance(ends, [x, y]) <= scene.rounding.powi(2) {
+                    strands[side.strand].want(side.segment, [x, y]);
+                }
+                None::<()>
+            });
+        }
+    }
+}
