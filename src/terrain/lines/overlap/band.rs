@@ -115,8 +115,8 @@ fn cuts(line: &Beside, borders: &Boxes<BorderSide>, rivers: &[usize], rounding: 
     cuts
 }
 
-/// The points that a line shares with a side: those of their ends that lie on the other one, but for
-/// rounding, or else where they cross, computed on the side.
+/// The points that a line shares with a side: those of their ends that lie on the other one, but
+/// for rounding, or else where they cross, computed on the side.
 fn meeting_points(line: [[f64; 2]; 2], side: [[f64; 3]; 2], rounding: f64) -> Vec<[f64; 2]> {
     let line = line.map(|[x, y]| [x, y, 0.0]);
     let flat = |[x, y, _]: [f64; 3]| [x, y];
