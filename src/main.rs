@@ -40,6 +40,7 @@ mod signals {
         std::thread::spawn(move || {
             let Some(signal) = signals.forever().next() else { return };
             let _nothing_appears_now = breakline::io::abandon_outputs();
+            breakline::cli::print_last_words();
             // The first process of a container is not ended by signals.
             if std::process::id() != 1 {
                 let _ = emulate_default_handler(signal);

@@ -5,6 +5,7 @@ import json
 import os
 import random
 import signal
+import socket
 import struct
 import subprocess
 import sys
@@ -187,6 +188,37 @@ def test_ctrl_c_cancels_what_waits(client, tmp_path):
     thread.join()
     wait_until(lambda: not scheduler.tasks)
     assert not all(task["done"] for task in tasks(job))
+
+
+def test_a_lost_scheduler_is_an_error_with_its_cure(tmp_path):
+    def start(*words):
+        return subprocess.Popen([sys.executable, "-m", *words], cwd=tmp_path, stderr=subprocess.DEVNULL)
+
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        address = f"tcp://127.0.0.1:{free.getsockname()[1]}"
+    scheduler = start("distributed.cli.dask_scheduler", "--host", address, "--dashboard-address", "127.0.0.1:0")
+    worker = start("distributed.cli.dask_worker", address, "--nthreads", "1", "--no-nanny", "--death-timeout", "60")
+    output, job = tmp_path / "dem.tif", tmp_path / "job"
+
+    def kill():
+        wait_until(lambda: any((job / "tasks").glob("*.task")))
+        scheduler.kill()
+
+    try:
+        with distributed.Client(address, timeout=60) as client:
+            client.wait_for_workers(1)
+            thread = threading.Thread(target=kill)
+            thread.start()
+            with pytest.raises(breakline.BreaklineError, match="(?s)scheduler .* was lost.*cure: .*the same call goes on"):
+                breakline.dask.dem(VALLEY, output, client=client, tiles="8x8", job=job)
+            thread.join()
+    finally:
+        for process in (scheduler, worker):
+            process.kill()
+            process.wait()
+    assert not output.exists()
+    assert any(task["done"] for task in tasks(job)) and not all(task["done"] for task in tasks(job))
 
 
 def test_a_job_goes_on_with_what_is_done(client, whole, tmp_path):

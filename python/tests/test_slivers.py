@@ -6,7 +6,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from breakline.spatial import Delaunay, LinearNDInterpolator, NaturalNeighborInterpolator
+from breakline.spatial import Delaunay, LinearNDInterpolator, NaturalNeighborInterpolator, NearestNDInterpolator
 
 #: How many positions are judged.
 COUNT = int(os.environ.get("BREAKLINE_SLIVERS", 2000))
@@ -143,6 +143,15 @@ def height(corners):
     return float(volume([exact(corner) for corner in corners])) / spread ** (corners.shape[1] - 1)
 
 
+def test_positions_next_to_an_axis_are_inside():
+    """Numbers too small for exact arithmetic, which points may not have."""
+    square = [[-1, -1], [1, -1], [1, 1], [-1, 1]]
+    xi = [[1e-60, 0.5], [-5e-324, 1e-200], [0.5, -3e-50]]
+    assert (Delaunay(square).find_simplex(xi) >= 0).all()
+    for kind in (LinearNDInterpolator, NaturalNeighborInterpolator, NearestNDInterpolator):
+        assert (kind(square, np.ones(4))(xi) == 1).all()
+
+
 def test_a_sliver_has_its_own_values():
     linear = LinearNDInterpolator(SLIVER, [0.0, 0.0, 100.0, 0.0])
     assert linear(250.0, 1e-8) == pytest.approx(100 / 9, rel=1e-12)
@@ -166,6 +175,36 @@ def test_centroids_of_a_grid_with_spacing_of_a_tenth(ndim, side):
             position = exact(centroids[simplex])
             assert min(barycentric([exact(points[k]) for k in tri.simplices[simplex]], position)) <= 0
             assert min(barycentric([exact(points[k]) for k in tri.simplices[found]], position)) >= 0
+
+
+@pytest.fixture
+def cubes():
+    """Points of a grid, and how to turn it: then there are flat simplices between cubes, and at the hull."""
+    turns = [np.eye(3), np.eye(3)]
+    turns[0][:2, :2] = [[np.cos(0.3), np.sin(0.3)], [-np.sin(0.3), np.cos(0.3)]]
+    turns[1][1:, 1:] = [[np.cos(0.7), np.sin(0.7)], [-np.sin(0.7), np.cos(0.7)]]
+    return np.stack(np.meshgrid(*[np.arange(6.0)] * 3), axis=-1).reshape(-1, 3), turns[0] @ turns[1]
+
+
+def test_natural_neighbors_between_the_cubes_of_a_turned_grid(cubes):
+    """Flat simplices there are not at the hull: values are those of the grid before it was turned."""
+    points, turn = cubes
+    rng = np.random.default_rng(1)
+    values, xi = rng.random(len(points)), rng.integers(1, 20, (500, 3)) / 4
+    expected = NaturalNeighborInterpolator(points, values)(xi)
+    found = NaturalNeighborInterpolator(points @ turn, values)(xi @ turn)
+    assert np.allclose(found, expected, atol=1e-6)
+
+
+def test_positions_on_the_hull_of_a_turned_grid_are_inside_up_to_rounding(cubes):
+    points, turn = cubes
+    rng = np.random.default_rng(2)
+    xi = rng.integers(0, 21, (4000, 3)) / 4
+    tri = Delaunay(points @ turn)
+    on_hull = xi @ turn
+    assert (tri.find_simplex(on_hull) >= 0).all() and (tri.find_simplex(on_hull, tol=0) < 0).any()
+    outside = (xi + np.where(xi == 5, 1e-6, 0))[(xi == 5).any(axis=1)] @ turn
+    assert (tri.find_simplex(outside) < 0).all() and (tri.find_simplex(outside, tol=1e-5) >= 0).all()
 
 
 @pytest.mark.parametrize("kind", [LinearNDInterpolator, NaturalNeighborInterpolator])

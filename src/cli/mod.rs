@@ -32,16 +32,19 @@ pub enum Exit {
     Failed = 1,
     /// The command line is wrong.
     Usage = 2,
+    /// The work is done, but files were skipped (`--skip-bad`): the result has holes.
+    Holes = 3,
     /// A task needs others that are not done.
     NotYet = 4,
 }
 
 impl Exit {
     /// What each exit code means, for the help.
-    const ALL: [(Exit, &str); 4] = [
+    const ALL: [(Exit, &str); 5] = [
         (Exit::Done, "done"),
         (Exit::Failed, "failed"),
         (Exit::Usage, "wrong usage"),
+        (Exit::Holes, "done, with holes where files were skipped (--skip-bad)"),
         (Exit::NotYet, "a task of a job needs others that are not done: later the same may work"),
     ];
 }
@@ -93,6 +96,12 @@ pub fn run(args: impl IntoIterator<Item = OsString>) -> Exit {
             }
         }
     }
+}
+
+/// Prints how to go on with the run that a signal ends, if it is one that can go on. Called once,
+/// by who handles signals.
+pub fn print_last_words() {
+    report::last_words::print();
 }
 
 /// Returns the description of the program that `describe --json` prints.

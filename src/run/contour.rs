@@ -39,6 +39,12 @@ impl ContourOptions {
             levels => Levels::listed(levels),
         }
     }
+
+    /// Returns the notice about the default interval, if it is used.
+    pub(super) fn notice(&self, crs: Option<&Crs>) -> Option<Notice> {
+        let is_default = self.interval.is_none() && self.levels.is_empty();
+        is_default.then(|| Notice::DefaultInterval(Units::of(crs).height(DEFAULT_INTERVAL)))
+    }
 }
 
 /// The contours of a surface. They are drawn on demand.
@@ -62,9 +68,7 @@ pub fn contour<'a>(
     let journal = Journal::new(context);
     context.check()?;
     let levels = options.to_levels()?;
-    if options.interval.is_none() && options.levels.is_empty() {
-        journal.add(Notice::DefaultInterval(Units::of(product.crs()).height(DEFAULT_INTERVAL)));
-    }
+    options.notice(product.crs()).into_iter().for_each(|notice| journal.add(notice));
     Ok(ContourProduct { product, levels, notices: journal.take() })
 }
 

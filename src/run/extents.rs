@@ -32,22 +32,18 @@ pub(super) fn compare_files(files: &[&Path], extents: &[Bounds], units: &Units, 
     }
 }
 
-/// Adds a notice if lines are far from the points, or reach more than `buffer` beyond them, as the
-/// lines of a whole district do with the points of one tile: the extent of the surface may then be
-/// unexpected.
-pub(super) fn compare_lines(points: &[[f64; 3]], lines: Bounds, buffer: f64, units: &Units, journal: &Journal) {
-    let mut extent = Bounds::default();
-    points.iter().for_each(|&point| extent.add(point));
-    if extent.is_empty() || lines.is_empty() {
-        return;
+/// Returns a notice if lines are far from the points, or reach more than `buffer` beyond them, as
+/// the lines of a whole district do with the points of one tile: the extent of the surface may then
+/// be unexpected.
+pub(super) fn compare_lines(points: &Bounds, lines: &Bounds, buffer: f64, units: &Units) -> Option<Notice> {
+    if points.is_empty() || lines.is_empty() {
+        return None;
     }
-    let gap = (0..2).map(|i| (extent.min[i] - lines.max[i]).max(lines.min[i] - extent.max[i])).fold(0.0, f64::max);
+    let gap = (0..2).map(|i| (points.min[i] - lines.max[i]).max(lines.min[i] - points.max[i])).fold(0.0, f64::max);
     if gap > buffer {
-        return journal.add(Notice::BreaklinesApart(units.length(gap)));
+        return Some(Notice::BreaklinesApart(units.length(gap)));
     }
-    let reach = (0..2).flat_map(|i| [extent.min[i] - lines.min[i], lines.max[i] - extent.max[i]]);
+    let reach = (0..2).flat_map(|i| [points.min[i] - lines.min[i], lines.max[i] - points.max[i]]);
     let furthest = reach.fold(0.0, f64::max);
-    if furthest > buffer {
-        journal.add(Notice::BreaklinesBeyond(units.length(furthest)));
-    }
+    (furthest > buffer).then(|| Notice::BreaklinesBeyond(units.length(furthest)))
 }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use super::context::Journal;
 use super::crossings::LineNames;
-use super::line_request::LineRole;
+use super::line_request::{LineRequest, LineRole};
 use super::notice::{Notice, WaterStep};
 use super::units::Units;
 use crate::data::EdgeKind;
@@ -30,6 +30,7 @@ pub struct LineInput {
 }
 
 /// A closed line of one height, that may be a shore.
+#[derive(Debug)]
 pub(super) struct LevelRing {
     pub(super) line: usize,
     pub(super) ring: Vec<[f64; 2]>,
@@ -107,38 +108,55 @@ pub(super) fn note_uneven(uneven: &[(String, RiverHeights)], units: &Units, jour
     });
 }
 
-/// Adds notices about closed lines of one height around points of other heights: they may be shores
-/// that were meant to be level.
-pub(super) fn note_level_rings(
-    rings: &[LevelRing],
-    points: &[[f64; 3]],
-    names: &LineNames,
+/// Closed lines of one height, and the points inside that have other heights: the lines may be
+/// shores that were meant to be level.
+#[derive(Debug)]
+pub(super) struct LevelRings {
+    rings: Vec<LevelRing>,
+    inside: Inside,
     tolerance: f64,
-    units: &Units,
-    journal: &Journal,
-) {
-    if rings.is_empty() {
-        return;
+}
+
+/// The points inside a ring that have other heights: their number, and the largest difference.
+pub(super) type OtherHeights = (u64, f64);
+
+impl LevelRings {
+    /// Returns the rings among the lines of a request; `None` if there are none, or lakes are given
+    /// as such. Heights count as others if they differ by more than `tolerance`.
+    pub(super) fn of(rings: Vec<LevelRing>, request: &LineRequest, tolerance: f64) -> Option<Self> {
+        if rings.is_empty() || !request.flats.is_empty() {
+            return None;
+        }
+        let polygons: Vec<Vec<Vec<[f64; 2]>>> = rings.iter().map(|ring| vec![ring.ring.clone()]).collect();
+        Some(LevelRings { inside: Inside::new(&polygons), rings, tolerance })
     }
-    let polygons: Vec<Vec<Vec<[f64; 2]>>> = rings.iter().map(|ring| vec![ring.ring.clone()]).collect();
-    let inside = Inside::new(&polygons);
-    // For each ring, the number of points inside that differ, and the largest difference.
-    let mut found = vec![(0_usize, 0.0_f64); rings.len()];
-    for [x, y, z] in points {
-        let Some(at) = inside.first_around([*x, *y]) else { continue };
-        let difference = (z - rings[at].height).abs();
-        if difference > tolerance {
-            found[at] = (found[at].0 + 1, found[at].1.max(difference));
+
+    /// Returns what is found of each ring without points.
+    pub(super) fn none_found(&self) -> Vec<OtherHeights> {
+        vec![(0, 0.0); self.rings.len()]
+    }
+
+    /// Adds what is found of each ring in some of the points.
+    pub(super) fn count(&self, points: &[[f64; 3]], found: &mut [OtherHeights]) {
+        for [x, y, z] in points {
+            let Some(at) = self.inside.first_around([*x, *y]) else { continue };
+            let difference = (z - self.rings[at].height).abs();
+            if difference > self.tolerance {
+                found[at] = (found[at].0 + 1, found[at].1.max(difference));
+            }
         }
     }
-    let most = found.iter().enumerate().filter(|(_, (count, _))| *count > 0).max_by(|p, q| p.1.1.total_cmp(&q.1.1));
-    if let Some((at, (_, largest))) = most {
-        journal.add(Notice::LevelRings {
+
+    /// Returns the notice about what was found in all points, if anything was.
+    pub(super) fn notice(&self, found: &[OtherHeights], names: &LineNames, units: &Units) -> Option<Notice> {
+        let differ = found.iter().enumerate().filter(|(_, (count, _))| *count > 0);
+        let (at, (_, largest)) = differ.max_by(|p, q| p.1.1.total_cmp(&q.1.1))?;
+        Some(Notice::LevelRings {
             rings: found.iter().filter(|(count, _)| *count > 0).count(),
-            points: found.iter().map(|(count, _)| count).sum(),
-            name: names.name(rings[at].line),
+            points: found.iter().map(|(count, _)| *count as usize).sum(),
+            name: names.name(self.rings[at].line),
             largest: units.height(*largest),
-        });
+        })
     }
 }
 

@@ -113,13 +113,14 @@ pub use input::{Input, MemoryPoints, STDIN};
 #[cfg(feature = "cli")]
 pub(crate) use job::not_in_tiles;
 pub use job::{
-    BadFiles, COMMAND, Division, FileState, Job, JobLock, JobReport, JobSize, Look, TileOptions, TiledProduct,
-    WrittenParts, needs_tiles, remove_job,
+    Division, FileState, Job, JobLock, JobReport, JobSize, Look, TileOptions, TiledProduct, WrittenParts, job_command,
+    needs_tiles, remove_job,
 };
 pub use line_notes::LineInput;
 pub use line_request::{FlatOptions, FlatRule, LineRequest, LineRole, LowerEdge, PerRecord, WallOptions};
 pub use notice::{CrossingNote, Notice, Seed, SeedFlaw, Severity, WaterStep};
 pub use overlaps::Overlap;
+pub use point_files::BadFiles;
 pub use points::{PointsProduct, PointsReport, PointsRequest, Withheld, read_points, write_points};
 pub use space::{
     Alpha, AlphaSolid, SpaceCheck, SpaceFlaw, SpaceLaw, SpaceOptions, SpaceProduct, SpaceReport, check_space,

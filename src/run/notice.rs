@@ -6,6 +6,7 @@ use std::time::Duration;
 use super::line_request::LineRole;
 use super::units::Quantity;
 use crate::crs::Crs;
+use crate::data::Bounds;
 
 /// Something that was assumed or that looks wrong. Displayed as the command line prints it; other
 /// callers can have texts of their own.
@@ -29,6 +30,24 @@ pub enum Notice {
     PointsRead(PathBuf, u64),
     /// A warning of a reader about a file.
     Reader(PathBuf, String),
+    /// What a task of a job found, as the file of the task keeps it.
+    OfTask {
+        /// How much it matters.
+        severity: Severity,
+        /// The text.
+        text: String,
+        /// The lines that explain it further.
+        details: Vec<String>,
+    },
+    /// A file is skipped, because it cannot be read.
+    Skipped {
+        /// The file, and why it cannot be read.
+        why: String,
+        /// Its extent, in which the surface has a hole; `None` if that is not known.
+        hole: Option<Bounds>,
+        /// Other files that may have points there, which are not used.
+        others: Vec<PathBuf>,
+    },
     /// All points may not fit into memory.
     LittleMemory {
         /// Bytes that they would take.
@@ -249,6 +268,7 @@ impl Notice {
     /// Returns how much the notice matters.
     pub fn severity(&self) -> Severity {
         match self {
+            Notice::OfTask { severity, .. } => *severity,
             Notice::Opened(..)
             | Notice::WithoutClasses(_)
             | Notice::LayerRead { .. }
@@ -272,6 +292,7 @@ impl Notice {
             | Notice::HeightFactor(_)
             | Notice::DelaunayUnchecked(_) => Severity::Note,
             Notice::Reader(..)
+            | Notice::Skipped { .. }
             | Notice::LittleMemory { .. }
             | Notice::NoPointUsed(..)
             | Notice::NoPointOfClass(_)

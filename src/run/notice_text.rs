@@ -1,9 +1,11 @@
 //! The texts of notices.
 
 use std::fmt;
+use std::path::PathBuf;
 
 use super::notice::{CrossingNote, Notice, Seed, SeedFlaw, WaterStep};
 use super::units::{Quantity, bytes, neat, number};
+use crate::data::Bounds;
 
 /// Formats the notice as the program prints it, without its [details](Notice::details). Options are
 /// named as on the command line.
@@ -19,6 +21,7 @@ impl Notice {
         let (count, first) = match self {
             Notice::CrossingHeights { count, first, .. } => (count, first),
             Notice::WaterOverlaps { count, first } if *count > 1 => return steps(*count, first),
+            Notice::OfTask { details, .. } => return details.clone(),
             _ => return Vec::new(),
         };
         let each = first.iter().map(|CrossingNote { at, low, high, chosen }| {
@@ -54,7 +57,9 @@ fn text(notice: &Notice) -> String {
         Notice::WithoutClasses(path) => format!("{}: no classes, all points are used", path.display()),
         Notice::LayerRead { path, format, records } => format!("{}: {format}, {records} records", path.display()),
         Notice::PointsRead(path, count) => format!("{}: {count} points read", path.display()),
+        Notice::OfTask { text, .. } => text.clone(),
         Notice::Reader(path, text) => format!("{}: {text}", path.display()),
+        Notice::Skipped { why, hole, others } => skipped(why, hole.as_ref(), others),
         Notice::LittleMemory { need, left, limit } => format!(
             "memory may not suffice: if all points are used they take about {}, and {} are left {limit}",
             bytes(*need),
@@ -193,6 +198,19 @@ fn text(notice: &Notice) -> String {
             format!("{}: line {line}: the {what} {why}; it is not used", path.display())
         }
     }
+}
+
+fn skipped(why: &str, hole: Option<&Bounds>, others: &[PathBuf]) -> String {
+    let Some(Bounds { min, max }) = hole else {
+        return format!("skipped: {why}; its extent is not known: triangles may span it");
+    };
+    let [x0, y0, x1, y1] = [min[0], min[1], max[0], max[1]].map(neat);
+    let others = match others {
+        [] => String::new(),
+        [one] => format!(", also where {} has points", one.display()),
+        [one, more @ ..] => format!(", also where {} and {} other files have points", one.display(), more.len()),
+    };
+    format!("skipped: {why}; its extent is left empty, from {x0} {y0} to {x1} {y1}{others}")
 }
 
 fn rounded([x, y]: &[Quantity; 2], on_grid: bool) -> String {

@@ -9,11 +9,12 @@ use super::input::{Input, MemoryPoints, MemorySource};
 use super::memory;
 use super::tin_parts::TinParts;
 use crate::crs::Crs;
-use crate::data::{BlockSource, Frame, Grid, Layer, LinkFlaw, Mesh, PointSource, Triangles};
+use crate::data::{BlockSource, Frame, Grid, Layer, LinkFlaw, Mesh, PointInfo, PointSource, Triangles};
 use crate::error::{Error, Kind, Result};
 pub(super) use crate::io::formats::Content;
 use crate::io::formats::{self, Format, Holding};
 use crate::io::geotiff::GeoTiffReader;
+use crate::io::las;
 use crate::io::mapped::Mapped;
 pub(super) use crate::io::mesh::keeps_lines;
 use crate::io::mesh::{self, Solid};
@@ -69,6 +70,12 @@ pub(super) fn points_of_file(path: &Path, options: Options, context: &Context) -
             })
         }
     }
+}
+
+/// Returns what the header of a file of points states that cannot be opened; `None` if it has none
+/// that can be read.
+pub(super) fn stated(path: &Path) -> Option<PointInfo> {
+    if is_lidar(path) { las::stated(path).ok() } else { None }
 }
 
 /// Returns a vector layer, from memory or from a file, with these columns: [`Layer::column`] finds

@@ -7,18 +7,37 @@ use super::systems::Stated;
 use super::transforms::Transforms;
 use super::{memory, open};
 use crate::data::{Bounds, Columns, PointBatch, PointSource};
-use crate::error::{Error, Result};
+use crate::error::{Error, Kind, Result};
 use crate::io::points::Options;
 use crate::terrain::{Classes, Selection};
 
 /// The class of ground points in LAS.
-const GROUND: u8 = 2;
+pub(super) const GROUND: u8 = 2;
 
 /// If there are more files than this, they are not kept open but opened a second time.
 pub(super) const FILES_KEPT_OPEN: usize = 100;
 
 /// The free memory is checked each time that this many further points are to be used.
 pub(super) const ASK_EVERY: usize = 1 << 20;
+
+/// What becomes of files that cannot be read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum BadFiles {
+    /// They are an error.
+    #[default]
+    Refuse,
+    /// They leave a hole, and are reported.
+    Skip,
+}
+
+impl BadFiles {
+    /// Returns true if a file is skipped that cannot be read for this reason. What the caller asks
+    /// for is never skipped, nor is a file that has changed meanwhile.
+    pub(super) fn skips(self, error: &Error) -> bool {
+        let is_of_file = matches!(error.kind(), Kind::Format | Kind::Unsupported | Kind::Limit | Kind::Io);
+        self == BadFiles::Skip && is_of_file
+    }
+}
 
 /// A file of points.
 struct PointFile {
@@ -57,6 +76,7 @@ impl PointFile {
 pub(super) struct PointFiles {
     files: Vec<PointFile>,
     options: Options,
+    bad: BadFiles,
 }
 
 impl PointFiles {
@@ -82,7 +102,13 @@ impl PointFiles {
         if options.columns.is_some() && files.iter().all(|file| file.columns.is_none()) {
             return Err(Error::usage("--columns and --parse name columns of text, but no input is text"));
         }
-        Ok(PointFiles { files, options })
+        Ok(PointFiles { files, options, bad: BadFiles::Refuse })
+    }
+
+    /// Decides what becomes of files whose points turn out to be damaged while something is looked
+    /// for in them.
+    pub(super) fn with_bad(self, bad: BadFiles) -> Self {
+        PointFiles { bad, ..self }
     }
 
     pub(super) fn len(&self) -> usize {
@@ -115,10 +141,12 @@ impl PointFiles {
         };
         let mut has_wanted = false;
         for (file, stated) in self.files.iter().zip(&mut stated) {
-            if file.has_any(self.options, &wanted, journal)? {
-                has_wanted |= file.has_classes;
-            } else {
-                *stated = None;
+            match file.has_any(self.options, &wanted, journal) {
+                Ok(true) => has_wanted |= file.has_classes,
+                Ok(false) => *stated = None,
+                // Once it is repaired its points are used: its system counts.
+                Err(error) if self.bad.skips(&error) => {}
+                Err(error) => return Err(error),
             }
         }
         if or_all && !has_wanted {
@@ -144,8 +172,11 @@ impl PointFiles {
         }
         let ground = Classes::Only(vec![GROUND]);
         for file in self.files.iter().filter(|file| file.has_classes) {
-            if file.has_any(self.options, &ground, journal)? {
-                return Ok(vec![GROUND]);
+            match file.has_any(self.options, &ground, journal) {
+                Ok(true) => return Ok(vec![GROUND]),
+                Ok(false) => {}
+                Err(error) if self.bad.skips(&error) => {}
+                Err(error) => return Err(error),
             }
         }
         Ok((0..=u8::MAX).collect())

@@ -10,7 +10,7 @@ use super::crossings::{self, LineNames};
 use super::extents;
 use super::input::{Input, MemoryPoints};
 use super::line_inputs::{Added, LineLayers, WALL_WIDTH_METRES};
-use super::line_notes::{self, LineInput};
+use super::line_notes::{self, LevelRings, LineInput};
 use super::line_request::{LineRequest, LineRole};
 use super::memory;
 use super::notice::Notice;
@@ -166,6 +166,29 @@ impl EdgeLimit {
     pub(super) fn notice(self, units: &Units) -> Notice {
         note_of_limit(self.length(units), units)
     }
+
+    /// Returns how far outside of bounds points are used at first, and how far lines may reach
+    /// beyond the points without a notice.
+    pub(super) fn buffer(self, units: &Units) -> f64 {
+        self.length(units).unwrap_or_else(|| units.of_metres(DEFAULT_MAX_EDGE_METRES))
+    }
+
+    /// Returns a notice if the default looks wrong for points with this mean distance.
+    pub(super) fn unusual(self, spacing: Option<f64>, units: &Units) -> Option<Notice> {
+        let (EdgeLimit::Standard, Some(limit), Some(spacing)) = (self, self.length(units), spacing) else {
+            return None;
+        };
+        let is_usual = USUAL_SPACINGS.contains(&(limit / spacing));
+        (!is_usual).then(|| Notice::EdgeLimitUnusual { limit: units.length(limit), spacing: units.length(spacing) })
+    }
+}
+
+/// Returns the mean distance between points, from the number of all points and the extents of all
+/// inputs; `None` if these have no area.
+pub(super) fn mean_distance(read: u64, extents: impl IntoIterator<Item = Bounds>) -> Option<f64> {
+    let area = |b: Bounds| if b.is_empty() { 0.0 } else { (b.max[0] - b.min[0]) * (b.max[1] - b.min[1]) };
+    let area: f64 = extents.into_iter().map(area).sum();
+    Some((area / read as f64).sqrt()).filter(|spacing| spacing.is_normal())
 }
 
 fn note_of_limit(limit: Option<f64>, units: &Units) -> Notice {
@@ -243,13 +266,19 @@ pub(super) fn build(request: &TinRequest, options: &SystemOptions, journal: &Jou
             return Err(nothing_left(&report, &paths));
         }
         if request.bounds.is_none() && !layers.has_boundary() {
-            extents::compare_lines(&points, line_extent, rim.buffer, &units, journal);
+            let mut extent = Bounds::default();
+            points.iter().for_each(|&point| extent.add(point));
+            extents::compare_lines(&extent, &line_extent, rim.buffer, &units).into_iter().for_each(|n| journal.add(n));
         }
         memory::require_for_points(points.len())?;
         rim.find_limit(&report, &extents);
+        // Once, also if more points are read.
         let rings = std::mem::take(&mut level_rings);
-        let rings = if request.lines.flats.is_empty() { rings } else { Vec::new() };
-        line_notes::note_level_rings(&rings, &points, &names, default_tolerance(&units), &units, journal);
+        if let Some(rings) = LevelRings::of(rings, &request.lines, default_tolerance(&units)) {
+            let mut found = rings.none_found();
+            rings.count(&points, &mut found);
+            rings.notice(&found, &names, &units).into_iter().for_each(|notice| journal.add(notice));
+        }
         let mut builder = builder.clone();
         builder.max_edge = rim.max_edge;
         builder.window = reach.window().map(|read| Window { read, all: report.extent });
@@ -319,7 +348,7 @@ pub(super) fn builder_of(request: &TinRequest, units: &Units, crs: Option<Crs>) 
     builder
 }
 
-fn default_tolerance(units: &Units) -> f64 {
+pub(super) fn default_tolerance(units: &Units) -> f64 {
     units.height_of_metres(DEFAULT_CROSSING_TOLERANCE_METRES)
 }
 
@@ -348,9 +377,8 @@ struct Rim {
 
 impl Rim {
     fn new(request: &TinRequest, units: &Units, journal: &Journal) -> Self {
-        let default = units.of_metres(DEFAULT_MAX_EDGE_METRES);
-        let max_edge = request.max_edge.length(units);
-        let rim = Rim { limit: request.max_edge, max_edge, buffer: max_edge.unwrap_or(default), spacing: None };
+        let limit = request.max_edge;
+        let rim = Rim { limit, max_edge: limit.length(units), buffer: limit.buffer(units), spacing: None };
         if rim.limit != EdgeLimit::Auto {
             rim.note_limit(units, journal);
         }
@@ -363,9 +391,7 @@ impl Rim {
 
     /// Finds the mean distance between points, and the limit that follows from it.
     fn find_limit(&mut self, report: &SelectionReport, extents: &[Bounds]) {
-        let area = |b: &Bounds| if b.is_empty() { 0.0 } else { (b.max[0] - b.min[0]) * (b.max[1] - b.min[1]) };
-        let area: f64 = extents.iter().map(area).sum();
-        self.spacing = Some((area / report.read as f64).sqrt()).filter(|spacing| spacing.is_normal());
+        self.spacing = mean_distance(report.read, extents.iter().copied());
         if self.limit == EdgeLimit::Auto {
             self.max_edge = self.spacing.map(|spacing| AUTO_EDGE_SPACINGS * spacing);
         }
@@ -376,12 +402,7 @@ impl Rim {
         if self.limit == EdgeLimit::Auto {
             self.note_limit(units, journal);
         }
-        if let (EdgeLimit::Standard, Some(limit), Some(spacing)) = (self.limit, self.max_edge, self.spacing)
-            && !USUAL_SPACINGS.contains(&(limit / spacing))
-        {
-            let (limit, spacing) = (units.length(limit), units.length(spacing));
-            journal.add(Notice::EdgeLimitUnusual { limit, spacing });
-        }
+        self.limit.unusual(self.spacing, units).into_iter().for_each(|notice| journal.add(notice));
     }
 }
 

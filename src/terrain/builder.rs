@@ -76,6 +76,9 @@ pub struct TinBuilder {
     ///
     /// [`TinReport::uncertain`] then says whether they suffice.
     pub window: Option<Window>,
+    /// The box in plan within which crossings and walls are judged, if the surface is clipped to
+    /// it later, by somebody else; with [`bounds`](Self::bounds), these count.
+    pub(crate) judged: Option<Bounds>,
     /// The coordinate system of all points and lines.
     pub crs: Option<Crs>,
     points: Vec<[f64; 3]>,
@@ -397,7 +400,8 @@ impl TinBuilder {
             self.crossing_heights,
             self.crossing_tolerance,
         );
-        if let Some(bounds) = &self.bounds {
+        let judged = self.bounds.or(self.judged);
+        if let Some(bounds) = &judged {
             report.crossing_heights.retain(|crossing| bounds.holds(crossing.site[0], crossing.site[1]));
         }
         let Leveled { is_water, sites } = areas::level(&mut triangulation, &self.waters, &rims, &overlaps.pairs, name)?;
@@ -407,7 +411,7 @@ impl TinBuilder {
             let flooded = at.filter(|([x, y, z], height)| {
                 z != height
                     && sites.contains(&[x.to_bits(), y.to_bits()])
-                    && self.bounds.as_ref().is_none_or(|bounds| bounds.holds(*x, *y))
+                    && judged.as_ref().is_none_or(|bounds| bounds.holds(*x, *y))
             });
             report.walls_in_water.extend(flooded.map(|([x, y, _], _)| (line, [x, y])));
         }

@@ -3,7 +3,7 @@
 use breakline::io::geotiff;
 use tempfile::TempDir;
 
-use super::{bytes, landscape, output_of, program};
+use super::{bytes, landscape, output_of, output_with, program};
 use program::{files_of, run_in};
 use testkit::lidar;
 
@@ -25,14 +25,144 @@ fn a_bad_file_is_named() {
     assert_eq!(files_of(folder.path()), ["in"]);
 }
 
+/// Returns the height of a raster in the folder at a position; NaN where it has none.
+fn height(folder: &TempDir, name: &str, x: f64, y: f64) -> f64 {
+    let grid = geotiff::open(folder.path().join(name)).unwrap().read_grid().unwrap();
+    let [column, row] = grid.frame.inverse().apply(x, y);
+    grid.values[row as usize * grid.frame.width + column as usize]
+}
+
+/// The header of a file that was cut off can be read. Once the file is repaired, the job goes on:
+/// what was done of other files is kept.
 #[test]
-fn a_bad_file_may_leave_a_hole() {
+fn a_bad_file_may_leave_a_hole_until_it_is_repaired() {
     let folder = folder_with_a_bad_file();
-    let (_, said) = output_of(&folder, "dem in/*.laz --tiles auto --skip-bad", "tiled.tif");
-    assert!(said.contains("skipped: in/002_001.laz: byte") && said.contains("tiles       15 (the files)"), "{said}");
-    std::fs::remove_file(folder.path().join("in/002_001.laz")).unwrap();
-    let (tiled, _) = output_of(&folder, "dem in/*.laz --tiles 3x5", "others.tif");
-    assert!(tiled == bytes(folder.path().join("tiled.tif")));
+    let path = folder.path().join("in/002_001.laz");
+    let bad = bytes(&path);
+    let whole = tempfile::tempdir().unwrap();
+    landscape::write(&whole.path().join("in"), 16_000, 4).unwrap();
+    let good = bytes(whole.path().join("in/002_001.laz"));
+    std::fs::write(&path, &good).unwrap();
+    let (expected, _) = output_of(&folder, "dem in/*.laz", "whole.tif");
+    std::fs::write(&path, &bad).unwrap();
+    for tiles in ["auto", "3x5"] {
+        let words = format!("dem in/*.laz --tiles {tiles} --skip-bad");
+        let (_, said) = output_with(&folder, &words, "tiled.tif", 3);
+        let hole = "skipped: in/002_001.laz: byte";
+        assert!(said.contains(hole) && said.contains("its extent is left empty, from "), "{said}");
+        assert!(said.contains("note: the result has holes: 1 file skipped; finished tasks are kept in tiled.tif.job"));
+        let header = breakline::io::las::stated(&path).unwrap().bounds.unwrap();
+        let [x, y] = [0, 1].map(|k| (header.min[k] + header.max[k]) / 2.0);
+        assert!(height(&folder, "tiled.tif", x, y).is_nan() && !height(&folder, "whole.tif", x, y).is_nan(), "{tiles}");
+        let tasks = folder.path().join("tiled.tif.job/tasks");
+        let before = files_of(&tasks).len();
+        // Nothing has changed; the option is part of the plan.
+        let words = format!("dem in/*.laz --tiles {tiles} --resume");
+        let (again, said) = output_with(&folder, &words, "tiled.tif", 3);
+        assert!(said.contains(hole) && again != expected, "{said}");
+        assert_eq!(files_of(&tasks).len(), before);
+        std::fs::write(&path, &good).unwrap();
+        let (tiled, said) = output_of(&folder, &words, "tiled.tif");
+        assert!(tiled == expected && said.contains("resumed     "), "{said}");
+        assert!(!folder.path().join("tiled.tif.job").exists());
+        std::fs::write(&path, &bad).unwrap();
+    }
+}
+
+/// If not even the header can be read, the file is no part of the plan, which is made anew once it
+/// can be read.
+#[test]
+fn a_file_without_a_header_is_planned_with_once_it_has_one() {
+    let folder = folder_with_a_bad_file();
+    let path = folder.path().join("in/002_001.laz");
+    let whole = tempfile::tempdir().unwrap();
+    landscape::write(&whole.path().join("in"), 16_000, 4).unwrap();
+    std::fs::write(&path, "LASF, but nothing else").unwrap();
+    let (_, said) = output_with(&folder, "dem in/*.laz --tiles auto --skip-bad", "tiled.tif", 3);
+    assert!(said.contains("skipped: in/002_001.laz: byte 22: ") && said.contains("its extent is not known"), "{said}");
+    assert!(said.contains("tiles       15 (the files)"), "{said}");
+    let (_, said) = output_with(&folder, "dem in/*.laz --tiles auto --resume", "tiled.tif", 3);
+    assert!(said.contains("resumed     ") && !said.contains("planned again"), "{said}");
+    std::fs::write(&path, bytes(whole.path().join("in/002_001.laz"))).unwrap();
+    let (tiled, said) = output_of(&folder, "dem in/*.laz --tiles auto --resume", "tiled.tif");
+    assert!(said.contains("in/002_001.laz was skipped, and can be read now: the job is planned again"), "{said}");
+    let (expected, _) = output_of(&folder, "dem in/*.laz", "whole.tif");
+    assert!(tiled == expected && !folder.path().join("tiled.tif.job").exists());
+}
+
+/// A strip over a file that is damaged has points there, but fewer: what is missing would not show.
+#[test]
+fn a_hole_is_empty_where_other_files_have_points_too() {
+    let folder = tempfile::tempdir().unwrap();
+    let strip: Vec<([f64; 3], u8)> =
+        (0..120).map(|i| ([f64::from(i % 20) - 6.0, f64::from(i / 20), f64::from(i % 7)], 2)).collect();
+    for (name, points) in
+        [("a.las", lidar::tile([0.0, 0.0], 2)), ("b.las", lidar::tile([20.0, 0.0], 2)), ("strip.las", strip)]
+    {
+        std::fs::write(folder.path().join(name), lidar::las(&points, Some(25832))).unwrap();
+    }
+    let whole = bytes(folder.path().join("a.las"));
+    std::fs::write(folder.path().join("a.las"), &whole[..whole.len() - 30]).unwrap();
+    let mut rasters = Vec::new();
+    for tiles in ["auto", "1x1", "2x2", "7x3"] {
+        let words = format!("dem a.las b.las strip.las --resolution 0.5 --tiles {tiles} --skip-bad");
+        let (raster, said) = output_with(&folder, &words, "hole.tif", 3);
+        assert!(said.contains("from 0 0 to 3 3, also where strip.las has points"), "{said}");
+        assert!(height(&folder, "hole.tif", 1.3, 1.3).is_nan() && height(&folder, "hole.tif", 2.8, 2.8).is_nan());
+        assert!(!height(&folder, "hole.tif", -2.5, 1.3).is_nan() && !height(&folder, "hole.tif", 1.3, 4.2).is_nan());
+        rasters.push(raster);
+        std::fs::remove_dir_all(folder.path().join("hole.tif.job")).unwrap();
+    }
+    assert!(rasters.iter().all(|raster| *raster == rasters[0]));
+    // The surface of the others, without the triangles that reach into the hole.
+    output_of(&folder, "dem b.las strip.las --resolution 0.5 --te -6,0,23,5", "others.tif");
+    output_with(&folder, "dem a.las b.las strip.las --resolution 0.5 --te -6,0,23,5 --skip-bad", "hole.tif", 3);
+    let read = |name: &str| geotiff::open(folder.path().join(name)).unwrap().read_grid().unwrap();
+    let (others, hole) = (read("others.tif"), read("hole.tif"));
+    let mut empty = 0;
+    for (at, (a, b)) in others.values.iter().zip(&hole.values).enumerate() {
+        let [x, y] = others.frame.center(at % others.frame.width, at / others.frame.width);
+        let is_inside = 0.0 < x && x < 3.0 && 0.0 < y && y < 3.0;
+        // Triangles of the strip are a unit wide.
+        let is_near = -1.0 < x && x < 4.0 && y < 4.0;
+        assert!(if is_inside { b.is_nan() } else { is_near || a.to_bits() == b.to_bits() }, "{x} {y}: {a} {b}");
+        empty += usize::from(is_inside);
+    }
+    assert_eq!(empty, 36);
+}
+
+/// Damage does not keep a job from being planned, neither where classes are looked for nor where
+/// systems are compared; each verb of `job` ends with the status of a result with holes.
+#[test]
+fn damaged_files_do_not_stop_planning() {
+    let folder = folder_with_a_bad_file();
+    let path = folder.path().join("in/000_000.laz");
+    let mut damaged = bytes(&path);
+    // The compressed points, which begin after the header and its records.
+    let start = u32::from_le_bytes(damaged[96..100].try_into().unwrap()) as usize + 8;
+    let end = damaged.len() - 40;
+    damaged[start..end].fill(0xff);
+    std::fs::write(&path, &damaged).unwrap();
+    std::fs::write(folder.path().join("in/t.xyz"), "0 0 0\n1 0 0\n0 1 x\n").unwrap();
+    let files = "in/*.laz in/t.xyz";
+    let run = |words: &str| run_in(&folder, &words.split(' ').collect::<Vec<_>>());
+    let planned = run(&format!("job plan j -- dem {files} -o dem.tif --tiles auto --skip-bad"));
+    planned.works(&["next        breakline job run j"]);
+    let ran = run("job run j");
+    let skipped = ["skipped: in/000_000.laz: ", "skipped: in/002_001.laz: byte", "skipped: in/t.xyz: line 3"];
+    assert_eq!(ran.code, 3, "{}", ran.stderr);
+    assert!(skipped.iter().all(|text| ran.stderr.contains(text)), "{}", ran.stderr);
+    assert!(
+        ran.stderr.contains("holes: 3 files skipped") && ran.stderr.contains("`breakline job run "),
+        "{}",
+        ran.stderr
+    );
+    let status = run("job status j --json");
+    assert!(status.stdout.contains(r#""holes":true"#), "{}", status.stdout);
+    let first = bytes(folder.path().join("dem.tif"));
+    let again = run("job run j");
+    assert_eq!(again.code, 3, "{}", again.stderr);
+    assert!(bytes(folder.path().join("dem.tif")) == first);
 }
 
 /// Also a file whose points are damaged: coordinates that leave the extent are how that shows.
@@ -63,7 +193,7 @@ fn a_header_that_lies_is_an_error_that_names_tile_and_file() {
         assert!(tasks.len() < kept && tasks.iter().all(|name| name.ends_with(".task")), "{tasks:?}");
 
         let words = format!("dem {files} --tiles {tiles} --job {tiles} --resume --skip-bad");
-        let (_, said_then) = output_of(&folder, &words, "hole.tif");
+        let (_, said_then) = output_with(&folder, &words, "hole.tif", 3);
         assert!(said_then.contains(&format!("skipped: 1.las: {said}")), "{said_then}");
         // No triangle spans the file that is missing; around it all is there.
         assert!(said_then.contains("left out over skipped files"), "{said_then}");
@@ -96,7 +226,9 @@ fn a_file_that_touches_others_leaves_a_hole() {
     lying[195..203].copy_from_slice(&2.5f64.to_le_bytes());
     std::fs::write(&path, lying).unwrap();
     for tiles in ["auto", "3x1", "2x2"] {
-        let (_, said) = output_of(&folder, &format!("dem 0.las 1.las 2.las --tiles {tiles} --skip-bad"), "hole.tif");
+        let words = format!("dem 0.las 1.las 2.las --tiles {tiles} --skip-bad");
+        let (_, said) = output_with(&folder, &words, "hole.tif", 3);
+        std::fs::remove_dir_all(folder.path().join("hole.tif.job")).unwrap();
         let grid = geotiff::open(folder.path().join("hole.tif")).unwrap().read_grid().unwrap();
         let [column, row] = grid.frame.inverse().apply(4.5, 1.5);
         assert!(grid.values[row as usize * grid.frame.width + column as usize].is_nan(), "{tiles}: {said}");

@@ -41,7 +41,14 @@ fn what_is_missing_or_damaged_is_done_again_and_nothing_else() {
 
     // Another command, a changed input, a damaged plan.
     let other = format!("{words} --resume --resolution 2 -o other.tif");
-    run_in(&folder, &other.split(' ').collect::<Vec<_>>()).fails(2, &["that of another command"]);
+    run_in(&folder, &other.split(' ').collect::<Vec<_>>())
+        .fails(2, &["that of another command; what differs: --resolution\n"]);
+    std::fs::copy(valley(), folder.path().join("b.laz")).unwrap();
+    let others = format!("{words} b.laz --resume --class 2 --max-edge 7 -o other.tif");
+    run_in(&folder, &others.split(' ').collect::<Vec<_>>())
+        .fails(2, &["what differs: --class, --max-edge, the inputs\n"]);
+    let others = format!("{words} --resume -o other.geojson").replacen("dem", "contour", 1);
+    run_in(&folder, &others.split(' ').collect::<Vec<_>>()).fails(2, &["what differs: the verb\n"]);
     std::fs::write(folder.path().join("kept/plan.json"), "{}").unwrap();
     let resumed = format!("{words} --resume -o other.tif");
     run_in(&folder, &resumed.split(' ').collect::<Vec<_>>())
@@ -245,4 +252,59 @@ fn a_job_that_is_killed_goes_on() {
     }
     assert!(kills > 3, "{kills}");
     assert!(bytes(&target) == whole);
+}
+
+/// Ctrl-C ends a run at once, and says how to go on.
+#[cfg(unix)]
+#[test]
+fn a_run_that_a_signal_ends_says_how_to_go_on() {
+    use std::os::unix::process::ExitStatusExt;
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    if ignored.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).is_some_and(|mask| mask >> 1 & 1 == 1) {
+        return eprintln!("skipped: SIGINT is ignored here");
+    }
+    let folder = tempfile::tempdir().unwrap();
+    run_in(&folder, &["job", "plan", "j", "--", "dem", &valley(), "-o", "x.tif", "--tiles", "30x30"]).works(&[]);
+    let dem = format!("dem {} --tiles 30x30 -o dem.tif --threads 1", valley());
+    for (words, said) in [
+        (dem.as_str(), "note: finished tasks are kept in dem.tif.job: go on with --resume\n"),
+        ("job run j --threads 1", "j: go on with `breakline job run "),
+    ] {
+        let mut program = Command::new(assert_cmd::cargo::cargo_bin!("breakline"));
+        let child = program.current_dir(folder.path()).args(words.split(' ')).stderr(Stdio::piped()).spawn().unwrap();
+        let job = folder.path().join(if words == dem { "dem.tif.job" } else { "j" });
+        // Its 900 tiles take far longer than it takes to see the first.
+        while !job.join("tasks/000001.task").exists() {
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        // The one of the shell: not every system has a program `kill`.
+        let kill = ["-c", "kill -INT \"$0\"", &child.id().to_string()];
+        assert!(Command::new("sh").args(kill).status().unwrap().success());
+        let ended = child.wait_with_output().unwrap();
+        let text = String::from_utf8(ended.stderr).unwrap();
+        assert_eq!(ended.status.signal(), Some(2), "{text}");
+        assert!(text.contains(said), "{text}");
+    }
+    assert!(!folder.path().join("dem.tif").exists());
+}
+
+/// What would be found out when the disk is full is refused before anything is written.
+#[test]
+fn a_run_that_cannot_fit_on_the_disk_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("w.xyz"), "0 0 0\n4000000 0 0\n0 4000000 0\n4000000 4000000 1\n").unwrap();
+    let run = |words: &str| run_in(&folder, &words.split(' ').collect::<Vec<_>>());
+    let said = ["the files of the tasks take about 1280000", "are free on the disk", "hint: choose larger cells"];
+    let words = "dem w.xyz --resolution 0.1 --max-edge none --tiles 2x2";
+    run(&format!("{words} -o d.tif")).fails(1, &said);
+    run(&format!("{words} -o d.tif --dry-run")).fails(1, &said);
+    run(&format!("job plan j -- {words} -o d.tif")).fails(1, &said);
+    // Files far apart: of the frame around them, hardly a cell is drawn.
+    let square = |x: u32| -> String { (0..100).map(|i| format!("{} {} {i}\n", x + i % 10, x + i / 10)).collect() };
+    for (name, x) in [("a.xyz", 0), ("b.xyz", 2_000_000)] {
+        std::fs::write(folder.path().join(name), square(x)).unwrap();
+    }
+    run("dem a.xyz b.xyz --resolution 0.5 --tiles 2x2 --dry-run -o d.tif").works(&["about 10 kB on the disk"]);
+    assert_eq!(files_of(folder.path()), ["a.xyz", "b.xyz", "w.xyz"]);
 }

@@ -8,9 +8,11 @@ mod program;
 mod landscape;
 
 mod bad_input;
+mod damage;
 mod equality;
 mod interruption;
 mod judge;
+mod notices;
 mod parts;
 mod real;
 mod trust;
@@ -29,9 +31,15 @@ fn valley() -> String {
 /// what was printed.
 #[track_caller]
 fn output_of(folder: &TempDir, words: &str, out: &str) -> (Vec<u8>, String) {
+    output_with(folder, words, out, 0)
+}
+
+/// Like [`output_of`], for a run that ends with this status.
+#[track_caller]
+fn output_with(folder: &TempDir, words: &str, out: &str, code: i32) -> (Vec<u8>, String) {
     let words: Vec<&str> = words.split_whitespace().chain(["-o", out, "--overwrite"]).collect();
     let run = run_in(folder, &words);
-    assert_eq!(run.code, 0, "{words:?}: {}", run.stderr);
+    assert_eq!(run.code, code, "{words:?}: {}", run.stderr);
     (std::fs::read(folder.path().join(out)).unwrap(), run.stderr)
 }
 

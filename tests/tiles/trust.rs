@@ -79,6 +79,24 @@ fn what_a_job_did_not_write_stays_when_it_is_removed() {
     assert_eq!(files_of(&folder.path().join("dem.tif.job")), ["mine"]);
 }
 
+/// The name of the output is in no other file.
+#[test]
+fn the_command_of_a_job_is_verified() {
+    let folder = tempfile::tempdir().unwrap();
+    let valley = valley();
+    run(&folder, &format!("job plan j -- dem {valley} --tiles 2x2 -o dem.tif")).works(&[]);
+    let path = folder.path().join("j/command.json");
+    let text = String::from_utf8(bytes(&path)).unwrap();
+    std::fs::write(&path, text.replace("dem.tif", "dam.tif")).unwrap();
+    for words in ["job run j", "job run j --task 0", "job status j"] {
+        run(&folder, words).fails(1, &["j/command.json: the command of the job is damaged, or that of another one"]);
+    }
+    assert_eq!(files_of(folder.path()), ["j"]);
+    run(&folder, "job clean j").works(&[]);
+    run(&folder, &format!("dem {valley} --tiles 2x2 -o dem.tif --job j")).works(&[]);
+    run(&folder, "job run j").fails(2, &["that of a command which goes on itself", "with --resume and --job"]);
+}
+
 /// A flipped byte in a divided file gave heights that were wrong by hundreds of meters.
 #[test]
 fn a_task_refuses_a_damaged_file_of_another() {

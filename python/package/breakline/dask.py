@@ -20,13 +20,14 @@ import os
 import subprocess
 import sys
 import uuid
+import warnings
 from collections import Counter, defaultdict
 from collections.abc import Sequence
 from concurrent.futures import CancelledError
 from pathlib import Path
 from typing import Any, Union
 
-from ._errors import RENAMED, BreaklineError, usage
+from ._errors import RENAMED, BreaklineError, BreaklineWarning, usage
 from ._objects import Objects, StoredObject, is_url
 
 __all__ = ["contour", "dem", "hillshade", "tin"]
@@ -43,6 +44,9 @@ _IN_ONE_WORD = {"--class", "--te", "--levels"}
 
 #: How often a task is submitted again after Dask gave it up because its workers died.
 _AGAIN = 20
+
+#: The status of a program that has written a result with holes, because files were skipped.
+_HOLES = 3
 
 #: What to do when that was not enough.
 _LOST = (
@@ -103,6 +107,11 @@ def dem(
         If the job cannot be planned, if a task fails, or loses its workers, more often than it is repeated, or if the
         scheduler is lost. The tasks that wait are canceled then, as they are by Ctrl-C; those that are done are kept,
         and the same call goes on.
+
+    Warns
+    -----
+    BreaklineWarning
+        If files were skipped (``skip_bad=True``), so that the output has holes. The folder of the job is kept then.
     """
     places = {"job": job, "scratch": scratch, "storage_options": storage_options}
     return _run("dem", inputs, output, client=client, retries=retries, **places, **options)
@@ -169,7 +178,11 @@ def _run(
         raise _error("the scheduler of the cluster was lost, or canceled the tasks", _ENDED) from error
     finally:
         cluster.release()
-    if job is None:
+    if json.loads(_program("job", "status", folder, "--json"))["holes"]:
+        cure = f"repair them, then `breakline job run {folder}` goes on"
+        text = f"files were skipped, so that {os.fspath(output)} has holes: {cure}"
+        warnings.warn(text, BreaklineWarning, stacklevel=3)
+    elif job is None:
         _program("job", "clean", folder)
     return Path(output)
 
@@ -284,7 +297,7 @@ def _found(file: PathLike) -> "list[str]":
 def _program(*words: str) -> str:
     """Run the program and return what it prints."""
     ran = subprocess.run([sys.executable, "-m", "breakline", *words], capture_output=True, text=True)
-    if ran.returncode != 0:
+    if ran.returncode not in (0, _HOLES):
         lines = ran.stderr.splitlines()
         said = [line.removeprefix("error: ") for line in lines if line.startswith("error: ")]
         cures = [line.removeprefix("hint: ") for line in lines if line.startswith("hint: ")]

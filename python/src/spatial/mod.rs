@@ -13,6 +13,7 @@ use breakline::run::Context;
 use breakline::triangulation::InputError;
 use breakline::triangulation::geometry::{Plane, Space};
 use breakline::triangulation::kernel::{Adaptive, Kernel, Range};
+use breakline::triangulation::num::unsigned_zero;
 use numpy::{IntoPyArray, PyArray1, PyArray3, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
@@ -62,6 +63,20 @@ impl Positions {
             2 => Positions::Plane(points(array)),
             _ => Positions::Space(points(array)),
         }
+    }
+
+    /// Rounds coordinates below the range of exact arithmetic to the nearest that it has, which is
+    /// closer than any two points are: no position is outside because it is near an axis.
+    fn rounded(mut self) -> Self {
+        let coordinates = match &mut self {
+            Positions::Plane(positions) => positions.as_flattened_mut(),
+            Positions::Space(positions) => positions.as_flattened_mut(),
+        };
+        let (least, step) = (Adaptive::RANGE.min, Adaptive::RANGE.min * f64::EPSILON);
+        for x in coordinates.iter_mut().filter(|x| x.abs() < least) {
+            *x = unsigned_zero((*x / step).round() * step);
+        }
+        self
     }
 
     fn count(&self) -> usize {
@@ -121,7 +136,7 @@ impl Tessellation {
         positions: &PyReadonlyArray2<'_, f64>,
         answer: impl FnOnce(&Any, &Positions, &AtomicBool) -> T + Send,
     ) -> PyResult<T> {
-        let positions = Positions::of(positions);
+        let positions = Positions::of(positions).rounded();
         if positions.count() <= FEW {
             return work::short(py, || Result::Ok(answer(&self.read(), &positions, Context::default().cancel)));
         }

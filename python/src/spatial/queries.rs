@@ -263,7 +263,7 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
                 let is_not_shared = on.all(|i| self.t.tds().is_infinite(self.t.tds().neighbor(cell, i)));
                 if is_not_shared
                     && self.is_by_rounding(cell, &sides)
-                    && self.is_at_hull_by_rounding(cell, q)
+                    && self.leads_to_hull(cell, q, |cell, sides| self.is_by_rounding(cell, sides))
                     && let Some(beside) = self.within_tolerance(q, cell, BROAD)
                 {
                     return (in_cell(beside), Some(cell));
@@ -327,8 +327,9 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
         sides.iter().sum::<f64>() <= ROUNDINGS * (0..D).map(moved).sum::<f64>()
     }
 
-    /// Returns true if cells that are there by rounding lead from one of them to the hull.
-    fn is_at_hull_by_rounding(&self, start: CellId, q: &[f64; D]) -> bool {
+    /// Returns true if a cell is infinite, or cells of a kind lead from it to an infinite one,
+    /// given by their volumes.
+    fn leads_to_hull(&self, start: CellId, q: &[f64; D], is_kind: impl Fn(CellId, &[f64; N]) -> bool) -> bool {
         let tds = self.t.tds();
         let mut seen = vec![start];
         let mut next = 0;
@@ -338,7 +339,7 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
             if tds.is_infinite(cell) {
                 return true;
             }
-            if self.is_by_rounding(cell, &self.sides(cell, q)) {
+            if is_kind(cell, &self.sides(cell, q)) {
                 let beside = (0..N).map(|i| tds.neighbor(cell, i));
                 let new: Vec<CellId> = beside.filter(|beyond| !seen.contains(beyond)).collect();
                 seen.extend(new);
@@ -347,47 +348,72 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
         false
     }
 
-    /// Returns true if a position in a cell is at the hull, or in or beside a flat cell there, up
-    /// to rounding errors.
+    /// Returns true if a position in a cell is at the hull, or in or beside flat cells there, up to
+    /// rounding errors. Flat cells elsewhere, as between cubes of a grid, are no rim.
     fn is_at_rim(&self, cell: CellId, q: &[f64; D]) -> bool {
         let sides = self.sides(cell, q);
         let sum: f64 = sides.iter().sum();
-        let is_rim =
-            |beyond: CellId| self.t.tds().is_infinite(beyond) || self.is_thin(beyond, &self.sides(beyond, q), FLAT);
-        self.is_thin(cell, &sides, FLAT)
-            || (0..N).any(|i| sides[i] <= BROAD * sum && is_rim(self.t.tds().neighbor(cell, i)))
+        let is_rim = |cell: CellId| self.leads_to_hull(cell, q, |cell, sides| self.is_thin(cell, sides, FLAT));
+        is_rim(cell) || (0..N).any(|i| sides[i] <= BROAD * sum && is_rim(self.t.tds().neighbor(cell, i)))
     }
 
     /// Searches near a cell for one that contains a position up to a tolerance, and is not there by
     /// rounding; those that are there by rounding are passed to all sides, and are second choice.
     fn within_tolerance(&self, q: &[f64; D], start: CellId, tolerance: f64) -> Option<CellId> {
-        if tolerance == 0.0 {
+        if tolerance == 0.0 || self.is_far_outside(q, start, tolerance) {
             return None;
         }
         let tds = self.t.tds();
         let mut second = None;
-        let mut seen = vec![start];
-        let mut next = 0;
-        while next < seen.len().min(PATIENCE) {
-            let cell = seen[next];
-            next += 1;
+        let (mut seen, mut open) = (vec![start], vec![(0.0_f64, start)]);
+        while seen.len() < PATIENCE {
+            // Next is the one whose box is nearest to the position.
+            let nearest = (0..open.len()).min_by(|&i, &j| open[i].0.total_cmp(&open[j].0));
+            let Some(nearest) = nearest else { break };
+            let (_, cell) = open.swap_remove(nearest);
             let sides = self.sides(cell, q);
             let is_by_rounding = self.is_by_rounding(cell, &sides);
-            let least = (0..N).min_by(|&i, &j| sides[i].total_cmp(&sides[j])).unwrap_or(0);
-            if sides[least] >= -tolerance * sides.iter().sum::<f64>() {
+            let least = -tolerance * sides.iter().sum::<f64>();
+            if sides.iter().all(|&side| side >= least) {
                 if !is_by_rounding {
                     return Some(cell);
                 }
                 second = second.or(Some(cell));
             }
-            for i in (0..N).filter(|&i| is_by_rounding || i == least) {
+            for i in (0..N).filter(|&i| is_by_rounding || sides[i] < least) {
                 let beyond = tds.neighbor(cell, i);
                 if !tds.is_infinite(beyond) && !seen.contains(&beyond) {
                     seen.push(beyond);
+                    open.push((self.distance_from_box(beyond, q), beyond));
                 }
             }
         }
         second
+    }
+
+    /// Returns how far a position is outside of the box around a cell, along the axis on which it
+    /// is farthest.
+    fn distance_from_box(&self, cell: CellId, q: &[f64; D]) -> f64 {
+        let corners = self.t.tds().corners(cell).map(|v| self.t.point(v));
+        let outside = |axis: usize| {
+            let below = corners.iter().map(|p| p[axis] - q[axis]).fold(f64::INFINITY, f64::min);
+            let above = corners.iter().map(|p| q[axis] - p[axis]).fold(f64::INFINITY, f64::min);
+            below.max(above)
+        };
+        (0..D).map(outside).fold(0.0, f64::max)
+    }
+
+    /// Returns true if a position is so far beyond a facet of a cell on the hull that it is in no
+    /// cell up to a tolerance: cells are at most as high as the bounding box is wide, in all
+    /// directions together.
+    fn is_far_outside(&self, q: &[f64; D], cell: CellId, tolerance: f64) -> bool {
+        let sides = self.sides(cell, q);
+        let [low, high] = &self.bounds;
+        let size: f64 = (0..D).map(|axis| high[axis] - low[axis]).sum();
+        // At least the size of a facet, times `(D - 1)!`, and the distance of a corner from it.
+        let facet = self.widths(cell).iter().sum::<f64>().powi(D as i32 - 1);
+        let is_hull = |i: usize| self.t.tds().is_infinite(self.t.tds().neighbor(cell, i));
+        (0..N).any(|i| is_hull(i) && -sides[i] > tolerance * size * facet)
     }
 }
 

@@ -203,6 +203,31 @@ pub(in crate::cli) fn resolve_report(existing: Existing, plan: &SurfacePlan) -> 
     Ok(Outputs { targets: Vec::new(), set: OutputSet::default() })
 }
 
+/// The part of what is announced for the files of tasks that is written at least: few points may be
+/// ground, and triangles may cover little of the extents of files.
+const LEAST_SHARE: f64 = 0.1;
+
+/// Makes sure that a disk has room for the files of tasks, about `need` bytes in a folder, which
+/// need not exist yet. `there` are bytes that some of them have already.
+///
+/// # Errors
+/// If they cannot fit.
+pub(in crate::cli) fn require_room(need: u64, there: u64, folder: &Path, console: &Console) -> Result<()> {
+    let disk = folder.ancestors().map(|folder| if folder.as_os_str().is_empty() { Path::new(".") } else { folder });
+    let Some(free) = disk.filter(|folder| folder.is_dir()).find_map(free_in) else { return Ok(()) };
+    let room = free.saturating_add(there) as f64;
+    let stated = format!("the files of the tasks take about {}, {} are free on the disk", bytes(need), bytes(free));
+    if need as f64 * LEAST_SHARE > room {
+        return Err(Error::limit(stated)
+            .in_file(folder)
+            .cure("choose larger cells (--resolution), a smaller extent (--te), or a folder on another disk (--job)"));
+    }
+    if need as f64 > room {
+        console.warning(format_args!("the files of the tasks may not fit: {stated}"));
+    }
+    Ok(())
+}
+
 #[cfg(unix)]
 fn free_in(folder: &Path) -> Option<u64> {
     let disk = rustix::fs::statvfs(folder).ok()?;

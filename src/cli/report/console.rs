@@ -8,6 +8,7 @@ use std::sync::{Mutex, PoisonError};
 use indicatif::{MultiProgress, ProgressDrawTarget};
 
 use super::escape;
+use super::last_words::LastWords;
 use super::progress::Bar;
 use crate::error::Error;
 use crate::run::{Context, Monitor, Notice, Progress, Severity, Size, Stage};
@@ -21,7 +22,7 @@ pub(in crate::cli) enum Level {
     Verbose,
 }
 
-/// Prints the messages of a run to stderr. Equal notes and warnings are printed once.
+/// Prints the messages of a run to stderr. Equal notices, notes and warnings are printed once.
 #[derive(Debug)]
 pub(in crate::cli) struct Console {
     level: Level,
@@ -74,16 +75,24 @@ impl Console {
         }
     }
 
+    /// Returns what prints a note if a signal ends the program while it lives, unless the run is
+    /// quiet.
+    pub(in crate::cli) fn note_if_ended(&self, text: impl Display) -> Option<LastWords> {
+        (self.level > Level::Quiet).then(|| LastWords::new(format!("note: {text}")))
+    }
+
     /// Returns the context of a run that shows its notices and progress here.
     pub(in crate::cli) fn context(&self) -> Context<'_> {
         Context { monitor: self, ..Context::default() }
     }
 
-    fn once(&self, text: String) {
+    /// Prints a line unless it was printed before; returns true if it was printed.
+    fn once(&self, text: String) -> bool {
         let is_new = self.said.lock().unwrap_or_else(PoisonError::into_inner).insert(text.clone());
         if is_new {
             self.print(&text);
         }
+        is_new
     }
 
     /// Prints one line. A closed stderr is ignored.
@@ -100,11 +109,13 @@ impl Monitor for Console {
     }
 
     fn notice(&self, notice: &Notice) {
-        match notice.severity() {
-            Severity::Detail => self.detail(notice),
-            Severity::Note => self.note(notice),
-            Severity::Warning => self.warning(notice),
+        let (least, text) = match notice.severity() {
+            Severity::Detail => (Level::Verbose, notice.to_string()),
+            Severity::Note => (Level::Normal, format!("note: {notice}")),
+            Severity::Warning => (Level::Quiet, format!("warning: {notice}")),
+        };
+        if self.level >= least && self.once(text) {
+            notice.details().iter().for_each(|line| self.line(format_args!("            {line}")));
         }
-        notice.details().iter().for_each(|line| self.line(format_args!("            {line}")));
     }
 }

@@ -2,5 +2,6 @@
 
 pub(super) mod console;
 pub(super) mod escape;
+pub(super) mod last_words;
 mod progress;
 pub(super) mod summary;

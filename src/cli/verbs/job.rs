@@ -4,12 +4,13 @@ use clap::Parser;
 use serde_json::{Value, json};
 
 use super::tiled;
-use crate::cli::input::args::{Cli, JobAction, JobArgs, SurfaceArgs, TileArgs, TinArgs, Verb};
+use crate::cli::input::args::{Caller, Cli, JobAction, JobArgs, OutputArgs, SurfaceArgs, TileArgs, TinArgs, Verb};
+use crate::cli::input::outputs;
 use crate::cli::input::plan::SurfacePlan;
 use crate::cli::report::console::Console;
 use crate::cli::{Exit, print};
 use crate::error::{Error, Result};
-use crate::run::{self, COMMAND, Job, Look, Source, TileOptions, TiledProduct};
+use crate::run::{self, Job, Look, Source, TileOptions, TiledProduct};
 
 /// Plans a run in tiles, or does its tasks.
 pub(in crate::cli) fn run(args: &JobArgs, console: &Console) -> Result<Exit> {
@@ -129,6 +130,17 @@ fn args_of(verb: &mut Verb) -> Option<(&mut SurfaceArgs, &mut TileArgs)> {
     }
 }
 
+/// Returns the options of the output of a verb that works in tiles.
+fn output_of(verb: &mut Verb) -> Option<&mut OutputArgs> {
+    match verb {
+        Verb::Dem(args) => Some(&mut args.output),
+        Verb::Contour(args) => Some(&mut args.output),
+        Verb::Hillshade(args) => Some(&mut args.output),
+        Verb::Tin(args) => Some(&mut args.output),
+        _ => None,
+    }
+}
+
 fn plan(job: &Path, look: Look, words: &[String], console: &Console) -> Result<Exit> {
     let command = Command::parse(words, None, console)?;
     // What cannot be written is better known before all tasks are done.
@@ -144,6 +156,7 @@ fn plan(job: &Path, look: Look, words: &[String], console: &Console) -> Result<E
     }
     let options = TileOptions { look, ..command.options(job) };
     let mut planned = Job::plan(&command.plan.request, &command.product, &options, &console.context())?;
+    outputs::require_room(planned.size().disk, 0, job, console)?;
     let folder = std::env::current_dir()?;
     let files = match &command.plan.request.source {
         Source::Points(request) => request.points.iter().map(|input| unicode(input.path())).collect::<Result<_>>()?,
@@ -168,19 +181,14 @@ fn unicode(path: &Path) -> Result<&str> {
 
 /// Returns the command of a job, and goes to the folder in which it was typed.
 fn stored(job: &Path, console: &Console) -> Result<(PathBuf, Command, Vec<String>)> {
-    let path = job.join(COMMAND);
-    let text = match std::fs::read(&path) {
-        Ok(text) => text,
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Err(no_job(job)),
-        Err(error) => return Err(Error::from(error).in_file(path)),
-    };
+    let text = run::job_command(job)?.ok_or_else(|| no_job(job))?;
     let job = std::path::absolute(job)?;
-    let value: Value = serde_json::from_slice(&text).unwrap_or_default();
+    let value: Value = serde_json::from_str(&text).unwrap_or_default();
     let words = serde_json::from_value::<Vec<String>>(value["command"].clone());
     let folder = serde_json::from_value::<PathBuf>(value["folder"].clone());
     let files = serde_json::from_value::<Vec<PathBuf>>(value["files"].clone());
     let (Ok(words), Ok(folder), Ok(files)) = (words, folder, files) else {
-        return Err(Error::format("the command of the job is damaged").in_file(path).cure("plan it again"));
+        return Err(Error::format("the command of the job is damaged").in_file(job).cure("plan it again"));
     };
     std::env::set_current_dir(&folder).map_err(|e| Error::from(e).in_file(folder))?;
     let command = Command::parse(&words, Some(files), console)?;
@@ -203,14 +211,23 @@ fn work(job: &Path, task: Option<usize>, console: &Console) -> Result<Exit> {
         }
         open.require_done(task)?;
     }
+    let mut is_replaced = false;
     // Like any task, the last one may be repeated: its process may have been killed after it.
     if open.has_written(&command.output) {
-        console.line(format_args!("output      {} is written", command.output.display()));
-        return Ok(Exit::Done);
+        // What was skipped is tried again, and the output replaced.
+        if !open.has_holes() || task.is_some() {
+            console.line(format_args!("output      {} is written", command.output.display()));
+            return Ok(if open.has_holes() { Exit::Holes } else { Exit::Done });
+        }
+        is_replaced = true;
     }
     drop(open);
+    if let Some(output) = output_of(&mut command.verb) {
+        output.overwrite |= is_replaced;
+    }
     if let Some((_, tiles)) = args_of(&mut command.verb) {
-        (tiles.job, tiles.resume, tiles.last_task) = (Some(job.clone()), true, task);
+        let caller = task.map_or(Caller::Job, Caller::LastTask);
+        (tiles.job, tiles.resume, tiles.caller) = (Some(job.clone()), true, caller);
     }
     match &command.verb {
         Verb::Dem(args) => super::dem::run(args, console),
@@ -249,5 +266,5 @@ fn print_tasks(open: &Job, words: &[String], output: &Path) -> Result<()> {
         "name": "output", "stage": last_stage, "needs": open.last_needs(), "input": null,
         "has_read": null, "done": open.has_written(output),
     }));
-    print(&format!("{}\n", json!({ "command": words, "tasks": tasks })))
+    print(&format!("{}\n", json!({ "command": words, "tasks": tasks, "holes": open.has_holes() })))
 }

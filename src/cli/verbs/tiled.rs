@@ -3,11 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use crate::cli::Exit;
-use crate::cli::input::args::TileArgs;
-use crate::cli::input::outputs::Outputs;
+use crate::cli::input::args::{Caller, TileArgs};
+use crate::cli::input::outputs::{self, Outputs};
 use crate::cli::input::plan::SurfacePlan;
 use crate::cli::report::console::Console;
-use crate::cli::report::summary::print_extent;
+use crate::cli::report::last_words::LastWords;
+use crate::cli::report::summary::{counted, print_extent};
 use crate::error::{Error, Result};
 use crate::run::units::bytes;
 use crate::run::{self, BadFiles, Job, JobLock, JobReport, JobSize, Look, TileOptions, TiledProduct};
@@ -27,8 +28,12 @@ pub(super) struct Ran<'a> {
     pub(super) job: Job<'a>,
     pub(super) report: JobReport,
     lock: JobLock,
+    /// Says how to go on if a signal ends the program.
+    words: Option<LastWords>,
     /// True if the user named the folder of the job.
     is_kept: bool,
+    folder: PathBuf,
+    how_to_go_on: String,
 }
 
 /// Runs the tasks of a request, if tiles are asked for or memory would not suffice.
@@ -67,9 +72,9 @@ pub(super) fn run<'a, F>(
     if options.folder == *target {
         return Err(Error::usage("the output and the folder of the job have the same name").in_file(target));
     }
-    let resumed = match (args.resume, args.last_task) {
-        (true, Some(last)) => Job::open_for(&plan.request, product, &options, last)?,
-        (true, None) => Job::open(&plan.request, product, &options)?,
+    let resumed = match (args.resume, args.caller) {
+        (true, Caller::LastTask(last)) => Job::open_for(&plan.request, product, &options, last)?,
+        (true, Caller::Verb | Caller::Job) => Job::open(&plan.request, product, &options)?,
         (false, _) => None,
     };
     let is_new = resumed.is_none();
@@ -79,22 +84,47 @@ pub(super) fn run<'a, F>(
     };
     let size = job.size();
     print_size(&size, console);
+    outputs::require_room(size.disk, job.bytes_there(), &options.folder, console)?;
     if args.dry_run {
         console.line(format_args!("folder      {}", options.folder.display()));
         return Ok(Tiled::Planned);
     }
-    let lock = if is_new { job.create(None)? } else { job.lock()? };
+    let mut lock = if is_new { job.create(None)? } else { job.lock()? };
+    // A task of a batch queue must not change the plan.
+    let may_plan = !is_new && matches!(args.caller, Caller::Verb | Caller::Job);
+    let outgrown = if may_plan { job.outgrown_by(&context)?.map(Path::to_path_buf) } else { None };
+    if let Some(path) = &outgrown {
+        console.note(format_args!("{} was skipped, and can be read now: the job is planned again", path.display()));
+        // That of `breakline job`; a verb has none.
+        let command = run::job_command(&options.folder).ok().flatten();
+        let options = TileOptions { bad: BadFiles::Skip, ..options.clone() };
+        let anew = Job::plan(&plan.request, product, &options, &context)?;
+        job.remove(&lock)?;
+        drop(lock);
+        job = anew;
+        lock = job.create(command.as_deref())?;
+    }
     outputs.set.mark(job.mark());
-    if !is_new {
+    if !is_new && outgrown.is_none() {
         let done = job.clear_up(&lock)?;
         outputs.targets.iter().try_for_each(|target| job.remove_abandoned(&target.path, &lock))?;
         console.line(format_args!("resumed     {done} of {} tasks are done", size.tasks));
     }
-    job.run(&context).inspect_err(|_| {
-        console.note(format_args!("finished tasks are kept in {}: go on with --resume", options.folder.display()));
-    })?;
-    let report = job.report()?;
-    Ok(Tiled::Ran(Box::new(Ran { job, report, lock, is_kept: args.job.is_some() })))
+    let how_to_go_on = how_to_go_on(args);
+    let kept = format!("finished tasks are kept in {}: go on with {how_to_go_on}", options.folder.display());
+    let words = console.note_if_ended(&kept);
+    job.run(&context).inspect_err(|_| console.note(&kept))?;
+    let report = job.report(&context)?;
+    let (folder, is_kept) = (options.folder, args.job.is_some());
+    Ok(Tiled::Ran(Box::new(Ran { job, report, lock, words, is_kept, folder, how_to_go_on })))
+}
+
+/// Returns what the user types to go on with a job.
+fn how_to_go_on(args: &TileArgs) -> String {
+    match (args.caller, &args.job) {
+        (Caller::Job | Caller::LastTask(_), Some(job)) => format!("`breakline job run {}`", job.display()),
+        _ => "--resume".to_owned(),
+    }
 }
 
 /// Prints what a plan consists of.
@@ -159,17 +189,25 @@ impl Ran<'_> {
         let left_out = if left_out.is_empty() { String::new() } else { format!(" ({})", left_out.join(", ")) };
         console.line(format_args!("triangles   {}{left_out}", report.triangles));
         console.line(format_args!("handed up   {} vertices", report.handed_up));
-        report.warnings.iter().for_each(|text| console.warning(text));
-        report.skipped.iter().for_each(|text| console.warning(format_args!("skipped: {text}")));
         print_extent(report.extent, report.crs.as_ref(), console);
     }
 
     /// Makes the output appear, and removes the files of the tasks unless their folder was named.
     pub(super) fn commit<F>(self, outputs: Outputs<F>, console: &Console) -> Result<Exit> {
-        if self.is_kept {
+        if self.is_kept || self.report.skipped > 0 {
             self.job.record(&outputs.set, &self.report, &self.lock)?;
         }
         outputs.commit(console)?;
+        drop(self.words);
+        if self.report.skipped > 0 {
+            let files = counted(self.report.skipped as u64, "file");
+            console.note(format_args!(
+                "the result has holes: {files} skipped; finished tasks are kept in {}: repair what can be repaired, then go on with {}",
+                self.folder.display(),
+                self.how_to_go_on,
+            ));
+            return Ok(Exit::Holes);
+        }
         if !self.is_kept {
             self.job.remove(&self.lock)?;
         }

@@ -49,7 +49,7 @@ mod write;
 pub use header::{Header, RecordInfo};
 pub use merge::Rounding;
 pub use options::{Detail, ReadOptions};
-pub use reader::{LasReader, from_stream, from_stream_with, open, open_with};
+pub use reader::{LasReader, from_stream, from_stream_with, open, open_with, stated};
 pub use record::put_coordinates;
 pub use system::state_system;
 pub use write::{LasWriter, Packing, create};

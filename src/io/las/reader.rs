@@ -9,7 +9,7 @@ use super::plain::Plain;
 use super::raw::MAX_HEADER;
 use super::{head, records, reference};
 use crate::data::{Lattice, PointBatch, PointInfo, PointSource};
-use crate::error::Result;
+use crate::error::{Error, Result};
 
 /// A reader for the points of a LAS or LAZ file, made by [`open`](super::open).
 #[derive(Debug)]
@@ -123,6 +123,35 @@ pub fn open(path: impl AsRef<Path>) -> Result<LasReader> {
 /// As [`open`].
 pub fn open_with(path: impl AsRef<Path>, options: impl Into<ReadOptions>) -> Result<LasReader> {
     LasReader::new(Input::open(path.as_ref())?, options.into())
+}
+
+/// Returns what the header of a LAS or LAZ file states, also if its points are damaged or missing;
+/// without the coordinate system, if the records before the points are damaged, too.
+///
+/// # Errors
+/// If the file cannot be read, or its header is damaged.
+pub fn stated(path: impl AsRef<Path>) -> Result<PointInfo> {
+    let path = path.as_ref();
+    let read = || {
+        let mut input = Input::open(path)?;
+        let mut warnings = Vec::new();
+        let bytes = input.bytes(0, MAX_HEADER)?;
+        let mut header = Header::check(&bytes, input.length, &mut warnings)?;
+        let payloads = records::read(&input, &mut header, &mut warnings).ok();
+        let system = payloads.map(|payloads| reference::choose(&payloads, header.says_wkt, &mut warnings));
+        let (crs, unread_crs) = system.unwrap_or_default();
+        Ok(PointInfo {
+            format: header.format(),
+            count: Some(header.count),
+            bounds: header.bounds,
+            crs,
+            unread_crs,
+            has_classes: true,
+            warnings,
+            ..PointInfo::default()
+        })
+    };
+    read().map_err(|error: Error| error.in_file(path))
 }
 
 /// Reads a stream by copying it to a temporary file; messages call it `name`.

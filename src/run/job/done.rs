@@ -181,6 +181,7 @@ impl Job<'_> {
         // An interrupted removal may have taken it.
         std::fs::create_dir_all(&tasks).map_err(|e| Error::from(e).in_file(&tasks))?;
         remove_unfinished(&self.folder)?;
+        self.try_again()?;
         self.remove_damaged()
     }
 

@@ -15,7 +15,7 @@ use crate::run::checksum::checksum;
 const PLAN: &str = "plan.json";
 
 /// The file that a program may keep its command in; it is removed with the job.
-pub const COMMAND: &str = "command.json";
+pub(super) const COMMAND: &str = "command.json";
 
 /// The file that says which files were written as the output.
 pub(super) const WRITTEN: &str = "output.json";
@@ -31,6 +31,8 @@ pub(super) struct StoredPlan {
     pub(super) plan: Value,
     /// The number of tasks.
     tasks: u64,
+    /// The checksum of the command that is kept with the job, if there is one.
+    command: Option<u64>,
 }
 
 impl StoredPlan {
@@ -57,9 +59,10 @@ impl StoredPlan {
         let (stated, plan) = std::str::from_utf8(text).ok()?.split_once('\n')?;
         let sum = checksum(plan.as_bytes());
         let value: Value = serde_json::from_str(plan).ok().filter(|_| stated == format!("{sum:08x}"))?;
-        let is_plan = ["version", "request"].iter().all(|name| value[name].is_string());
+        let is_plan = value["version"].is_string() && value["request"].is_object();
         let tasks = value["tasks"].as_u64().filter(|_| is_plan && value["layout"].is_array())?;
-        Some(StoredPlan { sum, plan: value, tasks })
+        let command = value["command"].as_u64();
+        Some(StoredPlan { sum, plan: value, tasks, command })
     }
 }
 
@@ -124,6 +127,27 @@ fn is_note(path: &Path) -> bool {
     value.is_some_and(|value| value["files"].is_array() && (value["command"].is_array() || value["job"].is_u64()))
 }
 
+/// Returns the command that a program keeps with a job; `None` if the folder has no job.
+///
+/// # Errors
+/// If the job has no command, or it is damaged, or that of another job; or if the plan is.
+pub fn job_command(folder: &Path) -> Result<Option<String>> {
+    let Some(stored) = StoredPlan::read(folder)? else { return Ok(None) };
+    let path = folder.join(COMMAND);
+    let Some(sum) = stored.command else {
+        return Err(Error::usage("the job in this folder is that of a command which goes on itself")
+            .in_file(folder)
+            .cure("repeat that command with --resume and --job"));
+    };
+    let text = std::fs::read_to_string(&path).map_err(|e| Error::from(e).in_file(&path))?;
+    if u64::from(checksum(text.as_bytes())) != sum {
+        return Err(Error::format("the command of the job is damaged, or that of another one")
+            .in_file(path)
+            .cure("plan the job again: `breakline job clean` removes this one"));
+    }
+    Ok(Some(text))
+}
+
 /// Returns the folder of the files of tasks.
 pub(super) fn tasks_in(folder: &Path) -> PathBuf {
     folder.join(TASKS)
@@ -139,7 +163,7 @@ pub(super) fn task_path(folder: &Path, task: usize) -> PathBuf {
 /// # Errors
 /// If one cannot be removed.
 pub(super) fn remove_unfinished(folder: &Path) -> Result<()> {
-    for folder in [folder, &tasks_in(folder)] {
+    for folder in [folder, &tasks_in(folder)].into_iter().filter(|folder| folder.is_dir()) {
         let named = |e: std::io::Error| Error::from(e).in_file(folder);
         for entry in std::fs::read_dir(folder).map_err(named)? {
             let path = entry.map_err(named)?.path();
@@ -165,9 +189,9 @@ pub fn remove_job(folder: &Path) -> Result<()> {
 
 /// Removes the files of a job, by their names, and its folder, if nothing else is in it.
 pub(super) fn remove_files(folder: &Path, stored: &StoredPlan, _lock: &JobLock) -> Result<()> {
+    remove_unfinished(folder)?;
     let tasks = tasks_in(folder);
     if tasks.is_dir() {
-        remove_unfinished(folder)?;
         for task in 0..stored.tasks {
             remove(&task_path(folder, task as usize))?;
         }

@@ -1,4 +1,5 @@
-//! The extents of files that were skipped. No triangle is drawn over them.
+//! The extents of files that were skipped. No triangle is drawn over them, also where other files
+//! have points: what is missing there would be a surface that looks whole.
 
 use serde_json::{Map, Value, json};
 
@@ -16,14 +17,10 @@ const HOLES: &str = "holes";
 pub(super) struct Holes(Vec<Hole>);
 
 impl Holes {
-    /// Adds the extent of a file that is skipped, as far as other files have no points there; not
-    /// at all if one of them overlaps much of it.
+    /// Adds the extent of a file that is skipped.
     pub(super) fn add_file(&mut self, job: &Job, number: usize) {
-        let files = &job.plan.files;
-        let others = files.iter().enumerate().filter(|(at, _)| *at != number).map(|(_, other)| [other.min, other.max]);
-        if let Some(hole) = without([files[number].min, files[number].max], others) {
-            self.add(hole);
-        }
+        let file = &job.plan.files[number];
+        self.add([file.min, file.max]);
     }
 
     /// Adds what another task knows.
@@ -51,32 +48,6 @@ impl Holes {
     }
 }
 
-/// The share of a box that another one may overlap on one axis, so that the rest is a hole.
-const LITTLE: f64 = 0.01;
-
-/// Returns a box without what others overlap of it at its sides; `None` if one of them overlaps
-/// more.
-fn without(hole: Hole, others: impl Iterator<Item = Hole>) -> Option<Hole> {
-    let [mut min, mut max] = hole;
-    let size = [0, 1].map(|k| hole[1][k] - hole[0][k]);
-    for [low, high] in others {
-        let common = [0, 1].map(|k: usize| f64::min(high[k], hole[1][k]) - f64::max(low[k], hole[0][k]));
-        if common.iter().any(|length| *length < 0.0) {
-            continue;
-        }
-        let k = usize::from(common[1] * size[0] < common[0] * size[1]);
-        if common[k] > LITTLE * size[k] {
-            return None;
-        }
-        if low[k] > hole[0][k] {
-            max[k] = max[k].min(low[k]);
-        } else {
-            min[k] = min[k].max(high[k]);
-        }
-    }
-    Some([min, max])
-}
-
 /// Returns true unless a side of the box, or an edge of the triangle, has the two on different
 /// sides.
 fn reaches_into(corners: [[f64; 3]; 3], [min, max]: Hole) -> bool {
@@ -96,20 +67,6 @@ fn reaches_into(corners: [[f64; 3]; 3], [min, max]: Hole) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn others_at_the_sides_make_a_hole_smaller() {
-        let hole = [[0.0, 0.0], [100.0, 100.0]];
-        let of = |others: &[Hole]| without(hole, others.iter().copied());
-        assert_eq!(of(&[]), Some(hole));
-        // Touching, and a hairline over it.
-        assert_eq!(of(&[[[100.0, 0.0], [200.0, 100.0]], [[0.0, 100.0], [100.0, 200.0]]]), Some(hole));
-        assert_eq!(of(&[[[99.5, 0.0], [200.0, 100.0]]]), Some([[0.0, 0.0], [99.5, 100.0]]));
-        assert_eq!(of(&[[[-50.0, -9.0], [0.5, 50.0]]]), Some([[0.5, 0.0], [100.0, 100.0]]));
-        // A flight line over it.
-        assert_eq!(of(&[[[40.0, -50.0], [60.0, 200.0]]]), None);
-        assert_eq!(of(&[[[-9.0, -9.0], [200.0, 200.0]]]), None);
-    }
 
     #[test]
     fn triangles_beside_a_hole_do_not_reach_into_it() {

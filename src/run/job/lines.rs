@@ -14,9 +14,10 @@ use crate::data::{Bounds, Surface};
 use crate::error::Result;
 use crate::run::context::Journal;
 use crate::run::crossings::{self, LineNames};
-use crate::run::line_inputs::LineLayers;
-use crate::run::line_notes;
-use crate::run::tin::{TinRequest, builder_of};
+use crate::run::line_inputs::{Added, LineLayers};
+use crate::run::line_notes::{self, LevelRings, OtherHeights};
+use crate::run::notice::Notice;
+use crate::run::tin::{TinRequest, builder_of, default_tolerance};
 use crate::run::transforms::Transforms;
 use crate::run::units::Units;
 use crate::terrain::tiles::{self, Layout, SubConstraint, TileClip};
@@ -35,6 +36,10 @@ pub(super) struct JobLines {
     reach: f64,
     /// The box around all lines.
     pub(super) extent: Bounds,
+    /// The box around those that have heights by themselves.
+    pub(super) extent_of_heights: Bounds,
+    /// Lines that may be shores.
+    pub(super) rings: Option<LevelRings>,
 }
 
 /// What the tasks get from the layers of lines.
@@ -76,8 +81,10 @@ impl Known {
         in_plan.iter().flatten().for_each(|&[x, y]| of_lines.add([x, y, 0.0]));
         let mut all = *extent;
         all.merge(&of_lines);
+        builder.judged = builder.bounds;
         let clip = TileClip::take_from(&mut builder, &all)?;
-        let lines = layers.has_lines_with_heights().then(|| JobLines::new(builder, added.names, in_plan, of_lines));
+        let with_heights = layers.has_lines_with_heights();
+        let lines = with_heights.then(|| JobLines::new(builder, added, &in_plan, of_lines, request, &units));
         Ok(Known { lines, clip })
     }
 }
@@ -88,11 +95,30 @@ pub(super) fn layers_of<'a>(request: &'a TinRequest, journal: &Journal) -> Resul
 }
 
 impl JobLines {
-    fn new(builder: TinBuilder, names: LineNames, lines: Vec<Vec<[f64; 2]>>, extent: Bounds) -> Self {
+    fn new(
+        builder: TinBuilder,
+        added: Added,
+        lines: &[Vec<[f64; 2]>],
+        extent: Bounds,
+        request: &TinRequest,
+        units: &Units,
+    ) -> Self {
         let largest = lines.iter().flatten().flatten().fold(0.0_f64, |most, c| most.max(c.abs()));
-        let sites = lines.iter().flatten().map(|p| p.map(f64::to_bits)).collect();
-        let near = NearLines::new(lines.iter().flat_map(|line| line.windows(2)).map(|ends| [ends[0], ends[1]]));
-        JobLines { builder, names, near, sites, reach: tiles::rounding_reach(largest), extent }
+        JobLines {
+            builder,
+            names: added.names,
+            near: NearLines::new(lines.iter().flat_map(|line| line.windows(2)).map(|ends| [ends[0], ends[1]])),
+            sites: lines.iter().flatten().map(|p| p.map(f64::to_bits)).collect(),
+            reach: tiles::rounding_reach(largest),
+            extent,
+            extent_of_heights: added.extent,
+            rings: LevelRings::of(added.level_rings, &request.lines, default_tolerance(units)),
+        }
+    }
+
+    /// Returns the notice about lines that may be shores, from what all points say.
+    pub(super) fn notice_of_rings(&self, found: &[OtherHeights], units: &Units) -> Option<Notice> {
+        self.rings.as_ref().and_then(|rings| rings.notice(found, &self.names, units))
     }
 
     /// Removes the points that water and walls replace, and returns those of the others that may

@@ -25,18 +25,22 @@ impl JobLock {
         loop {
             // Nothing is written to it: a folder that is no job yet may have such a file.
             let file = File::options().write(true).create(true).truncate(false).open(&path).map_err(named)?;
-            match lock(&file) {
-                Err(TryLockError::WouldBlock) if start.elapsed() < PATIENCE => std::thread::sleep(PATIENCE / 50),
-                Err(TryLockError::WouldBlock) => {
-                    return Err(Error::usage("another process works on this job")
-                        .in_file(folder)
-                        .cure("wait for it, or name another folder (--job)"));
-                }
+            let is_taken = match lock(&file) {
                 // The job may have been removed, and planned again, while this one waited.
-                Ok(()) if !is_at(&file.metadata().map_err(named)?, &path) => {}
+                Ok(()) => is_at(&file.metadata().map_err(named)?, &path),
+                Err(TryLockError::WouldBlock) => false,
                 // Some shared file systems have no locks.
-                Ok(()) | Err(TryLockError::Error(_)) => return Ok(JobLock { _file: file }),
+                Err(TryLockError::Error(_)) => true,
+            };
+            if is_taken {
+                return Ok(JobLock { _file: file });
             }
+            if start.elapsed() > PATIENCE {
+                return Err(Error::usage("another process works on this job")
+                    .in_file(folder)
+                    .cure("wait for it, or name another folder (--job)"));
+            }
+            std::thread::sleep(PATIENCE / 50);
         }
     }
 }

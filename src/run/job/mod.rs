@@ -19,12 +19,15 @@ mod folder;
 mod holes;
 mod lines;
 mod lock;
+mod notes;
 mod output;
 mod plan;
 mod planned_file;
 mod raster;
+mod request;
 mod sampled;
 mod schedule;
+mod skipped;
 mod stored;
 mod surface;
 mod task_file;
@@ -37,23 +40,24 @@ use std::sync::OnceLock;
 
 use serde_json::json;
 
-pub use self::folder::{COMMAND, remove_job};
-use self::folder::{StoredPlan, tasks_in};
+use self::folder::{COMMAND, StoredPlan, tasks_in};
+pub use self::folder::{job_command, remove_job};
 use self::lines::Known;
 pub use self::lock::JobLock;
 pub use self::output::JobReport;
+use self::plan::Plan;
 #[cfg(feature = "cli")]
 pub(crate) use self::plan::not_in_tiles;
-use self::plan::{Plan, fingerprint};
 pub use self::planned_file::FileState;
 pub use self::surface::WrittenParts;
 use self::task_file::TaskName;
 use super::cells::{DemOptions, HillshadeOptions};
+use super::checksum::checksum;
 use super::context::{Context, Journal};
 use super::contour::ContourOptions;
 use super::frame::FrameOptions;
 use super::notice::Notice;
-use super::point_files::PointFiles;
+use super::point_files::{BadFiles, PointFiles};
 use super::surface::{Source, SurfaceRequest};
 use super::systems::SystemOptions;
 use super::tin::TinRequest;
@@ -73,7 +77,7 @@ pub struct TileOptions {
     pub memory: Option<u64>,
     /// The folder of the job, in which its tasks write.
     pub folder: PathBuf,
-    /// What becomes of files that cannot be read.
+    /// What becomes of files that cannot be read. A job that was planned to skip them does.
     pub bad: BadFiles,
     /// How far files are read to plan.
     pub look: Look,
@@ -98,16 +102,6 @@ pub enum Division {
     Auto,
     /// This many columns and rows of tiles.
     Grid([usize; 2]),
-}
-
-/// What becomes of files that cannot be read.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum BadFiles {
-    /// They are an error.
-    #[default]
-    Refuse,
-    /// They leave a hole, and are reported.
-    Skip,
 }
 
 /// What a job makes of the surface.
@@ -234,7 +228,7 @@ impl<'a> Job<'a> {
         Job {
             request,
             product,
-            bad: options.bad,
+            bad: if plan.skips_bad { BadFiles::Skip } else { options.bad },
             folder: options.folder.clone(),
             sum: 0,
             plan,
@@ -244,8 +238,8 @@ impl<'a> Job<'a> {
         }
     }
 
-    /// Creates the folder of the job, with the plan; `command` is kept with it, see [`COMMAND`].
-    /// The whole job is taken for this process, as long as the result lives.
+    /// Creates the folder of the job, with the plan; `command` is kept with it, see
+    /// [`job_command`]. The whole job is taken for this process, as long as the result lives.
     ///
     /// # Errors
     /// If the folder has a job already, or files of something else that have the same names, or
@@ -264,6 +258,7 @@ impl<'a> Job<'a> {
         // Last, because a folder is a job from here on.
         let mut plan = self.plan.to_json();
         plan["tasks"] = json!(self.task_count());
+        plan["command"] = json!(command.map(|command| checksum(command.as_bytes())));
         self.sum = folder::write_plan(&self.folder, &plan.to_string())?;
         Ok(lock)
     }
@@ -310,7 +305,12 @@ impl<'a> Job<'a> {
         let Some(number) = self.file_of(task) else { return Ok(()) };
         let path = &self.plan.files[number].path;
         match self.state_of_input(task) {
-            None => self.plan.require_same_points(number, self.request),
+            None => match self.plan.require_same_points(number, self.request) {
+                Err(error) if self.bad.skips(&error) => Ok(()),
+                // It is tried again, and the job may be planned again.
+                Err(_) if self.skips(task) => Ok(()),
+                other => other,
+            },
             Some(state) if path.exists() => planned_file::require_state(path, state),
             // What a task has read is not needed any more.
             Some(_) => Ok(()),
@@ -334,12 +334,14 @@ impl<'a> Job<'a> {
                 .in_file(&options.folder)
                 .cure("remove it (`breakline job clean`), or name another folder (--job)")
         })?;
-        if plan.files.iter().any(|file| file.input >= request.points.len())
-            || plan.request != fingerprint(request, systems, product, options)
-        {
-            return Err(Error::usage("the job in this folder is that of another command")
-                .in_file(&options.folder)
-                .cure("repeat that command, or name another folder (--job)"));
+        let asked = request::options_of(request, systems, product, options);
+        if plan.request != asked || plan.files.iter().any(|file| file.input >= request.points.len()) {
+            let differing = request::differing(&plan.request, &asked);
+            return Err(Error::usage(format!(
+                "the job in this folder is that of another command; what differs: {differing}"
+            ))
+            .in_file(&options.folder)
+            .cure("repeat that command, or name another folder (--job)"));
         }
         Ok(Some(Job { sum: stored.sum, ..Self::of_plan(request, product, options, plan) }))
     }
@@ -365,10 +367,10 @@ impl<'a> Job<'a> {
     pub fn size(&self) -> JobSize {
         let plan = &self.plan;
         // Blocks at borders are written by each tile that they meet; measured.
-        let cells = plan.frame.map_or(0, |frame| frame.width as u64 * frame.height as u64 * 8);
+        let cells = plan.cells().saturating_mul(8);
         let points = plan.point_count();
         let drawn = match self.product {
-            TiledProduct::Surface => BYTES_A_POINT_OF_PART * points,
+            TiledProduct::Surface => points.saturating_mul(BYTES_A_POINT_OF_PART),
             _ => cells,
         };
         JobSize {
@@ -378,9 +380,15 @@ impl<'a> Job<'a> {
             divides: plan.divides,
             merges: plan.merge_count(),
             tasks: self.task_count(),
-            disk: drawn + if plan.divides { 24 * points } else { 0 },
+            disk: drawn.saturating_add(if plan.divides { points.saturating_mul(24) } else { 0 }),
             task_memory: plan.task_memory,
         }
+    }
+
+    /// Returns how many bytes the files of the tasks have that are there.
+    pub fn bytes_there(&self) -> u64 {
+        let length = |task| std::fs::metadata(self.task_file(task).path).map_or(0, |about| about.len());
+        (0..self.task_count()).map(length).sum()
     }
 
     /// Returns the number of tasks.

@@ -3,6 +3,7 @@
 use serde_json::Value;
 
 use super::contours::DrawnContours;
+use super::notes::Found;
 use super::raster::DrawnCells;
 use super::task_file::TaskName;
 use super::{Job, TiledProduct};
@@ -14,6 +15,7 @@ use crate::io::contours::ContourSummary;
 use crate::run::cells::{CellProduct, HillshadeOptions};
 use crate::run::context::{Context, Journal};
 use crate::run::frame;
+use crate::run::notice::Notice;
 
 /// Counts of a job that is done.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -27,8 +29,9 @@ pub struct JobReport {
     pub withheld: u64,
     /// Points left out because of their class.
     pub other_class: u64,
-    /// What readers found wrong in files.
-    pub warnings: Vec<String>,
+    /// What the tasks found, and what follows from it. What was known before them came with the
+    /// plan.
+    pub notices: Vec<Notice>,
     /// Points at the position of another.
     pub duplicates: u64,
     /// Edges on lines.
@@ -51,27 +54,27 @@ pub struct JobReport {
     pub area: f64,
     /// The checksum of the files of the tasks.
     pub(super) sources: u32,
-    /// The files that were skipped, with the reasons.
-    pub skipped: Vec<String>,
+    /// The number of files that were skipped: the result has holes.
+    pub skipped: usize,
     /// The coordinate system.
     pub crs: Option<Crs>,
 }
 
 impl Job<'_> {
-    /// Returns counts of all tasks, which must be done.
+    /// Returns counts of all tasks, which must be done, and reports what they found.
     ///
     /// # Errors
-    /// If a task is not done.
-    pub fn report(&self) -> Result<JobReport> {
-        let skipped = self.plan.skipped.iter().map(|(_, text)| text.clone()).collect();
-        let mut report = JobReport { skipped, crs: self.plan.crs.clone(), ..JobReport::default() };
+    /// If a task is not done, or layers of lines cannot be read again.
+    pub fn report(&self, context: &Context) -> Result<JobReport> {
+        let mut report = JobReport { crs: self.plan.crs.clone(), ..JobReport::default() };
+        let mut found = Found::default();
+        let mut tasks = 0..;
         report.sources = self.open_all(|file| {
+            found.add(&file, tasks.next().and_then(|task| self.file_of(task)));
             report.read += file.count("read");
             report.used += file.count("used");
             report.withheld += file.count("withheld");
             report.other_class += file.count("other_class");
-            let warnings = file.facts.get("warnings").and_then(Value::as_array).into_iter().flatten();
-            report.warnings.extend(warnings.filter_map(|text| text.as_str().map(str::to_owned)));
             report.duplicates += file.count("duplicates");
             report.line_edges += file.count("line_edges");
             report.triangles += file.count("triangles");
@@ -81,14 +84,15 @@ impl Job<'_> {
             report.waited += file.count("waiting");
             report.handed_up += file.count("residual");
             report.area += file.facts.get("area").and_then(Value::as_f64).unwrap_or(0.0);
-            if let Some(text) = file.facts.get("skipped").and_then(Value::as_str) {
-                report.skipped.push(text.to_owned());
-            }
             for corner in file.facts.get("extent").and_then(Value::as_array).into_iter().flatten() {
                 let coordinate = |k: usize| corner[k].as_f64().unwrap_or(f64::NAN);
                 report.extent.add([coordinate(0), coordinate(1), coordinate(2)]);
             }
         })?;
+        let journal = Journal::new(context);
+        report.skipped = found.skipped(&self.plan);
+        found.note(self, context, &journal)?;
+        report.notices = journal.take();
         Ok(report)
     }
 
@@ -103,9 +107,7 @@ impl Job<'_> {
         let (Some(options), Some(drawn)) = (self.product.frame(), self.plan.frame) else {
             return Err(Error::usage("the job makes no raster"));
         };
-        // Notices about the frame came with the plan.
-        let quiet = Context::default();
-        let frame = frame::placed(options, report.extent, report.crs.as_ref(), &Journal::new(&quiet))?;
+        let frame = frame::placed(options, report.extent, report.crs.as_ref(), &journal)?;
         frame::require_filled(options, &frame, &report.extent, || report.area)?;
         let drawn = DrawnCells::open(self.step_files(), drawn, frame, report.crs.clone())?;
         Ok(match self.product {

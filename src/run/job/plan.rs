@@ -3,25 +3,25 @@
 use std::path::PathBuf;
 
 use super::lines::{self, Known};
-use super::planned_file::{FileState, PlannedFile, planned, require_state, state_of};
+use super::planned_file::{FileState, PlannedFile, looked_at, planned, require_state, state_of};
+use super::request::{Options, options_of};
 use super::sampled;
-use super::{BadFiles, Division, Look, TileOptions, TiledProduct};
+use super::{Division, Look, TileOptions, TiledProduct};
 use crate::crs::Crs;
-use crate::data::{Bounds, Frame};
-use crate::error::{Error, Kind, Result};
-use crate::run::checksum::checksum;
+use crate::data::{Bounds, Frame, PointInfo};
+use crate::error::{Error, Result};
 use crate::run::context::{Context, Journal};
 use crate::run::frame::{self, FrameOptions};
 use crate::run::input::{Input, MemoryPoints};
 use crate::run::memory;
 use crate::run::notice::Notice;
 use crate::run::open;
-use crate::run::point_files::PointFiles;
-use crate::run::systems::{self, SystemOptions, Systems};
+use crate::run::point_files::{BadFiles, GROUND, PointFiles};
+use crate::run::systems::{self, Stated, SystemOptions, Systems};
 use crate::run::tin::{EdgeLimit, TinRequest};
 use crate::run::units::Units;
-use crate::terrain::Classes;
 use crate::terrain::tiles::{Layout, Spread, Work};
+use crate::terrain::{Classes, SelectionReport};
 
 /// Bytes per point of a tile while it is triangulated and drawn; measured.
 pub(super) const BYTES_A_POINT: u64 = 220;
@@ -41,8 +41,8 @@ type OtherFile = (PathBuf, FileState);
 /// What all tasks of a job must agree on.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Plan {
-    /// A description of the request, so that another one does not go on with this job.
-    pub(super) request: String,
+    /// The options of the request, so that another one does not go on with this job.
+    pub(super) request: Options,
     /// The files that have points.
     pub(super) files: Vec<PlannedFile>,
     /// The other files that are read: layers of lines, a raster to align to.
@@ -50,6 +50,8 @@ pub(super) struct Plan {
     /// The files that are skipped because they cannot be opened: their positions in the request,
     /// and why.
     pub(super) skipped: Vec<(usize, String)>,
+    /// True if files whose points turn out to be damaged are skipped, too.
+    pub(super) skips_bad: bool,
     /// True if the files are divided among tiles first: they are not tiles themselves, or there are
     /// lines.
     pub(super) divides: bool,
@@ -112,28 +114,47 @@ impl Plan {
         journal: &Journal,
     ) -> Result<(Self, Known)> {
         require_tiled(request, systems)?;
-        let skipped = match options.bad {
+        let closed = match options.bad {
             BadFiles::Skip => closed(request, &journal.context)?,
             BadFiles::Refuse => Vec::new(),
         };
-        let (numbers, inputs) = opened(request, &skipped);
-        let points = PointFiles::open(&inputs, request.read, journal)?;
+        let (numbers, inputs) = opened(request, &closed);
+        let points = PointFiles::open(&inputs, request.read, journal)?.with_bad(options.bad);
         if options.look == Look::Headers && request.classes == Classes::GroundOrAll && points.have_classes() {
             return Err(Error::usage("which classes are used is not known from headers alone")
                 .cure("state them, such as --class 2 for ground"));
         }
         let classes = points.used_classes(&request.classes, journal)?;
         if request.classes == Classes::GroundOrAll {
-            journal.add(if classes.len() == 1 { Notice::GroundUsed } else { Notice::AllClassesUsed });
+            match classes.len() {
+                1 => journal.add(Notice::GroundUsed),
+                _ if points.have_classes() => journal.add(Notice::AllClassesUsed),
+                // Nobody expects ground in a text.
+                _ => {}
+            }
         }
         let mut files = Vec::new();
         for ((number, input), stated) in numbers.into_iter().zip(&inputs).zip(points.stated_extents()) {
             files.extend(planned(number, input, request, stated, &journal.context)?);
         }
+        let mut skipped = Vec::new();
+        for Closed { number, why, stated } in &closed {
+            let known = stated.as_ref().filter(|info| info.count.is_some() && info.bounds.is_some());
+            let Some(info) = known else {
+                skipped.push((*number, why.clone()));
+                continue;
+            };
+            let input = &request.points[*number];
+            let file = planned(*number, input, request, (info.count, info.bounds), &journal.context)?;
+            let is_of_any_system = info.crs.is_none() && systems.assign.is_none();
+            files.extend(file.map(|file| PlannedFile { is_of_any_system, ..file }));
+        }
+        files.sort_by_key(|file| file.input);
         let extent = extent_of(&files);
         let layers = lines::layers_of(request, journal)?;
         let mut stated = points.stated(&request.classes, journal)?;
         drop(points);
+        stated.extend(closed.iter().filter_map(|file| file.stated(request)).map(Some));
         stated.extend(layers.stated());
         let Systems { crs, .. } = systems::reconcile_some(&stated, systems, journal)?;
         let known = Known::of_layers(&layers, request, crs.as_ref(), &extent, journal)?;
@@ -182,18 +203,17 @@ impl Plan {
         let frame = product.frame().map(placed).transpose()?;
         let units = Units::of(crs.as_ref());
         let max_edge = request.max_edge.length(&units);
-        journal.add(request.max_edge.notice(&units));
         let (has_lines, has_clip) = (lines.is_some(), clip.is_some());
         let others = others(request, product)?;
         if let Some(path) = files.iter().map(|file| &file.path).find(|path| path.to_str().is_none()) {
             return Err(Error::unsupported("the name is not valid Unicode, which a plan needs").in_file(path));
         }
-        let request = fingerprint(request, systems, product, options);
         let plan = Plan {
-            request,
+            request: options_of(request, systems, product, options),
             files,
             others,
             skipped,
+            skips_bad: options.bad == BadFiles::Skip,
             divides,
             has_lines,
             has_clip,
@@ -204,6 +224,7 @@ impl Plan {
             frame,
             task_memory,
         };
+        plan.note(request, product, &known, journal);
         Ok((plan, known))
     }
 
@@ -212,14 +233,59 @@ impl Plan {
         extent_of(&self.files)
     }
 
+    /// Returns the box in plan around all points, to the digit that the files state.
+    pub(super) fn stated_extent(&self) -> Bounds {
+        let mut extent = Bounds::default();
+        self.files.iter().for_each(|file| extent.merge(&file.bounds()));
+        extent
+    }
+
     /// Returns the number of points that the files state.
     pub(super) fn point_count(&self) -> u64 {
         self.files.iter().map(|file| file.count).sum()
     }
 
+    /// Returns about how many cells of the frame are drawn: those within the extents of the files,
+    /// unless triangles may be anywhere.
+    pub(super) fn cells(&self) -> u64 {
+        let Some(frame) = &self.frame else { return 0 };
+        let all = frame.width as f64 * frame.height as f64;
+        if self.max_edge.is_none() || self.has_lines {
+            return all as u64;
+        }
+        let [min, max] = [frame.extent().min, frame.extent().max];
+        let side = |file: &PlannedFile, k: usize| (file.max[k].min(max[k]) - file.min[k].max(min[k])).max(0.0);
+        let covered: f64 = self.files.iter().map(|file| side(file, 0) * side(file, 1)).sum();
+        (all * (covered / ((max[0] - min[0]) * (max[1] - min[1]))).min(1.0)) as u64
+    }
+
     /// Returns the number of merges.
     pub(super) fn merge_count(&self) -> usize {
         self.layout.steps().iter().filter(|step| matches!(step.work, Work::Merge(_))).count()
+    }
+
+    /// Returns an error if a file states another coordinate system than the others, which was not
+    /// known when the job was planned.
+    pub(super) fn require_system(&self, number: usize, stated: Option<&Crs>) -> Result<()> {
+        let is_same = |own: &Crs| self.crs.as_ref().is_some_and(|crs| crs.is_same(own));
+        match stated.filter(|own| self.files[number].is_of_any_system && !is_same(own)) {
+            Some(own) => {
+                Err(does_not_fit(format!("the file states {own}, which was not known when the job was planned")))
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// Returns an error if ground points are found after all were planned with, since there was
+    /// none.
+    pub(super) fn require_classes(&self, report: &SelectionReport, request: &TinRequest) -> Result<()> {
+        let all_are_used = request.classes == Classes::GroundOrAll && self.classes.len() > 1;
+        if all_are_used && report.by_class.contains_key(&GROUND) {
+            return Err(does_not_fit(
+                "there are points of class 2 (ground), but the job was planned without".to_owned(),
+            ));
+        }
+        Ok(())
     }
 
     /// Returns an error if any file but those of points has changed since the plan was made.
@@ -234,17 +300,19 @@ impl Plan {
         if state_of(&file.path)? == file.state {
             return Ok(());
         }
-        let (input, context) = (&request.points[file.input], Context::default());
-        let source = open::points(input, request.read, &context)?;
-        let info = source.info();
-        let found = planned(file.input, input, request, (info.count, info.bounds), &context)?;
+        let found = looked_at(file.input, request, &Context::default())?;
         match found {
             Some(found) if (found.count, found.min, found.max) == (file.count, file.min, file.max) => Ok(()),
-            _ => Err(Error::usage("the file was replaced by one of another extent or number of points")
-                .in_file(&file.path)
-                .cure("plan the job again: `breakline job clean` removes this one")),
+            _ => Err(does_not_fit("the file was replaced by one of another extent or number of points".to_owned())
+                .in_file(&file.path)),
         }
     }
+}
+
+/// Returns the error for a file that was damaged when the job was planned, and does not fit it now.
+#[cold]
+fn does_not_fit(what: String) -> Error {
+    Error::usage(what).cure("plan the job again: `breakline job clean` removes this one")
 }
 
 /// Returns the box in plan around the points of files.
@@ -265,42 +333,43 @@ fn common(a: &Bounds, b: &Bounds) -> Bounds {
     Bounds { min, max }
 }
 
-/// Returns a description of everything that the files of the tasks depend on.
-pub(super) fn fingerprint(
-    request: &TinRequest,
-    systems: &SystemOptions,
-    product: &TiledProduct,
-    options: &TileOptions,
-) -> String {
-    let all = format!("{request:?} {systems:?} {product:?} {:?} {:?}", options.division, options.memory);
-    format!("{} {:08x}", product.name(), checksum(all.as_bytes()))
+/// A file that cannot be opened.
+struct Closed {
+    /// Its position in the request.
+    number: usize,
+    why: String,
+    /// What its header states, if that can be read.
+    stated: Option<PointInfo>,
 }
 
-/// Returns the files that cannot be planned with, and why.
-fn closed(request: &TinRequest, context: &Context) -> Result<Vec<(usize, String)>> {
+impl Closed {
+    /// Returns the coordinate system that its header states, if it does.
+    fn stated(&self, request: &TinRequest) -> Option<Stated> {
+        let stated = Stated::by_points(request.points[self.number].path(), self.stated.as_ref()?);
+        (stated.crs.is_some() || stated.unread.is_some()).then_some(stated)
+    }
+}
+
+/// Returns the files that cannot be opened.
+fn closed(request: &TinRequest, context: &Context) -> Result<Vec<Closed>> {
     let mut closed = Vec::new();
     for (number, input) in request.points.iter().enumerate() {
-        let opened = open::points(input, request.read, context).and_then(|source| {
-            let info = source.info();
-            planned(number, input, request, (info.count, info.bounds), context)
-        });
-        match opened {
+        match looked_at(number, request, context) {
             Ok(_) => {}
-            Err(error) if error.kind() == Kind::Canceled => return Err(error),
-            Err(error) => {
-                let error = error.in_file(input.path());
-                closed.push((number, format!("{error} (its extent is not known: triangles may span it)")));
+            Err(error) if BadFiles::Skip.skips(&error) => {
+                closed.push(Closed { number, why: error.to_string(), stated: open::stated(input.path()) });
             }
+            Err(error) => return Err(error),
         }
     }
     Ok(closed)
 }
 
-/// Returns the files that are not skipped, and their positions in the request.
-fn opened(request: &TinRequest, skipped: &[(usize, String)]) -> (Vec<usize>, Vec<Input<MemoryPoints>>) {
-    let is_skipped = |number: &usize| skipped.iter().any(|(skipped, _)| skipped == number);
+/// Returns the other files, and their positions in the request.
+fn opened(request: &TinRequest, closed: &[Closed]) -> (Vec<usize>, Vec<Input<MemoryPoints>>) {
+    let is_closed = |number: &usize| closed.iter().any(|file| file.number == *number);
     let inputs = request.points.iter().cloned().enumerate();
-    inputs.filter(|(number, _)| !is_skipped(number)).unzip()
+    inputs.filter(|(number, _)| !is_closed(number)).unzip()
 }
 
 /// Returns the states of the files that are read beside the points.

@@ -50,9 +50,19 @@ pub(super) struct PlannedFile {
     /// The box around its points in plan, as its header states it.
     pub(super) min: [f64; 2],
     pub(super) max: [f64; 2],
+    /// True if its coordinate system was not known, because it was damaged. Else it agrees with the
+    /// others.
+    pub(super) is_of_any_system: bool,
 }
 
 impl PlannedFile {
+    /// Returns the box around its points in plan, as its header states it.
+    pub(super) fn bounds(&self) -> Bounds {
+        let mut bounds = Bounds::default();
+        [self.min, self.max].into_iter().for_each(|[x, y]| bounds.add([x, y, 0.0]));
+        bounds
+    }
+
     /// Returns the box around its points, with what rounding may add to a header.
     pub(super) fn spread(&self) -> Spread {
         let PlannedFile { min, max, .. } = *self;
@@ -100,7 +110,18 @@ pub(super) fn planned(
             .cure("`breakline points` writes a file with a true header"));
     }
     let [min, max] = [bounds.min, bounds.max].map(|[x, y, _]| [x, y]);
-    Ok(Some(PlannedFile { input: number, path: path.to_path_buf(), state, count, min, max }))
+    Ok(Some(PlannedFile { input: number, path: path.to_path_buf(), state, count, min, max, is_of_any_system: false }))
+}
+
+/// Opens a file of points and returns what the plan has to know of it; `None` if it has no points.
+pub(super) fn looked_at(number: usize, request: &TinRequest, context: &Context) -> Result<Option<PlannedFile>> {
+    let input = &request.points[number];
+    let look = || {
+        let source = open::points(input, request.read, context)?;
+        let info = source.info();
+        planned(number, input, request, (info.count, info.bounds), context)
+    };
+    look().map_err(|e| e.in_file(input.path()))
 }
 
 /// Counts the points of a file that does not state their number or extent.

@@ -127,6 +127,7 @@ mod tests {
             count: points.len() as u64,
             min: [0.0; 2],
             max: [402.0; 2],
+            is_of_any_system: false,
         };
         let largest = |spreads: &[Spread]| {
             let layout = Layout::balanced(spreads, average);

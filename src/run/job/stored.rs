@@ -13,7 +13,7 @@ impl Plan {
         let file = |file: &PlannedFile| {
             json!({
                 "path": file.path, "input": file.input, "state": file.state.to_json(),
-                "count": file.count, "min": file.min, "max": file.max,
+                "count": file.count, "min": file.min, "max": file.max, "is_of_any_system": file.is_of_any_system,
             })
         };
         let node = |node: &Node| match node {
@@ -26,6 +26,7 @@ impl Plan {
             "files": self.files.iter().map(file).collect::<Vec<_>>(),
             "others": self.others.iter().map(|(path, state)| json!([path, state.to_json()])).collect::<Vec<_>>(),
             "skipped": self.skipped,
+            "skips_bad": self.skips_bad,
             "divides": self.divides,
             "has_lines": self.has_lines,
             "has_clip": self.has_clip,
@@ -53,6 +54,7 @@ impl Plan {
                 count: value["count"].as_u64()?,
                 min: serde_json::from_value(value["min"].clone()).ok()?,
                 max: serde_json::from_value(value["max"].clone()).ok()?,
+                is_of_any_system: value["is_of_any_system"].as_bool()?,
             })
         };
         let other =
@@ -72,10 +74,11 @@ impl Plan {
             Frame { width: whole(&value[0])?, height: whole(&value[1])?, transform }.checked().ok()
         };
         Some(Plan {
-            request: value["request"].as_str()?.to_owned(),
+            request: serde_json::from_value(value["request"].clone()).ok()?,
             files: value["files"].as_array()?.iter().map(file).collect::<Option<_>>()?,
             others: value["others"].as_array()?.iter().map(other).collect::<Option<_>>()?,
             skipped: serde_json::from_value(value["skipped"].clone()).ok()?,
+            skips_bad: value["skips_bad"].as_bool()?,
             divides: value["divides"].as_bool()?,
             has_lines: value["has_lines"].as_bool()?,
             has_clip: value["has_clip"].as_bool()?,

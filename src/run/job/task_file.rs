@@ -30,6 +30,9 @@ const UNFINISHED_BEGIN: &str = ".breakline-";
 /// The fact that has the state of the file of points that a task has read.
 pub(super) const INPUT: &str = "input";
 
+/// The fact that says why a file of points is skipped.
+pub(super) const SKIPPED: &str = "skipped";
+
 /// The bytes after the facts: their length, the checksum of both, the magic.
 const END: u64 = 8 + 4 + 8;
 

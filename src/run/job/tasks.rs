@@ -8,12 +8,14 @@ use super::holes::Holes;
 use super::planned_file::{require_state, state_of};
 use super::raster::Drawing;
 use super::surface::PartFaces;
-use super::task_file::{INPUT, TaskWriter};
-use super::{BadFiles, Job, Task, TiledProduct};
-use super::{contours, lines};
-use crate::data::{Bounds, PointBatch};
-use crate::error::{Error, Kind, Result};
+use super::task_file::{INPUT, SKIPPED, TaskWriter};
+use super::{Job, Task, TiledProduct};
+use super::{contours, lines, notes};
+use crate::data::{Bounds, EdgeKind, PointBatch};
+use crate::error::{Error, Result};
 use crate::run::context::{Context, Journal};
+use crate::run::line_notes::LevelRings;
+use crate::run::notice::Notice;
 use crate::run::units::neat;
 use crate::run::{frame, open};
 use crate::terrain::contour::parts::{ContourCollector, LevelParts};
@@ -33,29 +35,36 @@ impl Job<'_> {
     pub(super) fn do_task(&self, number: usize, context: &Context) -> Result<()> {
         let mut writer = TaskWriter::create(self.task_file(number))?;
         let sources = Sources::new(self);
-        let facts = match self.task(number) {
-            Task::Divide(file) => self.divide(file, &mut writer, context)?,
-            Task::Lines => self.arrange(&sources, &mut writer, context)?,
+        let journal = Journal::new(context);
+        let mut facts = match self.task(number) {
+            Task::Divide(file) => self.divide(file, &mut writer, &journal)?,
+            Task::Lines => self.arrange(&sources, &mut writer, &journal)?,
             Task::Triangulate(step) => match &self.steps[step].work {
-                Work::Leaf(tile) => self.leaf(step, *tile, &sources, &mut writer, context)?,
+                Work::Leaf(tile) => self.leaf(step, *tile, &sources, &mut writer, &journal)?,
                 Work::Merge(parts) => self.merge(step, parts, &sources, &mut writer, context)?,
             },
             Task::Rim => self.rim(&sources, &mut writer, context)?,
             Task::Cut => self.cut(&sources, &mut writer, context)?,
         };
         context.check()?;
+        notes::put_notices(&mut facts, &journal.take());
         writer.finish(facts, sources.sum(self.needs(number))?)
     }
 
     /// Divides the points of a file among the tiles.
-    fn divide(&self, file: usize, writer: &mut TaskWriter, context: &Context) -> Result<Map<String, Value>> {
+    fn divide(&self, file: usize, writer: &mut TaskWriter, journal: &Journal) -> Result<Map<String, Value>> {
         let mut table = Vec::new();
         writer.begin("points");
         let mut waiting: Vec<[f64; 3]> = Vec::new();
         let layout = &self.plan.layout;
-        let lines = if self.plan.has_lines { self.known(context)?.lines.as_ref() } else { None };
+        let lines = if self.plan.has_lines { self.known(&journal.context)?.lines.as_ref() } else { None };
+        let rings = lines.and_then(|lines| lines.rings.as_ref());
         let mut near = Vec::new();
+        let mut of_rings = rings.map(LevelRings::none_found).unwrap_or_default();
         let mut write_run = |points: &mut Vec<[f64; 3]>| -> Result<()> {
+            if let Some(rings) = rings {
+                rings.count(points, &mut of_rings);
+            }
             if let Some(lines) = lines {
                 near.append(&mut lines.take_points(points));
             }
@@ -76,7 +85,7 @@ impl Job<'_> {
         };
         let most = (self.plan.task_memory / BYTES_A_DIVIDED_POINT).clamp(1 << 14, DIVIDED_AT_ONCE) as usize;
         let mut written = Ok(());
-        let read = self.read_file(file, context, &mut |mut points| {
+        let read = self.read_file(file, journal, &mut |mut points| {
             if waiting.is_empty() {
                 waiting = points
             } else {
@@ -88,10 +97,12 @@ impl Job<'_> {
         });
         written.and_then(|()| write_run(&mut waiting))?;
         // Of a bad file, nothing counts.
-        let facts = self.facts_of_file(file, read)?;
-        if facts.contains_key("skipped") {
+        let mut facts = self.facts_of_file(file, read)?;
+        if facts.contains_key(SKIPPED) {
             table.clear();
             near.clear();
+        } else {
+            notes::put_rings(&mut facts, &of_rings);
         }
         writer.begin("table");
         writer.put(&table)?;
@@ -101,10 +112,9 @@ impl Job<'_> {
     }
 
     /// Arranges the lines, with the points next to them from all files.
-    fn arrange(&self, sources: &Sources, writer: &mut TaskWriter, context: &Context) -> Result<Map<String, Value>> {
-        let journal = Journal::new(context);
+    fn arrange(&self, sources: &Sources, writer: &mut TaskWriter, journal: &Journal) -> Result<Map<String, Value>> {
         let crs = self.plan.crs.as_ref();
-        let Some(lines) = &self.known(context)?.lines else { return Ok(Map::new()) };
+        let Some(lines) = &self.known(&journal.context)?.lines else { return Ok(Map::new()) };
         let mut near = Vec::new();
         let mut extent = Bounds::default();
         for (number, file) in self.plan.files.iter().enumerate() {
@@ -113,7 +123,7 @@ impl Job<'_> {
             bytes::add_points(&bytes, &mut near).ok_or_else(|| divided.damaged())?;
             [file.min, file.max].into_iter().for_each(|[x, y]| extent.add([x, y, 0.0]));
         }
-        let tin = lines.build(near, &extent, crs, &journal)?;
+        let tin = lines.build(near, &extent, crs, journal)?;
         let edges = lines::write(lines, &tin, &self.plan.layout, writer)?;
         Ok(Map::from_iter([("line_edges".to_owned(), json!(edges))]))
     }
@@ -122,40 +132,39 @@ impl Job<'_> {
     fn facts_of_file(&self, file: usize, read: Result<Map<String, Value>>) -> Result<Map<String, Value>> {
         let path = &self.plan.files[file].path;
         match read {
-            Err(error) if self.bad == BadFiles::Skip && matches!(error.kind(), Kind::Format | Kind::Unsupported) => {
-                let state = state_of(path)?;
-                let error = error.in_file(path);
-                Ok(Map::from_iter([
-                    ("skipped".to_owned(), json!(error.to_string())),
-                    (INPUT.to_owned(), state.to_json()),
-                ]))
+            Err(error) if self.bad.skips(&error) => {
+                Ok(Map::from_iter([(SKIPPED.to_owned(), json!(error.in_file(path).to_string()))]))
             }
             read => read.map_err(|e| e.in_file(path)),
         }
     }
 
     /// Reads the points of a file that are used, some at a time.
-    fn read_file(
+    pub(super) fn read_file(
         &self,
         number: usize,
-        context: &Context,
+        journal: &Journal,
         take: &mut dyn FnMut(Vec<[f64; 3]>),
     ) -> Result<Map<String, Value>> {
         self.plan.require_same_points(number, self.request)?;
         let file = &self.plan.files[number];
         let state = state_of(&file.path)?;
-        let mut source = open::points(&self.request.points[file.input], self.request.read, context)?;
+        let mut source = open::points(&self.request.points[file.input], self.request.read, &journal.context)?;
+        self.plan.require_system(number, source.info().crs.as_ref())?;
         let mut selection = Selection::new(Classes::Only(self.plan.classes.clone()), None);
         let spread = file.spread();
         let mut batch = PointBatch::default();
+        let mut extent = Bounds::default();
         loop {
             source.read(&mut batch)?;
             if batch.is_empty() {
                 require_state(&file.path, state)?;
-                let mut facts = facts_of(&selection.finish().1);
-                let name = file.path.display();
-                let warnings: Vec<String> = source.warnings().iter().map(|text| format!("{name}: {text}")).collect();
-                facts.insert("warnings".to_owned(), json!(warnings));
+                let report = selection.finish().1;
+                self.plan.require_classes(&report, self.request)?;
+                let mut facts = facts_of(&report);
+                notes::put_points(&mut facts, &report, &extent);
+                journal.add(Notice::PointsRead(file.path.clone(), report.read));
+                journal.add_warnings(&file.path, source.warnings());
                 facts.insert(INPUT.to_owned(), state.to_json());
                 return Ok(facts);
             }
@@ -169,8 +178,9 @@ impl Job<'_> {
                 ))
                 .cure("`breakline points` writes a file with a true header"));
             }
+            points.iter().for_each(|point| extent.add(*point));
             take(points);
-            context.check()?;
+            journal.context.check()?;
         }
     }
 
@@ -181,12 +191,12 @@ impl Job<'_> {
         tile: u32,
         sources: &Sources,
         writer: &mut TaskWriter,
-        context: &Context,
+        journal: &Journal,
     ) -> Result<Map<String, Value>> {
         let mut holes = Holes::default();
         let (points, mut facts) = if self.plan.divides {
             for number in self.files_of(step) {
-                if sources.open(number)?.facts.contains_key("skipped") {
+                if sources.open(number)?.facts.contains_key(SKIPPED) {
                     holes.add_file(self, number);
                 }
             }
@@ -194,12 +204,12 @@ impl Job<'_> {
         } else {
             let file = tile as usize;
             let mut all: Vec<[f64; 3]> = Vec::new();
-            let read = self.read_file(file, context, &mut |mut points| {
+            let read = self.read_file(file, journal, &mut |mut points| {
                 if all.is_empty() { all = points } else { all.append(&mut points) }
             });
             let facts = self.facts_of_file(file, read);
             let facts = facts.map_err(|e| e.within(format_args!("tile {tile}")))?;
-            if facts.contains_key("skipped") {
+            if facts.contains_key(SKIPPED) {
                 all.clear();
                 holes.add_file(self, file);
             }
@@ -215,9 +225,9 @@ impl Job<'_> {
             constraints = lines.constraints;
         }
         let rectangle = &self.steps[step].tile;
-        let tight = self.tight(context)?;
+        let tight = self.tight(&journal.context)?;
         facts.insert("reach".to_owned(), json!(reach_of(&points)));
-        self.emitting(writer, context, &holes, facts, |emit| match self.product {
+        self.emitting(writer, &journal.context, &holes, facts, |emit| match self.product {
             TiledProduct::Surface => tiles::leaf_with_part(rectangle, tile, &points, &constraints, tight, emit),
             _ => tiles::leaf(rectangle, tile, &points, &constraints, tight, emit).map(|residual| (residual, None)),
         })
@@ -381,10 +391,16 @@ impl Job<'_> {
             Some(clip) => clip.cut(&triangles, reach)?,
             None => None,
         };
+        let inside = triangles.iter().filter(|(_, is_inside)| *is_inside).count() as u64;
         drop(triangles);
+        let (mut whole, mut draped) = (0_u64, 0_u64);
         for triangle in part.iter().flat_map(TinPart::triangles) {
+            whole += u64::from(triangle.corners.iter().all(|corner| !corner.is_added()));
+            draped += u64::from(triangle.edges.contains(&EdgeKind::Draped));
             kept.keep(&triangle, writer)?;
         }
+        facts.insert(notes::MET.to_owned(), json!(inside.saturating_sub(whole)));
+        facts.insert(notes::DRAPED.to_owned(), json!(draped));
         kept.finish(part, writer, &mut facts)?;
         Ok(facts)
     }

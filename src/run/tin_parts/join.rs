@@ -115,14 +115,33 @@ fn shared_vertices(parts: &TinParts) -> Result<FxHashMap<[u32; 2], u32>> {
 /// An edge on a line, by its vertices.
 type Line = ([u32; 2], EdgeKind);
 
+/// Faces, with the kinds of the edges opposite their corners.
+#[derive(Default)]
+struct Faces {
+    corners: Vec<[u32; 3]>,
+    sides: Vec<[EdgeKind; 3]>,
+}
+
+impl Faces {
+    fn push(&mut self, corners: [u32; 3], sides: [EdgeKind; 3]) {
+        self.corners.push(corners);
+        self.sides.push(sides);
+    }
+
+    fn append(&mut self, other: &mut Faces) {
+        self.corners.append(&mut other.corners);
+        self.sides.append(&mut other.sides);
+    }
+}
+
 /// What of the parts was joined so far.
 #[derive(Default)]
 struct Joining {
     /// The number of each shared vertex.
     shared: FxHashMap<[u32; 2], u32>,
     vertices: Vec<[f64; 3]>,
-    whole: Vec<[u32; 3]>,
-    fragments: Vec<[u32; 3]>,
+    whole: Faces,
+    fragments: Faces,
     lines: Vec<Line>,
     /// The triangles that are only under the surface, and the lines under it.
     left_out: Vec<[u32; 3]>,
@@ -135,11 +154,11 @@ impl Joining {
         for face in 0..part.face_count() as u32 {
             let Some(corners) = part.face(face) else { continue };
             let of_face = corners.map(|vertex| self.number(part, vertex, &mut number_of));
+            let kinds = [0, 1, 2].map(|i| part.edge_kind(face, i));
             let faces = if part.is_fragment(face) { &mut self.fragments } else { &mut self.whole };
-            faces.push(of_face);
+            faces.push(of_face, kinds);
             let is_listed = |i: &usize| part.neighbor(face, *i).is_none_or(|other| face < other);
-            let kinds = (0..3).filter(is_listed).map(|i| (i, part.edge_kind(face, i)));
-            self.lines.extend(kinds.filter_map(|(i, kind)| line(of_face, i, kind)));
+            self.lines.extend((0..3).filter(is_listed).filter_map(|i| line(of_face, i, kinds[i])));
         }
         for BaseFace { number, corners, edges, .. } in part.faces_under_whole() {
             let of_face = corners.map(|vertex| self.number(part, vertex, &mut number_of));
@@ -149,7 +168,7 @@ impl Joining {
             self.lines_under.extend((0..3).filter_map(|i| line(of_face, i, edges[i])));
         }
         part.ensure_intact()?;
-        let faces = self.whole.len().max(self.fragments.len()).max(self.left_out.len());
+        let faces = self.whole.corners.len().max(self.fragments.corners.len()).max(self.left_out.len());
         if self.vertices.len() >= UNUSED as usize || faces >= UNUSED as usize {
             return Err(Error::limit("the parts have more triangles than one mesh can number")
                 .cure("make the raster or the contours of the parts as they are, with linear heights"));
@@ -182,19 +201,21 @@ impl Joining {
 
     fn finish(self, crs: Option<Crs>) -> Result<JoinedTin> {
         let Joining { vertices, mut whole, mut fragments, lines, mut left_out, lines_under, .. } = self;
-        let count = whole.len() as u32;
-        let under = match (fragments.is_empty(), left_out.is_empty()) {
+        let count = whole.corners.len() as u32;
+        let under = match (fragments.corners.is_empty(), left_out.is_empty()) {
             (true, true) => None,
             _ => {
-                left_out.splice(0..0, whole.iter().copied());
+                left_out.splice(0..0, whole.corners.iter().copied());
                 let (vertices, faces) = (vertices.clone(), left_out);
                 Some(Mesh::of(Triangles { vertices, faces, lines: lines_under, ..Triangles::default() })?)
             }
         };
-        let numbers = (count..).take(fragments.len()).collect();
+        let numbers = (count..).take(fragments.corners.len()).collect();
         whole.append(&mut fragments);
+        let Faces { corners: faces, sides } = whole;
+        let sides = Some(sides);
         let faces =
-            Mesh::of(Triangles { vertices, faces: whole, lines, fragments: numbers, crs, ..Triangles::default() })?;
+            Mesh::of(Triangles { vertices, faces, lines, fragments: numbers, sides, crs, ..Triangles::default() })?;
         Ok(JoinedTin { faces, under, whole: count })
     }
 }

@@ -17,6 +17,11 @@ pub struct TileVertex {
 }
 
 impl TileVertex {
+    /// Returns true for a vertex that a cut has added: no tile has it.
+    pub fn is_added(&self) -> bool {
+        self.tile == u32::MAX
+    }
+
     pub(super) fn site(&self) -> [f64; 2] {
         [self.position[0], self.position[1]]
     }

@@ -24,7 +24,7 @@ pub(in crate::cli) struct TileArgs {
 
     /// Folder for the files of the tasks [default: the output's name with .job]
     ///
-    /// It is removed when the output is written, unless it was named.
+    /// It is removed when the output is written, unless it was named, or files were skipped.
     #[arg(long, value_name = "FOLDER")]
     pub(in crate::cli) job: Option<PathBuf>,
 
@@ -39,13 +39,29 @@ pub(in crate::cli) struct TileArgs {
     pub(in crate::cli) dry_run: bool,
 
     /// Leave a hole where a file cannot be read, and report it
+    ///
+    /// The hole is the extent that its header states, also where other files have points. The exit
+    /// code is 3, and the folder of the job is kept: with --resume, files are tried again that may
+    /// have been repaired.
     #[arg(long)]
     pub(in crate::cli) skip_bad: bool,
 
-    /// The number of the last task, if only that one is to be done. It writes the output, and looks
-    /// at no input.
+    /// Who asks for the run.
     #[arg(skip)]
-    pub(in crate::cli) last_task: Option<usize>,
+    pub(in crate::cli) caller: Caller,
+}
+
+/// Who asks for a run in tiles.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(in crate::cli) enum Caller {
+    /// The verb of the product.
+    #[default]
+    Verb,
+    /// `breakline job`, for all tasks that are left.
+    Job,
+    /// `breakline job`, for the last task, which has this number. It writes the output, and looks
+    /// at no input.
+    LastTask(usize),
 }
 
 impl TileArgs {
