@@ -224,21 +224,23 @@ impl Judge<'_> {
             let part = distance(ends[0], q) / distance(ends[0], ends[1]);
             (distance(p, q) <= self.rounding).then_some(pair[0][2] + part * (pair[1][2] - pair[0][2]))
         });
-        let lowest = heights.fold(f64::INFINITY, f64::min);
+        // At a given vertex, lines that pass do not count.
+        let own = self.scene.walls.iter().flatten().filter(|vertex| vertex[..2] == p).map(|vertex| vertex[2]);
+        let own = own.reduce(f64::min);
+        let lowest = own.unwrap_or_else(|| heights.fold(f64::INFINITY, f64::min));
         let shores = self.scene.lakes.iter().flat_map(|lake| &lake.rings);
         let is_water = self.rivers.iter().any(|river| river.distance(p) <= self.rounding)
             || self.scene.lakes.iter().any(|lake| is_within(&lake.rings, p))
             || shores.into_iter().any(|ring| distance_to_line(ring, p) <= self.rounding);
         // Points on lines between their vertices keep their heights.
         let is_point = || self.scene.points.iter().any(|point| point[..2] == p);
-        let is_vertex = || self.scene.walls.iter().flatten().any(|vertex| vertex[..2] == p);
         // A cut has the heights of the surface, which falls from a wall to water that it crosses.
         let bounds = self.scene.bounds.map(|[[a, b], [c, d]]| vec![[a, b], [c, b], [c, d], [a, d], [a, b]]);
         let plan = |line: &Vec<[f64; 3]>| line.iter().map(|p| [p[0], p[1]]).collect::<Vec<Site>>();
         let draped = self.scene.draped.iter().map(plan);
         let mut cuts = self.scene.holes.iter().cloned().chain(draped).chain(bounds);
         let mut is_cut = || cuts.any(|cut| distance_to_line(&cut, p) <= self.rounding);
-        if lowest.is_infinite() || is_water || is_point() && !is_vertex() || is_cut() {
+        if lowest.is_infinite() || is_water || is_point() && own.is_none() || is_cut() {
             return Ok(());
         }
         counts.on_walls += 1;
