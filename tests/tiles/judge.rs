@@ -19,6 +19,10 @@ fn first() -> usize {
     std::env::var("BREAKLINE_FIRST_PAIR").ok().and_then(|n| n.parse().ok()).unwrap_or(0)
 }
 
+/// Pairs that differed once: a point that is in a lake by a rounding error kept its height in
+/// tiles.
+const SEEN: [usize; 1] = [148];
+
 type Site = [f64; 2];
 
 /// Steps on a grid, and how they become positions.
@@ -143,7 +147,7 @@ impl Scene {
 #[test]
 fn pairs_of_one_piece_and_tiles_are_the_same() {
     let (mut built, mut refused) = (0, 0);
-    for pair in first()..first() + count() {
+    for pair in SEEN.into_iter().chain(first()..first() + count()) {
         let folder = tempfile::tempdir().unwrap();
         let mut scene = Scene::new(pair);
         let words = scene.write(folder.path());
@@ -178,7 +182,7 @@ fn pairs_of_one_piece_and_tiles_are_the_same() {
             let outs = [format!("a.{out}"), format!("b.{out}")];
             if both(&whole, &tiled, [&outs[0], &outs[1]]) {
                 let [a, b] = outs.each_ref().map(|name| bytes(folder.path().join(name)));
-                assert!(a == b, "pair {pair}: {whole}, {tiled}");
+                assert!(a == b, "pair {pair}: {whole}, {tiled}: {words} {tiles}");
                 outs.iter().for_each(|name| std::fs::remove_file(folder.path().join(name)).unwrap());
             }
         }

@@ -31,8 +31,6 @@ pub(super) struct JobLines {
     names: LineNames,
     /// The lines in plan.
     near: NearLines,
-    /// The bits of the sites of their vertices.
-    sites: FxHashSet<[u64; 2]>,
     reach: f64,
     /// The box around all lines.
     pub(super) extent: Bounds,
@@ -108,7 +106,6 @@ impl JobLines {
             builder,
             names: added.names,
             near: NearLines::new(lines.iter().flat_map(|line| line.windows(2)).map(|ends| [ends[0], ends[1]])),
-            sites: lines.iter().flatten().map(|p| p.map(f64::to_bits)).collect(),
             reach: tiles::rounding_reach(largest),
             extent,
             extent_of_heights: added.extent,
@@ -160,7 +157,7 @@ impl JobLines {
 /// What the lines give to a tile.
 #[derive(Debug, Clone, Default)]
 pub(super) struct LinesOfTile {
-    /// The vertices of lines in the tile.
+    /// The vertices of lines in the tile, and the points next to them.
     pub(super) vertices: Vec<[f64; 3]>,
     /// The sub-constraints that may meet the tile.
     pub(super) constraints: Vec<SubConstraint>,
@@ -168,12 +165,13 @@ pub(super) struct LinesOfTile {
 
 /// Writes the edges and the vertices of lines, divided among the tiles. Returns the number of
 /// edges.
-pub(super) fn write(lines: &JobLines, tin: &Tin, layout: &Layout, writer: &mut TaskWriter) -> Result<usize> {
+pub(super) fn write(tin: &Tin, layout: &Layout, writer: &mut TaskWriter) -> Result<usize> {
     let mut tiles = vec![LinesOfTile::default(); layout.tile_count()];
-    let mut is_taken = vec![false; tin.vertex_count()];
+    let mut is_used = vec![false; tin.vertex_count()];
     let mut edges = 0;
     for face in 0..tin.face_count() as u32 {
         let Some(corners) = tin.face(face) else { continue };
+        corners.iter().for_each(|&vertex| is_used[vertex as usize] = true);
         for i in 0..3 {
             let kind = tin.edge_kind(face, i);
             if !kind.is_constrained() || tin.neighbor(face, i).is_some_and(|other| other < face) {
@@ -185,15 +183,15 @@ pub(super) fn write(lines: &JobLines, tin: &Tin, layout: &Layout, writer: &mut T
             let constraint = SubConstraint { ends: [[a[0], a[1]], [b[0], b[1]]], kind };
             let [min, max] = [f64::min, f64::max].map(|of| [of(a[0], b[0]), of(a[1], b[1])]);
             layout.tiles_in(min, max, &mut |tile| tiles[tile as usize].constraints.push(constraint));
-            vertices.iter().for_each(|&vertex| is_taken[vertex as usize] = true);
         }
     }
-    // A line without length has a vertex, and a height for it, but no edge.
-    for (vertex, is_taken) in (0..).zip(is_taken) {
-        let [x, y, z] = tin.position(vertex);
-        if is_taken || lines.sites.contains(&[x, y].map(f64::to_bits)) {
-            tiles[layout.tile_of([x, y]) as usize].vertices.push([x, y, z]);
-        }
+    // Points next to lines, too: one that is in water by a rounding error has its height now. The
+    // corners of the box are those that only make it an area.
+    let Bounds { min, max } = tin.report().extent;
+    let is_corner = |p: [f64; 3]| (0..2).all(|k| p[k] == min[k] || p[k] == max[k]);
+    let used = (0..).zip(is_used).filter(|(_, is_used)| *is_used).map(|(vertex, _)| tin.position(vertex));
+    for p in used.filter(|p| !is_corner(*p)) {
+        tiles[layout.tile_of([p[0], p[1]]) as usize].vertices.push(p);
     }
     writer.begin("lines");
     let mut table = Vec::new();

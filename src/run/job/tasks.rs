@@ -124,7 +124,7 @@ impl Job<'_> {
             [file.min, file.max].into_iter().for_each(|[x, y]| extent.add([x, y, 0.0]));
         }
         let tin = lines.build(near, &extent, crs, journal)?;
-        let edges = lines::write(lines, &tin, &self.plan.layout, writer)?;
+        let edges = lines::write(&tin, &self.plan.layout, writer)?;
         Ok(Map::from_iter([("line_edges".to_owned(), json!(edges))]))
     }
 
