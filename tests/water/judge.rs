@@ -193,8 +193,14 @@ impl Judge<'_> {
         let stepped = of_lakes.chain(of_rivers).fold(lowest, Heights::hull);
         // Beside an overlap in which the other water is higher, there is no step.
         let differs = stepped.low < lowest.low - 1e-9 || stepped.high > lowest.high + 1e-9;
-        let slope = Heights { off: stepped.off + lowest.off * reach / self.rounding, ..stepped };
-        Some(if differs { (Within::Step, slope) } else { (own, lowest) })
+        if !differs {
+            return Some((own, lowest));
+        }
+        // A triangle of the step may reach along it to the next level line.
+        let near = self.rivers.iter().flat_map(|river| &river.stretches).filter(|stretch| stretch.distance(p) <= reach);
+        let heights = near.flat_map(|stretch| stretch.heights);
+        let all = heights.map(|height| Heights { low: height, high: height, off: 0.0 }).fold(stepped, Heights::hull);
+        Some((Within::Step, all))
     }
 
     /// Returns true if a position is so near to a border of water that it may be on either side.
@@ -233,7 +239,7 @@ impl Judge<'_> {
             || self.scene.lakes.iter().any(|lake| is_within(&lake.rings, p))
             || shores.into_iter().any(|ring| distance_to_line(ring, p) <= self.rounding);
         // Points on lines between their vertices keep their heights.
-        let is_point = || self.scene.points.iter().any(|point| point[..2] == p);
+        let is_point = || self.scene.points.iter().any(|point| distance([point[0], point[1]], p) <= self.rounding);
         // A cut has the heights of the surface, which falls from a wall to water that it crosses.
         let bounds = self.scene.bounds.map(|[[a, b], [c, d]]| vec![[a, b], [c, b], [c, d], [a, d], [a, b]]);
         let plan = |line: &Vec<[f64; 3]>| line.iter().map(|p| [p[0], p[1]]).collect::<Vec<Site>>();

@@ -44,6 +44,9 @@ fn water_is_level_across_and_never_rises() {
         let scenes = judged.iter().flatten().count();
         eprintln!("{name}: {} of {} are wrong, {counts:?}", judged.len() - scenes, judged.len());
         wrong.extend(judged.into_iter().filter_map(Result::err));
+        if number("BREAKLINE_WATER_SEED").is_some() {
+            continue;
+        }
         let is_enough = counts.vertices >= 8 * scenes && counts.cells >= 15 * scenes;
         if !is_enough && counts.on_walls < 5 * scenes {
             wrong.push(format!("{name}: too little was judged"));

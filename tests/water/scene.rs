@@ -417,7 +417,8 @@ impl Scene {
         };
         let size = 6.0 + 8.0 * random.unit();
         let mut rings = vec![ring(size, random)];
-        if random.below(2) == 0 {
+        // Around its center there is room if no side is long.
+        if corners > 4 && random.below(2) == 0 {
             rings.push(ring(size / 5.0, random));
         }
         self.lakes.push(Lake { rings, level: 6.0 + 12.0 * random.unit() });
