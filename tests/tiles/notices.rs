@@ -190,7 +190,7 @@ fn cases_of_points(files: &Files) -> Vec<Case> {
         case(points(&[&wide]), &["EdgeLimitUnusual"]),
         case(points(&[&a, &far]), &["FarApart"]).of(te(0.0, 4.0)),
         case(partial(points(&[&cut, &b])), &["Reader"]),
-        case(points(&[&counted]), &["Reader"]),
+        case(partial(points(&[&counted])), &["Reader"]),
         case(TinRequest { max_edge: EdgeLimit::Unlimited, ..points(&[&a]) }, &["NoEdgeLimit"]),
         // One piece says how far out it has read; tiles read all points.
         case(TinRequest { bounds: Some(bounds(0.5, 2.5)), ..points(&[&a]) }, &["BoundsBuffer"]),
