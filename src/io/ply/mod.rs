@@ -90,7 +90,6 @@ pub(super) fn read(bytes: &[u8], watch: Watch) -> Result<Triangles> {
             _ => body.rows(element, |_, _| Ok(()))?,
         }
     }
-    body.end()?;
     let open = if header.encoding == Encoding::Ascii { open_line(bytes) } else { None };
     let crs = crs_text::parse(&header.crs)?;
     let mut lines = std::mem::take(&mut polygons.lines);
@@ -114,6 +113,8 @@ pub(super) fn read(bytes: &[u8], watch: Watch) -> Result<Triangles> {
         }
         start = end;
     }
+    // What a face says is wrong names the place better than this.
+    body.end()?;
     Ok(triangles)
 }
 
