@@ -110,7 +110,7 @@ impl SurfaceProduct {
     /// Returns the triangles. Those of a TIN in parts are joined.
     ///
     /// # Errors
-    /// If the surface is a raster; and those of [`TinParts::joined`].
+    /// If the surface is a raster, or its parts are damaged or too many for one mesh.
     pub fn triangles(&self) -> Result<&dyn Surface> {
         match &self.model {
             Model::Tin(tin) => Ok(tin.as_ref()),

@@ -138,7 +138,7 @@ impl TinParts {
     /// those of the parts.
     ///
     /// # Errors
-    /// The first damage that is found; and those of [`joined`](Self::joined).
+    /// The first damage that is found, and if the parts are too many for one mesh.
     ///
     /// # Complexity
     /// Linear.
