@@ -125,7 +125,7 @@ fn advances(from: (&[[f64; 2]; 2], usize), to: (&[[f64; 2]; 2], usize)) -> bool 
 }
 
 /// The unit vector to the left of a segment.
-fn normal([[ax, ay], [bx, by]]: [[f64; 2]; 2]) -> [f64; 2] {
+pub(super) fn normal([[ax, ay], [bx, by]]: [[f64; 2]; 2]) -> [f64; 2] {
     let length = (bx - ax).hypot(by - ay);
     [-(by - ay) / length, (bx - ax) / length]
 }

@@ -1,6 +1,7 @@
 //! Lines beside a ring, no farther from it than a distance.
 
 use crate::data::orientation;
+use crate::terrain::lines::offset::normal;
 use crate::triangulation::num::Sign;
 
 /// A straight part of a line beside a ring, and the part of the ring that is nearest to it.
@@ -107,12 +108,6 @@ fn beyond(at: [f64; 2], normal: [f64; 2], by: f64) -> [f64; 2] {
 fn turned([x, y]: [f64; 2], angle: f64) -> [f64; 2] {
     let (sine, cosine) = angle.sin_cos();
     [x * cosine - y * sine, x * sine + y * cosine]
-}
-
-/// The unit vector to the left of a segment.
-fn normal([[ax, ay], [bx, by]]: [[f64; 2]; 2]) -> [f64; 2] {
-    let length = (bx - ax).hypot(by - ay);
-    [-(by - ay) / length, (bx - ax) / length]
 }
 
 #[cfg(test)]
