@@ -10,12 +10,11 @@ use super::offset::{offset, unfolded};
 use crate::data::orientation;
 use crate::error::{Error, Result};
 use crate::terrain::boxes::{Boxed, Boxes, Extent};
-use crate::terrain::nearest::squared_distance;
 use crate::triangulation::num::{Sign, unsigned_zero};
 use ears::ears;
 use stations::stations;
 
-pub(in crate::terrain) use water::{RiverWater, height_near};
+pub(in crate::terrain) use water::RiverWater;
 
 /// A river between two banks.
 ///
@@ -213,20 +212,6 @@ impl River {
         [level(self.stations.first()), level(self.stations.last())]
     }
 
-    /// Returns true if one of two rivers ends where the other one begins or ends, and a position is
-    /// on the level line there, or no farther from it than a distance.
-    pub(in crate::terrain) fn goes_on_at(&self, other: &River, q: [f64; 2], distance: f64) -> bool {
-        let mouths = [[0, 1], [1, 0], [1, 1]].into_iter();
-        let mut common = mouths.filter(|[own, end]| key(self.ends[*own]) == key(other.ends[*end]));
-        let is_on = |line: [[f64; 3]; 2]| squared_distance(line.map(flat), q) <= distance * distance;
-        common.any(|[own, end]| is_on(self.end_line(own)) || is_on(other.end_line(end)))
-    }
-
-    /// The first (0) or the last (1) level line.
-    fn end_line(&self, end: usize) -> [[f64; 3]; 2] {
-        self.stations[if end == 0 { 0 } else { self.stations.len() - 1 }]
-    }
-
     /// Lets the first (0) or the last (1) level line follow the bank of another river, from left to
     /// right, with its heights.
     fn set_end_line(&mut self, end: usize, line: Vec<[f64; 3]>) {
@@ -236,6 +221,13 @@ impl River {
             let is_along = line.len() > 2 || left[2] != right[2];
             self.along_banks[end] = is_along.then(|| inner.to_vec());
         }
+    }
+
+    /// Returns true if the stretch at the first (0) or the last (1) level line is bounded by a line
+    /// that does not meet itself; one of four corners counts as such.
+    fn is_simple_at(&self, end: usize) -> bool {
+        let outline = self.outline(if end == 0 { 0 } else { self.stretch_count() - 1 });
+        outline.len() == 4 || meeting_of(outline).is_none()
     }
 
     /// The vertices between the ends of the first (0) or the last (1) level line on the bank of
@@ -292,12 +284,7 @@ impl River {
     /// # Complexity
     /// O(n log n) for n stations, if few segments of banks are close to each other.
     pub fn overlap(&self) -> Option<[f64; 2]> {
-        let mut ring = self.ring_with_heights();
-        ring.extend(ring.first().copied());
-        let all = sides(&ring);
-        let boxes = Boxes::new(all.clone());
-        all.iter()
-            .find_map(|side| boxes.find_in(side.extent(), |other| cross(&side.0, &other.0).then(|| middle(&side.0))))
+        meeting_of(self.ring_with_heights())
     }
 
     /// The ring around the water.
@@ -310,6 +297,14 @@ impl River {
         let [first, last] = [0, 1].map(|end| self.along_bank(end).iter().copied());
         left.into_iter().chain(last).chain(right.into_iter().rev()).chain(first.rev()).collect()
     }
+}
+
+/// A position at which a ring meets itself.
+fn meeting_of(mut ring: Vec<[f64; 3]>) -> Option<[f64; 2]> {
+    ring.extend(ring.first().copied());
+    let all = sides(&ring);
+    let boxes = Boxes::new(all.clone());
+    all.iter().find_map(|side| boxes.find_in(side.extent(), |other| cross(&side.0, &other.0).then(|| middle(&side.0))))
 }
 
 /// A position, compared bit by bit.

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use rustc_hash::FxHashMap;
 
-use super::{Key, River, flat, key, side_between};
+use super::{Key, River, distance, flat, key, side_between};
 use crate::terrain::boxes::{Boxed, Boxes, Extent};
 use crate::terrain::nearest::{nearest_part, squared_distance};
 
@@ -228,7 +228,12 @@ pub(super) fn fit_ends(rivers: &mut [River], joints: &[Joint]) {
     });
     lines.dedup_by(|(joint, _), (first, _)| [joint.branch, joint.end] == [first.branch, first.end]);
     for (joint, line) in lines {
-        rivers[joint.branch].set_end_line(joint.end, line);
+        let corners = vec![line[0], line[line.len() - 1]];
+        let (river, follows) = (&mut rivers[joint.branch], line.len() > 2);
+        river.set_end_line(joint.end, line);
+        if follows && !river.is_simple_at(joint.end) {
+            river.set_end_line(joint.end, corners);
+        }
     }
 }
 
@@ -258,11 +263,21 @@ fn end_line(rivers: &[River], joint: &Joint) -> Vec<[f64; 3]> {
                 })
                 .collect();
             line.dedup_by(|p, q| flat(*p) == flat(*q));
-            line
+            if is_detour(&line) { vec![line[0], line[line.len() - 1]] } else { line }
         }
         [Some(station), None] | [None, Some(station)] => own.map(|[x, y, _]| [x, y, height(station)]).to_vec(),
         [None, None] => own.to_vec(),
     }
+}
+
+/// How many times as long as the straight way between its ends a bank may be that an end follows.
+const LONGEST_DETOUR: f64 = 2.0;
+
+/// Returns true if a line is so long that what lies between it and the straight way is land: the
+/// bank around a meander, for one, whose neck is as wide as the river that ends there.
+fn is_detour(line: &[[f64; 3]]) -> bool {
+    let length: f64 = line.windows(2).map(|pair| distance(pair[0], pair[1])).sum();
+    length > LONGEST_DETOUR * distance(line[0], line[line.len() - 1])
 }
 
 #[cfg(test)]

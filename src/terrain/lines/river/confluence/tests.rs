@@ -109,6 +109,55 @@ fn ends_near_a_bent_bank_follow_it() {
     assert_eq!(apart, before);
 }
 
+/// A river ends between the tips of a peninsula that the main river flows around: the peninsula
+/// stays land.
+#[test]
+fn an_end_does_not_follow_the_bank_around_a_meander() {
+    let line = |sites: [[f64; 2]; 6]| {
+        let heights = [5.5, 5.0, 4.9, 4.8, 4.7, 4.5];
+        sites.iter().zip(heights).map(|([x, y], z)| [*x, *y, z]).collect::<Vec<[f64; 3]>>()
+    };
+    let inner = line([[10.0, 50.0], [20.0, 40.0], [20.0, 10.0], [30.0, 10.0], [30.0, 40.0], [40.0, 50.0]]);
+    let outer = line([[5.0, 50.0], [15.0, 40.0], [15.0, 5.0], [35.0, 5.0], [35.0, 40.0], [45.0, 50.0]]);
+    let side = |x: f64| [[x, 55.0, 9.0], [x, 40.0, 8.0]];
+    let mut rivers = [River::between(&inner, &outer).unwrap(), River::between(&side(20.0), &side(30.0)).unwrap()];
+    River::join(&mut rivers, 0.01);
+    let mut builder = TinBuilder::default();
+    for k in 0..144 {
+        builder.add_points(&[f64::from(k % 12) * 5.0], &[f64::from(k / 12) * 5.0], &[25.0]);
+    }
+    for river in &rivers {
+        builder.add_river(river.clone());
+    }
+    let tin = builder.build().unwrap();
+    assert_eq!(tin.report().water_overlaps, []);
+    are_at(&tin, &[([25.0, 15.0], 25.0), ([25.0, 25.0], 25.0), ([25.0, 35.0], 25.0)]);
+    let corners = rivers[1].stations[1].map(|[x, y, z]| ([x, y], z));
+    assert!(corners[0].1 > corners[1].1 && rivers[0].stations.iter().any(|ends| ends[0] == rivers[1].stations[1][0]));
+    are_at(&tin, &[corners[0], corners[1], ([25.0, 55.0], 9.0)]);
+}
+
+/// A bank that bulges through the last stretch of a river that ends on both sides of the bulge:
+/// both overlap there, and the higher one keeps its heights beside it.
+#[test]
+fn an_end_does_not_follow_a_bank_through_its_own_stretch() {
+    let bank = [[5.0, 20.0, 5.0], [20.0, 20.0, 5.0], [25.0, 28.0, 5.0], [30.0, 20.0, 5.0], [55.0, 20.0, 5.0]];
+    let main = River::between(&bank, &[[5.0, 15.0, 5.0], [55.0, 15.0, 5.0]]).unwrap();
+    let northern = River::between(&[[22.0, 26.0, 9.0], [20.0, 20.0, 8.0]], &[[28.0, 26.0, 9.0], [30.0, 20.0, 8.0]]);
+    let mut rivers = [main, northern.unwrap()];
+    River::join(&mut rivers, 0.01);
+    assert!(rivers.iter().all(|river| river.overlap().is_none()));
+    let mut builder = TinBuilder::default();
+    builder.add_points(&[0.0, 60.0, 0.0, 60.0], &[0.0, 0.0, 60.0, 60.0], &[25.0; 4]);
+    for river in &rivers {
+        builder.add_river(river.clone());
+    }
+    let tin = builder.build().unwrap();
+    assert_eq!(tin.report().water_overlaps.len(), 1);
+    are_at(&tin, &[([25.0, 25.0], 5.0), ([25.0, 27.0], 5.0), ([25.5, 20.0], 5.0), ([22.0, 26.0], 9.0)]);
+    are_at(&tin, &[([22.0, 25.0], 9.0 - 4.0 / 6.0), ([29.0, 22.0], 9.0 - 16.0 / 6.0)]);
+}
+
 #[test]
 fn level_rivers_are_turned_to_fit() {
     for (level, expected) in [(9.0, [9.0, 8.2]), (6.0, [8.2, 6.0])] {
