@@ -166,7 +166,7 @@ pub enum Notice {
         /// A position near which the banks meet.
         at: [f64; 2],
     },
-    /// Waters of different heights overlap: the lower one counts there.
+    /// Waters of different heights overlap or touch: the lower one counts there.
     WaterOverlaps {
         /// The number of pairs that do.
         count: usize,
@@ -222,7 +222,7 @@ pub struct CrossingNote {
     pub chosen: f64,
 }
 
-/// A step between two waters that overlap.
+/// A step between two waters that overlap or touch.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WaterStep {
     /// The water whose height counts.

@@ -37,7 +37,7 @@ impl Notice {
     }
 }
 
-/// The lines that list steps between waters that overlap.
+/// The lines that list steps between waters that overlap or touch.
 fn steps(count: usize, first: &[WaterStep]) -> Vec<String> {
     let mut lines: Vec<String> = first.iter().map(step).collect();
     if count > first.len() {
@@ -163,10 +163,13 @@ fn text(notice: &Notice) -> String {
         }
         Notice::WaterOverlaps { count: 1, first } => {
             let steps: Vec<String> = first.iter().map(step).collect();
-            format!("two waters overlap, and the lower height, or that of the lake, counts: {}", steps.join(", "))
+            format!(
+                "two waters overlap or touch, and the lower height, or that of the lake, counts: {}",
+                steps.join(", ")
+            )
         }
         Notice::WaterOverlaps { count, .. } => {
-            format!("{count} pairs of waters overlap, and the lower height, or that of the lake, counts")
+            format!("{count} pairs of waters overlap or touch, and the lower height, or that of the lake, counts")
         }
         Notice::LinesApart(role) => format!("nothing of {} lies on the surface", role.option()),
         Notice::CrossingHeights { count, largest, at, .. } => {

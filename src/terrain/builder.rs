@@ -55,8 +55,8 @@ pub struct TinBuilder {
     /// A vertex that several breaklines were given with gets its height by
     /// [`duplicates`](Self::duplicates).
     pub crossing_heights: CrossingRule,
-    /// The largest difference of heights at a crossing of breaklines, or of waters that overlap,
-    /// that is not reported, in units of height.
+    /// The largest difference of heights at a crossing of breaklines, or of waters that overlap
+    /// or touch, that is not reported, in units of height.
     pub crossing_tolerance: f64,
     /// The longest edge (in plan, in the units of the data) at the rim of the surface.
     ///

@@ -30,8 +30,8 @@ pub struct TinReport {
     /// The vertices of walls that have the height of water, which counts first, instead of their
     /// own; each with the number of its line and its site.
     pub walls_in_water: Vec<(usize, [f64; 2])>,
-    /// The pairs of waters that overlap with a step larger than the tolerance, with the largest of
-    /// each.
+    /// The pairs of waters that overlap or touch with a step larger than the tolerance, with the
+    /// largest of each.
     pub water_overlaps: Vec<WaterOverlap>,
     /// Vertices of the surface.
     pub vertices: usize,

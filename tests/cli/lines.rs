@@ -162,7 +162,7 @@ fn waters_that_meet_are_reported_where_they_contradict_each_other() {
     let over = ("LineString", "[[1.5,2.8,8],[1.5,0.2,7]]", "{}");
     let args = ["tin", "p.xyz", "--rivers", "l.geojson", "--river-width", "0.5", "-o", "t.ply"];
     let said = [
-        "warning: two waters overlap, and the lower height, or that of the lake, counts: a step of 2.4 m at",
+        "warning: two waters overlap or touch, and the lower height, or that of the lake, counts: a step of 2.4 m at",
         ", from l.geojson fid 1 to l.geojson fid 0",
     ];
     let crossing = folder(&[across, over]);
@@ -176,7 +176,11 @@ fn waters_that_meet_are_reported_where_they_contradict_each_other() {
         folder_with(&[("p.xyz", SLOPE), ("l.geojson", &features(rivers)), ("lake.geojson", &lake)])
     };
     let run = run_in(&folder_of(&[across, over]), &[&args[..], &["--flat", "lake.geojson"]].concat());
-    run.works(&["3 pairs of waters overlap", "a step of 4 m at", "from l.geojson fid 0 to lake.geojson fid 0"]);
+    run.works(&[
+        "3 pairs of waters overlap or touch",
+        "a step of 4 m at",
+        "from l.geojson fid 0 to lake.geojson fid 0",
+    ]);
     // A tributary from the north, which ends on the bank of the first river, rounded to mm.
     let main = ("MultiLineString", "[[[0.2,1.2,5],[2.8,1.2,4]],[[0.2,0.6,5],[2.8,0.6,4]]]", "{}");
     for (south, said) in [(4.9, None), (4.2, Some("rise downstream at 1 vertices, by up to 0.3"))] {

@@ -102,7 +102,7 @@ class Tin:
         """Counts of vertices, triangles and edges, and of what was done with the input.
 
         ``masked_rows`` are the points and vertices of lines in arrays that were left out because they are masked.
-        ``crossing_heights`` and ``water_overlaps`` are where breaklines meet, and waters overlap, at different heights.
+        ``crossing_heights`` and ``water_overlaps`` are where breaklines meet, and waters overlap or touch, at different heights.
         """
         if self._report is None:
             self._report = {**self._surface.report(), "masked_rows": self._masked}

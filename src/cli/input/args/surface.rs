@@ -113,8 +113,9 @@ pub(in crate::cli) struct SurfaceArgs {
 
     /// Largest allowed difference of heights where breaklines meet [default: 0.01 metres]
     ///
-    /// Points with a larger difference are reported, and so are waters that overlap with a larger
-    /// step. In the units of the heights (0.01 metres are 0.0328 feet); without any, 0.01 units.
+    /// Points with a larger difference are reported, and so are waters that overlap or touch with a
+    /// larger step. In the units of the heights (0.01 metres are 0.0328 feet); without any, 0.01
+    /// units.
     #[arg(long, value_name = "HEIGHT", value_parser = not_negative, allow_negative_numbers = true, help_heading = "Surface")]
     pub(in crate::cli) crossing_tolerance: Option<f64>,
 

@@ -1,5 +1,7 @@
 //! Creases of the lower of two heights: where those of two rivers are equal.
 
+use std::collections::BTreeSet;
+
 use rustc_hash::FxHashMap;
 
 use super::Scene;
@@ -27,7 +29,7 @@ struct Passage {
 }
 
 /// Adds the lines along which two rivers have the same height within their overlap. The lines that
-/// they cross get vertices there.
+/// they cross get vertices there; so do banks that two rivers share, where both are equally high.
 pub(super) fn add(scene: &Scene, strands: &mut Vec<Strand>) {
     let Some(mut sketch) = Sketch::new(scene, strands) else { return };
     let mut creases: Vec<Strand> = Vec::new();
@@ -48,6 +50,7 @@ pub(super) fn add(scene: &Scene, strands: &mut Vec<Strand>) {
                 creases.push(Strand::new(river, ends));
             }
         }
+        (0..3).for_each(|edge| sketch.want_on_bank(scene, cell, edge, strands));
     }
     strands.append(&mut creases);
 }
@@ -82,30 +85,60 @@ impl Sketch {
         *self.heights.entry((water, vertex)).or_insert_with(|| scene.height(water, [x, y]))
     }
 
+    /// How much higher one river is than another at a vertex; 0 if it is rounding.
+    fn difference(&mut self, scene: &Scene, vertex: VertexId, [river, other]: [usize; 2]) -> f64 {
+        let difference = self.height(scene, river, vertex) - self.height(scene, other, vertex);
+        if difference.abs() <= scene.tolerance { 0.0 } else { difference }
+    }
+
+    fn site(&self, vertex: VertexId) -> [f64; 2] {
+        let [x, y, _] = *self.triangulation.point(vertex);
+        [x, y]
+    }
+
+    /// Where two rivers are equally high between the ends of an edge; `None` if one of them is
+    /// nowhere lower. From either side of the edge it is the same point.
+    fn crossing(&mut self, scene: &Scene, edge: [VertexId; 2], pair: [usize; 2]) -> Option<[f64; 2]> {
+        let mut ends = edge.map(|vertex| (self.site(vertex), self.difference(scene, vertex, pair)));
+        ends.sort_by(|(p, _), (q, _)| p[0].total_cmp(&q[0]).then(p[1].total_cmp(&q[1])));
+        let [(from, before), (to, after)] = ends;
+        let part = before / (before - after);
+        (before * after < 0.0).then(|| [0, 1].map(|axis| from[axis] + part * (to[axis] - from[axis])))
+    }
+
     /// Where the crease between two rivers meets the border of a triangle: at two points, unless
     /// one river is lower everywhere or they are equal.
-    fn passages(&mut self, scene: &Scene, cell: CellId, [river, other]: [usize; 2]) -> Vec<Passage> {
+    fn passages(&mut self, scene: &Scene, cell: CellId, pair: [usize; 2]) -> Vec<Passage> {
         let vertices = *self.triangulation.tds().corners(cell);
-        let differences = vertices.map(|vertex| {
-            let difference = self.height(scene, river, vertex) - self.height(scene, other, vertex);
-            if difference.abs() <= scene.tolerance { 0.0 } else { difference }
-        });
-        let sites = vertices.map(|vertex| self.triangulation.point(vertex)).map(|&[x, y, _]| [x, y]);
         let mut passages = Vec::new();
-        for corner in 0..3 {
-            let [j, k] = [(corner + 1) % 3, (corner + 2) % 3];
-            if differences[corner] == 0.0 {
-                passages.push(Passage { at: sites[corner], corner, is_at_corner: true });
+        for (corner, &vertex) in vertices.iter().enumerate() {
+            if self.difference(scene, vertex, pair) == 0.0 {
+                passages.push(Passage { at: self.site(vertex), corner, is_at_corner: true });
             }
-            if differences[j] * differences[k] < 0.0 {
-                // Both triangles at the edge find the same point.
-                let [from, to] = if sites[j] < sites[k] { [j, k] } else { [k, j] };
-                let part = differences[from] / (differences[from] - differences[to]);
-                let at = [0, 1].map(|axis| sites[from][axis] + part * (sites[to][axis] - sites[from][axis]));
+            let edge = [vertices[(corner + 1) % 3], vertices[(corner + 2) % 3]];
+            if let Some(at) = self.crossing(scene, edge, pair) {
                 passages.push(Passage { at, corner, is_at_corner: false });
             }
         }
         passages
+    }
+
+    /// Asks for a vertex where two rivers that share a bank are equally high: there the lower one
+    /// becomes the higher one.
+    fn want_on_bank(&mut self, scene: &Scene, cell: CellId, edge: usize, strands: &mut [Strand]) {
+        if !self.triangulation.is_constrained(cell, edge) {
+            return;
+        }
+        let [from, to] = self.triangulation.tds().edge_ends(cell, edge);
+        let lines = self.triangulation.lines_through(from, to);
+        let segments: Vec<[usize; 2]> = lines.into_iter().map(|line| self.segments[line.index()]).collect();
+        let here: BTreeSet<usize> = segments.iter().map(|[strand, _]| strands[*strand].water).collect();
+        for &river in &here {
+            for &other in here.range(..river).filter(|other| scene.meetings.pairs.contains(&[river, **other])) {
+                let Some(at) = self.crossing(scene, [from, to], [river, other]) else { continue };
+                segments.iter().for_each(|&[strand, segment]| strands[strand].want(segment, at));
+            }
+        }
     }
 
     /// Returns true if a crease runs along an edge on which a line runs already.

@@ -1,12 +1,13 @@
-//! Which waters overlap, and where.
+//! Which waters overlap or touch with different heights, and where.
 
 use std::collections::BTreeSet;
 
-use super::Zone;
+use super::{Zone, tolerance_of};
 use crate::data::orientation;
 use crate::terrain::boxes::{Boxed, Boxes, Extent};
-use crate::terrain::lines::areas::{Level, Water};
-use crate::terrain::lines::river::contains;
+use crate::terrain::lines::areas::{Level, Water, rounding_of};
+use crate::terrain::lines::river::{contains, height_near};
+use crate::terrain::nearest::squared_distance;
 use crate::triangulation::num::Sign;
 
 /// A triangle of a river.
@@ -23,11 +24,11 @@ impl Boxed for Part {
     }
 }
 
-/// The waters that overlap, by their numbers.
+/// The waters that overlap, or touch with different heights, by their numbers.
 #[derive(Debug)]
 pub(super) struct Meetings {
-    /// Pairs of a water whose height may count at the border of an overlap, and a river that may go
-    /// on outside.
+    /// Pairs of a water whose height may count at the border of an overlap, or where both touch,
+    /// and a river that may go on outside.
     pub(super) pairs: BTreeSet<[usize; 2]>,
     /// The stretches of rivers that take part: river, stretch.
     pub(super) stretches: BTreeSet<[usize; 2]>,
@@ -49,10 +50,22 @@ impl Meetings {
             }
         }
         let parts = Boxes::new(all.clone());
+        let corners = || all.iter().flat_map(|part| part.corners);
+        let touching = Touching { rounding: rounding_of(corners()), tolerance: tolerance_of(corners()) };
+        // Where a river goes on, it falls from the height of the one before to its own.
+        let goes_on = |rivers: [usize; 2], at: [f64; 2]| match rivers.map(|number| &waters[number].level) {
+            [Level::River(river), Level::River(other)] => river.goes_on_at(other, at, touching.rounding),
+            _ => false,
+        };
         let (mut pairs, mut stretches) = (BTreeSet::new(), BTreeSet::new());
         for part in &all {
-            parts.find_in(part.extent(), |other| {
-                if other.water > part.water && overlap(&part.corners, &other.corners) {
+            parts.find_in(part.extent().grown(touching.rounding), |other| {
+                let meet = || {
+                    overlap(&part.corners, &other.corners)
+                        || (touching.differences(&part.corners, &other.corners))
+                            .any(|at| !goes_on([part.water, other.water], at))
+                };
+                if other.water > part.water && meet() {
                     pairs.extend([[part.water, other.water], [other.water, part.water]]);
                     stretches.extend([[part.water, part.stretch], [other.water, other.stretch]]);
                 }
@@ -62,8 +75,8 @@ impl Meetings {
         for (water, Water { level, .. }) in waters.iter().enumerate() {
             let Level::Flat(lake) = level else { continue };
             for side in lake.rings.iter().flat_map(|ring| ring.windows(2)).map(|pair| [pair[0], pair[1]]) {
-                parts.find_in(Extent::of(side), |part| {
-                    if passes(side, &part.corners) {
+                parts.find_in(Extent::of(side).grown(touching.rounding), |part| {
+                    if passes(side, &part.corners) || touching.differences(&side, &part.corners).next().is_some() {
                         pairs.insert([water, part.water]);
                         stretches.insert([part.water, part.stretch]);
                     }
@@ -111,6 +124,31 @@ impl Meetings {
             }
         }
         Boxes::new(zones)
+    }
+}
+
+/// What counts as touching, and as different heights.
+#[derive(Debug, Clone, Copy)]
+struct Touching {
+    rounding: f64,
+    tolerance: f64,
+}
+
+impl Touching {
+    /// The corners of two convex polygons that lie on the border of the other one, but for
+    /// rounding, and have another height there. Between corners heights are linear.
+    fn differences<'a>(self, p: &'a [[f64; 3]], q: &'a [[f64; 3]]) -> impl Iterator<Item = [f64; 2]> + 'a {
+        [(p, q), (q, p)].into_iter().flat_map(move |(corners, other)| {
+            corners.iter().filter(move |corner| self.differs(**corner, other)).map(|&[x, y, _]| [x, y])
+        })
+    }
+
+    fn differs(self, [x, y, z]: [f64; 3], polygon: &[[f64; 3]]) -> bool {
+        polygon.iter().zip(polygon.iter().cycle().skip(1)).map(|(from, to)| [*from, *to]).any(|side| {
+            let plan = side.map(|[x, y, _]| [x, y]);
+            squared_distance(plan, [x, y]) <= self.rounding.powi(2)
+                && (z - height_near(side, [x, y])).abs() > self.tolerance
+        })
     }
 }
 

@@ -1,5 +1,5 @@
-//! Waters that overlap: the lines that give each position of an overlap the lower height, and let
-//! each river keep its own height outside.
+//! Waters that overlap or touch: the lines that give each position of an overlap the lower height,
+//! and let each river keep its own height outside.
 //!
 //! ```text
 //!    across the lower river, along the higher one:
@@ -15,7 +15,8 @@
 //! rivers, and where both heights are equal. At its border there is a step if the river that goes
 //! on outside is higher. It is as wide as a wall: a line parallel to the border has the heights of
 //! that river again. A lake counts before a river, so its border is its shore, and the river may be
-//! lower as well.
+//! lower as well. Where two waters share a part of their borders or a vertex, and have different
+//! heights there, the step is the same.
 
 mod band;
 mod crease;
@@ -31,7 +32,8 @@ use crate::terrain::inside::Inside;
 use meetings::Meetings;
 use strand::Strand;
 
-/// Two waters that overlap, and the step that is left at the border of the overlap.
+/// Two waters that overlap or touch, and the step that is left at the border of the overlap, or
+/// where they touch.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WaterOverlap {
     /// The numbers of the first lines of both: of the one whose height counts at the border, and of
@@ -43,26 +45,26 @@ pub struct WaterOverlap {
     pub at: [f64; 2],
 }
 
-/// What waters that overlap add to their lines.
+/// What waters that overlap or touch add to their lines.
 #[derive(Debug, Clone, Default)]
 pub(in crate::terrain) struct Marks {
     /// Lines that have more vertices now, by their numbers.
     pub(in crate::terrain) replaced: Vec<(usize, Vec<[f64; 3]>)>,
     /// New lines, each with the number of a line of the same water.
     pub(in crate::terrain) added: Vec<(usize, Vec<[f64; 3]>)>,
-    /// The pairs of a water and a river that overlap, by their numbers.
+    /// The pairs of a water and a river that overlap or touch, by their numbers.
     pub(in crate::terrain) pairs: Vec<[usize; 2]>,
-    /// The waters that overlap with a step.
+    /// The waters that meet with a step.
     pub(in crate::terrain) overlaps: Vec<WaterOverlap>,
 }
 
-/// Finds what waters that overlap need. `line` returns the vertices of a line, `width` is the
-/// distance in which heights change at a step.
+/// Finds what waters that overlap or touch need. `line` returns the vertices of a line, `width` is
+/// the distance in which heights change at a step.
 ///
 /// The result depends on the set of waters only.
 ///
 /// # Complexity
-/// O(n log n) for n level lines, if waters overlap nowhere; then about linear in the parts of
+/// O(n log n) for n level lines, if waters meet nowhere; then about linear in the parts of
 /// triangles that overlap.
 pub(in crate::terrain) fn mark(waters: &[Water], line: &dyn Fn(usize) -> Vec<[f64; 3]>, width: f64) -> Marks {
     let meetings = Meetings::find(waters);
@@ -77,8 +79,9 @@ pub(in crate::terrain) fn mark(waters: &[Water], line: &dyn Fn(usize) -> Vec<[f6
             strands.extend(lines.map(|of| Strand::given(number, of, line(of), water.rim.contains(&of))));
         }
     }
-    let rounding = rounding_of(strands.iter().flat_map(|strand| &strand.points).copied());
-    let scene = Scene { waters, bodies, meetings, tolerance: tolerance(&strands), rounding, width };
+    let vertices = || strands.iter().flat_map(|strand| &strand.points).copied();
+    let (tolerance, rounding) = (tolerance_of(vertices()), rounding_of(vertices()));
+    let scene = Scene { waters, bodies, meetings, tolerance, rounding, width };
     shared::add(&scene, &mut strands);
     strands.iter_mut().for_each(|strand| strand.insert(&scene));
     strands.extend(scene.diagonals());
@@ -176,8 +179,8 @@ impl Boxed for Zone {
 /// difference of two heights.
 const ROUNDING: f64 = 64.0;
 
-fn tolerance(strands: &[Strand]) -> f64 {
-    let largest = strands.iter().flat_map(|strand| &strand.points).flatten().fold(0.0_f64, |most, c| most.max(c.abs()));
+fn tolerance_of(vertices: impl Iterator<Item = [f64; 3]>) -> f64 {
+    let largest = vertices.flatten().fold(0.0_f64, |most, c| most.max(c.abs()));
     ROUNDING * (largest.next_up() - largest)
 }
 

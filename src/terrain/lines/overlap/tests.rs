@@ -108,6 +108,97 @@ fn a_river_through_a_lake_is_level_up_to_its_shore() {
     }
 }
 
+/// One common vertex: the higher river is level but for the step around it.
+#[test]
+fn rivers_that_share_a_vertex_keep_their_heights() {
+    let level = |bank: &[[f64; 2]], z: f64| bank.iter().map(|[x, y]| [*x, *y, z]).collect::<Vec<[f64; 3]>>();
+    let between = |left: &[[f64; 2]], right: &[[f64; 2]], z| River::between(&level(left, z), &level(right, z)).unwrap();
+    let rivers = [
+        between(&[[0.0, 14.0], [20.0, 14.0]], &[[0.0, 10.0], [10.0, 10.0], [20.0, 10.0]], 10.0),
+        between(&[[0.0, 5.0], [10.0, 10.0], [20.0, 5.0]], &[[0.0, 1.0], [10.0, 6.0], [20.0, 1.0]], 5.0),
+    ];
+    for order in [[0, 1], [1, 0]] {
+        let tin = over_ground(&order.map(|k| rivers[k].clone()), 21.0).build().unwrap();
+        is_at(&tin, [10.0, 10.0], 5.0);
+        for x in [0.0, 2.0, 8.0, 9.99, 10.01, 14.0, 20.0] {
+            is_at(&tin, [x, 10.0], 10.0);
+            is_at(&tin, [x, 12.0], 10.0);
+        }
+        for (x, y) in [(10.0, 10.0 + STEP), (10.0, 11.0), (10.0, 14.0)] {
+            is_at(&tin, [x, y], 10.0);
+        }
+        for (x, y) in [(10.0, 8.0), (5.0, 5.5), (20.0, 3.0)] {
+            is_at(&tin, [x, y], 5.0);
+        }
+        let [overlap] = tin.report().water_overlaps.as_slice() else { panic!() };
+        assert!(overlap.step == 5.0 && overlap.at.iter().all(|c| (c - 10.0).abs() < 4.0 * STEP), "{overlap:?}");
+    }
+}
+
+/// A canal beside a river that falls: they share a bank, and are equally high in its middle.
+#[test]
+fn rivers_that_share_a_bank_keep_their_heights() {
+    let bank = |y: f64, ends: [f64; 2]| [[0.0, y, ends[0]], [20.0, y, ends[1]]];
+    let canal = River::between(&[[4.0, 12.0, 5.0], [16.0, 12.0, 5.0]], &[[4.0, 10.0, 5.0], [16.0, 10.0, 5.0]]).unwrap();
+    let river = River::between(&bank(10.0, [10.0, 0.0]), &bank(6.0, [10.0, 0.0])).unwrap();
+    for rivers in [[canal.clone(), river.clone()], [river, canal]] {
+        let tin = over_ground(&rivers, 21.0).build().unwrap();
+        for k in 0..=20 {
+            let x = f64::from(k);
+            let own = 10.0 - x / 2.0;
+            is_at(&tin, [x, 6.0], own);
+            is_at(&tin, [x, 10.0 - STEP], own);
+            is_at(&tin, [x, 8.0], own);
+            if (4..=16).contains(&k) {
+                is_at(&tin, [x, 10.0], own.min(5.0));
+                is_at(&tin, [x, 10.0 + STEP], 5.0);
+                is_at(&tin, [x, 11.0], 5.0);
+            }
+        }
+        let [overlap] = tin.report().water_overlaps.as_slice() else { panic!() };
+        assert!((overlap.step - 3.0).abs() < 1e-9, "{overlap:?}");
+    }
+}
+
+/// Where one river goes on as another one, it falls in its last stretch; there is no step.
+#[test]
+fn a_river_falls_to_the_one_that_continues_it() {
+    let rivers = [([0.0, 10.0], 10.0), ([10.0, 20.0], 5.0)].map(|([from, to], z)| {
+        let bank = |y: f64| [[from, y, z], [to, y, z]];
+        River::between(&bank(12.0), &bank(8.0)).unwrap()
+    });
+    let tin = over_ground(&rivers, 21.0).build().unwrap();
+    for (x, z) in [(0.0, 10.0), (5.0, 7.5), (10.0, 5.0), (15.0, 5.0)] {
+        is_at(&tin, [x, 8.0], z);
+        is_at(&tin, [x, 12.0], z);
+    }
+    assert_eq!(tin.report().water_overlaps, []);
+}
+
+/// A lake that touches a bank, in a vertex or along it.
+#[test]
+fn a_river_beside_a_lake_is_level() {
+    for top in [vec![[10.0, 10.0]], vec![[8.0, 10.0], [12.0, 10.0]]] {
+        for height in [3.0, 9.0] {
+            let mut builder = over_ground(&[along(&[[0.0, 12.0, 5.0], [20.0, 12.0, 5.0]], 4.0)], 21.0);
+            let ring = [[8.0, 6.0]].into_iter().chain(top.iter().copied()).chain([[12.0, 6.0], [8.0, 6.0]]);
+            let shore: Vec<[f64; 3]> = ring.map(|[x, y]| [x, y, height]).collect();
+            builder.add_flat(Flat::new(&[shore], FlatHeight::Lowest).unwrap());
+            let tin = builder.build().unwrap();
+            top.iter().for_each(|at| is_at(&tin, *at, height));
+            is_at(&tin, [10.0, 8.0], height);
+            for x in [0.0, 4.0, 7.9, 12.1, 16.0, 20.0] {
+                is_at(&tin, [x, 10.0], 5.0);
+            }
+            for (x, y) in [(10.0, 10.0 + STEP), (8.0, 10.0 + STEP), (10.0, 12.0), (5.0, 13.0)] {
+                is_at(&tin, [x, y], 5.0);
+            }
+            let [overlap] = tin.report().water_overlaps.as_slice() else { panic!() };
+            assert_eq!(overlap.step, (height - 5.0_f64).abs());
+        }
+    }
+}
+
 #[test]
 fn coordinates_of_a_country_are_as_good_as_small_ones() {
     let [east, north] = [4_649_000.123, 5_400_000.457];
@@ -175,18 +266,14 @@ fn flaw(tin: &Tin, rivers: &[River], waters: &[RiverWater], q: [f64; 2], reach: 
     (!is_right).then(|| format!("{q:?} in {inside:?} is at {found}, expected {own} to {other}"))
 }
 
-/// Returns true if two rivers touch at a vertex, or a stretch is not convex.
+/// Returns true if two rivers continue each other, or a stretch is not convex.
 fn is_special(rivers: &[River]) -> bool {
-    let rings: Vec<Vec<[f64; 2]>> = rivers.iter().map(River::ring).collect();
-    let touch = |p: &[[f64; 2]], q: &[[f64; 2]]| {
-        q.iter()
-            .zip(q.iter().cycle().skip(1))
-            .any(|(a, b)| p.iter().any(|vertex| squared_distance([*a, *b], *vertex) < 1e-18))
-    };
     let is_concave = |[a, b, c, d]: [[f64; 3]; 4]| {
         [[a, b, c], [b, d, c], [a, b, d], [a, d, c]].map(orientation).windows(2).any(|pair| pair[0] != pair[1])
     };
-    (0..rings.len()).any(|i| (0..rings.len()).any(|j| i != j && touch(&rings[i], &rings[j])))
+    let corners = |river: &River| (0..river.stretch_count()).flat_map(|k| river.corners(k)).collect::<Vec<_>>();
+    let goes_on = |p: &River, q: &River| corners(p).into_iter().any(|[x, y, _]| p.goes_on_at(q, [x, y], 1e-9));
+    (0..rivers.len()).any(|i| (0..rivers.len()).any(|j| i != j && goes_on(&rivers[i], &rivers[j])))
         || rivers.iter().any(|river| (0..river.stretch_count()).any(|k| is_concave(river.corners(k))))
 }
 

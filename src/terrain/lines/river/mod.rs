@@ -10,11 +10,12 @@ use super::offset::{offset, unfolded};
 use crate::data::orientation;
 use crate::error::{Error, Result};
 use crate::terrain::boxes::{Boxed, Boxes, Extent};
+use crate::terrain::nearest::squared_distance;
 use crate::triangulation::num::{Sign, unsigned_zero};
 use ears::ears;
 use stations::stations;
 
-pub(in crate::terrain) use water::RiverWater;
+pub(in crate::terrain) use water::{RiverWater, height_near};
 
 /// A river between two banks.
 ///
@@ -210,6 +211,20 @@ impl River {
     fn levels(&self) -> [f64; 2] {
         let level = |ends: Option<&[[f64; 3]; 2]>| ends.map_or(f64::NAN, |ends| ends[0][2]);
         [level(self.stations.first()), level(self.stations.last())]
+    }
+
+    /// Returns true if one of two rivers ends where the other one begins or ends, and a position is
+    /// on the level line there, or no farther from it than a distance.
+    pub(in crate::terrain) fn goes_on_at(&self, other: &River, q: [f64; 2], distance: f64) -> bool {
+        let mouths = [[0, 1], [1, 0], [1, 1]].into_iter();
+        let mut common = mouths.filter(|[own, end]| key(self.ends[*own]) == key(other.ends[*end]));
+        let is_on = |line: [[f64; 3]; 2]| squared_distance(line.map(flat), q) <= distance * distance;
+        common.any(|[own, end]| is_on(self.end_line(own)) || is_on(other.end_line(end)))
+    }
+
+    /// The first (0) or the last (1) level line.
+    fn end_line(&self, end: usize) -> [[f64; 3]; 2] {
+        self.stations[if end == 0 { 0 } else { self.stations.len() - 1 }]
     }
 
     /// Lets the first (0) or the last (1) level line follow the bank of another river, from left to

@@ -98,7 +98,7 @@ impl RiverWater {
 }
 
 /// The height of a segment where it is nearest to a position: never beyond those of its ends.
-fn height_near([from, to]: [[f64; 3]; 2], q: [f64; 2]) -> f64 {
+pub(in crate::terrain) fn height_near([from, to]: [[f64; 3]; 2], q: [f64; 2]) -> f64 {
     let height = from[2] + nearest_part([flat(from), flat(to)], q) * (to[2] - from[2]);
     height.clamp(from[2].min(to[2]), from[2].max(to[2]))
 }
