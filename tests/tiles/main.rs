@@ -15,6 +15,7 @@ mod judge;
 mod notices;
 mod parts;
 mod real;
+mod removal;
 mod trust;
 
 use std::path::Path;

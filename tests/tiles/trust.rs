@@ -109,14 +109,42 @@ fn a_task_refuses_a_damaged_file_of_another() {
     // A byte of a height in the points of the first tile, as it happens.
     damaged[22] ^= 0x40;
     std::fs::write(&path, &damaged).unwrap();
+    // Whoever finds it removes it: a queue repeats what is not done.
     let refused = run(&folder, "job run j --task 1");
-    refused.fails(1, &["000000.task: the file of a task is damaged", "job status --verify"]);
+    refused.fails(4, &["000000.task", "task 0 (divide", "its file was damaged", "do it again"]);
+    run(&folder, "job status j").ends(0, &["0 of 7 tasks are done"]);
+    run(&folder, "job run j --task 0").works(&[]);
+    assert!(bytes(&path) == whole);
+    // Nobody has read it; an end that is missing; and by a command of its own.
+    std::fs::write(&path, &damaged).unwrap();
+    run(&folder, "job run j --task 0").works(&[]);
+    assert!(bytes(&path) == whole);
+    std::fs::write(&path, &whole[..whole.len() - 3]).unwrap();
+    run(&folder, "job run j --task 1").fails(4, &["its file was damaged"]);
+    std::fs::write(&path, &damaged).unwrap();
     run(&folder, "job status j --verify").ends(0, &["0 of 7 tasks are done"]);
+    assert!(files_of(&folder.path().join("j/tasks")).is_empty());
     run(&folder, "job run j --task 0").works(&[]);
     assert!(bytes(&path) == whole);
     run(&folder, "job run j").works(&[]);
     let (expected, _) = output_of(&folder, &format!("dem {}", valley()), "whole.tif");
     assert!(bytes(folder.path().join("dem.tif")) == expected);
+}
+
+/// The command line is right, so it is no wrong usage: doing the other task repairs it.
+#[test]
+fn a_task_waits_for_what_another_job_has_in_its_place() {
+    let folder = tempfile::tempdir().unwrap();
+    for job in ["j", "k"] {
+        run(&folder, &format!("job plan {job} -- dem {} --tiles 2x2 -o dem.tif", valley())).works(&[]);
+        run(&folder, &format!("job run {job} --task 0")).works(&[]);
+    }
+    let [own, other] = ["j", "k"].map(|job| folder.path().join(job).join("tasks/000000.task"));
+    std::fs::copy(&other, &own).unwrap();
+    run(&folder, "job run j --task 1").fails(4, &["j/tasks/000000.task: this is the file of another job"]);
+    run(&folder, "job status j").ends(0, &["0 of 7 tasks are done", "next: 0"]);
+    run(&folder, "job run j --task 0").works(&[]);
+    run(&folder, "job run j --task 1").works(&[]);
 }
 
 /// The file of a task is made again, and differs, as its input does: so is what was made from it.

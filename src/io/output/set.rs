@@ -263,7 +263,7 @@ fn replace_all<'a>(
             if path.is_dir() {
                 return Err(target::folder_error().in_file(path));
             }
-            let before = beside(path, &first.backup().with_extension(i.to_string()));
+            let before = beside(path, &first.other_backup(i));
             match std::fs::rename(path, &before) {
                 Ok(()) => moves.push(Move { target: path, before: Some(before) }),
                 Err(error) if error.kind() == ErrorKind::NotFound => {}

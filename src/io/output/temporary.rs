@@ -65,6 +65,13 @@ impl Temporary {
     pub(super) fn backup(&self) -> PathBuf {
         self.path.with_extension(BACKUP.trim_start_matches('.'))
     }
+
+    /// Returns another such name, for each number.
+    pub(super) fn other_backup(&self, number: usize) -> PathBuf {
+        let mut name = self.backup().into_os_string();
+        name.push(format!(".{number}"));
+        PathBuf::from(name)
+    }
 }
 
 impl Drop for Temporary {
@@ -120,4 +127,22 @@ pub fn abandon_outputs() -> Abandoned {
         let _ = std::fs::remove_file(path);
     }
     Abandoned { _all: all }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// After a kill within a commit, what it had set aside may be the only copy.
+    #[test]
+    fn what_a_commit_sets_aside_is_not_abandoned() {
+        let folder = tempfile::tempdir().unwrap();
+        let prefix = prefix(Some("mark"));
+        let (_, temporary) = Temporary::create(&folder.path().join("a.shp"), &prefix).unwrap();
+        let kept = [temporary.backup(), temporary.other_backup(0), temporary.other_backup(1)];
+        kept.iter().for_each(|path| std::fs::write(path, "old").unwrap());
+        remove_all(folder.path(), &prefix).unwrap();
+        assert!(kept.iter().all(|path| path.exists()) && !temporary.path.exists());
+        assert!(kept[0] != kept[1] && kept[1] != kept[2]);
+    }
 }

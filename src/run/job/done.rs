@@ -7,7 +7,7 @@ use flate2::Crc;
 
 use super::folder::{remove_unfinished, tasks_in};
 use super::lock::JobLock;
-use super::task_file::TaskFile;
+use super::task_file::{Found, TaskFile};
 use super::{FileState, Job};
 use crate::error::{Error, Kind, Result};
 use crate::run::context::Context;
@@ -33,7 +33,7 @@ impl<'j, 'a> Sources<'j, 'a> {
         let file = self.job.open_task(task)?;
         match self.sums.borrow_mut().insert(task, file.sum) {
             Some(before) if before != file.sum => {
-                Err(Error::format("the file of a task was made again while another one read it")
+                Err(Error::not_yet("the file of a task was made again while another one read it")
                     .in_file(self.job.task_file(task).path)
                     .cure("run the job again with --resume"))
             }
@@ -121,10 +121,14 @@ impl Job<'_> {
         sources.map(|sources| sum_of(sources.into_iter()))
     }
 
-    /// Returns true if the file of a task is there, and was made from the files that are there now.
+    /// Returns true if the file of a task is there, and whole, and was made from the files that are
+    /// there now.
     fn is_current(&self, task: usize) -> Result<bool> {
         match TaskFile::open(&self.task_file(task)) {
-            Ok(Some(file)) => Ok(Sources::new(self).sum(self.needs(task))? == file.sources),
+            Ok(Some(mut file)) => {
+                let is_of_these = Sources::new(self).sum(self.needs(task))? == file.sources;
+                Ok(is_of_these && file.verify().is_ok())
+            }
             // What is damaged, or belongs to another task, is replaced.
             Ok(None) | Err(_) => Ok(false),
         }
@@ -194,20 +198,13 @@ impl Job<'_> {
     pub fn remove_damaged(&self) -> Result<usize> {
         let mut whole = 0;
         for task in 0..self.task_count() {
-            let name = self.task_file(task);
-            match TaskFile::open(&name).and_then(|file| file.map(|mut file| file.verify()).transpose()) {
-                Ok(found) => whole += usize::from(found.is_some()),
-                Err(error) if error.kind() == Kind::Format => {
-                    std::fs::remove_file(&name.path).map_err(|e| Error::from(e).in_file(&name.path))?;
-                }
-                Err(error) if error.kind() == Kind::Usage => {}
-                Err(error) => return Err(error),
-            }
+            whole += usize::from(self.task_file(task).remove_if_damaged()? == Found::Whole);
         }
         Ok(whole)
     }
 
-    /// Does one task, unless it is done. Needs the files of the tasks before it.
+    /// Does one task, unless its file is there, and whole. Needs the files of the tasks before it;
+    /// those that turn out to be damaged are removed, so that their tasks count as not done.
     ///
     /// # Errors
     /// If the input cannot be read, if a task that it needs is not done, or if the run is canceled.
@@ -217,10 +214,33 @@ impl Job<'_> {
         }
         let _lock = self.lock_shared()?;
         let is_there = |task: &usize| matches!(TaskFile::open(&self.task_file(*task)), Ok(Some(_)));
-        match self.needs(task).into_iter().find(|needed| !is_there(needed)) {
-            Some(needed) => Err(self.why_not_done(needed)),
+        let needed = self.needs(task);
+        let done = match needed.iter().find(|needed| !is_there(needed)) {
+            Some(&missing) => Err(self.why_not_done(missing)),
             None => self.do_unless_current(task, context),
+        };
+        match done {
+            Err(error) if error.kind() == Kind::Format => Err(self.remove_damaged_of(&needed)?.unwrap_or(error)),
+            done => done,
         }
+    }
+
+    /// Removes the files of these tasks that are damaged. Returns an error that says so, if any is.
+    #[cold]
+    fn remove_damaged_of(&self, tasks: &[usize]) -> Result<Option<Error>> {
+        let mut removed = None;
+        for &task in tasks {
+            let file = self.task_file(task);
+            if file.remove_if_damaged()? == Found::Damaged {
+                removed.get_or_insert((task, file.path));
+            }
+        }
+        Ok(removed.map(|(task, path)| {
+            let name = self.task_name(task);
+            Error::not_yet(format!("task {task} ({name}) is not done: its file was damaged, and is removed now"))
+                .in_file(path)
+                .cure("do it again")
+        }))
     }
 
     /// Does a task that needs no other one any more, unless its file is there.

@@ -7,8 +7,9 @@ use std::path::{Path, PathBuf};
 use serde_json::Value;
 
 use super::lock::{JobLock, LOCK};
-use super::task_file::{is_unfinished, unfinished_in};
+use super::task_file::{is_unfinished, looks_like_task, unfinished_in};
 use crate::error::{Error, Result};
+use crate::io::remove_abandoned;
 use crate::run::checksum::checksum;
 
 /// The file of the plan in the folder of a job.
@@ -47,11 +48,14 @@ impl StoredPlan {
             Err(error) if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => return Ok(None),
             Err(error) => return Err(Error::from(error).in_file(path)),
         };
-        // The folder may be that of somebody else: to remove it is no cure.
+        // The folder may be that of somebody else: only what is certain to be a job may go.
         Self::parse(&text).map(Some).ok_or_else(|| {
-            Error::format("this is not the plan of a job, or it is damaged")
-                .in_file(path)
-                .cure("name another folder (--job)")
+            Error::format("this is not the plan of a job, or it is damaged").in_file(path).cure(if has_tasks(folder) {
+                "name another folder (--job); what is left of an earlier job here, which an older version planned \
+                     or whose plan was damaged, you have to delete by hand: plan.json and tasks/*.task"
+            } else {
+                "name another folder (--job)"
+            })
         })
     }
 
@@ -78,8 +82,9 @@ pub(super) fn write_plan(folder: &Path, plan: &str) -> Result<u32> {
     write!(file, "{sum:08x}\n{plan}").map_err(named)?;
     match file.persist_noclobber(&path) {
         Ok(_) => Ok(sum),
-        Err(error) if error.error.kind() == ErrorKind::AlreadyExists => Err(there_is_a_job(folder)),
-        Err(error) => Err(named(error.error)),
+        Err(_) if path.exists() => Err(there_is_a_job(folder)),
+        // Some shared file systems can only replace files. The job is locked, and there is no plan.
+        Err(error) => error.file.persist(&path).map(|_| sum).map_err(|e| named(e.error)),
     }
 }
 
@@ -158,18 +163,45 @@ pub(super) fn task_path(folder: &Path, task: usize) -> PathBuf {
     tasks_in(folder).join(format!("{task:06}.task"))
 }
 
-/// Removes the files that a process left when it was killed.
+/// Returns the number of the task whose file has this name; `None` if it is none.
+fn task_of(path: &Path) -> Option<usize> {
+    let name = path.file_name()?.to_str()?;
+    let task = name.strip_suffix(".task")?.parse().ok()?;
+    (task_path(Path::new(""), task).file_name()?.to_str()? == name).then_some(task)
+}
+
+/// Returns true if a folder has a file that the task of a job has written, of whatever version.
+fn has_tasks(folder: &Path) -> bool {
+    let files = std::fs::read_dir(tasks_in(folder)).into_iter().flatten().flatten().map(|entry| entry.path());
+    files.filter(|path| task_of(path).is_some()).any(|path| looks_like_task(&path))
+}
+
+/// Returns what the names of temporary files contain that are written for a job, of which the
+/// checksum of the plan is given.
+pub(super) fn mark(sum: u32) -> String {
+    format!("{sum:08x}")
+}
+
+/// Removes the files that a process left when it was killed. Folders stay: they become outputs, of
+/// this job or another.
 ///
 /// # Errors
 /// If one cannot be removed.
 pub(super) fn remove_unfinished(folder: &Path) -> Result<()> {
     for folder in [folder, &tasks_in(folder)].into_iter().filter(|folder| folder.is_dir()) {
-        let named = |e: std::io::Error| Error::from(e).in_file(folder);
-        for entry in std::fs::read_dir(folder).map_err(named)? {
-            let path = entry.map_err(named)?.path();
-            if is_unfinished(&path) {
-                remove(&path)?;
-            }
+        remove_where(folder, is_unfinished)?;
+    }
+    Ok(())
+}
+
+/// Removes those files in a folder whose paths are as is asked for.
+fn remove_where(folder: &Path, is_meant: impl Fn(&Path) -> bool) -> Result<()> {
+    let named = |e: std::io::Error| Error::from(e).in_file(folder);
+    for entry in std::fs::read_dir(folder).map_err(named)? {
+        let entry = entry.map_err(named)?;
+        let path = entry.path();
+        if is_meant(&path) && !entry.file_type().map_err(named)?.is_dir() {
+            remove(&path)?;
         }
     }
     Ok(())
@@ -192,11 +224,11 @@ pub(super) fn remove_files(folder: &Path, stored: &StoredPlan, _lock: &JobLock) 
     remove_unfinished(folder)?;
     let tasks = tasks_in(folder);
     if tasks.is_dir() {
-        for task in 0..stored.tasks {
-            remove(&task_path(folder, task as usize))?;
-        }
+        remove_where(&tasks, |path| task_of(path).is_some_and(|task| (task as u64) < stored.tasks))?;
         remove_if_empty(&tasks)?;
     }
+    // Of an output in the folder itself.
+    remove_abandoned(&folder.join(PLAN), &mark(stored.sum))?;
     for path in [COMMAND, WRITTEN].map(|name| folder.join(name)) {
         if is_note(&path) {
             remove(&path)?;

@@ -35,6 +35,7 @@ mod tasks;
 mod written;
 
 use std::fs::{File, TryLockError};
+use std::hash::{BuildHasher, RandomState};
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
@@ -49,6 +50,7 @@ use self::plan::Plan;
 #[cfg(feature = "cli")]
 pub(crate) use self::plan::not_in_tiles;
 pub use self::planned_file::FileState;
+use self::planned_file::PlannedFile;
 pub use self::surface::WrittenParts;
 use self::task_file::TaskName;
 use super::cells::{DemOptions, HillshadeOptions};
@@ -63,7 +65,7 @@ use super::systems::SystemOptions;
 use super::tin::TinRequest;
 use crate::error::{Error, Result};
 use crate::terrain::Method;
-use crate::terrain::tiles::{Step, Work};
+use crate::terrain::tiles::{Spread, Step, Work};
 
 /// Bytes per point of a triangulation in its file; measured.
 const BYTES_A_POINT_OF_PART: u64 = 85;
@@ -167,12 +169,14 @@ pub struct Job<'a> {
     product: &'a TiledProduct,
     bad: BadFiles,
     folder: PathBuf,
-    /// The checksum of the plan in the folder; 0 until it is there.
+    /// The checksum of the plan in the folder, which names the job; 0 until it is there.
     sum: u32,
     plan: Plan,
     steps: Vec<Step>,
     /// Read by the first task that needs it, unless the plan was made by this process.
     known: OnceLock<Known>,
+    /// For each tile the files that may have points of it, once somebody has asked.
+    files_of_tiles: OnceLock<Vec<Vec<usize>>>,
     /// What was assumed and what looks wrong, in the order in which it was found.
     pub notices: Vec<Notice>,
 }
@@ -234,6 +238,7 @@ impl<'a> Job<'a> {
             plan,
             steps,
             known: OnceLock::new(),
+            files_of_tiles: OnceLock::new(),
             notices: Vec::new(),
         }
     }
@@ -259,6 +264,8 @@ impl<'a> Job<'a> {
         let mut plan = self.plan.to_json();
         plan["tasks"] = json!(self.task_count());
         plan["command"] = json!(command.map(|command| checksum(command.as_bytes())));
+        // So that jobs whose plans are equal are not taken for one another.
+        plan["id"] = json!(RandomState::new().hash_one(std::process::id()));
         self.sum = folder::write_plan(&self.folder, &plan.to_string())?;
         Ok(lock)
     }
@@ -453,7 +460,9 @@ impl<'a> Job<'a> {
             Task::Divide(_) => Vec::new(),
             Task::Lines => (0..self.divided()).collect(),
             Task::Triangulate(step) => match &self.steps[step].work {
-                Work::Leaf(_) if self.plan.divides => self.files_of(step).chain(self.lines_task()).collect(),
+                Work::Leaf(tile) if self.plan.divides => {
+                    self.files_of(*tile).iter().copied().chain(self.lines_task()).collect()
+                }
                 Work::Leaf(_) => Vec::new(),
                 Work::Merge(parts) => parts.iter().map(|&part| self.task_of_step(part)).collect(),
             },
@@ -478,11 +487,17 @@ impl<'a> Job<'a> {
         (self.first_step()..self.task_count()).collect()
     }
 
-    /// Returns the files that may have points of the tile of a step.
-    fn files_of(&self, step: usize) -> impl Iterator<Item = usize> + '_ {
-        let tile = self.steps[step].tile;
-        let files = self.plan.files.iter().enumerate();
-        files.filter(move |(_, file)| file.spread().meets(&tile)).map(|(number, _)| number)
+    /// Returns the files that may have points of a tile, in ascending order.
+    fn files_of(&self, tile: u32) -> &[usize] {
+        let all = self.files_of_tiles.get_or_init(|| {
+            let Plan { layout, files, .. } = &self.plan;
+            let mut all = vec![Vec::new(); layout.tile_count()];
+            for (number, Spread { min, max, .. }) in files.iter().map(PlannedFile::spread).enumerate() {
+                layout.tiles_in(min, max, &mut |tile| all[tile as usize].push(number));
+            }
+            all
+        });
+        &all[tile as usize]
     }
 
     /// Returns what a task does, such as "tile 17".

@@ -15,11 +15,14 @@ use serde_json::{Map, Value, json};
 use tempfile::NamedTempFile;
 
 use super::planned_file::FileState;
-use crate::error::{Error, Result};
+use crate::error::{Error, Kind, Result};
 use crate::run::checksum::{Summed, checksum};
 
 /// The last bytes of a complete file.
 const MAGIC: &[u8; 8] = b"BRKTASK2";
+
+/// What the last bytes of complete files of all versions begin with.
+const ANY_MAGIC: &[u8] = b"BRKTASK";
 
 /// The end of names of files that are not complete.
 pub(super) const UNFINISHED: &str = ".unfinished";
@@ -52,6 +55,16 @@ pub(super) fn is_unfinished(path: &Path) -> bool {
     name.starts_with(UNFINISHED_BEGIN) && name.ends_with(UNFINISHED)
 }
 
+/// Returns true if a file ends as the file of a task does, of whatever version.
+pub(super) fn looks_like_task(path: &Path) -> bool {
+    let mut end = [0; MAGIC.len()];
+    let read = File::open(path).and_then(|mut file| {
+        file.seek(SeekFrom::End(-(MAGIC.len() as i64)))?;
+        file.read_exact(&mut end)
+    });
+    read.is_ok() && end.starts_with(ANY_MAGIC)
+}
+
 /// Whose file it is.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct TaskName {
@@ -75,6 +88,58 @@ pub(super) struct Block {
 impl Block {
     fn end(&self) -> Option<u64> {
         self.at.checked_add(self.length)
+    }
+}
+
+/// What there is under the name of the file of a task.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Found {
+    Whole,
+    /// What is damaged, by its checksums.
+    Damaged,
+    /// Nothing, or the file of another job or task.
+    Nothing,
+}
+
+impl TaskName {
+    /// Reads the file and says what it is.
+    ///
+    /// # Errors
+    /// If it cannot be read.
+    pub(super) fn found(&self) -> Result<Found> {
+        match TaskFile::open(self).and_then(|file| file.map(|mut file| file.verify()).transpose()) {
+            Ok(Some(())) => Ok(Found::Whole),
+            Ok(None) => Ok(Found::Nothing),
+            Err(error) => match error.kind() {
+                Kind::Format => Ok(Found::Damaged),
+                Kind::NotYet => Ok(Found::Nothing),
+                _ => Err(error),
+            },
+        }
+    }
+
+    /// Reads the file, removes it if it is damaged, and says what was found.
+    ///
+    /// # Errors
+    /// If it cannot be read or removed.
+    pub(super) fn remove_if_damaged(&self) -> Result<Found> {
+        let found = self.found()?;
+        if found != Found::Damaged {
+            return Ok(found);
+        }
+        // Another process may have made it again since it was read: so it is renamed and read once
+        // more before it goes.
+        let named = |e: std::io::Error| Error::from(e).in_file(&self.path);
+        let aside = unfinished_in(self.path.parent().unwrap_or(Path::new("."))).map_err(named)?.into_temp_path();
+        match std::fs::rename(&self.path, &aside) {
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Found::Nothing),
+            renamed => renamed.map_err(named)?,
+        }
+        let found = TaskName { path: aside.to_path_buf(), ..self.clone() }.found()?;
+        if found != Found::Damaged {
+            aside.persist(&self.path).map_err(|e| named(e.error))?;
+        }
+        Ok(found)
     }
 }
 
@@ -191,7 +256,7 @@ impl TaskFile {
     /// If the file is missing, not complete, or that of another job or task.
     pub(super) fn open_done(name: &TaskName) -> Result<Self> {
         Self::open(name)?.ok_or_else(|| {
-            Error::format("the file of a task is missing").in_file(&name.path).cure("run the job again with --resume")
+            Error::not_yet("the file of a task is missing").in_file(&name.path).cure("run the job again with --resume")
         })
     }
 
@@ -217,11 +282,11 @@ impl TaskFile {
         let mut value: Value = serde_json::from_slice(&text).map_err(|_| damaged())?;
         let (Some(job), Some(task)) = (value["job"].as_u64(), value["task"].as_u64()) else { return Err(damaged()) };
         if job != u64::from(name.job) {
-            return Err(Error::usage("this is the file of another job").cure(MAKE_AGAIN));
+            return Err(Error::not_yet("this is the file of another job").cure(MAKE_AGAIN));
         }
         if task != name.task as u64 {
             let message = format!("this is the file of task {task}, and not of task {}", name.task);
-            return Err(Error::usage(message).cure(MAKE_AGAIN));
+            return Err(Error::not_yet(message).cure(MAKE_AGAIN));
         }
         let number = |value: &Value| u32::try_from(value.as_u64()?).ok();
         let section = |value: &Value| {

@@ -195,12 +195,12 @@ impl Job<'_> {
     ) -> Result<Map<String, Value>> {
         let mut holes = Holes::default();
         let (points, mut facts) = if self.plan.divides {
-            for number in self.files_of(step) {
+            for &number in self.files_of(tile) {
                 if sources.open(number)?.facts.contains_key(SKIPPED) {
                     holes.add_file(self, number);
                 }
             }
-            (self.divided_points(step, tile, sources)?, Map::new())
+            (self.divided_points(tile, sources)?, Map::new())
         } else {
             let file = tile as usize;
             let mut all: Vec<[f64; 3]> = Vec::new();
@@ -238,10 +238,10 @@ impl Job<'_> {
     }
 
     /// Returns the points of a tile from the divided files, in the order of the files.
-    fn divided_points(&self, step: usize, tile: u32, sources: &Sources) -> Result<Vec<[f64; 3]>> {
+    fn divided_points(&self, tile: u32, sources: &Sources) -> Result<Vec<[f64; 3]>> {
         let mut all = Vec::new();
         let mut bytes = Vec::new();
-        for number in self.files_of(step) {
+        for &number in self.files_of(tile) {
             let mut divided = sources.open(number)?;
             let table = divided.section("table")?;
             let mut entries = Reader::new(&table);

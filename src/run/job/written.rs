@@ -58,7 +58,7 @@ impl Job<'_> {
     /// [`OutputSet::mark`](crate::io::OutputSet::mark): a process that goes on with the job can
     /// then remove those of one that was killed.
     pub fn mark(&self) -> String {
-        format!("{:08x}", self.sum)
+        folder::mark(self.sum)
     }
 
     /// Removes the temporary files that a process left next to an output when it was killed.

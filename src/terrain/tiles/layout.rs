@@ -285,11 +285,6 @@ impl Spread {
         self.min[0] <= x && x <= self.max[0] && self.min[1] <= y && y <= self.max[1]
     }
 
-    /// Returns true if a tile may have points in the box.
-    pub fn meets(&self, tile: &Tile) -> bool {
-        (0..2).all(|k| self.max[k] >= tile.min[k] && tile.max[k] > self.min[k])
-    }
-
     /// Returns the parts below and above a cut.
     fn split(&self, axis: usize, at: f64) -> [Spread; 2] {
         let length = self.max[axis] - self.min[axis];
