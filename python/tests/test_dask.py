@@ -237,6 +237,25 @@ def test_a_job_goes_on_with_what_is_done(client, whole, tmp_path):
         breakline.dask.dem(VALLEY, tmp_path / "dem.tif", client=client, tiles="2x2", job=job)
 
 
+def test_a_result_with_holes_is_a_warning_until_the_files_are_repaired(client, whole, tmp_path):
+    west, east, job, output = (tmp_path / name for name in ("west.laz", "east.laz", "job", "dem.tif"))
+    for path, bounds in [(west, "0,0,688199.995,6000000"), (east, "688199.995,0,700000,6000000")]:
+        run("points", str(VALLEY), "-o", str(path), f"--bounds={bounds}", "-q")
+    good = east.read_bytes()
+    east.write_bytes(good[: len(good) // 2])
+    options = {"client": client, "tiles": "2x2", "job": job, "skip_bad": True}
+    with pytest.warns(breakline.BreaklineWarning, match="files were skipped, so that .*dem.tif has holes: repair them"):
+        breakline.dask.dem([west, east], output, **options)
+    assert output.read_bytes() != whole
+    again = [sys.executable, "-m", "breakline", "job", "run", str(job), "-q"]
+    assert subprocess.run(again).returncode == 3
+    east.write_bytes(good)
+    assert subprocess.run(again).returncode == 0
+    assert output.read_bytes() == whole
+    # Nothing is left to do, and nothing is missing any more.
+    assert breakline.dask.dem([west, east], output, **options).read_bytes() == whole
+
+
 def test_what_is_wrong_is_an_error_with_its_cure(client, tmp_path):
     with pytest.raises(breakline.BreaklineError, match="none.laz"):
         breakline.dask.dem(tmp_path / "none.laz", tmp_path / "dem.tif", client=client)
