@@ -281,16 +281,20 @@ impl River {
             };
             if is_end || is_free() {
                 let [left, right] = *line;
-                let end = if number == 0 { 0 } else { 1 };
-                let inner = match &self.along_banks[end] {
-                    Some(along) if is_end => along.clone(),
-                    _ => self.middles.get(number).map(|&[x, y]| [x, y, left[2]]).into_iter().collect(),
-                };
-                lines.push(std::iter::once(left).chain(inner).chain([right]).collect());
+                lines.push(std::iter::once(left).chain(self.inner(number)).chain([right]).collect());
                 before = Some(*line);
             }
         }
         lines
+    }
+
+    /// The vertices of a level line between its ends, from left to right.
+    fn inner(&self, number: usize) -> Vec<[f64; 3]> {
+        let end = [0, self.stations.len() - 1].iter().position(|end| *end == number);
+        match end.and_then(|end| self.along_banks[end].clone()) {
+            Some(along) => along,
+            None => self.middles.get(number).map(|&[x, y]| [x, y, self.stations[number][0][2]]).into_iter().collect(),
+        }
     }
 
     /// Returns a position at which the ring around the water meets itself; `None` if it does not.
@@ -302,14 +306,16 @@ impl River {
         meeting_of(self.ring_with_heights())
     }
 
-    /// The ring around the water.
+    /// The ring around the water: the banks, and the level lines at both ends with all their
+    /// vertices. A line along the middle is beside the straight line from bank to bank where a bank
+    /// has become one point.
     pub(in crate::terrain) fn ring(&self) -> Vec<[f64; 2]> {
         self.ring_with_heights().into_iter().map(flat).collect()
     }
 
     fn ring_with_heights(&self) -> Vec<[f64; 3]> {
         let [left, right] = self.banks();
-        let [first, last] = [0, 1].map(|end| self.along_bank(end).iter().copied());
+        let [first, last] = [0, self.stations.len() - 1].map(|number| self.inner(number).into_iter());
         left.into_iter().chain(last).chain(right.into_iter().rev()).chain(first.rev()).collect()
     }
 }
@@ -404,6 +410,7 @@ pub(in crate::terrain) fn contains(corners: [[f64; 3]; 3], [x, y]: [f64; 2]) -> 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::terrain::inside::Inside;
 
     #[test]
     fn a_straight_river_is_level_from_bank_to_bank() {
@@ -556,6 +563,26 @@ mod tests {
         assert_eq!(river.stations.iter().map(|ends| ends[0][2]).collect::<Vec<_>>(), [9.0, 6.0, 6.0, 6.0, 5.0]);
         let hairpin = River::along(&[[0.0, 0.0, 2.0], [9.0, 0.0, 1.0], [0.0, 1.0, 0.0]], 4.0).unwrap();
         assert!(hairpin.overlap().is_some());
+    }
+
+    /// The banks and the level lines at both ends are what the triangulation takes for the border,
+    /// also where a bank becomes one point, and its ends bend.
+    #[test]
+    fn the_ring_is_the_border_of_the_water() {
+        let zigzag = [[0.3, 0.2, 2.0], [0.65, 0.65, 2.0], [-0.1, 0.4, 2.0], [0.1, 0.3, 2.0]];
+        let river = River::along(&zigzag, 1.0).unwrap();
+        assert_eq!(river.banks()[0].len(), 1);
+        let ring = river.ring();
+        let has = |a: [f64; 2], b: [f64; 2]| {
+            let sides = ring.iter().zip(ring.iter().cycle().skip(1));
+            a == b || sides.into_iter().any(|(&p, &q)| [p, q] == [a, b] || [q, p] == [a, b])
+        };
+        let lines = river.level_lines();
+        for line in river.banks().iter().chain([&lines[0], &lines[lines.len() - 1]]) {
+            assert!(line.windows(2).all(|ends| has(flat(ends[0]), flat(ends[1]))), "{line:?} {ring:?}");
+        }
+        // Beside the straight line from bank to bank.
+        assert!(Inside::new(&[vec![ring]]).contains([0.4, 0.2]));
     }
 
     #[test]
