@@ -7,7 +7,7 @@
 //! read, and no byte is read for that alone.
 
 use std::fs::File;
-use std::io::{BufWriter, Read, Seek, SeekFrom, Write};
+use std::io::{BufReader, BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use flate2::Crc;
@@ -221,10 +221,37 @@ impl TaskWriter {
     }
 }
 
+/// A file of which some bytes are read, often those behind the ones that were read before: small
+/// blocks then do not cost two system calls each.
+#[derive(Debug)]
+struct FileReader {
+    file: BufReader<File>,
+    /// Where it goes on; `None` if that is not known.
+    at: Option<u64>,
+}
+
+impl FileReader {
+    fn new(file: File) -> Self {
+        FileReader { file: BufReader::new(file), at: Some(0) }
+    }
+
+    /// Reads the bytes from a position on.
+    fn read(&mut self, from: u64, bytes: &mut [u8]) -> Result<()> {
+        match self.at.take() {
+            // This keeps what is in memory already.
+            Some(at) => self.file.seek_relative(from.wrapping_sub(at) as i64)?,
+            None => self.file.seek(SeekFrom::Start(from)).map(drop)?,
+        }
+        self.file.read_exact(bytes)?;
+        self.at = Some(from + bytes.len() as u64);
+        Ok(())
+    }
+}
+
 /// The file of a task that is done.
 #[derive(Debug)]
 pub(super) struct TaskFile {
-    file: File,
+    reader: FileReader,
     path: PathBuf,
     sections: Vec<(String, Block)>,
     /// The bytes before the end.
@@ -260,11 +287,12 @@ impl TaskFile {
         })
     }
 
-    fn read_end(mut file: File, name: &TaskName) -> Result<Self> {
+    fn read_end(file: File, name: &TaskName) -> Result<Self> {
         let length = file.metadata()?.len();
+        let mut reader = FileReader::new(file);
         let mut end = [0; END as usize];
         let from = length.checked_sub(END).ok_or_else(damaged)?;
-        read_at(&mut file, from, &mut end)?;
+        reader.read(from, &mut end)?;
         let text_length = u64::from_le_bytes(std::array::from_fn(|i| end[i]));
         let stated = u32::from_le_bytes(std::array::from_fn(|i| end[8 + i]));
         let text_from = from.checked_sub(text_length).ok_or_else(damaged)?;
@@ -272,7 +300,7 @@ impl TaskFile {
             return Err(damaged());
         }
         let mut text = vec![0; text_length as usize];
-        read_at(&mut file, text_from, &mut text)?;
+        reader.read(text_from, &mut text)?;
         let mut sum = Crc::new();
         sum.update(&text);
         sum.update(&end[..8]);
@@ -299,7 +327,7 @@ impl TaskFile {
         let (Some(sections), Some(sources), Some(Value::Object(facts))) = (sections, sources, facts) else {
             return Err(damaged());
         };
-        Ok(TaskFile { file, path: name.path.clone(), sections, length: text_from, sum: stated, sources, facts })
+        Ok(TaskFile { reader, path: name.path.clone(), sections, length: text_from, sum: stated, sources, facts })
     }
 
     /// Returns the state of the file of points that the task has read; `None` if it reads none.
@@ -321,7 +349,7 @@ impl TaskFile {
             while left > 0 {
                 let count = left.min(buffer.len() as u64) as usize;
                 let at = end - left;
-                read_at(&mut self.file, at, &mut buffer[..count]).map_err(|e| e.in_file(&self.path))?;
+                self.reader.read(at, &mut buffer[..count]).map_err(|e| e.in_file(&self.path))?;
                 sum.update(&buffer[..count]);
                 left -= count as u64;
             }
@@ -353,7 +381,7 @@ impl TaskFile {
             return Err(self.damaged());
         }
         bytes.resize(block.length as usize, 0);
-        read_at(&mut self.file, block.at, bytes).map_err(|e| e.in_file(&self.path))?;
+        self.reader.read(block.at, bytes).map_err(|e| e.in_file(&self.path))?;
         if checksum(bytes) == block.sum { Ok(()) } else { Err(self.damaged()) }
     }
 
@@ -367,11 +395,6 @@ impl TaskFile {
     pub(super) fn damaged(&self) -> Error {
         damaged().in_file(&self.path)
     }
-}
-
-fn read_at(file: &mut File, from: u64, bytes: &mut [u8]) -> Result<()> {
-    file.seek(SeekFrom::Start(from))?;
-    Ok(file.read_exact(bytes)?)
 }
 
 /// What makes a file again.
