@@ -255,7 +255,7 @@ impl TinBuilder {
             return;
         }
         let line = |line: usize| self.line(line).to_vec();
-        let Marks { replaced, added, pairs, overlaps } = overlap::mark(&self.waters, &line, self.step());
+        let Marks { replaced, added, pairs, overlaps } = overlap::mark(&self.waters, &line, self.step(), self.bounds);
         self.replace_lines(replaced);
         let given = self.line_count();
         let named = added.iter().map(|(line, _)| *line).collect();

@@ -16,6 +16,14 @@ pub(super) fn squared_distance([a, b]: [[f64; 2]; 2], [x, y]: [f64; 2]) -> f64 {
     away[0] * away[0] + away[1] * away[1]
 }
 
+/// Returns the part of a segment at which the line through two positions passes it, from 0 to 1, or
+/// outside of that if it passes the segment nowhere.
+pub(super) fn part_before([from, to]: [[f64; 2]; 2], [a, b]: [[f64; 2]; 2]) -> f64 {
+    let turn = |p: [f64; 2]| (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]);
+    let [before, after] = [turn(from), turn(to)];
+    before / (before - after)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

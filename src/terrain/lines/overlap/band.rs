@@ -1,6 +1,6 @@
 //! Steps at the borders of overlaps: parallel lines on which rivers have their own heights again.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::parallel::{Beside, beside};
 use super::strand::Strand;
@@ -9,7 +9,7 @@ use crate::terrain::boxes::{Boxed, Boxes, Extent};
 use crate::terrain::lines::river::cross;
 use crate::terrain::nearest::{nearest_part, squared_distance};
 
-/// A segment of the border of a river.
+/// A segment of the border of a water.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct BorderSide {
     pub(super) strand: usize,
@@ -33,12 +33,25 @@ struct Cut {
     on: Option<[usize; 2]>,
 }
 
-/// Adds the lines beside the borders of overlaps, wherever there is a step. They end on the banks
-/// of the outer river, which get vertices there. Returns the largest step of each pair of waters.
+/// A part of a line beside a border, between borders of the rivers outside.
+#[derive(Debug, Clone)]
+struct Portion {
+    ends: [[f64; 2]; 2],
+    /// The rivers that it runs in, in order.
+    rivers: Vec<usize>,
+    /// The segments of strands that it ends on, and where.
+    on: Vec<([usize; 2], [f64; 2])>,
+}
+
+/// Adds the lines beside the borders of overlaps with a step. They end on the banks of the outer
+/// river, which get vertices there. Returns the largest step of each pair of waters.
+///
+/// Where there is a step anywhere between two waters, the line is whole: next to a bank or a corner
+/// a step may be shorter than the line beside it is away. Where there is none, it changes nothing.
 pub(super) fn add(scene: &Scene, strands: &mut Vec<Strand>) -> Vec<WaterOverlap> {
     let borders = Boxes::new(border_sides(strands));
     let zones = scene.meetings.zones(scene.waters, 2.0 * scene.width);
-    let mut steps: BTreeMap<[usize; 2], (f64, [f64; 2])> = BTreeMap::new();
+    let mut largest: BTreeMap<[usize; 2], (f64, [f64; 2])> = BTreeMap::new();
     let mut added: Vec<Strand> = Vec::new();
     for inner in 0..scene.waters.len() {
         let outer = scene.meetings.outside_of(inner);
@@ -46,31 +59,40 @@ pub(super) fn add(scene: &Scene, strands: &mut Vec<Strand>) -> Vec<WaterOverlap>
             continue;
         }
         let is_near = |side: [[f64; 2]; 2]| zones.find_in(Extent::of_plan(side), |_| Some(())).is_some();
+        let mut portions: Vec<Portion> = Vec::new();
+        let mut lower_than: BTreeSet<usize> = BTreeSet::new();
         for line in scene.waters[inner].level.rings().iter().flat_map(|ring| beside(ring, scene.width, is_near)) {
             let cuts = cuts(&line, &borders, &outer, scene.rounding);
-            for pair in cuts.windows(2) {
-                let portion = portion(&line, [pair[0], pair[1]]);
-                let found = steps_of(scene, &portion, inner, &outer);
-                let Some(&(river, ..)) = found.first() else { continue };
-                for (river, step, at) in found {
-                    let largest = steps.entry([inner, river]).or_insert((step, at));
-                    // The order in which they are found must not matter.
-                    if (step, at) > *largest {
-                        *largest = (step, at);
+            let stops: Vec<&[Cut]> = cuts.chunk_by(|p, q| p.at == q.at).collect();
+            let mut seen: BTreeSet<usize> = BTreeSet::new();
+            for pair in stops.windows(2) {
+                let ends = [pair[0][0].at, pair[1][0].at];
+                let rivers = rivers_beside(scene, ends, inner, &outer);
+                for river in rivers.iter().copied().filter(|river| seen.insert(*river)) {
+                    let steps = steps_along(scene, line.side, inner, river);
+                    if steps.is_any {
+                        lower_than.insert(river);
+                    }
+                    if let Some(found) = steps.largest {
+                        let largest = largest.entry([inner, river]).or_insert(found);
+                        // The order in which they are found must not matter.
+                        if found > *largest {
+                            *largest = found;
+                        }
                     }
                 }
-                let ends = portion.ends.map(|[x, y]| [x, y, scene.height(river, [x, y])]);
-                added.push(Strand::new(river, ends));
-                for Cut { at, on, .. } in cuts.iter().filter(|cut| portion.ends.contains(&cut.at)) {
-                    if let Some([strand, segment]) = *on {
-                        strands[strand].want(segment, *at);
-                    }
-                }
+                let on = pair.iter().copied().flatten().filter_map(|cut| cut.on.map(|on| (on, cut.at))).collect();
+                portions.push(Portion { ends, rivers, on });
             }
+        }
+        for Portion { ends, rivers, on } in portions {
+            let Some(&river) = rivers.iter().find(|river| lower_than.contains(river)) else { continue };
+            added.push(Strand::new(river, ends.map(|[x, y]| [x, y, scene.height(river, [x, y])])));
+            on.into_iter().for_each(|([strand, segment], at)| strands[strand].want(segment, at));
         }
     }
     strands.append(&mut added);
-    largest_steps(scene, steps)
+    largest_steps(scene, largest)
 }
 
 /// The largest step of each pair of waters, of whichever of them is the inner one, in descending
@@ -87,7 +109,7 @@ fn largest_steps(scene: &Scene, steps: BTreeMap<[usize; 2], (f64, [f64; 2])>) ->
     found
 }
 
-/// The segments of the borders of all rivers.
+/// The segments of the borders of all waters that take part.
 pub(super) fn border_sides(strands: &[Strand]) -> Vec<BorderSide> {
     let mut sides = Vec::new();
     for (number, strand) in strands.iter().enumerate().filter(|(_, strand)| strand.is_border) {
@@ -97,12 +119,12 @@ pub(super) fn border_sides(strands: &[Strand]) -> Vec<BorderSide> {
     sides
 }
 
-/// The ends of a line and where it meets the borders of some rivers, in order.
+/// The ends of a line and where it meets the borders of some rivers, given in order, in order.
 fn cuts(line: &Beside, borders: &Boxes<BorderSide>, rivers: &[usize], rounding: f64) -> Vec<Cut> {
     let [from, to] = line.ends;
     let mut cuts = vec![Cut { part: 0.0, at: from, on: None }, Cut { part: 1.0, at: to, on: None }];
     borders.find_in(Extent::of_plan(line.ends).grown(rounding), |side| {
-        if rivers.contains(&side.water) {
+        if rivers.binary_search(&side.water).is_ok() {
             let met = meeting_points(line.ends, side.ends, rounding).into_iter();
             let on = Some([side.strand, side.segment]);
             cuts.extend(met.map(|at| Cut { part: nearest_part(line.ends, at), at, on }));
@@ -137,41 +159,49 @@ fn meeting_points(line: [[f64; 2]; 2], side: [[f64; 3]; 2], rounding: f64) -> Ve
     vec![[0, 1].map(|axis| side[0][axis] + along_side * along[axis])]
 }
 
-/// The part of a line between two cuts.
-fn portion(line: &Beside, cuts: [Cut; 2]) -> Beside {
-    let foot = |part: f64| [0, 1].map(|axis| line.feet[0][axis] + part * (line.feet[1][axis] - line.feet[0][axis]));
-    Beside { ends: cuts.map(|cut| cut.at), feet: cuts.map(|cut| foot(cut.part)) }
-}
-
-/// The rivers that a line beside a water runs in, with the largest steps along it and where they
-/// are; none if it is within the water, or there is no step.
-fn steps_of(scene: &Scene, line: &Beside, inner: usize, outer: &[usize]) -> Vec<(usize, f64, [f64; 2])> {
-    let [from, to] = line.ends;
+/// The outer rivers that a part of a line beside a water runs in; none if it is within the water.
+fn rivers_beside(scene: &Scene, [from, to]: [[f64; 2]; 2], inner: usize, outer: &[usize]) -> Vec<usize> {
     let middle = [0, 1].map(|axis| (from[axis] + to[axis]) / 2.0);
-    if from == to || [from, middle, to].iter().all(|&p| scene.contains(inner, p)) {
+    if [from, middle, to].iter().all(|&p| scene.contains(inner, p)) {
         return Vec::new();
     }
-    let rivers = outer.iter().filter(|river| scene.contains(**river, middle));
-    let steps = rivers.map(|&river| {
-        let (step, at) = largest_step(scene, line.feet, inner, river);
-        (river, step, at)
-    });
-    steps.filter(|(_, step, _)| *step > scene.tolerance).collect()
+    let mut rivers = scene.meetings.rivers_at(middle);
+    rivers.retain(|river| outer.binary_search(river).is_ok());
+    rivers
 }
 
-/// The largest step along a part of the border of a water, and where it is.
-fn largest_step(scene: &Scene, feet: [[f64; 2]; 2], inner: usize, river: usize) -> (f64, [f64; 2]) {
-    let Some(Body::River(water)) = &scene.bodies[river] else { return (0.0, feet[0]) };
+/// The steps along a side of the border of a water to a river outside.
+#[derive(Debug, Clone, Copy)]
+struct Steps {
+    is_any: bool,
+    /// The largest that can be seen, and where it is.
+    largest: Option<(f64, [f64; 2])>,
+}
+
+/// Finds the steps along a side of the ring around a water.
+fn steps_along(scene: &Scene, side: [[f64; 2]; 2], inner: usize, river: usize) -> Steps {
+    let mut steps = Steps { is_any: false, largest: None };
+    let Some(Body::River(water)) = &scene.bodies[river] else { return steps };
     let is_lake = matches!(scene.bodies[inner], Some(Body::Lake { .. }));
-    let mut largest = (f64::NEG_INFINITY, feet[0]);
+    let at = |part: f64| [0, 1].map(|axis| side[0][axis] + part * (side[1][axis] - side[0][axis]));
     // Heights are linear between the edges of triangles.
-    for part in water.parts_of(feet).into_iter().chain([0.0, 1.0]) {
-        let at = [0, 1].map(|axis| feet[0][axis] + part * (feet[1][axis] - feet[0][axis]));
-        let step = water.height(at) - scene.height(inner, at);
+    let mut parts: Vec<f64> = water.parts_of(side, scene.rounding);
+    parts.extend(scene.sight.parts_of(side));
+    parts.extend([0.0, 1.0]);
+    parts.sort_by(f64::total_cmp);
+    parts.dedup();
+    let is_seen: Vec<bool> = parts.windows(2).map(|pair| scene.is_seen(at((pair[0] + pair[1]) / 2.0), inner)).collect();
+    for (k, part) in parts.iter().enumerate() {
+        let q = at(*part);
+        let step = water.height(q) - scene.height(inner, q);
         let step = if is_lake { step.abs() } else { step };
-        if (step, at) > largest {
-            largest = (step, at);
+        if step > scene.tolerance && water.is_near(q, scene.rounding) {
+            steps.is_any = true;
+            if is_seen[k.saturating_sub(1)..(k + 1).min(is_seen.len())].contains(&true) {
+                let is_largest = steps.largest.is_none_or(|largest| (step, q) > largest);
+                steps.largest = if is_largest { Some((step, q)) } else { steps.largest };
+            }
         }
     }
-    largest
+    steps
 }

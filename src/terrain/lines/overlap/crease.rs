@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 
 use rustc_hash::FxHashMap;
 
-use super::Scene;
 use super::strand::Strand;
+use super::{Body, Scene};
 use crate::terrain::boxes::Extent;
 use crate::triangulation::geometry::Terrain;
 use crate::triangulation::tds::{CellId, VertexId};
@@ -37,7 +37,8 @@ pub(super) fn add(scene: &Scene, strands: &mut Vec<Strand>) {
     for cell in cells {
         let Some(corners) = sketch.corners(cell) else { continue };
         let middle = [0, 1].map(|axis| corners.iter().map(|p| p[axis]).sum::<f64>() / 3.0);
-        let here = scene.meetings.rivers_at(middle);
+        // A triangle without width lies along a bank, and in several triangles of a river.
+        let here = if is_thin(corners, scene.rounding) { Vec::new() } else { scene.meetings.rivers_at(middle) };
         for (k, &river) in here.iter().enumerate() {
             for &other in &here[..k] {
                 let passages = sketch.passages(scene, cell, [river, other]);
@@ -55,12 +56,21 @@ pub(super) fn add(scene: &Scene, strands: &mut Vec<Strand>) {
     strands.append(&mut creases);
 }
 
+/// Returns true if a triangle is nowhere wider than a distance.
+fn is_thin(corners: [[f64; 3]; 3], distance: f64) -> bool {
+    let side = |k: usize| [0, 1].map(|axis| corners[(k + 1) % 3][axis] - corners[k][axis]);
+    let [first, second, third] = [side(0), side(1), side(2)];
+    let longest = [first, second, third].map(|[x, y]| x.hypot(y)).into_iter().fold(0.0, f64::max);
+    (first[0] * second[1] - first[1] * second[0]).abs() <= distance * longest
+}
+
 impl Sketch {
     /// Triangulates the segments near overlaps; `None` if they span no area.
     fn new(scene: &Scene, strands: &[Strand]) -> Option<Self> {
         let zones = scene.meetings.zones(scene.waters, 2.0 * scene.width);
         let (mut points, mut lines, mut segments) = (Vec::new(), Vec::new(), Vec::new());
-        for (number, strand) in strands.iter().enumerate() {
+        let is_of_river = |strand: &Strand| matches!(scene.bodies[strand.water], Some(Body::River(_)));
+        for (number, strand) in strands.iter().enumerate().filter(|(_, strand)| is_of_river(strand)) {
             for (segment, ends) in strand.segments() {
                 if zones.find_in(Extent::of(ends), |_| Some(())).is_some() {
                     lines.push([points.len() as u32, points.len() as u32 + 1]);

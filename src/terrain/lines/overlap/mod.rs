@@ -23,13 +23,16 @@ mod crease;
 mod meetings;
 mod parallel;
 mod shared;
+mod sight;
 mod strand;
 
 use super::RiverWater;
 use super::areas::{Level, Water, rounding_of};
+use crate::data::Bounds;
 use crate::terrain::boxes::{Boxed, Extent};
 use crate::terrain::inside::Inside;
 use meetings::Meetings;
+use sight::Sight;
 use strand::Strand;
 
 /// Two waters that overlap or touch, and the step that is left at the border of the overlap, or
@@ -59,29 +62,37 @@ pub(in crate::terrain) struct Marks {
 }
 
 /// Finds what waters that overlap or touch need. `line` returns the vertices of a line, `width` is
-/// the distance in which heights change at a step.
+/// the distance in which heights change at a step. Steps are reported within the bounds.
 ///
 /// The result depends on the set of waters only.
 ///
 /// # Complexity
 /// O(n log n) for n level lines, if waters meet nowhere; then about linear in the parts of
 /// triangles that overlap.
-pub(in crate::terrain) fn mark(waters: &[Water], line: &dyn Fn(usize) -> Vec<[f64; 3]>, width: f64) -> Marks {
+pub(in crate::terrain) fn mark(
+    waters: &[Water],
+    line: &dyn Fn(usize) -> Vec<[f64; 3]>,
+    width: f64,
+    bounds: Option<Bounds>,
+) -> Marks {
     let meetings = Meetings::find(waters);
     if meetings.is_empty() {
         return Marks::default();
     }
+    let is_needed = |number: usize| meetings.takes_part(number) || matches!(waters[number].level, Level::Flat(_));
     let bodies: Vec<Option<Body>> =
-        (0..waters.len()).map(|number| meetings.takes_part(number).then(|| Body::new(&waters[number]))).collect();
+        (0..waters.len()).map(|number| is_needed(number).then(|| Body::new(&waters[number]))).collect();
     let mut strands: Vec<Strand> = Vec::new();
     for (number, water) in waters.iter().enumerate() {
-        if let (Some(Body::River(_)), lines) = (&bodies[number], water.lines.clone()) {
+        if meetings.takes_part(number) {
+            let lines = water.lines.clone();
             strands.extend(lines.map(|of| Strand::given(number, of, line(of), water.rim.contains(&of))));
         }
     }
     let vertices = || strands.iter().flat_map(|strand| &strand.points).copied();
     let (tolerance, rounding) = (tolerance_of(vertices()), rounding_of(vertices()));
-    let scene = Scene { waters, bodies, meetings, tolerance, rounding, width };
+    let sight = Sight::new(waters, bounds);
+    let scene = Scene { waters, bodies, meetings, sight, tolerance, rounding, width };
     shared::add(&scene, &mut strands);
     strands.iter_mut().for_each(|strand| strand.insert(&scene));
     strands.extend(scene.diagonals());
@@ -104,9 +115,10 @@ pub(in crate::terrain) fn mark(waters: &[Water], line: &dyn Fn(usize) -> Vec<[f6
 /// Waters that overlap, prepared for queries.
 struct Scene<'a> {
     waters: &'a [Water],
-    /// Those that take part.
+    /// Those that take part, and all lakes.
     bodies: Vec<Option<Body>>,
     meetings: Meetings,
+    sight: Sight,
     /// Heights that differ by no more are equal: less than that is rounding.
     tolerance: f64,
     /// Positions that are no farther apart are the same but for rounding.
@@ -122,6 +134,13 @@ impl Scene<'_> {
 
     fn contains(&self, water: usize, q: [f64; 2]) -> bool {
         self.bodies[water].as_ref().is_some_and(|body| body.contains(q))
+    }
+
+    /// Returns true if a step at the border of a water is in the surface at a position: within the
+    /// bounds, and in no other lake.
+    fn is_seen(&self, q: [f64; 2], water: usize) -> bool {
+        let is_covered = |lake: &usize| *lake != water && self.contains(*lake, q);
+        self.sight.holds(q) && !self.sight.lakes_near(q).iter().any(is_covered)
     }
 
     /// The edges between the triangles of each stretch that takes part.

@@ -4,11 +4,12 @@ use crate::data::orientation;
 use crate::terrain::lines::offset::normal;
 use crate::triangulation::num::Sign;
 
-/// A straight part of a line beside a ring, and the part of the ring that is nearest to it.
+/// A straight part of a line beside a ring.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Beside {
     pub(super) ends: [[f64; 2]; 2],
-    pub(super) feet: [[f64; 2]; 2],
+    /// The side of the ring that it is beside, or twice the corner that it passes around.
+    pub(super) side: [[f64; 2]; 2],
 }
 
 /// The largest angle between two vertices around a corner.
@@ -40,20 +41,18 @@ pub(super) fn beside(ring: &[[f64; 2]], distance: f64, is_wanted: impl Fn([[f64;
         if !is_wanted([from, to]) {
             continue;
         }
-        for side in [1.0, -1.0] {
-            let by = side * distance;
+        for by in [distance, -distance] {
             let normal = normal([from, to]);
             let [start, end] = [[before, from, to], [from, to, after]].map(|corner| Corner::new(corner, by));
             let ends = [start.point(from, normal, by), end.point(to, normal, by)];
-            let feet = ends.map(|p| [0, 1].map(|axis| p[axis] - by * normal[axis]));
-            found.push(Beside { ends, feet });
+            found.push(Beside { ends, side: [from, to] });
             if let Corner::Round { angle } = end {
                 let parts = (angle.abs() / ARC).ceil().max(1.0);
                 let at = |k: f64| beyond(to, turned(normal, angle * k / parts), by);
                 let last = beyond(to, self::normal([to, after]), by);
                 let inner = (1..parts as usize).map(|k| at(k as f64));
                 let arc: Vec<[f64; 2]> = [ends[1]].into_iter().chain(inner).chain([last]).collect();
-                found.extend(arc.windows(2).map(|pair| Beside { ends: [pair[0], pair[1]], feet: [to; 2] }));
+                found.extend(arc.windows(2).map(|pair| Beside { ends: [pair[0], pair[1]], side: [to; 2] }));
             }
         }
     }

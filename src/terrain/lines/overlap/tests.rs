@@ -1,6 +1,6 @@
 //! Known answers and a random law: the lower height in overlaps, own heights outside.
 
-use crate::data::{Surface, orientation};
+use crate::data::{Bounds, Surface, orientation};
 use crate::terrain::linear::linear;
 use crate::terrain::lines::RiverWater;
 use crate::terrain::nearest::squared_distance;
@@ -49,6 +49,54 @@ fn a_river_over_a_lower_one_has_a_step_at_both_of_its_banks() {
     assert_eq!(overlap.lines, [4, 0]);
     assert!((overlap.step - 3.2).abs() < 1e-9 && overlap.at[1] == 8.0, "{overlap:?}");
     assert!([9.0, 11.0].contains(&overlap.at[0]));
+}
+
+/// A river that rises so fast from the bank of another one that the step at its own bank is shorter
+/// than the line beside that bank is away.
+#[test]
+fn a_short_step_at_a_bank_leaves_the_bank_level() {
+    let length = 800_f64.sqrt();
+    // Its eastern bank meets the southern one of the other river there.
+    let low = 7.8 - (128_f64.sqrt() + 1.0);
+    let rivers = [
+        along(&[[0.0, 10.0, 8.0], [20.0, 10.0, 8.0]], 4.0),
+        along(&[[20.0, 20.0, low + length], [0.0, 0.0, low]], 2.0),
+    ];
+    let mut builder = over_ground(&rivers, 21.0);
+    builder.step_width = Some(0.5);
+    let tin = builder.build().unwrap();
+    is_at(&tin, [8.0 + 2_f64.sqrt(), 8.0], 7.8);
+    for x in [10.2, 12.0, 15.0, 20.0] {
+        is_at(&tin, [x, 8.0], 8.0);
+    }
+}
+
+/// What a lake covers, or the bounds leave out, is not reported.
+#[test]
+fn steps_are_reported_where_the_surface_has_them() {
+    let rivers =
+        [along(&[[0.0, 10.0, 8.0], [20.0, 10.0, 8.0]], 4.0), along(&[[10.0, 20.0, 6.0], [10.0, 0.0, 4.0]], 2.0)];
+    let step = |builder: TinBuilder| {
+        let tin = builder.build().unwrap();
+        tin.report().water_overlaps.iter().find(|overlap| overlap.lines == [4, 0]).map(|overlap| overlap.step)
+    };
+    let is_about = |step: Option<f64>, expected: f64| assert!((step.unwrap() - expected).abs() < 1e-9, "{step:?}");
+    let within = |min: [f64; 2], max: [f64; 2]| {
+        let mut builder = over_ground(&rivers, 21.0);
+        builder.bounds = Some(Bounds { min: [min[0], min[1], -99.0], max: [max[0], max[1], 99.0] });
+        step(builder)
+    };
+    is_about(within([-1.0, -1.0], [21.0, 21.0]), 3.2);
+    is_about(within([5.0, 9.0], [10.0, 20.0]), 3.1);
+    assert_eq!(within([0.0, 0.0], [8.0, 20.0]), None);
+    let under_lake = |north: f64| {
+        let mut builder = over_ground(&rivers, 21.0);
+        let shore = [[5.0, 5.0], [15.0, 5.0], [15.0, north], [5.0, north], [5.0, 5.0]].map(|[x, y]| [x, y, 9.0]);
+        builder.add_flat(Flat::new(&[shore.to_vec()], FlatHeight::Lowest).unwrap());
+        step(builder)
+    };
+    is_about(under_lake(10.0), 3.0);
+    assert_eq!(under_lake(15.0), None);
 }
 
 #[test]

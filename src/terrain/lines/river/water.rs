@@ -3,7 +3,7 @@
 use super::{River, contains, flat};
 use crate::terrain::boxes::{Boxed, Boxes, Extent};
 use crate::terrain::linear::linear;
-use crate::terrain::nearest::{nearest_part, squared_distance};
+use crate::terrain::nearest::{nearest_part, part_before, squared_distance};
 
 /// The surface of a river, prepared for queries.
 #[derive(Debug)]
@@ -82,17 +82,15 @@ impl RiverWater {
         nearest
     }
 
-    /// The parts of a segment, from 0 to 1, between which the height along it is linear.
-    pub(in crate::terrain) fn parts_of(&self, [from, to]: [[f64; 2]; 2]) -> Vec<f64> {
+    /// The parts of a segment, from 0 to 1, between which the height along it is linear. Triangles
+    /// count if they are no farther from it than a distance.
+    pub(in crate::terrain) fn parts_of(&self, segment: [[f64; 2]; 2], distance: f64) -> Vec<f64> {
         let mut parts = Vec::new();
-        self.0.find_in(Extent::of_plan([from, to]), |part| {
-            for [a, b] in part.sides() {
-                let turn = |p: [f64; 2]| (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]);
-                let [before, after] = [turn(from), turn(to)];
-                parts.extend([before / (before - after)].into_iter().filter(|part| *part > 0.0 && *part < 1.0));
-            }
+        self.0.find_in(Extent::of_plan(segment).grown(distance), |part| {
+            parts.extend(part.sides().map(|side| part_before(segment, side.map(flat))));
             None::<()>
         });
+        parts.retain(|part| *part > 0.0 && *part < 1.0);
         parts
     }
 }
