@@ -163,7 +163,7 @@ struct Judge<'a> {
 enum Origin {
     /// A vertex: one at a border is on it.
     Vertex,
-    /// A position on a bank.
+    /// A position next to a bank.
     Bank,
     /// A cell: at a border it may be beyond.
     Cell,
@@ -187,15 +187,17 @@ impl Judge<'_> {
         let all: Vec<Heights> = here.map(|river| river.heights(p, self.rounding)).collect();
         let lowest = all.iter().copied().reduce(Heights::lower)?;
         let own = if all.len() > 1 { Within::Overlap } else { Within::River };
-        let of_lakes = steps.iter().map(|&level| Heights { low: level, high: level, off: 0.0 });
         let beside = self.rivers.iter().filter(|river| (self.rounding..=reach).contains(&river.distance(p)));
-        let of_rivers = beside.map(|river| lowest.lower(river.heights(p, reach)));
-        let stepped = of_lakes.chain(of_rivers).fold(lowest, Heights::hull);
-        // Beside an overlap in which the other water is higher, there is no step.
-        let differs = stepped.low < lowest.low - 1e-9 || stepped.high > lowest.high + 1e-9;
-        if !differs {
+        let beside: Vec<Heights> = beside.map(|river| river.heights(p, reach)).collect();
+        // Beside an overlap in which the other river is higher, there is no step.
+        let is_step = steps.iter().any(|level| [lowest.low, lowest.high].iter().any(|own| (level - own).abs() > 1e-9))
+            || beside.iter().any(|other| other.low < lowest.high - 1e-9);
+        if !is_step {
             return Some((own, lowest));
         }
+        let of_lakes = steps.iter().map(|&level| Heights { low: level, high: level, off: 0.0 });
+        let of_rivers = beside.into_iter().map(|other| lowest.lower(other));
+        let stepped = of_lakes.chain(of_rivers).fold(lowest, Heights::hull);
         // A triangle of the step may reach along it to the next level line.
         let near = self.rivers.iter().flat_map(|river| &river.stretches).filter(|stretch| stretch.distance(p) <= reach);
         let heights = near.flat_map(|stretch| stretch.heights);
@@ -224,15 +226,19 @@ impl Judge<'_> {
     /// A vertex on the upper edges of walls, outside of water, has the lowest of their heights.
     fn judge_walls(&self, [x, y, z]: [f64; 3], counts: &mut Counts) -> Result<(), String> {
         let p = [x, y];
+        // At a given vertex, lines that pass do not count.
+        let own = |p: Site| {
+            let here = self.scene.walls.iter().flatten().filter(|vertex| vertex[..2] == p);
+            here.map(|vertex| vertex[2]).reduce(f64::min)
+        };
         let heights = self.scene.walls.iter().flat_map(|wall| wall.windows(2)).filter_map(|pair| {
             let ends = [pair[0], pair[1]].map(|end| [end[0], end[1]]);
             let q = nearest(ends, p);
             let part = distance(ends[0], q) / distance(ends[0], ends[1]);
-            (distance(p, q) <= self.rounding).then_some(pair[0][2] + part * (pair[1][2] - pair[0][2]))
+            let [from, to] = ends.map(|end| own(end).expect("a vertex of a wall"));
+            (distance(p, q) <= self.rounding).then_some(from + part * (to - from))
         });
-        // At a given vertex, lines that pass do not count.
-        let own = self.scene.walls.iter().flatten().filter(|vertex| vertex[..2] == p).map(|vertex| vertex[2]);
-        let own = own.reduce(f64::min);
+        let own = own(p);
         let lowest = own.unwrap_or_else(|| heights.fold(f64::INFINITY, f64::min));
         let shores = self.scene.lakes.iter().flat_map(|lake| &lake.rings);
         let is_water = self.rivers.iter().any(|river| river.distance(p) <= self.rounding)
@@ -278,10 +284,10 @@ impl Judge<'_> {
             Within::Step => counts.in_steps += 1,
             Within::Lake | Within::River => (),
         }
-        // A position on a bank is rounded, beside ground of any slope.
+        // A position next to a bank may be in a step of some height.
         let off = match (within, from) {
             (Within::Lake, Origin::Vertex | Origin::Cell) => 0.0,
-            (_, Origin::Bank) => 1e-5 + right.off,
+            (_, Origin::Bank) => 1e-9 + right.off + 40.0 * self.rounding / STEP,
             _ => 1e-9 + right.off,
         };
         let mut range = [right.low - off, right.high + off];
@@ -328,16 +334,21 @@ fn judge_vertices(judge: &Judge, product: &SurfaceProduct, counts: &mut Counts) 
     Ok(())
 }
 
-/// Positions between the vertices of banks.
+/// Positions between the vertices of banks, inside by rounding: the sides of a vertex that was
+/// computed on a bank are not exactly on it, and what is between it and them is of any slope.
 fn judge_banks(judge: &Judge, product: &SurfaceProduct, counts: &mut Counts) -> Result<(), String> {
     const PARTS: usize = 9;
-    let sides = judge.rivers.iter().flat_map(|river| river.ring.windows(2));
-    let sites: Vec<Site> = sides
-        .flat_map(|pair| {
+    let mut sites: Vec<Site> = Vec::new();
+    for ring in judge.rivers.iter().map(|river| &river.ring) {
+        let area: f64 = ring.windows(2).map(|pair| cross(from_to(ring[0], pair[0]), from_to(ring[0], pair[1]))).sum();
+        for pair in ring.windows(2) {
             let along = from_to(pair[0], pair[1]);
-            (1..PARTS).map(move |k| [0, 1].map(|axis| pair[0][axis] + k as f64 / PARTS as f64 * along[axis]))
-        })
-        .collect();
+            let by = area.signum() * judge.rounding / along[0].hypot(along[1]);
+            let inward = [-by * along[1], by * along[0]];
+            let at = |k: usize| [0, 1].map(|axis| pair[0][axis] + k as f64 / PARTS as f64 * along[axis] + inward[axis]);
+            sites.extend((1..PARTS).map(at));
+        }
+    }
     if sites.is_empty() {
         return Ok(());
     }

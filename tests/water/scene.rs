@@ -58,6 +58,8 @@ pub(crate) struct Scene {
 /// How a river lies that begins within another one.
 #[derive(Debug, Clone, Copy)]
 enum Next {
+    /// In its band: banks lie on each other.
+    Same,
     /// Of another width, wider or narrower.
     Wider,
     Turned,
@@ -90,6 +92,10 @@ pub(crate) const FAMILIES: &[(&str, Draw)] = &[
     ("rivers that overlap at their ends", |scene, random| {
         scene.add_rivers_in_a_row(random, &[Next::Wider, Next::Turned])
     }),
+    ("rivers in one band", |scene, random| {
+        scene.add_rivers_in_a_row(random, &[Next::Same, Next::Same, Next::Wider, Next::Turned]);
+    }),
+    ("waters that touch", |scene, random| scene.add_touching(random)),
     ("confluences", |scene, random| scene.add_confluences(random)),
     ("confluences and lines", |scene, random| {
         scene.add_confluences(random);
@@ -348,6 +354,7 @@ impl Scene {
             let length = 12.0 + random.below(8) as f64;
             let count = 2 + random.index(3);
             let (along, half) = match random.pick(next) {
+                Next::Same => (along, half),
                 Next::Wider => (along, half * (0.6 + random.unit())),
                 Next::Turned => {
                     let [x, y] = [along[0] - 0.3 * along[1], along[1] + 0.3 * along[0]];
@@ -398,6 +405,60 @@ impl Scene {
         }
         random.shuffle(&mut rivers);
         rivers.into_iter().for_each(|banks| self.draw(random, banks));
+    }
+
+    /// Adds a river, and waters that have a vertex or a part of their border on its banks.
+    fn add_touching(&mut self, random: &mut Random) {
+        let along = direction(random);
+        let (length, half) = (30.0 + 10.0 * random.unit(), 0.5 + 2.0 * random.unit());
+        let stretches = 2 + random.index(4);
+        let site = |part: f64, away: f64| {
+            let u = (part / stretches as f64 - 0.5) * length;
+            [30.0 + u * along[0] - away * along[1], 30.0 + u * along[1] + away * along[0]]
+        };
+        let heights = Self::heights(random, stretches + 1);
+        let banks = [(1.0, 0), (-1.0, 1)].map(|(side, of): (f64, usize)| {
+            (0..=stretches).map(|k| self.at(site(k as f64, side * half), heights[k][of])).collect::<Line>()
+        });
+        self.draw(random, banks);
+        let mut sides = vec![1.0, -1.0];
+        random.shuffle(&mut sides);
+        sides.truncate(1 + random.index(2));
+        for side in sides {
+            // At its vertices, except for those of its ends, or between them.
+            let first = 1 + random.index(stretches - 1);
+            let last = first + random.index(stretches - first);
+            let between = if random.below(2) == 0 { 0.0 } else { 0.2 + 0.6 * random.unit() };
+            let mut border: Vec<(f64, f64)> = (first..=last).map(|k| (k as f64 - between, 0.0)).collect();
+            let away = 1.0 + 4.0 * random.unit();
+            let (before, after) = (border[0].0 - 0.1 - random.unit(), border[border.len() - 1].0 + 0.1 + random.unit());
+            if random.below(3) == 0 {
+                border.extend([(after, away), (before, away)]);
+                let mut ring: Vec<Site> =
+                    border.iter().map(|(part, by)| self.located(site(*part, side * (half + by)))).collect();
+                ring.push(ring[0]);
+                self.lakes.push(Lake { rings: vec![ring], level: 6.0 + 12.0 * random.unit() });
+                continue;
+            }
+            if random.below(2) == 0 {
+                // A bend in one point; symmetric, so that vertices are opposite each other.
+                let (at, by) = (border[0].0, 0.3 + random.unit());
+                border = vec![(at - by, away), (at, 0.0), (at + by, away)];
+            } else {
+                border.insert(0, (before + 0.03, 0.0));
+                border.push((after + 0.03, 0.0));
+            }
+            let heights = Self::heights(random, border.len());
+            let width = 0.5 + 3.0 * random.unit();
+            let banks = [(0.0, 0), (width, 1)].map(|(beyond, of): (f64, usize)| {
+                let vertices = border.iter().zip(&heights);
+                let vertex = |((part, by), heights): (&(f64, f64), &[f64; 2])| {
+                    self.at(site(*part, side * (half + by + beyond)), heights[of])
+                };
+                vertices.map(vertex).collect::<Line>()
+            });
+            self.draw(random, banks);
+        }
     }
 
     /// Adds a lake, with an island now and then.
