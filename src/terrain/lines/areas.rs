@@ -3,10 +3,12 @@
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use std::cell::OnceCell;
+use std::collections::BTreeSet;
 use std::ops::Range;
 
 use super::{Flat, River, RiverWater, Wall};
 use crate::error::{Error, Result};
+use crate::terrain::boxes::{Boxed, Boxes, Extent};
 use crate::terrain::inside::{Inside, sides};
 use crate::terrain::near_lines::NearLines;
 use crate::terrain::regions::{self, Domain, Faces};
@@ -202,18 +204,23 @@ pub(in crate::terrain) fn level(
     let mut new_heights: Vec<(VertexId, f64)> = Vec::with_capacity(vertices.len());
     let surfaces: Vec<OnceCell<RiverWater>> = waters.iter().map(|_| OnceCell::new()).collect();
     let surface = |area: Domain, river| surfaces[area].get_or_init(|| RiverWater::new(river));
-    let mut partners: FxHashMap<Domain, Vec<Domain>> = FxHashMap::default();
-    overlapping.iter().for_each(|[area, other]| partners.entry(*area).or_default().push(*other));
+    let pairs: FxHashSet<[Domain; 2]> = overlapping.iter().copied().collect();
+    let reaches = reaches_of(waters, overlapping);
     let rounding = rounding_of(vertices.iter().map(|(vertex, _)| *triangulation.point(*vertex)));
     for (vertex, mut areas) in vertices {
         let [x, y, _] = *triangulation.point(vertex);
-        let others =
-            areas.iter().filter_map(|area| partners.get(area)).flatten().filter(|other| !areas.contains(other));
-        let is_near = |area: &Domain| match &waters[*area].level {
-            Level::River(river) => surface(*area, river).is_near([x, y], rounding),
-            Level::Flat(_) => false,
-        };
-        let near: Vec<Domain> = others.copied().filter(is_near).collect();
+        let mut near: Vec<Domain> = Vec::new();
+        reaches.find_in(Extent::of_plan([[x, y]]).grown(rounding), |reach| {
+            let is_other = !areas.contains(&reach.area) && !near.contains(&reach.area);
+            if is_other
+                && areas.iter().any(|area| pairs.contains(&[*area, reach.area]))
+                && let Level::River(river) = &waters[reach.area].level
+                && surface(reach.area, river).is_near([x, y], rounding)
+            {
+                near.push(reach.area);
+            }
+            None::<()>
+        });
         areas.extend(near);
         areas.sort_unstable();
         areas.dedup();
@@ -249,6 +256,31 @@ pub(in crate::terrain) fn level(
         triangulation.replace_point(vertex, [x, y, height]);
     }
     Ok(Leveled { is_water, sites })
+}
+
+/// A stretch of a river, and the number of its area.
+#[derive(Debug, Clone, Copy)]
+struct Reach {
+    area: Domain,
+    extent: Extent,
+}
+
+impl Boxed for Reach {
+    fn extent(&self) -> Extent {
+        self.extent
+    }
+}
+
+/// The stretches of the rivers that are the second of some pairs.
+fn reaches_of(waters: &[Water], pairs: &[[Domain; 2]]) -> Boxes<Reach> {
+    let areas: BTreeSet<Domain> = pairs.iter().map(|[_, area]| *area).collect();
+    let mut reaches = Vec::new();
+    for area in areas {
+        let Level::River(river) = &waters[area].level else { continue };
+        let extent = |stretch| Extent::of(river.triangles(stretch).concat());
+        reaches.extend((0..river.stretch_count()).map(|stretch| Reach { area, extent: extent(stretch) }));
+    }
+    Boxes::new(reaches)
 }
 
 /// How far rounding moves computed vertices among these.
