@@ -69,7 +69,8 @@ struct Touch {
 }
 
 /// Finds the ends of rivers on banks of others, by `reach` at most from them. The banks get
-/// vertices there. Ends that `continue` another river are left out.
+/// vertices there. Ends that `continue` another river are left out, and those side by side that
+/// share nothing but a corner.
 ///
 /// # Complexity
 /// O(n log n) for n level lines.
@@ -78,7 +79,8 @@ pub(super) fn join_banks(
     reach: f64,
     continues: &dyn Fn(usize, usize, usize) -> bool,
 ) -> Vec<Joint> {
-    let touches = touches(rivers, reach, continues);
+    let mut touches = touches(rivers, reach, continues);
+    touches.retain(|touch| touch.spots.iter().flatten().any(|spot| !is_beside(rivers, touch, spot)));
     let mut wanted: BTreeMap<usize, Vec<(usize, Spot)>> = BTreeMap::new();
     for touch in &touches {
         let new = touch.spots.iter().flatten().filter(|spot| !spot.is_vertex);
@@ -103,6 +105,15 @@ pub(super) fn join_banks(
         Joint { branch, end, main, side, stations: spots.map(|spot| spot.and_then(station)) }
     };
     touches.iter().map(joint).collect()
+}
+
+/// Returns true if an end and the same end of the other river share a corner there: both end side
+/// by side, or begin so, and neither flows into the other.
+fn is_beside(rivers: &[River], touch: &Touch, spot: &Spot) -> bool {
+    let stations = &rivers[touch.main].stations;
+    let is_corner = |station: usize| flat(stations[station][touch.side]) == spot.at;
+    let [is_first, is_last] = [is_corner(0), is_corner(stations.len() - 1)];
+    spot.is_vertex && if touch.end == 0 { is_first && !is_last } else { is_last && !is_first }
 }
 
 fn by_site(p: [f64; 2], q: [f64; 2]) -> Ordering {

@@ -158,6 +158,32 @@ fn an_end_does_not_follow_a_bank_through_its_own_stretch() {
     are_at(&tin, &[([22.0, 25.0], 9.0 - 4.0 / 6.0), ([29.0, 22.0], 9.0 - 16.0 / 6.0)]);
 }
 
+/// Ends side by side share corners, but neither river flows into the other.
+#[test]
+fn ends_side_by_side_are_not_tributaries_of_each_other() {
+    let between = |left: [[f64; 3]; 2], right: [[f64; 3]; 2]| River::between(&left, &right).unwrap();
+    let bank = |x: f64, ends: [f64; 2]| [[x, 14.0, ends[0]], [x, 4.0, ends[1]]];
+    let at_the_main_river = |ends: [f64; 2], x: f64| between(bank(x, ends), bank(x + 2.0, ends));
+    let mouths = [main_river(), at_the_main_river([12.0, 4.0], 8.0), at_the_main_river([12.0, 9.9], 10.0)];
+    let springs = [at_the_main_river([12.0, 9.0], 8.0), at_the_main_river([6.0, 5.0], 10.0)];
+    let beside = |side: f64, level: f64| [[0.0, side, level], [10.0, side, level]];
+    let canal = [
+        between(beside(4.0, 10.0), beside(2.0, 10.0)),
+        between([[0.0, 2.0, 8.0], [10.0, 2.0, 5.0]], [[0.0, 0.0, 8.0], [10.0, 0.0, 5.0]]),
+    ];
+    for (name, expected, mut rivers) in [
+        ("mouths", vec![1, 0, 0], mouths.to_vec()),
+        ("springs", vec![0, 0], springs.to_vec()),
+        ("canal", vec![0, 0], canal.to_vec()),
+    ] {
+        let before: Vec<f64> = rivers.iter().map(|river| river.levels()[0]).collect();
+        River::join(&mut rivers, 0.01);
+        let rising: Vec<usize> = rivers.iter().map(|river| river.heights().rising).collect();
+        assert_eq!(rising, expected, "{name}");
+        assert_eq!(rivers.iter().map(|river| river.levels()[0]).collect::<Vec<f64>>(), before, "{name}");
+    }
+}
+
 #[test]
 fn level_rivers_are_turned_to_fit() {
     for (level, expected) in [(9.0, [9.0, 8.2]), (6.0, [8.2, 6.0])] {
