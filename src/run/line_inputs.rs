@@ -10,13 +10,14 @@ use super::layers::{self, Layers};
 use super::line_notes::{LevelRing, LineInput};
 use super::line_request::{FlatRule, LineRequest, LineRole, LowerEdge, PerRecord, WallOptions};
 use super::lines::{self, Drawn};
+use super::notice::LoweredRiver;
 use super::systems::Stated;
 use super::transforms::Transforms;
 use super::units::Units;
 use crate::data::{Bounds, Layer, Shape};
 use crate::error::{Error, Result};
 use crate::io::Cut;
-use crate::terrain::{Flat, FlatHeight, River, RiverHeights, TinBuilder, Wall, densified};
+use crate::terrain::{Flat, FlatHeight, River, RiverHeights, RiverLowering, TinBuilder, Wall, densified};
 
 /// The default distance between the upper and the lower edge of a wall. Steps between waters are as
 /// wide.
@@ -38,6 +39,8 @@ pub(super) struct Added {
     pub(super) level_rings: Vec<LevelRing>,
     /// Rivers whose banks rise, or differ across.
     pub(super) uneven: Vec<(String, RiverHeights)>,
+    /// Rivers that are lowered to others.
+    pub(super) lowered: Vec<LoweredRiver>,
     /// Rivers that overlap themselves, and where.
     pub(super) overlaps: Vec<(String, [f64; 2])>,
 }
@@ -102,8 +105,11 @@ impl<'a> LineLayers<'a> {
                 extent: Bounds::default(),
                 level_rings: Vec::new(),
                 uneven: Vec::new(),
+                lowered: Vec::new(),
                 overlaps: Vec::new(),
             },
+            rivers: Vec::new(),
+            lowerings: Vec::new(),
             file: 0,
             next: 0,
         };
@@ -129,6 +135,7 @@ impl<'a> LineLayers<'a> {
                 adding.file += 1;
             }
         }
+        adding.name_lowered();
         Ok(adding.added)
     }
 }
@@ -147,6 +154,9 @@ struct Adding<'a> {
     transforms: &'a Transforms,
     units: &'a Units,
     added: Added,
+    /// The number of the first line of each river.
+    rivers: Vec<usize>,
+    lowerings: Vec<RiverLowering>,
     /// The position of the current layer among all.
     file: usize,
     /// The number of the next line of the builder.
@@ -383,7 +393,7 @@ impl Adding<'_> {
                 rivers.push(river);
             }
         }
-        River::join(&mut rivers, self.units.of_metres(WALL_WIDTH_METRES));
+        self.lowerings = River::join(&mut rivers, self.units.of_metres(WALL_WIDTH_METRES));
         let mut by_number: Vec<Vec<(Drawn, River)>> = layers.iter().map(|_| Vec::new()).collect();
         for ((number, line), river) in lines.into_iter().zip(rivers) {
             by_number[number].push((line, river));
@@ -399,6 +409,7 @@ impl Adding<'_> {
             let numbers = self.builder.add_river(river);
             let name = |adding: &Self| adding.added.names.name(numbers.start);
             self.name(&line, numbers.clone());
+            self.rivers.push(numbers.start);
             if heights.largest_rise.max(heights.largest_difference) > self.flat_tolerance() {
                 self.added.uneven.push((name(self), heights));
             }
@@ -407,6 +418,19 @@ impl Adding<'_> {
             }
         }
         count
+    }
+
+    /// Names the rivers that were lowered, and those that they were lowered to.
+    fn name_lowered(&mut self) {
+        let name = |river: usize| self.added.names.name(self.rivers[river]);
+        let visible = self.lowerings.iter().filter(|lowering| lowering.by > self.flat_tolerance());
+        let named = visible.map(|&RiverLowering { river, to, by, from }| LoweredRiver {
+            name: name(river),
+            to: name(to),
+            by: self.units.height(by),
+            from,
+        });
+        self.added.lowered = named.collect();
     }
 
     fn rivers_of(&mut self, layer: &Layer, path: &Path, transform: Option<usize>) -> Result<Vec<(Drawn, River)>> {

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use super::context::Journal;
 use super::crossings::LineNames;
 use super::line_request::{LineRequest, LineRole};
-use super::notice::{Notice, WaterStep};
+use super::notice::{LoweredRiver, Notice, WaterStep};
 use super::units::Units;
 use crate::data::EdgeKind;
 use crate::terrain::{Inside, RiverHeights, Tin, TinReport, WaterOverlap};
@@ -57,7 +57,7 @@ pub(super) fn note_overlaps(overlaps: &[(String, [f64; 2])], journal: &Journal) 
     }
 }
 
-/// The number of steps in a notice.
+/// The number of steps, or of rivers, in a notice.
 const LISTED: usize = 5;
 
 /// Adds a notice about waters of different heights that overlap.
@@ -106,6 +106,16 @@ pub(super) fn note_uneven(uneven: &[(String, RiverHeights)], units: &Units, jour
         largest_difference: units.height(heights.largest_difference),
         difference_at: heights.difference_at,
     });
+}
+
+/// Adds a notice about rivers that are lowered to others, with those that are lowered most.
+pub(super) fn note_lowered(mut lowered: Vec<LoweredRiver>, journal: &Journal) {
+    let count = lowered.len();
+    if count > 0 {
+        lowered.sort_by(|p, q| q.by.value.total_cmp(&p.by.value));
+        lowered.truncate(LISTED);
+        journal.add(Notice::RiversLowered { count, first: lowered });
+    }
 }
 
 /// Closed lines of one height, and the points inside that have other heights: the lines may be

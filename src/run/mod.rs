@@ -118,7 +118,7 @@ pub use job::{
 };
 pub use line_notes::LineInput;
 pub use line_request::{FlatOptions, FlatRule, LineRequest, LineRole, LowerEdge, PerRecord, WallOptions};
-pub use notice::{CrossingNote, Notice, Seed, SeedFlaw, Severity, WaterStep};
+pub use notice::{CrossingNote, LoweredRiver, Notice, Seed, SeedFlaw, Severity, WaterStep};
 pub use overlaps::Overlap;
 pub use point_files::BadFiles;
 pub use points::{PointsProduct, PointsReport, PointsRequest, Withheld, read_points, write_points};

@@ -157,6 +157,13 @@ pub enum Notice {
         /// Where they differ that much.
         difference_at: [f64; 2],
     },
+    /// Rivers are lowered to others that join them, so that the water does not rise downstream.
+    RiversLowered {
+        /// The number of such rivers.
+        count: usize,
+        /// Those that are lowered most, at most five.
+        first: Vec<LoweredRiver>,
+    },
     /// Rivers overlap themselves: what their banks enclose twice is not water.
     RiverOverlap {
         /// The number of such rivers; the rest is about the first of them.
@@ -220,6 +227,19 @@ pub struct CrossingNote {
     pub high: (f64, String),
     /// The height of the surface.
     pub chosen: f64,
+}
+
+/// A river that is lowered to another one.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LoweredRiver {
+    /// The river.
+    pub name: String,
+    /// The other one.
+    pub to: String,
+    /// How far it is lowered, at most.
+    pub by: Quantity,
+    /// Where that is: from there on downstream.
+    pub from: [f64; 2],
 }
 
 /// A step between two waters that overlap or touch.
@@ -304,6 +324,7 @@ impl Notice {
             | Notice::EdgeLimitUnusual { .. }
             | Notice::LevelRings { .. }
             | Notice::RiverHeights { .. }
+            | Notice::RiversLowered { .. }
             | Notice::RiverOverlap { .. }
             | Notice::WaterOverlaps { .. }
             | Notice::WallsInWater { .. }

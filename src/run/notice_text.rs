@@ -3,7 +3,7 @@
 use std::fmt;
 use std::path::PathBuf;
 
-use super::notice::{CrossingNote, Notice, Seed, SeedFlaw, WaterStep};
+use super::notice::{CrossingNote, LoweredRiver, Notice, Seed, SeedFlaw, WaterStep};
 use super::units::{Quantity, bytes, neat, number};
 use crate::data::Bounds;
 
@@ -21,6 +21,7 @@ impl Notice {
         let (count, first) = match self {
             Notice::CrossingHeights { count, first, .. } => (count, first),
             Notice::WaterOverlaps { count, first } if *count > 1 => return steps(*count, first),
+            Notice::RiversLowered { count, first } if *count > 1 => return lowerings(*count, first),
             Notice::OfTask { details, .. } => return details.clone(),
             _ => return Vec::new(),
         };
@@ -44,6 +45,20 @@ fn steps(count: usize, first: &[WaterStep]) -> Vec<String> {
         lines.push(format!("and {} more pairs", count - first.len()));
     }
     lines
+}
+
+/// The lines that list rivers that are lowered to others.
+fn lowerings(count: usize, first: &[LoweredRiver]) -> Vec<String> {
+    let mut lines: Vec<String> = first.iter().map(lowering).collect();
+    if count > first.len() {
+        lines.push(format!("and {} more rivers", count - first.len()));
+    }
+    lines
+}
+
+fn lowering(LoweredRiver { name, to, by, from }: &LoweredRiver) -> String {
+    let [x, y] = from.map(neat);
+    format!("the river {name} is lowered by up to {by} from {x} {y} on, to the river {to}, which joins it there")
 }
 
 fn step(WaterStep { inner, outer, step, at }: &WaterStep) -> String {
@@ -144,6 +159,13 @@ fn text(notice: &Notice) -> String {
                 text += &format!("; they differ by up to {largest_difference} across (at {u} {v})");
             }
             text
+        }
+        Notice::RiversLowered { count: 1, first } => {
+            let lowerings: Vec<String> = first.iter().map(lowering).collect();
+            format!("{}: if it should not be, correct the heights of either", lowerings.join(", "))
+        }
+        Notice::RiversLowered { count, .. } => {
+            format!("{count} rivers are lowered to others that join them: correct the heights of those that are wrong")
         }
         Notice::RiverOverlap { rivers, name, at } => {
             let [x, y] = at.map(neat);

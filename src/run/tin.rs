@@ -247,9 +247,10 @@ pub(super) fn build(request: &TinRequest, options: &SystemOptions, journal: &Jou
     let mut rim = Rim::new(request, &units, journal);
 
     // Lines first: they are few, and their errors are known before the points are read.
-    let Added { names, mut inputs, extent: line_extent, mut level_rings, uneven, overlaps } =
+    let Added { names, mut inputs, extent: line_extent, mut level_rings, uneven, lowered, overlaps } =
         layers.add_to(&mut builder, of_layers, &transforms, &units)?;
     line_notes::note_uneven(&uneven, &units, journal);
+    line_notes::note_lowered(lowered, journal);
     line_notes::note_overlaps(&overlaps, journal);
     builder.mark_overlaps();
 

@@ -134,10 +134,6 @@ fn what_looks_wrong_is_a_warning() {
     let shore = folder(&[("Polygon", LAKE, "{}")]);
     let run = run_in(&shore, &["tin", "p.xyz", "--breaklines", "l.geojson", "-o", "t.ply"]);
     run.works(&["warning: a closed line of one height has 1 point of other heights inside, by up to 2", "--flat"]);
-    let parts = [("LineString", "[[0.2,1,5],[1.5,1,4]]", "{}"), ("LineString", "[[1.5,1,4.5],[2.8,1,3]]", "{}")];
-    let run =
-        run_in(&folder(&parts), &["tin", "p.xyz", "--rivers", "l.geojson", "--river-width", "0.4", "-o", "t.ply"]);
-    run.works(&["the river l.geojson fid 1 are not level: they rise downstream at 1 vertices, by up to 0.5", "1.5 1"]);
     let hairpin = folder(&[("LineString", "[[0.2,1,5],[2.5,1,4],[0.2,1.1,3]]", "{}")]);
     let run = run_in(&hairpin, &["tin", "p.xyz", "--rivers", "l.geojson", "--river-width", "0.6", "-o", "t.ply"]);
     run.works(&["warning: the banks of the river l.geojson fid 0 meet near", "twice is not water"]);
@@ -153,6 +149,24 @@ fn what_looks_wrong_is_a_warning() {
         let run = run_in(&far, &["tin", "p.xyz", option, "l.geojson", "-o", "t.ply", "--overwrite"]);
         run.works(&[&format!("warning: nothing of {option} lies on the surface")]);
     }
+}
+
+/// Reaches that begin above the end of the one before.
+#[test]
+fn lowered_rivers_are_named_with_those_that_lower_them() {
+    let reaches = [
+        ("LineString", "[[0.2,1,5],[1.5,1,4]]", "{}"),
+        ("LineString", "[[1.5,1,4.5],[2.2,1,3]]", "{}"),
+        ("LineString", "[[2.2,1,3.2],[2.8,1,2]]", "{}"),
+    ];
+    let args = ["tin", "p.xyz", "--rivers", "l.geojson", "--river-width", "0.4", "-o", "t.ply"];
+    let first = ["the river l.geojson fid 1 is lowered by up to 0.5", "from 1.5 1 on, to the river l.geojson fid 0"];
+    let second = ["the river l.geojson fid 2 is lowered by up to 0.2", "from 2.2 1 on, to the river l.geojson fid 1"];
+    let run = run_in(&folder(&reaches[..2]), &args);
+    run.works(&[&first[..], &["correct the heights of either"]].concat());
+    assert!(!run.stderr.contains("not level"), "{}", run.stderr);
+    let run = run_in(&folder(&reaches), &args);
+    run.works(&[&["warning: 2 rivers are lowered to others"], &first[..], &second[..]].concat());
 }
 
 /// Steps between waters, and confluences.
@@ -183,14 +197,18 @@ fn waters_that_meet_are_reported_where_they_contradict_each_other() {
     ]);
     // A tributary from the north, which ends on the bank of the first river, rounded to mm.
     let main = ("MultiLineString", "[[[0.2,1.2,5],[2.8,1.2,4]],[[0.2,0.6,5],[2.8,0.6,4]]]", "{}");
-    for (south, said) in [(4.9, None), (4.2, Some("rise downstream at 1 vertices, by up to 0.3"))] {
+    let lowered = [
+        "the river l.geojson fid 0, part 1 is lowered by up to 0.3",
+        "from 1.5 0.9005 on, to the river l.geojson fid 1",
+    ];
+    for (south, said) in [(4.9, &[][..]), (4.2, &lowered)] {
         let bank = |x: f64| format!("[[{x},2.8,6],[{x},1.201,{south}]]");
         let tributary = format!("[{},{}]", bank(1.7), bank(1.5));
         let rivers = folder(&[main, ("MultiLineString", &tributary, "{}")]);
         let run = run_in(&rivers, &["tin", "p.xyz", "--rivers", "l.geojson", "-o", "t.ply"]);
-        run.works(said.as_slice());
-        let is_reported = run.stderr.contains("warning: the banks") || run.stdout.contains("warning: the banks");
-        assert_eq!(is_reported, said.is_some(), "{}{}", run.stdout, run.stderr);
+        run.works(said);
+        let is_reported = [&run.stderr, &run.stdout].iter().any(|text| text.contains("warning: the"));
+        assert_eq!(is_reported, !said.is_empty(), "{}{}", run.stdout, run.stderr);
         assert!(!run.stderr.contains("overlap") && !run.stdout.contains("overlap"), "{}{}", run.stdout, run.stderr);
     }
 }

@@ -238,6 +238,16 @@ fn cases_of_lines(files: &Files) -> Vec<Case> {
     let lake = files.lines("lake.geojson", "Polygon", &[&ring([2.5, 2.5], 10.0, 3.0)]);
     let hole = files.lines("hole.geojson", "Polygon", &[&ring([2.5, 2.5], 0.0, 2.0)]);
     let hole_apart = files.lines("hole_apart.geojson", "Polygon", &[&ring([50.0, 2.5], 0.0, 2.0)]);
+    let lower = files.lines(
+        "lower.geojson",
+        "LineString",
+        &[
+            &[[1.5, 2.5, 12.0], [6.5, 2.5, 10.0]],
+            &[[1.5, 4.5, 12.0], [6.5, 4.5, 10.0]],
+            &[[3.0, 7.0, 13.0], [3.0, 4.5, 9.0]],
+            &[[4.0, 7.0, 13.0], [4.0, 4.5, 9.0]],
+        ],
+    );
     let uneven = files.lines(
         "uneven.geojson",
         "LineString",
@@ -289,6 +299,7 @@ fn cases_of_lines(files: &Files) -> Vec<Case> {
             &["WallsInWater"],
         ),
         case(with(rivers(uneven)), &["RiverHeights"]),
+        case(with(rivers(lower)), &["RiversLowered"]),
         case(
             with(LineRequest {
                 flats: layers(&[&lake]),

@@ -70,8 +70,9 @@ impl Known {
         let transforms = Transforms::new(&from, crs, journal)?;
         let units = Units::of(crs);
         let mut builder = builder_of(request, &units, crs.cloned());
-        let added = layers.add_to(&mut builder, &transforms.by_file, &transforms, &units)?;
+        let mut added = layers.add_to(&mut builder, &transforms.by_file, &transforms, &units)?;
         line_notes::note_uneven(&added.uneven, &units, journal);
+        line_notes::note_lowered(std::mem::take(&mut added.lowered), journal);
         line_notes::note_overlaps(&added.overlaps, journal);
         builder.mark_overlaps();
         let in_plan = builder.lines_in_plan();

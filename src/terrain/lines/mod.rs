@@ -25,6 +25,6 @@ pub use densify::densified;
 pub use flat::{Flat, FlatHeight};
 pub use overlap::WaterOverlap;
 pub(super) use river::RiverWater;
-pub use river::{River, RiverHeights};
+pub use river::{River, RiverHeights, RiverLowering};
 pub(super) use wall::narrowest;
 pub use wall::{HighSide, Wall};

@@ -1,9 +1,25 @@
 //! Rivers that continue or join each other.
 
+use std::cmp::{Ordering, Reverse};
+use std::collections::{BTreeMap, BinaryHeap};
+
 use rustc_hash::FxHashMap;
 
-use super::confluence::{self, Joint};
-use super::{Key, River, flat, key, middle};
+use super::confluence::{self, Level, StationId};
+use super::{Key, River, key, middle};
+
+/// A river that was lowered because another one, which joins it or which it continues, is lower.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RiverLowering {
+    /// The position of the river among all.
+    pub river: usize,
+    /// The position of the other one.
+    pub to: usize,
+    /// How far it was lowered, at most.
+    pub by: f64,
+    /// Where that is: from there on downstream.
+    pub from: [f64; 2],
+}
 
 /// The rivers that end or begin at each position.
 type Meeting = FxHashMap<Key, Vec<usize>>;
@@ -25,89 +41,138 @@ impl River {
     ///   that one, or if both of its ends are no farther than `reach` from the same bank; the bank
     ///   then gets vertices there. A tributary that is lower lowers the main river from there on. A
     ///   branch begins no higher than the main river is there.
+    /// - An end with corners on two rivers is level, and both have its height there.
+    /// - A river that ends where another one begins falls to it, if they share a corner. Ends side
+    ///   by side, and beginnings, are not joined.
     ///
-    /// Of a river without slope, the end at which another arrives becomes its beginning. How far a
-    /// river was lowered is added to its [`heights`](River::heights).
+    /// Of a river without slope, the end at which another arrives becomes its beginning. Returns
+    /// the rivers that were lowered, except those that only fall to others in their last stretch.
     ///
     /// # Complexity
-    /// O(n log n) for n level lines, times the number of rivers upstream at most.
-    pub fn join(rivers: &mut [River], reach: f64) {
+    /// O(n log n) for n level lines, if few of them are close to each other.
+    pub fn join(rivers: &mut [River], reach: f64) -> Vec<RiverLowering> {
         let mut at: Meeting = FxHashMap::default();
         for (number, river) in rivers.iter().enumerate() {
             river.ends.iter().for_each(|end| at.entry(key(*end)).or_default().push(number));
         }
         turn_level_ones(rivers, &at, reach);
         let ends: Vec<[Key; 2]> = rivers.iter().map(|river| river.ends.map(key)).collect();
-        let joints =
+        let mut joints =
             confluence::join_banks(rivers, reach, &|branch, end, main| ends[main].contains(&ends[branch][end]));
-        let before: Vec<Vec<f64>> = rivers.iter().map(River::station_levels).collect();
-        lower(rivers, &at, &joints);
-        for (river, before) in rivers.iter_mut().zip(before) {
-            river.add_lowering(&before);
+        for (river, [_, mouth]) in ends.iter().enumerate() {
+            let following = at.get(mouth).into_iter().flatten().filter(|next| ends[**next][0] == *mouth);
+            for &next in following {
+                let levels = [0, 1].map(|corner| joints.height_of_end(rivers, [river, 1], corner));
+                joints.bounds.extend(levels.map(|station| [station, [next, 0]]));
+            }
         }
-        confluence::fit_ends(rivers, &joints);
+        let lowered = lower(rivers, &joints.equal, &joints.bounds);
+        joints.fit_ends(rivers);
+        lowered
     }
 
     /// The height at each station.
-    fn station_levels(&self) -> Vec<f64> {
+    pub(super) fn station_levels(&self) -> Vec<f64> {
         self.stations.iter().map(|ends| ends[0][2]).collect()
     }
 
-    /// Adds how far the river was lowered to what was wrong with its heights.
-    fn add_lowering(&mut self, before: &[f64]) {
-        let mut largest = (0.0, None);
-        for (ends, before) in self.stations.iter().zip(before) {
-            if before - ends[0][2] > largest.0 {
-                largest = (before - ends[0][2], Some(*ends));
-            }
-        }
-        if let (lowered, Some(ends)) = largest {
-            let is_first = self.stations.first() == Some(&ends);
-            self.heights.add_rise(lowered, if is_first { self.ends[0] } else { middle(&ends) });
-        }
+    /// The first of the stations whose level lines meet the last one.
+    fn first_at_mouth(&self) -> usize {
+        self.met_at_end(1).last().map_or(self.stations.len() - 1, |[station, _]| station)
     }
 
-    /// Lowers what is above a level, from a station on downstream, and the level lines that meet
-    /// that one.
-    fn lower_from(&mut self, station: usize, level: f64) {
-        let meets = |k: usize| (0..2).any(|side| flat(self.stations[k - 1][side]) == flat(self.stations[k][side]));
+    /// Lowers what is above a level, from a station on to another one, and the level lines that
+    /// meet the first. Returns the number of the first station that may have been lowered.
+    fn lower_between(&mut self, station: usize, end: usize, level: f64) -> usize {
         let mut first = station;
-        while first > 0 && meets(first) {
+        while first > 0 && self.meeting_side(first - 1, first).is_some() {
             first -= 1;
         }
-        self.stations[first..].iter_mut().flatten().for_each(|end| end[2] = end[2].min(level));
+        self.stations[first..end].iter_mut().flatten().for_each(|corner| corner[2] = corner[2].min(level));
+        first
     }
 }
 
-/// Lowers rivers to those upstream.
-fn lower(rivers: &mut [River], at: &Meeting, joints: &[Joint]) {
-    let mut tributaries: FxHashMap<usize, Vec<&Joint>> = FxHashMap::default();
-    let mut branches: FxHashMap<usize, Vec<&Joint>> = FxHashMap::default();
-    for joint in joints {
-        if joint.end == 1 {
-            tributaries.entry(joint.branch).or_default().push(joint);
-        } else {
-            branches.entry(joint.main).or_default().push(joint);
-        }
+/// A height, in the order of numbers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Height(f64);
+
+impl Eq for Height {}
+
+impl PartialOrd for Height {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
     }
-    // Each visit lowers a river to the level of another: it ends, also around a ring.
-    let mut changed: Vec<usize> = (0..rivers.len()).collect();
-    while let Some(upstream) = changed.pop() {
-        let (mouth, level) = (key(rivers[upstream].ends[1]), rivers[upstream].levels()[1]);
-        let following = at.get(&mouth).into_iter().flatten().filter(|next| key(rivers[**next].ends[0]) == mouth);
-        let following = following.map(|&next| (next, 0, level));
-        let joined = tributaries.get(&upstream).into_iter().flatten();
-        let joined = joined.map(|joint| (joint.main, joint.range()[0], level));
-        let leaving = branches.get(&upstream).into_iter().flatten();
-        let leaving = leaving.map(|joint| (joint.branch, 0, rivers[upstream].stations[joint.range()[1]][0][2]));
-        let bounds: Vec<(usize, usize, f64)> = following.chain(joined).chain(leaving).collect();
-        for (next, station, level) in bounds {
-            if rivers[next].stations[station][0][2] > level {
-                rivers[next].lower_from(station, level);
-                changed.push(next);
+}
+
+impl Ord for Height {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.0.total_cmp(&other.0)
+    }
+}
+
+/// What the height of a station decides.
+#[derive(Debug, Default)]
+struct Bound {
+    /// The numbers of the groups of one height that the station is in.
+    groups: Vec<usize>,
+    /// The stations that are no higher.
+    below: Vec<StationId>,
+}
+
+/// Lowers rivers until the stations of each group have one height, and the second of each pair is
+/// no higher than the first. Returns the rivers that were lowered, except those that were at their
+/// mouths alone.
+///
+/// The lowest height comes first, and goes on to all that must not be higher: no station is lowered
+/// twice.
+///
+/// # Complexity
+/// O(n log n) for n stations.
+fn lower(rivers: &mut [River], equal: &[Level], bounds: &[[StationId; 2]]) -> Vec<RiverLowering> {
+    let mut bound: BTreeMap<StationId, Bound> = BTreeMap::new();
+    for (group, Level { stations, .. }) in equal.iter().enumerate() {
+        stations.iter().for_each(|station| bound.entry(*station).or_default().groups.push(group));
+    }
+    for [from, to] in bounds {
+        bound.entry(*from).or_default().below.push(*to);
+    }
+    let level = |rivers: &[River], [river, station]: StationId| rivers[river].stations[station][0][2];
+    let mouths: Vec<usize> = rivers.iter().map(River::first_at_mouth).collect();
+    // From here on, a river is low enough.
+    let mut done: Vec<usize> = rivers.iter().map(|river| river.stations.len()).collect();
+    let mut is_done = vec![false; equal.len()];
+    let mut lowered: BTreeMap<usize, RiverLowering> = BTreeMap::new();
+    let own = bound.keys().map(|&station| Reverse((Height(level(rivers, station)), station, station[0])));
+    let mut next: BinaryHeap<Reverse<(Height, StationId, usize)>> = own.collect();
+    let mut targets: Vec<(StationId, usize)> = Vec::new();
+    while let Some(Reverse((Height(height), [river, station], to))) = next.pop() {
+        let end = done[river];
+        if station >= end {
+            continue;
+        }
+        let by = level(rivers, [river, station]) - height;
+        let first = rivers[river].lower_between(station, end, height);
+        done[river] = first;
+        let most = lowered.get(&river).map_or(0.0, |lowering| lowering.by);
+        if by > most && first < mouths[river] {
+            let from = if first == 0 { rivers[river].ends[0] } else { middle(&rivers[river].stations[first]) };
+            lowered.insert(river, RiverLowering { river, to, by, from });
+        }
+        for (_, Bound { groups, below }) in bound.range([river, first]..[river, end]) {
+            for &group in groups {
+                if !std::mem::replace(&mut is_done[group], true) {
+                    let Level { stations, end } = &equal[group];
+                    let cause = |target: StationId| end.filter(|end| *end != target[0]).unwrap_or(river);
+                    targets.extend(stations.iter().map(|target| (*target, cause(*target))));
+                }
             }
+            targets.extend(below.iter().map(|target| (*target, river)));
         }
+        let higher = targets.drain(..).filter(|(target, _)| level(rivers, *target) > height);
+        next.extend(higher.map(|(target, to)| Reverse((Height(height), target, to))));
     }
+    lowered.into_values().collect()
 }
 
 /// Turns rivers without slope, so that they begin where others end: first where rivers with a slope

@@ -1,10 +1,12 @@
 //! Rivers: two banks, level from one to the other, never rising downstream.
 
 mod confluence;
+mod divided;
 mod downstream;
-mod ears;
 mod stations;
 mod water;
+
+use std::collections::BTreeSet;
 
 use super::offset::{offset, unfolded};
 use crate::data::orientation;
@@ -12,9 +14,10 @@ use crate::error::{Error, Result};
 use crate::terrain::boxes::{Boxed, Boxes, Extent};
 use crate::terrain::nearest::squared_distance;
 use crate::triangulation::num::{Sign, unsigned_zero};
-use ears::ears;
+use divided::divided;
 use stations::stations;
 
+pub use downstream::RiverLowering;
 pub(in crate::terrain) use water::{RiverWater, height_near};
 
 /// A river between two banks.
@@ -43,6 +46,8 @@ pub struct River {
     /// those of the bank of another river that they follow. There the heights are those of that
     /// river.
     along_banks: [Option<Vec<[f64; 3]>>; 2],
+    /// The triangles of the first and the last stretch, if they have more than four corners.
+    end_triangles: [Option<Vec<[[f64; 3]; 3]>>; 2],
     heights: RiverHeights,
 }
 
@@ -121,7 +126,8 @@ impl River {
     /// Gives each station the lower height of its ends, but no more than upstream.
     fn leveled(stations: Vec<[[f64; 3]; 2]>, middles: Vec<[f64; 2]>, ends: [[f64; 2]; 2]) -> Self {
         let lower = |[left, right]: &[[f64; 3]; 2]| left[2].min(right[2]);
-        let mut river = River { stations, middles, ends, along_banks: [None, None], heights: RiverHeights::default() };
+        let (along_banks, end_triangles, heights) = ([None, None], [None, None], RiverHeights::default());
+        let mut river = River { stations, middles, ends, along_banks, end_triangles, heights };
         if let (Some(first), Some(last)) = (river.stations.first(), river.stations.last())
             && lower(first) < lower(last)
         {
@@ -140,14 +146,18 @@ impl River {
             level = level.min(water);
             ends.iter_mut().for_each(|end| end[2] = level);
         }
-        // Level lines that meet have one height, the lowest.
-        for k in (1..river.stations.len()).rev() {
-            let [before, after] = [river.stations[k - 1], river.stations[k]];
-            if (0..2).any(|side| flat(before[side]) == flat(after[side])) {
-                river.stations[k - 1].iter_mut().for_each(|end| end[2] = after[0][2]);
+        river.level_meetings();
+        river
+    }
+
+    /// Gives level lines that meet one height, the lowest.
+    fn level_meetings(&mut self) {
+        for k in (1..self.stations.len()).rev() {
+            if self.meeting_side(k - 1, k).is_some() {
+                let level = self.stations[k][0][2];
+                self.stations[k - 1].iter_mut().for_each(|end| end[2] = level);
             }
         }
-        river
     }
 
     /// The number of stretches between level lines.
@@ -164,9 +174,22 @@ impl River {
     /// The triangles on which the water between a level line and the next is linear.
     pub(in crate::terrain) fn triangles(&self, stretch: usize) -> Vec<[[f64; 3]; 3]> {
         let [a, b, c, d] = self.corners(stretch);
-        let outline = self.outline(stretch);
-        let of_outline = if outline.len() > 4 { ears(&outline) } else { None };
+        let end = (0..2).find(|end| stretch == self.stretch_of_end(*end));
+        let of_outline = end.and_then(|end| self.end_triangles[end].clone());
         of_outline.unwrap_or_else(|| vec![[a, b, c], [b, d, c]])
+    }
+
+    /// The number of the first (0) or the last (1) stretch.
+    fn stretch_of_end(&self, end: usize) -> usize {
+        if end == 0 { 0 } else { self.stretch_count() - 1 }
+    }
+
+    /// Divides the first and the last stretch into triangles, if ends follow banks.
+    fn divide_ends(&mut self) {
+        self.end_triangles = [0, 1].map(|end| {
+            let outline = self.outline(self.stretch_of_end(end));
+            if outline.len() > 4 { divided(&outline) } else { None }
+        });
     }
 
     /// The edges between the triangles of a stretch, if they are within it.
@@ -177,14 +200,12 @@ impl River {
             let is_within = orientation([b, c, a]) * orientation([b, c, d]) == Sign::Negative;
             return if is_within { vec![[b, c]] } else { Vec::new() };
         }
-        let is_side = |[p, q]: [[f64; 3]; 2]| {
-            outline
-                .iter()
-                .zip(outline.iter().cycle().skip(1))
-                .any(|(from, to)| [*from, *to] == [p, q] || [*to, *from] == [p, q])
-        };
+        let keys = |[p, q]: [[f64; 3]; 2]| [key(flat(p)), key(flat(q))];
+        let around = outline.iter().zip(outline.iter().cycle().skip(1));
+        let mut drawn: BTreeSet<[Key; 2]> =
+            around.flat_map(|(from, to)| [[*from, *to], [*to, *from]]).map(keys).collect();
         let edges = self.triangles(stretch).into_iter().flat_map(|[a, b, c]| [[a, b], [b, c], [c, a]]);
-        edges.filter(|edge| !is_side(*edge)).collect()
+        edges.filter(|&[p, q]| drawn.insert(keys([p, q])) && drawn.insert(keys([q, p]))).collect()
     }
 
     /// The border of a stretch: four corners, and more where an end follows the bank of another
@@ -205,6 +226,7 @@ impl River {
         self.ends.reverse();
         self.along_banks.reverse();
         self.along_banks.iter_mut().flatten().for_each(|line| line.reverse());
+        self.end_triangles.reverse();
     }
 
     /// The heights at both ends.
@@ -224,24 +246,50 @@ impl River {
 
     /// The first (0) or the last (1) level line.
     fn end_line(&self, end: usize) -> [[f64; 3]; 2] {
-        self.stations[if end == 0 { 0 } else { self.stations.len() - 1 }]
+        self.stations[self.station_of_end(end)]
+    }
+
+    /// The number of the first (0) or the last (1) station.
+    fn station_of_end(&self, end: usize) -> usize {
+        if end == 0 { 0 } else { self.stations.len() - 1 }
+    }
+
+    /// The side on which two level lines meet in one vertex; `None` if they do not, or one does not
+    /// exist.
+    fn meeting_side(&self, station: usize, other: usize) -> Option<usize> {
+        let [line, other] = [self.stations.get(station)?, self.stations.get(other)?];
+        (0..2).find(|&side| flat(line[side]) == flat(other[side]))
+    }
+
+    /// The level lines that meet the first (0) or the last (1) one, or one that does, in order from
+    /// there: station, and the side on which it meets the one before.
+    fn met_at_end(&self, end: usize) -> impl Iterator<Item = [usize; 2]> + '_ {
+        let beside = move |[station, _]: &[usize; 2]| {
+            let next = if end == 0 { station + 1 } else { station.checked_sub(1)? };
+            Some([next, self.meeting_side(*station, next)?])
+        };
+        std::iter::successors(Some([self.station_of_end(end), 0]), beside).skip(1)
     }
 
     /// Lets the first (0) or the last (1) level line follow the bank of another river, from left to
-    /// right, with its heights.
+    /// right, with its heights. Level lines that meet it get the height of the vertex.
     fn set_end_line(&mut self, end: usize, line: Vec<[f64; 3]>) {
-        let at = if end == 0 { 0 } else { self.stations.len() - 1 };
-        if let [left, inner @ .., right] = line.as_slice() {
-            self.stations[at] = [*left, *right];
-            let is_along = line.len() > 2 || left[2] != right[2];
-            self.along_banks[end] = is_along.then(|| inner.to_vec());
+        let [left, inner @ .., right] = line.as_slice() else { return };
+        let mut before = self.station_of_end(end);
+        self.stations[before] = [*left, *right];
+        let is_along = !inner.is_empty() || left[2] != right[2];
+        self.along_banks[end] = is_along.then(|| inner.to_vec());
+        for [station, side] in self.met_at_end(end).collect::<Vec<_>>() {
+            let level = self.stations[before][side][2];
+            self.stations[station].iter_mut().for_each(|corner| corner[2] = level);
+            before = station;
         }
     }
 
     /// Returns true if the stretch at the first (0) or the last (1) level line is bounded by a line
     /// that does not meet itself; one of four corners counts as such.
     fn is_simple_at(&self, end: usize) -> bool {
-        let outline = self.outline(if end == 0 { 0 } else { self.stretch_count() - 1 });
+        let outline = self.outline(self.stretch_of_end(end));
         outline.len() == 4 || meeting_of(outline).is_none()
     }
 
@@ -511,11 +559,11 @@ mod tests {
             reach([0.0, 10.0], [5.0, 4.0]),
             reach([50.0, 60.0], [9.0, 8.0]),
         ];
-        River::join(&mut rivers, 0.01);
+        let lowered = River::join(&mut rivers, 0.01);
         let levels = rivers.each_ref().map(River::levels);
         assert_eq!(levels, [[4.0, 3.0], [4.0, 4.0], [5.0, 4.0], [9.0, 8.0]]);
-        assert_eq!(rivers.each_ref().map(|river| river.heights().rising), [1, 1, 0, 0]);
-        assert_eq!((rivers[0].heights().largest_rise, rivers[0].heights().rise_at), (0.5, [20.0, 0.0]));
+        assert_eq!(lowered.iter().map(|lowering| [lowering.river, lowering.to]).collect::<Vec<_>>(), [[0, 1], [1, 2]]);
+        assert_eq!((lowered[0].by, lowered[0].from), (0.5, [20.0, 0.0]));
         // A level one that need not be lowered is turned, too, and what follows is lowered to it;
         // in any order.
         let set = || {
@@ -530,17 +578,17 @@ mod tests {
         let joined = |order: [usize; 5]| {
             let all = set();
             let mut rivers: Vec<River> = order.map(|k| all[k].clone()).to_vec();
-            River::join(&mut rivers, 0.01);
+            let lowered = River::join(&mut rivers, 0.01);
             let mut found: Vec<String> = rivers.iter().map(|river| format!("{river:?}")).collect();
             found.sort();
-            (rivers, found)
+            (rivers, lowered, found)
         };
-        let (rivers, expected) = joined([0, 1, 2, 3, 4]);
+        let (rivers, lowered, expected) = joined([0, 1, 2, 3, 4]);
         let levels: Vec<[f64; 2]> = rivers.iter().map(River::levels).collect();
-        assert_eq!(levels, [[5.0, 4.0], [3.9, 3.9], [3.9, 3.0], [3.0, 2.0], [2.0, 2.0]]);
-        assert!((rivers[2].heights().largest_rise - 0.6).abs() < 1e-12 && rivers[2].heights().rising == 1);
+        assert_eq!(levels, [[5.0, 3.9], [3.9, 3.9], [3.9, 3.0], [3.0, 2.0], [2.0, 2.0]]);
+        assert!(lowered[0].river == 2 && lowered[0].to == 1 && (lowered[0].by - 0.6).abs() < 1e-12);
         for order in [[4, 3, 2, 1, 0], [2, 0, 4, 1, 3], [1, 4, 0, 3, 2], [3, 2, 1, 0, 4]] {
-            assert_eq!(joined(order).1, expected, "{order:?}");
+            assert_eq!(joined(order).2, expected, "{order:?}");
         }
         // A ring of rivers, each of which begins above the end of the one before.
         let corners = [[0.0, 0.0], [9.0, 0.0], [9.0, 9.0], [0.0, 0.0]];

@@ -1,35 +1,18 @@
 //! Rivers that end or begin at the banks of others.
 
+mod joints;
+
 use std::cmp::Ordering;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use rustc_hash::FxHashMap;
 
-use super::{Key, River, distance, flat, key, side_between};
+use super::{Key, River, flat, key, side_between};
 use crate::terrain::boxes::{Boxed, Boxes, Extent};
 use crate::terrain::nearest::{nearest_part, squared_distance};
+use joints::{Joint, Joints};
 
-/// An end of a river on the bank of another one.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Joint {
-    /// The river that ends or begins there.
-    pub(super) branch: usize,
-    /// Its first level line (0), or its last (1).
-    pub(super) end: usize,
-    /// The other river.
-    pub(super) main: usize,
-    /// The stations of the other river at the left and the right end of that level line.
-    pub(super) stations: [Option<usize>; 2],
-    side: usize,
-}
-
-impl Joint {
-    /// The first and the last station of the other river.
-    pub(super) fn range(&self) -> [usize; 2] {
-        let all = self.stations.iter().flatten();
-        [all.clone().copied().min().unwrap_or_default(), all.copied().max().unwrap_or_default()]
-    }
-}
+pub(super) use joints::{Level, StationId};
 
 /// A segment of a bank: river, side, and the number of its stretch.
 #[derive(Debug, Clone, Copy)]
@@ -69,32 +52,22 @@ struct Touch {
 }
 
 /// Finds the ends of rivers on banks of others, by `reach` at most from them. The banks get
-/// vertices there. Ends that `continue` another river are left out, and those side by side that
-/// share nothing but a corner.
+/// vertices there. Ends that `continue` another river join it at vertices only; ends side by side
+/// that share nothing but a corner are left out.
 ///
 /// # Complexity
-/// O(n log n) for n level lines.
-pub(super) fn join_banks(
-    rivers: &mut [River],
-    reach: f64,
-    continues: &dyn Fn(usize, usize, usize) -> bool,
-) -> Vec<Joint> {
-    let mut touches = touches(rivers, reach, continues);
-    touches.retain(|touch| touch.spots.iter().flatten().any(|spot| !is_beside(rivers, touch, spot)));
-    let mut wanted: BTreeMap<usize, Vec<(usize, Spot)>> = BTreeMap::new();
-    for touch in &touches {
-        let new = touch.spots.iter().flatten().filter(|spot| !spot.is_vertex);
-        wanted.entry(touch.main).or_default().extend(new.map(|spot| (touch.side, *spot)));
-    }
-    for (river, spots) in &mut wanted {
-        spots.sort_by(|(side, p), (other, q)| {
-            (p.stretch.cmp(&q.stretch)).then(p.part.total_cmp(&q.part)).then(side.cmp(other)).then(by_site(p.at, q.at))
-        });
-        spots.dedup_by(|p, q| p.0 == q.0 && p.1.at == q.1.at);
-        rivers[*river].insert_stations(spots);
-    }
+/// O(n log n) for n level lines, each time that vertices were added at which other ends are.
+pub(super) fn join_banks(rivers: &mut [River], reach: f64, continues: &dyn Fn(usize, usize, usize) -> bool) -> Joints {
+    let touches = loop {
+        let mut touches = touches(rivers, reach, continues);
+        touches.retain(|touch| touch.spots.iter().flatten().any(|spot| !is_beside(rivers, touch, spot)));
+        if !insert_vertices(rivers, &touches) {
+            break touches;
+        }
+    };
+    let mains: BTreeSet<usize> = touches.iter().map(|touch| touch.main).collect();
     let mut stations: FxHashMap<(usize, usize, Key), usize> = FxHashMap::default();
-    for &river in wanted.keys() {
+    for river in mains {
         for (station, ends) in rivers[river].stations.iter().enumerate().rev() {
             stations.extend([0, 1].map(|side| ((river, side, key(flat(ends[side]))), station)));
         }
@@ -104,7 +77,25 @@ pub(super) fn join_banks(
         let station = |spot: Spot| stations.get(&(main, side, key(spot.at))).copied();
         Joint { branch, end, main, side, stations: spots.map(|spot| spot.and_then(station)) }
     };
-    touches.iter().map(joint).collect()
+    Joints::new(rivers, &touches.iter().map(joint).collect::<Vec<Joint>>())
+}
+
+/// Inserts vertices where ends touch banks; returns true if there were any to insert.
+fn insert_vertices(rivers: &mut [River], touches: &[Touch]) -> bool {
+    let mut wanted: BTreeMap<usize, Vec<(usize, Spot)>> = BTreeMap::new();
+    for touch in touches {
+        for spot in touch.spots.iter().flatten().filter(|spot| !spot.is_vertex) {
+            wanted.entry(touch.main).or_default().push((touch.side, *spot));
+        }
+    }
+    for (river, spots) in &mut wanted {
+        spots.sort_by(|(side, p), (other, q)| {
+            (p.stretch.cmp(&q.stretch)).then(p.part.total_cmp(&q.part)).then(side.cmp(other)).then(by_site(p.at, q.at))
+        });
+        spots.dedup_by(|p, q| p.0 == q.0 && p.1.at == q.1.at);
+        rivers[*river].insert_stations(spots);
+    }
+    !wanted.is_empty()
 }
 
 /// Returns true if an end and the same end of the other river share a corner there: both end side
@@ -133,7 +124,8 @@ pub(super) fn heights_at_banks(
             spots.map(|spot| rivers[touch.main].level_at(spot.stretch, spot.part)).fold(f64::INFINITY, f64::min);
         (touch.branch, touch.end, lowest)
     };
-    touches(rivers, reach, continues).iter().map(height).collect()
+    let touches = touches(rivers, reach, continues).into_iter();
+    touches.filter(|touch| !continues(touch.branch, touch.end, touch.main)).map(|touch| height(&touch)).collect()
 }
 
 fn touches(rivers: &[River], reach: f64, continues: &dyn Fn(usize, usize, usize) -> bool) -> Vec<Touch> {
@@ -158,10 +150,10 @@ fn touches(rivers: &[River], reach: f64, continues: &dyn Fn(usize, usize, usize)
                 }
             }
             for ([main, side], spots) in found {
-                let is_joined = spots.iter().flatten().any(|spot| spot.is_vertex) || spots.iter().all(Option::is_some);
-                if is_joined && !continues(branch, end, main) {
+                let is_along = spots.iter().all(Option::is_some) && !continues(branch, end, main);
+                if is_along || spots.iter().flatten().any(|spot| spot.is_vertex) {
                     // Without a vertex there, one of two ends is not on the bank.
-                    let spots = if spots.iter().all(Option::is_some) { spots } else { spots.map(vertex_only) };
+                    let spots = if is_along { spots } else { spots.map(vertex_only) };
                     touches.push(Touch { branch, end, main, side, spots });
                 }
             }
@@ -223,72 +215,8 @@ impl River {
             }
         }
         (self.stations, self.middles) = (stations, middles);
+        self.level_meetings();
     }
-}
-
-/// Gives the ends of rivers that join others the heights of those: they follow their banks.
-pub(super) fn fit_ends(rivers: &mut [River], joints: &[Joint]) {
-    let is_along = |joint: &Joint| joint.stations.iter().all(Option::is_some);
-    let mut lines: Vec<(&Joint, Vec<[f64; 3]>)> = joints.iter().map(|joint| (joint, end_line(rivers, joint))).collect();
-    // Of several for one end, the one along most of a bank, or else the lowest, whatever their
-    // order.
-    lines.sort_by(|(joint, p), (other, q)| {
-        let by_end = [joint.branch, joint.end].cmp(&[other.branch, other.end]);
-        let by_length = is_along(other).cmp(&is_along(joint)).then(q.len().cmp(&p.len()));
-        by_end.then(by_length).then_with(|| by_height(p, q))
-    });
-    lines.dedup_by(|(joint, _), (first, _)| [joint.branch, joint.end] == [first.branch, first.end]);
-    for (joint, line) in lines {
-        let corners = vec![line[0], line[line.len() - 1]];
-        let (river, follows) = (&mut rivers[joint.branch], line.len() > 2);
-        river.set_end_line(joint.end, line);
-        if follows && !river.is_simple_at(joint.end) {
-            river.set_end_line(joint.end, corners);
-        }
-    }
-}
-
-fn by_height(p: &[[f64; 3]], q: &[[f64; 3]]) -> Ordering {
-    let pairs = p.iter().zip(q).map(|(p, q)| p[2].total_cmp(&q[2]).then(by_site(flat(*p), flat(*q))));
-    pairs.fold(Ordering::Equal, Ordering::then)
-}
-
-/// The level line at the end of a river, with the heights of the other one, along its bank.
-fn end_line(rivers: &[River], joint: &Joint) -> Vec<[f64; 3]> {
-    let (branch, main) = (&rivers[joint.branch], &rivers[joint.main]);
-    let own = branch.stations[if joint.end == 0 { 0 } else { branch.stations.len() - 1 }];
-    let height = |station: usize| {
-        let level = main.stations[station][0][2];
-        let is_end = station == 0 || station + 1 == main.stations.len();
-        if is_end { level.min(own[0][2]) } else { level }
-    };
-    match joint.stations {
-        [Some(left), Some(right)] => {
-            let along: Vec<usize> =
-                if left <= right { (left..=right).collect() } else { (right..=left).rev().collect() };
-            let mut line: Vec<[f64; 3]> = along
-                .into_iter()
-                .map(|station| {
-                    let [x, y, _] = main.stations[station][joint.side];
-                    [x, y, height(station)]
-                })
-                .collect();
-            line.dedup_by(|p, q| flat(*p) == flat(*q));
-            if is_detour(&line) { vec![line[0], line[line.len() - 1]] } else { line }
-        }
-        [Some(station), None] | [None, Some(station)] => own.map(|[x, y, _]| [x, y, height(station)]).to_vec(),
-        [None, None] => own.to_vec(),
-    }
-}
-
-/// How many times as long as the straight way between its ends a bank may be that an end follows.
-const LONGEST_DETOUR: f64 = 2.0;
-
-/// Returns true if a line is so long that what lies between it and the straight way is land: the
-/// bank around a meander, for one, whose neck is as wide as the river that ends there.
-fn is_detour(line: &[[f64; 3]]) -> bool {
-    let length: f64 = line.windows(2).map(|pair| distance(pair[0], pair[1])).sum();
-    length > LONGEST_DETOUR * distance(line[0], line[line.len() - 1])
 }
 
 #[cfg(test)]

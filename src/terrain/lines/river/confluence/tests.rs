@@ -1,3 +1,4 @@
+use super::super::RiverLowering;
 use super::*;
 use crate::terrain::{Tin, TinBuilder};
 use testkit::random::Random;
@@ -34,8 +35,7 @@ fn are_at(tin: &Tin, expected: &[([f64; 2], f64)]) {
 #[test]
 fn a_higher_tributary_falls_to_the_main_river() {
     let mut rivers = [main_river(), northern(12.0, 9.0, 4.0)];
-    River::join(&mut rivers, 0.01);
-    assert_eq!(rivers.each_ref().map(|river| river.heights().rising), [0, 0]);
+    assert_eq!(River::join(&mut rivers, 0.01), []);
     assert_eq!((rivers[0].stations.len(), rivers[1].stations.len()), (4, 2));
     let tin = built(&rivers);
     let main = [[9.0, 4.0], [10.0, 4.0], [11.0, 4.0], [9.0, 0.0], [4.0, 3.0], [15.0, 1.0]];
@@ -46,10 +46,11 @@ fn a_higher_tributary_falls_to_the_main_river() {
 #[test]
 fn a_lower_tributary_lowers_the_main_river_from_there_on() {
     let mut rivers = [northern(12.0, 7.0, 4.0), main_river()];
-    River::join(&mut rivers, 0.01);
-    let heights = rivers[1].heights();
-    assert_eq!((rivers[0].heights().rising, heights.rising, heights.rise_at), (0, 1, [9.0, 2.0]));
-    assert!((heights.largest_rise - 1.2).abs() < 1e-9);
+    let lowered = River::join(&mut rivers, 0.01);
+    assert!(
+        matches!(lowered[..], [RiverLowering { river: 1, to: 0, by, from: [9.0, 2.0] }] if (by - 1.2).abs() < 1e-9)
+    );
+    assert_eq!(rivers[1].heights().rising, 0);
     let tin = built(&rivers);
     are_at(&tin, &[([0.0, 2.0], 10.0), ([4.5, 4.0], 8.5), ([9.0, 0.0], 7.0), ([10.0, 4.0], 7.0), ([11.0, 1.0], 7.0)]);
     are_at(&tin, &[([20.0, 3.0], 6.0), ([10.0, 14.0], 12.0), ([9.0, 9.0], 9.5)]);
@@ -58,12 +59,12 @@ fn a_lower_tributary_lowers_the_main_river_from_there_on() {
 #[test]
 fn a_branch_begins_at_the_height_of_the_main_river() {
     // Higher than the main river: lowered. Lower: it falls from there.
-    for (own, rising) in [(9.0, 1), (7.0, 0)] {
+    for (own, lowered) in [(9.0, Some(1.2)), (7.0, None)] {
         let mut rivers = [main_river(), northern(5.0, own, 4.0)];
-        River::join(&mut rivers, 0.01);
-        assert_eq!(rivers.each_ref().map(|river| river.heights().rising), [0, rising]);
-        if rising == 1 {
-            assert!((rivers[1].heights().largest_rise - 1.2).abs() < 1e-9);
+        let found = River::join(&mut rivers, 0.01);
+        match lowered {
+            Some(by) => assert!(found.len() == 1 && found[0].river == 1 && (found[0].by - by).abs() < 1e-9),
+            None => assert_eq!(found, []),
         }
         let tin = built(&rivers);
         are_at(
@@ -80,8 +81,7 @@ fn a_shared_vertex_joins_two_rivers() {
     let tributary =
         River::between(&[[10.0, 14.0, 12.0], [10.0, 4.0, 9.0]], &[[7.0, 14.0, 12.0], [7.0, 5.0, 9.0]]).unwrap();
     let mut rivers = [tributary, main];
-    River::join(&mut rivers, 0.01);
-    assert_eq!(rivers.each_ref().map(|river| river.heights().rising), [0, 0]);
+    assert_eq!(River::join(&mut rivers, 0.01), []);
     let tin = built(&rivers);
     are_at(&tin, &[([10.0, 4.0], 8.0), ([7.0, 5.0], 8.0), ([8.5, 4.5], 8.0), ([10.0, 0.0], 8.0), ([8.0, 14.0], 12.0)]);
 }
@@ -172,16 +172,76 @@ fn ends_side_by_side_are_not_tributaries_of_each_other() {
         between([[0.0, 2.0, 8.0], [10.0, 2.0, 5.0]], [[0.0, 0.0, 8.0], [10.0, 0.0, 5.0]]),
     ];
     for (name, expected, mut rivers) in [
-        ("mouths", vec![1, 0, 0], mouths.to_vec()),
-        ("springs", vec![0, 0], springs.to_vec()),
-        ("canal", vec![0, 0], canal.to_vec()),
+        ("mouths", vec![[0, 1]], mouths.to_vec()),
+        ("springs", vec![], springs.to_vec()),
+        ("canal", vec![], canal.to_vec()),
     ] {
         let before: Vec<f64> = rivers.iter().map(|river| river.levels()[0]).collect();
-        River::join(&mut rivers, 0.01);
-        let rising: Vec<usize> = rivers.iter().map(|river| river.heights().rising).collect();
-        assert_eq!(rising, expected, "{name}");
+        let lowered = River::join(&mut rivers, 0.01);
+        assert_eq!(
+            lowered.iter().map(|lowering| [lowering.river, lowering.to]).collect::<Vec<_>>(),
+            expected,
+            "{name}"
+        );
         assert_eq!(rivers.iter().map(|river| river.levels()[0]).collect::<Vec<f64>>(), before, "{name}");
     }
+}
+
+/// A river that ends with one corner on each of two rivers: both have its height there.
+#[test]
+fn an_end_between_two_rivers_is_level() {
+    let bent = |xs: [f64; 2], zs: [f64; 3]| {
+        let bank = |x: [f64; 2]| [[x[0], 40.0, zs[0]], [x[1], 20.0, zs[1]], [x[0], 0.0, zs[2]]];
+        let beyond = |x: f64| if xs[0] < xs[1] { x - 5.0 } else { x + 5.0 };
+        River::between(&bank(xs), &bank(xs.map(beyond))).unwrap()
+    };
+    let side = |x: f64| [[x, 50.0, 12.0], [x, 20.0, 9.0]];
+    let northern = River::between(&side(20.0), &side(32.0)).unwrap();
+    let [west, east] = [bent([10.0, 20.0], [3.5, 3.0, 2.5]), bent([42.0, 32.0], [8.0, 7.0, 6.0])];
+    for order in [[0, 1, 2], [2, 1, 0], [1, 2, 0]] {
+        let all = [&northern, &west, &east];
+        let mut rivers: Vec<River> = order.map(|k| all[k].clone()).to_vec();
+        let [to, river] = [0, 2].map(|k| order.iter().position(|other| *other == k).unwrap());
+        let lowered = River::join(&mut rivers, 0.01);
+        assert_eq!(lowered, [RiverLowering { river, to, by: 4.0, from: [34.5, 20.0] }]);
+        let tin = built(&rivers);
+        are_at(&tin, &[([20.0, 20.0], 3.0), ([26.0, 20.0], 3.0), ([32.0, 20.0], 3.0), ([37.0, 20.0], 3.0)]);
+        are_at(&tin, &[([15.0, 20.0], 3.0), ([44.0, 0.0], 3.0), ([44.0, 40.0], 8.0), ([39.5, 30.0], 5.5)]);
+        are_at(&tin, &[([10.0, 40.0], 3.5), ([10.0, 0.0], 2.5), ([26.0, 50.0], 12.0), ([26.0, 35.0], 7.5)]);
+    }
+}
+
+/// Level lines that meet at the last corner: the end is level, and so are they.
+#[test]
+fn level_lines_that_meet_at_an_end_have_its_height() {
+    let line = |left: [f64; 2], right: [f64; 2], z: f64| [left, right].map(|[x, y]| [x, y, z]);
+    let stations = vec![
+        line([11.0, 14.0], [9.0, 14.0], 12.0),
+        line([11.0, 4.0], [8.0, 9.0], 10.0),
+        line([11.0, 4.0], [9.0, 4.0], 10.0),
+    ];
+    let pointed = River::leveled(stations, Vec::new(), [[10.0, 14.0], [10.0, 4.0]]);
+    let mut rivers = [main_river(), pointed];
+    let lowered = River::join(&mut rivers, 0.01);
+    assert!(
+        matches!(lowered[..], [RiverLowering { river: 0, to: 1, by, .. }] if (by - 0.4).abs() < 1e-9),
+        "{lowered:?}"
+    );
+    let heights: Vec<[f64; 2]> = rivers[1].stations.iter().map(|ends| ends.map(|end| end[2])).collect();
+    assert_eq!(heights[1..], [[rivers[0].stations[2][0][2]; 2]; 2]);
+    let tin = built(&rivers);
+    let low = [[11.0, 4.0], [10.0, 4.0], [9.0, 4.0], [9.5, 5.0], [8.0, 9.0], [9.5, 6.5], [9.0, 0.0]];
+    are_at(&tin, &low.map(|at| (at, 7.8)));
+    are_at(&tin, &[([9.0, 14.0], 12.0), ([0.0, 4.0], 10.0)]);
+}
+
+/// Rivers that continue each other have one height where they do.
+#[test]
+fn a_river_falls_to_the_one_that_continues_it() {
+    let reach = |xs: [f64; 2], zs: [f64; 2]| River::along(&[[xs[0], 0.0, zs[0]], [xs[1], 0.0, zs[1]]], 2.0).unwrap();
+    let mut rivers = [reach([0.0, 10.0], [9.0, 6.0]), reach([10.0, 20.0], [4.0, 3.0])];
+    assert_eq!(River::join(&mut rivers, 0.01), []);
+    assert_eq!(rivers.each_ref().map(River::levels), [[9.0, 4.0], [4.0, 3.0]]);
 }
 
 #[test]
@@ -193,11 +253,10 @@ fn level_rivers_are_turned_to_fit() {
                 river.reverse();
             }
             let mut rivers = [river, main_river()];
-            River::join(&mut rivers, 0.01);
+            assert_eq!(River::join(&mut rivers, 0.01), []);
             let ends = [rivers[0].stations[0], rivers[0].stations[1]]
                 .map(|ends| ends.iter().map(|p| p[2]).fold(0.0, f64::max));
             assert_eq!(ends, expected, "{level}");
-            assert_eq!(rivers.each_ref().map(|river| river.heights().rising), [0, 0]);
         }
     }
 }
@@ -232,6 +291,109 @@ fn the_order_of_rivers_changes_nothing() {
             assert!(heights.windows(2).all(is_falling), "seed {seed}: {heights:?}");
         }
     }
+}
+
+/// A river along a row or a column of a grid, with vertices at some of its nodes, or one with bends
+/// that may be so tight that level lines meet.
+fn on_grid(random: &mut Random) -> River {
+    let size = 6;
+    if random.index(3) == 0 {
+        let width = 1.0 + random.index(2) as f64;
+        let count = 2 + random.index(3);
+        let middle: Vec<[f64; 3]> = (0..count).map(|_| [0, 0, 0].map(|_: u8| random.index(size) as f64)).collect();
+        let river = River::along(&middle, width).ok().filter(|river| river.overlap().is_none());
+        return river.unwrap_or_else(|| on_grid(random));
+    }
+    let start = random.index(size - 1);
+    let end = start + 1 + random.index(size - 1 - start);
+    let [row, width] = [random.index(size - 1), 1 + random.index(2)];
+    let heights = [random.index(4), random.index(4)].map(|z| z as f64);
+    let is_column = random.index(2) == 0;
+    let mut bank = |across: usize| -> Vec<[f64; 3]> {
+        let nodes = (start..=end).filter(|&at| at == start || at == end || random.index(2) == 0);
+        let height = |at: usize| heights[0] + (heights[1] - heights[0]) * (at - start) as f64 / (end - start) as f64;
+        let [x, y] = if is_column { [0, 1] } else { [1, 0] };
+        let vertex = |at: usize| {
+            let site = [across as f64, at as f64];
+            [site[x], site[y], height(at)]
+        };
+        nodes.map(vertex).collect()
+    };
+    let banks = [bank(row), bank(row + width)];
+    River::between(&banks[0], &banks[1]).unwrap()
+}
+
+/// What holds of rivers that were joined.
+fn assert_joined(rivers: &[River], name: &str) {
+    for (number, river) in rivers.iter().enumerate() {
+        let heights: Vec<[f64; 2]> = river.stations.iter().map(|ends| ends.map(|end| end[2])).collect();
+        let is_falling = |pair: &[[f64; 2]]| pair[0][0].min(pair[0][1]) >= pair[1][0].max(pair[1][1]);
+        assert!(heights.windows(2).all(is_falling), "{name}: river {number} rises: {heights:?}");
+        let inner = &heights[1..heights.len() - 1];
+        assert!(inner.iter().all(|[left, right]| left == right), "{name}: river {number} is not level: {heights:?}");
+        for station in 1..river.stations.len() {
+            let common = river.meeting_side(station - 1, station);
+            let is_one = common.is_none_or(|side| heights[station - 1][side] == heights[station][side]);
+            assert!(is_one, "{name}: level lines of river {number} meet at two heights: {heights:?}");
+        }
+        for end in 0..2 {
+            for corner in river.stations[river.station_of_end(end)] {
+                for (other, main) in rivers.iter().enumerate().filter(|(other, _)| *other != number) {
+                    let is_corner =
+                        |end: usize| main.stations[main.station_of_end(end)].iter().any(|p| flat(*p) == flat(corner));
+                    let is_beside = is_corner(end) && !is_corner(1 - end);
+                    for at in main.stations.iter().flatten().filter(|at| flat(**at) == flat(corner)) {
+                        let is_same = is_beside || at[2] == corner[2];
+                        assert!(is_same, "{name}: {corner:?} of river {number} is {at:?} of river {other}");
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Returns true if banks of a river share a vertex: it overlaps itself there, or nearly.
+fn meets_itself(river: &River) -> bool {
+    let mut sites: Vec<Key> = river.banks().concat().iter().map(|p| key(flat(*p))).collect();
+    sites.sort_unstable();
+    river.overlap().is_some() || sites.windows(2).any(|pair| pair[0] == pair[1])
+}
+
+/// The number of random networks.
+fn count() -> u64 {
+    std::env::var("BREAKLINE_NETWORKS").ok().and_then(|n| n.parse().ok()).unwrap_or(600)
+}
+
+/// Rivers on the nodes of a grid share banks, ends and corners in all ways, with equal heights.
+#[test]
+fn shared_vertices_of_random_networks_have_one_height() {
+    let (mut judged, mut lowered) = (0, 0);
+    for seed in 0..count() {
+        let mut random = Random(seed);
+        let rivers: Vec<River> = (0..3 + seed as usize % 4).map(|_| on_grid(&mut random)).collect();
+        let joined = |order: &mut dyn Iterator<Item = usize>| {
+            let mut shuffled: Vec<River> = order.map(|k| rivers[k].clone()).collect();
+            let lowered = River::join(&mut shuffled, 0.01).len();
+            let mut texts: Vec<String> = shuffled.iter().map(|river| format!("{river:?}")).collect();
+            texts.sort();
+            (texts, lowered, shuffled)
+        };
+        let (expected, count, found) = joined(&mut (0..rivers.len()));
+        lowered += count as u64;
+        if found.iter().any(meets_itself) {
+            continue;
+        }
+        assert_joined(&found, &format!("seed {seed}"));
+        judged += 1;
+        let turned = rivers.len() / 2;
+        let orders: [&mut dyn Iterator<Item = usize>; 2] =
+            [&mut (0..rivers.len()).rev(), &mut (turned..rivers.len()).chain(0..turned)];
+        for order in orders {
+            let (texts, other, _) = joined(order);
+            assert_eq!((texts, other), (expected.clone(), count), "seed {seed}");
+        }
+    }
+    assert!(judged * 10 > count() * 9 && lowered * 10 > count(), "{judged} {lowered}");
 }
 
 /// Tributaries and branches on both sides of a winding river, with ends rounded to millimeters: the
