@@ -183,15 +183,18 @@ impl Judge<'_> {
                 steps.push(lake.level);
             }
         }
-        let here = self.rivers.iter().filter(|river| river.distance(p) <= self.rounding);
-        let all: Vec<Heights> = here.map(|river| river.heights(p, self.rounding)).collect();
+        let here: Vec<&River> = self.rivers.iter().filter(|river| river.distance(p) <= self.rounding).collect();
+        let all: Vec<Heights> = here.iter().map(|river| river.heights(p, self.rounding)).collect();
         let lowest = all.iter().copied().reduce(Heights::lower)?;
         let own = if all.len() > 1 { Within::Overlap } else { Within::River };
         let beside = self.rivers.iter().filter(|river| (self.rounding..=reach).contains(&river.distance(p)));
         let beside: Vec<Heights> = beside.map(|river| river.heights(p, reach)).collect();
-        // Beside an overlap in which the other river is higher, there is no step.
+        // Beside an overlap in which the other river is higher, there is no step. It may be lower
+        // within the width of the step.
+        let near = here.iter().flat_map(|river| &river.stretches).filter(|stretch| stretch.distance(p) <= reach);
+        let rise = near.map(|stretch| stretch.slope() * reach).fold(0.0, f64::max);
         let is_step = steps.iter().any(|level| [lowest.low, lowest.high].iter().any(|own| (level - own).abs() > 1e-9))
-            || beside.iter().any(|other| other.low < lowest.high - 1e-9);
+            || beside.iter().any(|other| other.low < lowest.high + rise - 1e-9);
         if !is_step {
             return Some((own, lowest));
         }
