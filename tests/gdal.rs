@@ -100,7 +100,7 @@ mod with_gdal {
 
         // Heights from an attribute, of either type.
         let read = |layer: Option<&str>, field: Option<&str>, columns: &[&str]| {
-            let options = layer::Options { layer, height_field: field, columns };
+            let options = layer::Options { layer, height_field: field, columns, ..layer::Options::default() };
             read_layer_with(&path, &options, &|_| Ok(()))
         };
         let heights = |field: &str| -> Vec<f64> {
