@@ -123,15 +123,48 @@
 #![doc = "</div>"]
 
 pub mod arrangement;
+mod bulk;
+mod compact;
+mod embedded;
+mod engine;
+mod error;
+mod flaw;
 pub mod geometry;
 pub mod guide;
+mod hierarchy;
 pub mod kernel;
+mod kinds;
+mod line_id;
+mod lines;
+mod locate;
 pub mod num;
 mod parallel;
+pub mod query;
+pub mod refine;
+#[cfg(feature = "serde")]
+mod saved;
 pub mod tds;
 mod triangulation;
 
-pub use triangulation::*;
+pub use bulk::spatial_order;
+pub use compact::{Compact, CompactError, CompactSection, Law};
+pub use embedded::{Embedded, PointOf};
+pub use engine::{ConstrainedEdges, Inserted};
+pub use error::{GapError, InputError, MoveError, PointError, RemovalError};
+pub use flaw::{Flaw, Level, LinesFlaw};
+pub use hierarchy::Hierarchy;
+pub use kinds::{
+    Basic, Basic2, Basic3, Constrained, Constrained2, ConstraintError, Delaunay, Delaunay2, Delaunay3, Regular,
+    Regular2, Regular3,
+};
+pub use line_id::{LineId, LineTag};
+pub use lines::{ConstrainedDelaunay, ConstrainedDelaunay2, OnCrossing, Rounding};
+pub use locate::{Buckets, Facets, JumpAndWalk, Locate, Location, Near, SpacePassage, StraightLine};
+pub use query::{
+    AlphaShape, AlphaShapes, AlphaState, Boundary, ConflictZone, ConvexHull, Mark, Passage, VoronoiCell, VoronoiEdge,
+    VoronoiFacet, VoronoiSolid,
+};
+pub use triangulation::Triangulation;
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

@@ -169,8 +169,8 @@ fn is_beyond<K: Kernel>(ab: Segment, cd: Segment, site: Site) -> bool {
 mod tests {
     use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
-    use super::super::builder::cross;
     use super::*;
+    use crate::arrangement::builder::cross;
     use crate::kernel::{Adaptive, Predicate, Range, Wide};
 
     fn sorted(mut pairs: Vec<[u32; 2]>) -> Vec<[u32; 2]> {
@@ -258,7 +258,7 @@ mod tests {
         let ends: Vec<[u32; 2]> = (0..segments.len() as u32).map(|i| [2 * i, 2 * i + 1]).collect();
         for _ in 0..50 {
             let arranged =
-                on_threads(4, || super::super::Arrangement::new(sites.len(), |i| sites[i as usize], &ends, 0.0));
+                on_threads(4, || crate::arrangement::Arrangement::new(sites.len(), |i| sites[i as usize], &ends, 0.0));
             assert!(arranged.crossings().iter().map(|crossing| crossing.segments).eq(expected.iter().copied()));
         }
     }

@@ -5,9 +5,9 @@ use crate::kernel::{CompareDistance, ComparePower, Kernel};
 
 /// A geometry that can compare distances, in the plane (`N` is 3) or in space (4).
 ///
-/// Required for [`Delaunay::nearest`](crate::triangulation::Delaunay::nearest),
-/// [`nearest_first`](crate::triangulation::Delaunay::nearest_first) and
-/// [`within`](crate::triangulation::Delaunay::within).
+/// Required for [`Delaunay::nearest`](crate::Delaunay::nearest),
+/// [`nearest_first`](crate::Delaunay::nearest_first) and
+/// [`within`](crate::Delaunay::within).
 ///
 /// # Laws
 /// - The circles of [`side_of_sphere`](Geometry::side_of_sphere) are circles of this distance:

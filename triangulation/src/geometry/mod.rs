@@ -173,8 +173,8 @@ pub trait Geometry<const N: usize> {
 /// A geometry whose points have coordinates.
 ///
 /// Required for construction from many points at once
-/// ([`from_points`](crate::triangulation::Delaunay::from_points),
-/// [`spatial_order`](crate::triangulation::spatial_order)), for queries by rectangle, Voronoi
+/// ([`from_points`](crate::Delaunay::from_points),
+/// [`spatial_order`](crate::spatial_order)), for queries by rectangle, Voronoi
 /// cells, natural neighbor coordinates and pictures, and by [`Crossing`].
 ///
 /// # Laws
@@ -260,8 +260,8 @@ pub trait Coordinates<const N: usize>: Geometry<N> + Sync {
 /// - `plan` of `meet` is the site that was passed to it.
 /// - `meet` does not depend on the order of the segments, nor on the order of their ends.
 ///
-/// Required for [`ConstrainedDelaunay`](crate::triangulation::ConstrainedDelaunay). The other kind
-/// with constraints, [`Constrained`](crate::triangulation::Constrained), creates no points and does
+/// Required for [`ConstrainedDelaunay`](crate::ConstrainedDelaunay). The other kind
+/// with constraints, [`Constrained`](crate::Constrained), creates no points and does
 /// not need it.
 ///
 /// # Models

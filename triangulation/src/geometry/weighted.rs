@@ -15,7 +15,7 @@ use crate::num::Sign;
 /// the lifts of the corners.
 ///
 /// For regular triangulations, in which a point may be hidden by others.
-/// [`Delaunay`](crate::triangulation::Delaunay) triangulations have no hidden points: with unequal
+/// [`Delaunay`](crate::Delaunay) triangulations have no hidden points: with unequal
 /// weights their law is broken.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Weighted<K = Adaptive>(PhantomData<K>);

@@ -98,8 +98,8 @@ impl<const BITS: i32> Mul for Fixed<BITS> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::Dyadic;
     use super::*;
+    use crate::num::Dyadic;
 
     /// Sums of products of two, three and four differences of numbers of the largest magnitude.
     #[test]
@@ -111,7 +111,7 @@ mod tests {
             2f64.powi(bits)
                 - if state.count_ones().is_multiple_of(2) { below } else { (below / 2f64.powi(bits - 3)).floor() }
         };
-        fn polynomial<T: super::super::Number>(of: impl Fn(f64, f64) -> T, c: [f64; 8]) -> [T; 3] {
+        fn polynomial<T: crate::num::Number>(of: impl Fn(f64, f64) -> T, c: [f64; 8]) -> [T; 3] {
             let [p, q, r, s] = [of(c[0], c[1]), of(c[2], c[3]), of(c[4], c[5]), of(c[6], c[7])];
             let two = p.clone() * q.clone() - r.clone() * s.clone();
             let three = two.clone() * r + p.clone() * q.clone() * s;

@@ -104,8 +104,8 @@ impl Mul for Interval {
 
 #[cfg(test)]
 mod tests {
-    use super::super::Dyadic;
     use super::*;
+    use crate::num::Dyadic;
 
     fn contains(interval: Interval, truth: &Dyadic) -> bool {
         let below = (truth.clone() - Dyadic::from(interval.low)).sign();
@@ -125,7 +125,7 @@ mod tests {
         for round in 0..20_000 {
             let coarse = |x: f64| if round % 2 == 0 { (x * 8.0).round() } else { x };
             let numbers = [(); 6].map(|()| coarse(random()));
-            fn polynomial<T: super::super::Number>([a, b, c, d, e, f]: [T; 6]) -> T {
+            fn polynomial<T: crate::num::Number>([a, b, c, d, e, f]: [T; 6]) -> T {
                 (a.clone() * b.clone() - c.clone() * d.clone()) * (e.clone() - a * d) + (b * f.clone() - e) * (c * f)
             }
             let interval = polynomial(numbers.map(|x| Interval::difference(x, 0.1 * numbers[0])));

@@ -84,8 +84,8 @@ impl Div for Pair {
 
 #[cfg(test)]
 mod tests {
-    use super::super::Dyadic;
     use super::*;
+    use crate::num::Dyadic;
 
     fn exact(p: Pair) -> Dyadic {
         Dyadic::from(p.high) + Dyadic::from(p.low)

@@ -3,7 +3,7 @@ use std::convert::Infallible;
 use super::{CellId, Tds, VertexId};
 
 /// Read access to cells and their neighbors, for any storage: what [`Tds`], the [compact
-/// triangulation](crate::triangulation::Compact) and structures of your own have in common.
+/// triangulation](crate::Compact) and structures of your own have in common.
 ///
 /// The conventions are those of the [module](super). A structure that may be damaged, such as one
 /// in a file, returns errors. Where [`Error`](Self::Error) is [`Infallible`], the compiler removes
@@ -23,7 +23,7 @@ use super::{CellId, Tds, VertexId};
 ///   exist.
 ///
 /// # Models
-/// [`Tds`], [`Compact`](crate::triangulation::Compact).
+/// [`Tds`], [`Compact`](crate::Compact).
 ///
 /// ```
 /// use breakline_triangulation::tds::{CellId, Complex};

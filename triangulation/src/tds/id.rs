@@ -127,7 +127,7 @@ mod tests {
     #[test]
     fn options_are_free() {
         assert_eq!(size_of::<Option<CellId>>(), 4);
-        assert_eq!(size_of::<super::super::Links<3>>(), 24);
-        assert_eq!(size_of::<super::super::Links<4>>(), 32);
+        assert_eq!(size_of::<crate::tds::Links<3>>(), 24);
+        assert_eq!(size_of::<crate::tds::Links<4>>(), 32);
     }
 }

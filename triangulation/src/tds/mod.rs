@@ -51,11 +51,10 @@
 //! A complex that stands alone is any closed manifold, built and edited by calls that check. The
 //! [kinds of triangulations](crate#reexports) contain one that is a sphere, with read access only.
 
-mod around;
-mod around_space;
 mod build;
 mod check;
 mod complex;
+mod counted;
 mod edit;
 mod error;
 mod id;
@@ -239,7 +238,7 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
     /// The finite vertices, in order of their numbers.
     pub fn vertices(&self) -> impl ExactSizeIterator<Item = VertexId> + '_ {
         let vertices = (0..self.vertex_cell.len()).map(VertexId::new).filter(|&v| self.is_vertex(v));
-        around::counted(vertices, self.vertex_count())
+        counted::counted(vertices, self.vertex_count())
     }
 
     /// The finite vertices with their payloads, mutable, in order of their numbers.
@@ -264,7 +263,7 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
     /// All cells, the infinite ones included, in order of their numbers.
     pub fn cells(&self) -> impl ExactSizeIterator<Item = CellId> + '_ {
         let cells = (0..self.links.len()).map(CellId::new).filter(|&c| self.is_used(c));
-        around::counted(cells, self.cell_count())
+        counted::counted(cells, self.cell_count())
     }
 
     /// Returns true if this is the number of a cell. Accepts any number.

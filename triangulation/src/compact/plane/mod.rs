@@ -1,0 +1,4 @@
+//! Checks and queries of triangulations of the plane.
+
+mod check;
+mod queries;

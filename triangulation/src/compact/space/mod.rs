@@ -1,0 +1,4 @@
+//! Checks and queries of triangulations of space.
+
+mod check;
+mod queries;

@@ -1,0 +1,274 @@
+//! The basic kind: a triangulation without a law.
+
+use std::ops::Deref;
+
+use crate::engine::Inserted;
+use crate::engine::flip::NoConstraints;
+use crate::engine::insert::{insert_each, insert_located, move_vertex};
+use crate::error::{InputError, MoveError, PointError, RemovalError};
+use crate::flaw::{Flaw, Level};
+use crate::geometry::{Coordinates, Geometry};
+use crate::locate::{Locate, Location, Near};
+use crate::tds::{CellId, VertexId};
+use crate::triangulation::Triangulation;
+
+/// A triangulation of the plane or of space, without a law.
+///
+/// A new point splits the cell, facet or edge that it lies on. Outside of the hull, it is joined to
+/// the facets that it sees. The shape of cells is not improved; all other cells stay as they are.
+/// ("Lazy" insertion in Boissonnat, Devillers, Pion, Teillaud and Yvinec 2002.)
+///
+/// *Payloads.* Each cell around a new vertex inherits the payload of the cell that had the facet
+/// opposite the vertex: the parts of a split cell have the payload of the whole. Cells created by a
+/// removal or a flip, or by a change of dimension, have the default payload.
+///
+/// ```
+/// use breakline_triangulation::geometry::Plane;
+/// use breakline_triangulation::{Basic, Level};
+///
+/// let mut t = Basic::new(Plane::new());
+/// for p in [[0.0, 0.0], [9.0, 0.0], [0.0, 9.0], [9.0, 9.0], [1.0, 8.0]] {
+///     t.insert(p)?;
+/// }
+/// let edge = t.finite_cells().find_map(|cell| (0..3).find(|&i| t.is_flippable(cell, i)).map(|i| (cell, i)));
+/// assert!(edge.is_some_and(|(cell, i)| t.flip(cell, i)));
+/// assert!(t.check(Level::Orientation).is_empty());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug)]
+pub struct Basic<G: Geometry<N>, const N: usize, V = (), C = ()> {
+    pub(crate) inner: Triangulation<G, N, V, C>,
+}
+
+impl<G: Geometry<N>, const N: usize, V, C> Deref for Basic<G, N, V, C> {
+    type Target = Triangulation<G, N, V, C>;
+
+    fn deref(&self) -> &Self::Target {
+        &self.inner
+    }
+}
+
+impl<G: Geometry<N> + Clone, const N: usize, V: Clone, C: Clone> Clone for Basic<G, N, V, C> {
+    fn clone(&self) -> Self {
+        Basic { inner: self.inner.duplicate() }
+    }
+}
+
+impl<G: Geometry<N>, const N: usize, V> Basic<G, N, V> {
+    /// Returns an empty triangulation. Its cells have no payload;
+    /// [`with_cell_data`](Self::with_cell_data) adds one.
+    pub fn new(geometry: G) -> Self {
+        Self::over(Triangulation::new(geometry))
+    }
+
+    /// Like [`new`](Self::new), but with room for that many vertices.
+    pub fn with_capacity(geometry: G, vertices: usize) -> Self {
+        Self::over(Triangulation::with_capacity(geometry, vertices))
+    }
+}
+
+impl<G: Coordinates<N>, const N: usize> Basic<G, N> {
+    /// Triangulates many points, inserted in [spatial order](crate::spatial_order); also returns
+    /// the vertex of each.
+    ///
+    /// # Errors
+    /// If a point is refused; the error names the position of the first one.
+    ///
+    /// # Complexity
+    /// Linear in the number of points if they are spread evenly.
+    pub fn from_points(geometry: G, points: &[G::Point]) -> Result<(Self, Vec<VertexId>), InputError> {
+        let mut triangulation = Self::with_capacity(geometry, points.len());
+        let vertices = triangulation.insert_all(points)?;
+        Ok((triangulation, vertices))
+    }
+
+    /// Like [`from_points`](Self::from_points), but with payloads. `data` is called once for each
+    /// vertex, with the position of the first point at that vertex, in increasing order.
+    ///
+    /// # Errors
+    /// See [`from_points`](Self::from_points).
+    pub fn from_points_with<V>(
+        geometry: G,
+        points: &[G::Point],
+        data: impl FnMut(usize) -> V,
+    ) -> Result<(Basic<G, N, V>, Vec<VertexId>), InputError> {
+        let (triangulation, vertices) = Self::from_points(geometry, points)?;
+        Ok((Basic::over(triangulation.inner.with_data_of_points(&vertices, data)), vertices))
+    }
+}
+
+impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Basic<G, N, V, C> {
+    fn over(inner: Triangulation<G, N, V, C>) -> Self {
+        Basic { inner }
+    }
+
+    /// Returns the triangulation with new payloads of its vertices. `data` is called in order of
+    /// the vertex numbers, removed vertices included. Linear time; nothing but payloads is copied.
+    pub fn with_vertex_data<W>(self, data: impl FnMut(VertexId) -> W) -> Basic<G, N, W, C> {
+        Basic::over(self.inner.with_vertex_data(data))
+    }
+
+    /// Returns the triangulation with new payloads of its cells. `data` is called in order of the
+    /// cell numbers, infinite cells included. Linear time; nothing but payloads is copied.
+    pub fn with_cell_data<D: Copy + Default>(self, data: impl FnMut(CellId) -> D) -> Basic<G, N, V, D> {
+        Basic::over(self.inner.with_cell_data(data))
+    }
+
+    /// Inserts a point with a payload and returns its vertex. If the site is taken, returns the
+    /// vertex that is there already, which keeps its payload, together with the unused payload.
+    ///
+    /// # Errors
+    /// If a coordinate is not finite or out of range; nothing has changed then.
+    ///
+    /// # Complexity
+    /// A [walk](Triangulation::locate) from the last insertion. Then constant time inside of the
+    /// hull, and outside of it linear in the number of hull facets that the point sees.
+    pub fn insert_with(&mut self, p: G::Point, data: V) -> Result<Inserted<V>, PointError> {
+        self.insert_by(&mut Near(None), p, data)
+    }
+
+    /// Like [`insert_with`](Self::insert_with), but the search for the point starts at a cell: the
+    /// strategy [`Near`].
+    ///
+    /// # Errors
+    /// See [`insert_with`](Self::insert_with).
+    pub fn insert_near(&mut self, p: G::Point, data: V, near: Option<CellId>) -> Result<Inserted<V>, PointError> {
+        self.insert_by(&mut Near(near), p, data)
+    }
+
+    /// Like [`insert_with`](Self::insert_with), but locates the point by a [strategy](Locate),
+    /// which is notified of the new vertex.
+    ///
+    /// # Errors
+    /// See [`insert_with`](Self::insert_with).
+    pub fn insert_by(
+        &mut self,
+        strategy: &mut impl Locate<G, N>,
+        p: G::Point,
+        data: V,
+    ) -> Result<Inserted<V>, PointError> {
+        insert_located(self, strategy, p, data, Self::insert_at)
+    }
+
+    fn insert_at(&mut self, p: G::Point, data: V, location: Location) -> Inserted<V> {
+        self.inner.insert_at(p, location, data, takes(&p), |data, _| *data)
+    }
+
+    /// Returns the payload of a cell, mutable. O(1).
+    pub fn cell_data_mut(&mut self, cell: CellId) -> &mut C {
+        self.inner.tds.cell_data_mut(cell)
+    }
+
+    /// The finite vertices with their payloads, mutable, in order of their numbers.
+    pub fn vertex_data_iter_mut(&mut self) -> impl Iterator<Item = (VertexId, &mut V)> {
+        self.inner.tds.vertex_data_iter_mut()
+    }
+
+    /// All cells with their payloads, mutable, the infinite ones included, in order of their
+    /// numbers.
+    pub fn cell_data_iter_mut(&mut self) -> impl Iterator<Item = (CellId, &mut C)> {
+        self.inner.tds.cell_data_iter_mut()
+    }
+
+    /// Returns the payload of a finite vertex, mutable.
+    pub fn vertex_data_mut(&mut self, vertex: VertexId) -> &mut V {
+        self.inner.tds.vertex_data_mut(vertex)
+    }
+
+    /// Returns the flaws found by a check up to the given level, with exact predicates. There is no
+    /// law to [check](Level::Law).
+    #[must_use]
+    pub fn check(&self, level: Level) -> Vec<Flaw> {
+        self.flaws(level.min(Level::Orientation), |_, _| false)
+    }
+}
+
+impl<G: Geometry<N>, const N: usize, C: Copy + Default> Basic<G, N, (), C> {
+    /// Inserts a point and returns its vertex; if the site is taken, the vertex that is there
+    /// already.
+    ///
+    /// # Errors
+    /// See [`insert_with`](Self::insert_with).
+    pub fn insert(&mut self, p: G::Point) -> Result<VertexId, PointError> {
+        Ok(self.insert_with(p, ())?.vertex)
+    }
+}
+
+impl<G: Coordinates<N>, const N: usize, C: Copy + Default> Basic<G, N, (), C> {
+    /// Inserts many points, in [spatial order](crate::spatial_order), and returns the vertex of
+    /// each.
+    ///
+    /// # Errors
+    /// If a point is refused; the error names the position of the first one. Nothing has changed
+    /// then.
+    ///
+    /// # Complexity
+    /// Linear in the number of points if they are spread evenly.
+    pub fn insert_all(&mut self, points: &[G::Point]) -> Result<Vec<VertexId>, InputError> {
+        let order = self.inner.order_of_all(points)?;
+        insert_each(points, order, |p| self.insert(p))
+    }
+}
+
+impl<G: Geometry<3>, V, C: Copy + Default> Basic<G, 3, V, C> {
+    /// Removes a vertex and returns its point. The hole is triangulated again; other cells stay.
+    /// The other vertices keep their numbers; the next point inserted takes the freed one.
+    ///
+    /// # Errors
+    /// If there is no such vertex.
+    ///
+    /// # Complexity
+    /// Linear in the degree of the vertex.
+    pub fn remove(&mut self, vertex: VertexId) -> Result<G::Point, RemovalError> {
+        if !self.tds().is_vertex(vertex) {
+            return Err(RemovalError::NoVertex);
+        }
+        self.inner.remove_lawless(NoConstraints, vertex);
+        Ok(*self.point(vertex))
+    }
+
+    /// Like [`remove`](Self::remove), but also notifies a location [strategy](Locate).
+    ///
+    /// # Errors
+    /// See [`remove`](Self::remove).
+    pub fn remove_by(&mut self, strategy: &mut impl Locate<G, 3>, vertex: VertexId) -> Result<G::Point, RemovalError> {
+        self.remove(vertex).inspect(|_| strategy.removed(vertex))
+    }
+
+    /// Moves a vertex to another point and returns it; it keeps its number and payload. If the site
+    /// is taken, the vertex is removed, and the one that is there already is returned.
+    ///
+    /// # Errors
+    /// If there is no such vertex, or a coordinate is not finite or out of range; nothing has
+    /// changed then.
+    ///
+    /// # Complexity
+    /// That of a removal and an insertion; the search starts at the old site.
+    pub fn move_to(&mut self, vertex: VertexId, p: G::Point) -> Result<VertexId, MoveError> {
+        move_vertex(
+            self,
+            |t| &mut t.inner,
+            (vertex, p),
+            Self::remove,
+            |t, p, location, _| t.inner.insert_again(p, location, takes(&p), |data, _| *data),
+        )
+    }
+
+    /// Exchanges the edge opposite vertex `i` of a cell for the other diagonal of the quadrilateral
+    /// around it. Returns false, and changes nothing, unless the edge is
+    /// [flippable](Triangulation::is_flippable).
+    pub fn flip(&mut self, cell: CellId, i: usize) -> bool {
+        let is_flippable = self.is_flippable(cell, i);
+        if is_flippable {
+            self.inner.exchange_diagonal(NoConstraints, cell, i);
+        }
+        is_flippable
+    }
+}
+
+/// Returns the test for the cells that a new point splits: those that contain the point or see it.
+fn takes<G: Geometry<N>, const N: usize, V, C: Copy + Default>(
+    p: &G::Point,
+) -> impl Fn(&Triangulation<G, N, V, C>, CellId, usize, CellId) -> bool {
+    |t, _, _, beyond| t.is_split_by(beyond, p)
+}

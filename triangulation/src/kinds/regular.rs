@@ -1,0 +1,529 @@
+use std::cmp::Ordering;
+use std::ops::Deref;
+
+use rustc_hash::FxHashMap;
+
+use crate::bulk;
+use crate::engine::Inserted;
+use crate::engine::insert::{insert_each, insert_located};
+use crate::engine::removal::Removal;
+use crate::error::{InputError, MoveError, PointError, RemovalError};
+use crate::flaw::{Flaw, Level};
+use crate::geometry::{Coordinates, Geometry};
+use crate::locate::{Locate, Location, Near};
+use crate::num::Sign;
+use crate::tds::{CellId, VertexId};
+use crate::triangulation::Triangulation;
+
+/// A regular triangulation of the plane or of space, also known as weighted Delaunay: the lower
+/// hull of the points lifted to `x^2 + y^2 (+ z^2) - w`, seen from below (Aurenhammer 1987;
+/// Edelsbrunner and Shah 1996). It is the dual of the power diagram.
+///
+/// Its geometry's [`side_of_sphere`](Geometry::side_of_sphere) must be the power test, as in
+/// [`Weighted`](crate::geometry::Weighted) and [`WeightedSpace`](crate::geometry::WeightedSpace).
+/// With any other geometry it is the Delaunay triangulation.
+///
+/// Points above the lower hull are *hidden*: they have a number and a payload, but no cell. They
+/// are kept with the cell that hides them, and become visible again when enough other points are
+/// removed.
+///
+/// Ties are broken as in [`Delaunay`](crate::Delaunay), so the cells and the hidden points are a
+/// function of the set of points. A point *on* the lower hull is always visible, even inside of one
+/// of its faces: the perturbation raises the larger corners around it, so that it lies below. Of
+/// points on one site the heaviest counts; of those with equal weights, the first.
+///
+/// ```
+/// use breakline_triangulation::geometry::Weighted;
+/// use breakline_triangulation::{Level, Regular};
+///
+/// let mut t = Regular::new(Weighted::new());
+/// for [x, y] in [[0.0, 0.0], [4.0, 0.0], [0.0, 4.0]] {
+///     t.insert([x, y, 0.0])?;
+/// }
+/// let light = t.insert([1.0, 1.0, -9.0])?;
+/// assert!(t.is_hidden(light));
+/// assert_eq!(t.finite_cells().count(), 1);
+///
+/// let heavy = t.insert([1.0, 1.0, 2.0])?;
+/// assert_eq!(t.finite_cells().count(), 3);
+/// t.remove(heavy);
+/// assert!(t.hidden().eq([light]) && t.check(Level::Law).is_empty());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// Payloads of cells are kept as in [`Delaunay`](crate::Delaunay).
+#[derive(Debug)]
+pub struct Regular<G: Geometry<N>, const N: usize, V = (), C = ()> {
+    inner: Triangulation<G, N, V, C>,
+    hidden: Hidden,
+}
+
+/// The points that are in no cell.
+#[derive(Debug, Clone, Default)]
+struct Hidden {
+    /// The cell that hides each point.
+    host: FxHashMap<VertexId, CellId>,
+    /// The points that each cell hides.
+    under: FxHashMap<CellId, Vec<VertexId>>,
+}
+
+impl Hidden {
+    fn put(&mut self, vertex: VertexId, cell: CellId) {
+        self.host.insert(vertex, cell);
+        self.under.entry(cell).or_default().push(vertex);
+    }
+
+    /// Takes one point out; returns false if it was not there.
+    fn take(&mut self, vertex: VertexId) -> bool {
+        let Some(cell) = self.host.remove(&vertex) else { return false };
+        if let Some(under) = self.under.get_mut(&cell) {
+            under.retain(|&other| other != vertex);
+        }
+        true
+    }
+
+    /// Takes out all points that some cells hide, and returns them.
+    fn take_under(&mut self, cells: impl IntoIterator<Item = CellId>) -> Vec<VertexId> {
+        if self.host.is_empty() {
+            return Vec::new();
+        }
+        let taken: Vec<VertexId> = cells.into_iter().filter_map(|cell| self.under.remove(&cell)).flatten().collect();
+        for vertex in &taken {
+            self.host.remove(vertex);
+        }
+        taken
+    }
+
+    /// Takes out all points, and returns them in order.
+    fn take_all(&mut self) -> Vec<VertexId> {
+        self.under.clear();
+        let mut taken: Vec<VertexId> = self.host.drain().map(|(vertex, _)| vertex).collect();
+        taken.sort_unstable();
+        taken
+    }
+}
+
+/// Makes the heaviest of the points on each site its vertex. The others are returned; they get the
+/// numbers after those of the sites, one for all with the same weight.
+fn choose_heaviest<G: Coordinates<N>, const N: usize>(
+    geometry: &G,
+    points: &[G::Point],
+    sites: &mut [G::Point],
+    vertices: &mut [VertexId],
+) -> Vec<G::Point> {
+    let mut lighter = Vec::new();
+    if points.len() == sites.len() {
+        return lighter;
+    }
+    // Positive if the second point is heavier.
+    let compare = |p: &G::Point, q: &G::Point| geometry.side_of_sphere_in_flat(&[p], q);
+    let mut is_mixed = vec![false; sites.len()];
+    for (p, vertex) in points.iter().zip(&*vertices) {
+        is_mixed[vertex.index()] |= compare(&sites[vertex.index()], p) != Sign::Zero;
+    }
+    let mut mixed: Vec<usize> = (0..points.len()).filter(|&i| is_mixed[vertices[i].index()]).collect();
+    mixed.sort_unstable_by(|&i, &j| {
+        let by_weight = || match compare(&points[i], &points[j]) {
+            Sign::Positive => Ordering::Greater,
+            Sign::Zero => i.cmp(&j),
+            Sign::Negative => Ordering::Less,
+        };
+        vertices[i].cmp(&vertices[j]).then_with(by_weight)
+    });
+    let mut last = None;
+    for i in mixed {
+        let site = vertices[i];
+        match last {
+            Some((of, vertex, at)) if of == site && compare(&points[at], &points[i]) == Sign::Zero => {
+                vertices[i] = vertex;
+            }
+            Some((of, ..)) if of == site => {
+                vertices[i] = VertexId::new(sites.len() + lighter.len());
+                lighter.push(points[i]);
+            }
+            _ => sites[site.index()] = points[i],
+        }
+        last = Some((site, vertices[i], i));
+    }
+    lighter
+}
+
+impl<G: Geometry<N>, const N: usize, V, C> Deref for Regular<G, N, V, C> {
+    type Target = Triangulation<G, N, V, C>;
+
+    fn deref(&self) -> &Self::Target {
+        &self.inner
+    }
+}
+
+impl<G: Geometry<N> + Clone, const N: usize, V: Clone, C: Clone> Clone for Regular<G, N, V, C> {
+    fn clone(&self) -> Self {
+        Regular { inner: self.inner.duplicate(), hidden: self.hidden.clone() }
+    }
+}
+
+impl<G: Geometry<N>, const N: usize, V> Regular<G, N, V> {
+    /// Returns an empty triangulation. Its cells have no payload;
+    /// [`with_cell_data`](Self::with_cell_data) adds one.
+    pub fn new(geometry: G) -> Self {
+        Self::over(Triangulation::new(geometry))
+    }
+
+    /// Like [`new`](Self::new), but with room for that many vertices.
+    pub fn with_capacity(geometry: G, vertices: usize) -> Self {
+        Self::over(Triangulation::with_capacity(geometry, vertices))
+    }
+}
+
+impl<G: Coordinates<N>, const N: usize> Regular<G, N> {
+    /// Triangulates many points at once; also returns the vertex of each. Points on one site with
+    /// one weight share a vertex.
+    ///
+    /// In the plane they are inserted one by one, in [spatial order](crate::spatial_order); in
+    /// space only if the geometry has no [exact sites](Coordinates::exact_site).
+    ///
+    /// # Errors
+    /// If a point is refused; the error names the position of the first one.
+    ///
+    /// # Complexity
+    /// Linear in the number of points if they are spread evenly.
+    pub fn from_points(geometry: G, points: &[G::Point]) -> Result<(Self, Vec<VertexId>), InputError> {
+        let mut regular = Self::new(geometry);
+        // The builder of the plane knows no hidden points.
+        let vertices = if N == 4 { regular.build(points)? } else { None };
+        match vertices {
+            Some(vertices) => Ok((regular, vertices)),
+            None => {
+                regular.inner.tds.reserve(points.len());
+                let vertices = regular.insert_all(points)?;
+                Ok((regular, vertices))
+            }
+        }
+    }
+
+    /// Builds an empty triangulation in bulk; `None` if that is impossible, and it is still empty.
+    fn build(&mut self, points: &[G::Point]) -> Result<Option<Vec<VertexId>>, InputError> {
+        let (geometry, grain) = (&self.inner.geometry, bulk::Grain::default());
+        let (mut sites, mut vertices) = bulk::Sites::of(geometry, points, grain)?;
+        let lighter = choose_heaviest(geometry, points, &mut sites.points, &mut vertices);
+        let (sites, Some(tds)) = bulk::build(geometry, sites, grain) else { return Ok(None) };
+        self.inner.points = sites;
+        self.inner.tds = tds;
+        for p in lighter {
+            let vertex = self.inner.add_vertex(p, ());
+            self.inner.tds.detach(vertex);
+        }
+        let numbers = (0..self.tds().vertex_slots()).map(VertexId::new);
+        let hidden = numbers.filter(|&vertex| !self.tds().is_vertex(vertex)).collect();
+        self.connect_again(hidden);
+        Ok(Some(vertices))
+    }
+
+    /// Like [`from_points`](Self::from_points), but with payloads. `data` is called once for each
+    /// vertex, with the position of the first point at that vertex, in increasing order.
+    ///
+    /// # Errors
+    /// See [`from_points`](Self::from_points).
+    pub fn from_points_with<V>(
+        geometry: G,
+        points: &[G::Point],
+        data: impl FnMut(usize) -> V,
+    ) -> Result<(Regular<G, N, V>, Vec<VertexId>), InputError> {
+        let (Regular { inner, hidden }, vertices) = Self::from_points(geometry, points)?;
+        Ok((Regular { inner: inner.with_data_of_points(&vertices, data), hidden }, vertices))
+    }
+}
+
+impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Regular<G, N, V, C> {
+    fn over(inner: Triangulation<G, N, V, C>) -> Self {
+        Regular { inner, hidden: Hidden::default() }
+    }
+
+    /// Returns the triangulation with its table of hidden points, which are the vertices in no
+    /// cell. Those that no cell hides are inserted.
+    #[cfg(feature = "serde")]
+    pub(crate) fn with_hidden(inner: Triangulation<G, N, V, C>) -> Self {
+        let hidden = inner.tds.detached_vertices();
+        let mut regular = Self::over(inner);
+        regular.connect_again(hidden);
+        regular
+    }
+
+    /// Returns the triangulation with new payloads of its vertices. `data` is called in order of
+    /// the vertex numbers, removed vertices included. Linear time; nothing but payloads is copied.
+    pub fn with_vertex_data<W>(self, data: impl FnMut(VertexId) -> W) -> Regular<G, N, W, C> {
+        Regular { inner: self.inner.with_vertex_data(data), hidden: self.hidden }
+    }
+
+    /// Returns the triangulation with new payloads of its cells. `data` is called in order of the
+    /// cell numbers, infinite cells included. Linear time; nothing but payloads is copied.
+    pub fn with_cell_data<D: Copy + Default>(self, data: impl FnMut(CellId) -> D) -> Regular<G, N, V, D> {
+        Regular { inner: self.inner.with_cell_data(data), hidden: self.hidden }
+    }
+
+    /// Inserts a point with a payload and returns its vertex, which may be
+    /// [hidden](Self::is_hidden). If a point with the same weight is on the site, returns its
+    /// vertex, which keeps its payload, together with the unused payload.
+    ///
+    /// # Errors
+    /// If a coordinate is not finite or out of range; nothing has changed then.
+    ///
+    /// # Complexity
+    /// A [walk](Triangulation::locate) from the last insertion, then linear in the number of cells
+    /// replaced and of points hidden by these.
+    pub fn insert_with(&mut self, p: G::Point, data: V) -> Result<Inserted<V>, PointError> {
+        self.insert_by(&mut Near(None), p, data)
+    }
+
+    /// Like [`insert_with`](Self::insert_with), but the search for the point starts at a cell: the
+    /// strategy [`Near`].
+    ///
+    /// # Errors
+    /// See [`insert_with`](Self::insert_with).
+    pub fn insert_near(&mut self, p: G::Point, data: V, near: Option<CellId>) -> Result<Inserted<V>, PointError> {
+        self.insert_by(&mut Near(near), p, data)
+    }
+
+    /// Like [`insert_with`](Self::insert_with), but locates the point by a [strategy](Locate),
+    /// which is notified of the new vertex unless it is hidden.
+    ///
+    /// # Errors
+    /// See [`insert_with`](Self::insert_with).
+    pub fn insert_by(
+        &mut self,
+        strategy: &mut impl Locate<G, N>,
+        p: G::Point,
+        data: V,
+    ) -> Result<Inserted<V>, PointError> {
+        insert_located(self, strategy, p, data, Self::insert_at)
+    }
+
+    fn insert_at(&mut self, p: G::Point, data: V, location: Location) -> Inserted<V> {
+        if let Some(vertex) = self.same(&p, location) {
+            return Inserted { vertex, unused: Some(data) };
+        }
+        let vertex = self.inner.add_vertex(p, data);
+        self.connect(vertex, location);
+        Inserted { vertex, unused: None }
+    }
+
+    /// Returns the point with the same site and weight, visible or hidden.
+    fn same(&self, p: &G::Point, location: Location) -> Option<VertexId> {
+        let is_same =
+            |v: &VertexId| self.inner.geometry.compare(self.point(*v), p).is_eq() && self.side_of(*v, p) == Sign::Zero;
+        // Any of the cells at the location may hide it.
+        let Ok(cells) = match location {
+            Location::Vertex(vertex) if is_same(&vertex) => return Some(vertex),
+            _ if self.hidden.host.is_empty() => return None,
+            _ => location.cells(self.tds()),
+        };
+        cells.iter().filter_map(|cell| self.hidden.under.get(cell)).flatten().copied().find(is_same)
+    }
+
+    /// Compares a point on a vertex's site with the vertex: negative if the vertex would hide it,
+    /// positive if it would hide the vertex.
+    fn side_of(&self, vertex: VertexId, p: &G::Point) -> Sign {
+        self.inner.geometry.side_of_sphere_in_flat(&[self.point(vertex)], p)
+    }
+
+    /// Inserts a vertex into the cells, or hides it, given the location of its point.
+    fn connect(&mut self, vertex: VertexId, location: Location) {
+        let p = *self.inner.point(vertex);
+        let host = match location {
+            Location::Cell { cell, .. } => (!self.inner.in_conflict(cell, &p)).then_some(cell),
+            Location::Vertex(there) if self.side_of(there, &p) != Sign::Positive => self.tds().cell_of(there),
+            _ => None,
+        };
+        if let Some(cell) = host {
+            // The finite one of an infinite cell and its neighbor.
+            let infinite = self.tds().index_of(cell, VertexId::INFINITE);
+            let cell = infinite.map_or(cell, |i| self.tds().neighbor(cell, i));
+            self.inner.tds.detach(vertex);
+            self.hidden.put(vertex, cell);
+            return;
+        }
+        let Some(mut zone) = self.inner.collect(location, |t, _, _, beyond| t.in_conflict(beyond, &p)) else {
+            let hidden = self.hidden.take_all();
+            self.inner.raise_dimension(vertex);
+            return self.connect_again(hidden);
+        };
+        let mut hidden = self.hidden.take_under(zone.cells().iter().copied());
+        for vertex in zone.inner_vertices(&self.inner.tds) {
+            self.inner.tds.detach(vertex);
+            hidden.push(vertex);
+        }
+        self.inner.last = self.inner.tds.star(&mut zone, vertex, |data, _| *data).last().copied();
+        self.inner.zone = zone;
+        self.connect_again(hidden);
+    }
+
+    /// Inserts or hides vertices again after the cells that hid them are gone.
+    fn connect_again(&mut self, hidden: Vec<VertexId>) {
+        let mut near = None;
+        for vertex in hidden {
+            self.inner.tds.attach();
+            let location = self.inner.locate(self.inner.point(vertex), near);
+            self.connect(vertex, location);
+            near = self.hidden.host.get(&vertex).copied();
+        }
+    }
+
+    /// The visible vertices with their payloads, mutable, in order of their numbers.
+    pub fn vertex_data_iter_mut(&mut self) -> impl Iterator<Item = (VertexId, &mut V)> {
+        self.inner.tds.vertex_data_iter_mut()
+    }
+
+    /// All cells with their payloads, mutable, the infinite ones included, in order of their
+    /// numbers.
+    pub fn cell_data_iter_mut(&mut self) -> impl Iterator<Item = (CellId, &mut C)> {
+        self.inner.tds.cell_data_iter_mut()
+    }
+
+    /// Returns the payload of a point, visible or hidden, mutable.
+    pub fn vertex_data_mut(&mut self, vertex: VertexId) -> &mut V {
+        self.inner.tds.vertex_data_mut(vertex)
+    }
+
+    /// Returns the payload of a cell, mutable. O(1).
+    pub fn cell_data_mut(&mut self, cell: CellId) -> &mut C {
+        self.inner.tds.cell_data_mut(cell)
+    }
+
+    /// Returns true if the point with this number is in no cell.
+    pub fn is_hidden(&self, vertex: VertexId) -> bool {
+        self.hidden.host.contains_key(&vertex)
+    }
+
+    /// The hidden points, in order of their numbers. O(h log h).
+    pub fn hidden(&self) -> impl ExactSizeIterator<Item = VertexId> + '_ {
+        let mut hidden: Vec<VertexId> = self.hidden.host.keys().copied().collect();
+        hidden.sort_unstable();
+        hidden.into_iter()
+    }
+
+    /// The points that a finite cell hides, in no particular order.
+    pub fn hidden_under(&self, cell: CellId) -> &[VertexId] {
+        self.hidden.under.get(&cell).map_or(&[], Vec::as_slice)
+    }
+
+    /// Returns the flaws found by a check up to the given level, with exact predicates. If there
+    /// are none, the triangulation is what it claims to be.
+    #[must_use]
+    pub fn check(&self, level: Level) -> Vec<Flaw> {
+        let mut flaws = self.flaws(level, |_, _| true);
+        if flaws.is_empty() && level == Level::Law {
+            flaws.extend(self.hidden().filter(|&vertex| !self.is_rightly_hidden(vertex)).map(Flaw::Hidden));
+        }
+        flaws
+    }
+
+    fn is_rightly_hidden(&self, vertex: VertexId) -> bool {
+        let p = self.point(vertex);
+        let Some(&host) = self.hidden.host.get(&vertex) else { return false };
+        if !self.tds().is_used(host) || self.tds().is_infinite(host) || self.tds().is_vertex(vertex) {
+            return false;
+        }
+        match self.tds().dimension() {
+            0 => self.side_of(self.tds().vertex(host, 0), p) != Sign::Positive,
+            _ => {
+                let width = self.tds().cell_vertices(host).len();
+                let holds = (0..width).all(|i| self.inner.side_of_facet(host, i, p) != Sign::Negative);
+                holds && !self.inner.in_conflict(host, p)
+            }
+        }
+    }
+}
+
+impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Regular<G, N, V, C>
+where
+    Triangulation<G, N, V, C>: Removal,
+{
+    /// Removes a point, visible or hidden, and returns it. The result is the triangulation of the
+    /// others, which keep their numbers; the next point inserted takes the freed one.
+    ///
+    /// # Errors
+    /// If no point has this number.
+    ///
+    /// # Complexity
+    /// That of [`Delaunay::remove`](crate::Delaunay::remove), and one insertion for each point that
+    /// the cells around the removed one hide. Below full dimension, or if the dimension decreases,
+    /// one insertion for each hidden point.
+    pub fn remove(&mut self, vertex: VertexId) -> Result<G::Point, RemovalError> {
+        if self.hidden.take(vertex) {
+            self.inner.tds.attach();
+            self.inner.tds.remove_vertex(vertex);
+        } else if self.tds().is_vertex(vertex) {
+            let mut hidden = if self.inner.is_full() {
+                self.hidden.take_under(self.inner.star(vertex))
+            } else {
+                self.hidden.take_all()
+            };
+            if self.inner.remove_and_restore(vertex) {
+                hidden.extend(self.hidden.take_all());
+            }
+            self.connect_again(hidden);
+        } else {
+            return Err(RemovalError::NoVertex);
+        }
+        Ok(*self.point(vertex))
+    }
+
+    /// Like [`remove`](Self::remove), but also notifies a location [strategy](Locate). It is not
+    /// notified of points that become visible.
+    ///
+    /// # Errors
+    /// See [`remove`](Self::remove).
+    pub fn remove_by(&mut self, strategy: &mut impl Locate<G, N>, vertex: VertexId) -> Result<G::Point, RemovalError> {
+        self.remove(vertex).inspect(|_| strategy.removed(vertex))
+    }
+
+    /// Moves a point, visible or hidden, and returns its vertex, which keeps its number and
+    /// payload. If a point with the same weight is on the site, the moved one is removed, and the
+    /// vertex that is there already is returned.
+    ///
+    /// # Errors
+    /// If no point has this number, or a coordinate or the weight is not finite or out of
+    /// range; nothing has changed then.
+    ///
+    /// # Complexity
+    /// That of a removal and of an insertion.
+    pub fn move_to(&mut self, vertex: VertexId, p: G::Point) -> Result<VertexId, MoveError> {
+        self.inner.admit(&p)?;
+        self.remove(vertex)?;
+        let location = self.inner.locate(&p, None);
+        if let Some(same) = self.same(&p, location) {
+            return Ok(same);
+        }
+        if let Some(vertex) = self.inner.restore_vertex(p) {
+            self.connect(vertex, location);
+        }
+        Ok(vertex)
+    }
+}
+
+impl<G: Geometry<N>, const N: usize, C: Copy + Default> Regular<G, N, (), C> {
+    /// Inserts a point and returns its vertex, which may be [hidden](Self::is_hidden). If a point
+    /// with the same weight is on the site, returns its vertex.
+    ///
+    /// # Errors
+    /// See [`insert_with`](Self::insert_with).
+    pub fn insert(&mut self, p: G::Point) -> Result<VertexId, PointError> {
+        Ok(self.insert_with(p, ())?.vertex)
+    }
+}
+
+impl<G: Coordinates<N>, const N: usize, C: Copy + Default> Regular<G, N, (), C> {
+    /// Inserts many points, in [spatial order](crate::spatial_order), and returns the vertex of
+    /// each.
+    ///
+    /// # Errors
+    /// If a point is refused; the error names the position of the first one. Nothing has changed
+    /// then.
+    ///
+    /// # Complexity
+    /// Linear in the number of points if they are spread evenly.
+    pub fn insert_all(&mut self, points: &[G::Point]) -> Result<Vec<VertexId>, InputError> {
+        let order = self.inner.order_of_all(points)?;
+        insert_each(points, order, |p| self.insert(p))
+    }
+}

@@ -1,0 +1,256 @@
+//! A mesh under construction: adds vertices between constrained edges.
+
+use std::collections::VecDeque;
+
+use crate::geometry::Crossing;
+use crate::kernel::{DotProduct, Kernel, Wide};
+use crate::lines::ConstrainedDelaunay;
+use crate::num::Sign;
+use crate::tds::{CellId, VertexId, Zone, ccw, cw};
+
+use super::OUTSIDE;
+use super::shape::{area, is_in_lens, minus};
+use super::shells::Shells;
+
+/// The region around a constrained edge in which a vertex encroaches upon it.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Encroachment {
+    /// The circle through its ends and a vertex on the other side, without its border.
+    Delaunay,
+    /// The circle that has it as its diameter, with its border.
+    Gabriel,
+    /// The lens from which it is seen under an angle whose cosine is less than the negative of this
+    /// (Chew 1993).
+    Lens(f64),
+}
+
+/// The reason why a vertex exists.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Origin {
+    /// It was there before.
+    Given,
+    /// It splits a constrained edge, which had these ends.
+    OnConstraint([VertexId; 2]),
+    /// It destroyed a triangle.
+    Free,
+}
+
+/// The outcome of an attempt to add a vertex.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Attempt {
+    /// The vertex was added.
+    Added,
+    /// It would encroach upon a constrained edge, which is queued.
+    Encroaches,
+    /// The coordinates are too coarse for it.
+    TooFine,
+}
+
+pub(super) struct Draft<G: Crossing, V> {
+    pub(super) t: ConstrainedDelaunay<G, V>,
+    /// The region of each cell, or [`OUTSIDE`], by cell number.
+    pub(super) regions: Vec<u32>,
+    /// Cells that have changed; some may no longer exist.
+    pub(super) fresh: Vec<CellId>,
+    /// The number of vertices that may still be added.
+    pub(super) budget: usize,
+    /// Constrained edges that are to be split.
+    pub(super) encroached: VecDeque<[VertexId; 2]>,
+    origins: Vec<Origin>,
+    pub(super) shells: Shells,
+    pub(super) encroachment: Encroachment,
+}
+
+impl<G: Crossing, V: Default> Draft<G, V> {
+    pub(super) fn new(
+        t: ConstrainedDelaunay<G, V>,
+        regions: Vec<u32>,
+        encroachment: Encroachment,
+        budget: usize,
+    ) -> Self {
+        let mut draft = Draft {
+            regions,
+            fresh: Vec::new(),
+            budget,
+            encroached: VecDeque::new(),
+            origins: vec![Origin::Given; t.tds().vertex_slots()],
+            shells: Shells::new(t.tds().vertex_slots()),
+            encroachment,
+            t,
+        };
+        for cell in draft.t.tds().cells() {
+            for i in 0..3 {
+                if cell < draft.t.tds().neighbor(cell, i) && draft.is_encroached(cell, i) {
+                    draft.encroached.push_back(draft.t.tds().edge_ends(cell, i));
+                }
+            }
+        }
+        draft
+    }
+
+    pub(super) fn origin(&self, vertex: VertexId) -> Origin {
+        self.origins[vertex.index()]
+    }
+
+    pub(super) fn is_inside(&self, cell: CellId) -> bool {
+        self.regions[cell.index()] != OUTSIDE
+    }
+
+    /// Returns true if an edge is constrained and a vertex encroaches upon it.
+    pub(super) fn is_encroached(&self, cell: CellId, i: usize) -> bool {
+        let is_far_apex_near = || {
+            let beside = self.t.tds().neighbor(cell, i);
+            self.is_apex_near(beside, self.t.tds().index_of_neighbor(beside, cell))
+        };
+        // Of four points in circles one test is enough.
+        let is_symmetric = matches!(self.encroachment, Encroachment::Delaunay);
+        self.t.is_constrained(cell, i) && (self.is_apex_near(cell, i) || !is_symmetric && is_far_apex_near())
+    }
+
+    /// Like [`is_encroached`](Self::is_encroached), but tests the vertex of this cell only: if the
+    /// cell is new, the one on the other side has been tested before.
+    pub(super) fn is_encroached_by_apex(&self, cell: CellId, i: usize) -> bool {
+        self.t.is_constrained(cell, i) && self.is_apex_near(cell, i)
+    }
+
+    /// Returns true if the vertex of a cell in the domain is too near to the edge opposite it.
+    fn is_apex_near(&self, cell: CellId, i: usize) -> bool {
+        let tds = self.t.tds();
+        let apex = tds.vertex(cell, i);
+        if apex == VertexId::INFINITE || !self.is_inside(cell) {
+            return false;
+        }
+        if let Encroachment::Delaunay = self.encroachment {
+            let beside = tds.neighbor(cell, i);
+            return !tds.is_infinite(beside) && {
+                let corners = tds.corners(beside).map(|v| self.t.point(v));
+                self.t.geometry().side_of_sphere(corners, self.t.point(apex)) == Sign::Positive
+            };
+        }
+        self.encroaches(tds.edge_ends(cell, i), self.t.plan_of(apex))
+    }
+
+    /// Returns true if a point is too near to an edge with these ends.
+    fn encroaches(&self, ends: [VertexId; 2], site: [f64; 2]) -> bool {
+        let [a, b] = ends.map(|v| self.t.plan_of(v));
+        let angle = || Wide::sign(&DotProduct([a, site, b]));
+        match self.encroachment {
+            Encroachment::Delaunay => false,
+            Encroachment::Gabriel => angle() != Sign::Positive,
+            Encroachment::Lens(cosine) => is_in_lens(minus(a, site), minus(b, site), cosine),
+        }
+    }
+
+    /// Grows the zone of a point that is in conflict with a cell, up to constraints, or to the
+    /// first constraint for which `stops` returns true, given as an edge of a cell in the zone.
+    /// Returns that one.
+    pub(super) fn grow(
+        &self,
+        zone: &mut Zone,
+        start: CellId,
+        p: &G::Point,
+        stops: impl Fn(CellId, usize) -> bool,
+    ) -> Option<(CellId, usize)> {
+        let inner = &self.t.inner;
+        let mut stopped = None;
+        zone.grow(&inner.tds, start, |from, i, beyond| {
+            if stopped.is_none() && inner.is_constrained(from, i) {
+                stopped = stops(from, i).then_some((from, i));
+                false
+            } else {
+                stopped.is_none() && inner.in_conflict(beyond, p)
+            }
+        });
+        stopped
+    }
+
+    /// Replaces a zone by the star of a new vertex, the cells of which are then
+    /// [fresh](Self::fresh). `region` returns the region of a cell, given its position on the
+    /// border.
+    pub(super) fn star(
+        &mut self,
+        mut zone: Zone,
+        p: G::Point,
+        origin: Origin,
+        region: impl Fn(usize) -> u32,
+    ) -> VertexId {
+        let vertex = self.t.inner.add_vertex(p, V::default());
+        let star = self.t.inner.tds.star(&mut zone, vertex, |mask, i| mask.only(i));
+        self.t.inner.last = star.last().copied();
+        self.regions.resize(self.t.inner.tds.cell_slots(), OUTSIDE);
+        for (k, &cell) in star.iter().enumerate() {
+            self.regions[cell.index()] = region(k);
+        }
+        self.fresh.extend(star);
+        self.t.inner.zone = zone;
+        self.origins.resize(self.t.tds().vertex_slots(), origin);
+        self.origins[vertex.index()] = origin;
+        vertex
+    }
+
+    /// Adds a vertex that destroys the triangle in whose circle it lies, unless it is too near to
+    /// constrained edges or beyond them.
+    ///
+    /// No walk is needed. Across an edge that is not constrained, the power of a point to the
+    /// circles of the triangles falls toward the point. So all triangles between the one in
+    /// question and the point have the point in their circles, and the zone that grows from that
+    /// one contains them. If the point cannot be seen, the zone ends at a constrained edge that has
+    /// the point on its other side.
+    pub(super) fn add_in(&mut self, cell: CellId, site: [f64; 2]) -> Attempt {
+        let [a, b, _] = self.t.tds().corners(cell).map(|v| self.t.point(v));
+        let site = self.t.geometry().on_step(site);
+        let p = self.t.geometry().meet(site, &[[a, b]]);
+        if self.t.inner.admit(&p).is_err() || !self.t.inner.in_conflict(cell, &p) {
+            return Attempt::TooFine;
+        }
+        let mut zone = std::mem::take(&mut self.t.inner.zone);
+        // The first of several is enough: once it is split, most of the others need not be.
+        let is_near = |from, i| {
+            self.encroaches(self.t.tds().edge_ends(from, i), site)
+                || self.t.inner.side_of_facet(from, i, &p) != Sign::Positive
+        };
+        if let Some((from, i)) = self.grow(&mut zone, cell, &p, is_near) {
+            zone.finish();
+            self.t.inner.zone = zone;
+            self.encroached.push_back(self.t.tds().edge_ends(from, i));
+            return Attempt::Encroaches;
+        }
+        let region = self.regions[cell.index()];
+        let p = self.interpolate(zone.cells(), site);
+        self.star(zone, p, Origin::Free, |_| region);
+        self.budget -= 1;
+        Attempt::Added
+    }
+
+    /// Returns the point at a site in one of some triangles. It lies on a line from a corner to the
+    /// opposite side, whose foot on that side is interpolated first.
+    fn interpolate(&self, cells: &[CellId], site: [f64; 2]) -> G::Point {
+        let weights = |&cell: &CellId| {
+            let [a, b, c] = self.t.tds().corners(cell).map(|v| self.t.plan_of(v));
+            [area([b, c, site]), area([c, a, site]), area([a, b, site])]
+        };
+        // As near to the inside of one as rounded areas can show.
+        let least = |weights: [f64; 3]| weights.into_iter().fold(f64::INFINITY, f64::min);
+        let mut host = (cells[0], weights(&cells[0]));
+        for cell in &cells[1..] {
+            if least(host.1) >= 0.0 {
+                break;
+            }
+            let weights = weights(cell);
+            if least(weights) > least(host.1) {
+                host = (*cell, weights);
+            }
+        }
+        let (cell, weights) = (host.0, host.1.map(|weight| weight.max(0.0)));
+        let corners = self.t.tds().corners(cell).map(|v| self.t.point(v));
+        // From the furthest corner the line meets the other side at the best angle.
+        let lesser = |i: usize, j: usize| if weights[j] < weights[i] { j } else { i };
+        let apex = lesser(lesser(0, 1), 2);
+        let [j, k] = [ccw(apex), cw(apex)];
+        let part = weights[k] / (weights[j] + weights[k]);
+        let [from, to] = [j, k].map(|k| self.t.geometry().plan(corners[k]));
+        let foot = [0, 1].map(|axis| from[axis] * (1.0 - part) + to[axis] * part);
+        let foot = self.t.geometry().meet(foot, &[[corners[j], corners[k]]]);
+        self.t.geometry().meet(site, &[[corners[apex], &foot]])
+    }
+}
