@@ -6,7 +6,7 @@
 
 use crate::parallel::*;
 
-use super::FEW;
+use super::segment::FEW;
 
 /// The number of children of a node: a power of two.
 const FAN: usize = 1 << FAN_BITS;

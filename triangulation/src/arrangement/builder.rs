@@ -10,8 +10,9 @@ use crate::parallel::*;
 
 use super::boxes::{Box2, BoxTree};
 use super::pixel::Grid;
+use super::result::{Arrangement, Crossing, starts};
+use super::segment::{FEW, Segment, Site, SiteOf, lexicographic};
 use super::sweep;
-use super::{Arrangement, Crossing, FEW, Segment, Site, SiteOf, lexicographic, starts};
 
 /// A segment that is routed through a site.
 #[derive(Debug, Clone, Copy)]

@@ -48,10 +48,13 @@ mod boxes;
 mod builder;
 mod order;
 mod pixel;
+mod result;
 mod rounder;
+mod segment;
 mod sweep;
 
-use std::ops::Range;
+pub use result::{Arrangement, Crossing};
+pub(crate) use rounder::{Rounder, crosses, is_aligned, is_ordinary, step_at};
 
 use rustc_hash::FxHashMap;
 
@@ -59,41 +62,7 @@ use crate::kernel::{Adaptive, Wide};
 use crate::num::unsigned_zero;
 use builder::Builder;
 use pixel::Grid;
-pub(crate) use rounder::{Rounder, crosses, is_aligned, is_ordinary, step_at};
-
-/// Work on fewer segments or sites than this is done by one thread, without trees: waking another
-/// thread or building a tree takes longer.
-const FEW: usize = 256;
-
-type Site = [f64; 2];
-/// Returns the site of a given number. `PERF:` a trait object, because a type parameter would
-/// compile the whole module anew for each caller, while calls by pointer take no measurable time.
-type SiteOf<'a> = dyn Fn(u32) -> Site + Sync + 'a;
-type Segment = [Site; 2];
-
-/// Two segments that cross in their interiors, and the site to which the crossing was rounded.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Crossing {
-    /// The numbers of the segments, the smaller one first.
-    pub segments: [u32; 2],
-    /// The number of the site.
-    pub site: u32,
-}
-
-/// A rounded arrangement of segments.
-///
-/// *Sites* are numbered: first the given ones, then those that were added.
-#[derive(Debug, Clone)]
-pub struct Arrangement {
-    unit: [f64; 2],
-    on_grid: bool,
-    given_count: usize,
-    added: Vec<Site>,
-    crossings: Vec<Crossing>,
-    /// The sites between the ends of each segment that may bend: a range of `chain_sites`.
-    chains: FxHashMap<u32, Range<u32>>,
-    chain_sites: Vec<u32>,
-}
+use segment::{Segment, Site, SiteOf};
 
 impl Arrangement {
     /// Arranges segments between given sites. A segment is a pair of site numbers below
@@ -228,69 +197,4 @@ impl Arrangement {
         (self.chains, self.chain_sites) = (chains, chain_sites);
         true
     }
-
-    /// The unit of the grid on each axis: a power of two.
-    pub fn unit(&self) -> [f64; 2] {
-        self.unit
-    }
-
-    /// Returns true if all ends of segments, and all given sites on segments that are routed, are
-    /// multiples of the unit. The parts are then proven not to cross.
-    pub fn is_on_grid(&self) -> bool {
-        self.on_grid
-    }
-
-    /// The added sites: distinct.
-    pub fn added(&self) -> &[Site] {
-        &self.added
-    }
-
-    /// The pairs of segments that cross in their interiors, in order.
-    pub fn crossings(&self) -> &[Crossing] {
-        &self.crossings
-    }
-
-    /// Returns true if a segment crosses others, or comes near a site at which another one is bent.
-    /// It is then routed through all sites whose pixels it meets, and through the given sites on
-    /// it.
-    pub fn has_chain(&self, segment: u32) -> bool {
-        self.chains.contains_key(&segment)
-    }
-
-    /// The sites that a segment is routed through between its ends, in order from the first end to
-    /// the second. (It also passes exactly through the given sites that lie on its parts.)
-    pub fn chain(&self, segment: u32) -> &[u32] {
-        self.chains.get(&segment).map_or(&[], |range| &self.chain_sites[range.start as usize..range.end as usize])
-    }
-
-    /// Returns the segments that are routed through added sites: pairs of the site's position among
-    /// the added ones and the segment, in order.
-    pub fn through_added(&self) -> Vec<(u32, u32)> {
-        let given = self.given_count as u32;
-        let added = |site: &u32| site.checked_sub(given);
-        // Grouped by site, by counting.
-        let mut ends = vec![0u32; self.added.len()];
-        self.chain_sites.iter().filter_map(added).for_each(|site| ends[site as usize] += 1);
-        let mut through = vec![(0, 0); starts(&mut ends) as usize];
-        let mut chains: Vec<(&u32, &Range<u32>)> = self.chains.iter().collect();
-        chains.sort_unstable_by_key(|(segment, _)| **segment);
-        for (&segment, range) in chains {
-            for site in self.chain_sites[range.start as usize..range.end as usize].iter().filter_map(added) {
-                let end = &mut ends[site as usize];
-                through[*end as usize] = (site, segment);
-                *end += 1;
-            }
-        }
-        through
-    }
-}
-
-/// Replaces each count by the sum of those before it; returns the total.
-fn starts(counts: &mut [u32]) -> u32 {
-    counts.iter_mut().fold(0, |sum, count| sum + std::mem::replace(count, sum))
-}
-
-/// Compares by x, then by y, coordinates whose zeros have one sign.
-fn lexicographic(p: Site, q: Site) -> std::cmp::Ordering {
-    p[0].total_cmp(&q[0]).then(p[1].total_cmp(&q[1]))
 }

@@ -5,7 +5,7 @@ use crate::num::lattice::lowest_bit;
 use crate::num::{Dyadic, Pair, Sign, unsigned_zero};
 
 use super::boxes::Box2;
-use super::{Segment, Site, lexicographic};
+use super::segment::{Segment, Site, lexicographic};
 
 /// The sites to which crossings are rounded. On each axis these are either the multiples of the
 /// *unit*, a power of two; or the doubles, of which those near zero are multiples of the *smallest*

@@ -6,7 +6,7 @@ use crate::num::Sign;
 
 use super::builder::cross;
 use super::pixel::{Grid, ulp};
-use super::{Segment, Site};
+use super::segment::{Segment, Site};
 
 /// The grid to which the crossings of some segments are rounded.
 ///

@@ -24,7 +24,7 @@ use crate::num::Sign;
 use crate::parallel::*;
 
 use super::order::Order;
-use super::{Segment, Site, lexicographic};
+use super::segment::{Segment, Site, lexicographic};
 
 /// Returns the pairs of segments that cross in their interiors, in no order.
 ///

@@ -29,7 +29,7 @@ use crate::tds::VertexId;
 
 use super::faces::Range;
 use super::filter::NOWHERE;
-use super::{Axis, Part};
+use super::part::{Axis, Part};
 
 /// Smaller ranges are merged: the test for an arc takes as long.
 pub(super) const LEAST: usize = 200;

@@ -6,8 +6,8 @@ use std::num::NonZeroU32;
 use crate::geometry::Coordinates;
 use crate::tds::{CellId, Links, VertexId};
 
-use super::Grain;
 use super::filter::Seen;
+use super::grain::Grain;
 use super::order::Keys;
 
 /// The edge of a face from the vertex in a slot to the next one, as the number

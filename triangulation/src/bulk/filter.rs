@@ -40,8 +40,9 @@ use crate::geometry::{Coordinates, in_sphere, in_tied_circle};
 use crate::num::{Sign, lattice};
 use crate::tds::VertexId;
 
+use super::chunks;
 use super::curve::Curve;
-use super::{Grain, chunks};
+use super::grain::Grain;
 
 pub(super) type Site = [f64; 2];
 

@@ -3,8 +3,9 @@
 use crate::parallel::*;
 use crate::tds::{CellId, Links, VertexId};
 
+use super::chunks;
 use super::faces::Edge;
-use super::{Grain, chunks};
+use super::grain::Grain;
 
 /// A cell of each vertex.
 pub(super) struct Cells {

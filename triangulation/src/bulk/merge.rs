@@ -25,10 +25,7 @@ use crate::tds::VertexId;
 
 use super::faces::{Edge, Range};
 use super::filter::{Arrow, Circle, NOWHERE, Site, turn};
-use super::{Axis, Part};
-
-/// Stands for no face.
-pub(super) const NONE: u32 = u32::MAX;
+use super::part::{Axis, NONE, Part};
 
 const LEFT: usize = 0;
 const RIGHT: usize = 1;

@@ -55,15 +55,16 @@ mod curve;
 mod faces;
 mod filter;
 mod finish;
+mod grain;
 mod merge;
 mod order;
+mod part;
 mod small;
 mod space;
 #[cfg(test)]
 mod tests;
 
 use std::any::Any;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::geometry::Coordinates;
 use crate::parallel::*;
@@ -72,9 +73,11 @@ use crate::tds::{CellId, Links, Tds, VertexId};
 use curve::{Curve, Span};
 use faces::Range;
 use filter::Seen;
-use merge::NONE;
 use order::Keys;
+use part::NONE;
+use part::{Axis, Part};
 
+pub(crate) use grain::{Grain, Stop};
 pub(crate) use order::Sites;
 pub use order::spatial_order;
 
@@ -82,79 +85,6 @@ pub use order::spatial_order;
 /// each. Larger inputs are inserted one by one.
 const MAX_POINTS: usize = 1 << 29;
 const _: () = assert!(4 * (2 * MAX_POINTS as u64 - 2) <= u32::MAX as u64);
-
-/// How much work one thread does at a time, in points; and the flag that ends it early.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Grain<'a> {
-    /// Points per chunk of a pass over all points.
-    points: usize,
-    /// Points per group of the sort: two arrays of records fit a core's cache.
-    group: usize,
-    /// Larger ranges are divided between threads.
-    range: usize,
-    /// `None` if nothing ends it.
-    stop: Option<&'a Stop<'a>>,
-}
-
-impl Default for Grain<'_> {
-    fn default() -> Self {
-        Grain { points: 1 << 14, group: 1 << 14, range: 1 << 14, stop: None }
-    }
-}
-
-impl<'a> Grain<'a> {
-    /// The usual sizes; the work ends early once `stop` is asked for it.
-    pub(crate) fn until(stop: &'a Stop<'a>) -> Self {
-        Grain { stop: Some(stop), ..Grain::default() }
-    }
-
-    /// Returns true if the work should stop. Then [`is_stopped`](Self::is_stopped) is true, too.
-    pub(crate) fn stops(&self) -> bool {
-        self.stop.is_some_and(Stop::is_asked_for)
-    }
-
-    /// Returns true if a thread has ended its work early: what it should have built is not there.
-    pub(crate) fn is_stopped(&self) -> bool {
-        self.stop.is_some_and(|stop| stop.is_seen.load(Ordering::Relaxed))
-    }
-}
-
-/// A flag that ends work early, and whether a thread has seen it: the flag alone may be cleared
-/// again.
-#[derive(Debug)]
-pub(crate) struct Stop<'a> {
-    flag: &'a AtomicBool,
-    is_seen: AtomicBool,
-}
-
-impl<'a> Stop<'a> {
-    pub(crate) fn new(flag: &'a AtomicBool) -> Self {
-        Stop { flag, is_seen: AtomicBool::new(false) }
-    }
-
-    fn is_asked_for(&self) -> bool {
-        if self.flag.load(Ordering::Relaxed) {
-            self.is_seen.store(true, Ordering::Relaxed);
-        }
-        self.is_seen.load(Ordering::Relaxed)
-    }
-}
-
-/// A finished range: two ghosts at opposite ends of it, where searches start (for an arc both are
-/// the same ghost); [`NONE`] for a single point.
-#[derive(Clone, Copy)]
-struct Part {
-    bottom: u32,
-    top: u32,
-    first: u32,
-}
-
-/// The coordinate that separates the halves of a merge.
-#[derive(Clone, Copy, PartialEq)]
-enum Axis {
-    X,
-    Y,
-}
 
 /// The recursion continues on a new stack each time that this many more ranges of equal keys lie
 /// within each other.

@@ -27,8 +27,9 @@ use crate::geometry::Coordinates;
 use crate::parallel::*;
 use crate::tds::VertexId;
 
+use super::chunks;
 use super::curve::{Curve, Span, Squares};
-use super::{Grain, chunks};
+use super::grain::Grain;
 
 /// The largest number of bits for buckets: as many buckets as a core's cache has lines to write to.
 const BUCKET_BITS: u32 = 11;

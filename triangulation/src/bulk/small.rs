@@ -4,8 +4,8 @@ use crate::geometry::Coordinates;
 use crate::num::Sign;
 use crate::tds::VertexId;
 
-use super::Part;
 use super::faces::Range;
+use super::part::Part;
 
 const INFINITE: VertexId = VertexId::INFINITE;
 

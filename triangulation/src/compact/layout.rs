@@ -2,12 +2,13 @@
 
 use std::io::{self, Write};
 
-use super::{CompactError, Law};
 use crate::tds::CellId;
+
+use super::error::{CompactError, VERSION};
+use super::law::Law;
 
 /// The first bytes of a file. A transfer as text destroys its line ends and its control character.
 const MAGIC: [u8; 8] = *b"brkTIN\n\x1a";
-pub(super) const VERSION: u32 = 2;
 pub(super) const HEADER: usize = 48;
 
 /// Stands for the infinite vertex.

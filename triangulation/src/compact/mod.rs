@@ -2,6 +2,8 @@
 //! memory.
 
 mod check;
+mod error;
+mod law;
 mod layout;
 mod plane;
 mod queries;
@@ -9,105 +11,15 @@ mod section;
 mod space;
 mod write;
 
-use std::fmt;
 use std::ops::Range;
 
 use crate::embedded::Embedded;
 use crate::geometry::Geometry;
 use crate::tds::{CellId, Complex, VertexId};
+pub use error::CompactError;
+pub use law::Law;
 use layout::{HEADER, Header, Offsets};
 pub use section::CompactSection;
-
-/// The law that a file claims for its triangulation.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Law {
-    /// No law: written by a [`Basic`](crate::Basic) or [`Regular`](crate::Regular) triangulation.
-    None = 0,
-    /// The law of [`Delaunay`](crate::Delaunay).
-    Delaunay = 1,
-    /// Some edges are constrained: written by [`Constrained`](crate::Constrained).
-    Constrained = 2,
-    /// The law of [`ConstrainedDelaunay`](crate::ConstrainedDelaunay).
-    ConstrainedDelaunay = 3,
-}
-
-impl Law {
-    fn from_number(number: u32) -> Option<Self> {
-        [Law::None, Law::Delaunay, Law::Constrained, Law::ConstrainedDelaunay].into_iter().find(|&l| l as u32 == number)
-    }
-
-    fn has_constraints(self) -> bool {
-        matches!(self, Law::Constrained | Law::ConstrainedDelaunay)
-    }
-}
-
-/// The reason why a [`Compact`] triangulation has no answer.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum CompactError {
-    /// The first bytes are not those of a compact triangulation.
-    Foreign,
-    /// The version of the format is unknown.
-    Version(u32),
-    /// An entry of the header is impossible.
-    Header(&'static str),
-    /// There are fewer or more bytes than the header and the sections announce.
-    Length {
-        /// Bytes according to the header, or up to the end of the section that is incomplete.
-        expected: u64,
-        /// Bytes present.
-        found: u64,
-    },
-    /// The triangulation is one of the plane where one of space is expected, or the other.
-    Space {
-        /// Vertices of a cell at full dimension: 3 in the plane, 4 in space.
-        expected: usize,
-        /// Those of the file.
-        found: usize,
-    },
-    /// The number of coordinates of a point is not that of the geometry.
-    Coordinates {
-        /// Coordinates of a point of the geometry.
-        expected: usize,
-        /// Coordinates of a point of the file.
-        found: usize,
-    },
-    /// The vertex does not exist, or its point or its cell is impossible.
-    Vertex(VertexId),
-    /// The cell does not exist, or one of its vertices or neighbors is impossible.
-    Cell(CellId),
-    /// The query is one for Delaunay triangulations, but the file has another law.
-    Unanswerable(Law),
-}
-
-impl fmt::Display for CompactError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            CompactError::Foreign => write!(f, "not a compact triangulation: wrong magic bytes"),
-            CompactError::Version(version) => {
-                write!(f, "a compact triangulation of version {version}; the known version is {}", layout::VERSION)
-            }
-            CompactError::Header(what) => write!(f, "the header is damaged: {what}"),
-            CompactError::Length { expected, found } => {
-                write!(f, "{found} bytes where {expected} are announced")
-            }
-            CompactError::Space { expected, found } => {
-                let name = |corners: usize| if corners == 4 { "space" } else { "the plane" };
-                write!(f, "a triangulation of {}; one of {} is expected", name(*found), name(*expected))
-            }
-            CompactError::Coordinates { expected, found } => {
-                write!(f, "points of {found} coordinates; the geometry has {expected}")
-            }
-            CompactError::Vertex(vertex) => write!(f, "vertex {vertex:?} does not exist or is damaged"),
-            CompactError::Cell(cell) => write!(f, "cell {cell:?} does not exist or is damaged"),
-            CompactError::Unanswerable(law) => {
-                write!(f, "a query for Delaunay triangulations; the law here is {law:?}")
-            }
-        }
-    }
-}
-
-impl std::error::Error for CompactError {}
 
 /// A read-only triangulation that is used where its bytes are, without being loaded. `N` is the
 /// number of vertices of a cell: 3 in the plane, 4 in space.

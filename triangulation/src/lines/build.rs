@@ -23,36 +23,15 @@ use crate::locate::Dice;
 use crate::num::Sign;
 use crate::tds::VertexId;
 
+use super::chains::{LineVertices, segments_of, undirected};
 use super::constrained_delaunay::ConstrainedDelaunay;
-use super::paths::{LineVertices, segments_of, undirected};
+use super::rounding::{OnCrossing, Rounding};
 
 /// How many triangles sub-constraints inserted in order may meet, for each vertex and each
 /// sub-constraint. After that, the rest is inserted in random order: then all together meet O(n
 /// log^2 n) triangles (Shewchuk and Brown 2015; Agarwal, Arge and Yi 2005). In order, each may meet
 /// the triangles of all those next to it.
 const PATIENCE: usize = 8;
-
-/// What to do with lines that cross between their vertices.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum OnCrossing {
-    /// Returns an error that names the first crossing; nothing is triangulated.
-    Reject,
-    /// Gives them a common vertex, rounded to the grid.
-    #[default]
-    Split,
-}
-
-/// How the crossings of lines were rounded.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Rounding {
-    /// The unit of the grid on each axis: the last place of the largest coordinate of a line's
-    /// vertex.
-    pub unit: [f64; 2],
-    /// True if all vertices of lines, and all points on lines that cross others, lie on the grid.
-    /// Then each line is displaced by at most half a unit on each axis; this is proven.
-    pub on_grid: bool,
-}
 
 impl<G: Crossing + Coordinates<3>> ConstrainedDelaunay<G> {
     /// Triangulates many points and lines; also returns the vertex of each point. A line is a list
@@ -158,7 +137,7 @@ impl<G: Crossing + Coordinates<3>> ConstrainedDelaunay<G> {
             }
             // The arrangement finds the first crossing, or that all are at vertices.
             let ConstrainedDelaunay { inner, lines: crossing } = triangulation;
-            lines = crossing.paths.given.into_iter().flatten().collect();
+            lines = crossing.chains.given.into_iter().flatten().collect();
             geometry = inner.geometry;
             sites = Sites::sorted(&geometry, inner.points)?;
         }
@@ -187,9 +166,9 @@ impl<G: Crossing + Coordinates<3>> ConstrainedDelaunay<G> {
         if grain.stops() {
             return Err(InputError::Canceled);
         }
-        triangulation.lines.paths.given = lines.into_iter().map(Some).collect();
+        triangulation.lines.chains.given = lines.into_iter().map(Some).collect();
         triangulation.lines.added = added.into_iter().collect();
-        let parts = triangulation.lines.paths.record(&arrangement, &segments, vertex);
+        let parts = triangulation.lines.chains.record(&arrangement, &segments, vertex);
         triangulation.lines.rounding = Rounding::of(&arrangement);
         let crossing = triangulation.constrain_all(parts, grain);
         if grain.is_stopped() {
@@ -215,7 +194,7 @@ impl<G: Crossing + Coordinates<3>> ConstrainedDelaunay<G> {
         if grain.stops() {
             return Err(InputError::Canceled);
         }
-        triangulation.lines.paths.given = lines.into_iter().map(Some).collect();
+        triangulation.lines.chains.given = lines.into_iter().map(Some).collect();
         triangulation.lines.missing = triangulation.constrain_all(segments, grain);
         if grain.is_stopped() {
             return Err(InputError::Canceled);
@@ -226,20 +205,12 @@ impl<G: Crossing + Coordinates<3>> ConstrainedDelaunay<G> {
     /// Returns true if segments that were not arranged cross, at a vertex or elsewhere.
     fn do_lines_cross(&self) -> bool {
         let mut split: FxHashMap<VertexId, [VertexId; 2]> = FxHashMap::default();
-        let mut parts = self.lines.paths.splits.iter();
+        let mut parts = self.lines.chains.splits.iter();
         let is_crossing = |(&part, &at): (&[VertexId; 2], &VertexId)| {
             let [a, b] = *split.entry(at).or_insert(part);
             self.inner.turn(a, b, part[0]) != Sign::Zero
         };
         !self.lines.missing.is_empty() || parts.any(is_crossing)
-    }
-}
-
-impl Rounding {
-    /// Returns how an arrangement rounded crossings; `None` without any.
-    pub(crate) fn of(arrangement: &Arrangement) -> Option<Self> {
-        let has_crossings = !arrangement.crossings().is_empty();
-        has_crossings.then(|| Rounding { unit: arrangement.unit(), on_grid: arrangement.is_on_grid() })
     }
 }
 
@@ -263,7 +234,7 @@ impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
         if self.dimension() < 2 {
             self.lines.waiting = parts;
             // The vertices that split them, when there were triangles, may be removed.
-            self.lines.paths.splits.clear();
+            self.lines.chains.splits.clear();
             return Vec::new();
         }
         // Sub-constraints next to each other are inserted one after the other, until that has taken

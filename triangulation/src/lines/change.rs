@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use crate::tds::VertexId;
 
-use super::paths::{Ends, undirected};
+use super::chains::{Ends, undirected};
 
 /// A segment that is inserted, is removed, or gets another chain.
 ///

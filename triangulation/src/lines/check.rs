@@ -8,9 +8,9 @@ use crate::geometry::Crossing;
 use crate::tds::VertexId;
 use crate::triangulation::Triangulation;
 
-use super::Lines;
-use super::build::Rounding;
-use super::paths::undirected;
+use super::chains::undirected;
+use super::rounding::Rounding;
+use super::tables::Lines;
 
 impl Lines {
     /// Returns the flaws of the tables. Linear in the lengths of all chains.
@@ -24,17 +24,17 @@ impl Lines {
             false => t.constrained_edges().collect(),
         };
         let waiting = self.waiting.iter().filter(|_| !is_flat).map(|&[a, b]| LinesFlaw::Waiting(a, b));
-        let segments = self.paths.segments();
+        let segments = self.chains.segments();
         let mut flaws: Vec<LinesFlaw> = waiting.collect();
         self.check_chains(t, &segments, &constraints, &mut flaws);
         flaws.extend((!self.has_fitting_grid(t, &segments)).then_some(LinesFlaw::Rounding));
-        let named: FxHashSet<VertexId> = self.paths.each().flatten().copied().collect();
+        let named: FxHashSet<VertexId> = self.chains.each().flatten().copied().collect();
         let constrained: FxHashSet<VertexId> = constraints.into_iter().flatten().collect();
         let is_crossing = |v: &VertexId| constrained.contains(v) && !named.contains(v);
         flaws.extend(self.added.iter().filter(|v| !is_crossing(v)).map(LinesFlaw::Added));
         flaws.extend(self.owned.iter().filter(|v| !named.contains(v)).map(LinesFlaw::Owned));
         if let Some(index) = self.index.get() {
-            flaws.extend(segments.iter().filter(|&&ends| !index.knows(&self.paths, ends)).map(|_| LinesFlaw::Index));
+            flaws.extend(segments.iter().filter(|&&ends| !index.knows(&self.chains, ends)).map(|_| LinesFlaw::Index));
         }
         let missing = self.missing.iter().map(|&[a, b]| Flaw::Missing(a, b));
         missing.chain(flaws.into_iter().map(Flaw::Lines)).collect()
@@ -52,8 +52,8 @@ impl Lines {
         let mut splits: FxHashSet<[VertexId; 2]> = FxHashSet::default();
         let mut bent = 0;
         for &ends in segments {
-            bent += usize::from(self.paths.bent.contains_key(&ends));
-            let sites = self.paths.sites(ends);
+            bent += usize::from(self.chains.bent.contains_key(&ends));
+            let sites = self.chains.sites(ends);
             let mut met: FxHashSet<VertexId> = sites.iter().copied().collect();
             if met.len() < sites.len() || !sites.windows(2).all(|pair| runs_along(t, ends, [pair[0], pair[1]])) {
                 flaws.push(LinesFlaw::Order(ends[0], ends[1]));
@@ -61,7 +61,7 @@ impl Lines {
             }
             let mut parts: Vec<[VertexId; 2]> = sites.windows(2).map(|pair| undirected(pair[0], pair[1])).collect();
             while let Some(part) = parts.pop() {
-                match self.paths.splits.get(&part) {
+                match self.chains.splits.get(&part) {
                     Some(&between) if met.insert(between) => {
                         splits.insert(part);
                         parts.extend(part.map(|end| undirected(end, between)));
@@ -75,7 +75,7 @@ impl Lines {
                 }
             }
         }
-        if flaws.is_empty() && (bent, splits.len()) != (self.paths.bent.len(), self.paths.splits.len()) {
+        if flaws.is_empty() && (bent, splits.len()) != (self.chains.bent.len(), self.chains.splits.len()) {
             flaws.push(LinesFlaw::Stray);
         }
     }
@@ -98,7 +98,7 @@ impl Lines {
             let at = t.geometry.plan(t.point(v));
             (0..2).all(|axis| at[axis] % unit[axis] == 0.0)
         };
-        let mut sites = segments.iter().flat_map(|&ends| self.paths.sites(ends));
+        let mut sites = segments.iter().flat_map(|&ends| self.chains.sites(ends));
         unit.into_iter().all(is_power_of_two) && !(self.recrossed && on_grid) && (!on_grid || sites.all(is_multiple))
     }
 }

@@ -1,26 +1,16 @@
 //! Insertion and removal of one vertex or one sub-constraint. The tables are kept up to date.
 
-use crate::engine::ConstrainedEdges;
 use crate::engine::flip::WithConstraints;
 use crate::engine::insert::Inserted;
 use crate::engine::trace::Met;
 use crate::geometry::Crossing;
 use crate::locate::{Facets, Location};
-use crate::num::unsigned_zero;
 use crate::tds::{CellId, VertexId};
 use crate::triangulation::Triangulation;
 
-use super::Lines;
-use super::paths::undirected;
-
-/// The triangulation whose constraints are those of lines.
-pub(super) type Mesh<G, V, C> = Triangulation<G, 3, V, ConstrainedEdges<C>>;
-
-/// Returns the coordinates of a vertex; negative zeros become positive.
-#[inline]
-pub(super) fn position<G: Crossing, V, C: Copy + Default>(t: &Mesh<G, V, C>, vertex: VertexId) -> [f64; 2] {
-    t.geometry.plan(t.point(vertex)).map(unsigned_zero)
-}
+use super::chains::undirected;
+use super::mesh::Mesh;
+use super::tables::Lines;
 
 /// Inserts a point that was admitted at its location, unless its site is taken. A constraint that
 /// the location names is replaced by the edges from the point to its ends.
@@ -114,7 +104,7 @@ impl Lines {
             if a == b || t.constrain_edge(a, b) {
                 continue;
             }
-            if let Some(&between) = self.paths.splits.get(&undirected(a, b)) {
+            if let Some(&between) = self.chains.splits.get(&undirected(a, b)) {
                 parts.extend([[between, b], [a, between]]);
                 continue;
             }
@@ -124,7 +114,7 @@ impl Lines {
                 Met::Vertex(v) => {
                     t.insert_traced(a, v, &mut self.scratch, Triangulation::triangulate);
                     if v != b {
-                        self.paths.split(a, b, v);
+                        self.chains.split(a, b, v);
                         parts.push([v, b]);
                     }
                 }

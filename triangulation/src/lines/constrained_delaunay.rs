@@ -8,7 +8,7 @@ use crate::geometry::{Coordinates, Crossing, Plane};
 use crate::tds::{CellId, VertexId};
 use crate::triangulation::Triangulation;
 
-use super::Lines;
+use super::tables::Lines;
 
 /// A constrained Delaunay triangulation of the plane. Each given segment is a chain of its
 /// edges, and no vertex lies inside of a triangle's circumscribed circle unless a constraint

@@ -10,13 +10,13 @@ use crate::geometry::{Coordinates, Crossing};
 use crate::line_id::LineId;
 use crate::tds::VertexId;
 
-use super::Lines;
-use super::constrain::{Mesh, position};
+use super::chains::{Ends, LineVertices, segments_of, undirected};
 use super::constrained_delaunay::ConstrainedDelaunay;
 use super::index::NotLocal;
 use super::local_edit::Edit;
-use super::paths::{Ends, LineVertices, segments_of, undirected};
+use super::mesh::{Mesh, position};
 use super::rearrange::order_of_insertion;
+use super::tables::Lines;
 
 impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
     /// Updates the lines for a given vertex, which is new, or may have been added for a crossing
@@ -30,7 +30,7 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
         if is_new && !is_ordinary(position(&self.inner, vertex)) {
             self.lines.index.take(); // it is computed again, with this vertex
         }
-        if self.lines.paths.bent.is_empty() || !(is_new || was_added) {
+        if self.lines.chains.bent.is_empty() || !(is_new || was_added) {
             return Ok(());
         }
         Edit::on(&mut self.inner, &mut self.lines)?.make_given(vertex, was_added)
@@ -79,8 +79,8 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
         for line in lines {
             let (here, others) = rest.split_at(line.as_ref().len());
             rest = others;
-            changes.push((LineId::new(self.lines.paths.given.len()), Some(here.into())));
-            self.lines.paths.given.push(None);
+            changes.push((LineId::new(self.lines.chains.given.len()), Some(here.into())));
+            self.lines.chains.given.push(None);
         }
         let ids = changes.iter().map(|(line, _)| *line).collect();
         let before = self.lines.replace(changes);
@@ -123,7 +123,7 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
     /// # Complexity
     /// As for [`insert_lines`](Self::insert_lines).
     pub fn remove_line(&mut self, line: LineId) -> bool {
-        let is_there = self.lines.paths.given.get(line.index()).is_some_and(Option::is_some);
+        let is_there = self.lines.chains.given.get(line.index()).is_some_and(Option::is_some);
         if is_there {
             self.change_lines(vec![(line, None)]);
         }
@@ -141,8 +141,8 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
         if at == 0 || at + 1 >= vertices.len() {
             return None;
         }
-        let rest = LineId::new(self.lines.paths.given.len());
-        self.lines.paths.given.push(None);
+        let rest = LineId::new(self.lines.chains.given.len());
+        self.lines.chains.given.push(None);
         self.lines.rename(rest, Some(vertices[at..].into()));
         self.lines.rename(line, Some(vertices[..=at].into()));
         Some(rest)
@@ -187,7 +187,7 @@ impl Lines {
     /// Returns true if so few vertices of lines are changed faster one by one than by a new
     /// arrangement of all lines.
     fn is_few(&self, vertices: usize) -> bool {
-        vertices <= 32 + self.paths.given.len() / 32
+        vertices <= 32 + self.chains.given.len() / 32
     }
 
     /// Returns the lines that were given by a vertex, in order.
@@ -196,13 +196,13 @@ impl Lines {
         t: &Mesh<G, V, C>,
         vertex: VertexId,
     ) -> Vec<LineId> {
-        let names = |line: &LineId| self.paths.vertices(*line).contains(&vertex);
+        let names = |line: &LineId| self.chains.vertices(*line).contains(&vertex);
         if t.dimension() < 2 {
-            return self.paths.numbered().map(|(line, _)| line).filter(names).collect();
+            return self.chains.numbered().map(|(line, _)| line).filter(names).collect();
         }
         let index = self.index();
         let edges = t.constrained_around(vertex).map(|other| undirected(vertex, other));
-        let segments = edges.flat_map(|edge| index.segments_on(&self.paths, edge));
+        let segments = edges.flat_map(|edge| index.segments_on(&self.chains, edge));
         let lines = segments.filter(|segment| segment.contains(&vertex)).flat_map(|segment| index.lines_of(segment));
         let mut lines: Vec<LineId> = lines.chain(index.dots.iter().filter(|line| names(line))).copied().collect();
         lines.sort_unstable();
@@ -214,15 +214,15 @@ impl Lines {
     /// Returns the old vertices.
     fn replace(&mut self, changes: Vec<(LineId, Option<LineVertices>)>) -> Before {
         self.index(); // computed before the change
-        let given = &mut self.paths.given;
+        let given = &mut self.chains.given;
         changes.into_iter().map(|(line, new)| (line, std::mem::replace(&mut given[line.index()], new))).collect()
     }
 
     /// Changes the vertices of a line whose new segments are present already.
     fn rename(&mut self, line: LineId, vertices: Option<LineVertices>) {
-        let old = std::mem::replace(&mut self.paths.given[line.index()], vertices);
+        let old = std::mem::replace(&mut self.chains.given[line.index()], vertices);
         if let Some(index) = self.index.get_mut() {
-            index.rename(line, old.as_deref().unwrap_or_default(), self.paths.vertices(line));
+            index.rename(line, old.as_deref().unwrap_or_default(), self.chains.vertices(line));
         }
     }
 
@@ -233,14 +233,14 @@ impl Lines {
         before: &Before,
     ) -> Result<(), NotLocal> {
         let vertices = |(line, old): &(LineId, Option<LineVertices>)| {
-            old.as_deref().unwrap_or_default().len() + self.paths.vertices(*line).len()
+            old.as_deref().unwrap_or_default().len() + self.chains.vertices(*line).len()
         };
         if t.dimension() < 2 || !self.is_few(before.iter().map(vertices).sum()) {
             return Err(NotLocal);
         }
         for (line, old) in before {
             let old = old.as_deref().unwrap_or_default();
-            let new = self.paths.vertices(*line).to_vec();
+            let new = self.chains.vertices(*line).to_vec();
             let [gone, come]: [Vec<Ends>; 2] = [old, &new].map(|vertices| segments_of([vertices].into_iter(), |v| v));
             let is_in = |segments: &[Ends], segment: &Ends| segments.binary_search(segment).is_ok();
             for &segment in gone.iter().filter(|segment| !is_in(&come, segment)) {
@@ -259,7 +259,7 @@ impl Lines {
                 self.measured(t)?.attach(segment, *line);
             }
             self.measured(t)?.dots.retain(|other| other != line);
-            if come.is_empty() && self.paths.given[line.index()].is_some() {
+            if come.is_empty() && self.chains.given[line.index()].is_some() {
                 self.measured(t)?.dots.push(*line);
             }
         }

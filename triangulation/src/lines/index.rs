@@ -2,7 +2,6 @@
 //! updated from then on.
 
 use std::collections::BTreeMap;
-use std::sync::OnceLock;
 
 use rustc_hash::FxHashMap;
 
@@ -11,9 +10,9 @@ use crate::geometry::Crossing;
 use crate::line_id::LineId;
 use crate::tds::VertexId;
 
-use super::Lines;
-use super::constrain::{Mesh, position};
-use super::paths::{Ends, Paths, undirected};
+use super::chains::{Chains, Ends, undirected};
+use super::mesh::{Mesh, position};
+use super::rounding::Rounding;
 
 /// The reason why an edit cannot be local: the grid changes, sub-constraints cross off the grid, or
 /// there are no triangles. All lines have to be arranged anew.
@@ -69,7 +68,7 @@ impl<T: Copy + PartialEq> Table<T> {
     }
 }
 
-/// The inverse of [`Paths`].
+/// The inverse of [`Chains`].
 ///
 /// The chain of a segment is a list of sub-constraints, each of which is a binary tree of edges
 /// that were split. The *nodes* of a segment are all edges of these trees. Most segments are one
@@ -89,12 +88,12 @@ pub(super) struct Index {
     uneven: usize,
     /// The grid of the rounding; `None` if edits cannot be local, or before the first edit.
     pub(super) rounder: Option<Rounder>,
-    is_measured: bool,
+    pub(super) is_measured: bool,
 }
 
 impl Index {
     /// Returns the index of all lines.
-    fn of(paths: &Paths) -> Self {
+    pub(super) fn of(chains: &Chains) -> Self {
         let mut index = Index {
             lines_of: Table(FxHashMap::default()),
             segments_on: Table(FxHashMap::default()),
@@ -104,11 +103,11 @@ impl Index {
             rounder: None,
             is_measured: false,
         };
-        for (line, vertices) in paths.numbered() {
+        for (line, vertices) in chains.numbered() {
             index.rename(line, &[], vertices);
         }
         for segment in index.segments() {
-            paths.parts(segment, |part| index.add_part(paths, segment, part));
+            chains.parts(segment, |part| index.add_part(chains, segment, part));
         }
         index
     }
@@ -120,24 +119,28 @@ impl Index {
     /// Determines the grid. It is known only if the tables are the result of an arrangement on it:
     /// each segment meets the pixels of its sites, and edges are split at vertices that lie on
     /// them.
-    fn measure<G: Crossing, V, C: Copy + Default>(&mut self, lines: &Lines, t: &Mesh<G, V, C>) {
+    pub(super) fn measure<G: Crossing, V, C: Copy + Default>(
+        &mut self,
+        chains: &Chains,
+        rounding: Option<Rounding>,
+        t: &Mesh<G, V, C>,
+    ) {
         self.is_measured = true;
         let at = |v: VertexId| position(t, v);
         let segments = self.segments();
         for &end in segments.as_flattened() {
             self.count(at(end), true);
         }
-        let is_even = lines.rounding.is_none_or(|rounding| rounding.on_grid);
+        let is_even = rounding.is_none_or(|rounding| rounding.on_grid);
         let Some(largest) = self.largest() else { return };
         let Some(rounder) = Rounder::new(largest, t.geometry.step(), is_even) else { return };
         self.uneven = segments.as_flattened().iter().filter(|&&end| !rounder.holds(at(end))).count();
         let is_hit = |ends: &Ends, sites: &[VertexId]| sites.iter().all(|&site| rounder.hits(ends.map(at), at(site)));
         let is_on = |([a, b], between): (&Ends, &VertexId)| is_aligned([at(*a), at(*b)], at(*between));
-        let is_known = !lines.recrossed
-            && t.tds.vertices().all(|v| is_ordinary(at(v)))
-            && lines.rounding.is_none_or(|rounding| rounding.unit == rounder.unit() && (self.uneven == 0) == is_even)
-            && lines.paths.bent.iter().all(|(ends, sites)| is_hit(ends, sites))
-            && lines.paths.splits.iter().all(is_on);
+        let is_known = t.tds.vertices().all(|v| is_ordinary(at(v)))
+            && rounding.is_none_or(|rounding| rounding.unit == rounder.unit() && (self.uneven == 0) == is_even)
+            && chains.bent.iter().all(|(ends, sites)| is_hit(ends, sites))
+            && chains.splits.iter().all(is_on);
         self.rounder = is_known.then(|| Rounder::new(largest, t.geometry.step(), self.uneven == 0)).flatten();
     }
 
@@ -209,22 +212,22 @@ impl Index {
     }
 
     /// The segments that have an edge as a node.
-    pub(super) fn segments_on(&self, paths: &Paths, edge: Ends) -> impl Iterator<Item = Ends> {
-        let is_one = self.has_segment(edge) && paths.bent.get(&edge).is_none_or(|sites| sites.is_empty());
+    pub(super) fn segments_on(&self, chains: &Chains, edge: Ends) -> impl Iterator<Item = Ends> {
+        let is_one = self.has_segment(edge) && chains.bent.get(&edge).is_none_or(|sites| sites.is_empty());
         self.segments_on.get(edge).iter().copied().chain(is_one.then_some(edge))
     }
 
     /// Returns true if the index has all nodes of a segment.
-    pub(super) fn knows(&self, paths: &Paths, segment: Ends) -> bool {
+    pub(super) fn knows(&self, chains: &Chains, segment: Ends) -> bool {
         let mut is_known = self.has_segment(segment);
-        let is_on = |node| self.segments_on(paths, node).any(|other| other == segment);
-        paths.parts(segment, |part| paths.nodes_of_part(part, |node| is_known &= is_on(node)));
+        let is_on = |node| self.segments_on(chains, node).any(|other| other == segment);
+        chains.parts(segment, |part| chains.nodes_of_part(part, |node| is_known &= is_on(node)));
         is_known
     }
 
     /// Records that a segment has the nodes of a part of its chain, which is in the tables.
-    pub(super) fn add_part(&mut self, paths: &Paths, segment: Ends, part: Ends) {
-        paths.nodes_of_part(part, |node| {
+    pub(super) fn add_part(&mut self, chains: &Chains, segment: Ends, part: Ends) {
+        chains.nodes_of_part(part, |node| {
             if node != segment {
                 self.segments_on.insert(node, segment);
             }
@@ -238,16 +241,16 @@ impl Index {
 
     /// Removes a segment from the nodes of a part of its chain, and appends these to `nodes`. The
     /// node that is the segment itself stays.
-    pub(super) fn remove_part(&mut self, paths: &Paths, segment: Ends, part: Ends, nodes: &mut Vec<Ends>) {
-        paths.nodes_of_part(part, |node| {
+    pub(super) fn remove_part(&mut self, chains: &Chains, segment: Ends, part: Ends, nodes: &mut Vec<Ends>) {
+        chains.nodes_of_part(part, |node| {
             self.segments_on.remove(node, segment);
             nodes.push(node);
         });
     }
 
     /// Records that an edge was split.
-    pub(super) fn split(&mut self, paths: &Paths, edge: Ends, at: VertexId) {
-        let segments: Vec<Ends> = self.segments_on(paths, edge).collect();
+    pub(super) fn split(&mut self, chains: &Chains, edge: Ends, at: VertexId) {
+        let segments: Vec<Ends> = self.segments_on(chains, edge).collect();
         for segment in segments {
             for end in edge {
                 self.segments_on.insert(undirected(end, at), segment);
@@ -259,32 +262,4 @@ impl Index {
 /// The segments of a line, from the smaller vertex to the larger; with repetitions.
 fn segments_of_line(vertices: &[VertexId]) -> impl Iterator<Item = Ends> + '_ {
     vertices.windows(2).filter(|pair| pair[0] != pair[1]).map(|pair| undirected(pair[0], pair[1]))
-}
-
-impl Lines {
-    /// Returns the index. The first call takes linear time.
-    pub(super) fn index(&self) -> &Index {
-        self.index.get_or_init(|| Index::of(&self.paths))
-    }
-
-    /// Returns the index, mutable, with its grid.
-    ///
-    /// # Errors
-    /// If edits cannot be local.
-    pub(super) fn measured<G: Crossing, V, C: Copy + Default>(
-        &mut self,
-        t: &Mesh<G, V, C>,
-    ) -> Result<&mut Index, NotLocal> {
-        if !self.index().is_measured {
-            let mut index = self.index.take().ok_or(NotLocal)?;
-            index.measure(self, t);
-            self.index = OnceLock::from(index);
-        }
-        self.index.get_mut().filter(|index| index.rounder.is_some()).ok_or(NotLocal)
-    }
-
-    /// Returns the index, if it exists, and the tables.
-    pub(super) fn index_and_paths(&mut self) -> (Option<&mut Index>, &mut Paths) {
-        (self.index.get_mut(), &mut self.paths)
-    }
 }

@@ -26,13 +26,13 @@ use crate::geometry::Crossing;
 use crate::locate::Location;
 use crate::tds::{CellId, VertexId};
 
-use super::Lines;
-use super::build::Rounding;
+use super::chains::{Ends, undirected};
 use super::change::Change;
-use super::constrain::{Mesh, position};
 use super::index::NotLocal;
+use super::mesh::{Mesh, position};
 use super::near_segment::{Band, Nearby, near};
-use super::paths::{Ends, undirected};
+use super::rounding::Rounding;
+use super::tables::Lines;
 
 /// How many units around a segment or a site are searched. One would suffice, except for rounding.
 const REACH: f64 = 2.0;
@@ -138,7 +138,7 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
     /// Removes a segment that is no longer part of a line.
     pub(super) fn remove_segment(mut self, segment: Ends) -> Result<(), NotLocal> {
         self.removed = Some(segment);
-        let sites = self.lines.paths.sites(segment);
+        let sites = self.lines.chains.sites(segment);
         self.retract(sites);
         self.apply_rules()?;
         self.carry_out()
@@ -235,7 +235,7 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
     /// Returns the segments on edges, each once, in order, with what was given of one of its edges.
     fn segments_on_each(&self, edges: Vec<(Ends, CellId)>) -> Vec<(Ends, CellId)> {
         let index = self.lines.index();
-        let on_edge = |(edge, cell)| index.segments_on(&self.lines.paths, edge).map(move |segment| (segment, cell));
+        let on_edge = |(edge, cell)| index.segments_on(&self.lines.chains, edge).map(move |segment| (segment, cell));
         let mut segments: Vec<(Ends, CellId)> = edges.into_iter().flat_map(on_edge).collect();
         segments.retain(|&(segment, _)| Some(segment) != self.added && Some(segment) != self.removed);
         segments.sort_unstable();
@@ -245,7 +245,7 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
 
     fn segments_on(&self, edges: impl IntoIterator<Item = Ends>) -> Vec<Ends> {
         let index = self.lines.index();
-        let segments = edges.into_iter().flat_map(|edge| index.segments_on(&self.lines.paths, edge));
+        let segments = edges.into_iter().flat_map(|edge| index.segments_on(&self.lines.chains, edge));
         let mut segments: Vec<Ends> =
             segments.filter(|&segment| Some(segment) != self.added && Some(segment) != self.removed).collect();
         segments.sort_unstable();
@@ -254,7 +254,7 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
     }
 
     fn is_bent(&self, segment: Ends) -> bool {
-        self.chains.get(&segment).map_or_else(|| self.lines.paths.bent.contains_key(&segment), Option::is_some)
+        self.chains.get(&segment).map_or_else(|| self.lines.chains.bent.contains_key(&segment), Option::is_some)
     }
 
     /// Returns true if a segment bends to a vertex between its ends.
@@ -262,7 +262,7 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
         if let Some(chain) = self.chains.get(&segment) {
             return chain.as_ref().is_some_and(|sites| sites.contains(&vertex));
         }
-        let Some(sites) = self.lines.paths.bent.get(&segment) else { return false };
+        let Some(sites) = self.lines.chains.bent.get(&segment) else { return false };
         if sites.len() <= SHORT {
             return sites.contains(&vertex);
         }
@@ -292,7 +292,7 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
 
     /// Returns the current sites of a segment.
     fn sites(&self, segment: Ends) -> Vec<VertexId> {
-        let in_table = || self.lines.paths.bent.get(&segment).map(|sites| sites.to_vec());
+        let in_table = || self.lines.chains.bent.get(&segment).map(|sites| sites.to_vec());
         self.chains.get(&segment).cloned().unwrap_or_else(in_table).unwrap_or_default()
     }
 
@@ -306,7 +306,7 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
 
     /// Returns the sites of a bent segment, mutable.
     fn sites_mut(&mut self, segment: Ends) -> &mut Vec<VertexId> {
-        let table = &self.lines.paths.bent;
+        let table = &self.lines.chains.bent;
         let in_table = || {
             let sites = table.get(&segment)?;
             let mut copy = Vec::with_capacity(sites.len() + 2); // more will be inserted
@@ -381,7 +381,7 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
         location: Location,
     ) -> Option<(CellId, usize)> {
         let Location::Cell { cell, facets } = location else { return None };
-        let sites = self.lines.paths.bent.get(&segment).map_or(&[][..], |sites| sites);
+        let sites = self.lines.chains.bent.get(&segment).map_or(&[][..], |sites| sites);
         let next = self.position_along(segment, sites, at);
         let from = if next == 0 { segment[0] } else { sites[next - 1] };
         let part = undirected(from, *sites.get(next).unwrap_or(&segment[1]));
@@ -390,7 +390,7 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
             self.t.is_constrained(cell, i) && undirected(a, b) == part
         };
         let i = (0..3).find(is_part).filter(|_| facets.is_empty())?;
-        let mut others = self.lines.index().segments_on(&self.lines.paths, part);
+        let mut others = self.lines.index().segments_on(&self.lines.chains, part);
         let is_only = others.all(|other| other == segment);
         (is_only && self.t.in_conflict(self.t.tds.neighbor(cell, i), p)).then_some((cell, i))
     }
@@ -537,28 +537,28 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
         let changes = self.changes(&leaving);
 
         // The tables. An edge of a chain that changes is released unless another chain needs it.
-        let (index, paths) = self.lines.index_and_paths();
+        let (index, chains) = self.lines.index_and_chains();
         let index = index.ok_or(NotLocal)?;
         let mut edges: Vec<Ends> = Vec::new();
         for change in &changes {
-            change.old_parts().for_each(|part| index.remove_part(paths, change.segment, part, &mut edges));
+            change.old_parts().for_each(|part| index.remove_part(chains, change.segment, part, &mut edges));
         }
         for (segment, part) in std::mem::take(&mut self.replacing) {
-            index.remove_part(paths, segment, part, &mut edges);
+            index.remove_part(chains, segment, part, &mut edges);
         }
         edges.sort_unstable();
         edges.dedup();
         let straight = |edge: &Ends| changes.binary_search_by(|change| change.segment.cmp(edge));
         let is_rerouted = |edge: &Ends| straight(edge).is_ok_and(|at| changes[at].old_parts().next().is_some());
-        edges.retain(|&edge| index.segments_on(paths, edge).all(|other| other == edge && is_rerouted(&edge)));
-        edges.retain(|edge| paths.splits.remove(edge).is_none());
+        edges.retain(|&edge| index.segments_on(chains, edge).all(|other| other == edge && is_rerouted(&edge)));
+        edges.retain(|edge| chains.splits.remove(edge).is_none());
         let mut stale = std::mem::take(&mut self.stale);
         let mut parts: Vec<Ends> = Vec::new();
         for change in &changes {
             if change.is_bent {
-                paths.bent.insert(change.segment, change.new_sites().into());
+                chains.bent.insert(change.segment, change.new_sites().into());
             } else {
-                paths.bent.remove(&change.segment);
+                chains.bent.remove(&change.segment);
             }
             stale.extend(change.sites_that_change());
             parts.extend(change.new_parts());
@@ -587,10 +587,10 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
                 return Err(NotLocal);
             }
         }
-        let (index, paths) = self.lines.index_and_paths();
+        let (index, chains) = self.lines.index_and_chains();
         let index = index.ok_or(NotLocal)?;
         for change in &changes {
-            change.new_parts().for_each(|part| index.add_part(paths, change.segment, part));
+            change.new_parts().for_each(|part| index.add_part(chains, change.segment, part));
         }
 
         // The points of vertices at which other segments cross now.
@@ -599,7 +599,7 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
         self.added = None;
         stale.retain(|&v| self.lines.added.contains(v));
         stale.into_iter().for_each(|site| self.renew_point(site));
-        let is_rounded = !self.lines.paths.bent.is_empty();
+        let is_rounded = !self.lines.chains.bent.is_empty();
         self.lines.rounding =
             is_rounded.then(|| Rounding { unit: self.rounder.unit(), on_grid: self.rounder.is_even() });
         self.lines.touch();
@@ -625,13 +625,13 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
     /// Returns the changes of chains, ordered by segment: of those whose sites differ, and of those
     /// with a vertex that is to be removed, even if it only split one of their parts.
     fn changes(&mut self, leaving: &[VertexId]) -> Vec<Change> {
-        let paths = &self.lines.paths;
+        let chains = &self.lines.chains;
         let from_end_to_end = |[a, b]: Ends, sites: &[VertexId]| [&[a], sites, &[b]].concat();
         let mut changes: Vec<Change> = Vec::new();
         for (segment, sites) in std::mem::take(&mut self.chains) {
             let is_new = Some(segment) == self.added;
-            if is_new || sites.as_deref() != paths.bent.get(&segment).map(|sites| &**sites) {
-                let old = if is_new { Vec::new() } else { paths.sites(segment) };
+            if is_new || sites.as_deref() != chains.bent.get(&segment).map(|sites| &**sites) {
+                let old = if is_new { Vec::new() } else { chains.sites(segment) };
                 let new = from_end_to_end(segment, sites.as_deref().unwrap_or_default());
                 changes.push(Change::new(segment, old, new, sites.is_some()));
             }
@@ -640,14 +640,14 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
             changes.push(Change::new(added, Vec::new(), added.to_vec(), false));
         }
         if let Some(removed) = self.removed {
-            changes.push(Change::new(removed, paths.sites(removed), Vec::new(), false));
+            changes.push(Change::new(removed, chains.sites(removed), Vec::new(), false));
         }
         changes.sort_unstable_by_key(|change| change.segment);
         for &vertex in leaving {
             for segment in self.lines_at(vertex) {
                 let at = changes.binary_search_by(|change| change.segment.cmp(&segment)).unwrap_or_else(|at| {
-                    let sites = self.lines.paths.sites(segment);
-                    let is_bent = self.lines.paths.bent.contains_key(&segment);
+                    let sites = self.lines.chains.sites(segment);
+                    let is_bent = self.lines.chains.bent.contains_key(&segment);
                     changes.insert(at, Change::new(segment, sites.clone(), sites, is_bent));
                     at
                 });

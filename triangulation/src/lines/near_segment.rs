@@ -3,8 +3,8 @@
 use crate::geometry::Crossing;
 use crate::tds::{CellId, VertexId};
 
-use super::constrain::{Mesh, position};
-use super::paths::{Ends, undirected};
+use super::chains::{Ends, undirected};
+use super::mesh::{Mesh, position};
 
 /// The points within some distance of a segment on each axis: a hexagon; for a point, a rectangle.
 ///

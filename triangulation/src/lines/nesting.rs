@@ -7,8 +7,8 @@ use crate::geometry::Crossing;
 use crate::line_id::LineId;
 use crate::tds::{CellId, VertexId};
 
+use super::chains::undirected;
 use super::constrained_delaunay::ConstrainedDelaunay;
-use super::paths::undirected;
 
 impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
     /// Returns the nesting depth of each cell: the least number of constraints on a path to it from

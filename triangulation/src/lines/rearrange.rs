@@ -18,8 +18,9 @@ use super::constrained_delaunay::ConstrainedDelaunay;
 use crate::bulk::{Grain, spatial_order};
 use crate::locate::Dice;
 
-use super::build::{Rounding, points_added};
-use super::paths::{segments_of, undirected};
+use super::build::points_added;
+use super::chains::{segments_of, undirected};
+use super::rounding::Rounding;
 
 /// What the lines demand: segments between given vertices.
 struct Demand {
@@ -39,14 +40,14 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
     pub(super) fn rearrange(&mut self) {
         self.lines.index.take();
         self.lines.rearrangements += 1;
-        let used: HashSet<VertexId> = self.lines.paths.each().flatten().copied().collect();
+        let used: HashSet<VertexId> = self.lines.chains.each().flatten().copied().collect();
         let leaving: HashSet<VertexId> = self.lines.owned.iter().filter(|v| !used.contains(v)).collect();
         let demand = self.demand(&leaving);
         if self.dimension() < 2 {
             self.lines.waiting = demand.segments.iter().map(|ends| ends.map(|i| demand.given[i as usize])).collect();
             // The vertices that bend or split them may be removed.
-            self.lines.paths.bent.clear();
-            self.lines.paths.splits.clear();
+            self.lines.chains.bent.clear();
+            self.lines.chains.splits.clear();
             self.lines.rounding = None;
             self.lines.recrossed = false;
             self.lines.missing.clear();
@@ -81,7 +82,7 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
         let is_given = |v: &VertexId| !self.is_added(*v) && !leaving.contains(v);
         let given: Vec<VertexId> = self.tds().vertices().filter(is_given).collect();
         let number = |v: VertexId| given.partition_point(|&other| other < v) as u32;
-        let segments = segments_of(self.lines.paths.each(), number);
+        let segments = segments_of(self.lines.chains.each(), number);
         let positions = given.iter().map(|&v| self.plan_of(v)).collect();
         Demand { given, positions, segments }
     }
@@ -114,11 +115,11 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
                 let Some((from, to)) = ends else { continue };
                 chain.clear();
                 chain.push(from);
-                self.lines.paths.walk_part(from, to, &mut chain);
+                self.lines.chains.walk_part(from, to, &mut chain);
                 let is_there = chain.windows(2).all(|edge| self.inner.has_constraint(edge[0], edge[1]));
                 if is_there && !chain.iter().any(|v| leaving.contains(v)) {
                     kept.extend(chain.windows(2).map(|edge| undirected(edge[0], edge[1])));
-                    self.lines.paths.copy_splits(from, to, &mut splits);
+                    self.lines.chains.copy_splits(from, to, &mut splits);
                 }
             }
         }
@@ -128,7 +129,7 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
         for [a, b] in constrained.into_iter().filter(|edge| !kept.contains(edge)) {
             self.lines.release(&mut self.inner, a, b);
         }
-        self.lines.paths.splits = splits;
+        self.lines.chains.splits = splits;
         leaving.iter().for_each(|&v| _ = self.lines.added.remove(v));
         self.take_out(leaving);
 
@@ -153,10 +154,10 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
             }
         }
         let sites: Vec<VertexId> = sites.into_iter().flatten().collect(); // all are known now
-        let parts = self.lines.paths.record(arrangement, segments, |site| sites[site as usize]);
+        let parts = self.lines.chains.record(arrangement, segments, |site| sites[site as usize]);
         self.lines.rounding = Rounding::of(arrangement);
         let crossing = self.constrain_all(parts, Grain::default());
-        self.lines.paths.drop_stray_splits();
+        self.lines.chains.drop_stray_splits();
         self.lines.touch();
         crossing
     }

@@ -3,9 +3,9 @@
 use crate::line_id::LineId;
 use crate::tds::VertexId;
 
-use super::Lines;
-use super::build::Rounding;
-use super::paths::Paths;
+use super::chains::Chains;
+use super::rounding::Rounding;
+use super::tables::Lines;
 
 /// The content of [`Lines`], in an order that depends on nothing else.
 pub(crate) struct SavedTables {
@@ -26,14 +26,14 @@ pub(crate) struct SavedTables {
 impl Lines {
     /// Returns a copy of the content.
     pub(crate) fn saved_tables(&self) -> SavedTables {
-        let segments = self.paths.segments();
+        let segments = self.chains.segments();
         let mut splits: Vec<[VertexId; 3]> =
-            self.paths.splits.iter().map(|(&[a, b], &between)| [a, b, between]).collect();
+            self.chains.splits.iter().map(|(&[a, b], &between)| [a, b, between]).collect();
         splits.sort_unstable();
-        let bent = segments.iter().filter(|ends| self.paths.bent.contains_key(*ends));
+        let bent = segments.iter().filter(|ends| self.chains.bent.contains_key(*ends));
         SavedTables {
-            given: self.paths.given.iter().map(|line| line.as_deref().map(<[_]>::to_vec)).collect(),
-            bent: bent.map(|&ends| self.paths.sites(ends)).collect(),
+            given: self.chains.given.iter().map(|line| line.as_deref().map(<[_]>::to_vec)).collect(),
+            bent: bent.map(|&ends| self.chains.sites(ends)).collect(),
             splits,
             waiting: self.waiting.clone(),
             added: self.added.iter().collect(),
@@ -52,23 +52,23 @@ impl Lines {
             return Err("there are too many lines");
         }
         let given = tables.given.into_iter().map(|line| line.map(|vertices| vertices[..].into()));
-        let mut paths = Paths { given: given.collect(), ..Paths::default() };
+        let mut chains = Chains { given: given.collect(), ..Chains::default() };
         for chain in tables.bent {
             let is_new = match chain[..] {
-                [a, ref between @ .., b] => a < b && paths.bent.insert([a, b], between.into()).is_none(),
+                [a, ref between @ .., b] => a < b && chains.bent.insert([a, b], between.into()).is_none(),
                 _ => false,
             };
             is_new.then_some(()).ok_or("a segment has two chains, or is turned around")?;
         }
         for [a, b, between] in tables.splits {
-            let is_new = a < b && paths.splits.insert([a, b], between).is_none();
+            let is_new = a < b && chains.splits.insert([a, b], between).is_none();
             is_new.then_some(()).ok_or("an edge is split twice, or is turned around")?;
         }
         if tables.waiting.iter().any(|[a, b]| a == b) {
             return Err("a constraint has one end");
         }
         Ok(Lines {
-            paths,
+            chains,
             waiting: tables.waiting,
             added: tables.added.into_iter().collect(),
             owned: tables.owned.into_iter().collect(),

@@ -8,7 +8,7 @@ use crate::lines::ConstrainedDelaunay;
 use crate::num::Sign;
 use crate::tds::{CellId, VertexId, Zone, ccw, cw};
 
-use super::OUTSIDE;
+use super::quality::OUTSIDE;
 use super::shape::{area, is_in_lens, minus};
 use super::shells::Shells;
 

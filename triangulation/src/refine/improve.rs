@@ -7,9 +7,9 @@ use crate::geometry::Crossing;
 use crate::tds::{CellId, VertexId, ccw};
 
 use super::draft::{Attempt, Draft, Origin};
+use super::quality::{Quality, Shortfall};
 use super::queue::{Bad, Queue};
 use super::shape::{Shape, length, minus};
-use super::{Quality, Shortfall};
 
 /// Two lengths that differ by less than this fraction are radii of the same circle, rounded.
 const SAME_CIRCLE: f64 = 1e-3;

@@ -5,7 +5,7 @@ use crate::lines::ConstrainedDelaunay;
 use crate::locate::Location;
 use crate::tds::{CellId, VertexId};
 
-use super::{Domain, OUTSIDE, RegionBound};
+use super::quality::{Domain, OUTSIDE, RegionBound};
 
 /// Returns for each cell, by number: [`OUTSIDE`], or 0, or one more than the index of its region.
 /// Makes the hull's edges constraints where the domain needs it.

@@ -9,9 +9,8 @@
 use crate::parallel::*;
 use crate::tds::{CellId, Links};
 
-use super::Built;
 use super::cell::Cell;
-use super::part::{Facet, Part, Seam, facet};
+use super::part::{Built, Facet, Part, Seam, facet};
 
 /// Returns the ranks of the vertices of open cells.
 pub(super) fn residual(parts: &[Part]) -> Vec<u32> {

@@ -3,10 +3,10 @@
 use crate::num::Sign;
 use crate::num::lanes::{self, prefetch};
 
-use super::Source;
 use super::blocks::Block;
 use super::cell::{Cell, Corner, DUMMY, FACETS};
 use super::predicates::Predicates;
+use super::source::Source;
 use super::sphere::{self, Arrow, Frame, MARKED, Origin, Query, Sphere, UNKNOWN};
 use super::weights::Weights;
 

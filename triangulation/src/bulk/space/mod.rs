@@ -30,20 +30,21 @@ mod mesh;
 mod order;
 mod part;
 mod predicates;
+mod source;
 mod sphere;
 #[cfg(test)]
 mod tests;
 mod weights;
 
-use crate::geometry::{Coordinates, in_sphere, in_sphere_of_flat};
+use crate::geometry::Coordinates;
 use crate::num::Sign;
 use crate::parallel::*;
-use crate::tds::{CellId, Links};
 
-use super::Grain;
+use super::grain::Grain;
 use blocks::{Block, Blocks};
 use mesh::{Extent, Mesh};
-use part::Part;
+use part::{Built, Part};
+use source::{Source, with_source};
 
 /// The largest number of points. Evenly spread ones have about 7 cells each, which are numbered in
 /// 30 bits; where points have more (on the moment curve half as many as there are points), that is
@@ -52,37 +53,6 @@ const MAX_POINTS: usize = 1 << 27;
 
 /// The number of points that are inserted between two looks at the flag that stops the work.
 const POLL: u32 = 1 << 12;
-
-/// Cells that fill their numbers, a cell of each vertex, and a cell of the infinite one.
-pub(super) struct Built {
-    pub(super) links: Vec<Links<4>>,
-    pub(super) of_vertices: Vec<CellId>,
-    pub(super) of_infinite: CellId,
-}
-
-/// Points in spatial order, and the predicates of their geometry, by their ranks.
-///
-/// `PERF:` called seldom, so that the rest need not be compiled for each geometry.
-#[derive(Clone, Copy)]
-struct Source<'a> {
-    count: usize,
-    /// Coordinates, and the weight.
-    site: &'a (dyn Fn(u32) -> [f64; 4] + Sync),
-    orientation: &'a (dyn Fn([u32; 4]) -> Sign + Sync),
-    /// The orientation of three points in a plane of theirs; zero if they are collinear.
-    turn: &'a (dyn Fn([u32; 3]) -> Sign + Sync),
-    /// True if a point is in the sphere of four positively oriented ones, ties decided.
-    in_sphere: &'a (dyn Fn([u32; 4], u32) -> bool + Sync),
-    /// True if a point is in the circle of three others in its plane, ties decided.
-    in_circle: &'a (dyn Fn([u32; 3], u32) -> bool + Sync),
-}
-
-impl Source<'_> {
-    fn position(&self, rank: u32) -> [f64; 3] {
-        let [position @ .., _] = (self.site)(rank);
-        position
-    }
-}
 
 /// Triangulates sites that are [exact](Coordinates::exact_site); vertices are numbered like the
 /// points, and hidden ones have no cell. `None` if the sites are coplanar, fewer than four or too
@@ -99,23 +69,6 @@ pub(super) fn build<G: Coordinates<N>, const N: usize>(
         return None;
     }
     with_source(geometry, points, |source| triangulate(source, grain))
-}
-
-fn with_source<G: Coordinates<N>, const N: usize, T>(
-    geometry: &G,
-    points: &[G::Point],
-    work: impl FnOnce(Source) -> T,
-) -> T {
-    let point = |rank: u32| &points[rank as usize];
-    let simplex = |ranks: [u32; 4]| std::array::from_fn::<_, N, _>(|i| point(ranks[i & 3]));
-    work(Source {
-        count: points.len(),
-        site: &|rank| geometry.exact_site(point(rank)).unwrap_or([f64::NAN; 4]),
-        orientation: &|ranks| geometry.orientation(simplex(ranks)),
-        turn: &|ranks| geometry.orientation_in_flat(&ranks.map(point)),
-        in_sphere: &|ranks, q| in_sphere(geometry, simplex(ranks), point(q)),
-        in_circle: &|ranks, q| in_sphere_of_flat::<G, N>(geometry, &ranks.map(point), point(q)),
-    })
 }
 
 /// Triangulates all points, in blocks if that is worth it.

@@ -4,6 +4,13 @@ use crate::tds::{CellId, Links, VertexId};
 
 use super::cell::{Cell, DUMMY, FACETS};
 
+/// Cells that fill their numbers, a cell of each vertex, and a cell of the infinite one.
+pub(crate) struct Built {
+    pub(crate) links: Vec<Links<4>>,
+    pub(crate) of_vertices: Vec<CellId>,
+    pub(crate) of_infinite: CellId,
+}
+
 /// The neighbor of a cell that is in another part.
 const ELSEWHERE: u32 = u32::MAX;
 

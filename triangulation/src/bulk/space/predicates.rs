@@ -3,8 +3,8 @@
 use crate::kernel::{ErrorBound, Filter, InSphere, Orientation3, Predicate};
 use crate::num::Sign;
 
-use super::Source;
 use super::cell::{Cell, Corner, FACETS};
+use super::source::Source;
 
 /// The predicates of vertices.
 #[derive(Clone, Copy)]

@@ -15,8 +15,10 @@ use crate::tds::VertexId;
 use super::blocks::Blocks;
 use super::mesh::Extent;
 use super::order::rounds;
+use super::part::Built;
+use super::source::with_source;
 use super::sphere::{self, Frame, Origin};
-use super::{Built, build, by_blocks, predicates, whole, with_source};
+use super::{build, by_blocks, predicates, whole};
 
 const FRAME: Frame = Frame { middle: [0.0; 3], scale: 1.0 };
 

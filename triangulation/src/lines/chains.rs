@@ -1,18 +1,14 @@
-//! Line ids, and the path of each line through the triangulation.
+//! The vertices by which lines were given, and the chains of their segments.
 
 use std::ops::{Deref, DerefMut};
 
 use rustc_hash::FxHashMap;
 
 use crate::arrangement::Arrangement;
-use crate::geometry::Crossing;
 use crate::line_id::LineId;
-use crate::num::Sign;
 use crate::tds::VertexId;
 
-use super::constrained_delaunay::ConstrainedDelaunay;
-
-/// The lines as given, and their paths through the triangulation.
+/// The lines as given, and their chains through the triangulation.
 ///
 /// A line is stored as the vertices by which it was given. Two tables describe the vertices between
 /// two of these: the sites to which a segment bends, and the vertex that splits an edge. Both have
@@ -20,7 +16,7 @@ use super::constrained_delaunay::ConstrainedDelaunay;
 /// vertices if there are not just two. A segment that crosses others takes about 40 more, and 4 for
 /// each site on it.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Paths {
+pub(crate) struct Chains {
     /// The vertices of each line, by its id; `None` if it was removed.
     pub(crate) given: Vec<Option<LineVertices>>,
     /// The sites between the ends of each bent segment, from the smaller vertex to the larger.
@@ -98,7 +94,7 @@ pub(crate) fn segments_of<'a, T: Ord>(
     segments
 }
 
-impl Paths {
+impl Chains {
     /// The vertices of each line that exists.
     pub(crate) fn each(&self) -> impl Iterator<Item = &[VertexId]> {
         self.given.iter().flatten().map(|line| &**line)
@@ -243,99 +239,11 @@ impl Paths {
     }
 }
 
-/// Lines by their ids.
-impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
-    /// Appends the vertices of a segment to `chain`, without its start.
-    fn walk(&self, a: VertexId, b: VertexId, chain: &mut Vec<VertexId>) {
-        if self.dimension() == 2 {
-            return self.lines.paths.walk(a, b, chain);
-        }
-        // While all points are collinear, the table has no splits.
-        let first = chain.len();
-        let ends = [a, b].map(|v| self.point(v));
-        let is_between = |&v: &VertexId| self.geometry().side_of_sphere_in_flat(&ends, self.point(v)) == Sign::Positive;
-        chain.extend(self.tds().vertices().filter(is_between));
-        chain[first..].sort_unstable_by(|&u, &v| self.geometry().compare(self.point(u), self.point(v)));
-        if self.geometry().compare(ends[0], ends[1]).is_gt() {
-            chain[first..].reverse();
-        }
-        chain.push(b);
-    }
-
-    /// The ids of all lines, in order.
-    pub fn lines(&self) -> impl Iterator<Item = LineId> + '_ {
-        let given = self.lines.paths.given.iter().enumerate();
-        given.filter(|(_, line)| line.is_some()).map(|(index, _)| LineId::new(index))
-    }
-
-    /// Returns the vertices by which a line was given, in order; points on one site share a vertex.
-    /// Empty for a line that does not exist.
-    pub fn line_vertices(&self, line: LineId) -> &[VertexId] {
-        self.lines.paths.vertices(line)
-    }
-
-    /// Returns the vertices of a line in the triangulation, in order: those by which it was given,
-    /// and those that it passes through between them. Each is joined to the next by a constrained
-    /// edge. Empty for a line that does not exist.
-    ///
-    /// # Complexity
-    /// Linear in the length of the result.
-    pub fn chain(&self, line: LineId) -> Vec<VertexId> {
-        let vertices = self.line_vertices(line);
-        let mut chain: Vec<VertexId> = vertices.first().copied().into_iter().collect();
-        for pair in vertices.windows(2).filter(|pair| pair[0] != pair[1]) {
-            self.walk(pair[0], pair[1], &mut chain);
-        }
-        chain
-    }
-
-    /// Returns the vertices that a segment passes through, between two consecutive vertices of a
-    /// line. Empty if the segment is one edge, or if a vertex does not exist.
-    ///
-    /// # Complexity
-    /// Linear in the length of the result.
-    pub fn segment_chain(&self, a: VertexId, b: VertexId) -> Vec<VertexId> {
-        let mut chain = Vec::new();
-        if [a, b].into_iter().all(|v| self.tds().is_vertex(v)) {
-            self.walk(a, b, &mut chain);
-            chain.pop();
-        }
-        chain
-    }
-
-    /// The ids of all lines that run along the edge between two vertices, in order.
-    ///
-    /// # Complexity
-    /// Constant time for each line. The first call after construction takes linear time and
-    /// allocates about 40 bytes for each segment, and for each edge of segments that are more than
-    /// one.
-    pub fn lines_through(&self, a: VertexId, b: VertexId) -> impl ExactSizeIterator<Item = LineId> + '_ {
-        let edge = undirected(a, b);
-        let mut lines: Vec<LineId> = Vec::new();
-        if self.dimension() < 2 {
-            let runs_along =
-                |line: &LineId| self.chain(*line).windows(2).any(|pair| undirected(pair[0], pair[1]) == edge);
-            lines.extend(self.lines().filter(runs_along));
-        } else if !self.lines.paths.splits.contains_key(&edge) {
-            let index = self.lines.index();
-            lines.extend(index.segments_on(&self.lines.paths, edge).flat_map(|segment| index.lines_of(segment)));
-            lines.sort_unstable();
-            lines.dedup();
-        }
-        lines.into_iter()
-    }
-
-    /// Returns true if a vertex was added where lines cross, rather than given.
-    pub fn is_added(&self, vertex: VertexId) -> bool {
-        self.lines.added.contains(vertex)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// Checks the sizes that the documentation of [`Paths`] states.
+    /// Checks the sizes that the documentation of [`Chains`] states.
     #[test]
     fn lines_are_small() {
         assert_eq!(size_of::<Option<LineVertices>>(), 24, "a line");
