@@ -5,6 +5,7 @@ pub(crate) mod constrained_edges;
 mod corridor;
 pub(crate) mod flip;
 pub(crate) mod insert;
+pub(crate) mod kind_methods;
 pub(crate) mod payloads;
 pub(crate) mod removal;
 pub(crate) mod trace;

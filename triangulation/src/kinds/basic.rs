@@ -1,14 +1,18 @@
 //! The basic kind: a triangulation without a law.
 
+use std::convert::identity;
 use std::ops::Deref;
 
 use crate::engine::Inserted;
 use crate::engine::flip::NoConstraints;
-use crate::engine::insert::{insert_each, insert_located, move_vertex};
-use crate::error::{InputError, MoveError, PointError, RemovalError};
+use crate::engine::insert::{insert_each, move_vertex};
+use crate::engine::kind_methods::{
+    construction_methods, from_points_with_method, insert_method, insertion_methods, payload_methods, remove_by_method,
+};
+use crate::error::{InputError, MoveError, RemovalError};
 use crate::flaw::{Flaw, Level};
 use crate::geometry::{Coordinates, Geometry};
-use crate::locate::{Locate, Location, Near};
+use crate::locate::{Locate, Location};
 use crate::tds::{CellId, VertexId};
 use crate::triangulation::Triangulation;
 
@@ -55,16 +59,7 @@ impl<G: Geometry<N> + Clone, const N: usize, V: Clone, C: Clone> Clone for Basic
 }
 
 impl<G: Geometry<N>, const N: usize, V> Basic<G, N, V> {
-    /// Returns an empty triangulation. Its cells have no payload;
-    /// [`with_cell_data`](Self::with_cell_data) adds one.
-    pub fn new(geometry: G) -> Self {
-        Self::over(Triangulation::new(geometry))
-    }
-
-    /// Like [`new`](Self::new), but with room for that many vertices.
-    pub fn with_capacity(geometry: G, vertices: usize) -> Self {
-        Self::over(Triangulation::with_capacity(geometry, vertices))
-    }
+    construction_methods!();
 }
 
 impl<G: Coordinates<N>, const N: usize> Basic<G, N> {
@@ -82,19 +77,7 @@ impl<G: Coordinates<N>, const N: usize> Basic<G, N> {
         Ok((triangulation, vertices))
     }
 
-    /// Like [`from_points`](Self::from_points), but with payloads. `data` is called once for each
-    /// vertex, with the position of the first point at that vertex, in increasing order.
-    ///
-    /// # Errors
-    /// See [`from_points`](Self::from_points).
-    pub fn from_points_with<V>(
-        geometry: G,
-        points: &[G::Point],
-        data: impl FnMut(usize) -> V,
-    ) -> Result<(Basic<G, N, V>, Vec<VertexId>), InputError> {
-        let (triangulation, vertices) = Self::from_points(geometry, points)?;
-        Ok((Basic::over(triangulation.inner.with_data_of_points(&vertices, data)), vertices))
-    }
+    from_points_with_method!(Basic<G, N, V>);
 }
 
 impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Basic<G, N, V, C> {
@@ -102,77 +85,37 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Basic<G, N, V, C> {
         Basic { inner }
     }
 
-    /// Returns the triangulation with new payloads of its vertices. `data` is called in order of
-    /// the vertex numbers, removed vertices included. Linear time; nothing but payloads is copied.
-    pub fn with_vertex_data<W>(self, data: impl FnMut(VertexId) -> W) -> Basic<G, N, W, C> {
-        Basic::over(self.inner.with_vertex_data(data))
+    /// Converts the triangulation below; its law stays.
+    fn with_inner<W, D>(
+        self,
+        convert: impl FnOnce(Triangulation<G, N, V, C>) -> Triangulation<G, N, W, D>,
+    ) -> Basic<G, N, W, D>
+    where
+        D: Copy + Default,
+    {
+        Basic { inner: convert(self.inner) }
     }
 
-    /// Returns the triangulation with new payloads of its cells. `data` is called in order of the
-    /// cell numbers, infinite cells included. Linear time; nothing but payloads is copied.
-    pub fn with_cell_data<D: Copy + Default>(self, data: impl FnMut(CellId) -> D) -> Basic<G, N, V, D> {
-        Basic::over(self.inner.with_cell_data(data))
+    payload_methods! {
+        vertices: <W> Basic<G, N, W, C>,
+        cells: <D> Basic<G, N, V, D>, with_cell_data, identity,
     }
 
-    /// Inserts a point with a payload and returns its vertex. If the site is taken, returns the
-    /// vertex that is there already, which keeps its payload, together with the unused payload.
-    ///
-    /// # Errors
-    /// If a coordinate is not finite or out of range; nothing has changed then.
-    ///
-    /// # Complexity
-    /// A [walk](Triangulation::locate) from the last insertion. Then constant time inside of the
-    /// hull, and outside of it linear in the number of hull facets that the point sees.
-    pub fn insert_with(&mut self, p: G::Point, data: V) -> Result<Inserted<V>, PointError> {
-        self.insert_by(&mut Near(None), p, data)
-    }
-
-    /// Like [`insert_with`](Self::insert_with), but the search for the point starts at a cell: the
-    /// strategy [`Near`].
-    ///
-    /// # Errors
-    /// See [`insert_with`](Self::insert_with).
-    pub fn insert_near(&mut self, p: G::Point, data: V, near: Option<CellId>) -> Result<Inserted<V>, PointError> {
-        self.insert_by(&mut Near(near), p, data)
-    }
-
-    /// Like [`insert_with`](Self::insert_with), but locates the point by a [strategy](Locate),
-    /// which is notified of the new vertex.
-    ///
-    /// # Errors
-    /// See [`insert_with`](Self::insert_with).
-    pub fn insert_by(
-        &mut self,
-        strategy: &mut impl Locate<G, N>,
-        p: G::Point,
-        data: V,
-    ) -> Result<Inserted<V>, PointError> {
-        insert_located(self, strategy, p, data, Self::insert_at)
+    insertion_methods! {
+        /// Inserts a point with a payload and returns its vertex. If the site is taken, returns the
+        /// vertex that is there already, which keeps its payload, together with the unused payload.
+        ///
+        /// # Errors
+        /// If a coordinate is not finite or out of range; nothing has changed then.
+        ///
+        /// # Complexity
+        /// A [walk](Triangulation::locate) from the last insertion. Then constant time inside of
+        /// the hull, and outside of it linear in the number of hull facets that the point sees.
+        by Locate<G, N>
     }
 
     fn insert_at(&mut self, p: G::Point, data: V, location: Location) -> Inserted<V> {
         self.inner.insert_at(p, location, data, takes(&p), |data, _| *data)
-    }
-
-    /// Returns the payload of a cell, mutable. O(1).
-    pub fn cell_data_mut(&mut self, cell: CellId) -> &mut C {
-        self.inner.tds.cell_data_mut(cell)
-    }
-
-    /// The finite vertices with their payloads, mutable, in order of their numbers.
-    pub fn vertex_data_iter_mut(&mut self) -> impl Iterator<Item = (VertexId, &mut V)> {
-        self.inner.tds.vertex_data_iter_mut()
-    }
-
-    /// All cells with their payloads, mutable, the infinite ones included, in order of their
-    /// numbers.
-    pub fn cell_data_iter_mut(&mut self) -> impl Iterator<Item = (CellId, &mut C)> {
-        self.inner.tds.cell_data_iter_mut()
-    }
-
-    /// Returns the payload of a finite vertex, mutable.
-    pub fn vertex_data_mut(&mut self, vertex: VertexId) -> &mut V {
-        self.inner.tds.vertex_data_mut(vertex)
     }
 
     /// Returns the flaws found by a check up to the given level, with exact predicates. There is no
@@ -184,14 +127,7 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Basic<G, N, V, C> {
 }
 
 impl<G: Geometry<N>, const N: usize, C: Copy + Default> Basic<G, N, (), C> {
-    /// Inserts a point and returns its vertex; if the site is taken, the vertex that is there
-    /// already.
-    ///
-    /// # Errors
-    /// See [`insert_with`](Self::insert_with).
-    pub fn insert(&mut self, p: G::Point) -> Result<VertexId, PointError> {
-        Ok(self.insert_with(p, ())?.vertex)
-    }
+    insert_method!();
 }
 
 impl<G: Coordinates<N>, const N: usize, C: Copy + Default> Basic<G, N, (), C> {
@@ -227,13 +163,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Basic<G, 3, V, C> {
         Ok(*self.point(vertex))
     }
 
-    /// Like [`remove`](Self::remove), but also notifies a location [strategy](Locate).
-    ///
-    /// # Errors
-    /// See [`remove`](Self::remove).
-    pub fn remove_by(&mut self, strategy: &mut impl Locate<G, 3>, vertex: VertexId) -> Result<G::Point, RemovalError> {
-        self.remove(vertex).inspect(|_| strategy.removed(vertex))
-    }
+    remove_by_method!(Locate<G, 3>);
 
     /// Moves a vertex to another point and returns it; it keeps its number and payload. If the site
     /// is taken, the vertex is removed, and the one that is there already is returned.

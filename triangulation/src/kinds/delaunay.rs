@@ -1,14 +1,18 @@
+use std::convert::identity;
 use std::ops::Deref;
 use std::sync::atomic::AtomicBool;
 
 use crate::bulk;
 use crate::engine::Inserted;
-use crate::engine::insert::{insert_each, insert_located, move_vertex};
+use crate::engine::insert::{insert_each, move_vertex};
+use crate::engine::kind_methods::{
+    construction_methods, from_points_with_method, insert_method, insertion_methods, payload_methods, remove_by_method,
+};
 use crate::engine::removal::Removal;
-use crate::error::{InputError, MoveError, PointError, RemovalError};
+use crate::error::{InputError, MoveError, RemovalError};
 use crate::flaw::{Flaw, Level};
 use crate::geometry::{Coordinates, Geometry};
-use crate::locate::{Locate, Location, Near};
+use crate::locate::{Locate, Location};
 use crate::tds::{CellId, VertexId};
 use crate::triangulation::Triangulation;
 
@@ -38,6 +42,26 @@ use crate::triangulation::Triangulation;
 /// assert_eq!(land.finite_cells().filter(|&cell| *land.tds().cell_data(cell) == "lake").count(), 3);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
+///
+/// Payloads can be changed at any time:
+///
+/// ```
+/// use breakline_triangulation::{geometry::Plane, Delaunay};
+///
+/// let points = [[0.0, 0.0], [4.0, 0.0], [0.0, 4.0], [4.0, 4.0]];
+/// let (mut t, v) = Delaunay::from_points_with(Plane::new(), &points, |k| k)?;
+/// t.remove(v[1])?;
+/// for (vertex, data) in t.vertex_data_iter_mut() {
+///     *data = 10 * *data + usize::from(vertex == v[3]);
+/// }
+/// assert_eq!([0, 2, 3].map(|k| *t.tds().vertex_data(v[k])), [0, 20, 31]);
+/// assert!(t.vertex_data_iter_mut().all(|(vertex, _)| vertex != v[1]));
+///
+/// let mut t = t.with_cell_data(|_| 0);
+/// t.cell_data_iter_mut().for_each(|(cell, data)| *data = cell.index() + 1);
+/// assert!(t.tds().cells().all(|cell| *t.tds().cell_data(cell) == cell.index() + 1));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug)]
 pub struct Delaunay<G: Geometry<N>, const N: usize, V = (), C = ()> {
     pub(crate) inner: Triangulation<G, N, V, C>,
@@ -58,16 +82,7 @@ impl<G: Geometry<N> + Clone, const N: usize, V: Clone, C: Clone> Clone for Delau
 }
 
 impl<G: Geometry<N>, const N: usize, V> Delaunay<G, N, V> {
-    /// Returns an empty triangulation. Its cells have no payload;
-    /// [`with_cell_data`](Self::with_cell_data) adds one.
-    pub fn new(geometry: G) -> Self {
-        Self::over(Triangulation::new(geometry))
-    }
-
-    /// Like [`new`](Self::new), but with room for that many vertices.
-    pub fn with_capacity(geometry: G, vertices: usize) -> Self {
-        Self::over(Triangulation::with_capacity(geometry, vertices))
-    }
+    construction_methods!();
 }
 
 impl<G: Coordinates<N>, const N: usize> Delaunay<G, N> {
@@ -131,19 +146,7 @@ impl<G: Coordinates<N>, const N: usize> Delaunay<G, N> {
         Ok((triangulation, vertices))
     }
 
-    /// Like [`from_points`](Self::from_points), but with payloads. `data` is called once for each
-    /// vertex, with the position of the first point at that vertex, in increasing order.
-    ///
-    /// # Errors
-    /// See [`from_points`](Self::from_points).
-    pub fn from_points_with<V>(
-        geometry: G,
-        points: &[G::Point],
-        data: impl FnMut(usize) -> V,
-    ) -> Result<(Delaunay<G, N, V>, Vec<VertexId>), InputError> {
-        let (triangulation, vertices) = Self::from_points(geometry, points)?;
-        Ok((Delaunay::over(triangulation.inner.with_data_of_points(&vertices, data)), vertices))
-    }
+    from_points_with_method!(Delaunay<G, N, V>);
 }
 
 impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Delaunay<G, N, V, C> {
@@ -151,52 +154,33 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Delaunay<G, N, V, C> 
         Delaunay { inner }
     }
 
-    /// Returns the triangulation with new payloads of its vertices. `data` is called in order of
-    /// the vertex numbers, removed vertices included. Linear time; nothing but payloads is copied.
-    pub fn with_vertex_data<W>(self, data: impl FnMut(VertexId) -> W) -> Delaunay<G, N, W, C> {
-        Delaunay::over(self.inner.with_vertex_data(data))
+    /// Converts the triangulation below; its law stays.
+    fn with_inner<W, D>(
+        self,
+        convert: impl FnOnce(Triangulation<G, N, V, C>) -> Triangulation<G, N, W, D>,
+    ) -> Delaunay<G, N, W, D>
+    where
+        D: Copy + Default,
+    {
+        Delaunay { inner: convert(self.inner) }
     }
 
-    /// Returns the triangulation with new payloads of its cells. `data` is called in order of the
-    /// cell numbers, infinite cells included. Linear time; nothing but payloads is copied.
-    pub fn with_cell_data<D: Copy + Default>(self, data: impl FnMut(CellId) -> D) -> Delaunay<G, N, V, D> {
-        Delaunay::over(self.inner.with_cell_data(data))
+    payload_methods! {
+        vertices: <W> Delaunay<G, N, W, C>,
+        cells: <D> Delaunay<G, N, V, D>, with_cell_data, identity,
     }
 
-    /// Inserts a point with a payload and returns its vertex. If the site is taken, returns the
-    /// vertex that is there already, which keeps its payload, together with the unused payload.
-    ///
-    /// # Errors
-    /// If a coordinate is not finite or out of range; nothing has changed then.
-    ///
-    /// # Complexity
-    /// A [walk](Triangulation::locate) from the last insertion, then linear in the number of cells
-    /// replaced: constant on average for points in spatial order.
-    pub fn insert_with(&mut self, p: G::Point, data: V) -> Result<Inserted<V>, PointError> {
-        self.insert_by(&mut Near(None), p, data)
-    }
-
-    /// Like [`insert_with`](Self::insert_with), but the search for the point starts at a cell: the
-    /// strategy [`Near`].
-    ///
-    /// # Errors
-    /// See [`insert_with`](Self::insert_with).
-    pub fn insert_near(&mut self, p: G::Point, data: V, near: Option<CellId>) -> Result<Inserted<V>, PointError> {
-        self.insert_by(&mut Near(near), p, data)
-    }
-
-    /// Like [`insert_with`](Self::insert_with), but locates the point by a [strategy](Locate),
-    /// which is notified of the new vertex.
-    ///
-    /// # Errors
-    /// See [`insert_with`](Self::insert_with).
-    pub fn insert_by(
-        &mut self,
-        strategy: &mut impl Locate<G, N>,
-        p: G::Point,
-        data: V,
-    ) -> Result<Inserted<V>, PointError> {
-        insert_located(self, strategy, p, data, Self::insert_at)
+    insertion_methods! {
+        /// Inserts a point with a payload and returns its vertex. If the site is taken, returns the
+        /// vertex that is there already, which keeps its payload, together with the unused payload.
+        ///
+        /// # Errors
+        /// If a coordinate is not finite or out of range; nothing has changed then.
+        ///
+        /// # Complexity
+        /// A [walk](Triangulation::locate) from the last insertion, then linear in the number of
+        /// cells replaced: constant on average for points in spatial order.
+        by Locate<G, N>
     }
 
     fn insert_at(&mut self, p: G::Point, data: V, location: Location) -> Inserted<V> {
@@ -209,56 +193,10 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Delaunay<G, N, V, C> 
     pub fn check(&self, level: Level) -> Vec<Flaw> {
         self.flaws(level, |_, _| true)
     }
-
-    /// The finite vertices with their payloads, mutable, in order of their numbers.
-    ///
-    /// ```
-    /// use breakline_triangulation::{geometry::Plane, Delaunay};
-    ///
-    /// let points = [[0.0, 0.0], [4.0, 0.0], [0.0, 4.0], [4.0, 4.0]];
-    /// let (mut t, v) = Delaunay::from_points_with(Plane::new(), &points, |k| k)?;
-    /// t.remove(v[1])?;
-    /// for (vertex, data) in t.vertex_data_iter_mut() {
-    ///     *data = 10 * *data + usize::from(vertex == v[3]);
-    /// }
-    /// assert_eq!([0, 2, 3].map(|k| *t.tds().vertex_data(v[k])), [0, 20, 31]);
-    /// assert!(t.vertex_data_iter_mut().all(|(vertex, _)| vertex != v[1]));
-    ///
-    /// let mut t = t.with_cell_data(|_| 0);
-    /// t.cell_data_iter_mut().for_each(|(cell, data)| *data = cell.index() + 1);
-    /// assert!(t.tds().cells().all(|cell| *t.tds().cell_data(cell) == cell.index() + 1));
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    pub fn vertex_data_iter_mut(&mut self) -> impl Iterator<Item = (VertexId, &mut V)> {
-        self.inner.tds.vertex_data_iter_mut()
-    }
-
-    /// All cells with their payloads, mutable, the infinite ones included, in order of their
-    /// numbers.
-    pub fn cell_data_iter_mut(&mut self) -> impl Iterator<Item = (CellId, &mut C)> {
-        self.inner.tds.cell_data_iter_mut()
-    }
-
-    /// Returns the payload of a finite vertex, mutable.
-    pub fn vertex_data_mut(&mut self, vertex: VertexId) -> &mut V {
-        self.inner.tds.vertex_data_mut(vertex)
-    }
-
-    /// Returns the payload of a cell, mutable. O(1).
-    pub fn cell_data_mut(&mut self, cell: CellId) -> &mut C {
-        self.inner.tds.cell_data_mut(cell)
-    }
 }
 
 impl<G: Geometry<N>, const N: usize, C: Copy + Default> Delaunay<G, N, (), C> {
-    /// Inserts a point and returns its vertex; if the site is taken, the vertex that is there
-    /// already.
-    ///
-    /// # Errors
-    /// See [`insert_with`](Self::insert_with).
-    pub fn insert(&mut self, p: G::Point) -> Result<VertexId, PointError> {
-        Ok(self.insert_with(p, ())?.vertex)
-    }
+    insert_method!();
 }
 
 impl<G: Coordinates<N>, const N: usize, C: Copy + Default> Delaunay<G, N, (), C> {
@@ -299,13 +237,7 @@ where
         Ok(*self.point(vertex))
     }
 
-    /// Like [`remove`](Self::remove), but also notifies a location [strategy](Locate).
-    ///
-    /// # Errors
-    /// See [`remove`](Self::remove).
-    pub fn remove_by(&mut self, strategy: &mut impl Locate<G, N>, vertex: VertexId) -> Result<G::Point, RemovalError> {
-        self.remove(vertex).inspect(|_| strategy.removed(vertex))
-    }
+    remove_by_method!(Locate<G, N>);
 
     /// Moves a vertex to another point and returns it; it keeps its number and payload. If the site
     /// is taken, the vertex is removed, and the one that is there already is returned.

@@ -1,16 +1,20 @@
 use std::cmp::Ordering;
+use std::convert::identity;
 use std::ops::Deref;
 
 use rustc_hash::FxHashMap;
 
 use crate::bulk;
 use crate::engine::Inserted;
-use crate::engine::insert::{insert_each, insert_located};
+use crate::engine::insert::insert_each;
+use crate::engine::kind_methods::{
+    construction_methods, from_points_with_method, insert_method, insertion_methods, payload_methods, remove_by_method,
+};
 use crate::engine::removal::Removal;
-use crate::error::{InputError, MoveError, PointError, RemovalError};
+use crate::error::{InputError, MoveError, RemovalError};
 use crate::flaw::{Flaw, Level};
 use crate::geometry::{Coordinates, Geometry};
-use crate::locate::{Locate, Location, Near};
+use crate::locate::{Locate, Location};
 use crate::num::Sign;
 use crate::tds::{CellId, VertexId};
 use crate::triangulation::Triangulation;
@@ -163,16 +167,7 @@ impl<G: Geometry<N> + Clone, const N: usize, V: Clone, C: Clone> Clone for Regul
 }
 
 impl<G: Geometry<N>, const N: usize, V> Regular<G, N, V> {
-    /// Returns an empty triangulation. Its cells have no payload;
-    /// [`with_cell_data`](Self::with_cell_data) adds one.
-    pub fn new(geometry: G) -> Self {
-        Self::over(Triangulation::new(geometry))
-    }
-
-    /// Like [`new`](Self::new), but with room for that many vertices.
-    pub fn with_capacity(geometry: G, vertices: usize) -> Self {
-        Self::over(Triangulation::with_capacity(geometry, vertices))
-    }
+    construction_methods!();
 }
 
 impl<G: Coordinates<N>, const N: usize> Regular<G, N> {
@@ -219,24 +214,23 @@ impl<G: Coordinates<N>, const N: usize> Regular<G, N> {
         Ok(Some(vertices))
     }
 
-    /// Like [`from_points`](Self::from_points), but with payloads. `data` is called once for each
-    /// vertex, with the position of the first point at that vertex, in increasing order.
-    ///
-    /// # Errors
-    /// See [`from_points`](Self::from_points).
-    pub fn from_points_with<V>(
-        geometry: G,
-        points: &[G::Point],
-        data: impl FnMut(usize) -> V,
-    ) -> Result<(Regular<G, N, V>, Vec<VertexId>), InputError> {
-        let (Regular { inner, hidden }, vertices) = Self::from_points(geometry, points)?;
-        Ok((Regular { inner: inner.with_data_of_points(&vertices, data), hidden }, vertices))
-    }
+    from_points_with_method!(Regular<G, N, V>);
 }
 
 impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Regular<G, N, V, C> {
     fn over(inner: Triangulation<G, N, V, C>) -> Self {
         Regular { inner, hidden: Hidden::default() }
+    }
+
+    /// Converts the triangulation below; its law stays.
+    fn with_inner<W, D>(
+        self,
+        convert: impl FnOnce(Triangulation<G, N, V, C>) -> Triangulation<G, N, W, D>,
+    ) -> Regular<G, N, W, D>
+    where
+        D: Copy + Default,
+    {
+        Regular { inner: convert(self.inner), hidden: self.hidden }
     }
 
     /// Returns the triangulation with its table of hidden points, which are the vertices in no
@@ -249,53 +243,23 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Regular<G, N, V, C> {
         regular
     }
 
-    /// Returns the triangulation with new payloads of its vertices. `data` is called in order of
-    /// the vertex numbers, removed vertices included. Linear time; nothing but payloads is copied.
-    pub fn with_vertex_data<W>(self, data: impl FnMut(VertexId) -> W) -> Regular<G, N, W, C> {
-        Regular { inner: self.inner.with_vertex_data(data), hidden: self.hidden }
+    payload_methods! {
+        vertices: <W> Regular<G, N, W, C>,
+        cells: <D> Regular<G, N, V, D>, with_cell_data, identity,
     }
 
-    /// Returns the triangulation with new payloads of its cells. `data` is called in order of the
-    /// cell numbers, infinite cells included. Linear time; nothing but payloads is copied.
-    pub fn with_cell_data<D: Copy + Default>(self, data: impl FnMut(CellId) -> D) -> Regular<G, N, V, D> {
-        Regular { inner: self.inner.with_cell_data(data), hidden: self.hidden }
-    }
-
-    /// Inserts a point with a payload and returns its vertex, which may be
-    /// [hidden](Self::is_hidden). If a point with the same weight is on the site, returns its
-    /// vertex, which keeps its payload, together with the unused payload.
-    ///
-    /// # Errors
-    /// If a coordinate is not finite or out of range; nothing has changed then.
-    ///
-    /// # Complexity
-    /// A [walk](Triangulation::locate) from the last insertion, then linear in the number of cells
-    /// replaced and of points hidden by these.
-    pub fn insert_with(&mut self, p: G::Point, data: V) -> Result<Inserted<V>, PointError> {
-        self.insert_by(&mut Near(None), p, data)
-    }
-
-    /// Like [`insert_with`](Self::insert_with), but the search for the point starts at a cell: the
-    /// strategy [`Near`].
-    ///
-    /// # Errors
-    /// See [`insert_with`](Self::insert_with).
-    pub fn insert_near(&mut self, p: G::Point, data: V, near: Option<CellId>) -> Result<Inserted<V>, PointError> {
-        self.insert_by(&mut Near(near), p, data)
-    }
-
-    /// Like [`insert_with`](Self::insert_with), but locates the point by a [strategy](Locate),
-    /// which is notified of the new vertex unless it is hidden.
-    ///
-    /// # Errors
-    /// See [`insert_with`](Self::insert_with).
-    pub fn insert_by(
-        &mut self,
-        strategy: &mut impl Locate<G, N>,
-        p: G::Point,
-        data: V,
-    ) -> Result<Inserted<V>, PointError> {
-        insert_located(self, strategy, p, data, Self::insert_at)
+    insertion_methods! {
+        /// Inserts a point with a payload and returns its vertex, which may be
+        /// [hidden](Self::is_hidden). If a point with the same weight is on the site, returns its
+        /// vertex, which keeps its payload, together with the unused payload.
+        ///
+        /// # Errors
+        /// If a coordinate is not finite or out of range; nothing has changed then.
+        ///
+        /// # Complexity
+        /// A [walk](Triangulation::locate) from the last insertion, then linear in the number of
+        /// cells replaced and of points hidden by these.
+        by Locate<G, N>
     }
 
     fn insert_at(&mut self, p: G::Point, data: V, location: Location) -> Inserted<V> {
@@ -366,27 +330,6 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Regular<G, N, V, C> {
             self.connect(vertex, location);
             near = self.hidden.host.get(&vertex).copied();
         }
-    }
-
-    /// The visible vertices with their payloads, mutable, in order of their numbers.
-    pub fn vertex_data_iter_mut(&mut self) -> impl Iterator<Item = (VertexId, &mut V)> {
-        self.inner.tds.vertex_data_iter_mut()
-    }
-
-    /// All cells with their payloads, mutable, the infinite ones included, in order of their
-    /// numbers.
-    pub fn cell_data_iter_mut(&mut self) -> impl Iterator<Item = (CellId, &mut C)> {
-        self.inner.tds.cell_data_iter_mut()
-    }
-
-    /// Returns the payload of a point, visible or hidden, mutable.
-    pub fn vertex_data_mut(&mut self, vertex: VertexId) -> &mut V {
-        self.inner.tds.vertex_data_mut(vertex)
-    }
-
-    /// Returns the payload of a cell, mutable. O(1).
-    pub fn cell_data_mut(&mut self, cell: CellId) -> &mut C {
-        self.inner.tds.cell_data_mut(cell)
     }
 
     /// Returns true if the point with this number is in no cell.
@@ -468,14 +411,7 @@ where
         Ok(*self.point(vertex))
     }
 
-    /// Like [`remove`](Self::remove), but also notifies a location [strategy](Locate). It is not
-    /// notified of points that become visible.
-    ///
-    /// # Errors
-    /// See [`remove`](Self::remove).
-    pub fn remove_by(&mut self, strategy: &mut impl Locate<G, N>, vertex: VertexId) -> Result<G::Point, RemovalError> {
-        self.remove(vertex).inspect(|_| strategy.removed(vertex))
-    }
+    remove_by_method!(Locate<G, N>);
 
     /// Moves a point, visible or hidden, and returns its vertex, which keeps its number and
     /// payload. If a point with the same weight is on the site, the moved one is removed, and the
@@ -502,14 +438,7 @@ where
 }
 
 impl<G: Geometry<N>, const N: usize, C: Copy + Default> Regular<G, N, (), C> {
-    /// Inserts a point and returns its vertex, which may be [hidden](Self::is_hidden). If a point
-    /// with the same weight is on the site, returns its vertex.
-    ///
-    /// # Errors
-    /// See [`insert_with`](Self::insert_with).
-    pub fn insert(&mut self, p: G::Point) -> Result<VertexId, PointError> {
-        Ok(self.insert_with(p, ())?.vertex)
-    }
+    insert_method!();
 }
 
 impl<G: Coordinates<N>, const N: usize, C: Copy + Default> Regular<G, N, (), C> {

@@ -2,10 +2,11 @@ use std::ops::Deref;
 
 use crate::bulk::{self, Sites};
 use crate::engine::ConstrainedEdges;
+use crate::engine::kind_methods::{construction_methods, from_points_with_method, payload_methods};
 use crate::error::InputError;
 use crate::flaw::{Flaw, Level};
 use crate::geometry::{Coordinates, Crossing, Plane};
-use crate::tds::{CellId, VertexId};
+use crate::tds::VertexId;
 use crate::triangulation::Triangulation;
 
 use super::tables::Lines;
@@ -75,51 +76,28 @@ impl<G: Crossing + Clone, V: Clone, C: Clone> Clone for ConstrainedDelaunay<G, V
 }
 
 impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
-    /// Returns an empty triangulation. Its triangles have no payload;
-    /// [`with_cell_data`](Self::with_cell_data) adds one.
-    pub fn new(geometry: G) -> Self {
-        ConstrainedDelaunay { inner: Triangulation::new(geometry), lines: Lines::default() }
-    }
-
-    /// Like [`new`](Self::new), but with room for that many vertices.
-    pub fn with_capacity(geometry: G, vertices: usize) -> Self {
-        ConstrainedDelaunay { inner: Triangulation::with_capacity(geometry, vertices), lines: Lines::default() }
-    }
+    construction_methods!();
 }
 
 impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
-    /// Returns the triangulation with new payloads of its vertices. `data` is called in order of
-    /// the vertex numbers, removed vertices included. Linear time; nothing but payloads is copied.
-    pub fn with_vertex_data<W: Default>(self, data: impl FnMut(VertexId) -> W) -> ConstrainedDelaunay<G, W, C> {
-        ConstrainedDelaunay { inner: self.inner.with_vertex_data(data), lines: self.lines }
+    fn over(inner: Triangulation<G, 3, V, ConstrainedEdges<C>>) -> Self {
+        ConstrainedDelaunay { inner, lines: Lines::default() }
     }
 
-    /// Returns the triangulation with new payloads of its triangles. `data` is called in order of
-    /// the triangle numbers, infinite triangles included. Linear time; nothing but payloads is
-    /// copied.
-    pub fn with_cell_data<D: Copy + Default>(self, data: impl FnMut(CellId) -> D) -> ConstrainedDelaunay<G, V, D> {
-        ConstrainedDelaunay { inner: self.inner.with_data_of_cells(data), lines: self.lines }
+    /// Converts the triangulation below; its law stays.
+    fn with_inner<W, D>(
+        self,
+        convert: impl FnOnce(Triangulation<G, 3, V, ConstrainedEdges<C>>) -> Triangulation<G, 3, W, ConstrainedEdges<D>>,
+    ) -> ConstrainedDelaunay<G, W, D>
+    where
+        D: Copy + Default,
+    {
+        ConstrainedDelaunay { inner: convert(self.inner), lines: self.lines }
     }
 
-    /// Returns the payload of a triangle, mutable. O(1).
-    pub fn cell_data_mut(&mut self, cell: CellId) -> &mut C {
-        self.inner.tds.cell_data_mut(cell).data_mut()
-    }
-
-    /// The finite vertices with their payloads, mutable, in order of their numbers.
-    pub fn vertex_data_iter_mut(&mut self) -> impl Iterator<Item = (VertexId, &mut V)> {
-        self.inner.tds.vertex_data_iter_mut()
-    }
-
-    /// All triangles with their payloads, mutable, the infinite ones included, in order of their
-    /// numbers.
-    pub fn cell_data_iter_mut(&mut self) -> impl Iterator<Item = (CellId, &mut C)> {
-        self.inner.tds.cell_data_iter_mut().map(|(cell, edges)| (cell, edges.data_mut()))
-    }
-
-    /// Returns the payload of a finite vertex, mutable.
-    pub fn vertex_data_mut(&mut self, vertex: VertexId) -> &mut V {
-        self.inner.tds.vertex_data_mut(vertex)
+    payload_methods! {
+        vertices: <W: Default> ConstrainedDelaunay<G, W, C>,
+        cells: <D> ConstrainedDelaunay<G, V, D>, with_data_of_cells, ConstrainedEdges::data_mut,
     }
 
     /// The vertices that were added where constraints cross.
@@ -191,17 +169,5 @@ impl<G: Crossing + Coordinates<3>> ConstrainedDelaunay<G> {
         Ok((Self::from_sites(geometry, sites, bulk::Grain::default())?, vertices))
     }
 
-    /// Like [`from_points`](Self::from_points), but with payloads. `data` is called once for each
-    /// vertex, with the position of the first point at that vertex, in increasing order.
-    ///
-    /// # Errors
-    /// See [`from_points`](Self::from_points).
-    pub fn from_points_with<V>(
-        geometry: G,
-        points: &[G::Point],
-        data: impl FnMut(usize) -> V,
-    ) -> Result<(ConstrainedDelaunay<G, V>, Vec<VertexId>), InputError> {
-        let (ConstrainedDelaunay { inner, lines }, vertices) = Self::from_points(geometry, points)?;
-        Ok((ConstrainedDelaunay { inner: inner.with_data_of_points(&vertices, data), lines }, vertices))
-    }
+    from_points_with_method!(ConstrainedDelaunay<G, V>);
 }

@@ -1,52 +1,32 @@
 //! Insertion, removal and moves of points among lines.
 
-use crate::engine::insert::{Inserted, insert_each, insert_located, move_vertex};
-use crate::error::{InputError, MoveError, PointError, RemovalError};
+use crate::engine::Inserted;
+use crate::engine::insert::{insert_each, move_vertex};
+use crate::engine::kind_methods::{insert_method, insertion_methods, remove_by_method};
+use crate::error::{InputError, MoveError, RemovalError};
 use crate::geometry::{Coordinates, Crossing};
-use crate::locate::{Locate, Location, Near};
-use crate::tds::{CellId, VertexId};
+use crate::locate::{Locate, Location};
+use crate::tds::VertexId;
 
 use super::constrained_delaunay::ConstrainedDelaunay;
 use super::index::NotLocal;
 
 impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
-    /// Inserts a point with a payload and returns its vertex. If the site is taken, returns the
-    /// vertex that is there already, which keeps its payload, together with the unused payload. A
-    /// point on a constraint splits it. A vertex that existed for lines only, at a crossing or at
-    /// the end of a segment, becomes a given one, which is not removed with the lines.
-    ///
-    /// # Errors
-    /// If a coordinate is not finite or out of range; nothing has changed then.
-    ///
-    /// # Complexity
-    /// A [walk](crate::Triangulation::locate) from the last insertion, and time linear in
-    /// the number of triangles replaced. If the point lies exactly on a segment that crosses
-    /// others, as [`insert_lines`](Self::insert_lines).
-    pub fn insert_with(&mut self, p: G::Point, data: V) -> Result<Inserted<V>, PointError> {
-        self.insert_by(&mut Near(None), p, data)
-    }
-
-    /// Like [`insert_with`](Self::insert_with), but the search for the point starts at a cell: the
-    /// strategy [`Near`].
-    ///
-    /// # Errors
-    /// See [`insert_with`](Self::insert_with).
-    pub fn insert_near(&mut self, p: G::Point, data: V, near: Option<CellId>) -> Result<Inserted<V>, PointError> {
-        self.insert_by(&mut Near(near), p, data)
-    }
-
-    /// Like [`insert_with`](Self::insert_with), but locates the point by a [strategy](Locate),
-    /// which is notified of the new vertex. It is not notified of crossings.
-    ///
-    /// # Errors
-    /// See [`insert_with`](Self::insert_with).
-    pub fn insert_by(
-        &mut self,
-        strategy: &mut impl Locate<G, 3>,
-        p: G::Point,
-        data: V,
-    ) -> Result<Inserted<V>, PointError> {
-        insert_located(self, strategy, p, data, Self::insert_at)
+    insertion_methods! {
+        /// Inserts a point with a payload and returns its vertex. If the site is taken, returns the
+        /// vertex that is there already, which keeps its payload, together with the unused payload.
+        /// A point on a constraint splits it. A vertex that existed for lines only, at a crossing
+        /// or at the end of a segment, becomes a given one, which is not removed with the lines.
+        /// Strategies of [`insert_by`](Self::insert_by) are not notified of crossings.
+        ///
+        /// # Errors
+        /// If a coordinate is not finite or out of range; nothing has changed then.
+        ///
+        /// # Complexity
+        /// A [walk](crate::Triangulation::locate) from the last insertion, and time linear in
+        /// the number of triangles replaced. If the point lies exactly on a segment that crosses
+        /// others, as [`insert_lines`](Self::insert_lines).
+        by Locate<G, 3>
     }
 
     fn insert_at(&mut self, p: G::Point, data: V, location: Location) -> Inserted<V> {
@@ -94,13 +74,7 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
         self.extract(vertex).map(|_| p)
     }
 
-    /// Like [`remove`](Self::remove), but also notifies a location [strategy](Locate).
-    ///
-    /// # Errors
-    /// See [`remove`](Self::remove).
-    pub fn remove_by(&mut self, strategy: &mut impl Locate<G, 3>, vertex: VertexId) -> Result<G::Point, RemovalError> {
-        self.remove(vertex).inspect(|_| strategy.removed(vertex))
-    }
+    remove_by_method!(Locate<G, 3>);
 
     /// Moves a vertex to another point and returns it; it keeps its payload, and also its number,
     /// unless a constraint runs through it or lines are [arranged anew](Self::rearrangements). If
@@ -143,14 +117,7 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
 }
 
 impl<G: Crossing + Coordinates<3>, C: Copy + Default> ConstrainedDelaunay<G, (), C> {
-    /// Inserts a point and returns its vertex; if the site is taken, the vertex that is there
-    /// already. A point on a constraint splits it.
-    ///
-    /// # Errors
-    /// See [`insert_with`](Self::insert_with).
-    pub fn insert(&mut self, p: G::Point) -> Result<VertexId, PointError> {
-        Ok(self.insert_with(p, ())?.vertex)
-    }
+    insert_method!();
 
     /// Inserts many points, in [spatial order](crate::spatial_order), and returns the vertex of
     /// each.
