@@ -49,19 +49,19 @@ const RATIO: usize = 30;
 pub struct Hierarchy<L: Geometry<N>, const N: usize> {
     geometry: L,
     /// The largest sample first.
-    levels: Vec<Level<L, N>>,
+    levels: Vec<SampleLevel<L, N>>,
     dice: Dice,
 }
 
 #[derive(Debug, Clone)]
-struct Level<L: Geometry<N>, const N: usize> {
+struct SampleLevel<L: Geometry<N>, const N: usize> {
     /// The payload of each vertex is the same vertex in the level below.
     sample: Delaunay<L, N, VertexId>,
     /// Maps a vertex of the level below to its vertex in this sample.
     of_below: FxHashMap<VertexId, VertexId>,
 }
 
-impl<L: Geometry<N>, const N: usize> Level<L, N> {
+impl<L: Geometry<N>, const N: usize> SampleLevel<L, N> {
     /// Returns a cell at a point and a vertex near it, given a vertex to start from.
     fn nearest(&self, q: &L::Point, start: Option<VertexId>) -> (Option<CellId>, Option<VertexId>) {
         let tds = self.sample.tds();
@@ -112,7 +112,7 @@ impl<L: Geometry<N> + Clone, const N: usize> Hierarchy<L, N> {
         }
         if height > self.levels.len() {
             let sample = Delaunay::new(self.geometry.clone());
-            self.levels.push(Level { sample, of_below: FxHashMap::default() });
+            self.levels.push(SampleLevel { sample, of_below: FxHashMap::default() });
         }
         let mut near = Vec::with_capacity(self.levels.len());
         self.descend(point, |cell| near.push(cell));

@@ -16,7 +16,7 @@ use super::sweep;
 
 /// A segment that is routed through a site.
 #[derive(Debug, Clone, Copy)]
-struct Pass {
+struct SegmentAtSite {
     segment: u32,
     site: u32,
     /// True if the site is known to lie on the segment exactly; never for added sites.
@@ -217,7 +217,7 @@ impl<'a> Builder<'a> {
     /// Phase 3: routes the segments that cross others, and those to be snapped, through all sites
     /// whose pixels they meet. Then, until there are no more, those that meet the pixel of a site
     /// at which another one was bent, or of an end of a snapped one.
-    fn route<K: Kernel>(&self, crossings: &[Crossing]) -> (Vec<bool>, Vec<Pass>) {
+    fn route<K: Kernel>(&self, crossings: &[Crossing]) -> (Vec<bool>, Vec<SegmentAtSite>) {
         if crossings.is_empty() && self.snapped == 0 {
             return (vec![false; self.segments.len()], Vec::new());
         }
@@ -261,9 +261,10 @@ impl<'a> Builder<'a> {
     }
 
     /// Returns the passes of segments through the sites of their crossings.
-    fn passes_of_crossings(&self) -> Vec<Pass> {
+    fn passes_of_crossings(&self) -> Vec<SegmentAtSite> {
         let sites = (self.given_count..self.given_count + self.added.len()).map(|site| site as u32);
-        let here = |site| self.crossed_at(site).iter().map(move |&segment| Pass { segment, site, exact: false });
+        let here =
+            |site| self.crossed_at(site).iter().map(move |&segment| SegmentAtSite { segment, site, exact: false });
         sites.flat_map(here).collect()
     }
 
@@ -303,7 +304,7 @@ impl<'a> Builder<'a> {
     }
 
     /// Adds the passes of some segments through the sites of some trees.
-    fn pass<K: Kernel>(&self, segments: &[u32], trees: &[(BoxTree, Vec<u32>)], passes: &mut Vec<Pass>) {
+    fn pass<K: Kernel>(&self, segments: &[u32], trees: &[(BoxTree, Vec<u32>)], passes: &mut Vec<SegmentAtSite>) {
         let of_segments = |segments: &[u32]| {
             let mut found = Vec::new();
             for &segment in segments {
@@ -311,7 +312,7 @@ impl<'a> Builder<'a> {
                 self.sites_on::<K>(segment, trees, |site| {
                     let is_given = (site as usize) < self.given_count;
                     let exact = is_given && K::sign(&Orientation2([a, b, self.site(site)])) == Sign::Zero;
-                    found.push(Pass { segment, site, exact });
+                    found.push(SegmentAtSite { segment, site, exact });
                 });
             }
             found
@@ -371,14 +372,14 @@ impl<'a> Builder<'a> {
     }
 
     /// Phase 4: returns the arrangement, with the sites of each segment in order.
-    fn collect(self, crossings: Vec<Crossing>, has_chain: &[bool], passes: Vec<Pass>) -> Arrangement {
+    fn collect(self, crossings: Vec<Crossing>, has_chain: &[bool], passes: Vec<SegmentAtSite>) -> Arrangement {
         let along = |segment: u32, site: u32| self.grid.along(self.segments[segment as usize])(self.site(site));
         // Grouped by segment, by counting; then each group is sorted along its segment.
         let mut ends = vec![0; self.segments.len()];
         passes.iter().for_each(|pass| ends[pass.segment as usize] += 1);
         starts(&mut ends);
         let mut ordered = vec![([0.0; 2], 0); passes.len()];
-        for Pass { segment, site, .. } in passes {
+        for SegmentAtSite { segment, site, .. } in passes {
             let end = &mut ends[segment as usize];
             ordered[*end as usize] = (along(segment, site), site);
             *end += 1;

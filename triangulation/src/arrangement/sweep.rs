@@ -44,7 +44,7 @@ pub(super) fn crossing_pairs<K: Kernel>(segments: &[Segment]) -> Vec<[u32; 2]> {
 
 /// An end of a segment.
 #[derive(Clone, Copy)]
-struct End {
+struct SegmentEnd {
     at: Site,
     segment: u32,
     is_last: bool,
@@ -82,10 +82,12 @@ impl<K: Kernel> Sweep<K> {
 
     /// Returns all ends in the order of the sweep. Records the stops, and at which one each segment
     /// ends.
-    fn ends(&mut self) -> Vec<End> {
+    fn ends(&mut self) -> Vec<SegmentEnd> {
         let lines = (0..).zip(&self.segments).filter(|(_, [a, b])| a != b);
-        let mut ends: Vec<End> = lines
-            .flat_map(|(segment, &[a, b])| [(a, false), (b, true)].map(|(at, is_last)| End { at, segment, is_last }))
+        let mut ends: Vec<SegmentEnd> = lines
+            .flat_map(|(segment, &[a, b])| {
+                [(a, false), (b, true)].map(|(at, is_last)| SegmentEnd { at, segment, is_last })
+            })
             .collect();
         ends.par_sort_unstable_by(|p, q| lexicographic(p.at, q.at).then(p.segment.cmp(&q.segment)));
         for here in ends.chunk_by(|p, q| p.at == q.at) {

@@ -29,7 +29,7 @@ use crate::tds::VertexId;
 
 use super::faces::Range;
 use super::filter::NOWHERE;
-use super::part::{Axis, Part};
+use super::part::{Axis, BuiltRange};
 
 /// Smaller ranges are merged: the test for an arc takes as long.
 pub(super) const LEAST: usize = 200;
@@ -50,9 +50,9 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
     /// Triangulates a range of points on an arc; `None` if they are not on one or it takes too
     /// long, with faces in an undefined state, to be overwritten.
     #[inline(never)]
-    pub(super) fn arc(&mut self, lo: usize, hi: usize) -> Option<Part> {
+    pub(super) fn arc(&mut self, lo: usize, hi: usize) -> Option<BuiltRange> {
         let samples = [0, 1, 2, 3].map(|k| VertexId::new(lo + (hi - 1 - lo) * k / 3));
-        let sites = samples.map(|v| self.seen.site(v));
+        let sites = samples.map(|v| self.predicates.site(v));
         let rises = |i: usize, j: usize| (sites[j][0] - sites[i][0]) * (sites[j][1] - sites[i][1]);
         let slopes = [rises(0, 1), rises(0, 2), rises(0, 3), rises(1, 2), rises(1, 3), rises(2, 3)];
         if slopes.iter().all(|&s| s >= 0.0) || slopes.iter().all(|&s| s <= 0.0) {
@@ -62,13 +62,13 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
     }
 
     #[cold]
-    fn sampled_arc(&mut self, lo: usize, hi: usize, rises: bool) -> Option<Part> {
+    fn sampled_arc(&mut self, lo: usize, hi: usize, rises: bool) -> Option<BuiltRange> {
         let (mut chain, mut turn) = self.along(lo, hi, rises)?;
         // Start where the curvature is larger: the circle through three points of the arc does not
         // contain the fourth.
         let [a, b, c, d] = [0, 1, 2, 3].map(|k| chain[(chain.len() - 1) * k / 3]);
         let ends = if turn == Sign::Positive { [a, b] } else { [b, a] };
-        if self.seen.in_circle(c, ends, d) {
+        if self.predicates.in_circle(c, ends, d) {
             chain.reverse();
             turn = -turn;
         }
@@ -80,7 +80,7 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
     fn along(&self, lo: usize, hi: usize, rises: bool) -> Option<(Vec<VertexId>, Sign)> {
         // Rotated to the right if the arc falls: neither coordinate falls along it then.
         let site = |v: VertexId| {
-            let [x, y] = self.seen.site(v);
+            let [x, y] = self.predicates.site(v);
             if rises { [x, y] } else { [y, -x] }
         };
         let mut chain: Vec<VertexId> = Vec::with_capacity(hi - lo);
@@ -104,7 +104,7 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
                 last = [q, r];
                 chain.push(vertex);
                 if let &[.., a, b, c] = chain.as_slice() {
-                    let turn = self.seen.turn_at([p, q, r], [a, b, c]);
+                    let turn = self.predicates.turn_at([p, q, r], [a, b, c]);
                     let goes_on = p[0] <= q[0] && p[1] <= q[1] && q[0] <= r[0] && q[1] <= r[1];
                     if turn == Sign::Zero || *side.get_or_insert(turn) != turn || !goes_on {
                         return None;
@@ -116,7 +116,7 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
     }
 
     /// Triangulates the vertices of a convex polygon, given in order.
-    fn insert_along(&mut self, chain: &[VertexId], turn: Sign, first_face: u32) -> Option<Part> {
+    fn insert_along(&mut self, chain: &[VertexId], turn: Sign, first_face: u32) -> Option<BuiltRange> {
         let &[a, b, ref rest @ ..] = chain else { return None };
         let turns_left = turn == Sign::Positive;
         let mut open = self.pair([a, b], first_face)[usize::from(turns_left)];
@@ -135,7 +135,7 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
                 return None;
             }
         }
-        Some(Part { bottom: open, top: open, first: first_face / 2 })
+        Some(BuiltRange { bottom: open, top: open, first: first_face / 2 })
     }
 
     /// Turns a ghost into the triangle to a vertex that sees no other edge of the hull. Returns the
@@ -163,7 +163,7 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
         let [p, q, vertex] = self.face(face).vertices;
         let edge = self.twin(face, 0);
         let apex = self.opposite(edge);
-        if !self.seen.in_circle(apex, [q, p], vertex) {
+        if !self.predicates.in_circle(apex, [q, p], vertex) {
             return None;
         }
         let beside = edge.face();

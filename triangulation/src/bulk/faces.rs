@@ -6,7 +6,7 @@ use std::num::NonZeroU32;
 use crate::geometry::Coordinates;
 use crate::tds::{CellId, Links, VertexId};
 
-use super::filter::Seen;
+use super::filter::PlanePredicates;
 use super::grain::Grain;
 use super::order::Keys;
 
@@ -65,7 +65,7 @@ impl Edge {
 /// `PERF:` indexes are checked. Without the checks there are 7 % fewer instructions, and no
 /// difference in time beyond the noise (183 against 185 ns a point of 100 000).
 pub(super) struct Range<'a, G: Coordinates<N>, const N: usize, const FILTERED: bool> {
-    pub(super) seen: &'a Seen<'a, G, N, FILTERED>,
+    pub(super) predicates: &'a PlanePredicates<'a, G, N, FILTERED>,
     /// Keys of the points from number `first` on.
     pub(super) keys: &'a Keys,
     pub(super) first: usize,

@@ -32,7 +32,7 @@
 //! *Orientation.* `ux vy - uy vx` with Shewchuk's bound (1997, section 4.3).
 //!
 //! Where the result is not certain, the geometry decides, out of line; points on a grid are an
-//! exception, see [`in_circle_slowly`](Seen::in_circle_slowly).
+//! exception, see [`in_circle_slowly`](PlanePredicates::in_circle_slowly).
 
 use std::ops::Range;
 
@@ -138,7 +138,7 @@ pub(super) fn turn(a: Site, b: Site, c: Site) -> Estimate {
 
 /// Points as a geometry sees them; with `FILTERED`, all of them have exact coordinates that the
 /// filter may use.
-pub(super) struct Seen<'a, G: Coordinates<N>, const N: usize, const FILTERED: bool> {
+pub(super) struct PlanePredicates<'a, G: Coordinates<N>, const N: usize, const FILTERED: bool> {
     geometry: &'a G,
     points: &'a [G::Point],
     /// The largest power of two of which all coordinates are multiples; 0 if that is too small to
@@ -148,10 +148,10 @@ pub(super) struct Seen<'a, G: Coordinates<N>, const N: usize, const FILTERED: bo
     pub(super) curve: &'a Curve,
 }
 
-impl<'a, G: Coordinates<N>, const N: usize, const FILTERED: bool> Seen<'a, G, N, FILTERED> {
+impl<'a, G: Coordinates<N>, const N: usize, const FILTERED: bool> PlanePredicates<'a, G, N, FILTERED> {
     pub(super) fn new(geometry: &'a G, points: &'a [G::Point], curve: &'a Curve, grain: Grain) -> Self {
         let unit = if FILTERED { unit(geometry, points, grain) } else { 0.0 };
-        Seen { geometry, points, unit, curve }
+        PlanePredicates { geometry, points, unit, curve }
     }
 
     /// Returns the exact coordinates of a vertex; [`NOWHERE`] if it has none or is infinite.

@@ -8,13 +8,13 @@ use super::faces::Edge;
 use super::grain::Grain;
 
 /// A cell of each vertex.
-pub(super) struct Cells {
+pub(super) struct CellsOfVertices {
     pub(super) of_vertices: Vec<CellId>,
     pub(super) of_infinite: CellId,
 }
 
 /// What one thread found among the faces of a range of vertices.
-struct Found {
+struct FoundInRange {
     has_finite: bool,
     infinite: Option<CellId>,
     /// Cells of vertices in other ranges.
@@ -26,10 +26,11 @@ struct Found {
 /// Most faces that were built with a range of points still have vertices in that range, so that
 /// threads can fill ranges of the cells of vertices. The ranges do not depend on the number of
 /// threads, and therefore neither do the cells.
-pub(super) fn finish(faces: &mut [Links<3>], count: usize, grain: Grain) -> Option<Cells> {
+pub(super) fn finish(faces: &mut [Links<3>], count: usize, grain: Grain) -> Option<CellsOfVertices> {
     let mut of_vertices = chunks::filled(count, grain.points, || CellId::NONE);
     let ranges = of_vertices.par_chunks_mut(grain.points).zip(faces.par_chunks_mut(2 * grain.points)).enumerate();
-    let found: Vec<Found> = ranges.map(|(i, (cells, faces))| finish_range(faces, cells, i * grain.points)).collect();
+    let found: Vec<FoundInRange> =
+        ranges.map(|(i, (cells, faces))| finish_range(faces, cells, i * grain.points)).collect();
     if !found.iter().any(|found| found.has_finite) {
         return None;
     }
@@ -40,12 +41,12 @@ pub(super) fn finish(faces: &mut [Links<3>], count: usize, grain: Grain) -> Opti
         }
     }
     let of_infinite = found.iter().find_map(|found| found.infinite)?;
-    Some(Cells { of_vertices, of_infinite })
+    Some(CellsOfVertices { of_vertices, of_infinite })
 }
 
 /// Converts the faces of the vertices from number `first` on.
-fn finish_range(faces: &mut [Links<3>], cells: &mut [CellId], first: usize) -> Found {
-    let mut found = Found { has_finite: false, infinite: None, elsewhere: Vec::new() };
+fn finish_range(faces: &mut [Links<3>], cells: &mut [CellId], first: usize) -> FoundInRange {
+    let mut found = FoundInRange { has_finite: false, infinite: None, elsewhere: Vec::new() };
     for (i, links) in faces.iter_mut().enumerate() {
         let cell = CellId::new(2 * first + i);
         let offsets = links.vertices.map(|vertex| vertex.index().wrapping_sub(first));

@@ -25,7 +25,7 @@ use crate::tds::VertexId;
 
 use super::faces::{Edge, Range};
 use super::filter::{Arrow, Circle, NOWHERE, Site, turn};
-use super::part::{Axis, NONE, Part};
+use super::part::{Axis, BuiltRange, NONE};
 
 const LEFT: usize = 0;
 const RIGHT: usize = 1;
@@ -82,7 +82,7 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
     /// coordinates one ghost ahead, as the prototype did against mispredictions: +7 % instructions,
     /// no gain. Testing both candidates without branches: 8.6 instead of 11.6 simulated
     /// mispredictions a point, no gain on 1 million uniform points, and +10 % on a parabola.
-    pub(super) fn merge(&mut self, left: Part, right: Part, mid: usize, axis: Axis) -> Part {
+    pub(super) fn merge(&mut self, left: BuiltRange, right: BuiltRange, mid: usize, axis: Axis) -> BuiltRange {
         let [Foot { vertex: mut a, at: mut at_a, ghost: gl }, Foot { vertex: mut b, at: mut at_b, ghost: gr }] =
             self.lower_tangent(self.extreme::<LEFT>(left, axis), self.extreme::<RIGHT>(right, axis));
 
@@ -109,8 +109,8 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
             let base = Arrow::between(at_a, at_b);
             let is_valid = |to_candidate: Arrow, climb: &Climb| {
                 let turn = base.turn(to_candidate);
-                if self.seen.is_open(turn) {
-                    self.seen.turn_slowly([a, b, climb.vertex]) == Sign::Positive
+                if self.predicates.is_open(turn) {
+                    self.predicates.turn_slowly([a, b, climb.vertex]) == Sign::Positive
                 } else {
                     turn.is_positive()
                 }
@@ -127,9 +127,9 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
                     let to_q = Arrow::between(at_a, l.apex);
                     let inside = circle_c.side(to_q);
                     let mut flips = inside.is_positive();
-                    if self.seen.is_open(inside) {
+                    if self.predicates.is_open(inside) {
                         let c = l.vertex;
-                        flips = self.seen.in_circle_slowly(b, [c, a], self.opposite(l.behind));
+                        flips = self.predicates.in_circle_slowly(b, [c, a], self.opposite(l.behind));
                     }
                     if !flips {
                         break;
@@ -149,9 +149,9 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
                     let to_q = Arrow::between(at_a, r.apex);
                     let inside = circle_d.side(to_q);
                     let mut flips = inside.is_positive();
-                    if self.seen.is_open(inside) {
+                    if self.predicates.is_open(inside) {
                         let d = r.vertex;
-                        flips = self.seen.in_circle_slowly(a, [b, d], self.opposite(r.behind));
+                        flips = self.predicates.in_circle_slowly(a, [b, d], self.opposite(r.behind));
                     }
                     if !flips {
                         break;
@@ -170,8 +170,8 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
             }
             let inside = circle_c.side(to_d);
             let mut chooses_d = valid_d & (!valid_c | inside.is_positive());
-            if valid_c & valid_d & self.seen.is_open(inside) {
-                chooses_d = self.seen.in_circle_slowly(a, [b, l.vertex], r.vertex);
+            if valid_c & valid_d & self.predicates.is_open(inside) {
+                chooses_d = self.predicates.in_circle_slowly(a, [b, l.vertex], r.vertex);
             }
             if chooses_d {
                 valid_d = false;
@@ -191,17 +191,17 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
         if gl != NONE {
             self.link((above, 2), (l.ghost, 1));
         }
-        Part { bottom: below, top: above, first: left.first }
+        BuiltRange { bottom: below, top: above, first: left.first }
     }
 
     /// Returns the vertex of a half that is nearest to the other half; of several, the lowest.
     /// Climbs the ring of ghosts in either direction, from where the half's own merge has ended:
     /// one or two steps, because the axes alternate.
     #[inline(always)]
-    fn extreme<const SIDE: usize>(&self, half: Part, axis: Axis) -> Foot {
+    fn extreme<const SIDE: usize>(&self, half: BuiltRange, axis: Axis) -> Foot {
         // Along a rotated lexicographic order, so that both axes are treated alike.
         let along = |v: VertexId| {
-            let [x, y] = self.seen.coordinates(v);
+            let [x, y] = self.predicates.coordinates(v);
             match axis {
                 Axis::X => (x, y),
                 Axis::Y => (y, -x),
@@ -217,7 +217,7 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
         };
         if ghost == NONE {
             let vertex = VertexId::new(half.first as usize);
-            return Foot { vertex, at: self.seen.site(vertex), ghost };
+            return Foot { vertex, at: self.predicates.site(vertex), ghost };
         }
         // The start of the ghost's hull edge.
         let mut furthest = along(self.vertex(ghost, 1));
@@ -244,7 +244,7 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
         }
         let vertex = self.vertex(ghost, 1);
         let ghost = if SIDE == LEFT { ghost } else { self.twin(ghost, 1).face() };
-        Foot { vertex, at: self.seen.site(vertex), ghost }
+        Foot { vertex, at: self.predicates.site(vertex), ghost }
     }
 
     /// Returns the feet of the lower common tangent: climbs down both rings until no vertex lies
@@ -280,10 +280,10 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
         }
         let ghost = self.twin(foot.ghost, back(SIDE)).face();
         let vertex = self.vertex(ghost, 1 - SIDE);
-        let at = self.seen.site(vertex);
+        let at = self.predicates.site(vertex);
         let turn = turn(left.at, right.at, at);
-        let is_below = if self.seen.is_open(turn) {
-            self.seen.turn_slowly([left.vertex, right.vertex, vertex]) == Sign::Negative
+        let is_below = if self.predicates.is_open(turn) {
+            self.predicates.turn_slowly([left.vertex, right.vertex, vertex]) == Sign::Negative
         } else {
             turn.is_negative()
         };
@@ -305,8 +305,8 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
             behind,
             onward: self.twin(ghost, onward(SIDE)),
             vertex,
-            candidate: self.seen.site(vertex),
-            apex: self.seen.site(self.opposite(behind)),
+            candidate: self.predicates.site(vertex),
+            apex: self.predicates.site(self.opposite(behind)),
         }
     }
 
@@ -342,7 +342,7 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
         climb.behind = beyond_near;
         climb.vertex = q;
         climb.candidate = climb.apex;
-        climb.apex = self.seen.site(self.opposite(beyond_near));
+        climb.apex = self.predicates.site(self.opposite(beyond_near));
     }
 
     /// Makes the ghost that of the hull edge that remains after flips.

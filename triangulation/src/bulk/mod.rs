@@ -72,10 +72,10 @@ use crate::tds::{CellId, Links, Tds, VertexId};
 
 use curve::{Curve, Span};
 use faces::Range;
-use filter::Seen;
+use filter::PlanePredicates;
 use order::Keys;
 use part::NONE;
-use part::{Axis, Part};
+use part::{Axis, BuiltRange};
 
 pub(crate) use grain::{Grain, Stop};
 pub(crate) use order::Sites;
@@ -142,7 +142,10 @@ fn unused(count: usize, grain: Grain) -> Vec<Links<3>> {
 }
 
 /// Builds two parts, on two threads if another one is free.
-fn both(left: &mut (dyn FnMut() -> Part + Send), right: &mut (dyn FnMut() -> Part + Send)) -> (Part, Part) {
+fn both(
+    left: &mut (dyn FnMut() -> BuiltRange + Send),
+    right: &mut (dyn FnMut() -> BuiltRange + Send),
+) -> (BuiltRange, BuiltRange) {
     join(left, right)
 }
 
@@ -167,18 +170,22 @@ fn fill<G: Coordinates<N>, const N: usize, const FILTERED: bool>(
     faces: &mut [Links<3>],
     grain: Grain,
 ) {
-    let seen = Seen::<G, N, FILTERED>::new(geometry, points, curve, grain);
-    Range { seen: &seen, keys, first: 0, faces, offset: 0, grain, nesting: 0 }.build(0, points.len(), arc::MOST);
+    let predicates = PlanePredicates::<G, N, FILTERED>::new(geometry, points, curve, grain);
+    Range { predicates: &predicates, keys, first: 0, faces, offset: 0, grain, nesting: 0 }.build(
+        0,
+        points.len(),
+        arc::MOST,
+    );
 }
 
 impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FILTERED> {
     /// Triangulates a range; ranges of up to `arcs` points are tested for being an arc.
-    fn build(&mut self, lo: usize, hi: usize, mut arcs: usize) -> Part {
+    fn build(&mut self, lo: usize, hi: usize, mut arcs: usize) -> BuiltRange {
         match hi - lo {
-            1 => return Part { bottom: NONE, top: NONE, first: lo as u32 },
+            1 => return BuiltRange { bottom: NONE, top: NONE, first: lo as u32 },
             2 => {
                 let [bottom, top] = self.pair([lo, lo + 1].map(VertexId::new), 2 * lo as u32);
-                return Part { bottom, top, first: lo as u32 };
+                return BuiltRange { bottom, top, first: lo as u32 };
             }
             3 => return self.triple(lo),
             4 => {
@@ -199,10 +206,10 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
             if self.grain.stops() {
                 return self.unbuilt(lo);
             }
-            let Range { seen, keys, first, offset, grain, nesting, .. } = *self;
+            let Range { predicates, keys, first, offset, grain, nesting, .. } = *self;
             let (left, right) = self.faces.split_at_mut(2 * mid - offset);
-            let mut left = Range { seen, keys, first, faces: left, offset, grain, nesting };
-            let mut right = Range { seen, keys, first, faces: right, offset: 2 * mid, grain, nesting };
+            let mut left = Range { predicates, keys, first, faces: left, offset, grain, nesting };
+            let mut right = Range { predicates, keys, first, faces: right, offset: 2 * mid, grain, nesting };
             both(&mut || left.build(lo, mid, arcs), &mut || right.build(mid, hi, arcs))
         } else {
             (self.build(lo, mid, arcs), self.build(mid, hi, arcs))
@@ -217,8 +224,8 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
     /// Returns what stands for a part that was not built because the work was stopped. It is never
     /// merged.
     #[cold]
-    fn unbuilt(&self, lo: usize) -> Part {
-        Part { bottom: NONE, top: NONE, first: lo as u32 }
+    fn unbuilt(&self, lo: usize) -> BuiltRange {
+        BuiltRange { bottom: NONE, top: NONE, first: lo as u32 }
     }
 
     /// Returns where the keys cut a range in two, and along which axis; `None` if the keys of all
@@ -256,20 +263,20 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
     /// Triangulates a range whose points have equal keys. Uses more bits of the keys, or keys along
     /// a curve through these points alone; see [`order`].
     #[cold]
-    fn build_dense(&mut self, lo: usize, hi: usize, arcs: usize) -> Part {
+    fn build_dense(&mut self, lo: usize, hi: usize, arcs: usize) -> BuiltRange {
         let count = hi - lo;
-        let coordinates = |i: usize| self.seen.coordinates(VertexId::new(lo + i));
+        let coordinates = |i: usize| self.predicates.coordinates(VertexId::new(lo + i));
         let mut keys = Keys::default();
         if !self.keys.are_whole() {
-            keys = Keys::of(count, &|i| self.seen.curve.key(coordinates(i).as_ref()), self.grain);
+            keys = Keys::of(count, &|i| self.predicates.curve.key(coordinates(i).as_ref()), self.grain);
         }
         if keys.is_empty() || keys.difference(0, count - 1) == 0 {
             let curve = Curve::through(count, &|range| Span::of(range.map(coordinates)), self.grain.points);
             keys = Keys::of(count, &|i| curve.key(coordinates(i).as_ref()), self.grain);
         }
-        let Range { seen, offset, grain, nesting, .. } = *self;
+        let Range { predicates, offset, grain, nesting, .. } = *self;
         let mut range =
-            Range { seen, keys: &keys, first: lo, faces: &mut *self.faces, offset, grain, nesting: nesting + 1 };
+            Range { predicates, keys: &keys, first: lo, faces: &mut *self.faces, offset, grain, nesting: nesting + 1 };
         // Each range with keys of its own is up to 64 calls deep. How many lie within each other is
         // limited only by the exponents of doubles, however few points there are.
         if range.nesting.is_multiple_of(NESTED) {

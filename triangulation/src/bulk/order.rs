@@ -118,7 +118,7 @@ trait Unsorted: Sync {
     fn count_by_square(&self, points: Range<usize>, squares: &Squares, counts: &mut [[u32; 2]]);
 
     /// Writes the records of points, each where the next one of its bucket belongs.
-    fn write(&self, points: Range<usize>, curve: &Curve, buckets: Buckets, nexts: &mut [u32]);
+    fn write(&self, points: Range<usize>, curve: &Curve, buckets: BucketRecords, nexts: &mut [u32]);
 
     /// Returns the span of some points, in the second part of each pair.
     fn span_of(&self, points: &[(u64, u32)]) -> Span;
@@ -126,7 +126,7 @@ trait Unsorted: Sync {
 
 /// Where and how records are written.
 #[derive(Clone, Copy)]
-struct Buckets<'a> {
+struct BucketRecords<'a> {
     records: &'a [AtomicU64],
     /// A mask of the bits that are not part of the key.
     low: u64,
@@ -135,13 +135,13 @@ struct Buckets<'a> {
 }
 
 /// Points given by a function, and what it means that two share a site.
-struct Located<C, S> {
+struct PointsOf<C, S> {
     count: usize,
     coordinates: C,
     is_same: S,
 }
 
-impl<A, C, S> Unsorted for Located<C, S>
+impl<A, C, S> Unsorted for PointsOf<C, S>
 where
     A: AsRef<[f64]>,
     C: Fn(usize) -> A + Sync,
@@ -167,7 +167,7 @@ where
         points.for_each(|i| counts[squares.of((self.coordinates)(i).as_ref())][i % 2] += 1);
     }
 
-    fn write(&self, points: Range<usize>, curve: &Curve, buckets: Buckets, nexts: &mut [u32]) {
+    fn write(&self, points: Range<usize>, curve: &Curve, buckets: BucketRecords, nexts: &mut [u32]) {
         for i in points {
             let key = curve.key((self.coordinates)(i).as_ref());
             let next = &mut nexts[(key >> 1 >> (63 - buckets.bits)) as usize];
@@ -182,14 +182,14 @@ where
 }
 
 /// The result of sorting.
-struct Sorted {
+struct SortedSites {
     /// Keys and positions of the first point of each site.
     keys: Keys,
     /// The position of every other point, and the rank of its site.
     others: Vec<(u32, u32)>,
 }
 
-impl Sorted {
+impl SortedSites {
     #[inline(always)]
     fn position(&self, rank: usize) -> usize {
         (self.keys.records[rank].load(Relaxed) & self.keys.low) as usize
@@ -242,7 +242,7 @@ pub fn spatial_order<A: AsRef<[f64]>>(
     }
     let grain = Grain::default();
     let curve = Curve::through(count, &|range| Span::of(range.map(&coordinates)), grain.points);
-    let sorted = sort(&Located { count, coordinates, is_same: |_, _| false }, &curve, grain);
+    let sorted = sort(&PointsOf { count, coordinates, is_same: |_, _| false }, &curve, grain);
     Ok(sorted.positions())
 }
 
@@ -259,7 +259,7 @@ impl<P: Copy + Send + Sync> Sites<P> {
         let (curve, have_plans) = survey(geometry, points, grain)?;
         let coordinates = |i: usize| geometry.coordinates(&points[i]);
         let is_same = |i: u32, j: u32| geometry.compare(&points[i as usize], &points[j as usize]).is_eq();
-        let sorted = sort(&Located { count: points.len(), coordinates, is_same }, &curve, grain);
+        let sorted = sort(&PointsOf { count: points.len(), coordinates, is_same }, &curve, grain);
         let (sites, vertices) = sorted.sites(points, grain);
         Ok((Sites { points: sites, keys: sorted.keys, curve, have_plans }, vertices))
     }
@@ -318,7 +318,7 @@ fn survey<G: Coordinates<N>, const N: usize>(
 /// `PERF:` with 7 bits less in the records, groups take two passes instead of three: 2 % of the
 /// time of 1 million uniform points. But clusters take 10 % more, because many records are equal
 /// then.
-fn sort(points: &dyn Unsorted, curve: &Curve, grain: Grain) -> Sorted {
+fn sort(points: &dyn Unsorted, curve: &Curve, grain: Grain) -> SortedSites {
     let count = points.count();
     let index_bits = usize::BITS - count.saturating_sub(1).leading_zeros();
     let key_bits = (index_bits + 17).min(64 - index_bits);
@@ -329,7 +329,7 @@ fn sort(points: &dyn Unsorted, curve: &Curve, grain: Grain) -> Sorted {
     let groups = groups(&starts, grain);
     let sorted: Vec<(usize, Vec<(u32, u32)>)> = groups
         .par_windows(2)
-        .map_init(Scratch::default, |scratch, ends| sorter.sort(&records[ends[0]..ends[1]], scratch))
+        .map_init(GroupBuffers::default, |buffers, ends| sorter.sort(&records[ends[0]..ends[1]], buffers))
         .collect();
 
     // Close the gaps behind groups in which sites have several points.
@@ -344,7 +344,7 @@ fn sort(points: &dyn Unsorted, curve: &Curve, grain: Grain) -> Sorted {
     }
     let mut records = records;
     records.truncate(rank);
-    Sorted { keys: Keys { records, low }, others }
+    SortedSites { keys: Keys { records, low }, others }
 }
 
 /// Returns the records in the order of their buckets, and the start of each bucket, followed by the
@@ -377,7 +377,7 @@ fn distribute(points: &dyn Unsorted, curve: &Curve, low: u64, grain: Grain) -> (
         }
     }
     starts.push(count);
-    let buckets = Buckets { records: &records, low, bits };
+    let buckets = BucketRecords { records: &records, low, bits };
     counts.par_iter_mut().enumerate().for_each(|(c, nexts)| points.write(range(c), curve, buckets, nexts));
     (records, starts)
 }
@@ -397,7 +397,7 @@ fn groups(starts: &[usize], grain: Grain) -> Vec<usize> {
 
 /// Two buffers for a group.
 #[derive(Default)]
-struct Scratch {
+struct GroupBuffers {
     records: Vec<u64>,
     spare: Vec<u64>,
 }
@@ -412,8 +412,8 @@ struct Sorter<'a> {
 impl Sorter<'_> {
     /// Sorts a group, moves the sites to its front and counts them. Points that are not the first
     /// of their site are returned separately.
-    fn sort(&self, group: &[AtomicU64], scratch: &mut Scratch) -> (usize, Vec<(u32, u32)>) {
-        let Scratch { records, spare } = scratch;
+    fn sort(&self, group: &[AtomicU64], buffers: &mut GroupBuffers) -> (usize, Vec<(u32, u32)>) {
+        let GroupBuffers { records, spare } = buffers;
         records.clear();
         records.extend(group.iter().map(|record| record.load(Relaxed)));
         sort_records(records, spare, self.low);

@@ -5,7 +5,7 @@ use crate::num::Sign;
 use crate::tds::VertexId;
 
 use super::faces::Range;
-use super::part::Part;
+use super::part::BuiltRange;
 
 const INFINITE: VertexId = VertexId::INFINITE;
 
@@ -20,12 +20,12 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
     }
 
     /// Triangulates three points: a triangle, or a chain with ghosts on both sides.
-    pub(super) fn triple(&mut self, lo: usize) -> Part {
+    pub(super) fn triple(&mut self, lo: usize) -> BuiltRange {
         let [mut a, mut b, mut c] = [0, 1, 2].map(|k| VertexId::new(lo + k));
         let [f, g, h, i] = [0, 1, 2, 3].map(|k| 2 * lo as u32 + k);
-        let turn = self.seen.turn([a, b, c]);
+        let turn = self.predicates.turn([a, b, c]);
         if turn == Sign::Zero {
-            let mut chain = [a, b, c].map(|v| (self.seen.coordinates(v), v));
+            let mut chain = [a, b, c].map(|v| (self.predicates.coordinates(v), v));
             chain.sort_unstable_by(|(p, _), (q, _)| p.partial_cmp(q).unwrap_or(std::cmp::Ordering::Equal));
             [a, b, c] = chain.map(|(_, v)| v);
             self.close([f, g, h, i], [[a, b], [b, c], [c, b], [b, a]]);
@@ -41,7 +41,7 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
                 self.link((f, slot), (ghost, 0));
             }
         }
-        Part { bottom: g, top: i, first: lo as u32 }
+        BuiltRange { bottom: g, top: i, first: lo as u32 }
     }
 
     /// Triangulates four points of which no three are collinear: two triangles, or three around the
@@ -49,9 +49,9 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
     ///
     /// `PERF:` saves a quarter of the merges (0.46 to 0.35 a point; -3 to -4 % of their time in the
     /// prototype).
-    pub(super) fn quadruple(&mut self, lo: usize) -> Option<Part> {
+    pub(super) fn quadruple(&mut self, lo: usize) -> Option<BuiltRange> {
         let mut v = [0, 1, 2, 3].map(|k| VertexId::new(lo + k));
-        match self.seen.turn([v[0], v[1], v[2]]) {
+        match self.predicates.turn([v[0], v[1], v[2]]) {
             Sign::Positive => {}
             Sign::Negative => v.swap(1, 2),
             Sign::Zero => return None,
@@ -59,7 +59,7 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
         // The edges of the triangle that have the fourth point on their right, one bit each.
         let mut right = 0;
         for (k, [p, q]) in [[0, 1], [1, 2], [2, 0]].into_iter().enumerate() {
-            match self.seen.turn([v[p], v[q], v[3]]) {
+            match self.predicates.turn([v[p], v[q], v[3]]) {
                 Sign::Positive => {}
                 Sign::Negative => right |= 1 << k,
                 Sign::Zero => return None,
@@ -79,7 +79,7 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
         .map(|k: usize| v[k]);
         if matches!(right, 0b001 | 0b010 | 0b100) {
             // The diagonal from a to c, or that from b to d.
-            let [a, b, c, d] = if self.seen.in_circle(d, [a, c], b) { [b, c, d, a] } else { [a, b, c, d] };
+            let [a, b, c, d] = if self.predicates.in_circle(d, [a, c], b) { [b, c, d, a] } else { [a, b, c, d] };
             self.face_mut(f).vertices = [a, b, c];
             self.face_mut(g).vertices = [a, c, d];
             self.close([h, i, j, k], [[a, b], [b, c], [c, d], [d, a]]);
@@ -87,7 +87,7 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
                 self.link(inner, (outer, 0));
             }
             self.link((f, 2), (g, 0));
-            Some(Part { bottom: h, top: j, first: lo as u32 })
+            Some(BuiltRange { bottom: h, top: j, first: lo as u32 })
         } else {
             for (face, ghost, [p, q]) in [(f, i, [a, b]), (g, j, [b, c]), (h, k, [c, a])] {
                 self.face_mut(face).vertices = [p, q, d];
@@ -97,7 +97,7 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
             for (face, after) in [(f, g), (g, h), (h, f)] {
                 self.link((face, 1), (after, 2));
             }
-            Some(Part { bottom: i, top: j, first: lo as u32 })
+            Some(BuiltRange { bottom: i, top: j, first: lo as u32 })
         }
     }
 

@@ -12,7 +12,7 @@ use crate::parallel::on_threads;
 use crate::tds::{Links, VertexId};
 
 use super::faces::Range;
-use super::filter::{Arrow, Circle, Seen};
+use super::filter::{Arrow, Circle, PlanePredicates};
 use super::{Grain, Sites, Stop, build};
 
 const TINY: Grain = Grain { points: 3, group: 2, range: 3, stop: None };
@@ -208,9 +208,10 @@ fn in_bulk_fast(points: &[[f64; 2]]) {
 fn is_arc(points: &[[f64; 2]]) -> bool {
     let geometry = Plane::<Adaptive>::default();
     let Sites { points, keys, curve, .. } = Sites::of(&geometry, points, TINY).unwrap().0;
-    let seen = Seen::<_, 3, true>::new(&geometry, &points, &curve, Grain::default());
+    let predicates = PlanePredicates::<_, 3, true>::new(&geometry, &points, &curve, Grain::default());
     let mut faces = vec![Links::UNUSED; 2 * points.len()];
-    let mut range = Range { seen: &seen, keys: &keys, first: 0, faces: &mut faces, offset: 0, grain: TINY, nesting: 0 };
+    let mut range =
+        Range { predicates: &predicates, keys: &keys, first: 0, faces: &mut faces, offset: 0, grain: TINY, nesting: 0 };
     range.arc(0, points.len()).is_some()
 }
 

@@ -3,8 +3,8 @@
 
 mod check;
 mod error;
+mod header;
 mod law;
-mod layout;
 mod plane;
 mod queries;
 mod section;
@@ -17,8 +17,8 @@ use crate::embedded::Embedded;
 use crate::geometry::Geometry;
 use crate::tds::{CellId, Complex, VertexId};
 pub use error::CompactError;
+use header::{HEADER, Header, Offsets};
 pub use law::Law;
-use layout::{HEADER, Header, Offsets};
 pub use section::CompactSection;
 
 /// A read-only triangulation that is used where its bytes are, without being loaded. `N` is the
@@ -233,7 +233,7 @@ impl<G: Geometry<N, Point = [f64; D]>, B: AsRef<[u8]>, const N: usize, const D: 
         let mut corners = [VertexId::NONE; N];
         for (slot, corner) in corners.iter_mut().enumerate().take(self.width()) {
             *corner = match self.link(cell, slot)? {
-                layout::INFINITE => VertexId::INFINITE,
+                header::INFINITE => VertexId::INFINITE,
                 stored if u64::from(stored) < self.header.vertices => VertexId::new(stored as usize),
                 _ => return Err(CompactError::Cell(cell)),
             };

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use super::layout::{pad, padded, taken};
+use super::header::{pad, padded, taken};
 
 /// Bytes of a section before its contents: its tag and their number.
 pub(super) const HEAD: u64 = 16;

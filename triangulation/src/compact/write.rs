@@ -7,20 +7,20 @@ use crate::lines::ConstrainedDelaunay;
 use crate::tds::{CellId, Tds, VertexId};
 use crate::triangulation::Triangulation;
 
-use super::layout::{HEADER, Header, INFINITE, NONE, pad};
+use super::header::{HEADER, Header, INFINITE, NONE, pad};
 use super::{Compact, Law};
 
 /// Numbers without gaps for used slots, in the same order; `None` if there are no gaps.
-struct Dense(Option<Vec<u32>>);
+struct DenseNumbers(Option<Vec<u32>>);
 
-impl Dense {
+impl DenseNumbers {
     fn of(slots: usize, used: impl ExactSizeIterator<Item = usize>) -> Self {
         if used.len() == slots {
-            return Dense(None);
+            return DenseNumbers(None);
         }
         let mut numbers = vec![NONE; slots];
         used.zip(0..).for_each(|(slot, number)| numbers[slot] = number);
-        Dense(Some(numbers))
+        DenseNumbers(Some(numbers))
     }
 
     fn at(&self, slot: usize) -> u32 {
@@ -28,12 +28,12 @@ impl Dense {
     }
 }
 
-struct Numbers {
-    vertices: Dense,
-    cells: Dense,
+struct FileNumbers {
+    vertices: DenseNumbers,
+    cells: DenseNumbers,
 }
 
-impl Numbers {
+impl FileNumbers {
     fn vertex(&self, vertex: VertexId) -> u32 {
         match vertex {
             v if v == VertexId::INFINITE => INFINITE,
@@ -54,9 +54,9 @@ fn write<G: Geometry<N, Point = [f64; D]>, V, C: Copy + Default, const N: usize,
     out: &mut impl Write,
 ) -> io::Result<()> {
     let tds: &Tds<N, V, C> = t.tds();
-    let numbers = Numbers {
-        vertices: Dense::of(tds.vertex_slots(), tds.vertices().map(VertexId::index)),
-        cells: Dense::of(tds.cell_slots(), tds.cells().map(CellId::index)),
+    let numbers = FileNumbers {
+        vertices: DenseNumbers::of(tds.vertex_slots(), tds.vertices().map(VertexId::index)),
+        cells: DenseNumbers::of(tds.cell_slots(), tds.cells().map(CellId::index)),
     };
     let header = Header {
         full: N as u32,

@@ -11,7 +11,6 @@ use crate::triangulation::Triangulation;
 /// edge opposite vertex `i`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(rename = "Walls"))] // as in saved files
 pub struct ConstrainedEdges<C = ()>(u8, C);
 
 impl<C> ConstrainedEdges<C> {

@@ -33,7 +33,7 @@ use crate::tds::VertexId;
 use crate::triangulation::Triangulation;
 
 use super::constrained_edges::ConstrainedEdges;
-use super::trace::Side;
+use super::trace::CorridorSide;
 
 /// No node.
 const NONE: u32 = u32::MAX;
@@ -41,7 +41,7 @@ const NONE: u32 = u32::MAX;
 /// A side that is being triangulated.
 struct Tree<'a, G: Geometry<3>, V, C> {
     triangulation: &'a Triangulation<G, 3, V, ConstrainedEdges<C>>,
-    side: &'a Side,
+    side: &'a CorridorSide,
     /// The triangle `i < j < k` of each node `j`, as `[i, k]`.
     bounds: Vec<[u32; 2]>,
     children: Vec<[u32; 2]>,
@@ -54,7 +54,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, ConstrainedEdg
     /// and its second half. Returns `None`, and adds nothing, if predicates contradict each other.
     ///
     /// Expected time linear in the length of the chain.
-    pub(crate) fn triangulate_long(&self, side: &Side, apexes: &mut Vec<u32>) -> Option<()> {
+    pub(crate) fn triangulate_long(&self, side: &CorridorSide, apexes: &mut Vec<u32>) -> Option<()> {
         let count = side.chain.len();
         let (gone, neighbors) = random_removal_order(count, |u, [p, n]| self.may_be_removed(side, u, p, n))?;
         let mut tree = Tree {
@@ -73,7 +73,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, ConstrainedEdg
 
     /// Returns true if the angle at a vertex between two others, on the side of the segment, is
     /// less than a full turn.
-    fn may_be_removed(&self, side: &Side, u: u32, p: u32, n: u32) -> bool {
+    fn may_be_removed(&self, side: &CorridorSide, u: u32, p: u32, n: u32) -> bool {
         let [v, first, last] = [u, p, n].map(|k| side.chain[k as usize]);
         let across = side.across[u as usize];
         // The edge across splits the angle. Both parts are less than half a turn if the neighbors
@@ -261,7 +261,7 @@ mod tests {
     use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
     use super::*;
-    use crate::engine::trace::{Met, Scratch};
+    use crate::engine::trace::{TraceBuffers, TraceEnd};
     use crate::geometry::Plane;
     use crate::kernel::{Adaptive, Kernel, Predicate, Range};
     use crate::lines::{ConstrainedDelaunay, OnCrossing};
@@ -276,16 +276,16 @@ mod tests {
     /// Compares both methods on the sides of the corridors between some vertices; returns the
     /// number of sides compared.
     fn compare(t: &ConstrainedDelaunay<Plane>, dice: &mut Dice, pairs: usize) -> usize {
-        let mut scratch = Scratch::default();
+        let mut buffers = TraceBuffers::default();
         let vertices: Vec<VertexId> = t.tds().vertices().collect();
         let mut compared = 0;
         for _ in 0..pairs {
             let [a, b] = [0; 2].map(|_| vertices[dice.below(vertices.len())]);
-            if a == b || !matches!(t.inner.trace(a, b, &mut scratch), Met::Vertex(_)) {
+            if a == b || !matches!(t.inner.trace(a, b, &mut buffers), TraceEnd::Vertex(_)) {
                 continue;
             }
-            scratch.right.reverse();
-            for side in [&scratch.left, &scratch.right].into_iter().filter(|side| side.chain.len() > 3) {
+            buffers.right.reverse();
+            for side in [&buffers.left, &buffers.right].into_iter().filter(|side| side.chain.len() > 3) {
                 let (mut naive, mut random) = (Vec::new(), Vec::new());
                 t.inner.wrap(side, Triangulation::is_in_circle, &mut naive);
                 assert_eq!(t.inner.triangulate_long(side, &mut random), Some(()));

@@ -29,13 +29,13 @@ use super::constrained_edges::ConstrainedEdges;
 
 /// Buffers of the insertion of segments, kept for the next one.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Scratch {
+pub(crate) struct TraceBuffers {
     /// The triangles that the segment crosses, in order.
     corridor: Vec<CellId>,
-    pub(crate) left: Side,
-    pub(crate) right: Side,
+    pub(crate) left: CorridorSide,
+    pub(crate) right: CorridorSide,
     /// Parts of a side that must still be triangulated.
-    parts: Vec<Part>,
+    parts: Vec<PartOfSide>,
     /// The triangulation of a side, as apexes of its parts.
     apexes: Vec<u32>,
     /// The number of triangles met by all traces.
@@ -46,18 +46,18 @@ pub(crate) struct Scratch {
 
 /// One side of a segment: the border of the triangles that it crosses, from its start to its end.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Side {
+pub(crate) struct CorridorSide {
     pub(crate) chain: Vec<VertexId>,
     /// For each vertex of the chain except its ends, a vertex to which an edge led across the
     /// segment. These edges do not cross each other.
     pub(crate) across: Vec<VertexId>,
     /// The edges between consecutive vertices of the chain.
-    edges: Vec<Edge>,
+    edges: Vec<BorderEdge>,
 }
 
 /// An edge of the border: the triangle on its outer side, and the edge's index there.
 #[derive(Debug, Clone, Copy)]
-struct Edge {
+struct BorderEdge {
     cell: CellId,
     i: usize,
     is_constrained: bool,
@@ -68,9 +68,9 @@ struct Edge {
 
 /// The positions in a chain between which a triangle is to be inserted, and the edge that it shares
 /// with the one before.
-type Part = (usize, usize, Option<(CellId, usize)>);
+type PartOfSide = (usize, usize, Option<(CellId, usize)>);
 
-impl Side {
+impl CorridorSide {
     fn clear(&mut self, start: VertexId) {
         self.chain.clear();
         self.chain.push(start);
@@ -79,7 +79,7 @@ impl Side {
         self.edges.clear();
     }
 
-    fn push(&mut self, vertex: VertexId, across: VertexId, edge: Edge) {
+    fn push(&mut self, vertex: VertexId, across: VertexId, edge: BorderEdge) {
         self.chain.push(vertex);
         self.across.push(across);
         self.edges.push(edge);
@@ -118,7 +118,7 @@ const LONG: usize = 32;
 const BASE: usize = 2;
 
 /// Where a trace ended.
-pub(crate) enum Met {
+pub(crate) enum TraceEnd {
     /// At this vertex, which may be the segment's end.
     Vertex(VertexId),
     /// At the constraint opposite corner `i` of the cell.
@@ -144,21 +144,26 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, ConstrainedEdg
     }
 
     /// Walks from `a` towards `b`, and fills the corridor and its two sides.
-    pub(crate) fn trace(&self, a: VertexId, b: VertexId, scratch: &mut Scratch) -> Met {
-        scratch.corridor.clear();
-        scratch.left.clear(a);
-        scratch.right.clear(a);
-        let met = self.trace_into(a, b, scratch);
-        scratch.met += scratch.corridor.len();
+    pub(crate) fn trace(&self, a: VertexId, b: VertexId, buffers: &mut TraceBuffers) -> TraceEnd {
+        buffers.corridor.clear();
+        buffers.left.clear(a);
+        buffers.right.clear(a);
+        let met = self.trace_into(a, b, buffers);
+        buffers.met += buffers.corridor.len();
         met
     }
 
-    fn trace_into(&self, a: VertexId, b: VertexId, Scratch { corridor, left, right, .. }: &mut Scratch) -> Met {
+    fn trace_into(
+        &self,
+        a: VertexId,
+        b: VertexId,
+        TraceBuffers { corridor, left, right, .. }: &mut TraceBuffers,
+    ) -> TraceEnd {
         let tds = &self.tds;
         let edge = |cell: CellId, i: usize| {
             let outside = tds.neighbor(cell, i);
             let j = tds.index_of_neighbor(outside, cell);
-            Edge { cell: outside, i: j, is_constrained: tds.cell_data(cell).has(i), is_spike: false }
+            BorderEdge { cell: outside, i: j, is_constrained: tds.cell_data(cell).has(i), is_spike: false }
         };
         // The triangle at `a` through which the segment leaves, or a neighbor on the segment.
         let mut leaves = None;
@@ -168,7 +173,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, ConstrainedEdg
                 continue;
             }
             match self.turn(a, u, b) {
-                Sign::Zero if self.is_ahead(a, b, u) => return Met::Vertex(u),
+                Sign::Zero if self.is_ahead(a, b, u) => return TraceEnd::Vertex(u),
                 Sign::Positive if w != VertexId::INFINITE && self.turn(a, w, b) == Sign::Negative => {
                     right.push(u, w, edge(cell, cw(i)));
                     left.push(w, u, edge(cell, ccw(i)));
@@ -180,12 +185,12 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, ConstrainedEdg
         }
         let Some((mut cell, mut i)) = leaves else {
             // Unreachable: the triangles around a vertex of a convex region leave no gap.
-            return Met::Vertex(b);
+            return TraceEnd::Vertex(b);
         };
         loop {
             corridor.push(cell);
             if tds.cell_data(cell).has(i) {
-                return Met::Constraint(cell, i);
+                return TraceEnd::Constraint(cell, i);
             }
             let beyond = tds.neighbor(cell, i);
             let j = tds.index_of_neighbor(beyond, cell);
@@ -203,7 +208,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, ConstrainedEdg
             i = match turn {
                 Sign::Zero => {
                     corridor.push(beyond);
-                    return Met::Vertex(p);
+                    return TraceEnd::Vertex(p);
                 }
                 Sign::Positive => ccw(j),
                 Sign::Negative => cw(j),
@@ -219,13 +224,13 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, ConstrainedEdg
         &mut self,
         a: VertexId,
         v: VertexId,
-        scratch: &mut Scratch,
-        triangulate: impl Fn(&Self, &Side, &mut Vec<u32>),
+        buffers: &mut TraceBuffers,
+        triangulate: impl Fn(&Self, &CorridorSide, &mut Vec<u32>),
     ) {
-        if scratch.corridor.is_empty() {
+        if buffers.corridor.is_empty() {
             self.constrain_edge(a, v); // the edge is there
         } else {
-            self.retriangulate(scratch, triangulate);
+            self.retriangulate(buffers, triangulate);
         }
     }
 
@@ -238,8 +243,8 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, ConstrainedEdg
     /// base.
     fn retriangulate(
         &mut self,
-        Scratch { corridor, left, right, parts, apexes, .. }: &mut Scratch,
-        triangulate: impl Fn(&Self, &Side, &mut Vec<u32>),
+        TraceBuffers { corridor, left, right, parts, apexes, .. }: &mut TraceBuffers,
+        triangulate: impl Fn(&Self, &CorridorSide, &mut Vec<u32>),
     ) {
         for &cell in corridor.iter() {
             *self.tds.cell_data_mut(cell) = ConstrainedEdges::being_replaced();
@@ -269,9 +274,9 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, ConstrainedEdg
     /// to its last vertex. Uses cells from `free`. Returns the triangle on the base.
     fn fill(
         &mut self,
-        side: &mut Side,
+        side: &mut CorridorSide,
         free: &mut Vec<CellId>,
-        parts: &mut Vec<Part>,
+        parts: &mut Vec<PartOfSide>,
         apexes: &[u32],
     ) -> Option<CellId> {
         let mut on_base = None;
@@ -313,7 +318,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, ConstrainedEdg
     }
 
     /// Triangulates a side by the Delaunay law.
-    pub(crate) fn triangulate(&self, side: &Side, apexes: &mut Vec<u32>) {
+    pub(crate) fn triangulate(&self, side: &CorridorSide, apexes: &mut Vec<u32>) {
         if side.chain.len() < LONG || self.triangulate_long(side, apexes).is_none() {
             self.wrap(side, Self::is_in_circle, apexes);
         }
@@ -325,7 +330,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, ConstrainedEdg
     /// At worst quadratic in the length of the chain.
     pub(crate) fn wrap(
         &self,
-        side: &Side,
+        side: &CorridorSide,
         is_closer: impl Fn(&Self, [VertexId; 3], VertexId) -> bool,
         apexes: &mut Vec<u32>,
     ) {

@@ -6,7 +6,7 @@ use crate::engine::insert::{insert_each, move_vertex};
 use crate::engine::kind_methods::{
     construction_methods, from_points_with_method, insert_method, insertion_methods, payload_methods, remove_by_method,
 };
-use crate::engine::trace::{Met, Scratch, Side};
+use crate::engine::trace::{CorridorSide, TraceBuffers, TraceEnd};
 use crate::engine::{ConstrainedEdges, Inserted};
 use crate::error::{InputError, MoveError, RemovalError};
 use crate::flaw::{Flaw, Level};
@@ -39,7 +39,7 @@ use crate::triangulation::Triangulation;
 #[derive(Debug)]
 pub struct Constrained<G: Geometry<3>, V = (), C = ()> {
     pub(crate) inner: Triangulation<G, 3, V, ConstrainedEdges<C>>,
-    pub(crate) scratch: Scratch,
+    pub(crate) buffers: TraceBuffers,
 }
 
 /// Why a constraint was refused. Nothing has changed then.
@@ -78,7 +78,7 @@ impl<G: Geometry<3>, V, C> Deref for Constrained<G, V, C> {
 
 impl<G: Geometry<3> + Clone, V: Clone, C: Clone> Clone for Constrained<G, V, C> {
     fn clone(&self) -> Self {
-        Constrained { inner: self.inner.duplicate(), scratch: Scratch::default() }
+        Constrained { inner: self.inner.duplicate(), buffers: TraceBuffers::default() }
     }
 }
 
@@ -106,7 +106,7 @@ impl<G: Coordinates<3>> Constrained<G> {
 
 impl<G: Geometry<3>, V, C: Copy + Default> Constrained<G, V, C> {
     pub(crate) fn over(inner: Triangulation<G, 3, V, ConstrainedEdges<C>>) -> Self {
-        Constrained { inner, scratch: Scratch::default() }
+        Constrained { inner, buffers: TraceBuffers::default() }
     }
 
     /// Converts the triangulation below; its law stays.
@@ -117,7 +117,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Constrained<G, V, C> {
     where
         D: Copy + Default,
     {
-        Constrained { inner: convert(self.inner), scratch: self.scratch }
+        Constrained { inner: convert(self.inner), buffers: self.buffers }
     }
 
     payload_methods! {
@@ -166,9 +166,9 @@ impl<G: Geometry<3>, V, C: Copy + Default> Constrained<G, V, C> {
         // The first pass only reads, so that nothing has changed if the constraint is refused.
         let mut from = a;
         while from != b {
-            match self.inner.trace(from, b, &mut self.scratch) {
-                Met::Vertex(v) => from = v,
-                Met::Constraint(cell, i) => {
+            match self.inner.trace(from, b, &mut self.buffers) {
+                TraceEnd::Vertex(v) => from = v,
+                TraceEnd::Constraint(cell, i) => {
                     let mut ends = self.tds().edge_ends(cell, i);
                     ends.sort_unstable();
                     return Err(ConstraintError::Crosses(ends));
@@ -177,11 +177,12 @@ impl<G: Geometry<3>, V, C: Copy + Default> Constrained<G, V, C> {
         }
         let mut from = a;
         while from != b {
-            let Met::Vertex(v) = self.inner.trace(from, b, &mut self.scratch) else { break };
-            let triangulate = |t: &Triangulation<G, 3, V, ConstrainedEdges<C>>, side: &Side, apexes: &mut Vec<u32>| {
-                t.wrap(side, Triangulation::is_within, apexes);
-            };
-            self.inner.insert_traced(from, v, &mut self.scratch, triangulate);
+            let TraceEnd::Vertex(v) = self.inner.trace(from, b, &mut self.buffers) else { break };
+            let triangulate =
+                |t: &Triangulation<G, 3, V, ConstrainedEdges<C>>, side: &CorridorSide, apexes: &mut Vec<u32>| {
+                    t.wrap(side, Triangulation::is_within, apexes);
+                };
+            self.inner.insert_traced(from, v, &mut self.buffers, triangulate);
             from = v;
         }
         Ok(())

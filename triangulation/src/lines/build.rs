@@ -239,14 +239,14 @@ impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
         }
         // Sub-constraints next to each other are inserted one after the other, until that has taken
         // too long.
-        let enough = self.lines.scratch.met + PATIENCE * (self.vertex_count() + parts.len());
+        let enough = self.lines.buffers.met + PATIENCE * (self.vertex_count() + parts.len());
         let mut crossing = Vec::new();
         let mut dice = Dice::default();
         for next in 0..parts.len() {
             if next.is_multiple_of(LOOK_EVERY) && grain.stops() {
                 break;
             }
-            if self.lines.scratch.met > enough {
+            if self.lines.buffers.met > enough {
                 let left = parts.len() - next;
                 parts.swap(next, next + dice.below(left));
             }

@@ -2,7 +2,7 @@
 
 use crate::engine::flip::WithConstraints;
 use crate::engine::insert::Inserted;
-use crate::engine::trace::Met;
+use crate::engine::trace::TraceEnd;
 use crate::geometry::Crossing;
 use crate::locate::{Facets, Location};
 use crate::tds::{CellId, VertexId};
@@ -110,15 +110,15 @@ impl Lines {
             }
             // Finding the direction takes long at a vertex of high degree.
             let [a, b] = if t.tds.is_busier(a, b) { [b, a] } else { [a, b] };
-            match t.trace(a, b, &mut self.scratch) {
-                Met::Vertex(v) => {
-                    t.insert_traced(a, v, &mut self.scratch, Triangulation::triangulate);
+            match t.trace(a, b, &mut self.buffers) {
+                TraceEnd::Vertex(v) => {
+                    t.insert_traced(a, v, &mut self.buffers, Triangulation::triangulate);
                     if v != b {
                         self.chains.split(a, b, v);
                         parts.push([v, b]);
                     }
                 }
-                Met::Constraint(..) => is_whole = false,
+                TraceEnd::Constraint(..) => is_whole = false,
             }
         }
         is_whole
@@ -183,8 +183,8 @@ impl Lines {
             self.waiting.retain(|&pair| pair != [a, b] && pair != [b, a]);
             return self.waiting.len() < waiting;
         };
-        self.scratch.to_legalize.extend(sides);
-        t.legalize(WithConstraints, &mut self.scratch.to_legalize);
+        self.buffers.to_legalize.extend(sides);
+        t.legalize(WithConstraints, &mut self.buffers.to_legalize);
         true
     }
 }

@@ -181,7 +181,7 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
 }
 
 /// Lines, each with the vertices that it had before a change.
-type Before = Vec<(LineId, Option<LineVertices>)>;
+type LinesBefore = Vec<(LineId, Option<LineVertices>)>;
 
 impl Lines {
     /// Returns true if so few vertices of lines are changed faster one by one than by a new
@@ -212,7 +212,7 @@ impl Lines {
 
     /// Changes the vertices of lines, or removes lines, in the table only; segments follow later.
     /// Returns the old vertices.
-    fn replace(&mut self, changes: Vec<(LineId, Option<LineVertices>)>) -> Before {
+    fn replace(&mut self, changes: Vec<(LineId, Option<LineVertices>)>) -> LinesBefore {
         self.index(); // computed before the change
         let given = &mut self.chains.given;
         changes.into_iter().map(|(line, new)| (line, std::mem::replace(&mut given[line.index()], new))).collect()
@@ -230,7 +230,7 @@ impl Lines {
     fn change<G: Crossing, V: Default, C: Copy + Default>(
         &mut self,
         t: &mut Mesh<G, V, C>,
-        before: &Before,
+        before: &LinesBefore,
     ) -> Result<(), NotLocal> {
         let vertices = |(line, old): &(LineId, Option<LineVertices>)| {
             old.as_deref().unwrap_or_default().len() + self.chains.vertices(*line).len()

@@ -37,9 +37,9 @@ impl<T: Copy + PartialEq> Few<T> {
 
 /// A table of sets that are not empty.
 #[derive(Debug, Clone)]
-struct Table<T>(FxHashMap<Ends, Few<T>>);
+struct SetsByEnds<T>(FxHashMap<Ends, Few<T>>);
 
-impl<T: Copy + PartialEq> Table<T> {
+impl<T: Copy + PartialEq> SetsByEnds<T> {
     fn get(&self, key: Ends) -> &[T] {
         self.0.get(&key).map_or(&[], Few::as_slice)
     }
@@ -77,8 +77,8 @@ impl<T: Copy + PartialEq> Table<T> {
 /// About 40 bytes for each segment, and 40 for each node of segments that are more than one edge.
 #[derive(Debug, Clone)]
 pub(super) struct Index {
-    lines_of: Table<LineId>,
-    segments_on: Table<Ends>,
+    lines_of: SetsByEnds<LineId>,
+    segments_on: SetsByEnds<Ends>,
     /// Lines without a segment.
     pub(super) dots: Vec<LineId>,
     /// For each axis and each distance between adjacent doubles: the number of segments' ends whose
@@ -95,8 +95,8 @@ impl Index {
     /// Returns the index of all lines.
     pub(super) fn of(chains: &Chains) -> Self {
         let mut index = Index {
-            lines_of: Table(FxHashMap::default()),
-            segments_on: Table(FxHashMap::default()),
+            lines_of: SetsByEnds(FxHashMap::default()),
+            segments_on: SetsByEnds(FxHashMap::default()),
             dots: Vec::new(),
             steps: [BTreeMap::new(), BTreeMap::new()],
             uneven: 0,

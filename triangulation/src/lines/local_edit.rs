@@ -45,7 +45,7 @@ const WIDE_REACH: f64 = 3.0;
 const SHORT: usize = 64;
 
 /// A pending step.
-enum Step {
+enum PendingStep {
     /// A site has become hot.
     Attract(VertexId),
     /// A site has become active.
@@ -79,7 +79,7 @@ pub(super) struct Edit<'a, G: Crossing, V, C> {
     replacing: Vec<(Ends, Ends)>,
     /// Added vertices at which other segments cross than before.
     stale: Vec<VertexId>,
-    steps: Vec<Step>,
+    steps: Vec<PendingStep>,
 }
 
 impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
@@ -128,8 +128,8 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
             for &(other, center, cell) in &crossed {
                 self.add_site(center, [segment, other], cell)?;
             }
-            self.steps.extend(crossed.iter().map(|&(other, ..)| Step::Bend(other)));
-            self.steps.push(Step::Bend(segment));
+            self.steps.extend(crossed.iter().map(|&(other, ..)| PendingStep::Bend(other)));
+            self.steps.push(PendingStep::Bend(segment));
         }
         self.apply_rules()?;
         self.carry_out()
@@ -164,7 +164,7 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
         self.gone = Some(vertex);
         self.retract(vec![vertex]);
         if self.is_hot(vertex) {
-            self.steps.push(Step::Activate(vertex));
+            self.steps.push(PendingStep::Activate(vertex));
             self.stale.push(vertex);
         }
         self.apply_rules()?;
@@ -344,7 +344,7 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
 
     fn make_hot(&mut self, site: VertexId) {
         self.hot.insert(site, true);
-        self.steps.push(Step::Attract(site));
+        self.steps.push(PendingStep::Attract(site));
     }
 
     /// Makes the rounded crossing of two segments a hot site.
@@ -411,7 +411,7 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
     /// Schedules a segment to be bent if it meets the pixel of an active site.
     fn bend_if_attracted(&mut self, segment: Ends) {
         if self.attractors(segment).into_iter().any(|v| self.is_hot(v) && self.is_active(v)) {
-            self.steps.push(Step::Bend(segment));
+            self.steps.push(PendingStep::Bend(segment));
         }
     }
 
@@ -419,7 +419,7 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
     fn apply_rules(&mut self) -> Result<(), NotLocal> {
         while let Some(step) = self.steps.pop() {
             match step {
-                Step::Attract(site) => {
+                PendingStep::Attract(site) => {
                     if self.is_given(site) && self.rounder.is_even() && !self.rounder.holds(position(self.t, site)) {
                         return Err(NotLocal); // the grid becomes another one
                     }
@@ -427,21 +427,21 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
                         if self.is_bent(segment) && !self.has_site(segment, site) {
                             self.insert_site(segment, site);
                             if !self.is_exact(segment, site) {
-                                self.steps.push(Step::Activate(site));
+                                self.steps.push(PendingStep::Activate(site));
                             }
                         }
                     }
                 }
-                Step::Activate(site) => {
+                PendingStep::Activate(site) => {
                     if self.active.insert(site) {
                         for segment in self.around(site) {
                             if !self.is_bent(segment) {
-                                self.steps.push(Step::Bend(segment));
+                                self.steps.push(PendingStep::Bend(segment));
                             }
                         }
                     }
                 }
-                Step::Bend(segment) => {
+                PendingStep::Bend(segment) => {
                     if !self.is_bent(segment) {
                         self.bend(segment);
                     }
@@ -460,7 +460,7 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
             if self.is_hot(v) {
                 sites.push(v);
                 if !self.is_exact(segment, v) {
-                    self.steps.push(Step::Activate(v));
+                    self.steps.push(PendingStep::Activate(v));
                 }
             } else if self.is_given(v) && lies_on(ends, position(self.t, v)) {
                 self.make_hot(v);

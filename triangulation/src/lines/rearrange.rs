@@ -23,7 +23,7 @@ use super::chains::{segments_of, undirected};
 use super::rounding::Rounding;
 
 /// What the lines demand: segments between given vertices.
-struct Demand {
+struct LinesDemand {
     /// The given vertices, in order.
     given: Vec<VertexId>,
     /// The coordinates of each given vertex.
@@ -78,13 +78,13 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
     }
 
     /// Returns what the lines demand, without the vertices that leave.
-    fn demand(&self, leaving: &HashSet<VertexId>) -> Demand {
+    fn demand(&self, leaving: &HashSet<VertexId>) -> LinesDemand {
         let is_given = |v: &VertexId| !self.is_added(*v) && !leaving.contains(v);
         let given: Vec<VertexId> = self.tds().vertices().filter(is_given).collect();
         let number = |v: VertexId| given.partition_point(|&other| other < v) as u32;
         let segments = segments_of(self.lines.chains.each(), number);
         let positions = given.iter().map(|&v| self.plan_of(v)).collect();
-        Demand { given, positions, segments }
+        LinesDemand { given, positions, segments }
     }
 
     /// Makes the triangulation that of an arrangement of what the lines demand, without the
@@ -92,7 +92,7 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
     fn carry_out(
         &mut self,
         arrangement: &Arrangement,
-        Demand { given, segments, .. }: &Demand,
+        LinesDemand { given, segments, .. }: &LinesDemand,
         mut leaving: HashSet<VertexId>,
     ) -> Vec<SubConstraint> {
         // Phase 1: sites that stay keep their vertices, other added vertices leave.

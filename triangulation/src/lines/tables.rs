@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use crate::engine::trace::Scratch;
+use crate::engine::trace::TraceBuffers;
 use crate::geometry::Crossing;
 use crate::tds::VertexId;
 
@@ -44,7 +44,7 @@ pub(crate) struct Lines {
     pub(super) recrossed: bool,
     /// True if constrained edges may belong to no line: those of the hull of a refined mesh.
     pub(super) has_stray_edges: bool,
-    pub(super) scratch: Scratch,
+    pub(super) buffers: TraceBuffers,
 }
 
 impl Lines {
@@ -78,7 +78,7 @@ impl Lines {
     /// Returns how many triangles all insertions of sub-constraints have met.
     #[cfg(test)]
     pub(crate) fn met(&self) -> usize {
-        self.scratch.met
+        self.buffers.met
     }
 
     /// Discards what was derived from the set of added vertices.

@@ -62,7 +62,7 @@ pub(crate) type Span = [bool; 4];
 ///
 /// The triangulation has full dimension.
 pub(super) fn last_cell<T: Embedded<4>>(t: &T, from: VertexId, q: &PointOf<T, 4>) -> Result<Option<CellId>, T::Error> {
-    let mut line = Line::new(t, [t.point(from)?.borrow(), q]);
+    let mut line = LineWalk::new(t, [t.point(from)?.borrow(), q]);
     let mut met = SpacePassage::Vertex(from);
     for _ in 0..line.most() {
         let Some(next) = line.after(met)? else { break };
@@ -72,7 +72,7 @@ pub(super) fn last_cell<T: Embedded<4>>(t: &T, from: VertexId, q: &PointOf<T, 4>
 }
 
 /// A segment with different ends, in the line, plane or space that the vertices span.
-pub(crate) struct Line<'t, T: Embedded<4>> {
+pub(crate) struct LineWalk<'t, T: Embedded<4>> {
     t: &'t T,
     a: PointOf<T, 4>,
     b: PointOf<T, 4>,
@@ -81,9 +81,9 @@ pub(crate) struct Line<'t, T: Embedded<4>> {
     ahead: Option<(CellId, usize)>,
 }
 
-impl<'t, T: Embedded<4>> Line<'t, T> {
+impl<'t, T: Embedded<4>> LineWalk<'t, T> {
     pub(crate) fn new(t: &'t T, [a, b]: [&PointOf<T, 4>; 2]) -> Self {
-        Line { t, a: *a, b: *b, ahead: None }
+        LineWalk { t, a: *a, b: *b, ahead: None }
     }
 
     /// Returns a bound of the number of passages: each cell, facet, edge and vertex is met once.

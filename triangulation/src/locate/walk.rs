@@ -125,8 +125,8 @@ pub fn locate<const N: usize, T: Embedded<N>>(
             ask_sides(t, cell, q, dice.below(width), from)?
         };
         let beyond = match sides {
-            Sides::Outside(i) => complex.neighbor(cell, i)?,
-            Sides::On(facets) => {
+            CellSides::Outside(i) => complex.neighbor(cell, i)?,
+            CellSides::On(facets) => {
                 // A point on all facets means a flat cell.
                 complex.ensure(cell, || facets.len() < width)?;
                 if facets.len() == width - 1 {
@@ -245,7 +245,7 @@ fn hull_exit<const N: usize, T: Embedded<N>>(
 }
 
 /// The position of a point relative to a finite cell.
-enum Sides {
+enum CellSides {
     /// Outside of the facet opposite this vertex.
     Outside(usize),
     /// Outside of no facet, and on these.
@@ -262,7 +262,7 @@ fn ask_sides<const N: usize, T: Embedded<N>>(
     q: &PointOf<T, N>,
     first: usize,
     from: Option<CellId>,
-) -> Result<Sides, T::Error> {
+) -> Result<CellSides, T::Error> {
     let width = t.complex().width();
     let mut on = Facets::default();
     for turn in 0..N.min(width) {
@@ -273,10 +273,10 @@ fn ask_sides<const N: usize, T: Embedded<N>>(
         match side_of_facet(t, cell, i, q)? {
             Sign::Positive => {}
             Sign::Zero => on.insert(i),
-            Sign::Negative => return Ok(Sides::Outside(i)),
+            Sign::Negative => return Ok(CellSides::Outside(i)),
         }
     }
-    Ok(Sides::On(on))
+    Ok(CellSides::On(on))
 }
 
 /// Returns a finite cell that is nearer to `q` than this one, if one of some vertices is.

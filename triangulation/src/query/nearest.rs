@@ -22,47 +22,47 @@ use crate::locate::locate;
 use crate::tds::{CellId, Complex, Neighbors, Tds, VertexId, vertices_of};
 
 /// A vertex that was found but not yet returned: the nearest is the greatest.
-struct Candidate<'t, T: Embedded<N>, const N: usize> {
+struct VertexByDistance<'t, T: Embedded<N>, const N: usize> {
     t: &'t T,
     q: PointOf<T, N>,
     vertex: VertexId,
     point: T::PointRef<'t>,
 }
 
-impl<T: Embedded<N, Geometry: Metric<N>>, const N: usize> Candidate<'_, T, N> {
+impl<T: Embedded<N, Geometry: Metric<N>>, const N: usize> VertexByDistance<'_, T, N> {
     /// Returns true if the vertex is no further from the point than `rim` is.
     fn is_within(&self, rim: &PointOf<T, N>) -> bool {
         self.t.geometry().compare_distance(&self.q, self.point.borrow(), rim).is_le()
     }
 }
 
-impl<T: Embedded<N, Geometry: Metric<N>>, const N: usize> Ord for Candidate<'_, T, N> {
+impl<T: Embedded<N, Geometry: Metric<N>>, const N: usize> Ord for VertexByDistance<'_, T, N> {
     fn cmp(&self, other: &Self) -> Ordering {
         let (geometry, ours, theirs) = (self.t.geometry(), self.point.borrow(), other.point.borrow());
         geometry.compare_distance(&self.q, theirs, ours).then_with(|| geometry.compare(theirs, ours))
     }
 }
 
-impl<T: Embedded<N, Geometry: Metric<N>>, const N: usize> PartialOrd for Candidate<'_, T, N> {
+impl<T: Embedded<N, Geometry: Metric<N>>, const N: usize> PartialOrd for VertexByDistance<'_, T, N> {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
     }
 }
 
-impl<T: Embedded<N, Geometry: Metric<N>>, const N: usize> PartialEq for Candidate<'_, T, N> {
+impl<T: Embedded<N, Geometry: Metric<N>>, const N: usize> PartialEq for VertexByDistance<'_, T, N> {
     fn eq(&self, other: &Self) -> bool {
         self.cmp(other).is_eq()
     }
 }
 
-impl<T: Embedded<N, Geometry: Metric<N>>, const N: usize> Eq for Candidate<'_, T, N> {}
+impl<T: Embedded<N, Geometry: Metric<N>>, const N: usize> Eq for VertexByDistance<'_, T, N> {}
 
 /// Iterates over the vertices of a Delaunay triangulation by their distance from a point.
 struct NearestFirst<'t, T: Embedded<N, Geometry: Metric<N>>, const N: usize> {
     t: &'t T,
     q: PointOf<T, N>,
     found: FxHashSet<VertexId>,
-    next: BinaryHeap<Candidate<'t, T, N>>,
+    next: BinaryHeap<VertexByDistance<'t, T, N>>,
 }
 
 impl<'t, T: Embedded<N, Geometry: Metric<N>, Complex: Neighbors<N>>, const N: usize> NearestFirst<'t, T, N> {
@@ -75,7 +75,7 @@ impl<'t, T: Embedded<N, Geometry: Metric<N>, Complex: Neighbors<N>>, const N: us
 
     fn find(&mut self, vertex: VertexId) -> Result<(), T::Error> {
         if self.found.insert(vertex) {
-            self.next.push(Candidate { t: self.t, q: self.q, vertex, point: self.t.point(vertex)? });
+            self.next.push(VertexByDistance { t: self.t, q: self.q, vertex, point: self.t.point(vertex)? });
         }
         Ok(())
     }
@@ -84,7 +84,7 @@ impl<'t, T: Embedded<N, Geometry: Metric<N>, Complex: Neighbors<N>>, const N: us
 impl<'t, T: Embedded<N, Geometry: Metric<N>, Complex: Neighbors<N>>, const N: usize> Iterator
     for NearestFirst<'t, T, N>
 {
-    type Item = Result<Candidate<'t, T, N>, T::Error>;
+    type Item = Result<VertexByDistance<'t, T, N>, T::Error>;
 
     fn next(&mut self) -> Option<Self::Item> {
         let nearest = self.next.pop()?;
@@ -171,7 +171,7 @@ pub fn within<'t, T: Embedded<N, Geometry: Metric<N>, Complex: Neighbors<N>>, co
     let location = if t.geometry().admits(rim) { locate(t, center, near)? } else { Location::Nowhere };
     let nearest = NearestFirst::new(t, center, location)?;
     let rim = *rim;
-    let is_within = move |candidate: &Result<Candidate<'t, T, N>, T::Error>| {
+    let is_within = move |candidate: &Result<VertexByDistance<'t, T, N>, T::Error>| {
         candidate.as_ref().map_or(true, |candidate| candidate.is_within(&rim))
     };
     Ok(nearest.take_while(is_within).map(|candidate| Ok(candidate?.vertex)))

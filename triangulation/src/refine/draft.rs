@@ -26,7 +26,7 @@ pub(super) enum Encroachment {
 
 /// The reason why a vertex exists.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Origin {
+pub(super) enum VertexOrigin {
     /// It was there before.
     Given,
     /// It splits a constrained edge, which had these ends.
@@ -56,7 +56,7 @@ pub(super) struct Draft<G: Crossing, V> {
     pub(super) budget: usize,
     /// Constrained edges that are to be split.
     pub(super) encroached: VecDeque<[VertexId; 2]>,
-    origins: Vec<Origin>,
+    origins: Vec<VertexOrigin>,
     pub(super) shells: Shells,
     pub(super) encroachment: Encroachment,
 }
@@ -73,7 +73,7 @@ impl<G: Crossing, V: Default> Draft<G, V> {
             fresh: Vec::new(),
             budget,
             encroached: VecDeque::new(),
-            origins: vec![Origin::Given; t.tds().vertex_slots()],
+            origins: vec![VertexOrigin::Given; t.tds().vertex_slots()],
             shells: Shells::new(t.tds().vertex_slots()),
             encroachment,
             t,
@@ -88,7 +88,7 @@ impl<G: Crossing, V: Default> Draft<G, V> {
         draft
     }
 
-    pub(super) fn origin(&self, vertex: VertexId) -> Origin {
+    pub(super) fn origin(&self, vertex: VertexId) -> VertexOrigin {
         self.origins[vertex.index()]
     }
 
@@ -171,7 +171,7 @@ impl<G: Crossing, V: Default> Draft<G, V> {
         &mut self,
         mut zone: Zone,
         p: G::Point,
-        origin: Origin,
+        origin: VertexOrigin,
         region: impl Fn(usize) -> u32,
     ) -> VertexId {
         let vertex = self.t.inner.add_vertex(p, V::default());
@@ -217,7 +217,7 @@ impl<G: Crossing, V: Default> Draft<G, V> {
         }
         let region = self.regions[cell.index()];
         let p = self.interpolate(zone.cells(), site);
-        self.star(zone, p, Origin::Free, |_| region);
+        self.star(zone, p, VertexOrigin::Free, |_| region);
         self.budget -= 1;
         Attempt::Added
     }

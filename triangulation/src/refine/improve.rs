@@ -6,9 +6,9 @@ use std::sync::atomic::Ordering;
 use crate::geometry::Crossing;
 use crate::tds::{CellId, VertexId, ccw};
 
-use super::draft::{Attempt, Draft, Origin};
+use super::draft::{Attempt, Draft, VertexOrigin};
 use super::quality::{Quality, Shortfall};
-use super::queue::{Bad, Queue};
+use super::queue::{BadTriangle, Queue};
 use super::shape::{Shape, length, minus};
 
 /// Two lengths that differ by less than this fraction are radii of the same circle, rounded.
@@ -30,7 +30,7 @@ pub(super) struct Refiner<'a, G: Crossing, V> {
     quality: &'a Quality<'a>,
     queue: Queue,
     /// Triangles that do not satisfy the bounds but remain as they are; some may no longer exist.
-    left: Vec<Bad>,
+    left: Vec<BadTriangle>,
     /// The square of the cosine of the requested smallest angle.
     cosine: f64,
     reach: f64,
@@ -98,7 +98,7 @@ impl<'a, G: Crossing, V: Default> Refiner<'a, G, V> {
 
     /// Records a cell that does not satisfy the bounds.
     fn note(&mut self, cell: CellId, shape: &Shape) {
-        let bad = Bad { cell, corners: *self.draft.t.tds().corners(cell), shortest: shape.shortest() };
+        let bad = BadTriangle { cell, corners: *self.draft.t.tds().corners(cell), shortest: shape.shortest() };
         if self.is_too_large(cell, shape) || self.why_thin(cell, shape).is_none() {
             self.queue.push(bad);
         } else {
@@ -109,7 +109,7 @@ impl<'a, G: Crossing, V: Default> Refiner<'a, G, V> {
     /// Returns the shape of a recorded triangle if it still exists and still does not satisfy the
     /// bounds. Vertices are removed, so that both its number and those of its corners may have been
     /// reused.
-    fn still_bad(&self, bad: &Bad) -> Option<Shape> {
+    fn still_bad(&self, bad: &BadTriangle) -> Option<Shape> {
         if *self.draft.t.tds().corners(bad.cell) == bad.corners { self.bad(bad.cell) } else { None }
     }
 
@@ -147,7 +147,9 @@ impl<'a, G: Crossing, V: Default> Refiner<'a, G, V> {
     /// on a circle around the apex. A triangle over it can be no better than that angle, and
     /// splitting it would make the next one as thin (Miller, Pav and Walkington 2003).
     fn spans_small_angle(&self, [a, b]: [VertexId; 2]) -> bool {
-        let (Origin::OnConstraint(ab), Origin::OnConstraint(cd)) = (self.draft.origin(a), self.draft.origin(b)) else {
+        let (VertexOrigin::OnConstraint(ab), VertexOrigin::OnConstraint(cd)) =
+            (self.draft.origin(a), self.draft.origin(b))
+        else {
             return false;
         };
         let apex = ab.into_iter().find(|v| cd.contains(v));

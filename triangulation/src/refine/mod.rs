@@ -47,7 +47,7 @@ use std::ops::Deref;
 use crate::geometry::Crossing;
 use crate::lines::ConstrainedDelaunay;
 use crate::tds::{CellId, VertexId};
-use draft::{Draft, Encroachment, Origin};
+use draft::{Draft, Encroachment, VertexOrigin};
 use improve::Refiner;
 use quality::OUTSIDE;
 
@@ -76,7 +76,7 @@ impl<G: Crossing, V: Default> Refined<G, V> {
     fn of(mut draft: Draft<G, V>, shortfall: Vec<(CellId, Shortfall)>) -> Self {
         // Edges of the hull are constraints here that belong to no line.
         draft.t.lines.drop_stray_splits();
-        let added = draft.t.tds().vertices().filter(|&v| draft.origin(v) != Origin::Given).collect();
+        let added = draft.t.tds().vertices().filter(|&v| draft.origin(v) != VertexOrigin::Given).collect();
         Refined { t: draft.t, regions: draft.regions, added, shortfall }
     }
 

@@ -3,7 +3,7 @@ use crate::tds::{CellId, VertexId};
 /// A triangle that is to be destroyed, with its corners as they were: its number may have been
 /// reused since.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Bad {
+pub(super) struct BadTriangle {
     pub(super) cell: CellId,
     pub(super) corners: [VertexId; 3],
     /// The square of the length of its shortest edge.
@@ -31,7 +31,7 @@ const NONE: u32 = 0;
 pub(super) struct Queue {
     /// Triangles, each with the entry below it on the stack of its scale, or on that of free
     /// entries.
-    entries: Vec<(Bad, u32)>,
+    entries: Vec<(BadTriangle, u32)>,
     free: u32,
     /// The topmost entries of the scales of a word.
     tops: Vec<[u32; 64]>,
@@ -49,7 +49,7 @@ impl Default for Queue {
 }
 
 impl Queue {
-    pub(super) fn push(&mut self, bad: Bad) {
+    pub(super) fn push(&mut self, bad: BadTriangle) {
         let scale = (bad.shortest.to_bits() >> 51) as usize; // there is no sign
         let (word, bit) = (scale / 64 % WORDS, scale % 64);
         if self.stacks[word] == 0 {
@@ -69,7 +69,7 @@ impl Queue {
         self.words |= 1 << word;
     }
 
-    pub(super) fn pop(&mut self) -> Option<Bad> {
+    pub(super) fn pop(&mut self) -> Option<BadTriangle> {
         if self.words == 0 {
             return None;
         }
@@ -92,7 +92,7 @@ impl Queue {
 
 #[cfg(test)]
 mod tests {
-    use super::{Bad, Queue};
+    use super::{BadTriangle, Queue};
     use crate::tds::{CellId, VertexId};
 
     /// Compares with a sorted list: the smallest scale first, and of it the last entry.
@@ -105,7 +105,7 @@ mod tests {
             let random = state >> 33;
             if random % 5 < 3 - step as u64 / 10_000 {
                 let shortest = [1e-300, 0.9, 1.0, 1.4, 1.5, 2.0, 1e300, f64::INFINITY, 0.0][random as usize / 5 % 9];
-                queue.push(Bad { cell: CellId::new(step), corners: [VertexId::INFINITE; 3], shortest });
+                queue.push(BadTriangle { cell: CellId::new(step), corners: [VertexId::INFINITE; 3], shortest });
                 list.push((shortest.to_bits() >> 51, step));
             } else {
                 let least = list.iter().map(|&(scale, _)| scale).min();

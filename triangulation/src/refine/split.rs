@@ -5,7 +5,7 @@ use crate::kernel::{DotProduct, Kernel, Wide};
 use crate::num::{Sign, unsigned_zero};
 use crate::tds::{CellId, VertexId, Zone, cw};
 
-use super::draft::{Draft, Encroachment, Origin};
+use super::draft::{Draft, Encroachment, VertexOrigin};
 use super::shape::{length, minus};
 
 impl<G: Crossing, V: Default> Draft<G, V> {
@@ -29,7 +29,7 @@ impl<G: Crossing, V: Default> Draft<G, V> {
     /// coordinates are too coarse.
     fn split(&mut self, mut edge: (CellId, usize), [a, b]: [VertexId; 2]) -> bool {
         let ends_of = |v: VertexId| match self.origin(v) {
-            Origin::OnConstraint(ends) => Some(ends),
+            VertexOrigin::OnConstraint(ends) => Some(ends),
             _ => None,
         };
         let constraint = ends_of(a).or(ends_of(b)).unwrap_or([a, b]);
@@ -71,7 +71,7 @@ impl<G: Crossing, V: Default> Draft<G, V> {
         // The border is counter-clockwise: from `a` to `b` it is on the right.
         let is_right =
             |k| if after_a < after_b { (after_a..after_b).contains(&k) } else { !(after_b..after_a).contains(&k) };
-        let vertex = self.star(zone, p, Origin::OnConstraint(constraint), |k| sides[usize::from(is_right(k))]);
+        let vertex = self.star(zone, p, VertexOrigin::OnConstraint(constraint), |k| sides[usize::from(is_right(k))]);
         self.t.lines.split_edge(a, b, vertex);
         for k in 0..self.t.inner.zone.star.len() {
             let cell = self.t.inner.zone.star[k];
@@ -122,7 +122,7 @@ impl<G: Crossing, V: Default> Draft<G, V> {
         let [a, b] = self.t.tds().edge_ends(edge.0, edge.1);
         loop {
             let apex = self.t.tds().vertex(edge.0, edge.1);
-            if apex == VertexId::INFINITE || self.origin(apex) != Origin::Free {
+            if apex == VertexId::INFINITE || self.origin(apex) != VertexOrigin::Free {
                 return edge;
             }
             let angle = DotProduct([a, apex, b].map(|v| self.t.plan_of(v)));

@@ -22,18 +22,17 @@ use crate::lines::saved_tables::SavedTables;
 use crate::lines::{ConstrainedDelaunay, Rounding};
 use crate::tds::VertexId;
 
-use super::{Damage, Owned, first};
+use super::{Damage, ReadTriangulation, first};
 
-/// What is saved; the serialized names are those of the format. Vertices are written as their
+/// What is saved: the names of these fields are those of the format. Vertices are written as their
 /// numbers.
 #[derive(Serialize, Deserialize)]
-struct WithLines<T> {
+struct SavedWithLines<T> {
     triangulation: T,
     /// The vertices that each line was given by, by line id; `None` where a line has been removed.
     lines: Vec<Option<Vec<u32>>>,
     /// Segments that go through other sites, from the smaller end through all of these to the
     /// larger end.
-    #[serde(rename = "led")]
     bent: Vec<Vec<u32>>,
     /// Split sub-constraints: the smaller end, the larger end, and the vertex between them.
     splits: Vec<[u32; 3]>,
@@ -42,10 +41,8 @@ struct WithLines<T> {
     /// Vertices that were added where lines cross, in order of their numbers.
     added: Vec<u32>,
     /// Vertices that are removed with the last of their lines, in order of their numbers.
-    #[serde(rename = "lent")]
     owned: Vec<u32>,
     rounding: Option<Rounding>,
-    #[serde(rename = "was_tangled")]
     recrossed: bool,
 }
 
@@ -53,7 +50,7 @@ fn number(v: &VertexId) -> u32 {
     v.index() as u32
 }
 
-impl<P, V, C: Copy + Default> WithLines<Owned<P, V, ConstrainedEdges<C>>> {
+impl<P, V, C: Copy + Default> SavedWithLines<ReadTriangulation<P, V, ConstrainedEdges<C>>> {
     fn restore<G: Crossing<Point = P> + Default>(self) -> Result<ConstrainedDelaunay<G, V, C>, Damage> {
         let inner = self.triangulation.restore::<3, G>()?;
         inner.has_no_hidden_points()?;
@@ -98,7 +95,7 @@ impl<G: Crossing<Point: Serialize>, V: Serialize, C: Serialize + Copy + Default>
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let numbers = |vertices: &[VertexId]| vertices.iter().map(number).collect::<Vec<u32>>();
         let parts = self.lines.saved_tables();
-        let saved = WithLines {
+        let saved = SavedWithLines {
             triangulation: self.save(),
             lines: parts.given.iter().map(|line| line.as_deref().map(numbers)).collect(),
             bent: parts.bent.iter().map(|chain| numbers(chain)).collect(),
@@ -120,7 +117,7 @@ where
     C: Deserialize<'de> + Copy + Default,
 {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let saved = WithLines::<Owned<G::Point, V, ConstrainedEdges<C>>>::deserialize(deserializer)?;
+        let saved = SavedWithLines::<ReadTriangulation<G::Point, V, ConstrainedEdges<C>>>::deserialize(deserializer)?;
         saved.restore().map_err(D::Error::custom)
     }
 }

@@ -16,7 +16,7 @@ use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::engine::ConstrainedEdges;
-use crate::engine::trace::Scratch;
+use crate::engine::trace::TraceBuffers;
 use crate::error::{InputError, MAX_VERTICES};
 use crate::flaw::{Flaw, Level};
 use crate::geometry::Geometry;
@@ -26,7 +26,7 @@ use crate::triangulation::Triangulation;
 
 /// What is saved. Written from slices, read into vectors.
 #[derive(Serialize, Deserialize)]
-struct Saved<Points, VertexData, CellData> {
+struct SavedTriangulation<Points, VertexData, CellData> {
     dimension: i32,
     /// The points by vertex number, including those of removed vertices.
     points: Points,
@@ -60,13 +60,13 @@ fn first(flaws: Vec<Flaw>) -> Result<(), Damage> {
     flaws.first().map_or(Ok(()), |&flaw| Err(Damage::Flaw(flaw)))
 }
 
-type Owned<P, V, C> = Saved<Vec<P>, Vec<V>, Vec<C>>;
+type ReadTriangulation<P, V, C> = SavedTriangulation<Vec<P>, Vec<V>, Vec<C>>;
 
-impl<P, V, C: Copy + Default> Owned<P, V, C> {
+impl<P, V, C: Copy + Default> ReadTriangulation<P, V, C> {
     /// Returns the triangulation, or what is wrong with the data. Does not check the law, nor that
     /// every point that is in no cell is hidden.
     fn restore<const N: usize, G: Geometry<N, Point = P> + Default>(self) -> Result<Triangulation<G, N, V, C>, Damage> {
-        let Saved { dimension, points, vertex_data, removed, cells, cell_data } = self;
+        let SavedTriangulation { dimension, points, vertex_data, removed, cells, cell_data } = self;
         let geometry = G::default();
         if !(-1..N as i32).contains(&dimension) {
             return Err(Damage::Shape("the dimension is below -1, or above that of the plane or space"));
@@ -100,9 +100,9 @@ impl<P, V, C: Copy + Default> Owned<P, V, C> {
 }
 
 impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V, C> {
-    fn save(&self) -> Saved<&[G::Point], &[V], Vec<C>> {
+    fn save(&self) -> SavedTriangulation<&[G::Point], &[V], Vec<C>> {
         let number = |v: &VertexId| (*v != VertexId::INFINITE).then(|| v.index() as u32);
-        Saved {
+        SavedTriangulation {
             dimension: self.dimension(),
             points: &self.points,
             vertex_data: self.tds.payloads(),
@@ -142,7 +142,7 @@ where
     V: Deserialize<'de>,
     C: Deserialize<'de> + Copy + Default,
 {
-    let saved = Owned::<G::Point, V, C>::deserialize(deserializer)?;
+    let saved = ReadTriangulation::<G::Point, V, C>::deserialize(deserializer)?;
     saved.restore().and_then(finish).map_err(D::Error::custom)
 }
 
@@ -237,7 +237,7 @@ where
         read(deserializer, |inner| {
             inner.has_no_hidden_points()?;
             inner.constrains_edges_only()?;
-            let t = Constrained { inner, scratch: Scratch::default() };
+            let t = Constrained { inner, buffers: TraceBuffers::default() };
             first(t.check(Level::Law)).map(|()| t)
         })
     }

@@ -7,13 +7,13 @@ use super::{CellId, Links, Tds, VertexId, face_without};
 /// A side of a facet: a cell outside, or the position of a new cell; and the index of the vertex
 /// opposite.
 #[derive(Clone, Copy)]
-enum Side {
+enum FacetSide {
     Outside(CellId, usize),
     New(usize, usize),
 }
 
 /// The facets of which one side is known: for the vertices of each, in order, that side.
-type Open<const N: usize> = FxHashMap<[VertexId; N], Side>;
+type OpenFacets<const N: usize> = FxHashMap<[VertexId; N], FacetSide>;
 
 impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
     /// Replaces the cells around a vertex, each with the index of the vertex in it, by others that
@@ -22,10 +22,10 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
     ///
     /// Expected time linear in the number of cells.
     pub(crate) fn replace_star(&mut self, star: &[(CellId, usize)], cells: &[[VertexId; N]]) -> bool {
-        let mut open = Open::default();
+        let mut open = OpenFacets::default();
         for &(cell, i) in star {
             let beyond = self.neighbor(cell, i);
-            let side = Side::Outside(beyond, self.index_of_neighbor(beyond, cell));
+            let side = FacetSide::Outside(beyond, self.index_of_neighbor(beyond, cell));
             open.insert(face_without(self.links[cell.index()].vertices, i), side);
         }
         let Some(pairs) = self.paired(open, cells) else { return false };
@@ -45,19 +45,19 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         self.unused.clear();
         self.infinite_cell = CellId::NONE;
         self.dimension = dimension;
-        let pairs = self.paired(Open::default(), cells);
+        let pairs = self.paired(OpenFacets::default(), cells);
         self.add_cells(cells, pairs.as_deref().unwrap_or_default());
         pairs.is_some()
     }
 
     /// Returns the two sides of each facet of new cells, given the facets of which the outer side
     /// is known; `None` if a facet does not have two sides.
-    fn paired(&self, mut open: Open<N>, cells: &[[VertexId; N]]) -> Option<Vec<[Side; 2]>> {
+    fn paired(&self, mut open: OpenFacets<N>, cells: &[[VertexId; N]]) -> Option<Vec<[FacetSide; 2]>> {
         let width = (self.dimension + 1) as usize;
         let mut pairs = Vec::with_capacity(width * cells.len());
         for (at, &vertices) in cells.iter().enumerate() {
             for i in 0..width {
-                let (key, side) = (face_without(vertices, i), Side::New(at, i));
+                let (key, side) = (face_without(vertices, i), FacetSide::New(at, i));
                 match open.remove(&key) {
                     Some(other) => pairs.push([side, other]),
                     None => _ = open.insert(key, side),
@@ -68,7 +68,7 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
     }
 
     /// Adds cells, and links them across these facets.
-    fn add_cells(&mut self, cells: &[[VertexId; N]], pairs: &[[Side; 2]]) {
+    fn add_cells(&mut self, cells: &[[VertexId; N]], pairs: &[[FacetSide; 2]]) {
         let width = (self.dimension + 1) as usize;
         let mut new = Vec::with_capacity(cells.len());
         for &vertices in cells {
@@ -78,8 +78,8 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         }
         for sides in pairs {
             let [(a, i), (b, j)] = sides.map(|side| match side {
-                Side::Outside(cell, i) => (cell, i),
-                Side::New(at, i) => (new[at], i),
+                FacetSide::Outside(cell, i) => (cell, i),
+                FacetSide::New(at, i) => (new[at], i),
             });
             self.link(a, i, b, j);
         }

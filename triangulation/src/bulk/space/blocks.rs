@@ -50,14 +50,14 @@ impl Block {
 
 /// A plane that divides a block: coordinates on an axis that are less than `at` are below it.
 #[derive(Clone, Copy)]
-struct Cut {
+struct BlockCut {
     axis: usize,
     at: f64,
 }
 
 /// The cuts of a tree (Bentley 1975) in the order of a heap, and the blocks that are its leaves.
 pub(super) struct Blocks {
-    cuts: Vec<Cut>,
+    cuts: Vec<BlockCut>,
     blocks: Vec<Block>,
 }
 
@@ -118,7 +118,7 @@ impl Blocks {
 
 /// Returns the plane through the median on the axis on which sites extend farthest, and the sites
 /// on both sides. `None` if too many sites are in one plane.
-fn halved(sites: &mut [[f64; 3]]) -> Option<(Cut, [&mut [[f64; 3]]; 2])> {
+fn halved(sites: &mut [[f64; 3]]) -> Option<(BlockCut, [&mut [[f64; 3]]; 2])> {
     let length = |axis: usize| {
         let (min, max) = sites
             .iter()
@@ -134,5 +134,5 @@ fn halved(sites: &mut [[f64; 3]]) -> Option<(Cut, [&mut [[f64; 3]]; 2])> {
     let at = sites.select_nth_unstable_by(half, |p, q| p[axis].total_cmp(&q[axis])).1[axis];
     sites.sort_unstable_by_key(|site| site[axis] >= at);
     let (below, above) = sites.split_at_mut(sites.partition_point(|site| site[axis] < at));
-    (below.len() > above.len() / 2).then_some((Cut { axis, at }, [below, above]))
+    (below.len() > above.len() / 2).then_some((BlockCut { axis, at }, [below, above]))
 }

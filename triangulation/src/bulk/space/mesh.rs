@@ -71,11 +71,11 @@ pub(super) struct Mesh<'a> {
     random: u32,
     /// Tags of the next star start here.
     base: u32,
-    scratch: Scratch,
+    buffers: InsertionBuffers,
 }
 
 /// What one insertion uses; kept for the next one.
-struct Scratch {
+struct InsertionBuffers {
     /// The cells of the conflict zone, then those of the star.
     cells: Vec<u32>,
     /// The boundary of the zone: three vertices as seen from within, and the neighbor beyond.
@@ -93,9 +93,9 @@ struct Scratch {
     faces_of_edges: Vec<u32>,
 }
 
-impl Scratch {
+impl InsertionBuffers {
     fn new() -> Self {
-        Scratch {
+        InsertionBuffers {
             cells: vec![DUMMY; 64],
             facets: vec![[0; 4]; 64],
             numbers: Vec::new(),
@@ -149,7 +149,7 @@ impl<'a> Mesh<'a> {
             last: 1,
             random: 1,
             base: 1,
-            scratch: Scratch::new(),
+            buffers: InsertionBuffers::new(),
         };
         mesh.link_first();
         mesh
@@ -231,7 +231,7 @@ impl<'a> Mesh<'a> {
         if !is_linked {
             return Err(Failure::Inexact);
         }
-        self.last = self.scratch.cells[0];
+        self.last = self.buffers.cells[0];
         Ok(())
     }
 
@@ -276,7 +276,7 @@ impl<'a> Mesh<'a> {
     }
 
     /// Finds the conflict zone of a vertex from one of its cells. Returns the number of its cells
-    /// and that of the facets of its boundary, both in `scratch`.
+    /// and that of the facets of its boundary, both in `buffers`.
     ///
     /// `PERF:` the four neighbors of a cell are tested at once, and those chosen appended without
     /// branches: all four are written, each at the end of those chosen before it. Each of the four
@@ -284,14 +284,14 @@ impl<'a> Mesh<'a> {
     /// and 20 % on the moment curve.
     #[inline(always)]
     fn grow(&mut self, first: u32, vertex: u32, q: Query) -> (usize, usize) {
-        let Mesh { predicates, corners, cells, spheres, scratch, .. } = self;
+        let Mesh { predicates, corners, cells, spheres, buffers, .. } = self;
         let (corners, cells) = (&corners[..], &cells[..]);
         let spheres = &mut spheres[..cells.len()];
         let (mut zone, mut facets, mut done) = (1, 0, 0);
         spheres[first as usize] = MARKED;
-        scratch.cells[0] = first;
+        buffers.cells[0] = first;
         loop {
-            let (list, boundary) = (&mut scratch.cells[..], &mut scratch.facets[..]);
+            let (list, boundary) = (&mut buffers.cells[..], &mut buffers.facets[..]);
             while done < zone {
                 let cell = list[done];
                 let (Some(slots), Some(rows)) = (four(list, zone), four(boundary, facets)) else { break };
@@ -338,7 +338,7 @@ impl<'a> Mesh<'a> {
             if done == zone {
                 return (zone, facets);
             }
-            scratch.make_room();
+            buffers.make_room();
         }
     }
 
@@ -348,22 +348,22 @@ impl<'a> Mesh<'a> {
     /// If there would be too many cells.
     #[inline(always)]
     fn assign_cells(&mut self, mut zone: usize, facets: usize) -> Result<(), Failure> {
-        let Mesh { cells, spheres, unused, scratch, .. } = self;
-        if scratch.cells.len() < facets + 4 {
-            scratch.cells.resize(2 * facets + 4, 0);
+        let Mesh { cells, spheres, unused, buffers, .. } = self;
+        if buffers.cells.len() < facets + 4 {
+            buffers.cells.resize(2 * facets + 4, 0);
         }
         if cells.len() + facets > MAX_CELLS {
             return Err(Failure::TooManyCells);
         }
         while zone < facets {
-            scratch.cells[zone] = unused.pop().unwrap_or_else(|| {
+            buffers.cells[zone] = unused.pop().unwrap_or_else(|| {
                 cells.push(Cell::UNUSED);
                 spheres.push(UNKNOWN);
                 cells.len() as u32 - 1
             });
             zone += 1;
         }
-        for &cell in &scratch.cells[facets..zone] {
+        for &cell in &buffers.cells[facets..zone] {
             cells[cell as usize] = Cell::UNUSED;
             unused.push(cell);
         }
@@ -374,16 +374,16 @@ impl<'a> Mesh<'a> {
     /// each other. With `is_small`, the table of faces is filled. Returns the number of vertices.
     #[inline(always)]
     fn number(&mut self, vertex: u32, facets: usize, is_small: bool) -> usize {
-        let Mesh { corners, cells, scratch, base, .. } = self;
-        if scratch.numbers.len() < facets + 4 {
-            scratch.numbers.resize(2 * facets + 4, [0; 3]);
-            scratch.vertices.resize(6 * facets + 1, 0);
+        let Mesh { corners, cells, buffers, base, .. } = self;
+        if buffers.numbers.len() < facets + 4 {
+            buffers.numbers.resize(2 * facets + 4, [0; 3]);
+            buffers.vertices.resize(6 * facets + 1, 0);
         }
         if *base > u32::MAX - 3 * facets as u32 - 3 {
             *base = 1;
             corners.iter_mut().for_each(|corner| corner.tag = 0);
         }
-        let Scratch { cells: star, facets: boundary, numbers, vertices, faces, .. } = scratch;
+        let InsertionBuffers { cells: star, facets: boundary, numbers, vertices, faces, .. } = buffers;
         let (star, boundary, numbers) = (&star[..facets], &boundary[..facets], &mut numbers[..facets]);
         let (corners, cells, vertices) = (&mut corners[..], &mut cells[..], &mut vertices[..]);
         let (first, mut count) = (*base, 0);
@@ -418,7 +418,7 @@ impl<'a> Mesh<'a> {
     #[inline(always)]
     fn aim(&mut self, vertex: u32, count: usize) {
         let (site, weight) = (self.corners[vertex as usize].site, self.weights.of(vertex));
-        let Scratch { arrows, vertices, .. } = &mut self.scratch;
+        let InsertionBuffers { arrows, vertices, .. } = &mut self.buffers;
         if arrows.len() < count {
             arrows.resize(2 * count, [0.0; 4]);
         }
@@ -435,14 +435,14 @@ impl<'a> Mesh<'a> {
     /// Computes the spheres of the star, four at a time.
     #[inline(always)]
     fn wrap(&mut self, facets: usize, origin: [f64; 3], lack: f64) {
-        let Mesh { scratch, spheres, frame, weights, .. } = self;
+        let Mesh { buffers, spheres, frame, weights, .. } = self;
         let origin = Origin { at: origin, lack, range: weights.range() };
         // The last four may be fewer: the rest repeats the last one, for the dummy.
         let padded = facets.next_multiple_of(4);
-        let last = scratch.numbers[facets - 1];
-        scratch.numbers[facets..][..3].copy_from_slice(&[last; 3]);
-        scratch.cells[facets..][..3].copy_from_slice(&[DUMMY; 3]);
-        let Scratch { cells, numbers, arrows, .. } = &*scratch;
+        let last = buffers.numbers[facets - 1];
+        buffers.numbers[facets..][..3].copy_from_slice(&[last; 3]);
+        buffers.cells[facets..][..3].copy_from_slice(&[DUMMY; 3]);
+        let InsertionBuffers { cells, numbers, arrows, .. } = &*buffers;
         let (cells, numbers) = (cells[..padded].as_chunks::<4>().0, numbers[..padded].as_chunks::<4>().0);
         let (arrows, spheres) = (&arrows[..], &mut spheres[..]);
         for (&cells, numbers) in cells.iter().zip(numbers) {
@@ -464,8 +464,8 @@ impl<'a> Mesh<'a> {
     /// `2^-32`, with predicates that contradict each other).
     #[inline(always)]
     fn link(&mut self, facets: usize) -> bool {
-        let Mesh { scratch, cells, .. } = self;
-        let (star, numbers, faces) = (&scratch.cells[..facets], &scratch.numbers[..facets], &*scratch.faces);
+        let Mesh { buffers, cells, .. } = self;
+        let (star, numbers, faces) = (&buffers.cells[..facets], &buffers.numbers[..facets], &*buffers.faces);
         let cells = &mut cells[..];
         let (mut written, mut read) = (0u32, 0u32);
         for (&cell, &number) in star.iter().zip(numbers) {
@@ -486,7 +486,7 @@ impl<'a> Mesh<'a> {
     fn link_many(&mut self, facets: usize) -> bool {
         const NONE: u64 = u64::MAX;
         const LINKED: u32 = u32::MAX;
-        let Mesh { scratch: Scratch { cells: star, numbers, edges, faces_of_edges, .. }, cells, .. } = self;
+        let Mesh { buffers: InsertionBuffers { cells: star, numbers, edges, faces_of_edges, .. }, cells, .. } = self;
         let slots = (3 * facets).next_power_of_two();
         let shift = 64 - slots.trailing_zeros();
         if edges.len() < slots {

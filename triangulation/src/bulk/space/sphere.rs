@@ -157,7 +157,7 @@ pub(super) fn is_short_of(sphere: Sphere, axis: usize, at: f32) -> bool {
 }
 
 /// The results of four tests, one bit each.
-pub(super) struct Sides {
+pub(super) struct SphereTests {
     pub(super) inside: u32,
     pub(super) marked: u32,
     pub(super) sure: u32,
@@ -165,13 +165,13 @@ pub(super) struct Sides {
 
 /// Tests a point against four spheres.
 #[inline(always)]
-pub(super) fn sides(spheres: [Sphere; 4], q: Query) -> Sides {
+pub(super) fn sides(spheres: [Sphere; 4], q: Query) -> SphereTests {
     let [x, y, z, squared_radius] = f32x4::transpose(spheres.map(f32x4::new));
     let (x, y, z) = (x - f32x4::splat(q[0]), y - f32x4::splat(q[1]), z - f32x4::splat(q[2]));
     let power = x * x + y * y + z * z + f32x4::splat(q[3]) - squared_radius;
     let exponent = i32x4::splat(127) - (bits(squared_radius) & i32x4::splat(TOLERANCE));
     let tolerance = squared_radius * of_bits(exponent << 23);
-    Sides {
+    SphereTests {
         inside: power.to_bitmask(),
         marked: squared_radius.to_bitmask(),
         sure: power.abs().simd_gt(tolerance).to_bitmask(),

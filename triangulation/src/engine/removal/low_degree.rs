@@ -28,15 +28,15 @@ use crate::triangulation::Triangulation;
 const MOST: usize = 12;
 
 /// A face, and the index of an edge in it.
-type Side = (CellId, usize);
+type FaceEdge = (CellId, usize);
 
 /// The vertices around a vertex, counter-clockwise.
-struct Ring<P> {
+struct SmallRing<P> {
     faces: [CellId; MOST],
     corners: [VertexId; MOST],
     points: [P; MOST],
     /// Beyond the edge from each corner to the next.
-    beyond: [Side; MOST],
+    beyond: [FaceEdge; MOST],
     degree: usize,
 }
 
@@ -96,9 +96,9 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
         apex
     }
 
-    fn low_ring(&self, vertex: VertexId) -> Option<Ring<G::Point>> {
+    fn low_ring(&self, vertex: VertexId) -> Option<SmallRing<G::Point>> {
         let (around, left_end, right_end) = self.low_star(vertex)?;
-        let mut ring = Ring {
+        let mut ring = SmallRing {
             faces: around,
             corners: [vertex; MOST],
             points: [*self.point(vertex); MOST],

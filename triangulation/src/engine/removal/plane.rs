@@ -25,7 +25,7 @@ use crate::tds::{CellId, VertexId, ccw, cw};
 use crate::triangulation::Triangulation;
 
 /// The ring around what is not yet triangulated, counter-clockwise as seen from within.
-struct Ring {
+struct HoleRing {
     corners: Vec<VertexId>,
     /// For the edge from each corner to the next: the cell beyond it, and the index of the edge
     /// there.
@@ -36,7 +36,7 @@ struct Ring {
     length: usize,
 }
 
-impl Ring {
+impl HoleRing {
     /// Returns the corner before, the corner itself, and the one after.
     fn triple(&self, k: usize) -> [usize; 3] {
         [self.previous[k], k, self.next[k]]
@@ -150,9 +150,9 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
     }
 
     /// Returns the ring around a vertex, given the cells at the vertex in their order.
-    fn ring_around(&self, vertex: VertexId, cells: &[CellId]) -> Ring {
+    fn ring_around(&self, vertex: VertexId, cells: &[CellId]) -> HoleRing {
         let length = cells.len();
-        let mut ring = Ring {
+        let mut ring = HoleRing {
             corners: Vec::with_capacity(length),
             beyond: Vec::with_capacity(length),
             next: (1..length).chain([0]).collect(),
@@ -179,7 +179,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
     }
 
     /// Makes a corner of the ring and its neighbors a triangle, in the next of the cells.
-    fn cut(&mut self, edges: impl Edges<C>, ring: &mut Ring, k: usize, cells: &[CellId]) {
+    fn cut(&mut self, edges: impl Edges<C>, ring: &mut HoleRing, k: usize, cells: &[CellId]) {
         let cell = cells[ring.corners.len() - ring.length];
         let [p, _, n] = ring.triple(k);
         self.tds.set_corners(cell, [p, k, n].map(|k| ring.corners[k]));

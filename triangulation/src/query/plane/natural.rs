@@ -28,7 +28,7 @@ use super::dual::twice_area;
 use crate::query::zone::ConflictZone;
 
 /// Vertices with weights.
-type Weights = Vec<(VertexId, f64)>;
+type VertexWeights = Vec<(VertexId, f64)>;
 
 impl<G: Coordinates<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
     /// Returns Sibson's coordinates of a point: vertices, counter-clockwise, with weights that are
@@ -60,7 +60,7 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
     /// assert_eq!(t.sibson(&[9.0, 1.0], None), None);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn sibson(&self, q: &G::Point, near: Option<CellId>) -> Option<Weights> {
+    pub fn sibson(&self, q: &G::Point, near: Option<CellId>) -> Option<VertexWeights> {
         self.coordinates(q, near, |zone, at, new| {
             // Relative to the point, which all of them surround.
             let center = |&cell: &CellId| {
@@ -94,7 +94,7 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
     ///
     /// After Belikov, Ivanov, Kontorovich, Korytnik and Semenov 1997, *The non-Sibsonian
     /// interpolation*.
-    pub fn laplace(&self, q: &G::Point, near: Option<CellId>) -> Option<Weights> {
+    pub fn laplace(&self, q: &G::Point, near: Option<CellId>) -> Option<VertexWeights> {
         self.coordinates(q, near, |zone, at, new| {
             let weight = |k: usize, vertex: VertexId| {
                 let length = |[x, y]: [f64; 2]| x.hypot(y);
@@ -106,7 +106,7 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
 
     /// Returns the weights on the border of a zone; `weight` gets the position there and the vertex
     /// that the edge ends at.
-    fn around(&self, zone: &ConflictZone, mut weight: impl FnMut(usize, VertexId) -> f64) -> Weights {
+    fn around(&self, zone: &ConflictZone, mut weight: impl FnMut(usize, VertexId) -> f64) -> VertexWeights {
         let ends = zone.border.iter().map(|&(cell, i)| self.tds().edge_ends(cell, i)[1]);
         ends.enumerate().map(|(k, vertex)| (vertex, weight(k, vertex).max(0.0))).collect()
     }
@@ -118,8 +118,8 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
         &self,
         q: &G::Point,
         near: Option<CellId>,
-        inside: impl FnOnce(&ConflictZone, [f64; 2], &[[f64; 2]]) -> Weights,
-    ) -> Option<Weights> {
+        inside: impl FnOnce(&ConflictZone, [f64; 2], &[[f64; 2]]) -> VertexWeights,
+    ) -> Option<VertexWeights> {
         let at = crate::query::site_of(&self.geometry, q);
         let location = self.locate(q, near);
         let mut weights = match location {
@@ -152,7 +152,7 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
     }
 
     /// Interpolates linearly between two vertices.
-    fn between(&self, ends: [VertexId; 2], at: [f64; 2]) -> Weights {
+    fn between(&self, ends: [VertexId; 2], at: [f64; 2]) -> VertexWeights {
         let [a, b] = ends.map(|v| minus(self.site(v), at)).map(|[x, y]| x.hypot(y));
         vec![(ends[0], b), (ends[1], a)]
     }

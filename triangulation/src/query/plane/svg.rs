@@ -34,19 +34,19 @@ const STYLE: &str = "\
     .tri .line{fill:none;stroke:#36c;stroke-width:3}.tri .dot{fill:#36c}.tri text{font:14px sans-serif}";
 
 /// Maps coordinates to the picture: y runs upward, and both axes have the same unit.
-struct Frame {
+struct PictureFrame {
     low: [f64; 2],
     /// Half of the longer side. (The whole might overflow.)
     half: f64,
 }
 
-impl Frame {
+impl PictureFrame {
     fn around(sites: impl Iterator<Item = [f64; 2]>) -> Self {
         let none = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
         let (low, high) =
             sites.fold(none, |(low, high), p| ([0, 1].map(|k| p[k].min(low[k])), [0, 1].map(|k| p[k].max(high[k]))));
         let half = (0..2).map(|k| high[k] / 2.0 - low[k] / 2.0).fold(0.0, f64::max);
-        Frame { low, half: if half > 0.0 { half } else { 1.0 } }
+        PictureFrame { low, half: if half > 0.0 { half } else { 1.0 } }
     }
 
     fn pixel(&self, p: [f64; 2]) -> [f64; 2] {
@@ -94,7 +94,7 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
             Mark::Polygon(sites) | Mark::Line(sites) => *sites,
             Mark::Cells(_) | Mark::Edges(_) => &[],
         });
-        let frame = Frame::around(self.tds.vertices().map(|v| self.site(v)).chain(finite(drawn)));
+        let frame = PictureFrame::around(self.tds.vertices().map(|v| self.site(v)).chain(finite(drawn)));
         let side = SIZE + 2.0 * MARGIN;
         writeln!(svg, r#"<svg xmlns="http://www.w3.org/2000/svg" class="tri" viewBox="0 0 {side} {side}">"#)?;
         writeln!(svg, "<style>{STYLE}</style>")?;
@@ -137,7 +137,7 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
     fn draw_edges(
         &self,
         svg: &mut String,
-        frame: &Frame,
+        frame: &PictureFrame,
         class: &str,
         edges: impl Iterator<Item = (CellId, usize)>,
     ) -> fmt::Result {

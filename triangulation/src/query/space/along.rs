@@ -5,7 +5,7 @@ use std::borrow::Borrow;
 use crate::embedded::sides::leaves_flat;
 use crate::embedded::{Embedded, PointOf};
 use crate::geometry::Geometry;
-use crate::locate::line::{Line, at_point, pierced, span_of};
+use crate::locate::line::{LineWalk, at_point, pierced, span_of};
 use crate::locate::locate;
 use crate::locate::{Location, SpacePassage};
 use crate::num::Sign;
@@ -65,7 +65,7 @@ pub fn along_in_space<'t, T: Embedded<4>>(
     near: Option<CellId>,
 ) -> Result<impl Iterator<Item = Result<SpacePassage, T::Error>> + use<'t, T>, T::Error> {
     let complex = t.complex();
-    let mut line = Line::new(t, [a, b]);
+    let mut line = LineWalk::new(t, [a, b]);
     let location = if t.geometry().admits(b) { locate(t, a, near)? } else { Location::Nowhere };
     let stays = match location.cell_in(complex)? {
         Some(_) if t.geometry().compare(a, b).is_eq() => false,
@@ -135,7 +135,7 @@ fn across_edge<T: Embedded<4>>(
     cell: CellId,
 ) -> Result<Option<[bool; 4]>, T::Error> {
     let [u, v, ..] = t.complex().corners(cell)?;
-    let line = Line::new(t, [a, b]);
+    let line = LineWalk::new(t, [a, b]);
     let is_apart =
         line.side(u, v)? == Sign::Zero && line.beside([u, v], a)? * line.beside([u, v], b)? == Sign::Negative;
     let sides = [line.side_in_plane(u)?, line.side_in_plane(v)?];
@@ -159,13 +159,13 @@ fn across_triangle<T: Embedded<4>>(
         [Sign::Negative, Sign::Positive] => [b, a],
         _ => return Ok(None),
     };
-    let (line, corners) = (Line::new(t, ends), [u, v, w]);
+    let (line, corners) = (LineWalk::new(t, ends), [u, v, w]);
     pierced(3, |k, l| line.side(corners[k], corners[l]))
 }
 
 /// Iterates over what a segment meets.
 struct Along<'t, T: Embedded<4>> {
-    line: Line<'t, T>,
+    line: LineWalk<'t, T>,
     next: Result<Option<SpacePassage>, T::Error>,
     /// The number of passages that are still possible. Each is met once: there are more only if
     /// links or predicates are wrong.

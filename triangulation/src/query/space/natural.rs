@@ -20,7 +20,7 @@ use super::dual::cross;
 use crate::query::zone::ConflictZone;
 
 /// Vertices with weights.
-type Weights = Vec<(VertexId, f64)>;
+type VertexWeights = Vec<(VertexId, f64)>;
 
 /// An edge of the new cell. It belongs to an edge of the triangulation on the border of the zone,
 /// and joins the centers over the two facets of the border there. One who goes around that edge,
@@ -71,7 +71,7 @@ impl<'t, G: Coordinates<4>, V, C: Copy + Default> NewCell<'t, G, V, C> {
 
     /// Returns twelve times the volume between the point and the facet towards each neighbor, in
     /// order of their numbers.
-    fn facets(&self) -> Weights {
+    fn facets(&self) -> VertexWeights {
         let mut parts = Vec::with_capacity(2 * self.ridges.len());
         for (&[start, end], &Ridge { exit, entry }) in &self.ridges {
             // The facet is in the plane halfway to its vertex.
@@ -82,7 +82,7 @@ impl<'t, G: Coordinates<4>, V, C: Copy + Default> NewCell<'t, G, V, C> {
     }
 
     /// Returns twelve times the volume that each neighbor loses, in order of their numbers.
-    fn lost(&self) -> Weights {
+    fn lost(&self) -> VertexWeights {
         let tds = self.t.tds();
         let center = |&cell: &CellId| {
             let corners = tds.corners(cell).map(|vertex| self.t.site(vertex));
@@ -121,7 +121,7 @@ impl<'t, G: Coordinates<4>, V, C: Copy + Default> NewCell<'t, G, V, C> {
 
 /// Adds up the parts of each vertex. The order of additions is that of the parts' sizes, so that
 /// the sum is a function of the parts alone.
-fn summed(mut parts: Weights) -> Weights {
+fn summed(mut parts: VertexWeights) -> VertexWeights {
     parts.sort_unstable_by(|(v, part), (w, other)| v.cmp(w).then(part.total_cmp(other)));
     let of_one = |parts: &[(VertexId, f64)]| (parts[0].0, parts.iter().map(|&(_, part)| part).sum());
     parts.chunk_by(|p, q| p.0 == q.0).map(of_one).collect()
@@ -158,7 +158,7 @@ impl<G: Coordinates<4>, V, C: Copy + Default> Delaunay<G, 4, V, C> {
     /// assert_eq!(t.sibson(&[0.5, 0.5, 1.5], None), None);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn sibson(&self, q: &G::Point, near: Option<CellId>) -> Option<Weights> {
+    pub fn sibson(&self, q: &G::Point, near: Option<CellId>) -> Option<VertexWeights> {
         self.coordinates(q, near, |new| new.lost())
     }
 
@@ -168,7 +168,7 @@ impl<G: Coordinates<4>, V, C: Copy + Default> Delaunay<G, 4, V, C> {
     ///
     /// After Belikov, Ivanov, Kontorovich, Korytnik and Semenov 1997, *The non-Sibsonian
     /// interpolation*.
-    pub fn laplace(&self, q: &G::Point, near: Option<CellId>) -> Option<Weights> {
+    pub fn laplace(&self, q: &G::Point, near: Option<CellId>) -> Option<VertexWeights> {
         self.coordinates(q, near, |new| {
             let mut weights = new.facets();
             for (vertex, weight) in &mut weights {
@@ -185,8 +185,8 @@ impl<G: Coordinates<4>, V, C: Copy + Default> Delaunay<G, 4, V, C> {
         &self,
         q: &G::Point,
         near: Option<CellId>,
-        inside: impl FnOnce(&NewCell<'_, G, V, C>) -> Weights,
-    ) -> Option<Weights> {
+        inside: impl FnOnce(&NewCell<'_, G, V, C>) -> VertexWeights,
+    ) -> Option<VertexWeights> {
         let at = crate::query::site_of(&self.geometry, q);
         let location = self.locate(q, near);
         let (cell, facets) = match location {
@@ -215,7 +215,7 @@ impl<G: Coordinates<4>, V, C: Copy + Default> Delaunay<G, 4, V, C> {
 
     /// Returns the barycentric coordinates, scaled, of a point on an edge or in a triangle, in
     /// order of the vertices' numbers.
-    fn barycentric(&self, on: &[VertexId], at: [f64; 3]) -> Option<Weights> {
+    fn barycentric(&self, on: &[VertexId], at: [f64; 3]) -> Option<VertexWeights> {
         let offset = |vertex: VertexId| minus(self.site(vertex), at);
         let length = |p: [f64; 3]| dot(p, p).sqrt();
         let mut weights = match *on {

@@ -60,7 +60,7 @@ pub(crate) const OUTWARD: [[usize; 3]; 4] = [[1, 2, 3], [2, 0, 3], [0, 1, 3], [1
 ///
 /// A step across a link is taken only if the link is mutual. So no two steps enter one cell, and
 /// the iteration cannot run into a ring that does not contain its start.
-struct Ring<'a, T> {
+struct CellsAroundEdge<'a, T> {
     complex: &'a T,
     ends: [VertexId; 2],
     front: CellId,
@@ -69,7 +69,7 @@ struct Ring<'a, T> {
     is_over: bool,
 }
 
-impl<T: Complex<4>> Ring<'_, T> {
+impl<T: Complex<4>> CellsAroundEdge<'_, T> {
     /// Returns the edge in a cell.
     #[inline(always)]
     fn edge_in(&self, cell: CellId) -> Result<Edge, T::Error> {
@@ -93,7 +93,7 @@ impl<T: Complex<4>> Ring<'_, T> {
     }
 }
 
-impl<T: Complex<4>> Iterator for Ring<'_, T> {
+impl<T: Complex<4>> Iterator for CellsAroundEdge<'_, T> {
     type Item = Result<Edge, T::Error>;
 
     #[inline]
@@ -110,7 +110,7 @@ impl<T: Complex<4>> Iterator for Ring<'_, T> {
     }
 }
 
-impl<T: Complex<4>> DoubleEndedIterator for Ring<'_, T> {
+impl<T: Complex<4>> DoubleEndedIterator for CellsAroundEdge<'_, T> {
     fn next_back(&mut self) -> Option<Self::Item> {
         if self.is_over {
             return None;
@@ -124,7 +124,7 @@ impl<T: Complex<4>> DoubleEndedIterator for Ring<'_, T> {
     }
 }
 
-impl<T: Complex<4>> FusedIterator for Ring<'_, T> {}
+impl<T: Complex<4>> FusedIterator for CellsAroundEdge<'_, T> {}
 
 /// Returns the start and the end of an edge.
 ///
@@ -157,7 +157,7 @@ pub fn cells_around_edge<T: Complex<4>>(
 ) -> Result<impl DoubleEndedIterator<Item = Result<Edge, T::Error>> + FusedIterator + '_, T::Error> {
     let ends = edge_ends(complex, edge)?;
     let is_edge = complex.dimension() == 3 && edge.1 != edge.2;
-    Ok(Ring { complex, ends, front: edge.0, end: edge.0, is_over: !is_edge })
+    Ok(CellsAroundEdge { complex, ends, front: edge.0, end: edge.0, is_over: !is_edge })
 }
 
 /// Returns the cells that have a vertex, the infinite ones included, each with the index of the
@@ -172,7 +172,7 @@ pub fn cells_around_edge<T: Complex<4>>(
 /// # Complexity
 /// Linear in the number of these cells.
 pub fn cells_around<T: Complex<4>>(complex: &T, vertex: VertexId) -> Result<Vec<(CellId, usize)>, T::Error> {
-    let mut star = Star::new(complex, vertex)?;
+    let mut star = StarSearch::new(complex, vertex)?;
     while star.grow()? {}
     Ok(star.cells)
 }
@@ -183,7 +183,7 @@ pub(super) fn neighbors_of<T: Complex<4>>(
     complex: &T,
     vertex: VertexId,
 ) -> Result<impl Iterator<Item = Result<VertexId, T::Error>> + use<'_, T>, T::Error> {
-    let mut star = Star::new(complex, vertex)?;
+    let mut star = StarSearch::new(complex, vertex)?;
     Ok(std::iter::from_fn(move || {
         loop {
             if let Some(neighbor) = star.ends.pop() {
@@ -199,7 +199,7 @@ pub(super) fn neighbors_of<T: Complex<4>>(
 }
 
 /// Part of the cells around a vertex.
-struct Star<'t, T> {
+struct StarSearch<'t, T> {
     complex: &'t T,
     vertex: VertexId,
     /// The cells found so far, each with the index of the vertex in it.
@@ -216,10 +216,10 @@ struct Star<'t, T> {
 /// one sooner than a hash does.
 const FEW: usize = 48;
 
-impl<'t, T: Complex<4>> Star<'t, T> {
+impl<'t, T: Complex<4>> StarSearch<'t, T> {
     /// Returns one cell; none for a vertex without a cell.
     fn new(complex: &'t T, vertex: VertexId) -> Result<Self, T::Error> {
-        let mut star = Star {
+        let mut star = StarSearch {
             complex,
             vertex,
             cells: Vec::with_capacity(32),

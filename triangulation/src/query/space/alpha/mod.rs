@@ -108,14 +108,14 @@ impl<K: Kernel, V, C: Copy + Default> Regular<WeightedSpace<K>, 4, V, C> {
 }
 
 /// A finite cell while cells are sorted.
-struct Candidate {
+struct CellRadius {
     cell: CellId,
     low: f64,
     high: f64,
     exact: OnceCell<Box<SquaredRadius>>,
 }
 
-impl Candidate {
+impl CellRadius {
     fn exact(&self, corners: impl Fn(CellId) -> [[f64; 4]; 4]) -> &SquaredRadius {
         self.exact.get_or_init(|| Box::new(SquaredRadius::of(corners(self.cell))))
     }
@@ -160,9 +160,9 @@ impl<'t, V, C: Copy + Default> AlphaShapes<'t, V, C> {
         let corners = |cell: CellId| tds.corners(cell).map(|vertex| weighted(t.point(vertex)));
         let candidate = |cell: CellId| {
             let (low, high) = squared_radius_bounds(corners(cell));
-            Candidate { cell, low, high, exact: OnceCell::new() }
+            CellRadius { cell, low, high, exact: OnceCell::new() }
         };
-        let mut candidates: Vec<Candidate> =
+        let mut candidates: Vec<CellRadius> =
             tds.cells().filter(|&cell| !tds.is_infinite(cell)).map(candidate).collect();
         candidates.sort_unstable_by(|a, b| a.compare(b, corners).then(a.cell.cmp(&b.cell)));
         let mut last = f64::NEG_INFINITY;
