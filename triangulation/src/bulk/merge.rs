@@ -88,17 +88,7 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
 
         // The ghosts below and above.
         let (below, above) = (2 * mid as u32 - 2, 2 * mid as u32 - 1);
-        self.face_mut(below).vertices = [b, a, VertexId::INFINITE];
-        if gl == NONE {
-            self.link((below, 1), (above, 2));
-        } else {
-            self.link_to((below, 1), self.twin(gl, back(LEFT)));
-        }
-        if gr == NONE {
-            self.link((below, 2), (above, 1));
-        } else {
-            self.link_to((below, 2), self.twin(gr, back(RIGHT)));
-        }
+        self.close_below([below, above], [a, b], [gl, gr]);
 
         // Zip: `open` is the edge from b to a of the last face.
         let mut open = Edge::new(below, 0);
@@ -121,49 +111,10 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
             valid_d = valid_d || is_valid(to_d, &r);
             let mut circle_c = Circle::NONE;
             if valid_c {
-                circle_c = Circle::through(base, to_c);
-                let mut has_flipped = false;
-                loop {
-                    let to_q = Arrow::between(at_a, l.apex);
-                    let inside = circle_c.side(to_q);
-                    let mut flips = inside.is_positive();
-                    if self.predicates.is_open(inside) {
-                        let c = l.vertex;
-                        flips = self.predicates.in_circle_slowly(b, [c, a], self.opposite(l.behind));
-                    }
-                    if !flips {
-                        break;
-                    }
-                    self.flip::<LEFT>(&mut l);
-                    has_flipped = true;
-                    circle_c = Circle::through(base, to_q);
-                }
-                if has_flipped {
-                    self.update_ghost::<LEFT>(&l);
-                }
+                (_, circle_c) = self.flip_away::<LEFT>(&mut l, [a, b], at_a, base, to_c);
             }
             if valid_d {
-                let mut circle_d = Circle::through(base, to_d);
-                let mut has_flipped = false;
-                loop {
-                    let to_q = Arrow::between(at_a, r.apex);
-                    let inside = circle_d.side(to_q);
-                    let mut flips = inside.is_positive();
-                    if self.predicates.is_open(inside) {
-                        let d = r.vertex;
-                        flips = self.predicates.in_circle_slowly(a, [b, d], self.opposite(r.behind));
-                    }
-                    if !flips {
-                        break;
-                    }
-                    self.flip::<RIGHT>(&mut r);
-                    has_flipped = true;
-                    to_d = to_q;
-                    circle_d = Circle::through(base, to_d);
-                }
-                if has_flipped {
-                    self.update_ghost::<RIGHT>(&r);
-                }
+                (to_d, _) = self.flip_away::<RIGHT>(&mut r, [a, b], at_a, base, to_d);
             }
             if !(valid_c | valid_d) {
                 break;
@@ -183,15 +134,76 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
                 (open, a) = self.step::<LEFT>(&mut l, open, b);
             }
         }
+        let last = |of_half: u32, climb: &Climb| if of_half == NONE { NONE } else { climb.ghost };
+        self.close_above(above, [a, b], open, [last(gl, &l), last(gr, &r)]);
+        BuiltRange { bottom: below, top: above, first: left.first }
+    }
+
+    /// Starts the gap between the halves with the ghost below it, from `b` to `a`. The ghosts of
+    /// the halves at these vertices are given, too; a half of one point has none.
+    #[inline(always)]
+    fn close_below(&mut self, [below, above]: [u32; 2], [a, b]: [VertexId; 2], [gl, gr]: [u32; 2]) {
+        self.face_mut(below).vertices = [b, a, VertexId::INFINITE];
+        if gl == NONE {
+            self.link((below, 1), (above, 2));
+        } else {
+            self.link_to((below, 1), self.twin(gl, back(LEFT)));
+        }
+        if gr == NONE {
+            self.link((below, 2), (above, 1));
+        } else {
+            self.link_to((below, 2), self.twin(gr, back(RIGHT)));
+        }
+    }
+
+    /// Ends the gap with the ghost above it, from `a` to `b`, at the last open edge. The ghosts of
+    /// the halves beside it are given, too.
+    #[inline(always)]
+    fn close_above(&mut self, above: u32, [a, b]: [VertexId; 2], open: Edge, [left, right]: [u32; 2]) {
         self.face_mut(above).vertices = [a, b, VertexId::INFINITE];
         self.link_to((above, 0), open);
-        if gr != NONE {
-            self.link((above, 1), (r.ghost, 2));
+        if right != NONE {
+            self.link((above, 1), (right, 2));
         }
-        if gl != NONE {
-            self.link((above, 2), (l.ghost, 1));
+        if left != NONE {
+            self.link((above, 2), (left, 1));
         }
-        BuiltRange { bottom: below, top: above, first: left.first }
+    }
+
+    /// Flips hull edges of a side away, for as long as the circle through `a`, `b` and the
+    /// candidate contains the vertex behind the edge, which is the next candidate. Returns the
+    /// arrow from `a` to the last candidate, and its circle.
+    #[inline(always)]
+    fn flip_away<const SIDE: usize>(
+        &mut self,
+        climb: &mut Climb,
+        [a, b]: [VertexId; 2],
+        at_a: Site,
+        base: Arrow,
+        to_candidate: Arrow,
+    ) -> (Arrow, Circle) {
+        let (mut to_candidate, mut circle) = (to_candidate, Circle::through(base, to_candidate));
+        let mut has_flipped = false;
+        loop {
+            let to_q = Arrow::between(at_a, climb.apex);
+            let inside = circle.side(to_q);
+            let mut flips = inside.is_positive();
+            if self.predicates.is_open(inside) {
+                let (start, chord) = if SIDE == LEFT { (b, [climb.vertex, a]) } else { (a, [b, climb.vertex]) };
+                flips = self.predicates.in_circle_slowly(start, chord, self.opposite(climb.behind));
+            }
+            if !flips {
+                break;
+            }
+            self.flip::<SIDE>(climb);
+            has_flipped = true;
+            to_candidate = to_q;
+            circle = Circle::through(base, to_candidate);
+        }
+        if has_flipped {
+            self.update_ghost::<SIDE>(climb);
+        }
+        (to_candidate, circle)
     }
 
     /// Returns the vertex of a half that is nearest to the other half; of several, the lowest.

@@ -536,22 +536,9 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
         let leaving = self.leaving();
         let changes = self.changes(&leaving);
 
-        // The tables. An edge of a chain that changes is released unless another chain needs it.
-        let (index, chains) = self.lines.index_and_chains();
-        let index = index.ok_or(NotLocal)?;
-        let mut edges: Vec<Ends> = Vec::new();
-        for change in &changes {
-            change.old_parts().for_each(|part| index.remove_part(chains, change.segment, part, &mut edges));
-        }
-        for (segment, part) in std::mem::take(&mut self.replacing) {
-            index.remove_part(chains, segment, part, &mut edges);
-        }
-        edges.sort_unstable();
-        edges.dedup();
-        let straight = |edge: &Ends| changes.binary_search_by(|change| change.segment.cmp(edge));
-        let is_rerouted = |edge: &Ends| straight(edge).is_ok_and(|at| changes[at].old_parts().next().is_some());
-        edges.retain(|&edge| index.segments_on(chains, edge).all(|other| other == edge && is_rerouted(&edge)));
-        edges.retain(|edge| chains.splits.remove(edge).is_none());
+        // The tables.
+        let edges = self.retract_parts(&changes)?;
+        let chains = &mut self.lines.chains;
         let mut stale = std::mem::take(&mut self.stale);
         let mut parts: Vec<Ends> = Vec::new();
         for change in &changes {
@@ -604,6 +591,27 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
             is_rounded.then(|| Rounding { unit: self.rounder.unit(), on_grid: self.rounder.is_even() });
         self.lines.touch();
         Ok(())
+    }
+
+    /// Takes the old parts of chains that change out of the index. Returns the edges that no other
+    /// chain needs: these are to be released.
+    fn retract_parts(&mut self, changes: &[Change]) -> Result<Vec<Ends>, NotLocal> {
+        let (index, chains) = self.lines.index_and_chains();
+        let index = index.ok_or(NotLocal)?;
+        let mut edges: Vec<Ends> = Vec::new();
+        for change in changes {
+            change.old_parts().for_each(|part| index.remove_part(chains, change.segment, part, &mut edges));
+        }
+        for (segment, part) in std::mem::take(&mut self.replacing) {
+            index.remove_part(chains, segment, part, &mut edges);
+        }
+        edges.sort_unstable();
+        edges.dedup();
+        let straight = |edge: &Ends| changes.binary_search_by(|change| change.segment.cmp(edge));
+        let is_rerouted = |edge: &Ends| straight(edge).is_ok_and(|at| changes[at].old_parts().next().is_some());
+        edges.retain(|&edge| index.segments_on(chains, edge).all(|other| other == edge && is_rerouted(&edge)));
+        edges.retain(|edge| chains.splits.remove(edge).is_none());
+        Ok(edges)
     }
 
     /// Returns the vertices that are to be removed, in order.

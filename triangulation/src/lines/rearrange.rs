@@ -92,9 +92,10 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
     fn carry_out(
         &mut self,
         arrangement: &Arrangement,
-        LinesDemand { given, segments, .. }: &LinesDemand,
+        demand: &LinesDemand,
         mut leaving: HashSet<VertexId>,
     ) -> Vec<SubConstraint> {
+        let LinesDemand { given, segments, .. } = demand;
         // Phase 1: sites that stay keep their vertices, other added vertices leave.
         let mut vertex_at: HashMap<[u64; 2], VertexId> =
             self.lines.added.iter().map(|v| (key(self.plan_of(v)), v)).collect();
@@ -103,6 +104,37 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
         leaving.extend(vertex_at.into_values());
 
         // Phase 2: which sub-constraints exist already.
+        let (kept, splits) = self.kept_parts(arrangement, segments, &sites, &leaving);
+
+        // Phase 3: the others are released, and vertices removed.
+        let constrained: Vec<SubConstraint> = self.constrained_edges().collect();
+        for [a, b] in constrained.into_iter().filter(|edge| !kept.contains(edge)) {
+            self.lines.release(&mut self.inner, a, b);
+        }
+        self.lines.chains.splits = splits;
+        leaving.iter().for_each(|&v| _ = self.lines.added.remove(v));
+        self.take_out(leaving);
+
+        // Phase 4: new sites and sub-constraints are inserted.
+        self.insert_sites(arrangement, demand, &mut sites);
+        let sites: Vec<VertexId> = sites.into_iter().flatten().collect(); // all are known now
+        let parts = self.lines.chains.record(arrangement, segments, |site| sites[site as usize]);
+        self.lines.rounding = Rounding::of(arrangement);
+        let crossing = self.constrain_all(parts, Grain::default());
+        self.lines.chains.drop_stray_splits();
+        self.lines.touch();
+        crossing
+    }
+
+    /// Returns the edges of chains that are constrained already and stay, and the splits among
+    /// them.
+    fn kept_parts(
+        &self,
+        arrangement: &Arrangement,
+        segments: &[[u32; 2]],
+        sites: &[Option<VertexId>],
+        leaving: &HashSet<VertexId>,
+    ) -> (HashSet<SubConstraint>, FxHashMap<SubConstraint, VertexId>) {
         let mut splits = FxHashMap::default();
         let mut kept = HashSet::new();
         let mut chain = Vec::new();
@@ -123,17 +155,12 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
                 }
             }
         }
+        (kept, splits)
+    }
 
-        // Phase 3: the others are released, and vertices removed.
-        let constrained: Vec<SubConstraint> = self.constrained_edges().collect();
-        for [a, b] in constrained.into_iter().filter(|edge| !kept.contains(edge)) {
-            self.lines.release(&mut self.inner, a, b);
-        }
-        self.lines.chains.splits = splits;
-        leaving.iter().for_each(|&v| _ = self.lines.added.remove(v));
-        self.take_out(leaving);
-
-        // Phase 4: new sites and sub-constraints are inserted.
+    /// Inserts the added sites that have no vertex yet; those that have one get its new point.
+    fn insert_sites(&mut self, arrangement: &Arrangement, demand: &LinesDemand, sites: &mut [Option<VertexId>]) {
+        let LinesDemand { given, segments, .. } = demand;
         let added = points_added(&self.inner.geometry, arrangement, segments, |i| *self.point(given[i as usize]));
         let mut near = None;
         for i in order_of_insertion(&self.inner.geometry, &added) {
@@ -153,13 +180,6 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
                 }
             }
         }
-        let sites: Vec<VertexId> = sites.into_iter().flatten().collect(); // all are known now
-        let parts = self.lines.chains.record(arrangement, segments, |site| sites[site as usize]);
-        self.lines.rounding = Rounding::of(arrangement);
-        let crossing = self.constrain_all(parts, Grain::default());
-        self.lines.chains.drop_stray_splits();
-        self.lines.touch();
-        crossing
     }
 
     pub(crate) fn plan_of(&self, vertex: VertexId) -> [f64; 2] {

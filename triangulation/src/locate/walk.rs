@@ -89,11 +89,7 @@ pub fn locate<const N: usize, T: Embedded<N>>(
     let width = complex.width();
     let mut cell = complex.inner(start)?;
     if width == 1 {
-        let only = complex.vertex(cell, 0)?;
-        return Ok(match t.geometry().compare(q, t.point(only)?.borrow()) {
-            Ordering::Equal => Location::Vertex(only),
-            _ => Location::OutsideAffineHull,
-        });
+        return beside_only(t, cell, q);
     }
     if width < N && leaves_flat(t, cell, q)? {
         return Ok(Location::OutsideAffineHull);
@@ -126,16 +122,7 @@ pub fn locate<const N: usize, T: Embedded<N>>(
         };
         let beyond = match sides {
             CellSides::Outside(i) => complex.neighbor(cell, i)?,
-            CellSides::On(facets) => {
-                // A point on all facets means a flat cell.
-                complex.ensure(cell, || facets.len() < width)?;
-                if facets.len() == width - 1 {
-                    // On all facets but one: on the vertex opposite that one.
-                    let opposite = (0..width).find(|&i| !facets.contains(i)).unwrap_or(0);
-                    return Ok(Location::Vertex(complex.vertex(cell, opposite)?));
-                }
-                return Ok(Location::Cell { cell, facets });
-            }
+            CellSides::On(facets) => return location_on(complex, cell, facets),
         };
         if complex.is_infinite(beyond)? {
             return Ok(Location::OutsideHull { cell: beyond });
@@ -152,6 +139,30 @@ pub fn locate<const N: usize, T: Embedded<N>>(
             }
         }
     }
+}
+
+/// Returns where a point lies if there is a single vertex, that of a cell.
+#[cold]
+fn beside_only<const N: usize, T: Embedded<N>>(t: &T, cell: CellId, q: &PointOf<T, N>) -> Result<Location, T::Error> {
+    let only = t.complex().vertex(cell, 0)?;
+    Ok(match t.geometry().compare(q, t.point(only)?.borrow()) {
+        Ordering::Equal => Location::Vertex(only),
+        _ => Location::OutsideAffineHull,
+    })
+}
+
+/// Returns the location of a point in a cell, on these facets of it.
+#[inline(always)]
+fn location_on<const N: usize, T: Complex<N>>(complex: &T, cell: CellId, facets: Facets) -> Result<Location, T::Error> {
+    let width = complex.width();
+    // A point on all facets means a flat cell.
+    complex.ensure(cell, || facets.len() < width)?;
+    if facets.len() == width - 1 {
+        // On all facets but one: on the vertex opposite that one.
+        let opposite = (0..width).find(|&i| !facets.contains(i)).unwrap_or(0);
+        return Ok(Location::Vertex(complex.vertex(cell, opposite)?));
+    }
+    Ok(Location::Cell { cell, facets })
 }
 
 /// The end of a walk by rounded numbers.

@@ -60,6 +60,7 @@ mod error;
 mod id;
 mod neighbors;
 pub mod plane;
+mod raise;
 mod rebuild;
 mod refill;
 mod remove;
@@ -424,109 +425,6 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
             self.infinite_cell = cell;
         } else {
             self.vertex_cell[vertex.index()] = cell;
-        }
-    }
-
-    /// Adds a vertex outside of the flat that the others span, which raises the dimension by one.
-    ///
-    /// The new sphere is the suspension of the old one: every cell joined to the new vertex, and
-    /// every finite cell joined to the infinite one. All cells are replaced.
-    ///
-    /// Linear in the number of cells; happens at most `N` times.
-    pub(crate) fn raise_dimension(&mut self, apex: VertexId) {
-        assert!(self.dimension + 1 < N as i32, "the complex is full-dimensional");
-        let old_dimension = self.dimension;
-        let slot = (old_dimension + 1) as usize; // of the vertex that each cell gains
-        let old = std::mem::take(&mut self.links);
-        self.cell_data.clear();
-        self.unused.clear();
-        self.dimension += 1;
-
-        if old_dimension == -1 {
-            let mut vertices = [VertexId::NONE; N];
-            for vertex in [apex, VertexId::INFINITE] {
-                vertices[0] = vertex;
-                let cell = self.add_cell(Links::alone(vertices), C::default());
-                self.set_cell_of(vertex, cell);
-            }
-            self.link(CellId::new(0), 0, CellId::new(1), 0);
-            return;
-        }
-
-        let is_finite = |cell: CellId| {
-            old[cell.index()].vertices[0] != VertexId::NONE && !old[cell.index()].vertices.contains(&VertexId::INFINITE)
-        };
-        // Cell `c` joined to the apex keeps its number; joined to infinity it gets a new one.
-        let mut to_infinity = vec![CellId::NONE; old.len()];
-        for (index, links) in old.iter().enumerate() {
-            let mut vertices = links.vertices;
-            vertices[slot] = apex;
-            self.add_cell(Links::alone(vertices), C::default());
-            if links.vertices[0] == VertexId::NONE {
-                self.links[index] = Links::UNUSED;
-            }
-        }
-        for index in 0..old.len() {
-            let cell = CellId::new(index);
-            if is_finite(cell) {
-                let mut vertices = old[index].vertices;
-                vertices[slot] = VertexId::INFINITE;
-                to_infinity[index] = self.add_cell(Links::alone(vertices), C::default());
-            }
-        }
-        for (index, links) in old.iter().enumerate() {
-            let cell = CellId::new(index);
-            if links.vertices[0] == VertexId::NONE {
-                self.unused.push(cell);
-                continue;
-            }
-            self.links[index].neighbors[..slot].copy_from_slice(&links.neighbors[..slot]);
-            if is_finite(cell) {
-                let above = to_infinity[index];
-                self.links[index].neighbors[slot] = above;
-                self.links[above.index()].neighbors[slot] = cell;
-                for i in 0..slot {
-                    let beside = links.neighbors[i];
-                    self.links[above.index()].neighbors[i] =
-                        if is_finite(beside) { to_infinity[beside.index()] } else { beside };
-                }
-            } else {
-                // The facet without the apex is that of the neighboring finite cell, joined to
-                // infinity.
-                let at_infinity = links.vertices.iter().position(|&v| v == VertexId::INFINITE).unwrap_or(0);
-                self.links[index].neighbors[slot] = to_infinity[links.neighbors[at_infinity].index()];
-            }
-        }
-        if old_dimension == 0 {
-            // The two points of a sphere of dimension 0 are opposite, but one vertex has no
-            // orientation to show it.
-            (0..old.len()).map(CellId::new).filter(|&c| !is_finite(c)).for_each(|c| self.mirror(c));
-        }
-        // The two halves of the suspension are mirror images.
-        for above in to_infinity.into_iter().filter(|&c| c != CellId::NONE) {
-            self.mirror(above);
-        }
-        for index in 0..self.links.len() {
-            for slot in 0..N {
-                let vertex = self.links[index].vertices[slot];
-                if vertex != VertexId::NONE {
-                    self.set_cell_of(vertex, CellId::new(index));
-                }
-            }
-        }
-    }
-
-    /// Reverses the orientation of a cell.
-    fn mirror(&mut self, cell: CellId) {
-        let links = &mut self.links[cell.index()];
-        links.vertices.swap(0, 1);
-        links.neighbors.swap(0, 1);
-    }
-
-    /// Reverses the orientation of every cell, from dimension 1 on.
-    pub(crate) fn mirror_all(&mut self) {
-        for index in 0..self.links.len() {
-            self.mirror(CellId::new(index));
         }
     }
 }
