@@ -179,7 +179,9 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Delaunay<G, N, V, C> 
         ///
         /// # Complexity
         /// A [walk](Triangulation::locate) from the last insertion, then linear in the number of
-        /// cells replaced: constant on average for points in spatial order.
+        /// cells replaced: constant on average for points in spatial order. For points in no order
+        /// use [`insert_by`](Self::insert_by) with a [`Hierarchy`](crate::Hierarchy); for all
+        /// points at once [`from_points_with`](Delaunay::from_points_with).
         by Locate<G, N>
     }
 

@@ -337,7 +337,8 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Regular<G, N, V, C> {
         self.hidden.host.contains_key(&vertex)
     }
 
-    /// The hidden points, in order of their numbers. O(h log h).
+    /// The hidden points, in order of their numbers. O(h log h) for h of them; for one point use
+    /// [`is_hidden`](Self::is_hidden), for one cell [`hidden_under`](Self::hidden_under).
     pub fn hidden(&self) -> impl ExactSizeIterator<Item = VertexId> + '_ {
         let mut hidden: Vec<VertexId> = self.hidden.host.keys().copied().collect();
         hidden.sort_unstable();

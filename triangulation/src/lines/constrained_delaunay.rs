@@ -116,7 +116,8 @@ impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
     /// are none, the triangulation is what it claims to be.
     ///
     /// # Complexity
-    /// Linear in the cells and the vertices of all lines.
+    /// Linear in the cells and the vertices of all lines. Up to [`Level::Manifold`] no predicate is
+    /// evaluated.
     #[must_use]
     pub fn check(&self, level: Level) -> Vec<Flaw> {
         let flaws = self.flaws(level, |cell, i| !self.is_constrained(cell, i));

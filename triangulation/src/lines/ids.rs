@@ -43,7 +43,9 @@ impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
     /// edge. Empty for a line that does not exist.
     ///
     /// # Complexity
-    /// Linear in the length of the result.
+    /// Linear in the length of the result. For the vertices by which it was given, use
+    /// [`line_vertices`](Self::line_vertices), which is free; for one segment,
+    /// [`segment_chain`](Self::segment_chain).
     pub fn chain(&self, line: LineId) -> Vec<VertexId> {
         let vertices = self.line_vertices(line);
         let mut chain: Vec<VertexId> = vertices.first().copied().into_iter().collect();

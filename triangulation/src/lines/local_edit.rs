@@ -10,6 +10,31 @@
 //! - A hot site is *active* if a bent segment bends to it but does not pass exactly through it
 //!   as a given point.
 //!
+//! The segment `p q` is inserted; the box is the pixel of the site `c`:
+//!
+//! ```text
+//!         q                              q
+//!  +------|-----+                 +------|-----+
+//!  |      |     |                 |      /     |
+//!  |      |     |                 |     /      |
+//! a|------x-----|------b         a|--. /   .---|------b
+//!  |    c |     |    .d           |   c---<    |    .d
+//!  |      |     |  .'             |   |\   '---|---'
+//!  |      |     |.'               |   ' \      |
+//!  +------|----.+                 +----'-\-----+
+//!         |  .'                          |\
+//!         p e                            p e
+//! ```
+//!
+//! 1. It crosses `a b` in `x`, which is rounded to `c`: `c` becomes hot, and both segments bend to
+//!    it. No given point lies there, so `c` becomes active.
+//! 2. `d e` crosses neither of them, but meets the pixel of `c`: it bends to `c`, too.
+//! 3. `d e` is bent now, and so it bends to all hot sites whose pixels it meets. Those that become
+//!    active bend other segments, and so on. It ends, because a site becomes hot or active once.
+//!
+//! If `p q` is removed, all of this is retracted first: `c` is not hot, unless other segments cross
+//! there, and `a b` and `d e` are straight again.
+//!
 //! An insertion applies the rules, starting from what is new. A removal first retracts what may
 //! have depended on what is removed: from site to site, the segments there that cross no other.
 //! What remains depends on crossings that remain. Then it applies the rules again.

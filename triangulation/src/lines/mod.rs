@@ -51,4 +51,5 @@ mod vertex_set;
 
 pub use constrained_delaunay::{ConstrainedDelaunay, ConstrainedDelaunay2};
 pub use rounding::{OnCrossing, Rounding};
+#[cfg(feature = "serde")]
 pub(crate) use tables::Lines;

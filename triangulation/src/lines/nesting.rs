@@ -16,7 +16,8 @@ impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
     /// cell number; 0 for infinite cells and for numbers without a cell.
     ///
     /// # Complexity
-    /// Linear.
+    /// Linear in the number of cells. If only some lines count, use
+    /// [`nesting_of`](Self::nesting_of).
     pub fn nesting(&self) -> Vec<u32> {
         self.nest(|cell, i| self.is_constrained(cell, i))
     }

@@ -50,6 +50,10 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
     /// from where about as many steps are left if points are spread evenly. If it takes many more,
     /// as along curves, it continues from the nearest of `3 n^(1/2)`.
     ///
+    /// For points that are far from each other, use a [strategy](Locate): a
+    /// [`Hierarchy`](crate::Hierarchy) takes `O(log n)` steps. For points in order, give the cell
+    /// of the one before as `near`.
+    ///
     /// A point that the geometry does not [admit](Geometry::admits) is [`Location::Nowhere`].
     pub fn locate(&self, q: &G::Point, near: Option<CellId>) -> Location {
         let Ok(location) = locate(self, q, self.start(near));

@@ -248,7 +248,8 @@ where
     /// # Complexity
     /// A [walk](crate::Triangulation::locate) from a cell nearby, and the degrees of
     /// a few vertices. From outside of the hull, and on a line, the walk may visit all vertices
-    /// there.
+    /// there. If the points are far apart, give the cell at the location that a
+    /// [`Hierarchy`](crate::Hierarchy) returns.
     ///
     /// ```
     /// use breakline_triangulation::{geometry::Plane, Delaunay};

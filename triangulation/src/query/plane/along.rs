@@ -39,7 +39,7 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
     /// # Complexity
     /// A [walk](Self::locate) to `a` from a cell nearby; then constant time for a face or an edge,
     /// and the degree of each vertex. If `a` lies outside of the hull, proportional to the size of
-    /// the hull.
+    /// the hull: start from the end that is inside, if one is.
     ///
     /// ```
     /// use breakline_triangulation::{geometry::Plane, Delaunay, Passage};

@@ -13,7 +13,8 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
     ///
     /// # Complexity
     /// Linear in the number of triangles met, after location; in the size of the hull if `a` is
-    /// outside.
+    /// outside. If the order matters, or the faces, use [`along`](Self::along), which can also end
+    /// early.
     pub fn edges_crossed(&self, a: &G::Point, b: &G::Point) -> Vec<[VertexId; 2]> {
         let mut crossed = Vec::new();
         let is_segment = [a, b].into_iter().all(|p| self.geometry.admits(p)) && self.geometry.compare(a, b).is_ne();

@@ -24,8 +24,8 @@ impl<G: Geometry<4>, V, C: Copy + Default> Triangulation<G, 4, V, C> {
     /// A [walk](Self::locate) to `a` from a cell nearby; then constant time for each cell and
     /// facet, and time proportional to the number of cells around each edge and vertex. If `a` lies
     /// outside of the hull, also proportional to the number of facets of the hull that are visible
-    /// from there. If `a` and `b` lie on different sides of the line or plane of all points,
-    /// proportional to the number of cells.
+    /// from there: start from the end that is inside, if one is. If `a` and `b` lie on different
+    /// sides of the line or plane of all points, proportional to the number of cells.
     ///
     /// ```
     /// use breakline_triangulation::{geometry::Space, Delaunay, SpacePassage};

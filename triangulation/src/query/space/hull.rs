@@ -32,7 +32,8 @@ impl<G: Geometry<4>, V, C: Copy + Default> Triangulation<G, 4, V, C> {
     /// vertices have `2 v - 4` triangles.
     ///
     /// # Complexity
-    /// O(k log k) for the k facets of the hull.
+    /// O(k log k) for the k facets of the hull. If their order does not matter, use
+    /// [`Tds::hull_facets`](crate::tds::Tds::hull_facets), which allocates nothing.
     ///
     /// ```
     /// use breakline_triangulation::{geometry::Space, ConvexHull, Delaunay};

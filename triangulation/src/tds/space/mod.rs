@@ -278,7 +278,8 @@ impl<'t, T: Complex<4>> StarSearch<'t, T> {
 /// Those of [`cells_around`].
 ///
 /// # Complexity
-/// O(k log k) for the k cells around the vertex.
+/// O(k log k) for the k cells around the vertex. To stop early, use
+/// [`neighbors_of`](super::Neighbors::neighbors_of), which may return a vertex more than once.
 pub fn vertices_around<T: Complex<4>>(complex: &T, vertex: VertexId) -> Result<Vec<VertexId>, T::Error> {
     let mut vertices = Vec::new();
     if complex.dimension() < 1 {

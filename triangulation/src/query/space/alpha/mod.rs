@@ -89,8 +89,8 @@ impl<K: Kernel, V, C: Copy + Default> Delaunay<Space<K>, 4, V, C> {
     /// Returns the alpha shapes of the points. Below dimension 3 all of them are empty.
     ///
     /// # Complexity
-    /// O(m log m) for m cells. Radii that floating point cannot distinguish are compared by exact
-    /// arithmetic, so that the shapes are those of the points.
+    /// O(m log m) for m cells, once for all alphas. Radii that floating point cannot distinguish
+    /// are compared by exact arithmetic, so that the shapes are those of the points.
     pub fn alpha_shapes(&self) -> AlphaShapes<'_, V, C> {
         AlphaShapes::of(self, |&[x, y, z]| [x, y, z, 0.0])
     }
