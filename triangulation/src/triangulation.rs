@@ -11,8 +11,8 @@ use crate::tds::{CellId, Tds, VertexId, Zone};
 ///
 /// Each kind dereferences to it. Only the kind itself creates, changes or copies it, because only
 /// the kind knows the law and what else must follow a change. For the same reason it has no check
-/// of a law; the kinds have one, see [`Delaunay::check`]. A copy of it would let points into cells
-/// that hold constraints, and does not compile:
+/// of a law; the kinds have one, see [`Delaunay::check`](crate::Delaunay::check). A copy of it
+/// would let points into cells that hold constraints, and does not compile:
 ///
 /// ```compile_fail
 /// use breakline_triangulation::geometry::Plane;

@@ -9,7 +9,7 @@ use super::law::Law;
 /// The version of the format that is written and read.
 pub(super) const VERSION: u32 = 2;
 
-/// The reason why a [`Compact`] triangulation has no answer.
+/// The reason why a [`Compact`](crate::Compact) triangulation has no answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum CompactError {

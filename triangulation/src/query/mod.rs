@@ -1,4 +1,4 @@
-//! Location and other queries, as functions over any [`Embedded`](crate::Embedded) structure; the
+//! Location and other queries, as functions over any [`Embedded`] structure; the
 //! methods of the kinds and those of [`Compact`](crate::Compact) call them.
 //!
 //! | function | returns | requires |
@@ -17,7 +17,7 @@
 //!
 //! All of the functions walk from a cell nearby, which may be `None`. A structure of your own
 //! implements two traits: [`Complex`](crate::tds::Complex), for the cells and their neighbors, and
-//! [`Embedded`](crate::Embedded), for the points. The example `examples/own_structure.rs` uses an
+//! [`Embedded`], for the points. The example `examples/own_structure.rs` uses an
 //! array of triangles with indices of vertices.
 //!
 //! ```

@@ -6,7 +6,8 @@ use std::sync::atomic::AtomicBool;
 /// The region of a cell outside of the domain.
 pub(super) const OUTSIDE: u32 = u32::MAX;
 
-/// The property that [`conformed`](ConstrainedDelaunay::conformed) gives to constrained edges.
+/// The property that [`conformed`](crate::ConstrainedDelaunay::conformed) gives to constrained
+/// edges.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Conformity {
     /// Edges of a Delaunay triangulation: no vertex lies inside of any triangle's circle, behind a
@@ -17,8 +18,8 @@ pub enum Conformity {
     Gabriel,
 }
 
-/// The part of a triangulation to refine. Points are rounded to the [step](Crossing::step) of the
-/// geometry, if it has one.
+/// The part of a triangulation to refine. Points are rounded to the
+/// [step](crate::geometry::Crossing::step) of the geometry, if it has one.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Domain {
     /// All triangles except holes. The edges of the hull become constraints. Added vertices may
@@ -33,7 +34,7 @@ pub enum Domain {
         holes: Vec<[f64; 2]>,
     },
     /// What an odd number of constraints encloses: polygons with holes and islands, as counted by
-    /// [`ConstrainedDelaunay::nesting`].
+    /// [`nesting`](crate::ConstrainedDelaunay::nesting).
     Nested,
     /// What constraints enclose around given points.
     Seeded {
@@ -52,8 +53,8 @@ pub struct RegionBound {
     pub max_area: f64,
 }
 
-/// The bounds that [`refined`](ConstrainedDelaunay::refined) triangles satisfy. If several bounds
-/// on an area apply, the smallest counts.
+/// The bounds that [`refined`](crate::ConstrainedDelaunay::refined) triangles satisfy. If several
+/// bounds on an area apply, the smallest counts.
 #[derive(Clone)]
 pub struct Quality<'a> {
     /// The smallest angle, in degrees. Values are clamped to 0 to 60; up to 20.7 is proven to be
