@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use breakline::crs::CrsKind;
 use breakline::data::{Bounds, Lattice, PointBatch, PointInfo, PointSource};
-use breakline::error::Kind;
+use breakline::error::{Kind, Wording};
 use breakline::io::{las, points};
 use serde_json::Value;
 
@@ -48,7 +48,7 @@ fn summarize(source: &mut (impl PointSource + ?Sized)) -> breakline::Result<Summ
     }
     source.read(&mut batch)?;
     assert!(batch.is_empty(), "the end stays the end");
-    summary.warnings = source.info().warnings.iter().chain(source.warnings()).cloned().collect();
+    summary.warnings = source.info().warnings.iter().chain(source.warnings()).map(Wording::plain).collect();
     Ok(summary)
 }
 
@@ -266,7 +266,7 @@ fn every_broken_file_has_its_fate() {
         if let (Cut(_, words), Err(error)) = (fate, &result) {
             assert_eq!((error.kind(), error.path()), (Kind::Format, Some(path.as_path())), "{error}");
             assert!(error.to_string().contains(words), "{error}");
-            assert!(error.cure_text().unwrap().contains("--partial"), "{error}");
+            assert!(error.cure_text().unwrap().plain().contains("partial"), "{error}");
             result = las::open_with(&path, breakline::io::Cut::Accept).and_then(|mut source| summarize(&mut source));
         } else {
             assert!(!matches!(fate, Cut(..)), "{name}");

@@ -8,6 +8,8 @@ use std::error::Error as _;
 use breakline::error::Kind;
 use pyo3::prelude::*;
 
+use crate::names::name;
+
 /// An error of the library on its way to an exception: a type of this crate, so that `?` converts.
 pub(crate) struct Failure(pub(crate) breakline::Error);
 
@@ -46,11 +48,11 @@ impl From<Failure> for PyErr {
         });
         create(Parts {
             class,
-            message: error.message(),
+            message: &error.message().render(&name),
             file: error.path().map(|path| path.display().to_string()).as_deref(),
             location: error.location(),
             value: None,
-            cure: error.cure_text(),
+            cure: error.cure_text().map(|cure| cure.render(&name)).as_deref(),
             causes: &causes,
             errno,
         })

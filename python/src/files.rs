@@ -253,7 +253,7 @@ pub(crate) fn triangulate_space<'py>(
         for mesh in meshes {
             let path = mesh.path().to_path_buf();
             let solid = product.solid.as_ref().ok_or_else(|| {
-                Error::usage("there is no alpha shape to write").in_file(path).cure("use --alpha auto, or write .vtu")
+                Error::usage("there is no alpha shape to write").in_file(path).cure("use alpha=\"auto\", or write .vtu")
             })?;
             run::write_mesh(solid, mesh, context)?;
         }

@@ -10,6 +10,7 @@ use pyo3::prelude::*;
 mod arrays;
 mod errors;
 mod files;
+mod names;
 mod notices;
 mod reports;
 mod requests;
@@ -28,6 +29,8 @@ mod _breakline {
         check_space, class_number, describe, info, is_of_space, main, read_points, triangulate, triangulate_space,
         write_points,
     };
+    #[pymodule_export]
+    use super::names::settings;
     #[pymodule_export]
     use super::surface::{Surface, check_file, edge_kinds, write_cells, write_contours};
 

@@ -3,6 +3,8 @@
 use breakline::run::{Notice, Severity};
 use pyo3::prelude::*;
 
+use crate::names::name;
+
 /// Returns the text of a notice, with the name of its severity.
 fn pair(notice: &Notice) -> (&'static str, String) {
     let severity = match notice.severity() {
@@ -10,7 +12,7 @@ fn pair(notice: &Notice) -> (&'static str, String) {
         Severity::Note => "note",
         Severity::Warning => "warning",
     };
-    (severity, notice.to_string())
+    (severity, notice.text().render(&name))
 }
 
 /// Returns the texts of notices, each with the name of its severity.
@@ -27,6 +29,6 @@ pub(crate) fn warn(py: Python<'_>, notices: &[Notice]) -> PyResult<()> {
     if warnings.peek().is_none() {
         return Ok(());
     }
-    let texts: Vec<String> = warnings.map(Notice::to_string).collect();
+    let texts: Vec<String> = warnings.map(|notice| notice.text().render(&name)).collect();
     py.import("breakline._errors")?.getattr("warn")?.call1((texts,)).map(drop)
 }

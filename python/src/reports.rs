@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
 use crate::errors::Result;
-use crate::work;
+use crate::{names, work};
 
 /// Returns the counts of a surface and, if it was built here, of how.
 pub(crate) fn of_surface<'py>(py: Python<'py>, product: &SurfaceProduct) -> PyResult<Bound<'py, PyDict>> {
@@ -71,7 +71,7 @@ fn of_building(report: &Bound<'_, PyDict>, built: &BuildReport) -> PyResult<()> 
     let lines = PyList::empty(py);
     for input in &built.lines {
         let line = PyDict::new(py);
-        line.set_item("parameter", input.role.option().trim_start_matches('-').replace('-', "_"))?;
+        line.set_item("parameter", names::parameter(input.role.setting()))?;
         line.set_item("file", input.path.display().to_string())?;
         line.set_item("lines", input.lines)?;
         line.set_item("edges", input.edges)?;

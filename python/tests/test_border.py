@@ -149,6 +149,21 @@ def test_numbers_of_other_types_are_taken():
     assert len(breakline.tin(frozen).triangles) == 2
 
 
+def test_cures_and_notices_name_parameters(tmp_path):
+    with pytest.raises(breakline.FormatError) as caught:
+        breakline.tin(SQUARE, walls=[[[1, 1, 1], [5, 5, 2]]])
+    assert "give its height with wall_bottom or wall_drop, or" in caught.value.cure
+    with pytest.raises(breakline.FormatError) as caught:
+        breakline.tin(SQUARE, breaklines=[[[0, 0, 1], [9, 9, 1]], [[0, 9, 1], [9, 0, 1]]], on_crossing="reject")
+    assert 'split them there with on_crossing="split"' in caught.value.cure
+    tin = breakline.tin(SQUARE, max_edge="none")
+    assert any('(max_edge="none")' in notice.text for notice in tin.notices), tin.notices
+    # What only the program has is named as there.
+    with pytest.raises(breakline.UnsupportedError) as caught:
+        tin.write(tmp_path / "parts.tins")
+    assert "use breakline.tin() for points" in caught.value.cure
+
+
 def test_an_error_in_a_file_names_file_location_and_cure(tmp_path):
     (tmp_path / "broken.xyz").write_text("1 2 3\n4 5 6\n7 eight 9\n")
     with pytest.raises(breakline.FormatError) as caught:

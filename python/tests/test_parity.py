@@ -7,7 +7,8 @@ import inspect
 
 import breakline
 import pytest
-from breakline._errors import RENAMED
+from breakline._breakline import settings
+from breakline.dask import RENAMED
 
 PROGRAM = breakline.describe()
 VERBS = {verb["name"]: verb for verb in PROGRAM["verbs"]}
@@ -54,6 +55,16 @@ def parameter_name(verb, option):
     if option == "te" and verb in ("dem", "hillshade"):
         return "extent"
     return RENAMED.get(option, option.replace("-", "_"))
+
+
+def test_every_setting_is_a_parameter_or_is_elsewhere():
+    functions = [getattr(breakline, verb) for verb in sorted(set(VERBS) - set(NO_FUNCTIONS))]
+    methods = [breakline.Tin.dem, breakline.Tin.hillshade, breakline.Tin.contours, *(of.write for of in WRITTEN.values())]
+    known = {name for function in functions + methods for name in inspect.signature(function).parameters}
+    named = dict(settings())
+    assert named["wall-bottom"] == "wall_bottom" and named["target-crs"] == "to_crs"
+    assert {parameter for parameter in named.values() if parameter} <= known
+    assert {setting for setting, parameter in named.items() if parameter is None} <= set(ELSEWHERE)
 
 
 @pytest.mark.parametrize("verb", sorted(VERBS))

@@ -19,8 +19,8 @@ use clap::Parser;
 use self::input::args::{Cli, ConsoleArgs, Verb};
 use self::input::habits;
 use self::report::console::{Console, Level};
-use self::report::{escape, summary};
-use crate::error::{Kind, Result};
+use self::report::{escape, names, summary};
+use crate::error::{Kind, Result, Term};
 use crate::run::Facts;
 
 /// How a run ended.
@@ -102,6 +102,11 @@ pub fn run(args: impl IntoIterator<Item = OsString>) -> Exit {
 /// by who handles signals.
 pub fn print_last_words() {
     report::last_words::print();
+}
+
+/// Returns what an error or a notice mentions, as it is typed on the command line.
+pub fn name_of(term: &Term) -> String {
+    names::name(term)
 }
 
 /// Returns the description of the program that `describe --json` prints.

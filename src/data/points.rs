@@ -1,6 +1,6 @@
 use super::{Bounds, Columns, LasHead, Lattice};
 use crate::crs::Crs;
-use crate::error::Result;
+use crate::error::{Result, Wording};
 
 /// The classification flags of a lidar point, as in LAS 1.4.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -119,7 +119,7 @@ pub struct PointInfo {
     /// The head of a LAS file, if the records of its points were requested.
     pub head: Option<LasHead>,
     /// Warnings for the user: contradictions, guesses, ignored content.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Wording>,
 }
 
 /// A stream of points, in batches of bounded size.
@@ -144,7 +144,7 @@ pub trait PointSource {
     }
 
     /// Warnings from reading, such as a file that ends early; complete after the last batch.
-    fn warnings(&self) -> &[String] {
+    fn warnings(&self) -> &[Wording] {
         &[]
     }
 }

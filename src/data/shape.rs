@@ -1,4 +1,5 @@
 use crate::crs::Crs;
+use crate::error::Wording;
 
 /// The geometry of one record of a vector layer.
 ///
@@ -91,7 +92,7 @@ pub struct Layer {
     /// The numbers of the attributes that were requested, in the order of the request.
     pub columns: Vec<Column>,
     /// Warnings for the user.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Wording>,
 }
 
 impl Layer {

@@ -1,5 +1,6 @@
 use super::{EdgeKind, Surface};
 use crate::crs::Crs;
+use crate::error::Wording;
 
 /// Triangles as a file lists them; they need not form a surface.
 #[derive(Debug, Clone, Default)]
@@ -19,7 +20,7 @@ pub struct Triangles {
     /// The coordinate system, if known.
     pub crs: Option<Crs>,
     /// Warnings for the user.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Wording>,
 }
 
 /// Why triangles do not form a surface, found by [`Mesh::link`](super::Mesh::link). Numbers count

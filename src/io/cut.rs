@@ -1,4 +1,4 @@
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, Setting, Wording, wording};
 
 /// What to do with a file of which a part is missing or damaged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -13,13 +13,14 @@ pub enum Cut {
 impl Cut {
     /// Reports that something is missing from a location on ("byte 4096"): as an error or a
     /// warning.
-    pub(super) fn refuse_or_warn(self, text: String, location: &str, warnings: &mut Vec<String>) -> Result<()> {
+    pub(super) fn refuse_or_warn(self, text: String, location: &str, warnings: &mut Vec<Wording>) -> Result<()> {
         match self {
-            Cut::Accept => warnings.push(text),
+            Cut::Accept => warnings.push(text.into()),
             Cut::Refuse => {
-                return Err(Error::format(text)
-                    .at(location)
-                    .cure("copy or download the file again, or use what is there with --partial"));
+                return Err(Error::format(text).at(location).cure(wording![
+                    "copy or download the file again, or use what is there with ",
+                    Setting::Partial.on()
+                ]));
             }
         }
         Ok(())
@@ -30,8 +31,8 @@ impl Cut {
 pub(super) const OPEN_LINE: &str = "the last line has no line end: if the file was cut, its last number may be wrong";
 
 /// Returns [`OPEN_LINE`] if the last line of a text has no end, and has more than a comment (`#`).
-pub(super) fn open_line(text: &[u8]) -> Option<String> {
+pub(super) fn open_line(text: &[u8]) -> Option<Wording> {
     let line = text.rsplit(|&byte| byte == b'\n' || byte == b'\r').next()?;
     let values = line.split(|&byte| byte == b'#').next()?.trim_ascii();
-    (!values.is_empty()).then(|| OPEN_LINE.to_owned())
+    (!values.is_empty()).then(|| OPEN_LINE.into())
 }

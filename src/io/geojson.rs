@@ -17,7 +17,7 @@ use super::watched_value;
 use super::{Destination, Output};
 use crate::crs::{Crs, CrsKind};
 use crate::data::{Column, ContourLine, Layer, Shape};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, Setting, wording};
 use crate::triangulation::num::unsigned_zero;
 
 /// Longitude and latitude on WGS 84, the default of GeoJSON.
@@ -275,7 +275,7 @@ impl Reader {
     fn finish(self, root: &Object, z_field: Option<&str>) -> Result<Layer> {
         let Reader { mut layer, fields, found, not_numbers, first_text, found_columns, without_geometry, .. } = self;
         if without_geometry > 0 {
-            layer.warnings.push(format!("features without a member geometry: {without_geometry}"));
+            layer.warnings.push(format!("features without a member geometry: {without_geometry}").into());
         }
         if let Some((column, _)) = layer.columns.iter().zip(found_columns).find(|(_, (is_there, _))| !is_there)
             && !layer.shapes.is_empty()
@@ -292,7 +292,7 @@ impl Reader {
                 }
                 Some(text) => layer.warnings.push(format!(
                     "property {name}: no number in {not_numbers} features (the first: {text}); their shapes have no height"
-                )),
+                ).into()),
                 None => {}
             }
         }
@@ -302,7 +302,7 @@ impl Reader {
             Some(crs) => match stated_crs(crs) {
                 Ok(crs) => Some(crs),
                 Err(e) => {
-                    layer.warnings.push(format!("crs not used: {e}"));
+                    layer.warnings.push(format!("crs not used: {e}").into());
                     layer.unread_crs = Some(crs["properties"]["name"].as_str().map_or(crs.to_string(), str::to_owned));
                     None
                 }
@@ -313,13 +313,11 @@ impl Reader {
                 .flat_map(Shape::vertices)
                 .all(|v| v[0].abs() <= 180.0 && v[1].abs() <= 90.0) =>
             {
-                Crs::from_epsg(WGS_84).map_err(|e| layer.warnings.push(format!("crs not used: {e}"))).ok()
+                Crs::from_epsg(WGS_84).map_err(|e| layer.warnings.push(format!("crs not used: {e}").into())).ok()
             }
             None => {
-                layer.warnings.push(
-                    "no crs member, and its coordinates are not longitude and latitude (state their system with --a-srs)"
-                        .to_owned(),
-                );
+                let text = "no crs member, and its coordinates are not longitude and latitude";
+                layer.warnings.push(wording![text, " (state their system with ", Setting::Crs, ")"]);
                 None
             }
         };
@@ -545,7 +543,8 @@ mod tests {
         assert!(read("a").is_ok() && read("Roads").is_ok());
         let error = read("rivers").unwrap_err();
         assert_eq!(error.to_string(), "there is no layer \"rivers\"");
-        assert_eq!(error.cure_text(), Some("its only layer is \"roads\" or \"a\": name that, or write FILE::FIELD"));
+        let cure = error.cure_text().unwrap();
+        assert_eq!(*cure, "its only layer is \"roads\" or \"a\": name that, or write FILE::FIELD");
     }
 
     fn read_columns(text: &str, columns: &[&str]) -> Result<Layer> {
@@ -615,14 +614,14 @@ mod tests {
         assert_eq!(heights, [0.5, 0.5, 12.5, 12.5]);
         let error = read_heights(&text, "ELEV").unwrap_err();
         assert_eq!(
-            (error.to_string().as_str(), error.cure_text()),
-            ("there is no field ELEV", Some("name one of Z, name"))
+            (error.to_string().as_str(), error.cure_text().map(|cure| cure.plain())),
+            ("there is no field ELEV", Some("name one of Z, name".to_owned()))
         );
         let error = read_heights(&text, "name").unwrap_err();
         assert_eq!(error.to_string(), "property name holds no numbers; the first value is n");
         let text = features(&[LINE, LINE]).replace("1.5", "\"high\"");
         let layer = read_heights(&text, "Z").unwrap();
-        assert!(layer.warnings[0].contains("no number in 1 features (the first: high)"));
+        assert!(layer.warnings[0].plain().contains("no number in 1 features (the first: high)"));
         let text = features(&[LINE, LINE]).replace("1.5", "null");
         let layer = read_heights(&text, "Z").unwrap();
         assert!(layer.shapes[1].vertices().all(|v| v[2].is_nan()));
@@ -638,7 +637,7 @@ mod tests {
         assert_eq!((&values[..3], values[3].is_nan(), values[4]), (&[0.5, 0.5, 1.5][..], true, 3.5));
         let error = read_columns(&text, &["Z", "WIDTH"]).unwrap_err();
         assert_eq!(error.to_string(), "there is no field WIDTH");
-        assert_eq!(error.cure_text(), Some("name one of Z, name, z"));
+        assert_eq!(*error.cure_text().unwrap(), "name one of Z, name, z");
         let error = read_columns(&text.replace("1.5", "true"), &["Z"]).unwrap_err();
         assert_eq!(error.to_string(), "feature 2: field Z: expected a number, found 'true'");
         assert!(read_columns(LINE, &["Z"]).unwrap_err().to_string().contains("no field Z"));
@@ -668,11 +667,11 @@ mod tests {
     #[test]
     fn systems_that_are_not_stated() {
         let far = read(r#"{"type":"Point","coordinates":[500000,2]}"#).unwrap();
-        assert!(far.crs.is_none() && far.warnings[0].contains("not longitude and latitude"));
+        assert!(far.crs.is_none() && far.warnings[0].plain().contains("not longitude and latitude"));
         let unknown = read(r#"{"type":"Point","coordinates":[1,2],"crs":null}"#).unwrap();
         assert!(unknown.crs.is_none() && unknown.warnings.is_empty());
         let linked = read(r#"{"type":"Point","coordinates":[1,2],"crs":{"type":"link"}}"#).unwrap();
-        assert!(linked.warnings[0].contains("not given by name"));
+        assert!(linked.warnings[0].plain().contains("not given by name"));
         assert_eq!(linked.unread_crs.as_deref(), Some(r#"{"type":"link"}"#));
     }
 
@@ -695,7 +694,7 @@ mod tests {
         }
         let unknown = system("urn:ogc:def:crs:IGNF::LAMB93");
         assert_eq!((unknown.crs, unknown.unread_crs.as_deref()), (None, Some("urn:ogc:def:crs:IGNF::LAMB93")));
-        assert!(unknown.warnings[0].contains("the codes of IGNF are not known"), "{:?}", unknown.warnings);
+        assert!(unknown.warnings[0].plain().contains("the codes of IGNF are not known"), "{:?}", unknown.warnings);
     }
 
     #[test]

@@ -7,7 +7,7 @@ use super::formats::{self, Reader};
 pub use super::layer_options::Options;
 use super::watch::{Watch, unwatched};
 use crate::data::Layer;
-use crate::error::{Error, Result};
+use crate::error::{Error, Feature, Result, wording};
 
 /// A vector layer as a user names it: a file, and the layer and the attribute to read of it.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -136,7 +136,7 @@ pub fn read_with(path: &Path, options: &Options, watch: Watch) -> Result<Layer> 
 fn unsupported(path: &Path) -> Error {
     Error::unsupported("not a vector format of this build, which reads shapefiles (.shp) and GeoJSON (.geojson)")
         .in_file(path)
-        .cure("build with `--features gdal` to read what GDAL reads")
+        .cure(wording!["build with ", Feature::Gdal, " to read what GDAL reads"])
 }
 
 #[cfg(test)]
@@ -180,7 +180,7 @@ mod tests {
         for text in ["a.shp:", "a.shp::", "a.shp:a:", "a.gpkg:", "a.gpkg:roads:"] {
             let error = Spec::parse(text).unwrap_err();
             assert_eq!(error.to_string(), format!("{text}: no name after the colon"));
-            assert_eq!(error.cure_text(), Some(FORMS));
+            assert_eq!(*error.cure_text().unwrap(), FORMS);
         }
     }
 
@@ -211,10 +211,10 @@ mod tests {
         assert!(error.to_string().ends_with(
             "a.gpkg: not a vector format of this build, which reads shapefiles (.shp) and GeoJSON (.geojson)"
         ));
-        assert!(error.cure_text().unwrap().contains("--features gdal"));
+        assert!(error.cure_text().unwrap().plain().contains("the feature `gdal`"));
         assert!(read(&format!("{}.shp:", path.display())).unwrap_err().to_string().contains("no name"));
         assert!(read("nowhere/a.gpkg").unwrap_err().to_string().starts_with("nowhere/a.gpkg: "));
         let error = read("nowhere/a.dbf").unwrap_err();
-        assert_eq!(error.cure_text(), Some("name its .shp: nowhere/a.shp"));
+        assert_eq!(*error.cure_text().unwrap(), "name its .shp: nowhere/a.shp");
     }
 }

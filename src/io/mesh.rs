@@ -42,7 +42,7 @@ use super::output::Destination;
 pub use super::stl::Solid;
 use super::watch::{Watch, unwatched};
 use crate::data::{EdgeKind, Mesh, Surface, Triangles};
-use crate::error::{Error, Result};
+use crate::error::{Command, Error, Result, Wording, wording};
 
 /// What a mesh file contains, counted.
 #[derive(Debug, Clone, PartialEq)]
@@ -218,7 +218,7 @@ pub fn read_triangles_with(path: &Path, watch: Watch) -> Result<Triangles> {
     let may_be_empty = formats::of_name(path).is_some_and(|format| format.beside.contains(&"node"));
     if triangles.faces.is_empty() && !may_be_empty {
         let error = Error::format("there are no faces: the file is a point cloud").in_file(path);
-        return Err(error.cure("its points can be read in space only, by `breakline triangulate --3d`"));
+        return Err(error.cure(wording!["its points can be read in space only, by ", Command::TriangulateInSpace]));
     }
     Ok(triangles)
 }
@@ -228,7 +228,7 @@ pub fn read_triangles_with(path: &Path, watch: Watch) -> Result<Triangles> {
 ///
 /// # Errors
 /// As [`read_triangles_with`], except that there need not be any faces.
-pub fn read_vertices(path: &Path, watch: Watch) -> Result<(Vec<[f64; 3]>, Vec<String>)> {
+pub fn read_vertices(path: &Path, watch: Watch) -> Result<(Vec<[f64; 3]>, Vec<Wording>)> {
     parse(path, watch).map(|triangles| (triangles.vertices, triangles.warnings))
 }
 

@@ -17,7 +17,7 @@ use super::output::Destination;
 pub use super::point_options::Options;
 use super::watch::unwatched;
 use crate::data::{Layer, PointBatch, PointInfo, PointSink, PointSource, Shape};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, Setting, wording};
 
 /// Points in a batch.
 const BATCH: usize = 1 << 16;
@@ -114,9 +114,9 @@ fn head(source: &mut impl Read) -> io::Result<Vec<u8>> {
 fn refusal(head: &[u8], path: &Path) -> Error {
     const SUPPORTED: &str = "points are read from LAS, LAZ, COPC, shapefiles and text (x y z)";
     let error = match formats::named(head, path) {
-        Some(Format { noun, cure, .. }) => Error::unsupported(format!("{noun}; {SUPPORTED}")).cure(*cure),
+        Some(Format { noun, cure, .. }) => Error::unsupported(format!("{noun}; {SUPPORTED}")).cure(cure()),
         None => Error::unsupported(format!("a binary file of an unknown kind; {SUPPORTED}"))
-            .cure(format!("if GDAL knows it: {}", formats::WITH_GDAL)),
+            .cure(wording!["if GDAL knows it: ", formats::with_gdal()]),
     };
     error.in_file(path)
 }
@@ -146,10 +146,10 @@ pub fn from_layer(layer: Layer) -> Result<LayerPoints> {
     }
     if others > 0 && others == total {
         return Err(Error::usage(format!("{format} has no points, but {others} other shapes"))
-            .cure("lines and polygons are read with --breaklines"));
+            .cure(wording!["lines and polygons are read with ", Setting::Breaklines]));
     }
     if others > 0 {
-        warnings.push(format!("shapes that are not points are left out: {others}"));
+        warnings.push(format!("shapes that are not points are left out: {others}").into());
     }
     let count = Some(points.len() as u64);
     let info = PointInfo { format, count, crs, unread_crs, warnings, ..PointInfo::default() };
@@ -235,15 +235,15 @@ mod tests {
         for (bytes, message, cure) in [
             (&b"LASF"[..], "ends after 4 bytes", "cut"),
             (b"II*\0\x08\0\0\0", "a TIFF file; points are read from LAS, LAZ", "raster"),
-            (b"SQLite format 3\0", "a GeoPackage", "--features gdal"),
-            (b"{\"type\": \"FeatureCollection\"}", "a JSON file", "--features gdal"),
+            (b"SQLite format 3\0", "a GeoPackage", "the feature `gdal`"),
+            (b"{\"type\": \"FeatureCollection\"}", "a JSON file", "the feature `gdal`"),
             (b"\x7fELF\0\0", "a binary file of an unknown kind; points are read from LAS, LAZ", "gdal"),
             (b"\0\0\x27\x0a\0\0", "a shapefile cannot be read from a stream", "path"),
         ] {
             let error = open(bytes).map(|_| ()).unwrap_err();
             assert!(error.to_string().contains(message), "{error}");
             assert!(error.to_string().starts_with("stream: "), "{error}");
-            assert!(error.cure_text().unwrap().contains(cure), "{error}");
+            assert!(error.cure_text().unwrap().plain().contains(cure), "{error}");
         }
     }
 

@@ -21,7 +21,11 @@ pub fn transform(from: &crate::crs::Crs, to: &crate::crs::Crs) -> crate::error::
     Err(crate::error::Error::unsupported(format!(
         "reprojecting from {from} to {to} needs PROJ, which this build does not have"
     ))
-    .cure("build with `cargo build --release --features proj` (needs g++, make, cmake, sqlite3)"))
+    .cure(crate::error::wording![
+        "build with ",
+        crate::error::Feature::Proj,
+        " (needs g++, make, cmake, sqlite3)"
+    ]))
 }
 
 #[cfg(feature = "proj")]
@@ -38,7 +42,7 @@ mod with_proj {
     use proj::{Proj, ProjInfo};
 
     use crate::crs::{Crs, CrsKind, Transform};
-    use crate::error::{Error, Result};
+    use crate::error::{Error, Result, Setting, wording};
 
     /// PROJ objects that a thread keeps. If more transforms are used at once, objects are created
     /// again on use.
@@ -72,7 +76,7 @@ mod with_proj {
         for crs in [from, to] {
             if crs.kind == CrsKind::Local {
                 return Err(Error::usage(format!("{crs} is a local system: its position on the earth is unknown"))
-                    .cure("state the system with --a-srs"));
+                    .cure(wording!["state the system with ", Setting::Crs]));
             }
         }
         if to.kind == CrsKind::Geocentric && !from.is_same(to) {
@@ -179,7 +183,7 @@ mod with_proj {
             let (from, to) = &self.definitions;
             let object = Proj::new_known_crs(from, to, None).map_err(|error| {
                 Error::unsupported(format!("PROJ has no operation from {} to {}: {error}", self.from, self.to))
-                    .cure("name other systems with --a-srs (of the input) or --t-srs")
+                    .cure(wording!["name other systems with ", Setting::Crs, " (of the input) or ", Setting::TargetCrs])
             })?;
             let object = Rc::new(object);
             OBJECTS.with_borrow_mut(|kept| {
@@ -234,7 +238,11 @@ mod with_proj {
                         "point ({x}, {y}) cannot be transformed from {} to {}: {reason}",
                         self.from, self.to
                     ))
-                    .cure("check that the file's coordinate system is what it says (--a-srs overrides it)")
+                    .cure(wording![
+                        "check that the file's coordinate system is what it says (",
+                        Setting::Crs,
+                        " overrides it)"
+                    ])
                 })?;
             }
             if !points.is_empty() {

@@ -199,7 +199,7 @@ mod tests {
         assert_eq!((row.line, row.within::<u32>("n").unwrap()), (6, 3));
         let error = row.finite("x").unwrap_err();
         assert_eq!(error.to_string(), "line 6: 'x' is not a number for the x");
-        assert_eq!(error.cure_text(), Some("correct the line; it should be 'N X'"));
+        assert_eq!(*error.cure_text().unwrap(), "correct the line; it should be 'N X'");
         assert_eq!(
             rows.expect(|| "vertex 2".into(), "N").err().unwrap().to_string(),
             "line 6: the file ends where vertex 2 is expected"

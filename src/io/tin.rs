@@ -5,7 +5,7 @@ use std::path::Path;
 use super::listing::Listing;
 use super::mapped::{self, Mapped};
 use super::output::Destination;
-use crate::error::{Error, Result};
+use crate::error::{Command, Error, Result, wording};
 
 /// Maps a file to memory.
 pub(super) fn map(path: &Path) -> Result<Mapped> {
@@ -20,8 +20,11 @@ pub(super) fn index(path: &Path) -> Result<Vec<u8>> {
 /// Returns the error for a surface that is in memory as a whole.
 #[cold]
 pub(super) fn needs_tiles() -> Error {
-    Error::unsupported("a TIN in parts is written tile by tile, from points")
-        .cure("use `breakline tin POINTS -o OUT.tins`, or write one .tin")
+    Error::unsupported("a TIN in parts is written tile by tile, from points").cure(wording![
+        "use ",
+        Command::Tin,
+        " for points, with an output OUT.tins; or write one .tin"
+    ])
 }
 
 /// Writes the surface with its triangulation and its own coordinate system.

@@ -7,7 +7,7 @@ use super::surface::{Model, SurfaceProduct};
 use super::watched::Watched;
 use crate::crs::Crs;
 use crate::data::{self, BlockSource, Frame, Grid, Surface, Window};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, Setting, wording};
 use crate::io::geotiff::{self, CellFormat, RasterSummary, WriteOptions};
 use crate::io::{Destination, png};
 use crate::terrain::{Dem, Hillshade, Light, Method};
@@ -132,11 +132,21 @@ fn heights<'a>(
 /// Returns an error if options are given that only a TIN has a use for.
 fn refuse_options(HillshadeOptions { frame, method, .. }: &HillshadeOptions) -> Result<()> {
     if frame.resolution.is_some() || frame.extent.is_some() || frame.align_to.is_some() {
-        return Err(Error::usage("--resolution, --te and --align-to are for a TIN; a DEM keeps its own cells"));
+        return Err(Error::usage(wording![
+            Setting::Resolution,
+            ", ",
+            Setting::Extent,
+            " and ",
+            Setting::AlignTo,
+            " are for a TIN; a DEM keeps its own cells"
+        ]));
     }
     if *method != Method::default() {
-        return Err(Error::usage("--method is for a TIN; a DEM has a height in each of its cells already")
-            .cure("leave it out, or pass points, a .tin or a .ply"));
+        return Err(Error::usage(wording![
+            Setting::Method,
+            " is for a TIN; a DEM has a height in each of its cells already"
+        ])
+        .cure("leave it out, or pass points, a .tin or a .ply"));
     }
     Ok(())
 }

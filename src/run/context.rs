@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 use super::notice::Notice;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, Wording};
 
 /// A flag that is never set.
 static NEVER: AtomicBool = AtomicBool::new(false);
@@ -219,7 +219,7 @@ impl<'a> Journal<'a> {
     }
 
     /// Adds the warnings that the reader of a file gave.
-    pub(super) fn add_warnings(&self, path: &Path, warnings: &[String]) {
+    pub(super) fn add_warnings(&self, path: &Path, warnings: &[Wording]) {
         warnings.iter().for_each(|text| self.add(Notice::Reader(path.to_path_buf(), text.clone())));
     }
 

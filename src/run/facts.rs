@@ -10,7 +10,7 @@ use crate::crs::Crs;
 use crate::data::{
     BlockSource, Bounds, Frame, LinkFlaw, PointBatch, PointFlags, PointInfo, Shape, ShapeKind, Surface, SurfaceFacts,
 };
-use crate::error::Result;
+use crate::error::{Result, Wording};
 use crate::io::mesh::Solid;
 use crate::io::png::Picture;
 use crate::io::{Cut, points};
@@ -55,7 +55,7 @@ pub struct PointFacts {
     /// `OVERLAP`.
     pub flags: [u64; 4],
     /// Warnings of the reader.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Wording>,
 }
 
 /// Counts over all records of a vector layer.
@@ -80,7 +80,7 @@ pub struct LayerFacts {
     /// Names of the attributes.
     pub fields: Vec<String>,
     /// Warnings of the reader.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Wording>,
 }
 
 /// The header of a raster, and counts over its cells.
@@ -106,7 +106,7 @@ pub struct RasterFacts {
     /// The smallest and the largest value.
     pub range: Option<[f64; 2]>,
     /// Warnings of the reader.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Wording>,
 }
 
 /// Counts over all triangles of a mesh, or those that the file of a TIN states.
@@ -142,7 +142,7 @@ pub enum PlaneFacts {
         /// Regions.
         regions: usize,
         /// Warnings of the reader.
-        warnings: Vec<String>,
+        warnings: Vec<Wording>,
     },
 }
 

@@ -9,7 +9,7 @@ use super::systems::quoted;
 use super::units::{Units, neat, number};
 use crate::crs::Crs;
 use crate::data::{self, Bounds, Frame, Surface};
-use crate::error::{Error, Result};
+use crate::error::{Command, Error, Result, Setting, wording};
 
 /// The default size of a cell.
 const DEFAULT_RESOLUTION: f64 = 1.0;
@@ -75,10 +75,15 @@ fn mostly_empty(frame: &Frame, share: f64, extent: &Bounds) -> Error {
         "the raster would have {width} x {height} cells, and {} % of them a value: the surface is scattered",
         number(100.0 * share)
     ))
-    .cure(format!(
-        "leave out files that are far away (`breakline info` shows the extent of each), or write a part with --te; \
-         --te {x0},{y0},{x1},{y1} writes the whole raster"
-    ))
+    .cure(wording![
+        "leave out files that are far away (",
+        Command::Info,
+        " shows the extent of each), or write a part with ",
+        Setting::Extent,
+        "; ",
+        Setting::Extent,
+        format!(" {x0},{y0},{x1},{y1} writes the whole raster")
+    ])
 }
 
 /// Returns about how many cells the surface covers, including those outside of the frame.
@@ -113,7 +118,12 @@ fn require_same(raster: &RasterFrame, ours: &Crs) -> Result<()> {
             "the raster states a coordinate system that is not understood, {}; the surface is in {ours}",
             quoted(stated)
         ))
-        .cure("match another raster, or give the raster with --te and --resolution")),
+        .cure(wording![
+            "match another raster, or give the raster with ",
+            Setting::Extent,
+            " and ",
+            Setting::Resolution
+        ])),
         _ => Ok(()),
     }
 }
@@ -146,7 +156,9 @@ pub(super) fn placed(options: &FrameOptions, extent: Bounds, crs: Option<&Crs>, 
     let resolution = match options.resolution {
         Some(resolution) => resolution,
         None if units.is_angular() => {
-            return Err(Error::usage("there is no default resolution in degrees").cure("add --resolution"));
+            return Err(
+                Error::usage("there is no default resolution in degrees").cure(wording!["add ", Setting::Resolution])
+            );
         }
         None => {
             journal.add(Notice::DefaultResolution(units.length(DEFAULT_RESOLUTION)));

@@ -1,7 +1,7 @@
 //! Scale and offset of points that are reprojected.
 
 use crate::data::{Bounds, Lattice};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, Setting, wording};
 
 /// A step is measured over this many steps, since one may be less than a digit of a coordinate.
 const LEAP: f64 = 1e3;
@@ -48,8 +48,11 @@ pub(super) fn reprojected(
         let fine = (step * (1.0 + 1e-6)).log10().floor();
         let exponent = fine.max((half / REACH).log10().ceil());
         if !exponent.is_finite() {
-            return Err(Error::limit("the extent that the header states cannot be reprojected")
-                .cure("write the file without --t-srs first: that counts its extent anew"));
+            return Err(Error::limit("the extent that the header states cannot be reprojected").cure(wording![
+                "write the file without ",
+                Setting::TargetCrs,
+                " first: that counts its extent anew"
+            ]));
         }
         let middle = f64::midpoint(after.min[k], after.max[k]);
         new.scale[k] = decimal(1.0, exponent);
@@ -108,6 +111,6 @@ mod tests {
     fn what_cannot_be_transformed_is_an_error() {
         assert!(reprojected(&LIDAR, &TILE, |_| Err(Error::limit("outside"))).is_err());
         let error = scaled([f64::NAN, 1.0, 1.0], [0.0; 3]).unwrap_err();
-        assert!(error.cure_text().unwrap().contains("without --t-srs"), "{error}");
+        assert!(error.cure_text().unwrap().plain().contains("without target-crs"), "{error}");
     }
 }

@@ -10,7 +10,7 @@ use super::notice::Notice;
 use super::open;
 use super::transforms::Transforms;
 use crate::data::Layer;
-use crate::error::Result;
+use crate::error::{Result, Setting};
 use crate::io::Cut;
 
 /// Layers, each with its path.
@@ -46,7 +46,7 @@ pub(super) fn read<'a>(
 pub(super) fn boundaries(boundary: &Layers, by_file: &[Option<usize>], transforms: &Transforms) -> Result<Vec<Rings>> {
     let mut all = Vec::new();
     for ((path, layer), transform) in boundary.iter().zip(by_file) {
-        all.extend(polygons(layer, path, "--boundary", *transform, transforms)?);
+        all.extend(polygons(layer, path, Setting::Boundary, *transform, transforms)?);
     }
     Ok(all)
 }
@@ -58,11 +58,11 @@ pub(super) fn boundaries(boundary: &Layers, by_file: &[Option<usize>], transform
 pub(super) fn polygons(
     layer: &Layer,
     path: &Path,
-    option: &str,
+    setting: Setting,
     transform: Option<usize>,
     transforms: &Transforms,
 ) -> Result<Vec<Rings>> {
-    let mut polygons = lines::polygons(layer, path, option)?;
+    let mut polygons = lines::polygons(layer, path, setting)?;
     for ring in polygons.iter_mut().flatten() {
         let mut points: Vec<[f64; 3]> = ring.iter().map(|p| [p[0], p[1], 0.0]).collect();
         transforms.apply(transform, &mut points).map_err(|e| e.in_file(path))?;

@@ -15,7 +15,7 @@ use super::systems::Stated;
 use super::transforms::Transforms;
 use super::units::Units;
 use crate::data::{Bounds, Layer, Shape};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, Setting, wording};
 use crate::io::Cut;
 use crate::terrain::{Flat, FlatHeight, River, RiverHeights, RiverLowering, TinBuilder, Wall, densified};
 
@@ -169,7 +169,7 @@ impl Adding<'_> {
         match role {
             LineRole::Holes if layer.shapes.is_empty() => Ok(0),
             LineRole::Boundary | LineRole::Holes => {
-                let polygons = layers::polygons(layer, path, role.option(), transform, self.transforms)?;
+                let polygons = layers::polygons(layer, path, role.setting(), transform, self.transforms)?;
                 for rings in &polygons {
                     if role == LineRole::Holes {
                         self.builder.add_hole(rings);
@@ -180,7 +180,7 @@ impl Adding<'_> {
                 Ok(polygons.len())
             }
             LineRole::Draped => {
-                let mut drawn = lines::in_plan(layer, path, role.option())?;
+                let mut drawn = lines::in_plan(layer, path, role.setting())?;
                 for line in &mut drawn {
                     line.points.iter_mut().for_each(|p| p[2] = 0.0);
                     self.transforms.apply(transform, &mut line.points).map_err(|e| e.in_file(path))?;
@@ -190,7 +190,7 @@ impl Adding<'_> {
                 Ok(drawn.len())
             }
             LineRole::Breaklines | LineRole::Soft => {
-                let mut drawn = lines::with_heights(layer, path, role.option())?;
+                let mut drawn = lines::with_heights(layer, path, role.setting())?;
                 for line in &mut drawn {
                     self.transform(line, path, transform)?;
                     let points = match self.request.densify {
@@ -251,7 +251,7 @@ impl Adding<'_> {
         let width = width.unwrap_or_else(|| self.units.of_metres(WALL_WIDTH_METRES));
         let mut edges: Vec<(usize, Drawn, Vec<f64>)> = Vec::new();
         for (number, ((path, layer), transform)) in layers.iter().zip(by_layer).enumerate() {
-            for mut line in lines::with_heights(layer, path, LineRole::Walls.option())? {
+            for mut line in lines::with_heights(layer, path, Setting::Walls)? {
                 let lower = self.lower_edge(&mut line, edge, layer, path, *transform)?;
                 edges.push((number, line, lower));
             }
@@ -270,16 +270,19 @@ impl Adding<'_> {
     /// Walls of which both edges are drawn.
     fn walls_between(&mut self, layer: &Layer, path: &Path, transform: Option<usize>) -> Result<Vec<(Drawn, Wall)>> {
         let mut walls: Vec<(Drawn, Wall)> = Vec::new();
-        for mut parts in records(lines::with_heights(layer, path, LineRole::Walls.option())?) {
+        for mut parts in records(lines::with_heights(layer, path, Setting::Walls)?) {
             for part in &mut parts {
                 self.transform(part, path, transform)?;
             }
             let wall = match parts.as_slice() {
                 [upper, lower] => Wall::between(&upper.points, &lower.points),
-                _ => Err(Error::format("the lower edge of the wall is not known").cure(
-                    "give its height with --wall-bottom or --wall-drop, or make each record of two parts: the \
-                     upper and the lower edge",
-                )),
+                _ => Err(Error::format("the lower edge of the wall is not known").cure(wording![
+                    "give its height with ",
+                    Setting::WallBottom,
+                    " or ",
+                    Setting::WallDrop,
+                    ", or make each record of two parts: the upper and the lower edge"
+                ])),
             };
             let line = parts.swap_remove(0);
             let wall = wall.map_err(|error| lines::at_record(error, path, line.fid + 1))?;
@@ -310,8 +313,13 @@ impl Adding<'_> {
         let (LowerEdge::Height(of_record) | LowerEdge::Drop(of_record)) = edge;
         let number = of_record.of(layer, line.fid);
         if !number.is_finite() {
-            let error = Error::format("the record has no height of the lower edge of the wall")
-                .cure("fill the attribute of --wall-bottom or --wall-drop, or remove the record");
+            let error = Error::format("the record has no height of the lower edge of the wall").cure(wording![
+                "fill the attribute of ",
+                Setting::WallBottom,
+                " or ",
+                Setting::WallDrop,
+                ", or remove the record"
+            ]);
             return Err(lines::at_record(error, path, line.fid + 1));
         }
         let below = |upper: &[[f64; 3]]| -> Vec<[f64; 3]> {
@@ -336,8 +344,8 @@ impl Adding<'_> {
     fn add_flats(&mut self, layer: &Layer, path: &Path, transform: Option<usize>) -> Result<usize> {
         let needs_heights = !matches!(self.request.flat.height, FlatRule::Given(_));
         let drawn = match needs_heights {
-            true => lines::with_heights(layer, path, LineRole::Flats.option())?,
-            false => lines::in_plan(layer, path, LineRole::Flats.option())?,
+            true => lines::with_heights(layer, path, Setting::Flat)?,
+            false => lines::in_plan(layer, path, Setting::Flat)?,
         };
         let lakes = records(drawn);
         for mut rings in lakes.iter().cloned() {
@@ -436,8 +444,11 @@ impl Adding<'_> {
     fn rivers_of(&mut self, layer: &Layer, path: &Path, transform: Option<usize>) -> Result<Vec<(Drawn, River)>> {
         for (record, shape) in (1..).zip(&layer.shapes) {
             let error = match shape {
-                Shape::Polygon(_) => Error::format("a polygon is not a bank")
-                    .cure("divide its ring into the two banks of the river, or use --flat for level water"),
+                Shape::Polygon(_) => Error::format("a polygon is not a bank").cure(wording![
+                    "divide its ring into the two banks of the river, or use ",
+                    Setting::Flat,
+                    " for level water"
+                ]),
                 Shape::Lines(parts) if parts.iter().any(|part| part.len() < 2) => {
                     Error::format("a part of the record has fewer than two vertices")
                         .cure("remove it, so that banks are paired as they are meant to be")
@@ -446,7 +457,7 @@ impl Adding<'_> {
             };
             return Err(lines::at_record(error, path, record));
         }
-        let by_record = records(lines::with_heights(layer, path, LineRole::Rivers.option())?);
+        let by_record = records(lines::with_heights(layer, path, Setting::Rivers)?);
         let rivers = match &self.request.river_width {
             Some(_) => by_record.into_iter().flatten().map(|line| vec![line]).collect(),
             None => banks(by_record, path)?,
@@ -479,7 +490,10 @@ impl Adding<'_> {
 /// The banks of each river, as pairs: the two parts of a record, or two consecutive records of one
 /// part.
 fn banks(by_record: Vec<Vec<Drawn>>, path: &Path) -> Result<Vec<Vec<Drawn>>> {
-    let cure = "a river needs two banks: two parts of a record, or two records of one part each; or give --river-width";
+    let cure = wording![
+        "a river needs two banks: two parts of a record, or two records of one part each; or give ",
+        Setting::RiverWidth
+    ];
     let mut pairs: Vec<Vec<Drawn>> = Vec::new();
     for parts in by_record {
         let record = parts[0].fid + 1;

@@ -1,6 +1,7 @@
 //! Lines and areas of all kinds: what can be asked for.
 
 use crate::data::{EdgeKind, Layer};
+use crate::error::Setting;
 use crate::terrain::HighSide;
 
 use super::input::Input;
@@ -114,17 +115,17 @@ pub enum LineRole {
 }
 
 impl LineRole {
-    /// Returns the option of the program that takes such lines.
-    pub fn option(self) -> &'static str {
+    /// Returns the setting that takes such lines.
+    pub fn setting(self) -> Setting {
         match self {
-            LineRole::Breaklines => "--breaklines",
-            LineRole::Soft => "--soft-lines",
-            LineRole::Walls => "--walls",
-            LineRole::Flats => "--flat",
-            LineRole::Rivers => "--rivers",
-            LineRole::Draped => "--draped-lines",
-            LineRole::Holes => "--holes",
-            LineRole::Boundary => "--boundary",
+            LineRole::Breaklines => Setting::Breaklines,
+            LineRole::Soft => Setting::SoftLines,
+            LineRole::Walls => Setting::Walls,
+            LineRole::Flats => Setting::Flat,
+            LineRole::Rivers => Setting::Rivers,
+            LineRole::Draped => Setting::DrapedLines,
+            LineRole::Holes => Setting::Holes,
+            LineRole::Boundary => Setting::Boundary,
         }
     }
 

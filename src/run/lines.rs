@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::rings;
 use crate::data::{Layer, Shape};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, Setting, Wording, wording};
 
 /// The rings of a polygon, in plan.
 pub(super) type Rings = Vec<Vec<[f64; 2]>>;
@@ -24,22 +24,22 @@ pub(super) struct Drawn {
 /// # Errors
 /// If there are none, a vertex has no height or a coordinate is not finite; the error names the
 /// record and the vertex, counted from 1.
-pub(super) fn with_heights(layer: &Layer, path: &Path, option: &str) -> Result<Vec<Drawn>> {
-    read(layer, path, option, |parts| check_heights(parts, layer, option))
+pub(super) fn with_heights(layer: &Layer, path: &Path, setting: Setting) -> Result<Vec<Drawn>> {
+    read(layer, path, setting, |parts| check_heights(parts, layer, setting))
 }
 
 /// Returns the lines of a layer and the rings of its polygons, with or without heights.
 ///
 /// # Errors
 /// If there are none, or a coordinate in plan is not finite.
-pub(super) fn in_plan(layer: &Layer, path: &Path, option: &str) -> Result<Vec<Drawn>> {
-    read(layer, path, option, |parts| parts.iter().try_for_each(|part| check_sites(part)))
+pub(super) fn in_plan(layer: &Layer, path: &Path, setting: Setting) -> Result<Vec<Drawn>> {
+    read(layer, path, setting, |parts| parts.iter().try_for_each(|part| check_sites(part)))
 }
 
 fn read(
     layer: &Layer,
     path: &Path,
-    option: &str,
+    setting: Setting,
     check: impl Fn(&[Vec<[f64; 3]>]) -> Result<()>,
 ) -> Result<Vec<Drawn>> {
     let mut lines = Vec::new();
@@ -55,7 +55,7 @@ fn read(
     if lines.is_empty() && !layer.shapes.is_empty() {
         return Err(Error::format(format!("{} holds no lines and no polygons", kind_of(layer)))
             .in_file(path)
-            .cure(format!("{option} takes lines or polygons; points are inputs without an option")));
+            .cure(wording![setting, " takes lines or polygons; points are inputs without an option"]));
     }
     Ok(lines)
 }
@@ -65,7 +65,7 @@ fn read(
 ///
 /// # Errors
 /// If there are none, a coordinate is not finite, or the lines leave a gap.
-pub(super) fn polygons(layer: &Layer, path: &Path, option: &str) -> Result<Vec<Rings>> {
+pub(super) fn polygons(layer: &Layer, path: &Path, setting: Setting) -> Result<Vec<Rings>> {
     let mut polygons = Vec::new();
     let mut lines: Vec<Drawn> = Vec::new();
     for (record, shape) in (1..).zip(&layer.shapes) {
@@ -88,7 +88,7 @@ pub(super) fn polygons(layer: &Layer, path: &Path, option: &str) -> Result<Vec<R
     if polygons.is_empty() {
         return Err(Error::format(format!("{} holds no polygons and no lines", kind_of(layer)))
             .in_file(path)
-            .cure(format!("{option} takes polygons, or lines that close")));
+            .cure(wording![setting, " takes polygons, or lines that close"]));
     }
     Ok(polygons)
 }
@@ -108,10 +108,10 @@ fn check_sites(part: &[[f64; 3]]) -> Result<()> {
     }
 }
 
-fn check_heights(parts: &[Vec<[f64; 3]>], layer: &Layer, option: &str) -> Result<()> {
+fn check_heights(parts: &[Vec<[f64; 3]>], layer: &Layer, setting: Setting) -> Result<()> {
     let mut vertices = parts.iter().flatten().peekable();
     if vertices.peek().is_some() && vertices.all(|p| p[2].is_nan()) {
-        return Err(Error::format("the line has no heights").cure(cure(layer, option)));
+        return Err(Error::format("the line has no heights").cure(cure(layer, setting)));
     }
     for part in parts {
         if let Some(vertex) = part.iter().position(|p| !p.iter().all(|value| value.is_finite())) {
@@ -121,17 +121,18 @@ fn check_heights(parts: &[Vec<[f64; 3]>], layer: &Layer, option: &str) -> Result
     Ok(())
 }
 
-fn cure(layer: &Layer, option: &str) -> String {
-    let instead = match option {
-        "--breaklines" | "--soft-lines" => ", or use --draped-lines",
-        "--flat" => ", or give it with --flat-height",
-        _ => "",
+fn cure(layer: &Layer, setting: Setting) -> Wording {
+    let instead = match setting {
+        Setting::Breaklines | Setting::SoftLines => wording![", or use ", Setting::DrapedLines],
+        Setting::Flat => wording![", or give it with ", Setting::FlatHeight],
+        _ => Wording::default(),
     };
-    let cure = format!("name the attribute with the heights, {option} FILE:FIELD or FILE:LAYER:FIELD{instead}");
-    match layer.fields.as_slice() {
-        [] => format!("{cure} (this layer has no attributes)"),
-        fields => format!("{cure} (the attributes are {})", fields.join(", ")),
-    }
+    let attributes = match layer.fields.as_slice() {
+        [] => " (this layer has no attributes)".to_owned(),
+        fields => format!(" (the attributes are {})", fields.join(", ")),
+    };
+    let named = setting.text("FILE:FIELD");
+    wording!["name the attribute with the heights, ", named, " or FILE:LAYER:FIELD", instead, attributes]
 }
 
 #[cold]
@@ -161,7 +162,7 @@ fn kind_of(layer: &Layer) -> &str {
 mod tests {
     use super::*;
 
-    const OPTION: &str = "--breaklines";
+    const SETTING: Setting = Setting::Breaklines;
 
     fn layer(shapes: Vec<Shape>) -> Layer {
         Layer { shapes, fields: vec!["ELEV".to_owned()], ..Layer::default() }
@@ -173,14 +174,14 @@ mod tests {
         let line = vec![[5.0, 5.0, 1.0], [6.0, 5.0, 2.0]];
         let shapes = vec![Shape::Polygon(vec![ring.clone()]), Shape::Null, Shape::Lines(vec![line.clone()])];
         let drawn = |fid, points| Drawn { fid, part: None, points };
-        assert_eq!(with_heights(&layer(shapes), Path::new("l"), OPTION).unwrap(), [drawn(0, ring), drawn(2, line)]);
+        assert_eq!(with_heights(&layer(shapes), Path::new("l"), SETTING).unwrap(), [drawn(0, ring), drawn(2, line)]);
     }
 
     #[test]
     fn parts_are_numbered_where_there_are_several() {
         let part = |y: f64| vec![[0.0, y, 1.0], [1.0, y, 2.0]];
         let shapes = vec![Shape::Lines(vec![part(0.0), vec![], part(1.0)])];
-        let lines = with_heights(&layer(shapes), Path::new("l"), OPTION).unwrap();
+        let lines = with_heights(&layer(shapes), Path::new("l"), SETTING).unwrap();
         assert_eq!(lines.iter().map(|line| (line.fid, line.part)).collect::<Vec<_>>(), [(0, Some(1)), (0, Some(3))]);
     }
 
@@ -188,16 +189,16 @@ mod tests {
     fn lines_without_heights_are_refused_with_the_cure() {
         let flat = vec![[0.0, 0.0, f64::NAN], [1.0, 0.0, f64::NAN]];
         let shapes = vec![Shape::Null, Shape::Lines(vec![flat])];
-        let error = with_heights(&layer(shapes), Path::new("l.shp"), OPTION).unwrap_err();
+        let error = with_heights(&layer(shapes), Path::new("l.shp"), SETTING).unwrap_err();
         assert_eq!(error.to_string(), "l.shp: record 2: the line has no heights");
-        let cure = error.cure_text().unwrap();
+        let cure = error.cure_text().unwrap().plain();
         assert!(cure.contains("FILE:FIELD") && cure.contains("ELEV"), "{cure}");
     }
 
     #[test]
     fn one_missing_height_is_refused_by_record_and_vertex() {
         let line = vec![[0.0, 0.0, 1.0], [1.0, 0.0, f64::NAN]];
-        let error = with_heights(&layer(vec![Shape::Lines(vec![line])]), Path::new("l.shp"), OPTION).unwrap_err();
+        let error = with_heights(&layer(vec![Shape::Lines(vec![line])]), Path::new("l.shp"), SETTING).unwrap_err();
         assert_eq!(error.to_string(), "l.shp: record 1: vertex 2 at 1 0 has no height, though others have");
     }
 
@@ -205,7 +206,7 @@ mod tests {
     fn a_boundary_with_a_gap_names_the_record() {
         let line = |x: f64| Shape::Lines(vec![vec![[x, 0.0, f64::NAN], [x + 1.0, 0.0, f64::NAN]]]);
         let shapes = vec![line(0.0), Shape::Null, line(2.0)];
-        let error = polygons(&layer(shapes), Path::new("l.shp"), OPTION).unwrap_err();
+        let error = polygons(&layer(shapes), Path::new("l.shp"), SETTING).unwrap_err();
         let text = error.to_string();
         assert!(text.starts_with("l.shp: record 1: the lines are not closed: one ends at 0 0, the next"), "{text}");
     }
@@ -213,8 +214,8 @@ mod tests {
     #[test]
     fn a_layer_of_the_wrong_kind_is_refused() {
         let points = layer(vec![Shape::Points(vec![[0.0; 3]])]);
-        assert!(with_heights(&points, Path::new("p"), OPTION).is_err());
-        assert!(in_plan(&points, Path::new("p"), OPTION).is_err());
-        assert!(polygons(&points, Path::new("p"), OPTION).is_err());
+        assert!(with_heights(&points, Path::new("p"), SETTING).is_err());
+        assert!(in_plan(&points, Path::new("p"), SETTING).is_err());
+        assert!(polygons(&points, Path::new("p"), SETTING).is_err());
     }
 }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::notice::Notice;
 use super::units::bytes;
-use crate::error::{Error, Result};
+use crate::error::{Command, Error, Result, Setting, wording};
 
 /// Bytes per point while a TIN is built and written, without the coordinates; measured: 65 to 75.
 const BYTES_A_POINT: u64 = 72;
@@ -42,8 +42,15 @@ struct Left {
 /// # Errors
 /// Names the memory needed, the free memory, and what to do.
 pub(super) fn require_for_points(count: usize) -> Result<()> {
-    require(count as u64 * BYTES_A_POINT, &format!("a surface of {count} points"))
-        .map_err(|e| e.cure("use fewer points: a part of the area (--bounds), a class (--class), or tiles one by one"))
+    require(count as u64 * BYTES_A_POINT, &format!("a surface of {count} points")).map_err(|e| {
+        e.cure(wording![
+            "use fewer points: a part of the area (",
+            Setting::Bounds,
+            "), a class (",
+            Setting::Class,
+            "), or tiles one by one"
+        ])
+    })
 }
 
 /// Returns an error if there is not enough memory to double the columns of this many points, as a
@@ -52,8 +59,9 @@ pub(super) fn require_for_points(count: usize) -> Result<()> {
 /// # Errors
 /// Those of [`require_for_points`].
 pub(super) fn require_for_columns(count: usize) -> Result<()> {
-    require(count as u64 * BYTES_OF_COLUMNS, &format!("columns of {count} points"))
-        .map_err(|e| e.cure("use fewer points: a part of the area (--bounds), a class (--class)"))
+    require(count as u64 * BYTES_OF_COLUMNS, &format!("columns of {count} points")).map_err(|e| {
+        e.cure(wording!["use fewer points: a part of the area (", Setting::Bounds, "), a class (", Setting::Class, ")"])
+    })
 }
 
 /// Returns an error if there is not enough memory to triangulate this many points in space.
@@ -62,7 +70,7 @@ pub(super) fn require_for_columns(count: usize) -> Result<()> {
 /// Those of [`require_for_points`].
 pub(super) fn require_for_space(count: usize) -> Result<()> {
     require(count as u64 * BYTES_A_POINT_OF_SPACE, &format!("a triangulation of {count} points in space"))
-        .map_err(|e| e.cure("use fewer points: `breakline points` selects them by area or class"))
+        .map_err(|e| e.cure(wording!["use fewer points: ", Command::Points, " selects them by area or class"]))
 }
 
 /// Returns an error if there is not enough memory for a raster of this many cells.

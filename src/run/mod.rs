@@ -110,11 +110,9 @@ pub use elevation::elevations;
 pub use facts::{Facts, LayerFacts, MeshFacts, PlaneFacts, PointFacts, RasterFacts, facts};
 pub use frame::FrameOptions;
 pub use input::{Input, MemoryPoints, STDIN};
-#[cfg(feature = "cli")]
-pub(crate) use job::not_in_tiles;
 pub use job::{
-    Division, FileState, Job, JobLock, JobReport, JobSize, Look, TileOptions, TiledProduct, WrittenParts, job_command,
-    needs_tiles, remove_job,
+    Division, FileState, Job, JobLock, JobReport, JobSize, Look, NotInTiles, TileOptions, TiledProduct, WrittenParts,
+    job_command, needs_tiles, remove_job,
 };
 pub use line_notes::LineInput;
 pub use line_request::{FlatOptions, FlatRule, LineRequest, LineRole, LowerEdge, PerRecord, WallOptions};

@@ -7,9 +7,10 @@ use super::line_request::LineRole;
 use super::units::Quantity;
 use crate::crs::Crs;
 use crate::data::Bounds;
+use crate::error::Wording;
 
-/// Something that was assumed or that looks wrong. Displayed as the command line prints it; other
-/// callers can have texts of their own.
+/// Something that was assumed or that looks wrong. Its text mentions settings as data, so that each
+/// caller can name them in its own words.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Notice {
@@ -29,15 +30,15 @@ pub enum Notice {
     /// All points of a file were read; with their number.
     PointsRead(PathBuf, u64),
     /// A warning of a reader about a file.
-    Reader(PathBuf, String),
+    Reader(PathBuf, Wording),
     /// What a task of a job found, as the file of the task keeps it.
     OfTask {
         /// How much it matters.
         severity: Severity,
         /// The text.
-        text: String,
+        text: Wording,
         /// The lines that explain it further.
-        details: Vec<String>,
+        details: Vec<Wording>,
     },
     /// A file is skipped, because it cannot be read.
     Skipped {

@@ -6,18 +6,24 @@ use std::path::PathBuf;
 use super::notice::{CrossingNote, LoweredRiver, Notice, Seed, SeedFlaw, WaterStep};
 use super::units::{Quantity, bytes, neat, number};
 use crate::data::Bounds;
+use crate::error::{Setting, Wording, wording};
 
-/// Formats the notice as the program prints it, without its [details](Notice::details). Options are
-/// named as on the command line.
+/// Formats the text of the notice with plain names of settings, without its
+/// [details](Notice::details).
 impl fmt::Display for Notice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&text(self))
+        f.write_str(&self.text().plain())
     }
 }
 
 impl Notice {
+    /// Returns the text of the notice.
+    pub fn text(&self) -> Wording {
+        text(self)
+    }
+
     /// Returns the lines that explain the notice further, if any.
-    pub fn details(&self) -> Vec<String> {
+    pub fn details(&self) -> Vec<Wording> {
         let (count, first) = match self {
             Notice::CrossingHeights { count, first, .. } => (count, first),
             Notice::WaterOverlaps { count, first } if *count > 1 => return steps(*count, first),
@@ -28,30 +34,31 @@ impl Notice {
         let each = first.iter().map(|CrossingNote { at, low, high, chosen }| {
             let [x, y] = at.map(neat);
             let [low, high] = [low, high].map(|(z, line)| format!("{} of {line}", neat(*z)));
-            format!("{x} {y}: {low}, {high}; {} is used", neat(*chosen))
+            format!("{x} {y}: {low}, {high}; {} is used", neat(*chosen)).into()
         });
-        let mut lines: Vec<String> = each.collect();
+        let mut lines: Vec<Wording> = each.collect();
         if *count > first.len() {
-            lines.push(format!("and {} more (--crossing-report FILE.csv)", count - first.len()));
+            let more = format!("and {} more (", count - first.len());
+            lines.push(wording![more, Setting::CrossingReport.text("FILE.csv"), ")"]);
         }
         lines
     }
 }
 
 /// The lines that list steps between waters that overlap or touch.
-fn steps(count: usize, first: &[WaterStep]) -> Vec<String> {
-    let mut lines: Vec<String> = first.iter().map(step).collect();
+fn steps(count: usize, first: &[WaterStep]) -> Vec<Wording> {
+    let mut lines: Vec<Wording> = first.iter().map(|one| step(one).into()).collect();
     if count > first.len() {
-        lines.push(format!("and {} more pairs", count - first.len()));
+        lines.push(format!("and {} more pairs", count - first.len()).into());
     }
     lines
 }
 
 /// The lines that list rivers that are lowered to others.
-fn lowerings(count: usize, first: &[LoweredRiver]) -> Vec<String> {
-    let mut lines: Vec<String> = first.iter().map(lowering).collect();
+fn lowerings(count: usize, first: &[LoweredRiver]) -> Vec<Wording> {
+    let mut lines: Vec<Wording> = first.iter().map(|one| lowering(one).into()).collect();
     if count > first.len() {
-        lines.push(format!("and {} more rivers", count - first.len()));
+        lines.push(format!("and {} more rivers", count - first.len()).into());
     }
     lines
 }
@@ -66,20 +73,23 @@ fn step(WaterStep { inner, outer, step, at }: &WaterStep) -> String {
     format!("a step of {step} at {x} {y}, from {outer} to {inner}")
 }
 
-fn text(notice: &Notice) -> String {
+fn text(notice: &Notice) -> Wording {
     match notice {
-        Notice::Opened(path, format) => format!("{}: {format}", path.display()),
-        Notice::WithoutClasses(path) => format!("{}: no classes, all points are used", path.display()),
-        Notice::LayerRead { path, format, records } => format!("{}: {format}, {records} records", path.display()),
-        Notice::PointsRead(path, count) => format!("{}: {count} points read", path.display()),
+        Notice::Opened(path, format) => format!("{}: {format}", path.display()).into(),
+        Notice::WithoutClasses(path) => format!("{}: no classes, all points are used", path.display()).into(),
+        Notice::LayerRead { path, format, records } => {
+            format!("{}: {format}, {records} records", path.display()).into()
+        }
+        Notice::PointsRead(path, count) => format!("{}: {count} points read", path.display()).into(),
         Notice::OfTask { text, .. } => text.clone(),
-        Notice::Reader(path, text) => format!("{}: {text}", path.display()),
-        Notice::Skipped { why, hole, others } => skipped(why, hole.as_ref(), others),
+        Notice::Reader(path, text) => wording![format!("{}: ", path.display()), text.clone()],
+        Notice::Skipped { why, hole, others } => skipped(why, hole.as_ref(), others).into(),
         Notice::LittleMemory { need, left, limit } => format!(
             "memory may not suffice: if all points are used they take about {}, and {} are left {limit}",
             bytes(*need),
             bytes(*left)
-        ),
+        )
+        .into(),
         Notice::NoPointUsed(path, classes) => {
             let why = match classes {
                 Some(classes) => {
@@ -88,57 +98,66 @@ fn text(notice: &Notice) -> String {
                 }
                 None => "it has none".to_owned(),
             };
-            format!("{}: none of its points is used: {why}", path.display())
+            format!("{}: none of its points is used: {why}", path.display()).into()
         }
-        Notice::NoPointOfClass(class) => format!("no point has class {class}"),
-        Notice::GroundUsed => "points of class 2 (ground) are used".to_owned(),
-        Notice::PointsWithoutClassUsed(count) => format!("{count} points from files without classes are used, too"),
+        Notice::NoPointOfClass(class) => format!("no point has class {class}").into(),
+        Notice::GroundUsed => "points of class 2 (ground) are used".into(),
+        Notice::PointsWithoutClassUsed(count) => {
+            format!("{count} points from files without classes are used, too").into()
+        }
         Notice::AllClassesUsed => {
-            "no point has class 2 (ground): all classes are used (choose with --class)".to_owned()
+            wording!["no point has class 2 (ground): all classes are used (choose with ", Setting::Class, ")"]
         }
         Notice::Reassigned { path, stated, assigned } => {
-            format!("{} states {stated}; {assigned} is used, as given by --a-srs", path.display())
+            wording![format!("{} states {stated}; {assigned} is used, as given by ", path.display()), Setting::Crs]
         }
         Notice::SystemOfOthers(path, crs) => {
-            format!("{} states no coordinate system; {crs} is used, as in the other files", path.display())
+            format!("{} states no coordinate system; {crs} is used, as in the other files", path.display()).into()
         }
-        Notice::NoSystem => "no coordinate system is stated: lengths are in the units of the data".to_owned(),
+        Notice::NoSystem => "no coordinate system is stated: lengths are in the units of the data".into(),
         Notice::DifferentUnits(plan, height) => {
-            format!("x and y are in units of the {plan}, heights in units of the {height}")
+            format!("x and y are in units of the {plan}, heights in units of the {height}").into()
         }
-        Notice::Reprojecting(from, to) => format!("reprojecting from {from} to {to}"),
-        Notice::Transform(text) => text.clone(),
+        Notice::Reprojecting(from, to) => format!("reprojecting from {from} to {to}").into(),
+        Notice::Transform(text) => text.clone().into(),
         Notice::FarApart(before, after, gap) => format!(
             "{} and {} are {gap} apart, with nothing between them: are they in the same coordinate system?",
             before.display(),
             after.display()
-        ),
+        )
+        .into(),
         Notice::BreaklinesApart(gap) => {
-            format!("the breaklines lie {gap} away from the points: are they in the same coordinate system?")
+            format!("the breaklines lie {gap} away from the points: are they in the same coordinate system?").into()
         }
-        Notice::BreaklinesBeyond(reach) => format!(
-            "breaklines reach {reach} beyond the points: the surface there depends on them alone (clip with --bounds)"
-        ),
+        Notice::BreaklinesBeyond(reach) => wording![
+            format!("breaklines reach {reach} beyond the points: the surface there depends on them alone (clip with "),
+            Setting::Bounds,
+            ")"
+        ],
         Notice::EdgeLimit(length) => {
-            format!("triangles at the rim with edges over {length} are left out (--max-edge)")
+            wording![format!("triangles at the rim with edges over {length} are left out ("), Setting::MaxEdge, ")"]
         }
-        Notice::NoEdgeLimit => "the whole convex hull is kept (--max-edge none)".to_owned(),
+        Notice::NoEdgeLimit => wording!["the whole convex hull is kept (", Setting::MaxEdge.text("none"), ")"],
         Notice::BoundsBuffer(buffer) => {
             let how_far = match buffer {
                 None => "all points are used".to_owned(),
                 Some(buffer) => format!("points up to {buffer} outside of the bounds are used"),
             };
-            format!("{how_far}, so that the surface inside is the same as with all points")
+            format!("{how_far}, so that the surface inside is the same as with all points").into()
         }
-        Notice::Triangulated(time) => format!("triangulated in {:.2} s", time.as_secs_f64()),
+        Notice::Triangulated(time) => format!("triangulated in {:.2} s", time.as_secs_f64()).into(),
         Notice::Uncertain(count, buffer) => {
-            format!("{count} triangles within the bounds may depend on points further out than {buffer}")
+            format!("{count} triangles within the bounds may depend on points further out than {buffer}").into()
         }
-        Notice::CrossingsRounded { unit, on_grid } => rounded(unit, *on_grid),
-        Notice::EdgeLimitUnusual { limit, spacing } => format!(
-            "the longest edge at the rim is {limit}, but points are {spacing} apart on average: choose it with --max-edge \
-             LENGTH or --max-edge auto"
-        ),
+        Notice::CrossingsRounded { unit, on_grid } => rounded(unit, *on_grid).into(),
+        Notice::EdgeLimitUnusual { limit, spacing } => wording![
+            format!(
+                "the longest edge at the rim is {limit}, but points are {spacing} apart on average: choose it with "
+            ),
+            Setting::MaxEdge.number("LENGTH"),
+            " or ",
+            Setting::MaxEdge.text("auto")
+        ],
         Notice::LevelRings { rings, points, name, largest } => {
             let lines = if *rings == 1 {
                 "a closed line of one height has"
@@ -146,7 +165,10 @@ fn text(notice: &Notice) -> String {
                 &format!("{rings} closed lines of one height have")
             };
             let inside = if *points == 1 { "1 point" } else { &format!("{points} points") };
-            format!("{lines} {inside} of other heights inside, by up to {largest} ({name}): for lakes, use --flat")
+            wording![
+                format!("{lines} {inside} of other heights inside, by up to {largest} ({name}): for lakes, use "),
+                Setting::Flat
+            ]
         }
         Notice::RiverHeights { rivers, name, rising, largest_rise, rise_at, largest_difference, difference_at } => {
             let [[x, y], [u, v]] = [rise_at, difference_at].map(|at| at.map(neat));
@@ -158,14 +180,15 @@ fn text(notice: &Notice) -> String {
             if largest_difference.value > 0.0 {
                 text += &format!("; they differ by up to {largest_difference} across (at {u} {v})");
             }
-            text
+            text.into()
         }
         Notice::RiversLowered { count: 1, first } => {
             let lowerings: Vec<String> = first.iter().map(lowering).collect();
-            format!("{}: if it should not be, correct the heights of either", lowerings.join(", "))
+            format!("{}: if it should not be, correct the heights of either", lowerings.join(", ")).into()
         }
         Notice::RiversLowered { count, .. } => {
             format!("{count} rivers are lowered to others that join them: correct the heights of those that are wrong")
+                .into()
         }
         Notice::RiverOverlap { rivers, name, at } => {
             let [x, y] = at.map(neat);
@@ -174,6 +197,7 @@ fn text(notice: &Notice) -> String {
                 "the banks of the river {name} meet near {x} {y}{others}: what they enclose twice is not water; divide \
                  the line, or make it narrower"
             )
+            .into()
         }
         Notice::WallsInWater { vertices, name, at } => {
             let [x, y] = at.map(neat);
@@ -181,7 +205,7 @@ fn text(notice: &Notice) -> String {
             format!(
                 "{count} of walls have the height of water, which counts first (at {x} {y} of {name}): draw walls behind \
                  the shore, by more than their width"
-            )
+            ).into()
         }
         Notice::WaterOverlaps { count: 1, first } => {
             let steps: Vec<String> = first.iter().map(step).collect();
@@ -189,27 +213,36 @@ fn text(notice: &Notice) -> String {
                 "two waters overlap or touch, and the lower height, or that of the lake, counts: {}",
                 steps.join(", ")
             )
+            .into()
         }
         Notice::WaterOverlaps { count, .. } => {
-            format!("{count} pairs of waters overlap or touch, and the lower height, or that of the lake, counts")
+            format!("{count} pairs of waters overlap or touch, and the lower height, or that of the lake, counts").into()
         }
-        Notice::LinesApart(role) => format!("nothing of {} lies on the surface", role.option()),
+        Notice::LinesApart(role) => wording!["nothing of ", role.setting(), " lies on the surface"],
         Notice::CrossingHeights { count, largest, at, .. } => {
             let points = if *count == 1 { "1 point" } else { &format!("{count} points") };
             let [x, y] = at.map(neat);
-            format!("breaklines meet with different heights at {points}, by up to {largest} (at {x} {y})")
+            format!("breaklines meet with different heights at {points}, by up to {largest} (at {x} {y})").into()
         }
-        Notice::ExtentApart => "the rectangle of --te does not touch the surface".to_owned(),
-        Notice::DefaultResolution(width) => format!("cells are {width} wide (--resolution)"),
-        Notice::DefaultInterval(height) => format!("contours are {height} apart (--interval)"),
+        Notice::ExtentApart => wording!["the rectangle of ", Setting::Extent, " does not touch the surface"],
+        Notice::DefaultResolution(width) => wording![format!("cells are {width} wide ("), Setting::Resolution, ")"],
+        Notice::DefaultInterval(height) => wording![format!("contours are {height} apart ("), Setting::Interval, ")"],
         Notice::HeightFactor(factor) => {
-            format!("heights are multiplied by {} to match the units of x and y (--z-factor)", number(*factor))
+            wording![
+                format!("heights are multiplied by {} to match the units of x and y (", number(*factor)),
+                Setting::ZFactor,
+                ")"
+            ]
         }
         Notice::DelaunayUnchecked(path) => {
-            format!("{}: the format does not store breaklines: the Delaunay law is not checked", path.display())
+            format!("{}: the format does not store breaklines: the Delaunay law is not checked", path.display()).into()
         }
         Notice::RegionAreasUnused(path) => {
-            format!("{}: the largest areas of its regions are ignored: add -a to use them", path.display())
+            wording![
+                format!("{}: the largest areas of its regions are ignored: add ", path.display()),
+                Setting::RegionAreas.on(),
+                " to use them"
+            ]
         }
         Notice::SeedUnused { path, line, seed, why } => {
             let what = match seed {
@@ -220,7 +253,7 @@ fn text(notice: &Notice) -> String {
                 SeedFlaw::OnSegment => "lies on a segment, so that its side is ambiguous",
                 SeedFlaw::OutsideHull => "lies outside of the convex hull",
             };
-            format!("{}: line {line}: the {what} {why}; it is not used", path.display())
+            format!("{}: line {line}: the {what} {why}; it is not used", path.display()).into()
         }
     }
 }

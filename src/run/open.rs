@@ -10,7 +10,7 @@ use super::memory;
 use super::tin_parts::TinParts;
 use crate::crs::Crs;
 use crate::data::{BlockSource, Frame, Grid, Layer, LinkFlaw, Mesh, PointInfo, PointSource, Triangles};
-use crate::error::{Error, Kind, Result};
+use crate::error::{Error, Kind, Result, Wording};
 pub(super) use crate::io::formats::Content;
 use crate::io::formats::{self, Format, Holding};
 use crate::io::geotiff::GeoTiffReader;
@@ -162,7 +162,7 @@ impl Raster {
 }
 
 /// Reads a whole raster; returns it with the warnings of its reader.
-pub(super) fn raster(path: &Path, journal: &Journal) -> Result<(Grid, Vec<String>)> {
+pub(super) fn raster(path: &Path, journal: &Journal) -> Result<(Grid, Vec<Wording>)> {
     let raster = Raster::open(path)?;
     let cells = raster.cells();
     memory::require_for_cells(cells).map_err(|e| e.in_file(path))?;
@@ -287,7 +287,7 @@ mod tests {
         assert_eq!(open(&["WIDTH"]).unwrap().column("WIDTH").unwrap().values[0], 1.0);
         let error = open(&["Width", "right"]).unwrap_err();
         assert_eq!(error.to_string(), "there is no column right");
-        assert!(error.cure_text().unwrap().ends_with("which has Width, LEFT"));
+        assert!(error.cure_text().unwrap().plain().ends_with("which has Width, LEFT"));
         assert_eq!(open(&["left"]).unwrap_err().to_string(), "column left has 1 values for 2 records");
     }
 }

@@ -7,7 +7,7 @@ use super::systems::Stated;
 use super::transforms::Transforms;
 use super::{memory, open};
 use crate::data::{Bounds, Columns, PointBatch, PointSource};
-use crate::error::{Error, Kind, Result};
+use crate::error::{Error, Kind, Result, Setting, wording};
 use crate::io::points::Options;
 use crate::terrain::{Classes, Selection};
 
@@ -100,7 +100,12 @@ impl PointFiles {
             files.push(PointFile { input, stated, count, bounds, has_classes, columns, source });
         }
         if options.columns.is_some() && files.iter().all(|file| file.columns.is_none()) {
-            return Err(Error::usage("--columns and --parse name columns of text, but no input is text"));
+            return Err(Error::usage(wording![
+                Setting::Columns,
+                " and ",
+                Setting::Parse,
+                " name columns of text, but no input is text"
+            ]));
         }
         Ok(PointFiles { files, options, bad: BadFiles::Refuse })
     }

@@ -12,7 +12,7 @@ use super::transforms::Transforms;
 use super::{lattice, memory, open};
 use crate::crs::Crs;
 use crate::data::{Bounds, Layer, PointBatch, PointFlags, PointInfo, PointSink, PointSource, PointSummary};
-use crate::error::{Error, Result};
+use crate::error::{Command, Error, Result, Setting, wording};
 use crate::io::Destination;
 use crate::io::las::{self, Detail, Rounding};
 use crate::io::points::{self, Options};
@@ -293,8 +293,11 @@ fn restated(mut info: PointInfo, plan: &Plan, number: Option<usize>) -> Result<P
         && let Some(lattice) = &mut info.lattice
     {
         let bounds = info.bounds.ok_or_else(|| {
-            Error::format("the header states no extent, which scale and offset would be chosen by")
-                .cure("write the file without --t-srs first: that counts its extent")
+            Error::format("the header states no extent, which scale and offset would be chosen by").cure(wording![
+                "write the file without ",
+                Setting::TargetCrs,
+                " first: that counts its extent"
+            ])
         })?;
         *lattice = lattice::reprojected(lattice, &bounds, |points| plan.transforms.apply(number, points))?;
     }
@@ -321,7 +324,7 @@ fn nothing_left(report: &PointsReport, files: &[PathBuf]) -> Error {
             "no point is left of {read} read: {withheld} withheld, {other_class} of other classes, {other_return} of \
              other returns, {outside} outside of the bounds or the boundary"
         ))
-        .cure("`breakline info` shows classes, returns and extent of each file"),
+        .cure(wording![Command::Info, " shows classes, returns and extent of each file"]),
     };
     match files {
         [file] => error.in_file(file),

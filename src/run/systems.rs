@@ -7,7 +7,7 @@ use super::notice::Notice;
 use super::units::Units;
 use crate::crs::{Crs, CrsKind};
 use crate::data::{Layer, PointInfo};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, Setting, Wording, wording};
 
 /// Options of coordinate systems. By default all files that state a system must state the same,
 /// files that state none are taken to be in it, and nothing is reprojected.
@@ -32,12 +32,13 @@ pub enum Degrees {
     Allow,
 }
 
-/// The hint for coordinates in the wrong system. Without PROJ, `--t-srs` is not available.
-const REPROJECT: &str = if cfg!(feature = "proj") {
-    "reproject with --t-srs EPSG:CODE"
-} else {
-    "reproject first (ogr2ogr, gdalwarp, pdal): this build is without PROJ"
-};
+/// Returns the hint for coordinates in the wrong system. Without PROJ, there is no target system.
+fn reproject_first() -> Wording {
+    match cfg!(feature = "proj") {
+        true => wording!["reproject with ", Setting::TargetCrs.text("EPSG:CODE")],
+        false => "reproject first (ogr2ogr, gdalwarp, pdal): this build is without PROJ".into(),
+    }
+}
 
 /// A file and the coordinate system that it states.
 #[derive(Debug, Clone)]
@@ -185,7 +186,7 @@ fn require_understood(files: &[Stated]) -> Result<()> {
         quoted(text),
         other.path.display()
     ))
-    .cure("state the system of all files with --a-srs CRS"))
+    .cure(wording!["state the system of all files with ", Setting::Crs.text("CRS")]))
 }
 
 /// Returns what a file states as its coordinate system, as messages show it.
@@ -205,7 +206,7 @@ fn two_systems((a, a_crs): (&Stated, &Crs), (b, b_crs): (&Stated, &Crs)) -> Erro
         a.path.display(),
         b.path.display()
     ))
-    .cure(format!("{REPROJECT}; or state the system of all files with --a-srs CRS"))
+    .cure(wording![reproject_first(), "; or state the system of all files with ", Setting::Crs.text("CRS")])
 }
 
 fn reproject(files: &[Stated], target: &Crs, journal: &Journal) -> Result<Systems> {
@@ -216,7 +217,7 @@ fn reproject(files: &[Stated], target: &Crs, journal: &Journal) -> Result<System
         let Some(crs) = file.crs.as_ref().or(common) else {
             return Err(Error::unsupported("the file states no coordinate system to reproject from")
                 .in_file(&file.path)
-                .cure("state its system with --a-srs CRS"));
+                .cure(wording!["state its system with ", Setting::Crs.text("CRS")]));
         };
         from.push(Some(crs.clone()).filter(|crs| !crs.is_same(target)));
     }
@@ -233,22 +234,30 @@ fn judge(crs: &Crs, files: &[Stated], degrees: Degrees, journal: &Journal) -> Re
     match crs.kind {
         CrsKind::Geocentric => {
             let error = Error::unsupported(format!("{crs} is geocentric: its z axis is not up"));
-            return Err(in_file(error).cure(format!("{REPROJECT}, to a projected system")));
+            return Err(in_file(error).cure(wording![reproject_first(), ", to a projected system"]));
         }
         CrsKind::Geographic if degrees == Degrees::Refuse => {
             let unit = &crs.unit.name;
             let error = Error::unsupported(format!("{crs} is geographic: its unit, the {unit}, is not a length"));
             let cure = match file {
-                Some(Stated { role: Role::Whole, .. }) => {
-                    "build it from points in a projected system (a raster: gdalwarp), or continue with --force-degrees"
-                        .to_owned()
-                }
+                Some(Stated { role: Role::Whole, .. }) => wording![
+                    "build it from points in a projected system (a raster: gdalwarp), or continue with ",
+                    Setting::ForceDegrees.on()
+                ],
                 // The format implies degrees, but the file may contain something else.
-                Some(file) if is_geojson(&file.path) => format!(
-                    "GeoJSON without a `crs` member is in degrees: say with --a-srs EPSG:CODE if it is not (of a local system: \
-                     --a-srs 'LOCAL_CS[\"local\",UNIT[\"metre\",1]]'); if it is, {REPROJECT}"
-                ),
-                _ => format!("{REPROJECT}, to a projected system, or continue with --force-degrees"),
+                Some(file) if is_geojson(&file.path) => wording![
+                    "GeoJSON without a `crs` member is in degrees: say with ",
+                    Setting::Crs.text("EPSG:CODE"),
+                    " if it is not (of a local system: ",
+                    Setting::Crs,
+                    " 'LOCAL_CS[\"local\",UNIT[\"metre\",1]]'); if it is, ",
+                    reproject_first()
+                ],
+                _ => wording![
+                    reproject_first(),
+                    ", to a projected system, or continue with ",
+                    Setting::ForceDegrees.on()
+                ],
             };
             return Err(in_file(error).cure(cure));
         }
@@ -268,6 +277,7 @@ fn is_geojson(path: &Path) -> bool {
 mod tests {
     use super::*;
     use crate::crs::Unit;
+    use crate::error::Part;
     use crate::run::context::Context;
 
     fn crs(code: u32, kind: CrsKind) -> Crs {
@@ -335,7 +345,7 @@ mod tests {
                 error.to_string().contains("not understood: f") && error.to_string().contains("\"urn:x\""),
                 "{error}"
             );
-            assert!(error.cure_text().unwrap().contains("--a-srs"));
+            assert!(error.cure_text().unwrap().parts().contains(&Part::Term(Setting::Crs.text("CRS"))));
             let assigned = SystemOptions { assign: Some(crs(1, CrsKind::Projected)), ..SystemOptions::default() };
             assert!(reconcile(&with(systems, unread), &assigned, &quiet()).is_ok());
             let target = SystemOptions { target: Some(crs(1, CrsKind::Projected)), ..SystemOptions::default() };
@@ -370,9 +380,12 @@ mod tests {
             let stated = [Stated { path: "f".into(), crs: Some(crs(1, kind)), unread: None, role: Role::Ground }];
             reconcile(&stated, &SystemOptions { degrees, ..SystemOptions::default() }, &quiet())
         };
-        assert!(of(CrsKind::Geographic, Degrees::Refuse).unwrap_err().cure_text().unwrap().contains("--force-degrees"));
+        let refused = of(CrsKind::Geographic, Degrees::Refuse).unwrap_err();
+        assert!(refused.cure_text().unwrap().plain().contains("force-degrees"));
         assert!(of(CrsKind::Geographic, Degrees::Allow).is_ok());
-        assert!(of(CrsKind::Geocentric, Degrees::Allow).unwrap_err().cure_text().unwrap().contains("reproject"));
+        assert!(
+            of(CrsKind::Geocentric, Degrees::Allow).unwrap_err().cure_text().unwrap().plain().contains("reproject")
+        );
         assert!(of(CrsKind::Local, Degrees::Refuse).is_ok());
     }
 }

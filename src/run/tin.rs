@@ -21,7 +21,7 @@ use super::transforms::Transforms;
 use super::units::Units;
 use crate::crs::Crs;
 use crate::data::{Bounds, Columns, Layer};
-use crate::error::{Error, Result};
+use crate::error::{Command, Error, Result, Setting, Wording, wording};
 use crate::io::points;
 use crate::terrain::{
     Classes, CrossingRule, DuplicateRule, Selection, SelectionReport, Tin, TinBuilder, TinReport, Window,
@@ -109,17 +109,17 @@ impl TinRequest {
     /// # Errors
     /// Names the file and its kind.
     pub fn check_layers(&self) -> Result<()> {
-        let takes = |role: LineRole, what: &str| format!("{} takes {what}", role.option());
-        refuse_other_kinds(&takes(LineRole::Breaklines, "lines or polygons"), &self.breaklines)?;
+        let takes = |role: LineRole, what: &str| wording![role.setting(), format!(" takes {what}")];
+        refuse_other_kinds(takes(LineRole::Breaklines, "lines or polygons"), &self.breaklines)?;
         for (role, inputs) in self.lines.inputs() {
             let what = if role == LineRole::Holes { "polygons or closed lines" } else { "lines or polygons" };
-            refuse_other_kinds(&takes(role, what), inputs)?;
+            refuse_other_kinds(takes(role, what), inputs)?;
         }
-        refuse_other_kinds(&takes(LineRole::Boundary, "polygons or closed lines"), &self.boundary)
+        refuse_other_kinds(takes(LineRole::Boundary, "polygons or closed lines"), &self.boundary)
     }
 }
 
-fn refuse_other_kinds(wanted: &str, layers: &[Input<Layer>]) -> Result<()> {
+fn refuse_other_kinds(wanted: Wording, layers: &[Input<Layer>]) -> Result<()> {
     for layer in layers {
         let Input::File(path) = layer else { continue };
         let what = match content(path) {
@@ -130,7 +130,7 @@ fn refuse_other_kinds(wanted: &str, layers: &[Input<Layer>]) -> Result<()> {
             Content::Points if open::is_lidar(path) => "lidar points",
             Content::Points | Content::Layer => continue,
         };
-        return Err(Error::usage(format!("{wanted}, this is {what}")).in_file(path));
+        return Err(Error::usage(wording![wanted, format!(", this is {what}")]).in_file(path));
     }
     Ok(())
 }
@@ -471,10 +471,15 @@ fn no_triangle(report: &TinReport, rim: &Rim, units: &Units) -> Error {
             Error::format(format!(
                 "no triangle is left: {long} have edges over {length} at the rim, {clipped} are clipped"
             ))
-            .cure("allow longer edges with --max-edge LENGTH or --max-edge none")
+            .cure(wording![
+                "allow longer edges with ",
+                Setting::MaxEdge.number("LENGTH"),
+                " or ",
+                Setting::MaxEdge.text("none")
+            ])
         }
         _ => Error::format(format!("no triangle is left: {clipped} lie outside of the boundary or the bounds"))
-            .cure("`breakline info` shows the extent of each file"),
+            .cure(wording![Command::Info, " shows the extent of each file"]),
     }
 }
 
@@ -492,11 +497,12 @@ fn nothing_left(report: &SelectionReport, files: &[&Path]) -> Error {
         "no point is left of {read} read: {withheld} withheld, {other_class} of other classes, {outside} outside of the bounds"
     )));
     if *outside > 0 {
-        return error.cure("compare --bounds with the extent that `breakline info` shows");
+        return error.cure(wording!["compare ", Setting::Bounds, " with the extent that ", Command::Info, " shows"]);
     }
     if *other_class > 0 {
         let classes: Vec<String> = report.by_class.keys().map(u8::to_string).collect();
-        return error.cure(format!("the points have class {}: choose with --class", classes.join(", ")));
+        return error
+            .cure(wording![format!("the points have class {}: choose with ", classes.join(", ")), Setting::Class]);
     }
     error.cure("withheld points are never used: clear the withheld flag on points that should be used")
 }

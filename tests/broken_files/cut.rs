@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use breakline::data::{Frame, Grid, Layer, PointBatch, PointSource, Shape, Triangles};
+use breakline::error::Wording;
 use breakline::io::{Cut, contours, geotiff, las, layer, mesh, points, tetgen, text, triangle};
 use breakline::run::{self, Context, PointsRequest, Source, SurfaceRequest};
 use breakline::terrain::TinBuilder;
@@ -10,7 +11,7 @@ use testkit::lidar::{las as las_bytes, tile};
 use testkit::random::Random;
 
 /// What was read: all numbers, in order, and the warnings.
-type Read = breakline::Result<(Vec<u64>, Vec<String>)>;
+type Read = breakline::Result<(Vec<u64>, Vec<Wording>)>;
 
 /// What a reader does with a file that was cut, according to `docs/formats.md`.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -73,7 +74,7 @@ fn of_tin(path: &Path, _: Cut) -> Read {
     let source = Source::Mesh(path.to_path_buf());
     let found = run::check(&SurfaceRequest { source, ..SurfaceRequest::default() }, &Context::default())?;
     let facts = found.product.facts()?;
-    Ok((vec![facts.triangles as u64], found.flaws.iter().map(ToString::to_string).collect()))
+    Ok((vec![facts.triangles as u64], found.flaws.iter().map(|flaw| flaw.to_string().into()).collect()))
 }
 
 fn of_graph(path: &Path, _: Cut) -> Read {

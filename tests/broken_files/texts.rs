@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use breakline::data::{PointBatch, PointSource};
+use breakline::error::Wording;
 use breakline::io::points::Options;
 use breakline::io::text;
 use testkit::random::Random;
@@ -147,7 +148,7 @@ fn written(style: &Style, rows: &[Row]) -> (String, Expected) {
 }
 
 /// Points, classes and warnings.
-type Found = (Vec<[f64; 3]>, Vec<u8>, Vec<String>);
+type Found = (Vec<[f64; 3]>, Vec<u8>, Vec<Wording>);
 
 fn read(text: &str) -> breakline::Result<Found> {
     let stream = std::io::Cursor::new(text.as_bytes().to_vec());
@@ -178,7 +179,7 @@ fn random_texts_give_their_points_or_say_why_not() {
                 if style.columns.contains(&Column::Class) {
                     assert_eq!(*classes, rows.iter().map(|row| row.class).collect::<Vec<_>>(), "seed {seed}: {text:?}");
                 }
-                let is_open = warnings.iter().any(|text| text.contains("no line end"));
+                let is_open = warnings.iter().any(|text| text.plain().contains("no line end"));
                 assert_eq!(is_open, style.is_open, "seed {seed}: {text:?}");
             }
             (Expected::TwoMarks, Err(error)) => {

@@ -7,6 +7,7 @@ use std::sync::Mutex;
 
 use breakline::crs::Crs;
 use breakline::data::Bounds;
+use breakline::error::Wording;
 use breakline::run::{
     self, BadFiles, Context, ContourOptions, DemOptions, Division, EdgeLimit, FlatOptions, FrameOptions,
     HillshadeOptions, Input, Job, LineRequest, Look, LowerEdge, Monitor, Notice, PerRecord, Progress, Severity, Size,
@@ -65,7 +66,9 @@ fn kind(notice: &Notice) -> String {
 
 /// Returns how much each notice matters, with its text and its details.
 fn texts(notices: &[Notice]) -> BTreeSet<(Severity, String, Vec<String>)> {
-    notices.iter().map(|notice| (notice.severity(), notice.to_string(), notice.details())).collect()
+    let data = |text: &Wording| format!("{text:?}");
+    let each = |notice: &Notice| (notice.severity(), data(&notice.text()), notice.details().iter().map(data).collect());
+    notices.iter().map(each).collect()
 }
 
 fn notices_of_whole(case: &Case) -> Vec<Notice> {

@@ -12,6 +12,8 @@ _Call = tuple[Optional[int], Optional[Callable[[str, int, Optional[int]], Any]]]
 _Raster = tuple[NDArray[Any], tuple[float, float, float, float, float, float], Optional[str]]
 _Flaws = list[tuple[str, list[tuple[float, float]]]]
 
+def settings() -> list[tuple[str, Optional[str]]]: ...
+
 class Surface:
     @staticmethod
     def build(

@@ -3,49 +3,10 @@
 from __future__ import annotations
 
 import os
-import re
 import sys
 import warnings
 from collections.abc import Sequence
 from typing import Any, Optional
-
-#: Options of the program whose parameters here have other names.
-RENAMED = {"a-srs": "crs", "t-srs": "to_crs", "te": "bounds", "class": "classes", "return": "returns", "3d": "in_space"}
-
-
-#: Options of the program without a value.
-_SWITCHES = {
-    "3d",
-    "convex",
-    "drop-withheld",
-    "force-degrees",
-    "overwrite",
-    "partial",
-    "region-areas",
-    "round",
-    "weighted",
-}
-
-_OPTION = re.compile(
-    r"--(?!features|release)([a-z0-9]+(?:-[a-z0-9]+)*)"
-    r"(?: ((?:[A-Z]{3,}(?:[:.][A-Za-z]+)*)|none|auto|split|lowest|mean)(?![A-Za-z]))?"
-)
-
-
-def in_python(text: str) -> str:
-    """Return a text with the program's options and verbs as they are written in Python."""
-
-    def option(match: "re.Match[str]") -> str:
-        name, value = match.groups()
-        parameter = RENAMED.get(name, name.replace("-", "_"))
-        if name in _SWITCHES:
-            return f"{parameter}=True"
-        if value is None:
-            return parameter
-        is_text = ":" in value or value == "CRS" or value.islower()
-        return f'{parameter}="{value}"' if is_text else f"{parameter}={value}"
-
-    return _OPTION.sub(option, re.sub(r"`breakline ([a-z]+)`", r"breakline.\1()", text))
 
 
 class BreaklineError(Exception):
@@ -137,9 +98,6 @@ def create(parts: "dict[str, Any]") -> BreaklineError:
     kind = globals()[parts.pop("class")]
     if kind is FileError:
         kind = _BY_ERRNO.get(parts["errno"], FileError)
-    for name in ("message", "cure"):
-        if parts[name] is not None:
-            parts[name] = in_python(parts[name])
     return _restore(kind, parts)
 
 
@@ -170,4 +128,4 @@ def warn(texts: "Sequence[str]") -> None:
     while frame is not None and frame.f_code.co_filename.startswith(folder):
         level, frame = level + 1, frame.f_back
     for text in texts:
-        warnings.warn(in_python(text), BreaklineWarning, stacklevel=level)
+        warnings.warn(text, BreaklineWarning, stacklevel=level)

@@ -9,7 +9,7 @@ import numpy as np
 
 from . import _breakline, _inputs
 from ._call import Progress, call
-from ._errors import ArgumentTypeError, in_python, usage
+from ._errors import ArgumentTypeError, usage
 from ._points import _read, _systems
 from ._results import Contours, Raster, draw, light, missing, of_cells
 
@@ -111,7 +111,7 @@ class Tin:
     @property
     def notices(self) -> "list[Notice]":
         """What was assumed and what looks wrong, in the order in which it was found."""
-        return [Notice(severity, in_python(text)) for severity, text in self._surface.notices]
+        return [Notice(severity, text) for severity, text in self._surface.notices]
 
     @property
     def replaced_points(self) -> np.ndarray:

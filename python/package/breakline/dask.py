@@ -27,12 +27,15 @@ from concurrent.futures import CancelledError
 from pathlib import Path
 from typing import Any, Union
 
-from ._errors import RENAMED, BreaklineError, BreaklineWarning, usage
+from ._errors import BreaklineError, BreaklineWarning, usage
 from ._objects import Objects, StoredObject, is_url
 
 __all__ = ["contour", "dem", "hillshade", "tin"]
 
 PathLike = Union[str, "os.PathLike[str]"]
+
+#: Options of the program whose parameters here have other names.
+RENAMED = {"a-srs": "crs", "t-srs": "to_crs", "te": "bounds", "class": "classes", "return": "returns", "3d": "in_space"}
 
 #: Parameters here, and the options of the program that they stand for.
 _OPTIONS = {parameter: option for option, parameter in RENAMED.items()}

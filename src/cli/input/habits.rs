@@ -415,7 +415,7 @@ mod tests {
         ] {
             let error = words(typed).unwrap_err();
             assert!(error.to_string().starts_with(message), "{error}");
-            assert!(error.cure_text().unwrap_or_default().contains(cure), "{error:?}");
+            assert!(error.cure_text().unwrap().plain().contains(cure), "{error:?}");
         }
     }
 }

@@ -101,7 +101,7 @@ fn system(option: &str, typed: Option<&str>) -> Result<Option<Crs>> {
     Crs::from_user(text).map(Some).map_err(|e| {
         let error = Error::usage(format!("{option} {text}: {e}"));
         match e.cure_text() {
-            Some(cure) => error.cure(cure),
+            Some(cure) => error.cure(cure.clone()),
             None => error,
         }
     })

@@ -9,6 +9,7 @@ use indicatif::{MultiProgress, ProgressDrawTarget};
 
 use super::escape;
 use super::last_words::LastWords;
+use super::names::name;
 use super::progress::Bar;
 use crate::error::Error;
 use crate::run::{Context, Monitor, Notice, Progress, Severity, Size, Stage};
@@ -42,9 +43,9 @@ impl Console {
 
     /// Prints an error, and its hint on a line of its own.
     pub(in crate::cli) fn error(&self, error: &Error) {
-        self.print(&format!("error: {error}"));
+        self.print(&format!("error: {}", error.render(&name)));
         if let Some(cure) = error.cure_text() {
-            self.print(&format!("hint: {cure}"));
+            self.print(&format!("hint: {}", cure.render(&name)));
         }
     }
 
@@ -109,13 +110,14 @@ impl Monitor for Console {
     }
 
     fn notice(&self, notice: &Notice) {
+        let text = notice.text().render(&name);
         let (least, text) = match notice.severity() {
-            Severity::Detail => (Level::Verbose, notice.to_string()),
-            Severity::Note => (Level::Normal, format!("note: {notice}")),
-            Severity::Warning => (Level::Quiet, format!("warning: {notice}")),
+            Severity::Detail => (Level::Verbose, text),
+            Severity::Note => (Level::Normal, format!("note: {text}")),
+            Severity::Warning => (Level::Quiet, format!("warning: {text}")),
         };
         if self.level >= least && self.once(text) {
-            notice.details().iter().for_each(|line| self.line(format_args!("            {line}")));
+            notice.details().iter().for_each(|line| self.line(format_args!("            {}", line.render(&name))));
         }
     }
 }

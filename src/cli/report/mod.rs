@@ -3,5 +3,6 @@
 pub(super) mod console;
 pub(super) mod escape;
 pub(super) mod last_words;
+pub(super) mod names;
 mod progress;
 pub(super) mod summary;

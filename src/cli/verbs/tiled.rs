@@ -8,10 +8,11 @@ use crate::cli::input::outputs::{self, Outputs};
 use crate::cli::input::plan::SurfacePlan;
 use crate::cli::report::console::Console;
 use crate::cli::report::last_words::LastWords;
+use crate::cli::report::names;
 use crate::cli::report::summary::{counted, print_extent};
 use crate::error::{Error, Result};
 use crate::run::units::bytes;
-use crate::run::{self, BadFiles, Job, JobLock, JobReport, JobSize, Look, TileOptions, TiledProduct};
+use crate::run::{self, BadFiles, Job, JobLock, JobReport, JobSize, Look, NotInTiles, TileOptions, TiledProduct};
 
 /// What becomes of a request.
 pub(super) enum Tiled<'a> {
@@ -46,9 +47,10 @@ pub(super) fn run<'a, F>(
 ) -> Result<Tiled<'a>> {
     let target = &outputs.targets[0].path;
     let context = console.context();
-    let tables = [(&plan.crossing_report, "--crossing-report"), (&plan.replaced_report, "--flat-points")];
+    let tables =
+        [(&plan.crossing_report, NotInTiles::CrossingReport), (&plan.replaced_report, NotInTiles::ReplacedPoints)];
     let table = tables.iter().find(|(table, _)| table.is_some());
-    let refused = table.map(|(_, option)| run::not_in_tiles(option));
+    let refused = table.map(|(_, what)| Error::from(*what));
     if !args.are_asked_for() {
         let needed = match refused {
             Some(error) => Err(error),
@@ -60,7 +62,7 @@ pub(super) fn run<'a, F>(
             Err(error) => {
                 // Building in one piece reports what is wrong with files.
                 if args.memory.is_some() {
-                    console.note(format_args!("--memory has no effect: {error}"));
+                    console.note(format_args!("--memory has no effect: {}", error.render(&names::name)));
                 }
                 return Ok(Tiled::Whole);
             }

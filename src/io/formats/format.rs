@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use crate::crs::Crs;
 use crate::data::{BlockSource, ContourLine, Layer, PointInfo, PointSink, PointSource, Triangles};
-use crate::error::Result;
+use crate::error::{Result, Wording};
 use crate::io::contour_summary::ContourSummary;
 use crate::io::geotiff::{GeoTiffReader, RasterSummary};
 use crate::io::las::{Detail, Rounding};
@@ -207,7 +207,7 @@ pub struct Format {
     pub(in crate::io) reader: Reader,
     pub(in crate::io) writers: Writers,
     /// What to do with such a file where points are expected.
-    pub(in crate::io) cure: &'static str,
+    pub(in crate::io) cure: fn() -> Wording,
     /// What is read or written in this format, in one line.
     pub help: &'static str,
 }

@@ -18,7 +18,7 @@ use self::format::KnownBy;
 pub use self::format::{Content, Format, Holding, Product};
 pub(super) use self::format::{PointWriter, Reader, Writers};
 pub use self::table::FORMATS;
-pub(super) use self::table::WITH_GDAL;
+pub(super) use self::table::with_gdal;
 use crate::error::{Error, Result};
 
 /// Returns the format for writing a product, by the extension of the target.

@@ -3,6 +3,7 @@
 
 use super::format::{Content, Format, Holding, KnownBy, Magic, PointWriter, Reader, Sink, WriteSurface, Writers};
 use crate::data::PointInfo;
+use crate::error::{Command, Feature, Wording, wording};
 use crate::io::geotiff::CellFormat;
 use crate::io::las::{Detail, Packing, Rounding};
 use crate::io::output::Destination;
@@ -20,13 +21,16 @@ const NOT_WRITTEN: Writers = Writers {
     space: None,
 };
 
-pub(in crate::io) const WITH_GDAL: &str =
-    "build with the feature `gdal` to read it: cargo build --release --features gdal";
-const AS_RASTER: &str = "this is a raster: points are expected here";
-const AS_PLANE: &str = "`breakline triangulate` reads it and writes its triangulation, to .ele, .ply or .obj";
-const AS_SPACE: &str = "it is written only, by `breakline triangulate --3d`";
-const AS_MESH: &str = "save its vertices as text or LAS";
-const UNPACK: &str = "unpack it";
+pub(in crate::io) fn with_gdal() -> Wording {
+    wording!["to read it, build with ", Feature::Gdal]
+}
+
+const AS_RASTER: fn() -> Wording = || "this is a raster: points are expected here".into();
+const AS_PLANE: fn() -> Wording =
+    || wording![Command::Triangulate, " reads it and writes its triangulation, to .ele, .ply or .obj"];
+const AS_SPACE: fn() -> Wording = || wording!["it is written only, by ", Command::TriangulateInSpace];
+const AS_MESH: fn() -> Wording = || "save its vertices as text or LAS".into();
+const UNPACK: fn() -> Wording = || "unpack it".into();
 
 /// A format that only GDAL may read; rows of the table override what differs.
 const ROW: Format = Format {
@@ -43,7 +47,7 @@ const ROW: Format = Format {
     gdal_names: &[],
     reader: Reader::Gdal,
     writers: NOT_WRITTEN,
-    cure: WITH_GDAL,
+    cure: with_gdal,
     help: "",
 };
 
@@ -450,7 +454,7 @@ pub static FORMATS: &[Format] = &[
         noun: "an E57 scan",
         magic: &[Magic::At(0, b"ASTM-E57")],
         reader: Reader::Unread,
-        cure: "save it as LAS or LAZ",
+        cure: || "save it as LAS or LAZ".into(),
         ..ROW
     },
     Format {

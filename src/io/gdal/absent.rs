@@ -5,7 +5,7 @@ use std::path::Path;
 
 use crate::crs::Crs;
 use crate::data::{Frame, Grid, Layer, Window};
-use crate::error::{Error, Result};
+use crate::error::{Error, Feature, Result, Wording, wording};
 use crate::io::Watch;
 use crate::io::layer_options::Options;
 
@@ -42,7 +42,7 @@ pub fn open_raster(path: impl AsRef<Path>) -> Result<Raster> {
 fn missing(what: &str, path: &Path) -> Error {
     Error::unsupported(format!("not a {what} format that this build reads; it is without GDAL"))
         .in_file(path)
-        .cure("build with `cargo build --release --features gdal` (needs libgdal-dev and pkg-config)")
+        .cure(wording!["build with ", Feature::Gdal, " (needs libgdal-dev and pkg-config)"])
 }
 
 impl Raster {
@@ -62,7 +62,7 @@ impl Raster {
     }
 
     /// Returns warnings for the user.
-    pub fn warnings(&self) -> &[String] {
+    pub fn warnings(&self) -> &[Wording] {
         match self.never {}
     }
 

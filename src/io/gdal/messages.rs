@@ -7,7 +7,7 @@ use std::sync::Once;
 
 use gdal::errors::{CplErrType, GdalError};
 
-use crate::error::{Error, Kind};
+use crate::error::{Error, Kind, Wording};
 
 thread_local! {
     static CAUGHT: RefCell<Vec<(bool, String)>> = const { RefCell::new(Vec::new()) };
@@ -43,9 +43,9 @@ pub(super) fn failure(path: &Path) -> Option<Error> {
 }
 
 /// Returns the warnings captured since [`listen`].
-pub(super) fn warnings() -> Vec<String> {
+pub(super) fn warnings() -> Vec<Wording> {
     CAUGHT.with_borrow(|caught| {
-        caught.iter().filter(|message| !message.0).map(|message| format!("GDAL: {}", message.1)).collect()
+        caught.iter().filter(|message| !message.0).map(|message| format!("GDAL: {}", message.1).into()).collect()
     })
 }
 

@@ -7,7 +7,7 @@ use gdal::{Dataset, DatasetOptions, GdalOpenFlags};
 use super::messages;
 use crate::crs::Crs;
 use crate::data::{BlockSource, Frame, Grid, Window};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, Wording};
 use crate::io::watch::{Watch, unwatched};
 
 /// Limit for the cells of one read; 8 bytes each.
@@ -32,7 +32,7 @@ pub struct Raster {
     has_mask: bool,
     scale: f64,
     offset: f64,
-    warnings: Vec<String>,
+    warnings: Vec<Wording>,
 }
 
 /// Opens a raster of any format that GDAL supports, or a subdataset (`NETCDF:file.nc:z`).
@@ -70,7 +70,7 @@ pub fn open_raster(path: impl AsRef<Path>) -> Result<Raster> {
     let crs = match wkt.is_empty() {
         true => None,
         false => Crs::from_wkt(&wkt)
-            .map_err(|error| warnings.push(format!("the coordinate system is not understood: {error}")))
+            .map_err(|error| warnings.push(format!("the coordinate system is not understood: {error}").into()))
             .ok(),
     };
     let bands = dataset.raster_count();
@@ -110,7 +110,7 @@ impl Raster {
     }
 
     /// Returns warnings for the user.
-    pub fn warnings(&self) -> &[String] {
+    pub fn warnings(&self) -> &[Wording] {
         &self.warnings
     }
 

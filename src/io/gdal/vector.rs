@@ -102,7 +102,7 @@ pub fn read_layer_with(path: &Path, options: &Options, watch: Watch) -> Result<L
     }
     layer.warnings.extend(messages::warnings());
     if without_height > 0 {
-        layer.warnings.push(format!("{without_height} records without a number in the field of the heights"));
+        layer.warnings.push(format!("{without_height} records without a number in the field of the heights").into());
     }
     Ok(layer)
 }
@@ -156,7 +156,7 @@ fn read_crs(reference: &SpatialRef, layer: &mut Layer) {
     match read {
         Ok(crs) => layer.crs = crs.unless_undefined(),
         Err(reason) => {
-            layer.warnings.push(format!("the coordinate system is not understood: {reason}"));
+            layer.warnings.push(format!("the coordinate system is not understood: {reason}").into());
             layer.unread_crs = Some(stated);
         }
     }

@@ -1,5 +1,6 @@
 //! Converts the model tags of GeoTIFF (OGC 19-008r4) to one affine transform in GDAL's order.
 
+use crate::error::Wording;
 /// The tags that locate a raster, as stored in the file.
 #[derive(Debug, Default)]
 pub(super) struct ModelTags {
@@ -15,27 +16,30 @@ const TIEPOINT_TOLERANCE: f64 = 1e-4;
 
 impl ModelTags {
     /// Returns the transform, and warnings for the user.
-    pub(super) fn transform(&self) -> (Option<[f64; 6]>, Vec<String>) {
+    pub(super) fn transform(&self) -> (Option<[f64; 6]>, Vec<Wording>) {
         let mut warnings = Vec::new();
         let transform = self.exact(&mut warnings).map(|t| if self.is_point { shifted_by_half(t) } else { t });
         match transform {
             Some(t) if !t.iter().all(|v| v.is_finite()) || t[1] * t[5] - t[2] * t[4] == 0.0 => {
-                warnings.push(format!("the georeferencing is not usable: transform {t:?}"));
+                warnings.push(format!("the georeferencing is not usable: transform {t:?}").into());
                 (None, warnings)
             }
             other => (other, warnings),
         }
     }
 
-    fn exact(&self, warnings: &mut Vec<String>) -> Option<[f64; 6]> {
+    fn exact(&self, warnings: &mut Vec<Wording>) -> Option<[f64; 6]> {
         let scale = self.pixel_scale.as_deref().filter(|scale| scale.len() >= 2 && scale[0] != 0.0 && scale[1] != 0.0);
         let tiepoints = self.tiepoints.as_deref().unwrap_or(&[]);
         if let (Some(scale), Some(tie)) = (scale, tiepoints.get(..6)) {
             if scale[1] < 0.0 {
-                warnings.push(format!(
-                    "negative y scale {} in ModelPixelScaleTag: taken as positive, north up, as GDAL does",
-                    scale[1]
-                ));
+                warnings.push(
+                    format!(
+                        "negative y scale {} in ModelPixelScaleTag: taken as positive, north up, as GDAL does",
+                        scale[1]
+                    )
+                    .into(),
+                );
             }
             let (x_step, y_step) = (scale[0], -scale[1].abs());
             return Some([tie[3] - tie[0] * x_step, x_step, 0.0, tie[4] - tie[1] * y_step, 0.0, y_step]);
@@ -52,7 +56,7 @@ impl ModelTags {
             warnings.push(format!(
                 "unsupported georeferencing: {count} ground control points (tiepoints without a pixel scale) that do \
                  not lie on one affine transform"
-            ));
+            ).into());
         }
         fit
     }
@@ -152,7 +156,7 @@ mod tests {
         for tiepoints in [bent, two, in_line] {
             let (transform, warnings) = ModelTags { tiepoints: Some(tiepoints), ..ModelTags::default() }.transform();
             assert_eq!(transform, None);
-            assert!(warnings[0].contains("ground control points"), "{warnings:?}");
+            assert!(warnings[0].plain().contains("ground control points"), "{warnings:?}");
         }
     }
 

@@ -11,7 +11,7 @@ use super::nodata::{Nodata, scale_and_offset};
 use super::{MAX_CELLS, block, tags};
 use crate::crs::{Crs, GeoKeys};
 use crate::data::{BlockSource, Frame, Grid, Window};
-use crate::error::{Error, Kind, Result};
+use crate::error::{Error, Kind, Result, Wording};
 use crate::io::watch::{Watch, unwatched};
 use crate::io::world_file;
 
@@ -57,7 +57,7 @@ pub struct GeoTiffInfo {
     /// Columns and rows of the overviews: further images in the file with fewer cells.
     pub overviews: Vec<[u64; 2]>,
     /// Warnings for the user.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Wording>,
 }
 
 impl GeoTiffInfo {
@@ -129,7 +129,7 @@ fn read_header(bytes: Bytes, path: &Path) -> Result<GeoTiffReader> {
     let layout = Layout::read(&bytes, &directory)?;
     let mut warnings = Vec::new();
     // Tags that only describe: a damaged one leads to a warning and is left out.
-    let mut optional = |error: Error| warnings.push(error.to_string());
+    let mut optional = |error: Error| warnings.push(error.to_string().into());
 
     let nodata_text = directory.text(&bytes, tags::GDAL_NODATA).unwrap_or_else(|e| {
         optional(e);
@@ -168,14 +168,14 @@ fn read_header(bytes: Bytes, path: &Path) -> Result<GeoTiffReader> {
     let nodata = match nodata_text.as_deref().map(|text| (text, Nodata::parse(text))) {
         Some((_, Some(nodata))) => nodata,
         Some((text, None)) if !text.trim().is_empty() => {
-            warnings.push(format!("the nodata value {text:?} is not a number and is ignored"));
+            warnings.push(format!("the nodata value {text:?} is not a number and is ignored").into());
             Nodata::default()
         }
         _ => Nodata::default(),
     };
     if nodata.is_out_of_range(layout.sample) {
         let value = nodata.value.unwrap_or_default();
-        warnings.push(format!("no {} sample can be the nodata value {value}", layout.sample));
+        warnings.push(format!("no {} sample can be the nodata value {value}", layout.sample).into());
     }
     let (scale, offset) = metadata.as_deref().map_or((None, None), scale_and_offset);
     let (mut transform, warning) = model.transform();
@@ -191,7 +191,7 @@ fn read_header(bytes: Bytes, path: &Path) -> Result<GeoTiffReader> {
     let missing = layout.missing_blocks();
     if missing > 0 && nodata.value.is_none() {
         let all = layout.block_count();
-        warnings.push(format!("{missing} of {all} blocks are not in the file: their cells are 0, as in GDAL"));
+        warnings.push(format!("{missing} of {all} blocks are not in the file: their cells are 0, as in GDAL").into());
     }
     let overviews = further_images(&bytes, &directory, &mut warnings);
     let info = GeoTiffInfo {
@@ -236,7 +236,7 @@ fn raster_type(keys: &GeoKeys) -> Option<u16> {
 }
 
 /// Returns the sizes of the overviews. A mask leads to a warning, since it is not applied.
-fn further_images(bytes: &Bytes, first: &Directory, warnings: &mut Vec<String>) -> Vec<[u64; 2]> {
+fn further_images(bytes: &Bytes, first: &Directory, warnings: &mut Vec<Wording>) -> Vec<[u64; 2]> {
     const MAX_IMAGES: usize = 100;
     let mut overviews = Vec::new();
     let mut seen = BTreeSet::new();
@@ -244,7 +244,7 @@ fn further_images(bytes: &Bytes, first: &Directory, warnings: &mut Vec<String>) 
     let mut offset = first.next_offset();
     while let Some(directory) = next {
         let Ok(directory) = directory else {
-            warnings.push(format!("a further image at byte {offset} cannot be read and is ignored"));
+            warnings.push(format!("a further image at byte {offset} cannot be read and is ignored").into());
             break;
         };
         if !seen.insert(offset) || seen.len() > MAX_IMAGES {

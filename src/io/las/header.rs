@@ -2,7 +2,7 @@
 
 use super::raw::{MAX_HEADER, MIN_HEADER, RawHeader};
 use crate::data::Bounds;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, Wording};
 
 /// Bytes of a record of point formats 0 to 10, without extra bytes.
 pub(super) const RECORD_LENGTHS: [u16; 11] = [20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67];
@@ -81,7 +81,7 @@ pub(super) struct Layout {
 impl Header {
     /// Checks the first bytes of a file of `file_length` bytes and returns the header. Oddities
     /// that do not prevent reading are added to `warnings`.
-    pub(super) fn check(bytes: &[u8], file_length: u64, warnings: &mut Vec<String>) -> Result<Self> {
+    pub(super) fn check(bytes: &[u8], file_length: u64, warnings: &mut Vec<Wording>) -> Result<Self> {
         check_signature(bytes)?;
         if bytes.len() < MIN_HEADER {
             return Err(Error::format(format!(
@@ -260,19 +260,20 @@ fn lay_out(raw: &RawHeader, file_length: u64) -> Result<Layout> {
 
 /// Returns the number of points. LAS 1.4 has two counts: one of 64 bits, and one of 32 bits for old
 /// readers, which may be zero.
-fn count_points(raw: &RawHeader, warnings: &mut Vec<String>) -> u64 {
+fn count_points(raw: &RawHeader, warnings: &mut Vec<Wording>) -> u64 {
     let legacy = u64::from(raw.legacy_count);
     if raw.version.1 < 4 || (raw.count == 0 && legacy > 0) {
         return legacy;
     }
     if legacy > 0 && legacy != raw.count {
-        warnings
-            .push(format!("the header states {} points, and {legacy} for old readers; the first is taken", raw.count));
+        warnings.push(
+            format!("the header states {} points, and {legacy} for old readers; the first is taken", raw.count).into(),
+        );
     }
     raw.count
 }
 
-fn check_bounds(raw: &RawHeader, count: u64, warnings: &mut Vec<String>) -> Option<Bounds> {
+fn check_bounds(raw: &RawHeader, count: u64, warnings: &mut Vec<Wording>) -> Option<Bounds> {
     let bounds = Bounds { min: raw.min, max: raw.max };
     let is_box =
         (0..3).all(|axis| raw.min[axis].is_finite() && raw.max[axis].is_finite() && raw.min[axis] <= raw.max[axis]);

@@ -3,7 +3,7 @@
 use super::header::RECORD_LENGTHS;
 use super::raw::{u16_at, until_zero};
 use crate::data::{Embedding, LasHead, Lattice, PointInfo};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, Setting, wording};
 
 /// The generating software, as the header states it.
 const SOFTWARE: &str = concat!("breakline ", env!("CARGO_PKG_VERSION"));
@@ -213,5 +213,8 @@ fn apart(from: &Lattice, into: &Lattice) -> Error {
         "coordinates in steps of {:?} from {:?} are not all steps of {:?} from {:?}",
         from.scale, from.offset, into.scale, into.offset
     ))
-    .cure(format!("--round moves them to the nearest, by {step} at most; or write the files one by one"))
+    .cure(wording![
+        Setting::Round.on(),
+        format!(" moves them to the nearest, by {step} at most; or write the files one by one")
+    ])
 }

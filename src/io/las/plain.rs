@@ -7,7 +7,7 @@ use super::input::Input;
 use super::options::ReadOptions;
 use super::record::RecordLayout;
 use crate::data::PointBatch;
-use crate::error::Result;
+use crate::error::{Result, Wording};
 use crate::io::Cut;
 
 /// Limit for the points in a batch, and for the bytes of their records.
@@ -37,7 +37,7 @@ impl Plain {
         mut input: Input,
         header: &Header,
         ReadOptions { cut, detail }: ReadOptions,
-        warnings: &mut Vec<String>,
+        warnings: &mut Vec<Wording>,
     ) -> Result<Self> {
         let layout = RecordLayout::new(header, detail);
         let start = header.layout.points_start;
@@ -54,16 +54,22 @@ impl Plain {
             );
             cut.refuse_or_warn(text, &format!("byte {}", header.layout.points_end), warnings)?;
         } else if header.count == 0 && room > 0 {
-            warnings.push(format!(
-                "the header states 0 points, but {bytes} bytes follow it, room for {room}: the file may be \
+            warnings.push(
+                format!(
+                    "the header states 0 points, but {bytes} bytes follow it, room for {room}: the file may be \
                  unfinished; nothing is read"
-            ));
+                )
+                .into(),
+            );
         } else if header.count < room {
             let more = room - header.count;
-            warnings.push(format!(
-                "the header states {} points, but there is room for {more} more before the end: they are not read",
-                header.count
-            ));
+            warnings.push(
+                format!(
+                    "the header states {} points, but there is room for {more} more before the end: they are not read",
+                    header.count
+                )
+                .into(),
+            );
         }
         input.file.seek(SeekFrom::Start(start))?;
         let most = (BATCH_BYTES / layout.stride).clamp(1, BATCH_POINTS) as u64;
@@ -76,7 +82,7 @@ impl Plain {
         true
     }
 
-    pub(super) fn read(&mut self, batch: &mut PointBatch, warnings: &mut Vec<String>) -> Result<()> {
+    pub(super) fn read(&mut self, batch: &mut PointBatch, warnings: &mut Vec<Wording>) -> Result<()> {
         let stride = self.layout.stride;
         let count = self.left.min(self.most) as usize;
         self.buffer.clear();

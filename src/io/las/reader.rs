@@ -9,7 +9,7 @@ use super::plain::Plain;
 use super::raw::MAX_HEADER;
 use super::{head, records, reference};
 use crate::data::{Lattice, PointBatch, PointInfo, PointSource};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, Wording};
 
 /// A reader for the points of a LAS or LAZ file, made by [`open`](super::open).
 #[derive(Debug)]
@@ -18,7 +18,7 @@ pub struct LasReader {
     header: Header,
     info: PointInfo,
     points: Points,
-    warnings: Vec<String>,
+    warnings: Vec<Wording>,
 }
 
 #[derive(Debug)]
@@ -100,7 +100,7 @@ impl PointSource for LasReader {
         }
     }
 
-    fn warnings(&self) -> &[String] {
+    fn warnings(&self) -> &[Wording] {
         &self.warnings
     }
 }

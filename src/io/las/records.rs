@@ -5,7 +5,7 @@ use std::io::{BufReader, Read, Seek, SeekFrom};
 use super::header::{Header, Layout, RecordInfo};
 use super::input::Input;
 use super::raw::{EVLR_HEADER, RawRecordHeader, VLR_HEADER};
-use crate::error::Result;
+use crate::error::{Result, Wording};
 
 /// Limit for the number of records; more are ignored, since no file has a use for them.
 const MAX_RECORDS: u64 = 10_000;
@@ -43,7 +43,7 @@ impl Payloads {
 }
 
 /// Reads both kinds of records, as far as they exist: the counts in the header are not trusted.
-pub(super) fn read(input: &Input, header: &mut Header, warnings: &mut Vec<String>) -> Result<Payloads> {
+pub(super) fn read(input: &Input, header: &mut Header, warnings: &mut Vec<Wording>) -> Result<Payloads> {
     let Layout { vlr_start, vlr_count, points_start, evlr_start, evlr_count, .. } = header.layout;
     let mut payloads = Payloads::default();
     let short = Records { name: "variable length", start: vlr_start, end: points_start, count: vlr_count };
@@ -78,7 +78,7 @@ impl Records {
         input: &'a Input,
         header: &mut Header,
         payloads: &mut Payloads,
-        warnings: &mut Vec<String>,
+        warnings: &mut Vec<Wording>,
         next: impl Fn(&mut BufReader<&'a std::fs::File>) -> std::io::Result<(RawRecordHeader, usize)>,
     ) -> Result<()> {
         let Records { name, start, end, count } = *self;
@@ -93,14 +93,17 @@ impl Records {
                 break;
             }
             if record.length > end - payload {
-                warnings.push(format!(
-                    "{name} record {} ({}, {}) states {} bytes, but {} are left for it; it is ignored",
-                    found + 1,
-                    record.user_id,
-                    record.record_id,
-                    record.length,
-                    end - payload
-                ));
+                warnings.push(
+                    format!(
+                        "{name} record {} ({}, {}) states {} bytes, but {} are left for it; it is ignored",
+                        found + 1,
+                        record.user_id,
+                        record.record_id,
+                        record.length,
+                        end - payload
+                    )
+                    .into(),
+                );
                 return Ok(());
             }
             let wanted = payloads.slot(&record).filter(|_| record.length <= MAX_PAYLOAD_BYTES);
@@ -118,7 +121,7 @@ impl Records {
             header.records.push(RecordInfo { user_id, record_id, length, description });
         }
         if found < count {
-            warnings.push(format!("the header states {count} {name} records; {found} were found"));
+            warnings.push(format!("the header states {count} {name} records; {found} were found").into());
         }
         Ok(())
     }

@@ -8,7 +8,7 @@ use std::fs::File;
 use std::io::{self, BufWriter, Seek, Write};
 use std::path::{Path, PathBuf};
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, Setting, wording};
 
 use target::TargetKind;
 use temporary::Temporary;
@@ -174,7 +174,7 @@ pub fn require_absent(target: &Path) -> Result<()> {
         return Ok(());
     }
     let exists = io::Error::new(io::ErrorKind::AlreadyExists, "the file exists");
-    Err(Error::from(exists).in_file(target).cure("give it another name, or add --overwrite"))
+    Err(Error::from(exists).in_file(target).cure(wording!["give it another name, or add ", Setting::Overwrite.on()]))
 }
 
 /// Returns an empty file without a name on the disk of a target; for a pipe or a device, in the

@@ -49,7 +49,7 @@ use std::path::{Path, PathBuf};
 
 use crate::crs::Crs;
 use crate::data::{Column as Attribute, Layer, Shape};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, Wording, wording};
 use crate::io::Cut;
 use crate::io::field;
 use crate::io::layer_options::Options;
@@ -111,7 +111,7 @@ fn read(path: &Path, options: &Options, watch: Watch) -> Result<Layer> {
     let index = match sibling(path, "shx").map(|path| Index::read(&path)) {
         Some(Ok(index)) => Some(index),
         Some(Err(e)) => {
-            warnings.push(format!(".shx not used: {e}"));
+            warnings.push(format!(".shx not used: {e}").into());
             None
         }
         None => None,
@@ -121,7 +121,7 @@ fn read(path: &Path, options: &Options, watch: Watch) -> Result<Layer> {
     if let Some(first) = damage.reported.first()
         && records.iter().all(|record| record.shape.is_none())
     {
-        return Err(Error::format(format!("no record can be read: {first}")).cure("ask for the file again"));
+        return Err(Error::format(wording!["no record can be read: ", first.clone()]).cure("ask for the file again"));
     }
     let rows = index.as_ref().map(|index| {
         let starts: Vec<u64> = records.iter().map(|record| record.offset).collect();
@@ -142,7 +142,7 @@ fn read(path: &Path, options: &Options, watch: Watch) -> Result<Layer> {
     }
     warn_of_oddities(&mut warnings, &odd);
 
-    let rows = rows.and_then(|rows| rows.map_err(|e| warnings.push(format!(".shx not used: {e}"))).ok());
+    let rows = rows.and_then(|rows| rows.map_err(|e| warnings.push(format!(".shx not used: {e}").into())).ok());
     let mut layer = Layer {
         format: format!("shapefile {}", type_name(header_type.code).unwrap_or("of unknown type")),
         ..Layer::default()
@@ -203,7 +203,7 @@ fn sibling(path: &Path, extension: &str) -> Option<PathBuf> {
 }
 
 /// Sets the coordinate system of a layer to that of the `.prj`.
-fn read_prj(path: &Path, layer: &mut Layer, warnings: &mut Vec<String>) -> Result<()> {
+fn read_prj(path: &Path, layer: &mut Layer, warnings: &mut Vec<Wording>) -> Result<()> {
     let Some(path) = sibling(path, "prj") else { return Ok(()) };
     let mut bytes = Vec::new();
     File::open(&path)?.take(MAX_PRJ).read_to_end(&mut bytes).map_err(|e| Error::from(e).in_file(&path))?;
@@ -215,7 +215,7 @@ fn read_prj(path: &Path, layer: &mut Layer, warnings: &mut Vec<String>) -> Resul
     match Crs::from_wkt(text) {
         Ok(crs) => layer.crs = crs.unless_undefined(),
         Err(e) => {
-            warnings.push(format!(".prj not used: {e}"));
+            warnings.push(format!(".prj not used: {e}").into());
             layer.unread_crs = Some(text.to_owned());
         }
     }
@@ -236,7 +236,7 @@ fn read_table(
     options: &Options,
     records: usize,
     fields: &mut Vec<String>,
-    warnings: &mut Vec<String>,
+    warnings: &mut Vec<Wording>,
 ) -> Result<Attributes> {
     let first_wanted = options.height_field.or(options.columns.first().copied());
     let Some(dbf) = sibling(path, "dbf") else {
@@ -249,7 +249,7 @@ fn read_table(
     let mut table = match Table::open(&dbf, code_page.as_deref()) {
         Ok(table) => table,
         Err(e) if first_wanted.is_none() => {
-            warnings.push(format!(".dbf not used: {e}"));
+            warnings.push(format!(".dbf not used: {e}").into());
             return Ok(Attributes::default());
         }
         Err(e) => return Err(e.in_file(dbf)),
@@ -260,13 +260,13 @@ fn read_table(
     let room = table.room()?;
     let rows = table.rows(&wanted, records.saturating_add(1)).map_err(|e| e.in_file(&dbf))?;
     if table.stated > room {
-        warnings.push(format!(".dbf: its header states {} rows, it has {room}", table.stated));
+        warnings.push(format!(".dbf: its header states {} rows, it has {room}", table.stated).into());
     }
     // One row more than there are records was requested, to detect surplus rows.
     match rows.deleted.len() {
-        there if there < records => warnings.push(format!(".dbf: {there} rows for {records} records")),
+        there if there < records => warnings.push(format!(".dbf: {there} rows for {records} records").into()),
         there if there > records => {
-            warnings.push(format!(".dbf: {} rows for {records} records", table.stated.max(there as u64)));
+            warnings.push(format!(".dbf: {} rows for {records} records", table.stated.max(there as u64)).into());
         }
         _ => {}
     }
@@ -280,11 +280,14 @@ fn read_table(
                 Error::usage(format!("field {} holds no numbers; the first text is '{text}'", field.name)).in_file(dbf)
             );
         }
-        warnings.push(format!(
-            "field {}: {} rows hold no number (the first: '{text}'); their shapes have no height",
-            field.name,
-            numbers.texts.len()
-        ));
+        warnings.push(
+            format!(
+                "field {}: {} rows hold no number (the first: '{text}'); their shapes have no height",
+                field.name,
+                numbers.texts.len()
+            )
+            .into(),
+        );
     }
     Ok(Attributes { deleted: rows.deleted, height, columns })
 }
@@ -314,7 +317,7 @@ fn join(
     rows: Option<Vec<Option<usize>>>,
     attributes: &Attributes,
     origins: &mut Vec<RecordAndRow>,
-    warnings: &mut Vec<String>,
+    warnings: &mut Vec<Wording>,
 ) -> Vec<Shape> {
     // If the index leaves out a record but lists another with the same number, an editor appended
     // the new one and left the old one in the file.
@@ -348,24 +351,25 @@ fn join(
         shapes.push(shape);
     }
     if stale > 0 {
-        warnings.push(format!("{stale} records are older copies of others (the .shx does not list them); left out"));
+        warnings
+            .push(format!("{stale} records are older copies of others (the .shx does not list them); left out").into());
     }
     if deleted > 0 {
-        warnings.push(format!("{deleted} records are marked as deleted in the .dbf; left out"));
+        warnings.push(format!("{deleted} records are marked as deleted in the .dbf; left out").into());
     }
     shapes
 }
 
-fn warn_of_types(warnings: &mut Vec<String>, header: i32, types: &BTreeMap<i32, usize>) {
+fn warn_of_types(warnings: &mut Vec<Wording>, header: i32, types: &BTreeMap<i32, usize>) {
     if types.keys().all(|&code| code == header) {
         return;
     }
     let name = |code: i32| type_name(code).map_or_else(|| format!("type {code}"), str::to_owned);
     let list: Vec<String> = types.iter().map(|(&code, count)| format!("{count} {}", name(code))).collect();
-    warnings.push(format!("the header states {}, the records are {}", name(header), list.join(", ")));
+    warnings.push(format!("the header states {}, the records are {}", name(header), list.join(", ")).into());
 }
 
-fn warn_of_oddities(warnings: &mut Vec<String>, odd: &record::Oddities) {
+fn warn_of_oddities(warnings: &mut Vec<Wording>, odd: &record::Oddities) {
     for (count, what) in [
         (odd.unclosed, "rings did not end where they began; closed"),
         (odd.empty_parts, "parts without points; left out"),
@@ -375,7 +379,7 @@ fn warn_of_oddities(warnings: &mut Vec<String>, odd: &record::Oddities) {
         (odd.full_nulls, "records are of the type null, but have coordinates; these are left out"),
     ] {
         if count > 0 {
-            warnings.push(format!("{count} {what}"));
+            warnings.push(format!("{count} {what}").into());
         }
     }
 }

@@ -356,7 +356,7 @@ mod tests {
         let table = Table::open(file.path(), None).unwrap();
         let error = table.find("ELEV").unwrap_err();
         assert_eq!(error.to_string(), "there is no field ELEV");
-        assert_eq!(error.cure_text(), Some("name one of Z, DAY"));
+        assert_eq!(*error.cure_text().unwrap(), "name one of Z, DAY");
         assert_eq!(table.find("day").unwrap_err().to_string(), "field DAY holds no numbers (its type is 'D', 8 bytes)");
     }
 

@@ -7,7 +7,7 @@ use std::io::{BufReader, Read, Seek, SeekFrom};
 use super::index::Index;
 use super::record::{self, Flaw, Oddities, Parsed};
 use crate::data::Shape;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, Setting, Wording, wording};
 use crate::io::Cut;
 use crate::io::watch::{Meter, Watch};
 
@@ -34,14 +34,14 @@ pub(super) struct Walk {
     /// Where reading ended, if that was before the end of the file.
     pub(super) end: Option<u64>,
     /// A warning about what follows the last record, if the header does not count it.
-    pub(super) trailing: Option<String>,
+    pub(super) trailing: Option<Wording>,
     pub(super) odd: Oddities,
 }
 
 /// What could not be read: a message for each of the first damages, and how many more there are.
 #[derive(Debug, Default)]
 pub(super) struct Damage {
-    pub(super) reported: Vec<String>,
+    pub(super) reported: Vec<Wording>,
     pub(super) more: usize,
 }
 
@@ -61,7 +61,7 @@ impl Damage {
 
     fn add(&mut self, location: &str, why: &str) {
         if self.reported.len() < Self::MAX_REPORTED {
-            self.reported.push(format!("{location}: {why}"));
+            self.reported.push(format!("{location}: {why}").into());
         } else {
             self.more += 1;
         }
@@ -71,20 +71,19 @@ impl Damage {
     ///
     /// # Errors
     /// If there is damage and it is not accepted.
-    pub(super) fn refuse_or_warn(self, cut: Cut, warnings: &mut Vec<String>) -> Result<()> {
+    pub(super) fn refuse_or_warn(self, cut: Cut, warnings: &mut Vec<Wording>) -> Result<()> {
         let Damage { reported, more } = self;
         if let (Cut::Refuse, [first, others @ ..]) = (cut, &reported[..]) {
             let text = match others.len() + more {
                 0 => first.clone(),
-                count => format!("{first}; and {count} more parts cannot be read"),
+                count => wording![first.clone(), format!("; and {count} more parts cannot be read")],
             };
-            return Err(
-                Error::format(text).cure("copy or download the file again, or use what is there with --partial")
-            );
+            return Err(Error::format(text)
+                .cure(wording!["copy or download the file again, or use what is there with ", Setting::Partial.on()]));
         }
         warnings.extend(reported);
         if more > 0 {
-            warnings.push(format!("and {more} more parts that could not be read"));
+            warnings.push(format!("and {more} more parts that could not be read").into());
         }
         Ok(())
     }
@@ -119,7 +118,7 @@ pub(super) fn walk(shp: &mut Shp, index: Option<&Index>, watch: Watch) -> Result
                     None => at >= *stated || size - at < record::least_bytes(*code),
                 };
                 if is_beyond && !walk.records.is_empty() {
-                    walk.trailing = Some(format!("{}: {why}", location()));
+                    walk.trailing = Some(format!("{}: {why}", location()).into());
                     walk.end = Some(at);
                     break;
                 }

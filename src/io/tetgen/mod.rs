@@ -23,7 +23,7 @@ mod vtu;
 use std::io::{self, Write};
 use std::path::Path;
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, Wording};
 use crate::io::Destination;
 use crate::io::triangle::{Nodes, Numbering, counted, extension, listed, node, read_rows};
 use crate::io::watch::{Watch, unwatched};
@@ -83,7 +83,7 @@ pub fn dimension(path: &Path) -> Result<u32> {
 ///
 /// # Errors
 /// If the file is damaged; the error names the file and the line.
-pub fn read_nodes(path: &Path, watch: Watch) -> Result<(Nodes<3>, Vec<String>)> {
+pub fn read_nodes(path: &Path, watch: Watch) -> Result<(Nodes<3>, Vec<Wording>)> {
     let (listed, warnings) = node::read_alone(path, watch)?;
     Ok((listed.nodes, warnings))
 }
@@ -93,7 +93,7 @@ pub fn read_nodes(path: &Path, watch: Watch) -> Result<(Nodes<3>, Vec<String>)> 
 /// # Errors
 /// If there are fewer or more, or one is not a finite number; the error names the file and the
 /// line.
-pub fn read_weights(path: &Path, count: usize, watch: Watch) -> Result<(Vec<f64>, Vec<String>)> {
+pub fn read_weights(path: &Path, count: usize, watch: Watch) -> Result<(Vec<f64>, Vec<Wording>)> {
     let mut warnings = Vec::new();
     let weights = read_rows(path, watch, &mut warnings, |mut rows| {
         let mut weights = Vec::new();
@@ -111,7 +111,7 @@ pub fn read_weights(path: &Path, count: usize, watch: Watch) -> Result<(Vec<f64>
 ///
 /// # Errors
 /// If a file is damaged; the error names the file and the line.
-pub fn read(path: &Path, watch: Watch) -> Result<(Tetrahedralized, Vec<String>)> {
+pub fn read(path: &Path, watch: Watch) -> Result<(Tetrahedralized, Vec<Wording>)> {
     let (nodes, mut warnings) = read_nodes(&path.with_extension("node"), watch)?;
     let numbering = Numbering { first: nodes.first_number, count: nodes.points.len() };
     let tetrahedra = read_rows(path, watch, &mut warnings, |mut rows| {
@@ -143,7 +143,7 @@ fn read_neighbors(
     first: u32,
     count: usize,
     watch: Watch,
-    warnings: &mut Vec<String>,
+    warnings: &mut Vec<Wording>,
 ) -> Result<Vec<[Option<u32>; 4]>> {
     let numbering = Numbering { first, count };
     read_rows(path, watch, warnings, |mut rows| {

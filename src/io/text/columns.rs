@@ -3,7 +3,7 @@
 use super::quote;
 use super::separator::Separator;
 use crate::data::{Columns, PointBatch};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, Setting, wording};
 
 const X_NAMES: &[&str] = &["x", "easting", "east", "e", "lon", "long", "longitude"];
 const Y_NAMES: &[&str] = &["y", "northing", "north", "n", "lat", "latitude"];
@@ -49,8 +49,11 @@ impl Layout {
         let find = |known: &[&str]| known.iter().find_map(|known| numbers(&names, known));
         let need = |axis: &str, known: &[&str]| {
             find(known).ok_or_else(|| {
-                let error = Error::format(format!("no column for {axis} in the header {}", quote(header)))
-                    .cure(format!("call it one of {}, or name the columns with --columns", known.join(", ")));
+                let error =
+                    Error::format(format!("no column for {axis} in the header {}", quote(header))).cure(wording![
+                        format!("call it one of {}, or name the columns with ", known.join(", ")),
+                        Setting::Columns
+                    ]);
                 NameFlaw::Missing(error)
             })
         };
@@ -135,8 +138,11 @@ fn repeated(numbers: &[usize], names: &[String], header: &[u8]) -> Error {
     let name = numbers.first().and_then(|first| names.get(first - 1)).map_or("", String::as_str);
     let list: Vec<String> = numbers.iter().map(usize::to_string).collect();
     let list = list.join(" and ");
-    Error::format(format!("columns {list} are both called \"{name}\" in the header {}", quote(header)))
-        .cure("rename one of them, or say which columns to take: --columns 1,2,3 names those of x, y and z")
+    Error::format(format!("columns {list} are both called \"{name}\" in the header {}", quote(header))).cure(wording![
+        "rename one of them, or say which columns to take: ",
+        Setting::Columns.text("1,2,3"),
+        " names those of x, y and z"
+    ])
 }
 
 /// Returns a name in lower case, without text in brackets.

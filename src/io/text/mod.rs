@@ -45,7 +45,7 @@ use self::numbering::{Guess, Numbering};
 use self::separator::Separator;
 pub use self::write::{TextWriter, create};
 use crate::data::{Columns, PointBatch, PointInfo, PointSource};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, Setting, Wording, wording};
 use crate::io::cut::{Cut, OPEN_LINE};
 use crate::io::decimal_mark::DecimalMark;
 use crate::io::points::Options;
@@ -71,7 +71,7 @@ pub struct TextReader {
     cut: Cut,
     read: u64,
     is_done: bool,
-    warnings: Vec<String>,
+    warnings: Vec<Wording>,
 }
 
 impl std::fmt::Debug for TextReader {
@@ -160,14 +160,14 @@ impl PointSource for TextReader {
                 batch.clear();
                 return Err(numbering::refuse().in_file(&self.lines.name));
             }
-            Some(Guess::Whole) => self.warnings.push(numbering::WHOLE.to_owned()),
+            Some(Guess::Whole) => self.warnings.push(numbering::whole()),
             Some(Guess::Coordinates) | None => {}
         }
         self.read += batch.len() as u64;
         Ok(())
     }
 
-    fn warnings(&self) -> &[String] {
+    fn warnings(&self) -> &[Wording] {
         &self.warnings
     }
 }
@@ -188,7 +188,7 @@ impl TextReader {
     /// Reports what the end of the file shows.
     fn finish(&mut self, total: u64) -> Result<()> {
         if self.lines.is_open {
-            self.warnings.push(OPEN_LINE.to_owned());
+            self.warnings.push(OPEN_LINE.into());
         }
         let Some(stated) = self.info.count.filter(|&stated| stated != total) else { return Ok(()) };
         let text = format!("the first line states {stated} points, but there are {total}");
@@ -262,9 +262,11 @@ fn start(lines: &mut Lines, columns: Option<Columns>) -> Result<Start> {
         let layout = Layout { separator, ..known.unwrap_or(Layout::FIRST) };
         let first = layout.point(line).map_err(|error| match known {
             Some(_) => error,
-            None => error.cure(
-                "correct the line, name the columns with --columns, or put a header before it that names them: x y z",
-            ),
+            None => error.cure(wording![
+                "correct the line, name the columns with ",
+                Setting::Columns,
+                ", or put a header before it that names them: x y z"
+            ]),
         })?;
         let numbering = if known.is_none() { Numbering::start(separator, line) } else { None };
         return Ok(Start { layout, has_header, count, first: Some(first), numbering, mark });
@@ -534,7 +536,7 @@ mod tests {
         ] {
             let error = read(text).map(|_| ()).expect_err(text);
             assert!(error.to_string().starts_with(&format!("points.txt: {message}")), "{error}");
-            assert!(error.cure_text().unwrap().contains("--columns"));
+            assert!(error.cure_text().unwrap().plain().contains("columns"));
         }
         let columns = "1,2,4".parse().ok();
         let named = Options { columns, ..Options::default() };
@@ -551,11 +553,11 @@ mod tests {
     fn fewer_points_than_stated_are_an_error_unless_a_part_is_accepted() {
         let error = read("3\n1 2 3\n4 5 6\n").map(|_| ()).unwrap_err();
         assert_eq!(error.to_string(), "points.txt: the end: the first line states 3 points, but there are 2");
-        assert!(error.cure_text().unwrap().contains("--partial"));
+        assert!(error.cure_text().unwrap().plain().contains("partial"));
         let (reader, all) = read("1\n1 2 3\n4 5 6\n").unwrap();
         assert_eq!(
             (all.len(), reader.warnings()),
-            (2, &["the first line states 1 points, but there are 2".to_owned()][..])
+            (2, &["the first line states 1 points, but there are 2".into()][..])
         );
     }
 

@@ -1,7 +1,7 @@
 //! Detects a first column that may be the number of the point instead of its x.
 
 use super::separator::Separator;
-use crate::error::Error;
+use crate::error::{Error, Setting, Wording, wording};
 
 /// What is known of a first column of integers that is followed by three numbers in each line.
 #[derive(Debug, Clone, Copy)]
@@ -26,8 +26,15 @@ pub(super) enum Guess {
     Whole,
 }
 
-pub(super) const WHOLE: &str = "the first column, taken as x, holds whole numbers only, and the next two do not: if it \
-                                is the number of the point, say so with --columns PNEZD (or PENZD)";
+/// Returns the warning about a first column of whole numbers.
+pub(super) fn whole() -> Wording {
+    wording![
+        "the first column, taken as x, holds whole numbers only, and the next two do not: if it is the number \
+         of the point, say so with ",
+        Setting::Columns.text("PNEZD"),
+        " (or PENZD)"
+    ]
+}
 
 impl Numbering {
     /// Returns what is known after the first point; `None` if its first column cannot be a number
@@ -74,8 +81,9 @@ pub(super) fn refuse() -> Error {
         "the first column counts up by one in each line, and three numbers follow: it looks like the number of the \
          point, before northing, easting and height (PNEZD)",
     )
-    .cure(
-        "say which columns to take: --columns PNEZD, or PENZD if the easting comes first, \
-         or XYZ if the first column is x after all",
-    )
+    .cure(wording![
+        "say which columns to take: ",
+        Setting::Columns.text("PNEZD"),
+        ", or PENZD if the easting comes first, or XYZ if the first column is x after all"
+    ])
 }

@@ -9,7 +9,7 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use super::{Numbering, Triangulated, counted, listed, marker, read_rows};
-use crate::error::Result;
+use crate::error::{Result, Wording};
 use crate::io::Watch;
 use crate::io::rows::Rows;
 
@@ -21,7 +21,7 @@ pub(super) fn read_marked(
     path: &Path,
     numbering: Numbering,
     watch: Watch,
-    warnings: &mut Vec<String>,
+    warnings: &mut Vec<Wording>,
 ) -> Result<Vec<[u32; 2]>> {
     read_rows(path, watch, warnings, |rows| read(rows, numbering))
 }

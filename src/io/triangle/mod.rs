@@ -46,7 +46,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use crate::data::Triangles;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, Wording, wording};
 use crate::io::Destination;
 use crate::io::cut::open_line;
 use crate::io::rows::{Row, Rows};
@@ -127,7 +127,7 @@ pub struct LineGraph {
     /// The regions.
     pub regions: Vec<Region>,
     /// Warnings for the user.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Wording>,
 }
 
 /// An edge of a triangulation, by the indices of its vertices.
@@ -236,11 +236,11 @@ pub(super) fn extension(path: &Path) -> String {
 pub(super) fn read_rows<T>(
     path: &Path,
     watch: Watch,
-    warnings: &mut Vec<String>,
+    warnings: &mut Vec<Wording>,
     read: impl FnOnce(Rows) -> Result<T>,
 ) -> Result<T> {
     let bytes = bytes_of(path, watch)?;
-    warnings.extend(open_line(&bytes).map(|text| format!(".{}: {text}", extension(path))));
+    warnings.extend(open_line(&bytes).map(|text| wording![format!(".{}: ", extension(path)), text]));
     read(Rows::new(&bytes, watch)).map_err(|e| e.in_file(path))
 }
 
@@ -358,8 +358,10 @@ impl Surplus {
         }
     }
 
-    fn warning(&self) -> Option<String> {
+    fn warning(&self) -> Option<Wording> {
         let (first, lines) = (self.first_line?, self.lines);
-        Some(format!("line {first}: there are more values than announced; they are not read ({lines} such lines)"))
+        let text =
+            format!("line {first}: there are more values than announced; they are not read ({lines} such lines)");
+        Some(text.into())
     }
 }

@@ -11,7 +11,7 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use super::{LineGraph, Nodes, Surplus, counted, listed, marker, read_rows, room, site};
-use crate::error::Result;
+use crate::error::{Result, Wording};
 use crate::io::Watch;
 use crate::io::decimal::Decimal;
 use crate::io::rows::Rows;
@@ -38,7 +38,7 @@ pub(super) fn read_file(path: &Path, watch: Watch) -> Result<LineGraph> {
 }
 
 /// Reads a file that contains vertices and nothing else; returns them with warnings.
-pub(in crate::io) fn read_alone<const D: usize>(path: &Path, watch: Watch) -> Result<(Listed<D>, Vec<String>)> {
+pub(in crate::io) fn read_alone<const D: usize>(path: &Path, watch: Watch) -> Result<(Listed<D>, Vec<Wording>)> {
     let mut warnings = Vec::new();
     let listed = read_rows(path, watch, &mut warnings, |mut rows| {
         let vertices: Listed<D> = read(&mut rows)?;

@@ -15,7 +15,7 @@ use std::path::Path;
 use super::node::{self, Listed};
 use super::{Hole, LineGraph, Numbering, Region, Segment, Surplus, Triangulated};
 use super::{counted, listed, marker, read_rows, site};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, Wording, wording};
 use crate::io::cut::open_line;
 use crate::io::decimal::Decimal;
 use crate::io::rows::{Row, Rows};
@@ -32,7 +32,7 @@ pub(super) fn read_file(path: &Path, watch: Watch) -> Result<LineGraph> {
     let mut graph = if nodes.points.is_empty() {
         let mut graph = node::read_beside(path, watch)?;
         let file = graph.node_file.display().to_string();
-        graph.warnings.iter_mut().for_each(|text| text.insert_str(0, &format!("{file}: ")));
+        graph.warnings.iter_mut().for_each(|text| *text = wording![format!("{file}: "), text.clone()]);
         graph
     } else {
         LineGraph { nodes, node_file: path.to_path_buf(), node_lines: lines, ..Default::default() }
@@ -52,7 +52,7 @@ pub(super) fn read_segments_alone(
     path: &Path,
     numbering: Numbering,
     watch: Watch,
-    warnings: &mut Vec<String>,
+    warnings: &mut Vec<Wording>,
 ) -> Result<Option<Vec<Segment>>> {
     read_rows(path, watch, warnings, |mut rows| {
         if !node::read::<2>(&mut rows)?.nodes.points.is_empty() {

@@ -19,6 +19,7 @@ mod folder;
 mod holes;
 mod lines;
 mod lock;
+mod not_in_tiles;
 mod notes;
 mod output;
 mod plan;
@@ -45,10 +46,9 @@ use self::folder::{COMMAND, StoredPlan, tasks_in};
 pub use self::folder::{job_command, remove_job};
 use self::lines::Known;
 pub use self::lock::JobLock;
+pub use self::not_in_tiles::NotInTiles;
 pub use self::output::JobReport;
 use self::plan::Plan;
-#[cfg(feature = "cli")]
-pub(crate) use self::plan::not_in_tiles;
 pub use self::planned_file::FileState;
 use self::planned_file::PlannedFile;
 pub use self::surface::WrittenParts;
@@ -63,7 +63,7 @@ use super::point_files::{BadFiles, PointFiles};
 use super::surface::{Source, SurfaceRequest};
 use super::systems::SystemOptions;
 use super::tin::TinRequest;
-use crate::error::{Error, Result};
+use crate::error::{Command, Error, Result, Setting, wording};
 use crate::terrain::Method;
 use crate::terrain::tiles::{Spread, Step, Work};
 
@@ -339,16 +339,17 @@ impl<'a> Job<'a> {
         let plan = Plan::from_json(&stored.plan).ok_or_else(|| {
             Error::format("the job was planned by another version of this program")
                 .in_file(&options.folder)
-                .cure("remove it (`breakline job clean`), or name another folder (--job)")
+                .cure(wording!["remove it (", Command::JobClean, "), or name another folder (", Setting::Job, ")"])
         })?;
         let asked = request::options_of(request, systems, product, options);
         if plan.request != asked || plan.files.iter().any(|file| file.input >= request.points.len()) {
             let differing = request::differing(&plan.request, &asked);
-            return Err(Error::usage(format!(
-                "the job in this folder is that of another command; what differs: {differing}"
-            ))
+            return Err(Error::usage(wording![
+                "the job in this folder is that of another command; what differs: ",
+                differing
+            ])
             .in_file(&options.folder)
-            .cure("repeat that command, or name another folder (--job)"));
+            .cure(wording!["repeat that command, or name another folder (", Setting::Job, ")"]));
         }
         Ok(Some(Job { sum: stored.sum, ..Self::of_plan(request, product, options, plan) }))
     }
@@ -541,7 +542,7 @@ impl<'a> Job<'a> {
             Some(stored) if stored.sum == self.sum => Ok(taken),
             _ => Err(Error::usage("the job was removed or replaced by another process")
                 .in_file(&self.folder)
-                .cure("begin again, or name another folder (--job)")),
+                .cure(wording!["begin again, or name another folder (", Setting::Job, ")"])),
         }
     }
 
@@ -591,7 +592,7 @@ fn tiled<'a>(request: &'a SurfaceRequest, product: &TiledProduct) -> Result<(&'a
             .cure("leave out the options of tiles"));
     };
     if product.method() != Method::Linear {
-        return Err(Error::unsupported("tiles have linear heights only").cure("leave out --method, or --tiles"));
+        return Err(NotInTiles::Method.into());
     }
     Ok((points, &request.systems))
 }

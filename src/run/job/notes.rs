@@ -9,7 +9,7 @@ use super::plan::Plan;
 use super::task_file::{SKIPPED, TaskFile};
 use super::{Job, TiledProduct};
 use crate::data::Bounds;
-use crate::error::Result;
+use crate::error::{Result, Wording};
 use crate::run::context::{Context, Journal};
 use crate::run::extents;
 use crate::run::line_notes::OtherHeights;
@@ -35,7 +35,8 @@ const SEVERITIES: [Severity; 3] = [Severity::Detail, Severity::Note, Severity::W
 pub(super) fn put_notices(facts: &mut Map<String, Value>, notices: &[Notice]) {
     let of = |notice: &Notice| {
         let level = SEVERITIES.iter().position(|severity| *severity == notice.severity());
-        json!([level, notice.to_string(), notice.details()])
+        let details: Vec<Value> = notice.details().iter().map(Wording::to_json).collect();
+        json!([level, notice.text().to_json(), details])
     };
     if !notices.is_empty() {
         facts.insert(NOTICES.to_owned(), notices.iter().map(of).collect());
@@ -45,8 +46,8 @@ pub(super) fn put_notices(facts: &mut Map<String, Value>, notices: &[Notice]) {
 fn to_notice(value: &Value) -> Option<Notice> {
     Some(Notice::OfTask {
         severity: *SEVERITIES.get(usize::try_from(value[0].as_u64()?).ok()?)?,
-        text: value[1].as_str()?.to_owned(),
-        details: serde_json::from_value(value[2].clone()).ok()?,
+        text: Wording::from_json(&value[1])?,
+        details: value[2].as_array()?.iter().map(Wording::from_json).collect::<Option<_>>()?,
     })
 }
 

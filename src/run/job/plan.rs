@@ -3,13 +3,14 @@
 use std::path::PathBuf;
 
 use super::lines::{self, Known};
+use super::not_in_tiles::NotInTiles;
 use super::planned_file::{FileState, PlannedFile, looked_at, planned, require_state, state_of};
 use super::request::{Options, options_of};
 use super::sampled;
 use super::{Division, Look, TileOptions, TiledProduct};
 use crate::crs::Crs;
 use crate::data::{Bounds, Frame, PointInfo};
-use crate::error::{Error, Result};
+use crate::error::{Command, Error, Result, Setting, wording};
 use crate::run::context::{Context, Journal};
 use crate::run::frame::{self, FrameOptions};
 use crate::run::input::{Input, MemoryPoints};
@@ -18,7 +19,7 @@ use crate::run::notice::Notice;
 use crate::run::open;
 use crate::run::point_files::{BadFiles, GROUND, PointFiles};
 use crate::run::systems::{self, Stated, SystemOptions, Systems};
-use crate::run::tin::{EdgeLimit, TinRequest};
+use crate::run::tin::TinRequest;
 use crate::run::units::Units;
 use crate::terrain::tiles::{Layout, Spread, Work};
 use crate::terrain::{Classes, SelectionReport};
@@ -73,25 +74,10 @@ pub(super) struct Plan {
     pub(super) task_memory: u64,
 }
 
-/// Returns the error for an option that tiles do not have yet.
-#[cold]
-pub(crate) fn not_in_tiles(option: &str) -> Error {
-    Error::unsupported(format!("{option} does not work with tiles yet"))
-        .cure("leave one of them out: without --tiles the whole surface is built in memory")
-}
-
 /// Returns an error if the request has something that tiles do not have yet.
 pub(super) fn require_tiled(request: &TinRequest, systems: &SystemOptions) -> Result<()> {
-    let refused = [
-        (request.max_edge == EdgeLimit::Auto, "--max-edge auto"),
-        (systems.target.is_some(), "--t-srs"),
-        (
-            request.max_edge_inside.is_some() && !(request.lines.flats.is_empty() && request.lines.rivers.is_empty()),
-            "--max-edge-inside together with --flat or --rivers",
-        ),
-    ];
-    if let Some((_, option)) = refused.iter().find(|(is_given, _)| *is_given) {
-        return Err(not_in_tiles(option));
+    if let Some(what) = NotInTiles::of(request, systems) {
+        return Err(what.into());
     }
     request.check_bounds()?;
     request.check_layers()?;
@@ -121,8 +107,11 @@ impl Plan {
         let (numbers, inputs) = opened(request, &closed);
         let points = PointFiles::open(&inputs, request.read, journal)?.with_bad(options.bad);
         if options.look == Look::Headers && request.classes == Classes::GroundOrAll && points.have_classes() {
-            return Err(Error::usage("which classes are used is not known from headers alone")
-                .cure("state them, such as --class 2 for ground"));
+            return Err(Error::usage("which classes are used is not known from headers alone").cure(wording![
+                "state them, such as ",
+                Setting::Class.number("2"),
+                " for ground"
+            ]));
         }
         let classes = points.used_classes(&request.classes, journal)?;
         if request.classes == Classes::GroundOrAll {
@@ -196,7 +185,7 @@ impl Plan {
             let frame = frame::placed(options, drawn_extent, crs.as_ref(), journal)?;
             if options.extent.is_none() && !frame.has_shared_centers() {
                 return Err(Error::unsupported("the raster's grid lines are not multiples of the size of its cells")
-                    .cure("state the extent of the result with --te"));
+                    .cure(wording!["state the extent of the result with ", Setting::Extent]));
             }
             Ok(frame)
         };
@@ -312,7 +301,7 @@ impl Plan {
 /// Returns the error for a file that was damaged when the job was planned, and does not fit it now.
 #[cold]
 fn does_not_fit(what: String) -> Error {
-    Error::usage(what).cure("plan the job again: `breakline job clean` removes this one")
+    Error::usage(what).cure(wording!["plan the job again: ", Command::JobClean, " removes this one"])
 }
 
 /// Returns the box in plan around the points of files.

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Debug;
 
 use super::{TileOptions, TiledProduct};
+use crate::error::{Setting, Wording};
 use crate::io::points;
 use crate::run::cells::{DemOptions, HillshadeOptions, LightOptions};
 use crate::run::checksum::checksum;
@@ -16,7 +17,13 @@ use crate::run::tin::TinRequest;
 /// The name of what decides which other options there are.
 const VERB: &str = "the verb";
 
-/// Options by their names on the command line, each with a sum of its value.
+/// The name of what is read.
+const INPUTS: &str = "the inputs";
+
+/// Between the names of settings that have one value.
+const OR: &str = " or ";
+
+/// What was asked for, by the names of settings, each with a sum of its value.
 pub(super) type Options = BTreeMap<String, String>;
 
 /// Returns the options of a request.
@@ -27,7 +34,7 @@ pub(super) fn options_of(
     tiles: &TileOptions,
 ) -> Options {
     let mut options = Listed(Options::new());
-    options.add(VERB, &product.name());
+    options.put(VERB, &product.name());
     // Whoever adds an option has to name it here.
     let TinRequest {
         points,
@@ -45,47 +52,54 @@ pub(super) fn options_of(
         crossing_heights,
         crossing_tolerance,
     } = request;
-    options.add("the inputs", points);
-    options.add("--columns or --parse", &(columns, detail));
-    options.add("--partial", cut);
-    options.add("--class", classes);
-    options.add("--breaklines", breaklines);
-    options.add("--boundary", boundary);
-    options.add("--bounds", bounds);
-    options.add("--max-edge", max_edge);
-    options.add("--max-edge-inside", max_edge_inside);
-    options.add("--flat-points", replaced);
-    options.add("--duplicates", duplicates);
-    options.add("--on-crossing", on_crossing);
-    options.add("--crossing-z", crossing_heights);
-    options.add("--crossing-tolerance", crossing_tolerance);
+    options.put(INPUTS, points);
+    options.add(&[Setting::Columns, Setting::Parse], &(columns, detail));
+    options.add(&[Setting::Partial], cut);
+    options.add(&[Setting::Class], classes);
+    options.add(&[Setting::Breaklines], breaklines);
+    options.add(&[Setting::Boundary], boundary);
+    options.add(&[Setting::Bounds], bounds);
+    options.add(&[Setting::MaxEdge], max_edge);
+    options.add(&[Setting::MaxEdgeInside], max_edge_inside);
+    options.add(&[Setting::FlatPoints], replaced);
+    options.add(&[Setting::Duplicates], duplicates);
+    options.add(&[Setting::OnCrossing], on_crossing);
+    options.add(&[Setting::CrossingZ], crossing_heights);
+    options.add(&[Setting::CrossingTolerance], crossing_tolerance);
     options.add_lines(lines);
     let SystemOptions { assign, target, degrees } = systems;
-    options.add("--a-srs", assign);
-    options.add("--t-srs", target);
-    options.add("--force-degrees", degrees);
+    options.add(&[Setting::Crs], assign);
+    options.add(&[Setting::TargetCrs], target);
+    options.add(&[Setting::ForceDegrees], degrees);
     options.add_product(product);
-    options.add("--tiles", &tiles.division);
-    options.add("--memory", &tiles.memory);
+    options.add(&[Setting::Tiles], &tiles.division);
+    options.add(&[Setting::Memory], &tiles.memory);
     options.0
 }
 
-/// Returns the names of the options that differ, for a sentence.
-pub(super) fn differing(planned: &Options, now: &Options) -> String {
+/// Returns what differs, for a sentence.
+pub(super) fn differing(planned: &Options, now: &Options) -> Wording {
     // That of another verb has other options in any case.
     if planned.get(VERB) != now.get(VERB) {
-        return VERB.to_owned();
+        return VERB.into();
     }
     let names = planned.keys().chain(now.keys()).filter(|name| planned.get(*name) != now.get(*name));
     let names: BTreeSet<&str> = names.map(String::as_str).collect();
-    names.into_iter().collect::<Vec<_>>().join(", ")
+    let mention = |name: &str| Setting::from_name(name).map_or_else(|| name.into(), Wording::from);
+    Wording::join(names.into_iter().map(|names| Wording::join(names.split(OR).map(mention), OR)), ", ")
 }
 
 /// A list that grows.
 struct Listed(Options);
 
 impl Listed {
-    fn add(&mut self, name: &str, value: &dyn Debug) {
+    /// Adds the value that one of several settings has.
+    fn add(&mut self, settings: &[Setting], value: &dyn Debug) {
+        let names: Vec<&str> = settings.iter().map(|setting| setting.name()).collect();
+        self.put(&names.join(OR), value);
+    }
+
+    fn put(&mut self, name: &str, value: &dyn Debug) {
         self.0.insert(name.to_owned(), format!("{:08x}", checksum(format!("{value:?}").as_bytes())));
     }
 
@@ -102,48 +116,48 @@ impl Listed {
             river_width,
             densify,
         } = lines;
-        self.add("--soft-lines", soft);
-        self.add("--draped-lines", draped);
-        self.add("--walls", walls);
-        self.add("--wall-bottom or --wall-drop", lower);
-        self.add("--wall-width", width);
-        self.add("--wall-high", high);
-        self.add("--holes", holes);
-        self.add("--flat", flats);
-        self.add("--flat-height", height);
-        self.add("--flat-tolerance", tolerance);
-        self.add("--flat-buffer", buffer);
-        self.add("--rivers", rivers);
-        self.add("--river-width", river_width);
-        self.add("--densify", densify);
+        self.add(&[Setting::SoftLines], soft);
+        self.add(&[Setting::DrapedLines], draped);
+        self.add(&[Setting::Walls], walls);
+        self.add(&[Setting::WallBottom, Setting::WallDrop], lower);
+        self.add(&[Setting::WallWidth], width);
+        self.add(&[Setting::WallHigh], high);
+        self.add(&[Setting::Holes], holes);
+        self.add(&[Setting::Flat], flats);
+        self.add(&[Setting::FlatHeight], height);
+        self.add(&[Setting::FlatTolerance], tolerance);
+        self.add(&[Setting::FlatBuffer], buffer);
+        self.add(&[Setting::Rivers], rivers);
+        self.add(&[Setting::RiverWidth], river_width);
+        self.add(&[Setting::Densify], densify);
     }
 
     fn add_product(&mut self, product: &TiledProduct) {
         match product {
             TiledProduct::Heights(DemOptions { frame, method }) => {
                 self.add_frame(frame);
-                self.add("--method", method);
+                self.add(&[Setting::Method], method);
             }
             TiledProduct::Shades(HillshadeOptions { frame, method, light }) => {
                 let LightOptions { azimuth, altitude, z_factor } = light;
                 self.add_frame(frame);
-                self.add("--method", method);
-                self.add("--azimuth", azimuth);
-                self.add("--altitude", altitude);
-                self.add("--z-factor", z_factor);
+                self.add(&[Setting::Method], method);
+                self.add(&[Setting::Azimuth], azimuth);
+                self.add(&[Setting::Altitude], altitude);
+                self.add(&[Setting::ZFactor], z_factor);
             }
             TiledProduct::Contours(ContourOptions { interval, base, levels }) => {
-                self.add("--interval", interval);
-                self.add("--base", base);
-                self.add("--levels", levels);
+                self.add(&[Setting::Interval], interval);
+                self.add(&[Setting::Base], base);
+                self.add(&[Setting::Levels], levels);
             }
             TiledProduct::Surface => {}
         }
     }
 
     fn add_frame(&mut self, FrameOptions { resolution, extent, align_to }: &FrameOptions) {
-        self.add("--resolution", resolution);
-        self.add("--te", extent);
-        self.add("--align-to", align_to);
+        self.add(&[Setting::Resolution], resolution);
+        self.add(&[Setting::Extent], extent);
+        self.add(&[Setting::AlignTo], align_to);
     }
 }

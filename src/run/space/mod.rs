@@ -12,7 +12,7 @@ use super::triangulate::Arithmetic;
 use super::{memory, open};
 use crate::crs::{Crs, CrsKind};
 use crate::data::{Columns, EdgeKind, PointBatch, PointSource, Surface};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, Setting, wording};
 use crate::io::points::Options;
 use crate::io::tetgen::{self, FACETS, Tetrahedralized};
 use crate::io::triangle::Nodes;
@@ -161,7 +161,8 @@ pub fn is_of_space(path: &Path) -> bool {
 /// canceled.
 pub fn triangulate_space(path: &Path, options: &SpaceOptions, context: &Context) -> Result<SpaceProduct> {
     if options.arithmetic == Arithmetic::Fast {
-        return Err(Error::usage("plain floating point is for the plane only").cure("leave out --kernel fast"));
+        return Err(Error::usage("plain floating point is for the plane only")
+            .cure(wording!["leave out ", Setting::Kernel.text("fast")]));
     }
     let journal = Journal::new(context);
     let Cloud { mut nodes, has_classes, is_in_degrees, weight_column } = read(path, &journal)?;

@@ -13,7 +13,7 @@ use std::sync::OnceLock;
 
 use crate::crs::Crs;
 use crate::data::{BlockSource, Bounds, Frame, Surface, SurfaceFacts};
-use crate::error::{Error, Result};
+use crate::error::{Command, Error, Result, wording};
 use crate::io::mapped::{self, Mapped};
 use crate::run::checksum::checksum;
 use crate::run::memory;
@@ -48,11 +48,11 @@ impl TinParts {
     /// If the index is damaged, or a part is missing or has another length.
     pub(super) fn open(path: &Path, text: &[u8]) -> Result<Self> {
         let index = TinIndex::from_text(text)
-            .map_err(|e| e.in_file(path).cure("write the surface again with `breakline tin`"))?;
+            .map_err(|e| e.in_file(path).cure(wording!["write the surface again with ", Command::Tin]))?;
         let wrong = |what: &str| {
             Error::format(format!("{what} of the parts are not those of the surface"))
                 .in_file(path)
-                .cure("write the surface again with `breakline tin`")
+                .cure(wording!["write the surface again with ", Command::Tin])
         };
         if index.parts.iter().fold(0_u64, |sum, part| sum.saturating_add(part.triangles))
             != index.facts.triangles as u64
@@ -158,13 +158,13 @@ impl TinParts {
                     stated.file
                 ))
                 .in_file(&self.path)
-                .cure("write the surface again with `breakline tin`"));
+                .cure(wording!["write the surface again with ", Command::Tin]));
             }
         }
         if SurfaceFacts::of(self.joined()?) != self.index.facts {
             return Err(Error::format("the counts or the extent are not those of the parts")
                 .in_file(&self.path)
-                .cure("write the surface again with `breakline tin`"));
+                .cure(wording!["write the surface again with ", Command::Tin]));
         }
         Ok(())
     }

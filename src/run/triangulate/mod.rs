@@ -13,7 +13,7 @@ use super::context::{Context, Journal, Size, Stage};
 use super::notice::{Notice, Seed, SeedFlaw};
 use super::open;
 use crate::data::{EdgeKind, Mesh, Triangles};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, Setting, wording};
 use crate::io::triangle::{self, LineGraph, Triangulated};
 use crate::io::{Destination, contain};
 use crate::triangulation::kernel::{Adaptive, Exact, Fast, Kernel, Range, Wide};
@@ -152,7 +152,11 @@ fn triangulate_journaled(
     if triangulated.triangles.is_empty() && !built.faces.is_empty() {
         return Err(Error::format("no triangle is left: all can be reached from outside or from a hole")
             .in_file(path)
-            .cure("close the outer boundary with segments, or add --convex to keep the hull"));
+            .cure(wording![
+                "close the outer boundary with segments, or add ",
+                Setting::Convex.on(),
+                " to keep the hull"
+            ]));
     }
     let given = graph.nodes.points.len();
     let added = triangulated.nodes.points.len() - given;
@@ -203,7 +207,7 @@ fn build(graph: &LineGraph, options: &TriangulateOptions, path: &Path, context: 
         Arithmetic::Fast => contain(|| build_with::<Fast>(graph, options, context)).ok_or_else(|| {
             Error::limit("plain floating point contradicts itself on these points")
                 .in_file(path)
-                .cure("leave out --kernel fast")
+                .cure(wording!["leave out ", Setting::Kernel.text("fast")])
         })?,
     };
     triangulating.end()?;
@@ -257,10 +261,11 @@ fn quality<'a>(options: &TriangulateOptions, graph: &LineGraph, context: &Contex
 fn unfinished(built: &Built) -> Error {
     let (added, all, short) = (Quality::MAX_ADDED, built.faces.len(), built.shortfall.len());
     Error::limit(format!("{added} vertices were added, and {short} of {all} triangles are still not as requested"))
-        .cure(
-            "use a smaller angle (33 degrees are nearly always reached) or a larger area, or set a limit with \
-             --max-added and get the result at that point",
-        )
+        .cure(wording![
+            "use a smaller angle (33 degrees are nearly always reached) or a larger area, or set a limit with ",
+            Setting::MaxAdded,
+            " and get the result at that point"
+        ])
 }
 
 /// Returns an error that names vertices or segments by their numbers and lines in the file.
@@ -274,7 +279,7 @@ fn explained(error: InputError, graph: &LineGraph, path: &Path) -> Error {
             Error::limit(format!("vertex {number} is at {x:?} {y:?}, {expected}"))
                 .in_file(&graph.node_file)
                 .at(graph.node_lines.get(i).map_or_else(|| format!("vertex {number}"), |line| format!("line {line}")))
-                .cure("leave out --kernel fast: the others take any finite coordinate")
+                .cure(wording!["leave out ", Setting::Kernel.text("fast"), ": the others take any finite coordinate"])
         }
         InputError::Crossing { segments, at: [x, y] } => {
             let mut positions = segments.map(|(line, _)| line);
@@ -283,7 +288,7 @@ fn explained(error: InputError, graph: &LineGraph, path: &Path) -> Error {
             Error::format(format!("segments {} and {} cross at {x:?} {y:?}", one.number, other.number))
                 .in_file(path)
                 .at(format!("lines {} and {}", one.line, other.line))
-                .cure("divide both at a vertex there, or use --on-crossing split")
+                .cure(wording!["divide both at a vertex there, or use ", Setting::OnCrossing.text("split")])
         }
         _ => Error::limit(error.to_string()).in_file(&graph.node_file),
     }
@@ -305,7 +310,7 @@ fn refuse_flaws(built: &Built, context: &Context) -> Result<()> {
     match check::first_flaw(triangles, context)? {
         None => Ok(()),
         Some(flaw) => Err(Error::limit(format!("plain floating point gave a wrong triangulation ({flaw})"))
-            .cure("leave out --kernel fast")),
+            .cure(wording!["leave out ", Setting::Kernel.text("fast")])),
     }
 }
 

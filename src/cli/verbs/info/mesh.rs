@@ -11,7 +11,7 @@ use crate::run::units::neat;
 pub(super) fn sheet(path: &Path, facts: &MeshFacts) -> Sheet {
     let MeshFacts { surface, crs, flaw } = facts;
     let no_surface = flaw.map(|flaw| format!("this is not a surface: {flaw}; `breakline check` lists all flaws"));
-    let mut sheet = Sheet::with_warnings(no_surface.into_iter().collect());
+    let mut sheet = Sheet::with_warnings(no_surface.into_iter().map(Into::into).collect());
     sheet.silent("kind", "mesh");
     let extension = path.extension().unwrap_or_default().to_string_lossy().to_ascii_uppercase();
     let format = match extension.as_str() {

@@ -15,7 +15,7 @@ use self::sheet::Sheet;
 use crate::cli::input::args::InfoArgs;
 use crate::cli::input::inputs;
 use crate::cli::report::console::Console;
-use crate::cli::report::escape;
+use crate::cli::report::{escape, names};
 use crate::cli::{Exit, print};
 use crate::error::Result;
 use crate::io::formats;
@@ -38,7 +38,7 @@ pub(in crate::cli) fn run(args: &InfoArgs, console: &Console) -> Result<Exit> {
                 continue;
             }
         };
-        sheet.warnings.iter().for_each(|text| console.warning(format_args!("{name}: {text}")));
+        sheet.warnings.iter().for_each(|text| console.warning(format_args!("{name}: {}", text.render(&names::name))));
         if args.json {
             objects.push(sheet.to_json(&name));
         } else {

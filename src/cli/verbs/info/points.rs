@@ -44,7 +44,7 @@ pub(super) fn sheet(facts: &PointFacts) -> Sheet {
         sheet.row("flags", text, named().map(|(name, count)| (name.to_owned(), json!(count))).collect::<Map<_, _>>());
     }
     if facts.not_finite > 0 {
-        sheet.warnings.push(format!("{} points have a coordinate that is not finite", facts.not_finite));
+        sheet.warnings.push(format!("{} points have a coordinate that is not finite", facts.not_finite).into());
     }
     sheet.warnings.extend(facts.warnings.iter().cloned());
     sheet

@@ -3,16 +3,17 @@ use std::fmt::Write;
 
 use serde_json::{Map, Value, json};
 
-use crate::cli::report::escape;
+use crate::cli::report::{escape, names};
 use crate::crs::{Crs, CrsKind};
 use crate::data::Bounds;
+use crate::error::Wording;
 use crate::run::units::neat;
 
 /// The facts about a file, each stated once for text and for JSON.
 #[derive(Debug, Default)]
 pub(super) struct Sheet {
     rows: Vec<Row>,
-    pub(super) warnings: Vec<String>,
+    pub(super) warnings: Vec<Wording>,
 }
 
 #[derive(Debug)]
@@ -25,7 +26,7 @@ struct Row {
 
 impl Sheet {
     /// A sheet with warnings and no facts yet.
-    pub(super) fn with_warnings(warnings: Vec<String>) -> Self {
+    pub(super) fn with_warnings(warnings: Vec<Wording>) -> Self {
         Sheet { rows: Vec::new(), warnings }
     }
 
@@ -104,7 +105,8 @@ impl Sheet {
         for row in &self.rows {
             object.insert(row.key.to_string(), row.value.clone());
         }
-        object.insert("warnings".to_owned(), json!(self.warnings));
+        let warnings: Vec<String> = self.warnings.iter().map(|text| text.render(&names::name)).collect();
+        object.insert("warnings".to_owned(), json!(warnings));
         Value::Object(object)
     }
 }

@@ -22,7 +22,7 @@ use super::input::Input;
 use super::options::ReadOptions;
 use super::record::RecordLayout;
 use crate::data::PointBatch;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, Wording};
 
 /// Chunks decoded ahead, per thread.
 const CHUNKS_PER_THREAD: usize = 2;
@@ -57,7 +57,7 @@ impl Laz {
         header: &Header,
         payload: Option<&[u8]>,
         options: ReadOptions,
-        warnings: &mut Vec<String>,
+        warnings: &mut Vec<Wording>,
     ) -> Result<Self> {
         let compression = Compression::check(payload, header)?;
         check_count(header)?;
@@ -74,7 +74,7 @@ impl Laz {
             _ if header.count == 0 => Vec::new(),
             Err(reason) if matches!(compression.order, Order::Layered(_)) => {
                 let chunks = table::walk(&mut input, &compression, header)?;
-                warnings.push(format!("{reason}; the chunks are found by their own headers"));
+                warnings.push(format!("{reason}; the chunks are found by their own headers").into());
                 chunks
             }
             Err(reason) if compression.chunks == ChunkSize::Variable => {
@@ -85,7 +85,7 @@ impl Laz {
                 .cure("copy or download the file again"));
             }
             Err(reason) => {
-                warnings.push(format!("{reason}; the points are decoded one after the other"));
+                warnings.push(format!("{reason}; the points are decoded one after the other").into());
                 return Ok(Laz::Stream(Stream::new(input, compression, header, options)?));
             }
         };
@@ -126,7 +126,7 @@ impl Laz {
         }
     }
 
-    pub(super) fn read(&mut self, batch: &mut PointBatch, warnings: &mut Vec<String>) -> Result<()> {
+    pub(super) fn read(&mut self, batch: &mut PointBatch, warnings: &mut Vec<Wording>) -> Result<()> {
         match self {
             Laz::Chunks(chunks) => chunks.read(batch),
             Laz::Stream(stream) => stream.read(batch, warnings),

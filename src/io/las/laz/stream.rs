@@ -9,7 +9,7 @@ use super::chunk::BLOCK;
 use super::compression::{ChunkSize, Compression};
 use super::table::POINTER;
 use crate::data::PointBatch;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, Wording};
 use crate::io::Cut;
 use crate::io::contain;
 use crate::io::las::header::Header;
@@ -77,7 +77,7 @@ impl Stream {
         })
     }
 
-    pub(super) fn read(&mut self, batch: &mut PointBatch, warnings: &mut Vec<String>) -> Result<()> {
+    pub(super) fn read(&mut self, batch: &mut PointBatch, warnings: &mut Vec<Wording>) -> Result<()> {
         for _ in 0..BATCH {
             let count = (self.total - self.done).min(BLOCK as u64) as usize;
             let mut whole = 0;

@@ -1,11 +1,23 @@
-//! The error type of everything outside of the triangulations.
+//! The error type of everything outside of the triangulations, and the texts of errors and notices.
 //!
 //! Errors are sorted by who can act on them ([`Kind`]). Each says where it happened, what was
 //! found, what was expected and, if there is one, the cure. The triangulations have error types of
 //! their own: they refuse invalid input, and cannot fail on input that they accepted.
+//!
+//! Texts do not know how they will be read. A [`Wording`] mentions settings of requests, commands
+//! and features of a build as data ([`Setting`], [`Term`]); the command line shows them as options,
+//! Python as parameters.
+
+mod setting;
+mod stored;
+mod wording;
 
 use std::fmt;
 use std::path::{Path, PathBuf};
+
+pub use setting::{Command, Feature, Setting, Term};
+pub(crate) use wording::wording;
+pub use wording::{Part, Wording};
 
 /// The result of an operation that can fail with an [`Error`].
 pub type Result<T> = std::result::Result<T, Error>;
@@ -33,7 +45,7 @@ pub enum Kind {
 ///
 /// Displayed as `path: location: message`. The [cure](Error::cure_text) is not part of the message,
 /// so that the command line can print it on a line of its own. Messages are lower case, without a
-/// full stop.
+/// full stop. Settings have plain names when displayed; [`render`](Error::render) takes others.
 #[derive(Debug)]
 pub struct Error {
     inner: Box<Inner>,
@@ -42,54 +54,63 @@ pub struct Error {
 #[derive(Debug)]
 struct Inner {
     kind: Kind,
-    message: String,
+    message: Wording,
     path: Option<PathBuf>,
     location: Option<String>,
-    cure: Option<String>,
+    cure: Option<Wording>,
     source: Option<Box<dyn std::error::Error + Send + Sync>>,
 }
 
 impl Error {
     #[cold]
-    fn new(kind: Kind, message: String) -> Self {
-        Error { inner: Box::new(Inner { kind, message, path: None, location: None, cure: None, source: None }) }
+    fn new(kind: Kind, message: impl Into<Wording>) -> Self {
+        Error {
+            inner: Box::new(Inner {
+                kind,
+                message: message.into(),
+                path: None,
+                location: None,
+                cure: None,
+                source: None,
+            }),
+        }
     }
 
     /// Creates an error for data that breaks the rules of its format.
     #[cold]
-    pub fn format(message: impl Into<String>) -> Self {
-        Self::new(Kind::Format, message.into())
+    pub fn format(message: impl Into<Wording>) -> Self {
+        Self::new(Kind::Format, message)
     }
 
     /// Creates an error for data that uses an unsupported feature; the message should name it.
     #[cold]
-    pub fn unsupported(message: impl Into<String>) -> Self {
-        Self::new(Kind::Unsupported, message.into())
+    pub fn unsupported(message: impl Into<Wording>) -> Self {
+        Self::new(Kind::Unsupported, message)
     }
 
     /// Creates an error for a request that makes no sense.
     #[cold]
-    pub fn usage(message: impl Into<String>) -> Self {
-        Self::new(Kind::Usage, message.into())
+    pub fn usage(message: impl Into<Wording>) -> Self {
+        Self::new(Kind::Usage, message)
     }
 
     /// Creates an error for an exceeded limit; the message should name the limit and the value.
     #[cold]
-    pub fn limit(message: impl Into<String>) -> Self {
-        Self::new(Kind::Limit, message.into())
+    pub fn limit(message: impl Into<Wording>) -> Self {
+        Self::new(Kind::Limit, message)
     }
 
     /// Creates the error that canceled work ends with. It has no path and no location, because they
     /// mean nothing to the user.
     #[cold]
     pub fn canceled() -> Self {
-        Self::new(Kind::Canceled, "canceled".to_owned())
+        Self::new(Kind::Canceled, "canceled")
     }
 
     /// Creates an error for work that needs other work, which is not done.
     #[cold]
-    pub fn not_yet(message: impl Into<String>) -> Self {
-        Self::new(Kind::NotYet, message.into())
+    pub fn not_yet(message: impl Into<Wording>) -> Self {
+        Self::new(Kind::NotYet, message)
     }
 
     /// Wraps an error of the operating system or of a library; its text becomes the message.
@@ -133,7 +154,7 @@ impl Error {
 
     /// Adds what the user can do about it.
     #[must_use]
-    pub fn cure(mut self, cure: impl Into<String>) -> Self {
+    pub fn cure(mut self, cure: impl Into<Wording>) -> Self {
         self.inner.cure = Some(cure.into());
         self
     }
@@ -144,12 +165,12 @@ impl Error {
     }
 
     /// Returns what the user can do about it, if anything is known.
-    pub fn cure_text(&self) -> Option<&str> {
-        self.inner.cure.as_deref()
+    pub fn cure_text(&self) -> Option<&Wording> {
+        self.inner.cure.as_ref()
     }
 
     /// Returns what was found, without the path and the location.
-    pub fn message(&self) -> &str {
+    pub fn message(&self) -> &Wording {
         &self.inner.message
     }
 
@@ -162,17 +183,19 @@ impl Error {
     pub fn path(&self) -> Option<&Path> {
         self.inner.path.as_deref()
     }
+
+    /// Returns the error as it is displayed, with the names that a caller has for terms.
+    pub fn render(&self, name: &dyn Fn(&Term) -> String) -> String {
+        let path = self.inner.path.as_ref().map(|path| path.display().to_string());
+        let message = self.inner.message.render(name);
+        let parts = [path, self.inner.location.clone(), Some(message)];
+        parts.into_iter().flatten().collect::<Vec<_>>().join(": ")
+    }
 }
 
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if let Some(path) = &self.inner.path {
-            write!(f, "{}: ", path.display())?;
-        }
-        if let Some(location) = &self.inner.location {
-            write!(f, "{location}: ")?;
-        }
-        f.write_str(&self.inner.message)
+        f.write_str(&self.render(&Term::plain))
     }
 }
 
@@ -188,8 +211,8 @@ impl From<std::io::Error> for Error {
         let plain = plain_words(&source);
         let mut error = Self::caused_by(Kind::Io, source);
         if let Some((message, cure)) = plain {
-            error.inner.message = message.to_owned();
-            error.inner.cure = Some(cure.to_owned());
+            error.inner.message = message.into();
+            error.inner.cure = Some(cure.into());
         }
         error
     }

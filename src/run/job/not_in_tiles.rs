@@ -1,0 +1,66 @@
+//! What tiles cannot do yet.
+
+use crate::error::{Error, Setting, Wording, wording};
+use crate::run::systems::SystemOptions;
+use crate::run::tin::{EdgeLimit, TinRequest};
+
+/// What a request has and tiles do not: the whole surface is built in memory for it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum NotInTiles {
+    /// The longest edge at the rim is chosen by the points.
+    EdgeByPoints,
+    /// The points are reprojected.
+    Reproject,
+    /// Longest edges anywhere, where there is water.
+    EdgesBesideWater,
+    /// The crossings of lines are listed.
+    CrossingReport,
+    /// Points that lines replace are kept, and listed.
+    ReplacedPoints,
+    /// Heights are not linear.
+    Method,
+}
+
+impl NotInTiles {
+    /// Returns what a request for a surface has and tiles do not.
+    pub(super) fn of(request: &TinRequest, systems: &SystemOptions) -> Option<Self> {
+        let has_water = !(request.lines.flats.is_empty() && request.lines.rivers.is_empty());
+        let known = [
+            (NotInTiles::EdgeByPoints, request.max_edge == EdgeLimit::Auto),
+            (NotInTiles::Reproject, systems.target.is_some()),
+            (NotInTiles::EdgesBesideWater, request.max_edge_inside.is_some() && has_water),
+        ];
+        known.into_iter().find(|(_, is_given)| *is_given).map(|(what, _)| what)
+    }
+
+    /// Returns the settings that ask for it.
+    fn settings(self) -> Wording {
+        match self {
+            NotInTiles::EdgeByPoints => Setting::MaxEdge.text("auto").into(),
+            NotInTiles::Reproject => Setting::TargetCrs.into(),
+            NotInTiles::EdgesBesideWater => {
+                wording![Setting::MaxEdgeInside, " together with ", Setting::Flat, " or ", Setting::Rivers]
+            }
+            NotInTiles::CrossingReport => Setting::CrossingReport.into(),
+            NotInTiles::ReplacedPoints => Setting::FlatPoints.into(),
+            NotInTiles::Method => Setting::Method.into(),
+        }
+    }
+}
+
+impl From<NotInTiles> for Error {
+    #[cold]
+    fn from(what: NotInTiles) -> Self {
+        if what == NotInTiles::Method {
+            let cure = wording!["leave out ", what.settings(), ", or ", Setting::Tiles];
+            return Error::unsupported("tiles have linear heights only").cure(cure);
+        }
+        let whole = " the whole surface is built in memory";
+        Error::unsupported(wording![what.settings(), " does not work with tiles yet"]).cure(wording![
+            "leave one of them out: without ",
+            Setting::Tiles,
+            whole
+        ])
+    }
+}
