@@ -5,7 +5,7 @@ use rustc_hash::FxHashMap;
 
 use crate::crs::Crs;
 use crate::data::{Bounds, EdgeKind};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, Setting, wording};
 use crate::triangulation::geometry::{Geometry, Terrain};
 use crate::triangulation::num::unsigned_zero;
 use crate::triangulation::tds::VertexId;
@@ -387,8 +387,11 @@ impl TinBuilder {
                 0 | 1 => "fewer than two distinct points do".to_owned(),
                 count => format!("{count} distinct points on one line do"),
             };
-            return Err(Error::format(format!("{what} not span a surface"))
-                .cure("check the inputs, the classes (--class) and the bounds"));
+            return Err(Error::format(format!("{what} not span a surface")).cure(wording![
+                "check the inputs, the classes (",
+                Setting::Class,
+                ") and the bounds"
+            ]));
         }
 
         report.crossings = triangulation.crossings().len();
@@ -566,7 +569,7 @@ fn not_built(error: InputError, name: &dyn Fn(usize) -> String) -> Error {
         InputError::Crossing { segments: [(line, _), (other, _)], at: [x, y] } => {
             let (line, other) = (name(line), name(other));
             Error::format(format!("{line} and {other} cross at {x} {y} without a common vertex"))
-                .cure("fix the lines, or split them there with --on-crossing split")
+                .cure(wording!["fix the lines, or split them there with ", Setting::OnCrossing.text("split")])
         }
         InputError::Canceled => Error::canceled(),
         error => Error::limit(error.to_string()),

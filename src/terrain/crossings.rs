@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 use std::collections::HashSet;
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, Setting, wording};
 use crate::triangulation::geometry::{Terrain, height_along};
 use crate::triangulation::tds::VertexId;
 use crate::triangulation::{ConstrainedDelaunay, LineId};
@@ -171,7 +171,7 @@ pub(super) fn refuse(crossings: &[CrossingHeights], tolerance: f64, name: &dyn F
         name(low),
         name(high)
     ))
-    .cure("fix the lines, or choose a height with --crossing-z lowest, highest or mean (--crossing-report lists all sites)"))
+    .cure(wording!["fix the lines, or choose a height with ", Setting::CrossingZ.text("lowest"), ", highest or mean (", Setting::CrossingReport, " lists all sites)"]))
 }
 
 #[cfg(test)]

@@ -19,7 +19,7 @@ use std::sync::OnceLock;
 
 use crate::crs::Crs;
 use crate::data::{BaseFace, EdgeKind, Surface, SurfaceFacts};
-use crate::error::{Error, Result};
+use crate::error::{Command, Error, Result, wording};
 use crate::triangulation::geometry::{Geometry, Terrain};
 use crate::triangulation::kernel::RANGE;
 use crate::triangulation::tds::{CellId, Complex, VertexId};
@@ -131,7 +131,11 @@ impl<B: AsRef<[u8]>> CompactTin<B> {
         let path = path.as_ref();
         Self::opened(bytes, path).map_err(|error| {
             let error = error.in_file(path);
-            if error.cure_text().is_some() { error } else { error.cure("write the file again with `breakline tin`") }
+            if error.cure_text().is_some() {
+                error
+            } else {
+                error.cure(wording!["write the file again with ", Command::Tin])
+            }
         })
     }
 
@@ -407,10 +411,13 @@ impl<B: AsRef<[u8]>> CompactTin<B> {
 
     #[cold]
     fn error(&self, damage: &Damage) -> Error {
-        Error::format(damage.to_string()).in_file(&self.path).cure(format!(
-            "copy the file again, or write it again with `breakline tin`; `breakline check {}` reads all of it",
-            self.path.display()
-        ))
+        Error::format(damage.to_string()).in_file(&self.path).cure(wording![
+            "copy the file again, or write it again with ",
+            Command::Tin,
+            "; ",
+            Command::Check.on(self.path.display().to_string()),
+            " reads all of it"
+        ])
     }
 }
 

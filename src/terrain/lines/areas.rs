@@ -7,7 +7,7 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 
 use super::{Flat, River, RiverWater, Wall};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, Setting, wording};
 use crate::terrain::boxes::{Boxed, Boxes, Extent};
 use crate::terrain::inside::{Inside, sides};
 use crate::terrain::near_lines::NearLines;
@@ -317,5 +317,5 @@ fn two_lakes(lakes: [(Domain, f64); 2], [x, y]: [f64; 2], waters: &[Water], name
     Error::format(format!(
         "two lakes meet at {x} {y} with different heights: {height} of {first}, {different} of {other}"
     ))
-    .cure("correct the shores, or give both lakes one height with --flat-height")
+    .cure(wording!["correct the shores, or give both lakes one height with ", Setting::FlatHeight])
 }

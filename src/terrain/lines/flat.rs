@@ -1,6 +1,6 @@
 //! Lakes: rings at one height.
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, Setting, wording};
 use crate::triangulation::num::unsigned_zero;
 
 /// Which height level water has.
@@ -50,12 +50,19 @@ impl Flat {
         let level = match height {
             FlatHeight::Given(height) if height.is_finite() => height,
             FlatHeight::Given(height) => {
-                return Err(Error::format(format!("the height of the lake is {height}"))
-                    .cure("fill the attribute of --flat-height, or give a number"));
+                return Err(Error::format(format!("the height of the lake is {height}")).cure(wording![
+                    "fill the attribute of ",
+                    Setting::FlatHeight,
+                    ", or give a number"
+                ]));
             }
             _ if !is_known => {
-                return Err(Error::format("the shore has a vertex without a height")
-                    .cure("name the attribute with the height (--flat FILE:FIELD), or give one with --flat-height"));
+                return Err(Error::format("the shore has a vertex without a height").cure(wording![
+                    "name the attribute with the height (",
+                    Setting::Flat.text("FILE:FIELD"),
+                    "), or give one with ",
+                    Setting::FlatHeight
+                ]));
             }
             FlatHeight::Lowest => lowest,
             FlatHeight::Mean => heights.iter().sum::<f64>() / heights.len() as f64,
@@ -64,7 +71,11 @@ impl Flat {
                 return Err(Error::format(format!(
                     "the shore is not level: its heights are {lowest} to {highest}, expected within {tolerance}"
                 ))
-                .cure("choose a height with --flat-height lowest, mean or a number"));
+                .cure(wording![
+                    "choose a height with ",
+                    Setting::FlatHeight.text("lowest"),
+                    ", mean or a number"
+                ]));
             }
         };
         let rings = rings.iter().map(|ring| ring.iter().map(|&[x, y, _]| [x, y, level]).collect()).collect();

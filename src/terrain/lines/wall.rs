@@ -2,7 +2,7 @@
 
 use super::joints;
 use super::offset::offset_between;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, Setting, wording};
 
 /// On which side of a wall, seen in the direction of its line, the ground is higher.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -80,11 +80,23 @@ impl Wall {
             return Err(Error::format(format!(
                 "at {x} {y} the lower edge of the wall is at {low}, above the upper at {z}"
             ))
-            .cure("the line has the heights of the upper edge; --wall-bottom or --wall-drop give the lower one"));
+            .cure(wording![
+                "the line has the heights of the upper edge; ",
+                Setting::WallBottom,
+                " or ",
+                Setting::WallDrop,
+                " give the lower one"
+            ]));
         }
         if vertices.iter().all(|(p, low)| *low == p[2]) {
-            return Err(Error::format("the wall has no height: upper and lower edge are the same")
-                .cure("give the lower edge with --wall-bottom or --wall-drop, or use --breaklines"));
+            return Err(Error::format("the wall has no height: upper and lower edge are the same").cure(wording![
+                "give the lower edge with ",
+                Setting::WallBottom,
+                " or ",
+                Setting::WallDrop,
+                ", or use ",
+                Setting::Breaklines
+            ]));
         }
         let largest = vertices.iter().flat_map(|(p, _)| [p[0].abs(), p[1].abs()]).fold(0.0, f64::max);
         let narrowest = narrowest(largest);
@@ -139,8 +151,12 @@ impl Wall {
         }
         let same = |(p, q): (&[f64; 3], &[f64; 3])| p[..2] == q[..2];
         if upper.len() == lower.len() && upper.iter().zip(&lower).all(same) {
-            return Err(Error::format("both edges of the wall are the same in plan")
-                .cure("draw them apart, or give the upper edge alone, with --wall-bottom or --wall-drop"));
+            return Err(Error::format("both edges of the wall are the same in plan").cure(wording![
+                "draw them apart, or give the upper edge alone, with ",
+                Setting::WallBottom,
+                " or ",
+                Setting::WallDrop
+            ]));
         }
         let mean = |edge: &[[f64; 3]]| edge.iter().map(|p| p[2]).sum::<f64>() / edge.len() as f64;
         if mean(&lower) >= mean(&upper) {

@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 
 use super::offset::{offset, unfolded};
 use crate::data::orientation;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, Setting, wording};
 use crate::terrain::boxes::{Boxed, Boxes, Extent};
 use crate::terrain::nearest::squared_distance;
 use crate::triangulation::num::{Sign, unsigned_zero};
@@ -107,7 +107,7 @@ impl River {
     pub fn along(middle: &[[f64; 3]], width: f64) -> Result<Self> {
         if !(width > 0.0 && width.is_finite()) {
             return Err(Error::format(format!("a river of width {width}, expected a width above zero"))
-                .cure("fill the attribute of --river-width, or give a number"));
+                .cure(wording!["fill the attribute of ", Setting::RiverWidth, ", or give a number"]));
         }
         let middle = clean(middle)?;
         let sites: Vec<[f64; 2]> = middle.iter().copied().map(flat).collect();
@@ -401,7 +401,7 @@ fn sides(line: &[[f64; 3]]) -> Vec<Side> {
 fn clean(bank: &[[f64; 3]]) -> Result<Vec<[f64; 3]>> {
     if let Some([x, y, z]) = bank.iter().find(|p| !p[2].is_finite()) {
         return Err(Error::format(format!("the vertex at {x} {y} has the height {z}"))
-            .cure("name the attribute with the heights: --rivers FILE:FIELD"));
+            .cure(wording!["name the attribute with the heights: ", Setting::Rivers.text("FILE:FIELD")]));
     }
     let mut clean = bank.to_vec();
     clean.dedup_by(|p, q| flat(*p) == flat(*q));
