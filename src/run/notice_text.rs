@@ -216,7 +216,8 @@ fn text(notice: &Notice) -> Wording {
             .into()
         }
         Notice::WaterOverlaps { count, .. } => {
-            format!("{count} pairs of waters overlap or touch, and the lower height, or that of the lake, counts").into()
+            format!("{count} pairs of waters overlap or touch, and the lower height, or that of the lake, counts")
+                .into()
         }
         Notice::LinesApart(role) => wording!["nothing of ", role.setting(), " lies on the surface"],
         Notice::CrossingHeights { count, largest, at, .. } => {

@@ -6,7 +6,7 @@ use super::bytes::{Reader, put_block, put_numbers};
 use super::task_file::{Block, TaskFile, TaskName, TaskWriter};
 use crate::crs::Crs;
 use crate::data::ContourLine;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, Setting, wording};
 use crate::io::Destination;
 use crate::io::contours::{self, ContourSummary};
 use crate::run::context::{Context, Size, Stage};
@@ -158,7 +158,7 @@ fn position(levels: &[(f64, u64)], level: f64) -> Option<usize> {
 #[cold]
 fn no_level(level: f64) -> Error {
     Error::format(format!("the file of a task has contours at {level}, which is none of the levels"))
-        .cure("remove it, and run the job again with --resume")
+        .cure(wording!["remove it, and run the job again with ", Setting::Resume.on()])
 }
 
 #[cfg(test)]

@@ -9,7 +9,7 @@ use super::folder::{remove_unfinished, tasks_in};
 use super::lock::JobLock;
 use super::task_file::{Found, TaskFile};
 use super::{FileState, Job};
-use crate::error::{Error, Kind, Result};
+use crate::error::{Error, Kind, Result, Setting, wording};
 use crate::run::context::Context;
 
 /// The files of other tasks, for a task that reads them.
@@ -35,7 +35,7 @@ impl<'j, 'a> Sources<'j, 'a> {
             Some(before) if before != file.sum => {
                 Err(Error::not_yet("the file of a task was made again while another one read it")
                     .in_file(self.job.task_file(task).path)
-                    .cure("run the job again with --resume"))
+                    .cure(wording!["run the job again with ", Setting::Resume.on()]))
             }
             _ => Ok(file),
         }

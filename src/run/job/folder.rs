@@ -8,7 +8,7 @@ use serde_json::Value;
 
 use super::lock::{JobLock, LOCK};
 use super::task_file::{is_unfinished, looks_like_task, unfinished_in};
-use crate::error::{Error, Result};
+use crate::error::{Command, Error, Result, Setting, wording};
 use crate::io::remove_abandoned;
 use crate::run::checksum::checksum;
 
@@ -50,12 +50,19 @@ impl StoredPlan {
         };
         // The folder may be that of somebody else: only what is certain to be a job may go.
         Self::parse(&text).map(Some).ok_or_else(|| {
-            Error::format("this is not the plan of a job, or it is damaged").in_file(path).cure(if has_tasks(folder) {
-                "name another folder (--job); what is left of an earlier job here, which an older version planned \
-                     or whose plan was damaged, you have to delete by hand: plan.json and tasks/*.task"
-            } else {
-                "name another folder (--job)"
-            })
+            let by_hand = match has_tasks(folder) {
+                true => {
+                    "; what is left of an earlier job here, which an older version planned or whose plan was \
+                     damaged, you have to delete by hand: plan.json and tasks/*.task"
+                }
+                false => "",
+            };
+            Error::format("this is not the plan of a job, or it is damaged").in_file(path).cure(wording![
+                "name another folder (",
+                Setting::Job,
+                ")",
+                by_hand
+            ])
         })
     }
 
@@ -101,9 +108,15 @@ pub(super) fn replace(path: &Path, text: &str) -> Result<()> {
 
 #[cold]
 fn there_is_a_job(folder: &Path) -> Error {
-    Error::usage("there is a job in this folder already")
-        .in_file(folder)
-        .cure("go on with it (--resume), remove it (`breakline job clean`), or name another folder (--job)")
+    Error::usage("there is a job in this folder already").in_file(folder).cure(wording![
+        "go on with it (",
+        Setting::Resume.on(),
+        "), remove it (",
+        Command::JobClean,
+        "), or name another folder (",
+        Setting::Job,
+        ")"
+    ])
 }
 
 /// Returns an error if the folder of a new job has a file that the job would replace.
@@ -117,9 +130,11 @@ pub(super) fn require_no_job(folder: &Path) -> Result<()> {
     for name in [COMMAND, WRITTEN] {
         let path = folder.join(name);
         if path.exists() && !is_note(&path) {
-            return Err(Error::usage("this was not written by a job")
-                .in_file(path)
-                .cure("name another folder (--job)"));
+            return Err(Error::usage("this was not written by a job").in_file(path).cure(wording![
+                "name another folder (",
+                Setting::Job,
+                ")"
+            ]));
         }
     }
     Ok(())
@@ -142,13 +157,13 @@ pub fn job_command(folder: &Path) -> Result<Option<String>> {
     let Some(sum) = stored.command else {
         return Err(Error::usage("the job in this folder is that of a command which goes on itself")
             .in_file(folder)
-            .cure("repeat that command with --resume and --job"));
+            .cure(wording!["repeat that command with ", Setting::Resume.on(), " and ", Setting::Job]));
     };
     let text = std::fs::read_to_string(&path).map_err(|e| Error::from(e).in_file(&path))?;
     if u64::from(checksum(text.as_bytes())) != sum {
         return Err(Error::format("the command of the job is damaged, or that of another one")
             .in_file(path)
-            .cure("plan the job again: `breakline job clean` removes this one"));
+            .cure(wording!["plan the job again: ", Command::JobClean, " removes this one"]));
     }
     Ok(Some(text))
 }

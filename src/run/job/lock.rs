@@ -4,7 +4,7 @@ use std::fs::{File, Metadata, TryLockError};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, Setting, wording};
 
 /// The file that is locked while a process works on the job; it is empty.
 pub(super) const LOCK: &str = "lock";
@@ -36,9 +36,11 @@ impl JobLock {
                 return Ok(JobLock { _file: file });
             }
             if start.elapsed() > PATIENCE {
-                return Err(Error::usage("another process works on this job")
-                    .in_file(folder)
-                    .cure("wait for it, or name another folder (--job)"));
+                return Err(Error::usage("another process works on this job").in_file(folder).cure(wording![
+                    "wait for it, or name another folder (",
+                    Setting::Job,
+                    ")"
+                ]));
             }
             std::thread::sleep(PATIENCE / 50);
         }

@@ -9,7 +9,7 @@ use super::task_file::TaskName;
 use super::{Job, TiledProduct};
 use crate::crs::Crs;
 use crate::data::Bounds;
-use crate::error::{Error, Result};
+use crate::error::{Command, Error, Result, Setting, wording};
 use crate::io::Destination;
 use crate::io::contours::ContourSummary;
 use crate::run::cells::{CellProduct, HillshadeOptions};
@@ -141,16 +141,28 @@ impl Job<'_> {
         }
         let JobReport { read, used, beyond_max_edge, clipped, .. } = report;
         Err(match (used, beyond_max_edge) {
-            _ if *clipped > 0 => {
-                Error::format(format!("no triangle is left: {clipped} lie outside of the boundary or the bounds"))
-                    .cure("check them, and the coordinate systems: `breakline info` shows the extent of each file")
-            }
-            (0, _) => Error::usage(format!("no point is left of {read} read"))
-                .cure("`breakline info` shows the classes of each file: choose with --class"),
+            _ if *clipped > 0 => Error::format(format!(
+                "no triangle is left: {clipped} lie outside of the boundary or the bounds"
+            ))
+            .cure(wording![
+                "check them, and the coordinate systems: ",
+                Command::Info,
+                " shows the extent of each file"
+            ]),
+            (0, _) => Error::usage(format!("no point is left of {read} read")).cure(wording![
+                Command::Info,
+                " shows the classes of each file: choose with ",
+                Setting::Class
+            ]),
             (_, 0) => Error::format(format!("{used} points on one line, or fewer than three, do not span a surface"))
-                .cure("check the inputs and the classes (--class)"),
+                .cure(wording!["check the inputs and the classes (", Setting::Class, ")"]),
             _ => Error::format(format!("no triangle is left: {beyond_max_edge} have edges over the limit at the rim"))
-                .cure("allow longer edges with --max-edge LENGTH or --max-edge none"),
+                .cure(wording![
+                    "allow longer edges with ",
+                    Setting::MaxEdge.number("LENGTH"),
+                    " or ",
+                    Setting::MaxEdge.text("none")
+                ]),
         })
     }
 

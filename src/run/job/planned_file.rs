@@ -6,7 +6,7 @@ use std::time::UNIX_EPOCH;
 use serde_json::{Value, json};
 
 use crate::data::{Bounds, PointBatch};
-use crate::error::{Error, Result};
+use crate::error::{Command, Error, Result, wording};
 use crate::io::layer;
 use crate::run::context::{Context, Size, Stage};
 use crate::run::input::{Input, MemoryPoints};
@@ -107,7 +107,7 @@ pub(super) fn planned(
     if !is_finite {
         return Err(Error::format("the header states an extent that is not finite")
             .in_file(path)
-            .cure("`breakline points` writes a file with a true header"));
+            .cure(wording![Command::Points, " writes a file with a true header"]));
     }
     let [min, max] = [bounds.min, bounds.max].map(|[x, y, _]| [x, y]);
     Ok(Some(PlannedFile { input: number, path: path.to_path_buf(), state, count, min, max, is_of_any_system: false }))
@@ -146,9 +146,11 @@ pub(super) fn require_state(path: &Path, planned: FileState) -> Result<()> {
     if state_of(path)? == planned {
         return Ok(());
     }
-    Err(Error::usage("the file has changed since the job was planned")
-        .in_file(path)
-        .cure("plan the job again: `breakline job clean` removes this one"))
+    Err(Error::usage("the file has changed since the job was planned").in_file(path).cure(wording![
+        "plan the job again: ",
+        Command::JobClean,
+        " removes this one"
+    ]))
 }
 
 /// Returns the state of a file, which may be named together with a layer.

@@ -15,7 +15,7 @@ use serde_json::{Map, Value, json};
 use tempfile::NamedTempFile;
 
 use super::planned_file::FileState;
-use crate::error::{Error, Kind, Result};
+use crate::error::{Command, Error, Kind, Result, Setting, Wording, wording};
 use crate::run::checksum::{Summed, checksum};
 
 /// The last bytes of a complete file.
@@ -283,7 +283,9 @@ impl TaskFile {
     /// If the file is missing, not complete, or that of another job or task.
     pub(super) fn open_done(name: &TaskName) -> Result<Self> {
         Self::open(name)?.ok_or_else(|| {
-            Error::not_yet("the file of a task is missing").in_file(&name.path).cure("run the job again with --resume")
+            Error::not_yet("the file of a task is missing")
+                .in_file(&name.path)
+                .cure(wording!["run the job again with ", Setting::Resume.on()])
         })
     }
 
@@ -310,11 +312,11 @@ impl TaskFile {
         let mut value: Value = serde_json::from_slice(&text).map_err(|_| damaged())?;
         let (Some(job), Some(task)) = (value["job"].as_u64(), value["task"].as_u64()) else { return Err(damaged()) };
         if job != u64::from(name.job) {
-            return Err(Error::not_yet("this is the file of another job").cure(MAKE_AGAIN));
+            return Err(Error::not_yet("this is the file of another job").cure(make_again()));
         }
         if task != name.task as u64 {
             let message = format!("this is the file of task {task}, and not of task {}", name.task);
-            return Err(Error::not_yet(message).cure(MAKE_AGAIN));
+            return Err(Error::not_yet(message).cure(make_again()));
         }
         let number = |value: &Value| u32::try_from(value.as_u64()?).ok();
         let section = |value: &Value| {
@@ -398,12 +400,19 @@ impl TaskFile {
 }
 
 /// What makes a file again.
-const MAKE_AGAIN: &str = "run the job again with --resume, or do this task again (`breakline job run`)";
+fn make_again() -> Wording {
+    wording!["run the job again with ", Setting::Resume.on(), ", or do this task again (", Command::JobRun, ")"]
+}
 
 #[cold]
 fn damaged() -> Error {
-    Error::format("the file of a task is damaged")
-        .cure("run the job again with --resume; or `breakline job status --verify` removes it, so that the task is done again")
+    Error::format("the file of a task is damaged").cure(wording![
+        "run the job again with ",
+        Setting::Resume.on(),
+        "; or ",
+        Command::JobVerify,
+        " removes it, so that the task is done again"
+    ])
 }
 
 #[cfg(test)]

@@ -12,7 +12,7 @@ use super::task_file::{INPUT, SKIPPED, TaskWriter};
 use super::{Job, Task, TiledProduct};
 use super::{contours, lines, notes};
 use crate::data::{Bounds, EdgeKind, PointBatch};
-use crate::error::{Error, Result};
+use crate::error::{Command, Error, Result, wording};
 use crate::run::context::{Context, Journal};
 use crate::run::line_notes::LevelRings;
 use crate::run::notice::Notice;
@@ -176,7 +176,7 @@ impl Job<'_> {
                 return Err(Error::format(format!(
                     "there is a point at {x} {y}, but the header states an extent from {x0} {y0} to {x1} {y1}"
                 ))
-                .cure("`breakline points` writes a file with a true header"));
+                .cure(wording![Command::Points, " writes a file with a true header"]));
             }
             points.iter().for_each(|point| extent.add(*point));
             take(points);
