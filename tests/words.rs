@@ -93,6 +93,39 @@ fn prose_uses_no_listed_phrase() {
     assert!(faults.is_empty(), "see the list in docs/architecture.md\n{}", faults.join("\n"));
 }
 
+/// What is typed on a command line is known in `src/cli` alone: below, texts mention it as data.
+#[test]
+fn texts_below_the_command_line_name_no_option() {
+    let faults = each_source(|path, text| {
+        let is_below = path.starts_with("src") && !path.starts_with("src/cli") || path.starts_with("python/src");
+        let texts = tokens(text).into_iter().filter_map(|token| match token {
+            Token::Text(text) if is_below && names_option(text) => Some(text),
+            _ => None,
+        });
+        texts.map(|text| format!("{}: {text}", path.display())).collect()
+    });
+    assert!(faults.is_empty(), "see `error::Wording`\n{}", faults.join("\n"));
+}
+
+/// Returns true if a text has an option or a command of the program.
+fn names_option(text: &str) -> bool {
+    let has_option = text.match_indices("--").any(|(at, _)| {
+        let is_begin = !text[..at].ends_with('-');
+        is_begin && text[at + 2..].starts_with(|c: char| c.is_ascii_alphanumeric())
+    });
+    has_option || text.contains("`breakline ")
+}
+
+#[test]
+fn options_in_texts_are_found() {
+    for text in ["use --max-edge", "--3d", "`breakline info` shows it"] {
+        assert!(names_option(text), "{text}");
+    }
+    for text in ["a -- b", "---", "1--", "5 - -x", "`info`", "-----BEGIN", "--"] {
+        assert!(!names_option(text), "{text}");
+    }
+}
+
 #[test]
 fn comments_are_no_wider_than_a_hundred() {
     let faults = each_source(|path, text| {
