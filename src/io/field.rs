@@ -21,3 +21,19 @@ pub(super) fn not_a_number(field: &str, value: &str) -> Error {
     Error::format(format!("field {field}: expected a number, found '{start}'"))
         .cure("correct the value, or leave it empty if there is none")
 }
+
+/// Parses a number as people write it into tables: with a decimal point or comma. Empty text and
+/// stars give NaN.
+///
+/// # Errors
+/// Returns the text if it is no number.
+pub(super) fn parse_number(text: &str) -> std::result::Result<f64, String> {
+    if text.chars().all(|c| c == '*') {
+        return Ok(f64::NAN);
+    }
+    match text.replacen(',', ".", 1).parse::<f64>() {
+        Ok(value) if value.is_finite() => Ok(value),
+        Ok(_) => Ok(f64::NAN),
+        Err(_) => Err(text.to_owned()),
+    }
+}

@@ -9,9 +9,8 @@ use serde_json::{Map, Value};
 
 use super::contour_summary::ContourSummary;
 use super::decimal_mark::DecimalMark;
-use super::field::{no_such_field, not_a_number};
+use super::field::{no_such_field, not_a_number, parse_number};
 use super::layer_options::Options;
-use super::shapefile::parse_number;
 use super::watch::{Watch, bytes_of, unwatched};
 use super::watched_value;
 use super::{Destination, Output};

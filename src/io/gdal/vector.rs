@@ -11,9 +11,8 @@ use super::messages;
 use crate::crs::Crs;
 use crate::data::{Column, Layer, Shape};
 use crate::error::{Error, Result};
-use crate::io::field::{no_such_field, not_a_number};
+use crate::io::field::{no_such_field, not_a_number, parse_number};
 use crate::io::layer_options::Options;
-use crate::io::shapefile::parse_number;
 use crate::io::watch::{Watch, unwatched};
 
 /// Limit for the nesting of geometry collections; deeper ones lead to an error.

@@ -56,7 +56,6 @@ use crate::io::layer_options::Options;
 use crate::io::watch::{Watch, unwatched};
 use index::Index;
 use record::type_name;
-pub(in crate::io) use table::parse_number;
 use table::{Field, Numbers, Table};
 use walk::{Record, Shp, Walk};
 pub use write::{Column, check_size, write_contours, write_layer};

@@ -10,6 +10,7 @@ use std::path::Path;
 
 use crate::error::{Error, Result};
 use crate::io::decimal_mark::DecimalMark;
+use crate::io::field::parse_number;
 
 const END_OF_FIELDS: u8 = 0x0D;
 const END_OF_FILE: u8 = 0x1A;
@@ -226,19 +227,6 @@ fn number(kind: u8, cell: &[u8]) -> std::result::Result<f64, String> {
     }
     let text = String::from_utf8_lossy(cell);
     parse_number(text.trim_matches(|c: char| c.is_whitespace() || c == '\0'))
-}
-
-/// Parses a number as people write it into tables: with a decimal point or comma. Empty text and
-/// stars give NaN.
-pub(in crate::io) fn parse_number(text: &str) -> std::result::Result<f64, String> {
-    if text.chars().all(|c| c == '*') {
-        return Ok(f64::NAN);
-    }
-    match text.replacen(',', ".", 1).parse::<f64>() {
-        Ok(value) if value.is_finite() => Ok(value),
-        Ok(_) => Ok(f64::NAN),
-        Err(_) => Err(text.to_owned()),
-    }
 }
 
 /// Reads until the buffer is full or the file ends; returns the number of bytes read.

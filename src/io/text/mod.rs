@@ -32,7 +32,7 @@
 //! line is a count. If the last line has no line end, there is a warning: it may have been cut.
 
 mod columns;
-mod numbering;
+mod first_column;
 mod separator;
 mod write;
 
@@ -41,7 +41,7 @@ use std::io::{self, BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 
 use self::columns::{Layout, NameFlaw, Point};
-use self::numbering::{Guess, Numbering};
+use self::first_column::{FirstColumn, Guess};
 use self::separator::Separator;
 pub use self::write::{TextWriter, create};
 use crate::data::{Columns, PointBatch, PointInfo, PointSource};
@@ -65,7 +65,7 @@ pub struct TextReader {
     /// The first point, which was read to determine the columns and has not been returned yet.
     first: Option<Point>,
     /// Present while the first column may still be the number of the point.
-    numbering: Option<Numbering>,
+    first_column: Option<FirstColumn>,
     mark: DecimalMark,
     /// What to do if there are fewer points than the first line states.
     cut: Cut,
@@ -121,7 +121,7 @@ pub fn from_stream(stream: impl Read + Send + 'static, name: impl AsRef<Path>, o
         layout: start.layout,
         info,
         first: start.first,
-        numbering: start.numbering,
+        first_column: start.first_column,
         mark: start.mark,
         cut: options.cut,
         read: 0,
@@ -154,13 +154,13 @@ impl PointSource for TextReader {
             }
         }
         // One batch is enough to distinguish numbers from coordinates.
-        match self.numbering.take().map(Numbering::guess) {
+        match self.first_column.take().map(FirstColumn::guess) {
             Some(Guess::Counted) => {
                 self.is_done = true;
                 batch.clear();
-                return Err(numbering::refuse().in_file(&self.lines.name));
+                return Err(first_column::refuse().in_file(&self.lines.name));
             }
-            Some(Guess::Whole) => self.warnings.push(numbering::whole()),
+            Some(Guess::Whole) => self.warnings.push(first_column::whole()),
             Some(Guess::Coordinates) | None => {}
         }
         self.read += batch.len() as u64;
@@ -178,7 +178,8 @@ impl TextReader {
             if let Line::Data(line) = Line::new(&self.lines.line) {
                 let separator = self.layout.separator;
                 add_marks(&mut self.mark, separator, line, self.lines.number)?;
-                self.numbering = self.numbering.take().and_then(|numbering| numbering.next(separator, line));
+                self.first_column =
+                    self.first_column.take().and_then(|first_column| first_column.next(separator, line));
                 return self.layout.point(line).map(Some);
             }
         }
@@ -204,7 +205,7 @@ struct Start {
     has_header: bool,
     count: Option<u64>,
     first: Option<Point>,
-    numbering: Option<Numbering>,
+    first_column: Option<FirstColumn>,
     mark: DecimalMark,
 }
 
@@ -268,13 +269,13 @@ fn start(lines: &mut Lines, columns: Option<Columns>) -> Result<Start> {
                 ", or put a header before it that names them: x y z"
             ]),
         })?;
-        let numbering = if known.is_none() { Numbering::start(separator, line) } else { None };
-        return Ok(Start { layout, has_header, count, first: Some(first), numbering, mark });
+        let first_column = if known.is_none() { FirstColumn::start(separator, line) } else { None };
+        return Ok(Start { layout, has_header, count, first: Some(first), first_column, mark });
     }
     let named = named.or(commented.and_then(|(layout, _)| layout.ok()));
     let has_header = is_header_passed || named.is_some();
     let layout = asked.or(named).unwrap_or(Layout::FIRST);
-    Ok(Start { layout, has_header, count, first: None, numbering: None, mark })
+    Ok(Start { layout, has_header, count, first: None, first_column: None, mark })
 }
 
 /// Adds the decimal marks of the numbers in a line.

@@ -315,19 +315,15 @@ impl Numbering {
     /// Reads the number of a vertex and returns its index; messages call it `what`.
     pub(super) fn vertex(self, row: &mut Row, what: &str) -> Result<u32> {
         let number = row.whole(what)?;
-        let position = number.checked_sub(i64::from(self.first)).and_then(|position| u32::try_from(position).ok());
-        position.filter(|&position| (position as usize) < self.count).ok_or_else(|| {
-            let last = self.count as i64 + i64::from(self.first) - 1;
+        self.index(number).ok_or_else(|| {
             let there = match self.count {
                 0 => "there are no vertices".to_owned(),
-                _ => format!("the vertices are numbered {} to {last}", self.first),
+                _ => format!("the vertices are numbered {} to {}", self.first, self.last()),
             };
             row.wrong(format!("the {what} is vertex {number}, but {there}"))
         })
     }
-}
 
-impl Numbering {
     /// Reads the number of a neighbor and returns its index, or `None` for -1; messages call it
     /// `what`.
     pub(super) fn neighbor(self, row: &mut Row, what: &str) -> Result<Option<u32>> {
@@ -335,11 +331,20 @@ impl Numbering {
         if number == -1 {
             return Ok(None);
         }
-        let position = number.checked_sub(i64::from(self.first)).and_then(|position| u32::try_from(position).ok());
-        position.filter(|&position| (position as usize) < self.count).map(Some).ok_or_else(|| {
-            let last = self.count as i64 + i64::from(self.first) - 1;
-            row.wrong(format!("the neighbor is {what} {number}, but they are numbered {} to {last}", self.first))
+        self.index(number).map(Some).ok_or_else(|| {
+            let [first, last] = [i64::from(self.first), self.last()];
+            row.wrong(format!("the neighbor is {what} {number}, but they are numbered {first} to {last}"))
         })
+    }
+
+    /// Returns the index of what has this number, if there is one.
+    fn index(self, number: i64) -> Option<u32> {
+        let index = u32::try_from(number.checked_sub(i64::from(self.first))?).ok()?;
+        ((index as usize) < self.count).then_some(index)
+    }
+
+    fn last(self) -> i64 {
+        self.count as i64 + i64::from(self.first) - 1
     }
 }
 

@@ -5,7 +5,7 @@ use crate::error::{Error, Setting, Wording, wording};
 
 /// What is known of a first column of integers that is followed by three numbers in each line.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Numbering {
+pub(super) struct FirstColumn {
     last: f64,
     lines: u64,
     /// True if it has counted up by one so far.
@@ -36,20 +36,20 @@ pub(super) fn whole() -> Wording {
     ]
 }
 
-impl Numbering {
+impl FirstColumn {
     /// Returns what is known after the first point; `None` if its first column cannot be a number
     /// of the point.
     pub(super) fn start(separator: Separator, line: &[u8]) -> Option<Self> {
         let [last, x, y] = first_of_four(separator, line)?;
         let has_fraction = x.fract() != 0.0 || y.fract() != 0.0;
-        (last.fract() == 0.0).then_some(Numbering { last, lines: 1, is_counted: true, has_fraction })
+        (last.fract() == 0.0).then_some(FirstColumn { last, lines: 1, is_counted: true, has_fraction })
     }
 
     /// Returns what is known after one more point; `None` if its first column cannot be a number of
     /// the point.
     pub(super) fn next(self, separator: Separator, line: &[u8]) -> Option<Self> {
-        let here = Numbering::start(separator, line)?;
-        Some(Numbering {
+        let here = FirstColumn::start(separator, line)?;
+        Some(FirstColumn {
             lines: self.lines + 1,
             is_counted: self.is_counted && here.last == self.last + 1.0,
             has_fraction: self.has_fraction || here.has_fraction,
