@@ -202,8 +202,8 @@ mod with_gdal {
         let Shape::Polygon(rings) = &shapes[2] else { panic!("{:?}", shapes[2]) };
         assert_eq!(rings[0], [[0.0, 0.0, 1.0], [0.0, 4.0, 1.0], [4.0, 4.0, 1.0], [4.0, 0.0, 1.0], [0.0, 0.0, 1.0]]);
         assert_eq!(rings[1][1], [2.0, 2.0, 2.0], "a hole runs the other way");
-        let Shape::Triangles(triangles) = &shapes[3] else { panic!("{:?}", shapes[3]) };
-        assert_eq!(triangles[1], [[1.0, 0.0, 1.0], [1.0, 1.0, 3.0], [0.0, 1.0, 2.0]]);
+        let Shape::Faces(triangles) = &shapes[3] else { panic!("{:?}", shapes[3]) };
+        assert_eq!(triangles[1][0][..3], [[1.0, 0.0, 1.0], [1.0, 1.0, 3.0], [0.0, 1.0, 2.0]]);
         assert!(matches!((&shapes[4], &shapes[5]), (Shape::Points(_), Shape::Lines(_))), "a collection is its parts");
         let Shape::Lines(arc) = &shapes[6] else { panic!("{:?}", shapes[6]) };
         assert!(arc[0].len() > 20 && arc[0].iter().all(|v| ((v[0] - 1.0).hypot(v[1]) - 1.0).abs() < 1e-9), "{arc:?}");

@@ -28,7 +28,7 @@
 
 use geo::coordinate_position::{CoordPos, coord_pos_relative_to_ring};
 use geo::{Area, BoundingRect, Coord, CoordsIter, Geometry, GeometryCollection, LineString, MultiLineString};
-use geo::{MultiPoint, MultiPolygon, Point, Polygon, Rect, Triangle};
+use geo::{MultiPoint, MultiPolygon, Point, Polygon, Rect};
 
 use super::{Bounds, ContourLine, Shape};
 use crate::error::{Error, Result};
@@ -55,9 +55,7 @@ impl From<&Shape> for Geometry<f64> {
                 _ => MultiLineString::from_iter(parts.iter().map(|part| line_string(part))).into(),
             },
             Shape::Polygon(rings) => one_or_many(nested(rings.iter().map(|ring| line_string(ring)).collect())),
-            Shape::Triangles(triangles) => {
-                one_or_many(triangles.iter().map(|t| Triangle::from(t.map(plan)).to_polygon()).collect())
-            }
+            Shape::Faces(faces) => one_or_many(faces.iter().filter_map(|face| polygon(face)).collect()),
         }
     }
 }
@@ -131,6 +129,12 @@ fn vertex(at: Coord<f64>) -> [f64; 3] {
 
 fn line_string(part: &[[f64; 3]]) -> LineString<f64> {
     LineString::from_iter(part.iter().map(|&p| plan(p)))
+}
+
+/// Returns a face in plan; `None` if it has no ring.
+fn polygon(face: &[Vec<[f64; 3]>]) -> Option<Polygon<f64>> {
+    let (outer, holes) = face.split_first()?;
+    Some(Polygon::new(line_string(outer), holes.iter().map(|hole| line_string(hole)).collect()))
 }
 
 fn vertices(line: &LineString<f64>) -> Vec<[f64; 3]> {
@@ -320,8 +324,10 @@ mod tests {
 
     #[test]
     fn triangles_lines_and_boxes() {
-        let triangle = [[0.0, 0.0, 5.0], [4.0, 0.0, 6.0], [0.0, 3.0, 7.0]];
-        assert_eq!(Geometry::from(&Shape::Triangles(vec![triangle])).unsigned_area(), 6.0);
+        let triangle = vec![[0.0, 0.0, 5.0], [4.0, 0.0, 6.0], [0.0, 3.0, 7.0], [0.0, 0.0, 5.0]];
+        assert_eq!(Geometry::from(&Shape::Faces(vec![vec![triangle]])).unsigned_area(), 6.0);
+        let face = vec![square(0.0, 10.0, 1.0), square(2.0, 4.0, 1.0)];
+        assert_eq!(Geometry::from(&Shape::Faces(vec![face, vec![]])).unsigned_area(), 96.0);
         let contour = ContourLine { level: 5.0, points: vec![[0.0, 1.0], [2.0, 3.0]] };
         assert_eq!(LineString::from(&contour), LineString::from(vec![[0.0, 1.0], [2.0, 3.0]]));
         let bounds = Bounds { min: [1.0, 2.0, 0.0], max: [3.0, 5.0, 0.0] };

@@ -15,8 +15,9 @@ pub enum Shape {
     /// The rings of a polygon, each with its first vertex repeated at the end. Outer rings are
     /// clockwise as in a shapefile; readers do not repair the direction.
     Polygon(Vec<Vec<[f64; 3]>>),
-    /// The triangles of a multipatch.
-    Triangles(Vec<[[f64; 3]; 3]>),
+    /// The faces of a multipatch, which may be steep or vertical: each has an outer ring, and one
+    /// for each of its holes. Rings have their first vertex repeated at the end.
+    Faces(Vec<Vec<Vec<[f64; 3]>>>),
 }
 
 /// The kinds of [`Shape`].
@@ -30,8 +31,8 @@ pub enum ShapeKind {
     Lines,
     /// [`Shape::Polygon`]
     Polygon,
-    /// [`Shape::Triangles`]
-    Triangles,
+    /// [`Shape::Faces`]
+    Faces,
 }
 
 impl Shape {
@@ -42,7 +43,7 @@ impl Shape {
             Shape::Points(_) => ShapeKind::Points,
             Shape::Lines(_) => ShapeKind::Lines,
             Shape::Polygon(_) => ShapeKind::Polygon,
-            Shape::Triangles(_) => ShapeKind::Triangles,
+            Shape::Faces(_) => ShapeKind::Faces,
         }
     }
 
@@ -52,7 +53,7 @@ impl Shape {
             Shape::Null => Box::new(std::iter::empty()),
             Shape::Points(points) => Box::new(points.iter()),
             Shape::Lines(parts) | Shape::Polygon(parts) => Box::new(parts.iter().flatten()),
-            Shape::Triangles(triangles) => Box::new(triangles.iter().flatten()),
+            Shape::Faces(faces) => Box::new(faces.iter().flatten().flatten()),
         }
     }
 
@@ -62,7 +63,7 @@ impl Shape {
             Shape::Null => {}
             Shape::Points(points) => points.iter_mut().for_each(|p| p[2] = z),
             Shape::Lines(parts) | Shape::Polygon(parts) => parts.iter_mut().flatten().for_each(|p| p[2] = z),
-            Shape::Triangles(triangles) => triangles.iter_mut().flatten().for_each(|p| p[2] = z),
+            Shape::Faces(faces) => faces.iter_mut().flatten().flatten().for_each(|p| p[2] = z),
         }
     }
 }

@@ -141,7 +141,7 @@ pub fn from_layer(layer: Layer) -> Result<LayerPoints> {
                 points.extend(found);
             }
             Shape::Null => {}
-            Shape::Lines(_) | Shape::Polygon(_) | Shape::Triangles(_) => others += 1,
+            Shape::Lines(_) | Shape::Polygon(_) | Shape::Faces(_) => others += 1,
         }
     }
     if others > 0 && others == total {

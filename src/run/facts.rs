@@ -225,7 +225,7 @@ fn layer_facts(path: &Path, cut: Cut, context: &Context) -> Result<LayerFacts> {
         *facts.kinds.entry(shape.kind()).or_default() += 1;
         facts.parts += match shape {
             Shape::Lines(parts) | Shape::Polygon(parts) => parts.len(),
-            Shape::Null | Shape::Points(_) | Shape::Triangles(_) => 0,
+            Shape::Null | Shape::Points(_) | Shape::Faces(_) => 0,
         };
         for &vertex in shape.vertices() {
             facts.vertices += 1;

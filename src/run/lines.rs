@@ -46,7 +46,7 @@ fn read(
     for (record, shape) in (1..).zip(&layer.shapes) {
         let parts = match shape {
             Shape::Lines(parts) | Shape::Polygon(parts) => parts,
-            Shape::Null | Shape::Points(_) | Shape::Triangles(_) => continue,
+            Shape::Null | Shape::Points(_) | Shape::Faces(_) => continue,
         };
         check(parts).map_err(|e| at_record(e, path, record))?;
         lines.extend(drawn(parts, record - 1));

@@ -182,12 +182,12 @@ fn number(value: FieldValue) -> std::result::Result<f64, String> {
     Ok(if number.is_finite() { number } else { f64::NAN })
 }
 
-fn each_vertex(shape: &mut Shape, mut change: impl FnMut(&mut [f64; 3])) {
+fn each_vertex(shape: &mut Shape, change: impl FnMut(&mut [f64; 3])) {
     match shape {
         Shape::Null => {}
         Shape::Points(points) => points.iter_mut().for_each(change),
         Shape::Lines(parts) | Shape::Polygon(parts) => parts.iter_mut().flatten().for_each(change),
-        Shape::Triangles(triangles) => triangles.iter_mut().flatten().for_each(&mut change),
+        Shape::Faces(faces) => faces.iter_mut().flatten().flatten().for_each(change),
     }
 }
 
@@ -292,14 +292,10 @@ fn area(ring: &[[f64; 3]]) -> f64 {
     ring.windows(2).map(|pair| (pair[0][0] - x0) * (pair[1][1] - y0) - (pair[1][0] - x0) * (pair[0][1] - y0)).sum()
 }
 
-/// Returns triangles, or polygons if any face has more corners.
+/// Returns faces if all are triangles, else a polygon with the rings of all.
 fn surface(faces: Vec<Vec<Vec<[f64; 3]>>>) -> Shape {
-    let triangle = |face: &Vec<Vec<[f64; 3]>>| match face.as_slice() {
-        [ring] if ring.len() == 4 => Some([ring[0], ring[1], ring[2]]),
-        _ => None,
-    };
-    match faces.iter().map(triangle).collect() {
-        Some(triangles) => Shape::Triangles(triangles),
-        None => Shape::Polygon(faces.into_iter().flatten().collect()),
+    if faces.iter().all(|face| matches!(face.as_slice(), [ring] if ring.len() == 4)) {
+        return Shape::Faces(faces);
     }
+    Shape::Polygon(faces.into_iter().flatten().collect())
 }

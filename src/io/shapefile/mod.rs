@@ -374,7 +374,7 @@ fn warn_of_oddities(warnings: &mut Vec<Wording>, odd: &record::Oddities) {
         (odd.empty_parts, "parts without points; left out"),
         (odd.loose, "points belong to no part; left out"),
         (odd.no_height, "points have no height (not a number, or \"no data\")"),
-        (odd.unfilled, "parts of multipatches give no triangles; left out"),
+        (odd.unknown_parts, "parts of multipatches are of an unknown type; left out"),
         (odd.full_nulls, "records are of the type null, but have coordinates; these are left out"),
     ] {
         if count > 0 {

@@ -1,6 +1,6 @@
 //! Parses the content of one `.shp` record into a shape.
 
-use super::patch;
+use super::patch::{self, Patch};
 use crate::data::Shape;
 
 /// Values below this mean "no data" (ESRI Shapefile Technical Description, 1998, page 2).
@@ -66,8 +66,8 @@ pub(super) struct Oddities {
     pub(super) loose: usize,
     /// Vertices of Z types whose height is not a number or is "no data".
     pub(super) no_height: usize,
-    /// Parts of multipatches that have no triangles.
-    pub(super) unfilled: usize,
+    /// Parts of multipatches whose type is none of the format's, which are dropped.
+    pub(super) unknown_parts: usize,
     /// Null shapes with bytes after their type, which are dropped.
     pub(super) full_nulls: usize,
 }
@@ -105,9 +105,10 @@ pub(super) fn parse(content: &[u8], odd: &mut Oddities) -> Result<Parsed, Flaw> 
         }
         31 => {
             let (parts, kinds) = read_parts(&mut bytes, code, &mut found)?;
-            let (triangles, unfilled) = patch::triangles(&parts, &kinds);
-            found.unfilled += unfilled;
-            Shape::Triangles(triangles)
+            let Patch { faces, unclosed, unknown } = patch::assemble(parts, &kinds);
+            found.unclosed += unclosed;
+            found.unknown_parts += unknown;
+            Shape::Faces(faces)
         }
         other => return Err(Flaw::Damaged(format!("shape type {other} is not one of the format's"))),
     };

@@ -166,7 +166,7 @@ fn content(out: &mut Vec<u8>, code: i32, shape: &Shape) {
                 p[..dimensions].iter().for_each(|&v| double(out, if v.is_nan() { NO_HEIGHT } else { v }));
             }
         }
-        Shape::Null | Shape::Triangles(_) => int(out, 0),
+        Shape::Null | Shape::Faces(_) => int(out, 0),
     }
 }
 

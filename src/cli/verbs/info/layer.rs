@@ -35,6 +35,6 @@ fn name(kind: ShapeKind) -> &'static str {
         ShapeKind::Points => "points",
         ShapeKind::Lines => "lines",
         ShapeKind::Polygon => "polygon",
-        ShapeKind::Triangles => "triangles",
+        ShapeKind::Faces => "faces",
     }
 }
