@@ -26,7 +26,7 @@ pub(super) fn not_a_number(field: &str, value: &str) -> Error {
 /// stars give NaN.
 ///
 /// # Errors
-/// Returns the text if it is no number.
+/// Returns the text if it does not parse as a number.
 pub(super) fn parse_number(text: &str) -> std::result::Result<f64, String> {
     if text.chars().all(|c| c == '*') {
         return Ok(f64::NAN);

@@ -13,7 +13,7 @@ use crate::error::{Error, Result};
 pub enum PartCell {
     /// A face.
     Face,
-    /// A triangle under the surface that is no face: the rim or a clip has left it out. Methods of
+    /// A triangle under the surface that the rim or a clip has left out of the surface. Methods of
     /// interpolation other than linear use it.
     Under,
     /// No triangle of the larger surface, or one that another part has.

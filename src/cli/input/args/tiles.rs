@@ -46,12 +46,12 @@ pub(in crate::cli) struct TileArgs {
     #[arg(long)]
     pub(in crate::cli) skip_bad: bool,
 
-    /// Who asks for the run.
+    /// The caller of the run.
     #[arg(skip)]
     pub(in crate::cli) caller: Caller,
 }
 
-/// Who asks for a run in tiles.
+/// What calls a run in tiles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(in crate::cli) enum Caller {
     /// The verb of the product.
