@@ -17,7 +17,7 @@ pub(super) fn squared_distance([a, b]: [[f64; 2]; 2], [x, y]: [f64; 2]) -> f64 {
 }
 
 /// Returns the part of a segment at which the line through two positions passes it, from 0 to 1, or
-/// outside of that if it passes the segment nowhere.
+/// outside of that if it does not pass the segment.
 pub(super) fn part_before([from, to]: [[f64; 2]; 2], [a, b]: [[f64; 2]; 2]) -> f64 {
     let turn = |p: [f64; 2]| (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]);
     let [before, after] = [turn(from), turn(to)];

@@ -56,7 +56,7 @@ pub(super) fn add(scene: &Scene, strands: &mut Vec<Strand>) {
     strands.append(&mut creases);
 }
 
-/// Returns true if a triangle is nowhere wider than a distance.
+/// Returns true if the width of a triangle is at most a distance.
 fn is_thin(corners: [[f64; 3]; 3], distance: f64) -> bool {
     let side = |k: usize| [0, 1].map(|axis| corners[(k + 1) % 3][axis] - corners[k][axis]);
     let [first, second, third] = [side(0), side(1), side(2)];
@@ -106,8 +106,8 @@ impl Sketch {
         [x, y]
     }
 
-    /// Where two rivers are equally high between the ends of an edge; `None` if one of them is
-    /// nowhere lower. From either side of the edge it is the same point.
+    /// Returns the position between the ends of an edge at which two rivers are equally high;
+    /// `None` if one of them is not lower at either end. Both sides of the edge get the same bits.
     fn crossing(&mut self, scene: &Scene, edge: [VertexId; 2], pair: [usize; 2]) -> Option<[f64; 2]> {
         let mut ends = edge.map(|vertex| (self.site(vertex), self.difference(scene, vertex, pair)));
         ends.sort_by(|(p, _), (q, _)| p[0].total_cmp(&q[0]).then(p[1].total_cmp(&q[1])));

@@ -67,8 +67,8 @@ pub(in crate::terrain) struct Marks {
 /// The result depends on the set of waters only.
 ///
 /// # Complexity
-/// O(n log n) for n level lines, if waters meet nowhere; then about linear in the parts of
-/// triangles that overlap.
+/// O(n log n) for n level lines of waters that do not meet; where they do, about linear in the
+/// parts of triangles that overlap.
 pub(in crate::terrain) fn mark(
     waters: &[Water],
     line: &dyn Fn(usize) -> Vec<[f64; 3]>,

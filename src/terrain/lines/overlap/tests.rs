@@ -208,7 +208,7 @@ fn rivers_that_share_a_bank_keep_their_heights() {
     }
 }
 
-/// Where one river goes on as another one, it falls in its last stretch; there is no step.
+/// A river falls to a lower one that continues it within its last stretch, without a step.
 #[test]
 fn a_river_falls_to_the_one_that_continues_it() {
     let rivers = [([0.0, 10.0], 10.0), ([10.0, 20.0], 5.0)].map(|([from, to], z)| {

@@ -45,7 +45,7 @@ impl River {
     /// - A river that ends where another one begins falls to it, if they share a corner. Ends side
     ///   by side, and beginnings, are not joined.
     ///
-    /// Of a river without slope, the end at which another arrives becomes its beginning. Returns
+    /// A river without slope is turned so that it begins where another one arrives. Returns
     /// the rivers that were lowered, except those that only fall to others in their last stretch.
     ///
     /// # Complexity
