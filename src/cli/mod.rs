@@ -123,11 +123,8 @@ fn dispatch(verb: &Verb, how: &ConsoleArgs, console: &Console) -> Result<Exit> {
     match verb {
         Verb::Info(args) => verbs::info::run(args, console),
         Verb::Points(args) => verbs::points::run(args, console),
-        Verb::Tin(args) => verbs::tin::run(args, console),
+        Verb::Tin(_) | Verb::Dem(_) | Verb::Contour(_) | Verb::Hillshade(_) => verbs::write::run(verb, console),
         Verb::Triangulate(args) => verbs::triangulate::run(args, console),
-        Verb::Dem(args) => verbs::dem::run(args, console),
-        Verb::Contour(args) => verbs::contour::run(args, console),
-        Verb::Hillshade(args) => verbs::hillshade::run(args, console),
         Verb::Check(args) => verbs::check::run(args, console),
         Verb::Job(args) => verbs::job::run(args, console),
         Verb::Demo(args) => verbs::demo::run(args, how, console),

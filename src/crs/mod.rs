@@ -28,7 +28,7 @@ use wkt_write::Dialect;
 use crate::error::{Error, Result};
 
 /// The kind of the coordinates of a [`Crs`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum CrsKind {
     /// Lengths on a map.
     Projected,
@@ -41,7 +41,7 @@ pub enum CrsKind {
 }
 
 /// A coordinate system that can be compared, printed and written into files.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Crs {
     /// The name in its definition: "ETRS89 / UTM zone 32N".
     pub name: String,

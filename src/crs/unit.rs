@@ -1,7 +1,7 @@
 use std::f64::consts::PI;
 
 /// A unit of length or angle.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Unit {
     /// The name, such as "metre", "US survey foot", "degree".
     pub name: String,

@@ -2,7 +2,7 @@ use std::fmt;
 use std::str::FromStr;
 
 /// The columns of a table that contain the coordinates, counted from 1.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 pub struct Columns {
     /// Eastings, or longitudes.
     pub x: usize,

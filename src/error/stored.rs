@@ -1,12 +1,14 @@
 //! Texts as JSON, for files that another process reads: what they mention stays data.
 
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::{Value, json};
 
 use super::{Command, Feature, Part, Setting, Term, Wording};
 
 impl Wording {
     /// Returns the text as JSON.
-    pub(crate) fn to_json(&self) -> Value {
+    fn to_json(&self) -> Value {
         let parts = self.parts().iter().map(|part| match part {
             Part::Text(text) => json!(text),
             Part::Term(term) => term_to_json(term),
@@ -15,7 +17,7 @@ impl Wording {
     }
 
     /// Returns the text that [`to_json`](Wording::to_json) gave; `None` for other JSON.
-    pub(crate) fn from_json(value: &Value) -> Option<Wording> {
+    fn from_json(value: &Value) -> Option<Wording> {
         let mut all = Wording::default();
         for part in value.as_array()? {
             match part.as_str() {
@@ -24,6 +26,18 @@ impl Wording {
             }
         }
         Some(all)
+    }
+}
+
+impl Serialize for Wording {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.to_json().serialize(serializer)
+    }
+}
+
+impl<'de> Deserialize<'de> for Wording {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        Wording::from_json(&Value::deserialize(deserializer)?).ok_or_else(|| D::Error::custom("this is no text"))
     }
 }
 

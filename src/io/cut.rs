@@ -1,7 +1,7 @@
 use crate::error::{Error, Result, Setting, Wording, wording};
 
 /// What to do with a file of which a part is missing or damaged.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 pub enum Cut {
     /// Return an error.
     #[default]

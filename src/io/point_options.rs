@@ -3,7 +3,7 @@ use super::las::{Detail, ReadOptions};
 use crate::data::Columns;
 
 /// How points are read where a file leaves that open.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, Default, serde::Serialize, serde::Deserialize)]
 pub struct Options {
     /// The columns of text; if `None`, a header or the first three columns are used.
     pub columns: Option<Columns>,

@@ -13,7 +13,7 @@ use crate::io::{Destination, png};
 use crate::terrain::{Dem, Hillshade, Light, Method};
 
 /// The light of a hillshade. By default it comes from the northwest, 45 degrees above the horizon.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct LightOptions {
     /// The direction that the light comes from, in degrees clockwise from north.
     pub azimuth: f64,
@@ -31,7 +31,7 @@ impl Default for LightOptions {
 }
 
 /// Options of a DEM.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
 pub struct DemOptions {
     /// Size and position of the cells.
     pub frame: FrameOptions,
@@ -40,7 +40,7 @@ pub struct DemOptions {
 }
 
 /// Options of a hillshade.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
 pub struct HillshadeOptions {
     /// Size and position of the cells; a raster keeps its own.
     pub frame: FrameOptions,
@@ -164,8 +164,8 @@ fn light(options: &LightOptions, crs: Option<&Crs>, journal: &Journal) -> Light 
 
 impl<'a> CellProduct<'a> {
     /// Heights that were drawn already.
-    pub(super) fn heights_of(source: Box<dyn BlockSource + 'a>, notices: Vec<Notice>) -> Self {
-        CellProduct { source, surface: None, cells: CellFormat::Heights, notices }
+    pub(super) fn heights_of(source: Box<dyn BlockSource + 'a>) -> Self {
+        CellProduct { source, surface: None, cells: CellFormat::Heights, notices: Vec::new() }
     }
 
     /// The hillshade of heights that were drawn already.

@@ -4,6 +4,7 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 
+use super::event::Event;
 use super::notice::Notice;
 use crate::error::{Error, Result, Wording};
 
@@ -51,6 +52,9 @@ pub trait Monitor: Sync {
 
     /// Called for everything that is assumed or looks wrong, as soon as it is found.
     fn notice(&self, notice: &Notice);
+
+    /// Called for what happens while files are written. Nobody has to show it.
+    fn event(&self, _event: &Event) {}
 }
 
 /// Counts the items of a stage. `()` counts nothing.

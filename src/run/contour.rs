@@ -18,7 +18,7 @@ const DEFAULT_INTERVAL: f64 = 1.0;
 
 /// The heights at which contours are drawn, in the units of the heights. By default, every whole
 /// unit.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct ContourOptions {
     /// The height between contours; 1 if it is `None`.
     pub interval: Option<f64>,

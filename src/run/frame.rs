@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use super::context::Journal;
 use super::notice::Notice;
 use super::open::{self, RasterFrame};
+use super::serialized;
 use super::systems::quoted;
 use super::units::{Units, neat, number};
 use crate::crs::Crs;
@@ -22,13 +23,14 @@ const MOSTLY_EMPTY: f64 = 0.01;
 
 /// Size and position of a raster. By default cells are 1 unit wide, start at multiples of that, so
 /// that neighboring rasters fit together, and cover the surface.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
 pub struct FrameOptions {
     /// The width of a cell, in the units of the coordinate system; `None` is 1, or an error in
     /// degrees.
     pub resolution: Option<f64>,
     /// The extent, enlarged to whole cells; heights are ignored. `None` is the extent of the
     /// surface.
+    #[serde(with = "serialized::in_plan")]
     pub extent: Option<Bounds>,
     /// A raster whose grid of cells is used, also beyond its edges. The resolution is then ignored.
     pub align_to: Option<PathBuf>,

@@ -3,6 +3,9 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use serde::ser::Error as _;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
 use crate::crs::Crs;
 use crate::data::{PointBatch, PointInfo, PointSource};
 use crate::error::{Error, Result};
@@ -22,6 +25,22 @@ pub enum Input<T> {
     File(PathBuf),
     /// Data in memory.
     Memory(Arc<T>),
+}
+
+/// Stored by the path of the file. What is in memory cannot be stored.
+impl<T> Serialize for Input<T> {
+    fn serialize<S: Serializer>(&self, to: S) -> std::result::Result<S::Ok, S::Error> {
+        match self {
+            Input::File(path) => path.serialize(to),
+            Input::Memory(_) => Err(S::Error::custom("an input is in memory")),
+        }
+    }
+}
+
+impl<'de, T> Deserialize<'de> for Input<T> {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> std::result::Result<Self, D::Error> {
+        PathBuf::deserialize(from).map(Input::File)
+    }
 }
 
 impl<T> From<PathBuf> for Input<T> {
@@ -48,6 +67,14 @@ impl<T> Input<T> {
         match self {
             Input::File(path) => path,
             Input::Memory(_) => Path::new("(memory)"),
+        }
+    }
+
+    /// Returns the path of the file; `None` for memory.
+    pub(super) fn file(&self) -> Option<&Path> {
+        match self {
+            Input::File(path) => Some(path),
+            Input::Memory(_) => None,
         }
     }
 

@@ -8,7 +8,7 @@ use super::input::Input;
 
 /// Lines and areas besides breaklines and the boundary. Where kinds meet, the first of these
 /// counts: holes, flats, rivers, walls, breaklines, soft lines.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
 pub struct LineRequest {
     /// Lines with heights whose edges are in the surface, but that smooth methods of interpolation
     /// pass over.
@@ -37,7 +37,7 @@ pub struct LineRequest {
 
 /// A number for all records, in units of the result, or the attribute that has one for each, in
 /// units of its layer.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum PerRecord {
     /// This number.
     Number(f64),
@@ -46,7 +46,7 @@ pub enum PerRecord {
 }
 
 /// How the lower edge of a wall follows from the upper one, and where it lies.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct WallOptions {
     /// The heights of the lower edge; `None` if each record has both edges.
     pub lower: Option<LowerEdge>,
@@ -58,7 +58,7 @@ pub struct WallOptions {
 }
 
 /// The height of the lower edge of a wall.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum LowerEdge {
     /// The height itself.
     Height(PerRecord),
@@ -67,7 +67,7 @@ pub enum LowerEdge {
 }
 
 /// The height of level water, and which points it replaces.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct FlatOptions {
     /// The height.
     pub height: FlatRule,
@@ -79,7 +79,7 @@ pub struct FlatOptions {
 }
 
 /// Which height level water has.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum FlatRule {
     /// That of its shore, which must be level.
     #[default]

@@ -8,6 +8,7 @@
 //! |---|---|---|---|
 //! | build or read a surface | [`SurfaceRequest`] | [`surface()`], [`triangles`] | [`SurfaceProduct`] |
 //! | write it as a mesh | | [`write_mesh`] | |
+//! | write what a verb makes of it, in one piece or in tiles | [`WriteRequest`] | [`write()`] | [`WriteReport`] |
 //! | heights at the centers of cells | [`DemOptions`] | [`dem`] | [`CellProduct`] |
 //! | heights at positions | positions | [`elevations`] | a list |
 //! | shaded relief | [`HillshadeOptions`] | [`hillshade`] | [`CellProduct`] |
@@ -72,6 +73,7 @@ mod context;
 mod contour;
 mod crossings;
 mod elevation;
+mod event;
 mod extents;
 mod facts;
 mod frame;
@@ -91,15 +93,20 @@ mod overlaps;
 mod point_files;
 mod points;
 mod rings;
+mod serialized;
+mod sizes;
 mod space;
 mod surface;
 mod systems;
+pub(crate) mod targets;
 mod tin;
 mod tin_parts;
 mod transforms;
 mod triangulate;
 pub(crate) mod units;
+mod verbs;
 mod watched;
+mod write;
 
 pub use cells::{CellProduct, DemOptions, HillshadeOptions, LightOptions, dem, hillshade};
 pub use check::{CheckProduct, FlawKind, LocatedFlaw, check, surface_flaws};
@@ -107,12 +114,13 @@ pub use context::{Context, Monitor, Progress, Silent, Size, Stage};
 pub use contour::{ContourOptions, ContourProduct, contour, write_contours};
 pub use crossings::LineNames;
 pub use elevation::elevations;
+pub use event::{Event, JobSize};
 pub use facts::{Facts, LayerFacts, MeshFacts, PlaneFacts, PointFacts, RasterFacts, facts};
 pub use frame::FrameOptions;
 pub use input::{Input, MemoryPoints, STDIN};
 pub use job::{
-    Division, FileState, Job, JobLock, JobReport, JobSize, Look, NotInTiles, TileOptions, TiledProduct, WrittenParts,
-    job_command, needs_tiles, remove_job,
+    Division, FileState, Job, JobCommand, JobLock, JobReport, JobTask, Look, NotInTiles, TileOptions, needs_tiles,
+    remove_job,
 };
 pub use line_notes::LineInput;
 pub use line_request::{FlatOptions, FlatRule, LineRequest, LineRole, LowerEdge, PerRecord, WallOptions};
@@ -120,17 +128,19 @@ pub use notice::{CrossingNote, LoweredRiver, Notice, Seed, SeedFlaw, Severity, W
 pub use overlaps::Overlap;
 pub use point_files::BadFiles;
 pub use points::{PointsProduct, PointsReport, PointsRequest, Withheld, read_points, write_points};
+pub use sizes::memory_of;
 pub use space::{
     Alpha, AlphaSolid, SpaceCheck, SpaceFlaw, SpaceLaw, SpaceOptions, SpaceProduct, SpaceReport, check_space,
     is_of_space, triangulate_space,
 };
 pub use surface::{Model, Source, SurfaceProduct, SurfaceRequest, surface, triangles, write_mesh};
 pub use systems::{Degrees, SystemOptions};
+pub use targets::{Existing, Outputs, Target, Targets};
 pub use tin::{BuildReport, EdgeLimit, ReplacedPoints, TinRequest};
-pub use tin_parts::TinParts;
-#[cfg(feature = "cli")]
-pub(crate) use tin_parts::parts_folder;
+pub use tin_parts::{TinParts, WrittenParts};
 pub use triangulate::{
     Arithmetic, TriangulateOptions, TriangulateProduct, TriangulateReport, triangulate, triangulate_graph,
 };
 pub use units::Quantity;
+pub use verbs::{Keeps, Summary, SurfaceOptions, TileUse, Tiles, Verb, WriteRequest};
+pub use write::{Execution, Origin, SurfaceReport, WriteReport, Written, WrittenOf, plan, run_task, write};

@@ -29,7 +29,7 @@ pub enum Notice {
     },
     /// All points of a file were read; with their number.
     PointsRead(PathBuf, u64),
-    /// A warning of a reader about a file.
+    /// A warning of a reader or a writer about a file.
     Reader(PathBuf, Wording),
     /// What a task of a job found, as the file of the task keeps it.
     OfTask {
@@ -57,6 +57,20 @@ pub enum Notice {
         left: u64,
         /// What sets the limit, such as "on this machine".
         limit: &'static str,
+    },
+    /// The outputs may not fit on a disk.
+    OutputMayNotFit {
+        /// About how many bytes they take before they are compressed.
+        need: u64,
+        /// Bytes that are free.
+        free: u64,
+    },
+    /// The files of the tasks of a job may not fit on a disk.
+    TasksMayNotFit {
+        /// About how many bytes they take.
+        need: u64,
+        /// Bytes that are free.
+        free: u64,
     },
     /// One of several files has no point that is used; with the classes that are used, if not all.
     NoPointUsed(PathBuf, Option<Vec<u8>>),
@@ -315,6 +329,8 @@ impl Notice {
             Notice::Reader(..)
             | Notice::Skipped { .. }
             | Notice::LittleMemory { .. }
+            | Notice::OutputMayNotFit { .. }
+            | Notice::TasksMayNotFit { .. }
             | Notice::NoPointUsed(..)
             | Notice::NoPointOfClass(_)
             | Notice::AllClassesUsed

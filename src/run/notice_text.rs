@@ -90,6 +90,18 @@ fn text(notice: &Notice) -> Wording {
             bytes(*left)
         )
         .into(),
+        Notice::OutputMayNotFit { need, free } => format!(
+            "the output may not fit: {} before compression, {} are free on the disk",
+            bytes(*need),
+            bytes(*free)
+        )
+        .into(),
+        Notice::TasksMayNotFit { need, free } => format!(
+            "the files of the tasks may not fit: the files of the tasks take about {}, {} are free on the disk",
+            bytes(*need),
+            bytes(*free)
+        )
+        .into(),
         Notice::NoPointUsed(path, classes) => {
             let why = match classes {
                 Some(classes) => {

@@ -21,7 +21,7 @@ pub(super) const FILES_KEPT_OPEN: usize = 100;
 pub(super) const ASK_EVERY: usize = 1 << 20;
 
 /// What becomes of files that cannot be read.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 pub enum BadFiles {
     /// They are an error.
     #[default]

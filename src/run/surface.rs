@@ -19,7 +19,7 @@ use crate::io::mesh::{self, MeshSummary};
 use crate::terrain::{CompactTin, Tin};
 
 /// The surface that a verb works on, and its coordinate system.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
 pub struct SurfaceRequest {
     /// What the surface is built or read from.
     pub source: Source,
@@ -28,7 +28,7 @@ pub struct SurfaceRequest {
 }
 
 /// What a surface is built or read from.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub enum Source {
     /// Points and lines, which it is built from.
     Points(Box<TinRequest>),

@@ -11,7 +11,7 @@ use crate::error::{Error, Result, Setting, Wording, wording};
 
 /// Options of coordinate systems. By default all files that state a system must state the same,
 /// files that state none are taken to be in it, and nothing is reprojected.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
 pub struct SystemOptions {
     /// The coordinate system of all input, whatever the files state.
     pub assign: Option<Crs>,
@@ -23,7 +23,7 @@ pub struct SystemOptions {
 }
 
 /// What to do with coordinates in degrees, which are not lengths.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 pub enum Degrees {
     /// They are an error.
     #[default]

@@ -16,6 +16,7 @@ use super::memory;
 use super::notice::Notice;
 use super::open::{self, Content, content};
 use super::point_files::PointFiles;
+use super::serialized;
 use super::systems::{self, SystemOptions, Systems};
 use super::transforms::Transforms;
 use super::units::Units;
@@ -40,7 +41,7 @@ const DEFAULT_CROSSING_TOLERANCE_METRES: f64 = 0.01;
 /// The default has no input, and these options: ground points are used (class 2; all points if no
 /// point has it), triangles at the rim with edges over 100 metres are left out, the lowest of
 /// several heights is used, and breaklines are split where they cross.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
 pub struct TinRequest {
     /// The points. Their order makes no difference, except for [`DuplicateRule::First`] and `Last`.
     pub points: Vec<Input<MemoryPoints>>,
@@ -58,6 +59,7 @@ pub struct TinRequest {
     pub lines: LineRequest,
     /// A box that the finished surface is cut to; its heights are ignored. Points around it are
     /// used, too, so far out that the surface inside is the same as with all points.
+    #[serde(with = "serialized::in_plan")]
     pub bounds: Option<Bounds>,
     /// Triangles at the rim with longer edges are left out.
     pub max_edge: EdgeLimit,
@@ -69,6 +71,7 @@ pub struct TinRequest {
     /// Which height is used where points have the same position.
     pub duplicates: DuplicateRule,
     /// What to do where breaklines cross between their vertices.
+    #[serde(with = "serialized::Crossing")]
     pub on_crossing: OnCrossing,
     /// Which height is used where breaklines cross between their vertices.
     pub crossing_heights: CrossingRule,
@@ -78,7 +81,7 @@ pub struct TinRequest {
 }
 
 /// What becomes of the points that water and walls replace.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 pub enum ReplacedPoints {
     /// They are only counted.
     #[default]
@@ -137,7 +140,7 @@ fn refuse_other_kinds(wanted: Wording, layers: &[Input<Layer>]) -> Result<()> {
 
 /// The longest edge that a triangle at the rim may have in plan. Triangles that can be reached from
 /// outside across longer edges are left out; breaklines are not crossed.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub enum EdgeLimit {
     /// 100 metres, in units of the coordinate system; 100 units if none is known.
     #[default]

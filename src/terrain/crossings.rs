@@ -12,7 +12,7 @@ use super::DuplicateRule;
 use super::lines::kinds::Precedence;
 
 /// Which height a vertex gets where breaklines with different heights cross between their vertices.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum CrossingRule {
     /// One of the heights, or their mean; first and last refer to the order in which the lines were
     /// added. The default is the lowest, which does not depend on the order: a ditch under a road's

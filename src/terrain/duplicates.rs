@@ -6,7 +6,7 @@ use crate::triangulation::spatial_order;
 ///
 /// With [`Lowest`](Self::Lowest), [`Highest`](Self::Highest) and [`Mean`](Self::Mean) the result
 /// does not depend on the order of the input.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 pub enum DuplicateRule {
     /// The lowest: remaining vegetation and noise lie above the ground.
     #[default]

@@ -8,7 +8,7 @@ use crate::error::{Error, Result};
 const GROUND: u8 = 2;
 
 /// Which classes of points are used. Points of formats without classes are always used.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 pub enum Classes {
     /// Class 2 (ground) if any point has it, otherwise all classes.
     #[default]

@@ -3,15 +3,15 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::sync::Mutex;
+use std::sync::{Arc, Mutex};
 
 use breakline::crs::Crs;
 use breakline::data::Bounds;
 use breakline::error::Wording;
 use breakline::run::{
-    self, BadFiles, Context, ContourOptions, DemOptions, Division, EdgeLimit, FlatOptions, FrameOptions,
-    HillshadeOptions, Input, Job, LineRequest, Look, LowerEdge, Monitor, Notice, PerRecord, Progress, Severity, Size,
-    Source, Stage, SurfaceRequest, SystemOptions, TileOptions, TiledProduct, TinRequest, WallOptions,
+    self, Context, ContourOptions, DemOptions, Division, EdgeLimit, Execution, FlatOptions, FrameOptions,
+    HillshadeOptions, Input, LineRequest, LowerEdge, Monitor, Notice, PerRecord, Progress, Severity, Size, Source,
+    Stage, SurfaceRequest, SystemOptions, Targets, TileOptions, TinRequest, Verb, WallOptions, WriteRequest,
 };
 use breakline::terrain::Classes;
 use testkit::lidar::{las, tile};
@@ -21,6 +21,7 @@ use super::layer;
 /// The kinds of notices that tiles do not have, and why.
 const NOT_IN_TILES: &[(&str, &str)] = &[
     ("LittleMemory", "tiles are chosen to fit into memory"),
+    ("OutputMayNotFit", "depends on the disk"),
     ("Triangulated", "a time; each task has its own"),
     ("Uncertain", "tiles use all points, whatever the bounds"),
     ("Reprojecting", "tiles refuse --t-srs"),
@@ -32,6 +33,7 @@ const NOT_IN_TILES: &[(&str, &str)] = &[
 
 /// The kinds of notices that only tiles have, and why.
 const IN_TILES_ONLY: &[(&str, &str)] = &[
+    ("TasksMayNotFit", "depends on the disk"),
     ("OfTask", "a notice of any kind, as the file of a task keeps it"),
     ("Skipped", "of `--skip-bad`, see the tests of bad input"),
 ];
@@ -40,7 +42,7 @@ const IN_TILES_ONLY: &[(&str, &str)] = &[
 struct Case {
     request: TinRequest,
     systems: SystemOptions,
-    product: TiledProduct,
+    verb: Arc<dyn Verb>,
     kinds: &'static [&'static str],
 }
 
@@ -71,39 +73,41 @@ fn texts(notices: &[Notice]) -> BTreeSet<(Severity, String, Vec<String>)> {
     notices.iter().map(each).collect()
 }
 
-fn notices_of_whole(case: &Case) -> Vec<Notice> {
+impl Case {
+    fn request(&self) -> WriteRequest {
+        let source = Source::Points(Box::new(self.request.clone()));
+        let surface = SurfaceRequest { source, systems: self.systems.clone() };
+        WriteRequest { surface, verb: Arc::clone(&self.verb) }
+    }
+
+    /// A file of the product.
+    fn target(&self, folder: &Path) -> Targets {
+        let name = if self.verb.name() == "contour" { "out.geojson" } else { "out.tif" };
+        Targets::of(folder.join(name))
+    }
+}
+
+fn notices_of_whole(case: &Case, folder: &Path) -> Vec<Notice> {
     let collector = Collector::default();
     let context = Context { monitor: &collector, ..Context::default() };
-    let source = Source::Points(Box::new(case.request.clone()));
-    let request = SurfaceRequest { source, systems: case.systems.clone() };
-    let surface = run::surface(&request, &context).unwrap();
-    match &case.product {
-        TiledProduct::Heights(options) => drop(run::dem(&surface, options, &context).unwrap()),
-        TiledProduct::Shades(options) => drop(run::hillshade(&surface, options, &context).unwrap()),
-        TiledProduct::Contours(options) => drop(run::contour(&surface, options, &context).unwrap()),
-        TiledProduct::Surface => {}
-    }
+    let targets = case.target(folder);
+    run::write(&case.request(), &targets, &Execution::Whole, &context).unwrap();
+    fs::remove_file(&targets.files[0]).unwrap();
     collector.0.into_inner().unwrap()
 }
 
 fn notices_of_tiles(case: &Case, division: Division, folder: &Path) -> Vec<Notice> {
     let collector = Collector::default();
     let context = Context { monitor: &collector, ..Context::default() };
-    let source = Source::Points(Box::new(case.request.clone()));
-    let request = SurfaceRequest { source, systems: case.systems.clone() };
-    let folder = folder.to_path_buf();
-    let options = TileOptions { division, memory: None, folder, bad: BadFiles::Refuse, look: Look::Points };
-    let mut job = Job::plan(&request, &case.product, &options, &context).unwrap();
-    drop(job.create(None).unwrap());
-    job.run(&Context::default()).unwrap();
+    let (request, targets, job) = (case.request(), case.target(folder), folder.join("job"));
+    let options = TileOptions { division, folder: Some(job.clone()), ..TileOptions::default() };
+    let mut planned = run::plan(&request, &targets, &options, &context).unwrap();
+    drop(planned.create(None).unwrap());
+    planned.run(&Context::default()).unwrap();
     // As another process would go on.
-    let job = Job::stored(&request, &case.product, &options).unwrap().unwrap();
-    let report = job.report(&context).unwrap();
-    if matches!(case.product, TiledProduct::Heights(_) | TiledProduct::Shades(_)) {
-        job.cells(&report, &context).unwrap();
-    }
-    let lock = job.lock().unwrap();
-    job.remove(&lock).unwrap();
+    run::write(&request, &targets, &Execution::Resume(options), &context).unwrap();
+    fs::remove_file(&targets.files[0]).unwrap();
+    run::remove_job(&job).unwrap();
     collector.0.into_inner().unwrap()
 }
 
@@ -143,12 +147,12 @@ fn layers<T>(files: &[&PathBuf]) -> Vec<Input<T>> {
     files.iter().map(|&path| Input::File(path.clone())).collect()
 }
 
-fn heights() -> TiledProduct {
-    TiledProduct::Heights(DemOptions::default())
+fn heights() -> Arc<dyn Verb> {
+    Arc::new(DemOptions::default())
 }
 
 fn case(request: TinRequest, kinds: &'static [&'static str]) -> Case {
-    Case { request, systems: SystemOptions::default(), product: heights(), kinds }
+    Case { request, systems: SystemOptions::default(), verb: heights(), kinds }
 }
 
 /// Cases of points and systems.
@@ -174,7 +178,7 @@ fn cases_of_points(files: &Files) -> Vec<Case> {
     let system = |name: &str| Some(Crs::from_user(name).unwrap());
     let te = |min: f64, max: f64| {
         let frame = FrameOptions { extent: Some(bounds(min, max)), ..FrameOptions::default() };
-        TiledProduct::Heights(DemOptions { frame, ..DemOptions::default() })
+        DemOptions { frame, ..DemOptions::default() }
     };
     let diagonal: Vec<([f64; 3], u8)> = (0..40).map(|i| ([f64::from(i), f64::from(i + i % 2), 1.0], 2)).collect();
     let diagonal = files.write("d.las", las(&diagonal, Some(25832)));
@@ -203,21 +207,19 @@ fn cases_of_points(files: &Files) -> Vec<Case> {
         },
         Case {
             systems: SystemOptions { assign: system("EPSG:25832+6360"), ..SystemOptions::default() },
-            product: TiledProduct::Shades(HillshadeOptions::default()),
+            verb: Arc::new(HillshadeOptions::default()),
             ..case(points(&[&text]), &["DifferentUnits", "HeightFactor"])
         },
         case(points(&[&text]), &["ExtentApart"]).of(te(100.0, 104.0)),
         // Within the extent of the points, but not on the surface.
-        case(TinRequest { max_edge: EdgeLimit::Length(3.0), ..points(&[&diagonal]) }, &[]).of(TiledProduct::Heights(
-            DemOptions {
-                frame: FrameOptions {
-                    extent: Some(Bounds { min: [30.0, 0.0, 0.0], max: [39.0, 9.0, 0.0] }),
-                    ..FrameOptions::default()
-                },
-                ..DemOptions::default()
+        case(TinRequest { max_edge: EdgeLimit::Length(3.0), ..points(&[&diagonal]) }, &[]).of(DemOptions {
+            frame: FrameOptions {
+                extent: Some(Bounds { min: [30.0, 0.0, 0.0], max: [39.0, 9.0, 0.0] }),
+                ..FrameOptions::default()
             },
-        )),
-        case(points(&[&text]), &["DefaultInterval"]).of(TiledProduct::Contours(ContourOptions::default())),
+            ..DemOptions::default()
+        }),
+        case(points(&[&text]), &["DefaultInterval"]).of(ContourOptions::default()),
     ]
 }
 
@@ -327,8 +329,8 @@ fn line_of_river(files: &Files) -> PathBuf {
 }
 
 impl Case {
-    fn of(self, product: TiledProduct) -> Self {
-        Case { product, ..self }
+    fn of(self, verb: impl Verb + 'static) -> Self {
+        Case { verb: Arc::new(verb), ..self }
     }
 }
 
@@ -339,7 +341,7 @@ fn tiles_report_what_the_whole_reports() {
     let left_out: BTreeMap<&str, &str> = NOT_IN_TILES.iter().copied().collect();
     let (mut seen, mut faults) = (BTreeSet::new(), Vec::new());
     for (number, case) in cases_of_points(&files).into_iter().chain(cases_of_lines(&files)).enumerate() {
-        let mut whole = notices_of_whole(&case);
+        let mut whole = notices_of_whole(&case, folder.path());
         let kinds: BTreeSet<String> = whole.iter().map(kind).collect();
         let missing: Vec<_> = case.kinds.iter().filter(|kind| !kinds.contains(**kind)).collect();
         if !missing.is_empty() {
@@ -348,7 +350,7 @@ fn tiles_report_what_the_whole_reports() {
         seen.extend(kinds);
         whole.retain(|notice| !left_out.contains_key(kind(notice).as_str()));
         for division in [Division::Grid([3, 2]), Division::Auto] {
-            let tiled = notices_of_tiles(&case, division, &folder.path().join("job"));
+            let tiled = notices_of_tiles(&case, division, folder.path());
             let (tiled, whole) = (texts(&tiled), texts(&whole));
             let differ: Vec<_> = tiled.symmetric_difference(&whole).map(|row| (tiled.contains(row), row)).collect();
             if !differ.is_empty() {

@@ -5,8 +5,9 @@ use std::path::{Path, PathBuf};
 
 use crate::cli::report::console::Console;
 use crate::error::{Error, Result};
-use crate::io::layer::{self, Spec};
+use crate::io::layer::Spec;
 use crate::run::STDIN;
+use crate::run::targets::{file_of, identity};
 
 /// Returns the files that globs, lists and names stand for, in order. A file that is named twice is
 /// used once, and a note says so.
@@ -46,20 +47,6 @@ pub(in crate::cli) fn lists(typed: &[PathBuf]) -> impl Iterator<Item = PathBuf> 
 fn list_of(path: &Path) -> Option<&Path> {
     let list = path.to_str()?.strip_prefix('@')?;
     (!path.exists()).then_some(Path::new(list))
-}
-
-/// Returns a path that is the same for all names of one file.
-pub(in crate::cli) fn identity(path: &Path) -> PathBuf {
-    let file = file_of(path).unwrap_or(path);
-    file.canonicalize().unwrap_or_else(|_| file.to_path_buf())
-}
-
-/// Returns the path of an existing file, without the layer and the field that may follow its name.
-pub(super) fn file_of(path: &Path) -> Option<&Path> {
-    if path.exists() {
-        return Some(path);
-    }
-    Some(layer::file_of(path.to_str()?)).filter(|file| file.exists())
 }
 
 /// Makes sure, before the work starts, that the files that options name exist.

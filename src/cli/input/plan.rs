@@ -1,30 +1,26 @@
 //! From the options of a surface to a request.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use super::args::{
-    CrossingZArg, DuplicatesArg, EdgeLength, FrameArgs, LineArgs, OnCrossingArg, SurfaceArgs, SystemArgs,
+    CrossingZArg, DuplicatesArg, EdgeLength, FrameArgs, LineArgs, OnCrossingArg, OutputArgs, SurfaceArgs, SystemArgs,
 };
 use super::inputs;
 use crate::cli::report::console::Console;
 use crate::crs::Crs;
 use crate::error::{Error, Result};
 use crate::run::{
-    Degrees, EdgeLimit, FlatOptions, FlatRule, FrameOptions, Input, LineRequest, LowerEdge, MemoryPoints,
-    ReplacedPoints, Source, SurfaceRequest, SystemOptions, TinRequest, WallOptions,
+    Degrees, EdgeLimit, Existing, FlatOptions, FlatRule, FrameOptions, Input, LineRequest, LowerEdge, MemoryPoints,
+    ReplacedPoints, Source, SurfaceRequest, SystemOptions, Targets, TinRequest, WallOptions,
 };
 use crate::terrain::Classes;
 
-/// The request for a surface, and the files that belong to it.
+/// The request for a surface, and what is written with all that is made of it.
 #[derive(Debug)]
 pub(in crate::cli) struct SurfacePlan {
     pub(in crate::cli) request: SurfaceRequest,
-    /// All files that are read.
-    pub(in crate::cli) inputs: Vec<PathBuf>,
-    /// The table of crossings that is written with the results.
-    pub(in crate::cli) crossing_report: Option<PathBuf>,
-    /// The table of points that water and walls replaced.
-    pub(in crate::cli) replaced_report: Option<PathBuf>,
+    /// The tables; no output is named yet.
+    pub(in crate::cli) targets: Targets,
 }
 
 impl SurfacePlan {
@@ -33,10 +29,7 @@ impl SurfacePlan {
     /// # Errors
     /// If files are missing, kinds of input are mixed or options do not go together.
     pub(in crate::cli) fn resolve(args: &SurfaceArgs, console: &Console) -> Result<Self> {
-        let files = match &args.planned {
-            Some(planned) => planned.clone(),
-            None => inputs::expand(&args.inputs, console)?,
-        };
+        let files = inputs::expand(&args.inputs, console)?;
         let degrees = if args.force_degrees { Degrees::Allow } else { Degrees::Refuse };
         let systems = SystemOptions { degrees, ..systems(&args.systems)? };
         let line_files: Vec<PathBuf> = args.lines.files().iter().flat_map(|(_, paths)| paths.iter().cloned()).collect();
@@ -45,42 +38,35 @@ impl SurfacePlan {
         let lines = line_request(&args.lines);
         let building = TinRequest { breaklines, boundary, lines, ..TinRequest::default() };
         building.check_layers()?;
-        let source = match &args.planned {
-            Some(_) => Source::of_points(&files),
-            None => Source::of_files(&files)?,
-        };
-        let source = match source {
+        let source = match Source::of_files(&files)? {
             Source::Points(points) => Source::Points(Box::new(tin_request(points.points, building, args))),
             Source::Mesh(path) => Source::Mesh(as_it_is(path, args)?),
             Source::Raster(path) => Source::Raster(as_it_is(path, args)?),
         };
-        let mut inputs = files;
-        inputs.extend(inputs::lists(&args.inputs));
-        inputs.extend(args.breaklines.iter().chain(&line_files).chain(&args.boundary).cloned());
-        let request = SurfaceRequest { source, systems };
-        Ok(SurfacePlan {
-            request,
-            inputs,
-            crossing_report: args.crossing_report.clone(),
-            replaced_report: args.lines.flat_points.clone(),
-        })
+        let targets = Targets {
+            crossings: args.crossing_report.clone(),
+            replaced: args.lines.flat_points.clone(),
+            also_read: inputs::lists(&args.inputs).collect(),
+            ..Targets::default()
+        };
+        Ok(SurfacePlan { request: SurfaceRequest { source, systems }, targets })
     }
 
-    /// Returns the tables that are written with the results.
-    pub(in crate::cli) fn reports(&self) -> impl Iterator<Item = &Path> {
-        [&self.crossing_report, &self.replaced_report].into_iter().flatten().map(PathBuf::as_path)
+    /// Returns the targets with these outputs.
+    pub(in crate::cli) fn targets(&self, args: &OutputArgs) -> Targets {
+        let existing = Existing::of(args.overwrite);
+        Targets { files: args.output.clone(), existing, ..self.targets.clone() }
     }
+}
 
-    /// Returns the frame of a raster, and adds the raster to align to, if any, to the inputs.
-    ///
-    /// # Errors
-    /// If that raster does not exist.
-    pub(in crate::cli) fn add_frame(&mut self, args: &FrameArgs) -> Result<FrameOptions> {
-        inputs::require(&args.align_to)?;
-        self.inputs.extend(args.align_to.clone());
-        let extent = args.te.map(|corners| corners.bounds());
-        Ok(FrameOptions { resolution: args.resolution, extent, align_to: args.align_to.clone() })
-    }
+/// Returns the frame of a raster.
+///
+/// # Errors
+/// If the raster to align to does not exist.
+pub(in crate::cli) fn frame(args: &FrameArgs) -> Result<FrameOptions> {
+    inputs::require(&args.align_to)?;
+    let extent = args.te.map(|corners| corners.bounds());
+    Ok(FrameOptions { resolution: args.resolution, extent, align_to: args.align_to.clone() })
 }
 
 /// Returns the coordinate systems that the options name.

@@ -6,3 +6,4 @@ pub(super) mod last_words;
 pub(super) mod names;
 mod progress;
 pub(super) mod summary;
+pub(super) mod written;

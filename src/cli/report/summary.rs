@@ -6,35 +6,32 @@ use super::console::Console;
 use crate::crs::Crs;
 use crate::data::{Bounds, Columns, EdgeKind, Frame};
 use crate::run::units::{Units, neat, number};
-use crate::run::{BuildReport, LineInput, LineRole, Model, SurfaceProduct};
+use crate::run::{BuildReport, LineInput, LineRole, Origin, SurfaceReport};
 use crate::terrain::{DuplicateRule, SelectionReport, TinReport};
 
 /// Prints what a surface was built of, what was left out, and its size and extent.
-pub(in crate::cli) fn print_surface(product: &SurfaceProduct, console: &Console) {
-    let (triangles, extent) = match (&product.built, &product.model) {
-        (Some(built), _) => {
+pub(in crate::cli) fn print_surface(report: &SurfaceReport, console: &Console) {
+    match &report.origin {
+        Origin::Built(built) => {
             console.line(format_args!("points      {}", points_line(&built.points, built.sources)));
             if !built.columns.is_empty() {
                 console.line(format_args!("columns     {}", columns_line(&built.columns)));
             }
             print_tin(built, console);
-            (format!("{}{}", built.tin.triangles, left_out(&built.tin)), built.tin.extent)
+            console.line(format_args!("triangles   {}{}", built.tin.triangles, left_out(&built.tin)));
         }
-        (None, Model::Raster(grid)) => {
-            console.line(format_args!("raster      {}", describe(&grid.frame, grid.crs.as_ref())));
-            return print_extent(grid.extent(), grid.crs.as_ref(), console);
+        Origin::Cells(frame) => {
+            console.line(format_args!("raster      {}", describe(frame, report.crs.as_ref())));
         }
-        (None, Model::Mesh(_) | Model::Tin(_) | Model::Compact(_) | Model::Parts(_)) => {
-            let Ok(facts) = product.facts() else { return };
+        Origin::Triangles(facts) => {
             for (kind, edges) in facts.edges.kinds() {
                 console.line(format_args!("{:<11} {edges} edges", kind.noun()));
             }
             console.line(format_args!("vertices    {}", facts.vertices));
-            (facts.triangles.to_string(), facts.extent)
+            console.line(format_args!("triangles   {}", facts.triangles));
         }
-    };
-    console.line(format_args!("triangles   {triangles}"));
-    print_extent(extent, product.crs(), console);
+    }
+    print_extent(report.extent, report.crs.as_ref(), console);
 }
 
 fn print_tin(built: &BuildReport, console: &Console) {

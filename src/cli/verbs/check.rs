@@ -1,14 +1,15 @@
 use std::path::Path;
 
 use crate::cli::input::args::CheckArgs;
-use crate::cli::input::outputs::{self, Existing};
 use crate::cli::input::plan::SurfacePlan;
 use crate::cli::report::console::Console;
 use crate::cli::report::summary::{counted, print_surface};
+use crate::cli::report::written::print_file;
 use crate::cli::{Exit, print};
 use crate::data::SurfaceFacts;
 use crate::error::{Error, Result};
-use crate::run::{self, CheckProduct, SpaceCheck, SpaceLaw};
+use crate::io::OutputSet;
+use crate::run::{self, CheckProduct, Existing, SpaceCheck, SpaceLaw, SurfaceReport, Targets};
 
 /// Lists the flaws of a TIN, or of a mesh that may not be a surface.
 pub(in crate::cli) fn run(args: &CheckArgs, console: &Console) -> Result<Exit> {
@@ -22,14 +23,17 @@ pub(in crate::cli) fn run(args: &CheckArgs, console: &Console) -> Result<Exit> {
         return Err(Error::usage("--weighted is for the tetrahedra of an .ele").cure("leave out --weighted"));
     }
     let plan = SurfacePlan::resolve(&args.surface, console)?;
-    let outputs = outputs::resolve_report(Existing::of(args.overwrite), &plan)?;
+    let targets = Targets { existing: Existing::of(args.overwrite), ..plan.targets };
+    let read = targets.read_with(&plan.request);
+    targets.check_tables(&read)?;
+    let outputs = OutputSet::default();
     let CheckProduct { product, flaws, .. } = run::check(&plan.request, &console.context())?;
-    outputs.add_report(&plan, &product)?;
+    targets.write_tables(&product, &outputs)?;
     for flaw in &flaws {
         print(&format!("{flaw}\n"))?;
     }
-    print_surface(&product, console);
-    outputs.commit(console)?;
+    print_surface(&SurfaceReport::of(&product)?, console);
+    outputs.commit()?.iter().for_each(|path| print_file(path, console));
     let SurfaceFacts { vertices, triangles, edges, .. } = product.facts()?;
     let what = format!("{vertices} vertices, {triangles} triangles, {} constrained edges", edges.total());
     match flaws.len() {

@@ -4,6 +4,7 @@ use crate::cli::input::plan::systems;
 use crate::cli::input::{inputs, outputs};
 use crate::cli::report::console::Console;
 use crate::cli::report::summary::{counted, print_extent};
+use crate::cli::report::written::commit;
 use crate::error::{Error, Result};
 use crate::io::formats::Product;
 use crate::io::las::Rounding;
@@ -43,6 +44,6 @@ pub(in crate::cli) fn run(args: &PointsArgs, console: &Console) -> Result<Exit> 
     let count = counted(report.written.count, "point");
     console.line(format_args!("points      {count} of {}{left_out}", report.read));
     print_extent(report.written.bounds, report.crs.as_ref(), console);
-    outputs.commit(console)?;
+    commit(outputs, console)?;
     Ok(Exit::Done)
 }

@@ -6,6 +6,7 @@ use crate::cli::input::args::TriangulateArgs;
 use crate::cli::input::inputs;
 use crate::cli::input::outputs::{self, Format, Outputs, Target};
 use crate::cli::report::console::Console;
+use crate::cli::report::written::{commit, note_mesh};
 use crate::error::{Error, Result};
 use crate::io::Destination;
 use crate::io::formats::Product;
@@ -55,7 +56,7 @@ pub(in crate::cli) fn run(args: &TriangulateArgs, console: &Console) -> Result<E
     }
     write(&outputs, &formats, &product, console)?;
     print_report(&product, args.max_added, console);
-    outputs.commit(console)?;
+    commit(outputs, console)?;
     Ok(Exit::Done)
 }
 
@@ -83,7 +84,7 @@ fn write(
         let mesh = product.to_mesh()?;
         for target in meshes {
             let written = run::write_mesh(&mesh, target.within(&outputs.set), &console.context())?;
-            outputs::note_mesh(&target.path, &written, ".ply and .poly keep them", console);
+            note_mesh(&target.path, &written, ".ply and .poly keep them", console);
         }
     }
     let mut files: Vec<Target<Family>> = Vec::new();

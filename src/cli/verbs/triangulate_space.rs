@@ -4,6 +4,7 @@ use crate::cli::Exit;
 use crate::cli::input::args::TriangulateArgs;
 use crate::cli::input::outputs::{self, Format, Target};
 use crate::cli::report::console::Console;
+use crate::cli::report::written::{commit, note_mesh};
 use crate::error::{Error, Result};
 use crate::io::Destination;
 use crate::io::formats::Product;
@@ -59,7 +60,7 @@ pub(super) fn run(args: &TriangulateArgs, console: &Console) -> Result<Exit> {
                 .cure("leave out --alpha")
         })?;
         let written = run::write_mesh(solid, target.within(&outputs.set), &console.context())?;
-        outputs::note_mesh(&target.path, &written, "", console);
+        note_mesh(&target.path, &written, "", console);
         if !solid.is_manifold() && target.extension == "stl" {
             console
                 .warning(format_args!("{}: not a closed manifold, as programs expect of STL", target.path.display()));
@@ -73,7 +74,7 @@ pub(super) fn run(args: &TriangulateArgs, console: &Console) -> Result<Exit> {
     }
     let files: Vec<Destination> = files.iter().map(|file| file.within(&outputs.set)).collect();
     product.write(&files, &console.context())?;
-    outputs.commit(console)?;
+    commit(outputs, console)?;
     Ok(Exit::Done)
 }
 

@@ -16,7 +16,7 @@ impl From<Cut> for ReadOptions {
 }
 
 /// How much is read of each point.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 pub enum Detail {
     /// Coordinates, class, flags and return number. Compressed points of formats 6 to 10 are then
     /// only partly decoded.

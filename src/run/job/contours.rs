@@ -78,7 +78,7 @@ impl DrawnContours {
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         for name in names {
             let mut file = TaskFile::open_done(&name)?;
-            edges += file.count("edges");
+            edges += file.facts.kept.contour_edges;
             let (heights, table) = to_table(&file.section(LEVELS)?).ok_or_else(|| file.damaged())?;
             (low, high) = (low.min(heights[0]), high.max(heights[1]));
             tasks.push((name, table));

@@ -13,14 +13,14 @@ use crate::error::{Error, Kind, Result, Setting, wording};
 use crate::run::context::Context;
 
 /// The files of other tasks, for a task that reads them.
-pub(super) struct Sources<'j, 'a> {
-    job: &'j Job<'a>,
+pub(super) struct Sources<'j> {
+    job: &'j Job,
     /// The checksums of those that were opened, by the numbers of their tasks.
     sums: RefCell<BTreeMap<usize, u32>>,
 }
 
-impl<'j, 'a> Sources<'j, 'a> {
-    pub(super) fn new(job: &'j Job<'a>) -> Self {
+impl<'j> Sources<'j> {
+    pub(super) fn new(job: &'j Job) -> Self {
         Sources { job, sums: RefCell::default() }
     }
 
@@ -63,7 +63,7 @@ fn sum_of(sources: impl Iterator<Item = (usize, u32)>) -> u32 {
     all.sum()
 }
 
-impl Job<'_> {
+impl Job {
     /// Opens the file of a task that is done.
     ///
     /// # Errors
@@ -136,7 +136,7 @@ impl Job<'_> {
 
     /// Returns the state in which a task has read its file of points; `None` if it is not done, or
     /// reads none.
-    pub fn state_of_input(&self, task: usize) -> Option<FileState> {
+    pub(super) fn state_of_input(&self, task: usize) -> Option<FileState> {
         TaskFile::open(&self.task_file(task)).ok()??.state_of_input()
     }
 

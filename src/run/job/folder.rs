@@ -15,7 +15,7 @@ use crate::run::checksum::checksum;
 /// The file of the plan in the folder of a job.
 const PLAN: &str = "plan.json";
 
-/// The file that a program may keep its command in; it is removed with the job.
+/// The file that has what the job was planned for, if that was kept; it is removed with the job.
 pub(super) const COMMAND: &str = "command.json";
 
 /// The file that says which files were written as the output.
@@ -33,7 +33,7 @@ pub(super) struct StoredPlan {
     /// The number of tasks.
     tasks: u64,
     /// The checksum of the command that is kept with the job, if there is one.
-    command: Option<u64>,
+    pub(super) command: Option<u64>,
 }
 
 impl StoredPlan {
@@ -140,32 +140,12 @@ pub(super) fn require_no_job(folder: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Returns true if a file is a command as a program keeps it with a job, or the record of an
-/// output.
+/// Returns true if a file has what a job was planned for, or the record of an output.
 fn is_note(path: &Path) -> bool {
     let value: Option<Value> = std::fs::read(path).ok().and_then(|text| serde_json::from_slice(&text).ok());
-    value.is_some_and(|value| value["files"].is_array() && (value["command"].is_array() || value["job"].is_u64()))
-}
-
-/// Returns the command that a program keeps with a job; `None` if the folder has no job.
-///
-/// # Errors
-/// If the job has no command, or it is damaged, or that of another job; or if the plan is.
-pub fn job_command(folder: &Path) -> Result<Option<String>> {
-    let Some(stored) = StoredPlan::read(folder)? else { return Ok(None) };
-    let path = folder.join(COMMAND);
-    let Some(sum) = stored.command else {
-        return Err(Error::usage("the job in this folder is that of a command which goes on itself")
-            .in_file(folder)
-            .cure(wording!["repeat that command with ", Setting::Resume.on(), " and ", Setting::Job]));
-    };
-    let text = std::fs::read_to_string(&path).map_err(|e| Error::from(e).in_file(&path))?;
-    if u64::from(checksum(text.as_bytes())) != sum {
-        return Err(Error::format("the command of the job is damaged, or that of another one")
-            .in_file(path)
-            .cure(wording!["plan the job again: ", Command::JobClean, " removes this one"]));
-    }
-    Ok(Some(text))
+    value.is_some_and(|value| {
+        value["request"].is_object() && value["words"].is_array() || value["files"].is_array() && value["job"].is_u64()
+    })
 }
 
 /// Returns the folder of the files of tasks.

@@ -1,16 +1,8 @@
 //! The extents of files that were skipped. No triangle is drawn over them, also where other files
 //! have points: what is missing there would be a surface that looks whole.
 
-use serde_json::{Map, Value, json};
-
 use super::Job;
-use super::task_file::TaskFile;
-
-/// The corners of a box in plan.
-type Hole = [[f64; 2]; 2];
-
-/// The name of the fact.
-const HOLES: &str = "holes";
+use super::task_facts::{Hole, TaskFacts};
 
 /// The extents of files that were skipped, as far as a task knows.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -24,9 +16,8 @@ impl Holes {
     }
 
     /// Adds what another task knows.
-    pub(super) fn add_known(&mut self, task: &TaskFile) {
-        let known = task.facts.get(HOLES).and_then(|holes| serde_json::from_value::<Vec<Hole>>(holes.clone()).ok());
-        known.into_iter().flatten().for_each(|hole| self.add(hole));
+    pub(super) fn add_known(&mut self, facts: &TaskFacts) {
+        facts.holes.iter().for_each(|hole| self.add(*hole));
     }
 
     fn add(&mut self, hole: Hole) {
@@ -35,11 +26,9 @@ impl Holes {
         }
     }
 
-    /// Writes down what the task knows.
-    pub(super) fn note(&self, facts: &mut Map<String, Value>) {
-        if !self.0.is_empty() {
-            facts.insert(HOLES.to_owned(), json!(self.0));
-        }
+    /// Returns what the task knows.
+    pub(super) fn known(&self) -> Vec<Hole> {
+        self.0.clone()
     }
 
     /// Returns true if a triangle reaches into one of the extents.

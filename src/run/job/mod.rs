@@ -13,11 +13,14 @@
 //!    or consists of their triangulations.
 
 mod bytes;
+mod command;
 mod contours;
+mod division;
 mod done;
 mod folder;
 mod holes;
 mod lines;
+mod listed;
 mod lock;
 mod not_in_tiles;
 mod notes;
@@ -31,6 +34,7 @@ mod schedule;
 mod skipped;
 mod stored;
 mod surface;
+mod task_facts;
 mod task_file;
 mod tasks;
 mod written;
@@ -38,31 +42,32 @@ mod written;
 use std::fs::{File, TryLockError};
 use std::hash::{BuildHasher, RandomState};
 use std::path::{Path, PathBuf};
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use serde_json::json;
 
+pub use self::command::JobCommand;
+pub use self::division::Division;
+pub use self::folder::remove_job;
 use self::folder::{COMMAND, StoredPlan, tasks_in};
-pub use self::folder::{job_command, remove_job};
 use self::lines::Known;
+pub use self::listed::JobTask;
 pub use self::lock::JobLock;
 pub use self::not_in_tiles::NotInTiles;
 pub use self::output::JobReport;
 use self::plan::Plan;
 pub use self::planned_file::FileState;
 use self::planned_file::PlannedFile;
-pub use self::surface::WrittenParts;
 use self::task_file::TaskName;
-use super::cells::{DemOptions, HillshadeOptions};
 use super::checksum::checksum;
 use super::context::{Context, Journal};
-use super::contour::ContourOptions;
-use super::frame::FrameOptions;
+use super::event::JobSize;
 use super::notice::Notice;
 use super::point_files::{BadFiles, PointFiles};
 use super::surface::{Source, SurfaceRequest};
 use super::systems::SystemOptions;
 use super::tin::TinRequest;
+use super::verbs::{Keeps, Verb, WriteRequest};
 use crate::error::{Command, Error, Result, Setting, wording};
 use crate::terrain::Method;
 use crate::terrain::tiles::{Spread, Step, Work};
@@ -71,14 +76,16 @@ use crate::terrain::tiles::{Spread, Step, Work};
 const BYTES_A_POINT_OF_PART: u64 = 85;
 
 /// How a surface is divided into tiles.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
 pub struct TileOptions {
     /// The tiles.
     pub division: Division,
     /// The memory to use, in bytes; half of the free memory if it is `None`.
     pub memory: Option<u64>,
-    /// The folder of the job, in which its tasks write.
-    pub folder: PathBuf,
+    /// The folder of the job, in which its tasks write. By default it has the name of the first
+    /// output with `.job`, and is removed when the outputs are written, unless files were skipped.
+    #[serde(skip)]
+    pub folder: Option<PathBuf>,
     /// What becomes of files that cannot be read. A job that was planned to skip them does.
     pub bad: BadFiles,
     /// How far files are read to plan.
@@ -86,65 +93,13 @@ pub struct TileOptions {
 }
 
 /// How far files are read to plan.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 pub enum Look {
     /// A sample of the points of large files.
     #[default]
     Points,
     /// Their headers, if these state number and extent: points are taken to be spread evenly.
     Headers,
-}
-
-/// Which tiles there are.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Division {
-    /// The files, if they are separate and small enough; else tiles with about as many points each
-    /// as fit into memory.
-    #[default]
-    Auto,
-    /// This many columns and rows of tiles.
-    Grid([usize; 2]),
-}
-
-/// What a job makes of the surface.
-#[derive(Debug, Clone)]
-pub enum TiledProduct {
-    /// A DEM.
-    Heights(DemOptions),
-    /// A hillshade.
-    Shades(HillshadeOptions),
-    /// Contours.
-    Contours(ContourOptions),
-    /// The surface itself, as a TIN in parts.
-    Surface,
-}
-
-impl TiledProduct {
-    /// Returns the options of the frame of a raster.
-    fn frame(&self) -> Option<&FrameOptions> {
-        match self {
-            TiledProduct::Heights(options) => Some(&options.frame),
-            TiledProduct::Shades(options) => Some(&options.frame),
-            TiledProduct::Contours(_) | TiledProduct::Surface => None,
-        }
-    }
-
-    fn method(&self) -> Method {
-        match self {
-            TiledProduct::Heights(options) => options.method,
-            TiledProduct::Shades(options) => options.method,
-            TiledProduct::Contours(_) | TiledProduct::Surface => Method::Linear,
-        }
-    }
-
-    fn name(&self) -> &'static str {
-        match self {
-            TiledProduct::Heights(_) => "dem",
-            TiledProduct::Shades(_) => "hillshade",
-            TiledProduct::Contours(_) => "contour",
-            TiledProduct::Surface => "tin",
-        }
-    }
 }
 
 /// A task of a job.
@@ -164,9 +119,10 @@ enum Task {
 
 /// A surface in tiles, and what is made of it.
 #[derive(Debug)]
-pub struct Job<'a> {
-    request: &'a TinRequest,
-    product: &'a TiledProduct,
+pub struct Job {
+    request: TinRequest,
+    systems: SystemOptions,
+    verb: Arc<dyn Verb>,
     bad: BadFiles,
     folder: PathBuf,
     /// The checksum of the plan in the folder, which names the job; 0 until it is there.
@@ -181,31 +137,9 @@ pub struct Job<'a> {
     pub notices: Vec<Notice>,
 }
 
-/// What a plan consists of.
-#[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
-pub struct JobSize {
-    /// The number of files of points.
-    pub files: usize,
-    /// The number of points that they state.
-    pub points: u64,
-    /// The number of tiles.
-    pub tiles: usize,
-    /// True if the files are divided among the tiles first: their points are written and read once
-    /// more.
-    pub divides: bool,
-    /// The number of merges.
-    pub merges: usize,
-    /// The number of all tasks.
-    pub tasks: usize,
-    /// About how many bytes the tasks write; 0 if that is not known, as for contours.
-    pub disk: u64,
-    /// About how much memory each task may need, in bytes.
-    pub task_memory: u64,
-}
-
-impl<'a> Job<'a> {
-    /// Plans a job. Nothing is written.
+impl Job {
+    /// Plans a job that will have a folder. Nothing is written. Of the options, the folder does not
+    /// count.
     ///
     /// # Errors
     /// If the request has something that tiles do not have yet, or a file cannot be opened; and
@@ -214,26 +148,29 @@ impl<'a> Job<'a> {
     /// # Complexity
     /// Linear in the files, of which the headers are read; those that state no number or extent are
     /// read to their end.
-    pub fn plan(
-        request: &'a SurfaceRequest,
-        product: &'a TiledProduct,
-        options: &TileOptions,
-        context: &Context,
-    ) -> Result<Self> {
-        let (request, systems) = tiled(request, product)?;
+    pub fn plan(wanted: &WriteRequest, folder: &Path, options: &TileOptions, context: &Context) -> Result<Self> {
+        let (request, systems) = tiled(wanted)?;
+        let verb = wanted.verb.as_ref();
         let journal = Journal::new(context);
-        let (plan, known) = Plan::new(request, systems, product, options, &journal)?;
+        let (plan, known) = Plan::new(request, systems, verb, options, &journal)?;
         let known = OnceLock::from(known);
-        Ok(Job { known, notices: journal.take(), ..Self::of_plan(request, product, options, plan) })
+        Ok(Job { known, notices: journal.take(), ..Self::of_plan(wanted, (request, systems), folder, options, plan) })
     }
 
-    fn of_plan(request: &'a TinRequest, product: &'a TiledProduct, options: &TileOptions, plan: Plan) -> Self {
+    fn of_plan(
+        wanted: &WriteRequest,
+        (request, systems): (&TinRequest, &SystemOptions),
+        folder: &Path,
+        options: &TileOptions,
+        plan: Plan,
+    ) -> Self {
         let steps = plan.layout.steps();
         Job {
-            request,
-            product,
+            request: request.clone(),
+            systems: systems.clone(),
+            verb: Arc::clone(&wanted.verb),
             bad: if plan.skips_bad { BadFiles::Skip } else { options.bad },
-            folder: options.folder.clone(),
+            folder: folder.to_path_buf(),
             sum: 0,
             plan,
             steps,
@@ -243,13 +180,26 @@ impl<'a> Job<'a> {
         }
     }
 
-    /// Creates the folder of the job, with the plan; `command` is kept with it, see
-    /// [`job_command`]. The whole job is taken for this process, as long as the result lives.
+    /// Returns the request that the job is for.
+    pub fn request(&self) -> WriteRequest {
+        let source = Source::Points(Box::new(self.request.clone()));
+        let surface = SurfaceRequest { source, systems: self.systems.clone() };
+        WriteRequest { surface, verb: Arc::clone(&self.verb) }
+    }
+
+    /// Returns the folder of the job.
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// Creates the folder of the job, with the plan; `command` is kept with it, so that others can
+    /// do tasks of the job. The whole job is taken for this process, as long as the result lives.
     ///
     /// # Errors
     /// If the folder has a job already, or files of something else that have the same names, or
     /// cannot be written; or if another process works on it.
-    pub fn create(&mut self, command: Option<&str>) -> Result<JobLock> {
+    pub fn create(&mut self, command: Option<&JobCommand>) -> Result<JobLock> {
+        let command = command.map(JobCommand::to_text).transpose()?;
         folder::require_no_job(&self.folder)?;
         let named = |e: std::io::Error| Error::from(e).in_file(&self.folder);
         std::fs::create_dir_all(&self.folder).map_err(named)?;
@@ -257,7 +207,7 @@ impl<'a> Job<'a> {
         // Another process may have created one meanwhile.
         folder::require_no_job(&self.folder)?;
         std::fs::create_dir_all(tasks_in(&self.folder)).map_err(named)?;
-        if let Some(command) = command {
+        if let Some(command) = &command {
             std::fs::write(self.folder.join(COMMAND), command).map_err(named)?;
         }
         // Last, because a folder is a job from here on.
@@ -278,8 +228,8 @@ impl<'a> Job<'a> {
     ///
     /// # Errors
     /// If the job is that of another request, or damaged, or a file has changed otherwise.
-    pub fn open(request: &'a SurfaceRequest, product: &'a TiledProduct, options: &TileOptions) -> Result<Option<Self>> {
-        let Some(job) = Self::stored(request, product, options)? else { return Ok(None) };
+    pub fn open(wanted: &WriteRequest, folder: &Path, options: &TileOptions) -> Result<Option<Self>> {
+        let Some(job) = Self::stored(wanted, folder, options)? else { return Ok(None) };
         (0..job.task_count()).try_for_each(|task| job.check_input(task))?;
         job.plan.require_others_unchanged()?;
         Ok(Some(job))
@@ -291,13 +241,8 @@ impl<'a> Job<'a> {
     ///
     /// # Errors
     /// As [`open`](Self::open); also if the job has no task with this number.
-    pub fn open_for(
-        request: &'a SurfaceRequest,
-        product: &'a TiledProduct,
-        options: &TileOptions,
-        task: usize,
-    ) -> Result<Option<Self>> {
-        let Some(job) = Self::stored(request, product, options)? else { return Ok(None) };
+    pub fn open_for(wanted: &WriteRequest, folder: &Path, options: &TileOptions, task: usize) -> Result<Option<Self>> {
+        let Some(job) = Self::stored(wanted, folder, options)? else { return Ok(None) };
         if task > job.task_count() {
             return Err(job.no_task(task));
         }
@@ -312,7 +257,7 @@ impl<'a> Job<'a> {
         let Some(number) = self.file_of(task) else { return Ok(()) };
         let path = &self.plan.files[number].path;
         match self.state_of_input(task) {
-            None => match self.plan.require_same_points(number, self.request) {
+            None => match self.plan.require_same_points(number, &self.request) {
                 Err(error) if self.bad.skips(&error) => Ok(()),
                 // It is tried again, and the job may be planned again.
                 Err(_) if self.skips(task) => Ok(()),
@@ -329,33 +274,33 @@ impl<'a> Job<'a> {
     ///
     /// # Errors
     /// If the job is that of another request, or damaged.
-    pub fn stored(
-        request: &'a SurfaceRequest,
-        product: &'a TiledProduct,
-        options: &TileOptions,
-    ) -> Result<Option<Self>> {
-        let (request, systems) = tiled(request, product)?;
-        let Some(stored) = StoredPlan::read(&options.folder)? else { return Ok(None) };
+    pub fn stored(wanted: &WriteRequest, folder: &Path, options: &TileOptions) -> Result<Option<Self>> {
+        let (request, systems) = tiled(wanted)?;
+        let Some(stored) = StoredPlan::read(folder)? else { return Ok(None) };
         let plan = Plan::from_json(&stored.plan).ok_or_else(|| {
-            Error::format("the job was planned by another version of this program")
-                .in_file(&options.folder)
-                .cure(wording!["remove it (", Command::JobClean, "), or name another folder (", Setting::Job, ")"])
+            Error::format("the job was planned by another version of this program").in_file(folder).cure(wording![
+                "remove it (",
+                Command::JobClean,
+                "), or name another folder (",
+                Setting::Job,
+                ")"
+            ])
         })?;
-        let asked = request::options_of(request, systems, product, options);
+        let asked = request::options_of(request, systems, wanted.verb.as_ref(), options);
         if plan.request != asked || plan.files.iter().any(|file| file.input >= request.points.len()) {
             let differing = request::differing(&plan.request, &asked);
             return Err(Error::usage(wording![
                 "the job in this folder is that of another command; what differs: ",
                 differing
             ])
-            .in_file(&options.folder)
+            .in_file(folder)
             .cure(wording!["repeat that command, or name another folder (", Setting::Job, ")"]));
         }
-        Ok(Some(Job { sum: stored.sum, ..Self::of_plan(request, product, options, plan) }))
+        Ok(Some(Job { sum: stored.sum, ..Self::of_plan(wanted, (request, systems), folder, options, plan) }))
     }
 
     /// Returns the file of points that a task reads, if it reads one.
-    pub fn input(&self, task: usize) -> Option<&Path> {
+    pub(super) fn input(&self, task: usize) -> Option<&Path> {
         self.file_of(task).map(|number| self.plan.files[number].path.as_path())
     }
 
@@ -377,9 +322,9 @@ impl<'a> Job<'a> {
         // Blocks at borders are written by each tile that they meet; measured.
         let cells = plan.cells().saturating_mul(8);
         let points = plan.point_count();
-        let drawn = match self.product {
-            TiledProduct::Surface => points.saturating_mul(BYTES_A_POINT_OF_PART),
-            _ => cells,
+        let drawn = match self.verb.keeps() {
+            Keeps::Triangles => points.saturating_mul(BYTES_A_POINT_OF_PART),
+            Keeps::Heights(_) | Keeps::Contours(_) => cells,
         };
         JobSize {
             files: plan.files.len(),
@@ -451,12 +396,12 @@ impl<'a> Job<'a> {
         // What there is to say about the layers was said with the plan.
         let quiet = Context { cancel: context.cancel, ..Context::default() };
         let (crs, extent) = (self.plan.crs.as_ref(), self.plan.extent());
-        let known = Known::read(self.request, crs, &extent, &Journal::new(&quiet))?;
+        let known = Known::read(&self.request, crs, &extent, &Journal::new(&quiet))?;
         Ok(self.known.get_or_init(|| known))
     }
 
     /// Returns the tasks that must be done before a task.
-    pub fn needs(&self, task: usize) -> Vec<usize> {
+    pub(super) fn needs(&self, task: usize) -> Vec<usize> {
         match self.task(task) {
             Task::Divide(_) => Vec::new(),
             Task::Lines => (0..self.divided()).collect(),
@@ -474,7 +419,7 @@ impl<'a> Job<'a> {
 
     /// Returns the stage of each task, from 0: a task needs only those of earlier stages, so that
     /// all of one stage can be done at the same time.
-    pub fn stages(&self) -> Vec<usize> {
+    pub(super) fn stages(&self) -> Vec<usize> {
         let mut stages: Vec<usize> = Vec::with_capacity(self.task_count());
         for task in 0..self.task_count() {
             let before = self.needs(task).into_iter().map(|needed| stages[needed] + 1).max();
@@ -484,7 +429,7 @@ impl<'a> Job<'a> {
     }
 
     /// Returns the tasks that must be done before the output is written.
-    pub fn last_needs(&self) -> Vec<usize> {
+    pub(super) fn last_needs(&self) -> Vec<usize> {
         (self.first_step()..self.task_count()).collect()
     }
 
@@ -562,13 +507,8 @@ impl<'a> Job<'a> {
 ///
 /// # Errors
 /// If it cannot be done in tiles, or a file cannot be opened.
-pub fn needs_tiles(
-    request: &SurfaceRequest,
-    product: &TiledProduct,
-    memory: Option<u64>,
-    context: &Context,
-) -> Result<bool> {
-    let (points, systems) = tiled(request, product)?;
+pub fn needs_tiles(wanted: &WriteRequest, memory: Option<u64>, context: &Context) -> Result<bool> {
+    let (points, systems) = tiled(wanted)?;
     plan::require_tiled(points, systems)?;
     let memory = memory.unwrap_or_else(super::memory::half_of_free);
     // Opening a layer reads it. A point takes a byte at least, so the lengths nearly always
@@ -586,13 +526,14 @@ pub fn needs_tiles(
 }
 
 /// Returns the request of the points of a surface.
-fn tiled<'a>(request: &'a SurfaceRequest, product: &TiledProduct) -> Result<(&'a TinRequest, &'a SystemOptions)> {
-    let Source::Points(points) = &request.source else {
+fn tiled(wanted: &WriteRequest) -> Result<(&TinRequest, &SystemOptions)> {
+    let SurfaceRequest { source, systems } = &wanted.surface;
+    let Source::Points(points) = source else {
         return Err(Error::usage("tiles are made of points, but the input is a surface already")
             .cure("leave out the options of tiles"));
     };
-    if product.method() != Method::Linear {
+    if wanted.verb.method() != Method::Linear {
         return Err(NotInTiles::Method.into());
     }
-    Ok((points, &request.systems))
+    Ok((points, systems))
 }

@@ -2,78 +2,32 @@
 
 use std::collections::BTreeSet;
 
-use serde_json::{Map, Value, json};
-
+use super::Job;
 use super::lines::{JobLines, Known};
 use super::plan::Plan;
-use super::task_file::{SKIPPED, TaskFile};
-use super::{Job, TiledProduct};
+use super::task_facts::{FileFacts, TaskFacts, TaskNotice};
 use crate::data::Bounds;
-use crate::error::{Result, Wording};
+use crate::error::Result;
 use crate::run::context::{Context, Journal};
 use crate::run::extents;
 use crate::run::line_notes::OtherHeights;
 use crate::run::line_request::LineRole;
-use crate::run::notice::{Notice, Severity};
+use crate::run::notice::Notice;
 use crate::run::tin::{TinRequest, mean_distance};
 use crate::run::units::Units;
-use crate::terrain::{Classes, SelectionReport};
+use crate::run::verbs::{Keeps, Verb};
+use crate::terrain::Classes;
 
-/// The names of facts.
-const NOTICES: &str = "notices";
-const CLASSES: &str = "classes";
-const WITHOUT_CLASS: &str = "without_class";
-const EXTENT_USED: &str = "extent_used";
-const RINGS: &str = "rings";
-pub(super) const MET: &str = "met";
-pub(super) const DRAPED: &str = "draped";
-
-/// The levels of notices by their numbers in the file of a task.
-const SEVERITIES: [Severity; 3] = [Severity::Detail, Severity::Note, Severity::Warning];
-
-/// Adds the notices of a task to its facts.
-pub(super) fn put_notices(facts: &mut Map<String, Value>, notices: &[Notice]) {
-    let of = |notice: &Notice| {
-        let level = SEVERITIES.iter().position(|severity| *severity == notice.severity());
-        let details: Vec<Value> = notice.details().iter().map(Wording::to_json).collect();
-        json!([level, notice.text().to_json(), details])
-    };
-    if !notices.is_empty() {
-        facts.insert(NOTICES.to_owned(), notices.iter().map(of).collect());
-    }
-}
-
-fn to_notice(value: &Value) -> Option<Notice> {
-    Some(Notice::OfTask {
-        severity: *SEVERITIES.get(usize::try_from(value[0].as_u64()?).ok()?)?,
-        text: Wording::from_json(&value[1])?,
-        details: value[2].as_array()?.iter().map(Wording::from_json).collect::<Option<_>>()?,
-    })
-}
-
-/// Adds to the facts of a task what its points say about the whole. `extent` is that of those that
-/// are used.
-pub(super) fn put_points(facts: &mut Map<String, Value>, report: &SelectionReport, extent: &Bounds) {
-    let classes: Vec<u8> = report.by_class.keys().copied().collect();
-    facts.insert(CLASSES.to_owned(), json!(classes));
-    facts.insert(WITHOUT_CLASS.to_owned(), json!(report.without_class));
-    if !extent.is_empty() {
-        facts.insert(EXTENT_USED.to_owned(), json!([extent.min, extent.max]));
-    }
-}
-
-/// Adds to the facts of a task what its points say about lines that may be shores.
-pub(super) fn put_rings(facts: &mut Map<String, Value>, found: &[OtherHeights]) {
+/// Returns the lines that may be shores and have points of other heights within, as a task keeps
+/// them.
+pub(super) fn rings_found(found: &[OtherHeights]) -> Vec<(usize, u64, f64)> {
     let some = (0..found.len()).filter(|&ring| found[ring].0 > 0);
-    let some: Vec<(usize, u64, f64)> = some.map(|ring| (ring, found[ring].0, found[ring].1)).collect();
-    if !some.is_empty() {
-        facts.insert(RINGS.to_owned(), json!(some));
-    }
+    some.map(|ring| (ring, found[ring].0, found[ring].1)).collect()
 }
 
 impl Plan {
     /// Reports what is known of the points from what their files state.
-    pub(super) fn note(&self, request: &TinRequest, product: &TiledProduct, known: &Known, journal: &Journal) {
+    pub(super) fn note(&self, request: &TinRequest, verb: &dyn Verb, known: &Known, journal: &Journal) {
         let units = Units::of(self.crs.as_ref());
         let paths: Vec<_> = self.files.iter().map(|file| file.path.as_path()).collect();
         let extents: Vec<Bounds> = self.files.iter().map(|file| file.bounds()).collect();
@@ -87,7 +41,7 @@ impl Plan {
         if let Some(lines) = &known.lines {
             note_of_lines(lines, &self.stated_extent(), request, &units).into_iter().for_each(|n| journal.add(n));
         }
-        if let TiledProduct::Contours(options) = product {
+        if let Keeps::Contours(options) = verb.keeps() {
             options.notice(self.crs.as_ref()).into_iter().for_each(|notice| journal.add(notice));
         }
     }
@@ -123,21 +77,19 @@ pub(super) struct Found {
 
 impl Found {
     /// Adds what a task found, which has read the file of points with this number, if any.
-    pub(super) fn add(&mut self, task: &TaskFile, file: Option<usize>) {
-        let facts = &task.facts;
-        let all = |name: &str| facts.get(name).and_then(Value::as_array).into_iter().flatten();
-        self.notices.extend(all(NOTICES).filter_map(to_notice));
-        self.classes.extend(all(CLASSES).filter_map(|class| u8::try_from(class.as_u64()?).ok()));
-        self.without_class += task.count(WITHOUT_CLASS);
-        self.met += task.count(MET) + task.count("clipped");
-        self.draped += task.count(DRAPED);
-        self.rings.extend(all(RINGS).filter_map(|ring| serde_json::from_value::<(usize, u64, f64)>(ring.clone()).ok()));
-        for corner in all(EXTENT_USED).filter_map(|corner| serde_json::from_value::<[f64; 3]>(corner.clone()).ok()) {
-            self.extent_used.add(corner);
+    pub(super) fn add(&mut self, facts: &TaskFacts, file: Option<usize>) {
+        self.notices.extend(facts.notices.iter().filter_map(TaskNotice::notice));
+        self.met += facts.met + facts.kept.clipped;
+        self.draped += facts.draped;
+        if let Some(points) = facts.read() {
+            self.classes.extend(&points.classes);
+            self.without_class += points.without_class;
+            self.rings.extend(&points.rings);
+            points.extent.add_to(&mut self.extent_used);
         }
-        match (file, facts.get(SKIPPED)) {
-            (Some(file), Some(why)) => self.skipped.push((file, why.as_str().unwrap_or_default().to_owned())),
-            (Some(file), None) if task.count("used") == 0 => self.unused.push(file),
+        match (file, &facts.file) {
+            (Some(file), Some(FileFacts::Skipped(why))) => self.skipped.push((file, why.clone())),
+            (Some(file), Some(FileFacts::Read(points))) if points.used == 0 => self.unused.push(file),
             _ => {}
         }
     }
@@ -151,7 +103,7 @@ impl Found {
         self.note_skipped(&job.plan, journal);
         self.note_points(job, journal);
         let units = Units::of(job.plan.crs.as_ref());
-        let request = job.request;
+        let request = &job.request;
         if job.plan.has_lines
             && let Some(lines) = &job.known(context)?.lines
         {

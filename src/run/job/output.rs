@@ -1,21 +1,21 @@
 //! What is made of a job whose tasks are all done: counts, a raster, contours.
 
-use serde_json::Value;
-
+use super::Job;
 use super::contours::DrawnContours;
 use super::notes::Found;
 use super::raster::DrawnCells;
 use super::task_file::TaskName;
-use super::{Job, TiledProduct};
 use crate::crs::Crs;
-use crate::data::Bounds;
+use crate::data::{BlockSource, Bounds};
 use crate::error::{Command, Error, Result, Setting, wording};
 use crate::io::Destination;
 use crate::io::contours::ContourSummary;
-use crate::run::cells::{CellProduct, HillshadeOptions};
 use crate::run::context::{Context, Journal};
-use crate::run::frame;
+use crate::run::contour::ContourOptions;
+use crate::run::frame::{self, FrameOptions};
 use crate::run::notice::Notice;
+use crate::run::tin_parts::WrittenParts;
+use crate::run::verbs::Tiles;
 
 /// Counts of a job that is done.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -60,7 +60,7 @@ pub struct JobReport {
     pub crs: Option<Crs>,
 }
 
-impl Job<'_> {
+impl Job {
     /// Returns counts of all tasks, which must be done, and reports what they found.
     ///
     /// # Errors
@@ -70,24 +70,24 @@ impl Job<'_> {
         let mut found = Found::default();
         let mut tasks = 0..;
         report.sources = self.open_all(|file| {
-            found.add(&file, tasks.next().and_then(|task| self.file_of(task)));
-            report.read += file.count("read");
-            report.used += file.count("used");
-            report.withheld += file.count("withheld");
-            report.other_class += file.count("other_class");
-            report.duplicates += file.count("duplicates");
-            report.line_edges += file.count("line_edges");
-            report.triangles += file.count("triangles");
-            report.beyond_max_edge += file.count("removed");
-            report.clipped += file.count("clipped");
-            report.over_skipped += file.count("over_skipped");
-            report.waited += file.count("waiting");
-            report.handed_up += file.count("residual");
-            report.area += file.facts.get("area").and_then(Value::as_f64).unwrap_or(0.0);
-            for corner in file.facts.get("extent").and_then(Value::as_array).into_iter().flatten() {
-                let coordinate = |k: usize| corner[k].as_f64().unwrap_or(f64::NAN);
-                report.extent.add([coordinate(0), coordinate(1), coordinate(2)]);
+            let facts = &file.facts;
+            found.add(facts, tasks.next().and_then(|task| self.file_of(task)));
+            if let Some(points) = facts.read() {
+                report.read += points.read;
+                report.used += points.used;
+                report.withheld += points.withheld;
+                report.other_class += points.other_class;
             }
+            report.duplicates += facts.duplicates;
+            report.line_edges += facts.line_edges;
+            report.triangles += facts.kept.triangles;
+            report.beyond_max_edge += facts.removed;
+            report.clipped += facts.kept.clipped;
+            report.over_skipped += facts.over_skipped;
+            report.waited += facts.waiting;
+            report.handed_up += facts.handed_up;
+            report.area += facts.kept.area.unwrap_or(0.0);
+            facts.kept.extent.add_to(&mut report.extent);
         })?;
         let journal = Journal::new(context);
         report.skipped = found.skipped(&self.plan);
@@ -96,43 +96,9 @@ impl Job<'_> {
         Ok(report)
     }
 
-    /// Returns the cells of a raster, once all tasks are done.
-    ///
-    /// # Errors
-    /// If a task is not done, if no triangle is left, or if the job makes no raster; and those of
-    /// [`dem`](crate::run::dem).
-    pub fn cells(&self, report: &JobReport, context: &Context) -> Result<CellProduct<'static>> {
-        let journal = Journal::new(context);
-        self.require_triangles(report)?;
-        let (Some(options), Some(drawn)) = (self.product.frame(), self.plan.frame) else {
-            return Err(Error::usage("the job makes no raster"));
-        };
-        let frame = frame::placed(options, report.extent, report.crs.as_ref(), &journal)?;
-        frame::require_filled(options, &frame, &report.extent, || report.area)?;
-        let drawn = DrawnCells::open(self.step_files(), drawn, frame, report.crs.clone())?;
-        Ok(match self.product {
-            TiledProduct::Shades(HillshadeOptions { light, .. }) => {
-                CellProduct::shades_of(Box::new(drawn), light, report.crs.as_ref(), &journal)?
-            }
-            TiledProduct::Heights(_) | TiledProduct::Contours(_) | TiledProduct::Surface => {
-                CellProduct::heights_of(Box::new(drawn), journal.take())
-            }
-        })
-    }
-
-    /// Writes the contours, once all tasks are done, in the format that the extension of `target`
-    /// names. They are drawn level by level, and not kept.
-    ///
-    /// # Errors
-    /// If a task is not done, if no triangle is left, or if the job makes no contours; and those of
-    /// [`ContourProduct::write`](crate::run::ContourProduct::write).
-    pub fn write_contours(&self, report: &JobReport, target: Destination, context: &Context) -> Result<ContourSummary> {
-        self.require_triangles(report)?;
-        let TiledProduct::Contours(options) = self.product else {
-            return Err(Error::usage("the job makes no contours"));
-        };
-        let drawn = DrawnContours::open(self.step_files(), &options.to_levels()?)?;
-        target.put_whole(|target| drawn.write(target, report.crs.as_ref(), context))
+    /// Returns what the tasks have kept, once all are done.
+    pub fn tiles<'a>(&'a self, report: &'a JobReport) -> impl Tiles {
+        KeptTiles { job: self, report }
     }
 
     pub(super) fn require_triangles(&self, report: &JobReport) -> Result<()> {
@@ -169,5 +135,40 @@ impl Job<'_> {
     /// The files of all tasks that have triangles.
     fn step_files(&self) -> Vec<TaskName> {
         (self.first_step()..self.task_count()).map(|task| self.task_file(task)).collect()
+    }
+}
+
+/// What the tasks of a job have kept.
+struct KeptTiles<'a> {
+    job: &'a Job,
+    report: &'a JobReport,
+}
+
+impl Tiles for KeptTiles<'_> {
+    fn heights(&self, options: &FrameOptions, context: &Context) -> Result<Box<dyn BlockSource>> {
+        let KeptTiles { job, report } = self;
+        job.require_triangles(report)?;
+        let Some(drawn) = job.plan.frame else {
+            return Err(Error::usage("the job makes no raster"));
+        };
+        let frame = frame::placed(options, report.extent, report.crs.as_ref(), &Journal::new(context))?;
+        frame::require_filled(options, &frame, &report.extent, || report.area)?;
+        Ok(Box::new(DrawnCells::open(job.step_files(), drawn, frame, report.crs.clone())?))
+    }
+
+    fn write_contours(
+        &self,
+        contours: &ContourOptions,
+        target: Destination,
+        context: &Context,
+    ) -> Result<ContourSummary> {
+        let KeptTiles { job, report } = self;
+        job.require_triangles(report)?;
+        let drawn = DrawnContours::open(job.step_files(), &contours.to_levels()?)?;
+        target.put_whole(|target| drawn.write(target, report.crs.as_ref(), context))
+    }
+
+    fn write_parts(&self, target: Destination, context: &Context) -> Result<WrittenParts> {
+        self.job.write_surface(self.report, target, context)
     }
 }

@@ -7,7 +7,7 @@ use super::not_in_tiles::NotInTiles;
 use super::planned_file::{FileState, PlannedFile, looked_at, planned, require_state, state_of};
 use super::request::{Options, options_of};
 use super::sampled;
-use super::{Division, Look, TileOptions, TiledProduct};
+use super::{Division, Look, TileOptions};
 use crate::crs::Crs;
 use crate::data::{Bounds, Frame, PointInfo};
 use crate::error::{Command, Error, Result, Setting, wording};
@@ -21,6 +21,7 @@ use crate::run::point_files::{BadFiles, GROUND, PointFiles};
 use crate::run::systems::{self, Stated, SystemOptions, Systems};
 use crate::run::tin::TinRequest;
 use crate::run::units::Units;
+use crate::run::verbs::{Keeps, Verb};
 use crate::terrain::tiles::{Layout, Spread, Work};
 use crate::terrain::{Classes, SelectionReport};
 
@@ -95,7 +96,7 @@ impl Plan {
     pub(super) fn new(
         request: &TinRequest,
         systems: &SystemOptions,
-        product: &TiledProduct,
+        verb: &dyn Verb,
         options: &TileOptions,
         journal: &Journal,
     ) -> Result<(Self, Known)> {
@@ -189,16 +190,19 @@ impl Plan {
             }
             Ok(frame)
         };
-        let frame = product.frame().map(placed).transpose()?;
+        let frame = match verb.keeps() {
+            Keeps::Heights(options) => Some(placed(options)?),
+            Keeps::Contours(_) | Keeps::Triangles => None,
+        };
         let units = Units::of(crs.as_ref());
         let max_edge = request.max_edge.length(&units);
         let (has_lines, has_clip) = (lines.is_some(), clip.is_some());
-        let others = others(request, product)?;
+        let others = others(request, verb)?;
         if let Some(path) = files.iter().map(|file| &file.path).find(|path| path.to_str().is_none()) {
             return Err(Error::unsupported("the name is not valid Unicode, which a plan needs").in_file(path));
         }
         let plan = Plan {
-            request: options_of(request, systems, product, options),
+            request: options_of(request, systems, verb, options),
             files,
             others,
             skipped,
@@ -213,7 +217,7 @@ impl Plan {
             frame,
             task_memory,
         };
-        plan.note(request, product, &known, journal);
+        plan.note(request, verb, &known, journal);
         Ok((plan, known))
     }
 
@@ -362,14 +366,13 @@ fn opened(request: &TinRequest, closed: &[Closed]) -> (Vec<usize>, Vec<Input<Mem
 }
 
 /// Returns the states of the files that are read beside the points.
-fn others(request: &TinRequest, product: &TiledProduct) -> Result<Vec<OtherFile>> {
+fn others(request: &TinRequest, verb: &dyn Verb) -> Result<Vec<OtherFile>> {
     let layers = request.lines.inputs().into_iter().flat_map(|(_, inputs)| inputs);
     let layers = layers.chain(&request.breaklines).chain(&request.boundary);
     let layers = layers.filter_map(|input| match input {
         Input::File(path) => Some(path),
         Input::Memory(_) => None,
     });
-    let raster = product.frame().and_then(|frame| frame.align_to.as_ref());
     let state = |path: &PathBuf| Ok((path.clone(), state_of(path)?));
-    layers.chain(raster).map(state).collect()
+    layers.chain(verb.also_reads()).map(state).collect()
 }

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::time::UNIX_EPOCH;
 
+use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use crate::data::{Bounds, PointBatch};
@@ -18,7 +19,7 @@ use crate::terrain::tiles::Spread;
 const HEADER_ROUNDING: f64 = 8.0;
 
 /// What tells whether a file has changed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct FileState {
     /// The length in bytes.
     pub size: u64,

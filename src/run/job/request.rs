@@ -3,16 +3,14 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Debug;
 
-use super::{TileOptions, TiledProduct};
+use super::TileOptions;
 use crate::error::{Setting, Wording};
 use crate::io::points;
-use crate::run::cells::{DemOptions, HillshadeOptions, LightOptions};
 use crate::run::checksum::checksum;
-use crate::run::contour::ContourOptions;
-use crate::run::frame::FrameOptions;
 use crate::run::line_request::{FlatOptions, LineRequest, WallOptions};
 use crate::run::systems::SystemOptions;
 use crate::run::tin::TinRequest;
+use crate::run::verbs::Verb;
 
 /// The name of what decides which other options there are.
 const VERB: &str = "the verb";
@@ -30,11 +28,11 @@ pub(super) type Options = BTreeMap<String, String>;
 pub(super) fn options_of(
     request: &TinRequest,
     systems: &SystemOptions,
-    product: &TiledProduct,
+    verb: &dyn Verb,
     tiles: &TileOptions,
 ) -> Options {
     let mut options = Listed(Options::new());
-    options.put(VERB, &product.name());
+    options.put(VERB, &verb.name());
     // Whoever adds an option has to name it here.
     let TinRequest {
         points,
@@ -71,7 +69,7 @@ pub(super) fn options_of(
     options.add(&[Setting::Crs], assign);
     options.add(&[Setting::TargetCrs], target);
     options.add(&[Setting::ForceDegrees], degrees);
-    options.add_product(product);
+    verb.list(&mut |setting, value| options.add(&[setting], value));
     options.add(&[Setting::Tiles], &tiles.division);
     options.add(&[Setting::Memory], &tiles.memory);
     options.0
@@ -130,34 +128,5 @@ impl Listed {
         self.add(&[Setting::Rivers], rivers);
         self.add(&[Setting::RiverWidth], river_width);
         self.add(&[Setting::Densify], densify);
-    }
-
-    fn add_product(&mut self, product: &TiledProduct) {
-        match product {
-            TiledProduct::Heights(DemOptions { frame, method }) => {
-                self.add_frame(frame);
-                self.add(&[Setting::Method], method);
-            }
-            TiledProduct::Shades(HillshadeOptions { frame, method, light }) => {
-                let LightOptions { azimuth, altitude, z_factor } = light;
-                self.add_frame(frame);
-                self.add(&[Setting::Method], method);
-                self.add(&[Setting::Azimuth], azimuth);
-                self.add(&[Setting::Altitude], altitude);
-                self.add(&[Setting::ZFactor], z_factor);
-            }
-            TiledProduct::Contours(ContourOptions { interval, base, levels }) => {
-                self.add(&[Setting::Interval], interval);
-                self.add(&[Setting::Base], base);
-                self.add(&[Setting::Levels], levels);
-            }
-            TiledProduct::Surface => {}
-        }
-    }
-
-    fn add_frame(&mut self, FrameOptions { resolution, extent, align_to }: &FrameOptions) {
-        self.add(&[Setting::Resolution], resolution);
-        self.add(&[Setting::Extent], extent);
-        self.add(&[Setting::AlignTo], align_to);
     }
 }

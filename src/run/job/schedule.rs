@@ -34,7 +34,7 @@ enum Failure {
     Panic(Box<dyn Any + Send>),
 }
 
-impl Job<'_> {
+impl Job {
     /// Does all tasks that are not done, on as many threads as there are, and one thread each.
     ///
     /// Merges come soon after what they merge. After an error the tasks that run are finished, and

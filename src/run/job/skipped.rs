@@ -4,15 +4,15 @@ use std::path::Path;
 
 use super::Job;
 use super::planned_file::looked_at;
-use super::task_file::{SKIPPED, TaskFile};
+use super::task_file::TaskFile;
 use crate::error::{Error, Kind, Result};
 use crate::run::context::{Context, Journal};
 
-impl Job<'_> {
+impl Job {
     /// Returns true if a task that is done has skipped its file of points.
     pub(super) fn skips(&self, task: usize) -> bool {
         let file = TaskFile::open(&self.task_file(task)).ok().flatten();
-        file.is_some_and(|file| file.facts.contains_key(SKIPPED))
+        file.is_some_and(|file| file.facts.skipped().is_some())
     }
 
     /// Returns true if a file is skipped: the result has a hole.
@@ -32,7 +32,7 @@ impl Job<'_> {
     pub fn outgrown_by(&self, context: &Context) -> Result<Option<&Path>> {
         let quiet = Context { cancel: context.cancel, ..Context::default() };
         for (input, _) in &self.plan.skipped {
-            if looked_at(*input, self.request, &quiet).is_ok() {
+            if looked_at(*input, &self.request, &quiet).is_ok() {
                 return Ok(Some(self.request.points[*input].path()));
             }
         }

@@ -4,7 +4,6 @@ use serde_json::{Value, json};
 
 use super::plan::Plan;
 use super::planned_file::{FileState, PlannedFile};
-use crate::crs::{Crs, CrsKind, Unit};
 use crate::data::Frame;
 use crate::terrain::tiles::{Layout, Node};
 
@@ -31,7 +30,7 @@ impl Plan {
             "has_lines": self.has_lines,
             "has_clip": self.has_clip,
             "layout": self.layout.nodes().iter().map(node).collect::<Vec<_>>(),
-            "crs": self.crs.as_ref().map(of_crs),
+            "crs": self.crs,
             "classes": self.classes,
             "max_edge": self.max_edge,
             "frame": self.frame.map(|frame| json!([frame.width, frame.height, frame.transform])),
@@ -83,10 +82,7 @@ impl Plan {
             has_lines: value["has_lines"].as_bool()?,
             has_clip: value["has_clip"].as_bool()?,
             layout: Layout::from_nodes(nodes)?,
-            crs: match &value["crs"] {
-                Value::Null => None,
-                value => Some(to_crs(value)?),
-            },
+            crs: serde_json::from_value(value["crs"].clone()).ok()?,
             classes: value["classes"].as_array()?.iter().map(class).collect::<Option<_>>()?,
             max_edge: value["max_edge"].as_f64(),
             frame: match &value["frame"] {
@@ -99,47 +95,10 @@ impl Plan {
     }
 }
 
-/// The kinds of coordinates by their names in the file.
-const KINDS: [(&str, CrsKind); 4] = [
-    ("projected", CrsKind::Projected),
-    ("geographic", CrsKind::Geographic),
-    ("geocentric", CrsKind::Geocentric),
-    ("local", CrsKind::Local),
-];
-
-fn of_crs(crs: &Crs) -> Value {
-    let Crs { name, epsg, vertical_epsg, kind, unit, vertical_unit, wkt } = crs;
-    let unit_of = |unit: &Unit| json!([unit.name, unit.factor]);
-    json!({
-        "name": name, "epsg": epsg, "vertical_epsg": vertical_epsg, "wkt": wkt,
-        "kind": KINDS.iter().find(|(_, known)| known == kind).map(|(name, _)| name),
-        "unit": unit_of(unit), "vertical_unit": vertical_unit.as_ref().map(unit_of),
-    })
-}
-
-fn to_crs(value: &Value) -> Option<Crs> {
-    let code = |value: &Value| match value {
-        Value::Null => Some(None),
-        value => u32::try_from(value.as_u64()?).ok().map(Some),
-    };
-    let unit = |value: &Value| Some(Unit { name: value[0].as_str()?.to_owned(), factor: value[1].as_f64()? });
-    Some(Crs {
-        name: value["name"].as_str()?.to_owned(),
-        epsg: code(&value["epsg"])?,
-        vertical_epsg: code(&value["vertical_epsg"])?,
-        kind: KINDS.into_iter().find(|(name, _)| value["kind"] == *name)?.1,
-        unit: unit(&value["unit"])?,
-        vertical_unit: match &value["vertical_unit"] {
-            Value::Null => None,
-            value => Some(unit(value)?),
-        },
-        wkt: value["wkt"].as_str().map(str::to_owned),
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::crs::Crs;
 
     #[test]
     fn systems_come_back_as_they_were() {
@@ -149,9 +108,9 @@ mod tests {
         all.push(of_wkt(local));
         all.push(of_wkt("EPSG:25832+7837"));
         for crs in all {
-            let text = of_crs(&crs).to_string();
-            assert_eq!(to_crs(&serde_json::from_str(&text).unwrap()), Some(crs));
+            let text = serde_json::to_string(&crs).unwrap();
+            assert_eq!(serde_json::from_str::<Crs>(&text).unwrap(), crs);
         }
-        assert_eq!(to_crs(&json!({"name": "a", "kind": "round", "unit": ["metre", 1.0]})), None);
+        assert!(serde_json::from_value::<Crs>(json!({"name": "a", "kind": "round"})).is_err());
     }
 }

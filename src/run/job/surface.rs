@@ -9,12 +9,14 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::bytes::{Reader, put_u32};
 use super::task_file::{TaskWriter, UNFINISHED};
-use super::{Job, JobReport, Task, TiledProduct};
+use super::{Job, JobReport, Task};
 use crate::data::{EdgeKind, LineEdges, Surface, SurfaceFacts};
 use crate::error::{Error, Result};
 use crate::io::Destination;
 use crate::run::checksum::{Summed, checksum};
 use crate::run::context::{Context, Size, Stage};
+use crate::run::tin_parts::WrittenParts;
+use crate::run::verbs::Keeps;
 use crate::terrain::tiles::{TinPart, Work};
 use crate::terrain::{CompactTin, PartCell, TinIndex, TinIndexPart};
 
@@ -87,44 +89,6 @@ struct Written {
     at_rim: Vec<LineEdge>,
 }
 
-/// A surface in parts whose files were written. Its folder is removed again, unless it is
-/// [kept](Self::keep).
-#[derive(Debug)]
-pub struct WrittenParts {
-    /// What the index says.
-    pub index: TinIndex,
-    /// The folder of the parts, unless it was there before.
-    folder: Option<PathBuf>,
-    /// The files of the surface that the new one replaces, and their folder.
-    superseded: Option<(PathBuf, Vec<PathBuf>)>,
-}
-
-impl WrittenParts {
-    /// Keeps the parts, once the index has appeared, and removes those of the surface that this one
-    /// replaces.
-    ///
-    /// # Errors
-    /// If they cannot be removed.
-    pub fn keep(mut self) -> Result<()> {
-        self.folder = None;
-        let Some((folder, files)) = self.superseded.take() else { return Ok(()) };
-        for file in files.iter().filter(|file| file.exists()) {
-            std::fs::remove_file(file).map_err(|e| Error::from(e).in_file(file))?;
-        }
-        // It stays if somebody has put something else there.
-        let _ = std::fs::remove_dir(&folder);
-        Ok(())
-    }
-}
-
-impl Drop for WrittenParts {
-    fn drop(&mut self) {
-        if let Some(folder) = &self.folder {
-            let _ = std::fs::remove_dir_all(folder);
-        }
-    }
-}
-
 /// Returns the folder and the files of the surface in parts that an index names, if they are its
 /// own: an index may have been copied, or damaged.
 fn parts_of(index: &Path, name: &str) -> Option<(PathBuf, Vec<PathBuf>)> {
@@ -151,7 +115,7 @@ pub(super) fn has_all_parts(index: &Path) -> bool {
     read.is_some_and(|read| has_all(&index.with_file_name(&read.folder), &read))
 }
 
-impl Job<'_> {
+impl Job {
     /// Writes the surface as a TIN in parts, once all tasks are done: a folder with a file for each
     /// task, and the index `target`, which appears last.
     ///
@@ -161,9 +125,14 @@ impl Job<'_> {
     ///
     /// # Complexity
     /// Linear in the triangles; in memory is one part for each thread.
-    pub fn write_surface(&self, report: &JobReport, target: Destination, context: &Context) -> Result<WrittenParts> {
+    pub(super) fn write_surface(
+        &self,
+        report: &JobReport,
+        target: Destination,
+        context: &Context,
+    ) -> Result<WrittenParts> {
         self.require_triangles(report)?;
-        if !matches!(self.product, TiledProduct::Surface) {
+        if !matches!(self.verb.keeps(), Keeps::Triangles) {
             return Err(Error::usage("the job makes no surface"));
         }
         let path = target.path();
@@ -193,11 +162,8 @@ impl Job<'_> {
             }
             std::fs::rename(staged.keep(), &folder).map_err(named)?;
         }
-        let written = WrittenParts {
-            superseded: superseded.filter(|(old, _)| *old != folder),
-            folder: (!is_there).then_some(folder),
-            index,
-        };
+        let superseded = superseded.filter(|(old, _)| *old != folder);
+        let written = WrittenParts::new(index, (!is_there).then_some(folder), superseded);
         let mut output = target.create()?;
         output.write_all(written.index.to_text().as_bytes()).map_err(|e| Error::from(e).in_file(path))?;
         target.put(output)?;
@@ -247,7 +213,7 @@ impl Job<'_> {
         let decided = rim.section(KEPT)?;
         let mut rest = &decided[..];
         for (step, cells) in all.iter_mut().enumerate() {
-            let count = self.open_task(self.task_of_step(step))?.count("waiting") as usize;
+            let count = self.open_task(self.task_of_step(step))?.facts.waiting as usize;
             let (own, others) = rest.split_at_checked(count).ok_or_else(|| rim.damaged())?;
             *cells = own.iter().map(|&byte| from_byte(byte)).collect::<Option<_>>().ok_or_else(|| rim.damaged())?;
             rest = others;

@@ -11,15 +11,16 @@ use std::io::{BufReader, BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use flate2::Crc;
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 use tempfile::NamedTempFile;
 
 use super::planned_file::FileState;
+use super::task_facts::TaskFacts;
 use crate::error::{Command, Error, Kind, Result, Setting, Wording, wording};
 use crate::run::checksum::{Summed, checksum};
 
 /// The last bytes of a complete file.
-const MAGIC: &[u8; 8] = b"BRKTASK2";
+const MAGIC: &[u8; 8] = b"BRKTASK3";
 
 /// What the last bytes of complete files of all versions begin with.
 const ANY_MAGIC: &[u8] = b"BRKTASK";
@@ -29,12 +30,6 @@ pub(super) const UNFINISHED: &str = ".unfinished";
 
 /// The begin of the names of such files.
 const UNFINISHED_BEGIN: &str = ".breakline-";
-
-/// The fact that has the state of the file of points that a task has read.
-pub(super) const INPUT: &str = "input";
-
-/// The fact that says why a file of points is skipped.
-pub(super) const SKIPPED: &str = "skipped";
 
 /// The bytes after the facts: their length, the checksum of both, the magic.
 const END: u64 = 8 + 4 + 8;
@@ -202,7 +197,7 @@ impl TaskWriter {
 
     /// Writes the facts and gives the file its name. `sources` is the checksum of what the task was
     /// made from.
-    pub(super) fn finish(mut self, facts: Map<String, Value>, sources: u32) -> Result<()> {
+    pub(super) fn finish(mut self, facts: &TaskFacts, sources: u32) -> Result<()> {
         self.end_section();
         let section = |(name, block): &(&str, Block)| json!([name, block.at, block.length, block.sum]);
         let sections: Vec<Value> = self.sections.iter().map(section).collect();
@@ -261,7 +256,7 @@ pub(super) struct TaskFile {
     /// The checksum of what the task was made from.
     pub(super) sources: u32,
     /// What the task found out.
-    pub(super) facts: Map<String, Value>,
+    pub(super) facts: TaskFacts,
 }
 
 impl TaskFile {
@@ -325,8 +320,8 @@ impl TaskFile {
         };
         let sections: Option<Vec<_>> = value["sections"].as_array().and_then(|all| all.iter().map(section).collect());
         let sources = number(&value["sources"]);
-        let facts = value.get_mut("facts").map(Value::take);
-        let (Some(sections), Some(sources), Some(Value::Object(facts))) = (sections, sources, facts) else {
+        let facts = value.get_mut("facts").map(Value::take).and_then(|facts| serde_json::from_value(facts).ok());
+        let (Some(sections), Some(sources), Some(facts)) = (sections, sources, facts) else {
             return Err(damaged());
         };
         Ok(TaskFile { reader, path: name.path.clone(), sections, length: text_from, sum: stated, sources, facts })
@@ -334,7 +329,7 @@ impl TaskFile {
 
     /// Returns the state of the file of points that the task has read; `None` if it reads none.
     pub(super) fn state_of_input(&self) -> Option<FileState> {
-        self.facts.get(INPUT).and_then(FileState::from_json)
+        self.facts.read().map(|read| read.state)
     }
 
     /// Returns an error unless all bytes are those that were written.
@@ -387,11 +382,6 @@ impl TaskFile {
         if checksum(bytes) == block.sum { Ok(()) } else { Err(self.damaged()) }
     }
 
-    /// Returns a number among the facts; 0 if there is none.
-    pub(super) fn count(&self, name: &str) -> u64 {
-        self.facts.get(name).and_then(Value::as_u64).unwrap_or(0)
-    }
-
     /// Returns an error that says that the file contains something else than was written.
     #[cold]
     pub(super) fn damaged(&self) -> Error {
@@ -431,8 +421,7 @@ mod tests {
         writer.begin("none");
         writer.begin("two");
         writer.put(b"efgh").unwrap();
-        let facts = Map::from_iter([("points".to_owned(), json!(7))]);
-        writer.finish(facts, 5).unwrap();
+        writer.finish(&TaskFacts { duplicates: 7, ..TaskFacts::default() }, 5).unwrap();
         blocks
     }
 
@@ -449,7 +438,7 @@ mod tests {
         assert_eq!(file.section("one").unwrap(), b"abcd");
         assert_eq!(file.section("two").unwrap(), b"efgh");
         assert!(file.section("none").unwrap().is_empty() && file.section("three").unwrap().is_empty());
-        assert_eq!((file.count("points"), file.count("lines"), file.sources), (7, 0, 5));
+        assert_eq!((file.facts.duplicates, file.facts.line_edges, file.sources), (7, 0, 5));
         let mut bytes = b"what was there before".to_vec();
         file.read(blocks[1], &mut bytes).unwrap();
         assert_eq!(bytes, b"cd");

@@ -1,15 +1,14 @@
 //! What each task does: files in, one file out.
 
-use serde_json::{Map, Value, json};
-
 use super::bytes::{self, Reader, put_block, put_u32};
 use super::done::Sources;
 use super::holes::Holes;
 use super::planned_file::{require_state, state_of};
 use super::raster::Drawing;
 use super::surface::PartFaces;
-use super::task_file::{INPUT, SKIPPED, TaskWriter};
-use super::{Job, Task, TiledProduct};
+use super::task_facts::{Extent, FileFacts, KeptFacts, ReadFacts, TaskFacts, TaskNotice};
+use super::task_file::TaskWriter;
+use super::{Job, Task};
 use super::{contours, lines, notes};
 use crate::data::{Bounds, EdgeKind, PointBatch};
 use crate::error::{Command, Error, Result, wording};
@@ -17,10 +16,11 @@ use crate::run::context::{Context, Journal};
 use crate::run::line_notes::LevelRings;
 use crate::run::notice::Notice;
 use crate::run::units::neat;
+use crate::run::verbs::Keeps;
 use crate::run::{frame, open};
 use crate::terrain::contour::parts::{ContourCollector, LevelParts};
 use crate::terrain::tiles::{self, ClipSide, LongEdges, Rim, TileClip, TileTriangle, TinPart, Work, has_long_edge};
-use crate::terrain::{Classes, PartCell, Selection, SelectionReport, one_per_site};
+use crate::terrain::{Classes, PartCell, Selection, one_per_site};
 
 /// Points that are read before they are divided among tiles: 24 bytes each, and as much again while
 /// they are sorted.
@@ -30,7 +30,7 @@ const DIVIDED_AT_ONCE: u64 = 1 << 20;
 /// written.
 const BYTES_A_DIVIDED_POINT: u64 = 120;
 
-impl Job<'_> {
+impl Job {
     /// Does a task and writes its file.
     pub(super) fn do_task(&self, number: usize, context: &Context) -> Result<()> {
         let mut writer = TaskWriter::create(self.task_file(number))?;
@@ -47,12 +47,12 @@ impl Job<'_> {
             Task::Cut => self.cut(&sources, &mut writer, context)?,
         };
         context.check()?;
-        notes::put_notices(&mut facts, &journal.take());
-        writer.finish(facts, sources.sum(self.needs(number))?)
+        facts.notices = journal.take().iter().map(TaskNotice::of).collect();
+        writer.finish(&facts, sources.sum(self.needs(number))?)
     }
 
     /// Divides the points of a file among the tiles.
-    fn divide(&self, file: usize, writer: &mut TaskWriter, journal: &Journal) -> Result<Map<String, Value>> {
+    fn divide(&self, file: usize, writer: &mut TaskWriter, journal: &Journal) -> Result<TaskFacts> {
         let mut table = Vec::new();
         writer.begin("points");
         let mut waiting: Vec<[f64; 3]> = Vec::new();
@@ -97,24 +97,25 @@ impl Job<'_> {
         });
         written.and_then(|()| write_run(&mut waiting))?;
         // Of a bad file, nothing counts.
-        let mut facts = self.facts_of_file(file, read)?;
-        if facts.contains_key(SKIPPED) {
-            table.clear();
-            near.clear();
-        } else {
-            notes::put_rings(&mut facts, &of_rings);
+        let mut of_file = self.facts_of_file(file, read)?;
+        match &mut of_file {
+            FileFacts::Skipped(_) => {
+                table.clear();
+                near.clear();
+            }
+            FileFacts::Read(points) => points.rings = notes::rings_found(&of_rings),
         }
         writer.begin("table");
         writer.put(&table)?;
         writer.begin("near");
         writer.put(&bytes::of_points(&near))?;
-        Ok(facts)
+        Ok(TaskFacts { file: Some(of_file), ..TaskFacts::default() })
     }
 
     /// Arranges the lines, with the points next to them from all files.
-    fn arrange(&self, sources: &Sources, writer: &mut TaskWriter, journal: &Journal) -> Result<Map<String, Value>> {
+    fn arrange(&self, sources: &Sources, writer: &mut TaskWriter, journal: &Journal) -> Result<TaskFacts> {
         let crs = self.plan.crs.as_ref();
-        let Some(lines) = &self.known(&journal.context)?.lines else { return Ok(Map::new()) };
+        let Some(lines) = &self.known(&journal.context)?.lines else { return Ok(TaskFacts::default()) };
         let mut near = Vec::new();
         let mut extent = Bounds::default();
         for (number, file) in self.plan.files.iter().enumerate() {
@@ -125,17 +126,15 @@ impl Job<'_> {
         }
         let tin = lines.build(near, &extent, crs, journal)?;
         let edges = lines::write(&tin, &self.plan.layout, writer)?;
-        Ok(Map::from_iter([("line_edges".to_owned(), json!(edges))]))
+        Ok(TaskFacts { line_edges: edges as u64, ..TaskFacts::default() })
     }
 
     /// Returns the facts of a file that was read; of one that is bad, why it is skipped.
-    fn facts_of_file(&self, file: usize, read: Result<Map<String, Value>>) -> Result<Map<String, Value>> {
+    fn facts_of_file(&self, file: usize, read: Result<ReadFacts>) -> Result<FileFacts> {
         let path = &self.plan.files[file].path;
         match read {
-            Err(error) if self.bad.skips(&error) => {
-                Ok(Map::from_iter([(SKIPPED.to_owned(), json!(error.in_file(path).to_string()))]))
-            }
-            read => read.map_err(|e| e.in_file(path)),
+            Err(error) if self.bad.skips(&error) => Ok(FileFacts::Skipped(error.in_file(path).to_string())),
+            read => read.map(FileFacts::Read).map_err(|e| e.in_file(path)),
         }
     }
 
@@ -145,8 +144,8 @@ impl Job<'_> {
         number: usize,
         journal: &Journal,
         take: &mut dyn FnMut(Vec<[f64; 3]>),
-    ) -> Result<Map<String, Value>> {
-        self.plan.require_same_points(number, self.request)?;
+    ) -> Result<ReadFacts> {
+        self.plan.require_same_points(number, &self.request)?;
         let file = &self.plan.files[number];
         let state = state_of(&file.path)?;
         let mut source = open::points(&self.request.points[file.input], self.request.read, &journal.context)?;
@@ -160,13 +159,20 @@ impl Job<'_> {
             if batch.is_empty() {
                 require_state(&file.path, state)?;
                 let report = selection.finish().1;
-                self.plan.require_classes(&report, self.request)?;
-                let mut facts = facts_of(&report);
-                notes::put_points(&mut facts, &report, &extent);
+                self.plan.require_classes(&report, &self.request)?;
                 journal.add(Notice::PointsRead(file.path.clone(), report.read));
                 journal.add_warnings(&file.path, source.warnings());
-                facts.insert(INPUT.to_owned(), state.to_json());
-                return Ok(facts);
+                return Ok(ReadFacts {
+                    state,
+                    read: report.read,
+                    used: report.used,
+                    withheld: report.withheld,
+                    other_class: report.other_class,
+                    without_class: report.without_class,
+                    classes: report.by_class.keys().copied().collect(),
+                    extent: Extent::of(&extent),
+                    rings: Vec::new(),
+                });
             }
             selection.add(&batch)?;
             let points = selection.take_points();
@@ -192,15 +198,15 @@ impl Job<'_> {
         sources: &Sources,
         writer: &mut TaskWriter,
         journal: &Journal,
-    ) -> Result<Map<String, Value>> {
+    ) -> Result<TaskFacts> {
         let mut holes = Holes::default();
-        let (points, mut facts) = if self.plan.divides {
+        let (points, file) = if self.plan.divides {
             for &number in self.files_of(tile) {
-                if sources.open(number)?.facts.contains_key(SKIPPED) {
+                if sources.open(number)?.facts.skipped().is_some() {
                     holes.add_file(self, number);
                 }
             }
-            (self.divided_points(tile, sources)?, Map::new())
+            (self.divided_points(tile, sources)?, None)
         } else {
             let file = tile as usize;
             let mut all: Vec<[f64; 3]> = Vec::new();
@@ -209,15 +215,15 @@ impl Job<'_> {
             });
             let facts = self.facts_of_file(file, read);
             let facts = facts.map_err(|e| e.within(format_args!("tile {tile}")))?;
-            if facts.contains_key(SKIPPED) {
+            if matches!(facts, FileFacts::Skipped(_)) {
                 all.clear();
                 holes.add_file(self, file);
             }
-            (all, facts)
+            (all, Some(facts))
         };
         let count = points.len();
         let mut points = one_per_site(&points, self.request.duplicates)?;
-        facts.insert("duplicates".to_owned(), json!(count - points.len()));
+        let duplicates = (count - points.len()) as u64;
         let mut constraints = Vec::new();
         if let Some(task) = self.lines_task() {
             let lines = lines::read(&mut sources.open(task)?, tile)?;
@@ -226,9 +232,9 @@ impl Job<'_> {
         }
         let rectangle = &self.steps[step].tile;
         let tight = self.tight(&journal.context)?;
-        facts.insert("reach".to_owned(), json!(reach_of(&points)));
-        self.emitting(writer, &journal.context, &holes, facts, |emit| match self.product {
-            TiledProduct::Surface => tiles::leaf_with_part(rectangle, tile, &points, &constraints, tight, emit),
+        let facts = TaskFacts { file, duplicates, reach: reach_of(&points), ..TaskFacts::default() };
+        self.emitting(writer, &journal.context, &holes, facts, |emit| match self.verb.keeps() {
+            Keeps::Triangles => tiles::leaf_with_part(rectangle, tile, &points, &constraints, tight, emit),
             _ => tiles::leaf(rectangle, tile, &points, &constraints, tight, emit).map(|residual| (residual, None)),
         })
         .map_err(|error| {
@@ -265,19 +271,19 @@ impl Job<'_> {
         sources: &Sources,
         writer: &mut TaskWriter,
         context: &Context,
-    ) -> Result<Map<String, Value>> {
+    ) -> Result<TaskFacts> {
         let mut residuals = Vec::new();
         let mut holes = Holes::default();
         for &part in parts {
             let mut file = sources.open(self.task_of_step(part))?;
             let bytes = file.section("residual")?;
             residuals.push(bytes::to_residual(&bytes).ok_or_else(|| file.damaged())?);
-            holes.add_known(&file);
+            holes.add_known(&file.facts);
         }
         let tile = &self.steps[step].tile;
         let tight = self.tight(context)?;
-        self.emitting(writer, context, &holes, Map::new(), |emit| match self.product {
-            TiledProduct::Surface => tiles::merge_with_part(tile, &residuals, tight, emit),
+        self.emitting(writer, context, &holes, TaskFacts::default(), |emit| match self.verb.keeps() {
+            Keeps::Triangles => tiles::merge_with_part(tile, &residuals, tight, emit),
             _ => tiles::merge(tile, &residuals, tight, emit).map(|residual| (residual, None)),
         })
         .map_err(|e| e.within(format_args!("merge {step}")))
@@ -290,9 +296,9 @@ impl Job<'_> {
         writer: &mut TaskWriter,
         context: &Context,
         holes: &Holes,
-        mut facts: Map<String, Value>,
+        mut facts: TaskFacts,
         run: impl FnOnce(&mut dyn FnMut(TileTriangle)) -> Result<(tiles::Residual, Option<TinPart>)>,
-    ) -> Result<Map<String, Value>> {
+    ) -> Result<TaskFacts> {
         let mut kept = Kept::new(self, writer, self.clip(context)?)?;
         let mut long = self.plan.max_edge.map(LongEdges::new);
         let mut failed = Ok(());
@@ -308,12 +314,12 @@ impl Job<'_> {
             }
         })?;
         failed?;
-        kept.finish(part, writer, &mut facts)?;
-        holes.note(&mut facts);
-        facts.insert("over_skipped".to_owned(), json!(over_skipped));
+        facts.kept = kept.finish(part, writer)?;
+        facts.holes = holes.known();
+        facts.over_skipped = over_skipped;
         writer.begin("residual");
         writer.put(&bytes::of_residual(&residual))?;
-        facts.insert("residual".to_owned(), json!(residual.vertices.len()));
+        facts.handed_up = residual.vertices.len() as u64;
         if let Some(long) = long {
             let waiting = long.finish();
             let [gates, triangles] = bytes::of_waiting(&waiting);
@@ -321,23 +327,22 @@ impl Job<'_> {
             writer.put(&gates)?;
             writer.begin("waiting");
             writer.put(&triangles)?;
-            facts.insert("groups".to_owned(), json!(waiting.groups));
-            facts.insert("waiting".to_owned(), json!(waiting.triangles.len()));
+            facts.groups = waiting.groups;
+            facts.waiting = waiting.triangles.len() as u64;
         }
         Ok(facts)
     }
 
     /// Decides which of the triangles that wait are removed at the rim, and draws the others.
-    fn rim(&self, sources: &Sources, writer: &mut TaskWriter, context: &Context) -> Result<Map<String, Value>> {
+    fn rim(&self, sources: &Sources, writer: &mut TaskWriter, context: &Context) -> Result<TaskFacts> {
         let mut rim = Rim::default();
         for step in 0..self.steps.len() {
             let mut file = sources.open(self.task_of_step(step))?;
             let bytes = file.section("gates")?;
-            let groups = file.count("groups") as u32;
+            let groups = file.facts.groups;
             let gates = bytes::to_gates(&bytes).filter(|gates| gates.iter().all(|gate| gate.group < groups));
             rim.add(groups, &gates.ok_or_else(|| file.damaged())?);
         }
-        let mut facts = Map::new();
         let mut removed = 0_u64;
         let mut kept = Kept::new(self, writer, self.clip(context)?)?;
         for (step, is_removed) in rim.removed().into_iter().enumerate() {
@@ -356,9 +361,7 @@ impl Job<'_> {
             }
             context.check()?;
         }
-        kept.finish(None, writer, &mut facts)?;
-        facts.insert("removed".to_owned(), json!(removed));
-        Ok(facts)
+        Ok(TaskFacts { kept: kept.finish(None, writer)?, removed, ..TaskFacts::default() })
     }
 
     /// What the surface is cut along, if it is.
@@ -372,7 +375,7 @@ impl Job<'_> {
     }
 
     /// Cuts the triangles of all tasks that clip lines come near.
-    fn cut(&self, sources: &Sources, writer: &mut TaskWriter, context: &Context) -> Result<Map<String, Value>> {
+    fn cut(&self, sources: &Sources, writer: &mut TaskWriter, context: &Context) -> Result<TaskFacts> {
         let mut triangles = Vec::new();
         let mut reach = [0.0_f64; 2];
         for task in self.first_step()..self.after_steps() + usize::from(self.rim_task().is_some()) {
@@ -381,11 +384,9 @@ impl Job<'_> {
                 let (triangle, is_inside) = bytes::to_waiting(bytes).ok_or_else(|| file.damaged())?;
                 triangles.push((triangle, is_inside == 1));
             }
-            let own = file.facts.get("reach").and_then(|reach| serde_json::from_value::<[f64; 2]>(reach.clone()).ok());
-            own.into_iter().for_each(|own| reach = [0, 1].map(|k| reach[k].max(own[k])));
+            reach = [0, 1].map(|k| reach[k].max(file.facts.reach[k]));
         }
         context.check()?;
-        let mut facts = Map::new();
         let mut kept = Kept::new(self, writer, None)?;
         let part = match self.clip(context)? {
             Some(clip) => clip.cut(&triangles, reach)?,
@@ -399,10 +400,8 @@ impl Job<'_> {
             draped += u64::from(triangle.edges.contains(&EdgeKind::Draped));
             kept.keep(&triangle, writer)?;
         }
-        facts.insert(notes::MET.to_owned(), json!(inside.saturating_sub(whole)));
-        facts.insert(notes::DRAPED.to_owned(), json!(draped));
-        kept.finish(part, writer, &mut facts)?;
-        Ok(facts)
+        let met = inside.saturating_sub(whole);
+        Ok(TaskFacts { met, draped, kept: kept.finish(part, writer)?, ..TaskFacts::default() })
     }
 }
 
@@ -427,18 +426,19 @@ struct Kept<'a> {
     clipped: u64,
     max_edge_inside: Option<f64>,
     triangles: u64,
-    long_inside: u64,
     area: f64,
     extent: Bounds,
 }
 
 impl<'a> Kept<'a> {
     fn new(job: &Job, writer: &mut TaskWriter, clip: Option<&'a TileClip>) -> Result<Self> {
-        let drawn = match (job.product, job.plan.frame) {
-            (TiledProduct::Contours(options), _) => Drawn::Contours(ContourCollector::new(&options.to_levels()?)),
-            (TiledProduct::Surface, _) => Drawn::Faces(PartFaces::default()),
-            (_, Some(frame)) => Drawn::Cells(Drawing::new(frame, writer)?),
-            (_, None) => return Err(Error::format("the plan of the job lacks the frame of the raster")),
+        let drawn = match (job.verb.keeps(), job.plan.frame) {
+            (Keeps::Contours(options), _) => Drawn::Contours(ContourCollector::new(&options.to_levels()?)),
+            (Keeps::Triangles, _) => Drawn::Faces(PartFaces::default()),
+            (Keeps::Heights(_), Some(frame)) => Drawn::Cells(Drawing::new(frame, writer)?),
+            (Keeps::Heights(_), None) => {
+                return Err(Error::format("the plan of the job lacks the frame of the raster"));
+            }
         };
         Ok(Kept {
             drawn,
@@ -447,7 +447,6 @@ impl<'a> Kept<'a> {
             clipped: 0,
             max_edge_inside: job.request.max_edge_inside,
             triangles: 0,
-            long_inside: 0,
             area: 0.0,
             extent: Bounds::default(),
         })
@@ -456,7 +455,6 @@ impl<'a> Kept<'a> {
     /// Adds a triangle that is in the surface, unless an edge of it is too long.
     fn add(&mut self, triangle: &TileTriangle, writer: &mut TaskWriter) -> Result<()> {
         let is_long = self.max_edge_inside.is_some_and(|limit| has_long_edge(triangle, limit));
-        self.long_inside += u64::from(is_long);
         match self.clip.map_or(ClipSide::Kept, |clip| clip.side_of_triangle(triangle)) {
             ClipSide::Kept if !is_long => self.keep(triangle, writer),
             ClipSide::Kept => {
@@ -528,44 +526,32 @@ impl<'a> Kept<'a> {
 
     /// Writes what the triangles became; `part` is the triangulation that they come from, if they
     /// are those of one.
-    fn finish(self, part: Option<TinPart>, writer: &mut TaskWriter, facts: &mut Map<String, Value>) -> Result<()> {
+    fn finish(self, part: Option<TinPart>, writer: &mut TaskWriter) -> Result<KeptFacts> {
+        let mut contour_edges = 0;
         match self.drawn {
             Drawn::Cells(drawing) => drawing.finish(writer)?,
             Drawn::Faces(faces) => faces.finish(part, writer)?,
             Drawn::Contours(collector) => {
                 let parts = collector.finish()?;
                 contours::write(&parts, writer)?;
-                let edges: usize = parts.levels().iter().map(LevelParts::edge_count).sum();
-                facts.insert("edges".to_owned(), json!(edges));
+                contour_edges = parts.levels().iter().map(LevelParts::edge_count).sum::<usize>() as u64;
             }
         }
         if self.clip.is_some() {
             writer.begin(NEAR_CLIP);
             writer.put(&self.near_clip)?;
-            facts.insert("clipped".to_owned(), json!(self.clipped));
         }
-        facts.insert("triangles".to_owned(), json!(self.triangles));
-        facts.insert("long_inside".to_owned(), json!(self.long_inside));
-        facts.insert("area".to_owned(), json!(self.area));
-        if !self.extent.is_empty() {
-            let Bounds { min, max } = self.extent;
-            facts.insert("extent".to_owned(), json!([min, max]));
-        }
-        Ok(())
+        Ok(KeptFacts {
+            triangles: self.triangles,
+            clipped: self.clipped,
+            area: Some(self.area).filter(|area| area.is_finite()),
+            extent: Extent::of(&self.extent),
+            contour_edges,
+        })
     }
 }
 
 /// Returns the largest coordinates of points on both axes, without their signs.
 fn reach_of(points: &[[f64; 3]]) -> [f64; 2] {
     points.iter().fold([0.0, 0.0], |most, p| [0, 1].map(|k: usize| f64::max(most[k], p[k].abs())))
-}
-
-fn facts_of(report: &SelectionReport) -> Map<String, Value> {
-    let counts = [
-        ("read", report.read),
-        ("used", report.used),
-        ("withheld", report.withheld),
-        ("other_class", report.other_class),
-    ];
-    counts.into_iter().map(|(name, count)| (name.to_owned(), json!(count))).collect()
 }

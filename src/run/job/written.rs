@@ -7,12 +7,13 @@ use serde_json::{Value, json};
 use super::folder::{self, WRITTEN};
 use super::lock::JobLock;
 use super::surface::has_all_parts;
-use super::{Job, JobReport, TiledProduct};
+use super::{Job, JobReport};
 use crate::error::{Error, Result};
 use crate::io::{OutputSet, remove_abandoned};
 use crate::run::checksum::sum_of_file;
+use crate::run::verbs::Keeps;
 
-impl Job<'_> {
+impl Job {
     /// Records the files that are about to appear. Afterwards
     /// [`has_written`](Self::has_written) recognizes them, also if this process ends between the
     /// two.
@@ -51,7 +52,7 @@ impl Job<'_> {
         is_of_these
             && files.iter().any(|file| file[0] == output.to_string_lossy().as_ref())
             && files.iter().all(is_there)
-            && (!matches!(self.product, TiledProduct::Surface) || has_all_parts(&output))
+            && (!matches!(self.verb.keeps(), Keeps::Triangles) || has_all_parts(&output))
     }
 
     /// Returns what the names of temporary files of outputs contain, for

@@ -3,10 +3,12 @@
 mod contours;
 mod heights;
 mod join;
+mod written;
 
 pub(super) use contours::contours;
 pub(super) use heights::elevations;
 use join::JoinedTin;
+pub use written::WrittenParts;
 
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
@@ -33,8 +35,7 @@ pub struct TinParts {
 }
 
 /// Returns the folder of the parts of a surface; `None` unless a file is the index of one.
-#[cfg(feature = "cli")]
-pub(crate) fn parts_folder(path: &Path) -> Option<PathBuf> {
+pub(super) fn parts_folder(path: &Path) -> Option<PathBuf> {
     // By its name first: other inputs may be many, and far away.
     let format = crate::io::formats::of_name(path).filter(|format| format.extensions.contains(&"tins"));
     let text = format.and_then(|_| crate::io::mesh::read_tin_index(path))?.ok()?;

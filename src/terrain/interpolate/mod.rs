@@ -39,7 +39,7 @@ use smooth::Patch;
 use vertices::{Search, Vertices};
 
 /// How heights between the vertices of a surface are computed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 #[non_exhaustive]
 pub enum Method {
     /// Linear on each triangle.

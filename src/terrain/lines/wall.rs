@@ -5,7 +5,7 @@ use super::offset::offset_between;
 use crate::error::{Error, Result, Setting, wording};
 
 /// On which side of a wall, seen in the direction of its line, the ground is higher.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 pub enum HighSide {
     /// On the left.
     #[default]

@@ -25,7 +25,7 @@ pub(in crate::cli) use parse::{EdgeLength, finite};
 pub(in crate::cli) use surface::{CrossingZArg, DuplicatesArg, OnCrossingArg, SurfaceArgs};
 pub(in crate::cli) use switches::expand_switches;
 pub(in crate::cli) use systems::SystemArgs;
-pub(in crate::cli) use tiles::{Caller, TileArgs, TilesArg};
+pub(in crate::cli) use tiles::TileArgs;
 pub(in crate::cli) use verbs::{
     CheckArgs, ContourArgs, DemArgs, DemoArgs, DescribeArgs, FrameArgs, HillshadeArgs, InfoArgs, OutputArgs,
     PointsArgs, TinArgs, TriangulateArgs,

@@ -24,11 +24,6 @@ pub(in crate::cli) struct SurfaceArgs {
     #[arg(required = true, value_name = "IN")]
     pub(in crate::cli) inputs: Vec<PathBuf>,
 
-    /// The files that a job was planned with, which count instead of what was typed. Those that
-    /// tasks have read may be missing by now.
-    #[arg(skip)]
-    pub(in crate::cli) planned: Option<Vec<PathBuf>>,
-
     #[command(flatten)]
     pub(in crate::cli) read: ReadArgs,
 

@@ -1,0 +1,239 @@
+//! What is printed of files that are written: while they are, and at the end.
+
+use std::path::Path;
+use std::sync::{Mutex, PoisonError};
+
+use super::console::Console;
+use super::last_words::LastWords;
+use super::names::name;
+use super::summary::{counted, describe, print_extent, print_surface};
+use crate::cli::Exit;
+use crate::crs::Crs;
+use crate::error::Result;
+use crate::io::contours::ContourSummary;
+use crate::io::geotiff::RasterSummary;
+use crate::io::mesh::MeshSummary;
+use crate::run::units::{Units, bytes};
+use crate::run::{
+    Context, Event, JobReport, JobSize, Monitor, Notice, Origin, Outputs, Progress, Size, Stage, Summary, WriteReport,
+    Written, WrittenOf,
+};
+
+/// Shows what happens while files are written.
+#[derive(Debug)]
+pub(in crate::cli) struct Shown<'a> {
+    console: &'a Console,
+    /// What the user types to go on with a job.
+    how_to_go_on: String,
+    /// Says so if a signal ends the program.
+    words: Mutex<Option<LastWords>>,
+}
+
+impl<'a> Shown<'a> {
+    pub(in crate::cli) fn new(console: &'a Console, how_to_go_on: String) -> Self {
+        Shown { console, how_to_go_on, words: Mutex::default() }
+    }
+
+    /// Returns the context of a run that is shown.
+    pub(in crate::cli) fn context(&self) -> Context<'_> {
+        Context { monitor: self, ..Context::default() }
+    }
+
+    fn kept(&self, folder: &Path) -> String {
+        format!("finished tasks are kept in {}: go on with {}", folder.display(), self.how_to_go_on)
+    }
+
+    fn set_words(&self, words: impl FnOnce() -> Option<LastWords>) {
+        let mut own = self.words.lock().unwrap_or_else(PoisonError::into_inner);
+        // What was there goes first: there is one place for all.
+        drop(own.take());
+        *own = words();
+    }
+
+    /// Prints what was written, and returns how the run ended.
+    pub(in crate::cli) fn print(&self, report: &WriteReport) -> Exit {
+        match report {
+            WriteReport::Planned { folder, .. } => {
+                self.console.line(format_args!("folder      {}", folder.display()));
+                Exit::Done
+            }
+            WriteReport::Kept { output, has_holes } => {
+                self.console.line(format_args!("output      {} is written", output.display()));
+                if *has_holes { Exit::Holes } else { Exit::Done }
+            }
+            WriteReport::Written(written) => self.print_written(written),
+        }
+    }
+
+    fn print_written(&self, Written { surface, summary, files, .. }: &Written) -> Exit {
+        let console = self.console;
+        if let Summary::Meshes(meshes) = summary {
+            meshes.iter().for_each(|(path, mesh)| note_mesh(path, mesh, ".ply keeps them", console));
+        }
+        let crs = match surface {
+            WrittenOf::Whole(report) => {
+                match (&report.origin, summary) {
+                    // The size of the raster is printed already.
+                    (Origin::Cells(_), Summary::Shades) => print_extent(report.extent, report.crs.as_ref(), console),
+                    _ => print_surface(report, console),
+                }
+                report.crs.as_ref()
+            }
+            WrittenOf::Tiles { report, .. } => {
+                print_tiles(report, console);
+                report.crs.as_ref()
+            }
+        };
+        match summary {
+            Summary::Heights(cells) => print_heights(cells, crs, console),
+            Summary::Contours(drawn) => print_contours(drawn, crs, console),
+            Summary::Parts(parts) => {
+                let folder = files.first().map(|index| index.with_file_name(&parts.index.folder)).unwrap_or_default();
+                console.line(format_args!("parts       {}, in {}", parts.index.parts.len(), folder.display()));
+            }
+            Summary::Shades | Summary::Meshes(_) => {}
+        }
+        files.iter().for_each(|path| print_file(path, console));
+        match surface {
+            WrittenOf::Tiles { report, folder } if report.skipped > 0 => {
+                let skipped = counted(report.skipped as u64, "file");
+                console.note(format_args!(
+                    "the result has holes: {skipped} skipped; finished tasks are kept in {}: repair what can be repaired, then go on with {}",
+                    folder.display(),
+                    self.how_to_go_on,
+                ));
+                Exit::Holes
+            }
+            WrittenOf::Tiles { .. } | WrittenOf::Whole(_) => Exit::Done,
+        }
+    }
+}
+
+impl Monitor for Shown<'_> {
+    fn start(&self, stage: Stage, size: Size) -> Box<dyn Progress> {
+        self.console.start(stage, size)
+    }
+
+    fn notice(&self, notice: &Notice) {
+        self.console.notice(notice);
+    }
+
+    fn event(&self, event: &Event) {
+        let console = self.console;
+        match event {
+            Event::MemoryUnused(error) => console.note(format_args!("--memory has no effect: {}", error.render(&name))),
+            Event::Planned(size) => print_size(size, console),
+            Event::Resumed { done, tasks } => {
+                console.line(format_args!("resumed     {done} of {tasks} tasks are done"));
+            }
+            Event::PlannedAgain(path) => console
+                .note(format_args!("{} was skipped, and can be read now: the job is planned again", path.display())),
+            Event::TasksBegin(folder) => self.set_words(|| console.note_if_ended(self.kept(folder))),
+            Event::TasksFailed(folder) => console.note(self.kept(folder)),
+            Event::RasterPlaced { frame, crs, bytes: size } => {
+                let (cells, size) = (describe(frame, *crs), bytes(*size));
+                console.line(format_args!("raster      {cells}, {size} before compression"));
+            }
+            Event::Written => self.set_words(|| None),
+        }
+    }
+}
+
+/// Prints what a plan consists of.
+pub(in crate::cli) fn print_size(size: &JobSize, console: &Console) {
+    let files = if size.divides { format!("of {} files, divided first", size.files) } else { "the files".to_owned() };
+    console.line(format_args!("tiles       {} ({files}), {} merges, {} tasks", size.tiles, size.merges, size.tasks));
+    let disk = match size.disk {
+        0 => String::new(),
+        disk => format!(", about {} on the disk", bytes(disk)),
+    };
+    console.line(format_args!(
+        "            {} points, {} of memory a task{disk}",
+        size.points,
+        bytes(size.task_memory)
+    ));
+}
+
+/// Prints what a surface in tiles was built of, and its size and extent.
+fn print_tiles(report: &JobReport, console: &Console) {
+    let dropped = [(report.other_class, "of other classes"), (report.withheld, "withheld")];
+    let dropped: Vec<String> =
+        dropped.iter().filter(|(count, _)| *count > 0).map(|(count, why)| format!("{count} {why}")).collect();
+    let dropped = if dropped.is_empty() { String::new() } else { format!("; dropped: {}", dropped.join(", ")) };
+    console.line(format_args!("points      {} read, {} used{dropped}", report.read, report.used));
+    if report.duplicates > 0 {
+        console.line(format_args!("            {} at the position of another point", report.duplicates));
+    }
+    if report.line_edges > 0 {
+        console.line(format_args!("lines       {} edges", report.line_edges));
+    }
+    let mut left_out = Vec::new();
+    if report.beyond_max_edge > 0 {
+        left_out.push(format!("{} left out at the rim; {} waited for that", report.beyond_max_edge, report.waited));
+    }
+    if report.over_skipped > 0 {
+        left_out.push(format!("{} left out over skipped files", report.over_skipped));
+    }
+    if report.clipped > 0 {
+        left_out.push(format!("{} clipped", report.clipped));
+    }
+    let left_out = if left_out.is_empty() { String::new() } else { format!(" ({})", left_out.join(", ")) };
+    console.line(format_args!("triangles   {}{left_out}", report.triangles));
+    console.line(format_args!("handed up   {} vertices", report.handed_up));
+    print_extent(report.extent, report.crs.as_ref(), console);
+}
+
+fn print_heights(cells: &RasterSummary, crs: Option<&Crs>, console: &Console) {
+    if cells.valid == 0 {
+        return console.warning("no cell has a height");
+    }
+    let units = Units::of(crs);
+    let (low, high) = (units.height(cells.min), units.height(cells.max));
+    console.line(format_args!("            {} with a height, from {low} to {high}", cells.valid));
+}
+
+fn print_contours(drawn: &ContourSummary, crs: Option<&Crs>, console: &Console) {
+    if drawn.lines == 0 {
+        return console.warning("no contour crosses the surface at these levels");
+    }
+    let units = Units::of(crs);
+    let (low, high) = (units.height(drawn.bounds.min[2]), units.height(drawn.bounds.max[2]));
+    let lines = counted(drawn.lines as u64, "line");
+    console.line(format_args!("contours    {lines} ({} closed) from {low} to {high}", drawn.closed));
+}
+
+/// Makes all files appear, and prints their names.
+///
+/// # Errors
+/// If one cannot appear; then none does.
+pub(in crate::cli) fn commit<F>(outputs: Outputs<F>, console: &Console) -> Result<()> {
+    outputs.set.commit()?.iter().for_each(|path| print_file(path, console));
+    Ok(())
+}
+
+/// Prints a note if the format of a mesh does not store which edges are on lines, and there are
+/// any; and a note if its coordinates are relative to an origin.
+pub(in crate::cli) fn note_mesh(file: &Path, written: &MeshSummary, cure: &str, console: &Console) {
+    let path = file.display();
+    let edges = written.lost_edges;
+    if edges > 0 {
+        console.note(format_args!(
+            "{path}: {edges} edges on breaklines or clip lines are not marked in this format; {cure}"
+        ));
+    }
+    if let Some(([x, y, z], beside)) = &written.origin {
+        let beside = beside.display();
+        console.note(format_args!("{path}: coordinates are relative to {x} {y} {z}, see {beside}"));
+    }
+}
+
+/// Prints the name and size of a file that was written.
+pub(in crate::cli) fn print_file(file: &Path, console: &Console) {
+    let path = file.display();
+    match std::fs::metadata(file) {
+        Ok(data) if data.is_file() => {
+            console.line(format_args!("written     {path} ({} kB)", data.len().div_ceil(1000)))
+        }
+        _ => console.line(format_args!("written     {path}")),
+    }
+}

@@ -1,0 +1,55 @@
+//! Verbs that write what they make of a surface, in one piece or in tiles.
+
+use super::asked::Asked;
+use super::{contour, dem, hillshade, tin};
+use crate::cli::Exit;
+use crate::cli::input::args::{TileArgs, Verb};
+use crate::cli::report::console::Console;
+use crate::cli::report::written::Shown;
+use crate::error::Result;
+use crate::run::{self, BadFiles, Execution, Look, TileOptions};
+
+/// Returns what a verb asks for; `None` if it is not one of those that write what they make of a
+/// surface.
+pub(super) fn asked(verb: &Verb, console: &Console) -> Result<Option<Asked>> {
+    match verb {
+        Verb::Dem(args) => dem::asked(args, console).map(Some),
+        Verb::Contour(args) => contour::asked(args, console).map(Some),
+        Verb::Hillshade(args) => hillshade::asked(args, console).map(Some),
+        Verb::Tin(args) => tin::asked(args, console).map(Some),
+        _ => Ok(None),
+    }
+}
+
+/// Writes what a verb asks for.
+pub(in crate::cli) fn run(verb: &Verb, console: &Console) -> Result<Exit> {
+    let Some(Asked { request, targets, tiles }) = asked(verb, console)? else { return Ok(Exit::Usage) };
+    let shown = Shown::new(console, "--resume".to_owned());
+    let report = run::write(&request, &targets, &execution(&tiles), &shown.context())?;
+    Ok(shown.print(&report))
+}
+
+/// Returns how a request is worked on.
+fn execution(args: &TileArgs) -> Execution {
+    let options = options(args);
+    if args.dry_run {
+        Execution::Plan(options)
+    } else if args.resume {
+        Execution::Resume(options)
+    } else if args.are_asked_for() {
+        Execution::Tiles(options)
+    } else {
+        Execution::Auto { memory: args.memory }
+    }
+}
+
+/// Returns the options of a job.
+pub(super) fn options(args: &TileArgs) -> TileOptions {
+    TileOptions {
+        division: args.tiles.unwrap_or_default(),
+        memory: args.memory,
+        folder: args.job.clone(),
+        bad: if args.skip_bad { BadFiles::Skip } else { BadFiles::Refuse },
+        look: Look::default(),
+    }
+}

@@ -1,0 +1,66 @@
+//! The heights of a surface in the cells of a raster.
+
+use std::fmt::Debug;
+use std::path::PathBuf;
+
+use serde_json::{Value, json};
+
+use super::raster::{announce, list_frame};
+use super::{Keeps, Summary, Tiles, Verb};
+use crate::error::{Result, Setting};
+use crate::io::formats::Product;
+use crate::io::geotiff::{COPIES_ON_DISK, RasterSummary};
+use crate::run::cells::{self, CellProduct, DemOptions};
+use crate::run::context::Context;
+use crate::run::surface::SurfaceProduct;
+use crate::run::targets::Outputs;
+use crate::terrain::Method;
+
+impl Verb for DemOptions {
+    fn name(&self) -> &'static str {
+        "dem"
+    }
+
+    fn product(&self) -> Product {
+        Product::Heights
+    }
+
+    fn list(&self, add: &mut dyn FnMut(Setting, &dyn Debug)) {
+        let DemOptions { frame, method } = self;
+        list_frame(frame, add);
+        add(Setting::Method, method);
+    }
+
+    fn method(&self) -> Method {
+        self.method
+    }
+
+    fn also_reads(&self) -> Option<&PathBuf> {
+        self.frame.align_to.as_ref()
+    }
+
+    fn to_json(&self) -> Value {
+        json!(self)
+    }
+
+    fn write(&self, surface: &SurfaceProduct, outputs: &Outputs, context: &Context) -> Result<Summary> {
+        write(&cells::dem(surface, self, context)?, outputs, context)
+    }
+
+    fn keeps(&self) -> Keeps<'_> {
+        Keeps::Heights(&self.frame)
+    }
+
+    fn write_tiles(&self, tiles: &dyn Tiles, outputs: &Outputs, context: &Context) -> Result<Summary> {
+        write(&CellProduct::heights_of(tiles.heights(&self.frame, context)?), outputs, context)
+    }
+}
+
+fn write(cells: &CellProduct, outputs: &Outputs, context: &Context) -> Result<Summary> {
+    announce(cells, outputs, |_| (4, COPIES_ON_DISK), context)?;
+    let mut written = RasterSummary { min: f64::NAN, max: f64::NAN, valid: 0 };
+    for target in &outputs.targets {
+        written = cells.write(target.within(&outputs.set), context)?;
+    }
+    Ok(Summary::Heights(written))
+}

@@ -1,0 +1,92 @@
+//! The shades of a surface in the cells of a raster or a picture.
+
+use std::fmt::Debug;
+use std::path::PathBuf;
+
+use serde_json::{Value, json};
+
+use super::raster::{announce, list_frame};
+use super::{Keeps, Summary, Tiles, Verb};
+use crate::error::{Result, Setting};
+use crate::io::formats::{Content, FORMATS, Format, Product};
+use crate::io::geotiff::COPIES_ON_DISK;
+use crate::run::cells::{self, CellProduct, HillshadeOptions, LightOptions};
+use crate::run::context::{Context, Journal};
+use crate::run::surface::{self, SurfaceProduct, SurfaceRequest};
+use crate::run::targets::{Outputs, Target};
+use crate::terrain::Method;
+
+impl Verb for HillshadeOptions {
+    fn name(&self) -> &'static str {
+        "hillshade"
+    }
+
+    fn product(&self) -> Product {
+        Product::Shades
+    }
+
+    fn list(&self, add: &mut dyn FnMut(Setting, &dyn Debug)) {
+        let HillshadeOptions { frame, method, light: LightOptions { azimuth, altitude, z_factor } } = self;
+        list_frame(frame, add);
+        add(Setting::Method, method);
+        add(Setting::Azimuth, azimuth);
+        add(Setting::Altitude, altitude);
+        add(Setting::ZFactor, z_factor);
+    }
+
+    fn method(&self) -> Method {
+        self.method
+    }
+
+    fn also_reads(&self) -> Option<&PathBuf> {
+        self.frame.align_to.as_ref()
+    }
+
+    fn surface(&self, request: &SurfaceRequest, context: &Context) -> Result<SurfaceProduct> {
+        surface::surface(request, context)
+    }
+
+    fn to_json(&self) -> Value {
+        json!(self)
+    }
+
+    fn write(&self, surface: &SurfaceProduct, outputs: &Outputs, context: &Context) -> Result<Summary> {
+        write(&cells::hillshade(surface, self, context)?, outputs, context)
+    }
+
+    fn keeps(&self) -> Keeps<'_> {
+        Keeps::Heights(&self.frame)
+    }
+
+    fn write_tiles(&self, tiles: &dyn Tiles, outputs: &Outputs, context: &Context) -> Result<Summary> {
+        let heights = tiles.heights(&self.frame, context)?;
+        let crs = heights.crs().cloned();
+        let journal = Journal::new(context);
+        write(&CellProduct::shades_of(heights, &self.light, crs.as_ref(), &journal)?, outputs, context)
+    }
+}
+
+fn write(cells: &CellProduct, outputs: &Outputs, context: &Context) -> Result<Summary> {
+    announce(cells, outputs, cell_bytes, context)?;
+    for target in &outputs.targets {
+        let destination = target.within(&outputs.set);
+        if is_picture(target) {
+            cells.write_picture(destination, context)?;
+        } else {
+            cells.write(destination, context)?;
+        }
+    }
+    Ok(Summary::Shades)
+}
+
+fn is_picture(target: &Target) -> bool {
+    let is_of_target =
+        |format: &&Format| format.writes(Product::Shades) && format.extensions.contains(&target.extension);
+    FORMATS.iter().find(is_of_target).is_some_and(|format| format.content == Content::Picture)
+}
+
+/// Returns the bytes of a cell before compression, and how many times they are on the disk.
+fn cell_bytes(target: &Target) -> (u64, f64) {
+    // A picture has gray and alpha.
+    if is_picture(target) { (2, 1.0) } else { (1, COPIES_ON_DISK) }
+}

@@ -1,0 +1,197 @@
+//! Verbs that write files: of a surface in memory, or of tiles.
+//!
+//! A verb is its options. [`Verb`] is all that it has to have, so that every caller can write it,
+//! in one piece or in tiles, and that a job can go on with it.
+
+mod contour;
+mod dem;
+mod hillshade;
+mod raster;
+mod tin;
+
+use std::fmt::Debug;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use serde::de::DeserializeOwned;
+use serde_json::Value;
+
+pub use self::tin::SurfaceOptions;
+use super::cells::{DemOptions, HillshadeOptions};
+use super::context::Context;
+use super::contour::ContourOptions;
+use super::frame::FrameOptions;
+use super::surface::{self, SurfaceProduct, SurfaceRequest};
+use super::targets::{Outputs, Target};
+use super::tin_parts::WrittenParts;
+use crate::data::BlockSource;
+use crate::error::{Error, Result, Setting};
+use crate::io::Destination;
+use crate::io::contours::ContourSummary;
+use crate::io::formats::Product;
+use crate::io::geotiff::RasterSummary;
+use crate::io::mesh::MeshSummary;
+use crate::terrain::Method;
+
+/// A surface, and what is written of it.
+#[derive(Debug, Clone)]
+pub struct WriteRequest {
+    /// The surface.
+    pub surface: SurfaceRequest,
+    /// What is made of it.
+    pub verb: Arc<dyn Verb>,
+}
+
+impl WriteRequest {
+    /// Returns the request for a product of a surface.
+    pub fn new(surface: SurfaceRequest, verb: impl Verb + 'static) -> Self {
+        WriteRequest { surface, verb: Arc::new(verb) }
+    }
+}
+
+/// What is made of a surface and written to files.
+pub trait Verb: Debug + Send + Sync {
+    /// Returns the name of the verb, as on the command line.
+    fn name(&self) -> &'static str;
+
+    /// Returns the product, which has the formats that it can be written in.
+    fn product(&self) -> Product;
+
+    /// Returns an error if the options make no sense, whatever the surface is.
+    ///
+    /// # Errors
+    /// Names the option.
+    fn check(&self) -> Result<()> {
+        Ok(())
+    }
+
+    /// Calls a function with the name and the value of each option, by which a job knows the
+    /// request that it was planned for.
+    fn list(&self, add: &mut dyn FnMut(Setting, &dyn Debug));
+
+    /// Returns the options in a form that can be stored.
+    fn to_json(&self) -> Value;
+
+    /// Returns how heights between vertices are computed. Tiles have linear ones.
+    fn method(&self) -> Method {
+        Method::Linear
+    }
+
+    /// Returns which files that are read besides those of the surface.
+    fn also_reads(&self) -> Option<&PathBuf> {
+        None
+    }
+
+    /// Returns when tiles are used, for these outputs.
+    ///
+    /// # Errors
+    /// If the outputs do not go together.
+    fn use_of_tiles(&self, _targets: &[Target]) -> Result<TileUse> {
+        Ok(TileUse::Optional)
+    }
+
+    /// Builds or reads the surface.
+    ///
+    /// # Errors
+    /// Those of [`triangles`](surface::triangles).
+    fn surface(&self, request: &SurfaceRequest, context: &Context) -> Result<SurfaceProduct> {
+        surface::triangles(request, context)
+    }
+
+    /// Writes what is made of a surface in memory.
+    ///
+    /// # Errors
+    /// If it cannot be made or written, or the run is canceled.
+    fn write(&self, surface: &SurfaceProduct, outputs: &Outputs, context: &Context) -> Result<Summary>;
+
+    /// Returns what the tasks of a job keep of the triangles that they find.
+    fn keeps(&self) -> Keeps<'_>;
+
+    /// Writes what is made of what the tasks have kept.
+    ///
+    /// # Errors
+    /// As [`write`](Self::write).
+    fn write_tiles(&self, tiles: &dyn Tiles, outputs: &Outputs, context: &Context) -> Result<Summary>;
+}
+
+/// Returns the verb with a name and these options; `None` if there is none, or they are not those
+/// of the verb.
+pub(super) fn from_json(name: &str, options: Value) -> Option<Arc<dyn Verb>> {
+    fn read<V: Verb + DeserializeOwned + 'static>(options: Value) -> Option<Arc<dyn Verb>> {
+        serde_json::from_value::<V>(options).ok().map(|verb| Arc::new(verb) as _)
+    }
+    match name {
+        "dem" => read::<DemOptions>(options),
+        "hillshade" => read::<HillshadeOptions>(options),
+        "contour" => read::<ContourOptions>(options),
+        "tin" => read::<SurfaceOptions>(options),
+        _ => None,
+    }
+}
+
+/// When a product is made in tiles.
+#[derive(Debug)]
+pub enum TileUse {
+    /// As memory requires: the result is the same without.
+    Optional,
+    /// Never; the error says why.
+    Never(Error),
+    /// Always.
+    Always,
+}
+
+/// What the tasks of a job keep of triangles.
+#[derive(Debug, Clone, Copy)]
+pub enum Keeps<'a> {
+    /// The heights at the centers of cells.
+    Heights(&'a FrameOptions),
+    /// Parts of contours.
+    Contours(&'a ContourOptions),
+    /// The triangles, in the triangulation of the task.
+    Triangles,
+}
+
+/// What the tasks of a job have kept, once all are done.
+pub trait Tiles {
+    /// Returns the heights at the centers of cells.
+    ///
+    /// # Errors
+    /// If no triangle is left, if tasks have kept something else or their files are damaged; and
+    /// those of choosing the frame.
+    fn heights(&self, frame: &FrameOptions, context: &Context) -> Result<Box<dyn BlockSource>>;
+
+    /// Joins the parts of contours, level by level, and writes them.
+    ///
+    /// # Errors
+    /// If no triangle is left, if tasks have kept something else or their files are damaged, or if
+    /// the lines cannot be written.
+    fn write_contours(
+        &self,
+        contours: &ContourOptions,
+        target: Destination,
+        context: &Context,
+    ) -> Result<ContourSummary>;
+
+    /// Writes the triangulations of the tasks as a TIN in parts.
+    ///
+    /// # Errors
+    /// If no triangle is left, if tasks have kept something else or their files are damaged, or if
+    /// a file cannot be written.
+    fn write_parts(&self, target: Destination, context: &Context) -> Result<WrittenParts>;
+}
+
+/// What was written, counted.
+#[derive(Debug)]
+#[non_exhaustive]
+pub enum Summary {
+    /// Heights in cells.
+    Heights(RasterSummary),
+    /// Shades in cells.
+    Shades,
+    /// Contours.
+    Contours(ContourSummary),
+    /// Meshes, in the order of the outputs.
+    Meshes(Vec<(PathBuf, MeshSummary)>),
+    /// A TIN in parts.
+    Parts(WrittenParts),
+}

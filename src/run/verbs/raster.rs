@@ -1,0 +1,69 @@
+//! What verbs have in common that write rasters.
+
+use std::fmt::Debug;
+
+use crate::data::BlockSource;
+use crate::error::{Error, Result, Setting, wording};
+use crate::run::cells::CellProduct;
+use crate::run::context::Context;
+use crate::run::event::Event;
+use crate::run::frame::FrameOptions;
+use crate::run::notice::Notice;
+use crate::run::targets::{Outputs, Target};
+use crate::run::units::bytes;
+
+/// DEFLATE seldom makes heights smaller than by this factor.
+const BEST_COMPRESSION: f64 = 10.0;
+
+/// Calls a function with the options of a frame, by their names.
+pub(super) fn list_frame(
+    FrameOptions { resolution, extent, align_to }: &FrameOptions,
+    add: &mut dyn FnMut(Setting, &dyn Debug),
+) {
+    add(Setting::Resolution, resolution);
+    add(Setting::Extent, extent);
+    add(Setting::AlignTo, align_to);
+}
+
+/// Reports the size of a raster, and makes sure that the disk has room for its cells. `cell_bytes`
+/// returns the bytes of a cell before compression, and how many times they are on the disk. Of a
+/// surface, only the cells that it covers count.
+///
+/// # Errors
+/// If the cells cannot fit, however well they are compressed.
+pub(super) fn announce(
+    cells: &CellProduct,
+    outputs: &Outputs,
+    cell_bytes: impl Fn(&Target) -> (u64, f64),
+    context: &Context,
+) -> Result<()> {
+    let frame = cells.frame();
+    let sizes: Vec<(u64, f64)> = outputs.targets.iter().map(cell_bytes).collect();
+    let all = frame.width as f64 * frame.height as f64;
+    let a_cell = sizes.iter().map(|&(bytes, _)| bytes as f64).sum::<f64>();
+    let on_disk = sizes.iter().map(|&(bytes, copies)| bytes as f64 * copies).sum::<f64>();
+    context.monitor.event(&Event::RasterPlaced { frame, crs: cells.crs(), bytes: (all * a_cell) as u64 });
+    let Some((free, target)) = outputs.free_space().filter(|(free, _)| (*free as f64) < all * on_disk) else {
+        return Ok(());
+    };
+    let covered = all.min(cells.covered());
+    let need = (covered * a_cell) as u64;
+    if covered * on_disk / BEST_COMPRESSION > free as f64 {
+        let (need, free) = (bytes(need), bytes(free));
+        return Err(Error::limit(format!(
+            "the cells with a value take {need} before compression, {free} are free on the disk"
+        ))
+        .in_file(target)
+        .cure(wording![
+            "choose larger cells (",
+            Setting::Resolution,
+            "), a smaller extent (",
+            Setting::Extent,
+            "), or another disk"
+        ]));
+    }
+    if covered * on_disk > free as f64 {
+        context.monitor.notice(&Notice::OutputMayNotFit { need, free });
+    }
+    Ok(())
+}
