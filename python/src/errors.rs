@@ -27,8 +27,8 @@ impl From<Failure> for PyErr {
         let class = match error.kind() {
             Kind::Format => "FormatError",
             Kind::Unsupported => "UnsupportedError",
-            // Tasks are done by the program only, which ends with a status of its own.
-            Kind::Usage | Kind::NotYet => "UsageError",
+            Kind::Usage => "UsageError",
+            Kind::NotYet => "NotYetError",
             Kind::Limit => "LimitError",
             Kind::Io => "FileError",
             Kind::Canceled => "CanceledError",

@@ -18,6 +18,7 @@ mod spatial;
 mod surface;
 mod triangle;
 mod work;
+mod write;
 
 /// Arrays in, arrays out: the functions behind the package.
 #[pymodule]
@@ -39,6 +40,9 @@ mod _breakline {
 
     #[pymodule_export]
     use super::triangle::triangulate_arrays;
+
+    #[pymodule_export]
+    use super::write::{Job, is_surface, write};
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {

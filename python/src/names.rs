@@ -25,8 +25,6 @@ pub(crate) fn name(term: &Term) -> String {
 /// Returns the parameter for a setting; `None` if no function has one.
 pub(crate) fn parameter(setting: Setting) -> Option<String> {
     let name = match setting {
-        // A surface is in memory; `breakline.dask` and the program work in tiles.
-        Setting::Tiles | Setting::Memory | Setting::Job | Setting::Resume | Setting::SkipBad => return None,
         Setting::CrossingReport | Setting::Parse => return None,
         Setting::Class => "classes",
         Setting::Extent => "bounds",
@@ -46,7 +44,15 @@ fn call(command: Command, file: Option<&str>) -> Option<String> {
         Command::Triangulate => ("triangulate", ""),
         Command::TriangulateInSpace => ("triangulate", "in_space=True"),
         Command::Check => ("check", ""),
-        Command::JobRun | Command::JobVerify | Command::JobClean => return None,
+        Command::JobRun | Command::JobVerify | Command::JobClean => {
+            let of = file.map_or_else(|| "folder".to_owned(), |file| format!("{file:?}"));
+            let method = match command {
+                Command::JobRun => "write",
+                Command::JobVerify => "verify",
+                _ => "clean",
+            };
+            return Some(format!("breakline.Job({of}).{method}()"));
+        }
     };
     let arguments = file.map_or_else(|| arguments.to_owned(), |file| format!("{file:?}"));
     Some(format!("breakline.{function}({arguments})"))

@@ -32,7 +32,7 @@ pub(crate) fn of_surface<'py>(py: Python<'py>, product: &SurfaceProduct) -> PyRe
 }
 
 /// Adds the counts of how a TIN was built.
-fn of_building(report: &Bound<'_, PyDict>, built: &BuildReport) -> PyResult<()> {
+pub(crate) fn of_building(report: &Bound<'_, PyDict>, built: &BuildReport) -> PyResult<()> {
     let py = report.py();
     let (points, tin) = (&built.points, &built.tin);
     report.set_item("sources", built.sources)?;

@@ -90,11 +90,11 @@ class Transitions(distributed.SchedulerPlugin):
 
 
 class Killer(threading.Thread):
-    """Kills workers while they do a task; every second time only the worker, and its task goes on."""
+    """Kills workers while they do a task."""
 
     def __init__(self, client, count):
         super().__init__()
-        self.workers, self.count = client.cluster.workers, count
+        self.cluster, self.count = client.cluster, count
         self.kills, self.done = 0, threading.Event()
 
     def __enter__(self):
@@ -105,26 +105,16 @@ class Killer(threading.Thread):
         self.join()
 
     def run(self):
-        while self.kills < self.count and not self.done.wait(random.uniform(0.1, 0.4)):
-            victims = [found for nanny in self.workers.values() for found in tasks_of(nanny.pid)]
+        while self.kills < self.count and not self.done.wait(random.uniform(0.05, 0.2)):
+            victims = [nanny for nanny in list(self.cluster.workers.values()) if self.is_busy(nanny)]
             if victims:
-                self.kill(*random.choice(victims))
+                with contextlib.suppress(psutil.Error):
+                    psutil.Process(random.choice(victims).pid).kill()
+                    self.kills += 1
 
-    def kill(self, worker, task):
-        worker.kill()
-        if self.kills % 2 == 0:
-            with contextlib.suppress(psutil.NoSuchProcess):
-                task.kill()
-        self.kills += 1
-
-
-def tasks_of(pid):
-    """The worker, with each program that does a task for it."""
-    try:
-        worker = psutil.Process(pid)
-        return [(worker, child) for child in worker.children() if "--task" in child.cmdline()]
-    except psutil.Error:
-        return []
+    def is_busy(self, nanny):
+        worker = self.cluster.scheduler.workers.get(nanny.worker_address)
+        return nanny.pid is not None and worker is not None and bool(worker.processing)
 
 
 def wait_until(is_so):
@@ -137,7 +127,7 @@ def wait_until(is_so):
 def test_workers_may_be_killed(client, whole, tmp_path):
     transitions, job = Transitions(client), tmp_path / "job"
     with (killer := Killer(client, int(os.environ.get("BREAKLINE_KILLS", 5)))):
-        made = breakline.dask.dem(VALLEY, tmp_path / "dem.tif", client=client, tiles="8x8", job=job)
+        made = breakline.dask.dem(VALLEY, tmp_path / "dem.tif", client=client, tiles="16x16", job=job)
     assert killer.kills > 0 and transitions.tasks["erred"]
     assert made.read_bytes() == whole
     # What is done does not begin again when the worker that did it is killed, or only if that is at once.
@@ -148,7 +138,7 @@ def test_a_task_that_kills_its_workers_is_an_error(client, tmp_path, monkeypatch
     monkeypatch.setattr(breakline.dask, "_AGAIN", 0)
     said = r"(divide|tile|merge|rim|output).*: the workers that did this task died .*\n  cure: .* memory"
     with pytest.raises(breakline.BreaklineError, match=said), Killer(client, 100):
-        breakline.dask.dem(VALLEY, tmp_path / "dem.tif", client=client, tiles="8x8")
+        breakline.dask.dem(VALLEY, tmp_path / "dem.tif", client=client, tiles="16x16")
     wait_until(lambda: not client.cluster.scheduler.tasks)
 
 
@@ -184,7 +174,7 @@ def test_ctrl_c_cancels_what_waits(client, tmp_path):
     thread = threading.Thread(target=interrupt)
     thread.start()
     with pytest.raises(KeyboardInterrupt):
-        breakline.dask.dem(VALLEY, tmp_path / "dem.tif", client=client, tiles="8x8", job=job)
+        breakline.dask.dem(VALLEY, tmp_path / "dem.tif", client=client, tiles="16x16", job=job)
     thread.join()
     wait_until(lambda: not scheduler.tasks)
     assert not all(task["done"] for task in tasks(job))
@@ -211,7 +201,7 @@ def test_a_lost_scheduler_is_an_error_with_its_cure(tmp_path):
             thread = threading.Thread(target=kill)
             thread.start()
             with pytest.raises(breakline.BreaklineError, match="(?s)scheduler .* was lost.*cure: .*the same call goes on"):
-                breakline.dask.dem(VALLEY, output, client=client, tiles="8x8", job=job)
+                breakline.dask.dem(VALLEY, output, client=client, tiles="16x16", job=job)
             thread.join()
     finally:
         for process in (scheduler, worker):
@@ -273,14 +263,13 @@ def test_objects_are_copied_for_the_tasks_that_read_them(client, whole, tmp_path
     store.mkdir()
     for letter in "ab":
         (store / f"{letter}.laz").write_bytes(VALLEY.read_bytes())
-    program = breakline.dask._program
+    begin = breakline.dask._begin
 
-    def watched(*words):
-        if "plan" in words:
-            planned.extend(path.stat() for path in scratch.rglob("*.laz"))
-        return program(*words)
+    def watched(*arguments):
+        planned.extend(path.stat() for path in scratch.rglob("*.laz"))
+        return begin(*arguments)
 
-    monkeypatch.setattr(breakline.dask, "_program", watched)
+    monkeypatch.setattr(breakline.dask, "_begin", watched)
     options = {"client": client, "scratch": scratch, "tiles": "3x3", "job": tmp_path / "job"}
     made = breakline.dask.dem(f"file://{store}/*.laz", tmp_path / "dem.tif", classes=2, **options)
     assert made.read_bytes() == whole

@@ -8,15 +8,19 @@ import inspect
 import breakline
 import pytest
 from breakline._breakline import settings
-from breakline.dask import RENAMED
+from breakline._surface import DEFAULTS, FOR_ANY
+from breakline._written import HOW
 
 PROGRAM = breakline.describe()
 VERBS = {verb["name"]: verb for verb in PROGRAM["verbs"]}
 
+#: Options of the program whose parameters here have other names.
+RENAMED = {"a-srs": "crs", "t-srs": "to_crs", "te": "bounds", "class": "classes", "return": "returns", "3d": "in_space"}
+
 #: Verbs that are no functions, and why.
 NO_FUNCTIONS = {
     "demo": "writes files to look at and prints commands to type",
-    "job": "does the tasks of batch queues; breakline.dask does those of a cluster",
+    "job": "breakline.Job does the tasks of batch queues; breakline.dask does those of a cluster",
 }
 
 #: Options that are no parameters of any function, and what there is instead.
@@ -26,10 +30,7 @@ ELSEWHERE = {
     "json": "functions return dictionaries",
     "parse": "the letters of LAStools; columns=(1, 2, 3) says the same",
     "crossing-report": "Tin.report['crossing_heights']",
-    **dict.fromkeys(
-        ["tiles", "memory", "job", "resume", "dry-run", "skip-bad"],
-        "a Tin is in memory; breakline.dask and the program work in tiles",
-    ),
+    "dry-run": "breakline.Job.plan(...).tasks()",
 }
 
 #: Verbs that return what has a method `write`, which takes `output` and `overwrite`.
@@ -47,6 +48,7 @@ def parameters(function):
     own = inspect.signature(function).parameters
     passes = any(parameter.kind is parameter.VAR_KEYWORD for parameter in own.values())
     passed = inspect.signature(breakline.tin).parameters if passes else {}
+    passed = {name: value for name, value in passed.items() if name not in HOW}
     return {**passed, **{name: value for name, value in own.items() if value.kind is not value.VAR_KEYWORD}}
 
 
@@ -109,6 +111,11 @@ def test_defaults_and_values_are_those_of_the_program(verb):
             assert parameter.default == float(default)
         elif isinstance(parameter.default, str):
             assert parameter.default == default
+
+
+def test_defaults_are_those_of_the_signature():
+    parameters = inspect.signature(breakline.tin).parameters
+    assert {name: value.default for name, value in parameters.items() if name not in FOR_ANY} == {**DEFAULTS, **HOW}
 
 
 SQUARE = [[0, 0, 1], [10, 0, 1], [10, 10, 3], [0, 10, 3], [4, 5, 2]]

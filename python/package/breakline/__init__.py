@@ -18,6 +18,7 @@ a picture           :meth:`Tin.hillshade`, :func:`hillshade`
 flaws               :meth:`Tin.check`, :func:`check`
 facts about a file  :func:`info`
 Triangle's files    :func:`triangulate`
+large data          ``output=`` of a verb, :class:`Job`
 ==================  ==================================================
 
 Lengths and heights are in the units of the coordinate system. Errors are :class:`BreaklineError`; what looks wrong is
@@ -36,6 +37,7 @@ from ._errors import (
     FormatError,
     InternalError,
     LimitError,
+    NotYetError,
     UnsupportedError,
     UsageError,
 )
@@ -53,6 +55,7 @@ from ._verbs import (
     info,
     triangulate,
 )
+from ._written import Job, Task, Written
 
 __all__ = [
     "EDGE_KINDS",
@@ -68,15 +71,19 @@ __all__ = [
     "Flaw",
     "FormatError",
     "InternalError",
+    "Job",
     "LimitError",
+    "NotYetError",
     "Notice",
     "Points",
     "Raster",
     "SpaceTriangulation",
+    "Task",
     "Tin",
     "Triangulation",
     "UnsupportedError",
     "UsageError",
+    "Written",
     "__version__",
     "check",
     "contour",

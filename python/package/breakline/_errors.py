@@ -77,6 +77,10 @@ class FileKeptError(FileError, FileExistsError):
     """A file exists, and was not to be replaced."""
 
 
+class NotYetError(BreaklineError):
+    """A task of a job needs others that are not done: the same may work later."""
+
+
 class CanceledError(BreaklineError):
     """The work was canceled."""
 

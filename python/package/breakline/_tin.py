@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import inspect
 from typing import Any, NamedTuple, Optional
 
 import numpy as np
@@ -12,6 +11,8 @@ from ._call import Progress, call
 from ._errors import ArgumentTypeError, usage
 from ._points import _read, _systems
 from ._results import Contours, Raster, draw, light, missing, of_cells
+from ._surface import LINES, refuse_building, surface_arguments
+from ._written import HOW, refuse_how, write
 
 #: The name of each kind of edges, by its number in ``Tin.edge_kinds``.
 EDGE_KINDS: "tuple[str, ...]" = tuple(_breakline.edge_kinds())
@@ -361,9 +362,16 @@ def tin(
     densify: Optional[float] = None,
     columns: Any = None,
     partial: bool = False,
+    output: Any = None,
+    overwrite: bool = False,
+    memory: Any = None,
+    tiles: Optional[str] = None,
+    job: Any = None,
+    resume: bool = False,
+    skip_bad: bool = False,
     threads: Optional[int] = None,
     progress: Progress = None,
-) -> Tin:
+) -> Any:
     """Build a TIN of points and breaklines, or open one.
 
     Every breakline becomes edges of the TIN; everywhere else the triangulation is Delaunay, and it does not depend on
@@ -429,6 +437,22 @@ def tin(
         Columns of text files: ``"PNEZD"``, ``"XYZ"``, or numbers from 1.
     partial : bool
         Use what is left of files that are cut or damaged: LAS, LAZ, text with a count, shapefiles.
+    output : path, optional
+        Write a file in the format of its extension, and return a :class:`Written` instead of a surface. ``.tins`` is a
+        TIN in parts, which is made in tiles of files.
+    overwrite : bool
+        Replace a file that exists.
+    memory : int or str, optional
+        The memory to use for ``output``, such as ``"200MB"``; half of what is free by default. Files of points that
+        need more are worked on in tiles, with the same result; arrays never are.
+    tiles : str, optional
+        Work in tiles: ``"auto"``, or columns and rows such as ``"8x8"``.
+    job : path, optional
+        Folder for the files of the tasks; by default the output's name with ``.job``. See :class:`Job`.
+    resume : bool
+        Go on with a job that was interrupted.
+    skip_bad : bool
+        In tiles, leave a hole where a file cannot be read; ``Written.report["has_holes"]`` says so.
     threads : int, optional
         Number of threads; one per core by default. Results do not depend on it.
     progress : bool or callable, optional
@@ -437,7 +461,7 @@ def tin(
 
     Returns
     -------
-    Tin
+    Tin, or Written if ``output`` is given
 
     Raises
     ------
@@ -455,48 +479,22 @@ def tin(
     O(n log n) for n points; about 100 bytes of memory for each.
     """
     options = dict(locals())
-    given = {name: value for name, value in options.items() if name in _LINES}
+    how = {name: options.pop(name) for name in HOW}
+    if output is not None:
+        return write("tin", options.pop("points"), options, how)
+    refuse_how(how)
     found = _inputs.points(points)
     systems = _systems(crs, to_crs, force_degrees)
     is_file = len(found) == 1 and isinstance(found[0], str)
     with call(threads, progress) as request:
         opened = _breakline.Surface.open(found[0], systems, request) if is_file else None
         if opened is not None:
-            _refuse_building(found[0], options)
+            refuse_building(found[0], options)
             if opened.kind == "raster":
                 raise usage("the file is a raster; points, a .tin or a .ply are needed", found[0], "pass points")
             return Tin(opened)
-        lines = {name: _inputs.layers(value, name, name in _AREAS) for name, value in given.items()}
-        arguments = {
-            **lines,
-            "bounds": _inputs.bounds(bounds),
-            **{name: _inputs.number_or_name(options[name], name) for name in _NUMBERS_OR_NAMES},
-            **{name: _inputs.optional_number(options[name], name) for name in _NUMBERS},
-            **{name: _inputs.name(options[name], name) for name in _NAMES},
-            "classes": _inputs.classes(classes),
-            "flat_buffer": _inputs.number(flat_buffer, "flat_buffer"),
-            "flat_points": bool(flat_points),
-        }
-        masked = _inputs.masked_rows([*found, *(layer for several in lines.values() for layer in several)])
+        arguments = surface_arguments(options)
+        lines = [layer for name in LINES for layer in arguments[name]]
+        masked = _inputs.masked_rows([*found, *lines])
         built = _breakline.Surface.build(found, _read(columns, partial), systems, arguments, request)
         return Tin(built, masked=masked)
-
-
-#: Parameters that take lines or areas, and those of them whose arrays are rings.
-_LINES = {"breaklines", "boundary", "soft_lines", "draped_lines", "walls", "holes", "flat", "rivers"}
-_AREAS = {"boundary", "holes", "flat"}
-#: Parameters that take numbers, names of choices, or both.
-_NUMBERS = {"max_edge_inside", "crossing_tolerance", "wall_width", "flat_tolerance", "densify"}
-_NAMES = {"duplicates", "on_crossing", "crossing_z", "wall_high"}
-_NUMBERS_OR_NAMES = {"max_edge", "wall_bottom", "wall_drop", "flat_height", "river_width"}
-#: Parameters that mean something for a surface that exists already.
-_FOR_ANY = {"points", "crs", "force_degrees", "threads", "progress"}
-_DEFAULTS = {name: parameter.default for name, parameter in inspect.signature(tin).parameters.items()}
-
-
-def _refuse_building(file: str, options: "dict[str, Any]") -> None:
-    """Refuse options that are only for building a surface."""
-    for name, value in options.items():
-        default = _DEFAULTS[name]
-        if name not in _FOR_ANY and not (value is default or isinstance(value, (str, float)) and value == default):
-            raise usage(f"{name} is for building a TIN, but {file} is a surface already", value, f"leave {name} out")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, Optional
 
 import numpy as np
@@ -14,7 +15,9 @@ from ._call import Progress, call
 from ._errors import ArgumentTypeError, usage
 from ._points import _read, _systems
 from ._results import Contours, Raster, draw, light, of_cells
-from ._tin import _FOR_ANY, Flaw, Tin, _frame, tin
+from ._surface import FOR_ANY
+from ._tin import Flaw, Tin, _frame, tin
+from ._written import HOW, Written, refuse_how, write
 
 
 def _surface(points: Any, surface: "dict[str, Any]", threads: Any, progress: Any) -> Any:
@@ -27,7 +30,7 @@ def _surface(points: Any, surface: "dict[str, Any]", threads: Any, progress: Any
         with call(threads, progress) as request:
             opened = _breakline.Surface.open(os.fspath(points), systems, request)
         if opened is not None and opened.kind == "raster":
-            _refuse({name: surface[name] for name in surface if name not in _FOR_ANY}, os.fspath(points))
+            _refuse({name: surface[name] for name in surface if name not in FOR_ANY}, os.fspath(points))
             return opened
     return tin(points, threads=threads, progress=progress, **surface)._surface
 
@@ -38,6 +41,25 @@ def _refuse(surface: "dict[str, Any]", what: str) -> None:
         raise usage(f"{name} is for building a TIN, but {what} is a surface already", value, f"leave {name} out")
 
 
+def _written(verb: str, given: "dict[str, Any]") -> "Optional[Written]":
+    """Write what a verb makes, if it is asked to, by the parameters of its function."""
+    surface, points = given.pop("surface"), given.pop("points")
+    how = {name: given.pop(name) for name in HOW}
+    if how["output"] is None:
+        refuse_how(how)
+        return None
+    if isinstance(points, (Tin, Raster)):
+        _refuse(surface, "this")
+        threads, progress = given.pop("threads"), given.pop("progress")
+        running = {"threads": threads, "progress": progress}
+        others = {name: how[name] for name in how if name != "overwrite"}
+        refuse_how({**others, "overwrite": False})
+        made = globals()[verb](points, **given, **running)
+        made.write(how["output"], overwrite=how["overwrite"], **running)
+        return Written(Path(_inputs.path(how["output"], "output")), {"in_tiles": False, "has_holes": False})
+    return write(verb, points, {**given, **surface}, how)
+
+
 def dem(
     points: Any,
     *,
@@ -45,10 +67,17 @@ def dem(
     extent: Any = None,
     align_to: Any = None,
     method: str = "linear",
+    output: Any = None,
+    overwrite: bool = False,
+    memory: Any = None,
+    tiles: Optional[str] = None,
+    job: Any = None,
+    resume: bool = False,
+    skip_bad: bool = False,
     threads: Optional[int] = None,
     progress: Progress = None,
     **surface: Any,
-) -> Raster:
+) -> Any:
     """Return heights at the centers of cells.
 
     Parameters
@@ -59,9 +88,15 @@ def dem(
         Extent of the raster; ``bounds`` clips the surface, as in :func:`tin`.
     resolution, align_to, method, threads, progress
         As for :meth:`Tin.dem`.
+    output, overwrite, memory, tiles, job, resume, skip_bad
+        Write a file, as for :func:`tin`, and return a :class:`Written`: files that need more memory are worked on in
+        tiles, with the same result.
     **surface
         Parameters of :func:`tin`.
     """
+    written = _written("dem", dict(locals()))
+    if written is not None:
+        return written
     found = _surface(points, surface, threads, progress)
     with call(threads, progress) as request:
         return of_cells(found.dem(_frame(resolution, extent, align_to), _inputs.name(method, "method"), request))
@@ -77,10 +112,17 @@ def hillshade(
     azimuth: float = 315.0,
     altitude: float = 45.0,
     z_factor: Optional[float] = None,
+    output: Any = None,
+    overwrite: bool = False,
+    memory: Any = None,
+    tiles: Optional[str] = None,
+    job: Any = None,
+    resume: bool = False,
+    skip_bad: bool = False,
     threads: Optional[int] = None,
     progress: Progress = None,
     **surface: Any,
-) -> Raster:
+) -> Any:
     """Return shades of a surface or of a raster of heights.
 
     Parameters
@@ -91,9 +133,15 @@ def hillshade(
         As for :func:`dem`; a raster keeps its cells.
     azimuth, altitude, z_factor, threads, progress
         As for :meth:`Tin.hillshade`.
+    output, overwrite, memory, tiles, job, resume, skip_bad
+        Write a file, as for :func:`tin`, and return a :class:`Written`: files that need more memory are worked on in
+        tiles, with the same result.
     **surface
         Parameters of :func:`tin`.
     """
+    written = _written("hillshade", dict(locals()))
+    if written is not None:
+        return written
     found = _surface(points, surface, threads, progress)
     sun, method = light(azimuth, altitude, z_factor), _inputs.name(method, "method")
     with call(threads, progress) as request:
@@ -106,10 +154,17 @@ def contour(
     interval: Optional[float] = None,
     base: float = 0.0,
     levels: Any = (),
+    output: Any = None,
+    overwrite: bool = False,
+    memory: Any = None,
+    tiles: Optional[str] = None,
+    job: Any = None,
+    resume: bool = False,
+    skip_bad: bool = False,
     threads: Optional[int] = None,
     progress: Progress = None,
     **surface: Any,
-) -> Contours:
+) -> Any:
     """Return contours of a surface or of a raster of heights.
 
     Parameters
@@ -118,9 +173,15 @@ def contour(
         A :class:`Tin`, a :class:`Raster`, the path of a raster, or what :func:`tin` takes.
     interval, base, levels, threads, progress
         As for :meth:`Tin.contours`.
+    output, overwrite, memory, tiles, job, resume, skip_bad
+        Write a file, as for :func:`tin`, and return a :class:`Written`: files that need more memory are worked on in
+        tiles, with the same result.
     **surface
         Parameters of :func:`tin`.
     """
+    written = _written("contour", dict(locals()))
+    if written is not None:
+        return written
     found = _surface(points, surface, threads, progress)
     crs = found.crs[0] if found.crs else None
     return draw(found, crs, interval, base, levels, threads, progress)
@@ -147,6 +208,9 @@ def check(
     **surface
         Parameters of :func:`tin`.
     """
+    for name in HOW:
+        if name in surface:
+            raise usage(f"{name} is for writing a file", surface[name], f"leave {name} out")
     is_file = _inputs.is_path(points) and os.path.isfile(points)
     if isinstance(points, Raster):
         raise usage("a raster has no triangles to check", None, "pass a Tin, a mesh or points", ArgumentTypeError)

@@ -4,7 +4,7 @@
 >>> breakline.dask.dem("tiles/*.laz", "dem.tif", resolution=1, client=client)  # doctest: +SKIP
 PosixPath('dem.tif')
 
-The work is the job that ``breakline job plan`` makes: a folder with a file for each task that is done. Inputs, output
+The work is a :class:`breakline.Job`: a folder with a file for each task that is done. Inputs, output
 and that folder must have the same paths on all workers. Points may also be objects in a store that ``fsspec`` knows
 (``s3://bucket/tiles/*.laz``): a worker copies an object when a task reads it, and removes the copy afterwards. The
 result is the same, byte for byte, as on one machine: tasks may be repeated, and a task that was done before is not
@@ -15,10 +15,7 @@ from __future__ import annotations
 
 import contextlib
 import glob
-import json
 import os
-import subprocess
-import sys
 import uuid
 import warnings
 from collections import Counter, defaultdict
@@ -27,29 +24,16 @@ from concurrent.futures import CancelledError
 from pathlib import Path
 from typing import Any, Union
 
-from ._errors import BreaklineError, BreaklineWarning, usage
+from ._errors import BreaklineError, BreaklineWarning, UsageError, usage
 from ._objects import Objects, StoredObject, is_url
+from ._written import Job, Task
 
 __all__ = ["contour", "dem", "hillshade", "tin"]
 
 PathLike = Union[str, "os.PathLike[str]"]
 
-#: Options of the program whose parameters here have other names.
-RENAMED = {"a-srs": "crs", "t-srs": "to_crs", "te": "bounds", "class": "classes", "return": "returns", "3d": "in_space"}
-
-#: Parameters here, and the options of the program that they stand for.
-_OPTIONS = {parameter: option for option, parameter in RENAMED.items()}
-_OPTIONS["extent"] = "te"
-
-
-#: Options that take several values in one word; others are repeated.
-_IN_ONE_WORD = {"--class", "--te", "--levels"}
-
 #: How often a task is submitted again after Dask gave it up because its workers died.
 _AGAIN = 20
-
-#: The status of a program that has written a result with holes, because files were skipped.
-_HOLES = 3
 
 #: What to do when that was not enough.
 _LOST = (
@@ -96,8 +80,8 @@ def dem(
     storage_options : dict, optional
         What ``fsspec`` needs to open objects, such as keys and endpoints.
     **options
-        The other options of ``breakline dem`` by their names, such as ``resolution=0.5``, ``tiles="8x8"``,
-        ``max_edge=50``.
+        The other parameters of :func:`breakline.dem`, such as ``resolution=0.5``, ``tiles="8x8"``, ``max_edge=50``.
+        Lines and areas are files.
 
     Returns
     -------
@@ -160,34 +144,57 @@ def _run(
     folder = _path(f"{os.fspath(output)}.job" if job is None else job)
     objects = Objects(urls, None if scratch is None else _path(scratch), storage_options, folder)
     paths = [path for file in files for path in _paths(file, objects)]
-    command = [verb, *paths, "-o", _path(output), *_words(options)]
-    if not os.path.exists(os.path.join(folder, "plan.json")):
-        with objects.headers():
-            _program("job", "plan", folder, *(["--headers-only"] if urls else []), "--", *command)
+    there = os.path.exists(os.path.join(folder, "plan.json"))
+    with contextlib.nullcontext() if there else objects.headers():
+        begun = _begin(verb, paths, _path(output), folder, bool(urls), options)
     # What is there is verified: a task that is done is not repeated.
-    status = json.loads(_program("job", "status", folder, "--json", "--verify"))
-    if status["command"] != command:
-        raise usage(f"the job in {folder} is that of another call", folder, "pass another job, or remove the folder")
-    for task in status["tasks"]:
-        read = objects.at.get(task["input"])
-        if read is not None and task["has_read"] not in (None, [read.size, read.time]):
+    begun.verify()
+    tasks = begun.tasks()
+    for task in tasks:
+        read = objects.at.get(task.input)
+        if read is not None and task.has_read not in (None, (read.size, read.time)):
             raise usage("the object has changed since the job has read it", read.url, "remove the job, and begin anew")
     # New in each call: a scheduler keeps what failed under its key.
     name = f"{verb}-{uuid.uuid4().hex[:8]}"
-    cluster = _Cluster(client, folder, status["tasks"], objects.at, name, retries)
+    cluster = _Cluster(client, folder, tasks, objects.at, name, retries)
     try:
-        _finish(cluster, status["tasks"])
+        _finish(cluster, tasks)
     except (CancelledError, OSError, TimeoutError) as error:
         raise _error("the scheduler of the cluster was lost, or canceled the tasks", _ENDED) from error
     finally:
         cluster.release()
-    if json.loads(_program("job", "status", folder, "--json"))["holes"]:
+    if begun.has_holes:
         cure = f"repair them, then `breakline job run {folder}` goes on"
         text = f"files were skipped, so that {os.fspath(output)} has holes: {cure}"
         warnings.warn(text, BreaklineWarning, stacklevel=3)
     elif job is None:
-        _program("job", "clean", folder)
+        begun.clean()
     return Path(output)
+
+
+def _begin(
+    verb: str, paths: "list[str]", output: str, folder: str, headers_only: bool, options: "dict[str, Any]"
+) -> Job:
+    """Open the job of a request, or plan it. Workers may have other working folders: all names are whole."""
+    whole = {name: _whole(value) if name in _FILES else value for name, value in options.items()}
+    try:
+        return Job.plan(verb, paths, output, job=folder, headers_only=headers_only, **whole)
+    except UsageError as error:
+        if "that of another command" not in error.message:
+            raise
+        cure = "pass another job, or remove the folder"
+        raise usage(f"the job in {folder} is that of another call ({error.message})", folder, cure) from error
+
+
+#: Parameters that take files.
+_FILES = {"breaklines", "boundary", "soft_lines", "draped_lines", "walls", "holes", "flat", "rivers", "align_to"}
+
+
+def _whole(value: Any) -> Any:
+    """Return files by their whole names."""
+    if isinstance(value, (list, tuple)):
+        return [_whole(one) for one in value]
+    return _path(value) if isinstance(value, (str, os.PathLike)) else value
 
 
 def _paths(file: PathLike, objects: Objects) -> "list[str]":
@@ -196,10 +203,10 @@ def _paths(file: PathLike, objects: Objects) -> "list[str]":
     return objects.paths(text) if is_url(text) else [_path(path) for path in _found(text)]
 
 
-def _finish(cluster: "_Cluster", tasks: "list[dict[str, Any]]") -> None:
+def _finish(cluster: "_Cluster", tasks: "list[Task]") -> None:
     """Start each task that is left when those that it needs are done, until all are done."""
-    left = {number for number, task in enumerate(tasks) if not task["done"]}
-    missing = {number: left.intersection(tasks[number]["needs"]) for number in left}
+    left = {number for number, task in enumerate(tasks) if not task.done}
+    missing = {number: left.intersection(tasks[number].needs) for number in left}
     users: "dict[int, list[int]]" = defaultdict(list)
     for number in sorted(left):
         for needed in missing[number]:
@@ -226,7 +233,7 @@ class _Cluster:
         self,
         client: Any,
         folder: str,
-        tasks: "list[dict[str, Any]]",
+        tasks: "list[Task]",
         objects: "dict[str, StoredObject]",
         name: str,
         retries: int,
@@ -243,9 +250,9 @@ class _Cluster:
         """Submit a task, of which all that it needs is done."""
         task = self._tasks[number]
         # "tile 17, a.laz" becomes "tile-17-...": the dashboard groups tasks by the first word.
-        title = "-".join(task["name"].split(",")[0].split(" ")[:2]).replace(os.sep, "_")
+        title = "-".join(task.name.split(",")[0].split(" ")[:2]).replace(os.sep, "_")
         key = f"{title}-{self._name}-{number}-{self._deaths[number]}"
-        words = [self._folder, number, _threads(task), self._objects.get(task["input"])]
+        words = [self._folder, number, task.name == "output", self._objects.get(task.input)]
         # Later tasks first: merges come soon after what they merge.
         future = self._client.submit(_task, *words, key=key, priority=number, retries=self._retries, pure=False)
         self._numbers[future] = number
@@ -274,38 +281,28 @@ class _Cluster:
 
     def _restart(self, number: int, killed: Exception) -> None:
         if self._deaths[number] == _AGAIN:
-            name = self._tasks[number]["name"]
+            name = self._tasks[number].name
             raise _error(f"{name}: the workers that did this task died ({_AGAIN + 1} times)", _LOST) from killed
         self._deaths[number] += 1
         self.start(number)
 
 
-def _threads(task: "dict[str, Any]") -> "list[str]":
-    """Return the option for the threads of a task: one, unless it runs alone."""
-    return [] if task["name"] == "output" else ["--threads", "1"]
+def _task(folder: str, number: int, is_alone: bool, read: "Union[StoredObject, None]") -> None:
+    """Do a task in the process of a worker, which copies the object that the task reads.
 
+    It has one thread, unless it runs alone: then those of the worker.
+    """
+    from distributed import get_worker
 
-def _task(folder: str, number: int, threads: "list[str]", read: "Union[StoredObject, None]") -> None:
-    """Do a task on a worker, which copies the object that the task reads."""
+    threads = get_worker().state.nthreads if is_alone else 1
     with contextlib.nullcontext() if read is None else read.copied():
-        _program("job", "run", folder, "--task", str(number), *threads)
+        Job(folder).run_task(number, threads=threads)
 
 
 def _found(file: PathLike) -> "list[str]":
     """Return the files that a glob stands for now: a file that comes later belongs to no job that began before."""
     text = os.fspath(file)
     return sorted(glob.glob(text)) or [text]
-
-
-def _program(*words: str) -> str:
-    """Run the program and return what it prints."""
-    ran = subprocess.run([sys.executable, "-m", "breakline", *words], capture_output=True, text=True)
-    if ran.returncode not in (0, _HOLES):
-        lines = ran.stderr.splitlines()
-        said = [line.removeprefix("error: ") for line in lines if line.startswith("error: ")]
-        cures = [line.removeprefix("hint: ") for line in lines if line.startswith("hint: ")]
-        raise _error(said[0] if said else ran.stderr.strip(), cures[0] if cures else None)
-    return ran.stdout
 
 
 def _error(message: str, cure: "Union[str, None]") -> BreaklineError:
@@ -316,20 +313,3 @@ def _error(message: str, cure: "Union[str, None]") -> BreaklineError:
 
 def _path(path: PathLike) -> str:
     return os.path.abspath(os.fspath(path))
-
-
-def _words(options: "dict[str, Any]") -> "list[str]":
-    words: "list[str]" = []
-    for parameter, value in options.items():
-        option = "--" + _OPTIONS.get(parameter, parameter).replace("_", "-")
-        if value is None or value is False:
-            continue
-        if value is True:
-            words.append(option)
-        elif isinstance(value, (list, tuple)) and option in _IN_ONE_WORD:
-            words.append(f"{option}={','.join(map(str, value))}")
-        elif isinstance(value, (list, tuple)):
-            words.extend(f"{option}={one}" for one in value)
-        else:
-            words.append(f"{option}={value}")
-    return words

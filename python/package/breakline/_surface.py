@@ -1,0 +1,74 @@
+"""Parameters of building a surface, as the library takes them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from . import _inputs
+from ._errors import usage
+
+#: Parameters that take lines or areas, and those of them whose arrays are rings.
+LINES = {"breaklines", "boundary", "soft_lines", "draped_lines", "walls", "holes", "flat", "rivers"}
+_AREAS = {"boundary", "holes", "flat"}
+#: Parameters that take numbers, names of choices, or both.
+_NUMBERS = {"max_edge_inside", "crossing_tolerance", "wall_width", "flat_tolerance", "densify"}
+_NAMES = {"duplicates", "on_crossing", "crossing_z", "wall_high"}
+_NUMBERS_OR_NAMES = {"max_edge", "wall_bottom", "wall_drop", "flat_height", "river_width"}
+#: Parameters that mean something for a surface that exists already.
+FOR_ANY = {"points", "crs", "force_degrees", "threads", "progress"}
+#: What the others are if nobody says, as in the signature of ``tin``.
+DEFAULTS: "dict[str, Any]" = {
+    "breaklines": None,
+    "boundary": None,
+    "bounds": None,
+    "max_edge": None,
+    "max_edge_inside": None,
+    "classes": None,
+    "to_crs": None,
+    "duplicates": "lowest",
+    "on_crossing": "split",
+    "crossing_z": "lowest",
+    "crossing_tolerance": None,
+    "soft_lines": None,
+    "draped_lines": None,
+    "walls": None,
+    "wall_bottom": None,
+    "wall_drop": None,
+    "wall_width": None,
+    "wall_high": "left",
+    "holes": None,
+    "flat": None,
+    "flat_height": None,
+    "flat_tolerance": None,
+    "flat_buffer": 0.0,
+    "flat_points": False,
+    "rivers": None,
+    "river_width": None,
+    "densify": None,
+    "columns": None,
+    "partial": False,
+}
+
+
+def surface_arguments(options: "dict[str, Any]") -> "dict[str, Any]":
+    """Return the options of building a TIN as the library takes them."""
+    return {
+        **{name: _inputs.layers(options[name], name, name in _AREAS) for name in LINES},
+        "bounds": _inputs.bounds(options["bounds"]),
+        **{name: _inputs.number_or_name(options[name], name) for name in _NUMBERS_OR_NAMES},
+        **{name: _inputs.optional_number(options[name], name) for name in _NUMBERS},
+        **{name: _inputs.name(options[name], name) for name in _NAMES},
+        "classes": _inputs.classes(options["classes"]),
+        "flat_buffer": _inputs.number(options["flat_buffer"], "flat_buffer"),
+        "flat_points": bool(options["flat_points"]),
+    }
+
+
+def refuse_building(file: str, options: "dict[str, Any]") -> None:
+    """Refuse options that are only for building a surface."""
+    for name, value in options.items():
+        if name in FOR_ANY:
+            continue
+        default = DEFAULTS[name]
+        if not (value is default or isinstance(value, (str, float)) and value == default):
+            raise usage(f"{name} is for building a TIN, but {file} is a surface already", value, f"leave {name} out")

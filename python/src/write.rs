@@ -1,0 +1,341 @@
+//! Surfaces to files, in one piece or in tiles, and the jobs that tiles are done by.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use breakline::Error;
+use breakline::run::{
+    self, BadFiles, ContourOptions, DemOptions, Division, Execution, Existing, HillshadeOptions, Job as Tasks,
+    JobCommand, JobReport, LightOptions, Look, Origin, Source, Summary, SurfaceOptions, SurfaceRequest, Targets,
+    TileOptions, TinRequest, Verb, WriteReport, WriteRequest, Written, WrittenOf,
+};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList};
+
+use crate::errors::{self, Failure, Result};
+use crate::reports;
+use crate::requests::{self, FrameArguments, PointInput, ReadArguments, SurfaceArguments, SystemArguments};
+use crate::work::{self, Call};
+
+/// What is written, and of what, under the names in Python.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct Asked<'py> {
+    points: Vec<PointInput<'py>>,
+    read: ReadArguments,
+    systems: SystemArguments,
+    /// The options of building a TIN; none are given if the input is a surface already.
+    surface: SurfaceArguments<'py>,
+    verb: String,
+    /// The options of the verb.
+    product: Bound<'py, PyDict>,
+    output: PathBuf,
+    overwrite: bool,
+    tiles: Option<String>,
+    memory: Option<String>,
+    job: Option<PathBuf>,
+    resume: bool,
+    skip_bad: bool,
+}
+
+impl Asked<'_> {
+    fn request(&self) -> PyResult<WriteRequest> {
+        let source = match &self.points[..] {
+            [PointInput::File(path)] => Source::of_files(std::slice::from_ref(path)).map_err(Failure)?,
+            _ => Source::Points(Box::default()),
+        };
+        let source = match source {
+            Source::Points(_) => Source::Points(Box::new(self.points()?)),
+            ready => ready,
+        };
+        let surface = SurfaceRequest { source, systems: self.systems.options()? };
+        Ok(WriteRequest { surface, verb: verb(&self.verb, &self.product)? })
+    }
+
+    fn points(&self) -> PyResult<TinRequest> {
+        self.surface.request(&self.points, &self.read)
+    }
+
+    fn targets(&self) -> Targets {
+        Targets { existing: Existing::of(self.overwrite), ..Targets::of(&self.output) }
+    }
+
+    fn tiles(&self) -> PyResult<TileOptions> {
+        let division = self.tiles.as_deref().map(|text| {
+            text.parse::<Division>()
+                .map_err(|why| errors::usage(&format!("tiles: {why}"), &format!("'{text}'"), "write 'auto' or '8x8'"))
+        });
+        let memory = self.memory.as_deref().map(|text| {
+            run::memory_of(text)
+                .map_err(|why| errors::usage(&format!("memory: {why}"), &format!("'{text}'"), "write '200MB'"))
+        });
+        Ok(TileOptions {
+            division: division.transpose()?.unwrap_or_default(),
+            memory: memory.transpose()?,
+            folder: self.job.clone(),
+            bad: if self.skip_bad { BadFiles::Skip } else { BadFiles::Refuse },
+            look: Look::default(),
+        })
+    }
+
+    fn execution(&self) -> PyResult<Execution> {
+        let options = self.tiles()?;
+        Ok(if self.resume {
+            Execution::Resume(options)
+        } else if self.tiles.is_some() || self.job.is_some() || self.skip_bad {
+            Execution::Tiles(options)
+        } else {
+            Execution::Auto { memory: options.memory }
+        })
+    }
+}
+
+/// Returns a verb with its options.
+fn verb(name: &str, options: &Bound<'_, PyDict>) -> PyResult<Arc<dyn Verb>> {
+    let frame = || options.as_any().get_item("frame")?.extract::<FrameArguments>()?.options();
+    let method = || requests::method(&options.as_any().get_item("method")?.extract::<String>()?);
+    Ok(match name {
+        "dem" => Arc::new(DemOptions { frame: frame()?, method: method()? }),
+        "hillshade" => {
+            let (azimuth, altitude, z_factor) = options.as_any().get_item("light")?.extract()?;
+            let light = LightOptions { azimuth, altitude, z_factor };
+            Arc::new(HillshadeOptions { frame: frame()?, method: method()?, light })
+        }
+        "contour" => {
+            let (interval, base, levels) = options.as_any().get_item("levels")?.extract()?;
+            Arc::new(ContourOptions { interval, base, levels })
+        }
+        "tin" => Arc::new(SurfaceOptions),
+        _ => {
+            return Err(errors::usage(
+                "there is no such verb",
+                &format!("'{name}'"),
+                "use dem, hillshade, contour or tin",
+            ));
+        }
+    })
+}
+
+/// Writes what a verb makes of a surface; returns the report.
+#[pyfunction]
+pub(crate) fn write<'py>(py: Python<'py>, asked: Asked<'py>, call: Call) -> PyResult<Bound<'py, PyDict>> {
+    let (request, targets, execution) = (asked.request()?, asked.targets(), asked.execution()?);
+    // The arrays are copied, and may be changed.
+    drop(asked);
+    let report =
+        work::run(py, &call, |context| -> Result<_> { Ok(run::write(&request, &targets, &execution, context)?) })?;
+    of_report(py, &report)
+}
+
+/// Returns what was written, as a dictionary.
+fn of_report<'py>(py: Python<'py>, report: &WriteReport) -> PyResult<Bound<'py, PyDict>> {
+    let found = PyDict::new(py);
+    match report {
+        WriteReport::Kept { has_holes, .. } => found.set_item("has_holes", has_holes)?,
+        WriteReport::Written(written) => of_written(&found, written)?,
+        _ => {}
+    }
+    Ok(found)
+}
+
+fn of_written(found: &Bound<'_, PyDict>, Written { surface, summary, files, .. }: &Written) -> PyResult<()> {
+    found.set_item("files", files.iter().map(|path| path.display().to_string()).collect::<Vec<_>>())?;
+    match surface {
+        WrittenOf::Whole(report) => {
+            found.set_item("in_tiles", false)?;
+            found.set_item("has_holes", false)?;
+            found.set_item("min", report.extent.min)?;
+            found.set_item("max", report.extent.max)?;
+            match &report.origin {
+                Origin::Built(built) => {
+                    found.set_item("vertices", built.tin.vertices)?;
+                    found.set_item("triangles", built.tin.triangles)?;
+                    reports::of_building(found, built)?;
+                }
+                Origin::Triangles(facts) => {
+                    found.set_item("vertices", facts.vertices)?;
+                    found.set_item("triangles", facts.triangles)?;
+                }
+                Origin::Cells(_) => {}
+            }
+        }
+        WrittenOf::Tiles { report, folder } => of_tiles(found, report, folder)?,
+    }
+    match summary {
+        Summary::Heights(cells) => {
+            found.set_item("cells_with_height", cells.valid)?;
+            found.set_item("lowest", (cells.valid > 0).then_some(cells.min))?;
+            found.set_item("highest", (cells.valid > 0).then_some(cells.max))
+        }
+        Summary::Contours(drawn) => {
+            found.set_item("lines", drawn.lines)?;
+            found.set_item("closed_lines", drawn.closed)
+        }
+        Summary::Parts(parts) => found.set_item("parts", parts.index.parts.len()),
+        _ => Ok(()),
+    }
+}
+
+fn of_tiles(found: &Bound<'_, PyDict>, report: &JobReport, folder: &Path) -> PyResult<()> {
+    found.set_item("in_tiles", true)?;
+    found.set_item("has_holes", report.skipped > 0)?;
+    found.set_item("job", (report.skipped > 0).then(|| folder.display().to_string()))?;
+    found.set_item("files_skipped", report.skipped)?;
+    for (name, count) in [
+        ("points_read", report.read),
+        ("points_used", report.used),
+        ("points_withheld", report.withheld),
+        ("points_of_other_classes", report.other_class),
+        ("duplicates", report.duplicates),
+        ("triangles", report.triangles),
+        ("triangles_beyond_max_edge", report.beyond_max_edge),
+        ("triangles_clipped", report.clipped),
+        ("triangles_over_skipped_files", report.over_skipped),
+    ] {
+        found.set_item(name, count)?;
+    }
+    found.set_item("min", report.extent.min)?;
+    found.set_item("max", report.extent.max)
+}
+
+/// Returns true if a file is a surface already: a mesh, a TIN or a raster.
+#[pyfunction]
+pub(crate) fn is_surface(py: Python<'_>, file: PathBuf) -> PyResult<bool> {
+    work::short(py, || -> Result<_> { Ok(!matches!(Source::of_files(&[file])?, Source::Points(_))) })
+}
+
+/// The job in a folder.
+#[pyclass(frozen, module = "breakline._breakline")]
+pub(crate) struct Job {
+    folder: PathBuf,
+    command: JobCommand,
+}
+
+impl Job {
+    fn read(folder: &Path) -> Result<Self> {
+        let folder = std::path::absolute(folder).map_err(Error::from)?;
+        let command = JobCommand::read(&folder)?.ok_or_else(|| no_job(&folder))?;
+        let mut names =
+            command.targets.files.iter().chain(command.targets.also_read.iter()).cloned().collect::<Vec<_>>();
+        names.extend(command.targets.read_with(&command.request.surface));
+        let here = std::env::current_dir().map_err(Error::from)?;
+        match names.into_iter().find(|name| name.is_relative()).filter(|_| here != command.folder) {
+            Some(name) => {
+                Err(Error::usage(format!("the name is relative to another folder, {}", command.folder.display()))
+                    .in_file(name)
+                    .cure("go there first (os.chdir), or plan the job with absolute paths")
+                    .into())
+            }
+            None => Ok(Job { folder, command }),
+        }
+    }
+
+    fn stored(&self) -> Result<Tasks> {
+        let JobCommand { request, tiles, .. } = &self.command;
+        Ok(Tasks::stored(request, &self.folder, tiles)?.ok_or_else(|| no_job(&self.folder))?)
+    }
+
+    fn output(&self) -> &Path {
+        self.command.targets.files.first().map(PathBuf::as_path).unwrap_or(Path::new(""))
+    }
+}
+
+#[cold]
+fn no_job(folder: &Path) -> Error {
+    Error::usage("there is no job in this folder").in_file(folder)
+}
+
+#[pymethods]
+impl Job {
+    /// Opens the job in the folder that is asked for, or plans one.
+    #[staticmethod]
+    fn begin(py: Python<'_>, asked: Asked<'_>, headers_only: bool, words: Vec<String>, call: Call) -> PyResult<Self> {
+        let (request, targets) = (asked.request()?, asked.targets());
+        let look = if headers_only { Look::Headers } else { Look::Points };
+        let tiles = TileOptions { look, ..asked.tiles()? };
+        let folder = tiles.folder.clone().unwrap_or_default();
+        drop(asked);
+        work::run(py, &call, |context| -> Result<_> {
+            if Tasks::stored(&request, &folder, &tiles)?.is_none() {
+                let mut job = run::plan(&request, &targets, &tiles, context)?;
+                let here = std::env::current_dir().map_err(Error::from)?;
+                let command = JobCommand { request, targets, tiles, folder: here, words };
+                drop(job.create(Some(&command))?);
+            }
+            Job::read(&folder)
+        })
+    }
+
+    /// Opens the job in a folder.
+    #[staticmethod]
+    fn open(py: Python<'_>, folder: PathBuf) -> PyResult<Self> {
+        work::short(py, || Job::read(&folder))
+    }
+
+    /// The folder.
+    #[getter]
+    fn folder(&self) -> PathBuf {
+        self.folder.clone()
+    }
+
+    /// The first output.
+    #[getter(output)]
+    fn first_output(&self) -> PathBuf {
+        self.output().to_path_buf()
+    }
+
+    /// Returns the tasks, each as a dictionary.
+    fn tasks<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
+        let tasks = work::short(py, || -> Result<_> { Ok(self.stored()?.tasks(self.output())) })?;
+        let listed = PyList::empty(py);
+        for task in tasks {
+            let found = PyDict::new(py);
+            found.set_item("number", task.number)?;
+            found.set_item("name", task.name)?;
+            found.set_item("stage", task.stage)?;
+            found.set_item("needs", task.needs)?;
+            found.set_item("input", task.input.map(|path| path.display().to_string()))?;
+            found.set_item("has_read", task.has_read.map(|state| (state.size, state.modified)))?;
+            found.set_item("done", task.is_done)?;
+            listed.append(found)?;
+        }
+        Ok(listed)
+    }
+
+    /// Reads the files of the tasks, and removes those that are damaged.
+    fn verify(&self, py: Python<'_>, call: Call) -> PyResult<()> {
+        work::run(py, &call, |_| -> Result<_> { Ok(self.stored()?.remove_damaged().map(drop)?) })
+    }
+
+    /// Does a task; returns the report of the last one, which writes the output.
+    fn run_task<'py>(&self, py: Python<'py>, number: usize, call: Call) -> PyResult<Bound<'py, PyDict>> {
+        let JobCommand { request, targets, tiles, .. } = &self.command;
+        let report = work::run(py, &call, |context| -> Result<_> {
+            let job = Tasks::open_for(request, &self.folder, tiles, number)?.ok_or_else(|| no_job(&self.folder))?;
+            Ok(run::run_task(&job, number, targets, context)?)
+        })?;
+        report.map_or_else(|| Ok(PyDict::new(py)), |report| of_report(py, &report))
+    }
+
+    /// Does all tasks that are left, and writes the output; returns the report.
+    fn write<'py>(&self, py: Python<'py>, overwrite: bool, call: Call) -> PyResult<Bound<'py, PyDict>> {
+        let JobCommand { request, targets, tiles, .. } = &self.command;
+        let targets = Targets { existing: Existing::of(overwrite), ..targets.clone() };
+        let options = TileOptions { folder: Some(self.folder.clone()), ..tiles.clone() };
+        let report = work::run(py, &call, |context| -> Result<_> {
+            Ok(run::write(request, &targets, &Execution::Resume(options), context)?)
+        })?;
+        of_report(py, &report)
+    }
+
+    /// True if files were skipped.
+    #[getter]
+    fn has_holes(&self, py: Python<'_>) -> PyResult<bool> {
+        work::short(py, || -> Result<_> { Ok(self.stored()?.has_holes()) })
+    }
+
+    /// Removes the files that the job has written, except the output.
+    fn clean(&self, py: Python<'_>) -> PyResult<()> {
+        work::short(py, || -> Result<_> { Ok(run::remove_job(&self.folder)?) })
+    }
+}

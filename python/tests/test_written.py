@@ -1,0 +1,124 @@
+"""Verbs that write files: in one piece, in tiles, and as jobs."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import breakline
+import numpy as np
+import pytest
+
+FIXTURES = Path(__file__).parents[2] / "fixtures"
+VALLEY = FIXTURES / "valley.laz"
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    """The bytes of the program, for each verb."""
+    folder = tmp_path_factory.mktemp("whole")
+    made = {}
+    for verb, name in [("dem", "w.tif"), ("hillshade", "s.tif"), ("contour", "c.geojson"), ("tin", "t.ply")]:
+        words = [sys.executable, "-m", "breakline", verb, str(VALLEY), "-o", str(folder / name), "-q"]
+        subprocess.run(words, check=True)
+        made[verb] = (folder / name).read_bytes()
+    return made
+
+
+@pytest.mark.parametrize(
+    ("verb", "name"), [("dem", "w.tif"), ("hillshade", "s.tif"), ("contour", "c.geojson"), ("tin", "t.ply")]
+)
+def test_a_verb_writes_what_the_program_writes(whole, tmp_path, verb, name):
+    made = getattr(breakline, verb)(VALLEY, output=tmp_path / name)
+    assert made.path == tmp_path / name and Path(made).read_bytes() == whole[verb]
+    assert made.report["in_tiles"] is False and made.report["triangles"] > 100_000
+    with pytest.raises(breakline.FileKeptError):
+        getattr(breakline, verb)(VALLEY, output=tmp_path / name)
+    again = getattr(breakline, verb)(VALLEY, output=tmp_path / name, overwrite=True)
+    assert Path(again).read_bytes() == whole[verb]
+
+
+def test_files_that_need_more_memory_are_worked_on_in_tiles(whole, tmp_path):
+    made = breakline.dem(VALLEY, output=tmp_path / "d.tif", tiles="4x3")
+    assert made.report["in_tiles"] and made.path.read_bytes() == whole["dem"]
+    assert not (tmp_path / "d.tif.job").exists()
+    several = [tmp_path / f"{number}.laz" for number in range(4)]
+    for path in several:
+        path.write_bytes(VALLEY.read_bytes())
+    little = breakline.dem(several, output=tmp_path / "l.tif", memory="16MB")
+    assert little.report["in_tiles"] and little.path.read_bytes() == whole["dem"]
+    shade = breakline.hillshade(VALLEY, output=tmp_path / "s.tif", tiles="2x2")
+    assert shade.path.read_bytes() == whole["hillshade"]
+    lines = breakline.contour(VALLEY, output=tmp_path / "c.geojson", tiles="2x2")
+    assert lines.path.read_bytes() == whole["contour"] and lines.report["lines"] > 0
+    parts = breakline.tin(VALLEY, output=tmp_path / "t.tins")
+    assert parts.report["in_tiles"] and parts.report["parts"] > 0
+    assert breakline.dem(parts.path, output=tmp_path / "p.tif").path.read_bytes() == whole["dem"]
+
+
+def test_arrays_are_never_tiled(ground, tmp_path):
+    made = breakline.dem(ground, output=tmp_path / "a.tif", memory="16MB")
+    assert made.report["in_tiles"] is False
+    with pytest.raises(breakline.UsageError, match="tiles are made of files"):
+        breakline.dem(ground, output=tmp_path / "b.tif", tiles="2x2")
+    tin = breakline.tin(ground)
+    assert breakline.dem(tin, output=tmp_path / "c.tif").path.read_bytes() == made.path.read_bytes()
+
+
+def test_what_makes_no_sense_is_an_error(tmp_path):
+    with pytest.raises(breakline.UsageError, match="memory is for writing a file"):
+        breakline.dem(VALLEY, memory="200MB")
+    with pytest.raises(breakline.UsageError, match="not a unit of memory"):
+        breakline.dem(VALLEY, output=tmp_path / "d.tif", memory="2XB")
+    with pytest.raises(breakline.UsageError, match="columns and rows"):
+        breakline.dem(VALLEY, output=tmp_path / "d.tif", tiles="2")
+    with pytest.raises(breakline.UsageError, match="not a format"):
+        breakline.dem(VALLEY, output=tmp_path / "d.laz")
+    with pytest.raises(breakline.UsageError, match="the output is one of the inputs"):
+        breakline.tin(FIXTURES / "boundary.shp", output=FIXTURES / "boundary.shp", overwrite=True)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_tasks_of_a_job_are_done_one_by_one(whole, tmp_path):
+    folder, output = tmp_path / "job", tmp_path / "d.tif"
+    job = breakline.Job.plan("dem", VALLEY, output, job=folder, tiles="3x2")
+    tasks = job.tasks()
+    assert [task.number for task in tasks] == list(range(len(tasks))) and tasks[-1].name == "output"
+    assert all(tasks[needed].stage < task.stage for task in tasks for needed in task.needs)
+    assert tasks[0].input == str(VALLEY) and not any(task.done for task in tasks)
+    with pytest.raises(breakline.NotYetError):
+        job.run_task(len(tasks) - 1)
+    for task in tasks[:-1]:
+        breakline.Job(folder).run_task(task.number)
+    about = VALLEY.stat()
+    assert job.tasks()[0].has_read == (about.st_size, about.st_mtime_ns)
+    job.run_task(len(tasks) - 1)
+    assert output.read_bytes() == whole["dem"] and all(task.done for task in job.tasks())
+    # The program goes on with it, too.
+    words = [sys.executable, "-m", "breakline", "job", "run", str(folder)]
+    assert "is written" in subprocess.run(words, check=True, capture_output=True, text=True).stderr
+    assert breakline.Job.plan("dem", VALLEY, output, job=folder, tiles="3x2").folder == folder
+    with pytest.raises(breakline.UsageError, match="what differs: tiles"):
+        breakline.Job.plan("dem", VALLEY, output, job=folder, tiles="2x2")
+    assert job.write(overwrite=True).path.read_bytes() == whole["dem"]
+    job.clean()
+    assert not folder.exists()
+
+
+def test_a_job_of_the_program_is_done_here(whole, tmp_path):
+    words = ["job", "plan", "j", "--", "dem", os.path.relpath(VALLEY, tmp_path), "-o", "d.tif", "--tiles", "2x2"]
+    subprocess.run([sys.executable, "-m", "breakline", *words], check=True, cwd=tmp_path, capture_output=True)
+    with pytest.raises(breakline.UsageError, match="relative to another folder"):
+        breakline.Job(tmp_path / "j")
+    before = os.getcwd()
+    os.chdir(tmp_path)
+    try:
+        assert Path(breakline.Job("j").write()).read_bytes() == whole["dem"]
+    finally:
+        os.chdir(before)
+
+
+def test_lines_in_memory_are_for_one_process(tmp_path):
+    line = np.array([[600_100.0, 5_200_100.0, 500.0], [600_200.0, 5_200_200.0, 500.0]])
+    with pytest.raises(breakline.BreaklineError, match="cannot be kept with a job"):
+        breakline.Job.plan("dem", VALLEY, tmp_path / "d.tif", job=tmp_path / "j", tiles="2x2", breaklines=line)
