@@ -38,47 +38,20 @@
 //! name, in a build with the feature `gdal`; reprojection needs the feature `proj`. Without these
 //! features the functions exist and return an error that says so.
 
-mod contain;
-mod contour_summary;
-pub mod contours;
-mod cut;
-mod decimal;
-mod decimal_mark;
-mod field;
+mod bytes;
+mod codec;
 pub mod formats;
-pub mod gdal;
-pub mod geojson;
-pub mod geotiff;
-pub mod las;
-pub mod layer;
-mod layer_options;
-mod listing;
-pub mod mapped;
-pub mod mesh;
-mod obj;
-mod off;
-mod output;
-mod ply;
-pub mod png;
-mod point_options;
-pub mod points;
+mod fronts;
+mod options;
 pub mod proj;
-pub mod raster;
-mod rows;
-pub mod shapefile;
-mod stl;
-pub mod tetgen;
-pub mod text;
-mod tin;
-pub mod triangle;
-mod watch;
-mod watched_value;
-mod world_file;
 
-pub(crate) use contain::contain;
-pub use contain::is_contained;
-pub use cut::Cut;
-pub use output::{
+pub(crate) use bytes::contain::contain;
+pub use bytes::contain::is_contained;
+pub use bytes::mapped;
+pub use bytes::output::{
     Abandoned, Destination, Output, OutputSet, abandon_outputs, is_stream, probe, remove_abandoned, require_absent,
 };
-pub use watch::Watch;
+pub use bytes::watch::Watch;
+pub use codec::{gdal, geojson, geotiff, las, png, shapefile, tetgen, text, triangle};
+pub use fronts::{contours, layer, mesh, points, raster};
+pub use options::cut::Cut;

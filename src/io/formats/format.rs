@@ -6,18 +6,18 @@ use std::path::{Path, PathBuf};
 use crate::crs::Crs;
 use crate::data::{BlockSource, ContourLine, Layer, PointInfo, PointSink, PointSource, Triangles};
 use crate::error::{Result, Wording};
-use crate::io::contour_summary::ContourSummary;
-use crate::io::geotiff::{GeoTiffReader, RasterSummary};
-use crate::io::las::{Detail, Rounding};
-use crate::io::layer_options;
-use crate::io::listing::Listing;
-use crate::io::mapped::Mapped;
-use crate::io::output::Destination;
-use crate::io::point_options::Options;
-use crate::io::stl::Solid;
-use crate::io::tetgen::Tetrahedralized;
-use crate::io::triangle::Triangulated;
-use crate::io::watch::Watch;
+use crate::io::bytes::mapped::Mapped;
+use crate::io::bytes::output::Destination;
+use crate::io::bytes::watch::Watch;
+use crate::io::codec::contour_summary::ContourSummary;
+use crate::io::codec::geotiff::{GeoTiffReader, RasterSummary};
+use crate::io::codec::las::{Detail, Rounding};
+use crate::io::codec::listing::Listing;
+use crate::io::codec::stl::Solid;
+use crate::io::codec::tetgen::Tetrahedralized;
+use crate::io::codec::triangle::Triangulated;
+use crate::io::options::layer as layer_options;
+use crate::io::options::points::Options;
 
 /// The kind of data that a file is read as.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -118,7 +118,7 @@ type Points = Result<Box<dyn PointSource + Send>>;
 
 /// The function that reads a format.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::io) enum Reader {
+pub(crate) enum Reader {
     Points {
         file: fn(&Path, Options) -> Points,
         /// Reads input that can be read only once; messages show the path as its name.
@@ -144,7 +144,7 @@ pub(in crate::io) enum Reader {
 }
 
 /// A local origin: what was subtracted from all coordinates, and the file that states it.
-pub(in crate::io) type Origin = Option<([f64; 3], PathBuf)>;
+pub(crate) type Origin = Option<([f64; 3], PathBuf)>;
 
 pub(super) type WriteSurface = fn(Destination, &Listing, Option<&Crs>) -> Result<Origin>;
 type WriteHeights = fn(Destination, &dyn BlockSource) -> Result<RasterSummary>;
@@ -157,26 +157,26 @@ pub(super) type Sink<'a> = Result<Box<dyn PointSink + 'a>>;
 
 /// The functions that write points.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::io) struct PointWriter {
+pub(crate) struct PointWriter {
     /// The detail that must be read of the points to be written.
-    pub(in crate::io) detail: Detail,
-    pub(in crate::io) create: for<'a> fn(Destination<'a>, &[&PointInfo], Rounding) -> Sink<'a>,
+    pub(crate) detail: Detail,
+    pub(crate) create: for<'a> fn(Destination<'a>, &[&PointInfo], Rounding) -> Sink<'a>,
 }
 
 /// The functions that write each product; `None` if the format does not support it.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::io) struct Writers {
-    pub(in crate::io) points: Option<PointWriter>,
-    pub(in crate::io) surface: Option<WriteSurface>,
-    pub(in crate::io) contours: Option<WriteContours>,
+pub(crate) struct Writers {
+    pub(crate) points: Option<PointWriter>,
+    pub(crate) surface: Option<WriteSurface>,
+    pub(crate) contours: Option<WriteContours>,
     /// Returns an error if contours with this many vertices are too large for the format.
-    pub(in crate::io) check_size: Option<fn(u64) -> Result<()>>,
-    pub(in crate::io) heights: Option<WriteHeights>,
-    pub(in crate::io) shades: Option<WriteShades>,
+    pub(crate) check_size: Option<fn(u64) -> Result<()>>,
+    pub(crate) heights: Option<WriteHeights>,
+    pub(crate) shades: Option<WriteShades>,
     /// Writes several files together, see [`triangle::write`](crate::io::triangle::write).
-    pub(in crate::io) plane: Option<WritePlane>,
+    pub(crate) plane: Option<WritePlane>,
     /// Writes several files together, see [`tetgen::write`](crate::io::tetgen::write).
-    pub(in crate::io) space: Option<WriteSpace>,
+    pub(crate) space: Option<WriteSpace>,
 }
 
 /// A file format; [`FORMATS`](super::FORMATS) lists them all.
@@ -204,10 +204,10 @@ pub struct Format {
     pub read_along: &'static [&'static str],
     /// GDAL's names for the format, if breakline writes it.
     pub gdal_names: &'static [&'static str],
-    pub(in crate::io) reader: Reader,
-    pub(in crate::io) writers: Writers,
+    pub(crate) reader: Reader,
+    pub(crate) writers: Writers,
     /// What to do with such a file where points are expected.
-    pub(in crate::io) cure: fn() -> Wording,
+    pub(crate) cure: fn() -> Wording,
     /// What is read or written in this format, in one line.
     pub help: &'static str,
 }

@@ -3,7 +3,7 @@
 //!
 //! [`FORMATS`] is the only table of formats. The readers that accept any format, the verbs' lists
 //! of outputs, the help of the program and the table in `docs/formats.md` are derived from it. To
-//! add a format, add a row to `table.rs` and a file or folder next to this one; see
+//! add a format, add a row to `table.rs` and a file or folder in `codec`; see
 //! `docs/how-to-add-a-format.md`.
 
 mod format;
@@ -16,9 +16,9 @@ use std::path::{Path, PathBuf};
 
 use self::format::KnownBy;
 pub use self::format::{Content, Format, Holding, Product};
-pub(super) use self::format::{PointWriter, Reader, Writers};
+pub(crate) use self::format::{PointWriter, Reader, Writers};
 pub use self::table::FORMATS;
-pub(super) use self::table::with_gdal;
+pub(crate) use self::table::with_gdal;
 use crate::error::{Error, Result};
 
 /// Returns the format for writing a product, by the extension of the target.
@@ -27,7 +27,7 @@ pub fn for_output(path: &Path, product: Product) -> Option<&'static Format> {
 }
 
 /// Number of bytes that suffice to recognize a file.
-pub(super) const HEAD: usize = 1024;
+pub(crate) const HEAD: usize = 1024;
 
 /// Returns the format that a file's extension names, whether it can be read or not. Formats that
 /// share their extension with another are not returned.
@@ -72,18 +72,18 @@ pub fn detect_file(path: &Path) -> Result<Option<&'static Format>> {
 }
 
 /// Returns the format that matches the first bytes, even if they alone do not decide.
-pub(super) fn of_bytes(head: &[u8]) -> Option<&'static Format> {
+pub(crate) fn of_bytes(head: &[u8]) -> Option<&'static Format> {
     FORMATS.iter().find(|format| format.begins_like(head))
 }
 
 /// Returns the format that the first bytes or the name suggest, for use in a message.
-pub(super) fn named(head: &[u8], path: &Path) -> Option<&'static Format> {
+pub(crate) fn named(head: &[u8], path: &Path) -> Option<&'static Format> {
     of_bytes(head).or_else(|| of_name(path))
 }
 
 /// Returns the format of the layer that a file is only part of, and the extension that shows it,
 /// such as `.dbf`.
-pub(super) fn format_of_part(path: &Path) -> Option<(&'static Format, &'static str)> {
+pub(crate) fn format_of_part(path: &Path) -> Option<(&'static Format, &'static str)> {
     let extension = path.extension()?;
     FORMATS.iter().filter(|format| matches!(format.reader, Reader::Layer(_))).find_map(|format| {
         let part = format.parts.iter().find(|part| extension.eq_ignore_ascii_case(part))?;
@@ -105,7 +105,7 @@ pub fn extensions(product: Product) -> Vec<&'static str> {
 
 /// Returns the extensions in which a product can be written, for a sentence: ".shp, .geojson or
 /// .json".
-pub(super) fn extensions_or(product: Product) -> String {
+pub(crate) fn extensions_or(product: Product) -> String {
     let all: Vec<String> = extensions(product).iter().map(|extension| format!(".{extension}")).collect();
     match &all[..] {
         [most @ .., last] if !most.is_empty() => format!("{} or {last}", most.join(", ")),

@@ -4,11 +4,11 @@
 use super::format::{Content, Format, Holding, KnownBy, Magic, PointWriter, Reader, Sink, WriteSurface, Writers};
 use crate::data::PointInfo;
 use crate::error::{Command, Feature, Wording, wording};
-use crate::io::geotiff::CellFormat;
-use crate::io::las::{Detail, Packing, Rounding};
-use crate::io::output::Destination;
-use crate::io::watch::bytes_of;
-use crate::io::{geojson, geotiff, las, obj, off, ply, png, shapefile, stl, tetgen, text, tin, triangle};
+use crate::io::bytes::output::Destination;
+use crate::io::bytes::watch::bytes_of;
+use crate::io::codec::geotiff::CellFormat;
+use crate::io::codec::las::{Detail, Packing, Rounding};
+use crate::io::codec::{geojson, geotiff, las, obj, off, ply, png, shapefile, stl, tetgen, text, tin, triangle};
 
 const NOT_WRITTEN: Writers = Writers {
     points: None,
@@ -21,7 +21,7 @@ const NOT_WRITTEN: Writers = Writers {
     space: None,
 };
 
-pub(in crate::io) fn with_gdal() -> Wording {
+pub(crate) fn with_gdal() -> Wording {
     wording!["to read it, build with ", Feature::Gdal]
 }
 

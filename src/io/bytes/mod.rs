@@ -1,0 +1,11 @@
+//! What formats are made of: files and outputs, numbers and rows of text.
+
+pub(crate) mod contain;
+pub(crate) mod decimal;
+pub(crate) mod decimal_mark;
+pub(crate) mod field;
+pub mod mapped;
+pub(crate) mod output;
+pub(crate) mod rows;
+pub(crate) mod watch;
+pub(crate) mod watched_value;

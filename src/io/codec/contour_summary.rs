@@ -1,0 +1,26 @@
+use crate::data::{Bounds, ContourLine};
+
+/// What a contour file contains, counted.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct ContourSummary {
+    /// Number of lines.
+    pub lines: usize,
+    /// Vertices of all lines; a closed line counts its first vertex again as its last.
+    pub vertices: usize,
+    /// Number of closed lines.
+    pub closed: usize,
+    /// Extent of all lines, in plan and in height.
+    pub bounds: Bounds,
+    /// Warnings for the user.
+    pub warnings: Vec<String>,
+}
+
+impl ContourSummary {
+    /// Adds a line to the counts.
+    pub(crate) fn add(&mut self, line: &ContourLine) {
+        self.lines += 1;
+        self.vertices += line.points.len();
+        self.closed += usize::from(line.is_closed());
+        line.points.iter().for_each(|&[x, y]| self.bounds.add([x, y, line.level]));
+    }
+}

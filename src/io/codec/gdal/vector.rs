@@ -1,0 +1,301 @@
+use std::path::Path;
+
+use gdal::spatial_ref::{AxisMappingStrategy, SpatialRef};
+use gdal::vector::{
+    FieldValue, Geometry, LayerAccess, geometry_type_flatten, geometry_type_has_z, geometry_type_to_name,
+};
+use gdal::{Dataset, DatasetOptions, GdalOpenFlags};
+use gdal_sys::OGRwkbGeometryType as Type;
+
+use super::messages;
+use crate::crs::Crs;
+use crate::data::{Column, Layer, Shape};
+use crate::error::{Error, Result};
+use crate::io::bytes::field::{no_such_field, not_a_number, parse_number};
+use crate::io::bytes::watch::{Watch, unwatched};
+use crate::io::options::layer::Options;
+
+/// Limit for the nesting of geometry collections; deeper ones lead to an error.
+const MAX_DEPTH: usize = 16;
+
+/// Reads a layer of any vector file that GDAL supports; `layer` may be omitted if the file has only
+/// one.
+///
+/// Heights come from the geometry, and are NaN if that is flat. Arcs become polylines (with GDAL's
+/// default of a vertex every 4 degrees). The parts of a collection become separate shapes.
+///
+/// # Errors
+/// If GDAL cannot open the file, the file has no such layer, or reading fails; if the file has
+/// several layers and none is named.
+pub fn read_layer(path: &Path, layer: Option<&str>) -> Result<Layer> {
+    read_layer_with(path, &Options { layer, ..Options::default() }, &unwatched)
+}
+
+/// Like [`read_layer`], but with heights from an attribute and the numbers of others, and watched.
+/// Nothing is counted.
+///
+/// # Errors
+/// Those of [`read_layer`], and that of the watch; if an attribute does not exist, or a value of a
+/// requested column is not a number.
+pub fn read_layer_with(path: &Path, options: &Options, watch: Watch) -> Result<Layer> {
+    messages::listen();
+    let columns = options.columns;
+    let open = DatasetOptions { open_flags: GdalOpenFlags::GDAL_OF_VECTOR, ..DatasetOptions::default() };
+    let dataset = Dataset::open_ex(path, open).map_err(|error| messages::cannot_open(path, "vector", error))?;
+    let (layer_name, field) = choose(&dataset, options).map_err(|error| error.in_file(path))?;
+    let mut source = dataset.layer_by_name(&layer_name).map_err(|error| messages::error(path, error))?;
+    let fields: Vec<String> = source.defn().fields().map(|field| field.name()).collect();
+    let no_such = |name: &str| no_such_field(name, fields.iter().map(String::as_str)).in_file(path);
+    let field = match field {
+        Some(wanted) => Some(position(&fields, &wanted).ok_or_else(|| no_such(&wanted))?),
+        None => None,
+    };
+    let positions = columns.iter().map(|name| position(&fields, name).ok_or_else(|| no_such(name)));
+    let positions: Vec<usize> = positions.collect::<Result<_>>()?;
+    let mut layer = Layer {
+        columns: columns.iter().map(|&name| Column { name: name.to_owned(), ..Column::default() }).collect(),
+        format: format!(
+            "GDAL {} {}",
+            dataset.driver().short_name(),
+            geometry_type_to_name(source.defn().geometry_type())
+        ),
+        fields,
+        ..Layer::default()
+    };
+    let reference = source.spatial_ref();
+    let is_swapped = reference.as_ref().is_some_and(is_north_first);
+    if let Some(reference) = reference {
+        read_crs(&reference, &mut layer);
+    }
+    let mut without_height = 0;
+    for (record, feature) in (1..).zip(source.features()) {
+        watch(0)?;
+        let first = layer.shapes.len();
+        match feature.geometry() {
+            Some(geometry) if !is_absent(geometry) => {
+                shapes(geometry, 0, &mut layer.shapes).map_err(|error| error.in_file(path))?
+            }
+            _ => layer.shapes.push(Shape::Null),
+        }
+        if let Some(field) = field {
+            let value = feature.field(field).map_err(|error| messages::error(path, error))?;
+            let height = value.map_or(Ok(f64::NAN), number).unwrap_or(f64::NAN);
+            without_height += usize::from(height.is_nan());
+            layer.shapes[first..].iter_mut().for_each(|shape| each_vertex(shape, |vertex| vertex[2] = height));
+        }
+        let shapes = layer.shapes.len();
+        for (column, &field) in layer.columns.iter_mut().zip(&positions) {
+            let value = feature.field(field).map_err(|error| messages::error(path, error))?;
+            let value = value
+                .map_or(Ok(f64::NAN), number)
+                .map_err(|text| not_a_number(&column.name, &text).at(format!("record {record}")).in_file(path))?;
+            column.values.resize(shapes, value);
+        }
+        if is_swapped {
+            layer.shapes[first..].iter_mut().for_each(|shape| each_vertex(shape, |vertex| vertex.swap(0, 1)));
+        }
+    }
+    // The iterator ends at an error as it does at the end of the file.
+    if let Some(error) = messages::failure(path) {
+        return Err(error.at(format!("layer {layer_name}, after {} records", layer.shapes.len())));
+    }
+    layer.warnings.extend(messages::warnings());
+    if without_height > 0 {
+        layer.warnings.push(format!("{without_height} records without a number in the field of the heights").into());
+    }
+    Ok(layer)
+}
+
+/// Returns the name of the layer, and the field of the heights.
+fn choose(dataset: &Dataset, options: &Options) -> Result<(String, Option<String>)> {
+    let layers: Vec<String> = dataset.layers().map(|layer| layer.name()).collect();
+    let field = options.height_field.map(str::to_owned);
+    let list = || format!("name one after a colon, as FILE:LAYER: {}", layers.join(", "));
+    let Some(wanted) = options.layer else {
+        return match layers.as_slice() {
+            [] => Err(Error::format("there is no layer in it")),
+            [only] => Ok((only.clone(), field)),
+            _ => Err(Error::usage(format!("there are {} layers in it", layers.len())).cure(list())),
+        };
+    };
+    let find = |name: &str| position(&layers, name).map(|at| layers[at].clone());
+    if let Some(layer) = find(wanted) {
+        return Ok((layer, field));
+    }
+    // The name of a layer may contain colons.
+    let whole = field.as_ref().map_or_else(|| wanted.to_owned(), |field| format!("{wanted}:{field}"));
+    if let Some(layer) = find(&whole) {
+        return Ok((layer, None));
+    }
+    let mut parts = whole.match_indices(':').map(|(at, _)| (&whole[..at], &whole[at + 1..]));
+    if let Some((layer, field)) = parts.find_map(|(layer, field)| Some((find(layer)?, field))) {
+        return Ok((layer, Some(field.to_owned())));
+    }
+    let is_field = layers.len() == 1
+        && dataset.layers().any(|layer| layer.defn().fields().any(|field| field.name().eq_ignore_ascii_case(wanted)));
+    let cure = match is_field {
+        true => format!("{}; for heights of the attribute, write FILE::{wanted}", list()),
+        false => list(),
+    };
+    Err(Error::usage(format!("there is no layer \"{wanted}\"")).cure(cure))
+}
+
+/// Returns the position of a name: as written, else in any case.
+fn position(names: &[String], wanted: &str) -> Option<usize> {
+    let exact = names.iter().position(|name| name == wanted);
+    exact.or_else(|| names.iter().position(|name| name.eq_ignore_ascii_case(wanted)))
+}
+
+/// Sets the coordinate system of a layer.
+fn read_crs(reference: &SpatialRef, layer: &mut Layer) {
+    let (stated, read) = match reference.to_wkt() {
+        Ok(wkt) => (wkt.clone(), Crs::from_wkt(&wkt).map_err(|error| error.to_string())),
+        Err(error) => ("a system that GDAL cannot write as WKT".to_owned(), Err(error.to_string())),
+    };
+    match read {
+        Ok(crs) => layer.crs = crs.unless_undefined(),
+        Err(reason) => {
+            layer.warnings.push(format!("the coordinate system is not understood: {reason}").into());
+            layer.unread_crs = Some(stated);
+        }
+    }
+}
+
+/// Returns true if the first coordinate is a latitude or northing in the axis order of the data.
+fn is_north_first(reference: &SpatialRef) -> bool {
+    let target = if reference.is_geographic() { "GEOGCS" } else { "PROJCS" };
+    reference.axis_mapping_strategy() == AxisMappingStrategy::AuthorityCompliant
+        && reference.axis_orientation(target, 0).is_ok_and(|axis| axis == gdal_sys::OGRAxisOrientation::OAO_North)
+}
+
+/// Returns the number in a field or in its text, NaN if it is empty or not finite. If the field
+/// contains something else, the error is its text.
+fn number(value: FieldValue) -> std::result::Result<f64, String> {
+    let number = match value {
+        // GDAL's own conversion turns any other text into 0.
+        FieldValue::StringValue(text) => parse_number(text.trim())?,
+        FieldValue::IntegerValue(value) => f64::from(value),
+        FieldValue::Integer64Value(value) => value as f64,
+        FieldValue::RealValue(value) => value,
+        other => return Err(format!("{other:?}")),
+    };
+    Ok(if number.is_finite() { number } else { f64::NAN })
+}
+
+fn each_vertex(shape: &mut Shape, change: impl FnMut(&mut [f64; 3])) {
+    match shape {
+        Shape::Null => {}
+        Shape::Points(points) => points.iter_mut().for_each(change),
+        Shape::Lines(parts) | Shape::Polygon(parts) => parts.iter_mut().flatten().for_each(change),
+        Shape::Faces(faces) => faces.iter_mut().flatten().flatten().for_each(change),
+    }
+}
+
+/// Adds the shape of a geometry, or several for a collection.
+fn shapes(geometry: &Geometry, depth: usize, into: &mut Vec<Shape>) -> Result<()> {
+    if depth > MAX_DEPTH {
+        return Err(Error::limit(format!("geometry collections nested more than {MAX_DEPTH} deep")));
+    }
+    let members = || (0..geometry.geometry_count()).map(|i| geometry.get_geometry(i));
+    let kind = geometry_type_flatten(geometry.geometry_type());
+    into.push(match kind {
+        Type::wkbPoint => Shape::Points(vertices(geometry)),
+        Type::wkbMultiPoint => Shape::Points(members().flat_map(|part| vertices(&part)).collect()),
+        Type::wkbLineString | Type::wkbLinearRing => Shape::Lines(vec![vertices(geometry)]),
+        Type::wkbMultiLineString => Shape::Lines(members().map(|part| vertices(&part)).collect()),
+        Type::wkbPolygon | Type::wkbTriangle => Shape::Polygon(rings(geometry)),
+        Type::wkbMultiPolygon => Shape::Polygon(members().flat_map(|part| rings(&part)).collect()),
+        Type::wkbTIN | Type::wkbPolyhedralSurface => surface(members().map(|part| parts(&part)).collect()),
+        Type::wkbGeometryCollection => {
+            for part in members() {
+                shapes(&part, depth + 1, into)?;
+            }
+            return Ok(());
+        }
+        Type::wkbCircularString
+        | Type::wkbCompoundCurve
+        | Type::wkbCurvePolygon
+        | Type::wkbMultiCurve
+        | Type::wkbMultiSurface => {
+            return with_polylines(geometry, |straight| shapes(straight, depth + 1, into));
+        }
+        Type::wkbNone => Shape::Null,
+        _ => return Err(Error::unsupported(format!("geometry of the type {}", geometry_type_to_name(kind)))),
+    });
+    Ok(())
+}
+
+/// Returns true if a record has no geometry: the `gdal` crate then wraps a null pointer, which GDAL
+/// would report as an error.
+#[allow(unsafe_code)]
+fn is_absent(geometry: &Geometry) -> bool {
+    // SAFETY: the pointer is compared, not dereferenced.
+    unsafe { geometry.c_geometry() }.is_null()
+}
+
+/// Calls `show` with the geometry, in which arcs are replaced by polylines.
+#[allow(unsafe_code)]
+fn with_polylines(geometry: &Geometry, show: impl FnOnce(&Geometry) -> Result<()>) -> Result<()> {
+    // The `gdal` crate has no safe function for this, and GDAL's global flag for it misses arcs
+    // with heights (observed in 3.6).
+    // SAFETY: the pointer is that of a live geometry, which GDAL does not keep; a null pointer for
+    // the options and an angle of 0 mean the defaults.
+    let straight = unsafe { gdal_sys::OGR_G_GetLinearGeometry(geometry.c_geometry(), 0.0, std::ptr::null_mut()) };
+    if straight.is_null() {
+        return Err(Error::unsupported(format!("arcs of the type {}", geometry.geometry_name())));
+    }
+    let result = {
+        // SAFETY: the wrapper does not own its geometry, and is dropped before the geometry, below.
+        let wrapper = unsafe { Geometry::lazy_feature_geometry() };
+        // SAFETY: the wrapper is empty and does not own its geometry, and the pointer is a
+        // geometry.
+        unsafe { wrapper.set_c_geometry(straight) };
+        show(&wrapper)
+    };
+    // SAFETY: `OGR_G_GetLinearGeometry` transferred ownership to us, and nothing refers to the
+    // geometry any more.
+    unsafe { gdal_sys::OGR_G_DestroyGeometry(straight) };
+    result
+}
+
+fn vertices(geometry: &Geometry) -> Vec<[f64; 3]> {
+    let has_z = geometry_type_has_z(geometry.geometry_type());
+    let mut points = Vec::new();
+    if !geometry.is_empty() {
+        geometry.get_points(&mut points);
+    }
+    points.into_iter().map(|(x, y, z)| [x, y, if has_z { z } else { f64::NAN }]).collect()
+}
+
+/// Returns the rings of one polygon as stored.
+fn parts(polygon: &Geometry) -> Vec<Vec<[f64; 3]>> {
+    (0..polygon.geometry_count()).map(|i| vertices(&polygon.get_geometry(i))).filter(|ring| !ring.is_empty()).collect()
+}
+
+/// Returns the rings of one polygon, the outer one clockwise and the others counter-clockwise, as
+/// in [`Shape::Polygon`].
+fn rings(polygon: &Geometry) -> Vec<Vec<[f64; 3]>> {
+    let mut rings = parts(polygon);
+    for (i, ring) in rings.iter_mut().enumerate() {
+        let is_clockwise = area(ring) < 0.0;
+        if is_clockwise != (i == 0) {
+            ring.reverse();
+        }
+    }
+    rings
+}
+
+/// Returns twice the signed area, positive if counter-clockwise; relative to the first vertex, for
+/// precision.
+fn area(ring: &[[f64; 3]]) -> f64 {
+    let Some(&[x0, y0, _]) = ring.first() else { return 0.0 };
+    ring.windows(2).map(|pair| (pair[0][0] - x0) * (pair[1][1] - y0) - (pair[1][0] - x0) * (pair[0][1] - y0)).sum()
+}
+
+/// Returns faces if all are triangles, else a polygon with the rings of all.
+fn surface(faces: Vec<Vec<Vec<[f64; 3]>>>) -> Shape {
+    if faces.iter().all(|face| matches!(face.as_slice(), [ring] if ring.len() == 4)) {
+        return Shape::Faces(faces);
+    }
+    Shape::Polygon(faces.into_iter().flatten().collect())
+}

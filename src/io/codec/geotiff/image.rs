@@ -1,0 +1,236 @@
+//! Writes one image of a raster, whole or as an overview, to a temporary file.
+
+use std::fs::File;
+use std::io::{BufWriter, Read, Seek, SeekFrom, Write};
+use std::ops::Range;
+
+use rayon::prelude::*;
+
+use super::cell_format::{CellFormat, NO_HEIGHT};
+use super::directory::{self, Offsets, Values};
+use super::tile::{SIDE, Scratch, Tile};
+use super::{GeoTiffReader, MAX_BLOCKS, read, tags};
+use crate::crs::GeoKeys;
+use crate::data::{BlockSource, Frame, Window};
+use crate::error::{Error, Result};
+use crate::io::Watch;
+use crate::io::bytes::output::Destination;
+
+/// What a raster file contains.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RasterSummary {
+    /// Smallest value; NaN if there is none.
+    pub min: f64,
+    /// Largest value; NaN if there is none.
+    pub max: f64,
+    /// Number of cells with a value.
+    pub valid: u64,
+}
+
+/// Bytes before a tile, and behind it.
+const LEADER: usize = 4;
+
+/// Bytes that are copied between two calls of a watch.
+const COPIED_AT_ONCE: u64 = 1 << 23;
+
+/// The division of an image into tiles.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Tiling {
+    pub(super) frame: Frame,
+    across: usize,
+    count: usize,
+}
+
+impl Tiling {
+    pub(super) fn new(frame: Frame) -> Result<Self> {
+        let Frame { width, height, .. } = frame;
+        if width == 0 || height == 0 {
+            return Err(Error::usage(format!("a raster of {width} x {height} cells has no cells")));
+        }
+        let across = width.div_ceil(SIDE);
+        let count = across.saturating_mul(height.div_ceil(SIDE));
+        if count as u64 > MAX_BLOCKS || u32::try_from(width.max(height)).is_err() {
+            return Err(Error::limit(format!(
+                "a raster of {width} x {height} cells exceeds the limit of {MAX_BLOCKS} tiles of {SIDE} x {SIDE} cells"
+            ))
+            .cure("choose a coarser resolution or a smaller part"));
+        }
+        Ok(Tiling { frame, across, count })
+    }
+
+    fn window(&self, tile: usize) -> Window {
+        let (column, row) = (tile % self.across * SIDE, tile / self.across * SIDE);
+        let (width, height) = (SIDE.min(self.frame.width - column), SIDE.min(self.frame.height - row));
+        Window { column, row, width, height }
+    }
+
+    /// Returns the most bytes that the tiles can take. DEFLATE adds at most 5 bytes to 16 kB of
+    /// incompressible data; 1 % is ample.
+    pub(super) fn most_bytes(&self, cells: CellFormat) -> u64 {
+        let raw = (self.count * SIDE * SIDE) as u64 * u64::from(cells.bits() / 8);
+        raw + raw / 100
+    }
+}
+
+/// An image in a temporary file: a GeoTIFF of its own, whose tiles become part of the result.
+#[derive(Debug)]
+pub(super) struct Image {
+    file: File,
+    tiling: Tiling,
+    /// For each tile, its position in the file and its length; 0 if no cell has a value.
+    starts: Vec<u64>,
+    lengths: Vec<u32>,
+    /// Where the tiles begin, and where they end.
+    tiles: Range<u64>,
+    pub(super) summary: RasterSummary,
+}
+
+impl Image {
+    /// Computes and packs all tiles, on all cores, in a file on the disk of `target`. `watch` gets
+    /// the cells of each tile.
+    pub(super) fn pack(
+        target: &Destination,
+        source: &dyn BlockSource,
+        cells: CellFormat,
+        watch: Watch,
+    ) -> Result<Self> {
+        let tiling = Tiling::new(source.frame())?;
+        let mut image = Image {
+            file: target.scratch()?,
+            tiling,
+            starts: vec![0; tiling.count],
+            lengths: vec![0; tiling.count],
+            tiles: 0..0,
+            summary: RasterSummary { min: f64::INFINITY, max: f64::NEG_INFINITY, valid: 0 },
+        };
+        // Overviews are computed from the tiles: these are read as those of any other file.
+        let head = |image: &Image| directory::header(Offsets::Bits64, &[image.tags(source, cells, image.tiles.start)]);
+        let first = head(&image).len() as u64;
+        image.tiles = first..first;
+        let mut out = BufWriter::with_capacity(1 << 18, image.file.try_clone()?);
+        out.seek(SeekFrom::Start(first))?;
+
+        let pack = |range: Range<usize>| -> Result<Vec<Tile>> {
+            let pack = |scratch: &mut Scratch, tile| -> Result<Tile> {
+                let window = tiling.window(tile);
+                let tile = scratch.pack(source, window, cells)?;
+                watch(window.width as u64 * window.height as u64)?;
+                Ok(tile)
+            };
+            range.into_par_iter().map_init(Scratch::default, pack).collect()
+        };
+        // One batch is computed while the previous one is written; 16 tiles per core keep all cores
+        // busy.
+        let batch = 16 * rayon::current_num_threads();
+        let mut done = 0;
+        let mut ready = pack(0..batch.min(tiling.count))?;
+        while !ready.is_empty() {
+            let packed = done + ready.len();
+            let next = packed..tiling.count.min(packed + batch);
+            let (written, computed) = rayon::join(|| image.append(done, &ready, &mut out), || pack(next));
+            written?;
+            done = packed;
+            ready = computed?;
+        }
+        out.seek(SeekFrom::Start(0))?;
+        out.write_all(&head(&image))?;
+        out.flush()?;
+        Ok(image)
+    }
+
+    fn append(&mut self, first: usize, tiles: &[Tile], out: &mut impl Write) -> Result<()> {
+        for (i, tile) in tiles.iter().enumerate().filter(|(_, tile)| tile.valid > 0) {
+            // The length before, and the last bytes once more behind: so GDAL's COG driver does it.
+            let length = tile.bytes.len() as u32;
+            let behind = &tile.bytes[tile.bytes.len().saturating_sub(LEADER)..];
+            out.write_all(&length.to_le_bytes())?;
+            out.write_all(&tile.bytes)?;
+            out.write_all(behind)?;
+            self.starts[first + i] = self.tiles.end + LEADER as u64;
+            self.lengths[first + i] = length;
+            self.tiles.end += (LEADER + tile.bytes.len() + behind.len()) as u64;
+            self.summary.valid += tile.valid;
+            self.summary.min = self.summary.min.min(f64::from(tile.min));
+            self.summary.max = self.summary.max.max(f64::from(tile.max));
+        }
+        Ok(())
+    }
+
+    /// Returns the cells as they will be read.
+    pub(super) fn reader(&self, target: &Destination) -> Result<GeoTiffReader> {
+        read::of_file(self.file.try_clone()?, target.path())
+    }
+
+    /// Returns the bytes of all tiles.
+    pub(super) fn byte_count(&self) -> u64 {
+        self.tiles.end - self.tiles.start
+    }
+
+    /// Appends all tiles to another file, some megabytes between two calls of `watch`.
+    pub(super) fn copy_to(&mut self, out: &mut impl Write, watch: Watch) -> Result<()> {
+        self.file.seek(SeekFrom::Start(self.tiles.start))?;
+        let mut left = self.byte_count();
+        while left > 0 {
+            watch(0)?;
+            let part = left.min(COPIED_AT_ONCE);
+            std::io::copy(&mut (&self.file).take(part), out)?;
+            left -= part;
+        }
+        Ok(())
+    }
+
+    /// Returns the tags of the image in a file that has its tiles from byte `first`.
+    pub(super) fn tags(&self, source: &dyn BlockSource, cells: CellFormat, first: u64) -> Vec<(u16, Values)> {
+        let moved = |&start: &u64| if start == 0 { 0 } else { start - self.tiles.start + first };
+        let long = |value: usize| Values::Long(vec![value as u32]);
+        let (predictor, sample_format, nodata) = match cells {
+            CellFormat::Heights => (3, 3, format!("{NO_HEIGHT}")),
+            CellFormat::Shades => (2, 1, "0".to_owned()),
+        };
+        let mut all = vec![
+            (tags::IMAGE_WIDTH, long(self.tiling.frame.width)),
+            (tags::IMAGE_LENGTH, long(self.tiling.frame.height)),
+            (tags::BITS_PER_SAMPLE, short(cells.bits())),
+            (tags::COMPRESSION, short(tags::COMPRESSION_DEFLATE)),
+            // BlackIsZero.
+            (tags::PHOTOMETRIC, short(1)),
+            (tags::SAMPLES_PER_PIXEL, short(1)),
+            (tags::PLANAR_CONFIGURATION, short(1)),
+            (tags::PREDICTOR, short(predictor)),
+            (tags::TILE_WIDTH, short(SIDE as u16)),
+            (tags::TILE_LENGTH, short(SIDE as u16)),
+            (tags::TILE_OFFSETS, Values::Offset(self.starts.iter().map(moved).collect())),
+            (tags::TILE_BYTE_COUNTS, Values::Long(self.lengths.clone())),
+            (tags::SAMPLE_FORMAT, short(sample_format)),
+        ];
+        all.extend(directory::placement(&self.tiling.frame));
+        all.extend(directory::geo_keys(source.crs().map(GeoKeys::from_crs).unwrap_or_default()));
+        all.push((tags::GDAL_NODATA, Values::Text(nodata)));
+        all
+    }
+
+    /// Like [`tags`](Self::tags), for an overview: what the whole image states is not repeated.
+    pub(super) fn overview_tags(&self, source: &dyn BlockSource, cells: CellFormat, first: u64) -> Vec<(u16, Values)> {
+        let mut all = self.tags(source, cells, first);
+        all.retain(|(tag, _)| *tag <= tags::SAMPLE_FORMAT || *tag == tags::GDAL_NODATA);
+        // A reduced image.
+        all.insert(0, (tags::NEW_SUBFILE_TYPE, Values::Long(vec![1])));
+        all
+    }
+}
+
+fn short(value: u16) -> Values {
+    Values::Short(vec![value])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rasters_without_cells_or_with_too_many_are_refused() {
+        for (width, height) in [(0, 5), (5, 0), (usize::MAX, 5), (5_000_000, 5_000_000)] {
+            assert!(Tiling::new(Frame::north_up(0.0, 0.0, 1.0, width, height)).is_err());
+        }
+    }
+}

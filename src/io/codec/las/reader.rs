@@ -1,0 +1,175 @@
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use super::header::Header;
+use super::input::Input;
+use super::laz::Laz;
+use super::plain::Plain;
+use super::raw::MAX_HEADER;
+use super::{head, records, reference};
+use crate::data::{Lattice, PointBatch, PointInfo, PointSource};
+use crate::error::{Error, Result, Wording};
+use crate::io::options::las::{Detail, ReadOptions};
+
+/// A reader for the points of a LAS or LAZ file, made by [`open`](super::open).
+#[derive(Debug)]
+pub struct LasReader {
+    name: PathBuf,
+    header: Header,
+    info: PointInfo,
+    points: Points,
+    warnings: Vec<Wording>,
+}
+
+#[derive(Debug)]
+enum Points {
+    Plain(Plain),
+    Compressed(Box<Laz>),
+    /// The last point was read, or an error occurred.
+    Done,
+}
+
+impl LasReader {
+    pub(super) fn new(input: Input, options: ReadOptions) -> Result<Self> {
+        let name = input.name.clone();
+        Self::start(input, options).map_err(|error| error.in_file(name))
+    }
+
+    fn start(mut input: Input, options: ReadOptions) -> Result<Self> {
+        let name = input.name.clone();
+        let mut warnings = Vec::new();
+        let bytes = input.bytes(0, MAX_HEADER)?;
+        let mut header = Header::check(&bytes, input.length, &mut warnings)?;
+        let payloads = records::read(&input, &mut header, &mut warnings)?;
+        let (crs, unread_crs) = reference::choose(&payloads, header.says_wkt, &mut warnings);
+        let head = match options.detail {
+            Detail::Columns => None,
+            Detail::Records => Some(head::read(&mut input, &header)?),
+        };
+        let points = match header.is_compressed {
+            false => Points::Plain(Plain::new(input, &header, options, &mut warnings)?),
+            true => {
+                let laz = Laz::new(input, &header, payloads.laszip.as_deref(), options, &mut warnings)?;
+                Points::Compressed(Box::new(laz))
+            }
+        };
+        let info = PointInfo {
+            columns: None,
+            format: header.format(),
+            count: Some(header.count),
+            bounds: header.bounds,
+            crs,
+            unread_crs,
+            has_classes: true,
+            lattice: Some(Lattice { scale: header.scale, offset: header.offset }),
+            head,
+            warnings,
+        };
+        Ok(LasReader { name, header, info, points, warnings: Vec::new() })
+    }
+
+    /// Returns the header of the file.
+    pub fn header(&self) -> &Header {
+        &self.header
+    }
+}
+
+impl PointSource for LasReader {
+    fn info(&self) -> &PointInfo {
+        &self.info
+    }
+
+    fn read(&mut self, batch: &mut PointBatch) -> Result<()> {
+        batch.clear();
+        let result = match &mut self.points {
+            Points::Plain(plain) => plain.read(batch, &mut self.warnings),
+            Points::Compressed(laz) => laz.read(batch, &mut self.warnings),
+            Points::Done => Ok(()),
+        };
+        if result.is_err() || batch.is_empty() {
+            self.points = Points::Done;
+        }
+        result.map_err(|error| error.in_file(&self.name))
+    }
+
+    fn thin(&mut self, spacing: u64) -> bool {
+        match &mut self.points {
+            Points::Plain(plain) => plain.thin(spacing),
+            Points::Compressed(laz) => laz.thin(spacing),
+            Points::Done => true,
+        }
+    }
+
+    fn warnings(&self) -> &[Wording] {
+        &self.warnings
+    }
+}
+
+/// Opens a LAS or LAZ file of any size; `-` is the standard input.
+///
+/// Compressed points are decoded by all threads of the current `rayon` pool. Input without random
+/// access (a pipe, the standard input) is first copied to a temporary file.
+///
+/// # Errors
+/// If the file cannot be read, was cut short, or its header is damaged in a way that the
+/// [module](super) lists as an error.
+pub fn open(path: impl AsRef<Path>) -> Result<LasReader> {
+    open_with(path, ReadOptions::default())
+}
+
+/// Like [`open`], but with options; a [`Cut`](crate::io::Cut) can be passed in their stead.
+///
+/// # Errors
+/// As [`open`].
+pub fn open_with(path: impl AsRef<Path>, options: impl Into<ReadOptions>) -> Result<LasReader> {
+    LasReader::new(Input::open(path.as_ref())?, options.into())
+}
+
+/// Returns what the header of a LAS or LAZ file states, also if its points are damaged or missing;
+/// without the coordinate system, if the records before the points are damaged, too.
+///
+/// # Errors
+/// If the file cannot be read, or its header is damaged.
+pub fn stated(path: impl AsRef<Path>) -> Result<PointInfo> {
+    let path = path.as_ref();
+    let read = || {
+        let mut input = Input::open(path)?;
+        let mut warnings = Vec::new();
+        let bytes = input.bytes(0, MAX_HEADER)?;
+        let mut header = Header::check(&bytes, input.length, &mut warnings)?;
+        let payloads = records::read(&input, &mut header, &mut warnings).ok();
+        let system = payloads.map(|payloads| reference::choose(&payloads, header.says_wkt, &mut warnings));
+        let (crs, unread_crs) = system.unwrap_or_default();
+        Ok(PointInfo {
+            format: header.format(),
+            count: Some(header.count),
+            bounds: header.bounds,
+            crs,
+            unread_crs,
+            has_classes: true,
+            warnings,
+            ..PointInfo::default()
+        })
+    };
+    read().map_err(|error: Error| error.in_file(path))
+}
+
+/// Reads a stream by copying it to a temporary file; messages call it `name`.
+///
+/// # Errors
+/// As [`open`].
+pub fn from_stream(stream: impl Read, name: impl AsRef<Path>) -> Result<LasReader> {
+    from_stream_with(stream, name, ReadOptions::default())
+}
+
+/// Like [`from_stream`], but with options; a [`Cut`](crate::io::Cut) can be passed in their stead.
+///
+/// # Errors
+/// As [`open`].
+pub fn from_stream_with(
+    stream: impl Read,
+    name: impl AsRef<Path>,
+    options: impl Into<ReadOptions>,
+) -> Result<LasReader> {
+    LasReader::new(Input::spool(stream, name.as_ref())?, options.into())
+}

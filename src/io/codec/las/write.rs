@@ -1,0 +1,287 @@
+//! Writes points to LAS and LAZ with all attributes that their own files contain.
+//!
+//! Point records are copied from file to file as bytes; the `laz` crate compresses them. The header
+//! is that of the first source, except for the fields that have to change, see [`create`].
+
+use std::io::{Seek, SeekFrom, Write};
+
+use laz::{LazItemRecordBuilder, LazVlr, ParLasZipCompressor};
+
+use super::merge::{self, Rounding, Step, padded};
+use super::raw::u32_at;
+use crate::data::{Bounds, LasHead, Lattice, PointBatch, PointInfo, PointSink, PointSummary};
+use crate::error::{Error, Kind, Result};
+use crate::io::bytes::contain::contain;
+use crate::io::bytes::output::{Destination, Output};
+
+/// Bytes of records that are compressed together, per thread: about two chunks of typical points.
+const BATCH_BYTES: usize = 1 << 22;
+
+/// The compression of written points.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Packing {
+    /// Uncompressed (LAS).
+    Plain,
+    /// Compressed (LAZ), in chunks of 50 000 points.
+    Compressed,
+}
+
+/// A writer for the points of LAS files, made by [`create`].
+pub struct LasWriter<'a> {
+    target: Destination<'a>,
+    body: Body,
+    head: LasHead,
+    lattice: Lattice,
+    rounding: Rounding,
+    /// Converts from the lattice of the current source to that of the file.
+    step: Step,
+    /// Records that are to be written together.
+    waiting: Vec<u8>,
+    batch: usize,
+    points_start: u32,
+    record_count: u32,
+    count: u64,
+    returns: [u64; 16],
+    low: [i32; 3],
+    high: [i32; 3],
+}
+
+enum Body {
+    Plain(Output),
+    Compressed(Box<ParLasZipCompressor<Output>>),
+    /// All points were written.
+    Done,
+}
+
+impl std::fmt::Debug for LasWriter<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("LasWriter").field("target", &self.target).field("count", &self.count).finish_non_exhaustive()
+    }
+}
+
+/// Starts a file for the points of these sources, which must have been opened with
+/// [`Detail::Records`](super::Detail::Records).
+///
+/// Point records keep every byte, except for coordinates if the sources have different lattices.
+/// The output then has the first of their lattices that contains all points, and only the integers
+/// of the coordinates change. All sources must agree in point format, record length, description of
+/// extra bytes and kind of GPS time.
+///
+/// The header and the variable length records are those of the first source, followed by records
+/// that only other sources have. These fields change:
+/// - the generating software;
+/// - counts and bounds, which are those of the points written;
+/// - project id, file source id and system, which are cleared (the system is `MERGE`) if the
+///   sources differ;
+/// - the date, which is the latest of the sources, so that the same sources give the same bytes;
+/// - waveform bits and offset.
+///
+/// Records that are valid for the bytes of one file only, which are the indices of COPC and of
+/// LAStools, are left out.
+///
+/// # Errors
+/// If a source is not a LAS or LAZ file, has waveforms, or is incompatible with the others; if the
+/// target cannot be written.
+pub fn create<'a>(
+    target: impl Into<Destination<'a>>,
+    sources: &[&PointInfo],
+    packing: Packing,
+    rounding: Rounding,
+) -> Result<LasWriter<'a>> {
+    let target = target.into();
+    let (mut head, lattice) = merge::heads(sources, rounding)?;
+    let items = match packing {
+        Packing::Plain => None,
+        Packing::Compressed => Some(LazVlr::from_laz_items(items(&head)?)),
+    };
+    head.header[104] = head.point_format | if items.is_some() { 0x80 } else { 0 };
+    let mut records = head.records.concat();
+    let mut record_count = head.records.len() as u32;
+    if let Some(items) = &items {
+        let mut payload = Vec::new();
+        items.write_to(&mut payload)?;
+        records.extend(record_header(LazVlr::USER_ID, LazVlr::RECORD_ID, payload.len() as u16, LazVlr::DESCRIPTION));
+        records.extend(payload);
+        record_count += 1;
+    }
+    let points_start = u32::try_from(head.header.len() + records.len())
+        .map_err(|_| Error::limit("the records before the points exceed 4 GB"))?;
+
+    let mut output = target.create_seekable_beside(target.path())?;
+    let write = |output: &mut Output| -> std::io::Result<()> {
+        output.write_all(&head.header)?;
+        output.write_all(&records)
+    };
+    write(&mut output).map_err(|e| Error::from(e).in_file(target.path()))?;
+    let body = match items {
+        None => Body::Plain(output),
+        Some(items) => Body::Compressed(Box::new(ParLasZipCompressor::new(output, items).map_err(failed)?)),
+    };
+    Ok(LasWriter {
+        target,
+        body,
+        head,
+        lattice,
+        rounding,
+        step: Step::Same,
+        waiting: Vec::new(),
+        batch: BATCH_BYTES * rayon::current_num_threads(),
+        points_start,
+        record_count,
+        count: 0,
+        returns: [0; 16],
+        low: [i32::MAX; 3],
+        high: [i32::MIN; 3],
+    })
+}
+
+fn items(head: &LasHead) -> Result<Vec<laz::LazItem>> {
+    let extra = head.record_length - merge::usual_length(head.point_format);
+    LazItemRecordBuilder::default_for_point_format_id(head.point_format, extra).map_err(failed)
+}
+
+fn failed(error: laz::LasZipError) -> Error {
+    match error {
+        laz::LasZipError::IoError(error) => error.into(),
+        other => Error::caused_by(Kind::Unsupported, other),
+    }
+}
+
+/// Returns the header of a variable length record.
+pub(super) fn record_header(user: &str, id: u16, length: u16, description: &str) -> Vec<u8> {
+    let mut bytes = vec![0; 2];
+    bytes.extend(padded::<16>(user));
+    bytes.extend(id.to_le_bytes());
+    bytes.extend(length.to_le_bytes());
+    bytes.extend(padded::<32>(description));
+    bytes
+}
+
+impl LasWriter<'_> {
+    /// Writes the waiting records.
+    fn flush(&mut self) -> Result<()> {
+        let written = match &mut self.body {
+            Body::Plain(output) => Some(output.write_all(&self.waiting)),
+            Body::Compressed(compressor) => contain(|| compressor.compress_many(&self.waiting)),
+            Body::Done => Some(Ok(())),
+        };
+        self.waiting.clear();
+        let written = written.ok_or_else(|| Error::format("compressing the points failed"))?;
+        written.map_err(|e| Error::from(e).in_file(self.target.path()))
+    }
+
+    /// Accepts a record that was added to the waiting ones: counts it, and converts it to the
+    /// lattice of the file.
+    fn take(&mut self, at: usize) -> Result<()> {
+        let record = &mut self.waiting[at..];
+        let found = [0, 4, 8].map(|at| u32_at(record, at).cast_signed());
+        let steps = self.step.apply(found, &self.lattice)?;
+        if steps != found {
+            for (bytes, steps) in record.chunks_exact_mut(4).zip(steps) {
+                bytes.copy_from_slice(&steps.to_le_bytes());
+            }
+        }
+        for (axis, steps) in steps.into_iter().enumerate() {
+            self.low[axis] = self.low[axis].min(steps);
+            self.high[axis] = self.high[axis].max(steps);
+        }
+        let bits = if self.head.point_format < 6 { 0x07 } else { 0x0f };
+        self.returns[usize::from(record[14] & bits)] += 1;
+        self.count += 1;
+        Ok(())
+    }
+
+    fn bounds(&self) -> Bounds {
+        let mut bounds = Bounds::default();
+        if self.count > 0 {
+            bounds.add(self.lattice.point(self.low));
+            bounds.add(self.lattice.point(self.high));
+        }
+        bounds
+    }
+
+    /// Returns the header, once all points are known.
+    fn header(&self, late_start: u64) -> Result<Vec<u8>> {
+        let mut header = self.head.header.clone();
+        let mut put = |at: usize, bytes: &[u8]| header[at..at + bytes.len()].copy_from_slice(bytes);
+        let minor = self.head.header[25];
+        put(96, &self.points_start.to_le_bytes());
+        put(100, &self.record_count.to_le_bytes());
+        // From 1.4 on, the 32-bit fields serve old readers; they are zero for formats that these do
+        // not know.
+        let old = u32::try_from(self.count).ok().filter(|_| minor < 4 || self.head.point_format < 6);
+        if minor < 4 && old.is_none() {
+            return Err(Error::limit(format!("{} points; LAS 1.{minor} supports up to {}", self.count, u32::MAX))
+                .in_file(self.target.path())
+                .cure("write several files"));
+        }
+        put(107, &old.unwrap_or(0).to_le_bytes());
+        for (slot, count) in self.returns[1..6].iter().enumerate() {
+            put(111 + 4 * slot, &(if old.is_some() { *count as u32 } else { 0 }).to_le_bytes());
+        }
+        let bounds = if self.count > 0 { self.bounds() } else { Bounds { min: [0.0; 3], max: [0.0; 3] } };
+        for axis in 0..3 {
+            put(131 + 8 * axis, &self.lattice.scale[axis].to_le_bytes());
+            put(155 + 8 * axis, &self.lattice.offset[axis].to_le_bytes());
+            put(179 + 16 * axis, &bounds.max[axis].to_le_bytes());
+            put(187 + 16 * axis, &bounds.min[axis].to_le_bytes());
+        }
+        if minor >= 3 && self.head.header.len() >= 235 {
+            put(227, &0_u64.to_le_bytes());
+        }
+        if minor >= 4 {
+            let late = self.head.late_records.len() as u32;
+            put(235, &(if late > 0 { late_start } else { 0 }).to_le_bytes());
+            put(243, &late.to_le_bytes());
+            put(247, &self.count.to_le_bytes());
+            for (slot, count) in self.returns[1..].iter().enumerate() {
+                put(255 + 8 * slot, &count.to_le_bytes());
+            }
+        }
+        Ok(header)
+    }
+}
+
+impl PointSink for LasWriter<'_> {
+    fn next_source(&mut self, info: &PointInfo) -> Result<()> {
+        self.step = Step::between(info.lattice, &self.lattice, self.rounding)?;
+        Ok(())
+    }
+
+    fn write(&mut self, batch: &PointBatch) -> Result<()> {
+        let stride = usize::from(self.head.record_length);
+        if batch.records.len() != batch.len() * stride {
+            return Err(Error::usage(format!("the points lack their records of {stride} bytes")));
+        }
+        for record in batch.records.chunks_exact(stride) {
+            let at = self.waiting.len();
+            self.waiting.extend_from_slice(record);
+            self.take(at)?;
+        }
+        if self.waiting.len() >= self.batch { self.flush() } else { Ok(()) }
+    }
+
+    fn finish(mut self: Box<Self>) -> Result<PointSummary> {
+        self.flush()?;
+        let end = |mut output: Output| -> Result<(Output, u64)> {
+            let late_start = output.seek(SeekFrom::End(0))?;
+            self.head.late_records.iter().try_for_each(|record| output.write_all(record))?;
+            output.seek(SeekFrom::Start(0))?;
+            Ok((output, late_start))
+        };
+        let (mut output, late_start) = match std::mem::replace(&mut self.body, Body::Done) {
+            Body::Plain(output) => end(output),
+            Body::Compressed(mut compressor) => {
+                let done =
+                    contain(|| compressor.done()).ok_or_else(|| Error::format("compressing the points failed"))?;
+                done.map_err(failed).and_then(|()| end(compressor.into_inner()))
+            }
+            Body::Done => Err(Error::usage("the points have already been written")),
+        }
+        .map_err(|e| e.in_file(self.target.path()))?;
+        let header = self.header(late_start)?;
+        output.write_all(&header).map_err(|e| Error::from(e).in_file(self.target.path()))?;
+        self.target.put(output)?;
+        Ok(PointSummary { count: self.count, bounds: self.bounds() })
+    }
+}

@@ -1,0 +1,36 @@
+use rayon::prelude::*;
+
+use std::io::Write;
+
+use crate::error::Result;
+use crate::io::Output;
+
+/// Lines that a task writes; there are as many tasks at a time as cores.
+const LINES: usize = 1 << 14;
+
+/// Writes one line per item, in order, using all threads.
+pub(crate) fn write_lines<T: Copy + Sync>(
+    output: &mut Output,
+    mut items: impl Iterator<Item = T>,
+    line: impl Fn(&mut Vec<u8>, T) -> std::io::Result<()> + Sync,
+) -> Result<()> {
+    let mut batch = Vec::new();
+    loop {
+        batch.clear();
+        batch.extend(items.by_ref().take(LINES * rayon::current_num_threads()));
+        if batch.is_empty() {
+            return Ok(());
+        }
+        let texts: Vec<std::io::Result<Vec<u8>>> = batch
+            .par_chunks(LINES)
+            .map(|chunk| {
+                let mut text = Vec::with_capacity(chunk.len() * 40);
+                chunk.iter().try_for_each(|&item| line(&mut text, item))?;
+                Ok(text)
+            })
+            .collect();
+        for text in texts {
+            output.write_all(&text?)?;
+        }
+    }
+}

@@ -1,0 +1,39 @@
+//! Writes contours to a file.
+
+use crate::crs::Crs;
+use crate::data::ContourLine;
+use crate::error::{Error, Result};
+use crate::io::bytes::output::Destination;
+pub use crate::io::codec::contour_summary::ContourSummary;
+use crate::io::formats::{self, Product, Writers};
+
+/// Returns an error if lines with `vertices` vertices in total are too large for the format of
+/// `target`.
+///
+/// # Errors
+/// If the file would be too large; the message states the minimum size.
+pub fn check_size<'a>(target: impl Into<Destination<'a>>, vertices: u64) -> Result<()> {
+    let target = target.into();
+    let check_size = formats::of_name(&target.format_path()).and_then(|format| format.writers.check_size);
+    check_size.map_or(Ok(()), |check_size| check_size(vertices).map_err(|e| e.in_file(target.path())))
+}
+
+/// Writes contours in the format that the extension of `target` names, see
+/// [`FORMATS`](formats::FORMATS).
+///
+/// # Errors
+/// If contours cannot be written in a format with this extension, or a file cannot be written.
+pub fn write<'a>(
+    target: impl Into<Destination<'a>>,
+    lines: &mut dyn Iterator<Item = ContourLine>,
+    crs: Option<&Crs>,
+) -> Result<ContourSummary> {
+    let target = target.into();
+    match formats::of_name(&target.format_path()).map(|format| format.writers) {
+        Some(Writers { contours: Some(write), .. }) => write(target, lines, crs),
+        _ => {
+            let known = formats::extensions_or(Product::Contours);
+            Err(Error::usage(format!("contours are written as {known}")).in_file(target.path()))
+        }
+    }
+}

@@ -1,0 +1,7 @@
+//! What callers use: readers and writers of any format, which find the format in the table.
+
+pub mod contours;
+pub mod layer;
+pub mod mesh;
+pub mod points;
+pub mod raster;

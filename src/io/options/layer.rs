@@ -1,0 +1,36 @@
+//! What is read of a vector file.
+
+use super::cut::Cut;
+use crate::error::{Error, Result};
+
+/// The layer and the attributes to read of a vector file. Names are compared as written, else in
+/// any case.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Options<'a> {
+    /// The layer; `None` for the only one. Where a file is one layer, it has the name of the file
+    /// without its extension; GeoJSON may state another.
+    pub layer: Option<&'a str>,
+    /// The attribute that contains the heights; without one, they come from the geometry.
+    pub height_field: Option<&'a str>,
+    /// The attributes whose numbers are returned in
+    /// [`Layer::columns`](crate::data::Layer::columns), in this order. One that does not exist is
+    /// an error, and so is a value that is not a number.
+    pub columns: &'a [&'a str],
+    /// What to do with files of which a part is missing or damaged.
+    pub cut: Cut,
+}
+
+impl Options<'_> {
+    /// Returns an error if a layer is requested that has none of the names of the file's only one.
+    pub(crate) fn check_layer(&self, names: &[&str]) -> Result<()> {
+        match self.layer {
+            Some(layer) if !names.iter().any(|name| name.eq_ignore_ascii_case(layer)) => {
+                let field = self.height_field.unwrap_or("FIELD");
+                let cure =
+                    format!("its only layer is \"{}\": name that, or write FILE::{field}", names.join("\" or \""));
+                Err(Error::usage(format!("there is no layer \"{layer}\"")).cure(cure))
+            }
+            _ => Ok(()),
+        }
+    }
+}
