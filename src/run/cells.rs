@@ -118,9 +118,9 @@ fn heights<'a>(
     if let Model::Parts(parts) = &product.model
         && *method == Method::Linear
     {
-        let placed = frame::placed(frame, product.extent(), product.crs(), journal)?;
-        frame::require_filled(frame, &placed, &product.extent(), || parts.index().area)?;
-        return Ok((parts.dem(placed)?, None));
+        let chosen = frame::over_extent(frame, product.extent(), product.crs(), journal)?;
+        frame::require_filled(frame, &chosen, &product.extent(), || parts.index().area)?;
+        return Ok((parts.dem(chosen)?, None));
     }
     let surface = product.triangles()?;
     let frame = frame::choose(frame, surface, product.extent(), journal)?;

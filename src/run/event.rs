@@ -31,7 +31,7 @@ pub enum Event<'a> {
     /// The tasks of the job in a folder ended with an error; those that are done are kept.
     TasksFailed(&'a Path),
     /// The size of a raster is known, before its cells are computed.
-    RasterPlaced {
+    RasterBegins {
         /// Size and position.
         frame: Frame,
         /// Its coordinate system.

@@ -47,7 +47,7 @@ pub(super) fn choose(
     extent: Bounds,
     journal: &Journal,
 ) -> Result<Frame> {
-    let frame = placed(options, extent, surface.crs(), journal)?;
+    let frame = over_extent(options, extent, surface.crs(), journal)?;
     require_filled(options, &frame, &extent, || area(surface))?;
     Ok(frame)
 }
@@ -134,7 +134,12 @@ fn require_same(raster: &RasterFrame, ours: &Crs) -> Result<()> {
 ///
 /// # Errors
 /// Those of [`choose`], except for the last.
-pub(super) fn placed(options: &FrameOptions, extent: Bounds, crs: Option<&Crs>, journal: &Journal) -> Result<Frame> {
+pub(super) fn over_extent(
+    options: &FrameOptions,
+    extent: Bounds,
+    crs: Option<&Crs>,
+    journal: &Journal,
+) -> Result<Frame> {
     let units = Units::of(crs);
     if extent.is_empty() {
         return Err(Error::format("the surface has no triangle, so there is no raster of it"));

@@ -130,7 +130,7 @@ impl Monitor for Shown<'_> {
                 .note(format_args!("{} was skipped, and can be read now: the job is planned again", path.display())),
             Event::TasksBegin(folder) => self.set_words(|| console.note_if_ended(self.kept(folder))),
             Event::TasksFailed(folder) => console.note(self.kept(folder)),
-            Event::RasterPlaced { frame, crs, bytes: size } => {
+            Event::RasterBegins { frame, crs, bytes: size } => {
                 let (cells, size) = (describe(frame, *crs), bytes(*size));
                 console.line(format_args!("raster      {cells}, {size} before compression"));
             }

@@ -151,7 +151,7 @@ impl Tiles for KeptTiles<'_> {
         let Some(drawn) = job.plan.frame else {
             return Err(Error::usage("the job makes no raster"));
         };
-        let frame = frame::placed(options, report.extent, report.crs.as_ref(), &Journal::new(context))?;
+        let frame = frame::over_extent(options, report.extent, report.crs.as_ref(), &Journal::new(context))?;
         frame::require_filled(options, &frame, &report.extent, || report.area)?;
         Ok(Box::new(DrawnCells::open(job.step_files(), drawn, frame, report.crs.clone())?))
     }

@@ -182,8 +182,8 @@ impl Plan {
                 }
             },
         };
-        let placed = |options: &FrameOptions| {
-            let frame = frame::placed(options, drawn_extent, crs.as_ref(), journal)?;
+        let frame_of = |options: &FrameOptions| {
+            let frame = frame::over_extent(options, drawn_extent, crs.as_ref(), journal)?;
             if options.extent.is_none() && !frame.has_shared_centers() {
                 return Err(Error::unsupported("the raster's grid lines are not multiples of the size of its cells")
                     .cure(wording!["state the extent of the result with ", Setting::Extent]));
@@ -191,7 +191,7 @@ impl Plan {
             Ok(frame)
         };
         let frame = match verb.keeps() {
-            Keeps::Heights(options) => Some(placed(options)?),
+            Keeps::Heights(options) => Some(frame_of(options)?),
             Keeps::Contours(_) | Keeps::Triangles => None,
         };
         let units = Units::of(crs.as_ref());

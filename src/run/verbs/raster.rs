@@ -42,7 +42,7 @@ pub(super) fn announce(
     let all = frame.width as f64 * frame.height as f64;
     let a_cell = sizes.iter().map(|&(bytes, _)| bytes as f64).sum::<f64>();
     let on_disk = sizes.iter().map(|&(bytes, copies)| bytes as f64 * copies).sum::<f64>();
-    context.monitor.event(&Event::RasterPlaced { frame, crs: cells.crs(), bytes: (all * a_cell) as u64 });
+    context.monitor.event(&Event::RasterBegins { frame, crs: cells.crs(), bytes: (all * a_cell) as u64 });
     let Some((free, target)) = outputs.free_space().filter(|(free, _)| (*free as f64) < all * on_disk) else {
         return Ok(());
     };
