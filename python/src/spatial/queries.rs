@@ -263,7 +263,7 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
                 let is_not_shared = on.all(|i| self.t.tds().is_infinite(self.t.tds().neighbor(cell, i)));
                 if is_not_shared
                     && self.is_by_rounding(cell, &sides)
-                    && self.leads_to_hull(cell, q, |cell, sides| self.is_by_rounding(cell, sides))
+                    && self.reaches_hull(cell, q, |cell, sides| self.is_by_rounding(cell, sides))
                     && let Some(beside) = self.within_tolerance(q, cell, BROAD)
                 {
                     return (in_cell(beside), Some(cell));
@@ -329,7 +329,7 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
 
     /// Returns true if a cell is infinite, or cells of a kind lead from it to an infinite one,
     /// given by their volumes.
-    fn leads_to_hull(&self, start: CellId, q: &[f64; D], is_kind: impl Fn(CellId, &[f64; N]) -> bool) -> bool {
+    fn reaches_hull(&self, start: CellId, q: &[f64; D], is_kind: impl Fn(CellId, &[f64; N]) -> bool) -> bool {
         let tds = self.t.tds();
         let mut seen = vec![start];
         let mut next = 0;
@@ -353,7 +353,7 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
     fn is_at_rim(&self, cell: CellId, q: &[f64; D]) -> bool {
         let sides = self.sides(cell, q);
         let sum: f64 = sides.iter().sum();
-        let is_rim = |cell: CellId| self.leads_to_hull(cell, q, |cell, sides| self.is_thin(cell, sides, FLAT));
+        let is_rim = |cell: CellId| self.reaches_hull(cell, q, |cell, sides| self.is_thin(cell, sides, FLAT));
         is_rim(cell) || (0..N).any(|i| sides[i] <= BROAD * sum && is_rim(self.t.tds().neighbor(cell, i)))
     }
 
