@@ -1,5 +1,5 @@
-//! The main road from points to products, in one process: `cargo bench`. Run once, to see that it
-//! runs: `cargo bench --bench main_road -- --test`.
+//! What becomes of points, up to products, in one process: `cargo bench`. Run once, to see that it
+//! runs: `cargo bench --bench products -- --test`.
 //!
 //! The points are made up. Whole programs, files included, are compared in `docs/performance.md`.
 

@@ -30,7 +30,7 @@ impl Scene {
             let [x, y] = [0, 1].map(|_| random.below(side + 1) as f64 * step);
             [x, y, random.around(40) as f64 / 4.0]
         };
-        // Many in some places, few in others: large circles.
+        // Many in some parts, few in others: large circles.
         let centers: Vec<[f64; 3]> = (0..3).map(|_| at(random, SIDE)).collect();
         let mut points: Vec<[f64; 3]> = (0..40).map(|_| at(random, SIDE)).collect();
         for _ in 0..300 {
@@ -73,8 +73,8 @@ fn seeds() -> u64 {
 /// The triangles of a surface, wherever they are numbered.
 fn triangles(surface: &dyn Surface) -> BTreeSet<[[u64; 3]; 3]> {
     let corners = (0..surface.face_count() as u32).filter_map(|face| surface.face(face));
-    let places = corners.map(|corners| corners.map(|v| surface.position(v).map(f64::to_bits)));
-    let sorted = places.map(|mut corners| {
+    let positions = corners.map(|corners| corners.map(|v| surface.position(v).map(f64::to_bits)));
+    let sorted = positions.map(|mut corners| {
         corners.sort_unstable();
         corners
     });

@@ -74,7 +74,7 @@ fn the_lidar_lies_on_the_ground() {
     assert_stated("withheld", withheld);
     assert_stated("overlap", overlap);
     assert_stated("ground (class 2, not withheld)", ground);
-    assert_stated("places of ground points", lowest.len());
+    assert_stated("sites of ground points", lowest.len());
 }
 
 #[test]
@@ -103,8 +103,8 @@ fn the_breaklines_touch_at_vertices_only() {
     let millimetres = |x: f64| (x * 1000.0).round() as i64;
     let mut segments = Vec::<[Corner; 2]>::new();
     for (_, line) in fixtures::breaklines() {
-        let places: Vec<_> = line.iter().map(|[u, v, _]| [millimetres(*u), millimetres(*v)]).collect();
-        segments.extend(places.windows(2).map(|pair| [pair[0], pair[1]]));
+        let sites: Vec<_> = line.iter().map(|[u, v, _]| [millimetres(*u), millimetres(*v)]).collect();
+        segments.extend(sites.windows(2).map(|pair| [pair[0], pair[1]]));
     }
     let side =
         |[a, b]: [Corner; 2], p: Corner| ((b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0])).signum();
@@ -124,7 +124,7 @@ fn the_breaklines_touch_at_vertices_only() {
     let vertices: BTreeSet<_> = segments.iter().flatten().collect();
     let lidar: BTreeSet<_> = fixtures::cloud().iter().map(|p| [10 * i64::from(p.u), 10 * i64::from(p.v)]).collect();
     assert!(vertices.iter().all(|v| !lidar.contains(*v)), "a lidar point at the place of a breakline's vertex");
-    assert_stated("breakline vertices (places)", vertices.len());
+    assert_stated("breakline vertices (sites)", vertices.len());
     assert_stated("breakline segments", segments.len());
 }
 

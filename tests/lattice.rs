@@ -31,8 +31,8 @@ fn triangles<G: breakline::triangulation::geometry::Geometry<3>>(
 fn same(points: &[[i32; 3]]) {
     let (steps, vertices) = Delaunay::from_points(<Steps>::default(), points).unwrap();
     assert_eq!(steps.check(Level::Law), []);
-    let places: Vec<[f64; 2]> = points.iter().map(|p| [p[0].into(), p[1].into()]).collect();
-    let (plane, of_plane) = Delaunay::from_points(<Plane>::default(), &places).unwrap();
+    let sites: Vec<[f64; 2]> = points.iter().map(|p| [p[0].into(), p[1].into()]).collect();
+    let (plane, of_plane) = Delaunay::from_points(<Plane>::default(), &sites).unwrap();
     assert_eq!(vertices, of_plane);
     if steps.dimension() == 2 {
         assert_eq!(triangles(&steps, &vertices), triangles(&plane, &of_plane));
@@ -135,8 +135,8 @@ fn a_tile() {
             if batch.is_empty() {
                 break;
             }
-            let places = (0..batch.len()).map(|i| [batch.x[i], batch.y[i], batch.z[i]]);
-            points.extend(places.map(|p| lattice.steps(p).expect("a point of the lattice")));
+            let positions = (0..batch.len()).map(|i| [batch.x[i], batch.y[i], batch.z[i]]);
+            points.extend(positions.map(|p| lattice.steps(p).expect("a point of the lattice")));
         }
         same(&points);
     }

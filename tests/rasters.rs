@@ -48,7 +48,7 @@ const REFUSED: &[(&str, &str)] = &[
 ];
 
 /// Files whose tiepoints lie on one affine transform: FACTS calls them control points.
-const PLACED_BY_TIEPOINTS: &[&str] = &[
+const OF_TIEPOINTS: &[&str] = &[
     "dem/pointarea/austrian_capitals_model_tie_points_pixel_is_area.tif",
     "dem/pointarea/austrian_capitals_model_tie_points_pixel_is_point.tif",
 ];
@@ -125,7 +125,7 @@ fn check_facts(name: &str, path: &Path, facts: &Value) {
     }
 
     let transform = reader.frame().transform;
-    if !PLACED_BY_TIEPOINTS.contains(&name) {
+    if !OF_TIEPOINTS.contains(&name) {
         for (found, wanted) in transform.iter().zip(facts["geotransform"].as_array().unwrap()) {
             let wanted = wanted.as_f64().unwrap();
             assert!((found - wanted).abs() <= 1e-12 * wanted.abs(), "{name}: {found} is not {wanted}");

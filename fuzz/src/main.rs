@@ -1,5 +1,5 @@
-//! Bytes as points and lines, for a fuzzer that learns which ones lead to new places; the checks are those of
-//! `tests/fuzz`.
+//! Bytes as points and lines, for a fuzzer that learns which ones lead to new states; the checks
+//! are those of `tests/fuzz`.
 //!
 //! `breakline-fuzz --poly FILE` prints what the bytes of a file mean.
 #![allow(clippy::print_stdout)]
@@ -10,8 +10,9 @@ use testkit::judge;
 /// More is slow, and shows nothing that less does not.
 const MOST_POINTS: usize = 60;
 
-/// Every sequence of bytes is a set: the first says how coordinates are written, the second how many points there are;
-/// after the points, each byte is the next point of a line, those above 239 begin another line.
+/// Every sequence of bytes is a set: the first says how coordinates are written, the second how
+/// many points there are; after the points, each byte is the next point of a line, those above 239
+/// begin another line.
 fn case(bytes: &[u8]) -> Case {
     let [how, count, rest @ ..] = bytes else { return Case::default() };
     let (origin, step): (Point, f64) = match how >> 2 & 3 {
@@ -27,9 +28,9 @@ fn case(bytes: &[u8]) -> Case {
         _ => f64::from_le_bytes(bytes.try_into().expect("these are eight")),
     };
     let count = usize::from(*count).min(MOST_POINTS).min(rest.len() / (2 * width));
-    let (places, order) = rest.split_at(count * 2 * width);
+    let (coordinates, order) = rest.split_at(count * 2 * width);
     let point = |bytes: &[u8]| [coordinate(0, &bytes[..width]), coordinate(1, &bytes[width..])];
-    let points: Vec<Point> = places.chunks_exact(2 * width).map(point).collect();
+    let points: Vec<Point> = coordinates.chunks_exact(2 * width).map(point).collect();
     let mut lines = Vec::new();
     if count > 0 {
         for line in order[..order.len().min(2 * MOST_POINTS)].split(|&byte| byte > 239) {

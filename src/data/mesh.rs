@@ -206,8 +206,8 @@ pub(crate) fn not_finite(vertex: usize, [x, y, z]: [f64; 3]) -> Error {
 
 /// Returns true if there are clockwise faces and no counter-clockwise ones.
 fn is_clockwise(vertices: &[[f64; 3]], faces: &[[u32; 3]]) -> bool {
-    let places = faces.iter().map(|face| face.map(|v| vertices[v as usize]));
-    let finite = places.filter(|places| places.iter().all(|[x, y, _]| x.is_finite() && y.is_finite()));
+    let corners = faces.iter().map(|face| face.map(|v| vertices[v as usize]));
+    let finite = corners.filter(|corners| corners.iter().all(|[x, y, _]| x.is_finite() && y.is_finite()));
     let mut signs = finite.map(orientation).filter(|sign| *sign != Sign::Zero).peekable();
     signs.peek().is_some() && signs.all(|sign| sign == Sign::Negative)
 }
@@ -374,8 +374,8 @@ fn folded(flaw: LinkFlaw) -> Error {
 
 /// The orientation of three points in plan: positive if counter-clockwise, zero if collinear. Exact
 /// for all finite coordinates.
-pub(crate) fn orientation(places: [[f64; 3]; 3]) -> Sign {
-    let turn = Orientation2(places.map(|[x, y, _]| [x, y]));
+pub(crate) fn orientation(corners: [[f64; 3]; 3]) -> Sign {
+    let turn = Orientation2(corners.map(|[x, y, _]| [x, y]));
     let is_ordinary = turn.0.as_flattened().iter().all(|&c| Adaptive::RANGE.admits(c));
     if is_ordinary { Adaptive::sign(&turn) } else { Exact::sign(&turn) }
 }

@@ -631,8 +631,8 @@ mod tests {
     #[test]
     fn many_faces_are_those_that_one_asks_for() {
         let mut builder = TinBuilder { max_edge: Some(1.5), ..TinBuilder::default() };
-        let places: Vec<[f64; 2]> = (0..2500).map(|k| [f64::from(k % 50), f64::from(k / 50)]).collect();
-        let [x, y] = [0, 1].map(|axis| places.iter().map(|p| p[axis]).collect::<Vec<_>>());
+        let sites: Vec<[f64; 2]> = (0..2500).map(|k| [f64::from(k % 50), f64::from(k / 50)]).collect();
+        let [x, y] = [0, 1].map(|axis| sites.iter().map(|p| p[axis]).collect::<Vec<_>>());
         builder.add_points(&x, &y, &x);
         builder.add_points(&[90.0], &[20.0], &[0.0]);
         builder.add_breakline(&[[3.0, 3.0, 1.0], [40.0, 3.0, 2.0]]);
@@ -645,8 +645,8 @@ mod tests {
         let mut sides = 0;
         for face in data::faces(surface) {
             assert_eq!(Some(face.corners), surface.face(face.number));
-            let places = face.corners.map(|v| surface.position(v));
-            assert_eq!(surface.triangle(face.number), Some(places));
+            let corners = face.corners.map(|v| surface.position(v));
+            assert_eq!(surface.triangle(face.number), Some(corners));
             for i in 0..3 {
                 assert_eq!(face.edges[i], surface.edge_kind(face.number, i));
                 assert_eq!(face.edges[i].is_constrained(), surface.is_constrained(face.number, i));

@@ -242,8 +242,8 @@ impl Region {
         // No side runs further through the surface than the sum of the rim's sides.
         let around: f64 = sides.iter().filter(|(domain, _)| *domain == surface).map(|(_, side)| length(side)).sum();
         let perimeter = sides.iter().map(|(_, side)| length(side).min(around)).sum();
-        let places = before.vertices.iter().flatten().flat_map(|p| &p[..2]);
-        let of_surface = places.fold(0.0, |sum: f64, x| sum.max(x.to_f64().value().abs()));
+        let coordinates = before.vertices.iter().flatten().flat_map(|p| &p[..2]);
+        let of_surface = coordinates.fold(0.0, |sum: f64, x| sum.max(x.to_f64().value().abs()));
         let of_curves = curves.iter().flat_map(|(_, ring)| ring.as_flattened());
         let largest = of_curves.fold(of_surface, |sum, x| sum.max(x.abs())).min(2.0 * of_surface);
         let lines: Vec<Line> = sides

@@ -14,7 +14,7 @@ const WEST: f64 = 688_000.0;
 const SOUTH: f64 = 5_261_000.0;
 
 /// Points on a lattice of half a metre, so that most circles go through four or more, with gaps and
-/// with places that have two, three or four heights.
+/// with sites that have two, three or four heights.
 fn ground() -> Points {
     let mut random = Random(7);
     let mut points = Vec::new();
@@ -22,7 +22,7 @@ fn ground() -> Points {
         for j in 0..50 {
             let (x, y) = (WEST + f64::from(i) / 2.0, SOUTH + f64::from(j) / 2.0);
             let height = |random: &mut Random| 800.0 + f64::from((i * j) % 97) / 20.0 + random.below(40) as f64 / 100.0;
-            // Seven out of eight places have a point, every eighth of them more than one.
+            // Seven out of eight sites have a point, every eighth of them more than one.
             let count = if random.below(8) == 0 { random.below(4) } else { 1 };
             for _ in 0..count {
                 points.push([x, y, height(&mut random)]);
@@ -35,7 +35,7 @@ fn ground() -> Points {
 /// Lines that cross, touch, overlap and repeat each other, run through points, and share vertices
 /// at other heights.
 fn breaklines() -> Lines {
-    let line = |places: &[[f64; 3]]| places.iter().map(|[x, y, z]| [WEST + x, SOUTH + y, 800.0 + z]).collect();
+    let line = |vertices: &[[f64; 3]]| vertices.iter().map(|[x, y, z]| [WEST + x, SOUTH + y, 800.0 + z]).collect();
     vec![
         line(&[[1.0, 1.0, 2.0], [11.3, 9.7, 4.0], [28.1, 22.2, 3.0]]),
         line(&[[2.2, 21.0, 1.0], [27.0, 3.1, 5.0]]),

@@ -144,10 +144,10 @@ fn plane(x: f64, y: f64) -> f64 {
 /// Points of a plane in eighths of a metre, with the corners of a rectangle of 40 m x 30 m.
 fn plane_points() -> Vec<[f64; 3]> {
     let mut random = Random(3);
-    let mut places = vec![[0, 0], [320, 0], [0, 240], [320, 240]];
-    places.extend((0..2000).map(|_| [random.below(321), random.below(241)]));
+    let mut positions = vec![[0, 0], [320, 0], [0, 240], [320, 240]];
+    positions.extend((0..2000).map(|_| [random.below(321), random.below(241)]));
     let at = |[i, j]: [usize; 2]| (500_000.0 + i as f64 / 8.0, 5_400_000.0 + j as f64 / 8.0);
-    places.into_iter().map(at).map(|(x, y)| [x, y, plane(x, y)]).collect()
+    positions.into_iter().map(at).map(|(x, y)| [x, y, plane(x, y)]).collect()
 }
 
 #[test]

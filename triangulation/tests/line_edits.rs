@@ -11,7 +11,7 @@ use testkit::random::{Random, ulps};
 type Point = [f64; 2];
 type Constrained = ConstrainedDelaunay<Plane>;
 type Bits = [u64; 2];
-type Places = BTreeSet<Vec<Bits>>;
+type SiteSets = BTreeSet<Vec<Bits>>;
 
 fn bits(p: &Point) -> Bits {
     p.map(|x| (x + 0.0).to_bits())
@@ -19,7 +19,7 @@ fn bits(p: &Point) -> Bits {
 
 /// What is observable of a triangulation, independent of its numbering: triangles, constrained
 /// edges, and the lines' chains.
-fn seen(t: &Constrained, lines: &[LineId]) -> (Places, Places, Vec<Vec<Bits>>) {
+fn seen(t: &Constrained, lines: &[LineId]) -> (SiteSets, SiteSets, Vec<Vec<Bits>>) {
     let at = |v: &VertexId| bits(t.point(*v));
     let sorted = |vertices: &[VertexId]| {
         let mut sites: Vec<Bits> = vertices.iter().map(at).collect();

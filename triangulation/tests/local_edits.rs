@@ -12,14 +12,14 @@ use breakline_triangulation::{ConstrainedDelaunay, Level, LineId, OnCrossing, Ro
 use testkit::random::{Random, ulps};
 
 type Bits = Vec<u64>;
-type Places = BTreeSet<Vec<Bits>>;
+type SiteSets = BTreeSet<Vec<Bits>>;
 
 /// Everything observable of a triangulation, independent of its numbering.
 #[derive(Debug, PartialEq)]
 struct Seen {
     points: BTreeSet<Bits>,
-    triangles: Places,
-    constraints: Places,
+    triangles: SiteSets,
+    constraints: SiteSets,
     chains: Vec<Vec<Bits>>,
     crossings: BTreeSet<Bits>,
     rounding: Option<Rounding>,
@@ -193,7 +193,7 @@ fn compare<G: Coordinates>(seed: u64, few: usize, most: usize, site: &Site) -> u
                 assert_eq!(there.points, anew.points, "{}", history());
                 assert_eq!(there.crossings, anew.crossings, "{}", history());
                 assert_eq!(there.chains, anew.chains, "{}", history());
-                let only = |p: &Places, q: &Places| -> Vec<Vec<Vec<f64>>> {
+                let only = |p: &SiteSets, q: &SiteSets| -> Vec<Vec<Vec<f64>>> {
                     p.difference(q)
                         .map(|c| c.iter().map(|b| b.iter().map(|&x| f64::from_bits(x)).collect()).collect())
                         .collect()

@@ -202,11 +202,11 @@ fn only_triangles_at_lines_wait() {
         extent
     });
     let clip = TileClip::take_from(&mut builder, &extent).unwrap().unwrap();
-    let mut places = [0; 3];
-    leaf(&Tile::PLANE, 0, &points, &[], 0.0, &mut |triangle| places[clip.side_of_triangle(&triangle) as usize] += 1)
+    let mut counts = [0; 3];
+    leaf(&Tile::PLANE, 0, &points, &[], 0.0, &mut |triangle| counts[clip.side_of_triangle(&triangle) as usize] += 1)
         .unwrap();
-    let [kept, outside, near] = places;
-    assert!(near < 1500 && kept > 8000 && outside > 15_000, "{places:?}");
+    let [kept, outside, near] = counts;
+    assert!(near < 1500 && kept > 8000 && outside > 15_000, "{counts:?}");
     // A triangle that is far away from all others has not come from the same triangulation.
     let of = |numbers: [u32; 3], at: [[f64; 2]; 3]| {
         let corners = [0, 1, 2].map(|i| TileVertex {

@@ -16,7 +16,7 @@ const SAME_CIRCLE: f64 = 1e-3;
 
 /// A triangle gets no vertex if its shortest edge is shorter than this many units in the last place
 /// of a coordinate.
-const LAST_PLACES: f64 = 64.0;
+const SHORTEST_IN_UNITS: f64 = 64.0;
 
 /// The flag that cancels is read once per so many triangles.
 const LOOK_EVERY: u32 = 256;
@@ -140,7 +140,7 @@ impl<'a, G: Crossing, V: Default> Refiner<'a, G, V> {
         }
         let largest =
             ends.map(|v| self.draft.t.plan_of(v).map(f64::abs)).as_flattened().iter().copied().fold(0.0, f64::max);
-        (shape.shortest().sqrt() < LAST_PLACES * f64::EPSILON * largest).then_some(Shortfall::Coordinates)
+        (shape.shortest().sqrt() < SHORTEST_IN_UNITS * f64::EPSILON * largest).then_some(Shortfall::Coordinates)
     }
 
     /// Returns true if an edge spans a small angle between two constraints, from one to the other,

@@ -30,16 +30,16 @@ const SETS: [&[Point]; 7] = [
 const COORDINATES: [f64; 11] =
     [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e200, -1e200, f64::MAX, 1e-200, 5e-324, 0.0, 1.5, 2.0];
 
-fn odd_places() -> impl Iterator<Item = Point> {
+fn odd_positions() -> impl Iterator<Item = Point> {
     COORDINATES.iter().flat_map(|&x| COORDINATES.iter().map(move |&y| [x, y]))
 }
 
 /// Numbers of vertices that exist, that existed, that never did, and that stand for something else.
 fn vertex_numbers<V, C: Copy + Default>(t: &Triangulation<Plane, 3, V, C>) -> Vec<VertexId> {
-    let unused_places = t.tds().cells().flat_map(|cell| *t.tds().corners(cell));
+    let unused = t.tds().cells().flat_map(|cell| *t.tds().corners(cell));
     let numbers = (0..t.tds().vertex_slots() + 3).map(VertexId::new);
     let mut numbers: Vec<_> = numbers.chain([VertexId::INFINITE, VertexId::new(VertexId::LIMIT - 1)]).collect();
-    numbers.extend(unused_places);
+    numbers.extend(unused);
     numbers.sort_unstable();
     numbers.dedup();
     numbers
@@ -75,7 +75,7 @@ fn asks_the_complex<V, C: Copy + Default>(t: &Triangulation<Plane, 3, V, C>) {
         assert_eq!(t.circumcenter(cell).is_some(), is_face);
         assert!((0..5).all(|i| is_face || !t.is_flippable(cell, i)));
     }
-    for q in odd_places().chain(t.points().to_vec()) {
+    for q in odd_positions().chain(t.points().to_vec()) {
         for near in [None, Some(CellId::new(0)), Some(CellId::new(7)), Some(CellId::new(CellId::LIMIT - 1))] {
             is_somewhere(t, q, t.locate(&q, near));
         }
@@ -90,7 +90,7 @@ fn asks_the_complex<V, C: Copy + Default>(t: &Triangulation<Plane, 3, V, C>) {
         }
     }
     let edges: Vec<(CellId, usize)> = cells.iter().flat_map(|&cell| (0..5).map(move |i| (cell, i))).collect();
-    let odd: Vec<Point> = odd_places().filter(|p| !p.iter().all(|x| x.is_finite())).collect();
+    let odd: Vec<Point> = odd_positions().filter(|p| !p.iter().all(|x| x.is_finite())).collect();
     let marks =
         [Mark::Cells(&cells), Mark::Edges(&edges), Mark::Polygon(&odd), Mark::Line(&odd), Mark::Line(&odd[..1])];
     let svg = t.svg(&marks);
@@ -147,7 +147,7 @@ fn delaunay_triangulations() {
                     assert_eq!(matches!(dual, Some(VoronoiEdge::Line { .. })), is_finite && t.dimension() == 1);
                 }
             }
-            for q in odd_places() {
+            for q in odd_positions() {
                 let is_site = q.iter().all(|&x| is_ordinary(x));
                 assert_eq!(t.nearest(&q, None).is_some(), is_site && !points.is_empty(), "{q:?}");
                 assert_eq!(t.nearest_first(&q, None).count(), if is_site { points.len() } else { 0 });
@@ -177,7 +177,7 @@ fn strategies() {
     for points in SETS {
         let t = &free(points)[1];
         let (hierarchy, buckets) = (Hierarchy::<Plane, 3>::of(Plane::default(), t), Buckets::of(t));
-        for q in odd_places() {
+        for q in odd_positions() {
             for v in vertex_numbers(t).into_iter().map(Some).chain([None]) {
                 is_somewhere(t, q, StraightLine(v).locate(t, &q));
             }
@@ -195,7 +195,7 @@ fn strategies() {
     let t = build(&grid);
     let hierarchy = Hierarchy::<Plane, 3>::of(Plane::default(), &t);
     assert!(hierarchy.sample_sizes().next().is_some_and(|size| size > 200));
-    for q in odd_places() {
+    for q in odd_positions() {
         is_somewhere(&t, q, hierarchy.locate(&t, &q));
         is_somewhere(&t, q, StraightLine(None).locate(&t, &q));
     }
@@ -211,7 +211,7 @@ fn from_as_far_as_numbers_go() {
     t.write_compact(&mut bytes).unwrap();
     let compact = Compact::open(Plane::<Wide>::default(), &bytes[..]).unwrap();
     let exact = Plane::<Exact>::default();
-    for q in odd_places() {
+    for q in odd_positions() {
         let is_finite = q.iter().all(|x| x.is_finite());
         let nearer = |&v: &VertexId, &w: &VertexId| {
             let order = exact.compare_distance(&q, t.point(v), t.point(w));
@@ -298,7 +298,7 @@ fn lines_and_meshes() {
         }
         assert_eq!(t.nesting().len(), t.tds().cell_slots());
         assert!(t.nesting_of([LineId::new(1), LineId::new(9)]).is_ok());
-        for q in odd_places() {
+        for q in odd_positions() {
             let is_site = q.iter().all(|&x| is_ordinary(x));
             assert!(is_site || t.conflict_zone(&q, None).is_none());
         }
@@ -307,7 +307,7 @@ fn lines_and_meshes() {
             let mesh = t.clone().conformed(conformity);
             assert!(cell_numbers(&mesh).into_iter().all(|cell| !mesh.is_inside(cell) || mesh.tds().is_used(cell)));
         }
-        for q in odd_places() {
+        for q in odd_positions() {
             let regions =
                 vec![RegionBound { seed: q, max_area: f64::NAN }, RegionBound { seed: [1.0, 1.0], max_area: q[0] }];
             let domains = [Domain::Hull { holes: vec![q] }, Domain::Seeded { seeds: vec![q] }];
@@ -360,7 +360,7 @@ fn weighted_points() {
             assert!(t.power_cell(v, &[[f64::NAN; 2]; 4]).corners.is_empty());
             assert!(t.is_hidden(v) != t.tds().is_vertex(v) || !t.is_hidden(v));
         }
-        for [x, y] in odd_places() {
+        for [x, y] in odd_positions() {
             for weight in [0.0, f64::NAN, 1e300] {
                 let is_site = [x, y, weight].into_iter().all(is_ordinary);
                 let q = [x, y, weight];
@@ -388,7 +388,7 @@ fn compact_triangulations() {
                 compact.within_rectangle([&q, &rim])?.len(),
             ))
         };
-        for q in odd_places() {
+        for q in odd_positions() {
             for rim in [q, [0.5, 0.25], [f64::INFINITY, 0.0]] {
                 let expected = (
                     t.nearest(&q, None),
@@ -426,7 +426,7 @@ fn in_space() {
         let (t, _) =
             Delaunay::from_points(Space::<breakline_triangulation::kernel::Adaptive>::default(), &corners[..count])
                 .unwrap();
-        for [x, y] in odd_places() {
+        for [x, y] in odd_positions() {
             for z in COORDINATES {
                 let is_site = [x, y, z].into_iter().all(is_ordinary);
                 for location in [t.locate(&[x, y, z], None), JumpAndWalk.locate(&t, &[x, y, z])] {

@@ -107,9 +107,9 @@ fn fit(tiepoints: &[f64]) -> Option<[f64; 6]> {
 mod tests {
     use super::*;
 
-    fn tiepoints(t: [f64; 6], places: &[[f64; 2]]) -> Vec<f64> {
+    fn tiepoints(t: [f64; 6], positions: &[[f64; 2]]) -> Vec<f64> {
         let tie = |[c, r]: [f64; 2]| [c, r, 0.0, t[0] + c * t[1] + r * t[2], t[3] + c * t[4] + r * t[5], 0.0];
-        places.iter().flat_map(|&p| tie(p)).collect()
+        positions.iter().flat_map(|&p| tie(p)).collect()
     }
 
     fn transform(tags: ModelTags) -> Option<[f64; 6]> {
@@ -139,9 +139,9 @@ mod tests {
     #[test]
     fn tiepoints_on_one_affine_transform_give_it() {
         let wanted = [4302000.0, 30.0, 4.0, 2811000.0, -2.0, -31.0];
-        let places = [[0.0, 0.0], [507.0, 3.0], [11.0, 190.0], [300.0, 170.0]];
+        let positions = [[0.0, 0.0], [507.0, 3.0], [11.0, 190.0], [300.0, 170.0]];
         let found =
-            transform(ModelTags { tiepoints: Some(tiepoints(wanted, &places)), ..ModelTags::default() }).unwrap();
+            transform(ModelTags { tiepoints: Some(tiepoints(wanted, &positions)), ..ModelTags::default() }).unwrap();
         for (found, wanted) in found.iter().zip(wanted) {
             assert!((found - wanted).abs() < 1e-6, "{found} is not {wanted}");
         }

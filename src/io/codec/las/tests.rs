@@ -306,12 +306,12 @@ fn more_points_than_bytes_can_hold_are_refused_at_once() {
     for (minor, format) in [(2, 3), (4, 3), (4, 6)] {
         let mut bytes = Spec { is_compressed: true, ..Spec::new((1, minor), format) }.write();
         let (count, room) = if minor == 4 { (247, 8) } else { (107, 4) };
-        let claimed = u64::from(u32::MAX) + u64::from(minor == 4);
-        bytes[count..count + room].copy_from_slice(&claimed.to_le_bytes()[..room]);
+        let stated = u64::from(u32::MAX) + u64::from(minor == 4);
+        bytes[count..count + room].copy_from_slice(&stated.to_le_bytes()[..room]);
         for cut in [Cut::Refuse, Cut::Accept] {
             let error = read_with(&bytes, cut).unwrap_err();
             assert_eq!(error.kind(), Kind::Limit, "{error}");
-            assert!(error.to_string().contains(&format!("{claimed} points in ")), "{error}");
+            assert!(error.to_string().contains(&format!("{stated} points in ")), "{error}");
         }
     }
 }
