@@ -1,9 +1,10 @@
 //! The words of the project: one term for each thing, as the glossary in `docs/architecture.md` has
 //! it.
 //!
-//! The glossary is read: no identifier contains a word of its last column, and no comment, message
-//! or page contains a phrase of the list below it. Comments are no wider than 100 characters, so
-//! that they can be read beside code.
+//! The glossary is read: no identifier and no name of a file contains a word of its last column, in
+//! any form that ends with `s`, `d` or neither, and no comment, message or page contains a phrase of
+//! the list below it. Comments are no wider than 100 characters, so that they can be read beside
+//! code. Pages refer to what exists.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -11,6 +12,7 @@ use std::path::{Path, PathBuf};
 
 /// Where identifiers and comments are judged.
 const SOURCES: [&str; 10] = [
+    "fuzz/src",
     "src",
     "python/src",
     "tests",
@@ -20,23 +22,32 @@ const SOURCES: [&str; 10] = [
     "triangulation/src",
     "triangulation/tests",
     "triangulation/examples",
-    "triangulation/benches",
 ];
 
-/// The pages that are judged. Decisions and the changelog are not: they describe earlier states, in
-/// the words of their time.
-const PAGES: [&str; 6] =
-    ["README.md", "docs", "python/README.md", "triangulation/README.md", "triangulation/docs", "fixtures"];
+/// The pages that are judged.
+const PAGES: [&str; 7] = [
+    "README.md",
+    "CHANGELOG.md",
+    "docs",
+    "python/README.md",
+    "triangulation/README.md",
+    "triangulation/docs",
+    "fixtures",
+];
+
+/// The decisions, and the page that lists them.
+const DECISIONS: &str = "docs/decisions";
+const INDEX: &str = "docs/decisions/README.md";
 
 /// The widest comment, indentation included.
 const WIDTH: usize = 100;
 
-/// Names of tests are sentences: from so many words on, a name is one.
+/// Names of tests may be sentences: from so many words on, a name is one.
 const SENTENCE: usize = 5;
 
 /// What the glossary forbids.
 struct Rules {
-    /// In identifiers, in lower case.
+    /// In names, in lower case, with their plurals and other forms.
     words: BTreeSet<String>,
     /// In prose, in lower case.
     phrases: Vec<String>,
@@ -54,20 +65,35 @@ enum Token<'a> {
 fn identifiers_are_made_of_the_words_of_the_glossary() {
     let rules = rules();
     let faults = each_source(|path, text| {
+        let sentences = names_of_tests(text);
         let identifiers: BTreeSet<&str> = tokens(text)
             .into_iter()
             .filter_map(|token| match token {
-                Token::Identifier(name) => Some(name),
+                Token::Identifier(name) if !sentences.contains(name) => Some(name),
                 _ => None,
             })
             .collect();
         let bad = identifiers.into_iter().filter_map(|name| {
-            let words = words_of(name);
-            let word = words.iter().find(|word| words.len() < SENTENCE && rules.words.contains(*word))?;
+            let word = rules.forbidden_in(name)?;
             Some(format!("{}: `{name}` contains `{word}`", path.display()))
         });
         bad.collect()
     });
+    assert!(faults.is_empty(), "see the glossary in docs/architecture.md\n{}", faults.join("\n"));
+}
+
+#[test]
+fn file_names_are_made_of_the_words_of_the_glossary() {
+    let rules = rules();
+    let folders = SOURCES.iter().chain(&PAGES).chain(&["python/package", "python/tests", "python/benches"]);
+    let mut faults: Vec<_> = folders
+        .flat_map(|folder| files(Path::new(folder)))
+        .filter_map(|path| {
+            let word = path.components().find_map(|name| rules.forbidden_in(name.as_os_str().to_str()?))?;
+            Some(format!("{} contains `{word}`", path.display()))
+        })
+        .collect();
+    faults.dedup();
     assert!(faults.is_empty(), "see the glossary in docs/architecture.md\n{}", faults.join("\n"));
 }
 
@@ -82,8 +108,7 @@ fn prose_uses_no_listed_phrase() {
         let prose = prose.collect::<Vec<_>>().join("\n");
         phrases_in(&prose, &rules).map(|phrase| format!("{}: \"{phrase}\"", path.display())).collect()
     });
-    for path in PAGES.iter().flat_map(|page| files(Path::new(page), "md")) {
-        let text = fs::read_to_string(root().join(&path)).unwrap();
+    for (path, text) in pages() {
         // The list itself stands in one of the pages, up to the next heading.
         let (before, list) = text.split_once(PHRASES).unwrap_or((&text, ""));
         let after = list.split_once("\n## ").map_or("", |(_, after)| after);
@@ -91,6 +116,50 @@ fn prose_uses_no_listed_phrase() {
         faults.extend(found.map(|phrase| format!("{}: \"{phrase}\"", path.display())));
     }
     assert!(faults.is_empty(), "see the list in docs/architecture.md\n{}", faults.join("\n"));
+}
+
+/// Links of pages lead to files, and decisions name paths of the repository that exist.
+#[test]
+fn pages_refer_to_what_exists() {
+    let mut faults = Vec::new();
+    for (path, text) in pages() {
+        let folder = path.parent().unwrap();
+        let links = links_in(&text).map(|target| folder.join(target));
+        let named = paths_in(&text).filter(|_| path.starts_with(DECISIONS)).map(PathBuf::from);
+        let missing = links.chain(named).filter(|target| !root().join(target).exists());
+        faults.extend(missing.map(|target| format!("{}: {}", path.display(), target.display())));
+    }
+    let index = fs::read_to_string(root().join(INDEX)).unwrap();
+    let listed: BTreeSet<&str> = links_in(&index).collect();
+    let decisions = files_with(Path::new(DECISIONS), "md");
+    let names = decisions.iter().filter_map(|path| path.file_name()?.to_str());
+    faults.extend(
+        names
+            .filter(|&name| name != "README.md" && !listed.contains(name))
+            .map(|name| format!("{INDEX} does not list {name}")),
+    );
+    assert!(faults.is_empty(), "these do not exist:\n{}", faults.join("\n"));
+}
+
+/// The targets of the relative links of a page, without what follows a `#`.
+fn links_in(text: &str) -> impl Iterator<Item = &str> {
+    let targets = text.split("](").skip(1).filter_map(|rest| rest.split_once(')'));
+    let relative = targets.filter(|(target, _)| !target.contains([':', ' ', '\n']));
+    relative.filter_map(|(target, _)| target.split('#').next()).filter(|file| !file.is_empty())
+}
+
+/// The paths of the repository that a page names, in code.
+fn paths_in(text: &str) -> impl Iterator<Item = &str> {
+    let code = text.split('`').skip(1).step_by(2).filter(|code| !code.contains([' ', '\n', ':']));
+    code.filter(|code| code.split_once('/').is_some_and(|(first, _)| !first.is_empty() && root().join(first).is_dir()))
+}
+
+#[test]
+fn links_and_paths_of_pages_are_found() {
+    let links: Vec<_> = links_in("[a](b.md#c), [d](#e), ![f](g/h.png) and [i](https://j.k).").collect();
+    assert_eq!(links, ["b.md", "g/h.png"]);
+    let paths: Vec<_> = paths_in("`src/main.rs`, `1/2`, `src/a b`, `/src/c`, `src` and `tests/none`.").collect();
+    assert_eq!(paths, ["src/main.rs", "tests/none"]);
 }
 
 /// What is typed on a command line is known in `src/cli` alone: below, texts mention it as data.
@@ -180,6 +249,15 @@ fn the_rules_can_fail() {
     assert_eq!(tokens(text), expected);
     let rules = rules();
     assert!(rules.words.contains("walled") && rules.words.len() > 10, "{:?}", rules.words);
+    for name in ["place", "LAST_PLACES", "wishes", "isTidied", "settles.rs", "one_long_name_of_many_ways", "claimed"] {
+        assert!(rules.forbidden_in(name).is_some(), "{name}");
+    }
+    for name in ["replace", "leader", "walls", "always", "crossings", "one_long_name_of_many_lines"] {
+        assert_eq!(rules.forbidden_in(name), None, "{name}");
+    }
+    let tests =
+        "#[test]\n#[ignore]\nfn all_is_in_its_place() {}\nfn nothing_is_in_its_place() {}\n#[test]\nfn a_place() {}";
+    assert_eq!(Vec::from_iter(names_of_tests(tests)), ["all_is_in_its_place"]);
     assert!(rules.phrases.len() > 10, "{:?}", rules.phrases);
     let found = |text: &str| phrases_in(text, &rules).next().map(str::to_owned);
     assert_eq!(found("/// One is\n    /// told, at the\n/// most.").as_deref(), Some("at the most"));
@@ -197,10 +275,32 @@ fn rules() -> Rules {
     let (table, list) = glossary.split_once(PHRASES).expect("a list of phrases");
     let rows = table.lines().filter(|line| line.starts_with("| ")).skip(1);
     let last = rows.filter_map(|row| row.trim_end_matches('|').rsplit('|').next());
-    let words =
-        last.flat_map(|cell| cell.split(',')).map(|word| word.trim().to_owned()).filter(|word| !word.is_empty());
+    let words = last.flat_map(|cell| cell.split(',')).map(str::trim).filter(|word| !word.is_empty());
+    let words = words.flat_map(forms_of);
     let phrases = list.lines().filter_map(|line| line.strip_prefix("- \"")).filter_map(|line| line.split('"').next());
     Rules { words: words.collect(), phrases: phrases.map(str::to_owned).collect() }
+}
+
+/// A word, its plural or third person, and its past. Its form with `ing` is not forbidden: zeros are
+/// leading.
+fn forms_of(word: &str) -> impl Iterator<Item = String> + '_ {
+    let stem = word.strip_suffix('y').map(|stem| format!("{stem}i"));
+    let stem = stem.unwrap_or_else(|| word.to_owned());
+    let regular = ["", "s", "es", "d", "ed"].into_iter().map(move |ending| format!("{word}{ending}"));
+    regular.chain(["es", "ed"].into_iter().map(move |ending| format!("{stem}{ending}")))
+}
+
+impl Rules {
+    /// The word of a name that the glossary forbids.
+    fn forbidden_in(&self, name: &str) -> Option<String> {
+        words_of(name).into_iter().find(|word| self.words.contains(word))
+    }
+}
+
+/// The names of tests in a source that are sentences.
+fn names_of_tests(text: &str) -> BTreeSet<&str> {
+    let names = text.split("#[test]").skip(1).filter_map(|rest| rest.split_once("fn ")?.1.split('(').next());
+    names.filter(|name| words_of(name).len() >= SENTENCE).collect()
 }
 
 /// The phrases that a text contains, whatever its lines and its letters' case.
@@ -338,24 +438,38 @@ fn end_of_block(rest: &str) -> usize {
 
 /// What is wrong with all sources.
 fn each_source(check: impl Fn(&Path, &str) -> Vec<String>) -> Vec<String> {
-    let paths = SOURCES.iter().flat_map(|folder| files(Path::new(folder), "rs"));
+    let paths = SOURCES.iter().flat_map(|folder| files_with(Path::new(folder), "rs"));
     // This file quotes what it forbids.
     let paths = paths.filter(|path| !path.ends_with("tests/words.rs"));
     paths.flat_map(|path| check(&path, &fs::read_to_string(root().join(&path)).unwrap())).collect()
 }
 
-/// The files with an extension below a folder, or the file itself; in order.
-fn files(path: &Path, extension: &str) -> Vec<PathBuf> {
+/// All pages with their texts.
+fn pages() -> impl Iterator<Item = (PathBuf, String)> {
+    let paths = PAGES.iter().flat_map(|page| files_with(Path::new(page), "md"));
+    paths.map(|path| {
+        let text = fs::read_to_string(root().join(&path)).unwrap();
+        (path, text)
+    })
+}
+
+/// The files with an extension below a folder, or the file itself; in order. There are some.
+fn files_with(path: &Path, extension: &str) -> Vec<PathBuf> {
+    let mut found = files(path);
+    found.retain(|path| path.extension().is_some_and(|e| e == extension));
+    assert!(!found.is_empty(), "no file .{extension} in {}", path.display());
+    found
+}
+
+/// The files below a folder, or the file itself; in order.
+fn files(path: &Path) -> Vec<PathBuf> {
     let full = root().join(path);
-    if path.ends_with("decisions") || !full.exists() {
-        return Vec::new();
-    }
     if full.is_file() {
-        return if path.extension().is_some_and(|e| e == extension) { vec![path.to_owned()] } else { Vec::new() };
+        return vec![path.to_owned()];
     }
     let mut entries: Vec<_> = fs::read_dir(&full).unwrap().map(|entry| entry.unwrap().file_name()).collect();
     entries.sort();
-    entries.into_iter().flat_map(|name| files(&path.join(name), extension)).collect()
+    entries.into_iter().flat_map(|name| files(&path.join(name))).collect()
 }
 
 fn root() -> &'static Path {
