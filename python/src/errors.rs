@@ -27,7 +27,7 @@ impl From<Failure> for PyErr {
         let class = match error.kind() {
             Kind::Format => "FormatError",
             Kind::Unsupported => "UnsupportedError",
-            Kind::Usage => "UsageError",
+            Kind::Usage | Kind::OtherJob => "UsageError",
             Kind::NotYet => "NotYetError",
             Kind::Limit => "LimitError",
             Kind::Io => "FileError",

@@ -3,10 +3,9 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use breakline::Error;
 use breakline::run::{
-    self, BadFiles, ContourOptions, DemOptions, Division, Execution, Existing, HillshadeOptions, Job as Tasks,
-    JobCommand, JobReport, LightOptions, Look, Origin, Source, Summary, SurfaceOptions, SurfaceRequest, Targets,
+    self, BadFiles, Context, ContourOptions, DemOptions, Division, Execution, Existing, HillshadeOptions, JobCommand,
+    JobReport, LightOptions, Look, Origin, Source, StoredJob, Summary, SurfaceOptions, SurfaceRequest, Targets,
     TileOptions, TinRequest, Verb, WriteReport, WriteRequest, Written, WrittenOf,
 };
 use pyo3::prelude::*;
@@ -74,7 +73,7 @@ impl Asked<'_> {
             memory: memory.transpose()?,
             folder: self.job.clone(),
             bad: if self.skip_bad { BadFiles::Skip } else { BadFiles::Refuse },
-            look: Look::default(),
+            ..TileOptions::default()
         })
     }
 
@@ -207,42 +206,13 @@ pub(crate) fn is_surface(py: Python<'_>, file: PathBuf) -> PyResult<bool> {
 /// The job in a folder.
 #[pyclass(frozen, module = "breakline._breakline")]
 pub(crate) struct Job {
-    folder: PathBuf,
-    command: JobCommand,
+    stored: StoredJob,
 }
 
 impl Job {
-    fn read(folder: &Path) -> Result<Self> {
-        let folder = std::path::absolute(folder).map_err(Error::from)?;
-        let command = JobCommand::read(&folder)?.ok_or_else(|| no_job(&folder))?;
-        let mut names =
-            command.targets.files.iter().chain(command.targets.also_read.iter()).cloned().collect::<Vec<_>>();
-        names.extend(command.targets.read_with(&command.request.surface));
-        let here = std::env::current_dir().map_err(Error::from)?;
-        match names.into_iter().find(|name| name.is_relative()).filter(|_| here != command.folder) {
-            Some(name) => {
-                Err(Error::usage(format!("the name is relative to another folder, {}", command.folder.display()))
-                    .in_file(name)
-                    .cure("go there first (os.chdir), or plan the job with absolute paths")
-                    .into())
-            }
-            None => Ok(Job { folder, command }),
-        }
-    }
-
-    fn stored(&self) -> Result<Tasks> {
-        let JobCommand { request, tiles, .. } = &self.command;
-        Ok(Tasks::stored(request, &self.folder, tiles)?.ok_or_else(|| no_job(&self.folder))?)
-    }
-
     fn output(&self) -> &Path {
-        self.command.targets.files.first().map(PathBuf::as_path).unwrap_or(Path::new(""))
+        self.stored.command.targets.files.first().map(PathBuf::as_path).unwrap_or(Path::new(""))
     }
-}
-
-#[cold]
-fn no_job(folder: &Path) -> Error {
-    Error::usage("there is no job in this folder").in_file(folder)
 }
 
 #[pymethods]
@@ -256,26 +226,29 @@ impl Job {
         let folder = tiles.folder.clone().unwrap_or_default();
         drop(asked);
         work::run(py, &call, |context| -> Result<_> {
-            if Tasks::stored(&request, &folder, &tiles)?.is_none() {
-                let mut job = run::plan(&request, &targets, &tiles, context)?;
-                let here = std::env::current_dir().map_err(Error::from)?;
-                let command = JobCommand { request, targets, tiles, folder: here, words };
-                drop(job.create(Some(&command))?);
-            }
-            Job::read(&folder)
+            let mut asked = JobCommand::new(&request, &targets, &tiles)?;
+            asked.words = words;
+            let stored = match StoredJob::find(&folder)? {
+                Some(stored) => {
+                    stored.require_for(&asked)?;
+                    stored
+                }
+                None => run::plan_job(&asked, &folder, context)?,
+            };
+            Ok(Job { stored })
         })
     }
 
     /// Opens the job in a folder.
     #[staticmethod]
     fn open(py: Python<'_>, folder: PathBuf) -> PyResult<Self> {
-        work::short(py, || Job::read(&folder))
+        work::short(py, || -> Result<_> { Ok(Job { stored: StoredJob::read(&folder)? }) })
     }
 
     /// The folder.
     #[getter]
     fn folder(&self) -> PathBuf {
-        self.folder.clone()
+        self.stored.folder().to_path_buf()
     }
 
     /// The first output.
@@ -286,7 +259,8 @@ impl Job {
 
     /// Returns the tasks, each as a dictionary.
     fn tasks<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
-        let tasks = work::short(py, || -> Result<_> { Ok(self.stored()?.tasks(self.output())) })?;
+        let tasks =
+            work::short(py, || -> Result<_> { Ok(self.stored.job()?.tasks(self.output(), &Context::default())?) })?;
         let listed = PyList::empty(py);
         for task in tasks {
             let found = PyDict::new(py);
@@ -304,38 +278,33 @@ impl Job {
 
     /// Reads the files of the tasks, and removes those that are damaged.
     fn verify(&self, py: Python<'_>, call: Call) -> PyResult<()> {
-        work::run(py, &call, |_| -> Result<_> { Ok(self.stored()?.remove_damaged().map(drop)?) })
+        work::run(py, &call, |context| -> Result<_> { Ok(self.stored.job()?.remove_damaged(context).map(drop)?) })
     }
 
     /// Does a task; returns the report of the last one, which writes the output.
     fn run_task<'py>(&self, py: Python<'py>, number: usize, call: Call) -> PyResult<Bound<'py, PyDict>> {
-        let JobCommand { request, targets, tiles, .. } = &self.command;
         let report = work::run(py, &call, |context| -> Result<_> {
-            let job = Tasks::open_for(request, &self.folder, tiles, number)?.ok_or_else(|| no_job(&self.folder))?;
-            Ok(run::run_task(&job, number, targets, context)?)
+            Ok(run::run_task(&self.stored.job()?, number, &self.stored.command.targets, context)?)
         })?;
         report.map_or_else(|| Ok(PyDict::new(py)), |report| of_report(py, &report))
     }
 
     /// Does all tasks that are left, and writes the output; returns the report.
     fn write<'py>(&self, py: Python<'py>, overwrite: bool, call: Call) -> PyResult<Bound<'py, PyDict>> {
-        let JobCommand { request, targets, tiles, .. } = &self.command;
-        let targets = Targets { existing: Existing::of(overwrite), ..targets.clone() };
-        let options = TileOptions { folder: Some(self.folder.clone()), ..tiles.clone() };
-        let report = work::run(py, &call, |context| -> Result<_> {
-            Ok(run::write(request, &targets, &Execution::Resume(options), context)?)
-        })?;
+        let mut stored = self.stored.clone();
+        stored.command.targets.existing = Existing::of(overwrite);
+        let report = work::run(py, &call, |context| -> Result<_> { Ok(run::run_job(&stored, context)?) })?;
         of_report(py, &report)
     }
 
     /// True if files were skipped.
     #[getter]
     fn has_holes(&self, py: Python<'_>) -> PyResult<bool> {
-        work::short(py, || -> Result<_> { Ok(self.stored()?.has_holes()) })
+        work::short(py, || -> Result<_> { Ok(self.stored.job()?.has_holes(&Context::default())?) })
     }
 
     /// Removes the files that the job has written, except the output.
     fn clean(&self, py: Python<'_>) -> PyResult<()> {
-        work::short(py, || -> Result<_> { Ok(run::remove_job(&self.folder)?) })
+        work::short(py, || -> Result<_> { Ok(self.stored.remove(&Context::default())?) })
     }
 }

@@ -90,7 +90,7 @@ pub fn run(args: impl IntoIterator<Item = OsString>) -> Exit {
         Err(error) => {
             console.error(&error);
             match error.kind() {
-                Kind::Usage => Exit::Usage,
+                Kind::Usage | Kind::OtherJob => Exit::Usage,
                 Kind::NotYet => Exit::NotYet,
                 Kind::Format | Kind::Unsupported | Kind::Limit | Kind::Io | Kind::Canceled => Exit::Failed,
             }

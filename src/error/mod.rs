@@ -39,6 +39,8 @@ pub enum Kind {
     Canceled,
     /// Something that has to be done before is not done: the same may work later.
     NotYet,
+    /// A folder has another job than the one that was meant.
+    OtherJob,
 }
 
 /// What went wrong, where, and what to do about it.
@@ -111,6 +113,12 @@ impl Error {
     #[cold]
     pub fn not_yet(message: impl Into<Wording>) -> Self {
         Self::new(Kind::NotYet, message)
+    }
+
+    /// Creates an error for a folder that has another job than the one that was meant.
+    #[cold]
+    pub fn other_job(message: impl Into<Wording>) -> Self {
+        Self::new(Kind::OtherJob, message)
     }
 
     /// Wraps an error of the operating system or of a library; its text becomes the message.

@@ -70,11 +70,13 @@ impl<T> Input<T> {
         }
     }
 
-    /// Returns the path of the file; `None` for memory.
-    pub(super) fn file(&self) -> Option<&Path> {
-        match self {
-            Input::File(path) => Some(path),
-            Input::Memory(_) => None,
+    /// Calls a function with the name of each file among inputs.
+    pub(super) fn each_file(inputs: &mut [Self], visit: &mut dyn FnMut(&mut PathBuf)) {
+        for input in inputs {
+            match input {
+                Input::File(path) => visit(path),
+                Input::Memory(_) => {}
+            }
         }
     }
 

@@ -1,5 +1,7 @@
 //! Lines and areas of all kinds: what can be asked for.
 
+use std::path::PathBuf;
+
 use crate::data::{EdgeKind, Layer};
 use crate::error::Setting;
 use crate::terrain::HighSide;
@@ -154,6 +156,16 @@ impl LineRequest {
             (LineRole::Draped, &self.draped),
             (LineRole::Holes, &self.holes),
         ]
+    }
+
+    /// Calls a function with the name of each file of lines.
+    pub(super) fn each_file(&mut self, visit: &mut dyn FnMut(&mut PathBuf)) {
+        // Whoever adds files has to name them here.
+        let LineRequest { soft, draped, walls, wall: _, holes, flats, flat: _, rivers, river_width: _, densify: _ } =
+            self;
+        for layers in [soft, draped, walls, holes, flats, rivers] {
+            Input::each_file(layers, visit);
+        }
     }
 
     /// Returns the attribute that is needed of each record.

@@ -119,8 +119,8 @@ pub use facts::{Facts, LayerFacts, MeshFacts, PlaneFacts, PointFacts, RasterFact
 pub use frame::FrameOptions;
 pub use input::{Input, MemoryPoints, STDIN};
 pub use job::{
-    Division, FileState, Job, JobCommand, JobLock, JobReport, JobTask, Look, NotInTiles, TileOptions, needs_tiles,
-    remove_job,
+    Division, FileState, Job, JobCommand, JobLock, JobReport, JobTask, Look, NotInTiles, StoredJob, TileOptions,
+    needs_tiles, remove_job,
 };
 pub use line_notes::LineInput;
 pub use line_request::{FlatOptions, FlatRule, LineRequest, LineRole, LowerEdge, PerRecord, WallOptions};
@@ -143,4 +143,6 @@ pub use triangulate::{
 };
 pub use units::Quantity;
 pub use verbs::{Keeps, Summary, SurfaceOptions, TileUse, Tiles, Verb, WriteRequest};
-pub use write::{Execution, Origin, SurfaceReport, WriteReport, Written, WrittenOf, plan, run_task, write};
+pub use write::{
+    Execution, Origin, SurfaceReport, WriteReport, Written, WrittenOf, plan_job, run_job, run_task, write,
+};

@@ -11,7 +11,12 @@ pub(super) mod in_plan {
     use crate::data::Bounds;
 
     pub(in crate::run) fn serialize<S: Serializer>(bounds: &Option<Bounds>, to: S) -> Result<S::Ok, S::Error> {
-        bounds.map(|Bounds { min, max }| [min[0], min[1], max[0], max[1]]).serialize(to)
+        bounds.map(corners).serialize(to)
+    }
+
+    /// Returns what counts of a box.
+    pub(in crate::run) fn corners(Bounds { min, max }: Bounds) -> [f64; 4] {
+        [min[0], min[1], max[0], max[1]]
     }
 
     pub(in crate::run) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Option<Bounds>, D::Error> {

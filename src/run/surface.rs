@@ -27,6 +27,23 @@ pub struct SurfaceRequest {
     pub systems: SystemOptions,
 }
 
+impl SurfaceRequest {
+    /// Returns the files that the surface is built or read from.
+    pub fn files(&self) -> Vec<PathBuf> {
+        let mut files = Vec::new();
+        self.clone().each_file(&mut |file| files.push(file.clone()));
+        files
+    }
+
+    /// Calls a function with the name of each file that the surface is built or read from.
+    pub(super) fn each_file(&mut self, visit: &mut dyn FnMut(&mut PathBuf)) {
+        match &mut self.source {
+            Source::Points(points) => points.each_file(visit),
+            Source::Mesh(path) | Source::Raster(path) => visit(path),
+        }
+    }
+}
+
 /// What a surface is built or read from.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub enum Source {

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::context::Context;
 use super::notice::Notice;
-use super::surface::{Source, SurfaceProduct, SurfaceRequest};
+use super::surface::SurfaceProduct;
 use super::tin_parts;
 use super::units::bytes;
 use crate::error::{Error, Result, Setting, wording};
@@ -56,11 +56,24 @@ impl Targets {
         [&self.crossings, &self.replaced].into_iter().flatten().map(PathBuf::as_path)
     }
 
-    /// Returns all files that are read for a surface.
-    pub fn read_with(&self, request: &SurfaceRequest) -> Vec<PathBuf> {
-        let mut read = files_of(request);
-        read.extend(self.also_read.iter().cloned());
-        read
+    /// Returns the folder that a job for these outputs has by default; `None` if there is no
+    /// output.
+    pub fn job_folder(&self) -> Option<PathBuf> {
+        let mut name = self.files.first()?.as_os_str().to_owned();
+        name.push(".job");
+        Some(name.into())
+    }
+
+    /// Returns the files that are read for a request, with those that are read besides.
+    pub(crate) fn with_lists(&self, mut files: Vec<PathBuf>) -> Vec<PathBuf> {
+        files.extend(self.also_read.iter().cloned());
+        files
+    }
+
+    /// Calls a function with the name of each file that is written, or read besides the request.
+    pub(super) fn each_file(&mut self, visit: &mut dyn FnMut(&mut PathBuf)) {
+        let Targets { files, existing: _, crossings, replaced, also_read } = self;
+        files.iter_mut().chain(crossings).chain(replaced).chain(also_read).for_each(visit);
     }
 
     /// Finds the format of each output and makes sure that no file is lost that should be kept;
@@ -186,19 +199,6 @@ pub(crate) fn resolve<F: Copy>(
         targets.push(Target { path: path.clone(), kind: format.kind, extension: format.extension });
     }
     Ok(Outputs { targets, set: OutputSet::default() })
-}
-
-/// Returns the files that a surface is built or read from.
-fn files_of(request: &SurfaceRequest) -> Vec<PathBuf> {
-    match &request.source {
-        Source::Points(points) => {
-            let layers = points.lines.inputs().into_iter().flat_map(|(_, inputs)| inputs);
-            let layers = points.breaklines.iter().chain(layers).chain(&points.boundary);
-            let layers = layers.filter_map(|input| input.file()).map(Path::to_path_buf);
-            points.points.iter().filter_map(|input| input.file()).map(Path::to_path_buf).chain(layers).collect()
-        }
-        Source::Mesh(path) | Source::Raster(path) => vec![path.clone()],
-    }
 }
 
 /// The part of what is announced for the files of tasks that is written at least: few points may be

@@ -2,7 +2,7 @@
 //! which defaults.
 
 use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use super::context::{Journal, Size, Stage};
@@ -91,6 +91,14 @@ pub enum ReplacedPoints {
 }
 
 impl TinRequest {
+    /// Calls a function with the name of each file of points, lines and areas.
+    pub(super) fn each_file(&mut self, visit: &mut dyn FnMut(&mut PathBuf)) {
+        Input::each_file(&mut self.points, visit);
+        Input::each_file(&mut self.breaklines, visit);
+        self.lines.each_file(visit);
+        Input::each_file(&mut self.boundary, visit);
+    }
+
     /// Returns an error unless the bounds contain an area.
     ///
     /// # Errors

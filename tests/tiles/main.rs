@@ -16,6 +16,7 @@ mod notices;
 mod parts;
 mod real;
 mod removal;
+mod stored;
 mod trust;
 
 use std::path::Path;

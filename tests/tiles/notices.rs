@@ -10,8 +10,9 @@ use breakline::data::Bounds;
 use breakline::error::Wording;
 use breakline::run::{
     self, Context, ContourOptions, DemOptions, Division, EdgeLimit, Execution, FlatOptions, FrameOptions,
-    HillshadeOptions, Input, LineRequest, LowerEdge, Monitor, Notice, PerRecord, Progress, Severity, Size, Source,
-    Stage, SurfaceRequest, SystemOptions, Targets, TileOptions, TinRequest, Verb, WallOptions, WriteRequest,
+    HillshadeOptions, Input, JobCommand, LineRequest, LowerEdge, Monitor, Notice, PerRecord, Progress, Severity, Size,
+    Source, Stage, StoredJob, SurfaceRequest, SystemOptions, Targets, TileOptions, TinRequest, Verb, WallOptions,
+    WriteRequest,
 };
 use breakline::terrain::Classes;
 use testkit::lidar::{las, tile};
@@ -100,14 +101,14 @@ fn notices_of_tiles(case: &Case, division: Division, folder: &Path) -> Vec<Notic
     let collector = Collector::default();
     let context = Context { monitor: &collector, ..Context::default() };
     let (request, targets, job) = (case.request(), case.target(folder), folder.join("job"));
-    let options = TileOptions { division, folder: Some(job.clone()), ..TileOptions::default() };
-    let mut planned = run::plan(&request, &targets, &options, &context).unwrap();
-    drop(planned.create(None).unwrap());
-    planned.run(&Context::default()).unwrap();
+    let options = TileOptions { division, ..TileOptions::default() };
+    let command = JobCommand::new(&request, &targets, &options).unwrap();
+    let planned = run::plan_job(&command, &job, &context).unwrap();
+    planned.job().unwrap().run(&Context::default()).unwrap();
     // As another process would go on.
-    run::write(&request, &targets, &Execution::Resume(options), &context).unwrap();
+    run::run_job(&StoredJob::read(&job).unwrap(), &context).unwrap();
     fs::remove_file(&targets.files[0]).unwrap();
-    run::remove_job(&job).unwrap();
+    planned.remove(&context).unwrap();
     collector.0.into_inner().unwrap()
 }
 

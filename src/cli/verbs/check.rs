@@ -24,7 +24,7 @@ pub(in crate::cli) fn run(args: &CheckArgs, console: &Console) -> Result<Exit> {
     }
     let plan = SurfacePlan::resolve(&args.surface, console)?;
     let targets = Targets { existing: Existing::of(args.overwrite), ..plan.targets };
-    let read = targets.read_with(&plan.request);
+    let read = targets.with_lists(plan.request.files());
     targets.check_tables(&read)?;
     let outputs = OutputSet::default();
     let CheckProduct { product, flaws, .. } = run::check(&plan.request, &console.context())?;

@@ -1,4 +1,4 @@
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use clap::Parser;
 use serde_json::{Value, json};
@@ -10,7 +10,7 @@ use crate::cli::report::console::Console;
 use crate::cli::report::written::Shown;
 use crate::cli::{Exit, print};
 use crate::error::{Error, Result};
-use crate::run::{self, Execution, Existing, Job, JobCommand, JobTask, Look, TileOptions, WriteReport};
+use crate::run::{self, Context, Job, JobCommand, JobTask, Look, StoredJob, TileOptions};
 
 /// Plans a run in tiles, or does its tasks.
 pub(in crate::cli) fn run(args: &JobArgs, console: &Console) -> Result<Exit> {
@@ -20,18 +20,20 @@ pub(in crate::cli) fn run(args: &JobArgs, console: &Console) -> Result<Exit> {
         }
         JobAction::Run { job, task } => work(job, *task, console),
         JobAction::Status { job, json, verify } => {
-            let (job, JobCommand { request, targets, tiles, words, .. }) = stored(job)?;
-            let open = Job::stored(&request, &job, &tiles)?.ok_or_else(|| no_job(&job))?;
+            let context = console.context();
+            let stored = StoredJob::read(job)?;
+            let open = stored.job()?;
             if *verify {
-                open.remove_damaged()?;
+                open.remove_damaged(&context)?;
             }
+            let JobCommand { targets, words, .. } = &stored.command;
             let printed = match &targets.files[..] {
-                [output, ..] if *json => print_tasks(&open, &words, output),
-                _ => print_status(&open),
+                [output, ..] if *json => print_tasks(&open, words, output, &context),
+                _ => print_status(&open, &context),
             };
             printed.map(|()| Exit::Done)
         }
-        JobAction::Clean { job } => run::remove_job(job).map(|()| Exit::Done),
+        JobAction::Clean { job } => run::remove_job(job, &console.context()).map(|()| Exit::Done),
     }
 }
 
@@ -57,11 +59,10 @@ fn parse(words: &[String], console: &Console) -> Result<Asked> {
 
 fn plan(job: &Path, look: Look, words: &[String], console: &Console) -> Result<Exit> {
     let Asked { request, targets, tiles } = parse(words, console)?;
-    let tiles = TileOptions { folder: Some(job.to_path_buf()), look, ..write::options(&tiles) };
+    let tiles = TileOptions { look, ..write::options(&tiles) };
     let shown = Shown::new(console, how_to_go_on(job));
-    let mut planned = run::plan(&request, &targets, &tiles, &shown.context())?;
-    let folder = std::env::current_dir()?;
-    drop(planned.create(Some(&JobCommand { request, targets, tiles, folder, words: words.to_vec() }))?);
+    let command = JobCommand { words: words.to_vec(), ..JobCommand::new(&request, &targets, &tiles)? };
+    let planned = run::plan_job(&command, job, &shown.context())?.job()?;
     console.line(format_args!(
         "next        breakline job run {0}, or {0} --task 0 to {1}",
         job.display(),
@@ -75,57 +76,25 @@ fn how_to_go_on(job: &Path) -> String {
     format!("`breakline job run {}`", job.display())
 }
 
-/// Returns what a job was planned for, with its folder, and goes to where that was typed.
-fn stored(job: &Path) -> Result<(PathBuf, JobCommand)> {
-    let command = JobCommand::read(job)?.ok_or_else(|| no_job(job))?;
-    let job = std::path::absolute(job)?;
-    std::env::set_current_dir(&command.folder).map_err(|e| Error::from(e).in_file(&command.folder))?;
-    Ok((job, command))
-}
-
-#[cold]
-fn no_job(job: &Path) -> Error {
-    Error::usage("there is no job in this folder").in_file(job).cure("`breakline job plan` creates one")
-}
-
 fn work(job: &Path, task: Option<usize>, console: &Console) -> Result<Exit> {
-    let (job, JobCommand { request, mut targets, tiles, .. }) = stored(job)?;
-    let shown = Shown::new(console, how_to_go_on(&job));
+    let stored = StoredJob::read(job)?;
+    let shown = Shown::new(console, how_to_go_on(stored.folder()));
     let context = shown.context();
-    let report = match task {
-        Some(task) => {
-            let open = Job::open_for(&request, &job, &tiles, task)?.ok_or_else(|| no_job(&job))?;
-            match run::run_task(&open, task, &targets, &context)? {
-                Some(report) => report,
-                None => {
-                    console.line(format_args!("task {task}      {} is done", open.task_name(task)));
-                    return Ok(Exit::Done);
-                }
-            }
-        }
+    let Some(task) = task else { return run::run_job(&stored, &context).map(|report| shown.print(&report)) };
+    let open = stored.job()?;
+    match run::run_task(&open, task, &stored.command.targets, &context)? {
+        Some(report) => Ok(shown.print(&report)),
         None => {
-            let open = Job::open(&request, &job, &tiles)?.ok_or_else(|| no_job(&job))?;
-            match targets.files.first().filter(|output| open.has_written(output)) {
-                Some(output) if !open.has_holes() => WriteReport::Kept { output: output.clone(), has_holes: false },
-                written => {
-                    // What was skipped is tried again, and the output replaced.
-                    if written.is_some() {
-                        targets.existing = Existing::Replace;
-                    }
-                    drop(open);
-                    let options = TileOptions { folder: Some(job), ..tiles };
-                    run::write(&request, &targets, &Execution::Resume(options), &context)?
-                }
-            }
+            console.line(format_args!("task {task}      {} is done", open.task_name(task)));
+            Ok(Exit::Done)
         }
-    };
-    Ok(shown.print(&report))
+    }
 }
 
 /// Prints which tasks are done.
-fn print_status(open: &Job) -> Result<()> {
+fn print_status(open: &Job, context: &Context) -> Result<()> {
     let count = open.task_count();
-    let done = open.done();
+    let done = open.done(context)?;
     let finished = done.iter().filter(|is_done| **is_done).count();
     print(&format!("{finished} of {count} tasks are done\n"))?;
     match done.iter().position(|is_done| !is_done) {
@@ -135,13 +104,13 @@ fn print_status(open: &Job) -> Result<()> {
 }
 
 /// Prints all tasks as a JSON object; the last one writes the output.
-fn print_tasks(open: &Job, words: &[String], output: &Path) -> Result<()> {
+fn print_tasks(open: &Job, words: &[String], output: &Path, context: &Context) -> Result<()> {
     let of_task = |task: JobTask| {
         json!({
             "name": task.name, "stage": task.stage, "needs": task.needs, "input": task.input,
             "has_read": task.has_read.map(|state| [state.size, state.modified]), "done": task.is_done,
         })
     };
-    let tasks: Vec<Value> = open.tasks(output).into_iter().map(of_task).collect();
-    print(&format!("{}\n", json!({ "command": words, "tasks": tasks, "holes": open.has_holes() })))
+    let tasks: Vec<Value> = open.tasks(output, context)?.into_iter().map(of_task).collect();
+    print(&format!("{}\n", json!({ "command": words, "tasks": tasks, "holes": open.has_holes(context)? })))
 }

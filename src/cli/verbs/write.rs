@@ -7,7 +7,7 @@ use crate::cli::input::args::{TileArgs, Verb};
 use crate::cli::report::console::Console;
 use crate::cli::report::written::Shown;
 use crate::error::Result;
-use crate::run::{self, BadFiles, Execution, Look, TileOptions};
+use crate::run::{self, BadFiles, Execution, TileOptions};
 
 /// Returns what a verb asks for; `None` if it is not one of those that write what they make of a
 /// surface.
@@ -50,6 +50,6 @@ pub(super) fn options(args: &TileArgs) -> TileOptions {
         memory: args.memory,
         folder: args.job.clone(),
         bad: if args.skip_bad { BadFiles::Skip } else { BadFiles::Refuse },
-        look: Look::default(),
+        ..TileOptions::default()
     }
 }

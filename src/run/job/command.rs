@@ -1,21 +1,25 @@
 //! What a job was planned for, kept with it: whoever finds the folder can do its tasks.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use serde::de::Error as _;
+use serde::ser::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::Value;
 
 use super::TileOptions;
 use super::folder::{COMMAND, StoredPlan};
-use crate::error::{Command, Error, Result, Setting, wording};
+use super::request::{self, Options};
+use crate::error::{Command, Error, Result, Wording, wording};
 use crate::run::checksum::checksum;
 use crate::run::surface::SurfaceRequest;
 use crate::run::targets::Targets;
 use crate::run::verbs::{self, WriteRequest};
 
-/// What a job was planned for.
+/// What a job is planned for, with whole names, so that any process can do its tasks.
 #[derive(Debug, Clone, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct JobCommand {
     /// The request.
     pub request: WriteRequest,
@@ -23,56 +27,115 @@ pub struct JobCommand {
     pub targets: Targets,
     /// The options of the tiles, without the folder of the job.
     pub tiles: TileOptions,
-    /// The folder in which relative paths begin.
-    pub folder: PathBuf,
     /// The words of a command line, to be shown; none if it was not typed.
     pub words: Vec<String>,
 }
 
 impl JobCommand {
-    /// Reads what the job in a folder was planned for; `None` if the folder has no job.
+    /// Returns the command with these options. Names that are relative begin in the working folder,
+    /// which is not asked for if there are none.
     ///
     /// # Errors
-    /// If that was not kept with the job, or is damaged, or that of another job; or if the plan is.
-    pub fn read(folder: &Path) -> Result<Option<Self>> {
-        let Some(stored) = StoredPlan::read(folder)? else { return Ok(None) };
+    /// If a name is empty, or the working folder is not known.
+    pub fn new(request: &WriteRequest, targets: &Targets, tiles: &TileOptions) -> Result<Self> {
+        let mut targets = targets.clone();
+        whole_names(|visit| targets.each_file(visit))?;
+        let tiles = TileOptions { folder: None, ..tiles.clone() };
+        Ok(JobCommand { request: whole(request)?, targets, tiles, words: Vec::new() })
+    }
+
+    /// Reads the command that is kept with a job; `None` if there is none: only the command itself
+    /// goes on with it.
+    ///
+    /// # Errors
+    /// If it is damaged, or that of another job.
+    pub(super) fn read(folder: &Path, stored: &StoredPlan) -> Result<Option<Self>> {
+        let Some(sum) = stored.command else { return Ok(None) };
         let path = folder.join(COMMAND);
-        let Some(sum) = stored.command else {
-            return Err(Error::usage("the job in this folder is that of a command which goes on itself")
-                .in_file(folder)
-                .cure(wording!["repeat that command with ", Setting::Resume.on(), " and ", Setting::Job]));
-        };
         let text = std::fs::read_to_string(&path).map_err(|e| Error::from(e).in_file(&path))?;
         let command = if u64::from(checksum(text.as_bytes())) == sum { serde_json::from_str(&text).ok() } else { None };
         command.map(Some).ok_or_else(|| {
             Error::format("the command of the job is damaged, or that of another one").in_file(path).cure(wording![
                 "plan the job again: ",
-                Command::JobClean,
+                Command::JobClean.on(folder.display().to_string()),
                 " removes this one"
             ])
         })
     }
 
-    /// Returns the text that is kept.
+    /// Returns an error if this is not the same as what is asked for now.
+    pub(super) fn require_same(&self, asked: &JobCommand, folder: &Path) -> Result<()> {
+        let (own, asked) = (self.options()?, asked.options()?);
+        if own == asked { Ok(()) } else { Err(request::other_command(&own, &asked, folder)) }
+    }
+
+    fn options(&self) -> Result<Options> {
+        let JobCommand { request, targets, tiles, .. } = self;
+        let mut options = super::options_of(request, tiles)?;
+        request::add_targets(&mut options, targets, tiles);
+        Ok(options)
+    }
+
+    /// Returns the text that is kept with a job that was planned for these options.
     ///
     /// # Errors
-    /// If something of it cannot be stored: lines in memory, a name that is not Unicode, a number
-    /// that is not finite.
-    pub(super) fn to_text(&self) -> Result<String> {
-        let read = self.targets.read_with(&self.request.surface);
-        let mut paths = read.iter().chain(&self.targets.files).chain([&self.folder]);
-        if let Some(path) = paths.find(|path| path.to_str().is_none()) {
+    /// If something of it cannot be stored: what is in memory, a name that is not Unicode, a number
+    /// that is not finite, a verb that is not one of this crate.
+    pub(super) fn to_text(&self, planned: &Options) -> Result<String> {
+        let mut files = self.request.files();
+        self.targets.clone().each_file(&mut |file| files.push(file.clone()));
+        if let Some(path) = files.iter().find(|path| path.to_str().is_none()) {
             return Err(Error::unsupported("the name is not valid Unicode, which a job needs").in_file(path));
         }
-        let refused = |e: serde_json::Error| {
-            Error::unsupported(format!("the request cannot be kept with a job: {e}"))
+        let verb = self.request.verb.as_ref();
+        if verbs::to_json(verb).is_none() {
+            return Err(Error::unsupported(format!(
+                "a job cannot keep the verb `{}`, which is not of this crate",
+                verb.name()
+            ))
+            .cure("write the result in one call"));
+        }
+        let refused = |what: Wording| {
+            Error::unsupported(wording!["the request cannot be kept with a job: ", what])
                 .cure("write what is in memory to a file first, and use numbers that are finite")
         };
-        let text = serde_json::to_string(self).map_err(refused)?;
-        // Numbers that are not finite have no form of their own.
-        serde_json::from_str::<JobCommand>(&text).map_err(refused)?;
+        let text = serde_json::to_string(self).map_err(|e| refused(e.to_string().into()))?;
+        // A number that is not finite would come back as if it was not given.
+        let kept: JobCommand = serde_json::from_str(&text).map_err(|e| refused(e.to_string().into()))?;
+        let kept = super::options_of(&kept.request, &kept.tiles)?;
+        if kept != *planned {
+            return Err(refused(wording![request::differing(planned, &kept), " would be lost"]));
+        }
         Ok(text)
     }
+}
+
+/// Returns a request with whole names.
+///
+/// # Errors
+/// If a name is empty, or the working folder is not known.
+pub(super) fn whole(request: &WriteRequest) -> Result<WriteRequest> {
+    let WriteRequest { mut surface, mut verb } = request.clone();
+    whole_names(|visit| surface.each_file(visit))?;
+    if let Some(file) = verb.also_reads() {
+        let mut file = file.clone();
+        whole_names(|visit| visit(&mut file))?;
+        let reading = || verb.reading(file.clone()).filter(|other| other.also_reads() == Some(&file));
+        verb = reading()
+            .ok_or_else(|| Error::unsupported("the verb cannot read this file under its whole name").in_file(&file))?;
+    }
+    Ok(WriteRequest { surface, verb: Arc::clone(&verb) })
+}
+
+/// Makes names whole that a function visits.
+fn whole_names(each_file: impl FnOnce(&mut dyn FnMut(&mut PathBuf))) -> Result<()> {
+    let mut made = Ok(());
+    each_file(&mut |file| match std::path::absolute(&*file) {
+        Ok(whole) => *file = whole,
+        Err(error) if made.is_ok() => made = Err(Error::from(error).in_file(&*file)),
+        Err(_) => {}
+    });
+    made
 }
 
 /// A request as it is stored.
@@ -86,8 +149,9 @@ struct StoredRequest {
 impl Serialize for WriteRequest {
     fn serialize<S: Serializer>(&self, to: S) -> std::result::Result<S::Ok, S::Error> {
         let WriteRequest { surface, verb } = self;
-        let verb = verb.as_ref();
-        StoredRequest { surface: surface.clone(), verb: verb.name().to_owned(), options: verb.to_json() }.serialize(to)
+        let (verb, options) =
+            verbs::to_json(verb.as_ref()).ok_or_else(|| S::Error::custom("the verb is not of this crate"))?;
+        StoredRequest { surface: surface.clone(), verb: verb.to_owned(), options }.serialize(to)
     }
 }
 

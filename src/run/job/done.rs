@@ -74,14 +74,17 @@ impl Job {
 
     /// Returns which tasks are done: the file of the task is there, and complete, and so are those
     /// that it was made from, which have not been made anew since.
-    pub fn done(&self) -> Vec<bool> {
-        self.sums().iter().map(Option::is_some).collect()
+    ///
+    /// # Errors
+    /// If the run is canceled.
+    pub fn done(&self, context: &Context) -> Result<Vec<bool>> {
+        Ok(self.sums(context)?.iter().map(Option::is_some).collect())
     }
 
     /// Returns the checksum of what an output would be made from now; `None` if a task is not done.
-    pub(super) fn sources(&self) -> Option<u32> {
-        let sums: Option<Vec<u32>> = self.sums().into_iter().collect();
-        sums.map(|sums| sum_of((0..).zip(sums)))
+    pub(super) fn sources(&self, context: &Context) -> Result<Option<u32>> {
+        let sums: Option<Vec<u32>> = self.sums(context)?.into_iter().collect();
+        Ok(sums.map(|sums| sum_of((0..).zip(sums))))
     }
 
     /// Opens the files of all tasks, for an output. Returns also the checksum of what it is made
@@ -103,14 +106,15 @@ impl Job {
     }
 
     /// Returns the checksum of the file of each task that is done.
-    fn sums(&self) -> Vec<Option<u32>> {
+    fn sums(&self, context: &Context) -> Result<Vec<Option<u32>>> {
         let mut sums = Vec::with_capacity(self.task_count());
         for task in 0..self.task_count() {
+            context.check()?;
             let file = TaskFile::open(&self.task_file(task)).ok().flatten();
             let is_of_these = |file: &TaskFile| self.sources_of(task, &sums) == Some(file.sources);
             sums.push(file.filter(is_of_these).map(|file| file.sum));
         }
-        sums
+        Ok(sums)
     }
 
     /// Returns the checksum of what a task would be made from now; `None` if something is missing.
@@ -146,11 +150,11 @@ impl Job {
     /// # Errors
     /// Names a task that is not done, or a file of a task that is damaged or another's, or says
     /// that there is no task with this number.
-    pub fn require_done(&self, last: usize) -> Result<()> {
+    pub fn require_done(&self, last: usize, context: &Context) -> Result<()> {
         if last > self.task_count() {
             return Err(self.no_task(last));
         }
-        match self.done().iter().position(|is_done| !is_done) {
+        match self.done(context)?.iter().position(|is_done| !is_done) {
             Some(task) => Err(self.why_not_done(task)),
             None => Ok(()),
         }
@@ -179,14 +183,14 @@ impl Job {
     /// Returns the number of tasks whose files are whole. The job must be [locked](Self::lock).
     ///
     /// # Errors
-    /// If a file cannot be removed.
-    pub fn clear_up(&self, _lock: &JobLock) -> Result<usize> {
+    /// If a file cannot be removed, or the run is canceled.
+    pub fn clear_up(&self, _lock: &JobLock, context: &Context) -> Result<usize> {
         let tasks = tasks_in(&self.folder);
         // An interrupted removal may have taken it.
         std::fs::create_dir_all(&tasks).map_err(|e| Error::from(e).in_file(&tasks))?;
         remove_unfinished(&self.folder)?;
         self.try_again()?;
-        self.remove_damaged()
+        self.remove_damaged(context)
     }
 
     /// Removes the files of tasks that are damaged, by their checksums. Returns the number of tasks
@@ -194,10 +198,11 @@ impl Job {
     /// done.
     ///
     /// # Errors
-    /// If a file cannot be read or removed.
-    pub fn remove_damaged(&self) -> Result<usize> {
+    /// If a file cannot be read or removed, or the run is canceled.
+    pub fn remove_damaged(&self, context: &Context) -> Result<usize> {
         let mut whole = 0;
         for task in 0..self.task_count() {
+            context.check()?;
             whole += usize::from(self.task_file(task).remove_if_damaged()? == Found::Whole);
         }
         Ok(whole)
@@ -212,7 +217,7 @@ impl Job {
         if task >= self.task_count() {
             return Err(self.no_task(task));
         }
-        let _lock = self.lock_shared()?;
+        let _lock = self.lock_shared(context)?;
         let is_there = |task: &usize| matches!(TaskFile::open(&self.task_file(*task)), Ok(Some(_)));
         let needed = self.needs(task);
         let done = match needed.iter().find(|needed| !is_there(needed)) {

@@ -11,6 +11,7 @@ use super::task_file::{is_unfinished, looks_like_task, unfinished_in};
 use crate::error::{Command, Error, Result, Setting, wording};
 use crate::io::remove_abandoned;
 use crate::run::checksum::checksum;
+use crate::run::context::Context;
 
 /// The file of the plan in the folder of a job.
 const PLAN: &str = "plan.json";
@@ -64,6 +65,14 @@ impl StoredPlan {
                 by_hand
             ])
         })
+    }
+
+    /// Reads the plan that has this checksum.
+    ///
+    /// # Errors
+    /// If it is not in the folder any more.
+    pub(super) fn read_of(sum: u32, folder: &Path) -> Result<Self> {
+        Self::read(folder)?.filter(|stored| stored.sum == sum).ok_or_else(|| replaced(folder))
     }
 
     fn parse(text: &[u8]) -> Option<Self> {
@@ -202,16 +211,40 @@ fn remove_where(folder: &Path, is_meant: impl Fn(&Path) -> bool) -> Result<()> {
     Ok(())
 }
 
+#[cold]
+pub(super) fn no_job(folder: &Path) -> Error {
+    Error::usage("there is no job in this folder").in_file(folder)
+}
+
+/// Returns the error for a folder that had another job before.
+#[cold]
+pub(super) fn replaced(folder: &Path) -> Error {
+    Error::other_job("the job was removed or replaced by another process").in_file(folder).cure(wording![
+        "begin again, or name another folder (",
+        Setting::Job,
+        ")"
+    ])
+}
+
 /// Removes the files of a job and its folder, if nothing else is in it.
 ///
 /// # Errors
-/// If the folder has no job, or the job cannot be removed.
-pub fn remove_job(folder: &Path) -> Result<()> {
-    let no_job = || Error::usage("there is no job in this folder").in_file(folder);
-    StoredPlan::read(folder)?.ok_or_else(no_job)?;
-    let lock = JobLock::take(folder, File::try_lock)?;
-    let stored = StoredPlan::read(folder)?.ok_or_else(no_job)?;
+/// If the folder has no job, or the job cannot be removed, or the run is canceled.
+pub fn remove_job(folder: &Path, context: &Context) -> Result<()> {
+    StoredPlan::read(folder)?.ok_or_else(|| no_job(folder))?;
+    let lock = JobLock::take(folder, File::try_lock, context)?;
+    let stored = StoredPlan::read(folder)?.ok_or_else(|| no_job(folder))?;
     remove_files(folder, &stored, &lock)
+}
+
+/// Like [`remove_job`], for the job whose plan has this checksum.
+///
+/// # Errors
+/// Also if the folder has another job.
+pub(super) fn remove_job_of(sum: u32, folder: &Path, context: &Context) -> Result<()> {
+    StoredPlan::read_of(sum, folder)?;
+    let lock = JobLock::take(folder, File::try_lock, context)?;
+    remove_files(folder, &StoredPlan::read_of(sum, folder)?, &lock)
 }
 
 /// Removes the files of a job, by their names, and its folder, if nothing else is in it.
@@ -224,8 +257,10 @@ pub(super) fn remove_files(folder: &Path, stored: &StoredPlan, _lock: &JobLock) 
     }
     // Of an output in the folder itself.
     remove_abandoned(&folder.join(PLAN), &mark(stored.sum))?;
-    for path in [COMMAND, WRITTEN].map(|name| folder.join(name)) {
-        if is_note(&path) {
+    for (name, is_own) in [(COMMAND, stored.command.is_some()), (WRITTEN, false)] {
+        let path = folder.join(name);
+        // The plan says that there was a command, which may be damaged.
+        if is_own || is_note(&path) {
             remove(&path)?;
         }
     }

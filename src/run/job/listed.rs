@@ -3,12 +3,14 @@
 use std::path::{Path, PathBuf};
 
 use super::{FileState, Job};
+use crate::error::Result;
+use crate::run::context::Context;
 
 /// A task of a job.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct JobTask {
-    /// Its number, by which [`Job::run_task`] does it. The last one writes the output.
+    /// Its number, by which [`run_task`](crate::run::run_task) does it. The last one writes the output.
     pub number: usize,
     /// What it does, such as "tile 17".
     pub name: String,
@@ -29,8 +31,11 @@ impl Job {
     ///
     /// # Complexity
     /// Reads the ends of the files of all tasks; and the output, if it is there.
-    pub fn tasks(&self, output: &Path) -> Vec<JobTask> {
-        let (done, stages) = (self.done(), self.stages());
+    ///
+    /// # Errors
+    /// If the run is canceled.
+    pub fn tasks(&self, output: &Path, context: &Context) -> Result<Vec<JobTask>> {
+        let (done, stages) = (self.done(context)?, self.stages());
         let last = JobTask {
             number: self.task_count(),
             name: "output".to_owned(),
@@ -38,17 +43,20 @@ impl Job {
             needs: self.last_needs(),
             input: None,
             has_read: None,
-            is_done: self.has_written(output),
+            is_done: self.has_written(output, context)?,
         };
-        let of_task = |(number, stage)| JobTask {
-            number,
-            name: self.task_name(number),
-            stage,
-            needs: self.needs(number),
-            input: self.input(number).map(Path::to_path_buf),
-            has_read: self.state_of_input(number),
-            is_done: done[number],
+        let of_task = |(number, stage)| {
+            context.check()?;
+            Ok(JobTask {
+                number,
+                name: self.task_name(number),
+                stage,
+                needs: self.needs(number),
+                input: self.input(number).map(Path::to_path_buf),
+                has_read: self.state_of_input(number),
+                is_done: done[number],
+            })
         };
-        stages.into_iter().enumerate().map(of_task).chain([last]).collect()
+        stages.into_iter().enumerate().map(of_task).chain([Ok(last)]).collect()
     }
 }

@@ -5,6 +5,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use crate::error::{Error, Result, Setting, wording};
+use crate::run::context::Context;
 
 /// The file that is locked while a process works on the job; it is empty.
 pub(super) const LOCK: &str = "lock";
@@ -18,11 +19,16 @@ pub struct JobLock {
 impl JobLock {
     /// Waits for the lock of a folder, for some seconds. What was read of the folder before may
     /// have changed meanwhile.
-    pub(super) fn take(folder: &Path, lock: impl Fn(&File) -> std::result::Result<(), TryLockError>) -> Result<Self> {
+    pub(super) fn take(
+        folder: &Path,
+        lock: impl Fn(&File) -> std::result::Result<(), TryLockError>,
+        context: &Context,
+    ) -> Result<Self> {
         let path = folder.join(LOCK);
         let named = |e: std::io::Error| Error::from(e).in_file(&path);
         let start = Instant::now();
         loop {
+            context.check()?;
             // Nothing is written to it: a folder that is no job yet may have such a file.
             let file = File::options().write(true).create(true).truncate(false).open(&path).map_err(named)?;
             let is_taken = match lock(&file) {

@@ -19,6 +19,7 @@ mod division;
 mod done;
 mod folder;
 mod holes;
+mod kept;
 mod lines;
 mod listed;
 mod lock;
@@ -50,6 +51,7 @@ pub use self::command::JobCommand;
 pub use self::division::Division;
 pub use self::folder::remove_job;
 use self::folder::{COMMAND, StoredPlan, tasks_in};
+pub use self::kept::StoredJob;
 use self::lines::Known;
 pub use self::listed::JobTask;
 pub use self::lock::JobLock;
@@ -68,7 +70,7 @@ use super::surface::{Source, SurfaceRequest};
 use super::systems::SystemOptions;
 use super::tin::TinRequest;
 use super::verbs::{Keeps, Verb, WriteRequest};
-use crate::error::{Command, Error, Result, Setting, wording};
+use crate::error::{Command, Error, Kind, Result, Setting, wording};
 use crate::terrain::Method;
 use crate::terrain::tiles::{Spread, Step, Work};
 
@@ -90,6 +92,9 @@ pub struct TileOptions {
     pub bad: BadFiles,
     /// How far files are read to plan.
     pub look: Look,
+    /// The memory of one task, in bytes, where the tasks run; by default what there is to use here,
+    /// through the number of threads.
+    pub task_memory: Option<u64>,
 }
 
 /// How far files are read to plan.
@@ -187,6 +192,11 @@ impl Job {
         WriteRequest { surface, verb: Arc::clone(&self.verb) }
     }
 
+    /// Returns what is kept with the job for others, if that is.
+    pub(super) fn command(&self) -> Result<Option<JobCommand>> {
+        JobCommand::read(&self.folder, &StoredPlan::read_of(self.sum, &self.folder)?)
+    }
+
     /// Returns the folder of the job.
     pub fn folder(&self) -> &Path {
         &self.folder
@@ -198,12 +208,12 @@ impl Job {
     /// # Errors
     /// If the folder has a job already, or files of something else that have the same names, or
     /// cannot be written; or if another process works on it.
-    pub fn create(&mut self, command: Option<&JobCommand>) -> Result<JobLock> {
-        let command = command.map(JobCommand::to_text).transpose()?;
+    pub fn create(&mut self, command: Option<&JobCommand>, context: &Context) -> Result<JobLock> {
+        let command = command.map(|command| command.to_text(&self.plan.request)).transpose()?;
         folder::require_no_job(&self.folder)?;
         let named = |e: std::io::Error| Error::from(e).in_file(&self.folder);
         std::fs::create_dir_all(&self.folder).map_err(named)?;
-        let lock = JobLock::take(&self.folder, File::try_lock)?;
+        let lock = JobLock::take(&self.folder, File::try_lock, context)?;
         // Another process may have created one meanwhile.
         folder::require_no_job(&self.folder)?;
         std::fs::create_dir_all(tasks_in(&self.folder)).map_err(named)?;
@@ -218,37 +228,6 @@ impl Job {
         plan["id"] = json!(RandomState::new().hash_one(std::process::id()));
         self.sum = folder::write_plan(&self.folder, &plan.to_string())?;
         Ok(lock)
-    }
-
-    /// Opens the job of a request in its folder, to do what is left; `None` if there is none.
-    ///
-    /// A file that has changed since the job was planned is accepted if no task has read it, and if
-    /// its header states as many points and the same extent as before: it was damaged, and was
-    /// replaced. A file that a task has read may be missing.
-    ///
-    /// # Errors
-    /// If the job is that of another request, or damaged, or a file has changed otherwise.
-    pub fn open(wanted: &WriteRequest, folder: &Path, options: &TileOptions) -> Result<Option<Self>> {
-        let Some(job) = Self::stored(wanted, folder, options)? else { return Ok(None) };
-        (0..job.task_count()).try_for_each(|task| job.check_input(task))?;
-        job.plan.require_others_unchanged()?;
-        Ok(Some(job))
-    }
-
-    /// Opens the job of a request to do one task; `None` if there is no job. The last task writes
-    /// the output. Unlike with [`open`](Self::open), the only file of points that is looked at is
-    /// the one that the task reads.
-    ///
-    /// # Errors
-    /// As [`open`](Self::open); also if the job has no task with this number.
-    pub fn open_for(wanted: &WriteRequest, folder: &Path, options: &TileOptions, task: usize) -> Result<Option<Self>> {
-        let Some(job) = Self::stored(wanted, folder, options)? else { return Ok(None) };
-        if task > job.task_count() {
-            return Err(job.no_task(task));
-        }
-        job.check_input(task)?;
-        job.plan.require_others_unchanged()?;
-        Ok(Some(job))
     }
 
     /// Checks that the file of points that a task reads, if any, is as the task has read it or as
@@ -269,14 +248,23 @@ impl Job {
         }
     }
 
-    /// Opens the job of a request to see what is done; `None` if there is no job. Unlike with
-    /// [`open`](Self::open), no input is looked at.
+    /// Opens the job of a request in its folder; `None` if there is none. No input is looked at. The
+    /// names in the request may be relative, although those that the job was planned with are whole.
     ///
     /// # Errors
     /// If the job is that of another request, or damaged.
     pub fn stored(wanted: &WriteRequest, folder: &Path, options: &TileOptions) -> Result<Option<Self>> {
-        let (request, systems) = tiled(wanted)?;
         let Some(stored) = StoredPlan::read(folder)? else { return Ok(None) };
+        match Self::of_stored(&stored, wanted, folder, options) {
+            Err(error) if error.kind() == Kind::OtherJob => {
+                Self::of_stored(&stored, &command::whole(wanted)?, folder, options).map_err(|_| error).map(Some)
+            }
+            opened => opened.map(Some),
+        }
+    }
+
+    fn of_stored(stored: &StoredPlan, wanted: &WriteRequest, folder: &Path, options: &TileOptions) -> Result<Self> {
+        let (request, systems) = tiled(wanted)?;
         let plan = Plan::from_json(&stored.plan).ok_or_else(|| {
             Error::format("the job was planned by another version of this program").in_file(folder).cure(wording![
                 "remove it (",
@@ -286,17 +274,40 @@ impl Job {
                 ")"
             ])
         })?;
-        let asked = request::options_of(request, systems, wanted.verb.as_ref(), options);
+        let asked = options_of(wanted, options)?;
         if plan.request != asked || plan.files.iter().any(|file| file.input >= request.points.len()) {
-            let differing = request::differing(&plan.request, &asked);
-            return Err(Error::usage(wording![
-                "the job in this folder is that of another command; what differs: ",
-                differing
-            ])
-            .in_file(folder)
-            .cure(wording!["repeat that command, or name another folder (", Setting::Job, ")"]));
+            return Err(request::other_command(&plan.request, &asked, folder));
         }
-        Ok(Some(Job { sum: stored.sum, ..Self::of_plan(wanted, (request, systems), folder, options, plan) }))
+        Ok(Job { sum: stored.sum, ..Self::of_plan(wanted, (request, systems), folder, options, plan) })
+    }
+
+    /// Checks all inputs, before what is left is done.
+    ///
+    /// A file that has changed since the job was planned is accepted if no task has read it, and if
+    /// its header states as many points and the same extent as before: it was damaged, and was
+    /// replaced. A file that a task has read may be missing.
+    ///
+    /// # Errors
+    /// If a file has changed otherwise, or the run is canceled.
+    pub(super) fn check_inputs(&self, context: &Context) -> Result<()> {
+        for task in 0..self.task_count() {
+            context.check()?;
+            self.check_input(task)?;
+        }
+        self.plan.require_others_unchanged()
+    }
+
+    /// Like [`check_inputs`](Self::check_inputs), for a task: of the files of points, only the one
+    /// that it reads is looked at.
+    ///
+    /// # Errors
+    /// Also if there is no task with this number; the last one writes the output.
+    pub(super) fn check_input_of(&self, task: usize) -> Result<()> {
+        if task > self.task_count() {
+            return Err(self.no_task(task));
+        }
+        self.check_input(task)?;
+        self.plan.require_others_unchanged()
     }
 
     /// Returns the file of points that a task reads, if it reads one.
@@ -470,25 +481,26 @@ impl Job {
     /// waited for, for some seconds.
     ///
     /// # Errors
-    /// If another process works on it, or has removed it, or put another job in its place.
-    pub fn lock(&self) -> Result<JobLock> {
-        self.lock_with(File::try_lock)
+    /// If another process works on it, or has removed it, or put another job in its place; or if the
+    /// run is canceled.
+    pub fn lock(&self, context: &Context) -> Result<JobLock> {
+        self.lock_with(File::try_lock, context)
     }
 
     /// Takes part in the job, together with other processes that do single tasks.
-    fn lock_shared(&self) -> Result<JobLock> {
-        self.lock_with(File::try_lock_shared)
+    fn lock_shared(&self, context: &Context) -> Result<JobLock> {
+        self.lock_with(File::try_lock_shared, context)
     }
 
-    fn lock_with(&self, lock: fn(&File) -> std::result::Result<(), TryLockError>) -> Result<JobLock> {
-        let taken = JobLock::take(&self.folder, lock)?;
+    fn lock_with(
+        &self,
+        lock: fn(&File) -> std::result::Result<(), TryLockError>,
+        context: &Context,
+    ) -> Result<JobLock> {
+        let taken = JobLock::take(&self.folder, lock, context);
         // What was read of the job before may be that of another one, whose end was waited for.
-        match StoredPlan::read(&self.folder)? {
-            Some(stored) if stored.sum == self.sum => Ok(taken),
-            _ => Err(Error::usage("the job was removed or replaced by another process")
-                .in_file(&self.folder)
-                .cure(wording!["begin again, or name another folder (", Setting::Job, ")"])),
-        }
+        StoredPlan::read_of(self.sum, &self.folder)?;
+        taken
     }
 
     /// Removes the folder of the job, which must be [locked](Self::lock).
@@ -523,6 +535,12 @@ pub fn needs_tiles(wanted: &WriteRequest, memory: Option<u64>, context: &Context
     let count: u64 =
         stated.map(|(input, (count, _))| count.unwrap_or_else(|| planned_file::points_of_text(input.path()))).sum();
     Ok(super::memory::need_of(count) > memory)
+}
+
+/// Returns what a request asks for, by which its job is known.
+fn options_of(wanted: &WriteRequest, tiles: &TileOptions) -> Result<request::Options> {
+    let (request, systems) = tiled(wanted)?;
+    Ok(request::options_of(request, systems, wanted.verb.as_ref(), tiles))
 }
 
 /// Returns the request of the points of a surface.

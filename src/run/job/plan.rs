@@ -161,8 +161,10 @@ impl Plan {
         if let Some(bounds) = request.bounds.map(|bounds| common(&bounds, &drawn_extent)).filter(|b| !b.is_empty()) {
             drawn_extent = bounds;
         }
-        let workers = rayon::current_num_threads() as u64;
-        let task_memory = options.memory.unwrap_or_else(memory::half_of_free) / workers;
+        let task_memory = options.task_memory.unwrap_or_else(|| {
+            let workers = rayon::current_num_threads() as u64;
+            options.memory.unwrap_or_else(memory::half_of_free) / workers
+        });
         let most = (task_memory / BYTES_A_POINT).clamp(LEAST_POINTS, MOST_POINTS);
         let are_small = files.iter().all(|file| file.count <= most);
         let (layout, divides) = match options.division {

@@ -2,13 +2,16 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Debug;
+use std::path::Path;
 
 use super::TileOptions;
-use crate::error::{Setting, Wording};
+use crate::error::{Error, Setting, Wording, wording};
 use crate::io::points;
 use crate::run::checksum::checksum;
 use crate::run::line_request::{FlatOptions, LineRequest, WallOptions};
+use crate::run::serialized::in_plan;
 use crate::run::systems::SystemOptions;
+use crate::run::targets::Targets;
 use crate::run::tin::TinRequest;
 use crate::run::verbs::Verb;
 
@@ -17,6 +20,12 @@ const VERB: &str = "the verb";
 
 /// The name of what is read.
 const INPUTS: &str = "the inputs";
+
+/// The name of what is written.
+const OUTPUT: &str = "the output";
+
+/// The name of the table of replaced points.
+const REPLACED: &str = "the table of replaced points";
 
 /// Between the names of settings that have one value.
 const OR: &str = " or ";
@@ -56,7 +65,7 @@ pub(super) fn options_of(
     options.add(&[Setting::Class], classes);
     options.add(&[Setting::Breaklines], breaklines);
     options.add(&[Setting::Boundary], boundary);
-    options.add(&[Setting::Bounds], bounds);
+    options.add(&[Setting::Bounds], &bounds.map(in_plan::corners));
     options.add(&[Setting::MaxEdge], max_edge);
     options.add(&[Setting::MaxEdgeInside], max_edge_inside);
     options.add(&[Setting::FlatPoints], replaced);
@@ -73,6 +82,29 @@ pub(super) fn options_of(
     options.add(&[Setting::Tiles], &tiles.division);
     options.add(&[Setting::Memory], &tiles.memory);
     options.0
+}
+
+/// Adds what a command says of its outputs, and of files that cannot be read.
+pub(super) fn add_targets(options: &mut Options, targets: &Targets, tiles: &TileOptions) {
+    let Targets { files, existing, crossings, replaced, also_read: _ } = targets;
+    let mut listed = Listed(std::mem::take(options));
+    listed.put(OUTPUT, files);
+    listed.add(&[Setting::Overwrite], existing);
+    listed.add(&[Setting::CrossingReport], crossings);
+    listed.put(REPLACED, replaced);
+    listed.add(&[Setting::SkipBad], &tiles.bad);
+    *options = listed.0;
+}
+
+/// Returns the error for a folder whose job is that of another command.
+#[cold]
+pub(super) fn other_command(planned: &Options, now: &Options, folder: &Path) -> Error {
+    let what = wording!["the job in this folder is that of another command; what differs: ", differing(planned, now)];
+    Error::other_job(what).in_file(folder).cure(wording![
+        "repeat that command, or name another folder (",
+        Setting::Job,
+        ")"
+    ])
 }
 
 /// Returns what differs, for a sentence.
@@ -98,7 +130,8 @@ impl Listed {
     }
 
     fn put(&mut self, name: &str, value: &dyn Debug) {
-        self.0.insert(name.to_owned(), format!("{:08x}", checksum(format!("{value:?}").as_bytes())));
+        let before = self.0.insert(name.to_owned(), format!("{:08x}", checksum(format!("{value:?}").as_bytes())));
+        debug_assert!(before.is_none(), "{name} is listed twice");
     }
 
     fn add_lines(&mut self, lines: &LineRequest) {

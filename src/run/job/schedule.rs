@@ -43,7 +43,7 @@ impl Job {
     /// # Errors
     /// The first error of a task, or that the run is canceled.
     pub fn run(&self, context: &Context) -> Result<()> {
-        let board = Mutex::new(self.board());
+        let board = Mutex::new(self.board(context)?);
         let changed = Condvar::new();
         let lock = || board.lock().unwrap_or_else(PoisonError::into_inner);
         let progress = context.start(Stage::RunningTasks, Size::Items(lock().left as u64))?;
@@ -92,18 +92,18 @@ impl Job {
         }
     }
 
-    fn board(&self) -> Board {
+    fn board(&self, context: &Context) -> Result<Board> {
         let count = self.task_count();
         let mut after = vec![Vec::new(); count];
         let mut states = vec![State::Done; count];
-        let is_done = self.done();
+        let is_done = self.done(context)?;
         for task in (0..count).filter(|&task| !is_done[task]) {
             let needed: Vec<usize> = self.needs(task).into_iter().filter(|&before| !is_done[before]).collect();
             needed.iter().for_each(|&before| after[before].push(task));
             states[task] = State::Waits(needed.len());
         }
         let left = is_done.iter().filter(|is_done| !**is_done).count();
-        Board { states, after, left, first: 0, failed: None }
+        Ok(Board { states, after, left, first: 0, failed: None })
     }
 }
 

@@ -16,9 +16,17 @@ impl Job {
     }
 
     /// Returns true if a file is skipped: the result has a hole.
-    pub fn has_holes(&self) -> bool {
-        !self.plan.skipped.is_empty()
-            || (0..self.task_count()).any(|task| self.file_of(task).is_some() && self.skips(task))
+    ///
+    /// # Errors
+    /// If the run is canceled.
+    pub fn has_holes(&self, context: &Context) -> Result<bool> {
+        for task in (0..self.task_count()).filter(|&task| self.file_of(task).is_some()) {
+            context.check()?;
+            if self.skips(task) {
+                return Ok(true);
+            }
+        }
+        Ok(!self.plan.skipped.is_empty())
     }
 
     /// Returns a file that was skipped and can be read now, but does not fit the plan: the job has

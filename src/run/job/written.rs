@@ -1,5 +1,7 @@
 //! The output of a job as it was written, so that it is not written twice.
 
+use std::fs::File;
+use std::io::Read;
 use std::path::Path;
 
 use serde_json::{Value, json};
@@ -11,6 +13,7 @@ use super::{Job, JobReport};
 use crate::error::{Error, Result};
 use crate::io::{OutputSet, remove_abandoned};
 use crate::run::checksum::sum_of_file;
+use crate::run::context::Context;
 use crate::run::verbs::Keeps;
 
 impl Job {
@@ -38,21 +41,26 @@ impl Job {
     ///
     /// # Complexity
     /// Linear in the bytes of the output, which is read.
-    pub fn has_written(&self, output: &Path) -> bool {
+    ///
+    /// # Errors
+    /// If the run is canceled.
+    pub fn has_written(&self, output: &Path, context: &Context) -> Result<bool> {
         let record = std::fs::read(self.folder.join(WRITTEN)).ok().and_then(|text| serde_json::from_slice(&text).ok());
         let record: Value = record.unwrap_or_default();
         let files = record["files"].as_array().map(Vec::as_slice).unwrap_or_default();
-        let is_of_these = record["job"] == self.sum && self.sources().is_some_and(|sum| record["sources"] == sum);
-        let Ok(output) = std::path::absolute(output) else { return false };
+        let is_of_these =
+            record["job"] == self.sum && self.sources(context)?.is_some_and(|sum| record["sources"] == sum);
+        let Ok(output) = std::path::absolute(output) else { return Ok(false) };
         let is_there = |file: &Value| {
             let path = Path::new(file[0].as_str().unwrap_or_default());
-            let state = std::fs::File::open(path).and_then(|mut file| sum_of_file(&mut file));
+            let state = File::open(path).and_then(|file| sum_of_file(&mut Canceled { file, context }));
             state.is_ok_and(|(length, sum)| file[1] == length && file[2] == sum)
         };
-        is_of_these
+        let is_written = is_of_these
             && files.iter().any(|file| file[0] == output.to_string_lossy().as_ref())
             && files.iter().all(is_there)
-            && (!matches!(self.verb.keeps(), Keeps::Triangles) || has_all_parts(&output))
+            && (!matches!(self.verb.keeps(), Keeps::Triangles) || has_all_parts(&output));
+        context.check().map(|()| is_written)
     }
 
     /// Returns what the names of temporary files of outputs contain, for
@@ -68,5 +76,18 @@ impl Job {
     /// If one cannot be removed.
     pub fn remove_abandoned(&self, output: &Path, _lock: &JobLock) -> Result<()> {
         remove_abandoned(output, &self.mark()).map_err(|e: Error| e.in_file(output))
+    }
+}
+
+/// A file that cannot be read on once the run is canceled.
+struct Canceled<'a> {
+    file: File,
+    context: &'a Context<'a>,
+}
+
+impl Read for Canceled<'_> {
+    fn read(&mut self, bytes: &mut [u8]) -> std::io::Result<usize> {
+        self.context.check().map_err(std::io::Error::other)?;
+        self.file.read(bytes)
     }
 }

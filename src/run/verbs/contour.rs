@@ -2,8 +2,6 @@
 
 use std::fmt::Debug;
 
-use serde_json::{Value, json};
-
 use super::{Keeps, Summary, Tiles, Verb};
 use crate::error::{Result, Setting};
 use crate::io::Destination;
@@ -37,10 +35,6 @@ impl Verb for ContourOptions {
 
     fn surface(&self, request: &SurfaceRequest, context: &Context) -> Result<SurfaceProduct> {
         surface::surface(request, context)
-    }
-
-    fn to_json(&self) -> Value {
-        json!(self)
     }
 
     fn write(&self, surface: &SurfaceProduct, outputs: &Outputs, context: &Context) -> Result<Summary> {

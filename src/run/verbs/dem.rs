@@ -2,8 +2,7 @@
 
 use std::fmt::Debug;
 use std::path::PathBuf;
-
-use serde_json::{Value, json};
+use std::sync::Arc;
 
 use super::raster::{announce, list_frame};
 use super::{Keeps, Summary, Tiles, Verb};
@@ -12,6 +11,7 @@ use crate::io::formats::Product;
 use crate::io::geotiff::{COPIES_ON_DISK, RasterSummary};
 use crate::run::cells::{self, CellProduct, DemOptions};
 use crate::run::context::Context;
+use crate::run::frame::FrameOptions;
 use crate::run::surface::SurfaceProduct;
 use crate::run::targets::Outputs;
 use crate::terrain::Method;
@@ -39,8 +39,9 @@ impl Verb for DemOptions {
         self.frame.align_to.as_ref()
     }
 
-    fn to_json(&self) -> Value {
-        json!(self)
+    fn reading(&self, file: PathBuf) -> Option<Arc<dyn Verb>> {
+        let frame = FrameOptions { align_to: Some(file), ..self.frame.clone() };
+        Some(Arc::new(DemOptions { frame, ..self.clone() }))
     }
 
     fn write(&self, surface: &SurfaceProduct, outputs: &Outputs, context: &Context) -> Result<Summary> {

@@ -2,8 +2,7 @@
 
 use std::fmt::Debug;
 use std::path::PathBuf;
-
-use serde_json::{Value, json};
+use std::sync::Arc;
 
 use super::raster::{announce, list_frame};
 use super::{Keeps, Summary, Tiles, Verb};
@@ -12,6 +11,7 @@ use crate::io::formats::{Content, FORMATS, Format, Product};
 use crate::io::geotiff::COPIES_ON_DISK;
 use crate::run::cells::{self, CellProduct, HillshadeOptions, LightOptions};
 use crate::run::context::{Context, Journal};
+use crate::run::frame::FrameOptions;
 use crate::run::surface::{self, SurfaceProduct, SurfaceRequest};
 use crate::run::targets::{Outputs, Target};
 use crate::terrain::Method;
@@ -42,12 +42,13 @@ impl Verb for HillshadeOptions {
         self.frame.align_to.as_ref()
     }
 
-    fn surface(&self, request: &SurfaceRequest, context: &Context) -> Result<SurfaceProduct> {
-        surface::surface(request, context)
+    fn reading(&self, file: PathBuf) -> Option<Arc<dyn Verb>> {
+        let frame = FrameOptions { align_to: Some(file), ..self.frame.clone() };
+        Some(Arc::new(HillshadeOptions { frame, ..self.clone() }))
     }
 
-    fn to_json(&self) -> Value {
-        json!(self)
+    fn surface(&self, request: &SurfaceRequest, context: &Context) -> Result<SurfaceProduct> {
+        surface::surface(request, context)
     }
 
     fn write(&self, surface: &SurfaceProduct, outputs: &Outputs, context: &Context) -> Result<Summary> {

@@ -9,10 +9,12 @@ mod hillshade;
 mod raster;
 mod tin;
 
+use std::any::Any;
 use std::fmt::Debug;
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
@@ -47,10 +49,17 @@ impl WriteRequest {
     pub fn new(surface: SurfaceRequest, verb: impl Verb + 'static) -> Self {
         WriteRequest { surface, verb: Arc::new(verb) }
     }
+
+    /// Returns all files that are read.
+    pub fn files(&self) -> Vec<PathBuf> {
+        let mut files = self.surface.files();
+        files.extend(self.verb.also_reads().cloned());
+        files
+    }
 }
 
 /// What is made of a surface and written to files.
-pub trait Verb: Debug + Send + Sync {
+pub trait Verb: Any + Debug + Send + Sync {
     /// Returns the name of the verb, as on the command line.
     fn name(&self) -> &'static str;
 
@@ -69,16 +78,19 @@ pub trait Verb: Debug + Send + Sync {
     /// request that it was planned for.
     fn list(&self, add: &mut dyn FnMut(Setting, &dyn Debug));
 
-    /// Returns the options in a form that can be stored.
-    fn to_json(&self) -> Value;
-
     /// Returns how heights between vertices are computed. Tiles have linear ones.
     fn method(&self) -> Method {
         Method::Linear
     }
 
-    /// Returns which files that are read besides those of the surface.
+    /// Returns the file that is read besides those of the surface, if there is one.
     fn also_reads(&self) -> Option<&PathBuf> {
+        None
+    }
+
+    /// Returns the verb with another name of the file that it [also reads](Self::also_reads);
+    /// `None` if it reads none.
+    fn reading(&self, _file: PathBuf) -> Option<Arc<dyn Verb>> {
         None
     }
 
@@ -114,19 +126,41 @@ pub trait Verb: Debug + Send + Sync {
     fn write_tiles(&self, tiles: &dyn Tiles, outputs: &Outputs, context: &Context) -> Result<Summary>;
 }
 
+/// How the options of a verb are kept with a job.
+struct Kept {
+    verb: &'static str,
+    to_json: fn(&dyn Any) -> Option<Value>,
+    from_json: fn(Value) -> Option<Arc<dyn Verb>>,
+}
+
+impl Kept {
+    const fn of<V: Verb + Serialize + DeserializeOwned>(verb: &'static str) -> Self {
+        Kept {
+            verb,
+            to_json: |verb| serde_json::to_value(verb.downcast_ref::<V>()?).ok(),
+            from_json: |options| serde_json::from_value::<V>(options).ok().map(|verb| Arc::new(verb) as _),
+        }
+    }
+}
+
+/// The verbs that jobs can keep.
+const KEPT: &[Kept] = &[
+    Kept::of::<DemOptions>("dem"),
+    Kept::of::<HillshadeOptions>("hillshade"),
+    Kept::of::<ContourOptions>("contour"),
+    Kept::of::<SurfaceOptions>("tin"),
+];
+
+/// Returns the name and the options of a verb in a form that can be kept; `None` if jobs cannot
+/// keep it.
+pub(super) fn to_json(verb: &dyn Verb) -> Option<(&'static str, Value)> {
+    KEPT.iter().find_map(|kept| Some((kept.verb, (kept.to_json)(verb)?)))
+}
+
 /// Returns the verb with a name and these options; `None` if there is none, or they are not those
 /// of the verb.
 pub(super) fn from_json(name: &str, options: Value) -> Option<Arc<dyn Verb>> {
-    fn read<V: Verb + DeserializeOwned + 'static>(options: Value) -> Option<Arc<dyn Verb>> {
-        serde_json::from_value::<V>(options).ok().map(|verb| Arc::new(verb) as _)
-    }
-    match name {
-        "dem" => read::<DemOptions>(options),
-        "hillshade" => read::<HillshadeOptions>(options),
-        "contour" => read::<ContourOptions>(options),
-        "tin" => read::<SurfaceOptions>(options),
-        _ => None,
-    }
+    KEPT.iter().find(|kept| kept.verb == name).and_then(|kept| (kept.from_json)(options))
 }
 
 /// When a product is made in tiles.

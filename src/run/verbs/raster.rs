@@ -9,6 +9,7 @@ use crate::run::context::Context;
 use crate::run::event::Event;
 use crate::run::frame::FrameOptions;
 use crate::run::notice::Notice;
+use crate::run::serialized::in_plan;
 use crate::run::targets::{Outputs, Target};
 use crate::run::units::bytes;
 
@@ -21,7 +22,7 @@ pub(super) fn list_frame(
     add: &mut dyn FnMut(Setting, &dyn Debug),
 ) {
     add(Setting::Resolution, resolution);
-    add(Setting::Extent, extent);
+    add(Setting::Extent, &extent.map(in_plan::corners));
     add(Setting::AlignTo, align_to);
 }
 

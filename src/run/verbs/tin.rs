@@ -3,8 +3,6 @@
 use std::fmt::Debug;
 use std::path::Path;
 
-use serde_json::{Value, json};
-
 use super::{Keeps, Summary, TileUse, Tiles, Verb};
 use crate::error::{Error, Result, Setting};
 use crate::io::formats::{self, Product};
@@ -43,10 +41,6 @@ impl Verb for SurfaceOptions {
                 }))
             }
         }
-    }
-
-    fn to_json(&self) -> Value {
-        json!(self)
     }
 
     fn write(&self, surface: &SurfaceProduct, outputs: &Outputs, context: &Context) -> Result<Summary> {

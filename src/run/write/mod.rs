@@ -4,13 +4,13 @@ mod report;
 
 pub use self::report::{Origin, SurfaceReport, WriteReport, Written, WrittenOf};
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::context::Context;
 use super::event::Event;
-use super::job::{Job, JobCommand, JobLock, NotInTiles, TileOptions, needs_tiles};
+use super::job::{Job, JobCommand, JobLock, NotInTiles, StoredJob, TileOptions, needs_tiles};
 use super::point_files::BadFiles;
-use super::targets::{self, Outputs, Targets};
+use super::targets::{self, Existing, Outputs, Targets};
 use super::verbs::{Summary, TileUse, WriteRequest};
 use crate::error::{Error, Result};
 
@@ -68,33 +68,37 @@ pub fn write(
     execution: &Execution,
     context: &Context,
 ) -> Result<WriteReport> {
-    let mut prepared = Prepared::new(request, targets)?;
+    let prepared = Prepared::new(request, targets)?;
     match execution {
         Execution::Whole => prepared.whole(context),
         Execution::Auto { memory } => {
             if prepared.needs_tiles(*memory, context) {
-                prepared.anew(&TileOptions { memory: *memory, ..TileOptions::default() }, context)
+                prepared.in_tiles()?.anew(&TileOptions { memory: *memory, ..TileOptions::default() }, context)
             } else {
                 prepared.whole(context)
             }
         }
-        Execution::Tiles(options) => prepared.anew(options, context),
-        Execution::Resume(options) => prepared.go_on(options, context),
+        Execution::Tiles(options) => prepared.in_tiles()?.anew(options, context),
+        Execution::Resume(options) => prepared.in_tiles()?.resume(options, context),
         Execution::Plan(options) => {
-            let job = prepared.planned(options, context)?;
+            let job = prepared.in_tiles()?.planned(options, context)?;
             Ok(WriteReport::Planned { size: job.size(), folder: job.folder().to_path_buf() })
         }
     }
 }
 
-/// Plans a job for a request, whose tasks can then be done one by one, once it is
-/// [created](Job::create), by [`run_task`]. The outputs are checked now.
+/// Plans a job for a command and creates it in a folder. Its tasks can then be done one by one, by
+/// [`run_task`], or all that are left, by [`run_job`]. The outputs are checked now.
 ///
 /// # Errors
-/// Those of [`Job::plan`]; if an output cannot be written or may not be replaced, or the files of
-/// the tasks cannot fit on the disk.
-pub fn plan(request: &WriteRequest, targets: &Targets, options: &TileOptions, context: &Context) -> Result<Job> {
-    Prepared::new(request, targets)?.planned(options, context)
+/// Those of [`Job::plan`] and [`Job::create`]; if an output cannot be written or may not be
+/// replaced, or the files of the tasks cannot fit on the disk.
+pub fn plan_job(command: &JobCommand, folder: &Path, context: &Context) -> Result<StoredJob> {
+    let JobCommand { request, targets, tiles, .. } = command;
+    let options = TileOptions { folder: Some(folder.to_path_buf()), ..tiles.clone() };
+    let mut job = Prepared::new(request, targets)?.in_tiles()?.planned(&options, context)?;
+    drop(job.create(Some(command), context)?);
+    StoredJob::new(command.clone(), &job)
 }
 
 /// Does a task of a job; the last one writes the outputs, unless they are there as it was done
@@ -106,21 +110,49 @@ pub fn plan(request: &WriteRequest, targets: &Targets, options: &TileOptions, co
 /// If a task that it needs is not done, if its input cannot be read, or another than planned; for
 /// the last one, those of [`write`]; and if there is no task with this number.
 pub fn run_task(job: &Job, task: usize, targets: &Targets, context: &Context) -> Result<Option<WriteReport>> {
+    job.check_input_of(task)?;
     if task < job.task_count() {
         return job.run_task(task, context).map(|()| None);
     }
-    job.require_done(task)?;
+    job.require_done(task, context)?;
     // Like any task, the last one may be repeated: its process may have been killed after it.
-    if let Some(output) = targets.files.first().filter(|output| job.has_written(output)) {
-        return Ok(Some(WriteReport::Kept { output: output.clone(), has_holes: job.has_holes() }));
+    if let Some(kept) = kept(job, targets, context)? {
+        return Ok(Some(kept));
     }
     let request = job.request();
-    let mut prepared = Prepared::new(&request, targets)?;
-    prepared.folder(&TileOptions { folder: Some(job.folder().to_path_buf()), ..TileOptions::default() })?;
+    let prepared = Prepared::new(&request, targets)?.in_tiles()?;
     require_room(job, context)?;
-    let lock = job.lock()?;
+    let lock = job.lock(context)?;
     prepared.clear_up(job, &lock, context)?;
     prepared.run(job, &lock, Folder::Kept, context).map(Some)
+}
+
+/// Does all that is left of a job, which must be there, and writes the outputs; nothing if they are
+/// there as they were written of the same tasks. Files that were skipped are tried again, and the
+/// outputs replaced.
+///
+/// # Errors
+/// If an input has changed, or the job was removed or replaced; and those of [`write`].
+pub fn run_job(stored: &StoredJob, context: &Context) -> Result<WriteReport> {
+    let JobCommand { request, targets, tiles, .. } = &stored.command;
+    let job = stored.job()?;
+    job.check_inputs(context)?;
+    let mut targets = targets.clone();
+    match kept(&job, &targets, context)? {
+        Some(WriteReport::Kept { has_holes: true, .. }) => targets.existing = Existing::Replace,
+        Some(kept) => return Ok(kept),
+        None => {}
+    }
+    Prepared::new(request, &targets)?.in_tiles()?.go_on(job, tiles, Folder::Kept, context)
+}
+
+/// Returns the report of outputs that are there as they were written of the tasks that are done.
+fn kept(job: &Job, targets: &Targets, context: &Context) -> Result<Option<WriteReport>> {
+    let Some(output) = targets.files.first() else { return Ok(None) };
+    match job.has_written(output, context)? {
+        true => Ok(Some(WriteReport::Kept { output: output.clone(), has_holes: job.has_holes(context)? })),
+        false => Ok(None),
+    }
 }
 
 /// A request whose outputs are checked.
@@ -135,8 +167,7 @@ impl<'a> Prepared<'a> {
     fn new(request: &'a WriteRequest, targets: &'a Targets) -> Result<Self> {
         let verb = request.verb.as_ref();
         verb.check()?;
-        let mut read = targets.read_with(&request.surface);
-        read.extend(verb.also_reads().cloned());
+        let read = targets.with_lists(request.files());
         let outputs = targets.resolve(verb.product(), &read)?;
         let use_of_tiles = verb.use_of_tiles(&outputs.targets)?;
         Ok(Prepared { request, targets, outputs, use_of_tiles })
@@ -181,28 +212,28 @@ impl<'a> Prepared<'a> {
         Ok(WriteReport::Written(Box::new(Written { surface, summary, files })))
     }
 
-    /// Returns the folder of a job, if tiles can be made.
-    fn folder(&mut self, options: &TileOptions) -> Result<PathBuf> {
-        if let TileUse::Never(error) = std::mem::replace(&mut self.use_of_tiles, TileUse::Always) {
-            return Err(error);
+    /// Makes sure that tiles can be made.
+    fn in_tiles(self) -> Result<Self> {
+        match self.use_of_tiles {
+            TileUse::Never(error) => Err(error),
+            TileUse::Optional | TileUse::Always => self.refused().map_or(Ok(self), Err),
         }
-        self.refused().map_or(Ok(()), Err)?;
-        let [target, ..] = &self.outputs.targets[..] else {
-            return Err(Error::usage("no output is named"));
-        };
-        let folder = options.folder.clone().unwrap_or_else(|| {
-            let mut name = target.path.as_os_str().to_owned();
-            name.push(".job");
-            PathBuf::from(name)
-        });
-        match folder == target.path {
-            true => Err(Error::usage("the output and the folder of the job have the same name").in_file(&target.path)),
-            false => Ok(folder),
+    }
+
+    /// Returns the folder of a job.
+    fn folder(&self, options: &TileOptions) -> Result<PathBuf> {
+        let folder = options.folder.clone().or_else(|| self.targets.job_folder());
+        let folder = folder.ok_or_else(|| Error::usage("no output is named"))?;
+        match self.outputs.targets.iter().find(|target| target.path == folder) {
+            Some(target) => {
+                Err(Error::usage("the output and the folder of the job have the same name").in_file(&target.path))
+            }
+            None => Ok(folder),
         }
     }
 
     /// Plans a job, and makes sure that it has room.
-    fn planned(&mut self, options: &TileOptions, context: &Context) -> Result<Job> {
+    fn planned(&self, options: &TileOptions, context: &Context) -> Result<Job> {
         let folder = self.folder(options)?;
         let job = Job::plan(self.request, &folder, options, context)?;
         require_room(&job, context)?;
@@ -210,43 +241,50 @@ impl<'a> Prepared<'a> {
     }
 
     /// Plans a job and does it.
-    fn anew(mut self, options: &TileOptions, context: &Context) -> Result<WriteReport> {
+    fn anew(self, options: &TileOptions, context: &Context) -> Result<WriteReport> {
         let mut job = self.planned(options, context)?;
-        let lock = job.create(None)?;
+        let lock = job.create(None, context)?;
         self.outputs.set.mark(job.mark());
         self.run(&job, &lock, is_named(options), context)
     }
 
-    /// Goes on with a job, if there is one.
-    fn go_on(mut self, options: &TileOptions, context: &Context) -> Result<WriteReport> {
-        let folder = self.folder(options)?;
-        let Some(mut job) = Job::open(self.request, &folder, options)? else {
-            return self.anew(options, context);
-        };
+    /// Goes on with the job in the folder, or plans one if there is none.
+    fn resume(self, options: &TileOptions, context: &Context) -> Result<WriteReport> {
+        match Job::stored(self.request, &self.folder(options)?, options)? {
+            Some(job) => {
+                job.check_inputs(context)?;
+                self.go_on(job, options, is_named(options), context)
+            }
+            None => self.anew(options, context),
+        }
+    }
+
+    /// Goes on with a job, whose inputs are checked.
+    fn go_on(self, mut job: Job, options: &TileOptions, keep: Folder, context: &Context) -> Result<WriteReport> {
         require_room(&job, context)?;
-        let mut lock = job.lock()?;
+        let mut lock = job.lock(context)?;
         match job.outgrown_by(context)? {
             Some(path) => {
                 context.monitor.event(&Event::PlannedAgain(path));
-                // That of a job whose tasks are done one by one; others have none.
-                let command = JobCommand::read(&folder).ok().flatten();
+                // Others go on with the job as before, if they did.
+                let command = job.command()?;
                 let options = TileOptions { bad: BadFiles::Skip, ..options.clone() };
-                let anew = Job::plan(self.request, &folder, &options, context)?;
+                let anew = Job::plan(&job.request(), job.folder(), &options, context)?;
                 job.remove(&lock)?;
                 drop(lock);
                 job = anew;
-                lock = job.create(command.as_ref())?;
+                lock = job.create(command.as_ref(), context)?;
                 self.outputs.set.mark(job.mark());
             }
             None => self.clear_up(&job, &lock, context)?,
         }
-        self.run(&job, &lock, is_named(options), context)
+        self.run(&job, &lock, keep, context)
     }
 
     /// Removes what a run has left when it was killed.
     fn clear_up(&self, job: &Job, lock: &JobLock, context: &Context) -> Result<()> {
         self.outputs.set.mark(job.mark());
-        let done = job.clear_up(lock)?;
+        let done = job.clear_up(lock, context)?;
         self.outputs.targets.iter().try_for_each(|target| job.remove_abandoned(&target.path, lock))?;
         context.monitor.event(&Event::Resumed { done, tasks: job.task_count() });
         Ok(())
