@@ -623,7 +623,7 @@ fn real_files_have_the_systems_that_the_facts_state() {
 #[test]
 fn without_proj_the_error_says_how_to_get_it() {
     let crs = |code| Crs::from_epsg(code).unwrap();
-    let error = breakline::io::proj::transform(&crs(4326), &crs(32633)).err().unwrap();
+    let error = breakline::run::proj::transform(&crs(4326), &crs(32633)).err().unwrap();
     assert!(error.to_string().contains("EPSG:4326 (WGS 84) to EPSG:32633"), "{error}");
     assert!(error.cure_text().unwrap().plain().contains("feature `proj`"));
 }
@@ -631,7 +631,7 @@ fn without_proj_the_error_says_how_to_get_it() {
 #[cfg(feature = "proj")]
 mod with_proj {
     use breakline::crs::Crs;
-    use breakline::io::proj::transform;
+    use breakline::run::proj::transform;
 
     fn crs(text: &str) -> Crs {
         Crs::from_user(text).unwrap()

@@ -14,7 +14,6 @@
 //! | read or write triangulations in space: files of TetGen, MEDIT, VTK | | [`tetgen::read`], [`tetgen::write`] |
 //! | write contours | [`contours::write`] | [`shapefile::write_contours`], [`geojson::write_contours`] |
 //! | write other shapes | | [`shapefile::write_layer`] |
-//! | transform coordinates | | [`proj::transform`] |
 //!
 //! One table lists all formats, and what can be read and written in each: [`formats`].
 //!
@@ -43,7 +42,6 @@ mod codec;
 pub mod formats;
 mod fronts;
 mod options;
-pub mod proj;
 
 pub(crate) use bytes::contain::contain;
 pub use bytes::contain::is_contained;

@@ -18,6 +18,7 @@
 //! | count what is in a file | a path | [`facts()`] | [`Facts`] |
 //! | triangulate points in space | [`SpaceOptions`] | [`triangulate_space`] | [`SpaceProduct`] |
 //! | triangulate Triangle's files | [`TriangulateOptions`] | [`triangulate()`], [`triangulate_graph`] | [`TriangulateProduct`] |
+//! | transform coordinates | two coordinate systems | [`proj::transform`] | a [`Transform`](crate::crs::Transform) |
 //!
 //! # A DEM of points in memory
 //!
@@ -66,82 +67,54 @@
 //! A canceled run returns an error of the kind [`Canceled`](crate::error::Kind::Canceled), and
 //! nothing is written.
 
-mod cells;
-mod check;
-mod checksum;
 mod context;
-mod contour;
-mod crossings;
-mod elevation;
-mod event;
-mod extents;
-mod facts;
-mod frame;
-mod input;
 mod job;
-mod lattice;
-mod layers;
-mod line_inputs;
-mod line_notes;
-mod line_request;
 mod lines;
-mod memory;
-mod notice;
-mod notice_text;
-mod open;
-mod overlaps;
-mod point_files;
-mod points;
-mod rings;
-mod serialized;
-mod sizes;
+mod products;
+mod request;
+mod sources;
 mod space;
-mod surface;
-mod systems;
-pub(crate) mod targets;
-mod tin;
-mod tin_parts;
-mod transforms;
 mod triangulate;
-pub(crate) mod units;
 mod verbs;
-mod watched;
 mod write;
 
-pub use cells::{CellProduct, DemOptions, HillshadeOptions, LightOptions, dem, hillshade};
-pub use check::{CheckProduct, FlawKind, LocatedFlaw, check, surface_flaws};
+pub use context::event::{Event, JobSize};
+pub use context::notice::{CrossingNote, LoweredRiver, Notice, Seed, SeedFlaw, Severity, WaterStep};
+pub(crate) use context::units;
+pub use context::units::Quantity;
 pub use context::{Context, Monitor, Progress, Silent, Size, Stage};
-pub use contour::{ContourOptions, ContourProduct, contour, write_contours};
-pub use crossings::LineNames;
-pub use elevation::elevations;
-pub use event::{Event, JobSize};
-pub use facts::{Facts, LayerFacts, MeshFacts, PlaneFacts, PointFacts, RasterFacts, facts};
-pub use frame::FrameOptions;
-pub use input::{Input, MemoryPoints, STDIN};
 pub use job::{
     Division, FileState, Job, JobCommand, JobLock, JobReport, JobTask, Look, NotInTiles, StoredJob, TileOptions,
     needs_tiles, remove_job,
 };
-pub use line_notes::LineInput;
-pub use line_request::{FlatOptions, FlatRule, LineRequest, LineRole, LowerEdge, PerRecord, WallOptions};
-pub use notice::{CrossingNote, LoweredRiver, Notice, Seed, SeedFlaw, Severity, WaterStep};
-pub use overlaps::Overlap;
-pub use point_files::BadFiles;
-pub use points::{PointsProduct, PointsReport, PointsRequest, Withheld, read_points, write_points};
-pub use sizes::memory_of;
+pub use lines::crossings::LineNames;
+pub use lines::notes::LineInput;
+pub use products::cells::{CellProduct, DemOptions, HillshadeOptions, LightOptions, dem, hillshade};
+pub use products::check::{CheckProduct, FlawKind, LocatedFlaw, check, surface_flaws};
+pub use products::contour::{ContourOptions, ContourProduct, contour, write_contours};
+pub use products::elevation::elevations;
+pub use products::facts::{Facts, LayerFacts, MeshFacts, PlaneFacts, PointFacts, RasterFacts, facts};
+pub use products::frame::FrameOptions;
+pub use products::overlaps::Overlap;
+pub use products::points::{PointsProduct, PointsReport, PointsRequest, Withheld, read_points, write_points};
+pub use products::surface::{Model, Source, SurfaceProduct, SurfaceRequest, surface, triangles, write_mesh};
+pub use products::tin::{BuildReport, EdgeLimit, ReplacedPoints, TinRequest};
+pub use request::input::{Input, MemoryPoints, STDIN};
+pub use request::lines::{FlatOptions, FlatRule, LineRequest, LineRole, LowerEdge, PerRecord, WallOptions};
+pub use request::sizes::memory_of;
+pub use sources::point_files::BadFiles;
+pub use sources::proj;
+pub use sources::systems::{Degrees, SystemOptions};
+pub use sources::tin_parts::{TinParts, WrittenParts};
 pub use space::{
     Alpha, AlphaSolid, SpaceCheck, SpaceFlaw, SpaceLaw, SpaceOptions, SpaceProduct, SpaceReport, check_space,
     is_of_space, triangulate_space,
 };
-pub use surface::{Model, Source, SurfaceProduct, SurfaceRequest, surface, triangles, write_mesh};
-pub use systems::{Degrees, SystemOptions};
-pub use targets::{Existing, Outputs, Target, Targets};
-pub use tin::{BuildReport, EdgeLimit, ReplacedPoints, TinRequest};
-pub use tin_parts::{TinParts, WrittenParts};
 pub use triangulate::{
     Arithmetic, TriangulateOptions, TriangulateProduct, TriangulateReport, triangulate, triangulate_graph,
 };
-pub use units::Quantity;
+pub(crate) use verbs::targets;
+pub use verbs::targets::{Existing, Outputs, Target, Targets};
 pub use verbs::{Keeps, Summary, SurfaceOptions, TileUse, Tiles, Verb, WriteRequest};
 pub use write::{
     Execution, Origin, SurfaceReport, WriteReport, Written, WrittenOf, plan_job, run_job, run_task, write,

@@ -371,7 +371,7 @@ fn tiles_report_what_the_whole_reports() {
 
 /// Returns the names of all kinds, from the source of the enum.
 fn kinds_of_notices() -> BTreeSet<String> {
-    let source = fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/src/run/notice.rs")).unwrap();
+    let source = fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/src/run/context/notice.rs")).unwrap();
     let (_, rest) = source.split_once("pub enum Notice {\n").unwrap();
     let (body, _) = rest.split_once("\n}\n").unwrap();
     let rows =

@@ -12,9 +12,9 @@ use super::TileOptions;
 use super::folder::{COMMAND, StoredPlan};
 use super::request::{self, Options};
 use crate::error::{Command, Error, Result, Wording, wording};
-use crate::run::checksum::checksum;
-use crate::run::surface::SurfaceRequest;
-use crate::run::targets::Targets;
+use crate::run::products::surface::SurfaceRequest;
+use crate::run::sources::checksum::checksum;
+use crate::run::verbs::targets::Targets;
 use crate::run::verbs::{self, WriteRequest};
 
 /// What a job is planned for, with whole names, so that any process can do its tasks.

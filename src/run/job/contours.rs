@@ -10,7 +10,7 @@ use crate::error::{Error, Result, Setting, wording};
 use crate::io::Destination;
 use crate::io::contours::{self, ContourSummary};
 use crate::run::context::{Context, Size, Stage};
-use crate::run::contour::edge_count;
+use crate::run::products::contour::edge_count;
 use crate::terrain::Levels;
 use crate::terrain::contour::parts::{ContourParts, LevelParts, join_level};
 

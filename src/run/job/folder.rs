@@ -10,8 +10,8 @@ use super::lock::{JobLock, LOCK};
 use super::task_file::{is_unfinished, looks_like_task, unfinished_in};
 use crate::error::{Command, Error, Result, Setting, wording};
 use crate::io::remove_abandoned;
-use crate::run::checksum::checksum;
 use crate::run::context::Context;
+use crate::run::sources::checksum::checksum;
 
 /// The file of the plan in the folder of a job.
 const PLAN: &str = "plan.json";

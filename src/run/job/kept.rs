@@ -44,7 +44,7 @@ impl StoredJob {
     }
 
     /// Returns a job that was created for a command.
-    pub(in crate::run) fn new(command: JobCommand, job: &Job) -> Result<Self> {
+    pub(crate) fn new(command: JobCommand, job: &Job) -> Result<Self> {
         let folder = std::path::absolute(&job.folder).map_err(|e| Error::from(e).in_file(&job.folder))?;
         Ok(StoredJob { command, folder, sum: job.sum })
     }

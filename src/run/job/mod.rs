@@ -61,16 +61,16 @@ use self::plan::Plan;
 pub use self::planned_file::FileState;
 use self::planned_file::PlannedFile;
 use self::task_file::TaskName;
-use super::checksum::checksum;
-use super::context::{Context, Journal};
-use super::event::JobSize;
-use super::notice::Notice;
-use super::point_files::{BadFiles, PointFiles};
-use super::surface::{Source, SurfaceRequest};
-use super::systems::SystemOptions;
-use super::tin::TinRequest;
 use super::verbs::{Keeps, Verb, WriteRequest};
 use crate::error::{Command, Error, Kind, Result, Setting, wording};
+use crate::run::context::event::JobSize;
+use crate::run::context::notice::Notice;
+use crate::run::context::{Context, Journal};
+use crate::run::products::surface::{Source, SurfaceRequest};
+use crate::run::products::tin::TinRequest;
+use crate::run::sources::checksum::checksum;
+use crate::run::sources::point_files::{BadFiles, PointFiles};
+use crate::run::sources::systems::SystemOptions;
 use crate::terrain::Method;
 use crate::terrain::tiles::{Spread, Step, Work};
 
@@ -522,11 +522,11 @@ impl Job {
 pub fn needs_tiles(wanted: &WriteRequest, memory: Option<u64>, context: &Context) -> Result<bool> {
     let (points, systems) = tiled(wanted)?;
     plan::require_tiled(points, systems)?;
-    let memory = memory.unwrap_or_else(super::memory::half_of_free);
+    let memory = memory.unwrap_or_else(crate::run::context::memory::half_of_free);
     // Opening a layer reads it. A point takes a byte at least, so the lengths nearly always
     // suffice.
     let bytes: u64 = points.points.iter().map(|input| planned_file::length_of(input.path())).sum();
-    if super::memory::need_of(bytes) <= memory {
+    if crate::run::context::memory::need_of(bytes) <= memory {
         return Ok(false);
     }
     let quiet = Context { cancel: context.cancel, ..Context::default() };
@@ -534,7 +534,7 @@ pub fn needs_tiles(wanted: &WriteRequest, memory: Option<u64>, context: &Context
     let stated = points.points.iter().zip(files.stated_extents());
     let count: u64 =
         stated.map(|(input, (count, _))| count.unwrap_or_else(|| planned_file::points_of_text(input.path()))).sum();
-    Ok(super::memory::need_of(count) > memory)
+    Ok(crate::run::context::memory::need_of(count) > memory)
 }
 
 /// Returns what a request asks for, by which its job is known.

@@ -1,8 +1,8 @@
 //! What tiles cannot do yet.
 
 use crate::error::{Error, Setting, Wording, wording};
-use crate::run::systems::SystemOptions;
-use crate::run::tin::{EdgeLimit, TinRequest};
+use crate::run::products::tin::{EdgeLimit, TinRequest};
+use crate::run::sources::systems::SystemOptions;
 
 /// What a request has and tiles do not: the whole surface is built in memory for it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

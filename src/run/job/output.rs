@@ -10,11 +10,11 @@ use crate::data::{BlockSource, Bounds};
 use crate::error::{Command, Error, Result, Setting, wording};
 use crate::io::Destination;
 use crate::io::contours::ContourSummary;
+use crate::run::context::notice::Notice;
 use crate::run::context::{Context, Journal};
-use crate::run::contour::ContourOptions;
-use crate::run::frame::{self, FrameOptions};
-use crate::run::notice::Notice;
-use crate::run::tin_parts::WrittenParts;
+use crate::run::products::contour::ContourOptions;
+use crate::run::products::frame::{self, FrameOptions};
+use crate::run::sources::tin_parts::WrittenParts;
 use crate::run::verbs::Tiles;
 
 /// Counts of a job that is done.

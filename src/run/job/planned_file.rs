@@ -10,9 +10,9 @@ use crate::data::{Bounds, PointBatch};
 use crate::error::{Command, Error, Result, wording};
 use crate::io::layer;
 use crate::run::context::{Context, Size, Stage};
-use crate::run::input::{Input, MemoryPoints};
-use crate::run::open;
-use crate::run::tin::TinRequest;
+use crate::run::products::tin::TinRequest;
+use crate::run::request::input::{Input, MemoryPoints};
+use crate::run::sources::open;
 use crate::terrain::tiles::Spread;
 
 /// The rounding of the coordinates that headers state, in units of the last place.

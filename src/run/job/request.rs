@@ -7,13 +7,13 @@ use std::path::Path;
 use super::TileOptions;
 use crate::error::{Error, Setting, Wording, wording};
 use crate::io::points;
-use crate::run::checksum::checksum;
-use crate::run::line_request::{FlatOptions, LineRequest, WallOptions};
-use crate::run::serialized::in_plan;
-use crate::run::systems::SystemOptions;
-use crate::run::targets::Targets;
-use crate::run::tin::TinRequest;
+use crate::run::products::tin::TinRequest;
+use crate::run::request::lines::{FlatOptions, LineRequest, WallOptions};
+use crate::run::request::serialized::in_plan;
+use crate::run::sources::checksum::checksum;
+use crate::run::sources::systems::SystemOptions;
 use crate::run::verbs::Verb;
+use crate::run::verbs::targets::Targets;
 
 /// The name of what decides which other options there are.
 const VERB: &str = "the verb";

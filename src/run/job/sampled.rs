@@ -4,8 +4,8 @@ use super::planned_file::PlannedFile;
 use crate::data::PointBatch;
 use crate::error::{Kind, Result};
 use crate::run::context::{Context, Size, Stage};
-use crate::run::open;
-use crate::run::tin::TinRequest;
+use crate::run::products::tin::TinRequest;
+use crate::run::sources::open;
 use crate::terrain::tiles::Spread;
 use crate::terrain::{Classes, Selection};
 
@@ -96,7 +96,7 @@ mod tests {
 
     use super::super::planned_file::FileState;
     use super::*;
-    use crate::run::input::Input;
+    use crate::run::request::input::Input;
     use crate::terrain::tiles::Layout;
     use testkit::random::Random;
 

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::planned_file::FileState;
 use crate::data::Bounds;
 use crate::error::Wording;
-use crate::run::notice::{Notice, Severity};
+use crate::run::context::notice::{Notice, Severity};
 
 /// The facts of a task. Tasks of one kind have some of them; the others have their defaults.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]

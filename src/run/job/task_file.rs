@@ -17,7 +17,7 @@ use tempfile::NamedTempFile;
 use super::planned_file::FileState;
 use super::task_facts::TaskFacts;
 use crate::error::{Command, Error, Kind, Result, Setting, Wording, wording};
-use crate::run::checksum::{Summed, checksum};
+use crate::run::sources::checksum::{Summed, checksum};
 
 /// The last bytes of a complete file.
 const MAGIC: &[u8; 8] = b"BRKTASK3";

@@ -12,8 +12,8 @@ use super::surface::has_all_parts;
 use super::{Job, JobReport};
 use crate::error::{Error, Result};
 use crate::io::{OutputSet, remove_abandoned};
-use crate::run::checksum::sum_of_file;
 use crate::run::context::Context;
+use crate::run::sources::checksum::sum_of_file;
 use crate::run::verbs::Keeps;
 
 impl Job {

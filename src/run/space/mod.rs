@@ -6,10 +6,7 @@ use std::path::{Path, PathBuf};
 
 pub use check::{SpaceCheck, SpaceFlaw, SpaceLaw, check_space};
 
-use super::context::{Context, Journal, Size, Stage};
-use super::notice::Notice;
 use super::triangulate::Arithmetic;
-use super::{memory, open};
 use crate::crs::{Crs, CrsKind};
 use crate::data::{Columns, EdgeKind, PointBatch, PointSource, Surface};
 use crate::error::{Error, Result, Setting, wording};
@@ -17,6 +14,10 @@ use crate::io::points::Options;
 use crate::io::tetgen::{self, FACETS, Tetrahedralized};
 use crate::io::triangle::Nodes;
 use crate::io::{Destination, Watch};
+use crate::run::context::memory;
+use crate::run::context::notice::Notice;
+use crate::run::context::{Context, Journal, Size, Stage};
+use crate::run::sources::open;
 use crate::triangulation::geometry::{Geometry, Space, WeightedSpace};
 use crate::triangulation::kernel::{Adaptive, Exact, Kernel, Orientation3, Predicate, Wide};
 use crate::triangulation::tds::VertexId;

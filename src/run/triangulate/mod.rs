@@ -8,14 +8,14 @@ use std::path::Path;
 
 use self::build::{Built, SeedLocation};
 use self::carve::Outside;
-use super::check;
-use super::context::{Context, Journal, Size, Stage};
-use super::notice::{Notice, Seed, SeedFlaw};
-use super::open;
 use crate::data::{EdgeKind, Mesh, Triangles};
 use crate::error::{Error, Result, Setting, wording};
 use crate::io::triangle::{self, LineGraph, Triangulated};
 use crate::io::{Destination, contain};
+use crate::run::context::notice::{Notice, Seed, SeedFlaw};
+use crate::run::context::{Context, Journal, Size, Stage};
+use crate::run::products::check;
+use crate::run::sources::open;
 use crate::triangulation::kernel::{Adaptive, Exact, Fast, Kernel, Range, Wide};
 use crate::triangulation::refine::{Domain, Quality, RegionBound, Shortfall};
 use crate::triangulation::{InputError, OnCrossing};

@@ -2,16 +2,16 @@
 
 use std::fmt::Debug;
 
+use super::targets::Outputs;
 use super::{Keeps, Summary, Tiles, Verb};
 use crate::error::{Result, Setting};
 use crate::io::Destination;
 use crate::io::contours::ContourSummary;
 use crate::io::formats::Product;
 use crate::run::context::Context;
-use crate::run::contour::{self, ContourOptions};
-use crate::run::notice::Notice;
-use crate::run::surface::{self, SurfaceProduct, SurfaceRequest};
-use crate::run::targets::Outputs;
+use crate::run::context::notice::Notice;
+use crate::run::products::contour::{self, ContourOptions};
+use crate::run::products::surface::{self, SurfaceProduct, SurfaceRequest};
 
 impl Verb for ContourOptions {
     fn name(&self) -> &'static str {

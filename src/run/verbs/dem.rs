@@ -5,15 +5,15 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::raster::{announce, list_frame};
+use super::targets::Outputs;
 use super::{Keeps, Summary, Tiles, Verb};
 use crate::error::{Result, Setting};
 use crate::io::formats::Product;
 use crate::io::geotiff::{COPIES_ON_DISK, RasterSummary};
-use crate::run::cells::{self, CellProduct, DemOptions};
 use crate::run::context::Context;
-use crate::run::frame::FrameOptions;
-use crate::run::surface::SurfaceProduct;
-use crate::run::targets::Outputs;
+use crate::run::products::cells::{self, CellProduct, DemOptions};
+use crate::run::products::frame::FrameOptions;
+use crate::run::products::surface::SurfaceProduct;
 use crate::terrain::Method;
 
 impl Verb for DemOptions {

@@ -5,15 +5,15 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::raster::{announce, list_frame};
+use super::targets::{Outputs, Target};
 use super::{Keeps, Summary, Tiles, Verb};
 use crate::error::{Result, Setting};
 use crate::io::formats::{Content, FORMATS, Format, Product};
 use crate::io::geotiff::COPIES_ON_DISK;
-use crate::run::cells::{self, CellProduct, HillshadeOptions, LightOptions};
 use crate::run::context::{Context, Journal};
-use crate::run::frame::FrameOptions;
-use crate::run::surface::{self, SurfaceProduct, SurfaceRequest};
-use crate::run::targets::{Outputs, Target};
+use crate::run::products::cells::{self, CellProduct, HillshadeOptions, LightOptions};
+use crate::run::products::frame::FrameOptions;
+use crate::run::products::surface::{self, SurfaceProduct, SurfaceRequest};
 use crate::terrain::Method;
 
 impl Verb for HillshadeOptions {

@@ -7,6 +7,7 @@ mod contour;
 mod dem;
 mod hillshade;
 mod raster;
+pub(crate) mod targets;
 mod tin;
 
 use std::any::Any;
@@ -19,13 +20,6 @@ use serde::de::DeserializeOwned;
 use serde_json::Value;
 
 pub use self::tin::SurfaceOptions;
-use super::cells::{DemOptions, HillshadeOptions};
-use super::context::Context;
-use super::contour::ContourOptions;
-use super::frame::FrameOptions;
-use super::surface::{self, SurfaceProduct, SurfaceRequest};
-use super::targets::{Outputs, Target};
-use super::tin_parts::WrittenParts;
 use crate::data::BlockSource;
 use crate::error::{Error, Result, Setting};
 use crate::io::Destination;
@@ -33,6 +27,13 @@ use crate::io::contours::ContourSummary;
 use crate::io::formats::Product;
 use crate::io::geotiff::RasterSummary;
 use crate::io::mesh::MeshSummary;
+use crate::run::context::Context;
+use crate::run::products::cells::{DemOptions, HillshadeOptions};
+use crate::run::products::contour::ContourOptions;
+use crate::run::products::frame::FrameOptions;
+use crate::run::products::surface::{self, SurfaceProduct, SurfaceRequest};
+use crate::run::sources::tin_parts::WrittenParts;
+use crate::run::verbs::targets::{Outputs, Target};
 use crate::terrain::Method;
 
 /// A surface, and what is written of it.

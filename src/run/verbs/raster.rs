@@ -2,16 +2,16 @@
 
 use std::fmt::Debug;
 
+use super::targets::{Outputs, Target};
 use crate::data::BlockSource;
 use crate::error::{Error, Result, Setting, wording};
-use crate::run::cells::CellProduct;
 use crate::run::context::Context;
-use crate::run::event::Event;
-use crate::run::frame::FrameOptions;
-use crate::run::notice::Notice;
-use crate::run::serialized::in_plan;
-use crate::run::targets::{Outputs, Target};
-use crate::run::units::bytes;
+use crate::run::context::event::Event;
+use crate::run::context::notice::Notice;
+use crate::run::context::units::bytes;
+use crate::run::products::cells::CellProduct;
+use crate::run::products::frame::FrameOptions;
+use crate::run::request::serialized::in_plan;
 
 /// DEFLATE seldom makes heights smaller than by this factor.
 const BEST_COMPRESSION: f64 = 10.0;

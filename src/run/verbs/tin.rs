@@ -3,12 +3,12 @@
 use std::fmt::Debug;
 use std::path::Path;
 
+use super::targets::{Outputs, Target};
 use super::{Keeps, Summary, TileUse, Tiles, Verb};
 use crate::error::{Error, Result, Setting};
 use crate::io::formats::{self, Product};
 use crate::run::context::Context;
-use crate::run::surface::{self, SurfaceProduct};
-use crate::run::targets::{Outputs, Target};
+use crate::run::products::surface::{self, SurfaceProduct};
 
 /// Options of writing a surface: there are none.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]

@@ -6,13 +6,13 @@ pub use self::report::{Origin, SurfaceReport, WriteReport, Written, WrittenOf};
 
 use std::path::{Path, PathBuf};
 
-use super::context::Context;
-use super::event::Event;
 use super::job::{Job, JobCommand, JobLock, NotInTiles, StoredJob, TileOptions, needs_tiles};
-use super::point_files::BadFiles;
-use super::targets::{self, Existing, Outputs, Targets};
 use super::verbs::{Summary, TileUse, WriteRequest};
 use crate::error::{Error, Result};
+use crate::run::context::Context;
+use crate::run::context::event::Event;
+use crate::run::sources::point_files::BadFiles;
+use crate::run::verbs::targets::{self, Existing, Outputs, Targets};
 
 /// How a request is worked on.
 #[derive(Debug, Clone)]
@@ -108,7 +108,7 @@ pub fn plan_job(command: &JobCommand, folder: &Path, context: &Context) -> Resul
 ///
 /// # Errors
 /// If a task that it needs is not done, if its input cannot be read, or another than planned; for
-/// the last one, those of [`write`]; and if there is no task with this number.
+/// the last one, those of [`write()`]; and if there is no task with this number.
 pub fn run_task(job: &Job, task: usize, targets: &Targets, context: &Context) -> Result<Option<WriteReport>> {
     job.check_input_of(task)?;
     if task < job.task_count() {

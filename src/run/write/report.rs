@@ -5,10 +5,10 @@ use std::path::PathBuf;
 use crate::crs::Crs;
 use crate::data::{Bounds, Frame, SurfaceFacts};
 use crate::error::Result;
-use crate::run::event::JobSize;
+use crate::run::context::event::JobSize;
 use crate::run::job::JobReport;
-use crate::run::surface::{Model, SurfaceProduct};
-use crate::run::tin::BuildReport;
+use crate::run::products::surface::{Model, SurfaceProduct};
+use crate::run::products::tin::BuildReport;
 use crate::run::verbs::Summary;
 
 /// What became of a request.

@@ -1,0 +1,354 @@
+//! Notices: what was assumed and what looks wrong, as data.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use super::units::Quantity;
+use crate::crs::Crs;
+use crate::data::Bounds;
+use crate::error::Wording;
+use crate::run::request::lines::LineRole;
+
+/// Something that was assumed or that looks wrong. Its text mentions settings as data, so that each
+/// caller can name them in its own words.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum Notice {
+    /// A file of points was opened; with its format.
+    Opened(PathBuf, String),
+    /// A file among several has no classes: all of its points are used.
+    WithoutClasses(PathBuf),
+    /// A vector layer was read.
+    LayerRead {
+        /// The file.
+        path: PathBuf,
+        /// Its format.
+        format: String,
+        /// Its records.
+        records: usize,
+    },
+    /// All points of a file were read; with their number.
+    PointsRead(PathBuf, u64),
+    /// A warning of a reader or a writer about a file.
+    Reader(PathBuf, Wording),
+    /// What a task of a job found, as the file of the task keeps it.
+    OfTask {
+        /// How much it matters.
+        severity: Severity,
+        /// The text.
+        text: Wording,
+        /// The lines that explain it further.
+        details: Vec<Wording>,
+    },
+    /// A file is skipped, because it cannot be read.
+    Skipped {
+        /// The file, and why it cannot be read.
+        why: String,
+        /// Its extent, in which the surface has a hole; `None` if that is not known.
+        hole: Option<Bounds>,
+        /// Other files that may have points there, which are not used.
+        others: Vec<PathBuf>,
+    },
+    /// All points may not fit into memory.
+    LittleMemory {
+        /// Bytes that they would take.
+        need: u64,
+        /// Bytes that are free.
+        left: u64,
+        /// What sets the limit, such as "on this machine".
+        limit: &'static str,
+    },
+    /// The outputs may not fit on a disk.
+    OutputMayNotFit {
+        /// About how many bytes they take before they are compressed.
+        need: u64,
+        /// Bytes that are free.
+        free: u64,
+    },
+    /// The files of the tasks of a job may not fit on a disk.
+    TasksMayNotFit {
+        /// About how many bytes they take.
+        need: u64,
+        /// Bytes that are free.
+        free: u64,
+    },
+    /// One of several files has no point that is used; with the classes that are used, if not all.
+    NoPointUsed(PathBuf, Option<Vec<u8>>),
+    /// No point has this class, which was requested.
+    NoPointOfClass(u8),
+    /// Ground points (class 2) were found and are used alone.
+    GroundUsed,
+    /// This many points from files without classes are used in addition to ground points.
+    PointsWithoutClassUsed(u64),
+    /// There are no ground points: all classes are used.
+    AllClassesUsed,
+    /// A file states a coordinate system that differs from the assigned one.
+    Reassigned {
+        /// The file.
+        path: PathBuf,
+        /// The system that the file states.
+        stated: Box<Crs>,
+        /// The system that is used.
+        assigned: Box<Crs>,
+    },
+    /// A file states no coordinate system: that of the other files is used.
+    SystemOfOthers(PathBuf, Box<Crs>),
+    /// No coordinate system is known: lengths are in the units of the data.
+    NoSystem,
+    /// Coordinates in the plane and heights have different units; with the names of both.
+    DifferentUnits(String, String),
+    /// Points or lines are reprojected, from the first system to the second.
+    Reprojecting(Box<Crs>, Box<Crs>),
+    /// A message about a transform: the operation and its accuracy.
+    Transform(String),
+    /// The gap between two files is far wider than any file.
+    FarApart(PathBuf, PathBuf, Quantity),
+    /// The breaklines are this far from all points.
+    BreaklinesApart(Quantity),
+    /// Breaklines reach this far beyond the points.
+    BreaklinesBeyond(Quantity),
+    /// Triangles at the rim with longer edges are left out.
+    EdgeLimit(Quantity),
+    /// No triangle at the rim is left out.
+    NoEdgeLimit,
+    /// Points are used up to this distance from the bounds; `None` if all points are used.
+    BoundsBuffer(Option<Quantity>),
+    /// The triangulation took this time.
+    Triangulated(Duration),
+    /// This many triangles within the bounds may depend on points further out than this distance.
+    Uncertain(usize, Quantity),
+    /// Crossings of breaklines were rounded.
+    CrossingsRounded {
+        /// The step of the grid that they were rounded to, in x and y.
+        unit: [Quantity; 2],
+        /// True if all vertices lie on that grid, so that no line moves by more than half a step on
+        /// each axis.
+        on_grid: bool,
+    },
+    /// Breaklines meet with different heights.
+    CrossingHeights {
+        /// The number of points where they do.
+        count: usize,
+        /// The largest difference.
+        largest: Quantity,
+        /// The point with the largest difference.
+        at: [f64; 2],
+        /// The first of these points, at most five.
+        first: Vec<CrossingNote>,
+    },
+    /// The default longest edge at the rim is far from the mean distance between points.
+    EdgeLimitUnusual {
+        /// The longest edge.
+        limit: Quantity,
+        /// The mean distance.
+        spacing: Quantity,
+    },
+    /// Points inside of closed breaklines of one height have other heights: the lines may be
+    /// shores.
+    LevelRings {
+        /// The number of such lines.
+        rings: usize,
+        /// The number of such points.
+        points: usize,
+        /// The line with the largest difference.
+        name: String,
+        /// That difference.
+        largest: Quantity,
+    },
+    /// The banks of a river contradict water: they rise downstream, or are not level across.
+    RiverHeights {
+        /// The number of such rivers; the rest is about the worst of them.
+        rivers: usize,
+        /// The river.
+        name: String,
+        /// The number of level lines at which the banks rise.
+        rising: usize,
+        /// How far they rise, at most.
+        largest_rise: Quantity,
+        /// Where they rise that far.
+        rise_at: [f64; 2],
+        /// The largest difference between the banks.
+        largest_difference: Quantity,
+        /// Where they differ that much.
+        difference_at: [f64; 2],
+    },
+    /// Rivers are lowered to others that join them, so that the water does not rise downstream.
+    RiversLowered {
+        /// The number of such rivers.
+        count: usize,
+        /// Those that are lowered most, at most five.
+        first: Vec<LoweredRiver>,
+    },
+    /// Rivers overlap themselves: what their banks enclose twice is not water.
+    RiverOverlap {
+        /// The number of such rivers; the rest is about the first of them.
+        rivers: usize,
+        /// The river.
+        name: String,
+        /// A position near which the banks meet.
+        at: [f64; 2],
+    },
+    /// Waters of different heights overlap or touch: the lower one counts there.
+    WaterOverlaps {
+        /// The number of pairs that do.
+        count: usize,
+        /// The pairs with the largest steps, at most five.
+        first: Vec<WaterStep>,
+    },
+    /// Vertices of walls do not have the heights of their walls, since water counts first.
+    WallsInWater {
+        /// The number of such vertices.
+        vertices: usize,
+        /// The wall of the first of them.
+        name: String,
+        /// The position of the first.
+        at: [f64; 2],
+    },
+    /// No line or area of a kind touches the surface.
+    LinesApart(LineRole),
+    /// The given extent of a raster does not touch the surface.
+    ExtentApart,
+    /// The default size of cells is used.
+    DefaultResolution(Quantity),
+    /// The default interval of contours is used.
+    DefaultInterval(Quantity),
+    /// Heights are multiplied by this, to match the units of the plane.
+    HeightFactor(f64),
+    /// The format does not store breaklines: the Delaunay law is not checked.
+    DelaunayUnchecked(PathBuf),
+    /// A file has largest areas of regions, but they were not requested.
+    RegionAreasUnused(PathBuf),
+    /// A hole or a region is not used.
+    SeedUnused {
+        /// The file.
+        path: PathBuf,
+        /// Its line in the file.
+        line: usize,
+        /// A hole or a region.
+        seed: Seed,
+        /// Why it is not used.
+        why: SeedFlaw,
+    },
+}
+
+/// Two lines that meet with different heights.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CrossingNote {
+    /// Where they meet.
+    pub at: [f64; 2],
+    /// The lowest height, and the line that has it.
+    pub low: (f64, String),
+    /// The highest height, and the line that has it.
+    pub high: (f64, String),
+    /// The height of the surface.
+    pub chosen: f64,
+}
+
+/// A river that is lowered to another one.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LoweredRiver {
+    /// The river.
+    pub name: String,
+    /// The other one.
+    pub to: String,
+    /// How far it is lowered, at most.
+    pub by: Quantity,
+    /// Where that is: from there on downstream.
+    pub from: [f64; 2],
+}
+
+/// A step between two waters that overlap or touch.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WaterStep {
+    /// The water whose height counts.
+    pub inner: String,
+    /// The river that goes on at another height outside of the overlap.
+    pub outer: String,
+    /// The difference.
+    pub step: Quantity,
+    /// Where it is.
+    pub at: [f64; 2],
+}
+
+/// A point of a `.poly` file that names an area.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Seed {
+    /// A hole.
+    Hole,
+    /// A region.
+    Region,
+}
+
+/// Why a hole or a region is not used.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SeedFlaw {
+    /// It lies on a segment, so that its side is ambiguous.
+    OnSegment,
+    /// It lies outside of the convex hull.
+    OutsideHull,
+}
+
+/// How much a notice matters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Severity {
+    /// A detail, for verbose output.
+    Detail,
+    /// A choice that was made for the user, or something worth knowing.
+    Note,
+    /// Something is probably not as intended.
+    Warning,
+}
+
+impl Notice {
+    /// Returns how much the notice matters.
+    pub fn severity(&self) -> Severity {
+        match self {
+            Notice::OfTask { severity, .. } => *severity,
+            Notice::Opened(..)
+            | Notice::WithoutClasses(_)
+            | Notice::LayerRead { .. }
+            | Notice::PointsRead(..)
+            | Notice::Triangulated(_)
+            | Notice::Uncertain(..) => Severity::Detail,
+            Notice::GroundUsed
+            | Notice::PointsWithoutClassUsed(_)
+            | Notice::Reassigned { .. }
+            | Notice::SystemOfOthers(..)
+            | Notice::NoSystem
+            | Notice::DifferentUnits(..)
+            | Notice::Reprojecting(..)
+            | Notice::BreaklinesBeyond(_)
+            | Notice::EdgeLimit(_)
+            | Notice::NoEdgeLimit
+            | Notice::BoundsBuffer(_)
+            | Notice::CrossingsRounded { .. }
+            | Notice::DefaultResolution(_)
+            | Notice::DefaultInterval(_)
+            | Notice::HeightFactor(_)
+            | Notice::DelaunayUnchecked(_) => Severity::Note,
+            Notice::Reader(..)
+            | Notice::Skipped { .. }
+            | Notice::LittleMemory { .. }
+            | Notice::OutputMayNotFit { .. }
+            | Notice::TasksMayNotFit { .. }
+            | Notice::NoPointUsed(..)
+            | Notice::NoPointOfClass(_)
+            | Notice::AllClassesUsed
+            | Notice::Transform(_)
+            | Notice::FarApart(..)
+            | Notice::BreaklinesApart(_)
+            | Notice::CrossingHeights { .. }
+            | Notice::EdgeLimitUnusual { .. }
+            | Notice::LevelRings { .. }
+            | Notice::RiverHeights { .. }
+            | Notice::RiversLowered { .. }
+            | Notice::RiverOverlap { .. }
+            | Notice::WaterOverlaps { .. }
+            | Notice::WallsInWater { .. }
+            | Notice::LinesApart(_)
+            | Notice::ExtentApart
+            | Notice::RegionAreasUnused(_)
+            | Notice::SeedUnused { .. } => Severity::Warning,
+        }
+    }
+}

@@ -1,0 +1,72 @@
+//! Vector layers: read, and reprojected to the coordinate system of the result.
+
+use std::borrow::Cow;
+use std::path::Path;
+
+use super::shapes::{self, Rings};
+use crate::data::Layer;
+use crate::error::{Result, Setting};
+use crate::io::Cut;
+use crate::run::context::Journal;
+use crate::run::context::notice::Notice;
+use crate::run::request::input::Input;
+use crate::run::sources::open;
+use crate::run::sources::transforms::Transforms;
+
+/// Layers, each with its path.
+pub(crate) type Layers<'a> = Vec<(&'a Path, Cow<'a, Layer>)>;
+
+/// Reads layers with these columns, and adds a notice about each layer.
+///
+/// # Errors
+/// If one cannot be read or lacks a column, or the run is canceled.
+pub(crate) fn read<'a>(
+    inputs: &'a [Input<Layer>],
+    columns: &[&str],
+    cut: Cut,
+    journal: &Journal,
+) -> Result<Layers<'a>> {
+    let mut layers = Vec::with_capacity(inputs.len());
+    for input in inputs {
+        journal.context.check()?;
+        let path = input.path();
+        let layer = open::layer_of(input, columns, cut, &journal.context).map_err(|e| e.in_file(path))?;
+        let (format, records) = (layer.format.clone(), layer.shapes.len());
+        journal.add(Notice::LayerRead { path: path.to_path_buf(), format, records });
+        journal.add_warnings(path, &layer.warnings);
+        layers.push((path, layer));
+    }
+    Ok(layers)
+}
+
+/// Returns the polygons of several layers of boundaries in the coordinate system of the result.
+///
+/// # Errors
+/// Those of [`polygons`].
+pub(crate) fn boundaries(boundary: &Layers, by_file: &[Option<usize>], transforms: &Transforms) -> Result<Vec<Rings>> {
+    let mut all = Vec::new();
+    for ((path, layer), transform) in boundary.iter().zip(by_file) {
+        all.extend(polygons(layer, path, Setting::Boundary, *transform, transforms)?);
+    }
+    Ok(all)
+}
+
+/// Returns the polygons of a layer in the coordinate system of the result.
+///
+/// # Errors
+/// If the layer has no polygon, or a polygon cannot be reprojected.
+pub(crate) fn polygons(
+    layer: &Layer,
+    path: &Path,
+    setting: Setting,
+    transform: Option<usize>,
+    transforms: &Transforms,
+) -> Result<Vec<Rings>> {
+    let mut polygons = shapes::polygons(layer, path, setting)?;
+    for ring in polygons.iter_mut().flatten() {
+        let mut points: Vec<[f64; 3]> = ring.iter().map(|p| [p[0], p[1], 0.0]).collect();
+        transforms.apply(transform, &mut points).map_err(|e| e.in_file(path))?;
+        *ring = points.into_iter().map(|p| [p[0], p[1]]).collect();
+    }
+    Ok(polygons)
+}

@@ -1,0 +1,221 @@
+//! Lines and polygons from vector layers.
+
+use std::path::Path;
+
+use super::rings;
+use crate::data::{Layer, Shape};
+use crate::error::{Error, Result, Setting, Wording, wording};
+
+/// The rings of a polygon, in plan.
+pub(crate) type Rings = Vec<Vec<[f64; 2]>>;
+
+/// A line of a layer, with its record and part.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Drawn {
+    /// The position of its record, counted from 0 like the feature ids of GIS.
+    pub(crate) fid: usize,
+    /// The number of the part or ring, counted from 1, if there are several.
+    pub(crate) part: Option<usize>,
+    pub(crate) points: Vec<[f64; 3]>,
+}
+
+/// Returns the lines of a layer and the rings of its polygons, each with a height at every vertex.
+///
+/// # Errors
+/// If there are none, a vertex has no height or a coordinate is not finite; the error names the
+/// record and the vertex, counted from 1.
+pub(crate) fn with_heights(layer: &Layer, path: &Path, setting: Setting) -> Result<Vec<Drawn>> {
+    read(layer, path, setting, |parts| check_heights(parts, layer, setting))
+}
+
+/// Returns the lines of a layer and the rings of its polygons, with or without heights.
+///
+/// # Errors
+/// If there are none, or a coordinate in plan is not finite.
+pub(crate) fn in_plan(layer: &Layer, path: &Path, setting: Setting) -> Result<Vec<Drawn>> {
+    read(layer, path, setting, |parts| parts.iter().try_for_each(|part| check_sites(part)))
+}
+
+fn read(
+    layer: &Layer,
+    path: &Path,
+    setting: Setting,
+    check: impl Fn(&[Vec<[f64; 3]>]) -> Result<()>,
+) -> Result<Vec<Drawn>> {
+    let mut lines = Vec::new();
+    for (record, shape) in (1..).zip(&layer.shapes) {
+        let parts = match shape {
+            Shape::Lines(parts) | Shape::Polygon(parts) => parts,
+            Shape::Null | Shape::Points(_) | Shape::Faces(_) => continue,
+        };
+        check(parts).map_err(|e| at_record(e, path, record))?;
+        lines.extend(drawn(parts, record - 1));
+    }
+    // An empty layer is fine, as of a tile without lakes; a layer of points, say, is a mistake.
+    if lines.is_empty() && !layer.shapes.is_empty() {
+        return Err(Error::format(format!("{} holds no lines and no polygons", kind_of(layer)))
+            .in_file(path)
+            .cure(wording![setting, " takes lines or polygons; points are inputs without an option"]));
+    }
+    Ok(lines)
+}
+
+/// Returns the polygons of a layer; its lines, if any, are joined to rings and form one more
+/// polygon.
+///
+/// # Errors
+/// If there are none, a coordinate is not finite, or the lines leave a gap.
+pub(crate) fn polygons(layer: &Layer, path: &Path, setting: Setting) -> Result<Vec<Rings>> {
+    let mut polygons = Vec::new();
+    let mut lines: Vec<Drawn> = Vec::new();
+    for (record, shape) in (1..).zip(&layer.shapes) {
+        let (Shape::Polygon(parts) | Shape::Lines(parts)) = shape else { continue };
+        for part in parts {
+            check_sites(part).map_err(|e| at_record(e, path, record))?;
+        }
+        match shape {
+            Shape::Polygon(_) => {
+                polygons.push(parts.iter().map(|ring| ring.iter().map(|p| [p[0], p[1]]).collect()).collect());
+            }
+            _ => lines.extend(drawn(parts, record - 1)),
+        }
+    }
+    if !lines.is_empty() {
+        let flat: Vec<Vec<[f64; 2]>> =
+            lines.iter().map(|line| line.points.iter().map(|p| [p[0], p[1]]).collect()).collect();
+        polygons.push(rings::close(&flat).map_err(|gap| at_record(gap.error(), path, lines[gap.line].fid + 1))?);
+    }
+    if polygons.is_empty() {
+        return Err(Error::format(format!("{} holds no polygons and no lines", kind_of(layer)))
+            .in_file(path)
+            .cure(wording![setting, " takes polygons, or lines that close"]));
+    }
+    Ok(polygons)
+}
+
+/// Returns the parts that are lines, with their numbers.
+fn drawn(parts: &[Vec<[f64; 3]>], fid: usize) -> impl Iterator<Item = Drawn> {
+    let is_one_of_many = parts.len() > 1;
+    let lines = (1..).zip(parts).filter(|(_, points)| points.len() > 1);
+    lines.map(move |(number, points)| Drawn { fid, part: is_one_of_many.then_some(number), points: points.clone() })
+}
+
+/// Returns an error if a coordinate in plan is not finite.
+fn check_sites(part: &[[f64; 3]]) -> Result<()> {
+    match part.iter().position(|p| !(p[0].is_finite() && p[1].is_finite())) {
+        Some(vertex) => Err(not_finite(part, vertex)),
+        None => Ok(()),
+    }
+}
+
+fn check_heights(parts: &[Vec<[f64; 3]>], layer: &Layer, setting: Setting) -> Result<()> {
+    let mut vertices = parts.iter().flatten().peekable();
+    if vertices.peek().is_some() && vertices.all(|p| p[2].is_nan()) {
+        return Err(Error::format("the line has no heights").cure(cure(layer, setting)));
+    }
+    for part in parts {
+        if let Some(vertex) = part.iter().position(|p| !p.iter().all(|value| value.is_finite())) {
+            return Err(not_finite(part, vertex));
+        }
+    }
+    Ok(())
+}
+
+fn cure(layer: &Layer, setting: Setting) -> Wording {
+    let instead = match setting {
+        Setting::Breaklines | Setting::SoftLines => wording![", or use ", Setting::DrapedLines],
+        Setting::Flat => wording![", or give it with ", Setting::FlatHeight],
+        _ => Wording::default(),
+    };
+    let attributes = match layer.fields.as_slice() {
+        [] => " (this layer has no attributes)".to_owned(),
+        fields => format!(" (the attributes are {})", fields.join(", ")),
+    };
+    let named = setting.text("FILE:FIELD");
+    wording!["name the attribute with the heights, ", named, " or FILE:LAYER:FIELD", instead, attributes]
+}
+
+#[cold]
+fn not_finite(part: &[[f64; 3]], vertex: usize) -> Error {
+    let [x, y, z] = part[vertex];
+    let number = vertex + 1;
+    if z.is_nan() && x.is_finite() && y.is_finite() {
+        return Error::format(format!("vertex {number} at {x} {y} has no height, though others have"))
+            .cure("add a height, or remove the record");
+    }
+    Error::format(format!("vertex {number} at {x} {y} {z}: expected finite coordinates"))
+        .cure("repair or remove the record")
+}
+
+pub(crate) fn at_record(error: Error, path: &Path, record: usize) -> Error {
+    error.in_file(path).at(format!("record {record}"))
+}
+
+fn kind_of(layer: &Layer) -> &str {
+    match layer.format.as_str() {
+        "" => "the layer",
+        format => format,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SETTING: Setting = Setting::Breaklines;
+
+    fn layer(shapes: Vec<Shape>) -> Layer {
+        Layer { shapes, fields: vec!["ELEV".to_owned()], ..Layer::default() }
+    }
+
+    #[test]
+    fn polygons_give_their_rings_and_null_shapes_nothing() {
+        let ring = vec![[0.0, 0.0, 1.0], [1.0, 0.0, 1.0], [0.0, 1.0, 1.0], [0.0, 0.0, 1.0]];
+        let line = vec![[5.0, 5.0, 1.0], [6.0, 5.0, 2.0]];
+        let shapes = vec![Shape::Polygon(vec![ring.clone()]), Shape::Null, Shape::Lines(vec![line.clone()])];
+        let drawn = |fid, points| Drawn { fid, part: None, points };
+        assert_eq!(with_heights(&layer(shapes), Path::new("l"), SETTING).unwrap(), [drawn(0, ring), drawn(2, line)]);
+    }
+
+    #[test]
+    fn parts_are_numbered_where_there_are_several() {
+        let part = |y: f64| vec![[0.0, y, 1.0], [1.0, y, 2.0]];
+        let shapes = vec![Shape::Lines(vec![part(0.0), vec![], part(1.0)])];
+        let lines = with_heights(&layer(shapes), Path::new("l"), SETTING).unwrap();
+        assert_eq!(lines.iter().map(|line| (line.fid, line.part)).collect::<Vec<_>>(), [(0, Some(1)), (0, Some(3))]);
+    }
+
+    #[test]
+    fn lines_without_heights_are_refused_with_the_cure() {
+        let flat = vec![[0.0, 0.0, f64::NAN], [1.0, 0.0, f64::NAN]];
+        let shapes = vec![Shape::Null, Shape::Lines(vec![flat])];
+        let error = with_heights(&layer(shapes), Path::new("l.shp"), SETTING).unwrap_err();
+        assert_eq!(error.to_string(), "l.shp: record 2: the line has no heights");
+        let cure = error.cure_text().unwrap().plain();
+        assert!(cure.contains("FILE:FIELD") && cure.contains("ELEV"), "{cure}");
+    }
+
+    #[test]
+    fn one_missing_height_is_refused_by_record_and_vertex() {
+        let line = vec![[0.0, 0.0, 1.0], [1.0, 0.0, f64::NAN]];
+        let error = with_heights(&layer(vec![Shape::Lines(vec![line])]), Path::new("l.shp"), SETTING).unwrap_err();
+        assert_eq!(error.to_string(), "l.shp: record 1: vertex 2 at 1 0 has no height, though others have");
+    }
+
+    #[test]
+    fn a_boundary_with_a_gap_names_the_record() {
+        let line = |x: f64| Shape::Lines(vec![vec![[x, 0.0, f64::NAN], [x + 1.0, 0.0, f64::NAN]]]);
+        let shapes = vec![line(0.0), Shape::Null, line(2.0)];
+        let error = polygons(&layer(shapes), Path::new("l.shp"), SETTING).unwrap_err();
+        let text = error.to_string();
+        assert!(text.starts_with("l.shp: record 1: the lines are not closed: one ends at 0 0, the next"), "{text}");
+    }
+
+    #[test]
+    fn a_layer_of_the_wrong_kind_is_refused() {
+        let points = layer(vec![Shape::Points(vec![[0.0; 3]])]);
+        assert!(with_heights(&points, Path::new("p"), SETTING).is_err());
+        assert!(in_plan(&points, Path::new("p"), SETTING).is_err());
+        assert!(polygons(&points, Path::new("p"), SETTING).is_err());
+    }
+}

@@ -1,0 +1,269 @@
+//! Rasters of a surface: heights and hillshades.
+
+use super::frame::{self, FrameOptions};
+use super::surface::{Model, SurfaceProduct};
+use crate::crs::Crs;
+use crate::data::{self, BlockSource, Frame, Grid, Surface, Window};
+use crate::error::{Error, Result, Setting, wording};
+use crate::io::geotiff::{self, CellFormat, RasterSummary, WriteOptions};
+use crate::io::{Destination, png};
+use crate::run::context::notice::Notice;
+use crate::run::context::watched::Watched;
+use crate::run::context::{Context, Journal, Size, Stage};
+use crate::terrain::{Dem, Hillshade, Light, Method};
+
+/// The light of a hillshade. By default it comes from the northwest, 45 degrees above the horizon.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct LightOptions {
+    /// The direction that the light comes from, in degrees clockwise from north.
+    pub azimuth: f64,
+    /// The angle of the light above the horizon, in degrees.
+    pub altitude: f64,
+    /// The factor for heights; if `None`, what converts them to the units of the plane.
+    pub z_factor: Option<f64>,
+}
+
+impl Default for LightOptions {
+    fn default() -> Self {
+        let Light { azimuth, altitude, .. } = Light::default();
+        LightOptions { azimuth, altitude, z_factor: None }
+    }
+}
+
+/// Options of a DEM.
+#[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
+pub struct DemOptions {
+    /// Size and position of the cells.
+    pub frame: FrameOptions,
+    /// How heights between the vertices are computed.
+    pub method: Method,
+}
+
+/// Options of a hillshade.
+#[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
+pub struct HillshadeOptions {
+    /// Size and position of the cells; a raster keeps its own.
+    pub frame: FrameOptions,
+    /// How heights between the vertices are computed; a raster has its heights.
+    pub method: Method,
+    /// The light.
+    pub light: LightOptions,
+}
+
+/// The cells of a raster. For a surface they are computed on demand, so that the raster may be
+/// larger than memory.
+pub struct CellProduct<'a> {
+    source: Box<dyn BlockSource + 'a>,
+    /// The triangles that cells are computed from; `None` for those of a TIN in parts, and for
+    /// cells of a raster.
+    surface: Option<&'a dyn Surface>,
+    cells: CellFormat,
+    /// What was assumed and what looks wrong, in the order in which it was found.
+    pub notices: Vec<Notice>,
+}
+
+/// Prepares a DEM: the heights of a surface at the centers of cells, NaN where there is none.
+///
+/// # Errors
+/// If the surface is a raster, the frame cannot be chosen (see [`FrameOptions`]), or the run is
+/// canceled.
+///
+/// # Complexity
+/// Linear in the triangles.
+pub fn dem<'a>(product: &'a SurfaceProduct, options: &DemOptions, context: &Context) -> Result<CellProduct<'a>> {
+    let journal = Journal::new(context);
+    let (source, surface) = heights(product, options, &journal)?;
+    Ok(CellProduct { source, surface, cells: CellFormat::Heights, notices: journal.take() })
+}
+
+/// Prepares a hillshade: whole numbers from 1 (dark) to 255 (facing the light), NaN where there is
+/// no height.
+///
+/// # Errors
+/// If the frame cannot be chosen, or is chosen for a raster, which keeps its own; if a number of
+/// the light is not finite, or the run is canceled.
+///
+/// # Complexity
+/// Linear in the triangles.
+pub fn hillshade<'a>(
+    product: &'a SurfaceProduct,
+    options: &HillshadeOptions,
+    context: &Context,
+) -> Result<CellProduct<'a>> {
+    let journal = Journal::new(context);
+    let (source, surface): (Box<dyn BlockSource>, _) = match &product.model {
+        Model::Raster(grid) => {
+            refuse_options(options)?;
+            (Box::new(grid.as_ref()), None)
+        }
+        Model::Tin(_) | Model::Mesh(_) | Model::Compact(_) | Model::Parts(_) => {
+            let heights_by = DemOptions { frame: options.frame.clone(), method: options.method };
+            heights(product, &heights_by, &journal)?
+        }
+    };
+    let shades = CellProduct::shades_of(source, &options.light, product.crs(), &journal)?;
+    Ok(CellProduct { surface, ..shades })
+}
+
+/// Heights, and the triangles that they are computed from unless these are in parts.
+type HeightSource<'a> = (Box<dyn BlockSource + 'a>, Option<&'a dyn Surface>);
+
+/// Returns the heights of a surface.
+fn heights<'a>(
+    product: &'a SurfaceProduct,
+    DemOptions { frame, method }: &DemOptions,
+    journal: &Journal,
+) -> Result<HeightSource<'a>> {
+    journal.context.check()?;
+    if let Model::Parts(parts) = &product.model
+        && *method == Method::Linear
+    {
+        let chosen = frame::over_extent(frame, product.extent(), product.crs(), journal)?;
+        frame::require_filled(frame, &chosen, &product.extent(), || parts.index().area)?;
+        return Ok((parts.dem(chosen)?, None));
+    }
+    let surface = product.triangles()?;
+    let frame = frame::choose(frame, surface, product.extent(), journal)?;
+    let dem = Dem::new(surface, frame)?;
+    journal.context.check()?;
+    Ok((Box::new(dem.with_method(*method)?), Some(surface)))
+}
+
+/// Returns an error if options are given that only a TIN has a use for.
+fn refuse_options(HillshadeOptions { frame, method, .. }: &HillshadeOptions) -> Result<()> {
+    if frame.resolution.is_some() || frame.extent.is_some() || frame.align_to.is_some() {
+        return Err(Error::usage(wording![
+            Setting::Resolution,
+            ", ",
+            Setting::Extent,
+            " and ",
+            Setting::AlignTo,
+            " are for a TIN; a DEM keeps its own cells"
+        ]));
+    }
+    if *method != Method::default() {
+        return Err(Error::usage(wording![
+            Setting::Method,
+            " is for a TIN; a DEM has a height in each of its cells already"
+        ])
+        .cure("leave it out, or pass points, a .tin or a .ply"));
+    }
+    Ok(())
+}
+
+fn light(options: &LightOptions, crs: Option<&Crs>, journal: &Journal) -> Light {
+    let z_factor = options.z_factor.unwrap_or_else(|| {
+        let factor = Light::for_crs(crs).z_factor;
+        if factor != 1.0 {
+            journal.add(Notice::HeightFactor(factor));
+        }
+        factor
+    });
+    Light { azimuth: options.azimuth, altitude: options.altitude, z_factor }
+}
+
+impl<'a> CellProduct<'a> {
+    /// Heights that were drawn already.
+    pub(crate) fn heights_of(source: Box<dyn BlockSource + 'a>) -> Self {
+        CellProduct { source, surface: None, cells: CellFormat::Heights, notices: Vec::new() }
+    }
+
+    /// The hillshade of heights that were drawn already.
+    pub(crate) fn shades_of(
+        source: Box<dyn BlockSource + 'a>,
+        options: &LightOptions,
+        crs: Option<&Crs>,
+        journal: &Journal,
+    ) -> Result<Self> {
+        let source = Box::new(Hillshade::new(source, light(options, crs, journal))?);
+        Ok(CellProduct { source, surface: None, cells: CellFormat::Shades, notices: journal.take() })
+    }
+
+    /// Returns the cells of a grid that is in memory, to be written as `cells`.
+    pub fn of_grid(grid: &'a Grid, cells: CellFormat) -> Self {
+        CellProduct { source: Box::new(grid), surface: None, cells, notices: Vec::new() }
+    }
+}
+
+impl CellProduct<'_> {
+    /// Returns about how many cells have a value; for a raster, the number of all cells.
+    ///
+    /// # Complexity
+    /// Linear in the triangles.
+    pub fn covered(&self) -> f64 {
+        let Frame { width, height, .. } = self.frame();
+        let all = width as f64 * height as f64;
+        self.surface.map_or(all, |surface| all.min(frame::cells_on(surface, &self.frame())))
+    }
+
+    /// Computes all cells, on all cores.
+    ///
+    /// # Errors
+    /// If they do not fit into memory, or the run is canceled.
+    pub fn collect(&self, context: &Context) -> Result<Grid> {
+        Grid::collect(&self.watched(context)?)
+    }
+
+    /// Computes all cells, on all cores, as they are written: in half the memory of a [`Grid`].
+    ///
+    /// # Errors
+    /// Those of [`collect`](Self::collect).
+    pub fn collect_cells(&self, context: &Context) -> Result<(Frame, Vec<f32>)> {
+        Ok((self.frame(), data::cells(&self.watched(context)?)?))
+    }
+
+    /// Computes all cells, on all cores, and writes them as GeoTIFF: heights as 32-bit floats,
+    /// shades as bytes.
+    ///
+    /// # Errors
+    /// If the file cannot be written, or the run is canceled.
+    pub fn write(&self, target: Destination, context: &Context) -> Result<RasterSummary> {
+        let cells = geotiff::cells_written(self.frame());
+        let work = context.start(self.stage(), Size::Items(cells))?;
+        let options = WriteOptions { cells: self.cells, watch: &|cells| work.add(cells) };
+        geotiff::write(target, self.source.as_ref(), options)
+    }
+
+    /// Computes all cells, on all cores, and writes them as a gray PNG, 0 to 255.
+    ///
+    /// # Errors
+    /// If the file cannot be written, or the run is canceled.
+    pub fn write_picture(&self, target: Destination, context: &Context) -> Result<()> {
+        png::write_gray(target, &self.watched(context)?)
+    }
+
+    fn watched<'b>(&'b self, context: &Context<'b>) -> Result<Watched<'b, dyn BlockSource + 'b>> {
+        Watched::cells(self.source.as_ref(), self.stage(), context)
+    }
+
+    fn stage(&self) -> Stage {
+        match self.cells {
+            CellFormat::Heights => Stage::WritingCells,
+            CellFormat::Shades => Stage::ShadingCells,
+        }
+    }
+}
+
+/// Reports no progress, and is not stopped when the run is canceled.
+impl BlockSource for CellProduct<'_> {
+    fn frame(&self) -> Frame {
+        self.source.frame()
+    }
+
+    fn crs(&self) -> Option<&Crs> {
+        self.source.crs()
+    }
+
+    fn fill(&self, window: Window, out: &mut [f32]) -> Result<()> {
+        self.source.fill(window, out)
+    }
+}
+
+impl std::fmt::Debug for CellProduct<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("CellProduct")
+            .field("frame", &self.frame())
+            .field("notices", &self.notices)
+            .finish_non_exhaustive()
+    }
+}

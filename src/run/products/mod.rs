@@ -1,0 +1,13 @@
+//! What verbs make: surfaces, and what is computed from them; points; facts.
+
+pub(crate) mod cells;
+pub(crate) mod check;
+pub(crate) mod contour;
+pub(crate) mod elevation;
+pub(crate) mod facts;
+pub(crate) mod frame;
+pub(crate) mod lattice;
+pub(crate) mod overlaps;
+pub(crate) mod points;
+pub(crate) mod surface;
+pub(crate) mod tin;

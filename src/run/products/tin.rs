@@ -1,0 +1,519 @@
+//! From the points and lines of a request to a TIN: what is read, in which coordinate system, with
+//! which defaults.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use crate::crs::Crs;
+use crate::data::{Bounds, Columns, Layer};
+use crate::error::{Command, Error, Result, Setting, Wording, wording};
+use crate::io::points;
+use crate::run::context::memory;
+use crate::run::context::notice::Notice;
+use crate::run::context::units::Units;
+use crate::run::context::{Journal, Size, Stage};
+use crate::run::lines::crossings::{self, LineNames};
+use crate::run::lines::inputs::{Added, LineLayers, WALL_WIDTH_METRES};
+use crate::run::lines::notes::{self, LevelRings, LineInput};
+use crate::run::request::input::{Input, MemoryPoints};
+use crate::run::request::lines::{LineRequest, LineRole};
+use crate::run::request::serialized;
+use crate::run::sources::extents;
+use crate::run::sources::open::{self, Content, content};
+use crate::run::sources::point_files::PointFiles;
+use crate::run::sources::systems::{self, SystemOptions, Systems};
+use crate::run::sources::transforms::Transforms;
+use crate::terrain::{
+    Classes, CrossingRule, DuplicateRule, Selection, SelectionReport, Tin, TinBuilder, TinReport, Window,
+};
+use crate::triangulation::OnCrossing;
+
+/// The default longest edge at the rim, and width of the buffer around bounds.
+const DEFAULT_MAX_EDGE_METRES: f64 = 100.0;
+
+/// The default tolerance of heights where breaklines meet: the accuracy of a survey of edges.
+const DEFAULT_CROSSING_TOLERANCE_METRES: f64 = 0.01;
+
+/// The points and lines that a TIN is built from, and the options of building it. Lengths are in
+/// the units of the coordinate system of the result, heights in its units of heights.
+///
+/// The default has no input, and these options: ground points are used (class 2; all points if no
+/// point has it), triangles at the rim with edges over 100 metres are left out, the lowest of
+/// several heights is used, and breaklines are split where they cross.
+#[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
+pub struct TinRequest {
+    /// The points. Their order makes no difference, except for [`DuplicateRule::First`] and `Last`.
+    pub points: Vec<Input<MemoryPoints>>,
+    /// Options of reading files of points.
+    pub read: points::Options,
+    /// The classes to use. Points that are flagged as withheld are never used.
+    pub classes: Classes,
+    /// Lines with heights that the surface must follow; of polygons, the rings are used. At the
+    /// vertices of a breakline its heights are used, not those of points.
+    pub breaklines: Vec<Input<Layer>>,
+    /// Polygons that the finished surface is cut to; what is inside any of them is kept. The lines
+    /// of a layer count as one polygon if they close to rings.
+    pub boundary: Vec<Input<Layer>>,
+    /// Lines and areas of other kinds.
+    pub lines: LineRequest,
+    /// A box that the finished surface is cut to; its heights are ignored. Points around it are
+    /// used, too, so far out that the surface inside is the same as with all points.
+    #[serde(with = "serialized::in_plan")]
+    pub bounds: Option<Bounds>,
+    /// Triangles at the rim with longer edges are left out.
+    pub max_edge: EdgeLimit,
+    /// Triangles with an unconstrained edge longer than this are left out wherever they are, except
+    /// in water.
+    pub max_edge_inside: Option<f64>,
+    /// What becomes of the points that water and walls replace.
+    pub replaced: ReplacedPoints,
+    /// Which height is used where points have the same position.
+    pub duplicates: DuplicateRule,
+    /// What to do where breaklines cross between their vertices.
+    #[serde(with = "serialized::Crossing")]
+    pub on_crossing: OnCrossing,
+    /// Which height is used where breaklines cross between their vertices.
+    pub crossing_heights: CrossingRule,
+    /// The largest difference of heights at which no notice is given where breaklines meet. `None`
+    /// is 0.01 metres, or 0.01 units if the unit is not known.
+    pub crossing_tolerance: Option<f64>,
+}
+
+/// What becomes of the points that water and walls replace.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+pub enum ReplacedPoints {
+    /// They are only counted.
+    #[default]
+    Drop,
+    /// They are part of the report.
+    Keep,
+}
+
+impl TinRequest {
+    /// Calls a function with the name of each file of points, lines and areas.
+    pub(crate) fn each_file(&mut self, visit: &mut dyn FnMut(&mut PathBuf)) {
+        Input::each_file(&mut self.points, visit);
+        Input::each_file(&mut self.breaklines, visit);
+        self.lines.each_file(visit);
+        Input::each_file(&mut self.boundary, visit);
+    }
+
+    /// Returns an error unless the bounds contain an area.
+    ///
+    /// # Errors
+    /// Names the bounds.
+    pub(crate) fn check_bounds(&self) -> Result<()> {
+        match self.bounds {
+            Some(Bounds { min, max })
+                if !(0..2).all(|i| min[i] < max[i] && min[i].is_finite() && max[i].is_finite()) =>
+            {
+                Err(Error::usage(format!("the bounds go from {} {} to {} {}", min[0], min[1], max[0], max[1])))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Returns an error if a file that is given as a layer is known to be of a kind without lines
+    /// or polygons, such as a raster.
+    ///
+    /// # Errors
+    /// Names the file and its kind.
+    pub fn check_layers(&self) -> Result<()> {
+        let takes = |role: LineRole, what: &str| wording![role.setting(), format!(" takes {what}")];
+        refuse_other_kinds(takes(LineRole::Breaklines, "lines or polygons"), &self.breaklines)?;
+        for (role, inputs) in self.lines.inputs() {
+            let what = if role == LineRole::Holes { "polygons or closed lines" } else { "lines or polygons" };
+            refuse_other_kinds(takes(role, what), inputs)?;
+        }
+        refuse_other_kinds(takes(LineRole::Boundary, "polygons or closed lines"), &self.boundary)
+    }
+}
+
+fn refuse_other_kinds(wanted: Wording, layers: &[Input<Layer>]) -> Result<()> {
+    for layer in layers {
+        let Input::File(path) = layer else { continue };
+        let what = match content(path) {
+            Content::Raster => "a raster",
+            Content::Mesh => "a mesh",
+            Content::Picture => "a picture",
+            Content::Plane => "a file of Triangle's",
+            Content::Points if open::is_lidar(path) => "lidar points",
+            Content::Points | Content::Layer => continue,
+        };
+        return Err(Error::usage(wording![wanted, format!(", this is {what}")]).in_file(path));
+    }
+    Ok(())
+}
+
+/// The longest edge that a triangle at the rim may have in plan. Triangles that can be reached from
+/// outside across longer edges are left out; breaklines are not crossed.
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
+pub enum EdgeLimit {
+    /// 100 metres, in units of the coordinate system; 100 units if none is known.
+    #[default]
+    Standard,
+    /// No limit: the whole convex hull is kept.
+    Unlimited,
+    /// 100 times the mean distance between points, from the number of all points and the extents of
+    /// all inputs.
+    Auto,
+    /// This length, in the units of the coordinate system.
+    Length(f64),
+}
+
+impl EdgeLimit {
+    /// Returns the length in the units of the coordinate system. `None` means that there is no
+    /// limit, or that it is derived from the points.
+    pub(crate) fn length(self, units: &Units) -> Option<f64> {
+        match self {
+            EdgeLimit::Unlimited | EdgeLimit::Auto => None,
+            EdgeLimit::Length(length) => Some(length),
+            EdgeLimit::Standard => Some(units.of_metres(DEFAULT_MAX_EDGE_METRES)),
+        }
+    }
+
+    /// Returns the notice about the limit.
+    pub(crate) fn notice(self, units: &Units) -> Notice {
+        note_of_limit(self.length(units), units)
+    }
+
+    /// Returns how far outside of bounds points are used at first, and how far lines may reach
+    /// beyond the points without a notice.
+    pub(crate) fn buffer(self, units: &Units) -> f64 {
+        self.length(units).unwrap_or_else(|| units.of_metres(DEFAULT_MAX_EDGE_METRES))
+    }
+
+    /// Returns a notice if the default looks wrong for points with this mean distance.
+    pub(crate) fn unusual(self, spacing: Option<f64>, units: &Units) -> Option<Notice> {
+        let (EdgeLimit::Standard, Some(limit), Some(spacing)) = (self, self.length(units), spacing) else {
+            return None;
+        };
+        let is_usual = USUAL_SPACINGS.contains(&(limit / spacing));
+        (!is_usual).then(|| Notice::EdgeLimitUnusual { limit: units.length(limit), spacing: units.length(spacing) })
+    }
+}
+
+/// Returns the mean distance between points, from the number of all points and the extents of all
+/// inputs; `None` if these have no area.
+pub(crate) fn mean_distance(read: u64, extents: impl IntoIterator<Item = Bounds>) -> Option<f64> {
+    let area = |b: Bounds| if b.is_empty() { 0.0 } else { (b.max[0] - b.min[0]) * (b.max[1] - b.min[1]) };
+    let area: f64 = extents.into_iter().map(area).sum();
+    Some((area / read as f64).sqrt()).filter(|spacing| spacing.is_normal())
+}
+
+fn note_of_limit(limit: Option<f64>, units: &Units) -> Notice {
+    limit.map_or(Notice::NoEdgeLimit, |length| Notice::EdgeLimit(units.length(length)))
+}
+
+/// The report of a TIN that was built: its input and what was done with it.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct BuildReport {
+    /// The number of sources of points.
+    pub sources: usize,
+    /// How many points were used, and why others were not.
+    pub points: SelectionReport,
+    /// The columns used of text files, each with the number of files.
+    pub columns: Vec<(Columns, u64)>,
+    /// The inputs of lines and areas, with what became of them.
+    pub lines: Vec<LineInput>,
+    /// The points that water and walls replaced, if they were to be kept.
+    pub replaced: Vec<[f64; 3]>,
+    /// Counts of the TIN and of what was left out of it.
+    pub tin: TinReport,
+    /// The rule for points with the same position.
+    pub duplicates: DuplicateRule,
+    /// Names of the breaklines, by their positions in [`TinReport::crossing_heights`].
+    pub line_names: LineNames,
+}
+
+impl BuildReport {
+    /// Writes a comma separated table of the points that water and walls replaced. Numbers are
+    /// written such that reading them gives the same doubles.
+    ///
+    /// # Errors
+    /// If `out` cannot be written to.
+    pub fn write_replaced(&self, out: &mut impl Write) -> std::io::Result<()> {
+        writeln!(out, "x,y,z")?;
+        self.replaced.iter().try_for_each(|[x, y, z]| writeln!(out, "{x},{y},{z}"))
+    }
+}
+
+/// Reads the points and lines of a request and builds the TIN.
+pub(crate) fn build(request: &TinRequest, options: &SystemOptions, journal: &Journal) -> Result<(Tin, BuildReport)> {
+    request.check_bounds()?;
+    request.check_layers()?;
+    let mut files = PointFiles::open(&request.points, request.read, journal)?;
+    let layers = LineLayers::read(&request.lines, &request.breaklines, &request.boundary, request.read.cut, journal)?;
+
+    let mut stated = files.stated(&request.classes, journal)?;
+    stated.extend(layers.stated());
+    let Systems { from, crs } = systems::reconcile_some(&stated, options, journal)?;
+    let transforms = Transforms::new(&from, crs.as_ref(), journal)?;
+    let (of_points, of_layers) = transforms.by_file.split_at(files.len());
+
+    let units = Units::of(crs.as_ref());
+    let mut builder = builder_of(request, &units, crs);
+    let mut rim = Rim::new(request, &units, journal);
+
+    // Lines first: they are few, and their errors are known before the points are read.
+    let Added { names, mut inputs, extent: line_extent, mut level_rings, uneven, lowered, overlaps } =
+        layers.add_to(&mut builder, of_layers, &transforms, &units)?;
+    notes::note_uneven(&uneven, &units, journal);
+    notes::note_lowered(lowered, journal);
+    notes::note_overlaps(&overlaps, journal);
+    builder.mark_overlaps();
+
+    let paths: Vec<&Path> = request.points.iter().map(Input::path).collect();
+    let mut reach = Reach::new(request, &rim);
+    let (tin, points, replaced) = loop {
+        let mut selection = Selection::new(request.classes.clone(), reach.window());
+        let extents = files.read(of_points, &transforms, &mut selection, journal)?;
+        extents::compare_files(&paths, &extents, &units, journal);
+        let (points, report) = selection.finish();
+        transforms.warn(journal);
+        note_classes(&report, &request.classes, journal);
+        if points.is_empty() && !layers.has_lines_with_heights() && !reach.may_grow_into(&report) {
+            return Err(nothing_left(&report, &paths));
+        }
+        if request.bounds.is_none() && !layers.has_boundary() {
+            let mut extent = Bounds::default();
+            points.iter().for_each(|&point| extent.add(point));
+            extents::compare_lines(&extent, &line_extent, rim.buffer, &units).into_iter().for_each(|n| journal.add(n));
+        }
+        memory::require_for_points(points.len())?;
+        rim.find_limit(&report, &extents);
+        // Once, also if more points are read.
+        let rings = std::mem::take(&mut level_rings);
+        if let Some(rings) = LevelRings::of(rings, &request.lines, default_tolerance(&units)) {
+            let mut found = rings.none_found();
+            rings.count(&points, &mut found);
+            rings.notice(&found, &names, &units).into_iter().for_each(|notice| journal.add(notice));
+        }
+        let mut builder = builder.clone();
+        builder.max_edge = rim.max_edge;
+        builder.window = reach.window().map(|read| Window { read, all: report.extent });
+        builder.add_owned_points(points);
+        let replaced = builder.take_replaced_points();
+        let work = journal.start(Stage::Triangulating, Size::Uncounted)?;
+        let start = Instant::now();
+        let tin = builder.build_named(&|line| names.name(line), journal.context.cancel);
+        work.end()?;
+        journal.add(Notice::Triangulated(start.elapsed()));
+        match tin {
+            Ok(tin) if tin.report().uncertain == 0 => break (tin, report, replaced),
+            Ok(tin) => journal.add(Notice::Uncertain(tin.report().uncertain, units.length(reach.buffer))),
+            // Too few points are an error only if there are no more to add.
+            Err(_) if reach.may_grow_into(&report) => (),
+            Err(error) => {
+                return Err(match paths.as_slice() {
+                    [file] if !layers.has_lines_with_heights() => error.in_file(file),
+                    _ => error,
+                });
+            }
+        }
+        reach.grow();
+    };
+    notes::count_edges(&mut inputs, &tin);
+    notes::note_water_overlaps(tin.report(), &names, &units, journal);
+    notes::note_walls_in_water(tin.report(), &names, journal);
+    if request.bounds.is_none() && !layers.has_boundary() {
+        notes::note_apart(&inputs, tin.report(), journal);
+    }
+    rim.note(&units, journal);
+    reach.note(&points, &units, journal);
+    crossings::note(tin.report(), &names, &units, journal);
+    if tin.report().triangles == 0 {
+        return Err(no_triangle(tin.report(), &rim, &units));
+    }
+    let report = BuildReport {
+        sources: request.points.len(),
+        points,
+        columns: files.columns(),
+        lines: inputs,
+        replaced: match request.replaced {
+            ReplacedPoints::Keep => {
+                let is_within = |p: &[f64; 3]| request.bounds.as_ref().is_none_or(|bounds| bounds.holds(p[0], p[1]));
+                replaced.into_iter().filter(is_within).collect()
+            }
+            ReplacedPoints::Drop => Vec::new(),
+        },
+        tin: tin.report().clone(),
+        duplicates: request.duplicates,
+        line_names: names,
+    };
+    Ok((tin, report))
+}
+
+/// Returns a builder with the options of a request, without points and lines.
+pub(crate) fn builder_of(request: &TinRequest, units: &Units, crs: Option<Crs>) -> TinBuilder {
+    let mut builder = TinBuilder::default();
+    builder.duplicates = request.duplicates;
+    builder.on_crossing = request.on_crossing;
+    builder.crossing_heights = request.crossing_heights;
+    builder.crossing_tolerance = request.crossing_tolerance.unwrap_or_else(|| default_tolerance(units));
+    builder.step_width = Some(units.of_metres(WALL_WIDTH_METRES));
+    builder.max_edge_inside = request.max_edge_inside;
+    builder.bounds = request.bounds.map(|bounds| grown(bounds, 0.0));
+    builder.crs = crs;
+    builder
+}
+
+pub(crate) fn default_tolerance(units: &Units) -> f64 {
+    units.height_of_metres(DEFAULT_CROSSING_TOLERANCE_METRES)
+}
+
+/// Returns a box enlarged by a length on all sides in plan, and unbounded in z.
+fn grown(Bounds { min, max }: Bounds, by: f64) -> Bounds {
+    Bounds { min: [min[0] - by, min[1] - by, f64::NEG_INFINITY], max: [max[0] + by, max[1] + by, f64::INFINITY] }
+}
+
+/// How many mean distances between points the longest edge at the rim has with
+/// [`EdgeLimit::Auto`]. In real ground points, the largest empty disks inside of an area have radii
+/// of 60 to 80 mean distances: under buildings and over water.
+const AUTO_EDGE_SPACINGS: f64 = 100.0;
+
+/// The default longest edge looks wrong if it is less than so many, or more than so many, mean
+/// distances between points.
+const USUAL_SPACINGS: std::ops::Range<f64> = 10.0..1000.0;
+
+/// The limits of the surface where nothing was measured.
+struct Rim {
+    limit: EdgeLimit,
+    max_edge: Option<f64>,
+    buffer: f64,
+    /// The mean distance between points, if there are any.
+    spacing: Option<f64>,
+}
+
+impl Rim {
+    fn new(request: &TinRequest, units: &Units, journal: &Journal) -> Self {
+        let limit = request.max_edge;
+        let rim = Rim { limit, max_edge: limit.length(units), buffer: limit.buffer(units), spacing: None };
+        if rim.limit != EdgeLimit::Auto {
+            rim.note_limit(units, journal);
+        }
+        rim
+    }
+
+    fn note_limit(&self, units: &Units, journal: &Journal) {
+        journal.add(note_of_limit(self.max_edge, units));
+    }
+
+    /// Finds the mean distance between points, and the limit that follows from it.
+    fn find_limit(&mut self, report: &SelectionReport, extents: &[Bounds]) {
+        self.spacing = mean_distance(report.read, extents.iter().copied());
+        if self.limit == EdgeLimit::Auto {
+            self.max_edge = self.spacing.map(|spacing| AUTO_EDGE_SPACINGS * spacing);
+        }
+    }
+
+    /// Adds a notice about a limit that was found, and about a default that looks wrong.
+    fn note(&self, units: &Units, journal: &Journal) {
+        if self.limit == EdgeLimit::Auto {
+            self.note_limit(units, journal);
+        }
+        self.limit.unusual(self.spacing, units).into_iter().for_each(|notice| journal.add(notice));
+    }
+}
+
+/// The buffer outside of the bounds in which points are used, so wide that the surface inside the
+/// bounds is the same as with all points.
+struct Reach {
+    bounds: Option<Bounds>,
+    buffer: f64,
+}
+
+impl Reach {
+    fn new(request: &TinRequest, rim: &Rim) -> Self {
+        let is_read_once = request.points.iter().any(Input::is_read_once);
+        Reach { bounds: request.bounds, buffer: if is_read_once { f64::INFINITY } else { rim.buffer } }
+    }
+
+    /// Returns the box in which points are used.
+    fn window(&self) -> Option<Bounds> {
+        self.bounds.map(|bounds| grown(bounds, self.buffer))
+    }
+
+    /// Returns true if some points were not used and the bounds overlap the extent of all points: a
+    /// wider buffer may then contain more.
+    fn may_grow_into(&self, report: &SelectionReport) -> bool {
+        let all = &report.extent;
+        self.bounds.is_some_and(|bounds| {
+            let is_apart = |k: usize| bounds.min[k] > all.max[k] || bounds.max[k] < all.min[k];
+            report.outside > 0 && !is_apart(0) && !is_apart(1)
+        })
+    }
+
+    fn grow(&mut self) {
+        self.buffer *= 2.0;
+    }
+
+    fn note(&self, report: &SelectionReport, units: &Units, journal: &Journal) {
+        if self.bounds.is_some() {
+            let buffer = Some(units.length(self.buffer)).filter(|_| report.outside > 0);
+            journal.add(Notice::BoundsBuffer(buffer));
+        }
+    }
+}
+
+fn note_classes(report: &SelectionReport, wanted: &Classes, journal: &Journal) {
+    if let Classes::Only(classes) = wanted {
+        for class in classes.iter().filter(|class| !report.by_class.contains_key(class)) {
+            journal.add(Notice::NoPointOfClass(*class));
+        }
+    } else if report.classes.is_some() {
+        journal.add(Notice::GroundUsed);
+        if report.without_class > 0 {
+            journal.add(Notice::PointsWithoutClassUsed(report.without_class));
+        }
+    } else if !report.by_class.is_empty() {
+        journal.add(Notice::AllClassesUsed);
+    }
+}
+
+#[cold]
+fn no_triangle(report: &TinReport, rim: &Rim, units: &Units) -> Error {
+    let TinReport { faces_beyond_max_edge: long, faces_clipped: clipped, .. } = report;
+    match rim.max_edge {
+        Some(length) if *long > 0 => {
+            let length = units.length(length);
+            Error::format(format!(
+                "no triangle is left: {long} have edges over {length} at the rim, {clipped} are clipped"
+            ))
+            .cure(wording![
+                "allow longer edges with ",
+                Setting::MaxEdge.number("LENGTH"),
+                " or ",
+                Setting::MaxEdge.text("none")
+            ])
+        }
+        _ => Error::format(format!("no triangle is left: {clipped} lie outside of the boundary or the bounds"))
+            .cure(wording![Command::Info, " shows the extent of each file"]),
+    }
+}
+
+#[cold]
+fn nothing_left(report: &SelectionReport, files: &[&Path]) -> Error {
+    let SelectionReport { read, withheld, other_class, outside, .. } = report;
+    let named = |error: Error| match files {
+        [file] => error.in_file(file),
+        _ => error,
+    };
+    if *read == 0 {
+        return named(Error::format("no points in the input").cure("pass files that contain points"));
+    }
+    let error = named(Error::format(format!(
+        "no point is left of {read} read: {withheld} withheld, {other_class} of other classes, {outside} outside of the bounds"
+    )));
+    if *outside > 0 {
+        return error.cure(wording!["compare ", Setting::Bounds, " with the extent that ", Command::Info, " shows"]);
+    }
+    if *other_class > 0 {
+        let classes: Vec<String> = report.by_class.keys().map(u8::to_string).collect();
+        return error
+            .cure(wording![format!("the points have class {}: choose with ", classes.join(", ")), Setting::Class]);
+    }
+    error.cure("withheld points are never used: clear the withheld flag on points that should be used")
+}

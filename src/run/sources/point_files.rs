@@ -1,0 +1,256 @@
+//! Files of points: opened, then asked for their coordinate systems, then read.
+
+use super::open;
+use super::systems::Stated;
+use super::transforms::Transforms;
+use crate::data::{Bounds, Columns, PointBatch, PointSource};
+use crate::error::{Error, Kind, Result, Setting, wording};
+use crate::io::points::Options;
+use crate::run::context::memory;
+use crate::run::context::notice::Notice;
+use crate::run::context::{Context, Journal, Size, Stage};
+use crate::run::request::input::{Input, MemoryPoints};
+use crate::terrain::{Classes, Selection};
+
+/// The class of ground points in LAS.
+pub(crate) const GROUND: u8 = 2;
+
+/// If there are more files than this, they are not kept open but opened a second time.
+pub(crate) const FILES_KEPT_OPEN: usize = 100;
+
+/// The free memory is checked each time that this many further points are to be used.
+pub(crate) const ASK_EVERY: usize = 1 << 20;
+
+/// What becomes of files that cannot be read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+pub enum BadFiles {
+    /// They are an error.
+    #[default]
+    Refuse,
+    /// They leave a hole, and are reported.
+    Skip,
+}
+
+impl BadFiles {
+    /// Returns true if a file is skipped that cannot be read for this reason. What the caller asks
+    /// for is never skipped, nor is a file that has changed meanwhile.
+    pub(crate) fn skips(self, error: &Error) -> bool {
+        let is_of_file = matches!(error.kind(), Kind::Format | Kind::Unsupported | Kind::Limit | Kind::Io);
+        self == BadFiles::Skip && is_of_file
+    }
+}
+
+/// A file of points.
+struct PointFile {
+    input: Input<MemoryPoints>,
+    stated: Stated,
+    source: Option<Box<dyn PointSource + Send>>,
+    count: Option<u64>,
+    bounds: Option<Bounds>,
+    has_classes: bool,
+    columns: Option<Columns>,
+}
+
+impl PointFile {
+    /// Returns true if the file has a point of these classes. Reads until one is found.
+    fn has_any(&self, options: Options, classes: &Classes, journal: &Journal) -> Result<bool> {
+        let path = self.input.path();
+        let mut source = self.reopen(options, &journal.context)?;
+        let mut selection = Selection::new(classes.clone(), None);
+        let mut batch = PointBatch::default();
+        loop {
+            journal.context.check()?;
+            source.read(&mut batch).map_err(|e| e.in_file(path))?;
+            selection.add(&batch).map_err(|e| e.in_file(path))?;
+            if batch.is_empty() || selection.report().used > 0 {
+                return Ok(!batch.is_empty());
+            }
+        }
+    }
+
+    fn reopen(&self, options: Options, context: &Context) -> Result<Box<dyn PointSource + Send>> {
+        open::points(&self.input, options, context).map_err(|e| e.in_file(self.input.path()))
+    }
+}
+
+/// The files of points of a run.
+pub(crate) struct PointFiles {
+    files: Vec<PointFile>,
+    options: Options,
+    bad: BadFiles,
+}
+
+impl PointFiles {
+    /// Opens all files and adds a notice about the format of each.
+    pub(crate) fn open(inputs: &[Input<MemoryPoints>], options: Options, journal: &Journal) -> Result<Self> {
+        let mut files = Vec::with_capacity(inputs.len());
+        for input in inputs {
+            let path = input.path();
+            let source = open::points(input, options, &journal.context).map_err(|e| e.in_file(path))?;
+            let info = source.info();
+            journal.add(Notice::Opened(path.to_path_buf(), info.format.clone()));
+            journal.add_warnings(path, &info.warnings);
+            if !info.has_classes && inputs.len() > 1 {
+                journal.add(Notice::WithoutClasses(path.to_path_buf()));
+            }
+            let stated = Stated::by_points(path, info);
+            let (count, bounds, columns) = (info.count, info.bounds, info.columns);
+            let keep = inputs.len() <= FILES_KEPT_OPEN || input.is_read_once();
+            let has_classes = info.has_classes;
+            let (input, source) = (input.clone(), Some(source).filter(|_| keep));
+            files.push(PointFile { input, stated, count, bounds, has_classes, columns, source });
+        }
+        if options.columns.is_some() && files.iter().all(|file| file.columns.is_none()) {
+            return Err(Error::usage(wording![
+                Setting::Columns,
+                " and ",
+                Setting::Parse,
+                " name columns of text, but no input is text"
+            ]));
+        }
+        Ok(PointFiles { files, options, bad: BadFiles::Refuse })
+    }
+
+    /// Decides what becomes of files whose points turn out to be damaged while something is looked
+    /// for in them.
+    pub(crate) fn with_bad(self, bad: BadFiles) -> Self {
+        PointFiles { bad, ..self }
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.files.len()
+    }
+
+    /// Returns true if the points of any file have classes.
+    pub(crate) fn have_classes(&self) -> bool {
+        self.files.iter().any(|file| file.has_classes)
+    }
+
+    /// Returns the coordinate system of each file; `None` for one of several files that has no
+    /// point to use.
+    ///
+    /// To find out, files that state different systems are read until a point is found that is
+    /// used.
+    ///
+    /// # Errors
+    /// If a file cannot be read.
+    pub(crate) fn stated(&self, classes: &Classes, journal: &Journal) -> Result<Vec<Option<Stated>>> {
+        let mut stated: Vec<Option<Stated>> = self.files.iter().map(|file| Some(file.stated.clone())).collect();
+        let is_one = self.files.iter().all(|file| file.stated.agrees_with(&self.files[0].stated));
+        // A pipe can be read only once.
+        if is_one || self.files.iter().any(|file| file.input.is_read_once()) {
+            return Ok(stated);
+        }
+        let (wanted, or_all) = match classes {
+            Classes::GroundOrAll => (Classes::Only(vec![GROUND]), true),
+            only => (only.clone(), false),
+        };
+        let mut has_wanted = false;
+        for (file, stated) in self.files.iter().zip(&mut stated) {
+            match file.has_any(self.options, &wanted, journal) {
+                Ok(true) => has_wanted |= file.has_classes,
+                Ok(false) => *stated = None,
+                // Once it is repaired its points are used: its system counts.
+                Err(error) if self.bad.skips(&error) => {}
+                Err(error) => return Err(error),
+            }
+        }
+        if or_all && !has_wanted {
+            stated = self.files.iter().map(|file| Some(file.stated.clone())).collect();
+        }
+        Ok(stated)
+    }
+
+    /// Returns the number of points and the box around them that each file states, as far as it
+    /// does.
+    pub(crate) fn stated_extents(&self) -> impl Iterator<Item = (Option<u64>, Option<Bounds>)> + '_ {
+        self.files.iter().map(|file| (file.count, file.bounds))
+    }
+
+    /// Returns the classes that are used, without a default that depends on the points: for
+    /// [`Classes::GroundOrAll`], files are read until a ground point is found.
+    ///
+    /// # Errors
+    /// If a file cannot be read.
+    pub(crate) fn used_classes(&self, classes: &Classes, journal: &Journal) -> Result<Vec<u8>> {
+        if let Classes::Only(classes) = classes {
+            return Ok(classes.clone());
+        }
+        let ground = Classes::Only(vec![GROUND]);
+        for file in self.files.iter().filter(|file| file.has_classes) {
+            match file.has_any(self.options, &ground, journal) {
+                Ok(true) => return Ok(vec![GROUND]),
+                Ok(false) => {}
+                Err(error) if self.bad.skips(&error) => {}
+                Err(error) => return Err(error),
+            }
+        }
+        Ok((0..=u8::MAX).collect())
+    }
+
+    /// Returns the columns used of text files, each with the number of files.
+    pub(crate) fn columns(&self) -> Vec<(Columns, u64)> {
+        let mut counts: Vec<(Columns, u64)> = Vec::new();
+        for columns in self.files.iter().filter_map(|file| file.columns) {
+            match counts.iter_mut().find(|(known, _)| *known == columns) {
+                Some((_, count)) => *count += 1,
+                None => counts.push((columns, 1)),
+            }
+        }
+        counts
+    }
+
+    /// Reads all files and adds their points, in the coordinate system of the result, to the
+    /// selection. Returns the extents of the files.
+    pub(crate) fn read(
+        &mut self,
+        by_file: &[Option<usize>],
+        transforms: &Transforms,
+        selection: &mut Selection,
+        journal: &Journal,
+    ) -> Result<Vec<Bounds>> {
+        let length = self.files.iter().map(|file| file.count).sum::<Option<u64>>();
+        if let Some(excess) = length.and_then(memory::excess_of) {
+            journal.add(excess);
+        }
+        let mut asked = 0;
+        let progress = journal.start(Stage::ReadingPoints, length.map_or(Size::Unknown, Size::Items))?;
+        let mut batch = PointBatch::default();
+        let mut extents = Vec::new();
+        let are_several = self.files.len() > 1;
+        for (file, transform) in self.files.iter_mut().zip(by_file) {
+            let source = file.source.take();
+            let path = file.input.path();
+            let mut source = source.map_or_else(|| file.reopen(self.options, &journal.context), Ok)?;
+            selection.next_source();
+            let mut count = 0;
+            let mut extent = Bounds::default();
+            loop {
+                source.read(&mut batch).map_err(|e| e.in_file(path))?;
+                if batch.is_empty() {
+                    break;
+                }
+                transforms.apply_to_batch(*transform, &mut batch).map_err(|e| e.in_file(path))?;
+                selection.add(&batch).map_err(|e| e.in_file(path))?;
+                if selection.certain() >= asked + ASK_EVERY {
+                    asked = selection.certain();
+                    memory::require_for_points(asked)?;
+                }
+                count += batch.len() as u64;
+                progress.add(batch.len() as u64)?;
+                (0..batch.len()).for_each(|i| extent.add([batch.x[i], batch.y[i], batch.z[i]]));
+            }
+            extents.push(extent);
+            journal.add(Notice::PointsRead(path.to_path_buf(), count));
+            journal.add_warnings(path, source.warnings());
+        }
+        progress.end()?;
+        if are_several {
+            let classes = selection.report().classes;
+            for i in selection.unused_sources() {
+                journal.add(Notice::NoPointUsed(self.files[i].stated.path.clone(), classes.clone()));
+            }
+        }
+        Ok(extents)
+    }
+}

@@ -1,0 +1,194 @@
+//! A surface in parts: opened where it is, and asked as one.
+
+mod contours;
+mod heights;
+mod join;
+mod written;
+
+pub(crate) use contours::contours;
+pub(crate) use heights::elevations;
+use join::JoinedTin;
+pub use written::WrittenParts;
+
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+
+use crate::crs::Crs;
+use crate::data::{BlockSource, Bounds, Frame, Surface, SurfaceFacts};
+use crate::error::{Command, Error, Result, wording};
+use crate::io::mapped::{self, Mapped};
+use crate::run::context::memory;
+use crate::run::sources::checksum::checksum;
+use crate::terrain::{CompactTin, DemOfParts, TinIndex};
+
+/// A surface in parts, each of which is a TIN in a file. [`TinIndex`] says which.
+///
+/// Rasters with linear heights, contours and heights at positions are computed from part to part,
+/// and so need not have the surface in memory. For all else the parts are joined.
+pub struct TinParts {
+    path: PathBuf,
+    folder: PathBuf,
+    index: TinIndex,
+    joined: OnceLock<JoinedTin>,
+    /// Opens a part, for rasters that outlive the call that asks for them.
+    open: Box<dyn Fn(usize) -> Result<CompactTin<Mapped>> + Send + Sync>,
+}
+
+/// Returns the folder of the parts of a surface; `None` unless a file is the index of one.
+pub(crate) fn parts_folder(path: &Path) -> Option<PathBuf> {
+    // By its name first: other inputs may be many, and far away.
+    let format = crate::io::formats::of_name(path).filter(|format| format.extensions.contains(&"tins"));
+    let text = format.and_then(|_| crate::io::mesh::read_tin_index(path))?.ok()?;
+    TinIndex::from_text(&text).ok().map(|index| path.with_file_name(index.folder))
+}
+
+impl TinParts {
+    /// Opens a surface by the text of its index.
+    ///
+    /// # Errors
+    /// If the index is damaged, or a part is missing or has another length.
+    pub(crate) fn open(path: &Path, text: &[u8]) -> Result<Self> {
+        let index = TinIndex::from_text(text)
+            .map_err(|e| e.in_file(path).cure(wording!["write the surface again with ", Command::Tin]))?;
+        let wrong = |what: &str| {
+            Error::format(format!("{what} of the parts are not those of the surface"))
+                .in_file(path)
+                .cure(wording!["write the surface again with ", Command::Tin])
+        };
+        if index.parts.iter().fold(0_u64, |sum, part| sum.saturating_add(part.triangles))
+            != index.facts.triangles as u64
+        {
+            return Err(wrong("the counts"));
+        }
+        let mut extent = Bounds::default();
+        index.parts.iter().for_each(|part| extent.merge(&part.extent));
+        if extent != index.facts.extent {
+            return Err(wrong("the extents"));
+        }
+        let folder = path.with_file_name(&index.folder);
+        for part in &index.parts {
+            let file = folder.join(&part.file);
+            let length = std::fs::metadata(&file).map_err(|e| missing(e, path, &file))?.len();
+            if length != part.bytes {
+                return Err(Error::format(format!("{length} bytes, but the index states {}", part.bytes))
+                    .in_file(file)
+                    .cure("copy the index together with its folder, or write the surface again"));
+            }
+        }
+        let files: Vec<PathBuf> = index.parts.iter().map(|part| folder.join(&part.file)).collect();
+        let open = Box::new(move |part: usize| open_file(&files[part]));
+        Ok(TinParts { path: path.to_path_buf(), folder, index, joined: OnceLock::new(), open })
+    }
+
+    /// Returns what is true of the whole.
+    pub fn index(&self) -> &TinIndex {
+        &self.index
+    }
+
+    /// Returns the folder of the parts.
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// Returns the coordinate system, if it is known.
+    pub fn crs(&self) -> Option<&Crs> {
+        self.index.crs.as_ref()
+    }
+
+    /// Returns the counts and the extent that the index states.
+    pub fn facts(&self) -> &SurfaceFacts {
+        &self.index.facts
+    }
+
+    pub(crate) fn set_crs(&mut self, crs: Option<Crs>) {
+        self.index.crs = crs;
+    }
+
+    /// Opens a part, by its position in the index.
+    ///
+    /// # Errors
+    /// If it is damaged, or not a part of a surface.
+    ///
+    /// # Complexity
+    /// Constant: the file is mapped to memory.
+    pub fn part(&self, number: usize) -> Result<CompactTin<Mapped>> {
+        (self.open)(number)
+    }
+
+    /// Returns all parts as one surface, which is kept.
+    ///
+    /// # Errors
+    /// If the parts do not fit into memory, a part is damaged, or the parts do not make a surface.
+    ///
+    /// # Complexity
+    /// Linear in the bytes of the parts.
+    pub(crate) fn joined(&self) -> Result<&JoinedTin> {
+        if let Some(joined) = self.joined.get() {
+            return Ok(joined);
+        }
+        let mut triangles = 0;
+        for number in 0..self.index.parts.len() {
+            triangles += self.part(number)?.face_count();
+        }
+        memory::require_for_parts(triangles).map_err(|e| e.in_file(&self.path))?;
+        let joined = join::joined(self).map_err(|e| e.in_file(&self.path))?;
+        Ok(self.joined.get_or_init(|| joined))
+    }
+
+    /// Checks all bytes of all parts, and that the counts and the extents that the index states are
+    /// those of the parts.
+    ///
+    /// # Errors
+    /// The first damage that is found, and if the parts are too many for one mesh.
+    ///
+    /// # Complexity
+    /// Linear.
+    pub fn check(&self) -> Result<()> {
+        for (number, stated) in self.index.parts.iter().enumerate() {
+            let part = self.part(number)?;
+            part.check()?;
+            if checksum(part.triangulation().bytes()) != stated.checksum {
+                return Err(Error::format("the checksum is not that of the index")
+                    .in_file(self.folder.join(&stated.file))
+                    .cure("copy the index together with its folder, or write the surface again"));
+            }
+            let SurfaceFacts { triangles, extent, .. } = part.facts();
+            if (*triangles as u64, *extent) != (stated.triangles, stated.extent) {
+                return Err(Error::format(format!(
+                    "the counts or the extent of {} are not those of its file",
+                    stated.file
+                ))
+                .in_file(&self.path)
+                .cure(wording!["write the surface again with ", Command::Tin]));
+            }
+        }
+        if SurfaceFacts::of(self.joined()?) != self.index.facts {
+            return Err(Error::format("the counts or the extent are not those of the parts")
+                .in_file(&self.path)
+                .cure(wording!["write the surface again with ", Command::Tin]));
+        }
+        Ok(())
+    }
+
+    /// Returns a raster of linear heights.
+    pub(crate) fn dem(&self, frame: Frame) -> Result<Box<dyn BlockSource + '_>> {
+        let extents: Vec<Bounds> = self.index.parts.iter().map(|part| part.extent).collect();
+        Ok(Box::new(DemOfParts::new(frame, self.index.crs.clone(), &extents, &*self.open)?))
+    }
+}
+
+impl std::fmt::Debug for TinParts {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("TinParts").field("path", &self.path).field("index", &self.index).finish_non_exhaustive()
+    }
+}
+
+fn open_file(file: &Path) -> Result<CompactTin<Mapped>> {
+    let tin = CompactTin::open(mapped::open(file)?, file)?;
+    if tin.is_part() { Ok(tin) } else { Err(Error::format("the TIN is not part of a larger one").in_file(file)) }
+}
+
+#[cold]
+fn missing(error: std::io::Error, index: &Path, part: &Path) -> Error {
+    Error::from(error).in_file(part).cure(format!("{} needs its folder next to it", index.display()))
+}
