@@ -19,10 +19,8 @@ pub(crate) type Arrows = BTreeMap<Module, BTreeSet<(String, String)>>;
 
 /// Returns the arrows among files, given as paths below the folder `src` and texts.
 pub(crate) fn arrows<P: AsRef<str>, T: AsRef<str>>(files: &[(P, T)]) -> Arrows {
-    let files = files
-        .iter()
-        .map(|(path, text)| (path.as_ref(), text.as_ref()))
-        .filter(|(path, _)| !path.ends_with("tests.rs"));
+    let files =
+        files.iter().map(|(path, text)| (path.as_ref(), text.as_ref())).filter(|(path, _)| !path.ends_with("tests.rs"));
     let modules: BTreeMap<Module, Source> = files.map(|(path, text)| (module_of(path), Source::of(text))).collect();
     let mut arrows = Arrows::new();
     for (from, source) in &modules {
@@ -170,7 +168,8 @@ impl Source {
 /// word that defines a name.
 fn starts_path(code: &str, at: usize) -> bool {
     let before = &code[..at];
-    let is_defined = ["fn", "mod", "struct", "enum", "trait", "type"].iter().any(|word| before.trim_end().ends_with(word));
+    let is_defined =
+        ["fn", "mod", "struct", "enum", "trait", "type"].iter().any(|word| before.trim_end().ends_with(word));
     !before.ends_with(|c: char| c.is_alphanumeric() || ['_', ':', '.'].contains(&c)) && !is_defined
 }
 

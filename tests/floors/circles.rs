@@ -1,27 +1,20 @@
-//! No circles: what a folder holds uses each other in one direction.
-//!
-//! The rule: in each folder, its files and subfolders are nodes; a subfolder stands for all that it
-//! holds. One node has an arrow to another if a path in its text leads there, through re-exports to
-//! where the item is defined. Not judged are paths between a `mod.rs` and what its folder holds,
-//! because the folder is that module's text, divided; and tests, which may build what they need by
-//! modules above. Methods that are called without a path are not seen.
+//! No circles: what a folder holds uses each other in one direction, its `mod.rs` included.
 
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A module's path from the root of its crate.
-type Module = Vec<String>;
+use super::arrows::arrows;
 
 #[test]
 fn folders_have_no_circles() {
-    let found: BTreeSet<String> = super::sources().iter().flat_map(|files| circles(files)).collect();
+    let found: BTreeSet<String> = super::sources().iter().flat_map(|(_, files)| circles(files)).collect();
     assert!(found.is_empty(), "circles: {found:#?}");
 }
 
 #[test]
 fn circles_are_found() {
     let in_room = |a: &str, b: &str| {
-        let faces = "mod a;\nmod b;\npub(crate) mod deep;\npub use a::First;\npub use b::Second as Other;";
-        let files = [("lib.rs", "mod room;"), ("room/mod.rs", faces), ("room/a.rs", a), ("room/b.rs", b)];
+        let lists = "mod a;\nmod b;\npub(crate) mod deep;\npub use a::First;\npub use b::Second as Other;";
+        let files = [("lib.rs", "mod room;"), ("room/mod.rs", lists), ("room/a.rs", a), ("room/b.rs", b)];
         let deep = [("room/deep/mod.rs", "mod x;\npub fn f() { super::Other::g() }"), ("room/deep/x.rs", "")];
         circles(&[&files[..], &deep[..]].concat())
     };
@@ -33,41 +26,43 @@ fn circles_are_found() {
     assert_eq!(in_room("use super::Other;", "// use super::First;\n/// [`First`](super::First)"), none, "comments");
     assert_eq!(in_room("use super::Other;", "#[cfg(test)]\nmod tests {\n    use super::super::a::First;\n}"), none);
     assert_eq!(in_room("", "use super::deep::x::Y;"), ["room: b, deep"], "by way of a folder");
-    assert_eq!(in_room("", "use super::Unknown;"), none, "the folder is one text with what it holds");
+    assert_eq!(in_room("use super::Shared;", "use super::Shared;"), none, "what a `mod.rs` defines that uses nothing");
     assert_eq!(in_room("fn f(x: super::b::Second) -> super::X", "fn f(x: crate::y::X) -> super::b::Z"), none, "itself");
+}
+
+#[test]
+fn circles_through_the_own_file_are_found() {
+    let with_own = |own: &str, a: &str| {
+        let lists = format!("mod a;\npub(super) use self::a::{{First, first}};\n{own}");
+        circles(&[("lib.rs", "mod room;"), ("room/mod.rs", &lists), ("room/a.rs", a)])
+    };
+    let none: [&str; 0] = [];
+    let circle = ["room: a, mod.rs"];
+    assert_eq!(with_own("", "use super::Shared;"), none, "lists and re-exports are no use");
+    assert_eq!(with_own("fn f() { a::g() }", ""), none, "one direction");
+    assert_eq!(with_own("fn f() { a::g() }", "use super::Shared;"), circle, "a path that starts at a declaration");
+    assert_eq!(with_own("use self::a::Second;", "use super::Shared;"), circle, "an import");
+    assert_eq!(with_own("fn f() -> First", "use super::Shared;"), circle, "a re-exported type that is used here, too");
+    assert_eq!(with_own("fn f() { first(1) }", "use super::Shared;"), circle, "a re-exported function");
+    assert_eq!(with_own("fn first() { x.first(1); let first = y::a::g; }", "use super::Shared;"), none, "other names");
+    assert_eq!(with_own("fn f() -> First", "fn f() { super::first() }"), none, "itself, by its re-export");
 }
 
 /// The circles among files, given as paths below the folder `src` and texts: "folder: node, node",
 /// in order.
 pub(crate) fn circles<P: AsRef<str>, T: AsRef<str>>(files: &[(P, T)]) -> Vec<String> {
-    let files = files
-        .iter()
-        .map(|(path, text)| (path.as_ref(), text.as_ref()))
-        .filter(|(path, _)| !path.ends_with("/tests.rs"));
-    let modules: BTreeMap<Module, Source> = files.map(|(path, text)| (module_of(path), Source::of(text))).collect();
-    let mut arrows: BTreeMap<&[String], BTreeSet<(&str, &str)>> = BTreeMap::new();
-    let targets: Vec<(&Module, Module)> = modules
-        .iter()
-        .flat_map(|(module, source)| source.paths.iter().map(move |path| (module, path)))
-        .map(|(module, path)| (module, resolved(&modules, module, path, 0)))
-        .collect();
-    for (from, to) in &targets {
-        let shared = from.iter().zip(to).take_while(|(a, b)| a == b).count();
-        if let (Some(user), Some(used)) = (from.get(shared), to.get(shared)) {
-            arrows.entry(&from[..shared]).or_default().insert((user, used));
-        }
-    }
     let mut found = Vec::new();
-    for (folder, arrows) in arrows {
+    for (folder, arrows) in &arrows(files) {
         let reach = |from: &str| {
             let mut seen = BTreeSet::new();
-            let mut open = vec![from];
+            let mut open = vec![from.to_owned()];
             while let Some(user) = open.pop() {
-                open.extend(arrows.iter().filter(|(a, b)| *a == user && seen.insert(*b)).map(|(_, b)| *b));
+                let used = arrows.iter().filter(|(a, _)| *a == user).map(|(_, b)| &b[..]);
+                open.extend(used.filter(|used| seen.insert(*used)).map(str::to_owned));
             }
             seen
         };
-        let reached: BTreeMap<&str, BTreeSet<&str>> = arrows.iter().map(|&(user, _)| (user, reach(user))).collect();
+        let reached: BTreeMap<&str, BTreeSet<&str>> = arrows.iter().map(|(user, _)| (&user[..], reach(user))).collect();
         let circle = |of: &str| -> Vec<&str> {
             let is_back = |other: &&str| reached.get(other).is_some_and(|back| back.contains(of));
             reached[of].iter().copied().filter(is_back).collect()
@@ -78,114 +73,17 @@ pub(crate) fn circles<P: AsRef<str>, T: AsRef<str>>(files: &[(P, T)]) -> Vec<Str
     found
 }
 
-/// `io/geotiff/mod.rs` is `io`, `geotiff`; `lib.rs` is the root.
-fn module_of(path: &str) -> Module {
-    let path = path.trim_end_matches(".rs");
-    let path = path.strip_suffix("/mod").unwrap_or(path);
-    if ["lib", "main", "mod"].contains(&path) { Vec::new() } else { path.split('/').map(str::to_owned).collect() }
-}
-
-/// The module that a path leads to, from the module that has it in its text.
-fn resolved(modules: &BTreeMap<Module, Source>, from: &Module, path: &[String], depth: u32) -> Module {
-    let mut here = from.clone();
-    for (i, name) in path.iter().enumerate() {
-        match name.as_str() {
-            "crate" => here.clear(),
-            "super" => drop(here.pop()),
-            "self" => {}
-            _ => {
-                here.push(name.clone());
-                if modules.contains_key(&here) {
-                    continue;
-                }
-                here.pop();
-                // A re-export, if it is not the import that is asked about.
-                let import = modules.get(&here).and_then(|source| source.imports.get(name));
-                return match import.filter(|import| depth < 8 && (here != *from || *import != path)) {
-                    Some(import) => resolved(modules, &here, &[import, &path[i + 1..]].concat(), depth + 1),
-                    None => here,
-                };
-            }
-        }
-    }
-    here
-}
-
-/// What matters of a file's text.
-struct Source {
-    /// All paths that start with `crate`, `super` or `self`, or are imported.
-    paths: Vec<Vec<String>>,
-    /// What imports are called, and their paths.
-    imports: BTreeMap<String, Vec<String>>,
-}
-
-impl Source {
-    fn of(text: &str) -> Self {
-        let text = text.split("#[cfg(test)]\nmod tests {").next().unwrap_or_default();
-        let lines = text.lines().map(|line| line.split("//").next().unwrap_or_default());
-        let code = lines.collect::<Vec<_>>().join("\n");
-        let mut source = Source { paths: Vec::new(), imports: BTreeMap::new() };
-        let mut before = ' ';
-        for statement in code.split("use ") {
-            if before.is_whitespace() || before == '(' {
-                source.import(Vec::new(), statement.split(';').next().unwrap_or_default());
-            }
-            before = statement.chars().last().unwrap_or(' ');
-        }
-        for start in ["crate::", "super::", "self::"] {
-            for (at, _) in code.match_indices(start) {
-                if !code[..at].ends_with(|c: char| c.is_alphanumeric() || c == '_' || c == ':') {
-                    source.paths.push(path(&code[at..]));
+#[test]
+fn dump() {
+    for (name, files) in super::sources() {
+        for (folder, arrows) in arrows(&files) {
+            let folder = folder.join("/");
+            if std::env::var("FOLDER").is_ok_and(|f| f == format!("{name}/{folder}")) {
+                for (a, b) in &arrows {
+                    println!("{a} -> {b}");
                 }
             }
-        }
-        source
-    }
-
-    /// Adds what one import names, braces and all.
-    fn import(&mut self, mut path: Vec<String>, tree: &str) {
-        let mut tree = tree.trim();
-        while let Some((first, rest)) = tree.split_once("::").filter(|(first, _)| is_name(first.trim())) {
-            path.push(first.trim().to_owned());
-            tree = rest.trim();
-        }
-        if let Some(group) = tree.strip_prefix('{') {
-            let mut depth = 0;
-            let inner = group.rsplit_once('}').map_or(group, |(inner, _)| inner);
-            let is_end = |c: char| {
-                depth += i32::from(c == '{') - i32::from(c == '}');
-                c == ',' && depth == 0
-            };
-            for item in inner.split(is_end).filter(|item| !item.trim().is_empty()) {
-                self.import(path.clone(), item);
-            }
-            return;
-        }
-        let (item, alias) = tree.split_once(" as ").unwrap_or((tree, tree));
-        if item.trim() != "*" && item.trim() != "self" {
-            path.push(item.trim().to_owned());
-        }
-        let alias = if alias.trim() == "self" { path.last().cloned() } else { Some(alias.trim().to_owned()) };
-        self.imports.extend(alias.map(|alias| (alias, path.clone())));
-        self.paths.push(path);
-    }
-}
-
-fn is_name(word: &str) -> bool {
-    !word.is_empty() && word.chars().all(|c| c.is_alphanumeric() || c == '_')
-}
-
-/// The path at the start of a text.
-fn path(mut text: &str) -> Vec<String> {
-    let mut path = Vec::new();
-    loop {
-        let end = text.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(text.len());
-        if end > 0 {
-            path.push(text[..end].to_owned());
-        }
-        match text[end..].strip_prefix("::") {
-            Some(rest) if end > 0 => text = rest,
-            _ => return path,
+            println!("#{name}/{folder} {} arrows", arrows.len());
         }
     }
 }

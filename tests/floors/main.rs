@@ -4,6 +4,7 @@
 //! text, so a path has to be written out (`crate::data::Grid`) or imported with `use crate::...`,
 //! also inside braces.
 
+mod arrows;
 mod circles;
 
 use std::fs;
@@ -52,7 +53,7 @@ const LONGEST: usize = 800;
 #[test]
 fn files_use_lower_floors_only() {
     let mut faults = Vec::new();
-    for ((_, floors), files) in SOURCES.iter().zip(sources()) {
+    for ((_, floors), (_, files)) in SOURCES.iter().zip(sources()) {
         for (path, text) in files {
             let room = path.split('/').next().unwrap().trim_end_matches(".rs");
             // The roots see everything, and what stands beside them.
@@ -140,7 +141,7 @@ fn used_rooms(floors: Floors, text: &str) -> Vec<String> {
 }
 
 /// The source files of each crate, with their paths below its folder.
-fn sources() -> [Vec<(String, String)>; 2] {
+fn sources() -> [(&'static str, Vec<(String, String)>); 2] {
     SOURCES.map(|(folder, _)| {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
         let mut files = Vec::new();
@@ -158,6 +159,6 @@ fn sources() -> [Vec<(String, String)>; 2] {
             }
         }
         assert!(files.len() > 10, "found only {} files in {folder}", files.len());
-        files
+        (folder, files)
     })
 }

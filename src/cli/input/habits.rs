@@ -124,7 +124,7 @@ const AS_WRITTEN: &[&str] = &[
 ///
 /// # Errors
 /// If a habit has no equivalent; the hint says what to type instead.
-pub(in crate::cli) fn understood(args: impl IntoIterator<Item = OsString>) -> Result<Vec<OsString>> {
+pub(crate) fn understood(args: impl IntoIterator<Item = OsString>) -> Result<Vec<OsString>> {
     let mut args: Vec<OsString> = args.into_iter().collect();
     let Some(at) = verb_position(&args) else { return Ok(args) };
     let rest = args.split_off(at + 1);

@@ -14,7 +14,7 @@ use crate::run::targets::{file_of, identity};
 ///
 /// # Errors
 /// If a glob matches nothing, a list cannot be read or a file does not exist.
-pub(in crate::cli) fn expand(typed: &[PathBuf], console: &Console) -> Result<Vec<PathBuf>> {
+pub(crate) fn expand(typed: &[PathBuf], console: &Console) -> Result<Vec<PathBuf>> {
     let mut found = Vec::new();
     for path in typed {
         match list_of(path) {
@@ -39,7 +39,7 @@ pub(in crate::cli) fn expand(typed: &[PathBuf], console: &Console) -> Result<Vec
 }
 
 /// Returns the lists of files among the inputs as typed; they are read, too.
-pub(in crate::cli) fn lists(typed: &[PathBuf]) -> impl Iterator<Item = PathBuf> {
+pub(crate) fn lists(typed: &[PathBuf]) -> impl Iterator<Item = PathBuf> {
     typed.iter().filter_map(|path| list_of(path)).map(Path::to_path_buf)
 }
 
@@ -53,7 +53,7 @@ fn list_of(path: &Path) -> Option<&Path> {
 ///
 /// # Errors
 /// If one does not.
-pub(in crate::cli) fn require<'a>(paths: impl IntoIterator<Item = &'a PathBuf>) -> Result<()> {
+pub(crate) fn require<'a>(paths: impl IntoIterator<Item = &'a PathBuf>) -> Result<()> {
     match paths.into_iter().find(|path| file_of(path).is_none()) {
         Some(path) => Err(no_such_file(path)),
         None => Ok(()),

@@ -6,24 +6,20 @@ use super::args::OutputArgs;
 use crate::error::Result;
 use crate::io::formats;
 use crate::run::targets;
-pub(in crate::cli) use crate::run::targets::{Format, formats_of};
-pub(in crate::cli) use crate::run::{Existing, Outputs, Target};
+pub(crate) use crate::run::targets::{Format, formats_of};
+pub(crate) use crate::run::{Existing, Outputs, Target};
 
 /// Finds the format of each output and makes sure that no file is lost that should be kept.
 ///
 /// # Errors
 /// If an extension is not among the formats, an output is an input or named twice, its folder does
 /// not exist, or it exists and may not be replaced.
-pub(in crate::cli) fn resolve<F: Copy>(
-    args: &OutputArgs,
-    formats: &[Format<F>],
-    inputs: &[PathBuf],
-) -> Result<Outputs<F>> {
+pub(crate) fn resolve<F: Copy>(args: &OutputArgs, formats: &[Format<F>], inputs: &[PathBuf]) -> Result<Outputs<F>> {
     targets::resolve(&args.output, Existing::of(args.overwrite), formats, inputs)
 }
 
 /// Returns the companions of a target, then the target itself.
-pub(in crate::cli) fn files_of<F: Copy>(target: &Target<F>, formats: &[Format<F>]) -> Vec<Target<F>> {
+pub(crate) fn files_of<F: Copy>(target: &Target<F>, formats: &[Format<F>]) -> Vec<Target<F>> {
     let format = formats.iter().find(|format| format.extension == target.extension);
     let companions = format.map_or(&[][..], |format| format.companions);
     let mut files = formats::with_companions(&target.path, target.extension, companions);

@@ -17,10 +17,10 @@ use crate::terrain::Classes;
 
 /// The request for a surface, and what is written with all that is made of it.
 #[derive(Debug)]
-pub(in crate::cli) struct SurfacePlan {
-    pub(in crate::cli) request: SurfaceRequest,
+pub(crate) struct SurfacePlan {
+    pub(crate) request: SurfaceRequest,
     /// The tables; no output is named yet.
-    pub(in crate::cli) targets: Targets,
+    pub(crate) targets: Targets,
 }
 
 impl SurfacePlan {
@@ -28,7 +28,7 @@ impl SurfacePlan {
     ///
     /// # Errors
     /// If files are missing, kinds of input are mixed or options do not go together.
-    pub(in crate::cli) fn resolve(args: &SurfaceArgs, console: &Console) -> Result<Self> {
+    pub(crate) fn resolve(args: &SurfaceArgs, console: &Console) -> Result<Self> {
         let files = inputs::expand(&args.inputs, console)?;
         let degrees = if args.force_degrees { Degrees::Allow } else { Degrees::Refuse };
         let systems = SystemOptions { degrees, ..systems(&args.systems)? };
@@ -53,7 +53,7 @@ impl SurfacePlan {
     }
 
     /// Returns the targets with these outputs.
-    pub(in crate::cli) fn targets(&self, args: &OutputArgs) -> Targets {
+    pub(crate) fn targets(&self, args: &OutputArgs) -> Targets {
         let existing = Existing::of(args.overwrite);
         Targets { files: args.output.clone(), existing, ..self.targets.clone() }
     }
@@ -63,7 +63,7 @@ impl SurfacePlan {
 ///
 /// # Errors
 /// If the raster to align to does not exist.
-pub(in crate::cli) fn frame(args: &FrameArgs) -> Result<FrameOptions> {
+pub(crate) fn frame(args: &FrameArgs) -> Result<FrameOptions> {
     inputs::require(&args.align_to)?;
     let extent = args.te.map(|corners| corners.bounds());
     Ok(FrameOptions { resolution: args.resolution, extent, align_to: args.align_to.clone() })
@@ -73,7 +73,7 @@ pub(in crate::cli) fn frame(args: &FrameArgs) -> Result<FrameOptions> {
 ///
 /// # Errors
 /// If one is not known.
-pub(in crate::cli) fn systems(args: &SystemArgs) -> Result<SystemOptions> {
+pub(crate) fn systems(args: &SystemArgs) -> Result<SystemOptions> {
     Ok(SystemOptions {
         assign: system("--a-srs", args.a_srs.as_deref())?,
         target: system("--t-srs", args.t_srs.as_deref())?,

@@ -16,7 +16,7 @@ use crate::run::{Context, Monitor, Notice, Progress, Severity, Size, Stage};
 
 /// How much is printed.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub(in crate::cli) enum Level {
+pub(crate) enum Level {
     Quiet,
     #[default]
     Normal,
@@ -25,14 +25,14 @@ pub(in crate::cli) enum Level {
 
 /// Prints the messages of a run to stderr. Equal notices, notes and warnings are printed once.
 #[derive(Debug)]
-pub(in crate::cli) struct Console {
+pub(crate) struct Console {
     level: Level,
     bars: MultiProgress,
     said: Mutex<HashSet<String>>,
 }
 
 impl Console {
-    pub(in crate::cli) fn new(level: Level) -> Self {
+    pub(crate) fn new(level: Level) -> Self {
         let target = match level {
             Level::Quiet => ProgressDrawTarget::hidden(),
             // Hidden by itself if stderr is not a terminal.
@@ -42,7 +42,7 @@ impl Console {
     }
 
     /// Prints an error, and its hint on a line of its own.
-    pub(in crate::cli) fn error(&self, error: &Error) {
+    pub(crate) fn error(&self, error: &Error) {
         self.print(&format!("error: {}", error.render(&name)));
         if let Some(cure) = error.cure_text() {
             self.print(&format!("hint: {}", cure.render(&name)));
@@ -50,27 +50,27 @@ impl Console {
     }
 
     /// Prints a warning: something is probably not as intended.
-    pub(in crate::cli) fn warning(&self, text: impl Display) {
+    pub(crate) fn warning(&self, text: impl Display) {
         self.once(format!("warning: {text}"));
     }
 
     /// Prints a note, unless the run is quiet: a choice that was made for the user, or something
     /// worth knowing.
-    pub(in crate::cli) fn note(&self, text: impl Display) {
+    pub(crate) fn note(&self, text: impl Display) {
         if self.level > Level::Quiet {
             self.once(format!("note: {text}"));
         }
     }
 
     /// Prints a line if the run is verbose.
-    pub(in crate::cli) fn detail(&self, text: impl Display) {
+    pub(crate) fn detail(&self, text: impl Display) {
         if self.level == Level::Verbose {
             self.print(&text.to_string());
         }
     }
 
     /// Prints a line of the summary, unless the run is quiet.
-    pub(in crate::cli) fn line(&self, text: impl Display) {
+    pub(crate) fn line(&self, text: impl Display) {
         if self.level > Level::Quiet {
             self.print(&text.to_string());
         }
@@ -78,12 +78,12 @@ impl Console {
 
     /// Returns what prints a note if a signal ends the program while it lives, unless the run is
     /// quiet.
-    pub(in crate::cli) fn note_if_ended(&self, text: impl Display) -> Option<LastWords> {
+    pub(crate) fn note_if_ended(&self, text: impl Display) -> Option<LastWords> {
         (self.level > Level::Quiet).then(|| LastWords::new(format!("note: {text}")))
     }
 
     /// Returns the context of a run that shows its notices and progress here.
-    pub(in crate::cli) fn context(&self) -> Context<'_> {
+    pub(crate) fn context(&self) -> Context<'_> {
         Context { monitor: self, ..Context::default() }
     }
 

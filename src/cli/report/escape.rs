@@ -4,17 +4,17 @@ use std::borrow::Cow;
 
 /// Returns a line of text in which control characters, line ends and marks of the direction of
 /// writing are written as `\u{1b}`.
-pub(in crate::cli) fn line(text: &str) -> Cow<'_, str> {
+pub(crate) fn line(text: &str) -> Cow<'_, str> {
     escaped(text, |c| c.escape_default().collect())
 }
 
 /// Like [`line`], for text of several lines.
-pub(in crate::cli) fn lines(text: &str) -> String {
+pub(crate) fn lines(text: &str) -> String {
     text.split('\n').map(line).collect::<Vec<_>>().join("\n")
 }
 
 /// Escapes lines of JSON by JSON's own escapes, so that their values do not change.
-pub(in crate::cli) fn json(text: &str) -> String {
+pub(crate) fn json(text: &str) -> String {
     let json = |line| escaped(line, |c| format!("\\u{:04x}", u32::from(c)));
     text.split('\n').map(json).collect::<Vec<_>>().join("\n")
 }

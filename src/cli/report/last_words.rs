@@ -10,7 +10,7 @@ static WORDS: Mutex<Option<String>> = Mutex::new(None);
 
 /// A line that is printed if a signal ends the program while this lives.
 #[derive(Debug)]
-pub(in crate::cli) struct LastWords(());
+pub(crate) struct LastWords(());
 
 impl LastWords {
     pub(super) fn new(text: String) -> Self {
@@ -26,7 +26,7 @@ impl Drop for LastWords {
 }
 
 /// Prints how to go on, if there is something to go on with. A closed stderr is ignored.
-pub(in crate::cli) fn print() {
+pub(crate) fn print() {
     if let Some(text) = WORDS.lock().unwrap_or_else(PoisonError::into_inner).take() {
         let _ = writeln!(std::io::stderr(), "{}", escape::line(&text));
     }

@@ -3,7 +3,7 @@
 use crate::error::{Command, Setting, Term};
 
 /// Returns a term as it is typed.
-pub(in crate::cli) fn name(term: &Term) -> String {
+pub(crate) fn name(term: &Term) -> String {
     match term {
         Term::Setting(setting) | Term::On(setting) => option(*setting),
         Term::Text(setting, value) | Term::Number(setting, value) => format!("{} {value}", option(*setting)),
@@ -14,7 +14,7 @@ pub(in crate::cli) fn name(term: &Term) -> String {
 }
 
 /// Returns the option for a setting.
-pub(in crate::cli) fn option(setting: Setting) -> String {
+pub(crate) fn option(setting: Setting) -> String {
     let name = match setting {
         Setting::Crs => "a-srs",
         Setting::TargetCrs => "t-srs",

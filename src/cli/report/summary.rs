@@ -10,7 +10,7 @@ use crate::run::{BuildReport, LineInput, LineRole, Origin, SurfaceReport};
 use crate::terrain::{DuplicateRule, SelectionReport, TinReport};
 
 /// Prints what a surface was built of, what was left out, and its size and extent.
-pub(in crate::cli) fn print_surface(report: &SurfaceReport, console: &Console) {
+pub(crate) fn print_surface(report: &SurfaceReport, console: &Console) {
     match &report.origin {
         Origin::Built(built) => {
             console.line(format_args!("points      {}", points_line(&built.points, built.sources)));
@@ -143,7 +143,7 @@ fn listed(parts: &[(usize, &str)]) -> String {
 }
 
 /// Prints an extent and its coordinate system.
-pub(in crate::cli) fn print_extent(extent: Bounds, crs: Option<&Crs>, console: &Console) {
+pub(crate) fn print_extent(extent: Bounds, crs: Option<&Crs>, console: &Console) {
     if !extent.is_empty() {
         // Three decimals are enough for metres; small extents, as in degrees, get all.
         let is_wide = (0..2).any(|i| extent.max[i] - extent.min[i] > 10.0);
@@ -188,7 +188,7 @@ fn points_line(report: &SelectionReport, files: usize) -> String {
 }
 
 /// Formats the size of a raster as `400 x 300 cells of 1 m`.
-pub(in crate::cli) fn describe(frame: &Frame, crs: Option<&Crs>) -> String {
+pub(crate) fn describe(frame: &Frame, crs: Option<&Crs>) -> String {
     let t = frame.transform;
     let (across, down) = (t[1].hypot(t[4]), t[2].hypot(t[5]));
     let units = Units::of(crs);
@@ -201,7 +201,7 @@ pub(in crate::cli) fn describe(frame: &Frame, crs: Option<&Crs>) -> String {
 }
 
 /// Formats a count as `1 point`, `2 points`.
-pub(in crate::cli) fn counted(count: u64, noun: &str) -> String {
+pub(crate) fn counted(count: u64, noun: &str) -> String {
     let ending = if count == 1 { "" } else { "s" };
     format!("{count} {noun}{ending}")
 }
@@ -212,7 +212,7 @@ fn thousandths(value: f64) -> String {
 }
 
 /// Prints the time and the peak memory of the run.
-pub(in crate::cli) fn print_cost(start: Instant, console: &Console) {
+pub(crate) fn print_cost(start: Instant, console: &Console) {
     let time = format!("{:.2} s", start.elapsed().as_secs_f64());
     match peak_memory() {
         Some(bytes) => console.line(format_args!("done in {time}, peak memory {} MB", number(bytes as f64 / 1e6))),

@@ -21,7 +21,7 @@ use crate::run::{
 
 /// Shows what happens while files are written.
 #[derive(Debug)]
-pub(in crate::cli) struct Shown<'a> {
+pub(crate) struct Shown<'a> {
     console: &'a Console,
     /// What the user types to go on with a job.
     how_to_go_on: String,
@@ -30,12 +30,12 @@ pub(in crate::cli) struct Shown<'a> {
 }
 
 impl<'a> Shown<'a> {
-    pub(in crate::cli) fn new(console: &'a Console, how_to_go_on: String) -> Self {
+    pub(crate) fn new(console: &'a Console, how_to_go_on: String) -> Self {
         Shown { console, how_to_go_on, words: Mutex::default() }
     }
 
     /// Returns the context of a run that is shown.
-    pub(in crate::cli) fn context(&self) -> Context<'_> {
+    pub(crate) fn context(&self) -> Context<'_> {
         Context { monitor: self, ..Context::default() }
     }
 
@@ -51,7 +51,7 @@ impl<'a> Shown<'a> {
     }
 
     /// Prints what was written, and returns how the run ended.
-    pub(in crate::cli) fn print(&self, report: &WriteReport) -> Exit {
+    pub(crate) fn print(&self, report: &WriteReport) -> Exit {
         match report {
             WriteReport::Planned { folder, .. } => {
                 self.console.line(format_args!("folder      {}", folder.display()));
@@ -140,7 +140,7 @@ impl Monitor for Shown<'_> {
 }
 
 /// Prints what a plan consists of.
-pub(in crate::cli) fn print_size(size: &JobSize, console: &Console) {
+pub(crate) fn print_size(size: &JobSize, console: &Console) {
     let files = if size.divides { format!("of {} files, divided first", size.files) } else { "the files".to_owned() };
     console.line(format_args!("tiles       {} ({files}), {} merges, {} tasks", size.tiles, size.merges, size.tasks));
     let disk = match size.disk {
@@ -206,14 +206,14 @@ fn print_contours(drawn: &ContourSummary, crs: Option<&Crs>, console: &Console) 
 ///
 /// # Errors
 /// If one cannot appear; then none does.
-pub(in crate::cli) fn commit<F>(outputs: Outputs<F>, console: &Console) -> Result<()> {
+pub(crate) fn commit<F>(outputs: Outputs<F>, console: &Console) -> Result<()> {
     outputs.set.commit()?.iter().for_each(|path| print_file(path, console));
     Ok(())
 }
 
 /// Prints a note if the format of a mesh does not store which edges are on lines, and there are
 /// any; and a note if its coordinates are relative to an origin.
-pub(in crate::cli) fn note_mesh(file: &Path, written: &MeshSummary, cure: &str, console: &Console) {
+pub(crate) fn note_mesh(file: &Path, written: &MeshSummary, cure: &str, console: &Console) {
     let path = file.display();
     let edges = written.lost_edges;
     if edges > 0 {
@@ -228,7 +228,7 @@ pub(in crate::cli) fn note_mesh(file: &Path, written: &MeshSummary, cure: &str, 
 }
 
 /// Prints the name and size of a file that was written.
-pub(in crate::cli) fn print_file(file: &Path, console: &Console) {
+pub(crate) fn print_file(file: &Path, console: &Console) {
     let path = file.display();
     match std::fs::metadata(file) {
         Ok(data) if data.is_file() => {

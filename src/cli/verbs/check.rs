@@ -12,7 +12,7 @@ use crate::io::OutputSet;
 use crate::run::{self, CheckProduct, Existing, SpaceCheck, SpaceLaw, SurfaceReport, Targets};
 
 /// Lists the flaws of a TIN, or of a mesh that may not be a surface.
-pub(in crate::cli) fn run(args: &CheckArgs, console: &Console) -> Result<Exit> {
+pub(crate) fn run(args: &CheckArgs, console: &Console) -> Result<Exit> {
     if let [path] = &args.surface.inputs[..]
         && run::is_of_space(path)
     {

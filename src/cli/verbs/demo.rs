@@ -47,7 +47,7 @@ const COMMANDS: &[&[&str]] = &[
 ];
 
 /// Writes the data and runs each command on it, as if it were typed.
-pub(in crate::cli) fn run(args: &DemoArgs, how: &ConsoleArgs, console: &Console) -> Result<Exit> {
+pub(crate) fn run(args: &DemoArgs, how: &ConsoleArgs, console: &Console) -> Result<Exit> {
     let folder = &args.folder;
     std::fs::create_dir_all(folder).map_err(|e| Error::from(e).in_file(folder))?;
     for (name, bytes) in FIXTURES {

@@ -9,7 +9,7 @@ use crate::cli::{Exit, print};
 use crate::error::Result;
 
 /// Prints the verbs and their options.
-pub(in crate::cli) fn run(args: &DescribeArgs) -> Result<Exit> {
+pub(crate) fn run(args: &DescribeArgs) -> Result<Exit> {
     let described = describe();
     if args.json {
         print(&escape::json(&format!("{described:#}\n")))?;
@@ -20,7 +20,7 @@ pub(in crate::cli) fn run(args: &DescribeArgs) -> Result<Exit> {
 }
 
 /// Returns the program, its verbs and their options as JSON.
-pub(in crate::cli) fn describe() -> Value {
+pub(crate) fn describe() -> Value {
     let mut program = Cli::command();
     program.build();
     json!({

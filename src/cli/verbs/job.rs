@@ -13,7 +13,7 @@ use crate::error::{Error, Result};
 use crate::run::{self, Context, Job, JobCommand, JobTask, Look, StoredJob, TileOptions};
 
 /// Plans a run in tiles, or does its tasks.
-pub(in crate::cli) fn run(args: &JobArgs, console: &Console) -> Result<Exit> {
+pub(crate) fn run(args: &JobArgs, console: &Console) -> Result<Exit> {
     match &args.action {
         JobAction::Plan { job, headers_only, command } => {
             plan(job, if *headers_only { Look::Headers } else { Look::Points }, command, console)

@@ -11,7 +11,7 @@ use crate::io::las::Rounding;
 use crate::run::{PointsRequest, Withheld, write_points};
 
 /// Selects, clips and merges points.
-pub(in crate::cli) fn run(args: &PointsArgs, console: &Console) -> Result<Exit> {
+pub(crate) fn run(args: &PointsArgs, console: &Console) -> Result<Exit> {
     let files = inputs::expand(&args.inputs, console)?;
     inputs::require(&args.boundary)?;
     let all: Vec<_> = files.iter().chain(&args.boundary).cloned().chain(inputs::lists(&args.inputs)).collect();

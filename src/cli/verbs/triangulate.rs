@@ -34,7 +34,7 @@ fn formats(is_poly: bool) -> Vec<Format<Family>> {
 }
 
 /// Triangulates a `.node` or `.poly` file.
-pub(in crate::cli) fn run(args: &TriangulateArgs, console: &Console) -> Result<Exit> {
+pub(crate) fn run(args: &TriangulateArgs, console: &Console) -> Result<Exit> {
     let path = &args.input;
     inputs::require([path])?;
     if args.space || run::is_of_space(path) {

@@ -22,7 +22,7 @@ pub(super) fn asked(verb: &Verb, console: &Console) -> Result<Option<Asked>> {
 }
 
 /// Writes what a verb asks for.
-pub(in crate::cli) fn run(verb: &Verb, console: &Console) -> Result<Exit> {
+pub(crate) fn run(verb: &Verb, console: &Console) -> Result<Exit> {
     let Some(Asked { request, targets, tiles }) = asked(verb, console)? else { return Ok(Exit::Usage) };
     let shown = Shown::new(console, "--resume".to_owned());
     let report = run::write(&request, &targets, &execution(&tiles), &shown.context())?;

@@ -94,8 +94,8 @@ fn scattered(k: usize) -> usize {
 mod tests {
     use std::slice::from_ref;
 
-    use super::super::planned_file::FileState;
     use super::*;
+    use crate::run::job::planned_file::FileState;
     use crate::run::request::input::Input;
     use crate::terrain::tiles::Layout;
     use testkit::random::Random;

@@ -4,11 +4,11 @@ use std::collections::HashMap;
 use std::fmt;
 use std::path::Path;
 
-use super::super::context::{Context, Journal, Size, Stage};
 use super::{FACETS, weights};
 use crate::error::Result;
 use crate::io::Watch;
 use crate::io::tetgen::{self, Tetrahedralized};
+use crate::run::context::{Context, Journal, Size, Stage};
 use crate::run::sources::open;
 use crate::triangulation::kernel::{InSphere, Kernel, Orientation2, Orientation3, PowerTest3, Wide};
 use crate::triangulation::num::Sign;

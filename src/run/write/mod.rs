@@ -132,7 +132,7 @@ pub fn run_task(job: &Job, task: usize, targets: &Targets, context: &Context) ->
 /// outputs replaced.
 ///
 /// # Errors
-/// If an input has changed, or the job was removed or replaced; and those of [`write`].
+/// If an input has changed, or the job was removed or replaced; and those of [`write()`].
 pub fn run_job(stored: &StoredJob, context: &Context) -> Result<WriteReport> {
     let JobCommand { request, targets, tiles, .. } = &stored.command;
     let job = stored.job()?;

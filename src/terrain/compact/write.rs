@@ -19,7 +19,7 @@ use crate::triangulation::{CompactSection, ConstrainedDelaunay};
 ///
 /// # Complexity
 /// Linear; in memory are a bit for each cell, and the fragments.
-pub(in crate::terrain) fn write(
+pub(crate) fn write(
     surface: &dyn Surface,
     triangulation: &ConstrainedDelaunay<Terrain>,
     kinds: &LineKinds,
@@ -42,7 +42,7 @@ pub(in crate::terrain) fn write(
 ///
 /// # Errors
 /// Those of `out`.
-pub(in crate::terrain) fn write_part(
+pub(crate) fn write_part(
     numbers: &[[u32; 2]],
     under: impl ExactSizeIterator<Item = bool>,
     mut out: &mut dyn Write,

@@ -5,7 +5,7 @@ use crate::triangulation::geometry::{Crossing, Geometry, Terrain};
 use crate::triangulation::num::{Dyadic, unsigned_zero};
 use crate::triangulation::tds::VertexId;
 
-use super::super::regions::{Domain, Segment};
+use crate::terrain::regions::{Domain, Segment};
 
 /// How far a segment may reach from zero on each axis, relative to the triangulation.
 const REACH: f64 = 2.0;
@@ -19,7 +19,7 @@ const REACH: f64 = 2.0;
 ///
 /// # Complexity
 /// Linear.
-pub(in crate::terrain) fn divided(curves: &[(Domain, Segment)], reach: [f64; 2]) -> Vec<(Domain, Segment)> {
+pub(crate) fn divided(curves: &[(Domain, Segment)], reach: [f64; 2]) -> Vec<(Domain, Segment)> {
     let geometry: Terrain = Terrain::default();
     let limits = reach.map(|most| REACH * most);
     let mut divided = Vec::with_capacity(curves.len());
@@ -45,7 +45,7 @@ pub(in crate::terrain) fn divided(curves: &[(Domain, Segment)], reach: [f64; 2])
 }
 
 /// Returns the largest coordinates of a triangulation on both axes, without their signs.
-pub(in crate::terrain) fn reach_of(base: &ConstrainedDelaunay<Terrain>) -> [f64; 2] {
+pub(crate) fn reach_of(base: &ConstrainedDelaunay<Terrain>) -> [f64; 2] {
     let vertices = base.tds().vertices().filter(|&vertex| vertex != VertexId::INFINITE);
     vertices.fold([0.0, 0.0], |most, vertex| {
         let p = base.point(vertex);

@@ -4,7 +4,7 @@ use crate::triangulation::geometry::Terrain;
 use crate::triangulation::tds::{CellId, VertexId};
 use crate::triangulation::{ConstrainedDelaunay, Passage};
 
-use super::super::regions::Segment;
+use crate::terrain::regions::Segment;
 
 /// The triangles that each segment meets: inside, or along or across an edge.
 ///

@@ -10,12 +10,12 @@ use crate::triangulation::geometry::{Crossing, Geometry, Terrain, height_along};
 use crate::triangulation::tds::{CellId, VertexId};
 use crate::triangulation::{ConstrainedDelaunay, LineId, OnCrossing};
 
-use super::super::linear::linear;
-use super::super::lines::kinds::LineKinds;
-use super::super::regions::Segment;
 use super::met::met;
 use super::order::{compare, corners};
 use super::steps::Arranged;
+use crate::terrain::linear::linear;
+use crate::terrain::lines::kinds::LineKinds;
+use crate::terrain::regions::Segment;
 
 /// The part of a triangulation that lines meet, divided so that the lines cross no face.
 ///

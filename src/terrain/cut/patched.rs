@@ -7,10 +7,10 @@ use crate::triangulation::ConstrainedDelaunay;
 use crate::triangulation::geometry::Terrain;
 use crate::triangulation::tds::{CellId, VertexId};
 
-use super::super::lines::kinds::LineKinds;
-use super::super::regions::{Domain, Faces, Segment};
 use super::patch::Patch;
 use super::{DRAPED, Side};
+use crate::terrain::lines::kinds::LineKinds;
+use crate::terrain::regions::{Domain, Faces, Segment};
 
 /// The finite faces of a triangulation, of which some are replaced by those of a patch.
 ///

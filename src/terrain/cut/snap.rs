@@ -8,8 +8,8 @@ use crate::triangulation::ConstrainedDelaunay;
 use crate::triangulation::arrangement::Arrangement;
 use crate::triangulation::geometry::{Crossing, Terrain};
 
-use super::super::regions::{Domain, Segment};
 use super::met::met;
+use crate::terrain::regions::{Domain, Segment};
 
 /// Snaps the segments of closed curves to each other: afterwards, two segments share at most an
 /// end, or are equal.

@@ -24,8 +24,8 @@ use crate::triangulation::geometry::{Geometry, Terrain, height_along};
 use crate::triangulation::num::{Sign, unsigned_zero};
 use crate::triangulation::tds::{CellId, VertexId};
 
-use super::super::lines::kinds::LineKinds;
 use super::order::{compare, first_corner};
+use crate::terrain::lines::kinds::LineKinds;
 
 /// Cut lines and edges of triangles after their arrangement.
 pub(super) struct Arranged<'a> {

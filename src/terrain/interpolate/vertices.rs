@@ -2,8 +2,8 @@
 
 use rayon::prelude::*;
 
-use super::super::boxes::{Boxed, Boxes, Extent, Near};
 use crate::data::{Surface, faces_under};
+use crate::terrain::boxes::{Boxed, Boxes, Extent, Near};
 
 /// The number of vertices that inverse distance weighting uses.
 pub(super) const NEIGHBORS: usize = 12;

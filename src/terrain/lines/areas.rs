@@ -19,24 +19,24 @@ use crate::triangulation::tds::{CellId, VertexId};
 
 /// An area of water, and the numbers of the lines around it.
 #[derive(Debug, Clone)]
-pub(in crate::terrain) struct Water {
+pub(crate) struct Water {
     /// All lines of the water.
-    pub(in crate::terrain) lines: Range<usize>,
+    pub(crate) lines: Range<usize>,
     /// The lines that bound the area together.
-    pub(in crate::terrain) rim: Vec<usize>,
-    pub(in crate::terrain) level: Level,
+    pub(crate) rim: Vec<usize>,
+    pub(crate) level: Level,
 }
 
 /// The heights of water.
 #[derive(Debug, Clone)]
-pub(in crate::terrain) enum Level {
+pub(crate) enum Level {
     Flat(Flat),
     River(River),
 }
 
 impl Level {
     /// The rings around the water, in plan.
-    pub(in crate::terrain) fn rings(&self) -> Rings {
+    pub(crate) fn rings(&self) -> Rings {
         match self {
             Level::Flat(flat) => flat.rings.iter().map(|ring| ring.iter().map(|p| [p[0], p[1]]).collect()).collect(),
             Level::River(river) => vec![river.ring()],
@@ -45,11 +45,11 @@ impl Level {
 }
 
 /// The rings of a polygon, in plan.
-pub(in crate::terrain) type Rings = Vec<Vec<[f64; 2]>>;
+pub(crate) type Rings = Vec<Vec<[f64; 2]>>;
 
 /// The points that areas of water and walls replace.
 #[derive(Debug, Clone, Default)]
-pub(in crate::terrain) struct Replaced {
+pub(crate) struct Replaced {
     polygons: Vec<Rings>,
     /// Shores, by the distance up to which points outside are replaced, too.
     buffers: Vec<(f64, Vec<Rings>)>,
@@ -61,7 +61,7 @@ pub(in crate::terrain) struct Replaced {
 const ROUNDING: f64 = 4.0;
 
 impl Replaced {
-    pub(in crate::terrain) fn add_flat(&mut self, flat: &Flat) {
+    pub(crate) fn add_flat(&mut self, flat: &Flat) {
         let rings: Rings = flat.rings.iter().map(|ring| ring.iter().map(|p| [p[0], p[1]]).collect()).collect();
         if flat.buffer > 0.0 {
             match self.buffers.iter_mut().find(|(buffer, _)| *buffer == flat.buffer) {
@@ -72,16 +72,16 @@ impl Replaced {
         self.polygons.push(rings);
     }
 
-    pub(in crate::terrain) fn add_river(&mut self, river: &River) {
+    pub(crate) fn add_river(&mut self, river: &River) {
         self.polygons.push(vec![river.ring()]);
         self.computed.push(vec![river.ring()]);
     }
 
-    pub(in crate::terrain) fn add_wall(&mut self, wall: &Wall) {
+    pub(crate) fn add_wall(&mut self, wall: &Wall) {
         self.polygons.extend(wall.areas.iter().cloned());
     }
 
-    pub(in crate::terrain) fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.polygons.is_empty()
     }
 
@@ -89,7 +89,7 @@ impl Replaced {
     ///
     /// # Complexity
     /// O(n log n) for n sides of areas, and for each point linear in the sides at about its y.
-    pub(in crate::terrain) fn split_off(&self, points: &mut Vec<[f64; 3]>) -> Vec<[f64; 3]> {
+    pub(crate) fn split_off(&self, points: &mut Vec<[f64; 3]>) -> Vec<[f64; 3]> {
         let inside = Inside::new(&self.polygons);
         let largest = self.computed.iter().flatten().flatten().flatten().fold(0.0_f64, |most, c| most.max(c.abs()));
         let rounded = (ROUNDING * f64::EPSILON * largest, &self.computed);
@@ -130,11 +130,11 @@ impl Faces for Divided<'_> {
 
 /// The cells in water, once all vertices there have its height.
 #[derive(Debug, Default)]
-pub(in crate::terrain) struct Leveled {
+pub(crate) struct Leveled {
     /// For each cell number, true if the cell lies in water; empty if there is none.
-    pub(in crate::terrain) is_water: Vec<bool>,
+    pub(crate) is_water: Vec<bool>,
     /// The bits of the sites of all vertices there.
-    pub(in crate::terrain) sites: FxHashSet<[u64; 2]>,
+    pub(crate) sites: FxHashSet<[u64; 2]>,
 }
 
 /// Gives all vertices in water its height, shores and banks included.
@@ -151,7 +151,7 @@ pub(in crate::terrain) struct Leveled {
 ///
 /// # Complexity
 /// Linear in the cells; for vertices in rivers, also logarithmic in the number of level lines.
-pub(in crate::terrain) fn level(
+pub(crate) fn level(
     triangulation: &mut ConstrainedDelaunay<Terrain>,
     waters: &[Water],
     given: &[(usize, Vec<f64>)],
@@ -284,7 +284,7 @@ fn reaches_of(waters: &[Water], pairs: &[[Domain; 2]]) -> Boxes<Reach> {
 }
 
 /// How far rounding moves computed vertices among these.
-pub(in crate::terrain) fn rounding_of(vertices: impl Iterator<Item = [f64; 3]>) -> f64 {
+pub(crate) fn rounding_of(vertices: impl Iterator<Item = [f64; 3]>) -> f64 {
     let largest = vertices.fold(0.0_f64, |most, [x, y, _]| most.max(x.abs()).max(y.abs()));
     ROUNDING * f64::EPSILON * largest
 }

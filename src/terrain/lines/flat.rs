@@ -26,9 +26,9 @@ pub enum FlatHeight {
 /// height of the water. A ring within a ring is the shore of an island.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Flat {
-    pub(in crate::terrain) rings: Vec<Vec<[f64; 3]>>,
-    pub(in crate::terrain) height: f64,
-    pub(in crate::terrain) buffer: f64,
+    pub(crate) rings: Vec<Vec<[f64; 3]>>,
+    pub(crate) height: f64,
+    pub(crate) buffer: f64,
 }
 
 impl Flat {

@@ -10,53 +10,48 @@ use crate::triangulation::tds::{CellId, VertexId};
 /// That is the one of the kind that comes first; of walls, an upper edge, so that no lower edge
 /// that crosses it tilts it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(in crate::terrain) struct Precedence {
+pub(crate) struct Precedence {
     rank: u8,
     is_lower_edge: bool,
 }
 
 impl Precedence {
-    pub(in crate::terrain) fn of(kind: EdgeKind) -> Self {
+    pub(crate) fn of(kind: EdgeKind) -> Self {
         Precedence { rank: kind.rank(), is_lower_edge: false }
     }
 
     /// That of the lower edge of a wall.
-    pub(in crate::terrain) fn of_lower_edge() -> Self {
+    pub(crate) fn of_lower_edge() -> Self {
         Precedence { is_lower_edge: true, ..Precedence::of(EdgeKind::Wall) }
     }
 }
 
 /// The kind of each line of a triangulation, by its number.
 #[derive(Debug, Default)]
-pub(in crate::terrain) struct LineKinds {
+pub(crate) struct LineKinds {
     of_lines: Vec<EdgeKind>,
     /// True if all lines are hard breaklines, so that none needs to be looked up.
     are_breaklines: bool,
 }
 
 impl LineKinds {
-    pub(in crate::terrain) fn new(of_lines: Vec<EdgeKind>) -> Self {
+    pub(crate) fn new(of_lines: Vec<EdgeKind>) -> Self {
         let are_breaklines = of_lines.iter().all(|kind| *kind == EdgeKind::Breakline);
         LineKinds { of_lines, are_breaklines }
     }
 
-    pub(in crate::terrain) fn of_line(&self, line: usize) -> Option<EdgeKind> {
+    pub(crate) fn of_line(&self, line: usize) -> Option<EdgeKind> {
         self.of_lines.get(line).copied()
     }
 
     /// Returns true if all lines are hard breaklines.
-    pub(in crate::terrain) fn are_breaklines(&self) -> bool {
+    pub(crate) fn are_breaklines(&self) -> bool {
         self.are_breaklines
     }
 
     /// The kind of the edge opposite corner `i` of a cell; `None` if no line runs along it.
     #[inline]
-    pub(in crate::terrain) fn of_edge(
-        &self,
-        base: &ConstrainedDelaunay<Terrain>,
-        cell: CellId,
-        i: usize,
-    ) -> Option<EdgeKind> {
+    pub(crate) fn of_edge(&self, base: &ConstrainedDelaunay<Terrain>, cell: CellId, i: usize) -> Option<EdgeKind> {
         if !base.is_constrained(cell, i) {
             None
         } else if self.are_breaklines {
@@ -69,11 +64,7 @@ impl LineKinds {
 
     /// The kind of the edge between two vertices; `None` if there is none, or no line runs along
     /// it.
-    pub(in crate::terrain) fn between(
-        &self,
-        base: &ConstrainedDelaunay<Terrain>,
-        [u, v]: [VertexId; 2],
-    ) -> Option<EdgeKind> {
+    pub(crate) fn between(&self, base: &ConstrainedDelaunay<Terrain>, [u, v]: [VertexId; 2]) -> Option<EdgeKind> {
         base.tds().edge(u, v).and_then(|(cell, i)| self.of_edge(base, cell, i))
     }
 

@@ -28,10 +28,10 @@ pub enum HighSide {
 /// The upper edge is the line as it was given. Points between the edges are left out.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Wall {
-    pub(in crate::terrain) upper: Vec<[f64; 3]>,
-    pub(in crate::terrain) lower: Vec<[f64; 3]>,
+    pub(crate) upper: Vec<[f64; 3]>,
+    pub(crate) lower: Vec<[f64; 3]>,
     /// Polygons between the edges, as rings; each point in one of them is left out.
-    pub(in crate::terrain) areas: Vec<Vec<Vec<[f64; 2]>>>,
+    pub(crate) areas: Vec<Vec<Vec<[f64; 2]>>>,
 }
 
 /// The narrowest wall, in units in the last place of the largest coordinate: crossings are rounded
@@ -39,7 +39,7 @@ pub struct Wall {
 const NARROWEST: f64 = 1000.0;
 
 /// The least distance between lines next to each other, for a largest coordinate.
-pub(in crate::terrain) fn narrowest(largest: f64) -> f64 {
+pub(crate) fn narrowest(largest: f64) -> f64 {
     NARROWEST * (largest.next_up() - largest)
 }
 

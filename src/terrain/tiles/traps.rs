@@ -31,12 +31,12 @@ mod switch {
         static OFF: Cell<Option<Rule>> = const { Cell::new(None) };
     }
 
-    pub(in crate::terrain::tiles) fn is_off(rule: Rule) -> bool {
+    pub(crate) fn is_off(rule: Rule) -> bool {
         OFF.get() == Some(rule)
     }
 
     /// Calls a function while a rule is switched off in this thread.
-    pub(in crate::terrain::tiles) fn without<T>(rule: Rule, call: impl FnOnce() -> T) -> T {
+    pub(crate) fn without<T>(rule: Rule, call: impl FnOnce() -> T) -> T {
         OFF.set(Some(rule));
         let _on_again = OnAgain;
         call()

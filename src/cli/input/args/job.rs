@@ -15,14 +15,14 @@ Example:
   breakline job status ground.job
   breakline job run ground.job
   breakline job clean ground.job")]
-pub(in crate::cli) struct JobArgs {
+pub(crate) struct JobArgs {
     #[command(subcommand)]
-    pub(in crate::cli) action: JobAction,
+    pub(crate) action: JobAction,
 }
 
 /// What is done with a job.
 #[derive(Debug, Clone, Subcommand)]
-pub(in crate::cli) enum JobAction {
+pub(crate) enum JobAction {
     /// Create a job for a command: `dem`, `contour` or `hillshade`, with its options
     Plan {
         /// Folder to create

@@ -13,21 +13,21 @@ use crate::terrain::HighSide;
 /// soft lines.
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Lines and areas")]
-pub(in crate::cli) struct LineArgs {
+pub(crate) struct LineArgs {
     /// Lines that the surface follows, smooth across them (repeatable)
     ///
     /// Like breaklines, their edges are in the surface, with the heights of the lines. Smooth
     /// methods of interpolation (--method) pass over them. Where kinds of lines meet, the first of
     /// these counts: holes, lakes, rivers, walls, breaklines, soft lines.
     #[arg(long, value_name = "FILE[:NAME]")]
-    pub(in crate::cli) soft_lines: Vec<PathBuf>,
+    pub(crate) soft_lines: Vec<PathBuf>,
 
     /// Lines without heights, draped over the surface (repeatable)
     ///
     /// They get their heights from the finished surface, and a vertex wherever they cross an edge.
     /// The surface itself does not change.
     #[arg(long, value_name = "FILE[:LAYER]")]
-    pub(in crate::cli) draped_lines: Vec<PathBuf>,
+    pub(crate) draped_lines: Vec<PathBuf>,
 
     /// Walls, kerbs and quays: the upper edges of vertical faces (repeatable)
     ///
@@ -36,7 +36,7 @@ pub(in crate::cli) struct LineArgs {
     /// from --wall-bottom or --wall-drop; without them, each record must have two parts, the upper
     /// and the lower edge. Points between the edges are left out.
     #[arg(long, value_name = "FILE[:NAME]")]
-    pub(in crate::cli) walls: Vec<PathBuf>,
+    pub(crate) walls: Vec<PathBuf>,
 
     /// Height of the lower edge of walls, or the attribute that has it
     #[arg(
@@ -46,26 +46,26 @@ pub(in crate::cli) struct LineArgs {
         allow_negative_numbers = true,
         conflicts_with = "wall_drop"
     )]
-    pub(in crate::cli) wall_bottom: Option<Number>,
+    pub(crate) wall_bottom: Option<Number>,
 
     /// How far the lower edge of walls is below the upper one, or the attribute that says it
     #[arg(long, requires = "walls", value_name = "HEIGHT|FIELD", allow_negative_numbers = true)]
-    pub(in crate::cli) wall_drop: Option<Number>,
+    pub(crate) wall_drop: Option<Number>,
 
     /// Distance in plan between the edges of walls [default: 0.01 metres]
     #[arg(long, requires = "walls", value_name = "LENGTH", value_parser = positive, allow_negative_numbers = true)]
-    pub(in crate::cli) wall_width: Option<f64>,
+    pub(crate) wall_width: Option<f64>,
 
     /// The side of a wall, in the direction of its line, on which the ground is higher
     #[arg(long, value_enum, value_name = "left|right", default_value_t)]
-    pub(in crate::cli) wall_high: HighSideArg,
+    pub(crate) wall_high: HighSideArg,
 
     /// Areas without data (repeatable)
     ///
     /// Polygons, or lines that close. They are cut out of the finished surface; a ring within a
     /// ring is an island.
     #[arg(long, value_name = "FILE[:LAYER]")]
-    pub(in crate::cli) holes: Vec<PathBuf>,
+    pub(crate) holes: Vec<PathBuf>,
 
     /// Lakes: level water within a shore (repeatable)
     ///
@@ -73,28 +73,28 @@ pub(in crate::cli) struct LineArgs {
     /// the last bit; points inside are left out. A shore that is not level is an error unless
     /// --flat-height says which height to use. A ring within a ring is the shore of an island.
     #[arg(long, visible_alias = "lakes", value_name = "FILE[:NAME]")]
-    pub(in crate::cli) flat: Vec<PathBuf>,
+    pub(crate) flat: Vec<PathBuf>,
 
     /// Height of lakes [default: that of their shore, which must be level]
     ///
     /// The lowest or the mean height of the shore, a number, or the attribute that has the height
     /// of each lake. With a number or an attribute, the shore needs no heights.
     #[arg(long, requires = "flat", value_name = "lowest|mean|HEIGHT|FIELD", allow_negative_numbers = true)]
-    pub(in crate::cli) flat_height: Option<FlatHeightArg>,
+    pub(crate) flat_height: Option<FlatHeightArg>,
 
     /// Largest difference of heights of a level shore [default: 0.01 metres]
     #[arg(long, requires = "flat", value_name = "HEIGHT", value_parser = not_negative, allow_negative_numbers = true)]
-    pub(in crate::cli) flat_tolerance: Option<f64>,
+    pub(crate) flat_tolerance: Option<f64>,
 
     /// Leave out points up to this distance outside of a shore, too
     #[arg(long, value_name = "LENGTH", value_parser = not_negative, default_value_t = 0.0, allow_negative_numbers = true)]
-    pub(in crate::cli) flat_buffer: f64,
+    pub(crate) flat_buffer: f64,
 
     /// Table of the points that lakes, rivers and walls replaced
     ///
     /// Comma separated: x, y, z.
     #[arg(long, visible_alias = "replaced-points", value_name = "FILE.csv")]
-    pub(in crate::cli) flat_points: Option<PathBuf>,
+    pub(crate) flat_points: Option<PathBuf>,
 
     /// Rivers: two banks with heights (repeatable)
     ///
@@ -105,20 +105,20 @@ pub(in crate::cli) struct LineArgs {
     /// the lower height counts; one that ends or begins at the bank of another is joined to it.
     /// Points inside are left out.
     #[arg(long, value_name = "FILE[:NAME]")]
-    pub(in crate::cli) rivers: Vec<PathBuf>,
+    pub(crate) rivers: Vec<PathBuf>,
 
     /// Width of rivers, or the attribute that has it: their lines run along the middle
     #[arg(long, requires = "rivers", value_name = "LENGTH|FIELD", allow_negative_numbers = true)]
-    pub(in crate::cli) river_width: Option<Number>,
+    pub(crate) river_width: Option<Number>,
 
     /// Largest distance between vertices of breaklines and soft lines: more are added
     #[arg(long, value_name = "LENGTH", value_parser = positive, allow_negative_numbers = true)]
-    pub(in crate::cli) densify: Option<f64>,
+    pub(crate) densify: Option<f64>,
 }
 
 impl LineArgs {
     /// Returns the options that name files of lines or areas, with what was typed.
-    pub(in crate::cli) fn files(&self) -> [(&'static str, &[PathBuf]); 6] {
+    pub(crate) fn files(&self) -> [(&'static str, &[PathBuf]); 6] {
         [
             ("--soft-lines", &self.soft_lines),
             ("--draped-lines", &self.draped_lines),
@@ -132,7 +132,7 @@ impl LineArgs {
 
 /// A number, or the name of an attribute.
 #[derive(Debug, Clone, PartialEq)]
-pub(in crate::cli) struct Number(pub(in crate::cli) PerRecord);
+pub(crate) struct Number(pub(crate) PerRecord);
 
 impl FromStr for Number {
     type Err = String;
@@ -148,7 +148,7 @@ impl FromStr for Number {
 
 /// Which height lakes have.
 #[derive(Debug, Clone, PartialEq)]
-pub(in crate::cli) struct FlatHeightArg(pub(in crate::cli) FlatRule);
+pub(crate) struct FlatHeightArg(pub(crate) FlatRule);
 
 impl FromStr for FlatHeightArg {
     type Err = String;
@@ -164,7 +164,7 @@ impl FromStr for FlatHeightArg {
 
 /// On which side of a wall the ground is higher.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
-pub(in crate::cli) enum HighSideArg {
+pub(crate) enum HighSideArg {
     /// Left of the line's direction
     #[default]
     Left,

@@ -19,14 +19,14 @@ use crate::cli::Exit;
 use crate::cli::report::console::Level;
 use crate::io::formats;
 
-pub(in crate::cli) use job::{JobAction, JobArgs};
-pub(in crate::cli) use lines::LineArgs;
-pub(in crate::cli) use parse::{EdgeLength, finite};
-pub(in crate::cli) use surface::{CrossingZArg, DuplicatesArg, OnCrossingArg, SurfaceArgs};
-pub(in crate::cli) use switches::expand_switches;
-pub(in crate::cli) use systems::SystemArgs;
-pub(in crate::cli) use tiles::TileArgs;
-pub(in crate::cli) use verbs::{
+pub(crate) use job::{JobAction, JobArgs};
+pub(crate) use lines::LineArgs;
+pub(crate) use parse::{EdgeLength, finite};
+pub(crate) use surface::{CrossingZArg, DuplicatesArg, OnCrossingArg, SurfaceArgs};
+pub(crate) use switches::expand_switches;
+pub(crate) use systems::SystemArgs;
+pub(crate) use tiles::TileArgs;
+pub(crate) use verbs::{
     CheckArgs, ContourArgs, DemArgs, DemoArgs, DescribeArgs, FrameArgs, HillshadeArgs, InfoArgs, OutputArgs,
     PointsArgs, TinArgs, TriangulateArgs,
 };
@@ -38,11 +38,11 @@ pub(in crate::cli) use verbs::{
 /// printed with their unit. Data goes to files (`info`: to stdout), messages to stderr.
 #[derive(Debug, Parser)]
 #[command(name = "breakline", version, max_term_width = 100, after_long_help = examples())]
-pub(in crate::cli) struct Cli {
+pub(crate) struct Cli {
     #[command(flatten)]
-    pub(in crate::cli) console: ConsoleArgs,
+    pub(crate) console: ConsoleArgs,
     #[command(subcommand)]
-    pub(in crate::cli) verb: Verb,
+    pub(crate) verb: Verb,
 }
 
 const EXAMPLES: &str = "
@@ -65,23 +65,23 @@ fn examples() -> String {
 /// How much is printed, and how many threads are used.
 #[derive(Debug, Clone, Default, Args)]
 #[command(next_help_heading = "General")]
-pub(in crate::cli) struct ConsoleArgs {
+pub(crate) struct ConsoleArgs {
     /// Print warnings and errors only
     #[arg(short, long, global = true, conflicts_with = "verbose")]
-    pub(in crate::cli) quiet: bool,
+    pub(crate) quiet: bool,
     /// Print details of what is read and done
     #[arg(short, long, global = true)]
-    pub(in crate::cli) verbose: bool,
+    pub(crate) verbose: bool,
     /// Number of threads [default: one per core]
     ///
     /// The results do not depend on it.
     #[arg(long, global = true, value_name = "N")]
-    pub(in crate::cli) threads: Option<NonZeroUsize>,
+    pub(crate) threads: Option<NonZeroUsize>,
 }
 
 impl ConsoleArgs {
     /// Returns how much is printed.
-    pub(in crate::cli) fn level(&self) -> Level {
+    pub(crate) fn level(&self) -> Level {
         match (self.quiet, self.verbose) {
             (true, _) => Level::Quiet,
             (_, true) => Level::Verbose,
@@ -92,7 +92,7 @@ impl ConsoleArgs {
 
 /// The verb, with its options.
 #[derive(Debug, Subcommand)]
-pub(in crate::cli) enum Verb {
+pub(crate) enum Verb {
     Info(InfoArgs),
     Points(PointsArgs),
     Tin(TinArgs),

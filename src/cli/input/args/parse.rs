@@ -6,9 +6,9 @@ use crate::data::Bounds;
 
 /// A rectangle typed as `xmin,ymin,xmax,ymax`, with commas or blanks.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(in crate::cli) struct Corners {
-    pub(in crate::cli) min: [f64; 2],
-    pub(in crate::cli) max: [f64; 2],
+pub(crate) struct Corners {
+    pub(crate) min: [f64; 2],
+    pub(crate) max: [f64; 2],
 }
 
 impl FromStr for Corners {
@@ -34,14 +34,14 @@ impl FromStr for Corners {
 
 impl Corners {
     /// Returns the box of this rectangle, unbounded in z.
-    pub(in crate::cli) fn bounds(self) -> Bounds {
+    pub(crate) fn bounds(self) -> Bounds {
         Bounds { min: [self.min[0], self.min[1], f64::NEG_INFINITY], max: [self.max[0], self.max[1], f64::INFINITY] }
     }
 }
 
 /// A length, `auto` or `none`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(in crate::cli) enum EdgeLength {
+pub(crate) enum EdgeLength {
     Length(f64),
     Auto,
     None,
@@ -62,7 +62,7 @@ impl FromStr for EdgeLength {
 }
 
 /// Parses a finite number.
-pub(in crate::cli) fn finite(text: &str) -> Result<f64, String> {
+pub(crate) fn finite(text: &str) -> Result<f64, String> {
     match text.trim().parse::<f64>() {
         Ok(value) if value.is_finite() => Ok(value),
         _ => Err(format!("`{}` is not a finite number", text.trim())),

@@ -9,7 +9,7 @@ use crate::io::points::Options;
 /// Options of reading points.
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Points")]
-pub(in crate::cli) struct ReadArgs {
+pub(crate) struct ReadArgs {
     /// Columns of text files, such as `PNEZD`, `XYZ` or `2,1,3` [default: from the header, else the
     /// first three]
     ///
@@ -18,13 +18,13 @@ pub(in crate::cli) struct ReadArgs {
     /// columns of x, y and z, counted from 1. With this option a header line is skipped. `info` and
     /// the summary show which columns were used.
     #[arg(long, value_name = "PNEZD|XYZ|2,1,3", conflicts_with = "parse")]
-    pub(in crate::cli) columns: Option<Columns>,
+    pub(crate) columns: Option<Columns>,
 
     /// Columns of text files in the letters of LAStools, such as `sxyz`
     ///
     /// x, y, z and c (class) are used; s and the letters of all other fields are skipped.
     #[arg(long, value_name = "sxyz", value_parser = Columns::of_las_tools)]
-    pub(in crate::cli) parse: Option<Columns>,
+    pub(crate) parse: Option<Columns>,
 
     /// Use what is left of LAS, LAZ and shapefiles that are cut or damaged
     ///
@@ -32,12 +32,12 @@ pub(in crate::cli) struct ReadArgs {
     /// points than its header (of text: its first line) states, or a shapefile has a record that
     /// cannot be read.
     #[arg(long)]
-    pub(in crate::cli) partial: bool,
+    pub(crate) partial: bool,
 }
 
 impl ReadArgs {
     /// Returns the options for readers of points.
-    pub(in crate::cli) fn options(&self) -> Options {
+    pub(crate) fn options(&self) -> Options {
         let cut = if self.partial { Cut::Accept } else { Cut::Refuse };
         Options { columns: self.columns.or(self.parse), cut, ..Options::default() }
     }

@@ -12,7 +12,7 @@ use crate::triangulation::OnCrossing;
 
 /// Options of building or reading a surface.
 #[derive(Debug, Clone, Args)]
-pub(in crate::cli) struct SurfaceArgs {
+pub(crate) struct SurfaceArgs {
     /// Files, globs, `@list.txt` or `-` (stdin)
     ///
     /// Points from LAS, LAZ, COPC, text (x y z) and vector layers (`FILE:FIELD` takes heights from
@@ -22,10 +22,10 @@ pub(in crate::cli) struct SurfaceArgs {
     /// list. The order of the files makes no difference, except for `--duplicates first` and
     /// `last`.
     #[arg(required = true, value_name = "IN")]
-    pub(in crate::cli) inputs: Vec<PathBuf>,
+    pub(crate) inputs: Vec<PathBuf>,
 
     #[command(flatten)]
-    pub(in crate::cli) read: ReadArgs,
+    pub(crate) read: ReadArgs,
 
     /// Breaklines that the surface must follow (repeatable)
     ///
@@ -36,7 +36,7 @@ pub(in crate::cli) struct SurfaceArgs {
     /// breakline is used; a point that lies on a breakline between its vertices keeps its height.
     /// Lines without heights are refused (--draped-lines takes them).
     #[arg(long, value_name = "FILE[:NAME]", help_heading = "Surface")]
-    pub(in crate::cli) breaklines: Vec<PathBuf>,
+    pub(crate) breaklines: Vec<PathBuf>,
 
     /// Polygons that the surface is clipped to (repeatable)
     ///
@@ -45,7 +45,7 @@ pub(in crate::cli) struct SurfaceArgs {
     /// otherwise they are refused, and the error names the gap. `FILE:LAYER` names the layer of a
     /// file with several.
     #[arg(long, value_name = "FILE[:LAYER]", help_heading = "Surface")]
-    pub(in crate::cli) boundary: Vec<PathBuf>,
+    pub(crate) boundary: Vec<PathBuf>,
 
     /// Clip to a rectangle
     ///
@@ -55,7 +55,7 @@ pub(in crate::cli) struct SurfaceArgs {
     /// the final buffer. The values are in the units of the coordinate system of the result,
     /// separated by commas or blanks.
     #[arg(long, value_name = "XMIN,YMIN,XMAX,YMAX", allow_hyphen_values = true, help_heading = "Surface")]
-    pub(in crate::cli) bounds: Option<Corners>,
+    pub(crate) bounds: Option<Corners>,
 
     /// Longest edge at the rim, `auto`, or `none` [default: 100 metres]
     ///
@@ -65,36 +65,36 @@ pub(in crate::cli) struct SurfaceArgs {
     /// is 100 times the mean distance between points, from the number of all points and the extents
     /// of all files; the summary shows it.
     #[arg(long, value_name = "LENGTH|auto|none", allow_negative_numbers = true, help_heading = "Surface")]
-    pub(in crate::cli) max_edge: Option<EdgeLength>,
+    pub(crate) max_edge: Option<EdgeLength>,
 
     /// Longest edge anywhere: triangles with longer ones leave a hole
     ///
     /// For gaps in the data. Breaklines do not count, and neither do triangles in water (--flat,
     /// --rivers).
     #[arg(long, value_name = "LENGTH", value_parser = positive, allow_negative_numbers = true, help_heading = "Surface")]
-    pub(in crate::cli) max_edge_inside: Option<f64>,
+    pub(crate) max_edge_inside: Option<f64>,
 
     #[command(flatten)]
-    pub(in crate::cli) lines: LineArgs,
+    pub(crate) lines: LineArgs,
 
     /// Classes to use, such as `2,8` or `ground` [default: 2 if any point has it, else all]
     ///
     /// By number, or by name as in LAS 1.4: `ground,low-vegetation`. Points flagged as withheld are
     /// never used; points from formats without classes are always used.
     #[arg(long, value_name = "CLASS,..", value_parser = classes::parse, value_delimiter = ',', help_heading = "Surface")]
-    pub(in crate::cli) class: Vec<u8>,
+    pub(crate) class: Vec<u8>,
 
     /// Which height is used where points have the same position
     ///
     /// `first` and `last` depend on the order of the input; the others do not.
     #[arg(long, value_enum, value_name = "RULE", default_value_t, help_heading = "Surface")]
-    pub(in crate::cli) duplicates: DuplicatesArg,
+    pub(crate) duplicates: DuplicatesArg,
 
     /// What to do where breaklines cross between their vertices
     ///
     /// `split` adds a common vertex; `reject` is an error that names both lines and the position.
     #[arg(long, value_enum, value_name = "split|reject", default_value_t, help_heading = "Surface")]
-    pub(in crate::cli) on_crossing: OnCrossingArg,
+    pub(crate) on_crossing: OnCrossingArg,
 
     /// Which height is used where breaklines cross between their vertices
     ///
@@ -104,7 +104,7 @@ pub(in crate::cli) struct SurfaceArgs {
     /// a vertex of another, that vertex keeps its height (vertices at the same position follow
     /// `--duplicates`); different heights are still reported.
     #[arg(long, value_enum, value_name = "RULE", default_value_t, help_heading = "Surface")]
-    pub(in crate::cli) crossing_z: CrossingZArg,
+    pub(crate) crossing_z: CrossingZArg,
 
     /// Largest allowed difference of heights where breaklines meet [default: 0.01 metres]
     ///
@@ -112,29 +112,29 @@ pub(in crate::cli) struct SurfaceArgs {
     /// larger step. In the units of the heights (0.01 metres are 0.0328 feet); without any, 0.01
     /// units.
     #[arg(long, value_name = "HEIGHT", value_parser = not_negative, allow_negative_numbers = true, help_heading = "Surface")]
-    pub(in crate::cli) crossing_tolerance: Option<f64>,
+    pub(crate) crossing_tolerance: Option<f64>,
 
     /// Table of all points where breaklines meet with different heights
     ///
     /// Comma separated: position, height used, and both lines by file, feature id and part, with
     /// their heights. If no heights differ, the file has only its header.
     #[arg(long, value_name = "FILE.csv", help_heading = "Surface")]
-    pub(in crate::cli) crossing_report: Option<PathBuf>,
+    pub(crate) crossing_report: Option<PathBuf>,
 
     #[command(flatten)]
-    pub(in crate::cli) systems: SystemArgs,
+    pub(crate) systems: SystemArgs,
 
     /// Go on although the coordinates are in degrees
     ///
     /// A degree is not a length: triangles, slopes and edge lengths are then computed from the
     /// numbers as they are.
     #[arg(long, help_heading = "Coordinate system")]
-    pub(in crate::cli) force_degrees: bool,
+    pub(crate) force_degrees: bool,
 }
 
 /// Which height is used where points have the same position.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
-pub(in crate::cli) enum DuplicatesArg {
+pub(crate) enum DuplicatesArg {
     /// The lowest
     #[default]
     Lowest,
@@ -162,7 +162,7 @@ impl From<DuplicatesArg> for DuplicateRule {
 
 /// What to do where two segments cross.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
-pub(in crate::cli) enum OnCrossingArg {
+pub(crate) enum OnCrossingArg {
     /// Add a vertex
     #[default]
     Split,
@@ -181,7 +181,7 @@ impl From<OnCrossingArg> for OnCrossing {
 
 /// Which height is used where breaklines cross.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
-pub(in crate::cli) enum CrossingZArg {
+pub(crate) enum CrossingZArg {
     /// The lowest
     #[default]
     Lowest,

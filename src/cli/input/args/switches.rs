@@ -11,7 +11,7 @@ use crate::error::{Error, Result};
 ///
 /// # Errors
 /// If a word contains other switches.
-pub(in crate::cli) fn expand_switches(words: impl IntoIterator<Item = OsString>) -> Result<Vec<OsString>> {
+pub(crate) fn expand_switches(words: impl IntoIterator<Item = OsString>) -> Result<Vec<OsString>> {
     let mut is_over = false;
     let mut expanded = Vec::new();
     for word in words {

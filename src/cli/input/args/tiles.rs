@@ -7,35 +7,35 @@ use crate::run::{Division, memory_of};
 /// Options of surfaces that do not fit into memory.
 #[derive(Debug, Clone, Default, Args)]
 #[command(next_help_heading = "Tiles")]
-pub(in crate::cli) struct TileArgs {
+pub(crate) struct TileArgs {
     /// Work in tiles: `auto`, or columns and rows such as `8x8` [default: if memory is short]
     ///
     /// The result is the same, byte for byte. `auto` takes the files as tiles if they are separate
     /// and small; else their points are divided among tiles first. With linear heights.
     #[arg(long, value_name = "auto|COLUMNSxROWS")]
-    pub(in crate::cli) tiles: Option<Division>,
+    pub(crate) tiles: Option<Division>,
 
     /// Memory to use, such as `2GB` [default: half of what is free]
     ///
     /// Points that need more are worked on in tiles, which are chosen to fit.
     #[arg(long, value_name = "SIZE", value_parser = memory_of)]
-    pub(in crate::cli) memory: Option<u64>,
+    pub(crate) memory: Option<u64>,
 
     /// Folder for the files of the tasks [default: the output's name with .job]
     ///
     /// It is removed when the output is written, unless it was named, or files were skipped.
     #[arg(long, value_name = "FOLDER")]
-    pub(in crate::cli) job: Option<PathBuf>,
+    pub(crate) job: Option<PathBuf>,
 
     /// Go on with a job that was interrupted
     ///
     /// Tasks that are done are verified by their checksums and not done again.
     #[arg(long)]
-    pub(in crate::cli) resume: bool,
+    pub(crate) resume: bool,
 
     /// Print the plan and end
     #[arg(long)]
-    pub(in crate::cli) dry_run: bool,
+    pub(crate) dry_run: bool,
 
     /// Leave a hole where a file cannot be read, and report it
     ///
@@ -43,12 +43,12 @@ pub(in crate::cli) struct TileArgs {
     /// code is 3, and the folder of the job is kept: with --resume, files are tried again that may
     /// have been repaired.
     #[arg(long)]
-    pub(in crate::cli) skip_bad: bool,
+    pub(crate) skip_bad: bool,
 }
 
 impl TileArgs {
     /// Returns true if any option asks for tiles.
-    pub(in crate::cli) fn are_asked_for(&self) -> bool {
+    pub(crate) fn are_asked_for(&self) -> bool {
         self.tiles.is_some() || self.job.is_some() || self.resume || self.dry_run || self.skip_bad
     }
 }

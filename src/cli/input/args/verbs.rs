@@ -13,45 +13,45 @@ use crate::terrain::Method;
 
 /// The files to write.
 #[derive(Debug, Clone, Args)]
-pub(in crate::cli) struct OutputArgs {
+pub(crate) struct OutputArgs {
     /// File to write, format by extension (repeatable)
     ///
     /// The files of a run appear together at its end, or not at all. Pipes and devices, such as
     /// `/dev/stdout`, are written directly.
     #[arg(short, long, required = true, value_name = "OUT")]
-    pub(in crate::cli) output: Vec<PathBuf>,
+    pub(crate) output: Vec<PathBuf>,
 
     /// Replace files that exist
     ///
     /// The new files keep the mode of the old ones. A symbolic link is followed; a read-only file
     /// is refused.
     #[arg(long)]
-    pub(in crate::cli) overwrite: bool,
+    pub(crate) overwrite: bool,
 }
 
 /// Size and position of a raster.
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Raster")]
-pub(in crate::cli) struct FrameArgs {
+pub(crate) struct FrameArgs {
     /// Size of a cell [default: 1]
     ///
     /// In the units of the coordinate system. Cells start at multiples of this size, so that
     /// neighboring rasters fit together.
     #[arg(long, value_name = "LENGTH", value_parser = positive, allow_negative_numbers = true)]
-    pub(in crate::cli) resolution: Option<f64>,
+    pub(crate) resolution: Option<f64>,
 
     /// Extent of the raster [default: that of the surface]
     ///
     /// Enlarged to whole cells. The values are separated by commas or blanks.
     #[arg(long, value_name = "XMIN,YMIN,XMAX,YMAX", allow_hyphen_values = true)]
-    pub(in crate::cli) te: Option<Corners>,
+    pub(crate) te: Option<Corners>,
 
     /// Raster whose grid of cells is used
     ///
     /// The grid continues beyond the edges of that raster; the extent is that of the surface, or
     /// `--te`.
     #[arg(long, value_name = "RASTER", conflicts_with = "resolution")]
-    pub(in crate::cli) align_to: Option<PathBuf>,
+    pub(crate) align_to: Option<PathBuf>,
 }
 
 /// Show what is in files: counts, bounds, classes, coordinate system, defects
@@ -63,17 +63,17 @@ pub(in crate::cli) struct FrameArgs {
 Example:
   breakline info tile.laz edges.shp dem.tif
   breakline info --json tiles/*.laz | jq '.[].count'")]
-pub(in crate::cli) struct InfoArgs {
+pub(crate) struct InfoArgs {
     /// Files, globs, `@list.txt` or `-`
     #[arg(required = true, value_name = "FILE")]
-    pub(in crate::cli) files: Vec<PathBuf>,
+    pub(crate) files: Vec<PathBuf>,
 
     /// Print a JSON array with one object per file and exact numbers
     #[arg(long)]
-    pub(in crate::cli) json: bool,
+    pub(crate) json: bool,
 
     #[command(flatten)]
-    pub(in crate::cli) read: ReadArgs,
+    pub(crate) read: ReadArgs,
 }
 
 /// Select, clip and merge points, with all their attributes
@@ -93,53 +93,53 @@ Example:
   breakline points tiles/*.laz --class ground,water --boundary site.shp -o site.laz
   breakline points a.las b.las -o merged.laz
   breakline points tile.laz --a-srs EPSG:25832+7837 -o tile-with-crs.laz")]
-pub(in crate::cli) struct PointsArgs {
+pub(crate) struct PointsArgs {
     /// Files, globs, `@list.txt` or `-` (stdin)
     ///
     /// Points from LAS, LAZ, COPC, text (x y z) and vector layers. LAS and LAZ can be written only
     /// from LAS, LAZ and COPC.
     #[arg(required = true, value_name = "IN")]
-    pub(in crate::cli) inputs: Vec<PathBuf>,
+    pub(crate) inputs: Vec<PathBuf>,
     #[command(flatten)]
-    pub(in crate::cli) output: OutputArgs,
+    pub(crate) output: OutputArgs,
 
     /// Classes to write, such as `2,8` or `ground` [default: all]
     ///
     /// Points of formats without classes are always written.
     #[arg(long, value_name = "CLASS,..", value_parser = classes::parse, value_delimiter = ',', help_heading = "Selection")]
-    pub(in crate::cli) class: Vec<u8>,
+    pub(crate) class: Vec<u8>,
 
     /// Return numbers to write, such as `1,2` [default: all]
     #[arg(long = "return", value_name = "N,..", value_delimiter = ',', help_heading = "Selection")]
-    pub(in crate::cli) returns: Vec<u8>,
+    pub(crate) returns: Vec<u8>,
 
     /// Leave out points that are flagged as withheld
     #[arg(long, help_heading = "Selection")]
-    pub(in crate::cli) drop_withheld: bool,
+    pub(crate) drop_withheld: bool,
 
     /// Clip to a rectangle, including its border
     #[arg(long, value_name = "XMIN,YMIN,XMAX,YMAX", allow_hyphen_values = true, help_heading = "Selection")]
-    pub(in crate::cli) bounds: Option<Corners>,
+    pub(crate) bounds: Option<Corners>,
 
     /// Clip to polygons, including their borders (repeatable)
     ///
     /// Points inside any of the polygons are kept. Lines that close to rings count as one polygon.
     /// `FILE:LAYER` names the layer of a file with several.
     #[arg(long, value_name = "FILE[:LAYER]", help_heading = "Selection")]
-    pub(in crate::cli) boundary: Vec<PathBuf>,
+    pub(crate) boundary: Vec<PathBuf>,
 
     /// Round coordinates to the nearest step of the first file's scale
     ///
     /// For files whose scales and offsets do not fit together. No coordinate moves by more than
     /// half a step.
     #[arg(long, help_heading = "Selection")]
-    pub(in crate::cli) round: bool,
+    pub(crate) round: bool,
 
     #[command(flatten)]
-    pub(in crate::cli) systems: SystemArgs,
+    pub(crate) systems: SystemArgs,
 
     #[command(flatten)]
-    pub(in crate::cli) read: ReadArgs,
+    pub(crate) read: ReadArgs,
 }
 
 /// Build a TIN of points and breaklines
@@ -158,13 +158,13 @@ Example:
   breakline tin tiles/*.laz --breaklines edges.shp --boundary site.shp -o ground.ply
   breakline tin tiles/*.laz -o ground.tin
   breakline tin country/*.laz -o country.tins --memory 8GB")]
-pub(in crate::cli) struct TinArgs {
+pub(crate) struct TinArgs {
     #[command(flatten)]
-    pub(in crate::cli) surface: SurfaceArgs,
+    pub(crate) surface: SurfaceArgs,
     #[command(flatten)]
-    pub(in crate::cli) output: OutputArgs,
+    pub(crate) output: OutputArgs,
     #[command(flatten)]
-    pub(in crate::cli) tiles: TileArgs,
+    pub(crate) tiles: TileArgs,
 }
 
 /// Triangulate points and segments in the plane, or points in space; Triangle's and TetGen's files
@@ -189,18 +189,18 @@ Example:
   breakline triangulate -pq30a0.5 plate.poly -o plate.1.ele
   breakline triangulate --3d tree.laz --alpha auto -o tree.stl -o tree.vtu
   breakline check plate.1.ele")]
-pub(in crate::cli) struct TriangulateArgs {
+pub(crate) struct TriangulateArgs {
     /// A .node or .poly file; in space also LAS, LAZ, text, PLY, OBJ or OFF
     #[arg(value_name = "IN")]
-    pub(in crate::cli) input: PathBuf,
+    pub(crate) input: PathBuf,
     #[command(flatten)]
-    pub(in crate::cli) output: OutputArgs,
+    pub(crate) output: OutputArgs,
 
     /// Triangulate in space: tetrahedra (assumed for a .node of dimension 3)
     ///
     /// Points of all classes are used. Only --weighted, --alpha and --kernel apply then.
     #[arg(long = "3d", help_heading = "Space")]
-    pub(in crate::cli) space: bool,
+    pub(crate) space: bool,
 
     /// Points have weights: a regular triangulation
     ///
@@ -208,24 +208,24 @@ pub(in crate::cli) struct TriangulateArgs {
     /// .node, or the column of a text after the coordinates. They become the first attribute of the
     /// .node that is written.
     #[arg(long, help_heading = "Space")]
-    pub(in crate::cli) weighted: bool,
+    pub(crate) weighted: bool,
 
     /// Write the alpha shape to .ply, .obj, .off or .stl
     ///
     /// It consists of the tetrahedra whose sphere has at most this squared radius. `auto` is the
     /// smallest that is one solid with all points.
     #[arg(long, value_name = "SQUARED_RADIUS|auto", value_parser = alpha, allow_negative_numbers = true, help_heading = "Space")]
-    pub(in crate::cli) alpha: Option<Alpha>,
+    pub(crate) alpha: Option<Alpha>,
 
     /// Keep the whole convex hull
     ///
     /// Holes are still removed. Without segments the hull is always kept.
     #[arg(long, help_heading = "Triangulation")]
-    pub(in crate::cli) convex: bool,
+    pub(crate) convex: bool,
 
     /// What to do where two segments cross between their ends
     #[arg(long, value_enum, value_name = "RULE", default_value_t, help_heading = "Triangulation")]
-    pub(in crate::cli) on_crossing: OnCrossingArg,
+    pub(crate) on_crossing: OnCrossingArg,
 
     /// Add vertices until no angle is smaller (also `-q[DEGREES]`: 20)
     ///
@@ -234,15 +234,15 @@ pub(in crate::cli) struct TriangulateArgs {
     /// `-c` are typed as for Triangle, alone or in one word: `-pq30a0.5`. `-q` is not `--quiet`
     /// here; that is `-Q`.
     #[arg(long, value_name = "DEGREES", value_parser = smallest_angle, help_heading = "Quality")]
-    pub(in crate::cli) min_angle: Option<f64>,
+    pub(crate) min_angle: Option<f64>,
 
     /// Add vertices until no triangle is larger (also `-aAREA`)
     #[arg(long, value_name = "AREA", value_parser = positive, help_heading = "Quality")]
-    pub(in crate::cli) max_area: Option<f64>,
+    pub(crate) max_area: Option<f64>,
 
     /// Apply the largest areas of the .poly's regions (also `-a`)
     #[arg(long, help_heading = "Quality")]
-    pub(in crate::cli) region_areas: bool,
+    pub(crate) region_areas: bool,
 
     /// Stop after this many added vertices, and write the result so far (also `-S[COUNT]`: 0)
     ///
@@ -250,16 +250,16 @@ pub(in crate::cli) struct TriangulateArgs {
     /// if 1 000 000 vertices are not enough, and nothing is written: some angles are never reached,
     /// however many vertices are added.
     #[arg(long, value_name = "COUNT", help_heading = "Quality")]
-    pub(in crate::cli) max_added: Option<usize>,
+    pub(crate) max_added: Option<usize>,
 
     /// The arithmetic that decides on which side of a line a point lies
     #[arg(long, value_enum, value_name = "KERNEL", default_value_t, help_heading = "Triangulation")]
-    pub(in crate::cli) kernel: KernelArg,
+    pub(crate) kernel: KernelArg,
 }
 
 impl TriangulateArgs {
     /// Returns the first option given that is only for the plane.
-    pub(in crate::cli) fn option_of_the_plane(&self) -> Option<&'static str> {
+    pub(crate) fn option_of_the_plane(&self) -> Option<&'static str> {
         let given = [
             (self.convex, "--convex"),
             (self.on_crossing != OnCrossingArg::default(), "--on-crossing"),
@@ -272,7 +272,7 @@ impl TriangulateArgs {
     }
 
     /// Returns the first option given that is only for space.
-    pub(in crate::cli) fn option_of_space(&self) -> Option<&'static str> {
+    pub(crate) fn option_of_space(&self) -> Option<&'static str> {
         let given = [(self.weighted, "--weighted"), (self.alpha.is_some(), "--alpha")];
         given.into_iter().find(|(is_given, _)| *is_given).map(|(_, name)| name)
     }
@@ -287,7 +287,7 @@ fn alpha(text: &str) -> Result<Alpha, String> {
 
 /// The arithmetic of the predicates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
-pub(in crate::cli) enum KernelArg {
+pub(crate) enum KernelArg {
     /// Exact, as fast as floating point where that is certain
     #[default]
     Adaptive,
@@ -320,13 +320,13 @@ Example:
   breakline dem ground.tin --method natural -o round.tif
   breakline dem ground.ply --te 688000 5261000 688400 5261300 -o dem.tif
   breakline dem ground.ply --align-to ortho.tif -o dem.tif")]
-pub(in crate::cli) struct DemArgs {
+pub(crate) struct DemArgs {
     #[command(flatten)]
-    pub(in crate::cli) surface: SurfaceArgs,
+    pub(crate) surface: SurfaceArgs,
     #[command(flatten)]
-    pub(in crate::cli) output: OutputArgs,
+    pub(crate) output: OutputArgs,
     #[command(flatten)]
-    pub(in crate::cli) frame: FrameArgs,
+    pub(crate) frame: FrameArgs,
 
     /// How heights between the vertices are computed
     ///
@@ -334,15 +334,15 @@ pub(in crate::cli) struct DemArgs {
     /// stays between the heights of its neighbors; `smooth` has kinks at breaklines only, and may
     /// overshoot.
     #[arg(long, value_enum, value_name = "METHOD", default_value_t, help_heading = "Raster")]
-    pub(in crate::cli) method: MethodArg,
+    pub(crate) method: MethodArg,
 
     #[command(flatten)]
-    pub(in crate::cli) tiles: TileArgs,
+    pub(crate) tiles: TileArgs,
 }
 
 /// How heights between the vertices are computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
-pub(in crate::cli) enum MethodArg {
+pub(crate) enum MethodArg {
     /// Linear on each triangle
     #[default]
     Linear,
@@ -383,21 +383,21 @@ impl From<MethodArg> for Method {
 Example:
   breakline contour tile.laz --breaklines edges.shp --interval 0.5 -o contours.shp
   breakline contour dem.tif --levels 100,105.5,120 -o contours.geojson")]
-pub(in crate::cli) struct ContourArgs {
+pub(crate) struct ContourArgs {
     #[command(flatten)]
-    pub(in crate::cli) surface: SurfaceArgs,
+    pub(crate) surface: SurfaceArgs,
     #[command(flatten)]
-    pub(in crate::cli) output: OutputArgs,
+    pub(crate) output: OutputArgs,
 
     /// Height between contours [default: 1]
     ///
     /// In the units of the heights.
     #[arg(long, value_name = "HEIGHT", value_parser = positive, allow_negative_numbers = true, help_heading = "Levels")]
-    pub(in crate::cli) interval: Option<f64>,
+    pub(crate) interval: Option<f64>,
 
     /// A height at which there is a contour; the others follow from the interval
     #[arg(long, value_name = "HEIGHT", value_parser = finite, default_value = "0", allow_hyphen_values = true, help_heading = "Levels")]
-    pub(in crate::cli) base: f64,
+    pub(crate) base: f64,
 
     /// These heights instead of an interval, such as `100,105.5`
     #[arg(
@@ -409,10 +409,10 @@ pub(in crate::cli) struct ContourArgs {
         conflicts_with_all = ["interval", "base"],
         help_heading = "Levels"
     )]
-    pub(in crate::cli) levels: Vec<f64>,
+    pub(crate) levels: Vec<f64>,
 
     #[command(flatten)]
-    pub(in crate::cli) tiles: TileArgs,
+    pub(crate) tiles: TileArgs,
 }
 
 /// Shade a TIN or a DEM as the sun would
@@ -425,13 +425,13 @@ pub(in crate::cli) struct ContourArgs {
 Example:
   breakline hillshade ground.ply --resolution 0.5 -o shade.png
   breakline hillshade dem.tif --azimuth 300 --z-factor 2 -o shade.tif")]
-pub(in crate::cli) struct HillshadeArgs {
+pub(crate) struct HillshadeArgs {
     #[command(flatten)]
-    pub(in crate::cli) surface: SurfaceArgs,
+    pub(crate) surface: SurfaceArgs,
     #[command(flatten)]
-    pub(in crate::cli) output: OutputArgs,
+    pub(crate) output: OutputArgs,
     #[command(flatten)]
-    pub(in crate::cli) frame: FrameArgs,
+    pub(crate) frame: FrameArgs,
 
     /// How heights between the vertices are computed
     ///
@@ -439,24 +439,24 @@ pub(in crate::cli) struct HillshadeArgs {
     /// stays between the heights of its neighbors; `smooth` has kinks at breaklines only, and may
     /// overshoot. For a TIN; a DEM has its heights.
     #[arg(long, value_enum, value_name = "METHOD", default_value_t, help_heading = "Raster")]
-    pub(in crate::cli) method: MethodArg,
+    pub(crate) method: MethodArg,
 
     /// Direction that the light comes from, in degrees clockwise from north
     #[arg(long, value_name = "DEGREES", value_parser = finite, default_value = "315", allow_hyphen_values = true, help_heading = "Light")]
-    pub(in crate::cli) azimuth: f64,
+    pub(crate) azimuth: f64,
 
     /// Angle of the light above the horizon, in degrees
     #[arg(long, value_name = "DEGREES", value_parser = altitude, allow_negative_numbers = true, default_value = "45", help_heading = "Light")]
-    pub(in crate::cli) altitude: f64,
+    pub(crate) altitude: f64,
 
     /// Factor for heights [default: 1, or what converts them to the units of x and y]
     ///
     /// By default, heights in feet over coordinates in metres are multiplied by 0.3048.
     #[arg(long, value_name = "FACTOR", value_parser = positive, allow_negative_numbers = true, help_heading = "Light")]
-    pub(in crate::cli) z_factor: Option<f64>,
+    pub(crate) z_factor: Option<f64>,
 
     #[command(flatten)]
-    pub(in crate::cli) tiles: TileArgs,
+    pub(crate) tiles: TileArgs,
 }
 
 /// Prove a TIN correct, or list its flaws
@@ -473,19 +473,19 @@ pub(in crate::cli) struct HillshadeArgs {
 Example:
   breakline check ground.ply
   breakline check plate.1.ele")]
-pub(in crate::cli) struct CheckArgs {
+pub(crate) struct CheckArgs {
     #[command(flatten)]
-    pub(in crate::cli) surface: SurfaceArgs,
+    pub(crate) surface: SurfaceArgs,
 
     /// The vertices of tetrahedra have weights: check that they are regular
     ///
     /// Weights are the first attribute of the .node, or in a .weights next to it.
     #[arg(long)]
-    pub(in crate::cli) weighted: bool,
+    pub(crate) weighted: bool,
 
     /// Replace an existing crossing report
     #[arg(long)]
-    pub(in crate::cli) overwrite: bool,
+    pub(crate) overwrite: bool,
 }
 
 /// Describe the program: all verbs with their options, values and defaults
@@ -495,10 +495,10 @@ pub(in crate::cli) struct CheckArgs {
 #[command(after_long_help = "\
 Example:
   breakline describe --json | jq '.verbs[].name'")]
-pub(in crate::cli) struct DescribeArgs {
+pub(crate) struct DescribeArgs {
     /// Print a JSON object, with all texts of the help
     #[arg(long)]
-    pub(in crate::cli) json: bool,
+    pub(crate) json: bool,
 }
 
 /// Try everything on a small valley that comes with the program
@@ -509,8 +509,8 @@ pub(in crate::cli) struct DescribeArgs {
 #[command(after_long_help = "\
 Example:
   breakline demo valley")]
-pub(in crate::cli) struct DemoArgs {
+pub(crate) struct DemoArgs {
     /// Folder to write to
     #[arg(value_name = "DIR", default_value = "breakline-demo")]
-    pub(in crate::cli) folder: PathBuf,
+    pub(crate) folder: PathBuf,
 }

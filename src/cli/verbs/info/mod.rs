@@ -22,7 +22,7 @@ use crate::io::formats;
 use crate::run::{self, Facts};
 
 /// Prints what is in files. A file that cannot be read does not stop the others from being printed.
-pub(in crate::cli) fn run(args: &InfoArgs, console: &Console) -> Result<Exit> {
+pub(crate) fn run(args: &InfoArgs, console: &Console) -> Result<Exit> {
     let mut files = inputs::expand(&args.files, console)?;
     drop_parts(&mut files, console);
     let options = args.read.options();
@@ -53,7 +53,7 @@ pub(in crate::cli) fn run(args: &InfoArgs, console: &Console) -> Result<Exit> {
 }
 
 /// Returns the facts about a file, and the warnings, as JSON.
-pub(in crate::cli) fn as_json(path: &Path, facts: &Facts) -> serde_json::Value {
+pub(crate) fn as_json(path: &Path, facts: &Facts) -> serde_json::Value {
     sheet(path, facts).to_json(&path.display().to_string())
 }
 

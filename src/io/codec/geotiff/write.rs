@@ -141,9 +141,9 @@ fn write_levels(
 
 #[cfg(test)]
 mod tests {
-    use super::super::tile::SIDE;
     use super::*;
     use crate::data::{Grid, Window};
+    use crate::io::codec::geotiff::tile::SIDE;
 
     struct Slope(Frame);
 

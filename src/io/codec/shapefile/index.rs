@@ -87,7 +87,7 @@ mod tests {
 
     fn index(entries: &[(u32, u32)]) -> Vec<u8> {
         let mut bytes = vec![0; HEADER];
-        bytes[..4].copy_from_slice(&super::super::FILE_CODE.to_be_bytes());
+        bytes[..4].copy_from_slice(&crate::io::codec::shapefile::FILE_CODE.to_be_bytes());
         bytes[24..28].copy_from_slice(&(50 + 4 * entries.len() as u32).to_be_bytes());
         entries.iter().for_each(|(a, b)| {
             bytes.extend((a / 2).to_be_bytes());

@@ -1,10 +1,10 @@
-use super::super::find::{self, LevelArcs};
-use super::super::index::LevelIndex;
-use super::super::trace;
 use super::patch::Patch;
 use super::{ContourParts, LevelParts, NO_HEIGHTS, join};
 use crate::error::{Error, Result};
 use crate::terrain::Levels;
+use crate::terrain::contour::find::{self, LevelArcs};
+use crate::terrain::contour::index::LevelIndex;
+use crate::terrain::contour::trace;
 use crate::terrain::tiles::TileTriangle;
 
 /// Collects the triangles of a task and returns their parts of contours.

@@ -1,9 +1,9 @@
-use super::super::cut::Direction;
-use super::super::join::{End, Joined, chain, pair};
-use super::super::line::finish_level;
 use super::{LevelParts, LevelSide, LineEnd, OpenLine};
 use crate::data::ContourLine;
 use crate::error::{Error, Result};
+use crate::terrain::contour::cut::Direction;
+use crate::terrain::contour::join::{End, Joined, chain, pair};
+use crate::terrain::contour::line::finish_level;
 use rayon::prelude::*;
 use std::cmp::Ordering;
 

@@ -1,10 +1,10 @@
 //! Triangles of a task that meet a level, as a mesh.
 
-use super::super::index::LevelIndex;
-use super::super::trace::{LooseEnd, Trace, Traces};
 use super::{LevelParts, LevelSide, LineEnd, OpenLine, VertexKey};
 use crate::data::{self, LinkFlaw, Mesh, Surface, Triangles};
 use crate::error::{Error, Result};
+use crate::terrain::contour::index::LevelIndex;
+use crate::terrain::contour::trace::{LooseEnd, Trace, Traces};
 use crate::terrain::tiles::{TileTriangle, TileVertex};
 use crate::triangulation::num::unsigned_zero;
 use rustc_hash::FxHashMap;

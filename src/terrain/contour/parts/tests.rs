@@ -1,12 +1,12 @@
 //! Contours from parts against those of the whole surface, bit for bit, where many heights lie
 //! exactly on levels and where rounding shows.
 
-use super::super::contours;
-use super::super::join::Joined;
-use super::super::line::finish_level;
 use super::*;
 use crate::data::{ContourLine, EdgeKind, Mesh};
 use crate::terrain::Levels;
+use crate::terrain::contour::contours;
+use crate::terrain::contour::join::Joined;
+use crate::terrain::contour::line::finish_level;
 use crate::terrain::tiles::{self, Residual, Tile, TileTriangle, TileVertex};
 use std::collections::HashMap;
 use testkit::random::{Random, ulps};

@@ -50,15 +50,15 @@ pub struct WaterOverlap {
 
 /// What waters that overlap or touch add to their lines.
 #[derive(Debug, Clone, Default)]
-pub(in crate::terrain) struct Marks {
+pub(crate) struct Marks {
     /// Lines that have more vertices now, by their numbers.
-    pub(in crate::terrain) replaced: Vec<(usize, Vec<[f64; 3]>)>,
+    pub(crate) replaced: Vec<(usize, Vec<[f64; 3]>)>,
     /// New lines, each with the number of a line of the same water.
-    pub(in crate::terrain) added: Vec<(usize, Vec<[f64; 3]>)>,
+    pub(crate) added: Vec<(usize, Vec<[f64; 3]>)>,
     /// The pairs of a water and a river that overlap or touch, by their numbers.
-    pub(in crate::terrain) pairs: Vec<[usize; 2]>,
+    pub(crate) pairs: Vec<[usize; 2]>,
     /// The waters that meet with a step.
-    pub(in crate::terrain) overlaps: Vec<WaterOverlap>,
+    pub(crate) overlaps: Vec<WaterOverlap>,
 }
 
 /// Finds what waters that overlap or touch need. `line` returns the vertices of a line, `width` is
@@ -69,7 +69,7 @@ pub(in crate::terrain) struct Marks {
 /// # Complexity
 /// O(n log n) for n level lines of waters that do not meet; where they do, about linear in the
 /// parts of triangles that overlap.
-pub(in crate::terrain) fn mark(
+pub(crate) fn mark(
     waters: &[Water],
     line: &dyn Fn(usize) -> Vec<[f64; 3]>,
     width: f64,

@@ -18,7 +18,7 @@ use divided::divided;
 use stations::stations;
 
 pub use downstream::RiverLowering;
-pub(in crate::terrain) use water::{RiverWater, height_near};
+pub(crate) use water::{RiverWater, height_near};
 
 /// A river between two banks.
 ///
@@ -161,18 +161,18 @@ impl River {
     }
 
     /// The number of stretches between level lines.
-    pub(in crate::terrain) fn stretch_count(&self) -> usize {
+    pub(crate) fn stretch_count(&self) -> usize {
         self.stations.len() - 1
     }
 
     /// The ends of the level lines before and after a stretch: left, right, left, right.
-    pub(in crate::terrain) fn corners(&self, stretch: usize) -> [[f64; 3]; 4] {
+    pub(crate) fn corners(&self, stretch: usize) -> [[f64; 3]; 4] {
         let [[a, b], [c, d]] = [self.stations[stretch], self.stations[stretch + 1]];
         [a, b, c, d]
     }
 
     /// The triangles on which the water between a level line and the next is linear.
-    pub(in crate::terrain) fn triangles(&self, stretch: usize) -> Vec<[[f64; 3]; 3]> {
+    pub(crate) fn triangles(&self, stretch: usize) -> Vec<[[f64; 3]; 3]> {
         let [a, b, c, d] = self.corners(stretch);
         let end = (0..2).find(|end| stretch == self.stretch_of_end(*end));
         let of_outline = end.and_then(|end| self.end_triangles[end].clone());
@@ -193,7 +193,7 @@ impl River {
     }
 
     /// The edges between the triangles of a stretch, if they are within it.
-    pub(in crate::terrain) fn diagonals(&self, stretch: usize) -> Vec<[[f64; 3]; 2]> {
+    pub(crate) fn diagonals(&self, stretch: usize) -> Vec<[[f64; 3]; 2]> {
         let [a, b, c, d] = self.corners(stretch);
         let outline = self.outline(stretch);
         if outline.len() == 4 {
@@ -237,7 +237,7 @@ impl River {
 
     /// Returns true if one of two rivers ends where the other one begins or ends, and a position is
     /// on the level line there, or no farther from it than a distance.
-    pub(in crate::terrain) fn goes_on_at(&self, other: &River, q: [f64; 2], distance: f64) -> bool {
+    pub(crate) fn goes_on_at(&self, other: &River, q: [f64; 2], distance: f64) -> bool {
         let mouths = [[0, 1], [1, 0], [1, 1]].into_iter();
         let mut common = mouths.filter(|[own, end]| key(self.ends[*own]) == key(other.ends[*end]));
         let is_on = |line: [[f64; 3]; 2]| squared_distance(line.map(flat), q) <= distance * distance;
@@ -300,7 +300,7 @@ impl River {
     }
 
     /// The banks, in order downstream.
-    pub(in crate::terrain) fn banks(&self) -> [Vec<[f64; 3]>; 2] {
+    pub(crate) fn banks(&self) -> [Vec<[f64; 3]>; 2] {
         [0, 1].map(|side| {
             let mut bank: Vec<[f64; 3]> = self.stations.iter().map(|ends| ends[side]).collect();
             bank.dedup_by(|p, q| flat(*p) == flat(*q));
@@ -313,7 +313,7 @@ impl River {
     ///
     /// # Complexity
     /// O(n log n) for n stations, if few segments of banks are close to each other.
-    pub(in crate::terrain) fn level_lines(&self) -> Vec<Vec<[f64; 3]>> {
+    pub(crate) fn level_lines(&self) -> Vec<Vec<[f64; 3]>> {
         let sides = self.banks().into_iter().flat_map(|bank| sides(&bank));
         let sides = Boxes::new(sides.collect());
         let count = self.stations.len();
@@ -357,7 +357,7 @@ impl River {
     /// The ring around the water: the banks, and the level lines at both ends with all their
     /// vertices. A line along the middle is beside the straight line from bank to bank where a bank
     /// has become one point.
-    pub(in crate::terrain) fn ring(&self) -> Vec<[f64; 2]> {
+    pub(crate) fn ring(&self) -> Vec<[f64; 2]> {
         self.ring_with_heights().into_iter().map(flat).collect()
     }
 
@@ -430,7 +430,7 @@ fn distance(p: [f64; 3], q: [f64; 3]) -> f64 {
 }
 
 /// Returns true if two segments share a point other than a common end.
-pub(in crate::terrain) fn cross([a, b]: &[[f64; 3]; 2], [c, d]: &[[f64; 3]; 2]) -> bool {
+pub(crate) fn cross([a, b]: &[[f64; 3]; 2], [c, d]: &[[f64; 3]; 2]) -> bool {
     let is_apart = |k: usize| a[k].max(b[k]) < c[k].min(d[k]) || c[k].max(d[k]) < a[k].min(b[k]);
     if is_apart(0) || is_apart(1) {
         return false;
@@ -447,7 +447,7 @@ pub(in crate::terrain) fn cross([a, b]: &[[f64; 3]; 2], [c, d]: &[[f64; 3]; 2]) 
 }
 
 /// Returns true if a position lies in a triangle or on its border, in either orientation.
-pub(in crate::terrain) fn contains(corners: [[f64; 3]; 3], [x, y]: [f64; 2]) -> bool {
+pub(crate) fn contains(corners: [[f64; 3]; 3], [x, y]: [f64; 2]) -> bool {
     let [a, b, c] = corners;
     let q = [x, y, 0.0];
     let turn = orientation(corners);

@@ -7,7 +7,7 @@ use crate::terrain::nearest::{nearest_part, part_before, squared_distance};
 
 /// The surface of a river, prepared for queries.
 #[derive(Debug)]
-pub(in crate::terrain) struct RiverWater(Boxes<Part>);
+pub(crate) struct RiverWater(Boxes<Part>);
 
 /// A triangle on which the height is linear.
 #[derive(Debug, Clone, Copy)]
@@ -29,7 +29,7 @@ impl Part {
 impl RiverWater {
     /// # Complexity
     /// O(n log n) for n level lines.
-    pub(in crate::terrain) fn new(river: &River) -> Self {
+    pub(crate) fn new(river: &River) -> Self {
         RiverWater(Boxes::new((0..river.stretch_count()).flat_map(|k| river.triangles(k)).map(Part).collect()))
     }
 
@@ -39,13 +39,13 @@ impl RiverWater {
     ///
     /// # Complexity
     /// O(log n) for n level lines, if few of them are close.
-    pub(in crate::terrain) fn height(&self, q: [f64; 2]) -> f64 {
+    pub(crate) fn height(&self, q: [f64; 2]) -> f64 {
         self.height_within(q).unwrap_or_else(|| self.nearest_height(q))
     }
 
     /// The height of the water at a position, the lowest if the river overlaps itself there; `None`
     /// outside of it.
-    pub(in crate::terrain) fn height_within(&self, q: [f64; 2]) -> Option<f64> {
+    pub(crate) fn height_within(&self, q: [f64; 2]) -> Option<f64> {
         let mut lowest = f64::INFINITY;
         self.0.find(q, |Part(corners)| {
             if contains(*corners, q) {
@@ -57,7 +57,7 @@ impl RiverWater {
     }
 
     /// Returns true if a position is in the water or no farther from it than a distance.
-    pub(in crate::terrain) fn is_near(&self, q: [f64; 2], distance: f64) -> bool {
+    pub(crate) fn is_near(&self, q: [f64; 2], distance: f64) -> bool {
         self.nearest(q).0 <= distance * distance || self.height_within(q).is_some()
     }
 
@@ -84,7 +84,7 @@ impl RiverWater {
 
     /// The parts of a segment, from 0 to 1, between which the height along it is linear. Triangles
     /// count if they are no farther from it than a distance.
-    pub(in crate::terrain) fn parts_of(&self, segment: [[f64; 2]; 2], distance: f64) -> Vec<f64> {
+    pub(crate) fn parts_of(&self, segment: [[f64; 2]; 2], distance: f64) -> Vec<f64> {
         let mut parts = Vec::new();
         self.0.find_in(Extent::of_plan(segment).grown(distance), |part| {
             parts.extend(part.sides().map(|side| part_before(segment, side.map(flat))));
@@ -96,7 +96,7 @@ impl RiverWater {
 }
 
 /// The height of a segment where it is nearest to a position: never beyond those of its ends.
-pub(in crate::terrain) fn height_near([from, to]: [[f64; 3]; 2], q: [f64; 2]) -> f64 {
+pub(crate) fn height_near([from, to]: [[f64; 3]; 2], q: [f64; 2]) -> f64 {
     let height = from[2] + nearest_part([flat(from), flat(to)], q) * (to[2] - from[2]);
     height.clamp(from[2].min(to[2]), from[2].max(to[2]))
 }

@@ -22,7 +22,7 @@ const BATCH: usize = 256;
 
 /// A decoder for files in point order without chunks or with chunks of one size: each chunk begins
 /// where the previous one ended.
-pub(in crate::io::codec::las) struct Stream {
+pub(crate) struct Stream {
     decoder: SequentialPointRecordDecompressor<'static, BufReader<File>>,
     compression: Compression,
     layout: RecordLayout,

@@ -3,11 +3,11 @@
 use std::cmp::Ordering;
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::super::{Key, River, distance, flat, key};
 use super::by_site;
+use crate::terrain::lines::river::{Key, River, distance, flat, key};
 
 /// A station: the number of its river, and its own.
-pub(in super::super) type StationId = [usize; 2];
+pub(crate) type StationId = [usize; 2];
 
 /// An end of a river on the bank of another one.
 #[derive(Debug, Clone, Copy)]
@@ -26,11 +26,11 @@ pub(super) struct Joint {
 
 /// What the heights of rivers that join each other have to satisfy.
 #[derive(Debug, Default)]
-pub(in super::super) struct Joints {
+pub(crate) struct Joints {
     /// Groups of stations of one height.
-    pub(in super::super) equal: Vec<Level>,
+    pub(crate) equal: Vec<Level>,
     /// Pairs of stations: the second is no higher than the first.
-    pub(in super::super) bounds: Vec<[StationId; 2]>,
+    pub(crate) bounds: Vec<[StationId; 2]>,
     /// The ends that join others, by river and end.
     ends: BTreeMap<[usize; 2], End>,
     /// The stations that have the height of a vertex at which ends join others.
@@ -39,10 +39,10 @@ pub(in super::super) struct Joints {
 
 /// Stations of one height.
 #[derive(Debug)]
-pub(in super::super) struct Level {
-    pub(in super::super) stations: Vec<StationId>,
+pub(crate) struct Level {
+    pub(crate) stations: Vec<StationId>,
     /// The river whose end they share, if it is an end that makes them level.
-    pub(in super::super) end: Option<usize>,
+    pub(crate) end: Option<usize>,
 }
 
 /// How the first or the last level line of a river joins others.
@@ -134,7 +134,7 @@ impl Joints {
 
     /// The station that has the height of a corner, left (0) or right (1), of the first (0) or the
     /// last (1) level line of a river.
-    pub(in super::super) fn height_of_end(&self, rivers: &[River], end: [usize; 2], corner: usize) -> StationId {
+    pub(crate) fn height_of_end(&self, rivers: &[River], end: [usize; 2], corner: usize) -> StationId {
         let [river, station] = own_station(rivers, end);
         let site = key(flat(rivers[river].stations[station][corner]));
         let shared = self.at_sites.get(&site).filter(|_| self.ends.contains_key(&end)).and_then(BTreeSet::first);
@@ -148,7 +148,7 @@ impl Joints {
     }
 
     /// Gives the ends of rivers that join others the heights of those: they follow their banks.
-    pub(in super::super) fn fit_ends(&self, rivers: &mut [River]) {
+    pub(crate) fn fit_ends(&self, rivers: &mut [River]) {
         let levels: Vec<Vec<f64>> = rivers.iter().map(River::station_levels).collect();
         let at = |[x, y]: [f64; 2], [river, station]: StationId| [x, y, levels[river][station]];
         let mut lines: Vec<([usize; 2], Vec<[f64; 3]>)> = Vec::new();

@@ -1,5 +1,5 @@
-use super::super::RiverLowering;
 use super::*;
+use crate::terrain::lines::river::RiverLowering;
 use crate::terrain::{Tin, TinBuilder};
 use testkit::random::Random;
 
