@@ -129,13 +129,13 @@ pub(super) fn whole(request: &WriteRequest) -> Result<WriteRequest> {
 
 /// Makes names whole that a function visits.
 fn whole_names(each_file: impl FnOnce(&mut dyn FnMut(&mut PathBuf))) -> Result<()> {
-    let mut made = Ok(());
+    let mut result = Ok(());
     each_file(&mut |file| match std::path::absolute(&*file) {
         Ok(whole) => *file = whole,
-        Err(error) if made.is_ok() => made = Err(Error::from(error).in_file(&*file)),
+        Err(error) if result.is_ok() => result = Err(Error::from(error).in_file(&*file)),
         Err(_) => {}
     });
-    made
+    result
 }
 
 /// A request as it is stored.

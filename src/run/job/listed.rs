@@ -10,7 +10,8 @@ use crate::run::context::Context;
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct JobTask {
-    /// Its number, by which [`run_task`](crate::run::run_task) does it. The last one writes the output.
+    /// Its number, by which [`run_task`](crate::run::run_task) does it. The last one writes the
+    /// output.
     pub number: usize,
     /// What it does, such as "tile 17".
     pub name: String,

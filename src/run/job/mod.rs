@@ -248,8 +248,9 @@ impl Job {
         }
     }
 
-    /// Opens the job of a request in its folder; `None` if there is none. No input is looked at. The
-    /// names in the request may be relative, although those that the job was planned with are whole.
+    /// Opens the job of a request in its folder; `None` if there is none. No input is looked at.
+    /// The names in the request may be relative, although those that the job was planned with are
+    /// whole.
     ///
     /// # Errors
     /// If the job is that of another request, or damaged.
@@ -481,8 +482,8 @@ impl Job {
     /// waited for, for some seconds.
     ///
     /// # Errors
-    /// If another process works on it, or has removed it, or put another job in its place; or if the
-    /// run is canceled.
+    /// If another process works on it, or has removed it, or put another job in its place; or if
+    /// the run is canceled.
     pub fn lock(&self, context: &Context) -> Result<JobLock> {
         self.lock_with(File::try_lock, context)
     }
