@@ -100,7 +100,7 @@ impl Chains {
         self.given.iter().flatten().map(|line| &**line)
     }
 
-    /// Records the path of each arranged segment, whose sites are vertices now. Returns the
+    /// Records the chain of each arranged segment, whose sites are vertices now. Returns the
     /// sub-constraints, each once, in order.
     pub(crate) fn record(
         &mut self,

@@ -16,9 +16,13 @@ use crate::error::{Error, Result};
 /// use breakline::data::Mesh;
 /// use breakline::io::{OutputSet, mesh};
 ///
-/// let surface = Mesh::new(vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], vec![[0, 1, 2]], &[],
-/// None)?; let set = OutputSet::default(); mesh::write(set.at(&ply), &surface)?;
-/// mesh::write(set.at(&obj), &surface)?; assert!(!ply.exists() && !obj.exists()); set.commit()?;
+/// let corners = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+/// let surface = Mesh::new(corners, vec![[0, 1, 2]], &[], None)?;
+/// let set = OutputSet::default();
+/// mesh::write(set.at(&ply), &surface)?;
+/// mesh::write(set.at(&obj), &surface)?;
+/// assert!(!ply.exists() && !obj.exists());
+/// set.commit()?;
 /// assert!(ply.exists() && obj.exists());
 /// # Ok(())
 /// # }
