@@ -4,7 +4,7 @@
 //! The glossary is read: no identifier and no name of a file contains a word of its last column, in
 //! any form that ends with `s`, `d` or neither, and no comment, message or page contains a phrase of
 //! the list below it. Comments are no wider than 100 characters, so that they can be read beside
-//! code. Pages refer to what exists.
+//! code. Pages and comments refer to what exists.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -118,9 +118,9 @@ fn prose_uses_no_listed_phrase() {
     assert!(faults.is_empty(), "see the list in docs/architecture.md\n{}", faults.join("\n"));
 }
 
-/// Links of pages lead to files, and decisions name paths of the repository that exist.
+/// Links of pages lead to files; decisions and comments name paths of the repository that exist.
 #[test]
-fn pages_refer_to_what_exists() {
+fn pages_and_comments_refer_to_what_exists() {
     let mut faults = Vec::new();
     for (path, text) in pages() {
         let folder = path.parent().unwrap();
@@ -138,6 +138,17 @@ fn pages_refer_to_what_exists() {
             .filter(|&name| name != "README.md" && !listed.contains(name))
             .map(|name| format!("{INDEX} does not list {name}")),
     );
+    // Comments of a crate may name its own folders.
+    faults.extend(each_source(|path, text| {
+        let own = path.ancestors().find(|folder| root().join(folder).join("Cargo.toml").exists()).unwrap();
+        let exists = |named: &str| root().join(named).exists() || root().join(own).join(named).exists();
+        let comments = tokens(text).into_iter().filter_map(|token| match token {
+            Token::Comment(comment) => Some(comment),
+            _ => None,
+        });
+        let missing = comments.flat_map(paths_in).filter(|named| !exists(named));
+        missing.map(|named| format!("{}: {named}", path.display())).collect()
+    }));
     assert!(faults.is_empty(), "these do not exist:\n{}", faults.join("\n"));
 }
 
