@@ -4,56 +4,24 @@
 //! printed. A verb passes a request to [`run`](crate::run), writes the product and prints a
 //! summary. Data goes to files or stdout, messages go to stderr.
 
+mod exit;
 mod input;
 mod report;
 mod verbs;
 
 use std::ffi::OsString;
-use std::io::{ErrorKind, Write};
 use std::path::Path;
-use std::process::ExitCode;
 use std::time::Instant;
 
 use clap::Parser;
 
+pub use self::exit::Exit;
 use self::input::args::{Cli, ConsoleArgs, Verb};
 use self::input::habits;
 use self::report::console::{Console, Level};
-use self::report::{escape, names, summary};
+use self::report::{names, summary};
 use crate::error::{Kind, Result, Term};
 use crate::run::Facts;
-
-/// How a run ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Exit {
-    /// The work is done.
-    Done = 0,
-    /// Something failed, or a check found flaws.
-    Failed = 1,
-    /// The command line is wrong.
-    Usage = 2,
-    /// The work is done, but files were skipped (`--skip-bad`): the result has holes.
-    Holes = 3,
-    /// A task needs others that are not done.
-    NotYet = 4,
-}
-
-impl Exit {
-    /// What each exit code means, for the help.
-    const ALL: [(Exit, &str); 5] = [
-        (Exit::Done, "done"),
-        (Exit::Failed, "failed"),
-        (Exit::Usage, "wrong usage"),
-        (Exit::Holes, "done, with holes where files were skipped (--skip-bad)"),
-        (Exit::NotYet, "a task of a job needs others that are not done: later the same may work"),
-    ];
-}
-
-impl From<Exit> for ExitCode {
-    fn from(exit: Exit) -> Self {
-        ExitCode::from(exit as u8)
-    }
-}
 
 /// Runs the program with the given arguments and returns how it ended. The first argument is the
 /// program's name.
@@ -127,15 +95,7 @@ fn dispatch(verb: &Verb, how: &ConsoleArgs, console: &Console) -> Result<Exit> {
         Verb::Triangulate(args) => verbs::triangulate::run(args, console),
         Verb::Check(args) => verbs::check::run(args, console),
         Verb::Job(args) => verbs::job::run(args, console),
-        Verb::Demo(args) => verbs::demo::run(args, how, console),
+        Verb::Demo(args) => verbs::demo::run(args, how, console, &|words| run(words)),
         Verb::Describe(args) => verbs::describe::run(args),
-    }
-}
-
-/// Writes data to stdout. A closed pipe (`| head`) is not an error.
-fn print(text: &str) -> Result<()> {
-    match std::io::stdout().write_all(escape::lines(text).as_bytes()) {
-        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(error.into()),
-        _ => Ok(()),
     }
 }

@@ -14,50 +14,20 @@ mod identifier;
 mod names;
 mod projection;
 mod registry;
+mod system;
 mod unit;
 mod wkt_read;
 mod wkt_tree;
 mod wkt_write;
 
 pub use geokeys::{GeoKeys, RasterType};
+pub use system::{Crs, CrsKind};
 pub use unit::Unit;
 
 use definition::Definition;
 use wkt_write::Dialect;
 
 use crate::error::{Error, Result};
-
-/// The kind of the coordinates of a [`Crs`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-pub enum CrsKind {
-    /// Lengths on a map.
-    Projected,
-    /// Longitude and latitude in angles.
-    Geographic,
-    /// X, Y and Z from the center of the earth.
-    Geocentric,
-    /// Engineering and other local systems, and systems of unknown kind.
-    Local,
-}
-
-/// A coordinate system that can be compared, printed and written into files.
-#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct Crs {
-    /// The name in its definition: "ETRS89 / UTM zone 32N".
-    pub name: String,
-    /// The EPSG code of the horizontal (or the whole) system.
-    pub epsg: Option<u32>,
-    /// The EPSG code of the vertical part.
-    pub vertical_epsg: Option<u32>,
-    /// The kind of the coordinates.
-    pub kind: CrsKind,
-    /// The unit of x and y.
-    pub unit: Unit,
-    /// The unit of z, if the definition states one.
-    pub vertical_unit: Option<Unit>,
-    /// The WKT from which the system was read, if any.
-    pub wkt: Option<String>,
-}
 
 impl Crs {
     /// Returns the horizontal, compound or geocentric system with an EPSG code.

@@ -21,7 +21,8 @@ pub(crate) type Arrows = BTreeMap<Module, BTreeSet<(String, String)>>;
 pub(crate) fn arrows<P: AsRef<str>, T: AsRef<str>>(files: &[(P, T)]) -> Arrows {
     let files =
         files.iter().map(|(path, text)| (path.as_ref(), text.as_ref())).filter(|(path, _)| !path.ends_with("tests.rs"));
-    let modules: BTreeMap<Module, Source> = files.map(|(path, text)| (module_of(path), Source::of(text))).collect();
+    let source = |path: &str, text| if path.contains(".py") { Source::of_python(text) } else { Source::of(text) };
+    let modules: BTreeMap<Module, Source> = files.map(|(path, text)| (module_of(path), source(path, text))).collect();
     let mut arrows = Arrows::new();
     for (from, source) in &modules {
         for to in source.used(from, &modules).iter().map(|path| resolved(&modules, from, path, 0)) {
@@ -37,9 +38,13 @@ pub(crate) fn arrows<P: AsRef<str>, T: AsRef<str>>(files: &[(P, T)]) -> Arrows {
 
 /// `io/geotiff/mod.rs` is `io`, `geotiff`; `lib.rs` is the root.
 fn module_of(path: &str) -> Module {
-    let path = path.trim_end_matches(".rs");
+    let path = path.trim_end_matches(".rs").trim_end_matches(".py").trim_end_matches(".pyi");
     let path = path.strip_suffix("/mod").unwrap_or(path);
-    if ["lib", "main", "mod"].contains(&path) { Vec::new() } else { path.split('/').map(str::to_owned).collect() }
+    if ["lib", "main", "mod", "__init__"].contains(&path) {
+        Vec::new()
+    } else {
+        path.split('/').map(str::to_owned).collect()
+    }
 }
 
 /// The module that a path leads to, from the module that has it in its text.
@@ -110,6 +115,17 @@ impl Source {
         source
     }
 
+    /// What a file of Python imports from its own package, anywhere in it.
+    fn of_python(text: &str) -> Self {
+        let mut source = Source::default();
+        for line in text.lines().filter_map(|line| line.trim_start().strip_prefix("from .")) {
+            let Some((module, names)) = line.split_once(" import ") else { continue };
+            let modules: Vec<&str> = if module.is_empty() { names.split(',').collect() } else { vec![module] };
+            source.paths.extend(modules.iter().map(|name| vec!["crate".to_owned(), name.trim().to_owned()]));
+        }
+        source
+    }
+
     /// Adds what one import names, braces and all.
     fn import(&mut self, mut path: Vec<String>, tree: &str, is_public: bool) {
         let mut tree = tree.trim();
@@ -164,8 +180,8 @@ impl Source {
     }
 }
 
-/// Whether a path may start here: not behind another part of one, a field's or method's dot, or the
-/// word that defines a name.
+/// Returns true if a path may start here: not behind another part of one, a field's or method's
+/// dot, or the word that defines a name.
 fn starts_path(code: &str, at: usize) -> bool {
     let before = &code[..at];
     let is_defined =

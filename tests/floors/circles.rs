@@ -3,10 +3,12 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::arrows::arrows;
+use super::{PYTHON, SOURCES, sources};
 
 #[test]
 fn folders_have_no_circles() {
-    let found: BTreeSet<String> = super::sources().iter().flat_map(|(_, files)| circles(files)).collect();
+    let folders = SOURCES.map(|(folder, _)| folder).into_iter().chain(PYTHON);
+    let found: Vec<String> = folders.flat_map(|folder| circles(&sources(folder))).collect();
     assert!(found.is_empty(), "circles: {found:#?}");
 }
 
@@ -48,6 +50,21 @@ fn circles_through_the_own_file_are_found() {
     assert_eq!(with_own("fn f() -> First", "fn f() { super::first() }"), none, "itself, by its re-export");
 }
 
+#[test]
+fn circles_of_python_are_found() {
+    let package =
+        |a: &str, b: &str| circles(&[("__init__.py", "from ._a import A"), ("_a.py", a), ("_b.py", b), ("_c.pyi", "")]);
+    let none: [&str; 0] = [];
+    assert_eq!(package("from . import _b\nfrom ._b import B", "import os"), none, "one direction");
+    assert_eq!(package("from . import _c, _b", "from . import _c\nfrom ._a import A"), [": _a, _b"]);
+    assert_eq!(package("from . import A", ""), [": _a, mod.rs"], "a name of the package itself");
+    assert_eq!(
+        package("from ._b import (\n    B,\n)", "def f():\n    from ._a import A"),
+        [": _a, _b"],
+        "in a function"
+    );
+}
+
 /// The circles among files, given as paths below the folder `src` and texts: "folder: node, node",
 /// in order.
 pub(crate) fn circles<P: AsRef<str>, T: AsRef<str>>(files: &[(P, T)]) -> Vec<String> {
@@ -71,19 +88,4 @@ pub(crate) fn circles<P: AsRef<str>, T: AsRef<str>>(files: &[(P, T)]) -> Vec<Str
         found.extend(circles.iter().map(|circle| format!("{}: {}", folder.join("/"), circle.join(", "))));
     }
     found
-}
-
-#[test]
-fn dump() {
-    for (name, files) in super::sources() {
-        for (folder, arrows) in arrows(&files) {
-            let folder = folder.join("/");
-            if std::env::var("FOLDER").is_ok_and(|f| f == format!("{name}/{folder}")) {
-                for (a, b) in &arrows {
-                    println!("{a} -> {b}");
-                }
-            }
-            println!("#{name}/{folder} {} arrows", arrows.len());
-        }
-    }
 }

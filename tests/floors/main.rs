@@ -1,14 +1,17 @@
 //! The floors of the house: a file uses lower floors and its own folder, nothing else.
 //!
-//! Inside a folder, see [`circles`]. `docs/architecture.md` says why. What is read is the source
-//! text, so a path has to be written out (`crate::data::Grid`) or imported with `use crate::...`,
-//! also inside braces.
+//! Some folders have floors of their own. In all others, see [`circles`]. `docs/architecture.md`
+//! says why. What is read is the source text, so a path has to be written out
+//! (`crate::data::Grid`) or imported with `use crate::...`, also inside braces.
 
 mod arrows;
 mod circles;
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
+
+use arrows::{OWN_FILE, arrows};
 
 /// Rooms from the ground up. Rooms on one floor do not know each other, except as [`NEIGHBORS`]
 /// says.
@@ -40,6 +43,25 @@ const TRIANGULATIONS: Floors = &[
     &["compact", "saved"],
 ];
 
+/// The folders of `breakline` that have floors of their own. Their `mod.rs` only lists them.
+const FOLDERS: [(&str, Floors); 2] = [("io", IO), ("run", RUN)];
+
+const IO: Floors = &[&["bytes"], &["options"], &["codec"], &["formats"], &["fronts"]];
+
+const RUN: Floors = &[
+    &["request"],
+    &["context"],
+    &["sources"],
+    &["lines"],
+    &["products"],
+    &["triangulate", "verbs"],
+    &["job", "space"],
+    &["write"],
+];
+
+/// The binding for Python: the library, and the package around it.
+const PYTHON: [&str; 2] = ["python/src", "python/package/breakline"];
+
 /// `(user, used)` on the same floor: records carry the coordinate system that they are in, and a
 /// mesh asks which way its faces turn.
 const NEIGHBORS: [(&str, &str); 2] = [("data", "crs"), ("data", "kernel")];
@@ -53,8 +75,8 @@ const LONGEST: usize = 800;
 #[test]
 fn files_use_lower_floors_only() {
     let mut faults = Vec::new();
-    for ((_, floors), (_, files)) in SOURCES.iter().zip(sources()) {
-        for (path, text) in files {
+    for (crate_folder, floors) in SOURCES {
+        for (path, text) in sources(crate_folder) {
             let room = path.split('/').next().unwrap().trim_end_matches(".rs");
             // The roots see everything, and what stands beside them.
             if !["lib", "main", "guide"].contains(&room) {
@@ -70,6 +92,48 @@ fn files_use_lower_floors_only() {
         }
     }
     assert!(faults.is_empty(), "\n{}", faults.join("\n"));
+}
+
+#[test]
+fn folders_use_lower_floors_only() {
+    let files = sources("src");
+    let faults: Vec<String> = FOLDERS.iter().flat_map(|(folder, floors)| faults_in(folder, floors, &files)).collect();
+    assert!(faults.is_empty(), "\n{}", faults.join("\n"));
+}
+
+#[test]
+fn the_rule_of_folders_can_fail() {
+    let faults = |low: &str, high: &str, own: &str| {
+        let list = format!("mod high;\nmod low;\npub use high::High;\n{own}");
+        let files = [("hut/mod.rs", &list[..]), ("hut/low/mod.rs", ""), ("hut/low/a.rs", low), ("hut/high.rs", high)];
+        faults_in("hut", &[&["low"], &["high"]], &files)
+    };
+    let none: [&str; 0] = [];
+    let upward = ["hut: low must not use high"];
+    assert_eq!(faults("", "use super::low::a::A;", ""), none);
+    assert_eq!(faults("use crate::hut::high::High;", "", ""), upward);
+    assert_eq!(faults("use crate::hut::High;", "", ""), upward, "by a re-export");
+    assert_eq!(faults("fn f() -> crate::hut::High", "", ""), upward, "a path in the text");
+    assert_eq!(faults("", "use super::Shared;", "pub struct Shared;"), ["hut: high must not use mod.rs"]);
+    assert_eq!(faults("", "", "fn f() { low::g() }"), ["hut: mod.rs must not use low"]);
+    let attic = [("hut/mod.rs", "mod attic;"), ("hut/attic.rs", "")];
+    assert_eq!(faults_in("hut", &[&["low"], &["high"]], &attic), ["hut: attic has no floor"]);
+}
+
+/// What stands in a folder without a floor, or uses something that is not on a lower one.
+fn faults_in<P: AsRef<str>, T: AsRef<str>>(folder: &str, floors: Floors, files: &[(P, T)]) -> Vec<String> {
+    let floor = |room: &str| floors.iter().position(|rooms| rooms.contains(&room));
+    let inside = files.iter().filter_map(|(path, _)| path.as_ref().strip_prefix(folder)?.strip_prefix('/'));
+    let rooms: BTreeSet<&str> = inside.map(|path| path.split('/').next().unwrap().trim_end_matches(".rs")).collect();
+    let own_file = OWN_FILE.trim_end_matches(".rs");
+    let homeless = rooms.into_iter().filter(|room| *room != own_file && floor(room).is_none());
+    let mut faults: Vec<String> = homeless.map(|room| format!("{folder}: {room} has no floor")).collect();
+    for (user, used) in arrows(files).get(&[folder.to_owned()][..]).into_iter().flatten() {
+        if !matches!((floor(user), floor(used)), (Some(high), Some(low)) if low < high) {
+            faults.push(format!("{folder}: {user} must not use {used}"));
+        }
+    }
+    faults
 }
 
 #[test]
@@ -140,25 +204,23 @@ fn used_rooms(floors: Floors, text: &str) -> Vec<String> {
     rooms
 }
 
-/// The source files of each crate, with their paths below its folder.
-fn sources() -> [(&'static str, Vec<(String, String)>); 2] {
-    SOURCES.map(|(folder, _)| {
-        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
-        let mut files = Vec::new();
-        let mut folders = vec![root.clone()];
-        while let Some(folder) = folders.pop() {
-            for entry in fs::read_dir(folder).unwrap() {
-                let path = entry.unwrap().path();
-                if path.is_dir() {
-                    folders.push(path);
-                } else if path.extension().is_some_and(|e| e == "rs") {
-                    let name =
-                        path.strip_prefix(&root).unwrap().components().map(|part| part.as_os_str().to_str().unwrap());
-                    files.push((name.collect::<Vec<_>>().join("/"), fs::read_to_string(&path).unwrap()));
-                }
+/// The source files in a folder, with their paths below it.
+fn sources(folder: &str) -> Vec<(String, String)> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
+    let mut files = Vec::new();
+    let mut folders = vec![root.clone()];
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|e| ["rs", "py", "pyi"].iter().any(|known| e == *known)) {
+                let name =
+                    path.strip_prefix(&root).unwrap().components().map(|part| part.as_os_str().to_str().unwrap());
+                files.push((name.collect::<Vec<_>>().join("/"), fs::read_to_string(&path).unwrap()));
             }
         }
-        assert!(files.len() > 10, "found only {} files in {folder}", files.len());
-        (folder, files)
-    })
+    }
+    assert!(files.len() > 10, "found only {} files in {folder}", files.len());
+    files
 }

@@ -10,6 +10,7 @@ from typing import Any, Optional
 import numpy as np
 
 from . import _breakline, _masked
+from ._columns import Points
 from ._errors import ArgumentTypeError, usage
 
 _POINT_KINDS = "an array (n, 3), columns x, y and z, a laspy or PDAL record, a GeoDataFrame of points, or paths"
@@ -276,8 +277,6 @@ def _fields(value: Any) -> "tuple[str, ...]":
 
 
 def _points_of(value: Any) -> "dict[str, Any]":
-    from ._points import Points
-
     if isinstance(value, Points):
         return _columns(value.x, value.y, value.z, classes=value.classification, flags=value.flags, crs=value.crs)
     if hasattr(value, "scales") or all(hasattr(value, name) for name in ("header", "X", "Y", "Z")):

@@ -5,5 +5,6 @@ pub(super) mod escape;
 pub(super) mod last_words;
 pub(super) mod names;
 mod progress;
+pub(super) mod stdout;
 pub(super) mod summary;
 pub(super) mod written;

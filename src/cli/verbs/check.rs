@@ -1,11 +1,12 @@
 use std::path::Path;
 
+use crate::cli::Exit;
 use crate::cli::input::args::CheckArgs;
 use crate::cli::input::plan::SurfacePlan;
 use crate::cli::report::console::Console;
+use crate::cli::report::stdout::print;
 use crate::cli::report::summary::{counted, print_surface};
 use crate::cli::report::written::print_file;
-use crate::cli::{Exit, print};
 use crate::data::SurfaceFacts;
 use crate::error::{Error, Result};
 use crate::io::OutputSet;

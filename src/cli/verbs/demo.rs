@@ -46,8 +46,13 @@ const COMMANDS: &[&[&str]] = &[
     &["contour", "@ground.ply", "--interval", "2", "-o", "@contours.shp", "-o", "@contours.geojson", "--overwrite"],
 ];
 
-/// Writes the data and runs each command on it, as if it were typed.
-pub(crate) fn run(args: &DemoArgs, how: &ConsoleArgs, console: &Console) -> Result<Exit> {
+/// Writes the data and calls `run` with each command on it, as if it were typed.
+pub(crate) fn run(
+    args: &DemoArgs,
+    how: &ConsoleArgs,
+    console: &Console,
+    run: &dyn Fn(Vec<OsString>) -> Exit,
+) -> Result<Exit> {
     let folder = &args.folder;
     std::fs::create_dir_all(folder).map_err(|e| Error::from(e).in_file(folder))?;
     for (name, bytes) in FIXTURES {
@@ -62,7 +67,7 @@ pub(crate) fn run(args: &DemoArgs, how: &ConsoleArgs, console: &Console) -> Resu
         let typed: Vec<String> = words.iter().map(|word| quoted(&word.to_string_lossy())).collect();
         console.line("");
         console.line(format_args!("$ breakline {}", typed.join(" ")));
-        let exit = crate::cli::run([OsString::from("breakline")].into_iter().chain(words).chain(flags(how)));
+        let exit = run([OsString::from("breakline")].into_iter().chain(words).chain(flags(how)).collect());
         if exit != Exit::Done {
             return Ok(exit);
         }

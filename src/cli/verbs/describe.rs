@@ -3,9 +3,10 @@
 use clap::{Arg, ArgAction, Command, CommandFactory};
 use serde_json::{Map, Value, json};
 
+use crate::cli::Exit;
 use crate::cli::input::args::{Cli, DescribeArgs};
 use crate::cli::report::escape;
-use crate::cli::{Exit, print};
+use crate::cli::report::stdout::print;
 use crate::error::Result;
 
 /// Prints the verbs and their options.

@@ -5,10 +5,11 @@ use serde_json::{Value, json};
 
 use super::asked::Asked;
 use super::write;
+use crate::cli::Exit;
 use crate::cli::input::args::{Cli, JobAction, JobArgs};
 use crate::cli::report::console::Console;
+use crate::cli::report::stdout::print;
 use crate::cli::report::written::Shown;
-use crate::cli::{Exit, print};
 use crate::error::{Error, Result};
 use crate::run::{self, Context, Job, JobCommand, JobTask, Look, StoredJob, TileOptions};
 

@@ -8,9 +8,9 @@ use serde::ser::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::Value;
 
-use super::TileOptions;
 use super::folder::{COMMAND, StoredPlan};
 use super::request::{self, Options};
+use super::tile_options::TileOptions;
 use crate::error::{Command, Error, Result, Wording, wording};
 use crate::run::products::surface::SurfaceRequest;
 use crate::run::sources::checksum::checksum;
@@ -71,7 +71,7 @@ impl JobCommand {
 
     fn options(&self) -> Result<Options> {
         let JobCommand { request, targets, tiles, .. } = self;
-        let mut options = super::options_of(request, tiles)?;
+        let mut options = request::asked(request, tiles)?;
         request::add_targets(&mut options, targets, tiles);
         Ok(options)
     }
@@ -102,7 +102,7 @@ impl JobCommand {
         let text = serde_json::to_string(self).map_err(|e| refused(e.to_string().into()))?;
         // A number that is not finite would come back as if it was not given.
         let kept: JobCommand = serde_json::from_str(&text).map_err(|e| refused(e.to_string().into()))?;
-        let kept = super::options_of(&kept.request, &kept.tiles)?;
+        let kept = request::asked(&kept.request, &kept.tiles)?;
         if kept != *planned {
             return Err(refused(wording![request::differing(planned, &kept), " would be lost"]));
         }

@@ -38,6 +38,7 @@ mod surface;
 mod task_facts;
 mod task_file;
 mod tasks;
+mod tile_options;
 mod written;
 
 use std::fs::{File, TryLockError};
@@ -56,11 +57,13 @@ use self::lines::Known;
 pub use self::listed::JobTask;
 pub use self::lock::JobLock;
 pub use self::not_in_tiles::NotInTiles;
+use self::not_in_tiles::tiled;
 pub use self::output::JobReport;
 use self::plan::Plan;
 pub use self::planned_file::FileState;
 use self::planned_file::PlannedFile;
 use self::task_file::TaskName;
+pub use self::tile_options::{Look, TileOptions};
 use super::verbs::{Keeps, Verb, WriteRequest};
 use crate::error::{Command, Error, Kind, Result, Setting, wording};
 use crate::run::context::event::JobSize;
@@ -71,41 +74,10 @@ use crate::run::products::tin::TinRequest;
 use crate::run::sources::checksum::checksum;
 use crate::run::sources::point_files::{BadFiles, PointFiles};
 use crate::run::sources::systems::SystemOptions;
-use crate::terrain::Method;
 use crate::terrain::tiles::{Spread, Step, Work};
 
 /// Bytes per point of a triangulation in its file; measured.
 const BYTES_A_POINT_OF_PART: u64 = 85;
-
-/// How a surface is divided into tiles.
-#[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
-pub struct TileOptions {
-    /// The tiles.
-    pub division: Division,
-    /// The memory to use, in bytes; half of the free memory if it is `None`.
-    pub memory: Option<u64>,
-    /// The folder of the job, in which its tasks write. By default it has the name of the first
-    /// output with `.job`, and is removed when the outputs are written, unless files were skipped.
-    #[serde(skip)]
-    pub folder: Option<PathBuf>,
-    /// What becomes of files that cannot be read. A job that was planned to skip them does.
-    pub bad: BadFiles,
-    /// How far files are read to plan.
-    pub look: Look,
-    /// The memory of one task, in bytes, where the tasks run; by default what there is to use here,
-    /// through the number of threads.
-    pub task_memory: Option<u64>,
-}
-
-/// How far files are read to plan.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
-pub enum Look {
-    /// A sample of the points of large files.
-    #[default]
-    Points,
-    /// Their headers, if these state number and extent: points are taken to be spread evenly.
-    Headers,
-}
 
 /// A task of a job.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -275,7 +247,7 @@ impl Job {
                 ")"
             ])
         })?;
-        let asked = options_of(wanted, options)?;
+        let asked = request::asked(wanted, options)?;
         if plan.request != asked || plan.files.iter().any(|file| file.input >= request.points.len()) {
             return Err(request::other_command(&plan.request, &asked, folder));
         }
@@ -536,23 +508,4 @@ pub fn needs_tiles(wanted: &WriteRequest, memory: Option<u64>, context: &Context
     let count: u64 =
         stated.map(|(input, (count, _))| count.unwrap_or_else(|| planned_file::points_of_text(input.path()))).sum();
     Ok(crate::run::context::memory::need_of(count) > memory)
-}
-
-/// Returns what a request asks for, by which its job is known.
-fn options_of(wanted: &WriteRequest, tiles: &TileOptions) -> Result<request::Options> {
-    let (request, systems) = tiled(wanted)?;
-    Ok(request::options_of(request, systems, wanted.verb.as_ref(), tiles))
-}
-
-/// Returns the request of the points of a surface.
-fn tiled(wanted: &WriteRequest) -> Result<(&TinRequest, &SystemOptions)> {
-    let SurfaceRequest { source, systems } = &wanted.surface;
-    let Source::Points(points) = source else {
-        return Err(Error::usage("tiles are made of points, but the input is a surface already")
-            .cure("leave out the options of tiles"));
-    };
-    if wanted.verb.method() != Method::Linear {
-        return Err(NotInTiles::Method.into());
-    }
-    Ok((points, systems))
 }

@@ -1,8 +1,11 @@
 //! What tiles cannot do yet.
 
-use crate::error::{Error, Setting, Wording, wording};
+use crate::error::{Error, Result, Setting, Wording, wording};
+use crate::run::products::surface::{Source, SurfaceRequest};
 use crate::run::products::tin::{EdgeLimit, TinRequest};
 use crate::run::sources::systems::SystemOptions;
+use crate::run::verbs::WriteRequest;
+use crate::terrain::Method;
 
 /// What a request has and tiles do not: the whole surface is built in memory for it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -63,4 +66,17 @@ impl From<NotInTiles> for Error {
             whole
         ])
     }
+}
+
+/// Returns the request of the points of a surface.
+pub(super) fn tiled(wanted: &WriteRequest) -> Result<(&TinRequest, &SystemOptions)> {
+    let SurfaceRequest { source, systems } = &wanted.surface;
+    let Source::Points(points) = source else {
+        return Err(Error::usage("tiles are made of points, but the input is a surface already")
+            .cure("leave out the options of tiles"));
+    };
+    if wanted.verb.method() != Method::Linear {
+        return Err(NotInTiles::Method.into());
+    }
+    Ok((points, systems))
 }

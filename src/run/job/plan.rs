@@ -2,12 +2,13 @@
 
 use std::path::PathBuf;
 
+use super::division::Division;
 use super::lines::{self, Known};
 use super::not_in_tiles::NotInTiles;
 use super::planned_file::{FileState, PlannedFile, looked_at, planned, require_state, state_of};
 use super::request::{Options, options_of};
 use super::sampled;
-use super::{Division, Look, TileOptions};
+use super::tile_options::{Look, TileOptions};
 use crate::crs::Crs;
 use crate::data::{Bounds, Frame, PointInfo};
 use crate::error::{Command, Error, Result, Setting, wording};

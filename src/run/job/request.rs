@@ -4,16 +4,17 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Debug;
 use std::path::Path;
 
-use super::TileOptions;
-use crate::error::{Error, Setting, Wording, wording};
+use super::not_in_tiles::tiled;
+use super::tile_options::TileOptions;
+use crate::error::{Error, Result, Setting, Wording, wording};
 use crate::io::points;
 use crate::run::products::tin::TinRequest;
 use crate::run::request::lines::{FlatOptions, LineRequest, WallOptions};
 use crate::run::request::serialized::in_plan;
 use crate::run::sources::checksum::checksum;
 use crate::run::sources::systems::SystemOptions;
-use crate::run::verbs::Verb;
 use crate::run::verbs::targets::Targets;
+use crate::run::verbs::{Verb, WriteRequest};
 
 /// The name of what decides which other options there are.
 const VERB: &str = "the verb";
@@ -32,6 +33,12 @@ const OR: &str = " or ";
 
 /// What was asked for, by the names of settings, each with a sum of its value.
 pub(super) type Options = BTreeMap<String, String>;
+
+/// Returns what a request asks for, by which its job is known.
+pub(super) fn asked(wanted: &WriteRequest, tiles: &TileOptions) -> Result<Options> {
+    let (request, systems) = tiled(wanted)?;
+    Ok(options_of(request, systems, wanted.verb.as_ref(), tiles))
+}
 
 /// Returns the options of a request.
 pub(super) fn options_of(

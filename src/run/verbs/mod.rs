@@ -7,6 +7,7 @@ mod contour;
 mod dem;
 mod hillshade;
 mod raster;
+mod stored;
 pub(crate) mod targets;
 mod tin;
 
@@ -15,10 +16,7 @@ use std::fmt::Debug;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use serde::Serialize;
-use serde::de::DeserializeOwned;
-use serde_json::Value;
-
+pub(super) use self::stored::{from_json, to_json};
 pub use self::tin::SurfaceOptions;
 use crate::data::BlockSource;
 use crate::error::{Error, Result, Setting};
@@ -28,7 +26,6 @@ use crate::io::formats::Product;
 use crate::io::geotiff::RasterSummary;
 use crate::io::mesh::MeshSummary;
 use crate::run::context::Context;
-use crate::run::products::cells::{DemOptions, HillshadeOptions};
 use crate::run::products::contour::ContourOptions;
 use crate::run::products::frame::FrameOptions;
 use crate::run::products::surface::{self, SurfaceProduct, SurfaceRequest};
@@ -125,43 +122,6 @@ pub trait Verb: Any + Debug + Send + Sync {
     /// # Errors
     /// As [`write`](Self::write).
     fn write_tiles(&self, tiles: &dyn Tiles, outputs: &Outputs, context: &Context) -> Result<Summary>;
-}
-
-/// How the options of a verb are kept with a job.
-struct Kept {
-    verb: &'static str,
-    to_json: fn(&dyn Any) -> Option<Value>,
-    from_json: fn(Value) -> Option<Arc<dyn Verb>>,
-}
-
-impl Kept {
-    const fn of<V: Verb + Serialize + DeserializeOwned>(verb: &'static str) -> Self {
-        Kept {
-            verb,
-            to_json: |verb| serde_json::to_value(verb.downcast_ref::<V>()?).ok(),
-            from_json: |options| serde_json::from_value::<V>(options).ok().map(|verb| Arc::new(verb) as _),
-        }
-    }
-}
-
-/// The verbs that jobs can keep.
-const KEPT: &[Kept] = &[
-    Kept::of::<DemOptions>("dem"),
-    Kept::of::<HillshadeOptions>("hillshade"),
-    Kept::of::<ContourOptions>("contour"),
-    Kept::of::<SurfaceOptions>("tin"),
-];
-
-/// Returns the name and the options of a verb in a form that can be kept; `None` if jobs cannot
-/// keep it.
-pub(super) fn to_json(verb: &dyn Verb) -> Option<(&'static str, Value)> {
-    KEPT.iter().find_map(|kept| Some((kept.verb, (kept.to_json)(verb)?)))
-}
-
-/// Returns the verb with a name and these options; `None` if there is none, or they are not those
-/// of the verb.
-pub(super) fn from_json(name: &str, options: Value) -> Option<Arc<dyn Verb>> {
-    KEPT.iter().find(|kept| kept.verb == name).and_then(|kept| (kept.from_json)(options))
 }
 
 /// When a product is made in tiles.

@@ -51,14 +51,9 @@ use super::lines::kinds::LineKinds;
 use super::regions::{self, Domain, Segment};
 pub(super) use far::{divided, reach_of};
 use patch::Patch;
+pub(super) use patched::DRAPED;
 use patched::{Patched, Remains};
 use snap::snapped;
-
-/// Stands for the domain of lines that are draped over the surface: they bound nothing.
-pub(super) const DRAPED: Domain = Domain::MAX;
-
-/// A side of a face: the number of the face, and the index of the opposite corner.
-type Side = (u32, usize);
 
 /// The fragments that a cut leaves of the triangles of a triangulation.
 ///

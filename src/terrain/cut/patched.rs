@@ -8,9 +8,14 @@ use crate::triangulation::geometry::Terrain;
 use crate::triangulation::tds::{CellId, VertexId};
 
 use super::patch::Patch;
-use super::{DRAPED, Side};
 use crate::terrain::lines::kinds::LineKinds;
 use crate::terrain::regions::{Domain, Faces, Segment};
+
+/// Stands for the domain of lines that are draped over the surface: they bound nothing.
+pub(crate) const DRAPED: Domain = Domain::MAX;
+
+/// A side of a face: the number of the face, and the index of the opposite corner.
+type Side = (u32, usize);
 
 /// The finite faces of a triangulation, of which some are replaced by those of a patch.
 ///

@@ -1,4 +1,4 @@
-use super::lexicographic;
+use super::order::lexicographic;
 use crate::kernel::{self, CompareDistance, Exact, Kernel};
 use crate::num::Sign;
 

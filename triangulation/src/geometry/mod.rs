@@ -30,6 +30,7 @@ mod borrowed;
 mod crossed;
 mod mapped;
 mod metric;
+mod order;
 mod perturbation;
 mod plane;
 mod space;
@@ -50,6 +51,8 @@ pub use weighted_space::WeightedSpace;
 
 use std::cmp::Ordering;
 use std::fmt::Debug;
+
+use order::lexicographic;
 
 use crate::kernel::{Orientation2, Predicate};
 use crate::num::{Sign, unsigned_zero};
@@ -355,15 +358,4 @@ fn rough_areas([a, b, c]: [[f64; 2]; 3], q: [f64; 2]) -> [f64; 3] {
 #[inline(always)]
 fn manhattan<const D: usize>(p: [f64; D], q: [f64; D]) -> f64 {
     (0..D).map(|axis| (p[axis] - q[axis]).abs()).sum()
-}
-
-/// Compares coordinates lexicographically.
-#[inline(always)]
-fn lexicographic<const D: usize>(p: [f64; D], q: [f64; D]) -> Ordering {
-    for axis in 0..D {
-        if p[axis] != q[axis] {
-            return if p[axis] < q[axis] { Ordering::Less } else { Ordering::Greater };
-        }
-    }
-    Ordering::Equal
 }

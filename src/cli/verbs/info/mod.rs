@@ -12,11 +12,12 @@ use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 use self::sheet::Sheet;
+use crate::cli::Exit;
 use crate::cli::input::args::InfoArgs;
 use crate::cli::input::inputs;
 use crate::cli::report::console::Console;
+use crate::cli::report::stdout::print;
 use crate::cli::report::{escape, names};
-use crate::cli::{Exit, print};
 use crate::error::Result;
 use crate::io::formats;
 use crate::run::{self, Facts};

@@ -3,8 +3,9 @@ use std::fs::File;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
+use super::file::{self, Flushed, Output, Writing};
 use super::temporary::{Renames, Temporary};
-use super::{Flushed, Output, Writing, target, temporary};
+use super::{target, temporary};
 use crate::error::{Error, Result};
 
 /// Outputs that appear together or not at all.
@@ -62,7 +63,7 @@ impl OutputSet {
     pub fn read_back(&self, read: &mut dyn FnMut(&Path, &mut File) -> Result<()>) -> Result<()> {
         let Staged { companions, outputs, .. } = &mut *self.staged.borrow_mut();
         for output in companions.iter_mut().chain(outputs) {
-            let target = output.target.clone();
+            let target = output.target().to_path_buf();
             let file = output.read_back().map_err(|e| Error::from(e).in_file(&target))?;
             file.map_or(Ok(()), |file| read(&target, file)).map_err(|e| e.in_file(&target))?;
         }
@@ -179,7 +180,7 @@ impl<'a> Destination<'a> {
     /// # Errors
     /// If it cannot be created.
     pub(crate) fn scratch(self) -> Result<File> {
-        super::scratch_for(self.path).map_err(|e| e.in_file(self.path))
+        file::scratch_for(self.path).map_err(|e| e.in_file(self.path))
     }
 
     /// Runs a writer and takes the files that it has written, unless it fails. This covers writers
@@ -303,6 +304,18 @@ fn set_aside(temporary: &Temporary, path: &Path) -> Result<Option<PathBuf>> {
 /// Returns the path of `name` in the folder of `path`.
 fn beside(path: &Path, name: &Path) -> PathBuf {
     path.with_file_name(name.file_name().unwrap_or_default())
+}
+
+impl Output {
+    /// Flushes the file and renames it to the target, replacing any file there.
+    ///
+    /// # Errors
+    /// If the last bytes cannot be written or the rename fails.
+    pub fn commit(self) -> Result<()> {
+        let set = OutputSet::default();
+        set.add(self);
+        set.commit().map(drop)
+    }
 }
 
 #[cfg(test)]

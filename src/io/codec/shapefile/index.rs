@@ -2,9 +2,11 @@
 
 use std::path::Path;
 
+use super::header::{FILE_CODE, HEADER};
 use crate::error::{Error, Result};
 
-const HEADER: usize = 100;
+/// Bytes before the first entry.
+const FIRST_ENTRY: usize = HEADER as usize;
 
 /// A complete index. [`Index::rows`] checks whether it fits its `.shp`.
 #[derive(Debug)]
@@ -26,14 +28,14 @@ impl Index {
 
     fn parse(bytes: &[u8]) -> Result<Self> {
         let word = |at: usize| bytes.get(at..at + 4).and_then(|b| b.try_into().ok()).map(u32::from_be_bytes);
-        if word(0) != Some(super::FILE_CODE) || bytes.len() < HEADER {
+        if word(0) != Some(FILE_CODE) || bytes.len() < FIRST_ENTRY {
             return Err(Error::format("it does not begin like an index"));
         }
         let stated = u64::from(word(24).unwrap_or_default()) * 2;
         if stated != bytes.len() as u64 {
             return Err(Error::format(format!("its header states {stated} bytes, the file has {}", bytes.len())));
         }
-        let entries: Vec<_> = bytes[HEADER..]
+        let entries: Vec<_> = bytes[FIRST_ENTRY..]
             .as_chunks::<8>()
             .0
             .iter()
@@ -86,8 +88,8 @@ mod tests {
     use super::*;
 
     fn index(entries: &[(u32, u32)]) -> Vec<u8> {
-        let mut bytes = vec![0; HEADER];
-        bytes[..4].copy_from_slice(&crate::io::codec::shapefile::FILE_CODE.to_be_bytes());
+        let mut bytes = vec![0; FIRST_ENTRY];
+        bytes[..4].copy_from_slice(&FILE_CODE.to_be_bytes());
         bytes[24..28].copy_from_slice(&(50 + 4 * entries.len() as u32).to_be_bytes());
         entries.iter().for_each(|(a, b)| {
             bytes.extend((a / 2).to_be_bytes());

@@ -34,6 +34,7 @@
 //! The crate `shapefile` is not used: it trusts counts in the file and stops at the first damage,
 //! and its writer stores the current date in the `.dbf` and ignores errors on closing.
 
+mod header;
 mod index;
 mod patch;
 mod record;
@@ -54,17 +55,12 @@ use crate::io::Cut;
 use crate::io::bytes::field;
 use crate::io::bytes::watch::{Watch, unwatched};
 use crate::io::options::layer::Options;
+use header::{FILE_CODE, HEADER};
 use index::Index;
 use record::type_name;
 use table::{Field, Numbers, Table};
 use walk::{Record, Shp, Walk};
 pub use write::{Column, check_size, write_contours, write_layer};
-
-/// The first four bytes of a `.shp` and a `.shx`, big-endian.
-const FILE_CODE: u32 = 9994;
-
-/// Bytes before the first record.
-const HEADER: u64 = 100;
 
 /// Limit for the bytes of a `.prj`; a larger file is something else.
 const MAX_PRJ: u64 = 1 << 20;

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{BufReader, Read, Seek, SeekFrom};
 
+use super::header::HEADER;
 use super::index::Index;
 use super::record::{self, Flaw, Oddities, Parsed};
 use crate::data::Shape;
@@ -104,7 +105,7 @@ pub(super) fn walk(shp: &mut Shp, index: Option<&Index>, watch: Watch) -> Result
     let mut walk = Walk::default();
     let mut meter = Meter::new(watch, size as usize);
     let mut content = Vec::new();
-    let mut at = super::HEADER;
+    let mut at = HEADER;
     file.seek(SeekFrom::Start(at))?;
     while at < size {
         meter.left((size - at) as usize)?;

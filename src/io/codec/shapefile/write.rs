@@ -3,7 +3,7 @@
 use std::io::{Seek, SeekFrom, Write};
 use std::path::Path;
 
-use super::{FILE_CODE, HEADER};
+use super::header::{FILE_CODE, HEADER};
 use crate::crs::Crs;
 use crate::data::{Bounds, ContourLine, Layer, Shape, ShapeKind};
 use crate::error::{Error, Result};

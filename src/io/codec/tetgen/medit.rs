@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use super::Tetrahedralized;
+use super::tetrahedralized::Tetrahedralized;
 use crate::io::bytes::decimal::Decimal;
 
 pub(super) fn write(out: &mut impl Write, triangulated: &Tetrahedralized) -> io::Result<()> {

@@ -3,7 +3,7 @@
 
 use std::io::{self, Write};
 
-use super::Tetrahedralized;
+use super::tetrahedralized::Tetrahedralized;
 
 /// VTK's number for a tetrahedron.
 const TETRAHEDRON: u8 = 10;

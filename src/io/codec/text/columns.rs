@@ -1,6 +1,5 @@
 //! Assigns the fields of a line to columns, and reads points from them.
 
-use super::quote;
 use super::separator::Separator;
 use crate::data::{Columns, PointBatch};
 use crate::error::{Error, Result, Setting, wording};
@@ -150,4 +149,13 @@ fn bare_name(field: &[u8]) -> String {
     let text = String::from_utf8_lossy(field).to_lowercase();
     let end = text.find(['(', '[']).unwrap_or(text.len());
     text[..end].trim().to_owned()
+}
+
+/// Returns text for a message: on one line, and shortened.
+pub(super) fn quote(text: &[u8]) -> String {
+    const MAX_SHOWN: usize = 60;
+    let text = text.trim_ascii();
+    let shown = &text[..text.len().min(MAX_SHOWN)];
+    let dots = if text.len() > MAX_SHOWN { "..." } else { "" };
+    format!("\"{}{dots}\"", String::from_utf8_lossy(shown).escape_debug())
 }

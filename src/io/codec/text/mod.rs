@@ -40,7 +40,7 @@ use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 
-use self::columns::{Layout, NameFlaw, Point};
+use self::columns::{Layout, NameFlaw, Point, quote};
 use self::first_column::{FirstColumn, Guess};
 use self::separator::Separator;
 pub use self::write::{TextWriter, create};
@@ -383,15 +383,6 @@ impl<'a> Line<'a> {
             _ => Line::Data(line),
         }
     }
-}
-
-/// Returns text for a message: on one line, and shortened.
-fn quote(text: &[u8]) -> String {
-    const MAX_SHOWN: usize = 60;
-    let text = text.trim_ascii();
-    let shown = &text[..text.len().min(MAX_SHOWN)];
-    let dots = if text.len() > MAX_SHOWN { "..." } else { "" };
-    format!("\"{}{dots}\"", String::from_utf8_lossy(shown).escape_debug())
 }
 
 #[cfg(test)]

@@ -10,7 +10,9 @@
 use std::io::{self, Write};
 use std::path::Path;
 
-use super::{LineGraph, Numbering, Triangulated, counted, edge, listed, neigh, node, poly, read_rows};
+use super::graph::{LineGraph, Triangulated};
+use super::lists::{Numbering, counted, listed, read_rows};
+use super::{edge, neigh, node, poly};
 use crate::data::{EdgeKind, Triangles};
 use crate::error::Result;
 use crate::io::Watch;

@@ -38,127 +38,21 @@
 
 mod edge;
 mod ele;
+mod graph;
+mod lists;
 mod neigh;
 pub(crate) mod node;
 mod poly;
 
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
+pub use self::graph::{Edge, Hole, LineGraph, Nodes, Region, Segment, Triangulated};
+pub(crate) use self::lists::{Numbering, counted, extension, listed, read_rows};
 use crate::data::Triangles;
-use crate::error::{Error, Result, Wording, wording};
+use crate::error::{Error, Result};
 use crate::io::Destination;
-use crate::io::bytes::rows::{Row, Rows};
-use crate::io::bytes::watch::{Watch, bytes_of, unwatched};
-use crate::io::options::cut::open_line;
-
-/// Vertices as in a `.node` file.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Nodes<const D: usize = 2> {
-    /// The number of the first vertex: 0 or 1.
-    pub first_number: u32,
-    /// Positions of the vertices.
-    pub points: Vec<[f64; D]>,
-    /// Number of attributes of each vertex.
-    pub attribute_count: usize,
-    /// The attributes, vertex by vertex.
-    pub attributes: Vec<f64>,
-    /// Boundary markers, one per vertex; 0 if the file has none.
-    pub markers: Vec<i32>,
-}
-
-impl<const D: usize> Nodes<D> {
-    /// Returns the attributes of one vertex.
-    pub fn attributes_of(&self, vertex: usize) -> &[f64] {
-        &self.attributes[vertex * self.attribute_count..(vertex + 1) * self.attribute_count]
-    }
-}
-
-/// A segment of a `.poly` file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Segment {
-    /// Indices of its vertices, from 0.
-    pub ends: [u32; 2],
-    /// Boundary marker; 0 if there is none.
-    pub marker: i32,
-    /// Its number in the file.
-    pub number: i64,
-    /// The line of the file that states it.
-    pub line: usize,
-}
-
-/// A hole: a site from which triangles are removed up to the surrounding segments.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Hole {
-    /// A site in the hole.
-    pub at: [f64; 2],
-    /// The line of the file that states it.
-    pub line: usize,
-}
-
-/// Values for the triangles in the region around a site.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Region {
-    /// A site in the region.
-    pub at: [f64; 2],
-    /// The attribute of the triangles.
-    pub attribute: f64,
-    /// The largest area of the triangles; `None` if the file states none or the value is not
-    /// positive.
-    pub max_area: Option<f64>,
-    /// The line of the file that states it.
-    pub line: usize,
-}
-
-/// A planar straight-line graph: the content of a `.poly` file, or of a `.node` file, without
-/// segments.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct LineGraph {
-    /// The vertices.
-    pub nodes: Nodes,
-    /// The file that contains the vertices.
-    pub node_file: PathBuf,
-    /// The line of each vertex in `node_file`.
-    pub node_lines: Vec<usize>,
-    /// The segments.
-    pub segments: Vec<Segment>,
-    /// The holes.
-    pub holes: Vec<Hole>,
-    /// The regions.
-    pub regions: Vec<Region>,
-    /// Warnings for the user.
-    pub warnings: Vec<Wording>,
-}
-
-/// An edge of a triangulation, by the indices of its vertices.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Edge {
-    /// Its vertices.
-    pub ends: [u32; 2],
-    /// Boundary marker.
-    pub marker: i32,
-}
-
-/// A triangulation as stored in Triangle's files.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Triangulated {
-    /// Vertices: those of the input, then those added.
-    pub nodes: Nodes,
-    /// Corners of the triangles, counter-clockwise, as indices of vertices.
-    pub triangles: Vec<[u32; 3]>,
-    /// The triangle opposite each corner.
-    pub neighbors: Vec<[Option<u32>; 3]>,
-    /// An attribute for each triangle; empty if they have none.
-    pub attributes: Vec<f64>,
-    /// All edges of triangles.
-    pub edges: Vec<Edge>,
-    /// Sub-constraints, and the edges of the boundary.
-    pub segments: Vec<Edge>,
-    /// Holes, as in the input.
-    pub holes: Vec<Hole>,
-    /// Regions, as in the input.
-    pub regions: Vec<Region>,
-}
+use crate::io::bytes::watch::{Watch, unwatched};
 
 /// Reads a `.node` file, or a `.poly` file with its `.node` if it has no vertices.
 ///
@@ -227,23 +121,6 @@ fn unknown(path: &Path, cure: &str) -> Error {
     Error::usage("the file's extension is not that of a file of Triangle").in_file(path).cure(cure)
 }
 
-pub(crate) fn extension(path: &Path) -> String {
-    path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase()
-}
-
-/// Runs `read` on the lines of a file and returns its result; errors name the file. Adds a warning
-/// if the last line has no end.
-pub(crate) fn read_rows<T>(
-    path: &Path,
-    watch: Watch,
-    warnings: &mut Vec<Wording>,
-    read: impl FnOnce(Rows) -> Result<T>,
-) -> Result<T> {
-    let bytes = bytes_of(path, watch)?;
-    warnings.extend(open_line(&bytes).map(|text| wording![format!(".{}: ", extension(path)), text]));
-    read(Rows::new(&bytes, watch)).map_err(|e| e.in_file(path))
-}
-
 /// Counts the items of a file: edges, neighborhoods, triangles or vertices.
 ///
 /// # Errors
@@ -257,116 +134,4 @@ pub fn count(path: &Path) -> Result<usize> {
         rows.end("the last item")?;
         Ok(count)
     })
-}
-
-/// Returns the line that begins a list, and its count.
-pub(crate) fn counted<'a>(rows: &mut Rows<'a>, items: &str, pattern: &'static str) -> Result<(Row<'a>, usize)> {
-    let what = format!("number of {items}");
-    let mut header = rows.expect(|| format!("the {what}"), pattern)?;
-    let count = header.within(&what)?;
-    Ok((header, count))
-}
-
-/// Reads the items of a list: calls `read` with each line and the number at its start.
-pub(crate) fn listed<T>(
-    rows: &mut Rows,
-    count: usize,
-    item: &str,
-    pattern: &'static str,
-    mut read: impl FnMut(&mut Row, i64) -> Result<T>,
-) -> Result<Vec<T>> {
-    let what = format!("{item} number");
-    let mut items = Vec::with_capacity(room(count, rows));
-    for i in 0..count {
-        let mut row = rows.expect(|| format!("{item} {} of {count}", i + 1), pattern)?;
-        let number = row.whole(&what)?;
-        items.push(read(&mut row, number)?);
-    }
-    Ok(items)
-}
-
-/// Returns the capacity for a stated count, limited by the bytes that are left: an item takes at
-/// least six.
-fn room(count: usize, rows: &Rows) -> usize {
-    count.min(rows.bytes_left() / 6 + 1)
-}
-
-fn site<const D: usize>(row: &mut Row) -> Result<[f64; D]> {
-    let mut site = [0.0; D];
-    for (coordinate, what) in site.iter_mut().zip(["x coordinate", "y coordinate", "z coordinate"]) {
-        *coordinate = row.finite(what)?;
-    }
-    Ok(site)
-}
-
-/// Reads the boundary marker; 0 if the list has none.
-fn marker(row: &mut Row, marker_count: usize) -> Result<i32> {
-    if marker_count > 0 { row.within("boundary marker") } else { Ok(0) }
-}
-
-/// The numbering of vertices.
-#[derive(Clone, Copy)]
-pub(crate) struct Numbering {
-    pub(crate) first: u32,
-    pub(crate) count: usize,
-}
-
-impl Numbering {
-    /// Reads the number of a vertex and returns its index; messages call it `what`.
-    pub(crate) fn vertex(self, row: &mut Row, what: &str) -> Result<u32> {
-        let number = row.whole(what)?;
-        self.index(number).ok_or_else(|| {
-            let there = match self.count {
-                0 => "there are no vertices".to_owned(),
-                _ => format!("the vertices are numbered {} to {}", self.first, self.last()),
-            };
-            row.wrong(format!("the {what} is vertex {number}, but {there}"))
-        })
-    }
-
-    /// Reads the number of a neighbor and returns its index, or `None` for -1; messages call it
-    /// `what`.
-    pub(crate) fn neighbor(self, row: &mut Row, what: &str) -> Result<Option<u32>> {
-        let number = row.whole("neighbor")?;
-        if number == -1 {
-            return Ok(None);
-        }
-        self.index(number).map(Some).ok_or_else(|| {
-            let [first, last] = [i64::from(self.first), self.last()];
-            row.wrong(format!("the neighbor is {what} {number}, but they are numbered {first} to {last}"))
-        })
-    }
-
-    /// Returns the index of what has this number, if there is one.
-    fn index(self, number: i64) -> Option<u32> {
-        let index = u32::try_from(number.checked_sub(i64::from(self.first))?).ok()?;
-        ((index as usize) < self.count).then_some(index)
-    }
-
-    fn last(self) -> i64 {
-        self.count as i64 + i64::from(self.first) - 1
-    }
-}
-
-/// Lines with more values than announced: the first of them, and their number.
-#[derive(Default)]
-struct Surplus {
-    first_line: Option<usize>,
-    lines: usize,
-}
-
-impl Surplus {
-    fn look(&mut self, row: &Row) {
-        if row.has_more() {
-            self.first_line.get_or_insert(row.line);
-            self.lines += 1;
-        }
-    }
-
-    fn warning(&self) -> Option<Wording> {
-        let (first, lines) = (self.first_line?, self.lines);
-        let text =
-            format!("line {first}: there are more values than announced; they are not read ({lines} such lines)");
-        Some(text.into())
-    }
 }

@@ -8,7 +8,8 @@
 use std::io::{self, Write};
 use std::path::Path;
 
-use super::{Numbering, Triangulated, counted, listed, read_rows};
+use super::graph::Triangulated;
+use super::lists::{Numbering, counted, listed, read_rows};
 use crate::error::{Result, Wording};
 use crate::io::Watch;
 use crate::io::bytes::rows::Rows;

@@ -10,7 +10,8 @@
 use std::io::{self, Write};
 use std::path::Path;
 
-use super::{LineGraph, Nodes, Surplus, counted, listed, marker, read_rows, room, site};
+use super::graph::{LineGraph, Nodes};
+use super::lists::{Surplus, counted, listed, marker, read_rows, room, site};
 use crate::error::{Result, Wording};
 use crate::io::Watch;
 use crate::io::bytes::decimal::Decimal;

@@ -12,9 +12,9 @@
 use std::io::{self, Write};
 use std::path::Path;
 
+use super::graph::{Hole, LineGraph, Region, Segment, Triangulated};
+use super::lists::{Numbering, Surplus, counted, listed, marker, read_rows, site};
 use super::node::{self, Listed};
-use super::{Hole, LineGraph, Numbering, Region, Segment, Surplus, Triangulated};
-use super::{counted, listed, marker, read_rows, site};
 use crate::error::{Error, Result, Wording, wording};
 use crate::io::bytes::decimal::Decimal;
 use crate::io::bytes::rows::{Row, Rows};

@@ -1,97 +1,80 @@
-//! All parts as one surface.
-
-use std::ops::Range;
+//! Joins the parts.
 
 use rustc_hash::FxHashMap;
 
 use super::TinParts;
+use super::joined::JoinedTin;
 use crate::crs::Crs;
-use crate::data::{BaseFace, EdgeKind, Mesh, Surface, Triangles};
-use crate::error::{Error, Result};
+use crate::data::{BaseFace, EdgeKind, Mesh, Surface, SurfaceFacts, Triangles};
+use crate::error::{Command, Error, Result, wording};
 use crate::io::mapped::Mapped;
+use crate::run::context::memory;
+use crate::run::sources::checksum::checksum;
 use crate::terrain::CompactTin;
 use crate::terrain::tiles::TileVertex;
 
 /// Stands for a vertex that no face has used so far.
 const UNUSED: u32 = u32::MAX;
 
-/// All parts as one surface, with the triangles under it: so each method of interpolation gives the
-/// heights of the surface in one piece.
-///
-/// Whole faces are numbered first, then the triangles that are only under the surface, then
-/// fragments.
-#[derive(Debug)]
-pub(crate) struct JoinedTin {
-    /// The whole faces, then the fragments.
-    faces: Mesh,
-    /// The whole faces, then the other triangles under the surface; `None` if the faces are all.
-    under: Option<Mesh>,
-    /// The number of whole faces.
-    whole: u32,
-}
-
-impl JoinedTin {
-    /// The position of a face in the list of faces.
-    fn listed(&self, face: u32) -> Option<u32> {
-        match face.checked_sub(self.base_count() as u32) {
-            Some(fragment) => Some(self.whole + fragment),
-            None => Some(face).filter(|&face| face < self.whole),
+impl TinParts {
+    /// Returns all parts as one surface, which is kept.
+    ///
+    /// # Errors
+    /// If the parts do not fit into memory, a part is damaged, or the parts do not make a surface.
+    ///
+    /// # Complexity
+    /// Linear in the bytes of the parts.
+    pub(crate) fn joined(&self) -> Result<&JoinedTin> {
+        if let Some(joined) = self.joined.get() {
+            return Ok(joined);
         }
-    }
-
-    /// The number of a face in the list of faces.
-    fn number(&self, listed: u32) -> u32 {
-        match listed.checked_sub(self.whole) {
-            Some(fragment) => self.base_count() as u32 + fragment,
-            None => listed,
+        let mut triangles = 0;
+        for number in 0..self.index.parts.len() {
+            triangles += self.part(number)?.face_count();
         }
-    }
-}
-
-impl Surface for JoinedTin {
-    fn vertex_count(&self) -> usize {
-        self.faces.vertex_count()
+        memory::require_for_parts(triangles).map_err(|e| e.in_file(&self.path))?;
+        let joined = joined(self).map_err(|e| e.in_file(&self.path))?;
+        Ok(self.joined.get_or_init(|| joined))
     }
 
-    fn position(&self, vertex: u32) -> [f64; 3] {
-        self.faces.position(vertex)
-    }
-
-    fn face_count(&self) -> usize {
-        self.base_count() + self.faces.face_count() - self.whole as usize
-    }
-
-    fn face(&self, face: u32) -> Option<[u32; 3]> {
-        self.faces.face(self.listed(face)?)
-    }
-
-    fn neighbor(&self, face: u32, i: usize) -> Option<u32> {
-        self.faces.neighbor(self.listed(face)?, i).map(|listed| self.number(listed))
-    }
-
-    fn edge_kind(&self, face: u32, i: usize) -> EdgeKind {
-        self.listed(face).map_or(EdgeKind::Rim, |listed| self.faces.edge_kind(listed, i))
-    }
-
-    fn is_fragment(&self, face: u32) -> bool {
-        face as usize >= self.base_count()
-    }
-
-    fn crs(&self) -> Option<&Crs> {
-        self.faces.crs()
-    }
-
-    fn base_count(&self) -> usize {
-        self.under.as_ref().map_or(self.whole as usize, Surface::face_count)
-    }
-
-    fn base_faces_in(&self, numbers: Range<u32>, faces: &mut Vec<BaseFace>) {
-        self.under.as_ref().unwrap_or(&self.faces).base_faces_in(numbers, faces);
+    /// Checks all bytes of all parts, and that the counts and the extents that the index states are
+    /// those of the parts.
+    ///
+    /// # Errors
+    /// The first damage that is found, and if the parts are too many for one mesh.
+    ///
+    /// # Complexity
+    /// Linear.
+    pub fn check(&self) -> Result<()> {
+        for (number, stated) in self.index.parts.iter().enumerate() {
+            let part = self.part(number)?;
+            part.check()?;
+            if checksum(part.triangulation().bytes()) != stated.checksum {
+                return Err(Error::format("the checksum is not that of the index")
+                    .in_file(self.folder.join(&stated.file))
+                    .cure("copy the index together with its folder, or write the surface again"));
+            }
+            let SurfaceFacts { triangles, extent, .. } = part.facts();
+            if (*triangles as u64, *extent) != (stated.triangles, stated.extent) {
+                return Err(Error::format(format!(
+                    "the counts or the extent of {} are not those of its file",
+                    stated.file
+                ))
+                .in_file(&self.path)
+                .cure(wording!["write the surface again with ", Command::Tin]));
+            }
+        }
+        if SurfaceFacts::of(self.joined()?) != self.index.facts {
+            return Err(Error::format("the counts or the extent are not those of the parts")
+                .in_file(&self.path)
+                .cure(wording!["write the surface again with ", Command::Tin]));
+        }
+        Ok(())
     }
 }
 
 /// Joins the parts: vertices that stand for the same point are one.
-pub(super) fn joined(parts: &TinParts) -> Result<JoinedTin> {
+fn joined(parts: &TinParts) -> Result<JoinedTin> {
     let mut joining = Joining { shared: shared_vertices(parts)?, ..Joining::default() };
     for number in 0..parts.index().parts.len() {
         joining.add(&parts.part(number)?)?;

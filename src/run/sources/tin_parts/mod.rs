@@ -3,22 +3,21 @@
 mod contours;
 mod heights;
 mod join;
+mod joined;
 mod written;
 
 pub(crate) use contours::contours;
 pub(crate) use heights::elevations;
-use join::JoinedTin;
+use joined::JoinedTin;
 pub use written::WrittenParts;
 
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 use crate::crs::Crs;
-use crate::data::{BlockSource, Bounds, Frame, Surface, SurfaceFacts};
+use crate::data::{BlockSource, Bounds, Frame, SurfaceFacts};
 use crate::error::{Command, Error, Result, wording};
 use crate::io::mapped::{self, Mapped};
-use crate::run::context::memory;
-use crate::run::sources::checksum::checksum;
 use crate::terrain::{CompactTin, DemOfParts, TinIndex};
 
 /// A surface in parts, each of which is a TIN in a file. [`TinIndex`] says which.
@@ -113,61 +112,6 @@ impl TinParts {
     /// Constant: the file is mapped to memory.
     pub fn part(&self, number: usize) -> Result<CompactTin<Mapped>> {
         (self.open)(number)
-    }
-
-    /// Returns all parts as one surface, which is kept.
-    ///
-    /// # Errors
-    /// If the parts do not fit into memory, a part is damaged, or the parts do not make a surface.
-    ///
-    /// # Complexity
-    /// Linear in the bytes of the parts.
-    pub(crate) fn joined(&self) -> Result<&JoinedTin> {
-        if let Some(joined) = self.joined.get() {
-            return Ok(joined);
-        }
-        let mut triangles = 0;
-        for number in 0..self.index.parts.len() {
-            triangles += self.part(number)?.face_count();
-        }
-        memory::require_for_parts(triangles).map_err(|e| e.in_file(&self.path))?;
-        let joined = join::joined(self).map_err(|e| e.in_file(&self.path))?;
-        Ok(self.joined.get_or_init(|| joined))
-    }
-
-    /// Checks all bytes of all parts, and that the counts and the extents that the index states are
-    /// those of the parts.
-    ///
-    /// # Errors
-    /// The first damage that is found, and if the parts are too many for one mesh.
-    ///
-    /// # Complexity
-    /// Linear.
-    pub fn check(&self) -> Result<()> {
-        for (number, stated) in self.index.parts.iter().enumerate() {
-            let part = self.part(number)?;
-            part.check()?;
-            if checksum(part.triangulation().bytes()) != stated.checksum {
-                return Err(Error::format("the checksum is not that of the index")
-                    .in_file(self.folder.join(&stated.file))
-                    .cure("copy the index together with its folder, or write the surface again"));
-            }
-            let SurfaceFacts { triangles, extent, .. } = part.facts();
-            if (*triangles as u64, *extent) != (stated.triangles, stated.extent) {
-                return Err(Error::format(format!(
-                    "the counts or the extent of {} are not those of its file",
-                    stated.file
-                ))
-                .in_file(&self.path)
-                .cure(wording!["write the surface again with ", Command::Tin]));
-            }
-        }
-        if SurfaceFacts::of(self.joined()?) != self.index.facts {
-            return Err(Error::format("the counts or the extent are not those of the parts")
-                .in_file(&self.path)
-                .cure(wording!["write the surface again with ", Command::Tin]));
-        }
-        Ok(())
     }
 
     /// Returns a raster of linear heights.

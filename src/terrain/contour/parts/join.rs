@@ -1,11 +1,29 @@
-use super::{LevelParts, LevelSide, LineEnd, OpenLine};
+use super::{ContourParts, LevelParts, LevelSide, LineEnd, NO_HEIGHTS, OpenLine};
 use crate::data::ContourLine;
 use crate::error::{Error, Result};
 use crate::terrain::contour::cut::Direction;
+use crate::terrain::contour::find;
 use crate::terrain::contour::join::{End, Joined, chain, pair};
 use crate::terrain::contour::line::finish_level;
 use rayon::prelude::*;
 use std::cmp::Ordering;
+
+impl ContourParts {
+    /// Merges the parts of several tasks, so that less is left to join: lines are joined where they
+    /// cross an edge between two of the tasks.
+    ///
+    /// # Errors
+    /// If the parts contradict each other, as those of one task given twice do.
+    pub fn merged(parts: Vec<ContourParts>) -> Result<Self> {
+        let mut heights = NO_HEIGHTS;
+        let mut levels = Vec::new();
+        for part in parts {
+            heights = find::joined(heights, part.heights);
+            levels.extend(part.levels);
+        }
+        Ok(ContourParts { heights, levels: merge_levels(levels)? })
+    }
+}
 
 /// Returns the contours of a level from the parts of all tasks, sorted by their points: those of
 /// [`contours`](crate::terrain::contours) for the whole surface.

@@ -79,8 +79,6 @@ pub use bytes::StoredParts;
 pub use collect::ContourCollector;
 pub use join::join_level;
 
-use crate::error::Result;
-
 /// What the triangles of some tasks say about the contours of the whole surface.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContourParts {
@@ -99,21 +97,6 @@ impl ContourParts {
     /// Returns the parts of each level that has some, by ascending levels.
     pub fn levels(&self) -> &[LevelParts] {
         &self.levels
-    }
-
-    /// Merges the parts of several tasks, so that less is left to join: lines are joined where they
-    /// cross an edge between two of the tasks.
-    ///
-    /// # Errors
-    /// If the parts contradict each other, as those of one task given twice do.
-    pub fn merged(parts: Vec<ContourParts>) -> Result<Self> {
-        let mut heights = NO_HEIGHTS;
-        let mut levels = Vec::new();
-        for part in parts {
-            heights = super::find::joined(heights, part.heights);
-            levels.extend(part.levels);
-        }
-        Ok(ContourParts { heights, levels: join::merge_levels(levels)? })
     }
 }
 

@@ -3,8 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::parallel::{Beside, beside};
+use super::scene::{Body, Scene, WaterOverlap};
 use super::strand::Strand;
-use super::{Body, Scene, WaterOverlap};
 use crate::terrain::boxes::{Boxed, Boxes, Extent};
 use crate::terrain::lines::river::cross;
 use crate::terrain::nearest::{nearest_part, squared_distance};

@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 
 use rustc_hash::FxHashMap;
 
+use super::scene::{Body, Scene};
 use super::strand::Strand;
-use super::{Body, Scene};
 use crate::terrain::boxes::Extent;
 use crate::triangulation::geometry::Terrain;
 use crate::triangulation::tds::{CellId, VertexId};

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::{Zone, tolerance_of};
+use super::zone::{Zone, tolerance_of};
 use crate::data::orientation;
 use crate::terrain::boxes::{Boxed, Boxes, Extent};
 use crate::terrain::lines::areas::{Level, Water, rounding_of};

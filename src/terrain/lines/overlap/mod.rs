@@ -22,31 +22,20 @@ mod band;
 mod crease;
 mod meetings;
 mod parallel;
+mod scene;
 mod shared;
 mod sight;
 mod strand;
+mod zone;
 
-use super::RiverWater;
 use super::areas::{Level, Water, rounding_of};
 use crate::data::Bounds;
-use crate::terrain::boxes::{Boxed, Extent};
-use crate::terrain::inside::Inside;
 use meetings::Meetings;
+pub use scene::WaterOverlap;
+use scene::{Body, Scene};
 use sight::Sight;
 use strand::Strand;
-
-/// Two waters that overlap or touch, and the step that is left at the border of the overlap, or
-/// where they touch.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct WaterOverlap {
-    /// The numbers of the first lines of both: of the one whose height counts at the border, and of
-    /// the river that goes on outside.
-    pub lines: [usize; 2],
-    /// The largest step.
-    pub step: f64,
-    /// Where it is.
-    pub at: [f64; 2],
-}
+use zone::tolerance_of;
 
 /// What waters that overlap or touch add to their lines.
 #[derive(Debug, Clone, Default)]
@@ -110,97 +99,6 @@ pub(crate) fn mark(
         }
     }
     marks
-}
-
-/// Waters that overlap, prepared for queries.
-struct Scene<'a> {
-    waters: &'a [Water],
-    /// Those that take part, and all lakes.
-    bodies: Vec<Option<Body>>,
-    meetings: Meetings,
-    sight: Sight,
-    /// Heights that differ by no more are equal: less than that is rounding.
-    tolerance: f64,
-    /// Positions that are no farther apart are the same but for rounding.
-    rounding: f64,
-    width: f64,
-}
-
-impl Scene<'_> {
-    /// The heights of a water, on its border and next to it as well.
-    fn height(&self, water: usize, q: [f64; 2]) -> f64 {
-        self.bodies[water].as_ref().map_or(f64::NAN, |body| body.height(q))
-    }
-
-    fn contains(&self, water: usize, q: [f64; 2]) -> bool {
-        self.bodies[water].as_ref().is_some_and(|body| body.contains(q))
-    }
-
-    /// Returns true if a step at the border of a water is in the surface at a position: within the
-    /// bounds, and in no other lake.
-    fn is_seen(&self, q: [f64; 2], water: usize) -> bool {
-        let is_covered = |lake: &usize| *lake != water && self.contains(*lake, q);
-        self.sight.holds(q) && !self.sight.lakes_near(q).iter().any(is_covered)
-    }
-
-    /// The edges between the triangles of each stretch that takes part.
-    fn diagonals(&self) -> Vec<Strand> {
-        let mut diagonals = Vec::new();
-        for &[water, stretch] in &self.meetings.stretches {
-            if let Level::River(river) = &self.waters[water].level {
-                diagonals.extend(river.diagonals(stretch).into_iter().map(|ends| Strand::new(water, ends)));
-            }
-        }
-        diagonals
-    }
-}
-
-/// An area of water, prepared for queries.
-enum Body {
-    Lake { height: f64, inside: Inside },
-    River(RiverWater),
-}
-
-impl Body {
-    fn new(water: &Water) -> Self {
-        match &water.level {
-            Level::Flat(lake) => Body::Lake { height: lake.height, inside: Inside::new(&[water.level.rings()]) },
-            Level::River(river) => Body::River(RiverWater::new(river)),
-        }
-    }
-
-    fn height(&self, q: [f64; 2]) -> f64 {
-        match self {
-            Body::Lake { height, .. } => *height,
-            Body::River(water) => water.height(q),
-        }
-    }
-
-    fn contains(&self, q: [f64; 2]) -> bool {
-        match self {
-            Body::Lake { inside, .. } => inside.contains(q),
-            Body::River(water) => water.height_within(q).is_some(),
-        }
-    }
-}
-
-/// The box around something that overlaps something else.
-#[derive(Debug, Clone, Copy)]
-struct Zone(Extent);
-
-impl Boxed for Zone {
-    fn extent(&self) -> Extent {
-        self.0
-    }
-}
-
-/// How many units in the last place of the largest coordinate and height rounding may change the
-/// difference of two heights.
-const ROUNDING: f64 = 64.0;
-
-fn tolerance_of(vertices: impl Iterator<Item = [f64; 3]>) -> f64 {
-    let largest = vertices.flatten().fold(0.0_f64, |most, c| most.max(c.abs()));
-    ROUNDING * (largest.next_up() - largest)
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Banks and shores that lie on each other, but for rounding.
 
-use super::Scene;
 use super::band::border_sides;
+use super::scene::Scene;
 use super::strand::Strand;
 use crate::terrain::boxes::{Boxes, Extent};
 use crate::terrain::nearest::squared_distance;

@@ -1,6 +1,7 @@
 //! Lines of waters that get more vertices.
 
-use super::Scene;
+use super::scene::Scene;
+use crate::terrain::lines::areas::Level;
 use crate::terrain::nearest::nearest_part;
 use crate::triangulation::num::unsigned_zero;
 
@@ -72,5 +73,18 @@ impl Strand {
             }
         }
         self.points = points;
+    }
+}
+
+impl Scene<'_> {
+    /// The edges between the triangles of each stretch that takes part.
+    pub(super) fn diagonals(&self) -> Vec<Strand> {
+        let mut diagonals = Vec::new();
+        for &[water, stretch] in &self.meetings.stretches {
+            if let Level::River(river) = &self.waters[water].level {
+                diagonals.extend(river.diagonals(stretch).into_iter().map(|ends| Strand::new(water, ends)));
+            }
+        }
+        diagonals
     }
 }

@@ -5,8 +5,9 @@ use std::collections::{BTreeMap, BinaryHeap};
 
 use rustc_hash::FxHashMap;
 
+use super::River;
 use super::confluence::{self, Level, StationId};
-use super::{Key, River, key, middle};
+use super::sites::{Key, key, middle};
 
 /// A river that was lowered because another one, which joins it or which it continues, is lower.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -3,6 +3,7 @@
 mod confluence;
 mod divided;
 mod downstream;
+mod sites;
 mod stations;
 mod water;
 
@@ -13,8 +14,9 @@ use crate::data::orientation;
 use crate::error::{Error, Result, Setting, wording};
 use crate::terrain::boxes::{Boxed, Boxes, Extent};
 use crate::terrain::nearest::squared_distance;
-use crate::triangulation::num::{Sign, unsigned_zero};
+use crate::triangulation::num::Sign;
 use divided::divided;
+use sites::{Key, distance, flat, key, middle};
 use stations::stations;
 
 pub use downstream::RiverLowering;
@@ -376,13 +378,6 @@ fn meeting_of(mut ring: Vec<[f64; 3]>) -> Option<[f64; 2]> {
     all.iter().find_map(|side| boxes.find_in(side.extent(), |other| cross(&side.0, &other.0).then(|| middle(&side.0))))
 }
 
-/// A position, compared bit by bit.
-type Key = [u64; 2];
-
-fn key(at: [f64; 2]) -> Key {
-    at.map(|c| unsigned_zero(c).to_bits())
-}
-
 /// A segment of a bank.
 #[derive(Debug, Clone, Copy)]
 struct Side([[f64; 3]; 2]);
@@ -411,22 +406,9 @@ fn clean(bank: &[[f64; 3]]) -> Result<Vec<[f64; 3]>> {
     }
 }
 
-fn flat([x, y, _]: [f64; 3]) -> [f64; 2] {
-    [x, y]
-}
-
-/// The middle of a segment.
-fn middle([a, b]: &[[f64; 3]; 2]) -> [f64; 2] {
-    [(a[0] + b[0]) / 2.0, (a[1] + b[1]) / 2.0]
-}
-
 /// The point at a part of a segment, from 0 to 1.
 fn side_between([from, to]: [[f64; 2]; 2], part: f64) -> [f64; 2] {
     if part == 1.0 { to } else { [0, 1].map(|axis| from[axis] + part * (to[axis] - from[axis])) }
-}
-
-fn distance(p: [f64; 3], q: [f64; 3]) -> f64 {
-    (p[0] - q[0]).hypot(p[1] - q[1])
 }
 
 /// Returns true if two segments share a point other than a common end.

@@ -1,6 +1,6 @@
 //! Which points of two banks are opposite each other.
 
-use super::{distance, flat};
+use super::sites::{distance, flat};
 use crate::terrain::boxes::{Boxed, Boxes, Extent};
 use crate::terrain::nearest::{nearest_part, squared_distance};
 

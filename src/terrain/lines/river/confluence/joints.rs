@@ -3,8 +3,8 @@
 use std::cmp::Ordering;
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::by_site;
-use crate::terrain::lines::river::{Key, River, distance, flat, key};
+use crate::terrain::lines::river::River;
+use crate::terrain::lines::river::sites::{Key, by_site, distance, flat, key};
 
 /// A station: the number of its river, and its own.
 pub(crate) type StationId = [usize; 2];

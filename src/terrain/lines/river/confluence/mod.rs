@@ -2,12 +2,12 @@
 
 mod joints;
 
-use std::cmp::Ordering;
 use std::collections::{BTreeMap, BTreeSet};
 
 use rustc_hash::FxHashMap;
 
-use super::{Key, River, flat, key, side_between};
+use super::sites::{Key, by_site, flat, key};
+use super::{River, side_between};
 use crate::terrain::boxes::{Boxed, Boxes, Extent};
 use crate::terrain::nearest::{nearest_part, squared_distance};
 use joints::{Joint, Joints};
@@ -105,10 +105,6 @@ fn is_beside(rivers: &[River], touch: &Touch, spot: &Spot) -> bool {
     let is_corner = |station: usize| flat(stations[station][touch.side]) == spot.at;
     let [is_first, is_last] = [is_corner(0), is_corner(stations.len() - 1)];
     spot.is_vertex && if touch.end == 0 { is_first && !is_last } else { is_last && !is_first }
-}
-
-fn by_site(p: [f64; 2], q: [f64; 2]) -> Ordering {
-    p[0].total_cmp(&q[0]).then(p[1].total_cmp(&q[1]))
 }
 
 /// The heights at which level rivers that touch others could begin or end there: river, end, and
