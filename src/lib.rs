@@ -69,6 +69,7 @@
 //! | module | contains |
 //! |---|---|
 //! | [`triangulation`] | the crate `breakline-triangulation`: numbers, predicates, geometry, combinatorics, all kinds of triangulations |
+//! | [`error`] | the error of all other modules: who can act on it, where it happened, the cure |
 //! | [`crs`] | coordinate systems: names, codes, units |
 //! | [`data`] | plain records that formats and algorithms share |
 //! | [`terrain`] | TIN, contours, DEM, hillshade |

@@ -1,8 +1,9 @@
 //! The error type of everything outside of the triangulations, and the texts of errors and notices.
 //!
 //! Errors are sorted by who can act on them ([`Kind`]). Each says where it happened, what was
-//! found, what was expected and, if there is one, the cure. The triangulations have error types of
-//! their own: they refuse invalid input, and cannot fail on input that they accepted.
+//! found, what was expected and, if there is one, the cure, which is worded where the error is made
+//! ([`Error::cure`]). The triangulations have error types of their own: they refuse invalid input,
+//! and cannot fail on input that they accepted.
 //!
 //! Texts do not know how they will be read. A [`Wording`] mentions settings of requests, commands
 //! and features of a build as data ([`Setting`], [`Term`]); the command line shows them as options,

@@ -6,6 +6,9 @@ use crate::triangulation::spatial_order;
 ///
 /// With [`Lowest`](Self::Lowest), [`Highest`](Self::Highest) and [`Mean`](Self::Mean) the result
 /// does not depend on the order of the input.
+///
+/// Where lines have a vertex at the site, the points do not count: the rule chooses among the
+/// heights of the lines, of those kinds that count first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 pub enum DuplicateRule {
     /// The lowest: remaining vegetation and noise lie above the ground.

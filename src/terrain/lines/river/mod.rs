@@ -1,4 +1,16 @@
 //! Rivers: two banks, level from one to the other, never rising downstream.
+//!
+//! A height of a river is found in these stages:
+//!
+//! 1. [`River::between`] finds the level lines between two banks, [`River::along`] those across a
+//!    line along the middle. In the code, the ends of a level line are a *station*.
+//! 2. Each level line has the lower height of its two ends, but no more than the one upstream.
+//!    Where level lines meet, all have the lowest height (`River::leveled`).
+//! 3. [`River::join`] lowers rivers to those that they flow into.
+//! 4. `lines/overlap` marks the steps where waters overlap.
+//! 5. On the finished triangulation, each vertex in a river gets its height (`lines/areas.rs`): its
+//!    own if it is on a bank or an outer level line, else that of the even slope between two level
+//!    lines ([`RiverWater::height`]). A lake counts first, then the lowest of several rivers.
 
 mod confluence;
 mod divided;
