@@ -44,19 +44,20 @@
 //! within one unit of its center, and a segment that crosses another one passes within half a unit
 //! of it.
 
+mod carry_out;
+mod view;
+
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use crate::arrangement::{Rounder, crosses, is_aligned};
+use crate::arrangement::{Rounder, is_aligned};
 use crate::geometry::Crossing;
 use crate::locate::Location;
 use crate::tds::{CellId, VertexId};
 
 use super::chains::{Ends, undirected};
-use super::change::Change;
 use super::index::NotLocal;
 use super::mesh::{Mesh, position};
-use super::near_segment::{Band, Nearby, near};
-use super::rounding::Rounding;
+use super::near_segment::Nearby;
 use super::tables::Lines;
 
 /// How many units around a segment or a site are searched. One would suffice, except for rounding.
@@ -65,9 +66,6 @@ const REACH: f64 = 2.0;
 /// How many units around an inserted segment are searched: also for segments that meet the pixels
 /// of its crossings, which are up to half a unit away from it.
 const WIDE_REACH: f64 = 3.0;
-
-/// A list of at most this many sites is searched one by one, which is faster than by halves.
-const SHORT: usize = 64;
 
 /// A pending step.
 enum PendingStep {
@@ -196,129 +194,12 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
         self.carry_out()
     }
 
-    fn ends(&self, segment: Ends) -> [[f64; 2]; 2] {
-        segment.map(|v| position(self.t, v))
-    }
-
     /// Reserves memory for a number of segments and sites.
     fn expect(&mut self, count: usize) {
         self.chains.reserve(count);
         self.hot.reserve(count);
         self.active.reserve(count);
         self.around.reserve(count);
-    }
-
-    /// Returns what lies within a number of units around a segment.
-    fn near_segment(&mut self, segment: Ends, reach: f64) -> Nearby {
-        let band = Band::around(self.ends(segment), self.rounder.unit().map(|unit| reach * unit));
-        near(self.t, &band, segment[0])
-    }
-
-    /// Returns all vertices whose pixels a segment meets, in no particular order.
-    fn attractors(&mut self, segment: Ends) -> Vec<VertexId> {
-        let mut vertices = if Some(segment) == self.added {
-            self.near_added.clone()
-        } else {
-            self.near_segment(segment, REACH).vertices
-        };
-        vertices.retain(|&v| self.meets_pixel(segment, v));
-        vertices
-    }
-
-    /// Returns the segments that meet the pixel of a vertex and do not end there, with the one that
-    /// is inserted and without the one that is removed.
-    fn around(&mut self, vertex: VertexId) -> Vec<Ends> {
-        if let Some(segments) = self.around.get(&vertex) {
-            return segments.clone();
-        }
-        let edges = self.near_segment([vertex; 2], REACH).edges;
-        let mut segments = self.segments_on(edges.into_iter().map(|(edge, _)| edge));
-        segments.extend(self.added);
-        segments.retain(|&segment| self.meets_pixel(segment, vertex));
-        self.around.insert(vertex, segments.clone());
-        segments
-    }
-
-    /// Determines the segments around a site at which the inserted segment crosses another one.
-    fn look_around_crossing(&mut self, site: VertexId) {
-        if !self.around.contains_key(&site) {
-            let at = position(self.t, site);
-            let beside = self.beside_added.iter().copied();
-            let all = beside.chain(self.added.map(|segment| (segment, self.ends(segment))));
-            let met = all.filter(|&(segment, ends)| !segment.contains(&site) && self.rounder.hits(ends, at));
-            let segments = met.map(|(segment, _)| segment).collect();
-            self.around.insert(site, segments);
-        }
-    }
-
-    /// Returns the segments that end at a vertex or run through it, without the one that is
-    /// inserted or removed.
-    fn lines_at(&self, vertex: VertexId) -> Vec<Ends> {
-        self.segments_on(self.t.constrained_around(vertex).map(|other| undirected(vertex, other)))
-    }
-
-    /// Returns the segments on edges, each once, in order, with what was given of one of its edges.
-    fn segments_on_each(&self, edges: Vec<(Ends, CellId)>) -> Vec<(Ends, CellId)> {
-        let index = self.lines.index();
-        let on_edge = |(edge, cell)| index.segments_on(&self.lines.chains, edge).map(move |segment| (segment, cell));
-        let mut segments: Vec<(Ends, CellId)> = edges.into_iter().flat_map(on_edge).collect();
-        segments.retain(|&(segment, _)| Some(segment) != self.added && Some(segment) != self.removed);
-        segments.sort_unstable();
-        segments.dedup_by_key(|(segment, _)| *segment);
-        segments
-    }
-
-    fn segments_on(&self, edges: impl IntoIterator<Item = Ends>) -> Vec<Ends> {
-        let index = self.lines.index();
-        let segments = edges.into_iter().flat_map(|edge| index.segments_on(&self.lines.chains, edge));
-        let mut segments: Vec<Ends> =
-            segments.filter(|&segment| Some(segment) != self.added && Some(segment) != self.removed).collect();
-        segments.sort_unstable();
-        segments.dedup();
-        segments
-    }
-
-    fn is_bent(&self, segment: Ends) -> bool {
-        self.chains.get(&segment).map_or_else(|| self.lines.chains.bent.contains_key(&segment), Option::is_some)
-    }
-
-    /// Returns true if a segment bends to a vertex between its ends.
-    fn has_site(&self, segment: Ends, vertex: VertexId) -> bool {
-        if let Some(chain) = self.chains.get(&segment) {
-            return chain.as_ref().is_some_and(|sites| sites.contains(&vertex));
-        }
-        let Some(sites) = self.lines.chains.bent.get(&segment) else { return false };
-        if sites.len() <= SHORT {
-            return sites.contains(&vertex);
-        }
-        sites.get(self.position_along(segment, sites, position(self.t, vertex))) == Some(&vertex)
-    }
-
-    /// Returns how many of a segment's sites come before a site that is near the segment.
-    fn position_along(&self, segment: Ends, sites: &[VertexId], at: [f64; 2]) -> usize {
-        let key = self.order_along(segment);
-        let limit = key(at);
-        sites.partition_point(|&site| key(position(self.t, site)) < limit)
-    }
-
-    /// Returns keys that sort the sites of a segment from its first end to its second.
-    fn order_along(&self, segment: Ends) -> impl Fn([f64; 2]) -> [f64; 2] + use<G, V, C> {
-        let ends = self.ends(segment);
-        let sign = if ends[0] <= ends[1] { 1.0 } else { -1.0 };
-        let key = self.rounder.along(ends);
-        move |at| key(at).map(|x| sign * x)
-    }
-
-    fn sort_along(&self, segment: Ends, sites: &mut [VertexId]) {
-        let in_order = self.order_along(segment);
-        let key = |site: VertexId| in_order(position(self.t, site));
-        sites.sort_unstable_by(|&u, &v| key(u).partial_cmp(&key(v)).unwrap_or(std::cmp::Ordering::Equal));
-    }
-
-    /// Returns the current sites of a segment.
-    fn sites(&self, segment: Ends) -> Vec<VertexId> {
-        let in_table = || self.lines.chains.bent.get(&segment).map(|sites| sites.to_vec());
-        self.chains.get(&segment).cloned().unwrap_or_else(in_table).unwrap_or_default()
     }
 
     /// Bends a segment to one more site.
@@ -339,32 +220,6 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
             Some(copy)
         };
         self.chains.entry(segment).or_insert_with(in_table).get_or_insert_default()
-    }
-
-    fn is_given(&self, vertex: VertexId) -> bool {
-        !self.lines.added.contains(vertex) && self.gone != Some(vertex)
-    }
-
-    /// Returns true if a segment that meets a site's pixel passes exactly through the site, and
-    /// this is a given point.
-    fn is_exact(&self, segment: Ends, site: VertexId) -> bool {
-        self.is_given(site) && is_aligned(self.ends(segment), position(self.t, site))
-    }
-
-    fn meets_pixel(&self, segment: Ends, site: VertexId) -> bool {
-        !segment.contains(&site) && self.rounder.hits(self.ends(segment), position(self.t, site))
-    }
-
-    fn is_hot(&self, vertex: VertexId) -> bool {
-        self.hot.get(&vertex).copied().unwrap_or_else(|| {
-            self.lines.added.contains(vertex)
-                || self.lines_at(vertex).into_iter().any(|s| s.contains(&vertex) || self.has_site(s, vertex))
-        })
-    }
-
-    fn is_active(&self, site: VertexId) -> bool {
-        self.active.contains(&site)
-            || self.lines_at(site).into_iter().any(|s| self.has_site(s, site) && !self.is_exact(s, site))
     }
 
     fn make_hot(&mut self, site: VertexId) {
@@ -526,182 +381,6 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
         }
         for segment in loose {
             self.bend_if_attracted(segment);
-        }
-    }
-
-    /// Returns true if a segment crosses another one, which then also passes through one of its
-    /// sites or ends.
-    fn crosses_any(&self, segment: Ends) -> bool {
-        let ends = self.ends(segment);
-        let sites = self.sites(segment).into_iter().chain(segment);
-        sites.into_iter().any(|site| self.lines_at(site).into_iter().any(|other| crosses(ends, self.ends(other))))
-    }
-
-    fn is_end(&self, site: VertexId) -> bool {
-        self.lines_at(site).into_iter().any(|segment| segment.contains(&site))
-    }
-
-    /// Returns true if the crossing of two of the segments is rounded to a site.
-    fn is_crossing(&self, site: VertexId, segments: &[Ends]) -> bool {
-        let at = position(self.t, site);
-        let crosses_here = |i: usize, j: usize| {
-            self.rounder.crossing(self.ends(segments[i]), self.ends(segments[j])).is_some_and(|center| center == at)
-        };
-        (0..segments.len()).any(|i| (0..i).any(|j| crosses_here(i, j)))
-    }
-
-    /// Returns true if a site is a given point on one of the segments.
-    fn is_on_one(&self, site: VertexId, segments: &[Ends]) -> bool {
-        let at = position(self.t, site);
-        self.is_given(site) && segments.iter().any(|&segment| lies_on(self.ends(segment), at))
-    }
-
-    /// Changes the tables and the triangulation.
-    fn carry_out(mut self) -> Result<(), NotLocal> {
-        let leaving = self.leaving();
-        let changes = self.changes(&leaving);
-
-        // The tables.
-        let edges = self.retract_parts(&changes)?;
-        let chains = &mut self.lines.chains;
-        let mut stale = std::mem::take(&mut self.stale);
-        let mut parts: Vec<Ends> = Vec::new();
-        for change in &changes {
-            if change.is_bent {
-                chains.bent.insert(change.segment, change.new_sites().into());
-            } else {
-                chains.bent.remove(&change.segment);
-            }
-            stale.extend(change.sites_that_change());
-            parts.extend(change.new_parts());
-        }
-        parts.sort_unstable();
-        parts.dedup();
-
-        // The triangulation. What is in both lists stays.
-        let released: Vec<Ends> = edges.iter().copied().filter(|edge| parts.binary_search(edge).is_err()).collect();
-        parts.retain(|part| edges.binary_search(part).is_err());
-        for [a, b] in released {
-            self.lines.release(self.t, a, b);
-        }
-        for vertex in leaving {
-            self.lines.added.remove(vertex);
-            if self.lines.remove_free(self.t, vertex).is_none() {
-                self.lines.owned.insert(vertex); // a new arrangement of all lines removes it
-                return Err(NotLocal);
-            }
-        }
-        if self.t.dimension() < 2 {
-            return Err(NotLocal);
-        }
-        for [a, b] in parts {
-            if !self.lines.constrain(self.t, a, b) {
-                return Err(NotLocal);
-            }
-        }
-        let (index, chains) = self.lines.index_and_chains();
-        let index = index.ok_or(NotLocal)?;
-        for change in &changes {
-            change.new_parts().for_each(|part| index.add_part(chains, change.segment, part));
-        }
-
-        // The points of vertices at which other segments cross now.
-        stale.sort_unstable();
-        stale.dedup();
-        self.added = None;
-        stale.retain(|&v| self.lines.added.contains(v));
-        stale.into_iter().for_each(|site| self.renew_point(site));
-        let is_rounded = !self.lines.chains.bent.is_empty();
-        self.lines.rounding =
-            is_rounded.then(|| Rounding { unit: self.rounder.unit(), on_grid: self.rounder.is_even() });
-        self.lines.touch();
-        Ok(())
-    }
-
-    /// Takes the old parts of chains that change out of the index. Returns the edges that no other
-    /// chain needs: these are to be released.
-    fn retract_parts(&mut self, changes: &[Change]) -> Result<Vec<Ends>, NotLocal> {
-        let (index, chains) = self.lines.index_and_chains();
-        let index = index.ok_or(NotLocal)?;
-        let mut edges: Vec<Ends> = Vec::new();
-        for change in changes {
-            change.old_parts().for_each(|part| index.remove_part(chains, change.segment, part, &mut edges));
-        }
-        for (segment, part) in std::mem::take(&mut self.replacing) {
-            index.remove_part(chains, segment, part, &mut edges);
-        }
-        edges.sort_unstable();
-        edges.dedup();
-        let straight = |edge: &Ends| changes.binary_search_by(|change| change.segment.cmp(edge));
-        let is_rerouted = |edge: &Ends| straight(edge).is_ok_and(|at| changes[at].old_parts().next().is_some());
-        edges.retain(|&edge| index.segments_on(chains, edge).all(|other| other == edge && is_rerouted(&edge)));
-        edges.retain(|edge| chains.splits.remove(edge).is_none());
-        Ok(edges)
-    }
-
-    /// Returns the vertices that are to be removed, in order.
-    fn leaving(&mut self) -> Vec<VertexId> {
-        let leaves = |(&v, &is_hot): (&VertexId, &bool)| (!is_hot && self.lines.added.contains(v)).then_some(v);
-        let mut leaving: Vec<VertexId> = self.hot.iter().filter_map(leaves).collect();
-        if let Some(gone) = self.gone {
-            self.lines.owned.remove(gone);
-            if self.is_hot(gone) {
-                self.lines.added.insert(gone);
-            } else {
-                leaving.push(gone);
-            }
-        }
-        leaving.sort_unstable();
-        leaving
-    }
-
-    /// Returns the changes of chains, ordered by segment: of those whose sites differ, and of those
-    /// with a vertex that is to be removed, even if it only split one of their parts.
-    fn changes(&mut self, leaving: &[VertexId]) -> Vec<Change> {
-        let chains = &self.lines.chains;
-        let from_end_to_end = |[a, b]: Ends, sites: &[VertexId]| [&[a], sites, &[b]].concat();
-        let mut changes: Vec<Change> = Vec::new();
-        for (segment, sites) in std::mem::take(&mut self.chains) {
-            let is_new = Some(segment) == self.added;
-            if is_new || sites.as_deref() != chains.bent.get(&segment).map(|sites| &**sites) {
-                let old = if is_new { Vec::new() } else { chains.sites(segment) };
-                let new = from_end_to_end(segment, sites.as_deref().unwrap_or_default());
-                changes.push(Change::new(segment, old, new, sites.is_some()));
-            }
-        }
-        if let Some(added) = self.added.filter(|added| !changes.iter().any(|change| change.segment == *added)) {
-            changes.push(Change::new(added, Vec::new(), added.to_vec(), false));
-        }
-        if let Some(removed) = self.removed {
-            changes.push(Change::new(removed, chains.sites(removed), Vec::new(), false));
-        }
-        changes.sort_unstable_by_key(|change| change.segment);
-        for &vertex in leaving {
-            for segment in self.lines_at(vertex) {
-                let at = changes.binary_search_by(|change| change.segment.cmp(&segment)).unwrap_or_else(|at| {
-                    let sites = self.lines.chains.sites(segment);
-                    let is_bent = self.lines.chains.bent.contains_key(&segment);
-                    changes.insert(at, Change::new(segment, sites.clone(), sites, is_bent));
-                    at
-                });
-                let part = self.position_along(segment, changes[at].old_sites(), position(self.t, vertex));
-                changes[at].include(part, vertex);
-            }
-        }
-        changes
-    }
-
-    /// Updates the point at a crossing, which the geometry computes from the segments that pass
-    /// there.
-    fn renew_point(&mut self, site: VertexId) {
-        let mut segments = self.around.remove(&site).unwrap_or_else(|| self.lines_at(site));
-        segments.sort_unstable();
-        segments.retain(|&segment| self.has_site(segment, site));
-        let ends: Vec<[G::Point; 2]> = segments.into_iter().map(|ends| ends.map(|v| *self.t.point(v))).collect();
-        let ends: Vec<[&G::Point; 2]> = ends.iter().map(|ends| ends.each_ref()).collect();
-        if !ends.is_empty() {
-            let p = self.t.geometry.meet(position(self.t, site), &ends);
-            self.t.points[site.index()] = p;
         }
     }
 }
