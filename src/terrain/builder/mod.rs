@@ -1,28 +1,23 @@
+mod build;
+mod sites;
+
 use std::ops::Range;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use rustc_hash::FxHashMap;
 
-use crate::crs::Crs;
-use crate::data::{Bounds, EdgeKind};
-use crate::error::{Error, Result, Setting, wording};
-use crate::triangulation::geometry::{Geometry, Terrain};
-use crate::triangulation::num::unsigned_zero;
-use crate::triangulation::tds::VertexId;
-use crate::triangulation::{ConstrainedDelaunay, InputError, LineId, OnCrossing, spatial_order};
-
-use super::admitted::refused;
 use super::clip::Clip;
-use super::crossings::{Pass, choose_heights, refuse};
-use super::lines::areas::{self, Level, Leveled, Replaced, Water};
-use super::lines::kinds::{LineKinds, Precedence};
+use super::lines::areas::{Level, Replaced, Water};
+use super::lines::kinds::Precedence;
 use super::lines::narrowest;
 use super::lines::overlap::{self, Marks};
-use super::tin::Count;
-use super::window::uncertain;
-use super::{CrossingRule, DuplicateRule, Flat, River, Tin, TinReport, Wall, WaterOverlap, Window};
+use super::{CrossingRule, DuplicateRule, Flat, River, Wall, WaterOverlap, Window};
+use crate::crs::Crs;
+use crate::data::{Bounds, EdgeKind};
+use crate::triangulation::OnCrossing;
+use crate::triangulation::geometry::{Geometry, Terrain};
+use crate::triangulation::num::unsigned_zero;
 
-/// Builds a [`Tin`] from points and breaklines.
+/// Builds a [`Tin`](super::Tin) from points and breaklines.
 ///
 /// A point that lies on a breakline between two of its vertices stays a vertex, with its own
 /// height: the surface follows the line in plan and the point in height. [`take_replaced_points`
@@ -74,7 +69,7 @@ pub struct TinBuilder {
     pub bounds: Option<Bounds>,
     /// What was read, if not all points are added but those needed for [`bounds`](Self::bounds).
     ///
-    /// [`TinReport::uncertain`] then says whether they suffice.
+    /// [`TinReport::uncertain`](super::TinReport::uncertain) then says whether they suffice.
     pub window: Option<Window>,
     /// The box in plan within which crossings and walls are judged, if the surface is clipped to
     /// it later, by somebody else; with [`bounds`](Self::bounds), these count.
@@ -125,9 +120,6 @@ impl Overlaps {
 
 /// The default of [`TinBuilder::step_width`].
 const STEP_WIDTH: f64 = 0.01;
-
-/// The number of vertices that are merged between two looks at the flag that cancels the work.
-const POLL: usize = 1 << 16;
 
 /// Replaces -0 by 0: sites are compared bit by bit when sorted, and neither zero is the lower one.
 fn positive_zero([x, y, z]: [f64; 3]) -> [f64; 3] {
@@ -327,252 +319,6 @@ impl TinBuilder {
             std::mem::take(&mut self.holes),
             std::mem::take(&mut self.draped),
         )
-    }
-
-    /// Builds the TIN.
-    ///
-    /// # Errors
-    /// If a coordinate is not finite or outside of [`RANGE`](crate::triangulation::kernel::RANGE),
-    /// there are more points than 32-bit numbers can count, the input does not span an area, or
-    /// breaklines cross or differ in height where the rules refuse that.
-    ///
-    /// # Complexity
-    /// O(n log n) in practice; about 80 bytes per point in addition to the input.
-    pub fn build(self) -> Result<Tin> {
-        self.build_named(&|line| format!("breakline {line}"), &AtomicBool::new(false))
-    }
-
-    /// Like [`build`](TinBuilder::build), but can be canceled, and with names for breaklines.
-    ///
-    /// Building stops once `cancel` is set. `name` returns what errors call a breakline, given its
-    /// position among those that were added.
-    ///
-    /// # Errors
-    /// Those of [`build`](TinBuilder::build), and one of kind
-    /// [`Canceled`](crate::error::Kind::Canceled).
-    pub fn build_named(mut self, name: &dyn Fn(usize) -> String, cancel: &AtomicBool) -> Result<Tin> {
-        let go_on = || if cancel.load(Ordering::Relaxed) { Err(Error::canceled()) } else { Ok(()) };
-        self.mark_overlaps();
-        let given = self.line_count();
-        let overlaps = self.overlaps.take().unwrap_or_else(|| Overlaps { given, ..Overlaps::default() });
-        let name: &dyn Fn(usize) -> String = &|line| name(overlaps.named(line));
-        let mut report = TinReport { points: self.points.len(), breaklines: overlaps.given, ..Default::default() };
-        let geometry: Terrain = Terrain::default();
-        let bad = |p: &[f64; 3]| !geometry.admits(p) || !p[2].is_finite();
-        if let Some(at) = self.points.iter().position(bad) {
-            return Err(refused(self.points[at]).at(format!("point {at}")));
-        }
-        if let Some(at) = self.line_points.iter().position(bad) {
-            let line = self.line_ends.partition_point(|&end| end <= at);
-            return Err(refused(self.line_points[at]).at(name(line)));
-        }
-
-        report.water_overlaps.clone_from(&overlaps.found);
-        report.water_overlaps.retain(|overlap| overlap.step > self.crossing_tolerance);
-        self.take_replaced_points();
-        report.points_replaced = self.replaced_count;
-        let [walls, rims] = [self.walls(), self.rims()];
-        // One vertex per site, in spatial order.
-        let Sites { vertices, line_vertices, mut disputed } = self.merge(&mut report, &go_on)?;
-        go_on()?;
-        let lines = lines_of(&line_vertices, &self.line_ends);
-        let (mut triangulation, renumbered) =
-            ConstrainedDelaunay::from_sorted_lines(geometry, vertices, &lines, self.on_crossing, cancel)
-                .map_err(|error| not_built(error, name))?;
-        if let Some(renumbered) = renumbered {
-            disputed.iter_mut().for_each(|pass| pass.vertex = renumbered[pass.vertex.index()]);
-        }
-        if triangulation.dimension() < 2 {
-            let what = match triangulation.vertex_count() {
-                0 | 1 => "fewer than two distinct points do".to_owned(),
-                count => format!("{count} distinct points on one line do"),
-            };
-            return Err(Error::format(format!("{what} not span a surface")).cure(wording![
-                "check the inputs, the classes (",
-                Setting::Class,
-                ") and the bounds"
-            ]));
-        }
-
-        report.crossings = triangulation.crossings().len();
-        report.rounding = triangulation.rounding();
-        report.crossing_heights = choose_heights(
-            &mut triangulation,
-            &self.precedences,
-            disputed,
-            self.crossing_heights,
-            self.crossing_tolerance,
-        );
-        let judged = self.bounds.or(self.judged);
-        if let Some(bounds) = &judged {
-            report.crossing_heights.retain(|crossing| bounds.holds(crossing.site[0], crossing.site[1]));
-        }
-        let Leveled { is_water, sites } = areas::level(&mut triangulation, &self.waters, &rims, &overlaps.pairs, name)?;
-        for (line, heights) in walls {
-            let vertices = triangulation.line_vertices(LineId::new(line)).iter().zip(heights);
-            let at = vertices.map(|(vertex, height)| (*triangulation.point(*vertex), height));
-            let flooded = at.filter(|([x, y, z], height)| {
-                z != height
-                    && sites.contains(&[x.to_bits(), y.to_bits()])
-                    && judged.as_ref().is_none_or(|bounds| bounds.holds(*x, *y))
-            });
-            report.walls_in_water.extend(flooded.map(|([x, y, _], _)| (line, [x, y])));
-        }
-        // In water, no line decides.
-        report.crossing_heights.retain(|crossing| !sites.contains(&crossing.site.map(f64::to_bits)));
-        report.crossing_heights.iter_mut().flat_map(|crossing| &mut crossing.heights).for_each(|(line, _)| {
-            *line = overlaps.named(*line);
-        });
-        if self.crossing_heights == CrossingRule::Refuse {
-            refuse(&report.crossing_heights, self.crossing_tolerance, name)?;
-        }
-        go_on()?;
-        let kinds = LineKinds::new(std::mem::take(&mut self.line_kinds));
-        let mut tin = Tin::new(triangulation, kinds, self.crs.take());
-        let all = tin.triangulation.vertex_count();
-        if let Some(limit) = self.max_edge {
-            report.faces_beyond_max_edge = tin.peel(limit);
-        }
-        if let Some(limit) = self.max_edge_inside {
-            report.faces_with_long_edges = tin.leave_out_long(limit, &is_water);
-        }
-        let is_whole = report.faces_beyond_max_edge + report.faces_with_long_edges == 0;
-        let clip = self.take_clip();
-        // Counted only if it does not follow from the final counts.
-        let mut left = None;
-        if !clip.is_everything() {
-            left = Some(if is_whole { all } else { tin.count().old_vertices });
-            (report.faces_clipped, report.faces_cut) = clip.apply(&mut tin)?;
-        }
-        go_on()?;
-        if let (Some(bounds), Some(window)) = (&self.bounds, &self.window) {
-            report.uncertain = uncertain(&tin.triangulation, bounds, window, self.max_edge, tin.replaced());
-        }
-        let Count { old_vertices, vertices, faces, extent } = tin.count();
-        let left = left.unwrap_or(old_vertices);
-        report.vertices_beyond_max_edge = all - left;
-        report.vertices_clipped = left - old_vertices;
-        report.vertices_cut = vertices - old_vertices;
-        let (has_lines, is_clipped) = (report.breaklines > 0, !clip.is_everything());
-        if is_clipped || has_lines && !(is_whole && tin.kinds.are_breaklines()) {
-            report.edges = tin.count_lines();
-        } else if has_lines {
-            report.edges.add_edges(EdgeKind::Breakline, tin.triangulation.constrained_edges().count());
-        }
-        (report.vertices, report.triangles, report.extent) = (vertices, faces, extent);
-        tin.report = report;
-        Ok(tin)
-    }
-
-    /// The numbers of the edges of walls, with the heights of their vertices; none if there is no
-    /// water.
-    fn walls(&self) -> Vec<(usize, Vec<f64>)> {
-        let is_wall = |line: &usize| self.line_kinds[*line] == EdgeKind::Wall;
-        if self.waters.is_empty() { Vec::new() } else { self.heights_of((0..self.line_count()).filter(is_wall)) }
-    }
-
-    /// The numbers of the lines around waters, with the heights of their vertices.
-    fn rims(&self) -> Vec<(usize, Vec<f64>)> {
-        self.heights_of(self.waters.iter().flat_map(|water| water.rim.iter().copied()))
-    }
-
-    fn heights_of(&self, lines: impl Iterator<Item = usize>) -> Vec<(usize, Vec<f64>)> {
-        lines.map(|line| (line, self.line(line).iter().map(|p| p[2]).collect())).collect()
-    }
-
-    /// Merges the points and vertices that share a site, by the rules. Leaves `self.points` empty.
-    ///
-    /// # Errors
-    /// If there is not enough memory for the vertices, or if `go_on`, which is called now and then,
-    /// returns an error.
-    fn merge(&mut self, report: &mut TinReport, go_on: &dyn Fn() -> Result<()>) -> Result<Sites> {
-        let mut all = std::mem::take(&mut self.points);
-        let lines_from = all.len();
-        all.reserve_exact(self.line_points.len());
-        all.append(&mut self.line_points);
-        let order = spatial_order(all.len(), |i| [all[i][0], all[i][1]]).map_err(|e| Error::limit(e.to_string()))?;
-        go_on()?;
-        let site = |i: u32| [all[i as usize][0], all[i as usize][1]];
-        let mut vertices = Vec::new();
-        if vertices.try_reserve_exact(all.len()).is_err() {
-            return Err(Error::limit(format!("not enough memory for {} vertices", all.len())));
-        }
-        let mut line_vertices = vec![u32::MAX; all.len() - lines_from];
-        let mut disputed = Vec::new();
-        let (mut heights, mut first_lines) = (Vec::new(), Vec::new());
-        for group in order.chunk_by(|&i, &j| site(i) == site(j)) {
-            if vertices.len() % POLL == 0 {
-                go_on()?;
-            }
-            if let &[only] = group
-                && (only as usize) < lines_from
-            {
-                vertices.push(all[only as usize]); // the common case: nothing to choose
-                continue;
-            }
-            // Within a site, indices are in the order of the input: points first, then lines.
-            let first_of_lines = group.partition_point(|&i| (i as usize) < lines_from);
-            let (points, lines) = group.split_at(first_of_lines);
-            let line_of = |i: u32| self.line_ends.partition_point(|&end| end <= i as usize - lines_from);
-            let precedence = |i: u32| self.precedences[line_of(i)];
-            let standing = if lines.is_empty() {
-                report.duplicates += points.len() - 1;
-                points
-            } else {
-                report.points_on_breaklines += points.len();
-                report.breakline_vertices += 1;
-                // Those that count before all others.
-                first_lines.clear();
-                let first = lines.iter().map(|&i| precedence(i)).min();
-                first_lines.extend(lines.iter().copied().filter(|&i| lines.len() == 1 || Some(precedence(i)) == first));
-                &first_lines
-            };
-            heights.clear();
-            heights.extend(standing.iter().map(|&i| all[i as usize][2]));
-            let [x, y] = site(group[0]);
-            for &i in lines {
-                line_vertices[i as usize - lines_from] = vertices.len() as u32;
-            }
-            if !lines.is_empty() && heights.iter().any(|&z| z != heights[0]) {
-                disputed.extend(standing.iter().map(|&i| Pass {
-                    vertex: VertexId::new(vertices.len()),
-                    line: LineId::new(line_of(i)),
-                    height: all[i as usize][2],
-                    is_own: true,
-                }));
-            }
-            vertices.push([x, y, self.duplicates.choose(&mut heights)]);
-        }
-        Ok(Sites { vertices, line_vertices, disputed })
-    }
-}
-
-/// The distinct sites of points and lines.
-struct Sites {
-    /// In spatial order.
-    vertices: Vec<[f64; 3]>,
-    /// For each vertex of a breakline, the index of its site.
-    line_vertices: Vec<u32>,
-    /// The breaklines at sites where their vertices have different heights.
-    disputed: Vec<Pass>,
-}
-
-/// The vertices of each line.
-fn lines_of<'a>(vertices: &'a [u32], line_ends: &[usize]) -> Vec<&'a [u32]> {
-    let starts = std::iter::once(&0).chain(line_ends);
-    starts.zip(line_ends).map(|(&start, &end)| &vertices[start..end]).collect()
-}
-
-#[cold]
-fn not_built(error: InputError, name: &dyn Fn(usize) -> String) -> Error {
-    match error {
-        InputError::Crossing { segments: [(line, _), (other, _)], at: [x, y] } => {
-            let (line, other) = (name(line), name(other));
-            Error::format(format!("{line} and {other} cross at {x} {y} without a common vertex"))
-                .cure(wording!["fix the lines, or split them there with ", Setting::OnCrossing.text("split")])
-        }
-        InputError::Canceled => Error::canceled(),
-        error => Error::limit(error.to_string()),
     }
 }
 
