@@ -15,6 +15,8 @@
 mod confluence;
 mod divided;
 mod downstream;
+mod ends;
+mod segments;
 mod sites;
 mod stations;
 mod water;
@@ -24,14 +26,14 @@ use std::collections::BTreeSet;
 use super::offset::{offset, unfolded};
 use crate::data::orientation;
 use crate::error::{Error, Result, Setting, wording};
-use crate::terrain::boxes::{Boxed, Boxes, Extent};
-use crate::terrain::nearest::squared_distance;
+use crate::terrain::boxes::{Boxed, Boxes};
 use crate::triangulation::num::Sign;
-use divided::divided;
+use segments::{Side, meeting_of, sides};
 use sites::{Key, distance, flat, key, middle};
 use stations::stations;
 
 pub use downstream::RiverLowering;
+pub(crate) use segments::{contains, cross};
 pub(crate) use water::{RiverWater, height_near};
 
 /// A river between two banks.
@@ -193,19 +195,6 @@ impl River {
         of_outline.unwrap_or_else(|| vec![[a, b, c], [b, d, c]])
     }
 
-    /// The number of the first (0) or the last (1) stretch.
-    fn stretch_of_end(&self, end: usize) -> usize {
-        if end == 0 { 0 } else { self.stretch_count() - 1 }
-    }
-
-    /// Divides the first and the last stretch into triangles, if ends follow banks.
-    fn divide_ends(&mut self) {
-        self.end_triangles = [0, 1].map(|end| {
-            let outline = self.outline(self.stretch_of_end(end));
-            if outline.len() > 4 { divided(&outline) } else { None }
-        });
-    }
-
     /// The edges between the triangles of a stretch, if they are within it.
     pub(crate) fn diagonals(&self, stretch: usize) -> Vec<[[f64; 3]; 2]> {
         let [a, b, c, d] = self.corners(stretch);
@@ -220,16 +209,6 @@ impl River {
             around.flat_map(|(from, to)| [[*from, *to], [*to, *from]]).map(keys).collect();
         let edges = self.triangles(stretch).into_iter().flat_map(|[a, b, c]| [[a, b], [b, c], [c, a]]);
         edges.filter(|&[p, q]| drawn.insert(keys([p, q])) && drawn.insert(keys([q, p]))).collect()
-    }
-
-    /// The border of a stretch: four corners, and more where an end follows the bank of another
-    /// river.
-    fn outline(&self, stretch: usize) -> Vec<[f64; 3]> {
-        let [a, b, c, d] = self.corners(stretch);
-        let inner = |is_there: bool, end: usize| if is_there { self.along_bank(end) } else { &[] };
-        let first = inner(stretch == 0, 0).iter().copied();
-        let last = inner(stretch + 1 == self.stretch_count(), 1).iter().rev().copied();
-        [a].into_iter().chain(first).chain([b, d]).chain(last).chain([c]).collect()
     }
 
     /// Exchanges upstream and downstream.
@@ -247,70 +226,6 @@ impl River {
     fn levels(&self) -> [f64; 2] {
         let level = |ends: Option<&[[f64; 3]; 2]>| ends.map_or(f64::NAN, |ends| ends[0][2]);
         [level(self.stations.first()), level(self.stations.last())]
-    }
-
-    /// Returns true if one of two rivers ends where the other one begins or ends, and a position is
-    /// on the level line there, or no farther from it than a distance.
-    pub(crate) fn goes_on_at(&self, other: &River, q: [f64; 2], distance: f64) -> bool {
-        let mouths = [[0, 1], [1, 0], [1, 1]].into_iter();
-        let mut common = mouths.filter(|[own, end]| key(self.ends[*own]) == key(other.ends[*end]));
-        let is_on = |line: [[f64; 3]; 2]| squared_distance(line.map(flat), q) <= distance * distance;
-        common.any(|[own, end]| is_on(self.end_line(own)) || is_on(other.end_line(end)))
-    }
-
-    /// The first (0) or the last (1) level line.
-    fn end_line(&self, end: usize) -> [[f64; 3]; 2] {
-        self.stations[self.station_of_end(end)]
-    }
-
-    /// The number of the first (0) or the last (1) station.
-    fn station_of_end(&self, end: usize) -> usize {
-        if end == 0 { 0 } else { self.stations.len() - 1 }
-    }
-
-    /// The side on which two level lines meet in one vertex; `None` if they do not, or one does not
-    /// exist.
-    fn meeting_side(&self, station: usize, other: usize) -> Option<usize> {
-        let [line, other] = [self.stations.get(station)?, self.stations.get(other)?];
-        (0..2).find(|&side| flat(line[side]) == flat(other[side]))
-    }
-
-    /// The level lines that meet the first (0) or the last (1) one, or one that does, in order from
-    /// there: station, and the side on which it meets the one before.
-    fn met_at_end(&self, end: usize) -> impl Iterator<Item = [usize; 2]> + '_ {
-        let beside = move |[station, _]: &[usize; 2]| {
-            let next = if end == 0 { station + 1 } else { station.checked_sub(1)? };
-            Some([next, self.meeting_side(*station, next)?])
-        };
-        std::iter::successors(Some([self.station_of_end(end), 0]), beside).skip(1)
-    }
-
-    /// Lets the first (0) or the last (1) level line follow the bank of another river, from left to
-    /// right, with its heights. Level lines that meet it get the height of the vertex.
-    fn set_end_line(&mut self, end: usize, line: Vec<[f64; 3]>) {
-        let [left, inner @ .., right] = line.as_slice() else { return };
-        let mut before = self.station_of_end(end);
-        self.stations[before] = [*left, *right];
-        let is_along = !inner.is_empty() || left[2] != right[2];
-        self.along_banks[end] = is_along.then(|| inner.to_vec());
-        for [station, side] in self.met_at_end(end).collect::<Vec<_>>() {
-            let level = self.stations[before][side][2];
-            self.stations[station].iter_mut().for_each(|corner| corner[2] = level);
-            before = station;
-        }
-    }
-
-    /// Returns true if the stretch at the first (0) or the last (1) level line is bounded by a line
-    /// that does not meet itself; one of four corners counts as such.
-    fn is_simple_at(&self, end: usize) -> bool {
-        let outline = self.outline(self.stretch_of_end(end));
-        outline.len() == 4 || meeting_of(outline).is_none()
-    }
-
-    /// The vertices between the ends of the first (0) or the last (1) level line on the bank of
-    /// another river.
-    fn along_bank(&self, end: usize) -> &[[f64; 3]] {
-        self.along_banks[end].as_deref().unwrap_or_default()
     }
 
     /// The banks, in order downstream.
@@ -382,28 +297,6 @@ impl River {
     }
 }
 
-/// A position at which a ring meets itself.
-fn meeting_of(mut ring: Vec<[f64; 3]>) -> Option<[f64; 2]> {
-    ring.extend(ring.first().copied());
-    let all = sides(&ring);
-    let boxes = Boxes::new(all.clone());
-    all.iter().find_map(|side| boxes.find_in(side.extent(), |other| cross(&side.0, &other.0).then(|| middle(&side.0))))
-}
-
-/// A segment of a bank.
-#[derive(Debug, Clone, Copy)]
-struct Side([[f64; 3]; 2]);
-
-impl Boxed for Side {
-    fn extent(&self) -> Extent {
-        Extent::of(self.0)
-    }
-}
-
-fn sides(line: &[[f64; 3]]) -> Vec<Side> {
-    line.windows(2).map(|pair| Side([pair[0], pair[1]])).collect()
-}
-
 /// The vertices of a bank without repetitions.
 fn clean(bank: &[[f64; 3]]) -> Result<Vec<[f64; 3]>> {
     if let Some([x, y, z]) = bank.iter().find(|p| !p[2].is_finite()) {
@@ -416,37 +309,6 @@ fn clean(bank: &[[f64; 3]]) -> Result<Vec<[f64; 3]>> {
         0 | 1 => Err(Error::format("a bank has fewer than two distinct vertices")),
         _ => Ok(clean),
     }
-}
-
-/// The point at a part of a segment, from 0 to 1.
-fn side_between([from, to]: [[f64; 2]; 2], part: f64) -> [f64; 2] {
-    if part == 1.0 { to } else { [0, 1].map(|axis| from[axis] + part * (to[axis] - from[axis])) }
-}
-
-/// Returns true if two segments share a point other than a common end.
-pub(crate) fn cross([a, b]: &[[f64; 3]; 2], [c, d]: &[[f64; 3]; 2]) -> bool {
-    let is_apart = |k: usize| a[k].max(b[k]) < c[k].min(d[k]) || c[k].max(d[k]) < a[k].min(b[k]);
-    if is_apart(0) || is_apart(1) {
-        return false;
-    }
-    let same = |p: &[f64; 3], q: &[f64; 3]| flat(*p) == flat(*q);
-    let (ab, cd) = ([a, b], [c, d]);
-    let shared = ab.iter().flat_map(|p| cd.iter().map(move |q| same(p, q))).filter(|is_same| *is_same).count();
-    let sides = [[a, b, c], [a, b, d], [c, d, a], [c, d, b]].map(|[p, q, r]| orientation([*p, *q, *r]));
-    if shared > 0 {
-        return false;
-    }
-    let [s, t, u, v] = sides;
-    (s == Sign::Zero || s != t) && (u == Sign::Zero || u != v)
-}
-
-/// Returns true if a position lies in a triangle or on its border, in either orientation.
-pub(crate) fn contains(corners: [[f64; 3]; 3], [x, y]: [f64; 2]) -> bool {
-    let [a, b, c] = corners;
-    let q = [x, y, 0.0];
-    let turn = orientation(corners);
-    turn != Sign::Zero
-        && [[a, b], [b, c], [c, a]].iter().all(|[p, r]| turn * orientation([*p, *r, q]) != Sign::Negative)
 }
 
 #[cfg(test)]

@@ -1,7 +1,8 @@
 //! The height of a river at any position.
 
+use super::River;
+use super::segments::contains;
 use super::sites::flat;
-use super::{River, contains};
 use crate::terrain::boxes::{Boxed, Boxes, Extent};
 use crate::terrain::linear::linear;
 use crate::terrain::nearest::{nearest_part, part_before, squared_distance};

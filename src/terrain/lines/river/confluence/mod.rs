@@ -6,8 +6,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use rustc_hash::FxHashMap;
 
+use super::River;
+use super::segments::side_between;
 use super::sites::{Key, by_site, flat, key};
-use super::{River, side_between};
 use crate::terrain::boxes::{Boxed, Boxes, Extent};
 use crate::terrain::nearest::{nearest_part, squared_distance};
 use joints::{Joint, Joints};
