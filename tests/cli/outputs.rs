@@ -256,6 +256,17 @@ fn too_little_memory_is_told_before_the_work() {
     }
 }
 
+#[test]
+fn memory_that_has_no_effect_is_noted_with_what_to_do() {
+    let folder = folder_with(&[("a.xyz", SLOPE)]);
+    let run = |words: &str| run_in(&folder, &words.split(' ').collect::<Vec<_>>());
+    run("tin a.xyz -o x.ply --memory 2GB")
+        .works(&["note: --memory has no effect: x.ply: tiles make a TIN in parts: name the output .tins\n"]);
+    run("dem a.xyz -o d.tif --memory 2GB --max-edge auto")
+        .works(&["note: --memory has no effect: --max-edge auto does not work with tiles yet\n"]);
+    assert!(!run("tin a.xyz -o y.ply").stderr.contains("--memory"));
+}
+
 /// The program looks at the kind of a file before it reads it: a pipe can be opened only once.
 #[test]
 fn a_pipe_is_opened_once_and_read_to_its_end() {

@@ -96,6 +96,8 @@ fn a_plan_is_refused_if_its_output_cannot_be_written() {
     plan("-o x.tif --tiles 2000000x2").fails(2, &["expected `auto`, or columns and rows"]);
     let words = format!("dem {valley} --tiles 2x2 --job x.tif -o x.tif");
     run_in(&folder, &words.split(' ').collect::<Vec<_>>()).fails(2, &["have the same name"]);
+    let words = format!("job plan ./x.tif -- dem {valley} --tiles 2x2 -o x.tif");
+    run_in(&folder, &words.split(' ').collect::<Vec<_>>()).fails(2, &["have the same name"]);
     assert!(files_of(folder.path()).is_empty());
 }
 

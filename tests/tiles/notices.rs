@@ -22,6 +22,7 @@ use super::layer;
 /// The kinds of notices that tiles do not have, and why.
 const NOT_IN_TILES: &[(&str, &str)] = &[
     ("LittleMemory", "tiles are chosen to fit into memory"),
+    ("MemoryUnused", "tiles cannot be made"),
     ("OutputMayNotFit", "depends on the disk"),
     ("Triangulated", "a time; each task has its own"),
     ("Uncertain", "tiles use all points, whatever the bounds"),

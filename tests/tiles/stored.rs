@@ -6,9 +6,9 @@ use std::path::Path;
 use breakline::error::{Kind, Result, Setting};
 use breakline::io::formats::Product;
 use breakline::run::{
-    self, BadFiles, Context, DemOptions, Division, Existing, FrameOptions, HillshadeOptions, Input, JobCommand, Keeps,
-    LightOptions, Outputs, Source, StoredJob, Summary, SurfaceProduct, SurfaceRequest, Targets, TileOptions, Tiles,
-    Verb, WriteReport, WriteRequest,
+    self, BadFiles, Context, DemOptions, Division, Execution, Existing, FrameOptions, HillshadeOptions, Input,
+    JobCommand, Keeps, LightOptions, Outputs, Source, StoredJob, Summary, SurfaceProduct, SurfaceRequest, Targets,
+    TileOptions, Tiles, Verb, WriteReport, WriteRequest,
 };
 
 use super::{bytes, output_of, valley};
@@ -264,4 +264,152 @@ fn what_would_not_come_back_as_it_was_is_not_kept() {
     let command = JobCommand::new(&request(DemOptions { frame, ..DemOptions::default() }), &targets, &tiles()).unwrap();
     let job = plan(&command, &folder.path().join("j")).unwrap();
     run::run_job(&job, &Context::default()).unwrap();
+}
+
+#[test]
+fn replaced_points_are_not_kept_in_tiles() {
+    let points = run::TinRequest {
+        points: vec![Input::File(valley().into())],
+        replaced: run::ReplacedPoints::Keep,
+        ..run::TinRequest::default()
+    };
+    let surface = SurfaceRequest { source: Source::Points(Box::new(points)), ..SurfaceRequest::default() };
+    let folder = tempfile::tempdir().unwrap();
+    let command = JobCommand::new(
+        &WriteRequest::new(surface, DemOptions::default()),
+        &Targets::of(folder.path().join("d.tif")),
+        &tiles(),
+    );
+    let error = plan(&command.unwrap(), &folder.path().join("j")).unwrap_err();
+    assert!(error.to_string().contains("flat-points does not work with tiles yet"), "{error}");
+}
+
+/// The plan is made here, and the tasks run elsewhere, with less memory.
+#[test]
+fn the_memory_of_a_task_is_that_of_where_it_runs() {
+    let folder = tempfile::tempdir().unwrap();
+    let targets = Targets::of(folder.path().join("d.tif"));
+    let with = |task_memory| {
+        let tiles = TileOptions { division: Division::Auto, task_memory: Some(task_memory), ..TileOptions::default() };
+        JobCommand::new(&request(DemOptions::default()), &targets, &tiles).unwrap()
+    };
+    let job = plan(&with(2_200_000), &folder.path().join("j")).unwrap();
+    let size = job.job().unwrap().size();
+    assert!(size.task_memory == 2_200_000 && size.tiles > 1, "{size:?}");
+    // The same, planned for other machines, goes on.
+    job.require_for(&with(3_000_000)).unwrap();
+}
+
+#[test]
+fn what_reads_all_tasks_can_be_canceled() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = folder.path().join("d.tif");
+    let stored = plan(&command(&Targets::of(&output)), &folder.path().join("j")).unwrap();
+    run::run_job(&stored, &Context::default()).unwrap();
+    let cancel = std::sync::atomic::AtomicBool::new(true);
+    let context = Context { cancel: &cancel, ..Context::default() };
+    let job = stored.job().unwrap();
+    for error in [
+        job.tasks(&output, &context).err(),
+        job.done(&context).err(),
+        job.has_holes(&context).err(),
+        job.has_written(&output, &context).err(),
+        job.remove_damaged(&context).err(),
+        job.lock(&context).err(),
+        stored.remove(&context).err(),
+        run::run_job(&stored, &context).err(),
+        run::remove_job(stored.folder(), &context).err(),
+    ] {
+        assert_eq!(error.unwrap().kind(), Kind::Canceled);
+    }
+    assert!(job.has_written(&output, &Context::default()).unwrap());
+}
+
+/// Whoever cannot see what is shown meanwhile learns it from the error.
+#[test]
+fn an_error_of_a_job_says_where_tasks_are_kept_and_how_to_go_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut damaged = bytes(valley());
+    // The compressed points, which begin after the header and its records, not the table behind.
+    let start = u32::from_le_bytes(damaged[96..100].try_into().unwrap()) as usize + 8;
+    let end = damaged.len() - 40;
+    damaged[start..end].fill(0xff);
+    let path = folder.path().join("a.laz");
+    std::fs::write(&path, damaged).unwrap();
+    // With a class, planning reads headers only.
+    let points = run::TinRequest {
+        points: vec![Input::File(path)],
+        classes: breakline::terrain::Classes::Only(vec![2]),
+        ..run::TinRequest::default()
+    };
+    let surface = SurfaceRequest { source: Source::Points(Box::new(points)), ..SurfaceRequest::default() };
+    let request = WriteRequest::new(surface, DemOptions::default());
+    let targets = Targets::of(folder.path().join("d.tif"));
+    let context = Context::default();
+    let own = run::write(&request, &targets, &Execution::Tiles(tiles()), &context).unwrap_err();
+    let job = plan(&JobCommand::new(&request, &targets, &tiles()).unwrap(), &folder.path().join("j")).unwrap();
+    let stored = run::run_job(&job, &context).unwrap_err();
+    let [own_folder, job_folder] = [targets.job_folder().unwrap(), job.folder().to_path_buf()];
+    for (error, said) in [
+        (own, format!("finished tasks are kept in {}: go on with resume", own_folder.display())),
+        (stored, format!("finished tasks are kept in {0}: go on with `job run {0}`", job_folder.display())),
+    ] {
+        assert_eq!(error.kind(), Kind::Format);
+        let cure = error.cure_text().unwrap().plain();
+        assert!(cure.ends_with(&said), "{cure}");
+    }
+}
+
+/// What a dry run shows is what the run would meet.
+#[test]
+fn a_dry_run_shows_the_job_that_is_there() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |words: &str| run_in(&folder, &words.split(' ').collect::<Vec<_>>());
+    let words = format!("dem {} -o d.tif --tiles 2x2 --job j", valley());
+    run(&words).works(&[]);
+    for end in ["--dry-run", "--dry-run --resume"] {
+        run(&format!("{words} --overwrite {end}")).works(&["tiles       4 (of 1 files", "folder      j"]);
+        run(&format!("{words} --overwrite --class 5 {end}"))
+            .fails(2, &["is that of another command; what differs: --class"]);
+    }
+}
+
+/// A plan has no names: any name will do that the system has.
+#[cfg(target_os = "linux")]
+#[test]
+fn names_that_are_not_unicode_are_read_in_tiles_too() {
+    use std::os::unix::ffi::OsStrExt;
+    let folder = tempfile::tempdir().unwrap();
+    let [points, grid] = [b"a\xff.laz", b"g\xff.tif"].map(|name| folder.path().join(std::ffi::OsStr::from_bytes(name)));
+    std::fs::copy(valley(), &points).unwrap();
+    output_of(&folder, &format!("dem {} --resolution 4", valley()), "grid.tif");
+    std::fs::rename(folder.path().join("grid.tif"), &grid).unwrap();
+    let frame = FrameOptions { align_to: Some(grid), ..FrameOptions::default() };
+    let source = Source::of_points(&[points]);
+    let surface = SurfaceRequest { source, ..SurfaceRequest::default() };
+    let request = WriteRequest::new(surface, DemOptions { frame, ..DemOptions::default() });
+    let [one, other] = ["one.tif", "other.tif"].map(|name| Targets::of(folder.path().join(name)));
+    let context = Context::default();
+    run::write(&request, &one, &Execution::Whole, &context).unwrap();
+    run::write(&request, &other, &Execution::Tiles(tiles()), &context).unwrap();
+    assert!(bytes(&one.files[0]) == bytes(&other.files[0]));
+    // To be kept, it would have to be written as text.
+    let other = Targets::of(folder.path().join("third.tif"));
+    let error = plan(&JobCommand::new(&request, &other, &tiles()).unwrap(), &folder.path().join("j")).unwrap_err();
+    assert!(error.to_string().contains("not valid Unicode, which a job needs"), "{error}");
+}
+
+/// Its own command goes on with a job where the folder is, and the inputs are, now.
+#[test]
+fn a_job_moves_with_its_inputs() {
+    let [before, now] = [0, 1].map(|_| tempfile::tempdir().unwrap());
+    std::fs::copy(valley(), before.path().join("a.laz")).unwrap();
+    let words = "dem a.laz --tiles 2x2 --job j";
+    let (whole, _) = output_of(&before, words, "d.tif");
+    for name in ["a.laz", "j"] {
+        std::fs::rename(before.path().join(name), now.path().join(name)).unwrap();
+    }
+    std::fs::remove_file(now.path().join("j/tasks/000006.task")).unwrap();
+    let (moved, said) = output_of(&now, &format!("{words} --resume"), "d.tif");
+    assert!(moved == whole && said.contains("resumed     6 of 7 tasks are done"), "{said}");
 }

@@ -5,7 +5,6 @@ use std::sync::{Mutex, PoisonError};
 
 use super::console::Console;
 use super::last_words::LastWords;
-use super::names::name;
 use super::summary::{counted, describe, print_extent, print_surface};
 use crate::cli::Exit;
 use crate::crs::Crs;
@@ -121,7 +120,6 @@ impl Monitor for Shown<'_> {
     fn event(&self, event: &Event) {
         let console = self.console;
         match event {
-            Event::MemoryUnused(error) => console.note(format_args!("--memory has no effect: {}", error.render(&name))),
             Event::Planned(size) => print_size(size, console),
             Event::Resumed { done, tasks } => {
                 console.line(format_args!("resumed     {done} of {tasks} tasks are done"));
@@ -129,7 +127,6 @@ impl Monitor for Shown<'_> {
             Event::PlannedAgain(path) => console
                 .note(format_args!("{} was skipped, and can be read now: the job is planned again", path.display())),
             Event::TasksBegin(folder) => self.set_words(|| console.note_if_ended(self.kept(folder))),
-            Event::TasksFailed(folder) => console.note(self.kept(folder)),
             Event::RasterBegins { frame, crs, bytes: size } => {
                 let (cells, size) = (describe(frame, *crs), bytes(*size));
                 console.line(format_args!("raster      {cells}, {size} before compression"));

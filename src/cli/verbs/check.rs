@@ -28,12 +28,12 @@ pub(crate) fn run(args: &CheckArgs, console: &Console) -> Result<Exit> {
     let read = targets.with_lists(plan.request.files());
     targets.check_tables(&read)?;
     let outputs = OutputSet::default();
-    let CheckProduct { product, flaws, .. } = run::check(&plan.request, &console.context())?;
+    let CheckProduct { mut product, flaws, .. } = run::check(&plan.request, &console.context())?;
     targets.write_tables(&product, &outputs)?;
     for flaw in &flaws {
         print(&format!("{flaw}\n"))?;
     }
-    print_surface(&SurfaceReport::of(&product)?, console);
+    print_surface(&SurfaceReport::take(&mut product)?, console);
     outputs.commit()?.iter().for_each(|path| print_file(path, console));
     let SurfaceFacts { vertices, triangles, edges, .. } = product.facts()?;
     let what = format!("{vertices} vertices, {triangles} triangles, {} constrained edges", edges.total());

@@ -46,10 +46,7 @@ fn parse(words: &[String], console: &Console) -> Result<Asked> {
         let first = text.lines().next().unwrap_or_default().trim_start_matches("error: ").to_owned();
         Error::usage(format!("the command of the job: {first}")).cure("`breakline dem --help` lists its options")
     })?;
-    let asked = write::asked(&cli.verb, console)?.ok_or_else(|| {
-        Error::usage("a job makes a DEM, contours, a hillshade or a TIN in parts")
-            .cure("begin the command with `dem`, `contour`, `hillshade` or `tin`")
-    })?;
+    let asked = write::asked(&cli.verb, console)?;
     let tiles = &asked.tiles;
     let own = [(tiles.dry_run, "--dry-run"), (tiles.resume, "--resume"), (tiles.job.is_some(), "--job")];
     match own.iter().find(|(is_given, _)| *is_given) {

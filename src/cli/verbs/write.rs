@@ -6,24 +6,27 @@ use crate::cli::Exit;
 use crate::cli::input::args::{TileArgs, Verb};
 use crate::cli::report::console::Console;
 use crate::cli::report::written::Shown;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::run::{self, BadFiles, Execution, TileOptions};
 
-/// Returns what a verb asks for; `None` if it is not one of those that write what they make of a
-/// surface.
-pub(super) fn asked(verb: &Verb, console: &Console) -> Result<Option<Asked>> {
+/// Returns what a verb asks for.
+///
+/// # Errors
+/// If it is not one of those that write what they make of a surface.
+pub(super) fn asked(verb: &Verb, console: &Console) -> Result<Asked> {
     match verb {
-        Verb::Dem(args) => dem::asked(args, console).map(Some),
-        Verb::Contour(args) => contour::asked(args, console).map(Some),
-        Verb::Hillshade(args) => hillshade::asked(args, console).map(Some),
-        Verb::Tin(args) => tin::asked(args, console).map(Some),
-        _ => Ok(None),
+        Verb::Dem(args) => dem::asked(args, console),
+        Verb::Contour(args) => contour::asked(args, console),
+        Verb::Hillshade(args) => hillshade::asked(args, console),
+        Verb::Tin(args) => tin::asked(args, console),
+        _ => Err(Error::usage("a job makes a DEM, contours, a hillshade or a TIN in parts")
+            .cure("begin the command with `dem`, `contour`, `hillshade` or `tin`")),
     }
 }
 
 /// Writes what a verb asks for.
 pub(crate) fn run(verb: &Verb, console: &Console) -> Result<Exit> {
-    let Some(Asked { request, targets, tiles }) = asked(verb, console)? else { return Ok(Exit::Usage) };
+    let Asked { request, targets, tiles } = asked(verb, console)?;
     let shown = Shown::new(console, "--resume".to_owned());
     let report = run::write(&request, &targets, &execution(&tiles), &shown.context())?;
     Ok(shown.print(&report))

@@ -4,16 +4,12 @@ use std::path::Path;
 
 use crate::crs::Crs;
 use crate::data::Frame;
-use crate::error::Error;
 
 /// Something that happens while a request is worked on, for callers that show it: neither a choice
 /// nor a doubt, as a [`Notice`](super::Notice) is.
 #[derive(Debug, Clone, Copy)]
 #[non_exhaustive]
 pub enum Event<'a> {
-    /// The memory that was given makes no difference, since tiles cannot be made; the error says
-    /// why.
-    MemoryUnused(&'a Error),
     /// A job was planned, or is there.
     Planned(&'a JobSize),
     /// A job goes on, so many of whose tasks are done.
@@ -28,8 +24,6 @@ pub enum Event<'a> {
     PlannedAgain(&'a Path),
     /// The tasks of the job in a folder begin.
     TasksBegin(&'a Path),
-    /// The tasks of the job in a folder ended with an error; those that are done are kept.
-    TasksFailed(&'a Path),
     /// The size of a raster is known, before its cells are computed.
     RasterBegins {
         /// Size and position.

@@ -58,6 +58,9 @@ pub enum Notice {
         /// What sets the limit, such as "on this machine".
         limit: &'static str,
     },
+    /// The memory that was given makes no difference, since tiles cannot be made; with the reason,
+    /// and what to do.
+    MemoryUnused(Wording),
     /// The outputs may not fit on a disk.
     OutputMayNotFit {
         /// About how many bytes they take before they are compressed.
@@ -312,6 +315,7 @@ impl Notice {
             | Notice::Uncertain(..) => Severity::Detail,
             Notice::GroundUsed
             | Notice::PointsWithoutClassUsed(_)
+            | Notice::MemoryUnused(_)
             | Notice::Reassigned { .. }
             | Notice::SystemOfOthers(..)
             | Notice::NoSystem

@@ -90,6 +90,7 @@ fn text(notice: &Notice) -> Wording {
             bytes(*left)
         )
         .into(),
+        Notice::MemoryUnused(why) => wording![Setting::Memory, " has no effect: ", why.clone()],
         Notice::OutputMayNotFit { need, free } => format!(
             "the output may not fit: {} before compression, {} are free on the disk",
             bytes(*need),

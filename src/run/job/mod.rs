@@ -230,7 +230,9 @@ impl Job {
         let Some(stored) = StoredPlan::read(folder)? else { return Ok(None) };
         match Self::of_stored(&stored, wanted, folder, options) {
             Err(error) if error.kind() == Kind::OtherJob => {
-                Self::of_stored(&stored, &command::whole(wanted)?, folder, options).map_err(|_| error).map(Some)
+                let whole = command::whole(wanted);
+                let opened = whole.and_then(|whole| Self::of_stored(&stored, &whole, folder, options));
+                opened.map_err(|_| error).map(Some)
             }
             opened => opened.map(Some),
         }
@@ -238,19 +240,12 @@ impl Job {
 
     fn of_stored(stored: &StoredPlan, wanted: &WriteRequest, folder: &Path, options: &TileOptions) -> Result<Self> {
         let (request, systems) = tiled(wanted)?;
-        let plan = Plan::from_json(&stored.plan).ok_or_else(|| {
-            Error::format("the job was planned by another version of this program").in_file(folder).cure(wording![
-                "remove it (",
-                Command::JobClean,
-                "), or name another folder (",
-                Setting::Job,
-                ")"
-            ])
-        })?;
+        let plan = Plan::from_json(&stored.plan).ok_or_else(|| other_version(folder))?;
         let asked = request::asked(wanted, options)?;
-        if plan.request != asked || plan.files.iter().any(|file| file.input >= request.points.len()) {
+        if plan.request != asked {
             return Err(request::other_command(&plan.request, &asked, folder));
         }
+        let plan = plan.named(request, wanted.verb.as_ref()).ok_or_else(|| other_version(folder))?;
         Ok(Job { sum: stored.sum, ..Self::of_plan(wanted, (request, systems), folder, options, plan) })
     }
 
@@ -486,6 +481,17 @@ impl Job {
             None => Ok(()),
         }
     }
+}
+
+#[cold]
+fn other_version(folder: &Path) -> Error {
+    Error::format("the job was planned by another version of this program").in_file(folder).cure(wording![
+        "remove it (",
+        Command::JobClean,
+        "), or name another folder (",
+        Setting::Job,
+        ")"
+    ])
 }
 
 /// Returns true if a request would need more memory than there is.

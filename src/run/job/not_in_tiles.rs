@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result, Setting, Wording, wording};
 use crate::run::products::surface::{Source, SurfaceRequest};
-use crate::run::products::tin::{EdgeLimit, TinRequest};
+use crate::run::products::tin::{EdgeLimit, ReplacedPoints, TinRequest};
 use crate::run::sources::systems::SystemOptions;
 use crate::run::verbs::WriteRequest;
 use crate::terrain::Method;
@@ -33,6 +33,7 @@ impl NotInTiles {
             (NotInTiles::EdgeByPoints, request.max_edge == EdgeLimit::Auto),
             (NotInTiles::Reproject, systems.target.is_some()),
             (NotInTiles::EdgesBesideWater, request.max_edge_inside.is_some() && has_water),
+            (NotInTiles::ReplacedPoints, request.replaced == ReplacedPoints::Keep),
         ];
         known.into_iter().find(|(_, is_given)| *is_given).map(|(what, _)| what)
     }

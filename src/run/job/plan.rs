@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use serde::{Deserialize, Serialize};
+
 use super::division::Division;
 use super::lines::{self, Known};
 use super::not_in_tiles::NotInTiles;
@@ -19,6 +21,7 @@ use crate::run::context::{Context, Journal};
 use crate::run::products::frame::{self, FrameOptions};
 use crate::run::products::tin::TinRequest;
 use crate::run::request::input::{Input, MemoryPoints};
+use crate::run::request::serialized;
 use crate::run::sources::open;
 use crate::run::sources::point_files::{BadFiles, GROUND, PointFiles};
 use crate::run::sources::systems::{self, Stated, SystemOptions, Systems};
@@ -38,11 +41,17 @@ const LEAST_POINTS: u64 = 10_000;
 /// The share of the most points that a tile has on average: files may be denser in one place.
 const AVERAGE: f64 = 0.5;
 
-/// A file that is read beside the points, as it was planned with.
-type OtherFile = (PathBuf, FileState);
+/// A file that is read beside the points, as it was planned with. A plan does not name it: it has
+/// those of the request in their order.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(super) struct OtherFile {
+    #[serde(skip)]
+    path: PathBuf,
+    state: FileState,
+}
 
 /// What all tasks of a job must agree on.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct Plan {
     /// The options of the request, so that another one does not go on with this job.
     pub(super) request: Options,
@@ -71,6 +80,7 @@ pub(super) struct Plan {
     pub(super) max_edge: Option<f64>,
     /// The frame that triangles are drawn in, for a raster: it covers all points, or is that of the
     /// result.
+    #[serde(with = "serialized::frame")]
     pub(super) frame: Option<Frame>,
     /// The memory of one task.
     pub(super) task_memory: u64,
@@ -200,10 +210,8 @@ impl Plan {
         let units = Units::of(crs.as_ref());
         let max_edge = request.max_edge.length(&units);
         let (has_lines, has_clip) = (lines.is_some(), clip.is_some());
-        let others = others(request, verb)?;
-        if let Some(path) = files.iter().map(|file| &file.path).find(|path| path.to_str().is_none()) {
-            return Err(Error::unsupported("the name is not valid Unicode, which a plan needs").in_file(path));
-        }
+        let state = |path: &PathBuf| Ok(OtherFile { path: path.clone(), state: state_of(path)? });
+        let others = others(request, verb).map(state).collect::<Result<_>>()?;
         let plan = Plan {
             request: options_of(request, systems, verb, options),
             files,
@@ -286,7 +294,22 @@ impl Plan {
 
     /// Returns an error if any file but those of points has changed since the plan was made.
     pub(super) fn require_others_unchanged(&self) -> Result<()> {
-        self.others.iter().try_for_each(|(path, state)| require_state(path, *state))
+        self.others.iter().try_for_each(|OtherFile { path, state }| require_state(path, *state))
+    }
+
+    /// Returns the plan with the names that a request has for its files; `None` if it is not that
+    /// of this request.
+    pub(super) fn named(mut self, request: &TinRequest, verb: &dyn Verb) -> Option<Self> {
+        for file in &mut self.files {
+            file.path = request.points.get(file.input)?.path().to_path_buf();
+        }
+        let is_known = |(input, _): &(usize, String)| *input < request.points.len();
+        let others: Vec<&PathBuf> = others(request, verb).collect();
+        if others.len() != self.others.len() || !self.skipped.iter().all(is_known) {
+            return None;
+        }
+        self.others.iter_mut().zip(others).for_each(|(file, path)| file.path.clone_from(path));
+        Some(self)
     }
 
     /// Returns an error if a file is not the one that was planned with. One that was changed
@@ -368,14 +391,13 @@ fn opened(request: &TinRequest, closed: &[Closed]) -> (Vec<usize>, Vec<Input<Mem
     inputs.filter(|(number, _)| !is_closed(number)).unzip()
 }
 
-/// Returns the states of the files that are read beside the points.
-fn others(request: &TinRequest, verb: &dyn Verb) -> Result<Vec<OtherFile>> {
+/// Returns the files that are read beside the points: layers of lines, a raster to align to.
+fn others<'a>(request: &'a TinRequest, verb: &'a dyn Verb) -> impl Iterator<Item = &'a PathBuf> {
     let layers = request.lines.inputs().into_iter().flat_map(|(_, inputs)| inputs);
     let layers = layers.chain(&request.breaklines).chain(&request.boundary);
     let layers = layers.filter_map(|input| match input {
         Input::File(path) => Some(path),
         Input::Memory(_) => None,
     });
-    let state = |path: &PathBuf| Ok((path.clone(), state_of(path)?));
-    layers.chain(verb.also_reads()).map(state).collect()
+    layers.chain(verb.also_reads())
 }

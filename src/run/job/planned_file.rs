@@ -4,7 +4,6 @@ use std::path::{Path, PathBuf};
 use std::time::UNIX_EPOCH;
 
 use serde::{Deserialize, Serialize};
-use serde_json::{Value, json};
 
 use crate::data::{Bounds, PointBatch};
 use crate::error::{Command, Error, Result, wording};
@@ -27,22 +26,13 @@ pub struct FileState {
     pub modified: u64,
 }
 
-impl FileState {
-    pub(super) fn to_json(self) -> Value {
-        json!([self.size, self.modified])
-    }
-
-    /// Returns the state that a value states.
-    pub(super) fn from_json(value: &Value) -> Option<Self> {
-        Some(FileState { size: value[0].as_u64()?, modified: value[1].as_u64()? })
-    }
-}
-
-/// A file of points as the plan knows it.
-#[derive(Debug, Clone, PartialEq)]
+/// A file of points as the plan knows it. A plan has its position in the request only: so it may be
+/// read under another name.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct PlannedFile {
     /// The position of the file in the request.
     pub(super) input: usize,
+    #[serde(skip)]
     pub(super) path: PathBuf,
     /// As it was planned with.
     pub(super) state: FileState,

@@ -199,6 +199,7 @@ impl TaskWriter {
     /// made from.
     pub(super) fn finish(mut self, facts: &TaskFacts, sources: u32) -> Result<()> {
         self.end_section();
+        let facts = kept(facts).map_err(|e| e.in_file(&self.name.path))?;
         let section = |(name, block): &(&str, Block)| json!([name, block.at, block.length, block.sum]);
         let sections: Vec<Value> = self.sections.iter().map(section).collect();
         let TaskName { job, task, .. } = self.name;
@@ -213,6 +214,19 @@ impl TaskWriter {
         let named = |e: std::io::Error| Error::from(e).in_file(&target);
         let file = self.out.into_inner().into_inner().map_err(|e| named(e.into_error()))?;
         file.persist(&target).map(drop).map_err(|e| named(e.error))
+    }
+}
+
+/// Returns facts as they are kept.
+///
+/// # Errors
+/// If they could not be read again: a number is not finite.
+fn kept(facts: &TaskFacts) -> Result<Value> {
+    let stored = serde_json::to_value(facts).map_err(std::io::Error::from)?;
+    match serde_json::from_value::<TaskFacts>(stored.clone()) {
+        Ok(_) => Ok(stored),
+        Err(_) => Err(Error::limit("what a task found out has a number that is not finite")
+            .cure("check the heights of the points and lines: some are too far apart to be subtracted")),
     }
 }
 
@@ -407,6 +421,7 @@ fn damaged() -> Error {
 
 #[cfg(test)]
 mod tests {
+    use super::super::task_facts::{FileFacts, ReadFacts};
     use super::*;
 
     fn name(folder: &Path) -> TaskName {
@@ -442,6 +457,22 @@ mod tests {
         let mut bytes = b"what was there before".to_vec();
         file.read(blocks[1], &mut bytes).unwrap();
         assert_eq!(bytes, b"cd");
+    }
+
+    #[test]
+    fn a_file_that_could_not_be_read_again_is_not_written() {
+        let folder = tempfile::tempdir().unwrap();
+        let name = name(folder.path());
+        let rings = ReadFacts { rings: vec![(0, 1, 1e308 - -1e308)], ..ReadFacts::default() };
+        for facts in [
+            TaskFacts { file: Some(FileFacts::Read(rings)), ..TaskFacts::default() },
+            TaskFacts { reach: [f64::INFINITY, 0.0], ..TaskFacts::default() },
+            TaskFacts { holes: vec![[[f64::NAN; 2]; 2]], ..TaskFacts::default() },
+        ] {
+            let error = TaskWriter::create(name.clone()).unwrap().finish(&facts, 5).unwrap_err();
+            assert!(error.to_string().contains("a number that is not finite"), "{error}");
+            assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+        }
     }
 
     /// Reads all of a file, as tasks do.

@@ -25,6 +25,24 @@ pub(crate) mod in_plan {
     }
 }
 
+/// Frames that can be used.
+pub(crate) mod frame {
+    use serde::de::Error as _;
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    use crate::data::Frame;
+
+    pub(crate) fn serialize<S: Serializer>(frame: &Option<Frame>, to: S) -> Result<S::Ok, S::Error> {
+        frame.map(|Frame { width, height, transform }| (width, height, transform)).serialize(to)
+    }
+
+    pub(crate) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Option<Frame>, D::Error> {
+        let stated = Option::<(usize, usize, [f64; 6])>::deserialize(from)?;
+        let checked = |(width, height, transform)| Frame { width, height, transform }.checked();
+        stated.map(checked).transpose().map_err(D::Error::custom)
+    }
+}
+
 /// What to do where segments cross.
 #[derive(Serialize, Deserialize)]
 #[serde(remote = "OnCrossing")]

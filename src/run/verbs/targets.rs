@@ -258,7 +258,7 @@ pub(crate) fn file_of(path: &Path) -> Option<&Path> {
 }
 
 /// Returns true if two paths name the same file, whether it exists or not.
-fn is_same(path: &Path, other: &Path) -> bool {
+pub(crate) fn is_same(path: &Path, other: &Path) -> bool {
     let [path, other] = [path, other].map(|path| {
         let folder = identity(folder_of(path));
         identity(&folder.join(path.file_name().unwrap_or_default()))

@@ -8,9 +8,10 @@ use std::path::{Path, PathBuf};
 
 use super::job::{Job, JobCommand, JobLock, NotInTiles, StoredJob, TileOptions, needs_tiles};
 use super::verbs::{Summary, TileUse, WriteRequest};
-use crate::error::{Error, Result};
+use crate::error::{Command, Error, Result, Setting, Wording, wording};
 use crate::run::context::Context;
 use crate::run::context::event::Event;
+use crate::run::context::notice::Notice;
 use crate::run::sources::point_files::BadFiles;
 use crate::run::verbs::targets::{self, Existing, Outputs, Targets};
 
@@ -28,7 +29,7 @@ pub enum Execution {
     Tiles(TileOptions),
     /// In tiles, going on with the job in the folder, if there is one.
     Resume(TileOptions),
-    /// Not at all: tiles are planned, and nothing is written.
+    /// Not at all: tiles are planned, unless there is a job in the folder, and nothing is written.
     Plan(TileOptions),
 }
 
@@ -81,7 +82,7 @@ pub fn write(
         Execution::Tiles(options) => prepared.in_tiles()?.anew(options, context),
         Execution::Resume(options) => prepared.in_tiles()?.resume(options, context),
         Execution::Plan(options) => {
-            let job = prepared.in_tiles()?.planned(options, context)?;
+            let job = prepared.in_tiles()?.looked_at(options, context)?;
             Ok(WriteReport::Planned { size: job.size(), folder: job.folder().to_path_buf() })
         }
     }
@@ -182,29 +183,32 @@ impl<'a> Prepared<'a> {
 
     /// Returns true if the request has to be worked on in tiles.
     fn needs_tiles(&self, memory: Option<u64>, context: &Context) -> bool {
-        let unused = |error: &Error| {
+        let unused = |why: Wording| {
             if memory.is_some() {
-                context.monitor.event(&Event::MemoryUnused(error));
+                context.monitor.notice(&Notice::MemoryUnused(why));
             }
             false
         };
         match (&self.use_of_tiles, self.refused()) {
             (TileUse::Always, _) => true,
-            (TileUse::Never(error), _) => unused(error),
-            (TileUse::Optional, Some(error)) => unused(&error),
+            (TileUse::Never(error), _) => {
+                let cure = error.cure_text().map(|cure| wording![": ", cure.clone()]);
+                unused(wording![stated(error), cure.unwrap_or_default()])
+            }
+            (TileUse::Optional, Some(error)) => unused(stated(&error)),
             // Building in one piece reports what is wrong with files.
             (TileUse::Optional, None) => {
-                needs_tiles(self.request, memory, context).unwrap_or_else(|error| unused(&error))
+                needs_tiles(self.request, memory, context).unwrap_or_else(|error| unused(stated(&error)))
             }
         }
     }
 
     fn whole(self, context: &Context) -> Result<WriteReport> {
         let Prepared { request: WriteRequest { surface, verb }, targets, outputs, .. } = self;
-        let product = verb.surface(surface, context)?;
+        let mut product = verb.surface(surface, context)?;
         targets.write_tables(&product, &outputs.set)?;
         let summary = verb.write(&product, &outputs, context)?;
-        let surface = WrittenOf::Whole(SurfaceReport::of(&product)?);
+        let surface = WrittenOf::Whole(SurfaceReport::take(&mut product)?);
         // Its memory is not needed while the disk is waited for.
         drop(product);
         let files = outputs.set.commit()?;
@@ -224,7 +228,7 @@ impl<'a> Prepared<'a> {
     fn folder(&self, options: &TileOptions) -> Result<PathBuf> {
         let folder = options.folder.clone().or_else(|| self.targets.job_folder());
         let folder = folder.ok_or_else(|| Error::usage("no output is named"))?;
-        match self.outputs.targets.iter().find(|target| target.path == folder) {
+        match self.outputs.targets.iter().find(|target| targets::is_same(&target.path, &folder)) {
             Some(target) => {
                 Err(Error::usage("the output and the folder of the job have the same name").in_file(&target.path))
             }
@@ -238,6 +242,14 @@ impl<'a> Prepared<'a> {
         let job = Job::plan(self.request, &folder, options, context)?;
         require_room(&job, context)?;
         Ok(job)
+    }
+
+    /// Returns the job in the folder, or plans one if there is none; it has room.
+    fn looked_at(&self, options: &TileOptions, context: &Context) -> Result<Job> {
+        match Job::stored(self.request, &self.folder(options)?, options)? {
+            Some(job) => require_room(&job, context).map(|()| job),
+            None => self.planned(options, context),
+        }
     }
 
     /// Plans a job and does it.
@@ -290,12 +302,25 @@ impl<'a> Prepared<'a> {
         Ok(())
     }
 
-    /// Does the tasks that are left, and writes the outputs.
+    /// Does the tasks that are left, and writes the outputs; an error says how to go on.
     fn run(self, job: &Job, lock: &JobLock, keep: Folder, context: &Context) -> Result<WriteReport> {
+        self.run_all(job, lock, keep, context).map_err(|error| {
+            let folder = job.folder().display().to_string();
+            let again = match job.command() {
+                Ok(None) => Setting::Resume.on(),
+                Ok(Some(_)) | Err(_) => Command::JobRun.on(folder.clone()),
+            };
+            let kept = wording!["finished tasks are kept in ", folder, ": go on with ", again];
+            let cure = error.cure_text().map(|own| wording![own.clone(), "; ", kept.clone()]);
+            error.cure(cure.unwrap_or(kept))
+        })
+    }
+
+    fn run_all(self, job: &Job, lock: &JobLock, keep: Folder, context: &Context) -> Result<WriteReport> {
         let Prepared { request, outputs, .. } = self;
         let folder = job.folder().to_path_buf();
         context.monitor.event(&Event::TasksBegin(&folder));
-        job.run(context).inspect_err(|_| context.monitor.event(&Event::TasksFailed(&folder)))?;
+        job.run(context)?;
         let report = job.report(context)?;
         let mut summary = request.verb.write_tiles(&job.tiles(&report), &outputs, context)?;
         let is_kept = keep == Folder::Kept || report.skipped > 0;
@@ -326,6 +351,12 @@ enum Folder {
 
 fn is_named(options: &TileOptions) -> Folder {
     if options.folder.is_some() { Folder::Kept } else { Folder::Removed }
+}
+
+/// Returns what an error says.
+fn stated(error: &Error) -> Wording {
+    let file = error.path().map(|path| format!("{}: ", path.display()));
+    wording![file.unwrap_or_default(), error.message().clone()]
 }
 
 /// Reports what a plan consists of, and makes sure that the files of its tasks have room.

@@ -83,16 +83,19 @@ pub enum Origin {
 }
 
 impl SurfaceReport {
-    /// Returns the counts of a surface.
+    /// Returns the counts of a surface, with the report of building it, which is taken out.
     ///
     /// # Errors
     /// If its parts are damaged.
     ///
     /// # Complexity
     /// Linear for a mesh and a raster, else constant.
-    pub fn of(product: &SurfaceProduct) -> Result<Self> {
-        let (origin, extent) = match (&product.built, &product.model) {
-            (Some(built), _) => (Origin::Built(built.clone()), built.tin.extent),
+    pub fn take(product: &mut SurfaceProduct) -> Result<Self> {
+        let (origin, extent) = match (product.built.take(), &product.model) {
+            (Some(built), _) => {
+                let extent = built.tin.extent;
+                (Origin::Built(built), extent)
+            }
             (None, Model::Raster(grid)) => (Origin::Cells(grid.frame), grid.extent()),
             (None, Model::Mesh(_) | Model::Tin(_) | Model::Compact(_) | Model::Parts(_)) => {
                 let facts = product.facts()?;

@@ -4,14 +4,15 @@ use super::Tile;
 
 /// A division of the plane into tiles by cuts along the axes, each of which divides what the cuts
 /// before it left. Tiles at the rim are infinite.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(into = "Vec<Node>", try_from = "Vec<Node>")]
 pub struct Layout {
     /// The root is the first.
     nodes: Vec<Node>,
 }
 
 /// A tile, or a part of the plane with a cut through it.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum Node {
     /// A tile, by its number.
     Tile(u32),
@@ -24,6 +25,20 @@ pub enum Node {
         /// The positions of both parts in the list of nodes, which are larger than its own.
         parts: [u32; 2],
     },
+}
+
+impl From<Layout> for Vec<Node> {
+    fn from(layout: Layout) -> Self {
+        layout.nodes
+    }
+}
+
+impl TryFrom<Vec<Node>> for Layout {
+    type Error = &'static str;
+
+    fn try_from(nodes: Vec<Node>) -> Result<Self, Self::Error> {
+        Layout::from_nodes(nodes).ok_or("tiles and cuts do not form a tree")
+    }
 }
 
 /// Points that are spread evenly over a box, as far as is known.

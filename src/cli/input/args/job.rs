@@ -23,7 +23,7 @@ pub(crate) struct JobArgs {
 /// What is done with a job.
 #[derive(Debug, Clone, Subcommand)]
 pub(crate) enum JobAction {
-    /// Create a job for a command: `dem`, `contour` or `hillshade`, with its options
+    /// Create a job for a command: `dem`, `contour`, `hillshade` or `tin`, with its options
     Plan {
         /// Folder to create
         #[arg(value_name = "JOB")]
