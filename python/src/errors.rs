@@ -4,6 +4,7 @@
 
 use std::any::Any;
 use std::error::Error as _;
+use std::ffi::OsStr;
 
 use breakline::error::Kind;
 use pyo3::prelude::*;
@@ -27,8 +28,9 @@ impl From<Failure> for PyErr {
         let class = match error.kind() {
             Kind::Format => "FormatError",
             Kind::Unsupported => "UnsupportedError",
-            Kind::Usage | Kind::OtherJob => "UsageError",
+            Kind::Usage => "UsageError",
             Kind::NotYet => "NotYetError",
+            Kind::OtherJob => "OtherJobError",
             Kind::Limit => "LimitError",
             Kind::Io => "FileError",
             Kind::Canceled => "CanceledError",
@@ -49,7 +51,7 @@ impl From<Failure> for PyErr {
         create(Parts {
             class,
             message: &error.message().render(&name),
-            file: error.path().map(|path| path.display().to_string()).as_deref(),
+            file: error.path().map(|path| path.as_os_str()),
             location: error.location(),
             value: None,
             cure: error.cure_text().map(|cure| cure.render(&name)).as_deref(),
@@ -64,7 +66,7 @@ impl From<Failure> for PyErr {
 struct Parts<'a> {
     class: &'a str,
     message: &'a str,
-    file: Option<&'a str>,
+    file: Option<&'a OsStr>,
     location: Option<&'a str>,
     value: Option<&'a str>,
     cure: Option<&'a str>,

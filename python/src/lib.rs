@@ -42,7 +42,7 @@ mod _breakline {
     use super::triangle::triangulate_arrays;
 
     #[pymodule_export]
-    use super::write::{Job, is_surface, write};
+    use super::write::{Job, job_folder, kind_of, write};
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {

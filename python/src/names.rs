@@ -27,7 +27,6 @@ pub(crate) fn parameter(setting: Setting) -> Option<String> {
     let name = match setting {
         Setting::CrossingReport | Setting::Parse => return None,
         Setting::Class => "classes",
-        Setting::Extent => "bounds",
         Setting::Return => "returns",
         Setting::TargetCrs => "to_crs",
         other => other.name(),

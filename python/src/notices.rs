@@ -20,12 +20,18 @@ pub(crate) fn pairs(notices: &[Notice]) -> Vec<(&'static str, String)> {
     notices.iter().map(pair).collect()
 }
 
+/// Returns true for what is a warning in Python: also that an argument has no effect, which nobody
+/// would see otherwise.
+fn is_warning(notice: &Notice) -> bool {
+    notice.severity() == Severity::Warning || matches!(notice, Notice::MemoryUnused(_))
+}
+
 /// Issues a Python warning for each notice that is one.
 ///
 /// # Errors
 /// The exception that a warning is turned into, if the user has asked for that.
 pub(crate) fn warn(py: Python<'_>, notices: &[Notice]) -> PyResult<()> {
-    let mut warnings = notices.iter().filter(|notice| notice.severity() == Severity::Warning).peekable();
+    let mut warnings = notices.iter().filter(|notice| is_warning(notice)).peekable();
     if warnings.peek().is_none() {
         return Ok(());
     }

@@ -72,7 +72,7 @@ pub(crate) fn of_building(report: &Bound<'_, PyDict>, built: &BuildReport) -> Py
     for input in &built.lines {
         let line = PyDict::new(py);
         line.set_item("parameter", names::parameter(input.role.setting()))?;
-        line.set_item("file", input.path.display().to_string())?;
+        line.set_item("file", input.path.as_os_str())?;
         line.set_item("lines", input.lines)?;
         line.set_item("edges", input.edges)?;
         lines.append(line)?;

@@ -367,7 +367,7 @@ pub(crate) fn positive(parameter: &str, number: Option<f64>) -> PyResult<Option<
 #[pyo3(from_item_all)]
 pub(crate) struct FrameArguments {
     resolution: Option<f64>,
-    bounds: Option<[f64; 4]>,
+    extent: Option<[f64; 4]>,
     align_to: Option<PathBuf>,
 }
 
@@ -378,7 +378,7 @@ impl FrameArguments {
         }
         Ok(FrameOptions {
             resolution: positive("resolution", self.resolution)?,
-            extent: bounds(self.bounds),
+            extent: bounds(self.extent),
             align_to: self.align_to.clone(),
         })
     }

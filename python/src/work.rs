@@ -22,6 +22,11 @@ pub(crate) const POLL: Duration = Duration::from_millis(50);
 #[derive(FromPyObject)]
 pub(crate) struct Call(Option<usize>, Option<Py<PyAny>>);
 
+impl Call {
+    /// A call of one thread, whose progress is not reported: for what reads a little.
+    pub(crate) const BRIEF: Call = Call(Some(1), None);
+}
+
 /// The pools of this process, that used last at the end.
 struct Pools {
     process: u32,
@@ -72,7 +77,7 @@ impl Pools {
 /// Calls at the same time have pools of their own while there are cores for all their threads;
 /// beyond that they share. Pools without calls are kept, up to two threads per core.
 fn pool(_py: Python<'_>, threads: Option<usize>) -> PyResult<Arc<ThreadPool>> {
-    let cores = available_parallelism().map_or(1, usize::from);
+    let cores = cores();
     let threads = threads.unwrap_or(cores);
     let mut pools = locked(&POOLS);
     if pools.process != std::process::id() {
@@ -90,6 +95,10 @@ fn pool(_py: Python<'_>, threads: Option<usize>) -> PyResult<Arc<ThreadPool>> {
     Ok(pool)
 }
 
+fn cores() -> usize {
+    available_parallelism().map_or(1, usize::from)
+}
+
 fn started(threads: usize) -> PyResult<Pool> {
     let name = |i: usize| format!("breakline-{i}");
     let pool = ThreadPoolBuilder::new().num_threads(threads).thread_name(name).build();
@@ -104,7 +113,7 @@ fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 /// Does the work on the threads of a pool, without the interpreter's lock. Meanwhile the calling
 /// thread handles signals and reports progress.
 ///
-/// The work must not take a lock: see [`run_around`].
+/// The work must not take a lock: see [`run_around`] and [`run_alone`].
 ///
 /// # Errors
 /// That of the work; the exception of a signal handler (`KeyboardInterrupt`) or of the function
@@ -123,17 +132,40 @@ pub(crate) fn run<T: Send, E: Send + Into<PyErr>>(
 /// such a call to ask for it, neither would ever end.
 pub(crate) fn run_around<T: Send, E: Send + Into<PyErr>>(
     py: Python<'_>,
-    Call(threads, progress): &Call,
+    call: &Call,
     work: impl FnOnce(&ThreadPool, &Context<'_>) -> Result<T, E> + Send,
 ) -> PyResult<T> {
-    let pool = pool(py, *threads)?;
+    on_pool(py, &*pool(py, call.0)?, call, work)
+}
+
+/// Like [`run`], for work that takes the lock of a job and keeps it: on threads that no other call
+/// has.
+///
+/// On shared ones, a thread that waits for others could take up a second call on the same job,
+/// which would wait for the lock that this thread has.
+pub(crate) fn run_alone<T: Send, E: Send + Into<PyErr>>(
+    py: Python<'_>,
+    call: &Call,
+    work: impl FnOnce(&Context<'_>) -> Result<T, E> + Send,
+) -> PyResult<T> {
+    let Pool { pool, .. } = started(call.0.unwrap_or_else(cores))?;
+    on_pool(py, &pool, call, |pool, context| pool.install(|| work(context)))
+}
+
+/// Does the work with a pool.
+fn on_pool<T: Send, E: Send + Into<PyErr>>(
+    py: Python<'_>,
+    pool: &ThreadPool,
+    Call(_, progress): &Call,
+    work: impl FnOnce(&ThreadPool, &Context<'_>) -> Result<T, E> + Send,
+) -> PyResult<T> {
     let watch = Watch::default();
     let cancel = AtomicBool::new(false);
     let mut interruption: Option<PyErr> = None;
     let outcome = py.detach(|| {
         std::thread::scope(|scope| {
             let (sender, receiver) = sync_channel(1);
-            let (pool, watch, cancel) = (&pool, &watch, &cancel);
+            let (watch, cancel) = (&watch, &cancel);
             let worker = move || {
                 let context = Context { monitor: watch, cancel };
                 let outcome = catch_unwind(AssertUnwindSafe(|| work(pool, &context)));
@@ -157,8 +189,11 @@ pub(crate) fn run_around<T: Send, E: Send + Into<PyErr>>(
         })
     });
     let outcome = outcome.map_err(|e: std::io::Error| errors::limit(&format!("a thread cannot be started: {e}")))?;
-    if let Some(error) = interruption {
-        return Err(error);
+    if let Some(interruption) = interruption {
+        if let Some(Ok(Err(canceled))) = outcome {
+            note_cure(py, &interruption, &canceled.into());
+        }
+        return Err(interruption);
     }
     match outcome {
         Some(Ok(Ok(done))) => {
@@ -169,6 +204,16 @@ pub(crate) fn run_around<T: Send, E: Send + Into<PyErr>>(
         Some(Ok(Err(error))) => Err(error.into()),
         Some(Err(panic)) => Err(errors::internal(panic.as_ref())),
         None => Err(errors::internal(&"the work ended without a result")),
+    }
+}
+
+/// Adds how to go on, if the work said so when it was canceled, to the exception that has canceled
+/// it.
+fn note_cure(py: Python<'_>, interruption: &PyErr, canceled: &PyErr) {
+    let cure = canceled.value(py).getattr("cure").and_then(|cure| cure.extract::<Option<String>>());
+    if let Ok(Some(cure)) = cure {
+        // Python before 3.11 has no notes.
+        let _ = interruption.value(py).call_method1("add_note", (cure,));
     }
 }
 

@@ -1,12 +1,15 @@
 //! Surfaces to files, in one piece or in tiles, and the jobs that tiles are done by.
 
+use std::borrow::Cow;
+use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use breakline::Error;
 use breakline::run::{
-    self, BadFiles, Context, ContourOptions, DemOptions, Division, Execution, Existing, HillshadeOptions, JobCommand,
-    JobReport, LightOptions, Look, Origin, Source, StoredJob, Summary, SurfaceOptions, SurfaceRequest, Targets,
-    TileOptions, TinRequest, Verb, WriteReport, WriteRequest, Written, WrittenOf,
+    self, BadFiles, ContourOptions, DemOptions, Division, Execution, Existing, HillshadeOptions, JobCommand, JobReport,
+    LightOptions, Look, Origin, Source, StoredJob, Summary, SurfaceOptions, SurfaceRequest, Targets, TileOptions, Verb,
+    WriteReport, WriteRequest, Written, WrittenOf,
 };
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
@@ -20,6 +23,8 @@ use crate::work::{self, Call};
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct Asked<'py> {
+    /// What the input is, as [`kind_of`] tells.
+    kind: String,
     points: Vec<PointInput<'py>>,
     read: ReadArguments,
     systems: SystemArguments,
@@ -35,24 +40,20 @@ pub(crate) struct Asked<'py> {
     job: Option<PathBuf>,
     resume: bool,
     skip_bad: bool,
+    headers_only: bool,
+    /// The memory of one task, for tasks that are done elsewhere.
+    task_memory: Option<u64>,
 }
 
 impl Asked<'_> {
     fn request(&self) -> PyResult<WriteRequest> {
-        let source = match &self.points[..] {
-            [PointInput::File(path)] => Source::of_files(std::slice::from_ref(path)).map_err(Failure)?,
-            _ => Source::Points(Box::default()),
-        };
-        let source = match source {
-            Source::Points(_) => Source::Points(Box::new(self.points()?)),
-            ready => ready,
+        let source = match (&self.kind[..], &self.points[..]) {
+            (MESH, [PointInput::File(path)]) => Source::Mesh(path.clone()),
+            (RASTER, [PointInput::File(path)]) => Source::Raster(path.clone()),
+            _ => Source::Points(Box::new(self.surface.request(&self.points, &self.read)?)),
         };
         let surface = SurfaceRequest { source, systems: self.systems.options()? };
         Ok(WriteRequest { surface, verb: verb(&self.verb, &self.product)? })
-    }
-
-    fn points(&self) -> PyResult<TinRequest> {
-        self.surface.request(&self.points, &self.read)
     }
 
     fn targets(&self) -> Targets {
@@ -73,7 +74,8 @@ impl Asked<'_> {
             memory: memory.transpose()?,
             folder: self.job.clone(),
             bad: if self.skip_bad { BadFiles::Skip } else { BadFiles::Refuse },
-            ..TileOptions::default()
+            look: if self.headers_only { Look::Headers } else { Look::Points },
+            task_memory: self.task_memory,
         })
     }
 
@@ -121,8 +123,9 @@ pub(crate) fn write<'py>(py: Python<'py>, asked: Asked<'py>, call: Call) -> PyRe
     let (request, targets, execution) = (asked.request()?, asked.targets(), asked.execution()?);
     // The arrays are copied, and may be changed.
     drop(asked);
-    let report =
-        work::run(py, &call, |context| -> Result<_> { Ok(run::write(&request, &targets, &execution, context)?) })?;
+    let report = work::run_alone(py, &call, |context| -> Result<_> {
+        Ok(run::write(&request, &targets, &execution, context)?)
+    })?;
     of_report(py, &report)
 }
 
@@ -132,13 +135,13 @@ fn of_report<'py>(py: Python<'py>, report: &WriteReport) -> PyResult<Bound<'py, 
     match report {
         WriteReport::Kept { has_holes, .. } => found.set_item("has_holes", has_holes)?,
         WriteReport::Written(written) => of_written(&found, written)?,
-        _ => {}
+        _ => return Err(errors::internal(&"nothing was written")),
     }
     Ok(found)
 }
 
 fn of_written(found: &Bound<'_, PyDict>, Written { surface, summary, files, .. }: &Written) -> PyResult<()> {
-    found.set_item("files", files.iter().map(|path| path.display().to_string()).collect::<Vec<_>>())?;
+    found.set_item("files", files.iter().map(|path| path.as_os_str()).collect::<Vec<&OsStr>>())?;
     match surface {
         WrittenOf::Whole(report) => {
             found.set_item("in_tiles", false)?;
@@ -178,7 +181,7 @@ fn of_written(found: &Bound<'_, PyDict>, Written { surface, summary, files, .. }
 fn of_tiles(found: &Bound<'_, PyDict>, report: &JobReport, folder: &Path) -> PyResult<()> {
     found.set_item("in_tiles", true)?;
     found.set_item("has_holes", report.skipped > 0)?;
-    found.set_item("job", (report.skipped > 0).then(|| folder.display().to_string()))?;
+    found.set_item("job", (report.skipped > 0).then_some(folder.as_os_str()))?;
     found.set_item("files_skipped", report.skipped)?;
     for (name, count) in [
         ("points_read", report.read),
@@ -197,21 +200,54 @@ fn of_tiles(found: &Bound<'_, PyDict>, report: &JobReport, folder: &Path) -> PyR
     found.set_item("max", report.extent.max)
 }
 
-/// Returns true if a file is a surface already: a mesh, a TIN or a raster.
+const POINTS: &str = "points";
+const MESH: &str = "mesh";
+const RASTER: &str = "raster";
+
+/// Returns what a file is: points, or a surface already.
 #[pyfunction]
-pub(crate) fn is_surface(py: Python<'_>, file: PathBuf) -> PyResult<bool> {
-    work::short(py, || -> Result<_> { Ok(!matches!(Source::of_files(&[file])?, Source::Points(_))) })
+pub(crate) fn kind_of(py: Python<'_>, file: PathBuf) -> PyResult<&'static str> {
+    let source = work::short(py, || -> Result<_> { Ok(Source::of_files(&[file])?) })?;
+    Ok(match source {
+        Source::Points(_) => POINTS,
+        Source::Mesh(_) => MESH,
+        Source::Raster(_) => RASTER,
+    })
+}
+
+/// Returns the folder that a job with this output has by default.
+#[pyfunction]
+pub(crate) fn job_folder(output: PathBuf) -> Option<OsString> {
+    Targets::of(output).job_folder().map(PathBuf::into_os_string)
 }
 
 /// The job in a folder.
 #[pyclass(frozen, module = "breakline._breakline")]
 pub(crate) struct Job {
-    stored: StoredJob,
+    folder: PathBuf,
+    /// The job that was there when this was opened; `None` if it is not known what it was planned
+    /// for.
+    stored: Option<StoredJob>,
 }
 
 impl Job {
-    fn output(&self) -> &Path {
-        self.stored.command.targets.files.first().map(PathBuf::as_path).unwrap_or(Path::new(""))
+    fn find(folder: &Path) -> Result<Self> {
+        let folder = std::path::absolute(folder).map_err(Error::from)?;
+        let stored = match StoredJob::find(&folder) {
+            Ok(Some(stored)) => Some(stored),
+            // The error says so.
+            Ok(None) => Some(StoredJob::read(&folder)?),
+            // It can be removed nevertheless.
+            Err(_) => None,
+        };
+        Ok(Job { folder, stored })
+    }
+
+    fn stored(&self) -> Result<Cow<'_, StoredJob>> {
+        match &self.stored {
+            Some(stored) => Ok(Cow::Borrowed(stored)),
+            None => Ok(Cow::Owned(StoredJob::read(&self.folder)?)),
+        }
     }
 }
 
@@ -219,48 +255,48 @@ impl Job {
 impl Job {
     /// Opens the job in the folder that is asked for, or plans one.
     #[staticmethod]
-    fn begin(py: Python<'_>, asked: Asked<'_>, headers_only: bool, words: Vec<String>, call: Call) -> PyResult<Self> {
-        let (request, targets) = (asked.request()?, asked.targets());
-        let look = if headers_only { Look::Headers } else { Look::Points };
-        let tiles = TileOptions { look, ..asked.tiles()? };
-        let folder = tiles.folder.clone().unwrap_or_default();
+    fn begin(py: Python<'_>, asked: Asked<'_>, call: Call) -> PyResult<Self> {
+        let (targets, tiles) = (asked.targets(), asked.tiles()?);
+        let command = JobCommand::new(&asked.request()?, &targets, &tiles).map_err(Failure)?;
         drop(asked);
-        work::run(py, &call, |context| -> Result<_> {
-            let mut asked = JobCommand::new(&request, &targets, &tiles)?;
-            asked.words = words;
+        let folder = tiles.folder.or_else(|| targets.job_folder()).unwrap_or_default();
+        work::run_alone(py, &call, |context| -> Result<_> {
             let stored = match StoredJob::find(&folder)? {
                 Some(stored) => {
-                    stored.require_for(&asked)?;
+                    stored.require_for(&command)?;
                     stored
                 }
-                None => run::plan_job(&asked, &folder, context)?,
+                None => run::plan_job(&command, &folder, context)?,
             };
-            Ok(Job { stored })
+            Ok(Job { folder: stored.folder().to_path_buf(), stored: Some(stored) })
         })
     }
 
     /// Opens the job in a folder.
     #[staticmethod]
     fn open(py: Python<'_>, folder: PathBuf) -> PyResult<Self> {
-        work::short(py, || -> Result<_> { Ok(Job { stored: StoredJob::read(&folder)? }) })
+        work::short(py, || Job::find(&folder))
     }
 
     /// The folder.
     #[getter]
-    fn folder(&self) -> PathBuf {
-        self.stored.folder().to_path_buf()
+    fn folder(&self) -> &Path {
+        &self.folder
     }
 
     /// The first output.
-    #[getter(output)]
-    fn first_output(&self) -> PathBuf {
-        self.output().to_path_buf()
+    #[getter]
+    fn output(&self, py: Python<'_>) -> PyResult<Option<PathBuf>> {
+        work::short(py, || -> Result<_> { Ok(self.stored()?.command.targets.files.first().cloned()) })
     }
 
     /// Returns the tasks, each as a dictionary.
     fn tasks<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
-        let tasks =
-            work::short(py, || -> Result<_> { Ok(self.stored.job()?.tasks(self.output(), &Context::default())?) })?;
+        let tasks = work::run_alone(py, &Call::BRIEF, |context| -> Result<_> {
+            let stored = self.stored()?;
+            let output = stored.command.targets.files.first().map(PathBuf::as_path).unwrap_or(Path::new(""));
+            Ok(stored.job()?.tasks(output, context)?)
+        })?;
         let listed = PyList::empty(py);
         for task in tasks {
             let found = PyDict::new(py);
@@ -268,7 +304,7 @@ impl Job {
             found.set_item("name", task.name)?;
             found.set_item("stage", task.stage)?;
             found.set_item("needs", task.needs)?;
-            found.set_item("input", task.input.map(|path| path.display().to_string()))?;
+            found.set_item("input", task.input.map(PathBuf::into_os_string))?;
             found.set_item("has_read", task.has_read.map(|state| (state.size, state.modified)))?;
             found.set_item("done", task.is_done)?;
             listed.append(found)?;
@@ -278,33 +314,45 @@ impl Job {
 
     /// Reads the files of the tasks, and removes those that are damaged.
     fn verify(&self, py: Python<'_>, call: Call) -> PyResult<()> {
-        work::run(py, &call, |context| -> Result<_> { Ok(self.stored.job()?.remove_damaged(context).map(drop)?) })
+        work::run_alone(py, &call, |context| -> Result<_> {
+            Ok(self.stored()?.job()?.remove_damaged(context).map(drop)?)
+        })
     }
 
     /// Does a task; returns the report of the last one, which writes the output.
-    fn run_task<'py>(&self, py: Python<'py>, number: usize, call: Call) -> PyResult<Bound<'py, PyDict>> {
-        let report = work::run(py, &call, |context| -> Result<_> {
-            Ok(run::run_task(&self.stored.job()?, number, &self.stored.command.targets, context)?)
+    fn run_task<'py>(&self, py: Python<'py>, number: usize, call: Call) -> PyResult<Option<Bound<'py, PyDict>>> {
+        let report = work::run_alone(py, &call, |context| -> Result<_> {
+            let stored = self.stored()?;
+            Ok(run::run_task(&stored.job()?, number, &stored.command.targets, context)?)
         })?;
-        report.map_or_else(|| Ok(PyDict::new(py)), |report| of_report(py, &report))
+        report.map(|report| of_report(py, &report)).transpose()
     }
 
     /// Does all tasks that are left, and writes the output; returns the report.
-    fn write<'py>(&self, py: Python<'py>, overwrite: bool, call: Call) -> PyResult<Bound<'py, PyDict>> {
-        let mut stored = self.stored.clone();
-        stored.command.targets.existing = Existing::of(overwrite);
-        let report = work::run(py, &call, |context| -> Result<_> { Ok(run::run_job(&stored, context)?) })?;
+    fn write<'py>(&self, py: Python<'py>, overwrite: Option<bool>, call: Call) -> PyResult<Bound<'py, PyDict>> {
+        let report = work::run_alone(py, &call, |context| -> Result<_> {
+            let mut stored = self.stored()?;
+            if let Some(overwrite) = overwrite {
+                stored.to_mut().command.targets.existing = Existing::of(overwrite);
+            }
+            Ok(run::run_job(&stored, context)?)
+        })?;
         of_report(py, &report)
     }
 
     /// True if files were skipped.
     #[getter]
     fn has_holes(&self, py: Python<'_>) -> PyResult<bool> {
-        work::short(py, || -> Result<_> { Ok(self.stored.job()?.has_holes(&Context::default())?) })
+        work::run_alone(py, &Call::BRIEF, |context| -> Result<_> { Ok(self.stored()?.job()?.has_holes(context)?) })
     }
 
     /// Removes the files that the job has written, except the output.
     fn clean(&self, py: Python<'_>) -> PyResult<()> {
-        work::short(py, || -> Result<_> { Ok(self.stored.remove(&Context::default())?) })
+        work::run_alone(py, &Call::BRIEF, |context| -> Result<_> {
+            Ok(match &self.stored {
+                Some(stored) => stored.remove(context)?,
+                None => run::remove_job(&self.folder, context)?,
+            })
+        })
     }
 }

@@ -4,18 +4,19 @@ The program describes itself (`breakline describe --json`), so that nothing new 
 """
 
 import inspect
+import typing
 
 import breakline
 import pytest
 from breakline._breakline import settings
-from breakline._surface import DEFAULTS, FOR_ANY
-from breakline._written import HOW
+from breakline._surface import DEFAULTS, FOR_ANY, Building
+from breakline._written import HOW, Writing
 
 PROGRAM = breakline.describe()
 VERBS = {verb["name"]: verb for verb in PROGRAM["verbs"]}
 
 #: Options of the program whose parameters here have other names.
-RENAMED = {"a-srs": "crs", "t-srs": "to_crs", "te": "bounds", "class": "classes", "return": "returns", "3d": "in_space"}
+RENAMED = {"a-srs": "crs", "t-srs": "to_crs", "te": "extent", "class": "classes", "return": "returns", "3d": "in_space"}
 
 #: Verbs that are no functions, and why.
 NO_FUNCTIONS = {
@@ -54,8 +55,6 @@ def parameters(function):
 
 def parameter_name(verb, option):
     """Return the name of the parameter for an option of a verb."""
-    if option == "te" and verb in ("dem", "hillshade"):
-        return "extent"
     return RENAMED.get(option, option.replace("-", "_"))
 
 
@@ -116,6 +115,20 @@ def test_defaults_and_values_are_those_of_the_program(verb):
 def test_defaults_are_those_of_the_signature():
     parameters = inspect.signature(breakline.tin).parameters
     assert {name: value.default for name, value in parameters.items() if name not in FOR_ANY} == {**DEFAULTS, **HOW}
+
+
+def test_type_checkers_know_all_parameters_and_what_is_returned():
+    assert set(Building.__annotations__) == {*DEFAULTS, *FOR_ANY} - {"points", "threads", "progress"}
+    assert set(Writing.__annotations__) == {*Building.__annotations__, *HOW, "threads", "progress"} - {"output"}
+    if not hasattr(typing, "get_overloads"):
+        pytest.skip("overloads are not kept before Python 3.11")
+    for verb, made in [("tin", "Tin"), ("dem", "Raster"), ("hillshade", "Raster"), ("contour", "Contours")]:
+        function = getattr(breakline, verb)
+        overloads = typing.get_overloads(function)
+        assert [one.__annotations__["return"] for one in overloads] == [made, "Written"]
+        named = {name for one in overloads for name in inspect.signature(one).parameters}
+        own = set(inspect.signature(function).parameters)
+        assert own - named <= set(Writing.__annotations__) | {"surface"} and named - own <= {"surface", "writing"}
 
 
 SQUARE = [[0, 0, 1], [10, 0, 1], [10, 10, 3], [0, 10, 3], [4, 5, 2]]

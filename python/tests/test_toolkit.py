@@ -139,7 +139,7 @@ def test_a_raster_is_aligned_and_bounded(valley, tmp_path):
     whole = valley.dem(4)
     whole.write(tmp_path / "whole.tif")
     west, south, east, north = whole.bounds
-    part = valley.dem(align_to=tmp_path / "whole.tif", bounds=(west + 8, south + 8, east - 8, north - 8))
+    part = valley.dem(align_to=tmp_path / "whole.tif", extent=(west + 8, south + 8, east - 8, north - 8))
     assert np.array_equal(part.array, whole.array[2:-2, 2:-2], equal_nan=True)
 
 

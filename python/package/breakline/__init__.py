@@ -38,6 +38,7 @@ from ._errors import (
     InternalError,
     LimitError,
     NotYetError,
+    OtherJobError,
     UnsupportedError,
     UsageError,
 )
@@ -75,6 +76,7 @@ __all__ = [
     "LimitError",
     "NotYetError",
     "Notice",
+    "OtherJobError",
     "Points",
     "Raster",
     "SpaceTriangulation",

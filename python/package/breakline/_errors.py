@@ -81,6 +81,10 @@ class NotYetError(BreaklineError):
     """A task of a job needs others that are not done: the same may work later."""
 
 
+class OtherJobError(UsageError):
+    """The folder of a job has another job than the one that was meant."""
+
+
 class CanceledError(BreaklineError):
     """The work was canceled."""
 

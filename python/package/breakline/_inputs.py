@@ -5,16 +5,18 @@ from __future__ import annotations
 import glob
 import os
 from collections.abc import Iterable, Sequence
-from typing import Any, Optional
+from typing import Any, Optional, Union
 
 import numpy as np
 
 from . import _breakline, _masked
 from ._columns import Points
-from ._errors import ArgumentTypeError, usage
+from ._errors import ArgumentTypeError, usage, warn
 
 _POINT_KINDS = "an array (n, 3), columns x, y and z, a laspy or PDAL record, a GeoDataFrame of points, or paths"
 _LINE_KINDS = "paths, arrays (n, 3), shapely geometries, or a GeoDataFrame"
+
+PathLike = Union[str, "os.PathLike[str]"]
 
 #: The numbers of the kinds of shapes.
 _LINES, _POLYGON = 1, 2
@@ -33,24 +35,38 @@ def as_sequence(value: Any) -> "list[Any]":
 
 
 def files(value: Any, parameter: str) -> "list[str]":
-    """Return the files that paths and globs stand for, in order."""
-    found: "list[str]" = []
-    for path in as_sequence(value):
-        if not is_path(path):
-            raise usage(f"{parameter} takes paths", path, "pass a path, or a list of paths", ArgumentTypeError)
-        text = os.fspath(path)
-        if isinstance(text, bytes):
-            text = os.fsdecode(text)
-        if not os.path.exists(text) and any(sign in text for sign in "*?["):
-            matches = sorted(glob.glob(text))
-            if not matches:
-                raise usage(f"{parameter}: no file matches", text, "check the pattern and the working folder")
-            found.extend(matches)
-        else:
-            found.append(text)
+    """Return the files that paths and globs stand for, in order, each once."""
+    found = once(file for path in as_sequence(value) for file in _matches(path, parameter))
     if not found:
         raise usage(f"{parameter} names no file", value, "pass a path, or a list of paths")
     return found
+
+
+def _matches(path: Any, parameter: str) -> "list[str]":
+    """Return the files that a path or a glob stands for."""
+    if not is_path(path):
+        raise usage(f"{parameter} takes paths", path, "pass a path, or a list of paths", ArgumentTypeError)
+    text = os.fsdecode(path)
+    if os.path.exists(text) or not any(sign in text for sign in "*?["):
+        return [text]
+    matches = sorted(glob.glob(text))
+    if not matches:
+        raise usage(f"{parameter}: no file matches", text, "check the pattern and the working folder")
+    return matches
+
+
+def once(paths: "Iterable[str]") -> "list[str]":
+    """Return paths without those of files that were named before, with a warning for each: the program does so, too."""
+    found: "dict[str, str]" = {}
+    again = []
+    for path in paths:
+        file = os.path.realpath(path)
+        if file in found:
+            again.append(f"{path} is named twice and used once")
+        else:
+            found[file] = path
+    warn(again)
+    return list(found.values())
 
 
 def path(value: Any, parameter: str) -> str:

@@ -165,9 +165,18 @@ class Raster:
         progress: Progress = None,
     ) -> "Raster":
         """Shade the heights; see :meth:`breakline.Tin.hillshade`."""
-        frame = {"resolution": None, "bounds": None, "align_to": None}
+        frame = frame_of(None, None, None)
         with call(threads, progress) as request:
             return of_cells(self._surface().hillshade(frame, "linear", light(azimuth, altitude, z_factor), request))
+
+
+def frame_of(resolution: Any, extent: Any, align_to: Any) -> "dict[str, Any]":
+    """Return the size and the position of a raster as the library takes them."""
+    return {
+        "resolution": _inputs.optional_number(resolution, "resolution"),
+        "extent": _inputs.bounds(extent, "extent"),
+        "align_to": None if align_to is None else _inputs.path(align_to, "align_to"),
+    }
 
 
 def light(azimuth: Any, altitude: Any, z_factor: Any) -> "tuple[float, float, Optional[float]]":

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Optional, TypedDict
 
 from . import _inputs
 from ._errors import usage
@@ -48,6 +48,42 @@ DEFAULTS: "dict[str, Any]" = {
     "columns": None,
     "partial": False,
 }
+
+
+class Building(TypedDict, total=False):
+    """The parameters of ``tin`` that say how a surface is built, for type checkers."""
+
+    breaklines: Any
+    boundary: Any
+    bounds: Any
+    max_edge: Any
+    max_edge_inside: Optional[float]
+    classes: Any
+    crs: Any
+    to_crs: Any
+    force_degrees: bool
+    duplicates: str
+    on_crossing: str
+    crossing_z: str
+    crossing_tolerance: Optional[float]
+    soft_lines: Any
+    draped_lines: Any
+    walls: Any
+    wall_bottom: Any
+    wall_drop: Any
+    wall_width: Optional[float]
+    wall_high: str
+    holes: Any
+    flat: Any
+    flat_height: Any
+    flat_tolerance: Optional[float]
+    flat_buffer: float
+    flat_points: bool
+    rivers: Any
+    river_width: Any
+    densify: Optional[float]
+    columns: Any
+    partial: bool
 
 
 def surface_arguments(options: "dict[str, Any]") -> "dict[str, Any]":

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple, Optional
+from typing import TYPE_CHECKING, Any, NamedTuple, Optional, overload
 
 import numpy as np
 
 from . import _breakline, _inputs
 from ._call import Progress, call
 from ._errors import ArgumentTypeError, usage
+from ._inputs import PathLike
 from ._points import _read, _systems
-from ._results import Contours, Raster, draw, light, missing, of_cells
-from ._surface import LINES, refuse_building, surface_arguments
-from ._written import HOW, refuse_how, write
+from ._results import Contours, Raster, draw, frame_of, light, missing, of_cells
+from ._surface import LINES, Building, refuse_building, surface_arguments
+from ._written import HOW, Writing, Written, refuse_how, write
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
 
 #: The name of each kind of edges, by its number in ``Tin.edge_kinds``.
 EDGE_KINDS: "tuple[str, ...]" = tuple(_breakline.edge_kinds())
@@ -30,14 +34,6 @@ class Notice(NamedTuple):
 
     severity: str
     text: str
-
-
-def _frame(resolution: Any, bounds: Any, align_to: Any) -> "dict[str, Any]":
-    return {
-        "resolution": _inputs.optional_number(resolution, "resolution"),
-        "bounds": _inputs.bounds(bounds),
-        "align_to": None if align_to is None else _inputs.path(align_to, "align_to"),
-    }
 
 
 class Tin:
@@ -190,7 +186,7 @@ class Tin:
         self,
         resolution: Optional[float] = None,
         *,
-        bounds: Any = None,
+        extent: Any = None,
         align_to: Any = None,
         method: str = "linear",
         threads: Optional[int] = None,
@@ -202,7 +198,7 @@ class Tin:
         ----------
         resolution : float, optional
             Size of a cell, 1 by default, in the units of the coordinate system. Cells start at multiples of it.
-        bounds : (xmin, ymin, xmax, ymax), optional
+        extent : (xmin, ymin, xmax, ymax), optional
             Extent of the raster, enlarged to whole cells; that of the surface by default.
         align_to : path, optional
             A raster whose grid of cells is used.
@@ -217,14 +213,14 @@ class Tin:
             float32, nan where there is no surface.
         """
         with call(threads, progress) as request:
-            frame = _frame(resolution, bounds, align_to)
+            frame = frame_of(resolution, extent, align_to)
             return of_cells(self._surface.dem(frame, _inputs.name(method, "method"), request))
 
     def hillshade(
         self,
         resolution: Optional[float] = None,
         *,
-        bounds: Any = None,
+        extent: Any = None,
         align_to: Any = None,
         method: str = "linear",
         azimuth: float = 315.0,
@@ -243,7 +239,7 @@ class Tin:
             Angle of the light above the horizon, in degrees.
         z_factor : float, optional
             Factor for heights; by default what converts them to the units of x and y.
-        resolution, bounds, align_to, method, threads, progress
+        resolution, extent, align_to, method, threads, progress
             As for :meth:`dem`.
 
         Returns
@@ -253,7 +249,7 @@ class Tin:
         """
         sun = light(azimuth, altitude, z_factor)
         with call(threads, progress) as request:
-            frame = _frame(resolution, bounds, align_to)
+            frame = frame_of(resolution, extent, align_to)
             return of_cells(self._surface.hillshade(frame, _inputs.name(method, "method"), sun, request))
 
     def contours(
@@ -328,6 +324,22 @@ def _unpickle(data: bytes, report: "dict[str, Any]") -> Tin:
     return Tin(_breakline.Surface.of_bytes(data), report)
 
 
+@overload
+def tin(
+    points: Any,
+    *,
+    output: None = None,
+    threads: Optional[int] = ...,
+    progress: Progress = ...,
+    **surface: Unpack[Building],
+) -> Tin: ...
+@overload
+def tin(
+    points: Any,
+    *,
+    output: PathLike,
+    **writing: Unpack[Writing],
+) -> Written: ...
 def tin(
     points: Any,
     *,

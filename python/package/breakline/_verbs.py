@@ -4,20 +4,25 @@ from __future__ import annotations
 
 import json
 import os
+from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
-from typing import Any, Optional
+from functools import partial
+from typing import TYPE_CHECKING, Any, Optional, overload
 
 import numpy as np
 
 from . import _breakline, _inputs
 from ._call import Progress, call
 from ._errors import ArgumentTypeError, usage
+from ._inputs import PathLike
 from ._points import _read, _systems
-from ._results import Contours, Raster, draw, light, of_cells
-from ._surface import FOR_ANY
-from ._tin import Flaw, Tin, _frame, tin
-from ._written import HOW, Written, refuse_how, write
+from ._results import Contours, Raster, draw, frame_of, light, of_cells
+from ._surface import FOR_ANY, Building
+from ._tin import Flaw, Tin, tin
+from ._written import HOW, Writing, Written, refuse_how, write, write_made
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
 
 
 def _surface(points: Any, surface: "dict[str, Any]", threads: Any, progress: Any) -> Any:
@@ -41,8 +46,8 @@ def _refuse(surface: "dict[str, Any]", what: str) -> None:
         raise usage(f"{name} is for building a TIN, but {what} is a surface already", value, f"leave {name} out")
 
 
-def _written(verb: str, given: "dict[str, Any]") -> "Optional[Written]":
-    """Write what a verb makes, if it is asked to, by the parameters of its function."""
+def _written(verb: "Callable[..., Any]", given: "dict[str, Any]") -> "Optional[Written]":
+    """Write what the function of a verb makes, if it is asked to by its parameters."""
     surface, points = given.pop("surface"), given.pop("points")
     how = {name: given.pop(name) for name in HOW}
     if how["output"] is None:
@@ -50,16 +55,35 @@ def _written(verb: str, given: "dict[str, Any]") -> "Optional[Written]":
         return None
     if isinstance(points, (Tin, Raster)):
         _refuse(surface, "this")
-        threads, progress = given.pop("threads"), given.pop("progress")
-        running = {"threads": threads, "progress": progress}
-        others = {name: how[name] for name in how if name != "overwrite"}
-        refuse_how({**others, "overwrite": False})
-        made = globals()[verb](points, **given, **running)
-        made.write(how["output"], overwrite=how["overwrite"], **running)
-        return Written(Path(_inputs.path(how["output"], "output")), {"in_tiles": False, "has_holes": False})
-    return write(verb, points, {**given, **surface}, how)
+        running = {name: given.pop(name) for name in ("threads", "progress")}
+        return write_made(partial(verb, points, **given), how, running)
+    return write(verb.__name__, points, {**given, **surface}, how)
 
 
+@overload
+def dem(
+    points: Any,
+    *,
+    resolution: Optional[float] = ...,
+    extent: Any = ...,
+    align_to: Any = ...,
+    method: str = ...,
+    output: None = None,
+    threads: Optional[int] = ...,
+    progress: Progress = ...,
+    **surface: Unpack[Building],
+) -> Raster: ...
+@overload
+def dem(
+    points: Any,
+    *,
+    resolution: Optional[float] = ...,
+    extent: Any = ...,
+    align_to: Any = ...,
+    method: str = ...,
+    output: PathLike,
+    **writing: Unpack[Writing],
+) -> Written: ...
 def dem(
     points: Any,
     *,
@@ -94,14 +118,44 @@ def dem(
     **surface
         Parameters of :func:`tin`.
     """
-    written = _written("dem", dict(locals()))
+    written = _written(dem, dict(locals()))
     if written is not None:
         return written
     found = _surface(points, surface, threads, progress)
     with call(threads, progress) as request:
-        return of_cells(found.dem(_frame(resolution, extent, align_to), _inputs.name(method, "method"), request))
+        return of_cells(found.dem(frame_of(resolution, extent, align_to), _inputs.name(method, "method"), request))
 
 
+@overload
+def hillshade(
+    points: Any,
+    *,
+    resolution: Optional[float] = ...,
+    extent: Any = ...,
+    align_to: Any = ...,
+    method: str = ...,
+    azimuth: float = ...,
+    altitude: float = ...,
+    z_factor: Optional[float] = ...,
+    output: None = None,
+    threads: Optional[int] = ...,
+    progress: Progress = ...,
+    **surface: Unpack[Building],
+) -> Raster: ...
+@overload
+def hillshade(
+    points: Any,
+    *,
+    resolution: Optional[float] = ...,
+    extent: Any = ...,
+    align_to: Any = ...,
+    method: str = ...,
+    azimuth: float = ...,
+    altitude: float = ...,
+    z_factor: Optional[float] = ...,
+    output: PathLike,
+    **writing: Unpack[Writing],
+) -> Written: ...
 def hillshade(
     points: Any,
     *,
@@ -139,15 +193,37 @@ def hillshade(
     **surface
         Parameters of :func:`tin`.
     """
-    written = _written("hillshade", dict(locals()))
+    written = _written(hillshade, dict(locals()))
     if written is not None:
         return written
     found = _surface(points, surface, threads, progress)
     sun, method = light(azimuth, altitude, z_factor), _inputs.name(method, "method")
     with call(threads, progress) as request:
-        return of_cells(found.hillshade(_frame(resolution, extent, align_to), method, sun, request))
+        return of_cells(found.hillshade(frame_of(resolution, extent, align_to), method, sun, request))
 
 
+@overload
+def contour(
+    points: Any,
+    *,
+    interval: Optional[float] = ...,
+    base: float = ...,
+    levels: Any = ...,
+    output: None = None,
+    threads: Optional[int] = ...,
+    progress: Progress = ...,
+    **surface: Unpack[Building],
+) -> Contours: ...
+@overload
+def contour(
+    points: Any,
+    *,
+    interval: Optional[float] = ...,
+    base: float = ...,
+    levels: Any = ...,
+    output: PathLike,
+    **writing: Unpack[Writing],
+) -> Written: ...
 def contour(
     points: Any,
     *,
@@ -179,7 +255,7 @@ def contour(
     **surface
         Parameters of :func:`tin`.
     """
-    written = _written("contour", dict(locals()))
+    written = _written(contour, dict(locals()))
     if written is not None:
         return written
     found = _surface(points, surface, threads, progress)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple, Optional
@@ -13,8 +14,8 @@ from . import _breakline, _inputs, _masked
 from ._call import Progress, call
 from ._errors import ArgumentTypeError, usage
 from ._points import _read, _systems
-from ._results import light, missing
-from ._surface import DEFAULTS, FOR_ANY, refuse_building, surface_arguments
+from ._results import frame_of, light, missing
+from ._surface import DEFAULTS, FOR_ANY, Building, refuse_building, surface_arguments
 
 
 @dataclass(frozen=True)
@@ -66,7 +67,8 @@ class Task(NamedTuple):
 class Job:
     """A job in a folder: a surface in tiles, whose tasks can be done one by one, by any process that sees the folder.
 
-    ``breakline job plan`` makes one, and so does :meth:`plan`.
+    ``breakline job plan`` makes one, and so does :meth:`plan`. A ``Job`` stands for the job that was in the folder when
+    it was opened: if that is removed, or another one takes its place, the methods raise an :class:`OtherJobError`.
 
     Parameters
     ----------
@@ -77,9 +79,14 @@ class Job:
     def __init__(self, folder: Any) -> None:
         self._job = _breakline.Job.open(_inputs.path(folder, "folder"))
 
+    def __reduce__(self) -> Any:
+        return Job, (self.folder,)
+
     @classmethod
-    def plan(cls, verb: str, points: Any, output: Any, *, job: Any, headers_only: bool = False, **options: Any) -> Job:
-        """Plan a job, or open the one in the folder if it is that of the same request.
+    def plan(
+        cls, verb: str, points: Any, output: Any, *, job: Any = None, headers_only: bool = False, **options: Any
+    ) -> Job:
+        """Plan a job, or open the one in the folder if it is that of the same call.
 
         Parameters
         ----------
@@ -89,24 +96,33 @@ class Job:
             Files of points.
         output : path
             The file to write.
-        job : path
-            The folder of the job.
+        job : path, optional
+            The folder of the job; by default the output's name with ``.job``.
         headers_only : bool
             Read only headers, where they state number and extent: points are taken to be spread evenly over the files.
         **options
-            Parameters of the function of the verb.
+            Parameters of the function of the verb, such as ``resolution=0.5``, ``tiles="8x8"``, ``skip_bad=True``.
 
         Raises
         ------
-        UsageError
-            If the folder has a job of another request.
+        OtherJobError
+            If the folder has the job of another call; the message says what differs.
         """
+        if "resume" in options:
+            raise usage("resume is for a verb; Job.plan opens the job that is there", None, "leave resume out")
+        how = {"output": output, "job": job}
+        return cls._begin(verb, _inputs.points(points), options, how, headers_only=bool(headers_only))
+
+    @classmethod
+    def _begin(
+        cls, verb: str, inputs: "list[Any]", options: "dict[str, Any]", how: "dict[str, Any]", **planning: Any
+    ) -> Job:
+        """Plan a job for inputs of points, or open it. ``planning`` are ``headers_only`` and ``task_memory``."""
         threads, progress = options.pop("threads", None), options.pop("progress", None)
-        asked = request(verb, points, options, {"output": output, "job": job})
-        words = [verb, *asked["points"], "-o", asked["output"]]
+        asked = {**_request(verb, inputs, options, how), **planning}
         planned = cls.__new__(cls)
         with call(threads, progress) as running:
-            planned._job = _breakline.Job.begin(asked, bool(headers_only), list(map(str, words)), running)
+            planned._job = _breakline.Job.begin(asked, running)
         return planned
 
     @property
@@ -116,7 +132,7 @@ class Job:
 
     @property
     def output(self) -> Path:
-        """The file that the last task writes."""
+        """The file that the last task writes, as an absolute path."""
         return Path(self._job.output)
 
     @property
@@ -133,26 +149,49 @@ class Job:
         with call(threads, progress) as running:
             self._job.verify(running)
 
-    def run_task(self, number: int, *, threads: Optional[int] = 1, progress: Progress = None) -> None:
-        """Do a task, unless it is done. The last one writes the output.
+    def run_task(self, number: int, *, threads: Optional[int] = None, progress: Progress = None) -> "Optional[Written]":
+        """Do a task, unless it is done. The last one writes the output, and returns it.
 
         Raises
         ------
         NotYetError
             If a task that it needs is not done.
         """
+        if isinstance(number, bool) or not hasattr(number, "__index__") or number.__index__() < 0:
+            raise usage("number is not that of a task", number, "pass the number of one of Job.tasks()")
         with call(threads, progress) as running:
-            self._job.run_task(int(number), running)
+            report = self._job.run_task(number.__index__(), running)
+        return None if report is None else Written(self.output, report)
 
-    def write(self, *, overwrite: bool = False, threads: Optional[int] = None, progress: Progress = None) -> Written:
-        """Do all tasks that are left, write the output, and return it."""
+    def write(
+        self, *, overwrite: Optional[bool] = None, threads: Optional[int] = None, progress: Progress = None
+    ) -> Written:
+        """Do all tasks that are left, write the output, and return it.
+
+        An output that is there as the job has written it stays; if it has holes, the files that were skipped are tried
+        again, and it is replaced. Another file is replaced if the job was planned with ``overwrite=True``, or with that
+        here.
+        """
         with call(threads, progress) as running:
-            report = self._job.write(bool(overwrite), running)
+            report = self._job.write(None if overwrite is None else bool(overwrite), running)
         return Written(self.output, report)
 
     def clean(self) -> None:
         """Remove the files that the job has written, except the output."""
         self._job.clean()
+
+
+class Writing(Building, total=False):
+    """The parameters beside ``output`` of verbs that write files, for type checkers."""
+
+    overwrite: bool
+    memory: Any
+    tiles: Optional[str]
+    job: "Optional[_inputs.PathLike]"
+    resume: bool
+    skip_bad: bool
+    threads: Optional[int]
+    progress: Progress
 
 
 #: Parameters that say how files are written, and what they are if nobody says.
@@ -174,21 +213,36 @@ _OF_VERBS: "dict[str, dict[str, Any]]" = {
 
 def refuse_how(how: "dict[str, Any]") -> None:
     """Refuse parameters that say how a file is written where none is."""
-    for name, value in how.items():
-        if name != "output" and value is not HOW[name] and value != HOW[name]:
-            raise usage(f"{name} is for writing a file", value, "name it: output='dem.tif'")
+    for name in _given(how):
+        raise usage(f"{name} is for writing a file", how[name], "name it: output='dem.tif'")
+
+
+def write_made(make: "Callable[..., Any]", how: "dict[str, Any]", running: "dict[str, Any]") -> Written:
+    """Write what is made of a surface in memory, which is in one piece."""
+    for name in _given(how):
+        if name != "overwrite":
+            message = f"{name} is for files of points: a surface in memory is in one piece"
+            raise usage(message, how[name], f"leave {name} out")
+    output = _inputs.path(how["output"], "output")
+    make(**running).write(output, overwrite=how["overwrite"], **running)
+    return Written(Path(output), {"in_tiles": False, "has_holes": False})
+
+
+def _given(how: "dict[str, Any]") -> "list[str]":
+    """Return the names of those parameters beside ``output`` that have another value than by default."""
+    return [name for name in HOW if name != "output" and how[name] is not HOW[name] and how[name] != HOW[name]]
 
 
 def write(verb: str, points: Any, options: "dict[str, Any]", how: "dict[str, Any]") -> Written:
     """Write what a verb makes of points, or of a surface in a file."""
     threads, progress = options.pop("threads", None), options.pop("progress", None)
-    asked = request(verb, points, options, how)
+    asked = _request(verb, _inputs.points(points), options, how)
     with call(threads, progress) as running:
         return Written(Path(asked["output"]), _breakline.write(asked, running))
 
 
-def request(verb: str, points: Any, options: "dict[str, Any]", how: "dict[str, Any]") -> "dict[str, Any]":
-    """Return the request of the library for a verb of points, and for how it is written."""
+def _request(verb: str, inputs: "list[Any]", options: "dict[str, Any]", how: "dict[str, Any]") -> "dict[str, Any]":
+    """Return the request of the library for a verb of inputs of points, and for how it is written."""
     if verb not in _OF_VERBS:
         raise usage("there is no such verb", verb, f"use one of {', '.join(_OF_VERBS)}")
     own = {name: options.pop(name, default) for name, default in _OF_VERBS[verb].items()}
@@ -197,13 +251,19 @@ def request(verb: str, points: Any, options: "dict[str, Any]", how: "dict[str, A
     unknown = next((name for name in given if name not in DEFAULTS and name not in FOR_ANY), None)
     if unknown is not None:
         raise usage(f"{verb} has no parameter {unknown}", None, f"leave {unknown} out", ArgumentTypeError)
+    if options.get("flat_points"):
+        cure = "leave it out, or write the Tin: tin(..., flat_points=True).write(path)"
+        raise usage("flat_points is for Tin.replaced_points, but a file is written", True, cure)
     systems = _systems(options.pop("crs", None), options.pop("to_crs", None), options.pop("force_degrees", False))
     read = _read(options.pop("columns", None), options.pop("partial", False))
-    found = _inputs.points(points)
-    if len(found) == 1 and isinstance(found[0], str) and _breakline.is_surface(found[0]):
-        refuse_building(found[0], given)
+    kind = "points"
+    if len(inputs) == 1 and isinstance(inputs[0], str):
+        kind = _breakline.kind_of(inputs[0])
+        if kind != "points":
+            refuse_building(inputs[0], given)
     return {
-        "points": found,
+        "kind": kind,
+        "points": inputs,
         "read": read,
         "systems": systems,
         "surface": surface_arguments({**DEFAULTS, **options}),
@@ -216,6 +276,8 @@ def request(verb: str, points: Any, options: "dict[str, Any]", how: "dict[str, A
         "job": None if how["job"] is None else _inputs.path(how["job"], "job"),
         "resume": bool(how["resume"]),
         "skip_bad": bool(how["skip_bad"]),
+        "headers_only": False,
+        "task_memory": None,
     }
 
 
@@ -229,11 +291,7 @@ def _product(verb: str, own: "dict[str, Any]") -> "dict[str, Any]":
         if interval is not None and levels:
             raise usage("interval and levels are given", None, "use one of them")
         return {"levels": (interval, _inputs.number(own["base"], "base"), levels)}
-    frame = {
-        "resolution": _inputs.optional_number(own["resolution"], "resolution"),
-        "bounds": _inputs.bounds(own["extent"], "extent"),
-        "align_to": None if own["align_to"] is None else _inputs.path(own["align_to"], "align_to"),
-    }
+    frame = frame_of(own["resolution"], own["extent"], own["align_to"])
     product = {"frame": frame, "method": _inputs.name(own["method"], "method")}
     if verb == "hillshade":
         product["light"] = light(own["azimuth"], own["altitude"], own["z_factor"])
