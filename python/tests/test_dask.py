@@ -136,7 +136,7 @@ def test_workers_may_be_killed(client, whole, tmp_path):
 
 def test_a_task_that_kills_its_workers_is_an_error(client, tmp_path, monkeypatch):
     monkeypatch.setattr(breakline.dask, "_AGAIN", 0)
-    said = r"(divide|tile|merge|rim|output).*: the workers that did this task died .*\n  cure: .* memory"
+    said = r"(divide|tile|merge|rim|output).*: the workers that did this task died .*\n  cure: .*\.clean\(\), .*memory="
     with pytest.raises(breakline.BreaklineError, match=said), Killer(client, 100):
         breakline.dask.dem(VALLEY, tmp_path / "dem.tif", client=client, tiles="16x16")
     wait_until(lambda: not client.cluster.scheduler.tasks)
@@ -223,8 +223,12 @@ def test_a_job_goes_on_with_what_is_done(client, whole, tmp_path):
     assert made.read_bytes() == whole
     after = {path.name: path.stat().st_mtime_ns for path in (job / "tasks").iterdir()}
     assert len(after) == 12 and all(after[name] == at for name, at in before.items())
-    with pytest.raises(breakline.UsageError, match="another call"):
-        breakline.dask.dem(VALLEY, tmp_path / "dem.tif", client=client, tiles="2x2", job=job)
+    # What was asked for is what is written: nothing is passed off as it.
+    asked = {"output": tmp_path / "dem.tif", "tiles": "3x3"}
+    for other in ({"output": tmp_path / "b.tif"}, {"tiles": "2x2"}, {"skip_bad": True}, {"overwrite": True}):
+        with pytest.raises(breakline.OtherJobError, match=f"what differs: (the )?{next(iter(other))}"):
+            breakline.dask.dem(VALLEY, client=client, job=job, **{**asked, **other})
+    assert not (tmp_path / "b.tif").exists()
 
 
 def test_a_result_with_holes_is_a_warning_until_the_files_are_repaired(client, whole, tmp_path):
@@ -253,6 +257,12 @@ def test_what_is_wrong_is_an_error_with_its_cure(client, tmp_path):
         breakline.dask.dem(VALLEY, tmp_path / "dem.tif", client=client, max_edge="auto")
     with pytest.raises(breakline.UsageError, match="client"):
         breakline.dask.dem(VALLEY, tmp_path / "dem.tif", client=None)
+    with pytest.raises(breakline.UsageError, match="the same call goes on"):
+        breakline.dask.dem(VALLEY, tmp_path / "dem.tif", client=client, resume=True)
+    with pytest.raises(breakline.UsageError, match="flat_points"):
+        breakline.dask.dem(VALLEY, tmp_path / "dem.tif", client=client, flat_points=True)
+    with pytest.raises(breakline.UsageError, match="inputs is not a path"):
+        breakline.dask.dem([[0.0, 0.0, 1.0]], tmp_path / "dem.tif", client=client)
     assert list(tmp_path.glob("*.tif")) == []
 
 
@@ -263,13 +273,13 @@ def test_objects_are_copied_for_the_tasks_that_read_them(client, whole, tmp_path
     store.mkdir()
     for letter in "ab":
         (store / f"{letter}.laz").write_bytes(VALLEY.read_bytes())
-    begin = breakline.dask._begin
+    begin = breakline.Job._begin
 
-    def watched(*arguments):
+    def watched(*arguments, **planning):
         planned.extend(path.stat() for path in scratch.rglob("*.laz"))
-        return begin(*arguments)
+        return begin(*arguments, **planning)
 
-    monkeypatch.setattr(breakline.dask, "_begin", watched)
+    monkeypatch.setattr(breakline.Job, "_begin", watched)
     options = {"client": client, "scratch": scratch, "tiles": "3x3", "job": tmp_path / "job"}
     made = breakline.dask.dem(f"file://{store}/*.laz", tmp_path / "dem.tif", classes=2, **options)
     assert made.read_bytes() == whole
@@ -292,6 +302,37 @@ def test_objects_are_copied_for_the_tasks_that_read_them(client, whole, tmp_path
         breakline.dask.dem(f"file://{store}/a.laz", tmp_path / "other.tif", **options)
     with pytest.raises(breakline.UsageError, match="output is an object"):
         breakline.dask.dem(f"file://{store}/a.laz", f"file://{store}/dem.tif", classes=2, **options)
+
+
+def test_an_object_whose_name_looks_like_a_pattern_goes_on(client, whole, tmp_path):
+    (tmp_path / "store").mkdir()
+    (tmp_path / "store" / "tile[1].laz").write_bytes(VALLEY.read_bytes())
+    options = {"client": client, "classes": 2, "tiles": "2x1", "job": tmp_path / "job", "scratch": tmp_path / "copies"}
+    for _ in range(2):
+        made = breakline.dask.dem(f"file://{tmp_path}/store/*.laz", tmp_path / "dem.tif", **options)
+        assert made.read_bytes() == whole
+
+
+def test_tasks_take_what_workers_have(client, tmp_path):
+    with pytest.warns(breakline.BreaklineWarning, match="valley.laz is named twice and used once"):
+        breakline.dask.dem([VALLEY, VALLEY], tmp_path / "dem.tif", client=client, tiles="2x1", job=tmp_path / "job")
+    plan = json.loads((tmp_path / "job" / "plan.json").read_text().splitlines()[1])
+    assert len(plan["files"]) == 1
+    (limit,) = {worker["memory_limit"] for worker in client.scheduler_info()["workers"].values()}
+    assert plan["task_memory"] == limit // 2
+
+
+def test_the_smallest_worker_counts():
+    class Client:
+        def __init__(self, *workers):
+            self.workers = {number: dict(zip(("memory_limit", "nthreads"), one)) for number, one in enumerate(workers)}
+
+        def scheduler_info(self):
+            return {"workers": self.workers}
+
+    assert breakline.dask._memory_of_tasks(Client((8000, 2), (1000, 1), (3000, 4), (0, 64))) == 375
+    assert breakline.dask._memory_of_tasks(Client((0, 1))) is None
+    assert breakline.dask._memory_of_tasks(Client()) is None
 
 
 def test_objects_that_change_are_refused(tmp_path):

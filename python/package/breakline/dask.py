@@ -1,8 +1,8 @@
 """Write surfaces of points that do not fit into memory, with the workers of a Dask cluster.
 
 >>> import breakline.dask
->>> breakline.dask.dem("tiles/*.laz", "dem.tif", resolution=1, client=client)  # doctest: +SKIP
-PosixPath('dem.tif')
+>>> breakline.dask.dem("tiles/*.laz", "/data/dem.tif", resolution=1, client=client)  # doctest: +SKIP
+PosixPath('/data/dem.tif')
 
 The work is a :class:`breakline.Job`: a folder with a file for each task that is done. Inputs, output
 and that folder must have the same paths on all workers. Points may also be objects in a store that ``fsspec`` knows
@@ -14,7 +14,6 @@ done again. Workers may be lost: what they were doing is repeated, what they hav
 from __future__ import annotations
 
 import contextlib
-import glob
 import os
 import uuid
 import warnings
@@ -24,23 +23,26 @@ from concurrent.futures import CancelledError
 from pathlib import Path
 from typing import Any, Union
 
-from ._errors import BreaklineError, BreaklineWarning, UsageError, usage
+from . import _breakline, _inputs
+from ._errors import BreaklineError, BreaklineWarning, usage
+from ._inputs import PathLike
 from ._objects import Objects, StoredObject, is_url
 from ._written import Job, Task
 
 __all__ = ["contour", "dem", "hillshade", "tin"]
 
-PathLike = Union[str, "os.PathLike[str]"]
-
 #: How often a task is submitted again after Dask gave it up because its workers died.
 _AGAIN = 20
 
-#: What to do when that was not enough.
+#: What to do when that was not enough, for the job in a folder.
 _LOST = (
-    "see the logs of the workers, which may lack memory: give them more, or fewer threads; "
-    "tasks that are done are kept, and the same call goes on"
+    "see the logs of the workers. If they lack memory, give them more, or fewer threads: the same call goes on with "
+    "what is done. Or plan smaller tasks: breakline.Job({!r}).clean(), and pass memory="
 )
 
+#: The part of a worker's memory that its tasks may take: Python and Dask are there, too, and a tile may have more
+#: points than others.
+_FOR_TASKS = 0.5
 
 #: What to do when the cluster has ended.
 _ENDED = "start the cluster again: tasks that are done are kept, and the same call goes on"
@@ -68,8 +70,8 @@ def dem(
     client : dask.distributed.Client
         The cluster.
     job : path, optional
-        The folder for the files of the tasks; by default the output's name with ``.job``. If it has the job of the same
-        call already, that goes on.
+        The folder for the files of the tasks, which then stays; by default the output's name with ``.job``, and it goes
+        when the output is written. If it has the job of the same call already, that goes on.
     retries : int
         How often a task that fails with an error is repeated. Tasks that lose their worker do not count here: Dask
         repeats such a task as often as its setting ``distributed.scheduler.allowed-failures`` says, and when it gives
@@ -81,15 +83,18 @@ def dem(
         What ``fsspec`` needs to open objects, such as keys and endpoints.
     **options
         The other parameters of :func:`breakline.dem`, such as ``resolution=0.5``, ``tiles="8x8"``, ``max_edge=50``.
-        Lines and areas are files.
+        Lines and areas are files. Without ``memory``, a task takes at most half of what the smallest worker has for
+        each of its threads; with it, that memory divided by the number of threads of this process.
 
     Returns
     -------
     pathlib.Path
-        The output. ``rioxarray.open_rasterio(path, chunks=True)`` opens it as a Dask array.
+        The output, as an absolute path. ``rioxarray.open_rasterio(path, chunks=True)`` opens it as a Dask array.
 
     Raises
     ------
+    OtherJobError
+        If the folder has the job of another call: of other parameters, or of another output.
     BreaklineError
         If the job cannot be planned, if a task fails, or loses its workers, more often than it is repeated, or if the
         scheduler is lost. The tasks that wait are canceled then, as they are by Ctrl-C; those that are done are kept,
@@ -136,17 +141,22 @@ def _run(
     for name, path in [("output", output), ("job", job)]:
         if path is not None and is_url(os.fspath(path)):
             raise usage(f"{name} is an object in a store", path, "name a path that all workers share")
+    if "resume" in options:
+        raise usage("resume is not needed: the same call goes on with what is done", None, "leave resume out")
     files = [inputs] if isinstance(inputs, (str, os.PathLike)) else list(inputs)
-    urls = [text for text in map(os.fspath, files) if is_url(text)]
+    texts = [_inputs.path(file, "inputs") for file in files]
+    urls = [text for text in texts if is_url(text)]
     if urls and options.get("classes") is None:
         cure = "pass classes=2 for ground: else points would be read to find out"
         raise usage("of objects, only the headers are read to plan", urls[0], cure)
-    folder = _path(f"{os.fspath(output)}.job" if job is None else job)
+    folder = _breakline.job_folder(_path(output)) if job is None else _path(job)
     objects = Objects(urls, None if scratch is None else _path(scratch), storage_options, folder)
-    paths = [path for file in files for path in _paths(file, objects)]
+    paths = _inputs.once(path for text in texts for path in _paths(text, objects))
     there = os.path.exists(os.path.join(folder, "plan.json"))
     with contextlib.nullcontext() if there else objects.headers():
-        begun = _begin(verb, paths, _path(output), folder, bool(urls), options)
+        how = {"output": _path(output), "job": folder}
+        planning = {"headers_only": bool(urls), "task_memory": _memory_of_tasks(client)}
+        begun = Job._begin(verb, paths, options, how, **planning)
     # What is there is verified: a task that is done is not repeated.
     begun.verify()
     tasks = begun.tasks()
@@ -169,38 +179,22 @@ def _run(
         warnings.warn(text, BreaklineWarning, stacklevel=3)
     elif job is None:
         begun.clean()
-    return Path(output)
+    return begun.output
 
 
-def _begin(
-    verb: str, paths: "list[str]", output: str, folder: str, headers_only: bool, options: "dict[str, Any]"
-) -> Job:
-    """Open the job of a request, or plan it. Workers may have other working folders: all names are whole."""
-    whole = {name: _whole(value) if name in _FILES else value for name, value in options.items()}
+def _memory_of_tasks(client: Any) -> "Union[int, None]":
+    """Return the bytes that a task may take on all workers that there are; None if they have no limits."""
     try:
-        return Job.plan(verb, paths, output, job=folder, headers_only=headers_only, **whole)
-    except UsageError as error:
-        if "that of another command" not in error.message:
-            raise
-        cure = "pass another job, or remove the folder"
-        raise usage(f"the job in {folder} is that of another call ({error.message})", folder, cure) from error
+        workers = client.scheduler_info(n_workers=-1)["workers"]
+    except TypeError:  # before version 2025.4, which tells of all
+        workers = client.scheduler_info()["workers"]
+    shares = [worker["memory_limit"] / worker["nthreads"] for worker in workers.values() if worker["memory_limit"]]
+    return int(min(shares) * _FOR_TASKS) if shares else None
 
 
-#: Parameters that take files.
-_FILES = {"breaklines", "boundary", "soft_lines", "draped_lines", "walls", "holes", "flat", "rivers", "align_to"}
-
-
-def _whole(value: Any) -> Any:
-    """Return files by their whole names."""
-    if isinstance(value, (list, tuple)):
-        return [_whole(one) for one in value]
-    return _path(value) if isinstance(value, (str, os.PathLike)) else value
-
-
-def _paths(file: PathLike, objects: Objects) -> "list[str]":
+def _paths(text: str, objects: Objects) -> "list[str]":
     """Return the paths that a task finds files or copies of objects at."""
-    text = os.fspath(file)
-    return objects.paths(text) if is_url(text) else [_path(path) for path in _found(text)]
+    return objects.paths(text) if is_url(text) else list(map(_path, _inputs.files(text, "inputs")))
 
 
 def _finish(cluster: "_Cluster", tasks: "list[Task]") -> None:
@@ -252,7 +246,9 @@ class _Cluster:
         # "tile 17, a.laz" becomes "tile-17-...": the dashboard groups tasks by the first word.
         title = "-".join(task.name.split(",")[0].split(" ")[:2]).replace(os.sep, "_")
         key = f"{title}-{self._name}-{number}-{self._deaths[number]}"
-        words = [self._folder, number, task.name == "output", self._objects.get(task.input)]
+        # The last one runs alone, with the threads of the worker.
+        threads = None if number == len(self._tasks) - 1 else 1
+        words = [self._folder, number, threads, self._objects.get(task.input)]
         # Later tasks first: merges come soon after what they merge.
         future = self._client.submit(_task, *words, key=key, priority=number, retries=self._retries, pure=False)
         self._numbers[future] = number
@@ -281,28 +277,18 @@ class _Cluster:
 
     def _restart(self, number: int, killed: Exception) -> None:
         if self._deaths[number] == _AGAIN:
-            name = self._tasks[number].name
-            raise _error(f"{name}: the workers that did this task died ({_AGAIN + 1} times)", _LOST) from killed
+            name, cure = self._tasks[number].name, _LOST.format(self._folder)
+            raise _error(f"{name}: the workers that did this task died ({_AGAIN + 1} times)", cure) from killed
         self._deaths[number] += 1
         self.start(number)
 
 
-def _task(folder: str, number: int, is_alone: bool, read: "Union[StoredObject, None]") -> None:
-    """Do a task in the process of a worker, which copies the object that the task reads.
-
-    It has one thread, unless it runs alone: then those of the worker.
-    """
+def _task(folder: str, number: int, threads: "Union[int, None]", read: "Union[StoredObject, None]") -> None:
+    """Do a task in the process of a worker, by default on all its threads; copy the object that the task reads."""
     from distributed import get_worker
 
-    threads = get_worker().state.nthreads if is_alone else 1
     with contextlib.nullcontext() if read is None else read.copied():
-        Job(folder).run_task(number, threads=threads)
-
-
-def _found(file: PathLike) -> "list[str]":
-    """Return the files that a glob stands for now: a file that comes later belongs to no job that began before."""
-    text = os.fspath(file)
-    return sorted(glob.glob(text)) or [text]
+        Job(folder).run_task(number, threads=threads or get_worker().state.nthreads)
 
 
 def _error(message: str, cure: "Union[str, None]") -> BreaklineError:
