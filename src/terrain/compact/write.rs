@@ -89,32 +89,13 @@ impl Layers {
         };
         let mut inside = vec![0; tds.cell_count().div_ceil(8)];
         let mut sides = Vec::new();
+        let rows = SideRows { surface, triangulation, has_kinds, faces: &faces };
         for (at, cell) in tds.cells().enumerate() {
-            let face = cell.index() as u32;
-            if surface.face(face).is_none() {
-                if has_kinds {
-                    sides.extend(kinds_under(surface, triangulation, cell, at as u32));
-                }
-                continue;
-            }
-            inside[at / 8] |= 1 << (at % 8);
-            for i in 0..3 {
-                let beside = surface.face(tds.neighbor(cell, i).index() as u32);
-                if beside.is_some() && !has_kinds {
-                    continue; // the triangulation says it all
-                }
-                let (kind, is_breakline) = (surface.edge_kind(face, i), triangulation.is_constrained(cell, i));
-                // What a reader takes the edge for if it has no row.
-                let derived = match beside {
-                    _ if is_breakline => EdgeKind::Breakline,
-                    Some(_) => EdgeKind::Plain,
-                    None => EdgeKind::Rim,
-                };
-                let neighbor = surface.neighbor(face, i);
-                if kind != derived || beside.is_none() && neighbor.is_some() {
-                    let neighbor = neighbor.map(|face| faces.of(face));
-                    sides.extend(Side { face: at as u32, corner: i as u8, kind, neighbor }.to_bytes());
-                }
+            if surface.face(cell.index() as u32).is_some() {
+                inside[at / 8] |= 1 << (at % 8);
+                rows.add_of_face(cell, at as u32, &mut sides);
+            } else if has_kinds {
+                rows.add_under(cell, at as u32, &mut sides);
             }
         }
         let position = |&vertex: &u32| surface.position(vertex).map(f64::to_le_bytes);
@@ -135,25 +116,54 @@ impl Layers {
     }
 }
 
-/// The rows of the edges of a triangle that is not a face of the surface: of those on lines other
-/// than breaklines, for which methods of interpolation ask.
-fn kinds_under(
-    surface: &dyn Surface,
-    triangulation: &ConstrainedDelaunay<Terrain>,
-    cell: CellId,
-    number: u32,
-) -> Vec<u8> {
-    let mut under = Vec::new();
-    let face = cell.index() as u32;
-    surface.base_faces_in(face..face + 1, &mut under);
-    let kinds = under.first().map_or([EdgeKind::Breakline; 3], |face| face.edges);
-    let of_lines = kinds
-        .into_iter()
-        .enumerate()
-        .filter(|&(corner, kind)| kind != EdgeKind::Breakline && triangulation.is_constrained(cell, corner));
-    of_lines
-        .flat_map(|(corner, kind)| Side { face: number, corner: corner as u8, kind, neighbor: None }.to_bytes())
-        .collect()
+/// The rows of edges of triangles: of those that are more than the triangulation says.
+struct SideRows<'a> {
+    surface: &'a dyn Surface,
+    triangulation: &'a ConstrainedDelaunay<Terrain>,
+    /// True if some lines are not breaklines.
+    has_kinds: bool,
+    /// The numbers of faces in the file.
+    faces: &'a Numbers,
+}
+
+impl SideRows<'_> {
+    /// Adds the rows of a face of the surface; `number` is that in the file.
+    fn add_of_face(&self, cell: CellId, number: u32, rows: &mut Vec<u8>) {
+        let SideRows { surface, triangulation, has_kinds, faces } = *self;
+        let face = cell.index() as u32;
+        for i in 0..3 {
+            let beside = surface.face(triangulation.tds().neighbor(cell, i).index() as u32);
+            if beside.is_some() && !has_kinds {
+                continue; // the triangulation says it all
+            }
+            let (kind, is_breakline) = (surface.edge_kind(face, i), triangulation.is_constrained(cell, i));
+            // What a reader takes the edge for if it has no row.
+            let derived = match beside {
+                _ if is_breakline => EdgeKind::Breakline,
+                Some(_) => EdgeKind::Plain,
+                None => EdgeKind::Rim,
+            };
+            let neighbor = surface.neighbor(face, i);
+            if kind != derived || beside.is_none() && neighbor.is_some() {
+                let neighbor = neighbor.map(|face| faces.of(face));
+                rows.extend(Side { face: number, corner: i as u8, kind, neighbor }.to_bytes());
+            }
+        }
+    }
+
+    /// Adds the rows of a triangle that is not a face of the surface: of its edges on lines other
+    /// than breaklines, for which methods of interpolation ask.
+    fn add_under(&self, cell: CellId, number: u32, rows: &mut Vec<u8>) {
+        let mut under = Vec::new();
+        let face = cell.index() as u32;
+        self.surface.base_faces_in(face..face + 1, &mut under);
+        let kinds = under.first().map_or([EdgeKind::Breakline; 3], |face| face.edges);
+        for (corner, kind) in kinds.into_iter().enumerate() {
+            if kind != EdgeKind::Breakline && self.triangulation.is_constrained(cell, corner) {
+                rows.extend(Side { face: number, corner: corner as u8, kind, neighbor: None }.to_bytes());
+            }
+        }
+    }
 }
 
 /// Numbers without gaps, in the same order: first those of used slots, then some beyond all slots.

@@ -52,6 +52,15 @@ struct Step {
     between: Vec<u32>,
 }
 
+/// What a point that is on several edges has its height from.
+struct Origin {
+    /// The triangles there.
+    cells: Vec<CellId>,
+    height: f64,
+    /// The edge; `None` if it is a vertex.
+    edge: Option<usize>,
+}
+
 /// Maps sites to the new vertices next to them.
 type Steps = FxHashMap<u32, Vec<Step>>;
 
@@ -125,34 +134,38 @@ impl Arranged<'_> {
         height_along(u, v, [x, y])
     }
 
+    /// The triangles of the vertex or edge that a point has its height from, and that height.
+    /// `None` if there is none.
+    fn origin(&self, site: u32, edges: &[usize]) -> Option<Origin> {
+        let tds = self.base.tds();
+        let mut origin = match self.corner(site) {
+            Some(vertex) => {
+                Origin { cells: tds.around(vertex).collect(), height: self.base.point(vertex)[2], edge: None }
+            }
+            None => {
+                let heights = edges.iter().map(|&edge| (!self.is_breakline(edge), self.height_on(edge, site), edge));
+                let (_, height, edge) = heights.min_by(|p, q| {
+                    let by_height = p.0.cmp(&q.0).then(p.1.total_cmp(&q.1));
+                    by_height.then_with(|| self.compare_edges(p.2, q.2))
+                })?;
+                let [u, v] = self.edges[edge];
+                let sides = [tds.edge(u, v), tds.edge(v, u)];
+                Origin { cells: sides.into_iter().flatten().map(|(cell, _)| cell).collect(), height, edge: Some(edge) }
+            }
+        };
+        // The order must not depend on the numbering of the triangles.
+        origin.cells.sort_unstable_by(|&a, &b| compare(self.base, a, b));
+        Some(origin)
+    }
+
     /// The edges at a point that get a vertex of their own, those closer to the point's height
     /// first.
     fn steps_at(&mut self, site: u32, edges: &[usize], first_edge: usize, taken: &mut HashSet<[u64; 2]>) -> Vec<Step> {
         let tds = self.base.tds();
-        // Start at the triangles of the vertex or edge that the point has its height from.
-        let (mut start, height, own) = match self.corner(site) {
-            Some(vertex) => (tds.around(vertex).collect::<Vec<CellId>>(), self.base.point(vertex)[2], None),
-            None => {
-                let Some((_, height, own)) = edges
-                    .iter()
-                    .map(|&edge| (!self.is_breakline(edge), self.height_on(edge, site), edge))
-                    .min_by(|p, q| {
-                        let by_height = p.0.cmp(&q.0).then(p.1.total_cmp(&q.1));
-                        by_height.then_with(|| self.compare_edges(p.2, q.2))
-                    })
-                else {
-                    return Vec::new();
-                };
-                let [u, v] = self.edges[own];
-                let sides = [tds.edge(u, v), tds.edge(v, u)];
-                (sides.into_iter().flatten().map(|(cell, _)| cell).collect(), height, Some(own))
-            }
-        };
-        // The order must not depend on the numbering of the triangles.
-        start.sort_unstable_by(|&a, &b| compare(self.base, a, b));
+        let Some(Origin { cells, height, edge: own }) = self.origin(site, edges) else { return Vec::new() };
         let mut steps: Vec<Step> = Vec::new();
-        let mut seen: FxHashSet<CellId> = start.iter().copied().collect();
-        let mut ahead: Vec<(CellId, u32, f64, u32)> = start.into_iter().map(|cell| (cell, site, height, 0)).collect();
+        let mut seen: FxHashSet<CellId> = cells.iter().copied().collect();
+        let mut ahead: Vec<(CellId, u32, f64, u32)> = cells.into_iter().map(|cell| (cell, site, height, 0)).collect();
         while let Some((cell, vertex, height, distance)) = ahead.pop() {
             if tds.is_infinite(cell) {
                 continue;
@@ -168,13 +181,12 @@ impl Arranged<'_> {
                 }
                 let z = self.height_on(edge, site);
                 let is_level = tds.is_infinite(beyond) || (z - height).abs() <= self.tolerance(beyond);
-                let chain = first_edge + edge;
                 let moved = if is_level {
                     None
                 } else {
                     let others = self.edges_of(beyond).filter(|other| !edges.contains(other));
                     let others: Vec<usize> = others.map(|other| first_edge + other).collect();
-                    self.beside(site, [u, v], chain, distance + 1, &others, taken)
+                    self.beside(site, [u, v], first_edge + edge, distance + 1, &others, taken)
                 };
                 let (vertex, height, distance) = match moved {
                     Some(vertex) => (vertex, z, distance + 1),

@@ -112,15 +112,10 @@ fn travel(
         let to = minus(base.point(number), [q[0], q[1], 0.0]);
         Seen { number, to, square: square(to) }
     };
-    let corners = base.face(face).corners.map(see);
-    let center = circumcenter(corners);
+    let sides = Side::of_face(face, base.face(face).corners.map(see));
     steps.clear();
-    let side = |k: usize| {
-        let (from, to) = (corners[next(k)], corners[before(k)]);
-        Side { face, i: k, from, to, area: cross(from.to, to.to), center }
-    };
     // The last one is taken first: the edge from `first`.
-    steps.extend([next(first), first, before(first)].map(|k| Step::Edge(side(k))));
+    steps.extend([next(first), first, before(first)].map(|k| Step::Edge(sides[k])));
     // No more triangles can be passed than there are, except by rounding errors.
     let mut left = base.count();
     while let Some(step) = steps.pop() {
@@ -133,34 +128,61 @@ fn travel(
         };
         // Into the zone, along the edges that begin where this one does.
         while let Some((beyond, j)) = base.across(side.face, side.i) {
-            let Side { from, to, area, center, .. } = side;
             let apex = see(base.face(beyond).corners[j]);
-            let (left_area, right_area) = (cross(from.to, apex.to), cross(apex.to, to.to));
-            let inside = to.square * left_area + from.square * right_area - apex.square * area;
-            if inside <= 0.0 || inside.is_nan() {
-                break;
-            }
+            let Some([on_the_left, on_the_right]) = side.beyond(beyond, j, apex) else { break };
             left = left.checked_sub(1)?;
-            let new = circumcenter([to, from, apex]);
-            weigh.pass(center, new);
-            steps.push(Step::Back { from: new, to: center });
-            let right = Side { face: beyond, i: before(j), from: apex, to, area: right_area, center: new };
-            steps.push(Step::Edge(right));
-            side = Side { face: beyond, i: next(j), from, to: apex, area: left_area, center: new };
+            let new = on_the_left.center;
+            weigh.pass(side.center, new);
+            steps.push(Step::Back { from: new, to: side.center });
+            steps.push(Step::Edge(on_the_right));
+            side = on_the_left;
         }
-        let Side { from, to, area, center, .. } = side;
+        weigh.border(side.from, side.center, side.new_center()?);
+    }
+    weigh.height().filter(|height| height.is_finite())
+}
+
+impl Side {
+    /// The edges of a triangle of the zone, by the corners opposite them.
+    #[inline]
+    fn of_face(face: u32, corners: [Seen; 3]) -> [Self; 3] {
+        let center = circumcenter(corners);
+        [0, 1, 2].map(|i| {
+            let (from, to) = (corners[next(i)], corners[before(i)]);
+            Side { face, i, from, to, area: cross(from.to, to.to), center }
+        })
+    }
+
+    /// The other two edges of the triangle beyond this one, left and right, if that triangle
+    /// belongs to the zone. Its corner `apex`, with index `j`, is opposite this edge.
+    #[inline]
+    fn beyond(&self, face: u32, j: usize, apex: Seen) -> Option<[Self; 2]> {
+        let Side { from, to, area, .. } = *self;
+        let (left_area, right_area) = (cross(from.to, apex.to), cross(apex.to, to.to));
+        let inside = to.square * left_area + from.square * right_area - apex.square * area;
+        if inside <= 0.0 || inside.is_nan() {
+            return None;
+        }
+        let center = circumcenter([to, from, apex]);
+        let left = Side { face, i: next(j), from, to: apex, area: left_area, center };
+        let right = Side { face, i: before(j), from: apex, to, area: right_area, center };
+        Some([left, right])
+    }
+
+    /// The circumcenter of the position and an edge of the border; `None` if the position is on the
+    /// border by a rounding error.
+    #[inline]
+    fn new_center(&self) -> Option<[f64; 2]> {
+        let Side { from, to, area, .. } = *self;
         if area <= 0.0 {
-            // The position is on the border by a rounding error.
             return None;
         }
         let scale = 0.5 / area;
-        let new = [
+        Some([
             (from.square * to.to[1] - to.square * from.to[1]) * scale,
             (to.square * from.to[0] - from.square * to.to[0]) * scale,
-        ];
-        weigh.border(from, center, new);
+        ])
     }
-    weigh.height().filter(|height| height.is_finite())
 }
 
 /// Returns the circumcenter of a triangle.

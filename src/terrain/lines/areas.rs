@@ -161,61 +161,130 @@ pub(crate) fn level(
     if waters.is_empty() {
         return Ok(Leveled::default());
     }
-    let mut domains: FxHashMap<[VertexId; 2], Vec<Domain>> = FxHashMap::default();
-    for (domain, water) in waters.iter().enumerate() {
-        for &line in &water.rim {
-            for pair in triangulation.chain(LineId::new(line)).windows(2) {
-                domains.entry([pair[0].min(pair[1]), pair[0].max(pair[1])]).or_default().push(domain);
-            }
-        }
-    }
-    let tds = triangulation.tds();
-    let Some(start) = tds.cell_of(VertexId::INFINITE) else { return Ok(Leveled::default()) };
-    let mut regions: Vec<Vec<Domain>> = vec![Vec::new()];
-    let divided = Divided { triangulation, domains };
-    let region = regions::label(&divided, tds.cell_slots(), start.index() as u32, Vec::new(), |within| {
-        if within.is_empty() {
-            return 0;
-        }
-        regions.push(within.to_vec());
-        regions.len() as u32 - 1
-    });
-
-    let own = own_heights(triangulation, waters, given);
-    // The areas around each vertex, in order.
-    let mut around: FxHashMap<VertexId, Vec<Domain>> = FxHashMap::default();
-    for cell in tds.cells().filter(|cell| region[cell.index()] != 0) {
-        let within = &regions[region[cell.index()] as usize];
-        for &vertex in tds.corners(cell).iter().filter(|vertex| **vertex != VertexId::INFINITE) {
-            around.entry(vertex).or_default().extend(within);
-        }
-    }
-    // Where rounding brought banks together, a line around water may reach a vertex by the edges on
-    // which it leaves it, so that no water lies between them.
-    for (edge, areas) in &divided.domains {
-        for vertex in edge {
-            if let Some(others) = around.get_mut(vertex) {
-                others.extend(areas);
-            }
-        }
-    }
-    let mut vertices: Vec<(VertexId, Vec<Domain>)> = around.into_iter().collect();
-    vertices.sort_unstable_by_key(|(vertex, _)| *vertex);
-    let mut new_heights: Vec<(VertexId, f64)> = Vec::with_capacity(vertices.len());
-    let surfaces: Vec<OnceCell<RiverWater>> = waters.iter().map(|_| OnceCell::new()).collect();
-    let surface = |area: Domain, river| surfaces[area].get_or_init(|| RiverWater::new(river));
-    let pairs: FxHashSet<[Domain; 2]> = overlapping.iter().copied().collect();
-    let reaches = reaches_of(waters, overlapping);
-    let rounding = rounding_of(vertices.iter().map(|(vertex, _)| *triangulation.point(*vertex)));
-    for (vertex, mut areas) in vertices {
+    let divided = Divided::by_rims(triangulation, waters);
+    let Some(labels) = divided.labels() else { return Ok(Leveled::default()) };
+    let around = divided.areas_around(&labels);
+    let heights = WaterHeights {
+        waters,
+        own: own_heights(triangulation, waters, given),
+        surfaces: waters.iter().map(|_| OnceCell::new()).collect(),
+        pairs: overlapping.iter().copied().collect(),
+        reaches: reaches_of(waters, overlapping),
+        rounding: rounding_of(around.iter().map(|(vertex, _)| *triangulation.point(*vertex))),
+    };
+    let mut new_heights: Vec<(VertexId, f64)> = Vec::with_capacity(around.len());
+    for (vertex, mut areas) in around {
         let [x, y, _] = *triangulation.point(vertex);
+        heights.add_near(&mut areas, [x, y]);
+        let height = match heights.of_lakes(&areas, [x, y], name)? {
+            Some(height) => Some(height),
+            None => heights.of_rivers(&areas, vertex, [x, y]),
+        };
+        new_heights.extend(height.map(|height| (vertex, height)));
+    }
+    let is_water = labels.of_cells.iter().map(|label| *label != 0).collect();
+    let mut sites = FxHashSet::default();
+    for (vertex, height) in new_heights {
+        let [x, y, _] = *triangulation.point(vertex);
+        sites.insert([x.to_bits(), y.to_bits()]);
+        triangulation.replace_point(vertex, [x, y, height]);
+    }
+    Ok(Leveled { is_water, sites })
+}
+
+/// Which areas of water the cells of a triangulation lie in.
+struct Labels {
+    /// For each cell number, its label: an index into `areas`.
+    of_cells: Vec<u32>,
+    /// The areas of each label; none for the first.
+    areas: Vec<Vec<Domain>>,
+}
+
+impl<'a> Divided<'a> {
+    /// Divides a triangulation by the lines around waters; each water is a domain.
+    fn by_rims(triangulation: &'a ConstrainedDelaunay<Terrain>, waters: &[Water]) -> Self {
+        let mut domains: FxHashMap<[VertexId; 2], Vec<Domain>> = FxHashMap::default();
+        for (domain, water) in waters.iter().enumerate() {
+            for &line in &water.rim {
+                for pair in triangulation.chain(LineId::new(line)).windows(2) {
+                    domains.entry([pair[0].min(pair[1]), pair[0].max(pair[1])]).or_default().push(domain);
+                }
+            }
+        }
+        Divided { triangulation, domains }
+    }
+
+    /// The areas that each cell lies in; `None` if there are no cells.
+    fn labels(&self) -> Option<Labels> {
+        let tds = self.triangulation.tds();
+        let start = tds.cell_of(VertexId::INFINITE)?;
+        let mut areas: Vec<Vec<Domain>> = vec![Vec::new()];
+        let of_cells = regions::label(self, tds.cell_slots(), start.index() as u32, Vec::new(), |within| {
+            if within.is_empty() {
+                return 0;
+            }
+            areas.push(within.to_vec());
+            areas.len() as u32 - 1
+        });
+        Some(Labels { of_cells, areas })
+    }
+
+    /// The areas around each vertex that lies in water or on its border, ordered by vertex. An area
+    /// may be named several times.
+    fn areas_around(&self, labels: &Labels) -> Vec<(VertexId, Vec<Domain>)> {
+        let tds = self.triangulation.tds();
+        let mut around: FxHashMap<VertexId, Vec<Domain>> = FxHashMap::default();
+        for cell in tds.cells().filter(|cell| labels.of_cells[cell.index()] != 0) {
+            let within = &labels.areas[labels.of_cells[cell.index()] as usize];
+            for &vertex in tds.corners(cell).iter().filter(|vertex| **vertex != VertexId::INFINITE) {
+                around.entry(vertex).or_default().extend(within);
+            }
+        }
+        // Where rounding brought banks together, a line around water may reach a vertex by the
+        // edges on which it leaves it, so that no water lies between them.
+        for (edge, areas) in &self.domains {
+            for vertex in edge {
+                if let Some(others) = around.get_mut(vertex) {
+                    others.extend(areas);
+                }
+            }
+        }
+        let mut vertices: Vec<(VertexId, Vec<Domain>)> = around.into_iter().collect();
+        vertices.sort_unstable_by_key(|(vertex, _)| *vertex);
+        vertices
+    }
+}
+
+/// What the heights of vertices in water follow from.
+struct WaterHeights<'a> {
+    waters: &'a [Water],
+    /// The heights that vertices around rivers were given with.
+    own: FxHashMap<(Domain, VertexId), f64>,
+    /// The surface of each river, once it is needed.
+    surfaces: Vec<OnceCell<RiverWater>>,
+    /// The pairs of rivers that overlap.
+    pairs: FxHashSet<[Domain; 2]>,
+    /// The stretches of the second of each pair.
+    reaches: Boxes<Reach>,
+    /// How far rounding moves vertices.
+    rounding: f64,
+}
+
+impl WaterHeights<'_> {
+    fn surface(&self, area: Domain, river: &River) -> &RiverWater {
+        self.surfaces[area].get_or_init(|| RiverWater::new(river))
+    }
+
+    /// Adds the rivers to the areas around a position that overlap one of these and are as close as
+    /// rounding goes. Then each area is named once, in order.
+    fn add_near(&self, areas: &mut Vec<Domain>, [x, y]: [f64; 2]) {
         let mut near: Vec<Domain> = Vec::new();
-        reaches.find_in(Extent::of_plan([[x, y]]).grown(rounding), |reach| {
+        self.reaches.find_in(Extent::of_plan([[x, y]]).grown(self.rounding), |reach| {
             let is_other = !areas.contains(&reach.area) && !near.contains(&reach.area);
             if is_other
-                && areas.iter().any(|area| pairs.contains(&[*area, reach.area]))
-                && let Level::River(river) = &waters[reach.area].level
-                && surface(reach.area, river).is_near([x, y], rounding)
+                && areas.iter().any(|area| self.pairs.contains(&[*area, reach.area]))
+                && let Level::River(river) = &self.waters[reach.area].level
+                && self.surface(reach.area, river).is_near([x, y], self.rounding)
             {
                 near.push(reach.area);
             }
@@ -224,38 +293,35 @@ pub(crate) fn level(
         areas.extend(near);
         areas.sort_unstable();
         areas.dedup();
-        let lakes = areas.iter().filter_map(|&area| match &waters[area].level {
+    }
+
+    /// The height of the lakes among some areas; `None` if there are none.
+    ///
+    /// # Errors
+    /// If their heights differ.
+    fn of_lakes(&self, areas: &[Domain], at: [f64; 2], name: &dyn Fn(usize) -> String) -> Result<Option<f64>> {
+        let mut lakes = areas.iter().filter_map(|&area| match &self.waters[area].level {
             Level::Flat(flat) => Some((area, flat.height)),
             Level::River(_) => None,
         });
-        let lakes: Vec<(Domain, f64)> = lakes.collect();
-        if let Some((first, height)) = lakes.first() {
-            if let Some((other, different)) = lakes.iter().find(|(_, other)| other != height) {
-                return Err(two_lakes([(*first, *height), (*other, *different)], [x, y], waters, name));
-            }
-            new_heights.push((vertex, *height));
-            continue;
+        let Some((first, height)) = lakes.next() else { return Ok(None) };
+        match lakes.find(|(_, other)| *other != height) {
+            Some(other) => Err(two_lakes([(first, height), other], at, self.waters, name)),
+            None => Ok(Some(height)),
         }
-        let rivers = areas.iter().filter_map(|&area| match &waters[area].level {
-            Level::River(river) => Some(match own.get(&(area, vertex)) {
+    }
+
+    /// The lowest height of the rivers among some areas at a vertex; `None` if there are none.
+    fn of_rivers(&self, areas: &[Domain], vertex: VertexId, at: [f64; 2]) -> Option<f64> {
+        let rivers = areas.iter().filter_map(|&area| match &self.waters[area].level {
+            Level::River(river) => Some(match self.own.get(&(area, vertex)) {
                 Some(height) => *height,
-                None => surface(area, river).height([x, y]),
+                None => self.surface(area, river).height(at),
             }),
             Level::Flat(_) => None,
         });
-        let lowest = rivers.fold(f64::INFINITY, f64::min);
-        if lowest.is_finite() {
-            new_heights.push((vertex, lowest));
-        }
+        Some(rivers.fold(f64::INFINITY, f64::min)).filter(|lowest| lowest.is_finite())
     }
-    let is_water = region.iter().map(|region| *region != 0).collect();
-    let mut sites = FxHashSet::default();
-    for (vertex, height) in new_heights {
-        let [x, y, _] = *triangulation.point(vertex);
-        sites.insert([x.to_bits(), y.to_bits()]);
-        triangulation.replace_point(vertex, [x, y, height]);
-    }
-    Ok(Leveled { is_water, sites })
 }
 
 /// A stretch of a river, and the number of its area.

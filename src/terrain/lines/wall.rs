@@ -76,28 +76,7 @@ impl Wall {
             return Err(Error::format("the wall has fewer than two distinct vertices")
                 .cure("remove the record, or give the line its vertices"));
         }
-        if let Some(([x, y, z], low)) = vertices.iter().find(|(p, low)| *low > p[2]) {
-            return Err(Error::format(format!(
-                "at {x} {y} the lower edge of the wall is at {low}, above the upper at {z}"
-            ))
-            .cure(wording![
-                "the line has the heights of the upper edge; ",
-                Setting::WallBottom,
-                " or ",
-                Setting::WallDrop,
-                " give the lower one"
-            ]));
-        }
-        if vertices.iter().all(|(p, low)| *low == p[2]) {
-            return Err(Error::format("the wall has no height: upper and lower edge are the same").cure(wording![
-                "give the lower edge with ",
-                Setting::WallBottom,
-                " or ",
-                Setting::WallDrop,
-                ", or use ",
-                Setting::Breaklines
-            ]));
-        }
+        check_heights(&vertices)?;
         let largest = vertices.iter().flat_map(|(p, _)| [p[0].abs(), p[1].abs()]).fold(0.0, f64::max);
         let narrowest = narrowest(largest);
         if !(width >= narrowest && width.is_finite()) {
@@ -170,6 +149,33 @@ impl Wall {
         let areas = vec![rings(&upper, &lower)];
         Ok(Wall { upper, lower, areas })
     }
+}
+
+/// Returns an error unless the lower edge is nowhere above the upper one, and below it somewhere.
+fn check_heights(vertices: &[([f64; 3], f64)]) -> Result<()> {
+    if let Some(([x, y, z], low)) = vertices.iter().find(|(p, low)| *low > p[2]) {
+        return Err(Error::format(format!(
+            "at {x} {y} the lower edge of the wall is at {low}, above the upper at {z}"
+        ))
+        .cure(wording![
+            "the line has the heights of the upper edge; ",
+            Setting::WallBottom,
+            " or ",
+            Setting::WallDrop,
+            " give the lower one"
+        ]));
+    }
+    if vertices.iter().all(|(p, low)| *low == p[2]) {
+        return Err(Error::format("the wall has no height: upper and lower edge are the same").cure(wording![
+            "give the lower edge with ",
+            Setting::WallBottom,
+            " or ",
+            Setting::WallDrop,
+            ", or use ",
+            Setting::Breaklines
+        ]));
+    }
+    Ok(())
 }
 
 /// The rings around the area between two edges.
