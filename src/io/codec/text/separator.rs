@@ -1,5 +1,8 @@
 //! The separator between the fields of a line.
 
+use crate::error::Result;
+use crate::io::bytes::decimal_mark::DecimalMark;
+
 /// The separator between two fields.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Separator {
@@ -38,6 +41,16 @@ impl Separator {
             Self::Comma => "commas",
             Self::Blanks => "blanks",
         }
+    }
+
+    /// Adds the decimal marks of the numbers in a line.
+    pub(super) fn add_marks(self, mark: &mut DecimalMark, line: &[u8], number: u64) -> Result<()> {
+        // A comma that separates is never before decimals.
+        if self == Self::Comma || !mark.concerns(line) {
+            return Ok(());
+        }
+        let mut numbers = self.fields(line).filter(|field| self.number(field).is_some());
+        numbers.try_for_each(|text| mark.add(text, || format!("line {number}")))
     }
 
     fn ends_field(self, byte: u8) -> bool {

@@ -1,0 +1,107 @@
+//! The lines of a file of points.
+
+use std::io::{self, BufRead, BufReader, Read};
+use std::path::{Path, PathBuf};
+
+use super::columns::quote;
+use crate::error::{Error, Result};
+
+/// Limit for the bytes of a line; text for people has shorter lines, and a binary file may have no
+/// line ends.
+const MAX_LINE_BYTES: usize = 1 << 16;
+
+/// The lines of a file, read one by one.
+pub(super) struct Lines {
+    source: BufReader<Box<dyn Read + Send>>,
+    pub(super) name: PathBuf,
+    /// The current line, without its end.
+    pub(super) line: Vec<u8>,
+    /// The number of the current line, from 1.
+    pub(super) number: u64,
+    /// True after a carriage return, which a line feed may follow.
+    is_after_return: bool,
+    /// True if the last line has a point, but no end.
+    pub(super) is_open: bool,
+}
+
+impl Lines {
+    /// Returns the lines of a stream; messages call it `name`.
+    pub(super) fn new(stream: impl Read + Send + 'static, name: &Path) -> Self {
+        Lines {
+            source: BufReader::with_capacity(1 << 17, Box::new(stream)),
+            name: name.to_path_buf(),
+            line: Vec::new(),
+            number: 0,
+            is_after_return: false,
+            is_open: false,
+        }
+    }
+
+    /// Reads the next line; returns false at the end of the file.
+    pub(super) fn next(&mut self) -> Result<bool> {
+        self.line.clear();
+        self.number += 1;
+        let mut is_ended = false;
+        while !is_ended {
+            let bytes = match self.source.fill_buf() {
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
+                bytes => bytes?,
+            };
+            if std::mem::take(&mut self.is_after_return) && bytes.first() == Some(&b'\n') {
+                self.source.consume(1);
+                continue;
+            }
+            if bytes.is_empty() {
+                break;
+            }
+            let end = bytes.iter().position(|&byte| byte == b'\n' || byte == b'\r');
+            self.line.extend_from_slice(&bytes[..end.unwrap_or(bytes.len())]);
+            is_ended = end.is_some();
+            self.is_after_return = end.is_some_and(|end| bytes[end] == b'\r');
+            let read = end.map_or(bytes.len(), |end| end + 1);
+            self.source.consume(read);
+            if self.line.len() > MAX_LINE_BYTES {
+                return Err(Error::format(format!(
+                    "a line of more than {MAX_LINE_BYTES} bytes, which begins {}",
+                    quote(&self.line)
+                ))
+                .cure("this may not be a text file"));
+            }
+        }
+        let is_there = is_ended || !self.line.is_empty();
+        if self.number == 1 {
+            if self.line.starts_with(b"\xff\xfe") || self.line.starts_with(b"\xfe\xff") {
+                return Err(Error::unsupported("text in UTF-16").cure("save it as UTF-8"));
+            }
+            if self.line.starts_with(b"\xef\xbb\xbf") {
+                self.line.drain(..3);
+            }
+        }
+        self.is_open |= !is_ended && matches!(Line::new(&self.line), Line::Data(_));
+        Ok(is_there)
+    }
+
+    /// Adds the file and the line to an error.
+    pub(super) fn locate(&self, error: Error) -> Error {
+        error.at(format!("line {}", self.number)).in_file(&self.name)
+    }
+}
+
+/// A line, by what it contains.
+pub(super) enum Line<'a> {
+    Blank,
+    Comment(&'a [u8]),
+    Data(&'a [u8]),
+}
+
+impl<'a> Line<'a> {
+    pub(super) fn new(line: &'a [u8]) -> Self {
+        let text = line.trim_ascii();
+        match text {
+            [] => Line::Blank,
+            [b'#', rest @ ..] | [b'/', b'/', rest @ ..] => Line::Comment(rest),
+            // Not trimmed: a line may begin with an empty field.
+            _ => Line::Data(line),
+        }
+    }
+}
