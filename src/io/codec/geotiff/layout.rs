@@ -111,33 +111,69 @@ fn required(value: Option<u64>, tag: u16) -> Result<u64> {
     }
 }
 
+/// Returns the number of bands.
+fn band_count(bytes: &Bytes, directory: &Directory) -> Result<u16> {
+    let bands = directory.number(bytes, tags::SAMPLES_PER_PIXEL)?.unwrap_or(1);
+    u16::try_from(bands).ok().filter(|&bands| bands > 0).ok_or_else(|| {
+        Error::format(format!("{bands}, expected 1 to 65535")).at(tags::tag_name(tags::SAMPLES_PER_PIXEL))
+    })
+}
+
+/// Returns the number of samples of a cell that are stored together.
+fn interleaved(bytes: &Bytes, directory: &Directory, bands: u16) -> Result<u16> {
+    match directory.number(bytes, tags::PLANAR_CONFIGURATION)?.unwrap_or(1) {
+        1 => Ok(bands),
+        2 => Ok(1),
+        other => {
+            let tag = tags::tag_name(tags::PLANAR_CONFIGURATION);
+            Err(Error::format(format!("{other}, expected 1 or 2")).at(tag))
+        }
+    }
+}
+
+/// Returns the columns and rows of a tile.
+fn tile_size(bytes: &Bytes, directory: &Directory) -> Result<[u64; 2]> {
+    let number = |tag| required(directory.number(bytes, tag)?, tag);
+    Ok([number(tags::TILE_WIDTH)?, number(tags::TILE_LENGTH)?])
+}
+
+/// Returns the rows of a strip; all of them are one strip if none is stated.
+fn rows_per_strip(bytes: &Bytes, directory: &Directory, height: u64) -> Result<u64> {
+    match directory.number(bytes, tags::ROWS_PER_STRIP)? {
+        None => Ok(height),
+        rows => Ok(required(rows, tags::ROWS_PER_STRIP)?.min(height)),
+    }
+}
+
+/// Returns the values of a tag that has one for each block, if the file has it.
+fn of_each_block(bytes: &Bytes, directory: &Directory, tag: u16, blocks: u64) -> Result<Option<Vec<u64>>> {
+    match directory.unsigned(bytes, tag)? {
+        Some(values) if (values.len() as u64) < blocks => {
+            let message = format!("{} values for {blocks} blocks", values.len());
+            Err(Error::format(message).at(tags::tag_name(tag)))
+        }
+        values => Ok(values),
+    }
+}
+
 impl Layout {
+    /// Reads how the cells of an image are arranged.
+    ///
+    /// # Errors
+    /// If it is damaged, exceeds a limit, or cannot be decoded.
     pub(super) fn read(bytes: &Bytes, directory: &Directory) -> Result<Self> {
         let number = |tag| directory.number(bytes, tag);
         let width = required(number(tags::IMAGE_WIDTH)?, tags::IMAGE_WIDTH)?;
         let height = required(number(tags::IMAGE_LENGTH)?, tags::IMAGE_LENGTH)?;
-        let bands = number(tags::SAMPLES_PER_PIXEL)?.unwrap_or(1);
-        let bands = u16::try_from(bands).ok().filter(|&b| b > 0).ok_or_else(|| {
-            Error::format(format!("{bands}, expected 1 to 65535")).at(tags::tag_name(tags::SAMPLES_PER_PIXEL))
-        })?;
+        let bands = band_count(bytes, directory)?;
         let sample = sample_type(bytes, directory)?;
         let compression = number(tags::COMPRESSION)?.unwrap_or(1) as u16;
         let predictor = number(tags::PREDICTOR)?.unwrap_or(1) as u16;
-        let interleaved = match number(tags::PLANAR_CONFIGURATION)?.unwrap_or(1) {
-            1 => bands,
-            2 => 1,
-            other => {
-                let tag = tags::tag_name(tags::PLANAR_CONFIGURATION);
-                return Err(Error::format(format!("{other}, expected 1 or 2")).at(tag));
-            }
-        };
+        let interleaved = interleaved(bytes, directory, bands)?;
         let is_tiled = directory.has(tags::TILE_OFFSETS) || directory.has(tags::TILE_WIDTH);
-        let (block_width, block_height) = if is_tiled {
-            let tile_width = required(number(tags::TILE_WIDTH)?, tags::TILE_WIDTH)?;
-            (tile_width, required(number(tags::TILE_LENGTH)?, tags::TILE_LENGTH)?)
-        } else {
-            let rows = number(tags::ROWS_PER_STRIP)?;
-            (width, rows.map_or(Ok(height), |rows| required(Some(rows), tags::ROWS_PER_STRIP))?.min(height))
+        let [block_width, block_height] = match is_tiled {
+            true => tile_size(bytes, directory)?,
+            false => [width, rows_per_strip(bytes, directory, height)?],
         };
         let row_bytes = block_width
             .checked_mul(u64::from(interleaved) * u64::from(sample.bits))
@@ -163,18 +199,9 @@ impl Layout {
         } else {
             (tags::STRIP_OFFSETS, tags::STRIP_BYTE_COUNTS)
         };
-        let enough = |tag, values: Vec<u64>| {
-            if (values.len() as u64) < blocks {
-                let message = format!("{} values for {blocks} blocks", values.len());
-                return Err(Error::format(message).at(tags::tag_name(tag)));
-            }
-            Ok(values)
-        };
-        let offsets = directory
-            .unsigned(bytes, offsets_tag)?
+        let offsets = of_each_block(bytes, directory, offsets_tag, blocks)?
             .ok_or_else(|| Error::format(format!("{} is missing", tags::tag_name(offsets_tag))))?;
-        let offsets = enough(offsets_tag, offsets)?;
-        let counts = directory.unsigned(bytes, counts_tag)?.map(|counts| enough(counts_tag, counts)).transpose()?;
+        let counts = of_each_block(bytes, directory, counts_tag, blocks)?;
         let layout = Layout {
             order: directory.order,
             width: width as usize,

@@ -128,66 +128,10 @@ fn read_header(bytes: Bytes, path: &Path) -> Result<GeoTiffReader> {
     let directory = Directory::first(&bytes)?;
     let layout = Layout::read(&bytes, &directory)?;
     let mut warnings = Vec::new();
-    // Tags that only describe: a damaged one leads to a warning and is left out.
-    let mut optional = |error: Error| warnings.push(error.to_string().into());
-
-    let nodata_text = directory.text(&bytes, tags::GDAL_NODATA).unwrap_or_else(|e| {
-        optional(e);
-        None
-    });
-    let metadata = directory.text(&bytes, tags::GDAL_METADATA).unwrap_or_else(|e| {
-        optional(e);
-        None
-    });
-    let mut floats = |tag| {
-        directory.floats(&bytes, tag).unwrap_or_else(|e| {
-            optional(e);
-            None
-        })
-    };
-    let mut model = ModelTags {
-        pixel_scale: floats(tags::MODEL_PIXEL_SCALE),
-        tiepoints: floats(tags::MODEL_TIEPOINT),
-        transformation: floats(tags::MODEL_TRANSFORMATION),
-        is_point: false,
-    };
-    let keys = geo_keys(&bytes, &directory).unwrap_or_else(|e| {
-        optional(e);
-        GeoKeys::default()
-    });
-    // The type of the raster is known even if the system is not.
-    let (crs, unread_crs) = keys.crs().map_or_else(
-        |e| {
-            optional(e);
-            (None, Some(format!("{keys:?}")))
-        },
-        |crs| (crs, None),
-    );
-    model.is_point = raster_type(&keys) == Some(2);
-
-    let nodata = match nodata_text.as_deref().map(|text| (text, Nodata::parse(text))) {
-        Some((_, Some(nodata))) => nodata,
-        Some((text, None)) if !text.trim().is_empty() => {
-            warnings.push(format!("the nodata value {text:?} is not a number and is ignored").into());
-            Nodata::default()
-        }
-        _ => Nodata::default(),
-    };
-    if nodata.is_out_of_range(layout.sample) {
-        let value = nodata.value.unwrap_or_default();
-        warnings.push(format!("no {} sample can be the nodata value {value}", layout.sample).into());
-    }
+    let Described { nodata, metadata, model, crs, unread_crs } = Described::read(&bytes, &directory, &mut warnings);
+    let nodata = nodata_of(nodata.as_deref(), layout.sample, &mut warnings);
     let (scale, offset) = metadata.as_deref().map_or((None, None), scale_and_offset);
-    let (mut transform, warning) = model.transform();
-    warnings.extend(warning);
-    if transform.is_none()
-        && let Some(beside) = world_file::read_beside(path)
-    {
-        transform = Some(beside?);
-    }
-    if transform.is_none() {
-        warnings.push("no georeferencing: coordinates are columns and rows".into());
-    }
+    let transform = transform_of(&model, path, &mut warnings)?;
     let missing = layout.missing_blocks();
     if missing > 0 && nodata.value.is_none() {
         let all = layout.block_count();
@@ -216,6 +160,83 @@ fn read_header(bytes: Bytes, path: &Path) -> Result<GeoTiffReader> {
         warnings,
     };
     Ok(GeoTiffReader { path: path.to_path_buf(), bytes, layout, nodata, info })
+}
+
+/// What the tags state that only describe the raster: a damaged one leads to a warning and is left
+/// out.
+struct Described {
+    nodata: Option<String>,
+    metadata: Option<String>,
+    model: ModelTags,
+    crs: Option<Crs>,
+    /// What is stated as the coordinate system, if that is not understood.
+    unread_crs: Option<String>,
+}
+
+impl Described {
+    fn read(bytes: &Bytes, directory: &Directory, warnings: &mut Vec<Wording>) -> Self {
+        let nodata = or_warning(directory.text(bytes, tags::GDAL_NODATA), warnings);
+        let metadata = or_warning(directory.text(bytes, tags::GDAL_METADATA), warnings);
+        let mut floats = |tag| or_warning(directory.floats(bytes, tag), warnings);
+        let mut model = ModelTags {
+            pixel_scale: floats(tags::MODEL_PIXEL_SCALE),
+            tiepoints: floats(tags::MODEL_TIEPOINT),
+            transformation: floats(tags::MODEL_TRANSFORMATION),
+            is_point: false,
+        };
+        let keys = or_warning(geo_keys(bytes, directory), warnings);
+        // The type of the raster is known even if the system is not.
+        model.is_point = raster_type(&keys) == Some(2);
+        let (crs, unread_crs) = match keys.crs() {
+            Ok(crs) => (crs, None),
+            Err(error) => {
+                warnings.push(error.to_string().into());
+                (None, Some(format!("{keys:?}")))
+            }
+        };
+        Described { nodata, metadata, model, crs, unread_crs }
+    }
+}
+
+/// Returns what was found; if that is an error, nothing, and a warning.
+fn or_warning<T: Default>(found: Result<T>, warnings: &mut Vec<Wording>) -> T {
+    found.unwrap_or_else(|error| {
+        warnings.push(error.to_string().into());
+        T::default()
+    })
+}
+
+/// Returns the value of nodata that a text states; warns if it is none of samples of this type.
+fn nodata_of(text: Option<&str>, sample: SampleType, warnings: &mut Vec<Wording>) -> Nodata {
+    let nodata = match text.map(|text| (text, Nodata::parse(text))) {
+        Some((_, Some(nodata))) => nodata,
+        Some((text, None)) if !text.trim().is_empty() => {
+            warnings.push(format!("the nodata value {text:?} is not a number and is ignored").into());
+            Nodata::default()
+        }
+        _ => Nodata::default(),
+    };
+    if nodata.is_out_of_range(sample) {
+        let value = nodata.value.unwrap_or_default();
+        warnings.push(format!("no {sample} sample can be the nodata value {value}").into());
+    }
+    nodata
+}
+
+/// Returns the transform that the tags state, else that of a world file next to the raster; warns
+/// if there is neither.
+fn transform_of(model: &ModelTags, path: &Path, warnings: &mut Vec<Wording>) -> Result<Option<[f64; 6]>> {
+    let (mut transform, warning) = model.transform();
+    warnings.extend(warning);
+    if transform.is_none()
+        && let Some(beside) = world_file::read_beside(path)
+    {
+        transform = Some(beside?);
+    }
+    if transform.is_none() {
+        warnings.push("no georeferencing: coordinates are columns and rows".into());
+    }
+    Ok(transform)
 }
 
 fn geo_keys(bytes: &Bytes, directory: &Directory) -> Result<GeoKeys> {
