@@ -2,7 +2,7 @@ use std::path::Path;
 
 use gdal::spatial_ref::{AxisMappingStrategy, SpatialRef};
 use gdal::vector::{
-    FieldValue, Geometry, LayerAccess, geometry_type_flatten, geometry_type_has_z, geometry_type_to_name,
+    Feature, FieldValue, Geometry, LayerAccess, geometry_type_flatten, geometry_type_has_z, geometry_type_to_name,
 };
 use gdal::{Dataset, DatasetOptions, GdalOpenFlags};
 use gdal_sys::OGRwkbGeometryType as Type;
@@ -42,16 +42,10 @@ pub fn read_layer_with(path: &Path, options: &Options, watch: Watch) -> Result<L
     let columns = options.columns;
     let open = DatasetOptions { open_flags: GdalOpenFlags::GDAL_OF_VECTOR, ..DatasetOptions::default() };
     let dataset = Dataset::open_ex(path, open).map_err(|error| messages::cannot_open(path, "vector", error))?;
-    let (layer_name, field) = choose(&dataset, options).map_err(|error| error.in_file(path))?;
+    let (layer_name, height_field) = choose(&dataset, options).map_err(|error| error.in_file(path))?;
     let mut source = dataset.layer_by_name(&layer_name).map_err(|error| messages::error(path, error))?;
-    let fields: Vec<String> = source.defn().fields().map(|field| field.name()).collect();
-    let no_such = |name: &str| no_such_field(name, fields.iter().map(String::as_str)).in_file(path);
-    let field = match field {
-        Some(wanted) => Some(position(&fields, &wanted).ok_or_else(|| no_such(&wanted))?),
-        None => None,
-    };
-    let positions = columns.iter().map(|name| position(&fields, name).ok_or_else(|| no_such(name)));
-    let positions: Vec<usize> = positions.collect::<Result<_>>()?;
+    let names: Vec<String> = source.defn().fields().map(|field| field.name()).collect();
+    let fields = Fields::of(&names, height_field.as_deref(), columns).map_err(|error| error.in_file(path))?;
     let mut layer = Layer {
         columns: columns.iter().map(|&name| Column { name: name.to_owned(), ..Column::default() }).collect(),
         format: format!(
@@ -59,7 +53,7 @@ pub fn read_layer_with(path: &Path, options: &Options, watch: Watch) -> Result<L
             dataset.driver().short_name(),
             geometry_type_to_name(source.defn().geometry_type())
         ),
-        fields,
+        fields: names,
         ..Layer::default()
     };
     let reference = source.spatial_ref();
@@ -71,26 +65,9 @@ pub fn read_layer_with(path: &Path, options: &Options, watch: Watch) -> Result<L
     for (record, feature) in (1..).zip(source.features()) {
         watch(0)?;
         let first = layer.shapes.len();
-        match feature.geometry() {
-            Some(geometry) if !is_absent(geometry) => {
-                shapes(geometry, 0, &mut layer.shapes).map_err(|error| error.in_file(path))?
-            }
-            _ => layer.shapes.push(Shape::Null),
-        }
-        if let Some(field) = field {
-            let value = feature.field(field).map_err(|error| messages::error(path, error))?;
-            let height = value.map_or(Ok(f64::NAN), number).unwrap_or(f64::NAN);
-            without_height += usize::from(height.is_nan());
-            layer.shapes[first..].iter_mut().for_each(|shape| each_vertex(shape, |vertex| vertex[2] = height));
-        }
-        let shapes = layer.shapes.len();
-        for (column, &field) in layer.columns.iter_mut().zip(&positions) {
-            let value = feature.field(field).map_err(|error| messages::error(path, error))?;
-            let value = value
-                .map_or(Ok(f64::NAN), number)
-                .map_err(|text| not_a_number(&column.name, &text).at(format!("record {record}")).in_file(path))?;
-            column.values.resize(shapes, value);
-        }
+        let lacks_height = add_shapes(path, &feature, fields.height, &mut layer.shapes)?;
+        without_height += usize::from(lacks_height);
+        add_values(path, &feature, record, &fields.columns, &mut layer)?;
         if is_swapped {
             layer.shapes[first..].iter_mut().for_each(|shape| each_vertex(shape, |vertex| vertex.swap(0, 1)));
         }
@@ -104,6 +81,54 @@ pub fn read_layer_with(path: &Path, options: &Options, watch: Watch) -> Result<L
         layer.warnings.push(format!("{without_height} records without a number in the field of the heights").into());
     }
     Ok(layer)
+}
+
+/// The positions of the requested fields in a layer.
+struct Fields {
+    height: Option<usize>,
+    columns: Vec<usize>,
+}
+
+impl Fields {
+    /// Finds the fields among the names of all.
+    ///
+    /// # Errors
+    /// If a field does not exist.
+    fn of(names: &[String], height: Option<&str>, columns: &[&str]) -> Result<Self> {
+        let find = |wanted: &str| {
+            position(names, wanted).ok_or_else(|| no_such_field(wanted, names.iter().map(String::as_str)))
+        };
+        let height = height.map(find).transpose()?;
+        Ok(Fields { height, columns: columns.iter().map(|name| find(name)).collect::<Result<_>>()? })
+    }
+}
+
+/// Adds the shapes of a record, at the height in a field if one is given. Returns true if that is
+/// not a number.
+fn add_shapes(path: &Path, feature: &Feature, field: Option<usize>, into: &mut Vec<Shape>) -> Result<bool> {
+    let first = into.len();
+    match feature.geometry() {
+        Some(geometry) if !is_absent(geometry) => shapes(geometry, 0, into).map_err(|error| error.in_file(path))?,
+        _ => into.push(Shape::Null),
+    }
+    let Some(field) = field else { return Ok(false) };
+    let value = feature.field(field).map_err(|error| messages::error(path, error))?;
+    let height = value.map_or(Ok(f64::NAN), number).unwrap_or(f64::NAN);
+    into[first..].iter_mut().for_each(|shape| each_vertex(shape, |vertex| vertex[2] = height));
+    Ok(height.is_nan())
+}
+
+/// Adds the numbers of a record to the columns, once for each of its shapes.
+fn add_values(path: &Path, feature: &Feature, record: usize, fields: &[usize], layer: &mut Layer) -> Result<()> {
+    let shapes = layer.shapes.len();
+    for (column, &field) in layer.columns.iter_mut().zip(fields) {
+        let value = feature.field(field).map_err(|error| messages::error(path, error))?;
+        let value = value
+            .map_or(Ok(f64::NAN), number)
+            .map_err(|text| not_a_number(&column.name, &text).at(format!("record {record}")).in_file(path))?;
+        column.values.resize(shapes, value);
+    }
+    Ok(())
 }
 
 /// Returns the name of the layer, and the field of the heights.

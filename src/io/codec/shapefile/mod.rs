@@ -59,7 +59,7 @@ use header::{FILE_CODE, HEADER};
 use index::Index;
 use record::type_name;
 use table::{Field, Numbers, Table};
-use walk::{Record, Shp, Walk};
+use walk::{Damage, Record, Shp, Walk};
 pub use write::{Column, check_size, write_contours, write_layer};
 
 /// Limit for the bytes of a `.prj`; a larger file is something else.
@@ -103,21 +103,10 @@ fn read(path: &Path, options: &Options, watch: Watch) -> Result<Layer> {
     let header_type = read_header(&mut file, size)?;
     let mut warnings = Vec::new();
 
-    let index = match sibling(path, "shx").map(|path| Index::read(&path)) {
-        Some(Ok(index)) => Some(index),
-        Some(Err(e)) => {
-            warnings.push(format!(".shx not used: {e}").into());
-            None
-        }
-        None => None,
-    };
+    let index = read_index(path, &mut warnings);
     let mut file = Shp { file, size, stated: header_type.stated, code: header_type.code };
     let Walk { records, types, damage, end, trailing, mut odd } = walk::walk(&mut file, index.as_ref(), watch)?;
-    if let Some(first) = damage.reported.first()
-        && records.iter().all(|record| record.shape.is_none())
-    {
-        return Err(Error::format(wording!["no record can be read: ", first.clone()]).cure("ask for the file again"));
-    }
+    require_a_record(&records, &damage)?;
     let rows = index.as_ref().map(|index| {
         let starts: Vec<u64> = records.iter().map(|record| record.offset).collect();
         index.rows(&starts, end)
@@ -152,6 +141,27 @@ fn read(path: &Path, options: &Options, watch: Watch) -> Result<Layer> {
     }
     layer.warnings = warnings;
     Ok(layer)
+}
+
+/// Reads the `.shx`, if there is one; a damaged one is not used, with a warning.
+fn read_index(path: &Path, warnings: &mut Vec<Wording>) -> Option<Index> {
+    match Index::read(&sibling(path, "shx")?) {
+        Ok(index) => Some(index),
+        Err(e) => {
+            warnings.push(format!(".shx not used: {e}").into());
+            None
+        }
+    }
+}
+
+/// Returns an error if all records are damaged.
+fn require_a_record(records: &[Record], damage: &Damage) -> Result<()> {
+    match damage.reported.first() {
+        Some(first) if records.iter().all(|record| record.shape.is_none()) => {
+            Err(Error::format(wording!["no record can be read: ", first.clone()]).cure("ask for the file again"))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// What the header of a `.shp` states.
@@ -267,24 +277,26 @@ fn read_table(
     }
     let mut columns = rows.numbers;
     let height = options.height_field.map(|_| columns.remove(0));
-    if let (Some(numbers), Some(field)) = (&height, wanted.first())
-        && let Some((_, text)) = numbers.texts.first()
-    {
-        if numbers.values.iter().all(|value| value.is_nan()) {
-            return Err(
-                Error::usage(format!("field {} holds no numbers; the first text is '{text}'", field.name)).in_file(dbf)
-            );
-        }
-        warnings.push(
-            format!(
-                "field {}: {} rows hold no number (the first: '{text}'); their shapes have no height",
-                field.name,
-                numbers.texts.len()
-            )
-            .into(),
-        );
+    if let (Some(numbers), Some(field)) = (&height, wanted.first()) {
+        warn_of_texts(&field.name, numbers, warnings).map_err(|e| e.in_file(dbf))?;
     }
     Ok(Attributes { deleted: rows.deleted, height, columns })
+}
+
+/// Warns of texts in a field of heights that are no numbers.
+///
+/// # Errors
+/// If there is no number at all.
+fn warn_of_texts(field: &str, heights: &Numbers, warnings: &mut Vec<Wording>) -> Result<()> {
+    let Some((_, text)) = heights.texts.first() else { return Ok(()) };
+    if heights.values.iter().all(|value| value.is_nan()) {
+        return Err(Error::usage(format!("field {field} holds no numbers; the first text is '{text}'")));
+    }
+    let count = heights.texts.len();
+    warnings.push(
+        format!("field {field}: {count} rows hold no number (the first: '{text}'); their shapes have no height").into(),
+    );
+    Ok(())
 }
 
 /// The position of a shape's record in the `.shp`, and its row in the `.dbf`.
