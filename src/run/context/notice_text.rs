@@ -1,12 +1,14 @@
 //! The texts of notices.
 
 use std::fmt;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::notice::{CrossingNote, LoweredRiver, Notice, Seed, SeedFlaw, WaterStep};
 use super::units::{Quantity, bytes, neat, number};
+use crate::crs::Crs;
 use crate::data::Bounds;
 use crate::error::{Setting, Wording, wording};
+use crate::run::request::lines::LineRole;
 
 /// Formats the text of the notice with plain names of settings, without its
 /// [details](Notice::details).
@@ -73,203 +75,300 @@ fn step(WaterStep { inner, outer, step, at }: &WaterStep) -> String {
     format!("a step of {step} at {x} {y}, from {outer} to {inner}")
 }
 
+/// Returns the text of each notice; where it takes more than a line, a function below has it.
+#[rustfmt::skip]
 fn text(notice: &Notice) -> Wording {
     match notice {
-        Notice::Opened(path, format) => format!("{}: {format}", path.display()).into(),
-        Notice::WithoutClasses(path) => format!("{}: no classes, all points are used", path.display()).into(),
-        Notice::LayerRead { path, format, records } => {
-            format!("{}: {format}, {records} records", path.display()).into()
-        }
-        Notice::PointsRead(path, count) => format!("{}: {count} points read", path.display()).into(),
+        Notice::Opened(path, format) => of_file(path, format),
+        Notice::WithoutClasses(path) => of_file(path, "no classes, all points are used"),
+        Notice::LayerRead { path, format, records } => layer_read(path, format, *records),
+        Notice::PointsRead(path, count) => of_file(path, &format!("{count} points read")),
         Notice::OfTask { text, .. } => text.clone(),
         Notice::Reader(path, text) => wording![format!("{}: ", path.display()), text.clone()],
         Notice::Skipped { why, hole, others } => skipped(why, hole.as_ref(), others).into(),
-        Notice::LittleMemory { need, left, limit } => format!(
-            "memory may not suffice: if all points are used they take about {}, and {} are left {limit}",
-            bytes(*need),
-            bytes(*left)
-        )
-        .into(),
+        Notice::LittleMemory { need, left, limit } => little_memory(*need, *left, limit).into(),
         Notice::MemoryUnused(why) => wording![Setting::Memory, " has no effect: ", why.clone()],
-        Notice::OutputMayNotFit { need, free } => format!(
-            "the output may not fit: {} before compression, {} are free on the disk",
-            bytes(*need),
-            bytes(*free)
-        )
-        .into(),
-        Notice::TasksMayNotFit { need, free } => format!(
-            "the files of the tasks may not fit: the files of the tasks take about {}, {} are free on the disk",
-            bytes(*need),
-            bytes(*free)
-        )
-        .into(),
-        Notice::NoPointUsed(path, classes) => {
-            let why = match classes {
-                Some(classes) => {
-                    let classes: Vec<String> = classes.iter().map(u8::to_string).collect();
-                    format!("it has none of class {}", classes.join(" or "))
-                }
-                None => "it has none".to_owned(),
-            };
-            format!("{}: none of its points is used: {why}", path.display()).into()
-        }
+        Notice::OutputMayNotFit { need, free } => output_may_not_fit(*need, *free).into(),
+        Notice::TasksMayNotFit { need, free } => tasks_may_not_fit(*need, *free).into(),
+        Notice::NoPointUsed(path, classes) => no_point_used(path, classes.as_deref()),
         Notice::NoPointOfClass(class) => format!("no point has class {class}").into(),
         Notice::GroundUsed => "points of class 2 (ground) are used".into(),
-        Notice::PointsWithoutClassUsed(count) => {
-            format!("{count} points from files without classes are used, too").into()
-        }
-        Notice::AllClassesUsed => {
-            wording!["no point has class 2 (ground): all classes are used (choose with ", Setting::Class, ")"]
-        }
-        Notice::Reassigned { path, stated, assigned } => {
-            wording![format!("{} states {stated}; {assigned} is used, as given by ", path.display()), Setting::Crs]
-        }
-        Notice::SystemOfOthers(path, crs) => {
-            format!("{} states no coordinate system; {crs} is used, as in the other files", path.display()).into()
-        }
-        Notice::NoSystem => "no coordinate system is stated: lengths are in the units of the data".into(),
-        Notice::DifferentUnits(plan, height) => {
-            format!("x and y are in units of the {plan}, heights in units of the {height}").into()
-        }
+        Notice::PointsWithoutClassUsed(count) => points_without_class(*count).into(),
+        Notice::AllClassesUsed => all_classes_used(),
+        Notice::Reassigned { path, stated, assigned } => reassigned(path, stated, assigned),
+        Notice::SystemOfOthers(path, crs) => system_of_others(path, crs).into(),
+        Notice::NoSystem => no_system().into(),
+        Notice::DifferentUnits(plan, height) => different_units(plan, height).into(),
         Notice::Reprojecting(from, to) => format!("reprojecting from {from} to {to}").into(),
         Notice::Transform(text) => text.clone().into(),
-        Notice::FarApart(before, after, gap) => format!(
-            "{} and {} are {gap} apart, with nothing between them: are they in the same coordinate system?",
-            before.display(),
-            after.display()
-        )
-        .into(),
-        Notice::BreaklinesApart(gap) => {
-            format!("the breaklines lie {gap} away from the points: are they in the same coordinate system?").into()
-        }
-        Notice::BreaklinesBeyond(reach) => wording![
-            format!("breaklines reach {reach} beyond the points: the surface there depends on them alone (clip with "),
-            Setting::Bounds,
-            ")"
-        ],
-        Notice::EdgeLimit(length) => {
-            wording![format!("triangles at the rim with edges over {length} are left out ("), Setting::MaxEdge, ")"]
-        }
-        Notice::NoEdgeLimit => wording!["the whole convex hull is kept (", Setting::MaxEdge.text("none"), ")"],
-        Notice::BoundsBuffer(buffer) => {
-            let how_far = match buffer {
-                None => "all points are used".to_owned(),
-                Some(buffer) => format!("points up to {buffer} outside of the bounds are used"),
-            };
-            format!("{how_far}, so that the surface inside is the same as with all points").into()
-        }
+        Notice::FarApart(before, after, gap) => far_apart(before, after, gap).into(),
+        Notice::BreaklinesApart(gap) => breaklines_apart(gap).into(),
+        Notice::BreaklinesBeyond(reach) => breaklines_beyond(reach),
+        Notice::EdgeLimit(length) => edge_limit(length),
+        Notice::NoEdgeLimit => no_edge_limit(),
+        Notice::BoundsBuffer(buffer) => bounds_buffer(buffer.as_ref()).into(),
         Notice::Triangulated(time) => format!("triangulated in {:.2} s", time.as_secs_f64()).into(),
-        Notice::Uncertain(count, buffer) => {
-            format!("{count} triangles within the bounds may depend on points further out than {buffer}").into()
-        }
+        Notice::Uncertain(count, buffer) => uncertain(*count, buffer).into(),
         Notice::CrossingsRounded { unit, on_grid } => rounded(unit, *on_grid).into(),
-        Notice::EdgeLimitUnusual { limit, spacing } => wording![
-            format!(
-                "the longest edge at the rim is {limit}, but points are {spacing} apart on average: choose it with "
-            ),
-            Setting::MaxEdge.number("LENGTH"),
-            " or ",
-            Setting::MaxEdge.text("auto")
-        ],
+        Notice::EdgeLimitUnusual { limit, spacing } => unusual_edge_limit(limit, spacing),
         Notice::LevelRings { rings, points, name, largest } => {
-            let lines = if *rings == 1 {
-                "a closed line of one height has"
-            } else {
-                &format!("{rings} closed lines of one height have")
-            };
-            let inside = if *points == 1 { "1 point" } else { &format!("{points} points") };
-            wording![
-                format!("{lines} {inside} of other heights inside, by up to {largest} ({name}): for lakes, use "),
-                Setting::Flat
-            ]
+            level_rings(*rings, *points, name, largest)
         }
-        Notice::RiverHeights { rivers, name, rising, largest_rise, rise_at, largest_difference, difference_at } => {
-            let [[x, y], [u, v]] = [rise_at, difference_at].map(|at| at.map(neat));
-            let others = if *rivers > 1 { &format!(" ({} others are not, either)", rivers - 1) } else { "" };
-            let mut text = format!("the banks of the river {name} are not level{others}");
-            if *rising > 0 {
-                text += &format!(": they rise downstream at {rising} vertices, by up to {largest_rise} (at {x} {y})");
-            }
-            if largest_difference.value > 0.0 {
-                text += &format!("; they differ by up to {largest_difference} across (at {u} {v})");
-            }
-            text.into()
+        Notice::RiverHeights {
+            rivers, name, rising, largest_rise, rise_at, largest_difference, difference_at
+        } => {
+            let rise = banks_rise(*rising, largest_rise, *rise_at);
+            let difference = banks_differ(largest_difference, *difference_at);
+            format!("{}{rise}{difference}", banks(*rivers, name)).into()
         }
-        Notice::RiversLowered { count: 1, first } => {
-            let lowerings: Vec<String> = first.iter().map(lowering).collect();
-            format!("{}: if it should not be, correct the heights of either", lowerings.join(", ")).into()
-        }
-        Notice::RiversLowered { count, .. } => {
-            format!("{count} rivers are lowered to others that join them: correct the heights of those that are wrong")
-                .into()
-        }
-        Notice::RiverOverlap { rivers, name, at } => {
-            let [x, y] = at.map(neat);
-            let others = if *rivers > 1 { &format!(" (and {} others)", rivers - 1) } else { "" };
-            format!(
-                "the banks of the river {name} meet near {x} {y}{others}: what they enclose twice is not water; divide \
-                 the line, or make it narrower"
-            )
-            .into()
-        }
-        Notice::WallsInWater { vertices, name, at } => {
-            let [x, y] = at.map(neat);
-            let count = if *vertices == 1 { "1 vertex" } else { &format!("{vertices} vertices") };
-            format!(
-                "{count} of walls have the height of water, which counts first (at {x} {y} of {name}): draw walls behind \
-                 the shore, by more than their width"
-            ).into()
-        }
-        Notice::WaterOverlaps { count: 1, first } => {
-            let steps: Vec<String> = first.iter().map(step).collect();
-            format!(
-                "two waters overlap or touch, and the lower height, or that of the lake, counts: {}",
-                steps.join(", ")
-            )
-            .into()
-        }
-        Notice::WaterOverlaps { count, .. } => {
-            format!("{count} pairs of waters overlap or touch, and the lower height, or that of the lake, counts")
-                .into()
-        }
-        Notice::LinesApart(role) => wording!["nothing of ", role.setting(), " lies on the surface"],
+        Notice::RiversLowered { count, first } => rivers_lowered(*count, first).into(),
+        Notice::RiverOverlap { rivers, name, at } => river_overlap(*rivers, name, *at).into(),
+        Notice::WallsInWater { vertices, name, at } => walls_in_water(*vertices, name, *at).into(),
+        Notice::WaterOverlaps { count, first } => water_overlaps(*count, first).into(),
+        Notice::LinesApart(role) => lines_apart(*role),
         Notice::CrossingHeights { count, largest, at, .. } => {
-            let points = if *count == 1 { "1 point" } else { &format!("{count} points") };
-            let [x, y] = at.map(neat);
-            format!("breaklines meet with different heights at {points}, by up to {largest} (at {x} {y})").into()
+            crossing_heights(*count, largest, *at).into()
         }
-        Notice::ExtentApart => wording!["the rectangle of ", Setting::Extent, " does not touch the surface"],
-        Notice::DefaultResolution(width) => wording![format!("cells are {width} wide ("), Setting::Resolution, ")"],
-        Notice::DefaultInterval(height) => wording![format!("contours are {height} apart ("), Setting::Interval, ")"],
-        Notice::HeightFactor(factor) => {
-            wording![
-                format!("heights are multiplied by {} to match the units of x and y (", number(*factor)),
-                Setting::ZFactor,
-                ")"
-            ]
-        }
-        Notice::DelaunayUnchecked(path) => {
-            format!("{}: the format does not store breaklines: the Delaunay law is not checked", path.display()).into()
-        }
-        Notice::RegionAreasUnused(path) => {
-            wording![
-                format!("{}: the largest areas of its regions are ignored: add ", path.display()),
-                Setting::RegionAreas.on(),
-                " to use them"
-            ]
-        }
-        Notice::SeedUnused { path, line, seed, why } => {
-            let what = match seed {
-                Seed::Hole => "hole",
-                Seed::Region => "region",
-            };
-            let why = match why {
-                SeedFlaw::OnSegment => "lies on a segment, so that its side is ambiguous",
-                SeedFlaw::OutsideHull => "lies outside of the convex hull",
-            };
-            format!("{}: line {line}: the {what} {why}; it is not used", path.display()).into()
-        }
+        Notice::ExtentApart => extent_apart(),
+        Notice::DefaultResolution(width) => default_resolution(width),
+        Notice::DefaultInterval(height) => default_interval(height),
+        Notice::HeightFactor(factor) => height_factor(*factor),
+        Notice::DelaunayUnchecked(path) => delaunay_unchecked(path),
+        Notice::RegionAreasUnused(path) => region_areas_unused(path),
+        Notice::SeedUnused { path, line, seed, why } => seed_unused(path, *line, *seed, *why),
     }
+}
+
+fn of_file(path: &Path, text: &str) -> Wording {
+    format!("{}: {text}", path.display()).into()
+}
+
+fn layer_read(path: &Path, format: &str, records: usize) -> Wording {
+    of_file(path, &format!("{format}, {records} records"))
+}
+
+fn little_memory(need: u64, left: u64, limit: &str) -> String {
+    let [need, left] = [need, left].map(bytes);
+    format!("memory may not suffice: if all points are used they take about {need}, and {left} are left {limit}")
+}
+
+fn output_may_not_fit(need: u64, free: u64) -> String {
+    let [need, free] = [need, free].map(bytes);
+    format!("the output may not fit: {need} before compression, {free} are free on the disk")
+}
+
+fn tasks_may_not_fit(need: u64, free: u64) -> String {
+    let [need, free] = [need, free].map(bytes);
+    format!("the files of the tasks may not fit: the files of the tasks take about {need}, {free} are free on the disk")
+}
+
+fn no_point_used(path: &Path, classes: Option<&[u8]>) -> Wording {
+    let why = match classes {
+        Some(classes) => {
+            let classes: Vec<String> = classes.iter().map(u8::to_string).collect();
+            format!("it has none of class {}", classes.join(" or "))
+        }
+        None => "it has none".to_owned(),
+    };
+    of_file(path, &format!("none of its points is used: {why}"))
+}
+
+fn points_without_class(count: u64) -> String {
+    format!("{count} points from files without classes are used, too")
+}
+
+fn all_classes_used() -> Wording {
+    wording!["no point has class 2 (ground): all classes are used (choose with ", Setting::Class, ")"]
+}
+
+fn reassigned(path: &Path, stated: &Crs, assigned: &Crs) -> Wording {
+    wording![format!("{} states {stated}; {assigned} is used, as given by ", path.display()), Setting::Crs]
+}
+
+fn system_of_others(path: &Path, crs: &Crs) -> String {
+    format!("{} states no coordinate system; {crs} is used, as in the other files", path.display())
+}
+
+fn no_system() -> &'static str {
+    "no coordinate system is stated: lengths are in the units of the data"
+}
+
+fn different_units(plan: &str, height: &str) -> String {
+    format!("x and y are in units of the {plan}, heights in units of the {height}")
+}
+
+fn far_apart(before: &Path, after: &Path, gap: &Quantity) -> String {
+    format!(
+        "{} and {} are {gap} apart, with nothing between them: are they in the same coordinate system?",
+        before.display(),
+        after.display()
+    )
+}
+
+fn breaklines_apart(gap: &Quantity) -> String {
+    format!("the breaklines lie {gap} away from the points: are they in the same coordinate system?")
+}
+
+fn breaklines_beyond(reach: &Quantity) -> Wording {
+    wording![
+        format!("breaklines reach {reach} beyond the points: the surface there depends on them alone (clip with "),
+        Setting::Bounds,
+        ")"
+    ]
+}
+
+fn edge_limit(length: &Quantity) -> Wording {
+    wording![format!("triangles at the rim with edges over {length} are left out ("), Setting::MaxEdge, ")"]
+}
+
+fn no_edge_limit() -> Wording {
+    wording!["the whole convex hull is kept (", Setting::MaxEdge.text("none"), ")"]
+}
+
+fn unusual_edge_limit(limit: &Quantity, spacing: &Quantity) -> Wording {
+    wording![
+        format!("the longest edge at the rim is {limit}, but points are {spacing} apart on average: choose it with "),
+        Setting::MaxEdge.number("LENGTH"),
+        " or ",
+        Setting::MaxEdge.text("auto")
+    ]
+}
+
+fn bounds_buffer(buffer: Option<&Quantity>) -> String {
+    let how_far = match buffer {
+        None => "all points are used".to_owned(),
+        Some(buffer) => format!("points up to {buffer} outside of the bounds are used"),
+    };
+    format!("{how_far}, so that the surface inside is the same as with all points")
+}
+
+fn uncertain(count: usize, buffer: &Quantity) -> String {
+    format!("{count} triangles within the bounds may depend on points further out than {buffer}")
+}
+
+fn level_rings(rings: usize, points: usize, name: &str, largest: &Quantity) -> Wording {
+    let lines = if rings == 1 {
+        "a closed line of one height has"
+    } else {
+        &format!("{rings} closed lines of one height have")
+    };
+    let inside = if points == 1 { "1 point" } else { &format!("{points} points") };
+    wording![
+        format!("{lines} {inside} of other heights inside, by up to {largest} ({name}): for lakes, use "),
+        Setting::Flat
+    ]
+}
+
+fn banks(rivers: usize, name: &str) -> String {
+    let others = if rivers > 1 { &format!(" ({} others are not, either)", rivers - 1) } else { "" };
+    format!("the banks of the river {name} are not level{others}")
+}
+
+fn banks_rise(vertices: usize, largest: &Quantity, at: [f64; 2]) -> String {
+    let [x, y] = at.map(neat);
+    match vertices {
+        0 => String::new(),
+        _ => format!(": they rise downstream at {vertices} vertices, by up to {largest} (at {x} {y})"),
+    }
+}
+
+fn banks_differ(largest: &Quantity, at: [f64; 2]) -> String {
+    let [x, y] = at.map(neat);
+    match largest.value > 0.0 {
+        true => format!("; they differ by up to {largest} across (at {x} {y})"),
+        false => String::new(),
+    }
+}
+
+fn rivers_lowered(count: usize, first: &[LoweredRiver]) -> String {
+    if count == 1 {
+        let lowerings: Vec<String> = first.iter().map(lowering).collect();
+        return format!("{}: if it should not be, correct the heights of either", lowerings.join(", "));
+    }
+    format!("{count} rivers are lowered to others that join them: correct the heights of those that are wrong")
+}
+
+fn river_overlap(rivers: usize, name: &str, at: [f64; 2]) -> String {
+    let [x, y] = at.map(neat);
+    let others = if rivers > 1 { &format!(" (and {} others)", rivers - 1) } else { "" };
+    format!(
+        "the banks of the river {name} meet near {x} {y}{others}: what they enclose twice is not water; divide the \
+         line, or make it narrower"
+    )
+}
+
+fn walls_in_water(vertices: usize, name: &str, at: [f64; 2]) -> String {
+    let [x, y] = at.map(neat);
+    let count = if vertices == 1 { "1 vertex" } else { &format!("{vertices} vertices") };
+    format!(
+        "{count} of walls have the height of water, which counts first (at {x} {y} of {name}): draw walls behind the \
+         shore, by more than their width"
+    )
+}
+
+fn water_overlaps(count: usize, first: &[WaterStep]) -> String {
+    if count == 1 {
+        let steps: Vec<String> = first.iter().map(step).collect();
+        return format!(
+            "two waters overlap or touch, and the lower height, or that of the lake, counts: {}",
+            steps.join(", ")
+        );
+    }
+    format!("{count} pairs of waters overlap or touch, and the lower height, or that of the lake, counts")
+}
+
+fn crossing_heights(count: usize, largest: &Quantity, at: [f64; 2]) -> String {
+    let points = if count == 1 { "1 point" } else { &format!("{count} points") };
+    let [x, y] = at.map(neat);
+    format!("breaklines meet with different heights at {points}, by up to {largest} (at {x} {y})")
+}
+
+fn lines_apart(role: LineRole) -> Wording {
+    wording!["nothing of ", role.setting(), " lies on the surface"]
+}
+
+fn extent_apart() -> Wording {
+    wording!["the rectangle of ", Setting::Extent, " does not touch the surface"]
+}
+
+fn default_resolution(width: &Quantity) -> Wording {
+    wording![format!("cells are {width} wide ("), Setting::Resolution, ")"]
+}
+
+fn default_interval(height: &Quantity) -> Wording {
+    wording![format!("contours are {height} apart ("), Setting::Interval, ")"]
+}
+
+fn height_factor(factor: f64) -> Wording {
+    wording![
+        format!("heights are multiplied by {} to match the units of x and y (", number(factor)),
+        Setting::ZFactor,
+        ")"
+    ]
+}
+
+fn delaunay_unchecked(path: &Path) -> Wording {
+    of_file(path, "the format does not store breaklines: the Delaunay law is not checked")
+}
+
+fn region_areas_unused(path: &Path) -> Wording {
+    wording![
+        format!("{}: the largest areas of its regions are ignored: add ", path.display()),
+        Setting::RegionAreas.on(),
+        " to use them"
+    ]
+}
+
+fn seed_unused(path: &Path, line: usize, seed: Seed, why: SeedFlaw) -> Wording {
+    let what = match seed {
+        Seed::Hole => "hole",
+        Seed::Region => "region",
+    };
+    let why = match why {
+        SeedFlaw::OnSegment => "lies on a segment, so that its side is ambiguous",
+        SeedFlaw::OutsideHull => "lies outside of the convex hull",
+    };
+    of_file(path, &format!("line {line}: the {what} {why}; it is not used"))
 }
 
 fn skipped(why: &str, hole: Option<&Bounds>, others: &[PathBuf]) -> String {
