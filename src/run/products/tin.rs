@@ -15,7 +15,7 @@ use crate::run::context::units::Units;
 use crate::run::context::{Journal, Size, Stage};
 use crate::run::lines::crossings::{self, LineNames};
 use crate::run::lines::inputs::{Added, LineLayers, WALL_WIDTH_METRES};
-use crate::run::lines::notes::{self, LevelRings, LineInput};
+use crate::run::lines::notes::{self, LevelRing, LevelRings, LineInput};
 use crate::run::request::input::{Input, MemoryPoints};
 use crate::run::request::lines::{LineRequest, LineRole};
 use crate::run::request::serialized;
@@ -111,6 +111,17 @@ impl TinRequest {
                 Err(Error::usage(format!("the bounds go from {} {} to {} {}", min[0], min[1], max[0], max[1])))
             }
             _ => Ok(()),
+        }
+    }
+
+    /// Returns those of the replaced points that the report has.
+    fn replaced_to_report(&self, replaced: Vec<[f64; 3]>) -> Vec<[f64; 3]> {
+        match self.replaced {
+            ReplacedPoints::Keep => {
+                let is_within = |p: &[f64; 3]| self.bounds.as_ref().is_none_or(|bounds| bounds.holds(p[0], p[1]));
+                replaced.into_iter().filter(is_within).collect()
+            }
+            ReplacedPoints::Drop => Vec::new(),
         }
     }
 
@@ -258,69 +269,29 @@ pub(crate) fn build(request: &TinRequest, options: &SystemOptions, journal: &Jou
     let mut rim = Rim::new(request, &units, journal);
 
     // Lines first: they are few, and their errors are known before the points are read.
-    let Added { names, mut inputs, extent: line_extent, mut level_rings, uneven, lowered, overlaps } =
+    let Added { names, mut inputs, extent: line_extent, level_rings, uneven, lowered, overlaps } =
         layers.add_to(&mut builder, of_layers, &transforms, &units)?;
     notes::note_uneven(&uneven, &units, journal);
     notes::note_lowered(lowered, journal);
     notes::note_overlaps(&overlaps, journal);
     builder.mark_overlaps();
 
-    let paths: Vec<&Path> = request.points.iter().map(Input::path).collect();
-    let mut reach = Reach::new(request, &rim);
-    let (tin, points, replaced) = loop {
-        let mut selection = Selection::new(request.classes.clone(), reach.window());
-        let extents = files.read(of_points, &transforms, &mut selection, journal)?;
-        extents::compare_files(&paths, &extents, &units, journal);
-        let (points, report) = selection.finish();
-        transforms.warn(journal);
-        note_classes(&report, &request.classes, journal);
-        if points.is_empty() && !layers.has_lines_with_heights() && !reach.may_grow_into(&report) {
-            return Err(nothing_left(&report, &paths));
-        }
-        if request.bounds.is_none() && !layers.has_boundary() {
-            let mut extent = Bounds::default();
-            points.iter().for_each(|&point| extent.add(point));
-            extents::compare_lines(&extent, &line_extent, rim.buffer, &units).into_iter().for_each(|n| journal.add(n));
-        }
-        memory::require_for_points(points.len())?;
-        rim.find_limit(&report, &extents);
-        // Once, also if more points are read.
-        let rings = std::mem::take(&mut level_rings);
-        if let Some(rings) = LevelRings::of(rings, &request.lines, default_tolerance(&units)) {
-            let mut found = rings.none_found();
-            rings.count(&points, &mut found);
-            rings.notice(&found, &names, &units).into_iter().for_each(|notice| journal.add(notice));
-        }
-        let mut builder = builder.clone();
-        builder.max_edge = rim.max_edge;
-        builder.window = reach.window().map(|read| Window { read, all: report.extent });
-        builder.add_owned_points(points);
-        let replaced = builder.take_replaced_points();
-        let work = journal.start(Stage::Triangulating, Size::Uncounted)?;
-        let start = Instant::now();
-        let tin = builder.build_named(&|line| names.name(line), journal.context.cancel);
-        work.end()?;
-        journal.add(Notice::Triangulated(start.elapsed()));
-        match tin {
-            Ok(tin) if tin.report().uncertain == 0 => break (tin, report, replaced),
-            Ok(tin) => journal.add(Notice::Uncertain(tin.report().uncertain, units.length(reach.buffer))),
-            // Too few points are an error only if there are no more to add.
-            Err(_) if reach.may_grow_into(&report) => (),
-            Err(error) => {
-                return Err(match paths.as_slice() {
-                    [file] if !layers.has_lines_with_heights() => error.in_file(file),
-                    _ => error,
-                });
-            }
-        }
-        reach.grow();
+    let building = Building {
+        request,
+        layers: &layers,
+        builder,
+        names: &names,
+        line_extent,
+        transforms: &transforms,
+        by_file: of_points,
+        units: &units,
+        journal,
+        paths: request.points.iter().map(Input::path).collect(),
     };
+    let mut reach = Reach::new(request, &rim);
+    let Built { tin, points, replaced } = building.surface(&mut files, level_rings, &mut rim, &mut reach)?;
     notes::count_edges(&mut inputs, &tin);
-    notes::note_water_overlaps(tin.report(), &names, &units, journal);
-    notes::note_walls_in_water(tin.report(), &names, journal);
-    if request.bounds.is_none() && !layers.has_boundary() {
-        notes::note_apart(&inputs, tin.report(), journal);
-    }
+    building.note_lines(&inputs, tin.report());
     rim.note(&units, journal);
     reach.note(&points, &units, journal);
     crossings::note(tin.report(), &names, &units, journal);
@@ -332,18 +303,169 @@ pub(crate) fn build(request: &TinRequest, options: &SystemOptions, journal: &Jou
         points,
         columns: files.columns(),
         lines: inputs,
-        replaced: match request.replaced {
-            ReplacedPoints::Keep => {
-                let is_within = |p: &[f64; 3]| request.bounds.as_ref().is_none_or(|bounds| bounds.holds(p[0], p[1]));
-                replaced.into_iter().filter(is_within).collect()
-            }
-            ReplacedPoints::Drop => Vec::new(),
-        },
+        replaced: request.replaced_to_report(replaced),
         tin: tin.report().clone(),
         duplicates: request.duplicates,
         line_names: names,
     };
     Ok((tin, report))
+}
+
+/// What stays the same where points are read and triangulated several times.
+struct Building<'a> {
+    request: &'a TinRequest,
+    layers: &'a LineLayers<'a>,
+    /// All options and lines, without points.
+    builder: TinBuilder,
+    names: &'a LineNames,
+    line_extent: Bounds,
+    transforms: &'a Transforms,
+    /// The transform of each file of points.
+    by_file: &'a [Option<usize>],
+    units: &'a Units,
+    journal: &'a Journal<'a>,
+    /// The files of points.
+    paths: Vec<&'a Path>,
+}
+
+/// The points that were read within reach.
+struct Read {
+    points: Vec<[f64; 3]>,
+    report: SelectionReport,
+    /// The extents of the files.
+    extents: Vec<Bounds>,
+}
+
+/// A TIN, and what was done with its points.
+struct Built {
+    tin: Tin,
+    points: SelectionReport,
+    /// The points that water and walls replaced.
+    replaced: Vec<[f64; 3]>,
+}
+
+impl Building<'_> {
+    /// Reads and triangulates points, with a wider and wider reach, until no triangle within the
+    /// bounds can depend on further ones.
+    ///
+    /// # Errors
+    /// If a file cannot be read, too few points are left, or the run is canceled.
+    fn surface(
+        &self,
+        files: &mut PointFiles,
+        mut level_rings: Vec<LevelRing>,
+        rim: &mut Rim,
+        reach: &mut Reach,
+    ) -> Result<Built> {
+        loop {
+            let Read { points, report, extents } = self.read(files, reach)?;
+            self.compare_lines(&points, rim.buffer);
+            memory::require_for_points(points.len())?;
+            rim.find_limit(&report, &extents);
+            // Once, also if more points are read.
+            self.note_level_rings(std::mem::take(&mut level_rings), &points);
+            let (tin, replaced) = self.triangulate(points, &report, rim, reach)?;
+            match tin {
+                Ok(tin) if tin.report().uncertain == 0 => return Ok(Built { tin, points: report, replaced }),
+                Ok(tin) => {
+                    let buffer = self.units.length(reach.buffer);
+                    self.journal.add(Notice::Uncertain(tin.report().uncertain, buffer));
+                }
+                // Too few points are an error only if there are no more to add.
+                Err(_) if reach.may_grow_into(&report) => (),
+                Err(error) => return Err(self.in_file(error)),
+            }
+            reach.grow();
+        }
+    }
+
+    /// Reads the points within reach.
+    ///
+    /// # Errors
+    /// If a file cannot be read, or no input is left, even with a wider reach.
+    fn read(&self, files: &mut PointFiles, reach: &Reach) -> Result<Read> {
+        let classes = &self.request.classes;
+        let mut selection = Selection::new(classes.clone(), reach.window());
+        let extents = files.read(self.by_file, self.transforms, &mut selection, self.journal)?;
+        extents::compare_files(&self.paths, &extents, self.units, self.journal);
+        let (points, report) = selection.finish();
+        self.transforms.warn(self.journal);
+        note_classes(&report, classes, self.journal);
+        if points.is_empty() && !self.layers.has_lines_with_heights() && !reach.may_grow_into(&report) {
+            return Err(nothing_left(&report, &self.paths));
+        }
+        Ok(Read { points, report, extents })
+    }
+
+    /// Adds a notice if the lines are farther than a length from all points.
+    fn compare_lines(&self, points: &[[f64; 3]], buffer: f64) {
+        if self.is_clipped() {
+            return;
+        }
+        let mut extent = Bounds::default();
+        points.iter().for_each(|&point| extent.add(point));
+        let notice = extents::compare_lines(&extent, &self.line_extent, buffer, self.units);
+        notice.into_iter().for_each(|notice| self.journal.add(notice));
+    }
+
+    /// Adds a notice if points inside of closed lines of one height have other heights.
+    fn note_level_rings(&self, rings: Vec<LevelRing>, points: &[[f64; 3]]) {
+        let tolerance = default_tolerance(self.units);
+        if let Some(rings) = LevelRings::of(rings, &self.request.lines, tolerance) {
+            let mut found = rings.none_found();
+            rings.count(points, &mut found);
+            let notice = rings.notice(&found, self.names, self.units);
+            notice.into_iter().for_each(|notice| self.journal.add(notice));
+        }
+    }
+
+    /// Triangulates points with the lines. Returns the TIN, or why there is none, and the points
+    /// that water and walls replaced.
+    ///
+    /// # Errors
+    /// If the run is canceled.
+    fn triangulate(
+        &self,
+        points: Vec<[f64; 3]>,
+        report: &SelectionReport,
+        rim: &Rim,
+        reach: &Reach,
+    ) -> Result<(Result<Tin>, Vec<[f64; 3]>)> {
+        let mut builder = self.builder.clone();
+        builder.max_edge = rim.max_edge;
+        builder.window = reach.window().map(|read| Window { read, all: report.extent });
+        builder.add_owned_points(points);
+        let replaced = builder.take_replaced_points();
+        let work = self.journal.start(Stage::Triangulating, Size::Uncounted)?;
+        let start = Instant::now();
+        let tin = builder.build_named(&|line| self.names.name(line), self.journal.context.cancel);
+        work.end()?;
+        self.journal.add(Notice::Triangulated(start.elapsed()));
+        Ok((tin, replaced))
+    }
+
+    /// Adds notices about lines in a finished TIN.
+    fn note_lines(&self, inputs: &[LineInput], report: &TinReport) {
+        notes::note_water_overlaps(report, self.names, self.units, self.journal);
+        notes::note_walls_in_water(report, self.names, self.journal);
+        if !self.is_clipped() {
+            notes::note_apart(inputs, report, self.journal);
+        }
+    }
+
+    /// Returns true if the surface is cut to bounds or a boundary, so that inputs may be elsewhere.
+    fn is_clipped(&self) -> bool {
+        self.request.bounds.is_some() || self.layers.has_boundary()
+    }
+
+    /// Adds the file to an error that can only concern that one.
+    #[cold]
+    fn in_file(&self, error: Error) -> Error {
+        match self.paths.as_slice() {
+            [file] if !self.layers.has_lines_with_heights() => error.in_file(file),
+            _ => error,
+        }
+    }
 }
 
 /// Returns a builder with the options of a request, without points and lines.
