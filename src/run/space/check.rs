@@ -109,60 +109,172 @@ pub fn check_space(path: &Path, law: SpaceLaw, context: &Context) -> Result<Spac
 /// A tetrahedron, and one of its facets by the corner opposite to it.
 type Side = (u32, usize);
 
+/// Returns the flaws of a triangulation; those that a check needs to be absent end the search.
 fn flaws(triangulated: &Tetrahedralized, weights: Option<&[f64]>) -> Vec<SpaceFlaw> {
-    let Tetrahedralized { nodes, tetrahedra, neighbors: stated } = triangulated;
-    let first = nodes.first_number;
-    let point = |v: u32| nodes.points[v as usize];
-    let orientation = |corners: [u32; 4]| Wide::sign(&Orientation3(corners.map(point)));
-    let in_sphere = |[a, b, c, d]: [u32; 4], v: u32| match weights {
-        None => Wide::sign(&InSphere([a, b, c, d, v].map(point))),
-        Some(weights) => Wide::sign(&PowerTest3([a, b, c, d, v].map(|v| {
-            let [x, y, z] = point(v);
-            [x, y, z, weights[v as usize]]
-        }))),
-    };
-    let signs: Vec<Sign> = tetrahedra.iter().map(|&corners| orientation(corners)).collect();
-    let mut flaws: Vec<SpaceFlaw> = Vec::new();
-    flaws.extend((first..).zip(&signs).filter(|(_, sign)| **sign == Sign::Zero).map(|(cell, _)| SpaceFlaw::Flat(cell)));
-
-    let mut facets: Vec<([u32; 3], Side)> = Vec::with_capacity(4 * tetrahedra.len());
-    for (cell, corners) in (0..).zip(tetrahedra) {
-        for (i, facet) in FACETS.iter().enumerate() {
-            let mut facet = facet.map(|k| corners[k]);
-            facet.sort_unstable();
-            facets.push((facet, (cell, i)));
-        }
-    }
-    facets.sort_unstable();
-    let mut neighbors = vec![[None; 4]; tetrahedra.len()];
-    let mut hull: Vec<Side> = Vec::new();
-    for group in facets.chunk_by(|a, b| a.0 == b.0) {
-        match *group {
-            [(_, side)] => hull.push(side),
-            [(facet, (a, i)), (_, (b, j))] => {
-                neighbors[a as usize][i] = Some(b);
-                neighbors[b as usize][j] = Some(a);
-                let [p, q] = [(a, i), (b, j)].map(|(cell, i)| tetrahedra[cell as usize][i]);
-                let [p, q] = [p, q].map(|apex| orientation([facet[0], facet[1], facet[2], apex]));
-                if p * q == Sign::Positive {
-                    flaws.push(SpaceFlaw::Folded(a + first, b + first));
-                }
-            }
-            [(facet, _), ..] => flaws.push(SpaceFlaw::Crowded(facet.map(|v| v + first))),
-            [] => {}
-        }
-    }
-    for (cell, (found, stated)) in (first..).zip(neighbors.iter().zip(stated)) {
-        flaws.extend((0..4).filter(|&i| found[i] != stated[i]).map(|i| SpaceFlaw::Neighbor(cell, i)));
-    }
-    if tetrahedra.is_empty() && !is_flat(&nodes.points) {
+    let checked = Checked::new(triangulated, weights);
+    let mut flaws = checked.flat();
+    let (facets, of_facets) = checked.facets();
+    flaws.extend(of_facets);
+    flaws.extend(checked.wrong_neighbors(&facets));
+    if checked.tetrahedra.is_empty() && !is_flat(&triangulated.nodes.points) {
         flaws.push(SpaceFlaw::Empty);
     }
-    if !flaws.is_empty() || tetrahedra.is_empty() {
+    if !flaws.is_empty() || checked.tetrahedra.is_empty() {
         return flaws;
     }
+    if !is_connected(&facets.neighbors) {
+        flaws.push(SpaceFlaw::Apart);
+    }
+    flaws.extend(checked.broken_law(&facets));
+    let dents = dents(checked.tetrahedra, &checked.signs, &facets.hull, &|corners| checked.orientation(corners));
+    flaws.extend(dents.into_iter().map(|edge| SpaceFlaw::Dent(edge.map(|v| v + checked.first))));
+    if flaws.is_empty() {
+        flaws = checked.left_out(&facets);
+    }
+    flaws
+}
 
-    let mut is_seen = vec![false; tetrahedra.len()];
+/// A triangulation that is checked, with the orientations of its tetrahedra.
+struct Checked<'a> {
+    points: &'a [[f64; 3]],
+    weights: Option<&'a [f64]>,
+    tetrahedra: &'a [[u32; 4]],
+    /// The neighbors that a file states.
+    stated: &'a [[Option<u32>; 4]],
+    signs: Vec<Sign>,
+    /// The number of the first tetrahedron and of the first vertex in the file.
+    first: u32,
+}
+
+/// How tetrahedra are connected.
+struct Facets {
+    neighbors: Vec<[Option<u32>; 4]>,
+    /// The facets that only one tetrahedron has.
+    hull: Vec<Side>,
+}
+
+impl<'a> Checked<'a> {
+    fn new(triangulated: &'a Tetrahedralized, weights: Option<&'a [f64]>) -> Self {
+        let Tetrahedralized { nodes, tetrahedra, neighbors: stated } = triangulated;
+        let mut checked = Checked {
+            points: &nodes.points,
+            weights,
+            tetrahedra,
+            stated,
+            signs: Vec::new(),
+            first: nodes.first_number,
+        };
+        checked.signs = tetrahedra.iter().map(|&corners| checked.orientation(corners)).collect();
+        checked
+    }
+
+    fn orientation(&self, corners: [u32; 4]) -> Sign {
+        Wide::sign(&Orientation3(corners.map(|v| self.points[v as usize])))
+    }
+
+    /// Returns true if a vertex is inside the sphere of a tetrahedron, or has a negative power to
+    /// it.
+    fn is_in_sphere(&self, cell: u32, vertex: u32) -> bool {
+        let [a, b, c, d] = self.tetrahedra[cell as usize];
+        let point = |v: u32| self.points[v as usize];
+        let sign = match self.weights {
+            None => Wide::sign(&InSphere([a, b, c, d, vertex].map(point))),
+            Some(weights) => Wide::sign(&PowerTest3([a, b, c, d, vertex].map(|v| {
+                let [x, y, z] = point(v);
+                [x, y, z, weights[v as usize]]
+            }))),
+        };
+        sign * self.signs[cell as usize] == Sign::Positive
+    }
+
+    /// Returns the tetrahedra whose corners lie in a plane.
+    fn flat(&self) -> Vec<SpaceFlaw> {
+        let flat = (self.first..).zip(&self.signs).filter(|(_, sign)| **sign == Sign::Zero);
+        flat.map(|(cell, _)| SpaceFlaw::Flat(cell)).collect()
+    }
+
+    /// Returns how tetrahedra are connected, and the facets on one side of which they overlap, or
+    /// that too many have.
+    fn facets(&self) -> (Facets, Vec<SpaceFlaw>) {
+        let mut all: Vec<([u32; 3], Side)> = Vec::with_capacity(4 * self.tetrahedra.len());
+        for (cell, corners) in (0..).zip(self.tetrahedra) {
+            for (i, facet) in FACETS.iter().enumerate() {
+                let mut facet = facet.map(|k| corners[k]);
+                facet.sort_unstable();
+                all.push((facet, (cell, i)));
+            }
+        }
+        all.sort_unstable();
+        let mut facets = Facets { neighbors: vec![[None; 4]; self.tetrahedra.len()], hull: Vec::new() };
+        let mut flaws = Vec::new();
+        for group in all.chunk_by(|a, b| a.0 == b.0) {
+            match *group {
+                [(_, side)] => facets.hull.push(side),
+                [(facet, (a, i)), (_, (b, j))] => {
+                    facets.neighbors[a as usize][i] = Some(b);
+                    facets.neighbors[b as usize][j] = Some(a);
+                    let [p, q] = [(a, i), (b, j)].map(|(cell, i)| self.tetrahedra[cell as usize][i]);
+                    let [p, q] = [p, q].map(|apex| self.orientation([facet[0], facet[1], facet[2], apex]));
+                    if p * q == Sign::Positive {
+                        flaws.push(SpaceFlaw::Folded(a + self.first, b + self.first));
+                    }
+                }
+                [(facet, _), ..] => flaws.push(SpaceFlaw::Crowded(facet.map(|v| v + self.first))),
+                [] => {}
+            }
+        }
+        (facets, flaws)
+    }
+
+    /// Returns the neighbors that a file states otherwise.
+    fn wrong_neighbors(&self, facets: &Facets) -> Vec<SpaceFlaw> {
+        let mut flaws = Vec::new();
+        for (cell, (found, stated)) in (self.first..).zip(facets.neighbors.iter().zip(self.stated)) {
+            flaws.extend((0..4).filter(|&i| found[i] != stated[i]).map(|i| SpaceFlaw::Neighbor(cell, i)));
+        }
+        flaws
+    }
+
+    /// Returns the vertices that break the law of a neighbor's tetrahedron.
+    fn broken_law(&self, facets: &Facets) -> Vec<SpaceFlaw> {
+        let mut flaws = Vec::new();
+        for (cell, around) in (0u32..).zip(&facets.neighbors) {
+            for next in around.iter().flatten().filter(|&&next| next > cell) {
+                let corners = self.tetrahedra[cell as usize];
+                for &vertex in self.tetrahedra[*next as usize].iter().filter(|v| !corners.contains(v)) {
+                    if self.is_in_sphere(cell, vertex) {
+                        flaws.push(SpaceFlaw::NotDelaunay(cell + self.first, vertex + self.first));
+                    }
+                }
+            }
+        }
+        flaws
+    }
+
+    /// Returns the vertices that are in no tetrahedron, but should be. No other flaw may be there.
+    fn left_out(&self, facets: &Facets) -> Vec<SpaceFlaw> {
+        let mut is_used = vec![false; self.points.len()];
+        self.tetrahedra.as_flattened().iter().for_each(|&v| is_used[v as usize] = true);
+        let mut flaws = Vec::new();
+        let mut cell = 0;
+        for vertex in (0..).zip(&is_used).filter(|(_, is_used)| !**is_used).map(|(vertex, _)| vertex) {
+            let found = walk(self.tetrahedra, &facets.neighbors, cell, |cell, i| {
+                let mut corners = self.tetrahedra[cell as usize];
+                corners[i] = vertex;
+                self.orientation(corners) * self.signs[cell as usize] == Sign::Negative
+            });
+            cell = found.unwrap_or(cell);
+            if found.is_none_or(|cell| self.is_in_sphere(cell, vertex)) {
+                flaws.push(SpaceFlaw::LeftOut(vertex + self.first));
+            }
+        }
+        flaws
+    }
+}
+
+/// Returns true if all tetrahedra can be reached from the first one across facets.
+fn is_connected(neighbors: &[[Option<u32>; 4]]) -> bool {
+    let mut is_seen = vec![false; neighbors.len()];
     let mut seen = vec![0u32];
     is_seen[0] = true;
     while let Some(cell) = seen.pop() {
@@ -172,42 +284,7 @@ fn flaws(triangulated: &Tetrahedralized, weights: Option<&[f64]>) -> Vec<SpaceFl
             }
         }
     }
-    if is_seen.contains(&false) {
-        flaws.push(SpaceFlaw::Apart);
-    }
-    for (cell, around) in (0u32..).zip(&neighbors) {
-        for next in around.iter().flatten().filter(|&&next| next > cell) {
-            let corners = tetrahedra[cell as usize];
-            for &vertex in tetrahedra[*next as usize].iter().filter(|v| !corners.contains(v)) {
-                if in_sphere(corners, vertex) * signs[cell as usize] == Sign::Positive {
-                    flaws.push(SpaceFlaw::NotDelaunay(cell + first, vertex + first));
-                }
-            }
-        }
-    }
-    flaws.extend(
-        dents(tetrahedra, &signs, &hull, &orientation).into_iter().map(|edge| SpaceFlaw::Dent(edge.map(|v| v + first))),
-    );
-    if !flaws.is_empty() {
-        return flaws;
-    }
-    let mut is_used = vec![false; nodes.points.len()];
-    tetrahedra.as_flattened().iter().for_each(|&v| is_used[v as usize] = true);
-    let mut cell = 0;
-    for vertex in (0..).zip(&is_used).filter(|(_, is_used)| !**is_used).map(|(vertex, _)| vertex) {
-        let found = walk(tetrahedra, &neighbors, cell, |cell, i| {
-            let mut corners = tetrahedra[cell as usize];
-            corners[i] = vertex;
-            orientation(corners) * signs[cell as usize] == Sign::Negative
-        });
-        cell = found.unwrap_or(cell);
-        let is_hidden =
-            |cell: u32| in_sphere(tetrahedra[cell as usize], vertex) * signs[cell as usize] != Sign::Positive;
-        if !found.is_some_and(is_hidden) {
-            flaws.push(SpaceFlaw::LeftOut(vertex + first));
-        }
-    }
-    flaws
+    !is_seen.contains(&false)
 }
 
 /// Returns the tetrahedron that no facet separates from a point; `None` if the point is outside of
