@@ -168,11 +168,11 @@ fn verb(typed: &OsStr) -> Result<String> {
 
 /// Returns the translated words after the verb, and the names of formats among them.
 fn translated(verb: &str, words: Vec<OsString>) -> Result<(Vec<OsString>, Vec<String>)> {
-    let mut rest: VecDeque<OsString> = words.into();
-    let (mut ours, mut formats) = (Vec::with_capacity(rest.len()), Vec::new());
-    while let Some(word) = rest.pop_front() {
+    let ours = Vec::with_capacity(words.len());
+    let mut translation = Translation { verb, rest: words.into(), ours, formats: Vec::new() };
+    while let Some(word) = translation.rest.pop_front() {
         if word == "--" {
-            ours.push(word);
+            translation.ours.push(word);
             break;
         }
         let text = word.to_string_lossy().into_owned();
@@ -181,68 +181,108 @@ fn translated(verb: &str, words: Vec<OsString>) -> Result<(Vec<OsString>, Vec<St
         let fits =
             |habit: &&Habit| habit.typed.contains(&name) && (habit.verbs.is_empty() || habit.verbs.contains(&verb));
         let Some(Habit { meaning, .. }) = HABITS.iter().find(fits) else {
-            ours.push(word);
+            translation.ours.push(word);
             continue;
         };
         if let Some((_, value)) = attached {
-            rest.push_front(value.into());
+            translation.rest.push_front(value.into());
         }
-        let mut value = || rest.pop_front().unwrap_or_default().to_string_lossy().into_owned();
-        match *meaning {
-            Same(option) => ours.push(option.into()),
-            Square(option) => match &numbers(&mut rest, 2)[..] {
-                // GDAL writes the height of a cell with a minus where rows go down.
-                [x, y] if finite(x).map(f64::abs) != finite(y).map(f64::abs) => {
-                    return Err(Error::usage(format!("{name} {x} {y}: cells are square"))
-                        .cure(format!("{option} {x}, or {option} {y}")));
-                }
-                [x, ..] => ours.extend([option.into(), x.into()]),
-                [] => ours.push(option.into()),
-            },
+        translation.add(name, *meaning)?;
+    }
+    translation.ours.extend(translation.rest);
+    Ok((translation.ours, translation.formats))
+}
+
+/// Words after a verb, while they are translated.
+struct Translation<'a> {
+    verb: &'a str,
+    /// The words that are not translated yet.
+    rest: VecDeque<OsString>,
+    /// The translated ones.
+    ours: Vec<OsString>,
+    /// The names of formats that were typed.
+    formats: Vec<String>,
+}
+
+impl Translation<'_> {
+    /// Translates a word with a meaning, and its values.
+    ///
+    /// # Errors
+    /// If this program has no equivalent, or not for these values.
+    fn add(&mut self, name: &str, meaning: Meaning) -> Result<()> {
+        match meaning {
+            Same(option) => self.ours.push(option.into()),
+            Square(option) => self.add_square(name, option)?,
             Corners(option) => {
-                ours.push(option.into());
-                match &numbers(&mut rest, 4)[..] {
-                    corners @ [_, _, _, _] => ours.push(corners.join(",").into()),
-                    fewer => fewer.iter().rev().for_each(|number| rest.push_front(number.into())),
+                self.ours.push(option.into());
+                match &self.numbers(4)[..] {
+                    corners @ [_, _, _, _] => self.ours.push(corners.join(",").into()),
+                    fewer => fewer.iter().rev().for_each(|number| self.rest.push_front(number.into())),
                 }
             }
             List(option) => {
-                ours.push(option.into());
-                let values = numbers(&mut rest, usize::MAX);
+                self.ours.push(option.into());
+                let values = self.numbers(usize::MAX);
                 if !values.is_empty() {
-                    ours.push(values.join(",").into());
+                    self.ours.push(values.join(",").into());
                 }
             }
             Input(option) => {
                 let is_number =
                     |word: &OsString| word.to_str().is_some_and(|t| finite(t).is_ok()) && !Path::new(word).exists();
-                ours.extend(option.filter(|_| rest.front().is_some_and(is_number)).map(OsString::from));
+                let option = option.filter(|_| self.rest.front().is_some_and(is_number));
+                self.ours.extend(option.map(OsString::from));
             }
-            Format => formats.push(value()),
-            Creation => {
-                let value = value();
-                if !AS_WRITTEN.iter().any(|known| known.eq_ignore_ascii_case(&value)) {
-                    return Err(Error::usage(format!("{name} {value}: there are no creation options")).cure(
-                        "leave it out: a GeoTIFF is tiled, with overviews, DEFLATE with predictor 3, BigTIFF if necessary; \
-                         `gdal_translate -co` converts it",
-                    ));
-                }
+            Format => {
+                let value = self.value();
+                self.formats.push(value);
             }
+            Creation => require_as_written(name, &self.value())?,
             Nothing => {}
             Refused(cure) => {
+                let verb = self.verb;
                 return Err(Error::usage(format!("{name} is not an option of `breakline {verb}`")).cure(cure));
             }
         }
+        Ok(())
     }
-    ours.extend(rest);
-    Ok((ours, formats))
+
+    /// Adds the size of a cell, which may have been typed once for each axis.
+    fn add_square(&mut self, name: &str, option: &str) -> Result<()> {
+        match &self.numbers(2)[..] {
+            // GDAL writes the height of a cell with a minus where rows go down.
+            [x, y] if finite(x).map(f64::abs) != finite(y).map(f64::abs) => {
+                return Err(Error::usage(format!("{name} {x} {y}: cells are square"))
+                    .cure(format!("{option} {x}, or {option} {y}")));
+            }
+            [x, ..] => self.ours.extend([option.into(), x.into()]),
+            [] => self.ours.push(option.into()),
+        }
+        Ok(())
+    }
+
+    /// Removes and returns the next word, empty if there is none.
+    fn value(&mut self) -> String {
+        self.rest.pop_front().unwrap_or_default().to_string_lossy().into_owned()
+    }
+
+    /// Removes and returns the numbers at the front, at most `most`.
+    fn numbers(&mut self, most: usize) -> Vec<String> {
+        let is_number = |word: &&OsString| word.to_str().is_some_and(|text| finite(text).is_ok());
+        let count = self.rest.iter().take(most).take_while(is_number).count();
+        self.rest.drain(..count).map(|word| word.to_string_lossy().into_owned()).collect()
+    }
 }
 
-/// Removes and returns the numbers at the front, at most `most`.
-fn numbers(rest: &mut VecDeque<OsString>, most: usize) -> Vec<String> {
-    let is_number = |word: &&OsString| word.to_str().is_some_and(|text| finite(text).is_ok());
-    let count = rest.iter().take(most).take_while(is_number).count();
-    rest.drain(..count).map(|word| word.to_string_lossy().into_owned()).collect()
+/// Returns an error unless a creation option describes what a GeoTIFF is anyway.
+fn require_as_written(name: &str, value: &str) -> Result<()> {
+    if AS_WRITTEN.iter().any(|known| known.eq_ignore_ascii_case(value)) {
+        return Ok(());
+    }
+    Err(Error::usage(format!("{name} {value}: there are no creation options")).cure(
+        "leave it out: a GeoTIFF is tiled, with overviews, DEFLATE with predictor 3, BigTIFF if necessary; \
+         `gdal_translate -co` converts it",
+    ))
 }
 
 /// Returns the words, and the outputs among them. If none is named, the last file is the output if
