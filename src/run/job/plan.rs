@@ -112,45 +112,8 @@ impl Plan {
         journal: &Journal,
     ) -> Result<(Self, Known)> {
         require_tiled(request, systems)?;
-        let closed = match options.bad {
-            BadFiles::Skip => closed(request, &journal.context)?,
-            BadFiles::Refuse => Vec::new(),
-        };
-        let (numbers, inputs) = opened(request, &closed);
-        let points = PointFiles::open(&inputs, request.read, journal)?.with_bad(options.bad);
-        if options.look == Look::Headers && request.classes == Classes::GroundOrAll && points.have_classes() {
-            return Err(Error::usage("which classes are used is not known from headers alone").cure(wording![
-                "state them, such as ",
-                Setting::Class.number("2"),
-                " for ground"
-            ]));
-        }
-        let classes = points.used_classes(&request.classes, journal)?;
-        if request.classes == Classes::GroundOrAll {
-            match classes.len() {
-                1 => journal.add(Notice::GroundUsed),
-                _ if points.have_classes() => journal.add(Notice::AllClassesUsed),
-                // Nobody expects ground in a text.
-                _ => {}
-            }
-        }
-        let mut files = Vec::new();
-        for ((number, input), stated) in numbers.into_iter().zip(&inputs).zip(points.stated_extents()) {
-            files.extend(planned(number, input, request, stated, &journal.context)?);
-        }
-        let mut skipped = Vec::new();
-        for Closed { number, why, stated } in &closed {
-            let known = stated.as_ref().filter(|info| info.count.is_some() && info.bounds.is_some());
-            let Some(info) = known else {
-                skipped.push((*number, why.clone()));
-                continue;
-            };
-            let input = &request.points[*number];
-            let file = planned(*number, input, request, (info.count, info.bounds), &journal.context)?;
-            let is_of_any_system = info.crs.is_none() && systems.assign.is_none();
-            files.extend(file.map(|file| PlannedFile { is_of_any_system, ..file }));
-        }
-        files.sort_by_key(|file| file.input);
+        let FilesOfPoints { points, closed, classes, files, skipped } =
+            FilesOfPoints::of(request, systems, options, journal)?;
         let extent = extent_of(&files);
         let layers = lines::layers_of(request, journal)?;
         let mut stated = points.stated(&request.classes, journal)?;
@@ -159,57 +122,20 @@ impl Plan {
         stated.extend(layers.stated());
         let Systems { crs, .. } = systems::reconcile_some(&stated, systems, journal)?;
         let known = Known::of_layers(&layers, request, crs.as_ref(), &extent, journal)?;
-        let Known { lines, clip } = &known;
-
-        let spreads: Vec<Spread> = files.iter().map(PlannedFile::spread).collect();
-        if spreads.is_empty() {
+        if files.is_empty() {
             return Err(Error::format("no points in the input").cure("pass files that contain points"));
         }
-        let mut drawn_extent = extent;
-        if let Some(lines) = lines {
-            [lines.extent.min, lines.extent.max].into_iter().for_each(|corner| drawn_extent.add(corner));
-        }
-        if let Some(bounds) = request.bounds.map(|bounds| common(&bounds, &drawn_extent)).filter(|b| !b.is_empty()) {
-            drawn_extent = bounds;
-        }
-        let task_memory = options.task_memory.unwrap_or_else(|| {
-            let workers = rayon::current_num_threads() as u64;
-            options.memory.unwrap_or_else(memory::half_of_free) / workers
-        });
+        let task_memory = task_memory(options);
         let most = (task_memory / BYTES_A_POINT).clamp(LEAST_POINTS, MOST_POINTS);
-        let are_small = files.iter().all(|file| file.count <= most);
-        let (layout, divides) = match options.division {
-            Division::Grid(counts) => {
-                let [min, max] = [extent.min, extent.max].map(|[x, y, _]| [x, y]);
-                (Layout::grid(min, max, counts), true)
-            }
-            Division::Auto => match Layout::of_boxes(&spreads).filter(|_| are_small && lines.is_none()) {
-                Some(layout) => (layout, false),
-                None => {
-                    let average = most as f64 * AVERAGE;
-                    let spreads = match options.look {
-                        Look::Points => sampled::spreads(&files, request, &classes, average, &journal.context)?,
-                        Look::Headers => spreads,
-                    };
-                    (Layout::balanced(&spreads, average), true)
-                }
-            },
-        };
-        let frame_of = |options: &FrameOptions| {
-            let frame = frame::over_extent(options, drawn_extent, crs.as_ref(), journal)?;
-            if options.extent.is_none() && !frame.has_shared_centers() {
-                return Err(Error::unsupported("the raster's grid lines are not multiples of the size of its cells")
-                    .cure(wording!["state the extent of the result with ", Setting::Extent]));
-            }
-            Ok(frame)
-        };
+        let (layout, divides) = layout_of(&files, &classes, &known, most, request, options, &journal.context)?;
         let frame = match verb.keeps() {
-            Keeps::Heights(options) => Some(frame_of(options)?),
+            Keeps::Heights(options) => {
+                Some(frame_of(options, drawn_extent(extent, &known, request), crs.as_ref(), journal)?)
+            }
             Keeps::Contours(_) | Keeps::Triangles => None,
         };
-        let units = Units::of(crs.as_ref());
-        let max_edge = request.max_edge.length(&units);
-        let (has_lines, has_clip) = (lines.is_some(), clip.is_some());
+        let max_edge = request.max_edge.length(&Units::of(crs.as_ref()));
+        let (has_lines, has_clip) = (known.lines.is_some(), known.clip.is_some());
         let state = |path: &PathBuf| Ok(OtherFile { path: path.clone(), state: state_of(path)? });
         let others = others(request, verb).map(state).collect::<Result<_>>()?;
         let plan = Plan {
@@ -328,6 +254,131 @@ impl Plan {
     }
 }
 
+/// The files of points of a request, by what their headers state.
+struct FilesOfPoints {
+    /// Those that can be opened.
+    points: PointFiles,
+    /// Those that cannot, if such files are skipped.
+    closed: Vec<Closed>,
+    /// The classes that are used.
+    classes: Vec<u8>,
+    /// Those that have points, in the order of the request.
+    files: Vec<PlannedFile>,
+    /// Those of which not even the extent is known, by their positions in the request, and why.
+    skipped: Vec<(usize, String)>,
+}
+
+impl FilesOfPoints {
+    fn of(request: &TinRequest, systems: &SystemOptions, options: &TileOptions, journal: &Journal) -> Result<Self> {
+        let closed = match options.bad {
+            BadFiles::Skip => closed(request, &journal.context)?,
+            BadFiles::Refuse => Vec::new(),
+        };
+        let (numbers, inputs) = opened(request, &closed);
+        let points = PointFiles::open(&inputs, request.read, journal)?.with_bad(options.bad);
+        let classes = classes_of(&points, request, options, journal)?;
+        let mut files = Vec::new();
+        for ((number, input), stated) in numbers.into_iter().zip(&inputs).zip(points.stated_extents()) {
+            files.extend(planned(number, input, request, stated, &journal.context)?);
+        }
+        let mut skipped = Vec::new();
+        for file in &closed {
+            match file.extent() {
+                Some(extent) => files.extend(file.planned(extent, request, systems, &journal.context)?),
+                None => skipped.push((file.number, file.why.clone())),
+            }
+        }
+        files.sort_by_key(|file| file.input);
+        Ok(FilesOfPoints { points, closed, classes, files, skipped })
+    }
+}
+
+/// Returns the classes that are used, and adds a notice if the request leaves that open.
+///
+/// # Errors
+/// If the points would have to be read for that, but only headers may be.
+fn classes_of(points: &PointFiles, request: &TinRequest, options: &TileOptions, journal: &Journal) -> Result<Vec<u8>> {
+    let are_open = request.classes == Classes::GroundOrAll;
+    if options.look == Look::Headers && are_open && points.have_classes() {
+        return Err(Error::usage("which classes are used is not known from headers alone").cure(wording![
+            "state them, such as ",
+            Setting::Class.number("2"),
+            " for ground"
+        ]));
+    }
+    let classes = points.used_classes(&request.classes, journal)?;
+    if are_open {
+        match classes.len() {
+            1 => journal.add(Notice::GroundUsed),
+            _ if points.have_classes() => journal.add(Notice::AllClassesUsed),
+            // Nobody expects ground in a text.
+            _ => {}
+        }
+    }
+    Ok(classes)
+}
+
+/// Returns the memory of one task.
+fn task_memory(options: &TileOptions) -> u64 {
+    options.task_memory.unwrap_or_else(|| {
+        let workers = rayon::current_num_threads() as u64;
+        options.memory.unwrap_or_else(memory::half_of_free) / workers
+    })
+}
+
+/// Returns the tiles, of at most so many points each, and true if the files are divided among them
+/// first.
+fn layout_of(
+    files: &[PlannedFile],
+    classes: &[u8],
+    known: &Known,
+    most: u64,
+    request: &TinRequest,
+    options: &TileOptions,
+    context: &Context,
+) -> Result<(Layout, bool)> {
+    if let Division::Grid(counts) = options.division {
+        let Bounds { min, max } = extent_of(files);
+        let [min, max] = [min, max].map(|[x, y, _]| [x, y]);
+        return Ok((Layout::grid(min, max, counts), true));
+    }
+    let spreads: Vec<Spread> = files.iter().map(PlannedFile::spread).collect();
+    let are_small = files.iter().all(|file| file.count <= most);
+    if let Some(layout) = Layout::of_boxes(&spreads).filter(|_| are_small && known.lines.is_none()) {
+        return Ok((layout, false));
+    }
+    let average = most as f64 * AVERAGE;
+    let spreads = match options.look {
+        Look::Points => sampled::spreads(files, request, classes, average, context)?,
+        Look::Headers => spreads,
+    };
+    Ok((Layout::balanced(&spreads, average), true))
+}
+
+/// Returns the box around all points and lines, within the bounds of the request if they have an
+/// area in common.
+fn drawn_extent(points: Bounds, known: &Known, request: &TinRequest) -> Bounds {
+    let mut extent = points;
+    if let Some(lines) = &known.lines {
+        [lines.extent.min, lines.extent.max].into_iter().for_each(|corner| extent.add(corner));
+    }
+    let within = request.bounds.map(|bounds| common(&bounds, &extent)).filter(|within| !within.is_empty());
+    within.unwrap_or(extent)
+}
+
+/// Returns the frame of a raster that is drawn tile by tile.
+///
+/// # Errors
+/// If tiles could not agree on its cells, or the frame is refused.
+fn frame_of(options: &FrameOptions, extent: Bounds, crs: Option<&Crs>, journal: &Journal) -> Result<Frame> {
+    let frame = frame::over_extent(options, extent, crs, journal)?;
+    if options.extent.is_none() && !frame.has_shared_centers() {
+        return Err(Error::unsupported("the raster's grid lines are not multiples of the size of its cells")
+            .cure(wording!["state the extent of the result with ", Setting::Extent]));
+    }
+    Ok(frame)
+}
+
 /// Returns the error for a file that was damaged when the job was planned, and does not fit it now.
 #[cold]
 fn does_not_fit(what: String) -> Error {
@@ -366,6 +417,27 @@ impl Closed {
     fn stated(&self, request: &TinRequest) -> Option<Stated> {
         let stated = Stated::by_points(request.points[self.number].path(), self.stated.as_ref()?);
         (stated.crs.is_some() || stated.unread.is_some()).then_some(stated)
+    }
+
+    /// Returns the number of points and the box around them that its header states, if it states
+    /// both.
+    fn extent(&self) -> Option<(Option<u64>, Option<Bounds>)> {
+        let info = self.stated.as_ref().filter(|info| info.count.is_some() && info.bounds.is_some())?;
+        Some((info.count, info.bounds))
+    }
+
+    /// Returns what the plan knows of it; `None` if it has no points.
+    fn planned(
+        &self,
+        extent: (Option<u64>, Option<Bounds>),
+        request: &TinRequest,
+        systems: &SystemOptions,
+        context: &Context,
+    ) -> Result<Option<PlannedFile>> {
+        let file = planned(self.number, &request.points[self.number], request, extent, context)?;
+        let states_system = self.stated.as_ref().is_some_and(|info| info.crs.is_some());
+        let is_of_any_system = !states_system && systems.assign.is_none();
+        Ok(file.map(|file| PlannedFile { is_of_any_system, ..file }))
     }
 }
 
