@@ -68,6 +68,13 @@ pub(crate) fn of_building(report: &Bound<'_, PyDict>, built: &BuildReport) -> Py
     ] {
         report.set_item(name, count)?;
     }
+    report.set_item("lines", lines(py, built)?)?;
+    report.set_item("crossing_heights", crossing_heights(py, built)?)?;
+    report.set_item("water_overlaps", water_overlaps(py, built)?)
+}
+
+/// Returns the inputs of lines and areas, with their counts.
+fn lines<'py>(py: Python<'py>, built: &BuildReport) -> PyResult<Bound<'py, PyList>> {
     let lines = PyList::empty(py);
     for input in &built.lines {
         let line = PyDict::new(py);
@@ -77,9 +84,13 @@ pub(crate) fn of_building(report: &Bound<'_, PyDict>, built: &BuildReport) -> Py
         line.set_item("edges", input.edges)?;
         lines.append(line)?;
     }
-    report.set_item("lines", lines)?;
+    Ok(lines)
+}
+
+/// Returns where breaklines meet with different heights.
+fn crossing_heights<'py>(py: Python<'py>, built: &BuildReport) -> PyResult<Bound<'py, PyList>> {
     let differing = PyList::empty(py);
-    for crossing in &tin.crossing_heights {
+    for crossing in &built.tin.crossing_heights {
         let found = PyDict::new(py);
         found.set_item("at", crossing.site)?;
         found.set_item("height", crossing.chosen)?;
@@ -87,14 +98,18 @@ pub(crate) fn of_building(report: &Bound<'_, PyDict>, built: &BuildReport) -> Py
         found.set_item("lines", heights.collect::<Vec<_>>())?;
         differing.append(found)?;
     }
-    report.set_item("crossing_heights", differing)?;
+    Ok(differing)
+}
+
+/// Returns the steps between waters that overlap or touch.
+fn water_overlaps<'py>(py: Python<'py>, built: &BuildReport) -> PyResult<Bound<'py, PyList>> {
     let overlaps = PyList::empty(py);
-    for overlap in &tin.water_overlaps {
+    for overlap in &built.tin.water_overlaps {
         let found = PyDict::new(py);
         found.set_item("at", overlap.at)?;
         found.set_item("step", overlap.step)?;
         found.set_item("lines", overlap.lines.map(|line| built.line_names.name(line)))?;
         overlaps.append(found)?;
     }
-    report.set_item("water_overlaps", overlaps)
+    Ok(overlaps)
 }
