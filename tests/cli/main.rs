@@ -5,6 +5,7 @@ mod program;
 
 mod columns;
 mod crossings;
+mod demo;
 mod habits;
 mod inputs;
 mod lines;

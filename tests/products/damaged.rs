@@ -1,5 +1,5 @@
 //! Damaged files, through the program, in bounded time and memory. What becomes of each of them is
-//! in the tables of `tests/points.rs`, `tests/rasters.rs` and `tests/layers.rs`; here it is that
+//! in the tables of `tests/points.rs`, `tests/rasters/` and `tests/layers/`; here it is that
 //! nothing worse can happen.
 
 use std::path::{Path, PathBuf};
