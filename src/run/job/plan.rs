@@ -50,6 +50,13 @@ pub(super) struct OtherFile {
     state: FileState,
 }
 
+impl OtherFile {
+    /// Returns a file with its present state.
+    fn of(path: &PathBuf) -> Result<Self> {
+        Ok(OtherFile { path: path.clone(), state: state_of(path)? })
+    }
+}
+
 /// What all tasks of a job must agree on.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct Plan {
@@ -136,8 +143,7 @@ impl Plan {
         };
         let max_edge = request.max_edge.length(&Units::of(crs.as_ref()));
         let (has_lines, has_clip) = (known.lines.is_some(), known.clip.is_some());
-        let state = |path: &PathBuf| Ok(OtherFile { path: path.clone(), state: state_of(path)? });
-        let others = others(request, verb).map(state).collect::<Result<_>>()?;
+        let others = others(request, verb).map(OtherFile::of).collect::<Result<_>>()?;
         let plan = Plan {
             request: options_of(request, systems, verb, options),
             files,
