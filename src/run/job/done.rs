@@ -208,12 +208,13 @@ impl Job {
         Ok(whole)
     }
 
-    /// Does one task, unless its file is there, and whole. Needs the files of the tasks before it;
-    /// those that turn out to be damaged are removed, so that their tasks count as not done.
+    /// Does one task whose [inputs are checked](Self::check_input_of), unless its file is there,
+    /// and whole. Needs the files of the tasks before it; those that turn out to be damaged are
+    /// removed, so that their tasks count as not done.
     ///
     /// # Errors
     /// If the input cannot be read, if a task that it needs is not done, or if the run is canceled.
-    pub fn run_task(&self, task: usize, context: &Context) -> Result<()> {
+    pub(crate) fn run_task(&self, task: usize, context: &Context) -> Result<()> {
         if task >= self.task_count() {
             return Err(self.no_task(task));
         }
