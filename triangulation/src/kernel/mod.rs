@@ -26,9 +26,9 @@ mod adaptive;
 mod center;
 mod combined;
 mod formula;
+mod pixel_sides;
 mod power;
 mod radius;
-mod rounding;
 mod scaled;
 mod smallest;
 
@@ -41,9 +41,9 @@ pub use combined::{Adaptive, Fixed, Interval, Lattice, Wide};
 pub use formula::{
     CompareDistance, DotProduct, InCircle, InCircleOfPlane, InSphere, Orientation2, Orientation3, crossing, twice_area,
 };
+pub use pixel_sides::{CornerSide, CrossingSide};
 pub use power::{ComparePower, PowerInPlane, PowerOnLine, PowerTest2, PowerTest3};
 pub(crate) use radius::{SquaredRadius, squared_radius_bounds};
-pub use rounding::{CornerSide, CrossingSide};
 pub use scaled::Scaled;
 pub(crate) use smallest::side_of_smallest_sphere;
 

@@ -25,7 +25,7 @@ use crate::tds::VertexId;
 
 use super::chains::{LineVertices, segments_of, undirected};
 use super::constrained_delaunay::ConstrainedDelaunay;
-use super::rounding::{OnCrossing, Rounding};
+use super::on_crossing::{OnCrossing, Rounding};
 
 /// How many triangles sub-constraints inserted in order may meet, for each vertex and each
 /// sub-constraint. After that, the rest is inserted in random order: then all together meet O(n

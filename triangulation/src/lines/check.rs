@@ -9,7 +9,7 @@ use crate::tds::VertexId;
 use crate::triangulation::Triangulation;
 
 use super::chains::undirected;
-use super::rounding::Rounding;
+use super::on_crossing::Rounding;
 use super::tables::Lines;
 
 impl Lines {

@@ -12,7 +12,7 @@ use crate::tds::VertexId;
 
 use super::chains::{Chains, Ends, undirected};
 use super::mesh::{Mesh, position};
-use super::rounding::Rounding;
+use super::on_crossing::Rounding;
 
 /// The reason why an edit cannot be local: the grid changes, sub-constraints cross off the grid, or
 /// there are no triangles. All lines have to be arranged anew.

@@ -11,7 +11,7 @@
 //! | `tables` | what is stored of lines: [`Lines`] |
 //! | `chains` | the vertices by which lines were given, and the chains of their segments |
 //! | `ids` | lines by their ids |
-//! | `rounding` | what becomes of crossings |
+//! | `on_crossing` | what becomes of crossings |
 //! | `build` | bulk construction from points and lines |
 //! | `edit` | insertion and removal of lines |
 //! | `points` | insertion, removal and moves of points |
@@ -38,11 +38,11 @@ mod local_edit;
 mod mesh;
 mod near_segment;
 mod nesting;
+mod on_crossing;
 mod points;
 mod rearrange;
 #[cfg(test)]
 mod removal_tests;
-mod rounding;
 #[cfg(feature = "serde")]
 pub(crate) mod saved_tables;
 mod simplify;
@@ -50,6 +50,6 @@ mod tables;
 mod vertex_set;
 
 pub use constrained_delaunay::{ConstrainedDelaunay, ConstrainedDelaunay2};
-pub use rounding::{OnCrossing, Rounding};
+pub use on_crossing::{OnCrossing, Rounding};
 #[cfg(feature = "serde")]
 pub(crate) use tables::Lines;

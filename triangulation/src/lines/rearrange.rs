@@ -20,7 +20,7 @@ use crate::locate::Dice;
 
 use super::build::points_added;
 use super::chains::{segments_of, undirected};
-use super::rounding::Rounding;
+use super::on_crossing::Rounding;
 
 /// What the lines demand: segments between given vertices.
 struct LinesDemand {

@@ -4,7 +4,7 @@ use crate::line_id::LineId;
 use crate::tds::VertexId;
 
 use super::chains::Chains;
-use super::rounding::Rounding;
+use super::on_crossing::Rounding;
 use super::tables::Lines;
 
 /// The content of [`Lines`], in an order that depends on nothing else.

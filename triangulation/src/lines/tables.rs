@@ -9,7 +9,7 @@ use crate::tds::VertexId;
 use super::chains::{Chains, undirected};
 use super::index::{Index, NotLocal};
 use super::mesh::Mesh;
-use super::rounding::Rounding;
+use super::on_crossing::Rounding;
 use super::vertex_set::VertexSet;
 
 /// The lines of a triangulation: the owner of its constraints.

@@ -5,7 +5,7 @@ use crate::lines::chains::Ends;
 use crate::lines::change::Change;
 use crate::lines::index::NotLocal;
 use crate::lines::mesh::position;
-use crate::lines::rounding::Rounding;
+use crate::lines::on_crossing::Rounding;
 use crate::tds::VertexId;
 
 use super::Edit;
