@@ -14,8 +14,8 @@
 
 mod confluence;
 mod divided;
-mod downstream;
 mod ends;
+mod network;
 mod segments;
 mod sites;
 mod stations;
@@ -32,7 +32,7 @@ use segments::{Side, meeting_of, sides};
 use sites::{Key, distance, flat, key, middle};
 use stations::stations;
 
-pub use downstream::RiverLowering;
+pub use network::RiverLowering;
 pub(crate) use segments::{contains, cross};
 pub(crate) use water::{RiverWater, height_near};
 
