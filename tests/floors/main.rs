@@ -1,23 +1,23 @@
-//! The floors of the house: a file uses lower floors and its own folder, nothing else.
+//! The floors of modules: a file uses lower floors and its own folder, nothing else.
 //!
-//! Some folders have floors of their own. In all others, see [`circles`]. `docs/architecture.md`
+//! Some folders have floors of their own. In all others, see [`cycles`]. `docs/architecture.md`
 //! says why. What is read is the source text, so a path has to be written out
 //! (`crate::data::Grid`) or imported with `use crate::...`, also inside braces.
 
-mod arrows;
-mod circles;
+mod cycles;
+mod dependencies;
 
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
-use arrows::{OWN_FILE, arrows};
+use dependencies::{OWN_FILE, dependencies};
 
-/// Rooms from the ground up. Rooms on one floor do not know each other, except as [`NEIGHBORS`]
+/// Modules from the ground up. Modules on one floor do not know each other, except as [`NEIGHBORS`]
 /// says.
 type Floors = &'static [&'static [&'static str]];
 
-/// Where the rooms are, of each crate.
+/// Where the modules are, of each crate.
 const SOURCES: [(&str, Floors); 2] = [("src", BREAKLINE), ("triangulation/src", TRIANGULATIONS)];
 
 const BREAKLINE: Floors = &[
@@ -66,7 +66,7 @@ const PYTHON: [&str; 2] = ["python/src", "python/package/breakline"];
 /// mesh asks which way its faces turn.
 const NEIGHBORS: [(&str, &str); 2] = [("data", "crs"), ("data", "kernel")];
 
-/// Rooms of the crate of triangulations that are below its root, as `breakline` sees it.
+/// Modules of the crate of triangulations that are below its root, as `breakline` sees it.
 const LOWER: [&str; 5] = ["num", "kernel", "arrangement", "geometry", "tds"];
 
 /// More lines than this are more than one idea.
@@ -77,13 +77,13 @@ fn files_use_lower_floors_only() {
     let mut faults = Vec::new();
     for (crate_folder, floors) in SOURCES {
         for (path, text) in sources(crate_folder) {
-            let room = path.split('/').next().unwrap().trim_end_matches(".rs");
+            let module = path.split('/').next().unwrap().trim_end_matches(".rs");
             // The roots see everything, and what stands beside them.
-            if !["lib", "main", "guide"].contains(&room) {
-                let wrong = used_rooms(floors, without_tests(&path, &text))
+            if !["lib", "main", "guide"].contains(&module) {
+                let wrong = used_modules(floors, without_tests(&path, &text))
                     .into_iter()
-                    .filter(|used| !may_use(floors, room, used));
-                faults.extend(wrong.map(|used| format!("{path}: {room} must not use {used}")));
+                    .filter(|used| !may_use(floors, module, used));
+                faults.extend(wrong.map(|used| format!("{path}: {module} must not use {used}")));
             }
             let lines = text.lines().count();
             if lines > LONGEST {
@@ -122,13 +122,13 @@ fn the_rule_of_folders_can_fail() {
 
 /// What stands in a folder without a floor, or uses something that is not on a lower one.
 fn faults_in<P: AsRef<str>, T: AsRef<str>>(folder: &str, floors: Floors, files: &[(P, T)]) -> Vec<String> {
-    let floor = |room: &str| floors.iter().position(|rooms| rooms.contains(&room));
+    let floor = |module: &str| floors.iter().position(|modules| modules.contains(&module));
     let inside = files.iter().filter_map(|(path, _)| path.as_ref().strip_prefix(folder)?.strip_prefix('/'));
-    let rooms: BTreeSet<&str> = inside.map(|path| path.split('/').next().unwrap().trim_end_matches(".rs")).collect();
+    let modules: BTreeSet<&str> = inside.map(|path| path.split('/').next().unwrap().trim_end_matches(".rs")).collect();
     let own_file = OWN_FILE.trim_end_matches(".rs");
-    let homeless = rooms.into_iter().filter(|room| *room != own_file && floor(room).is_none());
-    let mut faults: Vec<String> = homeless.map(|room| format!("{folder}: {room} has no floor")).collect();
-    for (user, used) in arrows(files).get(&[folder.to_owned()][..]).into_iter().flatten() {
+    let homeless = modules.into_iter().filter(|module| *module != own_file && floor(module).is_none());
+    let mut faults: Vec<String> = homeless.map(|module| format!("{folder}: {module} has no floor")).collect();
+    for (user, used) in dependencies(files).get(&[folder.to_owned()][..]).into_iter().flatten() {
         if !matches!((floor(user), floor(used)), (Some(high), Some(low)) if low < high) {
             faults.push(format!("{folder}: {user} must not use {used}"));
         }
@@ -138,8 +138,9 @@ fn faults_in<P: AsRef<str>, T: AsRef<str>>(folder: &str, floors: Floors, files: 
 
 #[test]
 fn the_rule_can_fail() {
-    let in_crate = |floors, room, text: &str| used_rooms(floors, text).iter().all(|used| may_use(floors, room, used));
-    let check = |room, text| in_crate(BREAKLINE, room, text);
+    let in_crate =
+        |floors, module, text: &str| used_modules(floors, text).iter().all(|used| may_use(floors, module, used));
+    let check = |module, text| in_crate(BREAKLINE, module, text);
     assert!(check("terrain", "use crate::{data::Grid, error::Result};\nlet a = crate::tds::Id;"));
     assert!(check("data", "use crate::crs::Crs;"));
     assert!(check("tds", "// use crate::geometry::Plane;\n/// [`io`](crate::io)"), "comments are not imports");
@@ -148,41 +149,41 @@ fn the_rule_can_fail() {
     assert!(!check("tds", "use crate::geometry::Plane;"), "sideways");
     assert!(!check("crs", "use crate::data::Grid;"), "neighbors, the other way round");
     assert!(!check("kernel", "use crate::{\n    num::Sign,\n    triangulation::Delaunay,\n};"), "upward, in braces");
-    assert!(!check("num", "use crate::{error::Error, kernel};"), "upward, a whole room");
+    assert!(!check("num", "use crate::{error::Error, kernel};"), "upward, a whole module");
     assert!(!check("geometry", "use crate::Tin;"), "a re-export hides its floor");
-    assert!(!check("geometry", "use crate::attic::Box;"), "a room that has no floor");
-    assert!(!check("tds", "use super::super::geometry::Plane;"), "up the back stairs");
-    let check_triangulations = |room, text| in_crate(TRIANGULATIONS, room, text);
+    assert!(!check("geometry", "use crate::attic::Box;"), "a module that has no floor");
+    assert!(!check("tds", "use super::super::geometry::Plane;"), "by `super`");
+    let check_triangulations = |module, text| in_crate(TRIANGULATIONS, module, text);
     assert!(check_triangulations("lines", "use crate::engine::Inserted;"));
     assert!(!check_triangulations("engine", "use crate::lines::Rounding;"), "upward, in the other crate");
     assert!(!check_triangulations("query", "use crate::Delaunay;"), "a re-export at the root");
-    assert!(check("data", "use crate::triangulation::kernel::Exact;"), "a low room of the other crate");
+    assert!(check("data", "use crate::triangulation::kernel::Exact;"), "a low module of the other crate");
     assert!(!check("data", "use crate::triangulation::Delaunay;"), "a high one");
 }
 
 fn may_use(floors: Floors, user: &str, used: &str) -> bool {
-    let floor = |room| floors.iter().position(|rooms| rooms.contains(&room));
+    let floor = |module| floors.iter().position(|modules| modules.contains(&module));
     let (Some(high), Some(low)) = (floor(user), floor(used)) else { return false };
     low < high || user == used || NEIGHBORS.contains(&(user, used))
 }
 
-/// The text of a file without its tests, which may build what they need by rooms above.
+/// The text of a file without its tests, which may build what they need by modules above.
 fn without_tests<'a>(path: &str, text: &'a str) -> &'a str {
     if path.ends_with("tests.rs") { "" } else { text.split("#[cfg(test)]\nmod tests {").next().unwrap_or_default() }
 }
 
 /// The first names of all paths that start at the crate, and of those that climb to it by `super`.
-fn used_rooms(floors: Floors, text: &str) -> Vec<String> {
+fn used_modules(floors: Floors, text: &str) -> Vec<String> {
     let code: String = text.lines().filter(|line| !line.trim_start().starts_with("//")).collect::<Vec<_>>().join("\n");
-    // Of the other crate, rooms are named, too.
-    let code = LOWER
-        .iter()
-        .fold(code, |code, room| code.replace(&format!("crate::triangulation::{room}::"), &format!("crate::{room}::")));
+    // Of the other crate, modules are named, too.
+    let code = LOWER.iter().fold(code, |code, module| {
+        code.replace(&format!("crate::triangulation::{module}::"), &format!("crate::{module}::"))
+    });
     let name = |s: &str| s.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect::<String>();
-    let mut rooms = Vec::new();
+    let mut modules = Vec::new();
     for path in code.split("crate::").skip(1) {
         let Some(group) = path.strip_prefix('{') else {
-            rooms.push(name(path));
+            modules.push(name(path));
             continue;
         };
         // What stands at depth 0 of the braces, after their start or a comma.
@@ -190,7 +191,7 @@ fn used_rooms(floors: Floors, text: &str) -> Vec<String> {
         for item in group.split_inclusive(['{', '}', ',']) {
             let first = name(item.trim_start());
             if depth == 0 && !first.is_empty() {
-                rooms.push(first);
+                modules.push(first);
             }
             depth += i32::from(item.ends_with('{')) - i32::from(item.ends_with('}'));
             if depth < 0 {
@@ -199,9 +200,9 @@ fn used_rooms(floors: Floors, text: &str) -> Vec<String> {
         }
     }
     let climbs: Vec<_> = code.split("super::").collect();
-    let back_stairs = climbs.windows(2).filter(|pair| pair[0].is_empty()).map(|pair| name(pair[1]));
-    rooms.extend(back_stairs.filter(|room| floors.concat().contains(&room.as_str())));
-    rooms
+    let by_super = climbs.windows(2).filter(|pair| pair[0].is_empty()).map(|pair| name(pair[1]));
+    modules.extend(by_super.filter(|module| floors.concat().contains(&module.as_str())));
+    modules
 }
 
 /// The source files in a folder, with their paths below it.

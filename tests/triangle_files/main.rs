@@ -1,4 +1,4 @@
-//! The door for users of Triangle: its files in and out, through the program as it is run.
+//! Files of Triangle: read and written through the program as it is run.
 //!
 //! | file | law |
 //! |---|---|

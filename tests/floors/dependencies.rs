@@ -1,9 +1,9 @@
 //! Which module uses which, read from the source text.
 //!
-//! One module has an arrow to another if a path in its text leads there, through re-exports to
-//! where the item is defined. What a `mod.rs` declares or re-exports is no arrow; what its own code
-//! uses is one. Not judged are tests, which may build what they need by modules above. Methods that
-//! are called without a path are not seen.
+//! One module depends on another if a path in its text leads there, through re-exports to where the
+//! item is defined. What a `mod.rs` declares or re-exports is no dependency; what its own code uses
+//! is one. Not judged are tests, which may build what they need by modules above. Methods that are
+//! called without a path are not seen.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -13,27 +13,27 @@ pub(crate) type Module = Vec<String>;
 /// What a folder's own file is called among what the folder holds.
 pub(crate) const OWN_FILE: &str = "mod.rs";
 
-/// The arrows in each folder, from user to used, among its files and subfolders. A subfolder stands
-/// for all that it holds, and `mod.rs` for itself.
-pub(crate) type Arrows = BTreeMap<Module, BTreeSet<(String, String)>>;
+/// The dependencies in each folder, from user to used, among its files and subfolders. A subfolder
+/// stands for all that it holds, and `mod.rs` for itself.
+pub(crate) type Dependencies = BTreeMap<Module, BTreeSet<(String, String)>>;
 
-/// Returns the arrows among files, given as paths below the folder `src` and texts.
-pub(crate) fn arrows<P: AsRef<str>, T: AsRef<str>>(files: &[(P, T)]) -> Arrows {
+/// Returns the dependencies among files, given as paths below the folder `src` and texts.
+pub(crate) fn dependencies<P: AsRef<str>, T: AsRef<str>>(files: &[(P, T)]) -> Dependencies {
     let files =
         files.iter().map(|(path, text)| (path.as_ref(), text.as_ref())).filter(|(path, _)| !path.ends_with("tests.rs"));
     let source = |path: &str, text| if path.contains(".py") { Source::of_python(text) } else { Source::of(text) };
     let modules: BTreeMap<Module, Source> = files.map(|(path, text)| (module_of(path), source(path, text))).collect();
-    let mut arrows = Arrows::new();
+    let mut dependencies = Dependencies::new();
     for (from, source) in &modules {
         for to in source.used(from, &modules).iter().map(|path| resolved(&modules, from, path, 0)) {
             let shared = from.iter().zip(&to).take_while(|(a, b)| a == b).count();
             let node = |module: &Module| module.get(shared).map_or(OWN_FILE, String::as_str).to_owned();
             if *from != to {
-                arrows.entry(from[..shared].to_vec()).or_default().insert((node(from), node(&to)));
+                dependencies.entry(from[..shared].to_vec()).or_default().insert((node(from), node(&to)));
             }
         }
     }
-    arrows
+    dependencies
 }
 
 /// `io/geotiff/mod.rs` is `io`, `geotiff`; `lib.rs` is the root.
