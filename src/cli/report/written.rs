@@ -140,7 +140,7 @@ impl Monitor for Shown<'_> {
 pub(crate) fn print_size(size: &JobSize, console: &Console) {
     let files = if size.divides { format!("of {} files, divided first", size.files) } else { "the files".to_owned() };
     console.line(format_args!("tiles       {} ({files}), {} merges, {} tasks", size.tiles, size.merges, size.tasks));
-    let disk = match size.disk {
+    let disk = match size.bytes_on_disk {
         0 => String::new(),
         disk => format!(", about {} on the disk", bytes(disk)),
     };

@@ -55,7 +55,7 @@ pub struct JobSize {
     /// The number of all tasks.
     pub tasks: usize,
     /// About how many bytes the tasks write; 0 if that is not known, as for contours.
-    pub disk: u64,
+    pub bytes_on_disk: u64,
     /// About how much memory each task may need, in bytes.
     pub task_memory: u64,
 }

@@ -312,7 +312,7 @@ impl Job {
             divides: plan.divides,
             merges: plan.merge_count(),
             tasks: self.task_count(),
-            disk: drawn.saturating_add(if plan.divides { points.saturating_mul(24) } else { 0 }),
+            bytes_on_disk: drawn.saturating_add(if plan.divides { points.saturating_mul(24) } else { 0 }),
             task_memory: plan.task_memory,
         }
     }

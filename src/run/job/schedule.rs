@@ -40,6 +40,9 @@ impl Job {
     /// Merges come soon after what they merge. After an error the tasks that run are finished, and
     /// no other one begins.
     ///
+    /// Each task looks at the file of points that it reads. That layers of lines have not changed
+    /// is checked by [`run_job`](crate::run::run_job) before.
+    ///
     /// # Errors
     /// The first error of a task, or that the run is canceled.
     pub fn run(&self, context: &Context) -> Result<()> {

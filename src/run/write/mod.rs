@@ -363,5 +363,5 @@ fn stated(error: &Error) -> Wording {
 fn require_room(job: &Job, context: &Context) -> Result<()> {
     let size = job.size();
     context.monitor.event(&Event::Planned(&size));
-    targets::require_room(size.disk, job.bytes_there(), job.folder(), context)
+    targets::require_room(size.bytes_on_disk, job.bytes_there(), job.folder(), context)
 }
