@@ -117,8 +117,8 @@ pub fn run_task(job: &Job, task: usize, targets: &Targets, context: &Context) ->
     }
     job.require_done(task, context)?;
     // Like any task, the last one may be repeated: its process may have been killed after it.
-    if let Some(kept) = kept(job, targets, context)? {
-        return Ok(Some(kept));
+    if let Some(report) = already_written(job, targets, context)? {
+        return Ok(Some(report));
     }
     let request = job.request();
     let prepared = Prepared::new(&request, targets)?.in_tiles()?;
@@ -139,16 +139,16 @@ pub fn run_job(stored: &StoredJob, context: &Context) -> Result<WriteReport> {
     let job = stored.job()?;
     job.check_inputs(context)?;
     let mut targets = targets.clone();
-    match kept(&job, &targets, context)? {
+    match already_written(&job, &targets, context)? {
         Some(WriteReport::Kept { has_holes: true, .. }) => targets.existing = Existing::Replace,
-        Some(kept) => return Ok(kept),
+        Some(report) => return Ok(report),
         None => {}
     }
     Prepared::new(request, &targets)?.in_tiles()?.go_on(job, tiles, Folder::Kept, context)
 }
 
 /// Returns the report of outputs that are there as they were written of the tasks that are done.
-fn kept(job: &Job, targets: &Targets, context: &Context) -> Result<Option<WriteReport>> {
+fn already_written(job: &Job, targets: &Targets, context: &Context) -> Result<Option<WriteReport>> {
     let Some(output) = targets.files.first() else { return Ok(None) };
     match job.has_written(output, context)? {
         true => Ok(Some(WriteReport::Kept { output: output.clone(), has_holes: job.has_holes(context)? })),
