@@ -6,7 +6,7 @@ use std::fmt::Write;
 
 use breakline::io::points;
 use breakline::terrain::Selection;
-use breakline::terrain::tiles::{Layout, Work, leaf};
+use breakline::terrain::tiles::{TileLayout, Work, leaf};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let target = std::env::args_os().nth(1).ok_or("usage: residual_picture OUT.svg")?;
@@ -35,7 +35,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         svg.push_str("\"/>\n");
     };
     dots(&all, 1.0, "#cccccc", &mut svg);
-    let layout = Layout::grid(low, high, [4, 4]);
+    let layout = TileLayout::grid(low, high, [4, 4]);
     for step in layout.steps() {
         let Work::Leaf(number) = &step.work else { continue };
         let own: Vec<[f64; 3]> = all.iter().copied().filter(|p| step.tile.holds([p[0], p[1]])).collect();

@@ -10,7 +10,7 @@
 use std::collections::BTreeSet;
 
 use breakline::data::{Bounds, Surface};
-use breakline::terrain::{Tin, TinBuilder, Window};
+use breakline::terrain::{ReadWindow, Tin, TinBuilder};
 use testkit::random::Random;
 
 /// A scene: points, breaklines, and what is asked for.
@@ -61,7 +61,7 @@ impl Scene {
         let mut all = Bounds::default();
         self.points.iter().for_each(|&p| all.add(p));
         let mut builder = self.builder(|p| read.holds(p[0], p[1]));
-        builder.window = Some(Window { read, all });
+        builder.window = Some(ReadWindow { read, all });
         builder.build().ok()
     }
 }

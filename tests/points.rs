@@ -100,8 +100,11 @@ fn every_lidar_file_gives_what_is_known_of_it() {
             continue;
         }
         // Its header counts points that are not there.
-        let cut =
-            if path.ends_with("1.2-no-points.las") { breakline::io::Cut::Accept } else { breakline::io::Cut::Refuse };
+        let cut = if path.ends_with("1.2-no-points.las") {
+            breakline::io::OnDamage::Accept
+        } else {
+            breakline::io::OnDamage::Refuse
+        };
         let mut source = las::open_with(testkit::shared(path), cut).unwrap();
         let found = summarize(&mut source).unwrap_or_else(|error| panic!("{path}: {error}"));
         let info = source.info();
@@ -267,7 +270,8 @@ fn every_broken_file_has_its_fate() {
             assert_eq!((error.kind(), error.path()), (Kind::Format, Some(path.as_path())), "{error}");
             assert!(error.to_string().contains(words), "{error}");
             assert!(error.cure_text().unwrap().plain().contains("partial"), "{error}");
-            result = las::open_with(&path, breakline::io::Cut::Accept).and_then(|mut source| summarize(&mut source));
+            result =
+                las::open_with(&path, breakline::io::OnDamage::Accept).and_then(|mut source| summarize(&mut source));
         } else {
             assert!(!matches!(fate, Cut(..)), "{name}");
         }
@@ -299,7 +303,7 @@ fn every_broken_file_has_its_fate() {
 
 /// Where another reader got all the points, ours are the same.
 fn compare_with_fact(path: &Path, found: &Summary, fact: &Value) {
-    check_crs(&path.to_string_lossy(), las::open_with(path, breakline::io::Cut::Accept).unwrap().info(), fact);
+    check_crs(&path.to_string_lossy(), las::open_with(path, breakline::io::OnDamage::Accept).unwrap().info(), fact);
     if fact.get("sum_int_xyz").is_none() {
         return;
     }
@@ -330,7 +334,7 @@ fn points_before_the_damage_are_good() {
 
 /// All points of a file that are there.
 fn columns(path: &Path) -> PointBatch {
-    let mut source = las::open_with(path, breakline::io::Cut::Accept).unwrap();
+    let mut source = las::open_with(path, breakline::io::OnDamage::Accept).unwrap();
     let (mut all, mut batch) = (PointBatch::default(), PointBatch::default());
     loop {
         source.read(&mut batch).unwrap();

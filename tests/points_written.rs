@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use breakline::crs::Crs;
 use breakline::data::{LasHead, PointBatch, PointSource};
-use breakline::io::Cut;
+use breakline::io::OnDamage;
 use breakline::io::las::{Detail, ReadOptions, Rounding};
 use breakline::io::{OutputSet, las as ours, points};
 use breakline::run::{Context, PointsReport, PointsRequest, SystemOptions, Withheld, write_points};
@@ -23,7 +23,7 @@ struct Whole {
 }
 
 fn read(path: &Path) -> breakline::Result<Whole> {
-    let mut source = ours::open_with(path, ReadOptions { cut: Cut::Refuse, detail: Detail::Records })?;
+    let mut source = ours::open_with(path, ReadOptions { cut: OnDamage::Refuse, detail: Detail::Records })?;
     let mut whole = Whole {
         records: Vec::new(),
         head: source.info().head.clone().unwrap(),

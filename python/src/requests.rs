@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use breakline::crs::Crs;
 use breakline::data::{Bounds, Column, Lattice, Layer, PointBatch, PointFlags, Shape};
-use breakline::io::Cut;
+use breakline::io::OnDamage;
 use breakline::io::points;
 use breakline::run::{
     Degrees, EdgeLimit, FlatOptions, FlatRule, FrameOptions, Input, LineRequest, LowerEdge, MemoryPoints, PerRecord,
@@ -216,7 +216,7 @@ impl ReadArguments {
                 errors::usage(&format!("columns: {why}"), &format!("'{text}'"), "write 'PNEZD', 'XYZ' or (2, 1, 3)")
             })
         });
-        let cut = if self.partial { Cut::Accept } else { Cut::Refuse };
+        let cut = if self.partial { OnDamage::Accept } else { OnDamage::Refuse };
         Ok(points::Options { columns: columns.transpose()?, cut, ..points::Options::default() })
     }
 }

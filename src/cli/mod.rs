@@ -18,7 +18,7 @@ use clap::Parser;
 pub use self::exit::Exit;
 use self::input::args::{Cli, ConsoleArgs, Verb};
 use self::input::habits;
-use self::report::console::{Console, Level};
+use self::report::console::{Console, Verbosity};
 use self::report::{names, summary};
 use crate::error::{Kind, Result, Term};
 use crate::run::Facts;
@@ -29,7 +29,7 @@ pub fn run(args: impl IntoIterator<Item = OsString>) -> Exit {
     let words = match habits::understood(args) {
         Ok(words) => words,
         Err(error) => {
-            Console::new(Level::default()).error(&error);
+            Console::new(Verbosity::default()).error(&error);
             return Exit::Usage;
         }
     };

@@ -35,7 +35,7 @@ impl Node {
         if text.len() > LONGEST {
             return Err(Error::limit(format!("WKT of {} bytes, expected at most {LONGEST}", text.len())));
         }
-        let mut reader = Reader { text, at: 0 };
+        let mut reader = WktReader { text, at: 0 };
         let mut nodes = Vec::new();
         loop {
             match reader.value(0)? {
@@ -106,12 +106,12 @@ impl Node {
     }
 }
 
-struct Reader<'a> {
+struct WktReader<'a> {
     text: &'a str,
     at: usize,
 }
 
-impl Reader<'_> {
+impl WktReader<'_> {
     fn rest(&self) -> &str {
         &self.text[self.at..]
     }

@@ -52,4 +52,4 @@ pub use bytes::output::{
 pub use bytes::watch::Watch;
 pub use codec::{gdal, geojson, geotiff, las, png, shapefile, tetgen, text, triangle};
 pub use fronts::{contours, layer, mesh, points, raster};
-pub use options::cut::Cut;
+pub use options::cut::OnDamage;

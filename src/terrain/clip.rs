@@ -10,7 +10,7 @@ use crate::triangulation::num::Sign;
 
 use super::Tin;
 use super::admitted::refused;
-use super::cut::{Cut, DRAPED, cut, reach_of};
+use super::cut::{DRAPED, SurfaceCut, cut, reach_of};
 use super::regions::{Domain, Segment};
 
 /// The number of the domain of the bounds, and that of the first polygon; holes follow the
@@ -125,7 +125,7 @@ impl Clip {
         let before = whole(tin);
         let is_kept = |within: &[Domain]| in_polygon(within) && in_bounds(within) && !in_hole(within);
         tin.cut = cut(&tin.triangulation, &tin.kinds, &mut tin.inside, segments, reach, is_kept)?;
-        let in_fragments = tin.cut.as_ref().map_or(0, Cut::cut_count);
+        let in_fragments = tin.cut.as_ref().map_or(0, SurfaceCut::cut_count);
         Ok((before - whole(tin) - in_fragments, in_fragments))
     }
 }

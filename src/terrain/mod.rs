@@ -81,4 +81,4 @@ pub use selection::{Classes, Selection, SelectionReport};
 pub use soundness::{SurfaceFlaw, shape_flaws, surface_flaws};
 pub use tin::Tin;
 pub use tin_report::TinReport;
-pub use window::Window;
+pub use window::ReadWindow;

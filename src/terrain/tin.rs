@@ -9,7 +9,7 @@ use crate::triangulation::kernel::RANGE;
 use crate::triangulation::tds::{CellId, VertexId, ccw, cw};
 use crate::triangulation::{ConstrainedDelaunay, Flaw, Level, Location};
 
-use super::cut::Cut;
+use super::cut::SurfaceCut;
 use super::linear::{linear, plan_distance};
 use super::lines::kinds::LineKinds;
 use super::{TinReport, compact};
@@ -24,7 +24,7 @@ pub struct Tin {
     /// For each cell number: true if the whole cell is part of the surface.
     pub(super) inside: Vec<bool>,
     /// The fragments of triangles that are part of the surface, if it was cut.
-    pub(super) cut: Option<Cut>,
+    pub(super) cut: Option<SurfaceCut>,
     pub(super) kinds: LineKinds,
     pub(super) report: TinReport,
     crs: Option<Crs>,
@@ -155,7 +155,7 @@ impl Tin {
 
     /// The triangles that the patch of a cut replaces.
     pub(super) fn replaced(&self) -> &[CellId] {
-        self.cut.as_ref().map(Cut::replaced).unwrap_or_default()
+        self.cut.as_ref().map(SurfaceCut::replaced).unwrap_or_default()
     }
 
     /// Counts the vertices and faces of the surface.
@@ -221,7 +221,7 @@ pub(super) struct Count {
 
 impl Surface for Tin {
     fn vertex_count(&self) -> usize {
-        self.cut.as_ref().map_or(self.triangulation.tds().vertex_slots(), Cut::vertex_count)
+        self.cut.as_ref().map_or(self.triangulation.tds().vertex_slots(), SurfaceCut::vertex_count)
     }
 
     #[inline(always)] // into the loops over many faces
@@ -234,7 +234,7 @@ impl Surface for Tin {
     }
 
     fn face_count(&self) -> usize {
-        self.cut.as_ref().map_or(self.inside.len(), Cut::face_count)
+        self.cut.as_ref().map_or(self.inside.len(), SurfaceCut::face_count)
     }
 
     #[inline(always)] // into the loops over many faces

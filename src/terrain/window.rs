@@ -14,7 +14,7 @@ use crate::triangulation::tds::{CellId, VertexId};
 
 /// The boxes, in plan, of the points that were read and of all points.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Window {
+pub struct ReadWindow {
     /// All points in this box were read, including those on its border.
     pub read: Bounds,
     /// All points lie in this box, whether read or not.
@@ -24,10 +24,10 @@ pub struct Window {
 /// A box in plan: the smallest and the largest corner.
 type Box2 = [[f64; 2]; 2];
 
-impl Window {
+impl ReadWindow {
     /// The boxes that may contain unread points. They overlap at the corners.
     fn unread(&self) -> Vec<Box2> {
-        let Window { read, all } = self;
+        let ReadWindow { read, all } = self;
         let mut unread = Vec::new();
         for axis in 0..2 {
             let whole = [[all.min[0], all.min[1]], [all.max[0], all.max[1]]];
@@ -51,7 +51,7 @@ impl Window {
 pub(super) fn uncertain(
     triangulation: &ConstrainedDelaunay<Terrain>,
     bounds: &Bounds,
-    window: &Window,
+    window: &ReadWindow,
     max_edge: Option<f64>,
     cut: &[CellId],
 ) -> usize {

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use breakline::data::{Frame, Grid, Layer, PointBatch, PointSource, Shape, Triangles};
 use breakline::error::Wording;
-use breakline::io::{Cut, contours, geotiff, las, layer, mesh, points, tetgen, text, triangle};
+use breakline::io::{OnDamage, contours, geotiff, las, layer, mesh, points, tetgen, text, triangle};
 use breakline::run::{self, Context, PointsRequest, Source, SurfaceRequest};
 use breakline::terrain::TinBuilder;
 use testkit::lidar::{las as las_bytes, tile};
@@ -38,7 +38,7 @@ struct Sample {
     /// The file that is read.
     path: PathBuf,
     fate: Fate,
-    read: fn(&Path, Cut) -> Read,
+    read: fn(&Path, OnDamage) -> Read,
 }
 
 fn bits(numbers: impl IntoIterator<Item = f64>) -> Vec<u64> {
@@ -56,13 +56,13 @@ fn all_points(mut source: impl PointSource) -> Read {
     }
 }
 
-fn of_layer(path: &Path, cut: Cut) -> Read {
+fn of_layer(path: &Path, cut: OnDamage) -> Read {
     let Layer { shapes, warnings, .. } =
         layer::read_with(path, &layer::Options { cut, ..layer::Options::default() }, &|_| Ok(()))?;
     Ok((bits(shapes.iter().flat_map(Shape::vertices).flatten().copied()), warnings))
 }
 
-fn of_mesh(path: &Path, _: Cut) -> Read {
+fn of_mesh(path: &Path, _: OnDamage) -> Read {
     let Triangles { vertices, faces, warnings, .. } = mesh::read_triangles(path)?;
     Ok((
         [bits(vertices.into_flattened()), faces.into_flattened().into_iter().map(u64::from).collect()].concat(),
@@ -70,21 +70,21 @@ fn of_mesh(path: &Path, _: Cut) -> Read {
     ))
 }
 
-fn of_tin(path: &Path, _: Cut) -> Read {
+fn of_tin(path: &Path, _: OnDamage) -> Read {
     let source = Source::Mesh(path.to_path_buf());
     let found = run::check(&SurfaceRequest { source, ..SurfaceRequest::default() }, &Context::default())?;
     let facts = found.product.facts()?;
     Ok((vec![facts.triangles as u64], found.flaws.iter().map(|flaw| flaw.to_string().into()).collect()))
 }
 
-fn of_graph(path: &Path, _: Cut) -> Read {
+fn of_graph(path: &Path, _: OnDamage) -> Read {
     let graph = triangle::read(path)?;
     let ends = graph.segments.iter().flat_map(|segment| segment.ends).map(u64::from);
     let holes = graph.holes.iter().flat_map(|hole| hole.at);
     Ok(([bits(graph.nodes.points.into_flattened()), ends.collect(), bits(holes)].concat(), graph.warnings))
 }
 
-fn of_space(path: &Path, _: Cut) -> Read {
+fn of_space(path: &Path, _: OnDamage) -> Read {
     let (space, warnings) = tetgen::read(path, &|_| Ok(()))?;
     let corners = space.tetrahedra.into_flattened().into_iter().map(u64::from).collect();
     Ok(([bits(space.nodes.points.into_flattened()), corners].concat(), warnings))
@@ -163,7 +163,7 @@ fn samples(folder: &Path) -> Vec<Sample> {
     written("c.node", space.as_bytes());
     add(written("c.ele", b"2 4 0\n1 1 2 3 4\n2 2 3 4 5\n"), Fate::ErrorOrOpenLine, of_space);
     for (damaged, path, fate, read) in [
-        ("b.node", "b.ele", Fate::ErrorOrOpenLine, of_mesh as fn(&Path, Cut) -> Read),
+        ("b.node", "b.ele", Fate::ErrorOrOpenLine, of_mesh as fn(&Path, OnDamage) -> Read),
         ("b.neigh", "b.ele", Fate::ErrorOrOpenLine, of_mesh),
         ("b.edge", "b.ele", Fate::ErrorOrOpenLine, of_mesh),
         ("c.node", "c.ele", Fate::ErrorOrOpenLine, of_space),
@@ -186,14 +186,14 @@ fn a_file_that_was_cut_is_an_error_or_a_warning_and_never_silently_smaller() {
     for Sample { damaged, path, fate, read } in samples(folder.path()) {
         let name = damaged.file_name().unwrap().to_str().unwrap();
         let bytes = std::fs::read(&damaged).unwrap();
-        let (whole, warnings) = read(&path, Cut::Refuse).unwrap_or_else(|error| panic!("{name}: {error}"));
+        let (whole, warnings) = read(&path, OnDamage::Refuse).unwrap_or_else(|error| panic!("{name}: {error}"));
         assert!(warnings.is_empty() && !whole.is_empty(), "{name}: {warnings:?}");
         // All bytes of small files, and some of others.
         let step = bytes.len().div_ceil(400);
         for end in (1..bytes.len()).step_by(step).chain(bytes.len().saturating_sub(40).max(1)..bytes.len()) {
             replace(&damaged, &bytes[..end]);
             let is_between_lines = bytes[end - 1] == b'\n' || bytes[end] == b'\n';
-            for cut in [Cut::Refuse, Cut::Accept] {
+            for cut in [OnDamage::Refuse, OnDamage::Accept] {
                 let found = match read(&path, cut) {
                     Err(error) => {
                         assert_ne!(fate, Fate::Beside, "{name} cut at {end}: {error}");
@@ -205,8 +205,10 @@ fn a_file_that_was_cut_is_an_error_or_a_warning_and_never_silently_smaller() {
                 let is_right = found.0 == whole
                     || match fate {
                         Fate::Error => false,
-                        Fate::ErrorUnlessPartial => is_reported && cut == Cut::Accept,
-                        Fate::ErrorUnlessPartialOrOpenLine => is_reported && (cut == Cut::Accept || !is_between_lines),
+                        Fate::ErrorUnlessPartial => is_reported && cut == OnDamage::Accept,
+                        Fate::ErrorUnlessPartialOrOpenLine => {
+                            is_reported && (cut == OnDamage::Accept || !is_between_lines)
+                        }
                         Fate::ErrorOrOpenLine => is_reported && !is_between_lines,
                         Fate::OpenLineOnly => is_reported || is_between_lines,
                         Fate::ErrorInLine => is_between_lines,
@@ -232,13 +234,13 @@ fn changed_bytes_are_an_answer_and_counts_that_shrink_are_noticed() {
     for Sample { damaged, path, fate, read } in samples(folder.path()) {
         let name = damaged.file_name().unwrap().to_str().unwrap().to_owned();
         let bytes = std::fs::read(&damaged).unwrap();
-        let whole = read(&path, Cut::Refuse).unwrap().0;
+        let whole = read(&path, OnDamage::Refuse).unwrap().0;
         for _ in 0..crate::cases("BREAKLINE_FLIPS", 150) {
             let mut bad = bytes.clone();
             let at = random.index(bad.len());
             bad[at] ^= 1 << random.index(8);
             replace(&damaged, &bad);
-            for cut in [Cut::Refuse, Cut::Accept] {
+            for cut in [OnDamage::Refuse, OnDamage::Accept] {
                 let Ok((found, warnings)) = read(&path, cut) else { continue };
                 // A line of text may become a comment, or two lines one.
                 let is_text = matches!(fate, Fate::OpenLineOnly | Fate::ErrorInLine);
@@ -263,7 +265,7 @@ fn a_companion_that_is_missing_is_named_where_it_is_needed() {
         let bytes = std::fs::read(&missing).unwrap();
         std::fs::remove_file(&missing).unwrap();
         let read = all.iter().find(|sample| sample.path == path).unwrap().read;
-        match read(&path, Cut::Refuse) {
+        match read(&path, OnDamage::Refuse) {
             Err(error) => assert!(is_needed && error.to_string().contains(missing.to_str().unwrap()), "{error}"),
             Ok(_) => assert!(!is_needed, "{}", missing.display()),
         }

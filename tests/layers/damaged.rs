@@ -6,11 +6,11 @@ use std::time::{Duration, Instant};
 use super::read;
 use breakline::data::{Layer, Shape};
 use breakline::error::Result;
-use breakline::io::{Cut, layer, shapefile};
+use breakline::io::{OnDamage, layer, shapefile};
 
 /// What is whole of a damaged file.
 fn read_what_is_there(path: &Path) -> Result<Layer> {
-    layer::read_with(path, &layer::Options { cut: Cut::Accept, ..layer::Options::default() }, &|_| Ok(()))
+    layer::read_with(path, &layer::Options { cut: OnDamage::Accept, ..layer::Options::default() }, &|_| Ok(()))
 }
 
 /// What a damaged file gives.
@@ -240,14 +240,14 @@ fn reading_goes_on_at_the_next_record_of_the_index() {
             let options = layer::Options { height_field: Some("H"), cut, ..layer::Options::default() };
             layer::read_with(&path, &options, &|_| Ok(()))
         };
-        let error = read(Cut::Refuse).unwrap_err().to_string();
+        let error = read(OnDamage::Refuse).unwrap_err().to_string();
         assert!(error.contains("three.shp: record 2 (byte 220): content of"), "{error}");
-        let layer = read(Cut::Accept).unwrap();
+        let layer = read(OnDamage::Accept).unwrap();
         assert_eq!(x_and_height(&layer), [(1., 10.), (3., 30.)], "{length}");
         assert!(layer.warnings[0].plain().starts_with("record 2 (byte 220): content of"), "{:?}", layer.warnings);
         std::fs::remove_file(path.with_extension("shx")).unwrap();
-        assert!(read(Cut::Refuse).is_err());
-        assert_eq!(x_and_height(&read(Cut::Accept).unwrap()), [(1., 10.)], "{length}");
+        assert!(read(OnDamage::Refuse).is_err());
+        assert_eq!(x_and_height(&read(OnDamage::Accept).unwrap()), [(1., 10.)], "{length}");
     }
 }
 

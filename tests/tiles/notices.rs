@@ -172,7 +172,7 @@ fn cases_of_points(files: &Files) -> Vec<Case> {
     let counted = files.write("counted.pts", format!("70\n{}", fs::read_to_string(&text).unwrap()));
     let partial = |request: TinRequest| {
         let mut request = request;
-        request.read.cut = breakline::io::Cut::Accept;
+        request.read.cut = breakline::io::OnDamage::Accept;
         request
     };
     let only = |classes: &[u8], request: TinRequest| TinRequest { classes: Classes::Only(classes.to_vec()), ..request };

@@ -16,7 +16,7 @@ use crate::run::{Context, Monitor, Notice, Progress, Severity, Size, Stage};
 
 /// How much is printed.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Level {
+pub(crate) enum Verbosity {
     Quiet,
     #[default]
     Normal,
@@ -26,15 +26,15 @@ pub(crate) enum Level {
 /// Prints the messages of a run to stderr. Equal notices, notes and warnings are printed once.
 #[derive(Debug)]
 pub(crate) struct Console {
-    level: Level,
+    level: Verbosity,
     bars: MultiProgress,
     said: Mutex<HashSet<String>>,
 }
 
 impl Console {
-    pub(crate) fn new(level: Level) -> Self {
+    pub(crate) fn new(level: Verbosity) -> Self {
         let target = match level {
-            Level::Quiet => ProgressDrawTarget::hidden(),
+            Verbosity::Quiet => ProgressDrawTarget::hidden(),
             // Hidden by itself if stderr is not a terminal.
             _ => ProgressDrawTarget::stderr(),
         };
@@ -57,21 +57,21 @@ impl Console {
     /// Prints a note, unless the run is quiet: a choice that was made for the user, or something
     /// worth knowing.
     pub(crate) fn note(&self, text: impl Display) {
-        if self.level > Level::Quiet {
+        if self.level > Verbosity::Quiet {
             self.once(format!("note: {text}"));
         }
     }
 
     /// Prints a line if the run is verbose.
     pub(crate) fn detail(&self, text: impl Display) {
-        if self.level == Level::Verbose {
+        if self.level == Verbosity::Verbose {
             self.print(&text.to_string());
         }
     }
 
     /// Prints a line of the summary, unless the run is quiet.
     pub(crate) fn line(&self, text: impl Display) {
-        if self.level > Level::Quiet {
+        if self.level > Verbosity::Quiet {
             self.print(&text.to_string());
         }
     }
@@ -79,7 +79,7 @@ impl Console {
     /// Returns what prints a note if a signal ends the program while it lives, unless the run is
     /// quiet.
     pub(crate) fn note_if_ended(&self, text: impl Display) -> Option<LastWords> {
-        (self.level > Level::Quiet).then(|| LastWords::new(format!("note: {text}")))
+        (self.level > Verbosity::Quiet).then(|| LastWords::new(format!("note: {text}")))
     }
 
     /// Returns the context of a run that shows its notices and progress here.
@@ -112,9 +112,9 @@ impl Monitor for Console {
     fn notice(&self, notice: &Notice) {
         let text = notice.text().render(&name);
         let (least, text) = match notice.severity() {
-            Severity::Detail => (Level::Verbose, text),
-            Severity::Note => (Level::Normal, format!("note: {text}")),
-            Severity::Warning => (Level::Quiet, format!("warning: {text}")),
+            Severity::Detail => (Verbosity::Verbose, text),
+            Severity::Note => (Verbosity::Normal, format!("note: {text}")),
+            Severity::Warning => (Verbosity::Quiet, format!("warning: {text}")),
         };
         if self.level >= least && self.once(text) {
             notice.details().iter().for_each(|line| self.line(format_args!("            {}", line.render(&name))));

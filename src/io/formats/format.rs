@@ -118,7 +118,7 @@ type Points = Result<Box<dyn PointSource + Send>>;
 
 /// The function that reads a format.
 #[derive(Debug, Clone, Copy)]
-pub(crate) enum Reader {
+pub(crate) enum FormatReader {
     Points {
         file: fn(&Path, Options) -> Points,
         /// Reads input that can be read only once; messages show the path as its name.
@@ -204,7 +204,7 @@ pub struct Format {
     pub read_along: &'static [&'static str],
     /// GDAL's names for the format, if breakline writes it.
     pub gdal_names: &'static [&'static str],
-    pub(crate) reader: Reader,
+    pub(crate) reader: FormatReader,
     pub(crate) writers: Writers,
     /// What to do with such a file where points are expected.
     pub(crate) cure: fn() -> Wording,
@@ -233,7 +233,7 @@ impl Format {
 
     /// Returns true if the format is read without GDAL.
     pub fn is_read(&self) -> bool {
-        !matches!(self.reader, Reader::Gdal | Reader::Unread)
+        !matches!(self.reader, FormatReader::Gdal | FormatReader::Unread)
     }
 
     pub(super) fn has_extension(&self, path: &Path) -> bool {

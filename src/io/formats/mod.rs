@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 
 use self::format::KnownBy;
 pub use self::format::{Content, Format, Holding, Product};
-pub(crate) use self::format::{PointWriter, Reader, Writers};
+pub(crate) use self::format::{FormatReader, PointWriter, Writers};
 pub use self::table::FORMATS;
 pub(crate) use self::table::with_gdal;
 use crate::error::{Error, Result};
@@ -85,7 +85,7 @@ pub(crate) fn named(head: &[u8], path: &Path) -> Option<&'static Format> {
 /// such as `.dbf`.
 pub(crate) fn format_of_part(path: &Path) -> Option<(&'static Format, &'static str)> {
     let extension = path.extension()?;
-    FORMATS.iter().filter(|format| matches!(format.reader, Reader::Layer(_))).find_map(|format| {
+    FORMATS.iter().filter(|format| matches!(format.reader, FormatReader::Layer(_))).find_map(|format| {
         let part = format.parts.iter().find(|part| extension.eq_ignore_ascii_case(part))?;
         Some((format, *part))
     })
@@ -153,17 +153,17 @@ impl Product {
     }
 }
 
-impl Reader {
+impl FormatReader {
     const fn name(self) -> &'static str {
         match self {
-            Reader::Points { .. } => "points",
-            Reader::Layer(_) => "lines, polygons, points",
-            Reader::Raster(_) => "heights",
-            Reader::Mesh(_) | Reader::Tin(_) | Reader::Parts(_) => "surface",
-            Reader::Own => "points and segments",
-            Reader::Solid(_) | Reader::InfoOnly => "by `info` only",
-            Reader::Gdal => "with `gdal`",
-            Reader::Unread => "",
+            FormatReader::Points { .. } => "points",
+            FormatReader::Layer(_) => "lines, polygons, points",
+            FormatReader::Raster(_) => "heights",
+            FormatReader::Mesh(_) | FormatReader::Tin(_) | FormatReader::Parts(_) => "surface",
+            FormatReader::Own => "points and segments",
+            FormatReader::Solid(_) | FormatReader::InfoOnly => "by `info` only",
+            FormatReader::Gdal => "with `gdal`",
+            FormatReader::Unread => "",
         }
     }
 }

@@ -1,7 +1,7 @@
 //! The table of formats. Most rows override a few fields of another row: of [`ROW`], or of one that
 //! [`raster`], [`vector`] or [`plane`] returns.
 
-use super::format::{Content, Format, Holding, KnownBy, Magic, PointWriter, Reader, Sink, WriteSurface, Writers};
+use super::format::{Content, Format, FormatReader, Holding, KnownBy, Magic, PointWriter, Sink, WriteSurface, Writers};
 use crate::data::PointInfo;
 use crate::error::{Command, Feature, Wording, wording};
 use crate::io::bytes::output::Destination;
@@ -45,18 +45,18 @@ const ROW: Format = Format {
     parts: &[],
     read_along: &[],
     gdal_names: &[],
-    reader: Reader::Gdal,
+    reader: FormatReader::Gdal,
     writers: NOT_WRITTEN,
     cure: with_gdal,
     help: "",
 };
 
-const LIDAR: Reader = Reader::Points {
+const LIDAR: FormatReader = FormatReader::Points {
     file: |path, options| Ok(Box::new(las::open_with(path, options.las())?)),
     stream: |stream, name, options| Ok(Box::new(las::from_stream_with(stream, name, options.las())?)),
 };
 
-const TEXT: Reader = Reader::Points {
+const TEXT: FormatReader = FormatReader::Points {
     file: |path, options| Ok(Box::new(text::open(path, options)?)),
     stream: |stream, name, options| Ok(Box::new(text::from_stream(stream, name, options)?)),
 };
@@ -116,7 +116,7 @@ const fn plane(
         noun,
         extensions,
         content: Content::Plane,
-        reader: Reader::Own,
+        reader: FormatReader::Own,
         writers: Writers { plane: Some(triangle::write), ..NOT_WRITTEN },
         cure: AS_PLANE,
         help,
@@ -133,7 +133,7 @@ const fn space(name: &'static str, noun: &'static str, extensions: &'static [&'s
         name,
         noun,
         extensions,
-        reader: Reader::Unread,
+        reader: FormatReader::Unread,
         writers: Writers { space: Some(tetgen::write), ..NOT_WRITTEN },
         cure: AS_SPACE,
         ..ROW
@@ -210,7 +210,7 @@ pub static FORMATS: &[Format] = &[
         parts: &["shx", "dbf", "prj", "cpg", "qpj", "qix", "sbn", "sbx"],
         read_along: &["shx", "dbf", "prj", "cpg"],
         gdal_names: &["ESRI Shapefile"],
-        reader: Reader::Layer(shapefile::read_layer_with),
+        reader: FormatReader::Layer(shapefile::read_layer_with),
         writers: Writers {
             contours: Some(|target, lines, crs| shapefile::write_contours(target, lines, crs)),
             check_size: Some(shapefile::check_size),
@@ -227,7 +227,7 @@ pub static FORMATS: &[Format] = &[
         content: Content::Layer,
         holds: &[Holding::Points, Holding::Lines, Holding::Polygons, Holding::Crs],
         gdal_names: &["GeoJSON"],
-        reader: Reader::Layer(geojson::read_layer_with),
+        reader: FormatReader::Layer(geojson::read_layer_with),
         writers: Writers {
             contours: Some(|target, lines, crs| geojson::write_contours(target, lines, crs)),
             ..NOT_WRITTEN
@@ -242,7 +242,7 @@ pub static FORMATS: &[Format] = &[
         content: Content::Layer,
         holds: &[Holding::Points, Holding::Lines, Holding::Polygons],
         gdal_names: &["GeoJSONSeq"],
-        reader: Reader::Layer(geojson::read_lines_with),
+        reader: FormatReader::Layer(geojson::read_lines_with),
         writers: Writers {
             contours: Some(|target, lines, crs| geojson::write_contour_lines(target, lines, crs)),
             ..NOT_WRITTEN
@@ -261,7 +261,7 @@ pub static FORMATS: &[Format] = &[
         holds: &[Holding::Raster, Holding::Crs, Holding::Compression],
         read_along: &["tfw", "tifw", "tiffw", "wld"],
         gdal_names: &["GTiff", "COG"],
-        reader: Reader::Raster(|path| geotiff::open(path)),
+        reader: FormatReader::Raster(|path| geotiff::open(path)),
         writers: Writers {
             heights: Some(|target, source| geotiff::write(target, source, CellFormat::Heights.into())),
             shades: Some(|target, source| geotiff::write(target, source, CellFormat::Shades.into()).map(drop)),
@@ -282,7 +282,7 @@ pub static FORMATS: &[Format] = &[
         parts: &["pgw", "png.aux.xml"],
         read_along: &["pgw", "pngw", "wld", "png.aux.xml"],
         gdal_names: &["PNG"],
-        reader: Reader::InfoOnly,
+        reader: FormatReader::InfoOnly,
         writers: Writers { shades: Some(|target, source| png::write_gray(target, source)), ..NOT_WRITTEN },
         cure: AS_RASTER,
         help: "hillshade",
@@ -295,7 +295,7 @@ pub static FORMATS: &[Format] = &[
         magic: &[Magic::At(0, b"ply")],
         content: Content::Mesh,
         holds: &[Holding::Mesh, Holding::Edges, Holding::Crs],
-        reader: Reader::Mesh(|path, watch| ply::read(&bytes_of(path, watch)?, watch)),
+        reader: FormatReader::Mesh(|path, watch| ply::read(&bytes_of(path, watch)?, watch)),
         writers: surface_writer(|target, mesh, crs| ply::write(target, mesh, crs).map(|()| None)),
         cure: AS_MESH,
         help: "triangles with breaklines and coordinate system",
@@ -307,7 +307,7 @@ pub static FORMATS: &[Format] = &[
         extensions: &["obj"],
         content: Content::Mesh,
         holds: &[Holding::Mesh, Holding::Crs],
-        reader: Reader::Mesh(|path, watch| obj::read(&bytes_of(path, watch)?, watch)),
+        reader: FormatReader::Mesh(|path, watch| obj::read(&bytes_of(path, watch)?, watch)),
         writers: surface_writer(|target, mesh, crs| obj::write(target, mesh, crs).map(|()| None)),
         cure: AS_MESH,
         help: "triangles",
@@ -319,7 +319,7 @@ pub static FORMATS: &[Format] = &[
         extensions: &["off"],
         content: Content::Mesh,
         holds: &[Holding::Mesh, Holding::Crs],
-        reader: Reader::Mesh(|path, watch| off::read(&bytes_of(path, watch)?, watch)),
+        reader: FormatReader::Mesh(|path, watch| off::read(&bytes_of(path, watch)?, watch)),
         writers: surface_writer(|target, mesh, crs| off::write(target, mesh, crs).map(|()| None)),
         cure: AS_MESH,
         help: "triangles",
@@ -334,7 +334,7 @@ pub static FORMATS: &[Format] = &[
         beside: &["stl.origin.txt"],
         parts: &["stl.origin.txt"],
         read_along: &["stl.origin.txt"],
-        reader: Reader::Solid(stl::describe),
+        reader: FormatReader::Solid(stl::describe),
         writers: surface_writer(|target, mesh, _| stl::write(target, mesh).map(Some)),
         cure: AS_MESH,
         help: "triangles in 32-bit floats from a local origin; written only",
@@ -348,7 +348,7 @@ pub static FORMATS: &[Format] = &[
         known_by: KnownBy::Bytes,
         content: Content::Mesh,
         holds: &[Holding::Mesh, Holding::Edges, Holding::Crs],
-        reader: Reader::Tin(tin::map),
+        reader: FormatReader::Tin(tin::map),
         writers: surface_writer(|target, mesh, _| tin::write(target, mesh).map(|()| None)),
         cure: AS_MESH,
         help: "triangulation with breaklines and coordinate system, opened in milliseconds",
@@ -362,14 +362,14 @@ pub static FORMATS: &[Format] = &[
         known_by: KnownBy::Bytes,
         content: Content::Mesh,
         holds: &[Holding::Mesh, Holding::Edges, Holding::Crs],
-        reader: Reader::Parts(tin::index),
+        reader: FormatReader::Parts(tin::index),
         writers: surface_writer(|_, _, _| Err(tin::needs_tiles())),
         cure: AS_MESH,
         help: "index of a TIN in parts, one file for each tile; for surfaces larger than memory",
         ..ROW
     },
     Format {
-        reader: Reader::Mesh(triangle::read_triangles_with),
+        reader: FormatReader::Mesh(triangle::read_triangles_with),
         content: Content::Mesh,
         holds: &[Holding::Mesh, Holding::Edges],
         beside: &["node"],
@@ -394,13 +394,13 @@ pub static FORMATS: &[Format] = &[
         ..plane("Triangle .poly", "a .poly file of Triangle", &["poly"], "points and segments in the plane (Triangle)")
     },
     Format {
-        reader: Reader::InfoOnly,
+        reader: FormatReader::InfoOnly,
         beside: &["node"],
         writers: PLANE_OR_SPACE,
         ..plane("Triangle .edge", "an .edge file of Triangle", &["edge"], "edges of a triangulation (Triangle, TetGen)")
     },
     Format {
-        reader: Reader::InfoOnly,
+        reader: FormatReader::InfoOnly,
         writers: PLANE_OR_SPACE,
         ..plane(
             "Triangle .neigh",
@@ -453,7 +453,7 @@ pub static FORMATS: &[Format] = &[
         name: "E57",
         noun: "an E57 scan",
         magic: &[Magic::At(0, b"ASTM-E57")],
-        reader: Reader::Unread,
+        reader: FormatReader::Unread,
         cure: || "save it as LAS or LAZ".into(),
         ..ROW
     },
@@ -461,7 +461,7 @@ pub static FORMATS: &[Format] = &[
         name: "ZIP",
         noun: "a ZIP archive",
         magic: &[Magic::At(0, b"PK\x03\x04")],
-        reader: Reader::Unread,
+        reader: FormatReader::Unread,
         cure: UNPACK,
         ..ROW
     },
@@ -469,7 +469,7 @@ pub static FORMATS: &[Format] = &[
         name: "gzip",
         noun: "a gzip archive",
         magic: &[Magic::At(0, b"\x1f\x8b")],
-        reader: Reader::Unread,
+        reader: FormatReader::Unread,
         cure: UNPACK,
         ..ROW
     },

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use crate::data::Layer;
 use crate::error::{Error, Feature, Result, wording};
 use crate::io::bytes::watch::{Watch, unwatched};
-use crate::io::formats::{self, Reader};
-use crate::io::options::cut::Cut;
+use crate::io::formats::{self, FormatReader};
+use crate::io::options::cut::OnDamage;
 pub use crate::io::options::layer::Options;
 
 /// A vector layer as a user names it: a file, and the layer and the attribute to read of it.
@@ -60,7 +60,7 @@ impl Spec {
     }
 
     /// Returns what to read of the layer, with these columns.
-    pub(crate) fn options<'a>(&'a self, columns: &'a [&'a str], cut: Cut) -> Options<'a> {
+    pub(crate) fn options<'a>(&'a self, columns: &'a [&'a str], cut: OnDamage) -> Options<'a> {
         Options { layer: self.layer.as_deref(), height_field: self.field.as_deref(), columns, cut }
     }
 }
@@ -94,7 +94,7 @@ fn split(text: &str) -> (&Path, Option<&str>) {
 fn has_one_layer(path: &Path) -> bool {
     // A file that does not exist is known by its name.
     let format = formats::detect_file(path).unwrap_or_else(|_| formats::of_name(path));
-    format.is_some_and(|format| matches!(format.reader, Reader::Layer(_)))
+    format.is_some_and(|format| matches!(format.reader, FormatReader::Layer(_)))
 }
 
 /// Reads a layer that is named as in [`Spec::parse`]; the format follows from the extension or,
@@ -108,7 +108,7 @@ fn has_one_layer(path: &Path) -> bool {
 /// If the file does not exist or is not a vector layer; if it has no such layer or attribute.
 pub fn read(text: &str) -> Result<Layer> {
     let spec = Spec::parse(text)?;
-    read_with(&spec.path, &spec.options(&[], Cut::Refuse), &unwatched)
+    read_with(&spec.path, &spec.options(&[], OnDamage::Refuse), &unwatched)
 }
 
 /// Like [`read`], but of a file, with options, and watched: the bytes that were parsed are counted,
@@ -127,7 +127,7 @@ pub fn read_with(path: &Path, options: &Options, watch: Watch) -> Result<Layer> 
         )));
     }
     match formats::detect_file(path)?.map(|format| format.reader) {
-        Some(Reader::Layer(read)) => read(path, options, watch),
+        Some(FormatReader::Layer(read)) => read(path, options, watch),
         _ => Err(unsupported(path)),
     }
 }

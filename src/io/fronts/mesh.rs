@@ -42,7 +42,7 @@ use crate::io::bytes::output::Destination;
 use crate::io::bytes::watch::{Watch, unwatched};
 use crate::io::codec::listing::Listing;
 pub use crate::io::codec::stl::Solid;
-use crate::io::formats::{self, Content, Holding, Product, Reader};
+use crate::io::formats::{self, Content, FormatReader, Holding, Product};
 
 /// What a mesh file contains, counted.
 #[derive(Debug, Clone, PartialEq)]
@@ -136,7 +136,7 @@ pub fn edges(surface: &dyn Surface) -> Result<Vec<([u32; 2], EdgeKind)>> {
 /// extension.
 pub fn is_tin(path: &Path) -> bool {
     let format = formats::detect_file(path).ok().flatten();
-    format.is_some_and(|format| matches!(format.reader, Reader::Tin(_) | Reader::Parts(_)))
+    format.is_some_and(|format| matches!(format.reader, FormatReader::Tin(_) | FormatReader::Parts(_)))
 }
 
 /// Maps a TIN to memory; `None` for a file of another format, by its first bytes and its extension.
@@ -145,7 +145,7 @@ pub fn is_tin(path: &Path) -> bool {
 /// Those of [`mapped::open`].
 pub fn map_tin(path: &Path) -> Option<Result<Mapped>> {
     match formats::detect_file(path).ok()??.reader {
-        Reader::Tin(map) => Some(map(path)),
+        FormatReader::Tin(map) => Some(map(path)),
         _ => None,
     }
 }
@@ -156,7 +156,7 @@ pub fn map_tin(path: &Path) -> Option<Result<Mapped>> {
 /// If the file cannot be read.
 pub fn read_tin_index(path: &Path) -> Option<Result<Vec<u8>>> {
     match formats::detect_file(path).ok()??.reader {
-        Reader::Parts(read) => Some(read(path)),
+        FormatReader::Parts(read) => Some(read(path)),
         _ => None,
     }
 }
@@ -168,7 +168,7 @@ pub fn read_tin_index(path: &Path) -> Option<Result<Vec<u8>>> {
 /// If the file is text or damaged, or the file that states its origin is damaged.
 pub fn describe_solid(path: &Path) -> Option<Result<Solid>> {
     match formats::of_name(path)?.reader {
-        Reader::Solid(describe) => Some(describe(path).map_err(|e| e.in_file(path))),
+        FormatReader::Solid(describe) => Some(describe(path).map_err(|e| e.in_file(path))),
         _ => None,
     }
 }
@@ -235,14 +235,14 @@ pub fn read_vertices(path: &Path, watch: Watch) -> Result<(Vec<[f64; 3]>, Vec<Wo
 /// Reads a mesh, which may have no faces.
 fn parse(path: &Path, watch: Watch) -> Result<Triangles> {
     let read = match formats::of_name(path).map(|format| (format, format.reader)) {
-        Some((_, Reader::Mesh(read))) => read,
-        Some((format, Reader::Solid(_))) => {
+        Some((_, FormatReader::Mesh(read))) => read,
+        Some((format, FormatReader::Solid(_))) => {
             let name = format.name;
             return Err(Error::unsupported(format!("{name} meshes are not read: they have no exact coordinates"))
                 .in_file(path)
                 .cure("use PLY, which keeps coordinates, breaklines and the coordinate system"));
         }
-        Some((_, Reader::Tin(_) | Reader::Parts(_))) => {
+        Some((_, FormatReader::Tin(_) | FormatReader::Parts(_))) => {
             return Err(Error::unsupported("a TIN is not read triangle by triangle")
                 .in_file(path)
                 .cure("write it as .ply first: breakline tin IN -o OUT.ply"));

@@ -15,7 +15,7 @@ use crate::error::{Error, Result, Setting, wording};
 use crate::io::bytes::output::Destination;
 use crate::io::bytes::watch::unwatched;
 use crate::io::codec::las::{Detail, Rounding};
-use crate::io::formats::{self, Format, HEAD, PointWriter, Product, Reader};
+use crate::io::formats::{self, Format, FormatReader, HEAD, PointWriter, Product};
 use crate::io::options::layer as layer_options;
 pub use crate::io::options::points::Options;
 
@@ -47,8 +47,8 @@ pub fn open_with(path: impl AsRef<Path>, options: Options) -> Result<Box<dyn Poi
     }
     let head = head(&mut file).map_err(named)?;
     match formats::detect(&head, path).map(|format| format.reader) {
-        Some(Reader::Points { file, .. }) => file(path, options),
-        Some(Reader::Layer(read)) => {
+        Some(FormatReader::Points { file, .. }) => file(path, options),
+        Some(FormatReader::Layer(read)) => {
             let of_layer = layer_options::Options { cut: options.cut, ..layer_options::Options::default() };
             Ok(Box::new(from_layer(read(path, &of_layer, &unwatched)?).map_err(|e| e.in_file(path))?))
         }
@@ -66,8 +66,8 @@ fn open_stream(
     let known = formats::detect(&head, name).map(|format| format.reader);
     let whole = io::Cursor::new(head.clone()).chain(stream);
     match known {
-        Some(Reader::Points { stream, .. }) => stream(Box::new(whole), name, options),
-        Some(Reader::Layer(_)) => Err(Error::unsupported("a shapefile cannot be read from a stream")
+        Some(FormatReader::Points { stream, .. }) => stream(Box::new(whole), name, options),
+        Some(FormatReader::Layer(_)) => Err(Error::unsupported("a shapefile cannot be read from a stream")
             .in_file(name)
             .cure("give its path: it is a set of files")),
         _ => Err(refusal(&head, name)),

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use crate::error::{Error, Result};
 use crate::io::codec::geotiff::GeoTiffReader;
-use crate::io::formats::{self, Content, Format, HEAD, Reader};
+use crate::io::formats::{self, Content, Format, FormatReader, HEAD};
 
 /// Opens a raster of heights. Only GeoTIFF is read without GDAL.
 ///
@@ -17,7 +17,7 @@ pub fn open(path: impl AsRef<Path>) -> Result<GeoTiffReader> {
     let path = path.as_ref();
     let head = first_bytes(path).map_err(|e| e.in_file(path))?;
     match formats::of_bytes(&head).map(|format| format.reader) {
-        Some(Reader::Raster(open)) => open(path),
+        Some(FormatReader::Raster(open)) => open(path),
         _ => Err(refusal(&head, path).in_file(path)),
     }
 }
@@ -41,7 +41,7 @@ fn refusal(head: &[u8], path: &Path) -> Error {
         return Error::format("is empty");
     }
     let named = formats::named(head, path);
-    match named.filter(|format| format.content == Content::Picture || matches!(format.reader, Reader::Gdal)) {
+    match named.filter(|format| format.content == Content::Picture || matches!(format.reader, FormatReader::Gdal)) {
         Some(Format { name, .. }) => Error::unsupported(format!("{name} needs GDAL"))
             .cure("build with the `gdal` feature, or convert with gdal_translate to GeoTIFF"),
         None => Error::unsupported("not a GeoTIFF, nor any raster format that its first bytes identify")

@@ -2,7 +2,7 @@ use crate::error::{Error, Result, Setting, Wording, wording};
 
 /// What to do with a file of which a part is missing or damaged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
-pub enum Cut {
+pub enum OnDamage {
     /// Return an error.
     #[default]
     Refuse,
@@ -10,13 +10,13 @@ pub enum Cut {
     Accept,
 }
 
-impl Cut {
+impl OnDamage {
     /// Reports that something is missing from a location on ("byte 4096"): as an error or a
     /// warning.
     pub(crate) fn refuse_or_warn(self, text: String, location: &str, warnings: &mut Vec<Wording>) -> Result<()> {
         match self {
-            Cut::Accept => warnings.push(text.into()),
-            Cut::Refuse => {
+            OnDamage::Accept => warnings.push(text.into()),
+            OnDamage::Refuse => {
                 return Err(Error::format(text).at(location).cure(wording![
                     "copy or download the file again, or use what is there with ",
                     Setting::Partial.on()

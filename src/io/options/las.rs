@@ -1,16 +1,16 @@
-use super::cut::Cut;
+use super::cut::OnDamage;
 
 /// How a LAS or LAZ file is read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct ReadOptions {
     /// What to do with a file that was cut short.
-    pub cut: Cut,
+    pub cut: OnDamage,
     /// How much is read of each point.
     pub detail: Detail,
 }
 
-impl From<Cut> for ReadOptions {
-    fn from(cut: Cut) -> Self {
+impl From<OnDamage> for ReadOptions {
+    fn from(cut: OnDamage) -> Self {
         ReadOptions { cut, ..Self::default() }
     }
 }

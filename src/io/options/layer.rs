@@ -1,6 +1,6 @@
 //! What is read of a vector file.
 
-use super::cut::Cut;
+use super::cut::OnDamage;
 use crate::error::{Error, Result};
 
 /// The layer and the attributes to read of a vector file. Names are compared as written, else in
@@ -17,7 +17,7 @@ pub struct Options<'a> {
     /// an error, and so is a value that is not a number.
     pub columns: &'a [&'a str],
     /// What to do with files of which a part is missing or damaged.
-    pub cut: Cut,
+    pub cut: OnDamage,
 }
 
 impl Options<'_> {

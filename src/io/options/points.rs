@@ -1,4 +1,4 @@
-use super::cut::Cut;
+use super::cut::OnDamage;
 use super::las::{Detail, ReadOptions};
 use crate::data::Columns;
 
@@ -8,7 +8,7 @@ pub struct Options {
     /// The columns of text; if `None`, a header or the first three columns are used.
     pub columns: Option<Columns>,
     /// What to do with files of which a part is missing or damaged.
-    pub cut: Cut,
+    pub cut: OnDamage,
     /// How much is read of each point of LAS and LAZ.
     pub detail: Detail,
 }

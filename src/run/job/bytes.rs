@@ -34,13 +34,13 @@ fn put_vertex(to: &mut Vec<u8>, vertex: &TileVertex) {
 const VERTEX_BYTES: usize = 4 + 4 + 24 + 1;
 
 /// Takes numbers from bytes; `None` where they end.
-pub(super) struct Reader<'a> {
+pub(super) struct NumberReader<'a> {
     rest: &'a [u8],
 }
 
-impl<'a> Reader<'a> {
+impl<'a> NumberReader<'a> {
     pub(super) fn new(bytes: &'a [u8]) -> Self {
-        Reader { rest: bytes }
+        NumberReader { rest: bytes }
     }
 
     pub(super) fn is_empty(&self) -> bool {
@@ -101,7 +101,7 @@ pub(super) fn of_points(points: &[[f64; 3]]) -> Vec<u8> {
 
 /// Appends the points with these bytes; `None` if they are not those of points.
 pub(super) fn add_points(bytes: &[u8], to: &mut Vec<[f64; 3]>) -> Option<()> {
-    let mut reader = Reader::new(bytes);
+    let mut reader = NumberReader::new(bytes);
     to.reserve(bytes.len() / 24);
     while !reader.is_empty() {
         to.push(reader.point()?);
@@ -124,7 +124,7 @@ pub(super) const CONSTRAINT_BYTES: usize = 4 * 8 + 1;
 
 /// Returns the sub-constraints with these bytes; `None` if they are damaged.
 pub(super) fn to_constraints(bytes: &[u8]) -> Option<Vec<SubConstraint>> {
-    let mut reader = Reader::new(bytes);
+    let mut reader = NumberReader::new(bytes);
     let mut constraints = Vec::with_capacity(bytes.len() / CONSTRAINT_BYTES);
     while !reader.is_empty() {
         let ends = [[reader.f64()?, reader.f64()?], [reader.f64()?, reader.f64()?]];
@@ -151,7 +151,7 @@ pub(super) fn of_residual(residual: &Residual) -> Vec<u8> {
 
 /// Returns the residual with these bytes; `None` if they are damaged.
 pub(super) fn to_residual(bytes: &[u8]) -> Option<Residual> {
-    let mut reader = Reader::new(bytes);
+    let mut reader = NumberReader::new(bytes);
     let has_lines = reader.boolean()?;
     let mut count = |size: usize| usize::try_from(reader.u64()?).ok().filter(|&count| count <= bytes.len() / size);
     let (vertex_count, edge_count) = (count(VERTEX_BYTES)?, count(10)?);
@@ -186,7 +186,7 @@ pub(super) fn put_waiting(to: &mut Vec<u8>, triangle: &TileTriangle, number: u32
 
 /// Returns the gates with these bytes; `None` if they are not those of gates.
 pub(super) fn to_gates(bytes: &[u8]) -> Option<Vec<Gate>> {
-    let mut reader = Reader::new(bytes);
+    let mut reader = NumberReader::new(bytes);
     let mut gates = Vec::with_capacity(bytes.len() / 20);
     while !reader.is_empty() {
         gates.push(Gate { edge: [reader.u64()?, reader.u64()?], group: reader.u32()? });
@@ -199,7 +199,7 @@ pub(super) const WAITING_BYTES: usize = 3 * VERTEX_BYTES + 3 + 4;
 
 /// Returns the triangle with these bytes and its number; `None` if they are damaged.
 pub(super) fn to_waiting(bytes: &[u8]) -> Option<(TileTriangle, u32)> {
-    let mut reader = Reader::new(bytes);
+    let mut reader = NumberReader::new(bytes);
     let corners = [reader.vertex()?, reader.vertex()?, reader.vertex()?];
     let edges = [reader.kind()?, reader.kind()?, reader.kind()?];
     Some((TileTriangle { corners, edges }, reader.u32()?))

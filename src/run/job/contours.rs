@@ -2,7 +2,7 @@
 
 use std::cell::RefCell;
 
-use super::bytes::{Reader, put_block, put_numbers};
+use super::bytes::{NumberReader, put_block, put_numbers};
 use super::task_file::{Block, TaskFile, TaskName, TaskWriter};
 use crate::crs::Crs;
 use crate::data::ContourLine;
@@ -40,7 +40,7 @@ type LevelTable = Vec<(f64, Block)>;
 /// Returns the lowest and the highest height of the triangles of a task, and the table of its
 /// levels; `None` if the bytes are not those of such a table.
 fn to_table(bytes: &[u8]) -> Option<([f64; 2], LevelTable)> {
-    let mut reader = Reader::new(bytes);
+    let mut reader = NumberReader::new(bytes);
     let heights = [reader.f64()?, reader.f64()?];
     let mut table = Vec::new();
     while !reader.is_empty() {

@@ -7,7 +7,7 @@
 
 use rustc_hash::FxHashSet;
 
-use super::bytes::{self, Reader, put_block, put_u32};
+use super::bytes::{self, NumberReader, put_block, put_u32};
 use super::task_file::{TaskFile, TaskWriter};
 use crate::crs::Crs;
 use crate::data::{Bounds, Surface};
@@ -20,7 +20,7 @@ use crate::run::lines::inputs::{Added, LineLayers};
 use crate::run::lines::notes::{self as line_notes, LevelRings, OtherHeights};
 use crate::run::products::tin::{TinRequest, builder_of, default_tolerance};
 use crate::run::sources::transforms::Transforms;
-use crate::terrain::tiles::{self, Layout, SubConstraint, TileClip};
+use crate::terrain::tiles::{self, SubConstraint, TileClip, TileLayout};
 use crate::terrain::{NearLines, Tin, TinBuilder};
 
 /// The lines of a request, and what points have to do with them.
@@ -166,7 +166,7 @@ pub(super) struct LinesOfTile {
 
 /// Writes the edges and the vertices of lines, divided among the tiles. Returns the number of
 /// edges.
-pub(super) fn write(tin: &Tin, layout: &Layout, writer: &mut TaskWriter) -> Result<usize> {
+pub(super) fn write(tin: &Tin, layout: &TileLayout, writer: &mut TaskWriter) -> Result<usize> {
     let mut tiles = vec![LinesOfTile::default(); layout.tile_count()];
     let mut is_used = vec![false; tin.vertex_count()];
     let mut edges = 0;
@@ -212,7 +212,7 @@ pub(super) fn write(tin: &Tin, layout: &Layout, writer: &mut TaskWriter) -> Resu
 /// Reads what the lines give to a tile.
 pub(super) fn read(file: &mut TaskFile, tile: u32) -> Result<LinesOfTile> {
     let table = file.section("table")?;
-    let mut entries = Reader::new(&table);
+    let mut entries = NumberReader::new(&table);
     while let Some(of_tile) = entries.u32() {
         let [Some(vertices), Some(constraints)] = [(); 2].map(|()| entries.block()) else {
             return Err(file.damaged());

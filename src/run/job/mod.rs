@@ -74,7 +74,7 @@ use crate::run::products::tin::TinRequest;
 use crate::run::sources::checksum::checksum;
 use crate::run::sources::point_files::{BadFiles, PointFiles};
 use crate::run::sources::systems::SystemOptions;
-use crate::terrain::tiles::{Spread, Step, Work};
+use crate::terrain::tiles::{Spread, TileStep, Work};
 
 /// Bytes per point of a triangulation in its file; measured.
 const BYTES_A_POINT_OF_PART: u64 = 85;
@@ -105,7 +105,7 @@ pub struct Job {
     /// The checksum of the plan in the folder, which names the job; 0 until it is there.
     sum: u32,
     plan: Plan,
-    steps: Vec<Step>,
+    steps: Vec<TileStep>,
     /// Read by the first task that needs it, unless the plan was made by this process.
     known: OnceLock<Known>,
     /// For each tile the files that may have points of it, once somebody has asked.

@@ -26,7 +26,7 @@ use crate::run::sources::open;
 use crate::run::sources::point_files::{BadFiles, GROUND, PointFiles};
 use crate::run::sources::systems::{self, Stated, SystemOptions, Systems};
 use crate::run::verbs::{Keeps, Verb};
-use crate::terrain::tiles::{Layout, Spread, Work};
+use crate::terrain::tiles::{Spread, TileLayout, Work};
 use crate::terrain::{Classes, SelectionReport};
 
 /// Bytes per point of a tile while it is triangulated and drawn; measured.
@@ -78,7 +78,7 @@ pub(super) struct Plan {
     pub(super) has_lines: bool,
     /// True if the surface is cut along lines, which one task does.
     pub(super) has_clip: bool,
-    pub(super) layout: Layout,
+    pub(super) layout: TileLayout,
     /// The coordinate system of the result.
     pub(super) crs: Option<Crs>,
     /// The classes that are used.
@@ -342,15 +342,15 @@ fn layout_of(
     request: &TinRequest,
     options: &TileOptions,
     context: &Context,
-) -> Result<(Layout, bool)> {
+) -> Result<(TileLayout, bool)> {
     if let Division::Grid(counts) = options.division {
         let Bounds { min, max } = extent_of(files);
         let [min, max] = [min, max].map(|[x, y, _]| [x, y]);
-        return Ok((Layout::grid(min, max, counts), true));
+        return Ok((TileLayout::grid(min, max, counts), true));
     }
     let spreads: Vec<Spread> = files.iter().map(PlannedFile::spread).collect();
     let are_small = files.iter().all(|file| file.count <= most);
-    if let Some(layout) = Layout::of_boxes(&spreads).filter(|_| are_small && known.lines.is_none()) {
+    if let Some(layout) = TileLayout::of_boxes(&spreads).filter(|_| are_small && known.lines.is_none()) {
         return Ok((layout, false));
     }
     let average = most as f64 * AVERAGE;
@@ -358,7 +358,7 @@ fn layout_of(
         Look::Points => sampled::spreads(files, request, classes, average, context)?,
         Look::Headers => spreads,
     };
-    Ok((Layout::balanced(&spreads, average), true))
+    Ok((TileLayout::balanced(&spreads, average), true))
 }
 
 /// Returns the box around all points and lines, within the bounds of the request if they have an

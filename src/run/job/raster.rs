@@ -4,7 +4,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use rustc_hash::FxHashMap;
 
-use super::bytes::{Reader, put_block, put_u64};
+use super::bytes::{NumberReader, put_block, put_u64};
 use super::task_file::{Block, TaskFile, TaskName, TaskWriter};
 use crate::crs::Crs;
 use crate::data::{BlockSource, Frame, Window};
@@ -97,7 +97,7 @@ impl DrawnCells {
         for (number, name) in (0..).zip(&tasks) {
             let mut file = TaskFile::open_done(name)?;
             let table = file.section("table")?;
-            let mut reader = Reader::new(&table);
+            let mut reader = NumberReader::new(&table);
             while !reader.is_empty() {
                 let (Some(column), Some(row), Some(block)) = (reader.u64(), reader.u64(), reader.block()) else {
                     return Err(file.damaged());

@@ -97,7 +97,7 @@ mod tests {
     use super::*;
     use crate::run::job::planned_file::FileState;
     use crate::run::request::input::Input;
-    use crate::terrain::tiles::Layout;
+    use crate::terrain::tiles::TileLayout;
     use testkit::random::Random;
 
     /// Points along a diagonal, and half of them in one corner.
@@ -130,7 +130,7 @@ mod tests {
             is_of_any_system: false,
         };
         let largest = |spreads: &[Spread]| {
-            let layout = Layout::balanced(spreads, average);
+            let layout = TileLayout::balanced(spreads, average);
             let mut counts = vec![0; layout.tile_count()];
             points.iter().for_each(|&[x, y, _]| counts[layout.tile_of([x, y]) as usize] += 1);
             counts.into_iter().max().unwrap()

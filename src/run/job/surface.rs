@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use rayon::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use super::bytes::{Reader, put_u32};
+use super::bytes::{NumberReader, put_u32};
 use super::task_file::{TaskWriter, UNFINISHED};
 use super::{Job, JobReport, Task};
 use crate::data::{EdgeKind, LineEdges, Surface, SurfaceFacts};
@@ -238,7 +238,7 @@ impl Job {
             return Ok(None);
         }
         let waiting = file_of_task.section(WAITING)?;
-        let mut reader = Reader::new(&waiting);
+        let mut reader = NumberReader::new(&waiting);
         let mut cells = Vec::with_capacity(decided.len());
         for &decided in decided {
             cells.push((reader.u32().ok_or_else(|| file_of_task.damaged())?, decided));

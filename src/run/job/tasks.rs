@@ -1,6 +1,6 @@
 //! What each task does: files in, one file out.
 
-use super::bytes::{self, Reader, put_block, put_u32};
+use super::bytes::{self, NumberReader, put_block, put_u32};
 use super::done::Sources;
 use super::holes::Holes;
 use super::planned_file::{require_state, state_of};
@@ -251,7 +251,7 @@ impl Job {
         for &number in self.files_of(tile) {
             let mut divided = sources.open(number)?;
             let table = divided.section("table")?;
-            let mut entries = Reader::new(&table);
+            let mut entries = NumberReader::new(&table);
             while !entries.is_empty() {
                 let (Some(of_tile), Some(block)) = (entries.u32(), entries.block()) else {
                     return Err(divided.damaged());
@@ -300,7 +300,7 @@ impl Job {
         mut facts: TaskFacts,
         run: impl FnOnce(&mut dyn FnMut(TileTriangle)) -> Result<(tiles::Residual, Option<TinPart>)>,
     ) -> Result<TaskFacts> {
-        let mut kept = Kept::new(self, writer, self.clip(context)?)?;
+        let mut kept = KeptTriangles::new(self, writer, self.clip(context)?)?;
         let mut long = self.plan.max_edge.map(LongEdges::new);
         let mut failed = Ok(());
         let mut over_skipped = 0_u64;
@@ -345,7 +345,7 @@ impl Job {
             rim.add(groups, &gates.ok_or_else(|| file.damaged())?);
         }
         let mut removed = 0_u64;
-        let mut kept = Kept::new(self, writer, self.clip(context)?)?;
+        let mut kept = KeptTriangles::new(self, writer, self.clip(context)?)?;
         for (step, is_removed) in rim.removed().into_iter().enumerate() {
             let mut file = sources.open(self.task_of_step(step))?;
             for bytes in file.section("waiting")?.chunks(bytes::WAITING_BYTES) {
@@ -388,7 +388,7 @@ impl Job {
             reach = [0, 1].map(|k| reach[k].max(file.facts.reach[k]));
         }
         context.check()?;
-        let mut kept = Kept::new(self, writer, None)?;
+        let mut kept = KeptTriangles::new(self, writer, None)?;
         let part = match self.clip(context)? {
             Some(clip) => clip.cut(&triangles, reach)?,
             None => None,
@@ -419,7 +419,7 @@ enum Drawn {
 const NEAR_CLIP: &str = "clip";
 
 /// The triangles of a task that stay in the surface: drawn and counted.
-struct Kept<'a> {
+struct KeptTriangles<'a> {
     drawn: Drawn,
     clip: Option<&'a TileClip>,
     /// The bytes of the triangles that clip lines come near.
@@ -431,7 +431,7 @@ struct Kept<'a> {
     extent: Bounds,
 }
 
-impl<'a> Kept<'a> {
+impl<'a> KeptTriangles<'a> {
     fn new(job: &Job, writer: &mut TaskWriter, clip: Option<&'a TileClip>) -> Result<Self> {
         let drawn = match (job.verb.keeps(), job.plan.frame) {
             (Keeps::Contours(options), _) => Drawn::Contours(ContourCollector::new(&options.to_levels()?)),
@@ -441,7 +441,7 @@ impl<'a> Kept<'a> {
                 return Err(Error::format("the plan of the job lacks the frame of the raster"));
             }
         };
-        Ok(Kept {
+        Ok(KeptTriangles {
             drawn,
             clip,
             near_clip: Vec::new(),

@@ -9,7 +9,7 @@ use super::notes::{LevelRing, LineInput};
 use super::shapes::{self, Drawn};
 use crate::data::{Bounds, Layer, Shape};
 use crate::error::{Error, Result, Setting, wording};
-use crate::io::Cut;
+use crate::io::OnDamage;
 use crate::run::context::Journal;
 use crate::run::context::notice::LoweredRiver;
 use crate::run::context::units::Units;
@@ -54,7 +54,7 @@ impl<'a> LineLayers<'a> {
         request: &'a LineRequest,
         breaklines: &'a [Input<Layer>],
         boundary: &'a [Input<Layer>],
-        cut: Cut,
+        cut: OnDamage,
         journal: &Journal,
     ) -> Result<Self> {
         let all = [(LineRole::Breaklines, breaklines)].into_iter().chain(request.inputs());

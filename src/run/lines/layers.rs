@@ -6,7 +6,7 @@ use std::path::Path;
 use super::shapes::{self, Rings};
 use crate::data::Layer;
 use crate::error::{Result, Setting};
-use crate::io::Cut;
+use crate::io::OnDamage;
 use crate::run::context::Journal;
 use crate::run::context::notice::Notice;
 use crate::run::request::input::Input;
@@ -23,7 +23,7 @@ pub(crate) type Layers<'a> = Vec<(&'a Path, Cow<'a, Layer>)>;
 pub(crate) fn read<'a>(
     inputs: &'a [Input<Layer>],
     columns: &[&str],
-    cut: Cut,
+    cut: OnDamage,
     journal: &Journal,
 ) -> Result<Layers<'a>> {
     let mut layers = Vec::with_capacity(inputs.len());

@@ -10,7 +10,7 @@ use crate::data::{
 use crate::error::{Result, Wording};
 use crate::io::mesh::Solid;
 use crate::io::png::Picture;
-use crate::io::{Cut, points};
+use crate::io::{OnDamage, points};
 use crate::run::context::{Context, Journal, Size, Stage};
 use crate::run::sources::open::{self, Content, Raster};
 use crate::run::sources::tin_parts::TinParts;
@@ -218,7 +218,7 @@ impl PointFacts {
     }
 }
 
-fn layer_facts(path: &Path, cut: Cut, context: &Context) -> Result<LayerFacts> {
+fn layer_facts(path: &Path, cut: OnDamage, context: &Context) -> Result<LayerFacts> {
     let layer = open::layer(path, &[], cut, context)?;
     let mut facts = LayerFacts { records: layer.shapes.len(), ..LayerFacts::default() };
     for shape in &layer.shapes {

@@ -25,7 +25,7 @@ use crate::run::sources::point_files::PointFiles;
 use crate::run::sources::systems::{self, SystemOptions, Systems};
 use crate::run::sources::transforms::Transforms;
 use crate::terrain::{
-    Classes, CrossingRule, DuplicateRule, Selection, SelectionReport, Tin, TinBuilder, TinReport, Window,
+    Classes, CrossingRule, DuplicateRule, ReadWindow, Selection, SelectionReport, Tin, TinBuilder, TinReport,
 };
 use crate::triangulation::OnCrossing;
 
@@ -433,7 +433,7 @@ impl Building<'_> {
     ) -> Result<(Result<Tin>, Vec<[f64; 3]>)> {
         let mut builder = self.builder.clone();
         builder.max_edge = rim.max_edge;
-        builder.window = reach.window().map(|read| Window { read, all: report.extent });
+        builder.window = reach.window().map(|read| ReadWindow { read, all: report.extent });
         builder.add_owned_points(points);
         let replaced = builder.take_replaced_points();
         let work = self.journal.start(Stage::Triangulating, Size::Uncounted)?;

@@ -18,7 +18,7 @@ use crate::io::mesh::{self, Solid};
 use crate::io::png::{self, Picture};
 use crate::io::points::Options;
 use crate::io::triangle::{self, LineGraph};
-use crate::io::{Cut, Watch, gdal, layer, points, raster};
+use crate::io::{OnDamage, Watch, gdal, layer, points, raster};
 use crate::run::context::memory;
 use crate::run::context::{Context, Journal, Size, Stage};
 use crate::run::request::input::{Input, MemoryPoints, MemorySource};
@@ -83,7 +83,7 @@ pub(crate) fn stated(path: &Path) -> Option<PointInfo> {
 pub(crate) fn layer_of<'a>(
     input: &'a Input<Layer>,
     columns: &[&str],
-    cut: Cut,
+    cut: OnDamage,
     context: &Context,
 ) -> Result<Cow<'a, Layer>> {
     match input {
@@ -112,7 +112,7 @@ fn check_column(layer: &Layer, name: &str) -> Result<()> {
 }
 
 /// Reads a vector layer, named as in [`layer::Spec`]. It has these columns, in this order.
-pub(crate) fn layer(path: &Path, columns: &[&str], cut: Cut, context: &Context) -> Result<Layer> {
+pub(crate) fn layer(path: &Path, columns: &[&str], cut: OnDamage, context: &Context) -> Result<Layer> {
     let Some(text) = path.to_str() else {
         return Err(Error::unsupported("the name is not valid Unicode").in_file(path));
     };
@@ -283,7 +283,7 @@ mod tests {
         ];
         let shapes = vec![Shape::Null, Shape::Null];
         let input = Input::Memory(Arc::new(Layer { shapes, columns, ..Layer::default() }));
-        let open = |columns: &[&str]| layer_of(&input, columns, Cut::Refuse, &Context::default());
+        let open = |columns: &[&str]| layer_of(&input, columns, OnDamage::Refuse, &Context::default());
         assert_eq!(open(&["WIDTH"]).unwrap().column("WIDTH").unwrap().values[0], 1.0);
         let error = open(&["Width", "right"]).unwrap_err();
         assert_eq!(error.to_string(), "there is no column right");

@@ -107,7 +107,7 @@ pub fn check_space(path: &Path, law: SpaceLaw, context: &Context) -> Result<Spac
 }
 
 /// A tetrahedron, and one of its facets by the corner opposite to it.
-type Side = (u32, usize);
+type CellFacet = (u32, usize);
 
 /// Returns the flaws of a triangulation; those that a check needs to be absent end the search.
 fn flaws(triangulated: &Tetrahedralized, weights: Option<&[f64]>) -> Vec<SpaceFlaw> {
@@ -150,7 +150,7 @@ struct Checked<'a> {
 struct Facets {
     neighbors: Vec<[Option<u32>; 4]>,
     /// The facets that only one tetrahedron has.
-    hull: Vec<Side>,
+    hull: Vec<CellFacet>,
 }
 
 impl<'a> Checked<'a> {
@@ -196,7 +196,7 @@ impl<'a> Checked<'a> {
     /// Returns how tetrahedra are connected, and the facets on one side of which they overlap, or
     /// that too many have.
     fn facets(&self) -> (Facets, Vec<SpaceFlaw>) {
-        let mut all: Vec<([u32; 3], Side)> = Vec::with_capacity(4 * self.tetrahedra.len());
+        let mut all: Vec<([u32; 3], CellFacet)> = Vec::with_capacity(4 * self.tetrahedra.len());
         for (cell, corners) in (0..).zip(self.tetrahedra) {
             for (i, facet) in FACETS.iter().enumerate() {
                 let mut facet = facet.map(|k| corners[k]);
@@ -323,7 +323,7 @@ fn is_flat(points: &[[f64; 3]]) -> bool {
 fn dents(
     tetrahedra: &[[u32; 4]],
     signs: &[Sign],
-    hull: &[Side],
+    hull: &[CellFacet],
     orientation: &impl Fn([u32; 4]) -> Sign,
 ) -> Vec<[u32; 2]> {
     let mut around: HashMap<[u32; 2], Vec<([u32; 3], u32)>> = HashMap::new();

@@ -6,11 +6,11 @@ use std::ops::Range;
 use rustc_hash::FxHashMap;
 
 use super::clip::Clip;
-use super::lines::areas::{Level, Replaced, Water};
+use super::lines::areas::{Replaced, Water, WaterLevel};
 use super::lines::kinds::Precedence;
 use super::lines::narrowest;
 use super::lines::overlap::{self, Marks};
-use super::{CrossingRule, DuplicateRule, Flat, River, Wall, WaterOverlap, Window};
+use super::{CrossingRule, DuplicateRule, Flat, ReadWindow, River, Wall, WaterOverlap};
 use crate::crs::Crs;
 use crate::data::{Bounds, EdgeKind};
 use crate::triangulation::OnCrossing;
@@ -70,7 +70,7 @@ pub struct TinBuilder {
     /// What was read, if not all points are added but those needed for [`bounds`](Self::bounds).
     ///
     /// [`TinReport::uncertain`](super::TinReport::uncertain) then says whether they suffice.
-    pub window: Option<Window>,
+    pub window: Option<ReadWindow>,
     /// The box in plan within which crossings and walls are judged, if the surface is clipped to
     /// it later, by somebody else; with [`bounds`](Self::bounds), these count.
     pub(crate) judged: Option<Bounds>,
@@ -184,7 +184,7 @@ impl TinBuilder {
         let first = self.line_count();
         flat.rings.iter().for_each(|ring| self.add_line(ring, EdgeKind::Shore));
         let lines = first..self.line_count();
-        self.waters.push(Water { lines: lines.clone(), rim: lines.clone().collect(), level: Level::Flat(flat) });
+        self.waters.push(Water { lines: lines.clone(), rim: lines.clone().collect(), level: WaterLevel::Flat(flat) });
         lines
     }
 
@@ -198,7 +198,7 @@ impl TinBuilder {
         let lines = first..self.line_count();
         // The banks, and the level lines at both ends.
         let rim = vec![first, first + 1, first + 2, lines.end - 1];
-        self.waters.push(Water { lines: lines.clone(), rim, level: Level::River(river) });
+        self.waters.push(Water { lines: lines.clone(), rim, level: WaterLevel::River(river) });
         lines
     }
 

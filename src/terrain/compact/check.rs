@@ -1,4 +1,4 @@
-use super::layout::{SIDE, Side};
+use super::layout::{OpenSide, SIDE};
 use super::{CompactTin, Damage, Found};
 use crate::data::{Surface, SurfaceFacts};
 use crate::error::Result;
@@ -36,7 +36,7 @@ impl<B: AsRef<[u8]> + Sync> CompactTin<B> {
             }
         }
         let rows = self.triangulation.bytes().get(self.sides.clone()).unwrap_or_default().as_chunks::<SIDE>().0;
-        let key = |row: usize| rows.get(row).map(Side::key);
+        let key = |row: usize| rows.get(row).map(OpenSide::key);
         match (1..rows.len()).find(|&row| key(row - 1) >= key(row)) {
             Some(row) => Err(Damage::Side(row)),
             None => Ok(()),

@@ -49,7 +49,7 @@ pub(super) struct Fragment {
 
 /// An edge of a whole triangle for which the triangulation alone does not say what is beyond it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Side {
+pub(super) struct OpenSide {
     pub(super) face: u32,
     /// The corner opposite the edge.
     pub(super) corner: u8,
@@ -81,7 +81,7 @@ impl Fragment {
     }
 }
 
-impl Side {
+impl OpenSide {
     pub(super) fn to_bytes(self) -> [u8; SIDE] {
         let mut bytes = [0; SIDE];
         bytes[..4].copy_from_slice(&self.face.to_le_bytes());
@@ -93,8 +93,8 @@ impl Side {
     /// Reads a row; `None` if its kind does not exist.
     pub(super) fn read(bytes: &[u8; SIDE]) -> Option<Self> {
         let neighbor = Some(number(bytes, 8)).filter(|&number| number != NONE);
-        let (face, corner) = Side::key(bytes);
-        Some(Side { face, corner, kind: kind(bytes[5])?, neighbor })
+        let (face, corner) = OpenSide::key(bytes);
+        Some(OpenSide { face, corner, kind: kind(bytes[5])?, neighbor })
     }
 
     /// Returns what rows are sorted by: the face and the corner.
@@ -123,9 +123,9 @@ mod tests {
         {
             let fragment = Fragment { corners, neighbors, edges };
             assert_eq!(Fragment::read(&fragment.to_bytes()), Some(fragment));
-            let side = Side { face: corners[1], corner: 2, kind: edges[0], neighbor: neighbors[0] };
-            assert_eq!(Side::read(&side.to_bytes()), Some(side));
-            assert_eq!(Side::key(&side.to_bytes()), (corners[1], 2));
+            let side = OpenSide { face: corners[1], corner: 2, kind: edges[0], neighbor: neighbors[0] };
+            assert_eq!(OpenSide::read(&side.to_bytes()), Some(side));
+            assert_eq!(OpenSide::key(&side.to_bytes()), (corners[1], 2));
         }
         let mut bytes = Fragment { corners: [0, 1, 2], neighbors: [None; 3], edges: [rim; 3] }.to_bytes();
         bytes[26] = EdgeKind::ALL.len() as u8;

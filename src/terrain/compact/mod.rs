@@ -29,7 +29,7 @@ use super::linear::linear;
 use attributes::Attributes;
 pub use index::{TinIndex, TinIndexPart};
 use layout::{
-    ATTRIBUTES, FRAGMENT, FRAGMENTS, Fragment, INSIDE, NUMBER, NUMBERS, SIDE, SIDES, Side, UNDER, VERTEX, VERTICES,
+    ATTRIBUTES, FRAGMENT, FRAGMENTS, Fragment, INSIDE, NUMBER, NUMBERS, OpenSide, SIDE, SIDES, UNDER, VERTEX, VERTICES,
 };
 pub use part::PartCell;
 pub(super) use write::{write, write_part};
@@ -312,12 +312,12 @@ impl<B: AsRef<[u8]>> CompactTin<B> {
     }
 
     /// The row of an edge of a whole triangle.
-    fn side(&self, face: u32, corner: usize) -> Found<Option<Side>> {
+    fn side(&self, face: u32, corner: usize) -> Found<Option<OpenSide>> {
         let rows = self.triangulation.bytes().get(self.sides.clone()).unwrap_or_default().as_chunks::<SIDE>().0;
         let key = (face, corner as u8);
-        let at = rows.partition_point(|row| Side::key(row) < key);
-        match rows.get(at).filter(|row| Side::key(row) == key) {
-            Some(row) => Side::read(row).map(Some).ok_or(Damage::Side(at)),
+        let at = rows.partition_point(|row| OpenSide::key(row) < key);
+        match rows.get(at).filter(|row| OpenSide::key(row) == key) {
+            Some(row) => OpenSide::read(row).map(Some).ok_or(Damage::Side(at)),
             None => Ok(None),
         }
     }

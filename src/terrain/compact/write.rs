@@ -3,7 +3,7 @@
 use std::io::{self, BufWriter, Write};
 
 use super::attributes::Attributes;
-use super::layout::{ATTRIBUTES, FRAGMENTS, Fragment, INSIDE, NUMBERS, SIDES, Side, UNDER, VERTICES};
+use super::layout::{ATTRIBUTES, FRAGMENTS, Fragment, INSIDE, NUMBERS, OpenSide, SIDES, UNDER, VERTICES};
 use crate::data::{EdgeKind, Face, Surface, SurfaceFacts};
 use crate::error::{Error, Result};
 use crate::terrain::lines::kinds::LineKinds;
@@ -146,7 +146,7 @@ impl SideRows<'_> {
             let neighbor = surface.neighbor(face, i);
             if kind != derived || beside.is_none() && neighbor.is_some() {
                 let neighbor = neighbor.map(|face| faces.of(face));
-                rows.extend(Side { face: number, corner: i as u8, kind, neighbor }.to_bytes());
+                rows.extend(OpenSide { face: number, corner: i as u8, kind, neighbor }.to_bytes());
             }
         }
     }
@@ -160,7 +160,7 @@ impl SideRows<'_> {
         let kinds = under.first().map_or([EdgeKind::Breakline; 3], |face| face.edges);
         for (corner, kind) in kinds.into_iter().enumerate() {
             if kind != EdgeKind::Breakline && self.triangulation.is_constrained(cell, corner) {
-                rows.extend(Side { face: number, corner: corner as u8, kind, neighbor: None }.to_bytes());
+                rows.extend(OpenSide { face: number, corner: corner as u8, kind, neighbor: None }.to_bytes());
             }
         }
     }

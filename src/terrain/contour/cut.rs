@@ -3,7 +3,7 @@ use crate::triangulation::num::unsigned_zero;
 use std::cmp::Ordering::{self, Equal, Greater, Less};
 
 /// A surface and the level of a contour.
-pub(super) struct Cut<'a, S: ?Sized> {
+pub(super) struct LevelCut<'a, S: ?Sized> {
     pub(super) surface: &'a S,
     pub(super) level: f64,
 }
@@ -59,7 +59,7 @@ impl ContourArc {
     }
 }
 
-impl<'a, S: Surface + ?Sized> Cut<'a, S> {
+impl<'a, S: Surface + ?Sized> LevelCut<'a, S> {
     pub(super) fn face(&self, id: u32) -> Option<Face> {
         let vertices = self.surface.face(id)?;
         let at = vertices.map(|v| self.surface.position(v));
@@ -175,9 +175,9 @@ impl Face {
     }
 }
 
-/// See [`Cut::fan`].
+/// See [`LevelCut::fan`].
 pub(super) struct Fan<'c, 'a, S: ?Sized> {
-    cut: &'c Cut<'a, S>,
+    cut: &'c LevelCut<'a, S>,
     first: u32,
     now: Option<(Face, usize)>,
     turn: Direction,

@@ -1,6 +1,6 @@
 //! The search for the arcs of contours: all cores scan stretches of faces in parallel.
 
-use super::cut::{ContourArc, Cut};
+use super::cut::{ContourArc, LevelCut};
 use super::index::LevelIndex;
 use crate::data::Surface;
 use rayon::prelude::*;
@@ -42,7 +42,7 @@ pub(super) fn count<S: Surface + ?Sized>(surface: &S, index: &LevelIndex) -> Vec
             let mut crossed = Vec::new();
             faces_at(surface, index, 0..index.levels().len(), numbers.clone(), |face, heights, levels| {
                 let Crossed { across, along } = Crossed::of(heights, levels, index);
-                let has_shore = along && Cut { surface, level: index.levels()[across.end] }.shore(face).is_some();
+                let has_shore = along && LevelCut { surface, level: index.levels()[across.end] }.shore(face).is_some();
                 crossed.push(across.start..across.end + usize::from(has_shore));
             });
             crossed
@@ -140,7 +140,7 @@ fn arcs_of_stretch<S: Surface + ?Sized>(
         let highest = across.end;
         arcs.extend(across.map(|level| (level, ContourArc::Across(face))));
         if along {
-            let cut = Cut { surface, level: index.levels()[highest] };
+            let cut = LevelCut { surface, level: index.levels()[highest] };
             arcs.extend(cut.shore(face).map(|arc| (highest, arc)));
         }
     });

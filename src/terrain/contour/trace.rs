@@ -1,4 +1,4 @@
-use super::cut::{ContourArc, Cut, Direction, Face, Node};
+use super::cut::{ContourArc, Direction, Face, LevelCut, Node};
 use super::find::LevelArcs;
 use super::index::LevelIndex;
 use crate::data::Surface;
@@ -80,13 +80,13 @@ pub(super) fn each_level<S: Surface + ?Sized, T: Send>(
 ) -> Vec<T> {
     let traced = |done: &mut Done, at: usize| {
         let level = index.levels()[at];
-        finish(level, trace(&Cut { surface, level }, arcs.of(at), done))
+        finish(level, trace(&LevelCut { surface, level }, arcs.of(at), done))
     };
     band.into_par_iter().map_init(|| Done::new(surface.face_count()), traced).collect()
 }
 
 /// Joins the arcs of a level to lines. Each arc must be given once.
-fn trace<S: Surface + ?Sized>(cut: &Cut<'_, S>, arcs: &[ContourArc], done: &mut Done) -> Traces {
+fn trace<S: Surface + ?Sized>(cut: &LevelCut<'_, S>, arcs: &[ContourArc], done: &mut Done) -> Traces {
     let mut tracer = Tracer { cut, done, touches_vertices: false };
     let traces = arcs.iter().filter_map(|&seed| tracer.line_of(seed)).collect();
     let touches_vertices = tracer.touches_vertices;
@@ -95,7 +95,7 @@ fn trace<S: Surface + ?Sized>(cut: &Cut<'_, S>, arcs: &[ContourArc], done: &mut 
 }
 
 struct Tracer<'t, 'a, S: ?Sized> {
-    cut: &'t Cut<'a, S>,
+    cut: &'t LevelCut<'a, S>,
     done: &'t mut Done,
     touches_vertices: bool,
 }

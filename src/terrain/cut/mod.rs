@@ -59,7 +59,7 @@ use snap::snapped;
 ///
 /// Faces and vertices of the patch are numbered after those of the triangulation.
 #[derive(Debug)]
-pub(super) struct Cut {
+pub(super) struct SurfaceCut {
     patch: Patch,
     remains: Remains,
     first_fragment: usize,
@@ -87,7 +87,7 @@ pub(super) fn cut(
     curves: &[(Domain, Segment)],
     reach: [f64; 2],
     is_kept: impl Fn(&[Domain]) -> bool,
-) -> Result<Option<Cut>> {
+) -> Result<Option<SurfaceCut>> {
     let curves = &snapped(base, &divided(curves, reach));
     let segments: Vec<Segment> = curves.iter().map(|(_, segment)| *segment).collect();
     let Some(patch) = Patch::new(base, kinds, &segments)? else {
@@ -108,7 +108,7 @@ pub(super) fn cut(
     let kept = regions::label(&patched, patched.count(), start, within, is_kept);
     let remains = patched.remains(inside, &kept);
     let (first_fragment, first_vertex) = (base.tds().cell_slots(), base.tds().vertex_slots());
-    Ok(Some(Cut { patch, remains, first_fragment, first_vertex }))
+    Ok(Some(SurfaceCut { patch, remains, first_fragment, first_vertex }))
 }
 
 /// The sorted domains that contain a triangle.
@@ -122,7 +122,7 @@ fn closed_around(
     within
 }
 
-impl Cut {
+impl SurfaceCut {
     /// The number of triangles of which there are fragments.
     pub(super) fn cut_count(&self) -> usize {
         self.remains.cut

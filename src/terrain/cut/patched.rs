@@ -15,7 +15,7 @@ use crate::terrain::regions::{Domain, Faces, Segment};
 pub(crate) const DRAPED: Domain = Domain::MAX;
 
 /// A side of a face: the number of the face, and the index of the opposite corner.
-type Side = (u32, usize);
+type FaceSide = (u32, usize);
 
 /// The finite faces of a triangulation, of which some are replaced by those of a patch.
 ///
@@ -29,7 +29,7 @@ pub(super) struct Patched<'a> {
     /// For each cut line of the patch, the domains that it bounds, each as often as it was given.
     domains: Vec<Vec<Domain>>,
     /// The sides between patch and triangles that are not replaced, from both of their faces.
-    border: FxHashMap<Side, Side>,
+    border: FxHashMap<FaceSide, FaceSide>,
 }
 
 /// What a cut leaves of a patched triangulation.
@@ -40,14 +40,14 @@ pub(super) struct Remains {
     /// The kinds of the sides of the fragments.
     pub(super) kinds: Vec<[EdgeKind; 3]>,
     /// The face across each side between a fragment and a whole triangle, from both of them.
-    pub(super) beside: FxHashMap<Side, u32>,
+    pub(super) beside: FxHashMap<FaceSide, u32>,
     /// The sides of whole triangles along which a neighboring fragment has a line, with its kind.
     /// It may be an edge other than their own that rounding has moved here.
-    pub(super) lines: FxHashMap<Side, EdgeKind>,
+    pub(super) lines: FxHashMap<FaceSide, EdgeKind>,
     /// The sides of triangles along which a clip line runs.
-    pub(super) clipped: FxHashSet<Side>,
+    pub(super) clipped: FxHashSet<FaceSide>,
     /// The sides of triangles along which a draped line runs.
-    pub(super) draped: FxHashSet<Side>,
+    pub(super) draped: FxHashSet<FaceSide>,
     /// The number of triangles of which there are fragments.
     pub(super) cut: usize,
 }
@@ -253,7 +253,7 @@ impl<'a> Patched<'a> {
     }
 
     /// The sides of triangles along which a cut line of some domain runs.
-    fn sides_along(&self, is_wanted: impl Fn(Domain) -> bool) -> FxHashSet<Side> {
+    fn sides_along(&self, is_wanted: impl Fn(Domain) -> bool) -> FxHashSet<FaceSide> {
         let mut found = FxHashSet::default();
         for (edge, &[u, v]) in self.patch.edges.iter().enumerate() {
             let chain = self.patch.chain_of_edge(edge);
@@ -267,7 +267,7 @@ impl<'a> Patched<'a> {
 
     /// The triangle across a side of a face of the patch, and its side, if the two sides share both
     /// ends.
-    fn whole_beside(&self, face: CellId, i: usize, beyond: CellId) -> Option<Side> {
+    fn whole_beside(&self, face: CellId, i: usize, beyond: CellId) -> Option<FaceSide> {
         let Some(cell) = self.patch.cells[beyond.index()] else {
             return self.border.get(&(self.number(face), i)).copied();
         };

@@ -43,7 +43,7 @@ pub(super) struct Arranged<'a> {
 }
 
 /// A side that gets a vertex of its own next to a site.
-struct Step {
+struct SplitSide {
     edge: usize,
     vertex: u32,
     /// True if the vertex is on the left of the side, from the smaller to the larger of its ends.
@@ -62,7 +62,7 @@ struct Origin {
 }
 
 /// Maps sites to the new vertices next to them.
-type Steps = FxHashMap<u32, Vec<Step>>;
+type Steps = FxHashMap<u32, Vec<SplitSide>>;
 
 fn bits(p: &[f64; 3]) -> [u64; 2] {
     [p[0].to_bits(), p[1].to_bits()]
@@ -101,7 +101,7 @@ impl Arranged<'_> {
             self.chains[line] = self.through_steps(&self.chains[line], &steps, first_edge);
         }
         for (site, here) in steps {
-            for Step { edge, vertex, .. } in here {
+            for SplitSide { edge, vertex, .. } in here {
                 let chain = &mut self.chains[first_edge + edge];
                 chain.iter_mut().filter(|at| **at == site).for_each(|at| *at = vertex);
             }
@@ -160,10 +160,16 @@ impl Arranged<'_> {
 
     /// The edges at a point that get a vertex of their own, those closer to the point's height
     /// first.
-    fn steps_at(&mut self, site: u32, edges: &[usize], first_edge: usize, taken: &mut HashSet<[u64; 2]>) -> Vec<Step> {
+    fn steps_at(
+        &mut self,
+        site: u32,
+        edges: &[usize],
+        first_edge: usize,
+        taken: &mut HashSet<[u64; 2]>,
+    ) -> Vec<SplitSide> {
         let tds = self.base.tds();
         let Some(Origin { cells, height, edge: own }) = self.origin(site, edges) else { return Vec::new() };
-        let mut steps: Vec<Step> = Vec::new();
+        let mut steps: Vec<SplitSide> = Vec::new();
         let mut seen: FxHashSet<CellId> = cells.iter().copied().collect();
         let mut ahead: Vec<(CellId, u32, f64, u32)> = cells.into_iter().map(|cell| (cell, site, height, 0)).collect();
         while let Some((cell, vertex, height, distance)) = ahead.pop() {
@@ -193,7 +199,7 @@ impl Arranged<'_> {
                     None => (vertex, height, distance),
                 };
                 if vertex != site {
-                    steps.push(Step { edge, vertex, is_left: v < u, between: Vec::new() });
+                    steps.push(SplitSide { edge, vertex, is_left: v < u, between: Vec::new() });
                 }
                 ahead.push((beyond, vertex, height, distance));
             }
@@ -311,7 +317,7 @@ impl Arranged<'_> {
     }
 
     /// Returns true if a point lies on the same side of an edge at a site as the step's vertex.
-    fn is_beyond(&self, step: &Step, site: u32, beside: u32, first_edge: usize) -> bool {
+    fn is_beyond(&self, step: &SplitSide, site: u32, beside: u32, first_edge: usize) -> bool {
         let [Some(before), Some(after)] = self.beside_on(first_edge + step.edge, site) else { return false };
         let side = |p: u32, q: u32, r: u32| {
             let [p, q, r] = [p, q, r].map(|site| self.points[site as usize]);
@@ -337,7 +343,7 @@ fn followed(mut steps: Steps, order: &dyn Fn(&u32) -> [u64; 3]) -> Steps {
     sites.sort_unstable_by_key(order);
     for site in sites {
         for at in 0..steps[&site].len() {
-            let Step { edge, mut vertex, .. } = steps[&site][at];
+            let SplitSide { edge, mut vertex, .. } = steps[&site][at];
             let mut between = Vec::new();
             while let Some(next) = on(&steps, vertex, edge).filter(|next| *next != site && !between.contains(next)) {
                 between.push(vertex);

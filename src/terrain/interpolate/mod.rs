@@ -96,7 +96,7 @@ enum Rule {
 /// The memory of queries, kept from one position to the next. Its content has no influence on
 /// results.
 #[derive(Debug, Default)]
-pub(super) struct Scratch {
+pub(super) struct QueryBuffers {
     tour: Tour,
     search: Search,
     patch: Option<Patch>,
@@ -172,12 +172,12 @@ impl<'a, S: Surface + ?Sized> Interpolant<'a, S> {
             Boxes::by_one_thread(corners(self.surface).map(located).collect())
         });
         let face = faces.find(q, |face| is_in(face.number).then_some(face.number))?;
-        Some(self.height_in(face, q, &mut Scratch::default()))
+        Some(self.height_in(face, q, &mut QueryBuffers::default()))
     }
 
     /// Returns the height at a position in a face of the surface, or next to it by a rounding
     /// error. Returns the same for all faces around the position.
-    pub(super) fn height_in(&self, face: u32, q: [f64; 2], scratch: &mut Scratch) -> f64 {
+    pub(super) fn height_in(&self, face: u32, q: [f64; 2], scratch: &mut QueryBuffers) -> f64 {
         let height = match &self.rule {
             Rule::Linear => None,
             Rule::Nearest(vertices) => vertices.nearest(q, &mut scratch.search),

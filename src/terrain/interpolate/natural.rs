@@ -37,7 +37,7 @@ use super::base::{Base, before, cross, minus, next, square};
 
 /// A vertex seen from the position.
 #[derive(Debug, Clone, Copy)]
-struct Seen {
+struct SeenVertex {
     number: u32,
     /// The vector to it.
     to: [f64; 2],
@@ -47,12 +47,12 @@ struct Seen {
 
 /// An edge of a triangle of the zone.
 #[derive(Debug, Clone, Copy)]
-struct Side {
+struct ZoneEdge {
     face: u32,
     /// The index of the corner opposite the edge.
     i: usize,
-    from: Seen,
-    to: Seen,
+    from: SeenVertex,
+    to: SeenVertex,
     /// Twice the area of the position and the edge.
     area: f64,
     /// The circumcenter of the triangle.
@@ -61,16 +61,16 @@ struct Side {
 
 /// What is still to be done of a tour around a zone.
 #[derive(Debug, Clone, Copy)]
-enum Step {
+enum TourStep {
     /// Pass an edge of a triangle of the zone, or find that it is on the border.
-    Edge(Side),
+    Edge(ZoneEdge),
     /// Go from a triangle back to the one before it, given their circumcenters.
     Back { from: [f64; 2], to: [f64; 2] },
 }
 
 /// The memory of a tour, kept from one position to the next.
 #[derive(Debug, Default)]
-pub(super) struct Tour(Vec<Step>);
+pub(super) struct Tour(Vec<TourStep>);
 
 /// What a tour around a zone computes. All vectors are relative to the position.
 trait Weigh {
@@ -79,7 +79,7 @@ trait Weigh {
 
     /// The tour comes to an edge of the border, counter-clockwise. `center` is the circumcenter of
     /// its triangle, `new` that of the position and the edge.
-    fn border(&mut self, from: Seen, center: [f64; 2], new: [f64; 2]);
+    fn border(&mut self, from: SeenVertex, center: [f64; 2], new: [f64; 2]);
 
     /// The tour is back where it began. Returns the interpolated height.
     fn height(self) -> Option<f64>;
@@ -110,21 +110,21 @@ fn travel(
 ) -> Option<f64> {
     let see = |number: u32| {
         let to = minus(base.point(number), [q[0], q[1], 0.0]);
-        Seen { number, to, square: square(to) }
+        SeenVertex { number, to, square: square(to) }
     };
-    let sides = Side::of_face(face, base.face(face).corners.map(see));
+    let sides = ZoneEdge::of_face(face, base.face(face).corners.map(see));
     steps.clear();
     // The last one is taken first: the edge from `first`.
-    steps.extend([next(first), first, before(first)].map(|k| Step::Edge(sides[k])));
+    steps.extend([next(first), first, before(first)].map(|k| TourStep::Edge(sides[k])));
     // No more triangles can be passed than there are, except by rounding errors.
     let mut left = base.count();
     while let Some(step) = steps.pop() {
         let mut side = match step {
-            Step::Back { from, to } => {
+            TourStep::Back { from, to } => {
                 weigh.pass(from, to);
                 continue;
             }
-            Step::Edge(side) => side,
+            TourStep::Edge(side) => side,
         };
         // Into the zone, along the edges that begin where this one does.
         while let Some((beyond, j)) = base.across(side.face, side.i) {
@@ -133,8 +133,8 @@ fn travel(
             left = left.checked_sub(1)?;
             let new = on_the_left.center;
             weigh.pass(side.center, new);
-            steps.push(Step::Back { from: new, to: side.center });
-            steps.push(Step::Edge(on_the_right));
+            steps.push(TourStep::Back { from: new, to: side.center });
+            steps.push(TourStep::Edge(on_the_right));
             side = on_the_left;
         }
         weigh.border(side.from, side.center, side.new_center()?);
@@ -142,30 +142,30 @@ fn travel(
     weigh.height().filter(|height| height.is_finite())
 }
 
-impl Side {
+impl ZoneEdge {
     /// The edges of a triangle of the zone, by the corners opposite them.
     #[inline]
-    fn of_face(face: u32, corners: [Seen; 3]) -> [Self; 3] {
+    fn of_face(face: u32, corners: [SeenVertex; 3]) -> [Self; 3] {
         let center = circumcenter(corners);
         [0, 1, 2].map(|i| {
             let (from, to) = (corners[next(i)], corners[before(i)]);
-            Side { face, i, from, to, area: cross(from.to, to.to), center }
+            ZoneEdge { face, i, from, to, area: cross(from.to, to.to), center }
         })
     }
 
     /// The other two edges of the triangle beyond this one, left and right, if that triangle
     /// belongs to the zone. Its corner `apex`, with index `j`, is opposite this edge.
     #[inline]
-    fn beyond(&self, face: u32, j: usize, apex: Seen) -> Option<[Self; 2]> {
-        let Side { from, to, area, .. } = *self;
+    fn beyond(&self, face: u32, j: usize, apex: SeenVertex) -> Option<[Self; 2]> {
+        let ZoneEdge { from, to, area, .. } = *self;
         let (left_area, right_area) = (cross(from.to, apex.to), cross(apex.to, to.to));
         let inside = to.square * left_area + from.square * right_area - apex.square * area;
         if inside <= 0.0 || inside.is_nan() {
             return None;
         }
         let center = circumcenter([to, from, apex]);
-        let left = Side { face, i: next(j), from, to: apex, area: left_area, center };
-        let right = Side { face, i: before(j), from: apex, to, area: right_area, center };
+        let left = ZoneEdge { face, i: next(j), from, to: apex, area: left_area, center };
+        let right = ZoneEdge { face, i: before(j), from: apex, to, area: right_area, center };
         Some([left, right])
     }
 
@@ -173,7 +173,7 @@ impl Side {
     /// border by a rounding error.
     #[inline]
     fn new_center(&self) -> Option<[f64; 2]> {
-        let Side { from, to, area, .. } = *self;
+        let ZoneEdge { from, to, area, .. } = *self;
         if area <= 0.0 {
             return None;
         }
@@ -187,7 +187,7 @@ impl Side {
 
 /// Returns the circumcenter of a triangle.
 #[inline]
-fn circumcenter([a, b, c]: [Seen; 3]) -> [f64; 2] {
+fn circumcenter([a, b, c]: [SeenVertex; 3]) -> [f64; 2] {
     let area = cross(a.to, b.to) + cross(b.to, c.to) + cross(c.to, a.to);
     let scale = 0.5 / area;
     [
@@ -249,7 +249,7 @@ impl Weigh for Areas<'_> {
     }
 
     #[inline]
-    fn border(&mut self, from: Seen, center: [f64; 2], new: [f64; 2]) {
+    fn border(&mut self, from: SeenVertex, center: [f64; 2], new: [f64; 2]) {
         match &mut self.ends {
             Some(ends) => {
                 self.mean.add(from.number, self.lost + cross(new, center) + cross(ends.last, new));
@@ -273,13 +273,13 @@ impl Weigh for Areas<'_> {
 /// Laplace's weights.
 struct Lengths<'a> {
     mean: Mean<'a>,
-    ends: Option<(Seen, [f64; 2], [f64; 2])>,
+    ends: Option<(SeenVertex, [f64; 2], [f64; 2])>,
 }
 
 impl Lengths<'_> {
     /// Adds a vertex whose cell borders the new one from one circumcenter to another.
     #[inline]
-    fn add(&mut self, vertex: Seen, from: [f64; 2], to: [f64; 2]) {
+    fn add(&mut self, vertex: SeenVertex, from: [f64; 2], to: [f64; 2]) {
         // The border is perpendicular to the vector to the vertex.
         let along = vertex.to[0] * (to[1] - from[1]) - vertex.to[1] * (to[0] - from[0]);
         self.mean.add(vertex.number, along / vertex.square);
@@ -291,7 +291,7 @@ impl Weigh for Lengths<'_> {
     fn pass(&mut self, _from: [f64; 2], _to: [f64; 2]) {}
 
     #[inline]
-    fn border(&mut self, from: Seen, _center: [f64; 2], new: [f64; 2]) {
+    fn border(&mut self, from: SeenVertex, _center: [f64; 2], new: [f64; 2]) {
         match self.ends {
             Some((first, begin, last)) => {
                 self.add(from, last, new);

@@ -24,22 +24,24 @@ pub(crate) struct Water {
     pub(crate) lines: Range<usize>,
     /// The lines that bound the area together.
     pub(crate) rim: Vec<usize>,
-    pub(crate) level: Level,
+    pub(crate) level: WaterLevel,
 }
 
 /// The heights of water.
 #[derive(Debug, Clone)]
-pub(crate) enum Level {
+pub(crate) enum WaterLevel {
     Flat(Flat),
     River(River),
 }
 
-impl Level {
+impl WaterLevel {
     /// The rings around the water, in plan.
     pub(crate) fn rings(&self) -> Rings {
         match self {
-            Level::Flat(flat) => flat.rings.iter().map(|ring| ring.iter().map(|p| [p[0], p[1]]).collect()).collect(),
-            Level::River(river) => vec![river.ring()],
+            WaterLevel::Flat(flat) => {
+                flat.rings.iter().map(|ring| ring.iter().map(|p| [p[0], p[1]]).collect()).collect()
+            }
+            WaterLevel::River(river) => vec![river.ring()],
         }
     }
 }
@@ -283,7 +285,7 @@ impl WaterHeights<'_> {
             let is_other = !areas.contains(&reach.area) && !near.contains(&reach.area);
             if is_other
                 && areas.iter().any(|area| self.pairs.contains(&[*area, reach.area]))
-                && let Level::River(river) = &self.waters[reach.area].level
+                && let WaterLevel::River(river) = &self.waters[reach.area].level
                 && self.surface(reach.area, river).is_near([x, y], self.rounding)
             {
                 near.push(reach.area);
@@ -301,8 +303,8 @@ impl WaterHeights<'_> {
     /// If their heights differ.
     fn of_lakes(&self, areas: &[Domain], at: [f64; 2], name: &dyn Fn(usize) -> String) -> Result<Option<f64>> {
         let mut lakes = areas.iter().filter_map(|&area| match &self.waters[area].level {
-            Level::Flat(flat) => Some((area, flat.height)),
-            Level::River(_) => None,
+            WaterLevel::Flat(flat) => Some((area, flat.height)),
+            WaterLevel::River(_) => None,
         });
         let Some((first, height)) = lakes.next() else { return Ok(None) };
         match lakes.find(|(_, other)| *other != height) {
@@ -314,11 +316,11 @@ impl WaterHeights<'_> {
     /// The lowest height of the rivers among some areas at a vertex; `None` if there are none.
     fn of_rivers(&self, areas: &[Domain], vertex: VertexId, at: [f64; 2]) -> Option<f64> {
         let rivers = areas.iter().filter_map(|&area| match &self.waters[area].level {
-            Level::River(river) => Some(match self.own.get(&(area, vertex)) {
+            WaterLevel::River(river) => Some(match self.own.get(&(area, vertex)) {
                 Some(height) => *height,
                 None => self.surface(area, river).height(at),
             }),
-            Level::Flat(_) => None,
+            WaterLevel::Flat(_) => None,
         });
         Some(rivers.fold(f64::INFINITY, f64::min)).filter(|lowest| lowest.is_finite())
     }
@@ -342,7 +344,7 @@ fn reaches_of(waters: &[Water], pairs: &[[Domain; 2]]) -> Boxes<Reach> {
     let areas: BTreeSet<Domain> = pairs.iter().map(|[_, area]| *area).collect();
     let mut reaches = Vec::new();
     for area in areas {
-        let Level::River(river) = &waters[area].level else { continue };
+        let WaterLevel::River(river) = &waters[area].level else { continue };
         let extent = |stretch| Extent::of(river.triangles(stretch).concat());
         reaches.extend((0..river.stretch_count()).map(|stretch| Reach { area, extent: extent(stretch) }));
     }
@@ -362,7 +364,7 @@ fn own_heights(
     waters: &[Water],
     given: &[(usize, Vec<f64>)],
 ) -> FxHashMap<(Domain, VertexId), f64> {
-    let rivers = waters.iter().enumerate().filter(|(_, water)| matches!(water.level, Level::River(_)));
+    let rivers = waters.iter().enumerate().filter(|(_, water)| matches!(water.level, WaterLevel::River(_)));
     let areas: FxHashMap<usize, Domain> =
         rivers.flat_map(|(area, water)| water.rim.iter().map(move |&line| (line, area))).collect();
     let mut own: FxHashMap<(Domain, VertexId), f64> = FxHashMap::default();

@@ -11,7 +11,7 @@ pub use of_parts::DemOfParts;
 use placement::{Centers, Placement};
 use scan::{Heights, Ink, Number, Scan};
 
-use super::interpolate::{Interpolant, Method, Scratch};
+use super::interpolate::{Interpolant, Method, QueryBuffers};
 use crate::crs::Crs;
 use crate::data::{BlockSource, Frame, Surface, Window};
 use crate::error::Result;
@@ -78,7 +78,7 @@ impl<'a, S: Surface + ?Sized> Dem<'a, S> {
     fn interpolate(&self, interpolant: &Interpolant<S>, window: Window, out: &mut [f32]) {
         let mut faces = vec![NO_FACE; out.len()];
         self.draw(window, &mut faces, Number);
-        let mut scratch = Scratch::default();
+        let mut scratch = QueryBuffers::default();
         let center = self.frame.centers();
         let cells = out.iter_mut().zip(faces).enumerate().filter(|(_, (_, face))| *face != NO_FACE);
         for (i, (height, face)) in cells {

@@ -9,7 +9,7 @@ use crate::data::{Bounds, EdgeKind};
 use crate::error::{Error, Result};
 use crate::terrain::boxes::{Boxed, Boxes, Extent};
 use crate::terrain::clip::Clip;
-use crate::terrain::cut::{Cut, divided};
+use crate::terrain::cut::{SurfaceCut, divided};
 use crate::terrain::regions::{Domain, Segment};
 use crate::terrain::{Inside, Tin, TinBuilder};
 use crate::triangulation::geometry::Terrain;
@@ -148,7 +148,7 @@ impl TileClip {
     /// Returns true if an edge was divided of which only one triangle was given, though no line is
     /// near and no end tight. With either, the other triangle would have been given, unless the
     /// edge is at the hull.
-    fn lacks_triangles(&self, cut: &Cut, tin: &Tin, given: &Given) -> bool {
+    fn lacks_triangles(&self, cut: &SurfaceCut, tin: &Tin, given: &Given) -> bool {
         let tds = tin.triangulation.tds();
         cut.divided_edges().any(|[u, v]| {
             let sides = [tds.edge(u, v), tds.edge(v, u)].into_iter().flatten();

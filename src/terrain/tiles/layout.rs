@@ -6,7 +6,7 @@ use super::Tile;
 /// before it left. Tiles at the rim are infinite.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(into = "Vec<Node>", try_from = "Vec<Node>")]
-pub struct Layout {
+pub struct TileLayout {
     /// The root is the first.
     nodes: Vec<Node>,
 }
@@ -27,17 +27,17 @@ pub enum Node {
     },
 }
 
-impl From<Layout> for Vec<Node> {
-    fn from(layout: Layout) -> Self {
+impl From<TileLayout> for Vec<Node> {
+    fn from(layout: TileLayout) -> Self {
         layout.nodes
     }
 }
 
-impl TryFrom<Vec<Node>> for Layout {
+impl TryFrom<Vec<Node>> for TileLayout {
     type Error = &'static str;
 
     fn try_from(nodes: Vec<Node>) -> Result<Self, Self::Error> {
-        Layout::from_nodes(nodes).ok_or("tiles and cuts do not form a tree")
+        TileLayout::from_nodes(nodes).ok_or("tiles and cuts do not form a tree")
     }
 }
 
@@ -54,14 +54,14 @@ pub struct Spread {
 
 /// A step of a triangulation in tiles.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Step {
+pub struct TileStep {
     /// What the step covers.
     pub tile: Tile,
     /// What it does.
     pub work: Work,
 }
 
-/// What a [`Step`] does.
+/// What a [`TileStep`] does.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Work {
     /// Triangulates the points of the tile with this number.
@@ -77,10 +77,10 @@ const FAN: usize = 16;
 /// Cuts do not divide further than this: sites that coincide cannot be separated.
 const DEEPEST: usize = 40;
 
-impl Layout {
+impl TileLayout {
     /// Returns columns by rows of tiles of the same size over a box.
     pub fn grid(min: [f64; 2], max: [f64; 2], counts: [usize; 2]) -> Self {
-        let mut layout = Layout { nodes: Vec::new() };
+        let mut layout = TileLayout { nodes: Vec::new() };
         let at = |axis: usize, i: usize| min[axis] + (max[axis] - min[axis]) * (i as f64 / counts[axis] as f64);
         layout.add_grid(&at, [0, 0], counts, counts[0]);
         layout
@@ -108,7 +108,7 @@ impl Layout {
     /// # Complexity
     /// O(n log^2 n) for n boxes in a grid, O(n^2 log n) at worst.
     pub fn of_boxes(boxes: &[Spread]) -> Option<Self> {
-        let mut layout = Layout { nodes: Vec::new() };
+        let mut layout = TileLayout { nodes: Vec::new() };
         let mut all: Vec<u32> = (0..boxes.len() as u32).collect();
         (!all.is_empty() && layout.add_boxes(boxes, &mut all)).then_some(layout)
     }
@@ -151,7 +151,7 @@ impl Layout {
     /// # Complexity
     /// Linear in the boxes for each level of cuts.
     pub fn balanced(spreads: &[Spread], most: f64) -> Self {
-        let mut layout = Layout { nodes: Vec::new() };
+        let mut layout = TileLayout { nodes: Vec::new() };
         let mut tiles = 0;
         layout.add_balanced(spreads.to_vec(), most, &mut tiles, 0);
         layout
@@ -203,7 +203,7 @@ impl Layout {
         let mut numbers: Vec<u32> = nodes.iter().filter_map(|node| node.tile()).collect();
         numbers.sort_unstable();
         let is_tree = uses.first() == Some(&0) && uses[1..].iter().all(|&count| count == 1);
-        (is_tree && numbers.into_iter().eq(0..nodes.len().div_ceil(2) as u32)).then_some(Layout { nodes })
+        (is_tree && numbers.into_iter().eq(0..nodes.len().div_ceil(2) as u32)).then_some(TileLayout { nodes })
     }
 
     /// Returns the tiles and cuts; the root is the first.
@@ -247,20 +247,20 @@ impl Layout {
 
     /// Returns the steps of a triangulation, such that each step comes after those that it merges,
     /// and soon after them. The last one covers the plane.
-    pub fn steps(&self) -> Vec<Step> {
+    pub fn steps(&self) -> Vec<TileStep> {
         let mut steps = Vec::new();
         let open = self.gather(0, Tile::PLANE, &mut steps);
         if open.len() > 1 {
-            steps.push(Step { tile: Tile::PLANE, work: Work::Merge(open) });
+            steps.push(TileStep { tile: Tile::PLANE, work: Work::Merge(open) });
         }
         steps
     }
 
     /// Adds the steps for a node. Returns those that are to be merged.
-    fn gather(&self, node: u32, tile: Tile, steps: &mut Vec<Step>) -> Vec<usize> {
+    fn gather(&self, node: u32, tile: Tile, steps: &mut Vec<TileStep>) -> Vec<usize> {
         match self.nodes[node as usize] {
             Node::Tile(number) => {
-                steps.push(Step { tile, work: Work::Leaf(number) });
+                steps.push(TileStep { tile, work: Work::Leaf(number) });
                 vec![steps.len() - 1]
             }
             Node::Cut { axis, at, parts } => {
@@ -272,7 +272,7 @@ impl Layout {
                 for i in 0..2 {
                     if open[0].0.len() + open[1].0.len() > FAN {
                         let merged = std::mem::take(&mut open[i].0);
-                        steps.push(Step { tile: open[i].1, work: Work::Merge(merged) });
+                        steps.push(TileStep { tile: open[i].1, work: Work::Merge(merged) });
                         open[i].0.push(steps.len() - 1);
                     }
                 }
@@ -322,7 +322,7 @@ mod tests {
 
     /// Every position is in the tile that is said to own it, and in no other; merges join tiles to
     /// rectangles.
-    fn check(layout: &Layout, random: &mut Random) {
+    fn check(layout: &TileLayout, random: &mut Random) {
         let steps = layout.steps();
         let tile = |number: u32| steps.iter().find(|step| step.work == Work::Leaf(number)).unwrap().tile;
         let mut cuts = vec![-1.0, 0.0, 0.5, 1.0, 2.0];
@@ -359,25 +359,25 @@ mod tests {
         }
         let (root, others) = merged.split_last().unwrap();
         assert!(*root == 0 && others.iter().all(|&count| count == 1) && steps.last().unwrap().tile.is_plane());
-        assert_eq!(Layout::from_nodes(layout.nodes().to_vec()).as_ref(), Some(layout));
+        assert_eq!(TileLayout::from_nodes(layout.nodes().to_vec()).as_ref(), Some(layout));
     }
 
     #[test]
     fn tiles_cover_the_plane_once() {
         let mut random = Random(2);
         for counts in [[1, 1], [4, 4], [7, 3], [1, 20], [9, 9]] {
-            let layout = Layout::grid([0.0, -1.0], [10.0, 3.0], counts);
+            let layout = TileLayout::grid([0.0, -1.0], [10.0, 3.0], counts);
             assert_eq!(layout.tile_count(), counts[0] * counts[1]);
             check(&layout, &mut random);
         }
         let spread = |x: f64, y: f64, size: f64, count: f64| Spread { min: [x, y], max: [x + size, y + size], count };
         let files = [spread(0.0, 0.0, 9.9, 500.0), spread(10.0, 0.0, 9.9, 4_000.0), spread(0.0, 10.0, 0.0, 90.0)];
-        let layout = Layout::balanced(&files, 100.0);
+        let layout = TileLayout::balanced(&files, 100.0);
         assert!((46..=92).contains(&layout.tile_count()), "{}", layout.tile_count());
         check(&layout, &mut random);
         // Sites that coincide end the division.
-        check(&Layout::balanced(&[spread(1.0, 1.0, 0.0, 1e9)], 10.0), &mut random);
-        check(&Layout::balanced(&[], 10.0), &mut random);
+        check(&TileLayout::balanced(&[spread(1.0, 1.0, 0.0, 1e9)], 10.0), &mut random);
+        check(&TileLayout::balanced(&[], 10.0), &mut random);
     }
 
     #[test]
@@ -389,17 +389,17 @@ mod tests {
         };
         let mut files: Vec<Spread> = (0..35).map(|k| tile(k % 7, k / 7)).collect();
         files.remove(11);
-        let layout = Layout::of_boxes(&files).unwrap();
+        let layout = TileLayout::of_boxes(&files).unwrap();
         check(&layout, &mut random);
         for (number, file) in files.iter().enumerate() {
             assert_eq!((layout.tile_of(file.min), layout.tile_of(file.max)), (number as u32, number as u32));
         }
         // Touching, and overlapping without a cut between.
-        assert_eq!(Layout::of_boxes(&[tile(0, 0), Spread { min: [9.99, 0.0], ..tile(1, 0) }]), None);
+        assert_eq!(TileLayout::of_boxes(&[tile(0, 0), Spread { min: [9.99, 0.0], ..tile(1, 0) }]), None);
         let wheel = [[0.0, 0.0, 2.0, 1.0], [2.5, 0.0, 3.5, 2.0], [1.5, 2.5, 3.5, 3.5], [0.0, 1.5, 1.0, 3.5]];
         let wheel = wheel.map(|[x, y, x1, y1]| Spread { min: [x, y], max: [x1, y1], count: 1.0 });
-        assert_eq!(Layout::of_boxes(&wheel), None);
-        assert_eq!(Layout::of_boxes(&[]), None);
+        assert_eq!(TileLayout::of_boxes(&wheel), None);
+        assert_eq!(TileLayout::of_boxes(&[]), None);
     }
 
     #[test]
@@ -415,7 +415,7 @@ mod tests {
             vec![Node::Cut { axis: 2, at: 1.0, parts: [1, 2] }, Node::Tile(0), Node::Tile(1)],
             vec![Node::Cut { axis: 0, at: f64::NAN, parts: [1, 2] }, Node::Tile(0), Node::Tile(1)],
         ] {
-            assert_eq!(Layout::from_nodes(nodes.clone()), None, "{nodes:?}");
+            assert_eq!(TileLayout::from_nodes(nodes.clone()), None, "{nodes:?}");
         }
     }
 }

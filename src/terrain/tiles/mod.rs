@@ -89,7 +89,7 @@ mod traps_tests;
 mod triangle;
 
 pub use clip::{ClipSide, TileClip};
-pub use layout::{Layout, Node, Spread, Step, Work};
+pub use layout::{Node, Spread, TileLayout, TileStep, Work};
 pub use long_edges::{EdgeKey, Gate, LongEdges, Rim, Waiting, has_long_edge};
 pub use node::{leaf, leaf_with_part, merge, merge_with_part};
 pub use part::TinPart;

@@ -19,7 +19,7 @@ const SETS: usize = 400;
 
 /// The number of sets in which a broken rule is seen.
 #[derive(Debug)]
-struct Seen {
+struct SeenSets {
     /// Those with other triangles, or with two vertices at a site.
     different: usize,
     /// Those in which a task returns an error.
@@ -27,7 +27,7 @@ struct Seen {
 }
 
 /// Compares what is found while a rule is broken. While none is, all sets are equal.
-fn seen(cases: impl Iterator<Item = Case>, broken: impl Fn(&Case) -> Result<Found>) -> Seen {
+fn seen(cases: impl Iterator<Item = Case>, broken: impl Fn(&Case) -> Result<Found>) -> SeenSets {
     let [mut different, mut refused] = [0; 2];
     for (round, case) in cases.enumerate() {
         let expected = whole(&case.points, &case.constraints);
@@ -38,7 +38,7 @@ fn seen(cases: impl Iterator<Item = Case>, broken: impl Fn(&Case) -> Result<Foun
             Err(_) => refused += 1,
         }
     }
-    Seen { different, refused }
+    SeenSets { different, refused }
 }
 
 /// The first sets of the comparison with lines.

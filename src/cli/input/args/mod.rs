@@ -16,7 +16,7 @@ use std::num::NonZeroUsize;
 use clap::{Args, Parser, Subcommand};
 
 use crate::cli::Exit;
-use crate::cli::report::console::Level;
+use crate::cli::report::console::Verbosity;
 use crate::io::formats;
 
 pub(crate) use job::{JobAction, JobArgs};
@@ -81,11 +81,11 @@ pub(crate) struct ConsoleArgs {
 
 impl ConsoleArgs {
     /// Returns how much is printed.
-    pub(crate) fn level(&self) -> Level {
+    pub(crate) fn level(&self) -> Verbosity {
         match (self.quiet, self.verbose) {
-            (true, _) => Level::Quiet,
-            (_, true) => Level::Verbose,
-            _ => Level::Normal,
+            (true, _) => Verbosity::Quiet,
+            (_, true) => Verbosity::Verbose,
+            _ => Verbosity::Normal,
         }
     }
 }

@@ -3,7 +3,7 @@
 use clap::Args;
 
 use crate::data::Columns;
-use crate::io::Cut;
+use crate::io::OnDamage;
 use crate::io::points::Options;
 
 /// Options of reading points.
@@ -38,7 +38,7 @@ pub(crate) struct ReadArgs {
 impl ReadArgs {
     /// Returns the options for readers of points.
     pub(crate) fn options(&self) -> Options {
-        let cut = if self.partial { Cut::Accept } else { Cut::Refuse };
+        let cut = if self.partial { OnDamage::Accept } else { OnDamage::Refuse };
         Options { columns: self.columns.or(self.parse), cut, ..Options::default() }
     }
 }

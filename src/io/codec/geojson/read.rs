@@ -63,7 +63,7 @@ pub(super) fn parse(bytes: &[u8], stem: &str, options: &Options, watch: Watch) -
         Some(name) if name != stem => options.check_layer(&[name, stem])?,
         _ => options.check_layer(&[stem])?,
     }
-    let mut reader = Reader::new("GeoJSON", options);
+    let mut reader = GeoJsonReader::new("GeoJSON", options);
     let z_field = options.height_field;
     match kind(&root)? {
         "FeatureCollection" => {
@@ -96,7 +96,7 @@ pub fn read_lines_with(path: &Path, options: &Options, watch: Watch) -> Result<L
 }
 
 pub(super) fn parse_lines(bytes: &[u8], options: &Options, watch: Watch) -> Result<Layer> {
-    let mut reader = Reader::new("GeoJSON lines", options);
+    let mut reader = GeoJsonReader::new("GeoJSON lines", options);
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let (separator, noun) = match bytes.trim_ascii_start().first() {
         Some(&RECORD) => (RECORD, "record"),
@@ -117,7 +117,7 @@ pub(super) fn parse_lines(bytes: &[u8], options: &Options, watch: Watch) -> Resu
 }
 
 #[derive(Default)]
-struct Reader {
+struct GeoJsonReader {
     layer: Layer,
     fields: BTreeSet<String>,
     /// Features with the property for the height, and those of them in which it is not a number.
@@ -131,12 +131,12 @@ struct Reader {
     found_columns: Vec<(bool, DecimalMark)>,
 }
 
-impl Reader {
+impl GeoJsonReader {
     fn new(format: &str, options: &Options) -> Self {
         let columns = options.columns.iter().map(|&name| Column { name: name.to_owned(), ..Column::default() });
         let layer = Layer { format: format.to_owned(), columns: columns.collect(), ..Layer::default() };
         let found_columns = options.columns.iter().map(|_| Default::default()).collect();
-        Reader { layer, found_columns, ..Reader::default() }
+        GeoJsonReader { layer, found_columns, ..GeoJsonReader::default() }
     }
 
     /// Adds the feature or geometry in a record of GeoJSON lines. A geometry alone has no
@@ -243,7 +243,9 @@ impl Reader {
     }
 
     fn finish(self, root: &Object, z_field: Option<&str>) -> Result<Layer> {
-        let Reader { mut layer, fields, found, not_numbers, first_text, found_columns, without_geometry, .. } = self;
+        let GeoJsonReader {
+            mut layer, fields, found, not_numbers, first_text, found_columns, without_geometry, ..
+        } = self;
         if without_geometry > 0 {
             layer.warnings.push(format!("features without a member geometry: {without_geometry}").into());
         }

@@ -14,7 +14,7 @@ use tiff::TiffError;
 use tiff::decoder::{Decoder, DecodingResult, Limits};
 
 use super::ifd::{ByteOrder, Bytes};
-use super::layout::{Layout, Span, Stored};
+use super::layout::{BandLayout, Span, Stored};
 use super::nodata::Nodata;
 use super::tags;
 use crate::data::Window;
@@ -28,7 +28,7 @@ const BAND_CELLS: usize = 1 << 20;
 /// Passes on the values of the part of a span that lies in a window, in bands of whole rows; NaN is
 /// nodata. For a block that is not in the file, nothing is passed on.
 pub(super) fn values(
-    layout: &Layout,
+    layout: &BandLayout,
     nodata: &Nodata,
     bytes: &Bytes,
     span: &Span,
@@ -75,7 +75,7 @@ fn in_compression(error: Error, compression: u16) -> Error {
 
 /// Returns a TIFF file of one strip, not compressed, from one that is compressed by ZSTD.
 #[cfg(feature = "zstd")]
-fn decompressed(data: &[u8], layout: &Layout, span: &Span) -> Result<Vec<u8>> {
+fn decompressed(data: &[u8], layout: &BandLayout, span: &Span) -> Result<Vec<u8>> {
     use std::io::Read;
 
     let row_bits = span.width as u64 * u64::from(layout.interleaved) * u64::from(layout.sample.bits);
@@ -91,7 +91,7 @@ fn decompressed(data: &[u8], layout: &Layout, span: &Span) -> Result<Vec<u8>> {
 }
 
 /// Returns a TIFF header with one directory for one strip, whose bytes follow.
-fn header(layout: &Layout, span: &Span, compression: u16, length: u64) -> Vec<u8> {
+fn header(layout: &BandLayout, span: &Span, compression: u16, length: u64) -> Vec<u8> {
     let format = match layout.sample.kind {
         super::SampleKind::Unsigned => 1,
         super::SampleKind::Signed => 2,
@@ -151,7 +151,7 @@ fn put32(out: &mut Vec<u8>, order: ByteOrder, value: u32) {
 
 /// Returns an error unless the size that a JPEG states, which its decoder trusts, is that of the
 /// block.
-fn check_jpeg(data: &[u8], layout: &Layout, span: &Span) -> Result<()> {
+fn check_jpeg(data: &[u8], layout: &BandLayout, span: &Span) -> Result<()> {
     let short = || Error::format("the JPEG header is cut short");
     let mut at = 2;
     loop {
@@ -195,7 +195,7 @@ fn from_tiff(error: TiffError) -> Error {
 }
 
 /// Returns band 1 of a part of a decoded span.
-fn pick(decoded: &DecodingResult, layout: &Layout, nodata: &Nodata, span: &Span, part: Window) -> Vec<f64> {
+fn pick(decoded: &DecodingResult, layout: &BandLayout, nodata: &Nodata, span: &Span, part: Window) -> Vec<f64> {
     if layout.sample.bits < 8 {
         let DecodingResult::U8(packed) = decoded else { return vec![f64::NAN; part.width * part.height] };
         return pick_bits(packed, layout, nodata, span, part);
@@ -248,7 +248,7 @@ impl Picker<'_> {
 
 /// Returns samples of 1, 2 or 4 bits: the first of a byte is in its highest bits, and each row
 /// starts a new byte.
-fn pick_bits(packed: &[u8], layout: &Layout, nodata: &Nodata, span: &Span, part: Window) -> Vec<f64> {
+fn pick_bits(packed: &[u8], layout: &BandLayout, nodata: &Nodata, span: &Span, part: Window) -> Vec<f64> {
     let bits = usize::from(layout.sample.bits);
     let row_bytes = (span.width * bits).div_ceil(8);
     let mask = (1u16 << bits) as u8 - 1;

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use super::cell_format::{CellFormat, NO_HEIGHT};
 use super::directory::{self, Offsets, Values};
-use super::tile::{SIDE, Scratch, Tile};
+use super::tile::{SIDE, Tile, TileBuffers};
 use super::{GeoTiffReader, MAX_BLOCKS, read, tags};
 use crate::crs::GeoKeys;
 use crate::data::{BlockSource, Frame, Window};
@@ -111,13 +111,13 @@ impl Image {
         out.seek(SeekFrom::Start(first))?;
 
         let pack = |range: Range<usize>| -> Result<Vec<Tile>> {
-            let pack = |scratch: &mut Scratch, tile| -> Result<Tile> {
+            let pack = |scratch: &mut TileBuffers, tile| -> Result<Tile> {
                 let window = tiling.window(tile);
                 let tile = scratch.pack(source, window, cells)?;
                 watch(window.width as u64 * window.height as u64)?;
                 Ok(tile)
             };
-            range.into_par_iter().map_init(Scratch::default, pack).collect()
+            range.into_par_iter().map_init(TileBuffers::default, pack).collect()
         };
         // One batch is computed while the previous one is written; 16 tiles per core keep all cores
         // busy.

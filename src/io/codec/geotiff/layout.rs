@@ -45,7 +45,7 @@ const SPAN_BYTES: u64 = 1 << 20;
 
 /// A checked description of where the samples of band 1 are.
 #[derive(Debug)]
-pub(super) struct Layout {
+pub(super) struct BandLayout {
     pub(super) order: ByteOrder,
     pub(super) width: usize,
     pub(super) height: usize,
@@ -156,7 +156,7 @@ fn of_each_block(bytes: &Bytes, directory: &Directory, tag: u16, blocks: u64) ->
     }
 }
 
-impl Layout {
+impl BandLayout {
     /// Reads how the cells of an image are arranged.
     ///
     /// # Errors
@@ -202,7 +202,7 @@ impl Layout {
         let offsets = of_each_block(bytes, directory, offsets_tag, blocks)?
             .ok_or_else(|| Error::format(format!("{} is missing", tags::tag_name(offsets_tag))))?;
         let counts = of_each_block(bytes, directory, counts_tag, blocks)?;
-        let layout = Layout {
+        let layout = BandLayout {
             order: directory.order,
             width: width as usize,
             height: height as usize,

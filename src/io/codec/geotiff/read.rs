@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use super::georeference::ModelTags;
 use super::ifd::{ByteOrder, Bytes, Directory};
-use super::layout::{Layout, SampleType, Span, Stored};
+use super::layout::{BandLayout, SampleType, Span, Stored};
 use super::nodata::{Nodata, scale_and_offset};
 use super::{MAX_CELLS, block, tags};
 use crate::crs::{Crs, GeoKeys};
@@ -94,7 +94,7 @@ pub struct Extremes {
 pub struct GeoTiffReader {
     path: PathBuf,
     bytes: Bytes,
-    layout: Layout,
+    layout: BandLayout,
     nodata: Nodata,
     info: GeoTiffInfo,
 }
@@ -126,7 +126,7 @@ fn with_file(error: Error, path: &Path) -> Error {
 
 fn read_header(bytes: Bytes, path: &Path) -> Result<GeoTiffReader> {
     let directory = Directory::first(&bytes)?;
-    let layout = Layout::read(&bytes, &directory)?;
+    let layout = BandLayout::read(&bytes, &directory)?;
     let mut warnings = Vec::new();
     let Described { nodata, metadata, model, crs, unread_crs } = Described::read(&bytes, &directory, &mut warnings);
     let nodata = nodata_of(nodata.as_deref(), layout.sample, &mut warnings);

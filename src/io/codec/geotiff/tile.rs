@@ -28,13 +28,13 @@ pub(super) struct Tile {
 
 /// Buffers that a thread reuses from tile to tile.
 #[derive(Debug, Default)]
-pub(super) struct Scratch {
+pub(super) struct TileBuffers {
     cells: Vec<f32>,
     row: Vec<f32>,
     packed: Vec<u8>,
 }
 
-impl Scratch {
+impl TileBuffers {
     /// Requests the cells of a tile that are in the raster from the source, and encodes them.
     pub(super) fn pack(&mut self, source: &dyn BlockSource, window: Window, format: CellFormat) -> Result<Tile> {
         self.cells.clear();

@@ -49,7 +49,7 @@ pub struct Header {
     /// Records between the header and the points, then those after the points.
     pub records: Vec<RecordInfo>,
 
-    pub(super) layout: Layout,
+    pub(super) layout: FileLayout,
 }
 
 /// A variable length record, without its payload.
@@ -68,7 +68,7 @@ pub struct RecordInfo {
 
 /// Positions within the file, in bytes.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Layout {
+pub(super) struct FileLayout {
     pub(super) vlr_start: u64,
     pub(super) vlr_count: u64,
     pub(super) points_start: u64,
@@ -228,7 +228,7 @@ fn check_lattice(raw: &RawHeader) -> Result<()> {
     Ok(())
 }
 
-fn lay_out(raw: &RawHeader, file_length: u64) -> Result<Layout> {
+fn lay_out(raw: &RawHeader, file_length: u64) -> Result<FileLayout> {
     let vlr_start = u64::from(raw.header_size);
     let points_start = u64::from(raw.points_start);
     if points_start < vlr_start {
@@ -255,7 +255,7 @@ fn lay_out(raw: &RawHeader, file_length: u64) -> Result<Layout> {
         .flatten()
         .filter(|&end| end > points_start)
         .fold(file_length, u64::min);
-    Ok(Layout { vlr_start, vlr_count: raw.vlr_count.into(), points_start, points_end, evlr_start, evlr_count })
+    Ok(FileLayout { vlr_start, vlr_count: raw.vlr_count.into(), points_start, points_end, evlr_start, evlr_count })
 }
 
 /// Returns the number of points. LAS 1.4 has two counts: one of 64 bits, and one of 32 bits for old

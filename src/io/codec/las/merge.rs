@@ -33,14 +33,14 @@ pub(super) fn padded<const N: usize>(text: &str) -> [u8; N] {
 
 /// A conversion of steps of one lattice to those of another.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Step {
+pub(super) enum LatticeStep {
     Same,
     Exact(Embedding),
     /// Through the coordinates in the first lattice, rounded.
     Rounded(Lattice),
 }
 
-impl Step {
+impl LatticeStep {
     /// Returns the conversion from one lattice into another.
     ///
     /// # Errors
@@ -49,11 +49,11 @@ impl Step {
     pub(super) fn between(from: Option<Lattice>, into: &Lattice, rounding: Rounding) -> Result<Self> {
         let from = from.ok_or_else(not_las)?;
         if from == *into {
-            return Ok(Step::Same);
+            return Ok(LatticeStep::Same);
         }
         match (from.embed(into), rounding) {
-            (Some(embedding), _) => Ok(Step::Exact(embedding)),
-            (None, Rounding::Nearest) => Ok(Step::Rounded(from)),
+            (Some(embedding), _) => Ok(LatticeStep::Exact(embedding)),
+            (None, Rounding::Nearest) => Ok(LatticeStep::Rounded(from)),
             (None, Rounding::Refuse) => Err(apart(&from, into)),
         }
     }
@@ -64,9 +64,9 @@ impl Step {
     /// If they do not fit into 32 bits.
     pub(super) fn apply(&self, steps: [i32; 3], into: &Lattice) -> Result<[i32; 3]> {
         match self {
-            Step::Same => Ok(steps),
-            Step::Exact(embedding) => embedding.steps(steps).ok_or_else(|| far(steps.map(f64::from))),
-            Step::Rounded(from) => {
+            LatticeStep::Same => Ok(steps),
+            LatticeStep::Exact(embedding) => embedding.steps(steps).ok_or_else(|| far(steps.map(f64::from))),
+            LatticeStep::Rounded(from) => {
                 let point = from.point(steps);
                 into.nearest(point).ok_or_else(|| far(point))
             }

@@ -19,13 +19,13 @@
 //! | number of variable length records too large, record longer than the space for it | warning |
 //! | coordinate system empty or not understood | warning, and no coordinate system |
 //! | extent that is not a box | warning, and no extent |
-//! | count larger than the file holds, file cut within a record | error; with [`Cut::Accept`](crate::io::Cut) whole records, and a warning |
+//! | count larger than the file holds, file cut within a record | error; with [`OnDamage::Accept`](crate::io::OnDamage) whole records, and a warning |
 //! | count smaller than the room for points | the points that are stated, and a warning |
 //! | count 0 in front of points | no points, and a warning |
 //! | LAZ: chunk table missing or damaged, chunks of one size | all points, by one thread, and a warning |
 //! | LAZ: the same, formats 6 to 10 | all points of whole chunks, and a warning |
 //! | LAZ: the same, formats 0 to 5, chunks of many sizes | error |
-//! | LAZ: file cut | error; with [`Cut::Accept`](crate::io::Cut) points up to the cut (formats 6 to 10: whole chunks), and a warning |
+//! | LAZ: file cut | error; with [`OnDamage::Accept`](crate::io::OnDamage) points up to the cut (formats 6 to 10: whole chunks), and a warning |
 //! | LAZ: more points than so few bytes can hold | error |
 //! | LAZ: a chunk does not end where it should | error that names its points; the chunks before it are good |
 

@@ -7,7 +7,7 @@ use super::input::Input;
 use super::record::RecordLayout;
 use crate::data::PointBatch;
 use crate::error::{Result, Wording};
-use crate::io::Cut;
+use crate::io::OnDamage;
 use crate::io::options::las::ReadOptions;
 
 /// Limit for the points in a batch, and for the bytes of their records.
@@ -27,7 +27,7 @@ pub(super) struct Plain {
     passed_over: u64,
     /// The most points in a batch.
     most: u64,
-    cut: Cut,
+    cut: OnDamage,
     buffer: Vec<u8>,
 }
 

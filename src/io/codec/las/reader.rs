@@ -117,7 +117,8 @@ pub fn open(path: impl AsRef<Path>) -> Result<LasReader> {
     open_with(path, ReadOptions::default())
 }
 
-/// Like [`open`], but with options; a [`Cut`](crate::io::Cut) can be passed in their stead.
+/// Like [`open`], but with options; an [`OnDamage`](crate::io::OnDamage) can be passed in their
+/// stead.
 ///
 /// # Errors
 /// As [`open`].
@@ -162,7 +163,8 @@ pub fn from_stream(stream: impl Read, name: impl AsRef<Path>) -> Result<LasReade
     from_stream_with(stream, name, ReadOptions::default())
 }
 
-/// Like [`from_stream`], but with options; a [`Cut`](crate::io::Cut) can be passed in their stead.
+/// Like [`from_stream`], but with options; an [`OnDamage`](crate::io::OnDamage) can be passed in
+/// their stead.
 ///
 /// # Errors
 /// As [`open`].

@@ -2,7 +2,7 @@
 
 use std::io::{BufReader, Read, Seek, SeekFrom};
 
-use super::header::{Header, Layout, RecordInfo};
+use super::header::{FileLayout, Header, RecordInfo};
 use super::input::Input;
 use super::raw::{EVLR_HEADER, RawRecordHeader, VLR_HEADER};
 use crate::error::{Result, Wording};
@@ -44,7 +44,7 @@ impl Payloads {
 
 /// Reads both kinds of records, as far as they exist: the counts in the header are not trusted.
 pub(super) fn read(input: &Input, header: &mut Header, warnings: &mut Vec<Wording>) -> Result<Payloads> {
-    let Layout { vlr_start, vlr_count, points_start, evlr_start, evlr_count, .. } = header.layout;
+    let FileLayout { vlr_start, vlr_count, points_start, evlr_start, evlr_count, .. } = header.layout;
     let mut payloads = Payloads::default();
     let short = Records { name: "variable length", start: vlr_start, end: points_start, count: vlr_count };
     short.read(input, header, &mut payloads, warnings, |source| {

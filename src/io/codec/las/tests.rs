@@ -9,7 +9,7 @@ use super::{LasReader, from_stream, from_stream_with};
 use crate::crs::{Crs, GeoKeys};
 use crate::data::{Lattice, PointBatch, PointFlags, PointSource};
 use crate::error::{Kind, Result, Wording};
-use crate::io::Cut;
+use crate::io::OnDamage;
 
 const SCALE: [f64; 3] = [0.01, 0.001, 0.1];
 const OFFSET: [f64; 3] = [500_000.0, -5_300_000.0, 12.5];
@@ -107,7 +107,7 @@ fn coordinates(i: usize) -> [f64; 3] {
 }
 
 fn read(bytes: &[u8]) -> Result<(LasReader, PointBatch)> {
-    read_with(bytes, Cut::Refuse)
+    read_with(bytes, OnDamage::Refuse)
 }
 
 /// Checks that a file that was cut is refused, then reads what is there.
@@ -115,10 +115,10 @@ fn read_cut(bytes: &[u8]) -> (LasReader, PointBatch) {
     let error = read(bytes).unwrap_err();
     assert!(error.to_string().starts_with(&format!("test: byte {}: the ", bytes.len())), "{error}");
     assert!(error.cure_text().unwrap().plain().contains("partial"));
-    read_with(bytes, Cut::Accept).unwrap()
+    read_with(bytes, OnDamage::Accept).unwrap()
 }
 
-fn read_with(bytes: &[u8], cut: Cut) -> Result<(LasReader, PointBatch)> {
+fn read_with(bytes: &[u8], cut: OnDamage) -> Result<(LasReader, PointBatch)> {
     let mut reader = from_stream_with(bytes, "test", cut)?;
     let (mut all, mut batch) = (PointBatch::default(), PointBatch::default());
     loop {
@@ -308,7 +308,7 @@ fn more_points_than_bytes_can_hold_are_refused_at_once() {
         let (count, room) = if minor == 4 { (247, 8) } else { (107, 4) };
         let stated = u64::from(u32::MAX) + u64::from(minor == 4);
         bytes[count..count + room].copy_from_slice(&stated.to_le_bytes()[..room]);
-        for cut in [Cut::Refuse, Cut::Accept] {
+        for cut in [OnDamage::Refuse, OnDamage::Accept] {
             let error = read_with(&bytes, cut).unwrap_err();
             assert_eq!(error.kind(), Kind::Limit, "{error}");
             assert!(error.to_string().contains(&format!("{stated} points in ")), "{error}");
@@ -328,7 +328,7 @@ fn records_after_the_points_are_not_points() {
     bytes[107..111].fill(0);
     let error = read(&bytes).unwrap_err();
     assert!(error.to_string().contains("states 1010 points, but the file holds 1000"), "{error}");
-    let (reader, all) = read_with(&bytes, Cut::Accept).unwrap();
+    let (reader, all) = read_with(&bytes, OnDamage::Accept).unwrap();
     check_points(&all, 1000, true);
     assert!(reader.info().warnings[0].plain().contains("states 1010 points, but the file holds 1000"));
 }

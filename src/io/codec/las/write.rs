@@ -7,7 +7,7 @@ use std::io::{Seek, SeekFrom, Write};
 
 use laz::{LazItemRecordBuilder, LazVlr, ParLasZipCompressor};
 
-use super::merge::{self, Rounding, Step, padded};
+use super::merge::{self, LatticeStep, Rounding, padded};
 use super::raw::u32_at;
 use crate::data::{Bounds, LasHead, Lattice, PointBatch, PointInfo, PointSink, PointSummary};
 use crate::error::{Error, Kind, Result};
@@ -34,7 +34,7 @@ pub struct LasWriter<'a> {
     lattice: Lattice,
     rounding: Rounding,
     /// Converts from the lattice of the current source to that of the file.
-    step: Step,
+    step: LatticeStep,
     /// Records that are to be written together.
     waiting: Vec<u8>,
     batch: usize,
@@ -123,7 +123,7 @@ pub fn create<'a>(
         head,
         lattice,
         rounding,
-        step: Step::Same,
+        step: LatticeStep::Same,
         waiting: Vec::new(),
         batch: BATCH_BYTES * rayon::current_num_threads(),
         points_start,
@@ -244,7 +244,7 @@ impl LasWriter<'_> {
 
 impl PointSink for LasWriter<'_> {
     fn next_source(&mut self, info: &PointInfo) -> Result<()> {
-        self.step = Step::between(info.lattice, &self.lattice, self.rounding)?;
+        self.step = LatticeStep::between(info.lattice, &self.lattice, self.rounding)?;
         Ok(())
     }
 

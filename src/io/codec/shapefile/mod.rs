@@ -5,7 +5,7 @@
 //!
 //! | file | supplies | if missing | if damaged |
 //! |---|---|---|---|
-//! | `.shp` | shapes | error | an error; with [`Cut::Accept`] complete records are read, and a warning names each damaged one; an error if none is complete |
+//! | `.shp` | shapes | error | an error; with [`OnDamage::Accept`] complete records are read, and a warning names each damaged one; an error if none is complete |
 //! | `.shx` | a record's attribute row; where to continue after damage | order of the `.shp` | not used, a warning |
 //! | `.dbf` | names, heights and numbers if requested, deleted rows | no fields | a warning; an error if heights or numbers are requested |
 //! | `.prj` | coordinate system | unknown | unknown, a warning |
@@ -15,11 +15,11 @@
 //!
 //! | found | result |
 //! |---|---|
-//! | counts, part indices or a type that make no sense, in a record of plausible length | an error; with [`Cut::Accept`] the record is left out, a warning |
-//! | a record header that makes no sense | an error; with [`Cut::Accept`] reading continues at the next record of the `.shx`, or ends; a warning |
+//! | counts, part indices or a type that make no sense, in a record of plausible length | an error; with [`OnDamage::Accept`] the record is left out, a warning |
+//! | a record header that makes no sense | an error; with [`OnDamage::Accept`] reading continues at the next record of the `.shx`, or ends; a warning |
 //! | a record that extends beyond the end of the file | the same |
 //! | bytes after all records that the `.shx` lists; without it, after the length that the header states, or too few for a record | a warning |
-//! | a header that states more bytes than there are | an error, with [`Cut::Accept`] a warning; a warning, if the `.shx` lists exactly the records that are there |
+//! | a header that states more bytes than there are | an error, with [`OnDamage::Accept`] a warning; a warning, if the `.shx` lists exactly the records that are there |
 //! | x or y not a finite number | an error: the record is well formed, so the value was wrong before it was written |
 //! | z not finite or "no data" (below -1e38) | no height (NaN), a warning with the count |
 //! | null shapes; no parts, no points | read as they are |
@@ -51,7 +51,7 @@ use std::path::{Path, PathBuf};
 use crate::crs::Crs;
 use crate::data::{Column as Attribute, Layer, Shape};
 use crate::error::{Error, Result, Wording, wording};
-use crate::io::Cut;
+use crate::io::OnDamage;
 use crate::io::bytes::field;
 use crate::io::bytes::watch::{Watch, unwatched};
 use crate::io::options::layer::Options;
@@ -114,7 +114,7 @@ fn read(path: &Path, options: &Options, watch: Watch) -> Result<Layer> {
     if file.stated > size {
         let text = format!("its header states {} bytes, the file has {size}", file.stated);
         // An index of exactly these records shows that the header is wrong, and no record missing.
-        let cut = if matches!(rows, Some(Ok(_))) && end.is_none() { Cut::Accept } else { options.cut };
+        let cut = if matches!(rows, Some(Ok(_))) && end.is_none() { OnDamage::Accept } else { options.cut };
         cut.refuse_or_warn(text, &format!("byte {size}"), &mut warnings)?;
     }
     damage.refuse_or_warn(options.cut, &mut warnings)?;

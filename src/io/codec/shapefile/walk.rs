@@ -9,7 +9,7 @@ use super::index::Index;
 use super::record::{self, Flaw, Oddities, Parsed};
 use crate::data::Shape;
 use crate::error::{Error, Result, Setting, Wording, wording};
-use crate::io::Cut;
+use crate::io::OnDamage;
 use crate::io::bytes::watch::{Meter, Watch};
 
 /// A record that was found, readable or not.
@@ -72,9 +72,9 @@ impl Damage {
     ///
     /// # Errors
     /// If there is damage and it is not accepted.
-    pub(super) fn refuse_or_warn(self, cut: Cut, warnings: &mut Vec<Wording>) -> Result<()> {
+    pub(super) fn refuse_or_warn(self, cut: OnDamage, warnings: &mut Vec<Wording>) -> Result<()> {
         let Damage { reported, more } = self;
-        if let (Cut::Refuse, [first, others @ ..]) = (cut, &reported[..]) {
+        if let (OnDamage::Refuse, [first, others @ ..]) = (cut, &reported[..]) {
             let text = match others.len() + more {
                 0 => first.clone(),
                 count => wording![first.clone(), format!("; and {count} more parts cannot be read")],

@@ -13,7 +13,7 @@ const CURE: &str = "correct the line, or make it a comment with # at its beginni
 
 /// How a line is divided into fields, and which of them are used.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Layout {
+pub(super) struct ColumnLayout {
     pub(super) separator: Separator,
     pub(super) columns: Columns,
 }
@@ -34,10 +34,10 @@ impl Point {
     }
 }
 
-impl Layout {
+impl ColumnLayout {
     /// The layout without a header.
     pub(super) const FIRST: Self =
-        Layout { separator: Separator::Blanks, columns: Columns { x: 1, y: 2, z: 3, class: None } };
+        ColumnLayout { separator: Separator::Blanks, columns: Columns { x: 1, y: 2, z: 3, class: None } };
 
     /// Returns the layout of a header line, by the names of the columns.
     ///
@@ -62,7 +62,7 @@ impl Layout {
         };
         let (x, y, z) = (need("x", X_NAMES)?, need("y", Y_NAMES)?, need("z", Z_NAMES)?);
         let columns = Columns { x: one(x)?, y: one(y)?, z: one(z)?, class: find(CLASS_NAMES).map(one).transpose()? };
-        Ok(Layout { separator, columns })
+        Ok(ColumnLayout { separator, columns })
     }
 
     pub(super) fn point(&self, line: &[u8]) -> Result<Point> {

@@ -1,6 +1,6 @@
 //! The lines up to the first point: what they state, and the columns that follow from it.
 
-use super::columns::{Layout, NameFlaw, Point, quote};
+use super::columns::{ColumnLayout, NameFlaw, Point, quote};
 use super::first_column::FirstColumn;
 use super::lines::{Line, Lines};
 use super::separator::Separator;
@@ -10,7 +10,7 @@ use crate::io::bytes::decimal_mark::DecimalMark;
 
 /// The result of reading the first lines.
 pub(super) struct Start {
-    pub(super) layout: Layout,
+    pub(super) layout: ColumnLayout,
     pub(super) has_header: bool,
     pub(super) count: Option<u64>,
     pub(super) first: Option<Point>,
@@ -24,7 +24,7 @@ impl Start {
     /// # Errors
     /// If a line is neither a header nor a point.
     pub(super) fn read(lines: &mut Lines, columns: Option<Columns>) -> Result<Self> {
-        let asked = columns.map(|columns| Layout { columns, ..Layout::FIRST });
+        let asked = columns.map(|columns| ColumnLayout { columns, ..ColumnLayout::FIRST });
         let mut head = Head { asked, ..Head::default() };
         while lines.next()? {
             match Line::new(&lines.line) {
@@ -45,11 +45,11 @@ impl Start {
 #[derive(Default)]
 struct Head {
     /// The layout that the caller gives.
-    asked: Option<Layout>,
+    asked: Option<ColumnLayout>,
     /// The layout that a header names.
-    named: Option<Layout>,
+    named: Option<ColumnLayout>,
     /// The layout that a comment names, and its number of names.
-    commented: Option<(std::result::Result<Layout, NameFlaw>, usize)>,
+    commented: Option<(std::result::Result<ColumnLayout, NameFlaw>, usize)>,
     is_header_passed: bool,
     /// The number of points that a line states.
     count: Option<u64>,
@@ -60,7 +60,7 @@ impl Head {
     fn add_comment(&mut self, text: &[u8]) {
         let names = text.rsplit(|&byte| byte == b':').next().unwrap_or(text);
         if let Some(separator) = Separator::guess(names)
-            && let layout @ (Ok(_) | Err(NameFlaw::Repeated(_))) = Layout::named(names, separator)
+            && let layout @ (Ok(_) | Err(NameFlaw::Repeated(_))) = ColumnLayout::named(names, separator)
         {
             self.commented = Some((layout, separator.fields(names).count()));
         }
@@ -82,7 +82,7 @@ impl Head {
         }
         // The points may have another separator than the names.
         self.named = match self.asked {
-            None => Some(Layout::named(line, separator)?),
+            None => Some(ColumnLayout::named(line, separator)?),
             Some(_) if self.is_header_passed => return Err(not_a_point(line)),
             Some(_) => None,
         };
@@ -103,7 +103,7 @@ impl Head {
         let mut mark = DecimalMark::default();
         separator.add_marks(&mut mark, line, number)?;
         let known = asked.or(named);
-        let layout = Layout { separator, ..known.unwrap_or(Layout::FIRST) };
+        let layout = ColumnLayout { separator, ..known.unwrap_or(ColumnLayout::FIRST) };
         let first = layout.point(line).map_err(|error| match known {
             Some(_) => error,
             None => error.cure(wording![
@@ -120,7 +120,7 @@ impl Head {
     fn without_points(self) -> Start {
         let named = self.named.or(self.commented.and_then(|(layout, _)| layout.ok()));
         Start {
-            layout: self.asked.or(named).unwrap_or(Layout::FIRST),
+            layout: self.asked.or(named).unwrap_or(ColumnLayout::FIRST),
             has_header: self.is_header_passed || named.is_some(),
             count: self.count,
             first: None,

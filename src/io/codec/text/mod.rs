@@ -44,7 +44,7 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
-use self::columns::{Layout, Point};
+use self::columns::{ColumnLayout, Point};
 use self::first_column::{FirstColumn, Guess};
 use self::first_lines::Start;
 use self::lines::{Line, Lines};
@@ -53,7 +53,7 @@ use crate::data::{PointBatch, PointInfo, PointSource};
 use crate::error::{Error, Result, Wording};
 use crate::io::bytes::decimal_mark::DecimalMark;
 use crate::io::fronts::points::Options;
-use crate::io::options::cut::{Cut, OPEN_LINE};
+use crate::io::options::cut::{OPEN_LINE, OnDamage};
 
 /// Points in a batch.
 const BATCH: usize = 1 << 16;
@@ -61,7 +61,7 @@ const BATCH: usize = 1 << 16;
 /// A reader of points from text, made by [`open`].
 pub struct TextReader {
     lines: Lines,
-    layout: Layout,
+    layout: ColumnLayout,
     info: PointInfo,
     /// The first point, which was read to determine the columns and has not been returned yet.
     first: Option<Point>,
@@ -69,7 +69,7 @@ pub struct TextReader {
     first_column: Option<FirstColumn>,
     mark: DecimalMark,
     /// What to do if there are fewer points than the first line states.
-    cut: Cut,
+    cut: OnDamage,
     read: u64,
     is_done: bool,
     warnings: Vec<Wording>,
@@ -188,7 +188,7 @@ impl TextReader {
         let Some(stated) = self.info.count.filter(|&stated| stated != total) else { return Ok(()) };
         let text = format!("the first line states {stated} points, but there are {total}");
         // More points than stated are not a file that was cut.
-        let cut = if total < stated { self.cut } else { Cut::Accept };
+        let cut = if total < stated { self.cut } else { OnDamage::Accept };
         cut.refuse_or_warn(text, "the end", &mut self.warnings).map_err(|e| e.in_file(&self.lines.name))
     }
 }

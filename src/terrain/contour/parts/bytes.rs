@@ -37,7 +37,7 @@ impl PartsTable {
         let count = u64::from_le_bytes(std::array::from_fn(|i| head[HEAD - 8 + i]));
         let size = usize::try_from(count).ok()?.checked_mul(ENTRY)?;
         let (table, _) = rest.split_at_checked(size)?;
-        Reader(head).table(table, bytes.len() as u64)
+        PartsReader(head).table(table, bytes.len() as u64)
     }
 }
 
@@ -116,7 +116,7 @@ impl LevelParts {
     /// # Errors
     /// If the bytes are damaged.
     pub fn read(level: f64, bytes: &[u8]) -> Result<Self> {
-        Reader(bytes).level_parts(level).ok_or_else(|| damaged().at(format!("level {level}")))
+        PartsReader(bytes).level_parts(level).ok_or_else(|| damaged().at(format!("level {level}")))
     }
 
     /// Writes the parts of the level, which [`read`](Self::read) reads; `out` should have a buffer.
@@ -195,9 +195,9 @@ fn damaged() -> Error {
 }
 
 /// The bytes that are left to read. `None` if they end early, or have no meaning.
-struct Reader<'a>(&'a [u8]);
+struct PartsReader<'a>(&'a [u8]);
 
-impl<'a> Reader<'a> {
+impl<'a> PartsReader<'a> {
     /// The table, from the bytes before it and its own.
     fn table(mut self, table: &[u8], length: u64) -> Option<PartsTable> {
         if self.array()? != MAGIC {
@@ -206,7 +206,7 @@ impl<'a> Reader<'a> {
         let heights = [self.double()?, self.double()?];
         let mut end = (HEAD + table.len()) as u64;
         let mut levels = Vec::with_capacity(table.len() / ENTRY);
-        let mut entries = Reader(table);
+        let mut entries = PartsReader(table);
         while !entries.0.is_empty() {
             let level = entries.double()?;
             let start = end;

@@ -153,7 +153,7 @@ fn count() -> usize {
 
 /// How often something happened that a wrong join would get wrong.
 #[derive(Debug, Default)]
-struct Seen {
+struct SeenCases {
     lines: usize,
     /// Arcs along edges between two tasks.
     arcs_between: usize,
@@ -165,7 +165,7 @@ struct Seen {
     ambiguous: usize,
 }
 
-impl Seen {
+impl SeenCases {
     fn add(&mut self, lines: &[ContourLine], tasks: &[ContourParts]) {
         self.lines += lines.len();
         for of_level in lines.chunk_by(|a, b| a.level == b.level) {
@@ -200,7 +200,7 @@ impl Seen {
 #[test]
 fn parts_give_the_contours_of_the_whole() {
     let mut random = Random(17);
-    let mut seen = Seen::default();
+    let mut seen = SeenCases::default();
     let rounds = count();
     for round in 0..rounds {
         let points = points(&mut random, round);

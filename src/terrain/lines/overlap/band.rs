@@ -26,7 +26,7 @@ impl Boxed for BorderSide {
 
 /// Where a line beside a border meets the border of the river that it is in.
 #[derive(Debug, Clone, Copy)]
-struct Cut {
+struct BorderCrossing {
     part: f64,
     at: [f64; 2],
     /// The segment of a strand.
@@ -63,7 +63,7 @@ pub(super) fn add(scene: &Scene, strands: &mut Vec<Strand>) -> Vec<WaterOverlap>
         let mut lower_than: BTreeSet<usize> = BTreeSet::new();
         for line in scene.waters[inner].level.rings().iter().flat_map(|ring| beside(ring, scene.width, is_near)) {
             let cuts = cuts(&line, &borders, &outer, scene.rounding);
-            let stops: Vec<&[Cut]> = cuts.chunk_by(|p, q| p.at == q.at).collect();
+            let stops: Vec<&[BorderCrossing]> = cuts.chunk_by(|p, q| p.at == q.at).collect();
             let mut seen: BTreeSet<usize> = BTreeSet::new();
             for pair in stops.windows(2) {
                 let ends = [pair[0][0].at, pair[1][0].at];
@@ -120,14 +120,15 @@ pub(super) fn border_sides(strands: &[Strand]) -> Vec<BorderSide> {
 }
 
 /// The ends of a line and where it meets the borders of some rivers, given in order, in order.
-fn cuts(line: &Beside, borders: &Boxes<BorderSide>, rivers: &[usize], rounding: f64) -> Vec<Cut> {
+fn cuts(line: &Beside, borders: &Boxes<BorderSide>, rivers: &[usize], rounding: f64) -> Vec<BorderCrossing> {
     let [from, to] = line.ends;
-    let mut cuts = vec![Cut { part: 0.0, at: from, on: None }, Cut { part: 1.0, at: to, on: None }];
+    let mut cuts =
+        vec![BorderCrossing { part: 0.0, at: from, on: None }, BorderCrossing { part: 1.0, at: to, on: None }];
     borders.find_in(Extent::of_plan(line.ends).grown(rounding), |side| {
         if rivers.binary_search(&side.water).is_ok() {
             let met = meeting_points(line.ends, side.ends, rounding).into_iter();
             let on = Some([side.strand, side.segment]);
-            cuts.extend(met.map(|at| Cut { part: nearest_part(line.ends, at), at, on }));
+            cuts.extend(met.map(|at| BorderCrossing { part: nearest_part(line.ends, at), at, on }));
         }
         None::<()>
     });

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use super::zone::{Zone, tolerance_of};
 use crate::data::orientation;
 use crate::terrain::boxes::{Boxed, Boxes, Extent};
-use crate::terrain::lines::areas::{Level, Water, rounding_of};
+use crate::terrain::lines::areas::{Water, WaterLevel, rounding_of};
 use crate::terrain::lines::river::{contains, height_near};
 use crate::terrain::nearest::squared_distance;
 use crate::triangulation::num::Sign;
@@ -44,7 +44,7 @@ impl Meetings {
     pub(super) fn find(waters: &[Water]) -> Self {
         let mut all: Vec<Part> = Vec::new();
         for (water, Water { level, .. }) in waters.iter().enumerate() {
-            let Level::River(river) = level else { continue };
+            let WaterLevel::River(river) = level else { continue };
             for stretch in 0..river.stretch_count() {
                 all.extend(river.triangles(stretch).into_iter().map(|corners| Part { water, stretch, corners }));
             }
@@ -54,7 +54,7 @@ impl Meetings {
         let touching = Touching { rounding: rounding_of(corners()), tolerance: tolerance_of(corners()) };
         // Where a river goes on, it falls from the height of the one before to its own.
         let goes_on = |rivers: [usize; 2], at: [f64; 2]| match rivers.map(|number| &waters[number].level) {
-            [Level::River(river), Level::River(other)] => river.goes_on_at(other, at, touching.rounding),
+            [WaterLevel::River(river), WaterLevel::River(other)] => river.goes_on_at(other, at, touching.rounding),
             _ => false,
         };
         let (mut pairs, mut stretches) = (BTreeSet::new(), BTreeSet::new());
@@ -73,7 +73,7 @@ impl Meetings {
             });
         }
         for (water, Water { level, .. }) in waters.iter().enumerate() {
-            let Level::Flat(lake) = level else { continue };
+            let WaterLevel::Flat(lake) = level else { continue };
             for side in lake.rings.iter().flat_map(|ring| ring.windows(2)).map(|pair| [pair[0], pair[1]]) {
                 parts.find_in(Extent::of(side).grown(touching.rounding), |part| {
                     if passes(side, &part.corners) || touching.differences(&side, &part.corners).next().is_some() {
@@ -119,7 +119,7 @@ impl Meetings {
     pub(super) fn zones(&self, waters: &[Water], distance: f64) -> Boxes<Zone> {
         let mut zones = Vec::new();
         for &[water, stretch] in &self.stretches {
-            if let Level::River(river) = &waters[water].level {
+            if let WaterLevel::River(river) = &waters[water].level {
                 zones.push(Zone(Extent::of(river.triangles(stretch).concat()).grown(distance)));
             }
         }

@@ -28,7 +28,7 @@ mod sight;
 mod strand;
 mod zone;
 
-use super::areas::{Level, Water, rounding_of};
+use super::areas::{Water, WaterLevel, rounding_of};
 use crate::data::Bounds;
 use meetings::Meetings;
 pub use scene::WaterOverlap;
@@ -68,7 +68,7 @@ pub(crate) fn mark(
     if meetings.is_empty() {
         return Marks::default();
     }
-    let is_needed = |number: usize| meetings.takes_part(number) || matches!(waters[number].level, Level::Flat(_));
+    let is_needed = |number: usize| meetings.takes_part(number) || matches!(waters[number].level, WaterLevel::Flat(_));
     let bodies: Vec<Option<Body>> =
         (0..waters.len()).map(|number| is_needed(number).then(|| Body::new(&waters[number]))).collect();
     let mut strands: Vec<Strand> = Vec::new();

@@ -3,7 +3,7 @@
 use super::meetings::Meetings;
 use super::sight::Sight;
 use crate::terrain::inside::Inside;
-use crate::terrain::lines::areas::{Level, Water};
+use crate::terrain::lines::areas::{Water, WaterLevel};
 use crate::terrain::lines::river::RiverWater;
 
 /// Two waters that overlap or touch, and the step that is left at the border of the overlap, or
@@ -60,8 +60,8 @@ pub(super) enum Body {
 impl Body {
     pub(super) fn new(water: &Water) -> Self {
         match &water.level {
-            Level::Flat(lake) => Body::Lake { height: lake.height, inside: Inside::new(&[water.level.rings()]) },
-            Level::River(river) => Body::River(RiverWater::new(river)),
+            WaterLevel::Flat(lake) => Body::Lake { height: lake.height, inside: Inside::new(&[water.level.rings()]) },
+            WaterLevel::River(river) => Body::River(RiverWater::new(river)),
         }
     }
 

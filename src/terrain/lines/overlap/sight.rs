@@ -2,7 +2,7 @@
 
 use crate::data::Bounds;
 use crate::terrain::boxes::{Boxed, Boxes, Extent};
-use crate::terrain::lines::areas::{Level, Water};
+use crate::terrain::lines::areas::{Water, WaterLevel};
 use crate::terrain::nearest::part_before;
 
 /// A side of a shore.
@@ -40,7 +40,7 @@ impl Sight {
     pub(super) fn new(waters: &[Water], bounds: Option<Bounds>) -> Self {
         let (mut lakes, mut shores) = (Vec::new(), Vec::new());
         for (water, Water { level, .. }) in waters.iter().enumerate() {
-            if matches!(level, Level::Flat(_)) {
+            if matches!(level, WaterLevel::Flat(_)) {
                 let rings = level.rings();
                 lakes.push(Lake { water, extent: Extent::of_plan(rings.iter().flatten().copied()) });
                 shores.extend(rings.iter().flat_map(|ring| ring.windows(2)).map(|pair| ShoreSide([pair[0], pair[1]])));

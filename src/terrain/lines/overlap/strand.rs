@@ -1,7 +1,7 @@
 //! Lines of waters that get more vertices.
 
 use super::scene::Scene;
-use crate::terrain::lines::areas::Level;
+use crate::terrain::lines::areas::WaterLevel;
 use crate::terrain::nearest::nearest_part;
 use crate::triangulation::num::unsigned_zero;
 
@@ -81,7 +81,7 @@ impl Scene<'_> {
     pub(super) fn diagonals(&self) -> Vec<Strand> {
         let mut diagonals = Vec::new();
         for &[water, stretch] in &self.meetings.stretches {
-            if let Level::River(river) = &self.waters[water].level {
+            if let WaterLevel::River(river) = &self.waters[water].level {
                 diagonals.extend(river.diagonals(stretch).into_iter().map(|ends| Strand::new(water, ends)));
             }
         }

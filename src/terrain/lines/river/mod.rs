@@ -28,7 +28,7 @@ use crate::data::orientation;
 use crate::error::{Error, Result, Setting, wording};
 use crate::terrain::boxes::{Boxed, Boxes};
 use crate::triangulation::num::Sign;
-use segments::{Side, meeting_of, sides};
+use segments::{BankSegment, meeting_of, sides};
 use sites::{Key, distance, flat, key, middle};
 use stations::stations;
 
@@ -249,12 +249,12 @@ impl River {
         let mut lines: Vec<Vec<[f64; 3]>> = Vec::with_capacity(count);
         let mut before: Option<[[f64; 3]; 2]> = None;
         for (number, line) in self.stations.iter().enumerate() {
-            let crosses = |side: &Side| cross(line, &side.0).then_some(());
+            let crosses = |side: &BankSegment| cross(line, &side.0).then_some(());
             let is_end = number == 0 || number + 1 == count;
             let is_free = || {
                 !before.is_some_and(|before| cross(line, &before))
                     && !self.stations.last().is_some_and(|last| cross(line, last))
-                    && sides.find_in(Side(*line).extent(), crosses).is_none()
+                    && sides.find_in(BankSegment(*line).extent(), crosses).is_none()
             };
             if is_end || is_free() {
                 let [left, right] = *line;

@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BinaryHeap};
 use rustc_hash::FxHashMap;
 
 use super::River;
-use super::confluence::{self, Level, StationId};
+use super::confluence::{self, LevelStations, StationId};
 use super::sites::{Key, key, middle};
 
 /// A river that was lowered because another one, which joins it or which it continues, is lower.
@@ -130,9 +130,9 @@ struct Bound {
 ///
 /// # Complexity
 /// O(n log n) for n stations.
-fn lower(rivers: &mut [River], equal: &[Level], bounds: &[[StationId; 2]]) -> Vec<RiverLowering> {
+fn lower(rivers: &mut [River], equal: &[LevelStations], bounds: &[[StationId; 2]]) -> Vec<RiverLowering> {
     let mut bound: BTreeMap<StationId, Bound> = BTreeMap::new();
-    for (group, Level { stations, .. }) in equal.iter().enumerate() {
+    for (group, LevelStations { stations, .. }) in equal.iter().enumerate() {
         stations.iter().for_each(|station| bound.entry(*station).or_default().groups.push(group));
     }
     for [from, to] in bounds {
@@ -163,7 +163,7 @@ fn lower(rivers: &mut [River], equal: &[Level], bounds: &[[StationId; 2]]) -> Ve
         for (_, Bound { groups, below }) in bound.range([river, first]..[river, end]) {
             for &group in groups {
                 if !std::mem::replace(&mut is_done[group], true) {
-                    let Level { stations, end } = &equal[group];
+                    let LevelStations { stations, end } = &equal[group];
                     let cause = |target: StationId| end.filter(|end| *end != target[0]).unwrap_or(river);
                     targets.extend(stations.iter().map(|target| (*target, cause(*target))));
                 }

@@ -15,16 +15,16 @@ pub(super) fn meeting_of(mut ring: Vec<[f64; 3]>) -> Option<[f64; 2]> {
 
 /// A segment of a bank.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Side(pub(super) [[f64; 3]; 2]);
+pub(super) struct BankSegment(pub(super) [[f64; 3]; 2]);
 
-impl Boxed for Side {
+impl Boxed for BankSegment {
     fn extent(&self) -> Extent {
         Extent::of(self.0)
     }
 }
 
-pub(super) fn sides(line: &[[f64; 3]]) -> Vec<Side> {
-    line.windows(2).map(|pair| Side([pair[0], pair[1]])).collect()
+pub(super) fn sides(line: &[[f64; 3]]) -> Vec<BankSegment> {
+    line.windows(2).map(|pair| BankSegment([pair[0], pair[1]])).collect()
 }
 
 /// The point at a part of a segment, from 0 to 1.

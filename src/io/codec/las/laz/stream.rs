@@ -10,7 +10,7 @@ use super::compression::{ChunkSize, Compression};
 use super::table::POINTER;
 use crate::data::PointBatch;
 use crate::error::{Error, Result, Wording};
-use crate::io::Cut;
+use crate::io::OnDamage;
 use crate::io::bytes::contain::contain;
 use crate::io::codec::las::header::Header;
 use crate::io::codec::las::input::Input;
@@ -30,7 +30,7 @@ pub(crate) struct Stream {
     in_chunk: u64,
     done: u64,
     total: u64,
-    cut: Cut,
+    cut: OnDamage,
     length: u64,
     block: Vec<u8>,
 }

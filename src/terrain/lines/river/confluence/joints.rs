@@ -28,7 +28,7 @@ pub(super) struct Joint {
 #[derive(Debug, Default)]
 pub(crate) struct Joints {
     /// Groups of stations of one height.
-    pub(crate) equal: Vec<Level>,
+    pub(crate) equal: Vec<LevelStations>,
     /// Pairs of stations: the second is no higher than the first.
     pub(crate) bounds: Vec<[StationId; 2]>,
     /// The ends that join others, by river and end.
@@ -39,7 +39,7 @@ pub(crate) struct Joints {
 
 /// Stations of one height.
 #[derive(Debug)]
-pub(crate) struct Level {
+pub(crate) struct LevelStations {
     pub(crate) stations: Vec<StationId>,
     /// The river whose end they share, if it is an end that makes them level.
     pub(crate) end: Option<usize>,
@@ -70,8 +70,9 @@ impl Joints {
         }
         found.ends.values_mut().for_each(|end| end.find_heights(rivers));
         found.find_sites(rivers);
-        let at_site = |stations: &BTreeSet<StationId>| Level { stations: Vec::from_iter(stations.clone()), end: None };
-        let mut equal: Vec<Level> = found.at_sites.values().map(at_site).collect();
+        let at_site =
+            |stations: &BTreeSet<StationId>| LevelStations { stations: Vec::from_iter(stations.clone()), end: None };
+        let mut equal: Vec<LevelStations> = found.at_sites.values().map(at_site).collect();
         let mut bounds = Vec::new();
         for (&[river, number], end) in &found.ends {
             let own = own_station(rivers, [river, number]);
@@ -91,7 +92,7 @@ impl Joints {
             if !level.is_empty() && (number == 1 || is_met) {
                 level.push(own);
             }
-            equal.push(Level { stations: level, end: Some(river) });
+            equal.push(LevelStations { stations: level, end: Some(river) });
         }
         equal.retain(|level| level.stations.len() > 1);
         Joints { equal, bounds, ..found }

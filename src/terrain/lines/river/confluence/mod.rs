@@ -13,7 +13,7 @@ use crate::terrain::boxes::{Boxed, Boxes, Extent};
 use crate::terrain::nearest::{nearest_part, squared_distance};
 use joints::{Joint, Joints};
 
-pub(super) use joints::{Level, StationId};
+pub(super) use joints::{LevelStations, StationId};
 
 /// A segment of a bank: river, side, and the number of its stretch.
 #[derive(Debug, Clone, Copy)]
