@@ -349,10 +349,11 @@ impl Job {
     /// Removes the files that the job has written, except the output.
     fn clean(&self, py: Python<'_>) -> PyResult<()> {
         work::run_alone(py, &Call::BRIEF, |context| -> Result<_> {
-            Ok(match &self.stored {
+            match &self.stored {
                 Some(stored) => stored.remove(context)?,
                 None => run::remove_job(&self.folder, context)?,
-            })
+            }
+            Ok(())
         })
     }
 }
