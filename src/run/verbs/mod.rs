@@ -188,5 +188,5 @@ pub enum Summary {
     /// Meshes, in the order of the outputs.
     Meshes(Vec<(PathBuf, MeshSummary)>),
     /// A TIN in parts.
-    Parts(WrittenParts),
+    Parts(Box<WrittenParts>),
 }

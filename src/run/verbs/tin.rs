@@ -60,7 +60,7 @@ impl Verb for SurfaceOptions {
         let [target] = &outputs.targets[..] else {
             return Err(Error::usage("a TIN in parts is written alone"));
         };
-        tiles.write_parts(target.within(&outputs.set), context).map(Summary::Parts)
+        tiles.write_parts(target.within(&outputs.set), context).map(|parts| Summary::Parts(Box::new(parts)))
     }
 }
 

@@ -208,7 +208,7 @@ impl<'a> Prepared<'a> {
         let mut product = verb.surface(surface, context)?;
         targets.write_tables(&product, &outputs.set)?;
         let summary = verb.write(&product, &outputs, context)?;
-        let surface = WrittenOf::Whole(SurfaceReport::take(&mut product)?);
+        let surface = WrittenOf::Whole(Box::new(SurfaceReport::take(&mut product)?));
         // Its memory is not needed while the disk is waited for.
         drop(product);
         let files = outputs.set.commit()?;

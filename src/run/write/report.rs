@@ -49,7 +49,7 @@ pub struct Written {
 #[derive(Debug)]
 pub enum WrittenOf {
     /// One in memory.
-    Whole(SurfaceReport),
+    Whole(Box<SurfaceReport>),
     /// One in tiles.
     Tiles {
         /// Counts of the tasks.
