@@ -1,6 +1,6 @@
 //! The plan of a job: which tiles there are, and what all tasks must agree on.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
@@ -52,8 +52,8 @@ pub(super) struct OtherFile {
 
 impl OtherFile {
     /// Returns a file with its present state.
-    fn of(path: &PathBuf) -> Result<Self> {
-        Ok(OtherFile { path: path.clone(), state: state_of(path)? })
+    fn of(path: &Path) -> Result<Self> {
+        Ok(OtherFile { path: path.to_path_buf(), state: state_of(path)? })
     }
 }
 
@@ -143,7 +143,7 @@ impl Plan {
         };
         let max_edge = request.max_edge.length(&Units::of(crs.as_ref()));
         let (has_lines, has_clip) = (known.lines.is_some(), known.clip.is_some());
-        let others = others(request, verb).map(OtherFile::of).collect::<Result<_>>()?;
+        let others = others(request, verb).map(|path| OtherFile::of(path)).collect::<Result<_>>()?;
         let plan = Plan {
             request: options_of(request, systems, verb, options),
             files,
