@@ -189,6 +189,7 @@ fn of_tiles(found: &Bound<'_, PyDict>, report: &JobReport, folder: &Path) -> PyR
         ("points_withheld", report.withheld),
         ("points_of_other_classes", report.other_class),
         ("duplicates", report.duplicates),
+        ("points_on_breaklines", report.points_on_breaklines),
         ("triangles", report.triangles),
         ("triangles_beyond_max_edge", report.beyond_max_edge),
         ("triangles_clipped", report.clipped),

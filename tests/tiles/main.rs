@@ -8,6 +8,7 @@ mod program;
 mod landscape;
 
 mod bad_input;
+mod counts;
 mod damage;
 mod equality;
 mod interruption;

@@ -161,6 +161,10 @@ fn print_tiles(report: &JobReport, console: &Console) {
     if report.duplicates > 0 {
         console.line(format_args!("            {} at the position of another point", report.duplicates));
     }
+    if report.points_on_breaklines > 0 {
+        let count = report.points_on_breaklines;
+        console.line(format_args!("            {count} at a breakline's vertex (whose height is used)"));
+    }
     if report.line_edges > 0 {
         console.line(format_args!("lines       {} edges", report.line_edges));
     }

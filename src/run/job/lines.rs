@@ -22,6 +22,7 @@ use crate::run::products::tin::{TinRequest, builder_of, default_tolerance};
 use crate::run::sources::transforms::Transforms;
 use crate::terrain::tiles::{self, SubConstraint, TileClip, TileLayout};
 use crate::terrain::{NearLines, Tin, TinBuilder};
+use crate::triangulation::num::unsigned_zero;
 
 /// The lines of a request, and what points have to do with them.
 #[derive(Debug)]
@@ -232,13 +233,12 @@ pub(super) fn read(file: &mut TaskFile, tile: u32) -> Result<LinesOfTile> {
 }
 
 impl LinesOfTile {
-    /// Replaces the points at the vertices of lines by these.
-    pub(super) fn join(&self, mut points: Vec<[f64; 3]>) -> Vec<[f64; 3]> {
-        let site = |p: &[f64; 3]| [p[0].to_bits(), p[1].to_bits()];
+    /// Returns the points that do not share a site with one of the vertices.
+    pub(super) fn without_their_sites(&self, mut points: Vec<[f64; 3]>) -> Vec<[f64; 3]> {
+        let site = |p: &[f64; 3]| [0, 1].map(|k| unsigned_zero(p[k]).to_bits());
         let own: FxHashSet<[u64; 2]> = self.vertices.iter().map(site).collect();
         if !own.is_empty() {
             points.retain(|point| !own.contains(&site(point)));
-            points.extend_from_slice(&self.vertices);
         }
         points
     }

@@ -32,8 +32,10 @@ pub struct JobReport {
     /// What the tasks found, and what follows from it. What was known before them came with the
     /// plan.
     pub notices: Vec<Notice>,
-    /// Points at the position of another.
+    /// Points merged into another point at the same site.
     pub duplicates: u64,
+    /// Points replaced by a breakline's vertex at the same site.
+    pub points_on_breaklines: u64,
     /// Edges on lines.
     pub line_edges: u64,
     /// Triangles of the surface.
@@ -79,6 +81,7 @@ impl Job {
                 report.other_class += points.other_class;
             }
             report.duplicates += facts.duplicates;
+            report.points_on_breaklines += facts.points_on_breaklines;
             report.line_edges += facts.line_edges;
             report.triangles += facts.kept.triangles;
             report.beyond_max_edge += facts.removed;

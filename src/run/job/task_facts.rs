@@ -17,8 +17,10 @@ pub(super) struct TaskFacts {
     pub(super) file: Option<FileFacts>,
     /// Edges on lines.
     pub(super) line_edges: u64,
-    /// Points at the position of another.
+    /// Points merged into another one at the same site.
     pub(super) duplicates: u64,
+    /// Points replaced by the vertex of a line at the same site.
+    pub(super) points_on_breaklines: u64,
     /// The largest coordinates of points on both axes, without their signs.
     pub(super) reach: [f64; 2],
     /// The extents of files that were skipped, as far as the task knows.

@@ -3,6 +3,7 @@
 use super::bytes::{self, NumberReader, put_block, put_u32};
 use super::done::Sources;
 use super::holes::Holes;
+use super::lines::LinesOfTile;
 use super::planned_file::{require_state, state_of};
 use super::raster::Drawing;
 use super::surface::PartFaces;
@@ -127,7 +128,13 @@ impl Job {
         }
         let tin = lines.build(near, &extent, crs, journal)?;
         let edges = lines::write(&tin, &self.plan.layout, writer)?;
-        Ok(TaskFacts { line_edges: edges as u64, ..TaskFacts::default() })
+        let report = tin.report();
+        Ok(TaskFacts {
+            line_edges: edges as u64,
+            duplicates: report.duplicates as u64,
+            points_on_breaklines: report.points_on_breaklines as u64,
+            ..TaskFacts::default()
+        })
     }
 
     /// Returns the facts of a file that was read; of one that is bad, why it is skipped.
@@ -222,15 +229,17 @@ impl Job {
             }
             (all, Some(facts))
         };
+        let lines = match self.lines_task() {
+            Some(task) => lines::read(&mut sources.open(task)?, tile)?,
+            None => LinesOfTile::default(),
+        };
+        let mut points = lines.without_their_sites(points);
         let count = points.len();
-        let mut points = one_per_site(&points, self.request.duplicates)?;
+        points = one_per_site(&points, self.request.duplicates)?;
+        // The task of the lines counts those at its own sites.
         let duplicates = (count - points.len()) as u64;
-        let mut constraints = Vec::new();
-        if let Some(task) = self.lines_task() {
-            let lines = lines::read(&mut sources.open(task)?, tile)?;
-            points = lines.join(points);
-            constraints = lines.constraints;
-        }
+        points.extend_from_slice(&lines.vertices);
+        let constraints = lines.constraints;
         let rectangle = &self.steps[step].tile;
         let tight = self.tight(&journal.context)?;
         let facts = TaskFacts { file, duplicates, reach: reach_of(&points), ..TaskFacts::default() };
