@@ -31,7 +31,9 @@ fn main() {
 #[divan::bench(args = [(Lay::Lidar, 100_000), (Lay::Random, 100_000), (Lay::Lidar, 1_000_000), (Lay::Random, 1_000_000), (Lay::Grid, 1_000_000)], max_time = 10)]
 fn tin(bencher: Bencher, (lay, count): (Lay, usize)) {
     let points = points(lay, count);
-    bencher.counter(ItemsCount::new(count)).bench_local(|| build(black_box(&points)));
+    bencher
+        .counter(ItemsCount::new(count))
+        .bench_local(|| build(black_box(&points)));
 }
 
 /// From file to columns of ground points.
@@ -43,7 +45,9 @@ fn read_laz(bencher: Bencher, count: usize) {
     bencher.counter(ItemsCount::new(count)).bench_local(|| {
         let mut source = io::points::open(&path).expect("the file was just written");
         let mut selection = Selection::default();
-        selection.add_source(&mut *source).expect("the file is sound");
+        selection
+            .add_source(&mut *source)
+            .expect("the file is sound");
         selection.finish()
     });
 }
@@ -53,9 +57,9 @@ fn write_ply(bencher: Bencher, count: usize) {
     let tin = build(&points(Lay::Lidar, count));
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join("mesh.ply");
-    bencher
-        .counter(ItemsCount::new(count))
-        .bench_local(|| io::mesh::write(&path, black_box(&tin)).expect("there is room for the file"));
+    bencher.counter(ItemsCount::new(count)).bench_local(|| {
+        io::mesh::write(&path, black_box(&tin)).expect("there is room for the file")
+    });
 }
 
 /// Cells of a metre.
@@ -63,13 +67,18 @@ fn write_ply(bencher: Bencher, count: usize) {
 fn dem(bencher: Bencher, count: usize) {
     let points = points(Lay::Lidar, count);
     let mut bounds = Bounds::default();
-    points[0].iter().zip(&points[1]).for_each(|(&x, &y)| bounds.add([x, y, 0.0]));
+    points[0]
+        .iter()
+        .zip(&points[1])
+        .for_each(|(&x, &y)| bounds.add([x, y, 0.0]));
     let frame = Frame::snapped(&bounds, 1.0).expect("a metre divides the extent");
     let tin = build(&points);
-    bencher.counter(ItemsCount::new(frame.width * frame.height)).bench_local(|| {
-        let dem = Dem::new(black_box(&tin), frame).expect("the frame was made for the TIN");
-        Grid::collect(&dem).expect("a raster of a TIN reads nothing")
-    });
+    bencher
+        .counter(ItemsCount::new(frame.width * frame.height))
+        .bench_local(|| {
+            let dem = Dem::new(black_box(&tin), frame).expect("the frame was made for the TIN");
+            Grid::collect(&dem).expect("a raster of a TIN reads nothing")
+        });
 }
 
 /// A metre apart.
@@ -77,9 +86,11 @@ fn dem(bencher: Bencher, count: usize) {
 fn contour(bencher: Bencher, count: usize) {
     let tin = build(&points(Lay::Lidar, count));
     let levels = Levels::every(1.0, 0.0).expect("a metre is an interval");
-    bencher
-        .counter(ItemsCount::new(count))
-        .bench_local(|| contours(black_box(&tin), &levels).expect("there are few levels").count());
+    bencher.counter(ItemsCount::new(count)).bench_local(|| {
+        contours(black_box(&tin), &levels)
+            .expect("there are few levels")
+            .count()
+    });
 }
 
 /// Columns x, y and z.
@@ -96,7 +107,9 @@ fn points(lay: Lay, count: usize) -> Points {
     let mut seed = 1u64;
     let mut unit = || {
         // Knuth's MMIX generator; its high bits are random enough for this.
-        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        seed = seed
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
         (seed >> 11) as f64 / (1u64 << 53) as f64
     };
     let centimetres = |v: f64| (v * 100.0).round() / 100.0;
@@ -112,7 +125,9 @@ fn points(lay: Lay, count: usize) -> Points {
             Lay::Random => [side * unit(), side * unit()],
             Lay::Grid => [i % columns, i / columns].map(|k| centimetres(k as f64 * 0.71)),
         };
-        let z = centimetres(220.0 + 25.0 * (x / 310.0).sin() * (y / 270.0).cos() + 3.0 * ((x + y) / 31.0).sin());
+        let z = centimetres(
+            220.0 + 25.0 * (x / 310.0).sin() * (y / 270.0).cos() + 3.0 * ((x + y) / 31.0).sin(),
+        );
         for (column, value) in points.iter_mut().zip([500_000.0 + x, 5_400_000.0 + y, z]) {
             column.push(value);
         }
@@ -125,8 +140,15 @@ fn write_laz(path: &Path, [x, y, z]: &Points) {
     let mut builder = las::Builder::from((1, 4));
     builder.point_format = las::point::Format::new(6).expect("there is a format 6");
     builder.point_format.is_compressed = true;
-    let axis = |offset| las::Transform { scale: 0.01, offset };
-    builder.transforms = las::Vector { x: axis(500_000.0), y: axis(5_400_000.0), z: axis(0.0) };
+    let axis = |offset| las::Transform {
+        scale: 0.01,
+        offset,
+    };
+    builder.transforms = las::Vector {
+        x: axis(500_000.0),
+        y: axis(5_400_000.0),
+        z: axis(0.0),
+    };
     let header = builder.into_header().expect("the header is sound");
     let mut writer = las::Writer::from_path(path, header).expect("there is room for the file");
     for i in 0..x.len() {
@@ -140,7 +162,9 @@ fn write_laz(path: &Path, [x, y, z]: &Points) {
             gps_time: Some(i as f64 * 2e-6),
             ..Default::default()
         };
-        writer.write_point(point).expect("the point fits the format");
+        writer
+            .write_point(point)
+            .expect("the point fits the format");
     }
     writer.close().expect("the file can be ended");
 }

@@ -22,27 +22,46 @@ use breakline::triangulation::{ConstrainedDelaunay, OnCrossing};
 fn run(arguments: &[String]) -> Result<(), Box<dyn Error>> {
     const RUNS: usize = 200;
     const ENOUGH: f64 = 3.0;
-    let number = |k: usize, otherwise: f64| arguments.get(k).map_or(Ok(otherwise), |text| text.parse());
-    let path = arguments.first().ok_or("a file is expected: .poly or .node")?;
+    let number =
+        |k: usize, otherwise: f64| arguments.get(k).map_or(Ok(otherwise), |text| text.parse());
+    let path = arguments
+        .first()
+        .ok_or("a file is expected: .poly or .node")?;
     let graph = triangle::read(Path::new(path))?;
     let lines: Vec<[u32; 2]> = graph.segments.iter().map(|segment| segment.ends).collect();
     let holes = graph.holes.iter().map(|hole| hole.at).collect();
-    let domain = if lines.is_empty() { Domain::Hull { holes } } else { Domain::Enclosed { holes } };
-    let quality =
-        Quality { min_angle: number(1, 20.7)?, max_area: number(2, f64::INFINITY)?, domain, ..Quality::default() };
+    let domain = if lines.is_empty() {
+        Domain::Hull { holes }
+    } else {
+        Domain::Enclosed { holes }
+    };
+    let quality = Quality {
+        min_angle: number(1, 20.7)?,
+        max_area: number(2, f64::INFINITY)?,
+        domain,
+        ..Quality::default()
+    };
 
     let all = Instant::now();
     let mut best = [f64::INFINITY; 2];
     let mut counts = [0; 3];
     for _ in 0..RUNS {
         let start = Instant::now();
-        let (t, _) =
-            ConstrainedDelaunay::<Plane>::from_lines(Plane::default(), &graph.nodes.points, &lines, OnCrossing::Split)?;
+        let (t, _) = ConstrainedDelaunay::<Plane>::from_lines(
+            Plane::default(),
+            &graph.nodes.points,
+            &lines,
+            OnCrossing::Split,
+        )?;
         let built = start.elapsed().as_secs_f64();
         let mesh = t.refined(&quality);
         let seconds = [start.elapsed().as_secs_f64(), built];
         best = [0, 1].map(|k| best[k].min(seconds[k]));
-        counts = [mesh.vertex_count(), mesh.inside().count(), mesh.shortfall().len()];
+        counts = [
+            mesh.vertex_count(),
+            mesh.inside().count(),
+            mesh.shortfall().len(),
+        ];
         if all.elapsed().as_secs_f64() > ENOUGH {
             break;
         }
@@ -52,7 +71,11 @@ fn run(arguments: &[String]) -> Result<(), Box<dyn Error>> {
         "{path}: {} vertices, refined {vertices}, {triangles} triangles, {short} short of it",
         graph.nodes.points.len()
     );
-    println!("{:.1} us, {:.1} of it for the triangulation", best[0] * 1e6, best[1] * 1e6);
+    println!(
+        "{:.1} us, {:.1} of it for the triangulation",
+        best[0] * 1e6,
+        best[1] * 1e6
+    );
     Ok(())
 }
 

@@ -18,8 +18,8 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use breakline::run::{
-    self, Context, ContourOptions, DemOptions, FrameOptions, HillshadeOptions, Monitor, Notice, PointsRequest,
-    Progress, Size, Source, Stage, SurfaceRequest,
+    self, Context, ContourOptions, DemOptions, FrameOptions, HillshadeOptions, Monitor, Notice,
+    PointsRequest, Progress, Size, Source, Stage, SurfaceRequest,
 };
 use breakline::{Result, io};
 
@@ -43,7 +43,8 @@ fn main() -> Result<()> {
     let files: Vec<PathBuf> = std::env::args_os().skip(1).map(PathBuf::from).collect();
     let of_kind = |extensions: &[&str]| -> Vec<PathBuf> {
         let is_it = |path: &&PathBuf| {
-            path.extension().is_some_and(|e| extensions.iter().any(|known| e.eq_ignore_ascii_case(known)))
+            path.extension()
+                .is_some_and(|e| extensions.iter().any(|known| e.eq_ignore_ascii_case(known)))
         };
         files.iter().filter(is_it).cloned().collect()
     };
@@ -53,7 +54,11 @@ fn main() -> Result<()> {
     if !lidar.is_empty() {
         let ply = out("surface.ply");
         let product = run::triangles(&request(&lidar)?, &Context::default())?;
-        run::write_mesh(product.triangles()?, ply.as_path().into(), &Context::default())?;
+        run::write_mesh(
+            product.triangles()?,
+            ply.as_path().into(),
+            &Context::default(),
+        )?;
         drop(product);
         measure("tin of lidar", |context| {
             let product = run::triangles(&request(&lidar)?, context)?;
@@ -61,18 +66,33 @@ fn main() -> Result<()> {
         })?;
         measure("dem of lidar", |context| {
             let product = run::triangles(&request(&lidar)?, context)?;
-            let frame = FrameOptions { resolution: Some(0.2), ..FrameOptions::default() };
-            let options = DemOptions { frame, ..DemOptions::default() };
-            run::dem(&product, &options, context)?.write(out("a.tif").as_path().into(), context).map(drop)
+            let frame = FrameOptions {
+                resolution: Some(0.2),
+                ..FrameOptions::default()
+            };
+            let options = DemOptions {
+                frame,
+                ..DemOptions::default()
+            };
+            run::dem(&product, &options, context)?
+                .write(out("a.tif").as_path().into(), context)
+                .map(drop)
         })?;
         measure("points of lidar", |context| {
-            let request = PointsRequest { files: lidar.clone(), ..PointsRequest::default() };
+            let request = PointsRequest {
+                files: lidar.clone(),
+                ..PointsRequest::default()
+            };
             run::write_points(&request, out("a.laz").as_path().into(), context).map(drop)
         })?;
-        measure("contour of PLY", |context| contour(&ply, &out("a.shp"), context))?;
+        measure("contour of PLY", |context| {
+            contour(&ply, &out("a.shp"), context)
+        })?;
     }
     for raster in of_kind(&["tif", "tiff"]) {
-        measure("contour of GeoTIFF", |context| contour(&raster, &out("a.shp"), context))?;
+        measure("contour of GeoTIFF", |context| {
+            contour(&raster, &out("a.shp"), context)
+        })?;
         measure("hillshade of GeoTIFF", |context| {
             let product = run::surface(&request(std::slice::from_ref(&raster))?, context)?;
             run::hillshade(&product, &HillshadeOptions::default(), context)?
@@ -81,20 +101,27 @@ fn main() -> Result<()> {
         })?;
     }
     for layer in of_kind(&["shp", "geojson"]) {
-        measure("info of a layer", |context| run::facts(&layer, io::points::Options::default(), context).map(drop))?;
+        measure("info of a layer", |context| {
+            run::facts(&layer, io::points::Options::default(), context).map(drop)
+        })?;
     }
     Ok(())
 }
 
 fn request(files: &[PathBuf]) -> Result<SurfaceRequest> {
-    let mut request = SurfaceRequest { source: Source::of_files(files)?, ..SurfaceRequest::default() };
+    let mut request = SurfaceRequest {
+        source: Source::of_files(files)?,
+        ..SurfaceRequest::default()
+    };
     request.systems.degrees = run::Degrees::Allow;
     Ok(request)
 }
 
 fn contour(surface: &Path, target: &Path, context: &Context) -> Result<()> {
     let product = run::surface(&request(&[surface.to_path_buf()])?, context)?;
-    run::contour(&product, &ContourOptions::default(), context)?.write(target.into(), context).map(drop)
+    run::contour(&product, &ContourOptions::default(), context)?
+        .write(target.into(), context)
+        .map(drop)
 }
 
 /// Runs the work to its end once, then cancels it at times spread over its duration, and prints the
@@ -109,7 +136,10 @@ fn measure(name: &str, work: impl Fn(&Context) -> Result<()>) -> Result<()> {
     let mut worst = (Duration::ZERO, None);
     for part in 1..PARTS {
         let (cancel, stages) = (AtomicBool::new(false), Stages::default());
-        let context = Context { monitor: &stages, cancel: &cancel };
+        let context = Context {
+            monitor: &stages,
+            cancel: &cancel,
+        };
         let (canceled, stage, ended) = thread::scope(|scope| {
             let canceler = scope.spawn(|| {
                 thread::sleep(all * part / PARTS);
@@ -124,9 +154,16 @@ fn measure(name: &str, work: impl Fn(&Context) -> Result<()>) -> Result<()> {
         });
         // A run may end before it is canceled.
         if let Some(end) = ended {
-            worst = worst.max((end.saturating_duration_since(canceled), stage.map(|stage| format!("{stage:?}"))));
+            worst = worst.max((
+                end.saturating_duration_since(canceled),
+                stage.map(|stage| format!("{stage:?}")),
+            ));
         }
     }
-    println!("{name}: {all:.1?}, canceled within {:.0?} ({})", worst.0, worst.1.unwrap_or_default());
+    println!(
+        "{name}: {all:.1?}, canceled within {:.0?} ({})",
+        worst.0,
+        worst.1.unwrap_or_default()
+    );
     Ok(())
 }

@@ -11,7 +11,11 @@ use std::error::Error;
 use std::path::PathBuf;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let folder = PathBuf::from(std::env::args_os().nth(1).ok_or("usage: make_fixtures FOLDER")?);
+    let folder = PathBuf::from(
+        std::env::args_os()
+            .nth(1)
+            .ok_or("usage: make_fixtures FOLDER")?,
+    );
     std::fs::create_dir_all(&folder)?;
     for (name, bytes) in fixtures::files()? {
         std::fs::write(folder.join(name), bytes)?;

@@ -34,11 +34,17 @@ mod signals {
     pub(super) fn clean_up() {
         // Ignored, so that a file beyond the user's size limit is an error like a full disk.
         let _ = signal_hook::flag::register(SIGXFSZ, Arc::default());
-        let heeded = [SIGINT, SIGTERM, SIGQUIT, SIGHUP].into_iter().filter(|&signal| !is_ignored(signal));
+        let heeded = [SIGINT, SIGTERM, SIGQUIT, SIGHUP]
+            .into_iter()
+            .filter(|&signal| !is_ignored(signal));
         // If this fails, the worst is that temporary files stay.
-        let Ok(mut signals) = Signals::new(heeded) else { return };
+        let Ok(mut signals) = Signals::new(heeded) else {
+            return;
+        };
         std::thread::spawn(move || {
-            let Some(signal) = signals.forever().next() else { return };
+            let Some(signal) = signals.forever().next() else {
+                return;
+            };
             let _nothing_appears_now = breakline::io::abandon_outputs();
             breakline::cli::print_last_words();
             // The first process of a container is not ended by signals.

@@ -38,11 +38,20 @@ impl Scene {
             let near = at(random, 16);
             points.push([x + near[0] - 8.0 * step, y + near[1] - 8.0 * step, near[2]]);
         }
-        let lines =
-            (0..random.below(8)).map(|_| (0..2 + random.below(3)).map(|_| at(random, SIDE)).collect()).collect();
+        let lines = (0..random.below(8))
+            .map(|_| (0..2 + random.below(3)).map(|_| at(random, SIDE)).collect())
+            .collect();
         let (p, size) = (at(random, SIDE - 16), (2 + random.below(14)) as f64 * step);
-        let bounds = Bounds { min: [p[0], p[1], 0.0], max: [p[0] + size, p[1] + size, 0.0] };
-        Scene { points, lines, bounds, max_edge: random.pick(&[None, Some(6.0 * step), Some(12.0 * step)]) }
+        let bounds = Bounds {
+            min: [p[0], p[1], 0.0],
+            max: [p[0] + size, p[1] + size, 0.0],
+        };
+        Scene {
+            points,
+            lines,
+            bounds,
+            max_edge: random.pick(&[None, Some(6.0 * step), Some(12.0 * step)]),
+        }
     }
 
     fn builder(&self, read: impl Fn(&[f64; 3]) -> bool) -> TinBuilder {
@@ -50,14 +59,19 @@ impl Scene {
         builder.bounds = Some(self.bounds);
         builder.max_edge = self.max_edge;
         builder.add_owned_points(self.points.iter().copied().filter(|p| read(p)).collect());
-        self.lines.iter().for_each(|line| builder.add_breakline(line));
+        self.lines
+            .iter()
+            .for_each(|line| builder.add_breakline(line));
         builder
     }
 
     /// Of the points no further than this from the bounds.
     fn read(&self, buffer: f64) -> Option<Tin> {
         let Bounds { min, max } = self.bounds;
-        let read = Bounds { min: min.map(|c| c - buffer), max: max.map(|c| c + buffer) };
+        let read = Bounds {
+            min: min.map(|c| c - buffer),
+            max: max.map(|c| c + buffer),
+        };
         let mut all = Bounds::default();
         self.points.iter().for_each(|&p| all.add(p));
         let mut builder = self.builder(|p| read.holds(p[0], p[1]));
@@ -67,7 +81,10 @@ impl Scene {
 }
 
 fn seeds() -> u64 {
-    std::env::var("BREAKLINE_WINDOWS").ok().and_then(|n| n.parse().ok()).unwrap_or(200)
+    std::env::var("BREAKLINE_WINDOWS")
+        .ok()
+        .and_then(|n| n.parse().ok())
+        .unwrap_or(200)
 }
 
 /// The triangles of a surface, wherever they are numbered.
@@ -86,7 +103,9 @@ fn what_is_called_certain_is_what_all_points_make() {
     let (mut parts, mut steps) = (0, 0);
     for seed in 0..seeds() {
         let scene = Scene::new(&mut Random(seed));
-        let Ok(whole) = scene.builder(|_| true).build() else { continue };
+        let Ok(whole) = scene.builder(|_| true).build() else {
+            continue;
+        };
         let mut buffer = 1.0;
         let tin = loop {
             match scene.read(buffer) {
@@ -95,10 +114,16 @@ fn what_is_called_certain_is_what_all_points_make() {
             }
             steps += 1;
         };
-        assert!(triangles(&tin) == triangles(&whole), "seed {seed}, {buffer} read");
+        assert!(
+            triangles(&tin) == triangles(&whole),
+            "seed {seed}, {buffer} read"
+        );
         parts += usize::from(tin.report().points < scene.points.len());
     }
-    assert!(parts as u64 > seeds() / 4 && steps > seeds(), "{parts} parts, {steps} steps");
+    assert!(
+        parts as u64 > seeds() / 4 && steps > seeds(),
+        "{parts} parts, {steps} steps"
+    );
 }
 
 /// Without the certificate the same windows give other surfaces: the test above can fail.
@@ -106,7 +131,9 @@ fn what_is_called_certain_is_what_all_points_make() {
 fn a_window_that_is_too_small_gives_another_surface() {
     let differs = |seed: &u64| {
         let scene = Scene::new(&mut Random(*seed));
-        let (Some(part), Ok(whole)) = (scene.read(1.0), scene.builder(|_| true).build()) else { return false };
+        let (Some(part), Ok(whole)) = (scene.read(1.0), scene.builder(|_| true).build()) else {
+            return false;
+        };
         let differs = triangles(&part) != triangles(&whole);
         assert!(!differs || part.report().uncertain > 0, "seed {seed}");
         differs

@@ -32,7 +32,11 @@ impl Patchwork {
             patches.insert(p);
             patches.flip(random.index(patches.faces.len()), random.index(3));
         }
-        patches.heights = patches.points.iter().map(|_| random.index(1000) as f64 / 8.0).collect();
+        patches.heights = patches
+            .points
+            .iter()
+            .map(|_| random.index(1000) as f64 / 8.0)
+            .collect();
         patches
     }
 
@@ -67,7 +71,11 @@ impl Patchwork {
         let at = |k: usize| self.faces[face][(i + k) % 3];
         let (a, b, c) = (at(0), at(1), at(2));
         let across = |f: &[usize; 3]| (0..3).find(|&j| f[(j + 1) % 3] == c && f[(j + 2) % 3] == b);
-        let Some((other, j)) = (0..self.faces.len()).find_map(|f| Some((f, across(&self.faces[f])?))) else { return };
+        let Some((other, j)) =
+            (0..self.faces.len()).find_map(|f| Some((f, across(&self.faces[f])?)))
+        else {
+            return;
+        };
         let d = self.faces[other][j];
         let p = |v: usize| self.points[v];
         if turn(p(a), p(b), p(d)) > 0 && turn(p(a), p(d), p(c)) > 0 {
@@ -108,16 +116,21 @@ impl Patchwork {
         }
         let face = (0..self.faces.len()).find(|&f| self.holds(f, p))?;
         let [a, b, c] = self.corners(face);
-        let area =
-            |a: Lattice, b: Lattice, c: Lattice| ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) as f64;
+        let area = |a: Lattice, b: Lattice, c: Lattice| {
+            ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) as f64
+        };
         let weights = [area(b, c, p), area(c, a, p), area(a, b, p)];
-        let sum: f64 = (0..3).map(|i| weights[i] * self.heights[self.faces[face][i]]).sum();
+        let sum: f64 = (0..3)
+            .map(|i| weights[i] * self.heights[self.faces[face][i]])
+            .sum();
         Some(sum / area(a, b, c))
     }
 }
 
 fn cells(surface: &impl Surface, frame: Frame) -> Vec<f64> {
-    Grid::collect(&Dem::new(surface, frame).unwrap()).unwrap().values
+    Grid::collect(&Dem::new(surface, frame).unwrap())
+        .unwrap()
+        .values
 }
 
 fn bits(cells: &[f64]) -> Vec<u64> {
@@ -139,10 +152,17 @@ fn frames(side: i64, left: f64, bottom: f64, step: f64) -> Vec<(Frame, Vec<Latti
     turns
         .into_iter()
         .map(|transform| {
-            let frame = Frame { width: n as usize, height: n as usize, transform };
+            let frame = Frame {
+                width: n as usize,
+                height: n as usize,
+                transform,
+            };
             let point = |i: i64| {
                 let [x, y] = frame.center((i % n) as usize, (i / n) as usize);
-                [((x - left) / step).round() as i64, ((y - bottom) / step).round() as i64]
+                [
+                    ((x - left) / step).round() as i64,
+                    ((y - bottom) / step).round() as i64,
+                ]
             };
             (frame, (0..n * n).map(point).collect())
         })
@@ -151,15 +171,30 @@ fn frames(side: i64, left: f64, bottom: f64, step: f64) -> Vec<(Frame, Vec<Latti
 
 #[test]
 fn cells_are_those_of_the_naive_judge() {
-    for (seed, side, count) in [(1, 6, 5), (2, 9, 30), (3, 20, 12), (4, 20, 200), (5, 40, 150), (6, 40, 1200)] {
+    for (seed, side, count) in [
+        (1, 6, 5),
+        (2, 9, 30),
+        (3, 20, 12),
+        (4, 20, 200),
+        (5, 40, 150),
+        (6, 40, 1200),
+    ] {
         let patches = Patchwork::new(seed, side, count);
         let mesh = patches.mesh(500_000.0, 5_400_000.0, 0.25, 0);
         for (frame, points) in frames(side, 500_000.0, 5_400_000.0, 0.25) {
             for (value, point) in cells(&mesh, frame).iter().zip(&points) {
                 match patches.height(*point) {
-                    None => assert!(value.is_nan(), "{value} at {point:?}, which lies outside ({seed})"),
-                    Some(z) if patches.points.contains(point) => assert_eq!(*value, z, "at {point:?}"),
-                    Some(z) => assert!((value - z).abs() < 1e-5, "{value} at {point:?}, not {z} ({seed})"),
+                    None => assert!(
+                        value.is_nan(),
+                        "{value} at {point:?}, which lies outside ({seed})"
+                    ),
+                    Some(z) if patches.points.contains(point) => {
+                        assert_eq!(*value, z, "at {point:?}")
+                    }
+                    Some(z) => assert!(
+                        (value - z).abs() < 1e-5,
+                        "{value} at {point:?}, not {z} ({seed})"
+                    ),
                 }
             }
         }
@@ -170,13 +205,23 @@ fn cells_are_those_of_the_naive_judge() {
 fn numbering_changes_no_bit() {
     for seed in 1..5 {
         let patches = Patchwork::new(seed, 30, 400);
-        let odd = Frame { width: 61, height: 47, transform: [-3.3, 0.61, 0.13, 33.3, 0.17, -0.83] };
-        let mut frames: Vec<Frame> = frames(30, 0.0, 0.0, 1.0).into_iter().map(|(frame, _)| frame).collect();
+        let odd = Frame {
+            width: 61,
+            height: 47,
+            transform: [-3.3, 0.61, 0.13, 33.3, 0.17, -0.83],
+        };
+        let mut frames: Vec<Frame> = frames(30, 0.0, 0.0, 1.0)
+            .into_iter()
+            .map(|(frame, _)| frame)
+            .collect();
         frames.extend([odd, Frame::north_up(-1.0, 31.0, 0.3, 110, 110)]);
         for frame in frames {
             let expected = bits(&cells(&patches.mesh(0.0, 0.0, 1.0, 0), frame));
             for order in 1..4 {
-                assert_eq!(bits(&cells(&patches.mesh(0.0, 0.0, 1.0, order), frame)), expected);
+                assert_eq!(
+                    bits(&cells(&patches.mesh(0.0, 0.0, 1.0, order), frame)),
+                    expected
+                );
             }
         }
     }
@@ -186,7 +231,11 @@ fn numbering_changes_no_bit() {
 fn a_block_holds_the_cells_of_the_whole() {
     let patches = Patchwork::new(7, 40, 700);
     let mesh = patches.mesh(0.0, 0.0, 1.0, 0);
-    let turned = Frame { width: 150, height: 140, transform: [-3.3, 0.31, 0.13, 33.3, 0.11, -0.33] };
+    let turned = Frame {
+        width: 150,
+        height: 140,
+        transform: [-3.3, 0.31, 0.13, 33.3, 0.11, -0.33],
+    };
     for frame in [Frame::north_up(-1.5, 41.5, 0.25, 172, 172), turned] {
         let dem = Dem::new(&mesh, frame).unwrap();
         let mut whole = vec![0.0; frame.width * frame.height];
@@ -197,7 +246,12 @@ fn a_block_holds_the_cells_of_the_whole() {
                 let (column, row) = (random.index(frame.width), random.index(frame.height));
                 let width = random.index(frame.width - column + 1);
                 let height = random.index(frame.height - row + 1);
-                Window { column, row, width, height }
+                Window {
+                    column,
+                    row,
+                    width,
+                    height,
+                }
             })
             .collect();
         // From many threads, as writers ask.
@@ -205,8 +259,15 @@ fn a_block_holds_the_cells_of_the_whole() {
             let mut block = vec![0.0f32; window.width * window.height];
             dem.fill(*window, &mut block).unwrap();
             for (i, value) in block.iter().enumerate() {
-                let (row, column) = (window.row + i / window.width, window.column + i % window.width);
-                assert_eq!(value.to_bits(), whole[row * frame.width + column].to_bits(), "{window:?}");
+                let (row, column) = (
+                    window.row + i / window.width,
+                    window.column + i % window.width,
+                );
+                assert_eq!(
+                    value.to_bits(),
+                    whole[row * frame.width + column].to_bits(),
+                    "{window:?}"
+                );
             }
         });
     }
@@ -224,18 +285,29 @@ fn a_plane_stays_a_plane_at_map_coordinates() {
             [x, y, plane(x, y)]
         })
         .collect();
-    let faces = (0..skeleton.face_count() as u32).map(|f| skeleton.face(f).unwrap()).collect();
+    let faces = (0..skeleton.face_count() as u32)
+        .map(|f| skeleton.face(f).unwrap())
+        .collect();
     let mesh = Mesh::new(vertices, faces, &[], None).unwrap();
     let (cosine, sine) = (0.8, 0.6);
     let frames = [
         Frame::north_up(612_340.0, 5_432_210.0, 0.7, 160, 160),
-        Frame { width: 200, height: 200, transform: [612_250.0, cosine, sine, 5_432_174.0, sine, -cosine] },
+        Frame {
+            width: 200,
+            height: 200,
+            transform: [612_250.0, cosine, sine, 5_432_174.0, sine, -cosine],
+        },
     ];
     for frame in frames {
         let mut inside = 0;
         for (i, value) in cells(&mesh, frame).into_iter().enumerate() {
             let [x, y] = frame.center(i % frame.width, i / frame.width);
-            let depth = [x - left, left + 64.0 * 1.37 - x, y - bottom, bottom + 64.0 * 1.37 - y];
+            let depth = [
+                x - left,
+                left + 64.0 * 1.37 - x,
+                y - bottom,
+                bottom + 64.0 * 1.37 - y,
+            ];
             let depth = depth.into_iter().fold(f64::INFINITY, f64::min);
             if depth.abs() < 1e-6 {
                 continue;
@@ -244,7 +316,10 @@ fn a_plane_stays_a_plane_at_map_coordinates() {
             if depth > 0.0 {
                 let expected = plane(x, y);
                 // Half a step of f32 at 800, and what the coordinates are rounded to.
-                assert!((value - expected).abs() <= 3.1e-5 + 1e-8, "{value} at {x} {y}, not {expected}");
+                assert!(
+                    (value - expected).abs() <= 3.1e-5 + 1e-8,
+                    "{value} at {x} {y}, not {expected}"
+                );
                 inside += 1;
             }
         }
@@ -254,10 +329,18 @@ fn a_plane_stays_a_plane_at_map_coordinates() {
 
 #[test]
 fn a_level_face_is_level_to_the_bit() {
-    let vertices = vec![[0.1, 0.2, 2733.985], [977.3, 11.9, 2733.985], [400.7, 810.4, 2733.985]];
+    let vertices = vec![
+        [0.1, 0.2, 2733.985],
+        [977.3, 11.9, 2733.985],
+        [400.7, 810.4, 2733.985],
+    ];
     let mesh = Mesh::new(vertices, vec![[0, 1, 2]], &[], None).unwrap();
     let values = cells(&mesh, Frame::north_up(0.0, 820.0, 1.0, 980, 820));
-    assert!(values.iter().all(|v| v.is_nan() || *v == f64::from(2733.985f32)));
+    assert!(
+        values
+            .iter()
+            .all(|v| v.is_nan() || *v == f64::from(2733.985f32))
+    );
     let filled = values.iter().filter(|v| !v.is_nan()).count() as f64;
     let area = ((977.2 * 810.2 - 11.7 * 400.6) / 2.0f64).abs();
     assert!((filled - area).abs() < 10.0, "{filled} cells, area {area}");
@@ -269,16 +352,33 @@ fn faces_much_larger_and_much_smaller_than_cells() {
     let fine = patches.mesh(0.0, 0.0, 0.01, 0);
     let dem = cells(&fine, Frame::north_up(0.0, 1.0, 0.1, 10, 10));
     assert_eq!(dem.iter().filter(|v| !v.is_nan()).count(), 9);
-    let sliver = Mesh::new(vec![[0.0, 0.0, 0.0], [1e6, 1e6, 1e6], [1e6, 1e6 - 3.0, 1e6]], vec![[0, 1, 2]], &[], None);
+    let sliver = Mesh::new(
+        vec![[0.0, 0.0, 0.0], [1e6, 1e6, 1e6], [1e6, 1e6 - 3.0, 1e6]],
+        vec![[0, 1, 2]],
+        &[],
+        None,
+    );
     let sliver = sliver.unwrap();
     let frame = Frame::north_up(-0.5, 1e6 + 0.5, 1.0, 1_000_001, 1_000_001);
     let dem = Dem::new(&sliver, frame).unwrap();
     for column in [0, 1, 333_333, 777_777, 999_999, 1_000_000usize] {
         let mut block = vec![0.0; 16];
         let row = (1_000_000 - column).min(1_000_001 - 16);
-        dem.fill(Window { column, row, width: 1, height: 16 }, &mut block).unwrap();
+        dem.fill(
+            Window {
+                column,
+                row,
+                width: 1,
+                height: 16,
+            },
+            &mut block,
+        )
+        .unwrap();
         let on_diagonal = block[1_000_000 - column - row];
-        assert!((on_diagonal - column as f32).abs() < 0.1, "{block:?} in column {column}");
+        assert!(
+            (on_diagonal - column as f32).abs() < 0.1,
+            "{block:?} in column {column}"
+        );
         // The centers below the diagonal and inside: y >= x (1 - 3e-6).
         let below = (column as f64 * 3e-6) as usize;
         let filled = block.iter().filter(|v| !v.is_nan()).count();
@@ -289,24 +389,59 @@ fn faces_much_larger_and_much_smaller_than_cells() {
 #[test]
 fn refuses_frames_and_windows_that_make_no_sense() {
     let mesh = Patchwork::new(1, 6, 5).mesh(0.0, 0.0, 1.0, 0);
-    let flat = Frame { width: 2, height: 2, transform: [0.0, 1.0, 2.0, 0.0, 1.0, 2.0] };
+    let flat = Frame {
+        width: 2,
+        height: 2,
+        transform: [0.0, 1.0, 2.0, 0.0, 1.0, 2.0],
+    };
     let error = Dem::new(&mesh, flat).unwrap_err();
-    assert_eq!(error.to_string(), "the geotransform [0.0, 1.0, 2.0, 0.0, 1.0, 2.0] has no inverse");
+    assert_eq!(
+        error.to_string(),
+        "the geotransform [0.0, 1.0, 2.0, 0.0, 1.0, 2.0] has no inverse"
+    );
     let dem = Dem::new(&mesh, Frame::north_up(0.0, 6.0, 1.0, 6, 6)).unwrap();
     let mut block = vec![0.0; 4];
-    let error = dem.fill(Window { column: 5, row: 0, width: 2, height: 2 }, &mut block).unwrap_err();
-    assert_eq!(error.to_string(), "a window of 2 x 2 cells at column 5 and row 0 of a raster of 6 x 6");
+    let error = dem
+        .fill(
+            Window {
+                column: 5,
+                row: 0,
+                width: 2,
+                height: 2,
+            },
+            &mut block,
+        )
+        .unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "a window of 2 x 2 cells at column 5 and row 0 of a raster of 6 x 6"
+    );
 }
 
 /// Writes an Arc/Info ASCII grid, which needs nothing of ours.
 fn ascii_grid(grid: &Grid) -> String {
-    let Frame { width, height, transform: t } = grid.frame;
+    let Frame {
+        width,
+        height,
+        transform: t,
+    } = grid.frame;
     let bottom = t[3] + height as f64 * t[5];
-    let mut text =
-        format!("ncols {width}\nnrows {height}\nxllcorner {}\nyllcorner {bottom}\ncellsize {}\n", t[0], t[1]);
+    let mut text = format!(
+        "ncols {width}\nnrows {height}\nxllcorner {}\nyllcorner {bottom}\ncellsize {}\n",
+        t[0], t[1]
+    );
     text.push_str("NODATA_value -9999\n");
     for row in grid.values.chunks(width) {
-        let row: Vec<String> = row.iter().map(|v| if v.is_nan() { "-9999".into() } else { v.to_string() }).collect();
+        let row: Vec<String> = row
+            .iter()
+            .map(|v| {
+                if v.is_nan() {
+                    "-9999".into()
+                } else {
+                    v.to_string()
+                }
+            })
+            .collect();
         text.push_str(&row.join(" "));
         text.push('\n');
     }
@@ -320,16 +455,34 @@ fn hillshades_are_those_of_gdaldem() {
         .map(|i| {
             let (x, y) = (f64::from(i % 90), f64::from(i / 90));
             let hole = (x - 40.0).hypot(y - 30.0) < 6.0;
-            if hole { f64::NAN } else { f64::from((40.0 * (x / 9.0).sin() * (y / 7.0).cos() + x - y) as f32) }
+            if hole {
+                f64::NAN
+            } else {
+                f64::from((40.0 * (x / 9.0).sin() * (y / 7.0).cos() + x - y) as f32)
+            }
         })
         .collect();
-    let grid = Grid { frame, crs: None, values };
+    let grid = Grid {
+        frame,
+        crs: None,
+        values,
+    };
     let folder = tempfile::tempdir().unwrap();
-    let (input, output) = (folder.path().join("dem.asc"), folder.path().join("shade.asc"));
+    let (input, output) = (
+        folder.path().join("dem.asc"),
+        folder.path().join("shade.asc"),
+    );
     std::fs::write(&input, ascii_grid(&grid)).unwrap();
     for (options, light) in [
         (&[][..], Light::default()),
-        (&["-az", "100", "-alt", "25", "-z", "0.4"], Light { azimuth: 100.0, altitude: 25.0, z_factor: 0.4 }),
+        (
+            &["-az", "100", "-alt", "25", "-z", "0.4"],
+            Light {
+                azimuth: 100.0,
+                altitude: 25.0,
+                z_factor: 0.4,
+            },
+        ),
     ] {
         let run = std::process::Command::new("gdaldem")
             .args(["hillshade", "-q", "-of", "AAIGrid"])
@@ -340,7 +493,11 @@ fn hillshades_are_those_of_gdaldem() {
             eprintln!("skipped: gdaldem is not here");
             return;
         };
-        assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
+        assert!(
+            run.status.success(),
+            "{}",
+            String::from_utf8_lossy(&run.stderr)
+        );
         let text = std::fs::read_to_string(&output).unwrap();
         let numbers: Vec<f64> = text
             .lines()
@@ -348,13 +505,18 @@ fn hillshades_are_those_of_gdaldem() {
             .flat_map(str::split_whitespace)
             .map(|word| word.parse().unwrap())
             .collect();
-        let ours = Grid::collect(&Hillshade::new(&grid, light).unwrap()).unwrap().values;
+        let ours = Grid::collect(&Hillshade::new(&grid, light).unwrap())
+            .unwrap()
+            .values;
         assert_eq!(numbers.len(), ours.len());
         let mut compared = 0;
         for (i, (theirs, ours)) in numbers.iter().zip(&ours).enumerate() {
             // gdaldem leaves out the border of the data.
             if *theirs != 0.0 {
-                assert!((theirs - ours).abs() <= 1.0, "{ours} in cell {i}, gdaldem says {theirs}");
+                assert!(
+                    (theirs - ours).abs() <= 1.0,
+                    "{ours} in cell {i}, gdaldem says {theirs}"
+                );
                 compared += 1;
             }
         }

@@ -17,7 +17,10 @@ fn folder() -> &'static Path {
 fn assert_stated(what: &str, value: impl std::fmt::Display) {
     let readme = std::fs::read_to_string(folder().join("README.md")).unwrap();
     let row = format!("| {what} | {value} |");
-    assert!(readme.lines().any(|line| line == row), "fixtures/README.md lacks: {row}");
+    assert!(
+        readme.lines().any(|line| line == row),
+        "fixtures/README.md lacks: {row}"
+    );
 }
 
 #[test]
@@ -28,12 +31,17 @@ fn the_program_makes_the_same_bytes() {
     let mut total = 0;
     for (name, bytes) in fixtures::files().unwrap() {
         let committed = std::fs::read(folder().join(name)).unwrap();
-        assert!(committed == bytes, "{name} differs: cargo run --release --example make_fixtures -- fixtures");
+        assert!(
+            committed == bytes,
+            "{name} differs: cargo run --release --example make_fixtures -- fixtures"
+        );
         total += bytes.len();
         expected.insert(name.to_owned());
     }
     assert!(total < 500_000, "{total} bytes");
-    let present = std::fs::read_dir(folder()).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap());
+    let present = std::fs::read_dir(folder())
+        .unwrap()
+        .map(|e| e.unwrap().file_name().into_string().unwrap());
     assert_eq!(present.collect::<BTreeSet<_>>(), expected);
 }
 
@@ -50,13 +58,19 @@ fn the_lidar_lies_on_the_ground() {
         let above = f64::from(p.z) - height;
         if p.withheld {
             withheld += 1;
-            assert!(above.abs() > 2000.0, "a withheld point would not be missed: {p:?}");
+            assert!(
+                above.abs() > 2000.0,
+                "a withheld point would not be missed: {p:?}"
+            );
             continue;
         }
         match p.class {
             2 => {
                 ground += 1;
-                lowest.entry([p.u, p.v]).and_modify(|z| *z = p.z.min(*z)).or_insert(p.z);
+                lowest
+                    .entry([p.u, p.v])
+                    .and_modify(|z| *z = p.z.min(*z))
+                    .or_insert(p.z);
             }
             5 | 6 => assert!(above > 50.0, "{p:?} is {above} cm above the ground"),
             9 => assert_eq!(f64::from(p.z), 100.0 * LAKE_LEVEL),
@@ -65,7 +79,10 @@ fn the_lidar_lies_on_the_ground() {
     }
     for (&[u, v], &z) in &lowest {
         let height = 100.0 * valley::height(f64::from(u) / 100.0, f64::from(v) / 100.0);
-        assert!((f64::from(z) - height).abs() <= 0.5 + 1e-9, "({u}, {v}): {z} cm, not {height}");
+        assert!(
+            (f64::from(z) - height).abs() <= 0.5 + 1e-9,
+            "({u}, {v}): {z} cm, not {height}"
+        );
     }
     assert_stated("points", points.len());
     for (class, count) in counts {
@@ -83,14 +100,24 @@ fn the_breaklines_lie_on_the_ground() {
     for (kind, line) in &lines {
         for &[u, v, z] in line {
             // Rounding to millimetres in plan counts eight times over on the cliff.
-            assert!((z - valley::height(u, v)).abs() < 0.006, "{kind} at ({u}, {v}): {z}");
+            assert!(
+                (z - valley::height(u, v)).abs() < 0.006,
+                "{kind} at ({u}, {v}): {z}"
+            );
             assert!(*kind != "shore" || z == LAKE_LEVEL);
         }
     }
-    let kerbs: Vec<_> = lines.iter().filter(|(kind, _)| *kind == "kerb").map(|(_, line)| line).collect();
+    let kerbs: Vec<_> = lines
+        .iter()
+        .filter(|(kind, _)| *kind == "kerb")
+        .map(|(_, line)| line)
+        .collect();
     for pair in kerbs.chunks(2) {
         for (low, high) in pair[0].iter().zip(pair[1]) {
-            assert!((high[2] - low[2] - KERB_HEIGHT).abs() < 0.0011, "{low:?} {high:?}");
+            assert!(
+                (high[2] - low[2] - KERB_HEIGHT).abs() < 0.0011,
+                "{low:?} {high:?}"
+            );
         }
     }
     assert_stated("breaklines", lines.len());
@@ -103,11 +130,15 @@ fn the_breaklines_touch_at_vertices_only() {
     let millimetres = |x: f64| (x * 1000.0).round() as i64;
     let mut segments = Vec::<[Corner; 2]>::new();
     for (_, line) in fixtures::breaklines() {
-        let sites: Vec<_> = line.iter().map(|[u, v, _]| [millimetres(*u), millimetres(*v)]).collect();
+        let sites: Vec<_> = line
+            .iter()
+            .map(|[u, v, _]| [millimetres(*u), millimetres(*v)])
+            .collect();
         segments.extend(sites.windows(2).map(|pair| [pair[0], pair[1]]));
     }
-    let side =
-        |[a, b]: [Corner; 2], p: Corner| ((b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0])).signum();
+    let side = |[a, b]: [Corner; 2], p: Corner| {
+        ((b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0])).signum()
+    };
     for (i, &s) in segments.iter().enumerate() {
         assert_ne!(s[0], s[1], "a segment without length");
         for &t in &segments[i + 1..] {
@@ -115,15 +146,24 @@ fn the_breaklines_touch_at_vertices_only() {
                 continue;
             }
             // Collinear segments that lie apart are on no side of each other: hence the boxes.
-            let apart = (0..2)
-                .any(|k| s[0][k].max(s[1][k]) < t[0][k].min(t[1][k]) || t[0][k].max(t[1][k]) < s[0][k].min(s[1][k]));
-            let crosses = !apart && side(s, t[0]) * side(s, t[1]) <= 0 && side(t, s[0]) * side(t, s[1]) <= 0;
+            let apart = (0..2).any(|k| {
+                s[0][k].max(s[1][k]) < t[0][k].min(t[1][k])
+                    || t[0][k].max(t[1][k]) < s[0][k].min(s[1][k])
+            });
+            let crosses =
+                !apart && side(s, t[0]) * side(s, t[1]) <= 0 && side(t, s[0]) * side(t, s[1]) <= 0;
             assert!(!crosses, "{s:?} meets {t:?}");
         }
     }
     let vertices: BTreeSet<_> = segments.iter().flatten().collect();
-    let lidar: BTreeSet<_> = fixtures::cloud().iter().map(|p| [10 * i64::from(p.u), 10 * i64::from(p.v)]).collect();
-    assert!(vertices.iter().all(|v| !lidar.contains(*v)), "a lidar point at the place of a breakline's vertex");
+    let lidar: BTreeSet<_> = fixtures::cloud()
+        .iter()
+        .map(|p| [10 * i64::from(p.u), 10 * i64::from(p.v)])
+        .collect();
+    assert!(
+        vertices.iter().all(|v| !lidar.contains(*v)),
+        "a lidar point at the place of a breakline's vertex"
+    );
     assert_stated("breakline vertices (sites)", vertices.len());
     assert_stated("breakline segments", segments.len());
 }
@@ -134,11 +174,26 @@ fn the_raster_holds_the_heights() {
     let file = std::fs::File::open(folder().join("dem.tif")).unwrap();
     let mut decoder = tiff::decoder::Decoder::new(file).unwrap();
     assert_eq!(decoder.dimensions().unwrap(), (200, 150));
-    let tiff::decoder::DecodingResult::F32(read) = decoder.read_image().unwrap() else { panic!("not Float32") };
+    let tiff::decoder::DecodingResult::F32(read) = decoder.read_image().unwrap() else {
+        panic!("not Float32")
+    };
     assert!(read == values);
-    let valid: Vec<_> = values.iter().copied().filter(|z| *z != fixtures::NODATA).collect();
+    let valid: Vec<_> = values
+        .iter()
+        .copied()
+        .filter(|z| *z != fixtures::NODATA)
+        .collect();
     assert_stated("cells", values.len());
     assert_stated("cells with a height", valid.len());
-    assert_stated("lowest cell", format!("{:.3}", valid.iter().copied().fold(f32::INFINITY, f32::min)));
-    assert_stated("highest cell", format!("{:.3}", valid.iter().copied().fold(f32::NEG_INFINITY, f32::max)));
+    assert_stated(
+        "lowest cell",
+        format!("{:.3}", valid.iter().copied().fold(f32::INFINITY, f32::min)),
+    );
+    assert_stated(
+        "highest cell",
+        format!(
+            "{:.3}",
+            valid.iter().copied().fold(f32::NEG_INFINITY, f32::max)
+        ),
+    );
 }

@@ -9,16 +9,26 @@ use breakline::io::formats::{self, Content, FORMATS, Holding, Product};
 fn the_page_of_formats_has_the_table() {
     let page = include_str!("../docs/formats.md");
     let table = formats::markdown();
-    assert!(page.contains(&table), "docs/formats.md must have this table:\n{table}");
+    assert!(
+        page.contains(&table),
+        "docs/formats.md must have this table:\n{table}"
+    );
 }
 
 #[test]
 fn the_help_of_the_program_has_each_format_that_is_read() {
-    let help = assert_cmd::Command::cargo_bin("breakline").unwrap().arg("--help").output().unwrap();
+    let help = assert_cmd::Command::cargo_bin("breakline")
+        .unwrap()
+        .arg("--help")
+        .output()
+        .unwrap();
     let help = String::from_utf8(help.stdout).unwrap();
     for format in FORMATS.iter().filter(|format| format.is_read()) {
         for extension in format.extensions {
-            assert!(help.contains(&format!(".{extension}")), "{extension} is not in:\n{help}");
+            assert!(
+                help.contains(&format!(".{extension}")),
+                "{extension} is not in:\n{help}"
+            );
         }
     }
 }
@@ -26,17 +36,37 @@ fn the_help_of_the_program_has_each_format_that_is_read() {
 #[test]
 fn rows_are_whole() {
     for format in FORMATS {
-        assert!(!format.name.is_empty() && format.noun.starts_with('a'), "{format:?}");
+        assert!(
+            !format.name.is_empty() && format.noun.starts_with('a'),
+            "{format:?}"
+        );
         assert_eq!(format.help.is_empty(), !format.is_read(), "{}", format.name);
         for extension in format.extensions {
-            assert!(extension.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit()), "{extension}");
+            assert!(
+                extension
+                    .chars()
+                    .all(|c| c.is_ascii_lowercase() || c.is_ascii_digit()),
+                "{extension}"
+            );
         }
-        assert!(!format.can_hold(Holding::Edges) || format.can_hold(Holding::Mesh), "{}", format.name);
+        assert!(
+            !format.can_hold(Holding::Edges) || format.can_hold(Holding::Mesh),
+            "{}",
+            format.name
+        );
         if format.writes(Product::Surface) {
             assert_eq!(format.content, Content::Mesh, "{}", format.name);
         }
-        assert!(!format.writes(Product::Heights) || format.can_hold(Holding::Raster), "{}", format.name);
-        assert!(!format.writes(Product::Contours) || format.can_hold(Holding::Lines), "{}", format.name);
+        assert!(
+            !format.writes(Product::Heights) || format.can_hold(Holding::Raster),
+            "{}",
+            format.name
+        );
+        assert!(
+            !format.writes(Product::Contours) || format.can_hold(Holding::Lines),
+            "{}",
+            format.name
+        );
     }
 }
 
@@ -45,7 +75,11 @@ fn no_row_hides_another() {
     for format in FORMATS {
         for extension in format.extensions {
             let name = format!("a.{}", extension.to_uppercase());
-            let shared = FORMATS.iter().filter(|other| other.extensions.contains(extension)).count() > 1;
+            let shared = FORMATS
+                .iter()
+                .filter(|other| other.extensions.contains(extension))
+                .count()
+                > 1;
             let found = formats::of_name(Path::new(&name)).map(|found| found.name);
             // Text has any name, and shares `.asc` with a grid.
             let expected = Some(format.name).filter(|name| !name.starts_with("text") && !shared);
@@ -56,7 +90,8 @@ fn no_row_hides_another() {
 
 #[test]
 fn files_are_known_by_bytes_and_name() {
-    let name = |head: &[u8], path: &str| formats::detect(head, Path::new(path)).map(|format| format.name);
+    let name =
+        |head: &[u8], path: &str| formats::detect(head, Path::new(path)).map(|format| format.name);
     for (head, path, expected) in [
         (&b"LASF"[..], "a.las", Some("LAS")),
         (b"LASF", "a.ply", Some("LAS")),
@@ -80,7 +115,12 @@ fn files_are_known_by_bytes_and_name() {
         (b"SQLite format 3\0", "a.db", None),
         (b"", "a.vrt", Some("GDAL virtual raster")),
     ] {
-        assert_eq!(name(head, path), expected, "{:?} {path}", head.escape_ascii().to_string());
+        assert_eq!(
+            name(head, path),
+            expected,
+            "{:?} {path}",
+            head.escape_ascii().to_string()
+        );
     }
 }
 
@@ -88,8 +128,14 @@ fn files_are_known_by_bytes_and_name() {
 fn products_have_the_extensions_that_they_had() {
     for (product, extensions) in [
         (Product::Points, &["las", "laz", "xyz", "txt", "csv"][..]),
-        (Product::Surface, &["ply", "obj", "off", "stl", "tin", "tins"]),
-        (Product::Contours, &["shp", "geojson", "json", "geojsonl", "geojsons"]),
+        (
+            Product::Surface,
+            &["ply", "obj", "off", "stl", "tin", "tins"],
+        ),
+        (
+            Product::Contours,
+            &["shp", "geojson", "json", "geojsonl", "geojsons"],
+        ),
         (Product::Heights, &["tif", "tiff"]),
         (Product::Shades, &["tif", "tiff", "png"]),
         (Product::Plane, &["ele", "node", "poly", "edge", "neigh"]),

@@ -11,7 +11,11 @@ fn field(n: u32) -> Mesh {
     let vertices = (0..n * n)
         .map(|i| {
             let (x, y) = (f64::from(i % n), f64::from(i / n));
-            [512_000.1 + 1.3 * x, 5_403_000.7 + y / 3.0, 250.0 + (x * y / 7.0).sin()]
+            [
+                512_000.1 + 1.3 * x,
+                5_403_000.7 + y / 3.0,
+                250.0 + (x * y / 7.0).sin(),
+            ]
         })
         .collect();
     let mut faces = Vec::new();
@@ -19,7 +23,9 @@ fn field(n: u32) -> Mesh {
         faces.push([i, i + 1, i + n + 1]);
         faces.push([i, i + n + 1, i + n]);
     }
-    let breakline: Vec<[u32; 2]> = (0..n - 1).map(|i| [i * (n + 1), (i + 1) * (n + 1)]).collect();
+    let breakline: Vec<[u32; 2]> = (0..n - 1)
+        .map(|i| [i * (n + 1), (i + 1) * (n + 1)])
+        .collect();
     Mesh::new(vertices, faces, &breakline, None).unwrap()
 }
 
@@ -32,8 +38,12 @@ fn content(surface: &impl Surface) -> Vec<([Side; 3], bool)> {
     let mut faces: Vec<_> = (0..surface.face_count() as u32)
         .filter_map(|f| {
             let corners = surface.face(f)?;
-            let mut sides =
-                [0, 1, 2].map(|i| (surface.position(corners[i]).map(f64::to_bits), surface.edge_kind(f, i)));
+            let mut sides = [0, 1, 2].map(|i| {
+                (
+                    surface.position(corners[i]).map(f64::to_bits),
+                    surface.edge_kind(f, i),
+                )
+            });
             let first = (0..3).min_by_key(|&i| sides[i]).unwrap();
             sides.rotate_left(first);
             Some((sides, surface.is_fragment(f)))
@@ -59,12 +69,18 @@ fn ply_keeps_everything() {
     let path = folder.path().join("field.ply");
     let field = field(40);
     let summary = mesh::write(&path, &field).unwrap();
-    assert_eq!((summary.vertices, summary.faces, summary.constrained_edges), (1600, 3042, 39));
+    assert_eq!(
+        (summary.vertices, summary.faces, summary.constrained_edges),
+        (1600, 3042, 39)
+    );
     let back = mesh::read(&path).unwrap();
     assert_eq!(content(&back), content(&field));
     let again = folder.path().join("again.PLY");
     mesh::write(&again, &back).unwrap();
-    assert_eq!(std::fs::read(&path).unwrap(), std::fs::read(&again).unwrap());
+    assert_eq!(
+        std::fs::read(&path).unwrap(),
+        std::fs::read(&again).unwrap()
+    );
 }
 
 #[test]
@@ -73,8 +89,14 @@ fn ply_tells_breaklines_clip_lines_rim_and_pieces_apart() {
     let at = |x: u32, y: u32| [f64::from(x), f64::from(y), f64::from(x * y)];
     let cut = Mesh::of(Triangles {
         vertices: (0..8).map(|i| at(i / 2, i % 2)).collect(),
-        faces: (0..3).flat_map(|i| [[2 * i, 2 * i + 2, 2 * i + 3], [2 * i, 2 * i + 3, 2 * i + 1]]).collect(),
-        lines: vec![([1, 0], EdgeKind::Clip), ([6, 7], EdgeKind::Clip), ([3, 2], EdgeKind::Breakline)],
+        faces: (0..3)
+            .flat_map(|i| [[2 * i, 2 * i + 2, 2 * i + 3], [2 * i, 2 * i + 3, 2 * i + 1]])
+            .collect(),
+        lines: vec![
+            ([1, 0], EdgeKind::Clip),
+            ([6, 7], EdgeKind::Clip),
+            ([3, 2], EdgeKind::Breakline),
+        ],
         fragments: vec![1, 4],
         ..Triangles::default()
     });
@@ -86,10 +108,16 @@ fn ply_tells_breaklines_clip_lines_rim_and_pieces_apart() {
     let bytes = std::fs::read(&path).unwrap();
     // From the first corner to the second, the third, and the first: face 1 is 0 3 1.
     let row = |face: usize| &bytes[bytes.len() - 17 * (6 - face)..][13..17];
-    assert_eq!([row(0), row(1), row(4)], [[3, 1, 0, 0], [0, 3, 2, 1], [3, 2, 0, 1]]);
+    assert_eq!(
+        [row(0), row(1), row(4)],
+        [[3, 1, 0, 0], [0, 3, 2, 1], [3, 2, 0, 1]]
+    );
     // Programs pass over no element that they do not know, and QGIS shows no faces beside edges.
     let header = String::from_utf8_lossy(&bytes);
-    let elements: Vec<&str> = header.lines().filter_map(|line| line.strip_prefix("element ")).collect();
+    let elements: Vec<&str> = header
+        .lines()
+        .filter_map(|line| line.strip_prefix("element "))
+        .collect();
     assert_eq!(elements, ["vertex 8", "face 6"]);
 }
 
@@ -101,10 +129,16 @@ fn constrained_edges_as_an_element_are_still_read() {
                property int vertex1\nproperty int vertex2\nend_header\n0 0 1\n1 0 2\n1 1 3\n0 1 4\n3 0 1 2\n3 0 2 3\n0 2\n";
     let wkt = Crs::from_epsg(25832).unwrap().to_wkt();
     let (one, other) = wkt.split_at(150);
-    let old = old.replace("comment crs PROJCS[\"x\",GEOG", &format!("comment crs {one}\ncomment crs {other}"));
+    let old = old.replace(
+        "comment crs PROJCS[\"x\",GEOG",
+        &format!("comment crs {one}\ncomment crs {other}"),
+    );
     let folder = folder();
     let mesh = mesh::read(&written(folder.path(), "old.ply", old)).unwrap();
-    assert_eq!((mesh.edge_kind(0, 1), mesh.edge_kind(0, 0)), (EdgeKind::Breakline, EdgeKind::Rim));
+    assert_eq!(
+        (mesh.edge_kind(0, 1), mesh.edge_kind(0, 0)),
+        (EdgeKind::Breakline, EdgeKind::Rim)
+    );
     assert_eq!(mesh.crs().unwrap().epsg, Some(25832));
 }
 
@@ -116,8 +150,12 @@ fn obj_gives_the_same_doubles_back() {
     mesh::write(&path, &field).unwrap();
     let back = mesh::read(&path).unwrap();
     let without = Mesh::new(
-        (0..field.vertex_count() as u32).map(|v| field.position(v)).collect(),
-        (0..field.face_count() as u32).map(|f| field.face(f).unwrap()).collect(),
+        (0..field.vertex_count() as u32)
+            .map(|v| field.position(v))
+            .collect(),
+        (0..field.face_count() as u32)
+            .map(|f| field.face(f).unwrap())
+            .collect(),
         &[],
         None,
     );
@@ -133,7 +171,10 @@ fn off_gives_the_same_doubles_back() {
     let field = field(40);
     mesh::write(&off, &field).unwrap();
     mesh::write(&obj, &field).unwrap();
-    assert_eq!(content(&mesh::read(&off).unwrap()), content(&mesh::read(&obj).unwrap()));
+    assert_eq!(
+        content(&mesh::read(&off).unwrap()),
+        content(&mesh::read(&obj).unwrap())
+    );
     let text = std::fs::read_to_string(&off).unwrap();
     assert!(text.starts_with("OFF\n1600 3042 0\n512000.1 5403000.7 250\n"));
 }
@@ -146,7 +187,10 @@ fn stl_counts_from_an_origin_that_stands_beside_it() {
     let summary = mesh::write(&path, &field).unwrap();
     let (origin, beside) = summary.origin.unwrap();
     assert_eq!(origin, [512_000.0, 5_403_000.0, 249.0]);
-    assert_eq!(std::fs::read_to_string(&beside).unwrap(), "512000 5403000 249\n");
+    assert_eq!(
+        std::fs::read_to_string(&beside).unwrap(),
+        "512000 5403000 249\n"
+    );
     assert_eq!(beside, folder.path().join("field.stl.origin.txt"));
     let bytes = std::fs::read(&path).unwrap();
     assert_eq!(bytes.len(), 84 + 50 * 162);
@@ -167,7 +211,9 @@ fn stl_counts_from_an_origin_that_stands_beside_it() {
 #[test]
 fn the_coordinate_system_comes_along() {
     let folder = folder();
-    let local = |name: String| Crs::from_wkt(&format!("LOCAL_CS[\"{name}  site\",UNIT[\"metre\",1]]")).unwrap();
+    let local = |name: String| {
+        Crs::from_wkt(&format!("LOCAL_CS[\"{name}  site\",UNIT[\"metre\",1]]")).unwrap()
+    };
     // rply takes 1024 bytes a line.
     for (system, start) in [
         (Crs::from_epsg(25832).unwrap(), " crs: EPSG:25832\n"),
@@ -186,13 +232,23 @@ fn the_coordinate_system_comes_along() {
             assert!(back.is_same(&system), "{back:?} is not {system:?}");
             assert_eq!((&back.name, back.epsg), (&system.name, system.epsg));
             let bytes = std::fs::read(&path).unwrap();
-            assert!(bytes.split(|&b| b == b'\n').take(6).all(|line| line.len() < 1024));
+            assert!(
+                bytes
+                    .split(|&b| b == b'\n')
+                    .take(6)
+                    .all(|line| line.len() < 1024)
+            );
             assert!(String::from_utf8_lossy(&bytes).contains(start), "{name}");
         }
     }
     let odd = FOREIGN[0].replace("comment VCGLIB generated", "comment crs nonsense");
-    let error = mesh::read(&written(folder.path(), "odd.ply", odd)).unwrap_err().to_string();
-    assert!(error.contains("odd.ply: coordinate system in the comments: "), "{error}");
+    let error = mesh::read(&written(folder.path(), "odd.ply", odd))
+        .unwrap_err()
+        .to_string();
+    assert!(
+        error.contains("odd.ply: coordinate system in the comments: "),
+        "{error}"
+    );
 }
 
 /// Two triangles over a unit square, as others write them.
@@ -235,7 +291,10 @@ fn foreign_files_are_read() {
         assert_eq!(content(&square(off, "h.off").unwrap()), expected);
     }
     let error = square(FOREIGN[4], "e.obj").unwrap_err().to_string();
-    assert!(error.ends_with("e.obj: line 1: '-9999999999' names no vertex (the first is 1)"), "{error}");
+    assert!(
+        error.ends_with("e.obj: line 1: '-9999999999' names no vertex (the first is 1)"),
+        "{error}"
+    );
 }
 
 #[test]
@@ -256,7 +315,11 @@ fn binary_of_both_orders_and_all_types() {
     }
     macro_rules! put {
         ($value:expr) => {
-            put([&mut little, &mut big], $value.to_le_bytes(), $value.to_be_bytes())
+            put(
+                [&mut little, &mut big],
+                $value.to_le_bytes(),
+                $value.to_be_bytes(),
+            )
         };
     }
     for (i, [x, y]) in [[0i16, 0], [1, 0], [1, 1], [0, 1]].into_iter().enumerate() {
@@ -325,8 +388,11 @@ fn properties_of_other_programs_are_no_kinds_of_edges() {
         mesh::read(&written(folder.path(), "other.ply", text.as_bytes())).unwrap()
     };
     let constrained = |mesh: &Mesh| (0..3).filter(|&i| mesh.is_constrained(0, i)).count();
-    let all =
-        |kind: &str| ["edge1", "edge2", "edge3", "piece"].map(|name| format!("property {kind} {name}\n")).concat();
+    let all = |kind: &str| {
+        ["edge1", "edge2", "edge3", "piece"]
+            .map(|name| format!("property {kind} {name}\n"))
+            .concat()
+    };
     assert_eq!(constrained(&read(&all("uchar"), "1 1 1 0")), 3);
     assert_eq!(constrained(&read(&all("float"), "1 1 1 0")), 0);
     assert_eq!(constrained(&read("property uchar edge1\n", "7")), 0);
@@ -338,7 +404,9 @@ fn errors_name_the_value_and_the_place() {
     let message = |name: &str, bytes: &[u8]| {
         let path = written(folder.path(), name, bytes);
         let text = mesh::read(&path).unwrap_err().to_string();
-        text.strip_prefix(&format!("{}: ", path.display())).unwrap().to_owned()
+        text.strip_prefix(&format!("{}: ", path.display()))
+            .unwrap()
+            .to_owned()
     };
     let ply = |vertices: &str, faces: &str, body: &str| {
         format!(
@@ -394,30 +462,82 @@ fn errors_name_the_value_and_the_place() {
         assert_eq!(message("odd.ply", file.as_bytes()), expected);
     }
     assert_eq!(message("odd.obj", b"v 0 0\n"), "line 1: a vertex without z");
-    assert_eq!(message("odd.obj", b"v 0 0 z\n"), "line 1: 'z' is not a number for z");
-    assert_eq!(message("odd.obj", b"v 0 0 0\n"), "there are no faces: the file is a point cloud");
     assert_eq!(
-        message("odd.obj", b"v 0 0 0\nv 1 0 0\nv 1 1e999 0\nv 0 1 0\nf 1 2 3 4\n"),
+        message("odd.obj", b"v 0 0 z\n"),
+        "line 1: 'z' is not a number for z"
+    );
+    assert_eq!(
+        message("odd.obj", b"v 0 0 0\n"),
+        "there are no faces: the file is a point cloud"
+    );
+    assert_eq!(
+        message(
+            "odd.obj",
+            b"v 0 0 0\nv 1 0 0\nv 1 1e999 0\nv 0 1 0\nf 1 2 3 4\n"
+        ),
         "line 5: vertex 2 is at 1 inf 0, expected finite coordinates"
     );
     let beyond = message("odd.obj", b"v 0 0 0\nf 1 2 3\n");
-    assert_eq!(beyond, "line 2: a face names vertex 1, but there are 1 vertices");
-    let off = |rest: &str| message("odd.off", format!("OFF\n3 1 0\n0 0 0\n1 0 0\n{rest}").as_bytes());
-    assert_eq!(off("0 1 0\n3 0 1 3\n"), "line 6: a face names vertex 3, but there are 3 vertices");
-    assert_eq!(off("0 1 0\n2 0 1\n"), "line 6: a face has 2 corners, expected 3 or more");
-    assert_eq!(off("0 1 0\n99999999999 0 1\n"), "line 6: there is no vertex number");
-    assert_eq!(off("0 1 inf\n"), "line 5: the z coordinate is inf, expected a finite number");
-    assert_eq!(off("0 1 0\n"), "line 5: the file ends where face 0 of 1 is expected");
-    assert_eq!(off("0 1 0\n3 0 1 2\n3 0 1 2\n"), "line 7: '3' follows the last face, expected the end of the file");
+    assert_eq!(
+        beyond,
+        "line 2: a face names vertex 1, but there are 1 vertices"
+    );
+    let off = |rest: &str| {
+        message(
+            "odd.off",
+            format!("OFF\n3 1 0\n0 0 0\n1 0 0\n{rest}").as_bytes(),
+        )
+    };
+    assert_eq!(
+        off("0 1 0\n3 0 1 3\n"),
+        "line 6: a face names vertex 3, but there are 3 vertices"
+    );
+    assert_eq!(
+        off("0 1 0\n2 0 1\n"),
+        "line 6: a face has 2 corners, expected 3 or more"
+    );
+    assert_eq!(
+        off("0 1 0\n99999999999 0 1\n"),
+        "line 6: there is no vertex number"
+    );
+    assert_eq!(
+        off("0 1 inf\n"),
+        "line 5: the z coordinate is inf, expected a finite number"
+    );
+    assert_eq!(
+        off("0 1 0\n"),
+        "line 5: the file ends where face 0 of 1 is expected"
+    );
+    assert_eq!(
+        off("0 1 0\n3 0 1 2\n3 0 1 2\n"),
+        "line 7: '3' follows the last face, expected the end of the file"
+    );
     assert_eq!(
         message("odd.off", b"OFF\n99999999999999 1 0\n0 0 0\n"),
         "line 3: the file ends where vertex 1 of 99999999999999 is expected"
     );
-    assert_eq!(message("odd.off", b"4OFF\n"), "line 1: '4OFF' is a variant of OFF that is not supported");
-    assert_eq!(message("odd.off", b"solid\n"), "line 1: the file begins with 'solid', not with 'OFF'");
-    assert_eq!(message("odd.stl", b""), "STL meshes are not read: they have no exact coordinates");
-    assert_eq!(message("odd.dxf", b""), "the file's extension names no mesh format");
-    assert!(mesh::read(Path::new("nowhere.ply")).unwrap_err().to_string().starts_with("nowhere.ply: "));
+    assert_eq!(
+        message("odd.off", b"4OFF\n"),
+        "line 1: '4OFF' is a variant of OFF that is not supported"
+    );
+    assert_eq!(
+        message("odd.off", b"solid\n"),
+        "line 1: the file begins with 'solid', not with 'OFF'"
+    );
+    assert_eq!(
+        message("odd.stl", b""),
+        "STL meshes are not read: they have no exact coordinates"
+    );
+    assert_eq!(
+        message("odd.dxf", b""),
+        "the file's extension names no mesh format"
+    );
+    assert!(
+        mesh::read(Path::new("nowhere.ply"))
+            .unwrap_err()
+            .to_string()
+            .starts_with("nowhere.ply: ")
+    );
     let error = mesh::write(&folder.path().join("none/x.ply"), &field(3)).unwrap_err();
     assert!(error.path().is_some());
 }

@@ -13,7 +13,13 @@ type Point = [f64; 2];
 fn triangles(t: &Delaunay<Plane, 3>) -> Vec<[[u64; 2]; 3]> {
     let bits = |v: VertexId| t.point(v).map(|x| (x + 0.0).to_bits());
     let of_cell = |cell| {
-        let [a, b, c] = t.tds().cell_vertices(cell).to_vec().try_into().map(|v: [VertexId; 3]| v.map(bits)).unwrap();
+        let [a, b, c] = t
+            .tds()
+            .cell_vertices(cell)
+            .to_vec()
+            .try_into()
+            .map(|v: [VertexId; 3]| v.map(bits))
+            .unwrap();
         [[a, b, c], [b, c, a], [c, a, b]].into_iter().min().unwrap()
     };
     let mut triangles: Vec<_> = t.finite_cells().map(of_cell).collect();
@@ -41,12 +47,22 @@ fn check(name: &str, mut points: Vec<Point>) {
     assert!(triangles(&one_by_one) == expected, "{name}, one by one");
 
     for threads in [1, 2, 4, 8] {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap();
         let t = pool.install(|| in_bulk(&points));
         // Vertices and cells have the same numbers, too.
-        assert!(t.points() == first.points() && t.tds().cells().eq(first.tds().cells()), "{name}, {threads} threads");
-        let corners =
-            |t: &Delaunay<Plane, 3>| t.tds().cells().map(|c| t.tds().cell_vertices(c).to_vec()).collect::<Vec<_>>();
+        assert!(
+            t.points() == first.points() && t.tds().cells().eq(first.tds().cells()),
+            "{name}, {threads} threads"
+        );
+        let corners = |t: &Delaunay<Plane, 3>| {
+            t.tds()
+                .cells()
+                .map(|c| t.tds().cell_vertices(c).to_vec())
+                .collect::<Vec<_>>()
+        };
         assert!(corners(&t) == corners(&first), "{name}, {threads} threads");
     }
     let mut random = Random(7);
@@ -59,18 +75,29 @@ fn check(name: &str, mut points: Vec<Point>) {
 #[test]
 fn evenly_spread_points() {
     let mut random = Random(1);
-    check("uniform", (0..40_000).map(|_| [random.unit(), random.unit()]).collect());
+    check(
+        "uniform",
+        (0..40_000)
+            .map(|_| [random.unit(), random.unit()])
+            .collect(),
+    );
 }
 
 #[test]
 fn a_grid() {
-    check("grid", (0..40_000).map(|i| [f64::from(i % 200), f64::from(i / 200)]).collect());
+    check(
+        "grid",
+        (0..40_000)
+            .map(|i| [f64::from(i % 200), f64::from(i / 200)])
+            .collect(),
+    );
 }
 
 #[test]
 fn points_on_a_circle_and_in_heaps() {
-    let circle =
-        (-325i32..=325).flat_map(|x| (-325i32..=325).map(move |y| [x, y])).filter(|[x, y]| x * x + y * y == 325 * 325);
+    let circle = (-325i32..=325)
+        .flat_map(|x| (-325i32..=325).map(move |y| [x, y]))
+        .filter(|[x, y]| x * x + y * y == 325 * 325);
     let mut points: Vec<Point> = circle.map(|p| p.map(f64::from)).collect();
     assert_eq!(points.len(), 60);
     let mut random = Random(2);
@@ -85,7 +112,8 @@ fn points_on_a_circle_and_in_heaps() {
 #[test]
 #[cfg_attr(not(has_shared), ignore = "needs ../shared")]
 fn lidar() {
-    let mut source = breakline::io::points::open(testkit::shared("lidar/lake_breakline/lake.laz")).unwrap();
+    let mut source =
+        breakline::io::points::open(testkit::shared("lidar/lake_breakline/lake.laz")).unwrap();
     let mut batch = PointBatch::default();
     let mut points: Vec<Point> = Vec::new();
     loop {

@@ -32,7 +32,14 @@ fn summarize(source: &mut (impl PointSource + ?Sized)) -> breakline::Result<Summ
         }
         let length = batch.len();
         assert_eq!([batch.y.len(), batch.z.len()], [length; 2]);
-        assert_eq!([batch.class.len(), batch.flags.len(), batch.return_number.len()], [length; 3]);
+        assert_eq!(
+            [
+                batch.class.len(),
+                batch.flags.len(),
+                batch.return_number.len()
+            ],
+            [length; 3]
+        );
         summary.count += length as u64;
         for i in 0..length {
             summary.bounds.add([batch.x[i], batch.y[i], batch.z[i]]);
@@ -41,14 +48,22 @@ fn summarize(source: &mut (impl PointSource + ?Sized)) -> breakline::Result<Summ
         }
         if let Some(Lattice { scale, offset }) = source.info().lattice {
             for (axis, column) in [&batch.x, &batch.y, &batch.z].into_iter().enumerate() {
-                let steps = column.iter().map(|value| ((value - offset[axis]) / scale[axis]).round() as i128);
+                let steps = column
+                    .iter()
+                    .map(|value| ((value - offset[axis]) / scale[axis]).round() as i128);
                 summary.lattice_sums[axis] += steps.sum::<i128>();
             }
         }
     }
     source.read(&mut batch)?;
     assert!(batch.is_empty(), "the end stays the end");
-    summary.warnings = source.info().warnings.iter().chain(source.warnings()).map(Wording::plain).collect();
+    summary.warnings = source
+        .info()
+        .warnings
+        .iter()
+        .chain(source.warnings())
+        .map(Wording::plain)
+        .collect();
     Ok(summary)
 }
 
@@ -69,7 +84,11 @@ fn facts() -> BTreeMap<String, Value> {
             continue;
         }
         for token in part.split_inclusive(|c: char| "[]{},: \n".contains(c)) {
-            let (word, end) = token.split_at(token.trim_end_matches(|c: char| "[]{},: \n".contains(c)).len());
+            let (word, end) = token.split_at(
+                token
+                    .trim_end_matches(|c: char| "[]{},: \n".contains(c))
+                    .len(),
+            );
             let is_fraction = word.contains(['.', 'e', 'N', 'I']) && word.parse::<f64>().is_ok();
             let mark = if is_fraction { "\"" } else { "" };
             quoted.extend([mark, word, mark, end]);
@@ -111,25 +130,41 @@ fn every_lidar_file_gives_what_is_known_of_it() {
         let version = fact["hdr_version"].as_str().unwrap();
         let format = format!("LAS {version}, point format {}", fact["hdr_pdrf"]);
         assert!(info.format.starts_with(&format), "{path}: {}", info.format);
-        assert_eq!(info.format.ends_with("LAZ") || info.format.ends_with("COPC"), path.ends_with("laz"), "{path}");
+        assert_eq!(
+            info.format.ends_with("LAZ") || info.format.ends_with("COPC"),
+            path.ends_with("laz"),
+            "{path}"
+        );
         assert_eq!(info.count, fact["point_count"].as_u64(), "{path}");
-        let lattice = Lattice { scale: triple(&fact["scale"]), offset: triple(&fact["offset"]) };
+        let lattice = Lattice {
+            scale: triple(&fact["scale"]),
+            offset: triple(&fact["offset"]),
+        };
         assert_eq!(info.lattice, Some(lattice), "{path}");
         if info.count > Some(0) {
             let bounds = info.bounds.unwrap();
-            assert_eq!((bounds.min, bounds.max), (triple(&fact["hdr_min"]), triple(&fact["hdr_max"])), "{path}");
+            assert_eq!(
+                (bounds.min, bounds.max),
+                (triple(&fact["hdr_min"]), triple(&fact["hdr_max"])),
+                "{path}"
+            );
         }
         check_crs(path, info, fact);
         if fact.get("read_points").is_some() {
             assert_eq!(Some(found.count), fact["read_points"].as_u64(), "{path}");
-            let classes: BTreeMap<u8, u64> = serde_json::from_value(fact["classes"].clone()).unwrap();
+            let classes: BTreeMap<u8, u64> =
+                serde_json::from_value(fact["classes"].clone()).unwrap();
             assert_eq!(found.classes, classes, "{path}");
         }
         if fact.get("min").is_some() {
             assert_eq!(found.bounds.min, triple(&fact["min"]), "{path}");
             assert_eq!(found.bounds.max, triple(&fact["max"]), "{path}");
             let sums = fact["sum_int_xyz"].as_array().unwrap();
-            assert_eq!(found.lattice_sums, [0, 1, 2].map(|i| i128::from(sums[i].as_i64().unwrap())), "{path}");
+            assert_eq!(
+                found.lattice_sums,
+                [0, 1, 2].map(|i| i128::from(sums[i].as_i64().unwrap())),
+                "{path}"
+            );
         }
         seen += 1;
     }
@@ -143,15 +178,24 @@ const IN_FEET: &str = "lidar/formats/lazrs/point-version-1-point-wise.";
 fn check_crs(path: &str, info: &PointInfo, fact: &Value) {
     let found = info.crs.as_ref();
     match &fact["crs"] {
-        Value::Number(_) if path.starts_with(IN_FEET) => assert_eq!(found.unwrap().epsg, Some(2271)),
-        Value::Number(code) => assert_eq!(found.unwrap().epsg.map(u64::from), code.as_u64(), "{path}"),
+        Value::Number(_) if path.starts_with(IN_FEET) => {
+            assert_eq!(found.unwrap().epsg, Some(2271))
+        }
+        Value::Number(code) => {
+            assert_eq!(found.unwrap().epsg.map(u64::from), code.as_u64(), "{path}")
+        }
         // One bracket too many, which that reader does not forgive.
-        Value::String(text) if text == "unparsable" => assert_eq!(found.unwrap().epsg, Some(32610), "{path}"),
+        Value::String(text) if text == "unparsable" => {
+            assert_eq!(found.unwrap().epsg, Some(32610), "{path}")
+        }
         Value::String(name) => assert_eq!(&found.unwrap().name, name, "{path}"),
         _ => {
             // Where that reader had records to read, we may understand more of them.
             let records = fact["vlr"].as_array().into_iter().flatten();
-            if !records.into_iter().any(|record| record.as_str().unwrap().starts_with("LASF_Projection")) {
+            if !records
+                .into_iter()
+                .any(|record| record.as_str().unwrap().starts_with("LASF_Projection"))
+            {
                 assert_eq!(found, None, "{path}");
             }
         }
@@ -162,19 +206,30 @@ fn check_crs(path: &str, info: &PointInfo, fact: &Value) {
 #[cfg_attr(not(has_shared), ignore = "needs ../shared")]
 fn geocentric_coordinates_are_known_as_such() {
     let source = las::open(testkit::shared("lidar/formats/lone-star.copc.laz")).unwrap();
-    assert_eq!(source.info().crs.as_ref().unwrap().kind, CrsKind::Geocentric);
+    assert_eq!(
+        source.info().crs.as_ref().unwrap().kind,
+        CrsKind::Geocentric
+    );
 }
 
 /// Files whose header counts by return are the truth (they are wrong in some).
 #[test]
 #[cfg_attr(not(has_shared), ignore = "needs ../shared")]
 fn returns_are_those_of_the_header() {
-    for path in ["lidar/bcts/bcts_1.laz", "lidar/ign_0292_6833/test_semis_2023_0292_6833_LA93_IGN69.laz"] {
+    for path in [
+        "lidar/bcts/bcts_1.laz",
+        "lidar/ign_0292_6833/test_semis_2023_0292_6833_LA93_IGN69.laz",
+    ] {
         let mut source = las::open(testkit::shared(path)).unwrap();
         let found = summarize(&mut source).unwrap();
-        let stated: BTreeMap<u8, u64> = (1..).zip(source.header().returns.iter().copied()).collect();
+        let stated: BTreeMap<u8, u64> =
+            (1..).zip(source.header().returns.iter().copied()).collect();
         // The header has no place for points that state return 0.
-        let from_one: BTreeMap<u8, u64> = found.returns.into_iter().filter(|&(number, _)| number > 0).collect();
+        let from_one: BTreeMap<u8, u64> = found
+            .returns
+            .into_iter()
+            .filter(|&(number, _)| number > 0)
+            .collect();
         assert_eq!(from_one, stated, "{path}");
     }
 }
@@ -190,8 +245,14 @@ fn laz_without_chunks_equals_its_las() {
     a.read(&mut left).unwrap();
     b.read(&mut right).unwrap();
     assert_eq!(left.len(), 1065);
-    assert_eq!((left.x, left.y, left.z, left.class), (right.x, right.y, right.z, right.class));
-    assert_eq!((left.flags, left.return_number), (right.flags, right.return_number));
+    assert_eq!(
+        (left.x, left.y, left.z, left.class),
+        (right.x, right.y, right.z, right.class)
+    );
+    assert_eq!(
+        (left.flags, left.return_number),
+        (right.flags, right.return_number)
+    );
 }
 
 /// What becomes of a broken file.
@@ -267,24 +328,43 @@ fn every_broken_file_has_its_fate() {
         let started = Instant::now();
         let mut result = las::open(&path).and_then(|mut source| summarize(&mut source));
         if let (Cut(_, words), Err(error)) = (fate, &result) {
-            assert_eq!((error.kind(), error.path()), (Kind::Format, Some(path.as_path())), "{error}");
+            assert_eq!(
+                (error.kind(), error.path()),
+                (Kind::Format, Some(path.as_path())),
+                "{error}"
+            );
             assert!(error.to_string().contains(words), "{error}");
-            assert!(error.cure_text().unwrap().plain().contains("partial"), "{error}");
-            result =
-                las::open_with(&path, breakline::io::OnDamage::Accept).and_then(|mut source| summarize(&mut source));
+            assert!(
+                error.cure_text().unwrap().plain().contains("partial"),
+                "{error}"
+            );
+            result = las::open_with(&path, breakline::io::OnDamage::Accept)
+                .and_then(|mut source| summarize(&mut source));
         } else {
             assert!(!matches!(fate, Cut(..)), "{name}");
         }
-        assert!(started.elapsed() < Duration::from_secs(5), "{name} took {:?}", started.elapsed());
+        assert!(
+            started.elapsed() < Duration::from_secs(5),
+            "{name} took {:?}",
+            started.elapsed()
+        );
         match (fate, result) {
             (Full(count), Ok(found)) => {
                 assert_eq!(found.count, *count, "{name}");
-                assert!(!found.warnings.iter().any(|w| w.contains("point")), "{name}: {:?}", found.warnings);
+                assert!(
+                    !found.warnings.iter().any(|w| w.contains("point")),
+                    "{name}: {:?}",
+                    found.warnings
+                );
                 compare_with_fact(&path, &found, &facts[&format!("lidar/broken/{name}")]);
             }
             (Warned(count, words) | Cut(count, words), Ok(found)) => {
                 assert_eq!(found.count, *count, "{name}: {:?}", found.warnings);
-                assert!(found.warnings.iter().any(|w| w.contains(words)), "{name}: {:?}", found.warnings);
+                assert!(
+                    found.warnings.iter().any(|w| w.contains(words)),
+                    "{name}: {:?}",
+                    found.warnings
+                );
                 compare_with_fact(&path, &found, &facts[&format!("lidar/broken/{name}")]);
             }
             (Refused(kind, words), Err(error)) => {
@@ -292,7 +372,12 @@ fn every_broken_file_has_its_fate() {
                 assert!(error.to_string().contains(words), "{error}");
                 assert_eq!(error.path(), Some(path.as_path()));
                 let text = error.to_string();
-                assert!(["byte ", "record ", "chunk "].iter().any(|at| text.contains(&format!(": {at}"))), "{text}");
+                assert!(
+                    ["byte ", "record ", "chunk "]
+                        .iter()
+                        .any(|at| text.contains(&format!(": {at}"))),
+                    "{text}"
+                );
                 assert!(error.cure_text().is_some(), "{text}");
             }
             (_, Ok(found)) => panic!("{name}: read {} points, {:?}", found.count, found.warnings),
@@ -303,12 +388,23 @@ fn every_broken_file_has_its_fate() {
 
 /// Where another reader got all the points, ours are the same.
 fn compare_with_fact(path: &Path, found: &Summary, fact: &Value) {
-    check_crs(&path.to_string_lossy(), las::open_with(path, breakline::io::OnDamage::Accept).unwrap().info(), fact);
+    check_crs(
+        &path.to_string_lossy(),
+        las::open_with(path, breakline::io::OnDamage::Accept)
+            .unwrap()
+            .info(),
+        fact,
+    );
     if fact.get("sum_int_xyz").is_none() {
         return;
     }
     let sums = fact["sum_int_xyz"].as_array().unwrap();
-    assert_eq!(found.lattice_sums, [0, 1, 2].map(|i| i128::from(sums[i].as_i64().unwrap())), "{}", path.display());
+    assert_eq!(
+        found.lattice_sums,
+        [0, 1, 2].map(|i| i128::from(sums[i].as_i64().unwrap())),
+        "{}",
+        path.display()
+    );
 }
 
 /// What a cut or damaged LAZ file still gives are points of the whole file.
@@ -316,9 +412,18 @@ fn compare_with_fact(path: &Path, found: &Summary, fact: &Value) {
 #[cfg_attr(not(has_shared), ignore = "needs ../shared")]
 fn points_before_the_damage_are_good() {
     for (cut, whole) in [
-        ("mut_Topography__truncated_half.laz", "quebec_lidR/Topography.laz"),
-        ("mut_point-time-color__truncated_half.laz", "formats/lazrs/point-time-color.las"),
-        ("mut_point-time-color__chunktable_ptr_garbage.laz", "formats/lazrs/point-time-color.las"),
+        (
+            "mut_Topography__truncated_half.laz",
+            "quebec_lidR/Topography.laz",
+        ),
+        (
+            "mut_point-time-color__truncated_half.laz",
+            "formats/lazrs/point-time-color.las",
+        ),
+        (
+            "mut_point-time-color__chunktable_ptr_garbage.laz",
+            "formats/lazrs/point-time-color.las",
+        ),
     ] {
         let cut = testkit::shared(&format!("lidar/broken/{cut}"));
         let whole = testkit::shared(&format!("lidar/{whole}"));
@@ -353,11 +458,18 @@ fn columns(path: &Path) -> PointBatch {
 #[test]
 #[cfg_attr(not(has_shared), ignore = "needs ../shared")]
 fn a_stream_gives_what_its_file_gives() {
-    for path in ["lidar/formats/lazrs/point10.laz", "lidar/formats/simple.las"] {
+    for path in [
+        "lidar/formats/lazrs/point10.laz",
+        "lidar/formats/simple.las",
+    ] {
         let file = testkit::shared(path);
         let mut from_file = las::open(&file).unwrap();
-        let mut from_stream = las::from_stream(std::fs::File::open(&file).unwrap(), PathBuf::from("stream")).unwrap();
-        let (a, b) = (summarize(&mut from_file).unwrap(), summarize(&mut from_stream).unwrap());
+        let mut from_stream =
+            las::from_stream(std::fs::File::open(&file).unwrap(), PathBuf::from("stream")).unwrap();
+        let (a, b) = (
+            summarize(&mut from_file).unwrap(),
+            summarize(&mut from_stream).unwrap(),
+        );
         assert_eq!((a.count, a.lattice_sums), (b.count, b.lattice_sums));
         assert_eq!(a.count, 1065);
     }
@@ -367,8 +479,16 @@ fn a_stream_gives_what_its_file_gives() {
 #[cfg_attr(not(has_shared), ignore = "needs ../shared")]
 fn points_are_opened_by_what_they_are() {
     for (path, format, count) in [
-        ("lidar/formats/simple_with_page.copc.laz", "LAS 1.4, point format 7, COPC", 1065),
-        ("lidar/formats/lazrs/point-color.las", "LAS 1.2, point format 2", 1065),
+        (
+            "lidar/formats/simple_with_page.copc.laz",
+            "LAS 1.4, point format 7, COPC",
+            1065,
+        ),
+        (
+            "lidar/formats/lazrs/point-color.las",
+            "LAS 1.2, point format 2",
+            1065,
+        ),
     ] {
         let file = testkit::shared(path);
         let mut source = points::open(&file).unwrap();
@@ -387,11 +507,23 @@ fn points_are_opened_by_what_they_are() {
     assert!(batch.z.iter().all(|z| (678.0..1050.0).contains(z)));
     let lines = testkit::shared("shp/shapelib_eg/brklinz.shp");
     let error = points::open(&lines).map(|_| ()).unwrap_err();
-    assert!(error.to_string().contains("has no points, but 122 other shapes"), "{error}");
+    assert!(
+        error
+            .to_string()
+            .contains("has no points, but 122 other shapes"),
+        "{error}"
+    );
     assert_eq!(error.path(), Some(lines.as_path()));
-    let error = points::open(testkit::shared("dem/bigtujunga.tif")).map(|_| ()).unwrap_err();
+    let error = points::open(testkit::shared("dem/bigtujunga.tif"))
+        .map(|_| ())
+        .unwrap_err();
     assert_eq!(error.kind(), Kind::Unsupported);
-    assert!(error.to_string().contains("a TIFF file; points are read from LAS"), "{error}");
+    assert!(
+        error
+            .to_string()
+            .contains("a TIFF file; points are read from LAS"),
+        "{error}"
+    );
 }
 
 /// Points written as text come back as they were.
@@ -402,15 +534,25 @@ fn text_of_real_points_is_read_back() {
     let all = columns(&testkit::shared("lidar/lake_breakline/lake.laz"));
     let mut text = String::from("Easting;Northing;Height;Class\n");
     for i in 0..all.len() {
-        writeln!(text, "{};{};{};{}", all.x[i], all.y[i], all.z[i], all.class[i]).unwrap();
+        writeln!(
+            text,
+            "{};{};{};{}",
+            all.x[i], all.y[i], all.z[i], all.class[i]
+        )
+        .unwrap();
     }
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("lake.csv");
     // One line with a decimal comma among lines with points.
     let (first, rest) = text.split_at(text.len() / 2);
     std::fs::write(&path, format!("{first}{}", rest.replace('.', ","))).unwrap();
-    let error = summarize(&mut *points::open(&path).unwrap()).unwrap_err().to_string();
-    assert!(error.contains("has a comma and") && error.contains("has a point"), "{error}");
+    let error = summarize(&mut *points::open(&path).unwrap())
+        .unwrap_err()
+        .to_string();
+    assert!(
+        error.contains("has a comma and") && error.contains("has a point"),
+        "{error}"
+    );
     std::fs::write(&path, text.replace('.', ",")).unwrap();
     let mut source = points::open(&path).unwrap();
     assert!(source.info().has_classes);
@@ -425,7 +567,10 @@ fn text_of_real_points_is_read_back() {
         read.z.append(&mut batch.z);
         read.class.append(&mut batch.class);
     }
-    assert_eq!((read.x, read.y, read.z, read.class), (all.x, all.y, all.z, all.class));
+    assert_eq!(
+        (read.x, read.y, read.z, read.class),
+        (all.x, all.y, all.z, all.class)
+    );
 }
 
 /// Bytes changed at random: an answer, in time, whatever they are.
@@ -435,7 +580,9 @@ fn changed_bytes_do_not_bring_it_down() {
     let mut state = 1_u64;
     let mut random = move || {
         // Knuth's MMIX generator.
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
         (state >> 33) as usize
     };
     for path in [
@@ -451,15 +598,24 @@ fn changed_bytes_do_not_bring_it_down() {
             let mut changed = bytes.clone();
             for _ in 0..=random() % 4 {
                 // Two of three rounds change the head, where one byte means most.
-                let at = if round % 3 == 0 { random() % changed.len() } else { random() % 600 };
+                let at = if round % 3 == 0 {
+                    random() % changed.len()
+                } else {
+                    random() % 600
+                };
                 changed[at] = random() as u8;
             }
             if round % 7 == 0 {
                 changed.truncate(random() % bytes.len());
             }
             let started = Instant::now();
-            let result = las::from_stream(&changed[..], "changed").and_then(|mut source| summarize(&mut source));
-            assert!(started.elapsed() < Duration::from_secs(5), "{path}, round {round}: {:?}", result.map(|s| s.count));
+            let result = las::from_stream(&changed[..], "changed")
+                .and_then(|mut source| summarize(&mut source));
+            assert!(
+                started.elapsed() < Duration::from_secs(5),
+                "{path}, round {round}: {:?}",
+                result.map(|s| s.count)
+            );
         }
     }
 }

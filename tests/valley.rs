@@ -24,10 +24,14 @@ fn parts(name: &str) -> Vec<Vec<[f64; 3]>> {
 /// Ground points, and breaklines or none.
 fn builder(breaklines: &[Vec<[f64; 3]>]) -> TinBuilder {
     let mut selection = Selection::default();
-    selection.add_source(&mut *breakline::io::points::open(fixture("valley.laz")).unwrap()).unwrap();
+    selection
+        .add_source(&mut *breakline::io::points::open(fixture("valley.laz")).unwrap())
+        .unwrap();
     let mut builder = TinBuilder::default();
     builder.add_owned_points(selection.finish().0);
-    breaklines.iter().for_each(|line| builder.add_breakline(line));
+    breaklines
+        .iter()
+        .for_each(|line| builder.add_breakline(line));
     builder
 }
 
@@ -40,7 +44,10 @@ fn tin(breaklines: &[Vec<[f64; 3]>]) -> Tin {
 fn error(tin: &Tin) -> [f64; 2] {
     let [west, south] = valley::ORIGIN;
     let [width, height] = valley::SIZE;
-    let bounds = Bounds { min: [west, south, 0.0], max: [west + width, south + height, 0.0] };
+    let bounds = Bounds {
+        min: [west, south, 0.0],
+        max: [west + width, south + height, 0.0],
+    };
     let frame = Frame::snapped(&bounds, 0.5).unwrap();
     let grid = Grid::collect(&Dem::new(tin, frame).unwrap()).unwrap();
     let ring = fixtures::boundary();
@@ -66,8 +73,18 @@ fn error(tin: &Tin) -> [f64; 2] {
 fn the_surface_has_the_counts_of_triangle() {
     let report = tin(&parts("breaklines.shp")).report().clone();
     assert_eq!([report.vertices, report.triangles], [60_492, 120_954]);
-    assert_eq!([report.breaklines, report.edges.total(), report.crossings], [9, 1334, 0]);
-    assert_eq!([report.points, report.duplicates, report.points_on_breaklines], [59_177, 25, 0]);
+    assert_eq!(
+        [report.breaklines, report.edges.total(), report.crossings],
+        [9, 1334, 0]
+    );
+    assert_eq!(
+        [
+            report.points,
+            report.duplicates,
+            report.points_on_breaklines
+        ],
+        [59_177, 25, 0]
+    );
 }
 
 /// The bounds are what a TIN by Triangle has, see `fixtures/README.md`.
@@ -76,7 +93,10 @@ fn breaklines_bring_the_surface_to_the_ground() {
     let [rms, worst] = error(&tin(&parts("breaklines.shp")));
     assert!(rms < 0.0315 && worst < 0.81, "{rms} {worst}");
     let [rms, worst] = error(&tin(&[]));
-    assert!(rms > 0.09 && worst > 5.0, "without breaklines: {rms} {worst}");
+    assert!(
+        rms > 0.09 && worst > 5.0,
+        "without breaklines: {rms} {worst}"
+    );
 }
 
 #[test]
@@ -86,7 +106,10 @@ fn the_lake_is_level() {
         let [u, v] = valley::lake_shore(f64::from(angle) * 0.1745);
         let [cu, cv] = valley::LAKE_CENTER;
         for share in [0.0, 0.5, 0.9] {
-            let at = [valley::ORIGIN[0] + cu + share * (u - cu), valley::ORIGIN[1] + cv + share * (v - cv)];
+            let at = [
+                valley::ORIGIN[0] + cu + share * (u - cu),
+                valley::ORIGIN[1] + cv + share * (v - cv),
+            ];
             assert_eq!(tin.elevation(at[0], at[1]), Some(valley::LAKE_LEVEL));
         }
     }
@@ -96,7 +119,11 @@ fn the_lake_is_level() {
 #[test]
 fn a_boundary_leaves_the_surface_as_it_is() {
     let mut builder = builder(&parts("breaklines.shp"));
-    builder.add_boundary(&[parts("boundary.shp").remove(0).iter().map(|p| [p[0], p[1]]).collect()]);
+    builder.add_boundary(&[parts("boundary.shp")
+        .remove(0)
+        .iter()
+        .map(|p| [p[0], p[1]])
+        .collect()]);
     let [rms, worst] = error(&builder.build().unwrap());
     assert!(rms < 0.0315 && worst < 0.81, "{rms} {worst}");
 }

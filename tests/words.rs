@@ -79,22 +79,36 @@ fn identifiers_are_made_of_the_words_of_the_glossary() {
         });
         bad.collect()
     });
-    assert!(faults.is_empty(), "see the glossary in docs/architecture.md\n{}", faults.join("\n"));
+    assert!(
+        faults.is_empty(),
+        "see the glossary in docs/architecture.md\n{}",
+        faults.join("\n")
+    );
 }
 
 #[test]
 fn file_names_are_made_of_the_words_of_the_glossary() {
     let rules = rules();
-    let folders = SOURCES.iter().chain(&PAGES).chain(&["python/package", "python/tests", "python/benches"]);
+    let folders =
+        SOURCES
+            .iter()
+            .chain(&PAGES)
+            .chain(&["python/package", "python/tests", "python/benches"]);
     let mut faults: Vec<_> = folders
         .flat_map(|folder| files(Path::new(folder)))
         .filter_map(|path| {
-            let word = path.components().find_map(|name| rules.forbidden_in(name.as_os_str().to_str()?))?;
+            let word = path
+                .components()
+                .find_map(|name| rules.forbidden_in(name.as_os_str().to_str()?))?;
             Some(format!("{} contains `{word}`", path.display()))
         })
         .collect();
     faults.dedup();
-    assert!(faults.is_empty(), "see the glossary in docs/architecture.md\n{}", faults.join("\n"));
+    assert!(
+        faults.is_empty(),
+        "see the glossary in docs/architecture.md\n{}",
+        faults.join("\n")
+    );
 }
 
 #[test]
@@ -106,16 +120,24 @@ fn prose_uses_no_listed_phrase() {
             Token::Identifier(_) => None,
         });
         let prose = prose.collect::<Vec<_>>().join("\n");
-        phrases_in(&prose, &rules).map(|phrase| format!("{}: \"{phrase}\"", path.display())).collect()
+        phrases_in(&prose, &rules)
+            .map(|phrase| format!("{}: \"{phrase}\"", path.display()))
+            .collect()
     });
     for (path, text) in pages() {
         // The list itself stands in one of the pages, up to the next heading.
         let (before, list) = text.split_once(PHRASES).unwrap_or((&text, ""));
         let after = list.split_once("\n## ").map_or("", |(_, after)| after);
-        let found = [before, after].into_iter().flat_map(|text| phrases_in(text, &rules).collect::<Vec<_>>());
+        let found = [before, after]
+            .into_iter()
+            .flat_map(|text| phrases_in(text, &rules).collect::<Vec<_>>());
         faults.extend(found.map(|phrase| format!("{}: \"{phrase}\"", path.display())));
     }
-    assert!(faults.is_empty(), "see the list in docs/architecture.md\n{}", faults.join("\n"));
+    assert!(
+        faults.is_empty(),
+        "see the list in docs/architecture.md\n{}",
+        faults.join("\n")
+    );
 }
 
 /// Links of pages lead to files; decisions and comments name paths of the repository that exist.
@@ -125,14 +147,20 @@ fn pages_and_comments_refer_to_what_exists() {
     for (path, text) in pages() {
         let folder = path.parent().unwrap();
         let links = links_in(&text).map(|target| folder.join(target));
-        let named = paths_in(&text).filter(|_| path.starts_with(DECISIONS)).map(PathBuf::from);
-        let missing = links.chain(named).filter(|target| !root().join(target).exists());
+        let named = paths_in(&text)
+            .filter(|_| path.starts_with(DECISIONS))
+            .map(PathBuf::from);
+        let missing = links
+            .chain(named)
+            .filter(|target| !root().join(target).exists());
         faults.extend(missing.map(|target| format!("{}: {}", path.display(), target.display())));
     }
     let index = fs::read_to_string(root().join(INDEX)).unwrap();
     let listed: BTreeSet<&str> = links_in(&index).collect();
     let decisions = files_with(Path::new(DECISIONS), "md");
-    let names = decisions.iter().filter_map(|path| path.file_name()?.to_str());
+    let names = decisions
+        .iter()
+        .filter_map(|path| path.file_name()?.to_str());
     faults.extend(
         names
             .filter(|&name| name != "README.md" && !listed.contains(name))
@@ -140,36 +168,60 @@ fn pages_and_comments_refer_to_what_exists() {
     );
     // Comments of a crate may name its own folders.
     faults.extend(each_source(|path, text| {
-        let own = path.ancestors().find(|folder| root().join(folder).join("Cargo.toml").exists()).unwrap();
-        let exists = |named: &str| root().join(named).exists() || root().join(own).join(named).exists();
+        let own = path
+            .ancestors()
+            .find(|folder| root().join(folder).join("Cargo.toml").exists())
+            .unwrap();
+        let exists =
+            |named: &str| root().join(named).exists() || root().join(own).join(named).exists();
         let comments = tokens(text).into_iter().filter_map(|token| match token {
             Token::Comment(comment) => Some(comment),
             _ => None,
         });
         let missing = comments.flat_map(paths_in).filter(|named| !exists(named));
-        missing.map(|named| format!("{}: {named}", path.display())).collect()
+        missing
+            .map(|named| format!("{}: {named}", path.display()))
+            .collect()
     }));
-    assert!(faults.is_empty(), "these do not exist:\n{}", faults.join("\n"));
+    assert!(
+        faults.is_empty(),
+        "these do not exist:\n{}",
+        faults.join("\n")
+    );
 }
 
 /// The targets of the relative links of a page, without what follows a `#`.
 fn links_in(text: &str) -> impl Iterator<Item = &str> {
-    let targets = text.split("](").skip(1).filter_map(|rest| rest.split_once(')'));
+    let targets = text
+        .split("](")
+        .skip(1)
+        .filter_map(|rest| rest.split_once(')'));
     let relative = targets.filter(|(target, _)| !target.contains([':', ' ', '\n']));
-    relative.filter_map(|(target, _)| target.split('#').next()).filter(|file| !file.is_empty())
+    relative
+        .filter_map(|(target, _)| target.split('#').next())
+        .filter(|file| !file.is_empty())
 }
 
 /// The paths of the repository that a page names, in code.
 fn paths_in(text: &str) -> impl Iterator<Item = &str> {
-    let code = text.split('`').skip(1).step_by(2).filter(|code| !code.contains([' ', '\n', ':']));
-    code.filter(|code| code.split_once('/').is_some_and(|(first, _)| !first.is_empty() && root().join(first).is_dir()))
+    let code = text
+        .split('`')
+        .skip(1)
+        .step_by(2)
+        .filter(|code| !code.contains([' ', '\n', ':']));
+    code.filter(|code| {
+        code.split_once('/')
+            .is_some_and(|(first, _)| !first.is_empty() && root().join(first).is_dir())
+    })
 }
 
 #[test]
 fn links_and_paths_of_pages_are_found() {
-    let links: Vec<_> = links_in("[a](b.md#c), [d](#e), ![f](g/h.png) and [i](https://j.k).").collect();
+    let links: Vec<_> =
+        links_in("[a](b.md#c), [d](#e), ![f](g/h.png) and [i](https://j.k).").collect();
     assert_eq!(links, ["b.md", "g/h.png"]);
-    let paths: Vec<_> = paths_in("`src/main.rs`, `1/2`, `src/a b`, `/src/c`, `src` and `tests/none`.").collect();
+    let paths: Vec<_> =
+        paths_in("`src/main.rs`, `1/2`, `src/a b`, `/src/c`, `src` and `tests/none`.").collect();
     assert_eq!(paths, ["src/main.rs", "tests/none"]);
 }
 
@@ -177,14 +229,21 @@ fn links_and_paths_of_pages_are_found() {
 #[test]
 fn texts_below_the_command_line_name_no_option() {
     let faults = each_source(|path, text| {
-        let is_below = path.starts_with("src") && !path.starts_with("src/cli") || path.starts_with("python/src");
+        let is_below = path.starts_with("src") && !path.starts_with("src/cli")
+            || path.starts_with("python/src");
         let texts = tokens(text).into_iter().filter_map(|token| match token {
             Token::Text(text) if is_below && names_option(text) => Some(text),
             _ => None,
         });
-        texts.map(|text| format!("{}: {text}", path.display())).collect()
+        texts
+            .map(|text| format!("{}: {text}", path.display()))
+            .collect()
     });
-    assert!(faults.is_empty(), "see `error::Wording`\n{}", faults.join("\n"));
+    assert!(
+        faults.is_empty(),
+        "see `error::Wording`\n{}",
+        faults.join("\n")
+    );
 }
 
 /// Returns true if a text has an option or a command of the program.
@@ -201,7 +260,15 @@ fn options_in_texts_are_found() {
     for text in ["use --max-edge", "--3d", "`breakline info` shows it"] {
         assert!(names_option(text), "{text}");
     }
-    for text in ["a -- b", "---", "1--", "5 - -x", "`info`", "-----BEGIN", "--"] {
+    for text in [
+        "a -- b",
+        "---",
+        "1--",
+        "5 - -x",
+        "`info`",
+        "-----BEGIN",
+        "--",
+    ] {
         assert!(!names_option(text), "{text}");
     }
 }
@@ -212,18 +279,27 @@ fn comments_are_no_wider_than_a_hundred() {
         let mut is_example = false;
         let mut wide = Vec::new();
         for (number, line) in (1..).zip(text.lines()) {
-            let Some(comment) = line.trim_start().strip_prefix("//") else { continue };
+            let Some(comment) = line.trim_start().strip_prefix("//") else {
+                continue;
+            };
             let comment = comment.trim_start_matches(['/', '!']);
             is_example ^= comment.trim_start().starts_with("```");
             // Rows of tables, formulas, examples and addresses cannot be broken.
-            let is_whole = ["     ", " |"].iter().any(|start| comment.starts_with(start)) || comment.contains("://");
+            let is_whole = ["     ", " |"]
+                .iter()
+                .any(|start| comment.starts_with(start))
+                || comment.contains("://");
             if line.chars().count() > WIDTH && !is_example && !is_whole {
                 wide.push(format!("{}:{number}", path.display()));
             }
         }
         wide
     });
-    assert!(faults.is_empty(), "comments wider than {WIDTH}:\n{}", faults.join("\n"));
+    assert!(
+        faults.is_empty(),
+        "comments wider than {WIDTH}:\n{}",
+        faults.join("\n")
+    );
 }
 
 /// A heading in a comment that goes on in the same line is no heading of the page.
@@ -231,15 +307,29 @@ fn comments_are_no_wider_than_a_hundred() {
 fn headings_of_comments_stand_alone() {
     let names = ["Errors", "Complexity", "Panics"];
     let goes_on = |line: &str| {
-        let heading = line.trim_start().trim_start_matches(['/', '!']).trim_start().strip_prefix("# ");
-        heading.is_some_and(|text| names.iter().any(|name| text.starts_with(name) && text.trim_end() != *name))
+        let heading = line
+            .trim_start()
+            .trim_start_matches(['/', '!'])
+            .trim_start()
+            .strip_prefix("# ");
+        heading.is_some_and(|text| {
+            names
+                .iter()
+                .any(|name| text.starts_with(name) && text.trim_end() != *name)
+        })
     };
     assert!(goes_on("/// # Errors If it fails.") && !goes_on("    //! # Errors"));
     let faults = each_source(|path, text| {
         let lines = (1..).zip(text.lines()).filter(|(_, line)| goes_on(line));
-        lines.map(|(number, _)| format!("{}:{number}", path.display())).collect()
+        lines
+            .map(|(number, _)| format!("{}:{number}", path.display()))
+            .collect()
     });
-    assert!(faults.is_empty(), "headings that go on in the same line:\n{}", faults.join("\n"));
+    assert!(
+        faults.is_empty(),
+        "headings that go on in the same line:\n{}",
+        faults.join("\n")
+    );
 }
 
 #[test]
@@ -259,19 +349,43 @@ fn the_rules_can_fail() {
     ];
     assert_eq!(tokens(text), expected);
     let rules = rules();
-    assert!(rules.words.contains("walled") && rules.words.len() > 10, "{:?}", rules.words);
-    for name in ["place", "LAST_PLACES", "wishes", "isTidied", "settles.rs", "one_long_name_of_many_ways", "claimed"] {
+    assert!(
+        rules.words.contains("walled") && rules.words.len() > 10,
+        "{:?}",
+        rules.words
+    );
+    for name in [
+        "place",
+        "LAST_PLACES",
+        "wishes",
+        "isTidied",
+        "settles.rs",
+        "one_long_name_of_many_ways",
+        "claimed",
+    ] {
         assert!(rules.forbidden_in(name).is_some(), "{name}");
     }
-    for name in ["replace", "leader", "walls", "always", "crossings", "one_long_name_of_many_lines"] {
+    for name in [
+        "replace",
+        "leader",
+        "walls",
+        "always",
+        "crossings",
+        "one_long_name_of_many_lines",
+    ] {
         assert_eq!(rules.forbidden_in(name), None, "{name}");
     }
-    let tests =
-        "#[test]\n#[ignore]\nfn all_is_in_its_place() {}\nfn nothing_is_in_its_place() {}\n#[test]\nfn a_place() {}";
-    assert_eq!(Vec::from_iter(names_of_tests(tests)), ["all_is_in_its_place"]);
+    let tests = "#[test]\n#[ignore]\nfn all_is_in_its_place() {}\nfn nothing_is_in_its_place() {}\n#[test]\nfn a_place() {}";
+    assert_eq!(
+        Vec::from_iter(names_of_tests(tests)),
+        ["all_is_in_its_place"]
+    );
     assert!(rules.phrases.len() > 10, "{:?}", rules.phrases);
     let found = |text: &str| phrases_in(text, &rules).next().map(str::to_owned);
-    assert_eq!(found("/// One is\n    /// told, at the\n/// most.").as_deref(), Some("at the most"));
+    assert_eq!(
+        found("/// One is\n    /// told, at the\n/// most.").as_deref(),
+        Some("at the most")
+    );
     assert_eq!(found("at most"), None);
 }
 
@@ -286,10 +400,19 @@ fn rules() -> Rules {
     let (table, list) = glossary.split_once(PHRASES).expect("a list of phrases");
     let rows = table.lines().filter(|line| line.starts_with("| ")).skip(1);
     let last = rows.filter_map(|row| row.trim_end_matches('|').rsplit('|').next());
-    let words = last.flat_map(|cell| cell.split(',')).map(str::trim).filter(|word| !word.is_empty());
+    let words = last
+        .flat_map(|cell| cell.split(','))
+        .map(str::trim)
+        .filter(|word| !word.is_empty());
     let words = words.flat_map(forms_of);
-    let phrases = list.lines().filter_map(|line| line.strip_prefix("- \"")).filter_map(|line| line.split('"').next());
-    Rules { words: words.collect(), phrases: phrases.map(str::to_owned).collect() }
+    let phrases = list
+        .lines()
+        .filter_map(|line| line.strip_prefix("- \""))
+        .filter_map(|line| line.split('"').next());
+    Rules {
+        words: words.collect(),
+        phrases: phrases.map(str::to_owned).collect(),
+    }
 }
 
 /// A word, its plural or third person, and its past. Its form with `ing` is not forbidden: zeros are
@@ -297,21 +420,34 @@ fn rules() -> Rules {
 fn forms_of(word: &str) -> impl Iterator<Item = String> + '_ {
     let stem = word.strip_suffix('y').map(|stem| format!("{stem}i"));
     let stem = stem.unwrap_or_else(|| word.to_owned());
-    let regular = ["", "s", "es", "d", "ed"].into_iter().map(move |ending| format!("{word}{ending}"));
-    regular.chain(["es", "ed"].into_iter().map(move |ending| format!("{stem}{ending}")))
+    let regular = ["", "s", "es", "d", "ed"]
+        .into_iter()
+        .map(move |ending| format!("{word}{ending}"));
+    regular.chain(
+        ["es", "ed"]
+            .into_iter()
+            .map(move |ending| format!("{stem}{ending}")),
+    )
 }
 
 impl Rules {
     /// The word of a name that the glossary forbids.
     fn forbidden_in(&self, name: &str) -> Option<String> {
-        words_of(name).into_iter().find(|word| self.words.contains(word))
+        words_of(name)
+            .into_iter()
+            .find(|word| self.words.contains(word))
     }
 }
 
 /// The names of tests in a source that are sentences.
 fn names_of_tests(text: &str) -> BTreeSet<&str> {
-    let names = text.split("#[test]").skip(1).filter_map(|rest| rest.split_once("fn ")?.1.split('(').next());
-    names.filter(|name| words_of(name).len() >= SENTENCE).collect()
+    let names = text
+        .split("#[test]")
+        .skip(1)
+        .filter_map(|rest| rest.split_once("fn ")?.1.split('(').next());
+    names
+        .filter(|name| words_of(name).len() >= SENTENCE)
+        .collect()
 }
 
 /// The phrases that a text contains, whatever its lines and its letters' case.
@@ -327,7 +463,10 @@ fn phrases_in<'a>(text: &str, rules: &'a Rules) -> impl Iterator<Item = &'a str>
         plain.match_indices(phrase.as_str()).any(|(at, _)| {
             let before = plain[..at].chars().next_back();
             let after = plain[at + phrase.len()..].chars().next();
-            [before, after].into_iter().flatten().all(|letter| !letter.is_alphanumeric())
+            [before, after]
+                .into_iter()
+                .flatten()
+                .all(|letter| !letter.is_alphanumeric())
         })
     };
     rules.phrases.iter().filter(is_there).map(String::as_str)
@@ -342,7 +481,8 @@ fn words_of(name: &str) -> Vec<String> {
         let starts = match before {
             None => true,
             Some(before) if letter.is_uppercase() && before.is_alphabetic() => {
-                before.is_lowercase() || letters.get(i + 1).is_some_and(|after| after.is_lowercase())
+                before.is_lowercase()
+                    || letters.get(i + 1).is_some_and(|after| after.is_lowercase())
             }
             Some(before) => !before.is_alphabetic(),
         };
@@ -382,14 +522,18 @@ fn tokens(text: &str) -> Vec<Token<'_>> {
         } else if first == '\'' {
             end_of_letter(rest)
         } else if first.is_alphabetic() || first == '_' {
-            let end = rest.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(rest.len());
-            let is_prefix = matches!(&rest[..end], "b" | "c") && rest[end..].starts_with(['"', '\'']);
+            let end = rest
+                .find(|c: char| !c.is_alphanumeric() && c != '_')
+                .unwrap_or(rest.len());
+            let is_prefix =
+                matches!(&rest[..end], "b" | "c") && rest[end..].starts_with(['"', '\'']);
             if !is_prefix {
                 tokens.push(Token::Identifier(&rest[..end]));
             }
             end
         } else if first.is_numeric() {
-            rest.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(rest.len())
+            rest.find(|c: char| !c.is_alphanumeric() && c != '_')
+                .unwrap_or(rest.len())
         } else {
             first.len_utf8()
         };
@@ -402,9 +546,12 @@ fn tokens(text: &str) -> Vec<Token<'_>> {
 fn raw_marks(rest: &str) -> Option<(usize, String)> {
     let after = rest.strip_prefix("br").or_else(|| rest.strip_prefix('r'))?;
     let hashes = after.len() - after.trim_start_matches('#').len();
-    after[hashes..]
-        .starts_with('"')
-        .then(|| (rest.len() - after.len() + hashes + 1, format!("\"{}", "#".repeat(hashes))))
+    after[hashes..].starts_with('"').then(|| {
+        (
+            rest.len() - after.len() + hashes + 1,
+            format!("\"{}", "#".repeat(hashes)),
+        )
+    })
 }
 
 fn end_of_string(rest: &str) -> usize {
@@ -424,7 +571,9 @@ fn end_of_letter(rest: &str) -> usize {
     let mut letters = rest.char_indices().skip(1);
     match letters.next() {
         Some((_, '\\')) => rest[3..].find('\'').map_or(rest.len(), |end| end + 4),
-        Some((_, _)) if rest[1..].chars().nth(1) == Some('\'') => letters.next().map_or(rest.len(), |(at, _)| at + 1),
+        Some((_, _)) if rest[1..].chars().nth(1) == Some('\'') => {
+            letters.next().map_or(rest.len(), |(at, _)| at + 1)
+        }
         _ => 1,
     }
 }
@@ -449,15 +598,21 @@ fn end_of_block(rest: &str) -> usize {
 
 /// What is wrong with all sources.
 fn each_source(check: impl Fn(&Path, &str) -> Vec<String>) -> Vec<String> {
-    let paths = SOURCES.iter().flat_map(|folder| files_with(Path::new(folder), "rs"));
+    let paths = SOURCES
+        .iter()
+        .flat_map(|folder| files_with(Path::new(folder), "rs"));
     // This file quotes what it forbids.
     let paths = paths.filter(|path| !path.ends_with("tests/words.rs"));
-    paths.flat_map(|path| check(&path, &fs::read_to_string(root().join(&path)).unwrap())).collect()
+    paths
+        .flat_map(|path| check(&path, &fs::read_to_string(root().join(&path)).unwrap()))
+        .collect()
 }
 
 /// All pages with their texts.
 fn pages() -> impl Iterator<Item = (PathBuf, String)> {
-    let paths = PAGES.iter().flat_map(|page| files_with(Path::new(page), "md"));
+    let paths = PAGES
+        .iter()
+        .flat_map(|page| files_with(Path::new(page), "md"));
     paths.map(|path| {
         let text = fs::read_to_string(root().join(&path)).unwrap();
         (path, text)
@@ -468,7 +623,11 @@ fn pages() -> impl Iterator<Item = (PathBuf, String)> {
 fn files_with(path: &Path, extension: &str) -> Vec<PathBuf> {
     let mut found = files(path);
     found.retain(|path| path.extension().is_some_and(|e| e == extension));
-    assert!(!found.is_empty(), "no file .{extension} in {}", path.display());
+    assert!(
+        !found.is_empty(),
+        "no file .{extension} in {}",
+        path.display()
+    );
     found
 }
 
@@ -478,9 +637,15 @@ fn files(path: &Path) -> Vec<PathBuf> {
     if full.is_file() {
         return vec![path.to_owned()];
     }
-    let mut entries: Vec<_> = fs::read_dir(&full).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    let mut entries: Vec<_> = fs::read_dir(&full)
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name())
+        .collect();
     entries.sort();
-    entries.into_iter().flat_map(|name| files(&path.join(name))).collect()
+    entries
+        .into_iter()
+        .flat_map(|name| files(&path.join(name)))
+        .collect()
 }
 
 fn root() -> &'static Path {

@@ -36,8 +36,12 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use breakline::triangulation::geometry::{Coordinates, Plane, Space};
-use breakline::triangulation::kernel::{Adaptive, Exact, Expansions, Fast, Fixed, Interval, Kernel};
-use breakline::triangulation::{Delaunay, Delaunay2, Delaunay3, Hierarchy, JumpAndWalk, Locate, Near};
+use breakline::triangulation::kernel::{
+    Adaptive, Exact, Expansions, Fast, Fixed, Interval, Kernel,
+};
+use breakline::triangulation::{
+    Delaunay, Delaunay2, Delaunay3, Hierarchy, JumpAndWalk, Locate, Near,
+};
 use points::PointSet;
 
 /// A point of the plane or of space.
@@ -74,7 +78,9 @@ fn time<P: Point<N>, const N: usize, K: Kernel>(
     let start = Instant::now();
     let mut delaunay: Delaunay<P::Geometry<K>, N> = Delaunay::new(P::Geometry::<K>::default());
     for &p in points {
-        delaunay.insert_by(&mut strategy, p, ()).map_err(|refused| refused.to_string())?;
+        delaunay
+            .insert_by(&mut strategy, p, ())
+            .map_err(|refused| refused.to_string())?;
     }
     let seconds = start.elapsed().as_secs_f64();
     Ok((seconds, black_box(&delaunay).finite_cells().count()))
@@ -82,7 +88,9 @@ fn time<P: Point<N>, const N: usize, K: Kernel>(
 
 /// Prints seconds, with those of the paper and the ratio, if there are any.
 fn print(seconds: f64, published: Option<f64>) -> Result<(), String> {
-    let beside = published.map_or(String::new(), |paper| format!("{paper} {:.0}x", paper / seconds));
+    let beside = published.map_or(String::new(), |paper| {
+        format!("{paper} {:.0}x", paper / seconds)
+    });
     print!("{seconds:>10.3} {beside:<13}");
     std::io::stdout().flush().map_err(|error| error.to_string())
 }
@@ -97,8 +105,15 @@ fn row<P: Point<N>, const N: usize, K: Kernel>(
     points: &[P],
 ) -> Result<(), String> {
     print!("{:<28}", format!("{filter} ({name})"));
-    if !points.iter().flat_map(|p| p.as_ref()).all(|&x| K::RANGE.admits(x)) {
-        println!("{}", format!("{:>10} {:13}", "-", "").repeat(STRATEGIES.len()));
+    if !points
+        .iter()
+        .flat_map(|p| p.as_ref())
+        .all(|&x| K::RANGE.admits(x))
+    {
+        println!(
+            "{}",
+            format!("{:>10} {:13}", "-", "").repeat(STRATEGIES.len())
+        );
         return Ok(());
     }
     let column = |strategy: usize, result: Result<(f64, usize), String>| -> Result<usize, String> {
@@ -117,10 +132,16 @@ fn row<P: Point<N>, const N: usize, K: Kernel>(
 
 /// Prints all kernels for a set of points, then the time of `at_once`, which returns the number of
 /// cells.
-fn table<P: Point<N>, const N: usize>(set: &str, points: &[P], at_once: impl Fn() -> usize) -> Result<(), String> {
+fn table<P: Point<N>, const N: usize>(
+    set: &str,
+    points: &[P],
+    at_once: impl Fn() -> usize,
+) -> Result<(), String> {
     println!("{set}, {} points", points.len());
     print!("{:<28}", "");
-    STRATEGIES.iter().for_each(|strategy| print!("{strategy:>10} {:<13}", "paper"));
+    STRATEGIES
+        .iter()
+        .for_each(|strategy| print!("{strategy:>10} {:<13}", "paper"));
     println!("{:>11}", "cells");
     row::<P, N, Fast>("Fast", "double", set, points)?;
     row::<P, N, Fixed>("Fixed", "static filter", set, points)?;
@@ -148,12 +169,16 @@ fn part<const D: usize>(set: &PointSet<D>, count: usize) -> (String, &[[f64; D]]
 
 fn in_plane(set: &PointSet<2>, count: usize) -> Result<(), String> {
     let (name, points) = part(set, count);
-    table(&name, points, || Delaunay2::from_points(Plane::new(), points).map_or(0, |(t, _)| t.finite_cells().count()))
+    table(&name, points, || {
+        Delaunay2::from_points(Plane::new(), points).map_or(0, |(t, _)| t.finite_cells().count())
+    })
 }
 
 fn in_space(set: &PointSet<3>, count: usize) -> Result<(), String> {
     let (name, points) = part(set, count);
-    table(&name, points, || Delaunay3::from_points(Space::new(), points).map_or(0, |(t, _)| t.finite_cells().count()))
+    table(&name, points, || {
+        Delaunay3::from_points(Space::new(), points).map_or(0, |(t, _)| t.finite_cells().count())
+    })
 }
 
 fn run() -> Result<(), String> {
@@ -163,21 +188,30 @@ fn run() -> Result<(), String> {
     while let Some(argument) = arguments.next() {
         if argument == "--points" {
             let number = arguments.next().unwrap_or_default();
-            count = number.parse().map_err(|_| format!("--points {number}: a number is expected"))?;
+            count = number
+                .parse()
+                .map_err(|_| format!("--points {number}: a number is expected"))?;
         } else {
             files.push(argument);
         }
     }
     for path in &files {
         match path.rsplit('.').next() {
-            Some("las" | "laz") => in_plane(&points::lidar(path).map_err(|error| error.to_string())?, count)?,
+            Some("las" | "laz") => in_plane(
+                &points::lidar(path).map_err(|error| error.to_string())?,
+                count,
+            )?,
             Some("xyz") => in_space(&points::read(path)?, count)?,
             _ => in_plane(&points::read(path)?, count)?,
         }
     }
     if files.is_empty() {
-        [points::square(), points::terrain(), points::parabola()].iter().try_for_each(|set| in_plane(set, count))?;
-        [points::cube(), points::object(), points::moment()].iter().try_for_each(|set| in_space(set, count))?;
+        [points::square(), points::terrain(), points::parabola()]
+            .iter()
+            .try_for_each(|set| in_plane(set, count))?;
+        [points::cube(), points::object(), points::moment()]
+            .iter()
+            .try_for_each(|set| in_space(set, count))?;
     }
     Ok(())
 }

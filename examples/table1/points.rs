@@ -47,8 +47,13 @@ pub(crate) struct PointSet<const D: usize> {
 /// Returns whole numbers of 24 bits, anywhere.
 fn spread<const D: usize>(name: &str, seed: u64) -> PointSet<D> {
     let mut random = Random(seed);
-    let points = (0..100_000).map(|_| [(); D].map(|()| (random.next() >> 40) as f64)).collect();
-    PointSet { name: name.into(), points }
+    let points = (0..100_000)
+        .map(|_| [(); D].map(|()| (random.next() >> 40) as f64))
+        .collect();
+    PointSet {
+        name: name.into(),
+        points,
+    }
 }
 
 pub(crate) fn square() -> PointSet<2> {
@@ -63,15 +68,23 @@ pub(crate) fn cube() -> PointSet<3> {
 pub(crate) fn parabola() -> PointSet<2> {
     let mut random = Random(2);
     let on_curve = |x: f64| [x, x * x].map(|x| (x * WIDTH).round());
-    let points = (0..100_000).map(|_| on_curve(2.0 * random.unit() - 1.0)).collect();
-    PointSet { name: "parabola".into(), points }
+    let points = (0..100_000)
+        .map(|_| on_curve(2.0 * random.unit() - 1.0))
+        .collect();
+    PointSet {
+        name: "parabola".into(),
+        points,
+    }
 }
 
 /// Almost on the curve `y = x^2`, `z = x^3`: rounded. Nearly any two are joined by an edge.
 pub(crate) fn moment() -> PointSet<3> {
     let mut random = Random(6);
     let on_curve = |x: f64| [x, x * x, x * x * x].map(|x| (x * WIDTH).round());
-    PointSet { name: "moment".into(), points: (0..5000).map(|_| on_curve(random.unit())).collect() }
+    PointSet {
+        name: "moment".into(),
+        points: (0..5000).map(|_| on_curve(random.unit())).collect(),
+    }
 }
 
 /// Ground under a swinging mirror: 300 points to a line, half a meter apart, in centimeters.
@@ -82,12 +95,19 @@ pub(crate) fn terrain() -> PointSet<2> {
     let mut points: Vec<[f64; 2]> = (0..TERRAIN)
         .map(|k| {
             let (line, along) = (k / LINE, k % LINE);
-            let along = if line % 2 == 0 { along } else { LINE - 1 - along };
+            let along = if line % 2 == 0 {
+                along
+            } else {
+                LINE - 1 - along
+            };
             [50 * along, 50 * line + 25 * along / LINE].map(|x| x as f64 + jitter())
         })
         .collect();
     random.shuffle(&mut points);
-    PointSet { name: "terrain".into(), points }
+    PointSet {
+        name: "terrain".into(),
+        points,
+    }
 }
 
 /// A closed surface with bumps, scanned with a noise of a ten thousandth of its size.
@@ -97,12 +117,17 @@ pub(crate) fn object() -> PointSet<3> {
         .map(|_| {
             let [turn, height] = [TAU * random.unit(), 2.0 * random.unit() - 1.0];
             let around = (1.0 - height * height).sqrt();
-            let bumps = 0.1 * (5.0 * turn).sin() * around + 0.05 * (9.0 * height).cos() + 1e-4 * random.unit();
+            let bumps = 0.1 * (5.0 * turn).sin() * around
+                + 0.05 * (9.0 * height).cos()
+                + 1e-4 * random.unit();
             let at = [around * turn.cos(), around * turn.sin(), 0.6 * height];
             at.map(|x| ((0.5 + 0.4 * (1.0 + bumps) * x) * WIDTH).round())
         })
         .collect();
-    PointSet { name: "object".into(), points }
+    PointSet {
+        name: "object".into(),
+        points,
+    }
 }
 
 /// Returns the ground of a lidar tile, thinned.
@@ -111,16 +136,30 @@ pub(crate) fn lidar(path: &str) -> breakline::Result<PointSet<2>> {
     ground.add_source(&mut *io::points::open(path)?)?;
     let (all, _) = ground.finish();
     let count = all.len().min(TERRAIN);
-    let mut points: Vec<[f64; 2]> = (0..count).map(|k| all[k * all.len() / count]).map(|[x, y, _]| [x, y]).collect();
+    let mut points: Vec<[f64; 2]> = (0..count)
+        .map(|k| all[k * all.len() / count])
+        .map(|[x, y, _]| [x, y])
+        .collect();
     Random(3).shuffle(&mut points);
-    Ok(PointSet { name: path.into(), points })
+    Ok(PointSet {
+        name: path.into(),
+        points,
+    })
 }
 
 /// Returns the points of a file of little-endian 64-bit floating point.
 pub(crate) fn read<const D: usize>(path: &str) -> Result<PointSet<D>, String> {
     let bytes = std::fs::read(path).map_err(|error| format!("{path}: {error}"))?;
-    let numbers: Vec<f64> = bytes.as_chunks::<8>().0.iter().map(|number| f64::from_le_bytes(*number)).collect();
+    let numbers: Vec<f64> = bytes
+        .as_chunks::<8>()
+        .0
+        .iter()
+        .map(|number| f64::from_le_bytes(*number))
+        .collect();
     let mut points = numbers.as_chunks::<D>().0.to_vec();
     Random(3).shuffle(&mut points);
-    Ok(PointSet { name: path.into(), points })
+    Ok(PointSet {
+        name: path.into(),
+        points,
+    })
 }

@@ -14,7 +14,9 @@ const MOST_POINTS: usize = 60;
 /// many points there are; after the points, each byte is the next point of a line, those above 239
 /// begin another line.
 fn case(bytes: &[u8]) -> Case {
-    let [how, count, rest @ ..] = bytes else { return Case::default() };
+    let [how, count, rest @ ..] = bytes else {
+        return Case::default();
+    };
     let (origin, step): (Point, f64) = match how >> 2 & 3 {
         0 => ([0.0, 0.0], 1.0),
         1 => ([500_000.0, 4_649_000.0], 0.01),
@@ -27,14 +29,25 @@ fn case(bytes: &[u8]) -> Case {
         [a, b] => origin[axis] + step * f64::from(i16::from_le_bytes([a, b])),
         _ => f64::from_le_bytes(bytes.try_into().expect("these are eight")),
     };
-    let count = usize::from(*count).min(MOST_POINTS).min(rest.len() / (2 * width));
+    let count = usize::from(*count)
+        .min(MOST_POINTS)
+        .min(rest.len() / (2 * width));
     let (coordinates, order) = rest.split_at(count * 2 * width);
-    let point = |bytes: &[u8]| [coordinate(0, &bytes[..width]), coordinate(1, &bytes[width..])];
+    let point = |bytes: &[u8]| {
+        [
+            coordinate(0, &bytes[..width]),
+            coordinate(1, &bytes[width..]),
+        ]
+    };
     let points: Vec<Point> = coordinates.chunks_exact(2 * width).map(point).collect();
     let mut lines = Vec::new();
     if count > 0 {
         for line in order[..order.len().min(2 * MOST_POINTS)].split(|&byte| byte > 239) {
-            lines.push(line.iter().map(|&byte| u32::from(byte) % count as u32).collect());
+            lines.push(
+                line.iter()
+                    .map(|&byte| u32::from(byte) % count as u32)
+                    .collect(),
+            );
         }
     }
     Case { points, lines }
@@ -45,7 +58,10 @@ fn main() {
     if let [option, file] = &words[..]
         && option == "--poly"
     {
-        print!("{}", case(&std::fs::read(file).expect("the file can be read")).to_poly());
+        print!(
+            "{}",
+            case(&std::fs::read(file).expect("the file can be read")).to_poly()
+        );
         return;
     }
     afl::fuzz!(|bytes: &[u8]| {

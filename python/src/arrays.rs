@@ -5,7 +5,9 @@ use numpy::{Element, IntoPyArray, PyArray1, PyArrayMethods, PyReadonlyArray2};
 use pyo3::prelude::*;
 
 /// Returns the rows of an array as points, in any layout of memory.
-pub(crate) fn rows<T: Element + Copy + Default, const N: usize>(array: ArrayView2<'_, T>) -> Vec<[T; N]> {
+pub(crate) fn rows<T: Element + Copy + Default, const N: usize>(
+    array: ArrayView2<'_, T>,
+) -> Vec<[T; N]> {
     // In C order the rows are next to each other already.
     if let Some(flat) = array.as_slice().filter(|_| array.ncols() == N) {
         return flat.as_chunks().0.to_vec();
@@ -29,9 +31,16 @@ pub(crate) fn column<T: Element>(py: Python<'_>, values: Vec<T>) -> Bound<'_, Py
 }
 
 /// Returns an array of the rows of a vector, which are not copied.
-pub(crate) fn table<T: Element, const N: usize>(py: Python<'_>, rows: Vec<[T; N]>) -> PyResult<Bound<'_, PyAny>> {
+pub(crate) fn table<T: Element, const N: usize>(
+    py: Python<'_>,
+    rows: Vec<[T; N]>,
+) -> PyResult<Bound<'_, PyAny>> {
     let count = rows.len();
-    Ok(rows.into_flattened().into_pyarray(py).reshape([count, N])?.into_any())
+    Ok(rows
+        .into_flattened()
+        .into_pyarray(py)
+        .reshape([count, N])?
+        .into_any())
 }
 
 /// Makes an array read-only, for one that is kept and given to everyone who asks.

@@ -41,13 +41,16 @@ impl From<Failure> for PyErr {
             causes.push(source.to_string());
             cause = source.source();
         }
-        let errno = error.source().and_then(|e| e.downcast_ref::<std::io::Error>()).and_then(|e| {
-            e.raw_os_error().or(match e.kind() {
-                std::io::ErrorKind::NotFound => Some(2),
-                std::io::ErrorKind::AlreadyExists => Some(17),
-                _ => None,
-            })
-        });
+        let errno = error
+            .source()
+            .and_then(|e| e.downcast_ref::<std::io::Error>())
+            .and_then(|e| {
+                e.raw_os_error().or(match e.kind() {
+                    std::io::ErrorKind::NotFound => Some(2),
+                    std::io::ErrorKind::AlreadyExists => Some(17),
+                    _ => None,
+                })
+            });
         create(Parts {
             class,
             message: &error.message().render(&name),
@@ -77,7 +80,9 @@ struct Parts<'a> {
 /// Creates an exception; if that fails, the exception that says why.
 fn create(parts: Parts<'_>) -> PyErr {
     Python::attach(|py| {
-        let create = py.import("breakline._errors").and_then(|module| module.getattr("create"));
+        let create = py
+            .import("breakline._errors")
+            .and_then(|module| module.getattr("create"));
         match create.and_then(|create| create.call1((parts,))) {
             Ok(exception) => PyErr::from_value(exception),
             Err(error) => error,
@@ -86,7 +91,16 @@ fn create(parts: Parts<'_>) -> PyErr {
 }
 
 fn with_value(class: &str, message: &str, value: Option<&str>, cure: Option<&str>) -> PyErr {
-    create(Parts { class, message, file: None, location: None, value, cure, causes: &[], errno: None })
+    create(Parts {
+        class,
+        message,
+        file: None,
+        location: None,
+        value,
+        cure,
+        causes: &[],
+        errno: None,
+    })
 }
 
 /// Returns a `UsageError` about an argument, its value and the cure.
@@ -105,6 +119,13 @@ pub(crate) fn limit(message: &str) -> PyErr {
 #[cold]
 pub(crate) fn internal(panic: &(dyn Any + Send)) -> PyErr {
     let text = panic.downcast_ref::<&str>().copied();
-    let text = text.or_else(|| panic.downcast_ref::<String>().map(String::as_str)).unwrap_or("no message");
-    with_value("InternalError", text, None, Some("this is a defect of breakline: please report it with the data"))
+    let text = text
+        .or_else(|| panic.downcast_ref::<String>().map(String::as_str))
+        .unwrap_or("no message");
+    with_value(
+        "InternalError",
+        text,
+        None,
+        Some("this is a defect of breakline: please report it with the data"),
+    )
 }

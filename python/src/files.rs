@@ -7,7 +7,8 @@ use breakline::data::classes;
 use breakline::io::las::Rounding;
 use breakline::io::{Destination, formats};
 use breakline::run::{
-    self, Alpha, Arithmetic, PointsReport, PointsRequest, SpaceOptions, TriangulateOptions, Withheld,
+    self, Alpha, Arithmetic, PointsReport, PointsRequest, SpaceOptions, TriangulateOptions,
+    Withheld,
 };
 use breakline::{Error, cli, io};
 use pyo3::prelude::*;
@@ -25,7 +26,12 @@ const STACK: usize = 8 << 20;
 
 /// Returns what is in a file as JSON, and its warnings.
 #[pyfunction]
-pub(crate) fn info(py: Python<'_>, file: PathBuf, read: ReadArguments, call: Call) -> PyResult<String> {
+pub(crate) fn info(
+    py: Python<'_>,
+    file: PathBuf,
+    read: ReadArguments,
+    call: Call,
+) -> PyResult<String> {
     let options = read.options()?;
     work::run(py, &call, |context| -> Result<_> {
         let facts = run::facts(&file, options, context).map_err(|e| e.in_file(&file))?;
@@ -47,7 +53,9 @@ pub(crate) fn describe() -> String {
 pub(crate) fn main(py: Python<'_>, arguments: Vec<std::ffi::OsString>) -> PyResult<u8> {
     let (sender, receiver) = sync_channel(1);
     let program = std::thread::Builder::new().stack_size(STACK);
-    program.spawn(move || sender.send(cli::run(arguments) as u8)).map_err(|e| Failure(e.into()))?;
+    program
+        .spawn(move || sender.send(cli::run(arguments) as u8))
+        .map_err(|e| Failure(e.into()))?;
     py.detach(move || {
         loop {
             match receiver.recv_timeout(POLL) {
@@ -79,16 +87,29 @@ pub(crate) struct SelectionArguments {
 }
 
 impl SelectionArguments {
-    fn request(self, files: Vec<PathBuf>, read: &ReadArguments, systems: &SystemArguments) -> PyResult<PointsRequest> {
+    fn request(
+        self,
+        files: Vec<PathBuf>,
+        read: &ReadArguments,
+        systems: &SystemArguments,
+    ) -> PyResult<PointsRequest> {
         Ok(PointsRequest {
             files,
             read: read.options()?,
             classes: self.classes.unwrap_or_default(),
             returns: self.returns.unwrap_or_default(),
-            withheld: if self.drop_withheld { Withheld::Drop } else { Withheld::Keep },
+            withheld: if self.drop_withheld {
+                Withheld::Drop
+            } else {
+                Withheld::Keep
+            },
             bounds: bounds(self.bounds),
             boundary: self.boundary,
-            rounding: if self.round { Rounding::Nearest } else { Rounding::Refuse },
+            rounding: if self.round {
+                Rounding::Nearest
+            } else {
+                Rounding::Refuse
+            },
             systems: systems.options()?,
         })
     }
@@ -124,16 +145,24 @@ pub(crate) fn read_points<'py>(
     call: Call,
 ) -> PyResult<Bound<'py, PyDict>> {
     let request = selection.request(files, &read, &systems)?;
-    let product = work::run(py, &call, |context| -> Result<_> { Ok(run::read_points(&request, context)?) })?;
+    let product = work::run(py, &call, |context| -> Result<_> {
+        Ok(run::read_points(&request, context)?)
+    })?;
     let (points, found) = (product.points, PyDict::new(py));
     found.set_item("x", arrays::column(py, points.x))?;
     found.set_item("y", arrays::column(py, points.y))?;
     found.set_item("z", arrays::column(py, points.z))?;
     let optional = |column: Vec<u8>| (!column.is_empty()).then(|| arrays::column(py, column));
     found.set_item("classification", optional(points.class))?;
-    found.set_item("flags", optional(points.flags.into_iter().map(|flags| flags.0).collect()))?;
+    found.set_item(
+        "flags",
+        optional(points.flags.into_iter().map(|flags| flags.0).collect()),
+    )?;
     found.set_item("return_number", optional(points.return_number))?;
-    found.set_item("crs", product.report.crs.as_ref().map(breakline::crs::Crs::to_wkt))?;
+    found.set_item(
+        "crs",
+        product.report.crs.as_ref().map(breakline::crs::Crs::to_wkt),
+    )?;
     found.set_item("report", report(py, &product.report)?)?;
     Ok(found)
 }
@@ -160,8 +189,11 @@ pub(crate) fn write_points<'py>(
     report(py, &written)
 }
 
-const KERNELS: [(&str, Arithmetic); 3] =
-    [("adaptive", Arithmetic::Adaptive), ("exact", Arithmetic::Exact), ("fast", Arithmetic::Fast)];
+const KERNELS: [(&str, Arithmetic); 3] = [
+    ("adaptive", Arithmetic::Adaptive),
+    ("exact", Arithmetic::Exact),
+    ("fast", Arithmetic::Fast),
+];
 
 /// Options of triangulating in the plane, under the names that they have in Python.
 #[derive(FromPyObject)]
@@ -208,10 +240,21 @@ pub(crate) fn triangulate<'py>(
     let (triangulated, counts) = (product.triangulated, PyDict::new(py));
     let nodes = &triangulated.nodes;
     counts.set_item("vertices", arrays::table(py, nodes.points.clone())?)?;
-    let markers: Vec<i64> = nodes.markers.iter().map(|&marker| i64::from(marker)).collect();
+    let markers: Vec<i64> = nodes
+        .markers
+        .iter()
+        .map(|&marker| i64::from(marker))
+        .collect();
     counts.set_item("vertex_markers", arrays::column(py, markers))?;
-    counts.set_item("triangles", arrays::table(py, signed(triangulated.triangles))?)?;
-    let segments = triangulated.segments.iter().map(|segment| segment.ends).collect();
+    counts.set_item(
+        "triangles",
+        arrays::table(py, signed(triangulated.triangles))?,
+    )?;
+    let segments = triangulated
+        .segments
+        .iter()
+        .map(|segment| segment.ends)
+        .collect();
     counts.set_item("segments", arrays::table(py, signed(segments))?)?;
     let report = product.report;
     for (name, count) in [
@@ -242,10 +285,18 @@ pub(crate) fn triangulate_space<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let alpha = match alpha {
         None => None,
-        Some(NumberOrName::Number(alpha)) => requests::positive("alpha", Some(alpha))?.map(Alpha::Given),
-        Some(NumberOrName::Name(name)) => Some(choose("alpha", &name, &[("auto", Alpha::OneSolid)])?),
+        Some(NumberOrName::Number(alpha)) => {
+            requests::positive("alpha", Some(alpha))?.map(Alpha::Given)
+        }
+        Some(NumberOrName::Name(name)) => {
+            Some(choose("alpha", &name, &[("auto", Alpha::OneSolid)])?)
+        }
     };
-    let options = SpaceOptions { weighted, alpha, arithmetic: choose("kernel", kernel, &KERNELS)? };
+    let options = SpaceOptions {
+        weighted,
+        alpha,
+        arithmetic: choose("kernel", kernel, &KERNELS)?,
+    };
     let product = work::run(py, &call, |context| -> Result<_> {
         refuse_existing(&outputs, overwrite)?;
         let product = run::triangulate_space(&file, &options, context)?;
@@ -253,7 +304,9 @@ pub(crate) fn triangulate_space<'py>(
         for mesh in meshes {
             let path = mesh.path().to_path_buf();
             let solid = product.solid.as_ref().ok_or_else(|| {
-                Error::usage("there is no alpha shape to write").in_file(path).cure("use alpha=\"auto\", or write .vtu")
+                Error::usage("there is no alpha shape to write")
+                    .in_file(path)
+                    .cure("use alpha=\"auto\", or write .vtu")
             })?;
             run::write_mesh(solid, mesh, context)?;
         }
@@ -261,9 +314,19 @@ pub(crate) fn triangulate_space<'py>(
         Ok(product)
     })?;
     let (report, found) = (product.report, PyDict::new(py));
-    found.set_item("vertices", arrays::table(py, product.triangulated.nodes.points)?)?;
-    found.set_item("tetrahedra", arrays::table(py, signed(product.triangulated.tetrahedra))?)?;
-    for (name, count) in [("points", report.points), ("duplicates", report.duplicates), ("hidden", report.hidden)] {
+    found.set_item(
+        "vertices",
+        arrays::table(py, product.triangulated.nodes.points)?,
+    )?;
+    found.set_item(
+        "tetrahedra",
+        arrays::table(py, signed(product.triangulated.tetrahedra))?,
+    )?;
+    for (name, count) in [
+        ("points", report.points),
+        ("duplicates", report.duplicates),
+        ("hidden", report.hidden),
+    ] {
         found.set_item(name, count)?;
     }
     found.set_item("dimension", report.dimension)?;
@@ -287,7 +350,9 @@ fn signed<const N: usize>(rows: Vec<[u32; N]>) -> Vec<[i64; N]> {
 
 fn refuse_existing(outputs: &[PathBuf], overwrite: bool) -> Result<()> {
     if !overwrite {
-        outputs.iter().try_for_each(|path| io::require_absent(path))?;
+        outputs
+            .iter()
+            .try_for_each(|path| io::require_absent(path))?;
     }
     Ok(())
 }
@@ -300,14 +365,28 @@ fn split(outputs: &[PathBuf]) -> (Vec<Destination<'_>>, Vec<Destination<'_>>) {
 }
 
 fn destinations(paths: Vec<&PathBuf>) -> Vec<Destination<'_>> {
-    paths.into_iter().map(|path| path.as_path().into()).collect()
+    paths
+        .into_iter()
+        .map(|path| path.as_path().into())
+        .collect()
 }
 
 /// Checks tetrahedra; returns the flaws.
 #[pyfunction]
-pub(crate) fn check_space(py: Python<'_>, file: PathBuf, weighted: bool, call: Call) -> PyResult<Vec<String>> {
-    let law = if weighted { run::SpaceLaw::Regular } else { run::SpaceLaw::Delaunay };
-    let checked = work::run(py, &call, |context| -> Result<_> { Ok(run::check_space(&file, law, context)?) })?;
+pub(crate) fn check_space(
+    py: Python<'_>,
+    file: PathBuf,
+    weighted: bool,
+    call: Call,
+) -> PyResult<Vec<String>> {
+    let law = if weighted {
+        run::SpaceLaw::Regular
+    } else {
+        run::SpaceLaw::Delaunay
+    };
+    let checked = work::run(py, &call, |context| -> Result<_> {
+        Ok(run::check_space(&file, law, context)?)
+    })?;
     Ok(checked.flaws.iter().map(ToString::to_string).collect())
 }
 

@@ -3,7 +3,10 @@
 //! Everything is one call of `breakline::run`. What a user sees is the Python package around it, in
 //! `package/breakline`.
 
-#![allow(clippy::too_many_arguments, reason = "functions have the parameters of those in Python")]
+#![allow(
+    clippy::too_many_arguments,
+    reason = "functions have the parameters of those in Python"
+)]
 
 use pyo3::prelude::*;
 
@@ -27,8 +30,8 @@ mod _breakline {
 
     #[pymodule_export]
     use super::files::{
-        check_space, class_number, describe, info, is_of_space, main, read_points, triangulate, triangulate_space,
-        write_points,
+        check_space, class_number, describe, info, is_of_space, main, read_points, triangulate,
+        triangulate_space, write_points,
     };
     #[pymodule_export]
     use super::names::settings;

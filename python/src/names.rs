@@ -9,9 +9,15 @@ pub(crate) fn name(term: &Term) -> String {
     let written = match term {
         Term::Setting(setting) => parameter(*setting),
         Term::On(setting) => parameter(*setting).map(|parameter| format!("{parameter}=True")),
-        Term::Text(setting, value) => parameter(*setting).map(|parameter| format!("{parameter}=\"{value}\"")),
-        Term::Number(setting, value) => parameter(*setting).map(|parameter| format!("{parameter}={value}")),
-        Term::Command(command, file) => return call(*command, file.as_deref()).unwrap_or_else(|| cli::name_of(term)),
+        Term::Text(setting, value) => {
+            parameter(*setting).map(|parameter| format!("{parameter}=\"{value}\""))
+        }
+        Term::Number(setting, value) => {
+            parameter(*setting).map(|parameter| format!("{parameter}={value}"))
+        }
+        Term::Command(command, file) => {
+            return call(*command, file.as_deref()).unwrap_or_else(|| cli::name_of(term));
+        }
         Term::Build(feature) => return format!("the feature `{}` of the crate", feature.name()),
     };
     written.unwrap_or_else(|| match term {
@@ -60,5 +66,8 @@ fn call(command: Command, file: Option<&str>) -> Option<String> {
 /// Returns all settings, each with its parameter, if there is one.
 #[pyfunction]
 pub(crate) fn settings() -> Vec<(&'static str, Option<String>)> {
-    Setting::ALL.iter().map(|setting| (setting.name(), parameter(*setting))).collect()
+    Setting::ALL
+        .iter()
+        .map(|setting| (setting.name(), parameter(*setting)))
+        .collect()
 }

@@ -31,10 +31,16 @@ fn is_warning(notice: &Notice) -> bool {
 /// # Errors
 /// The exception that a warning is turned into, if the user has asked for that.
 pub(crate) fn warn(py: Python<'_>, notices: &[Notice]) -> PyResult<()> {
-    let mut warnings = notices.iter().filter(|notice| is_warning(notice)).peekable();
+    let mut warnings = notices
+        .iter()
+        .filter(|notice| is_warning(notice))
+        .peekable();
     if warnings.peek().is_none() {
         return Ok(());
     }
     let texts: Vec<String> = warnings.map(|notice| notice.text().render(&name)).collect();
-    py.import("breakline._errors")?.getattr("warn")?.call1((texts,)).map(drop)
+    py.import("breakline._errors")?
+        .getattr("warn")?
+        .call1((texts,))
+        .map(drop)
 }

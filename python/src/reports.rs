@@ -9,13 +9,21 @@ use crate::errors::Result;
 use crate::{names, work};
 
 /// Returns the counts of a surface and, if it was built here, of how.
-pub(crate) fn of_surface<'py>(py: Python<'py>, product: &SurfaceProduct) -> PyResult<Bound<'py, PyDict>> {
+pub(crate) fn of_surface<'py>(
+    py: Python<'py>,
+    product: &SurfaceProduct,
+) -> PyResult<Bound<'py, PyDict>> {
     let report = PyDict::new(py);
     if product.triangles().is_err() {
         return Ok(report);
     }
     let facts = work::short(py, || -> Result<_> { Ok(product.facts()?) })?;
-    let SurfaceFacts { vertices, triangles, edges, extent } = facts;
+    let SurfaceFacts {
+        vertices,
+        triangles,
+        edges,
+        extent,
+    } = facts;
     report.set_item("vertices", vertices)?;
     report.set_item("triangles", triangles)?;
     let kinds = PyDict::new(py);
@@ -51,7 +59,14 @@ pub(crate) fn of_building(report: &Bound<'_, PyDict>, built: &BuildReport) -> Py
         classes.set_item(class, count)?;
     }
     report.set_item("points_by_class", classes)?;
-    report.set_item("classes_used", points.classes.as_ref().map(|classes| PyList::new(py, classes)).transpose()?)?;
+    report.set_item(
+        "classes_used",
+        points
+            .classes
+            .as_ref()
+            .map(|classes| PyList::new(py, classes))
+            .transpose()?,
+    )?;
     for (name, count) in [
         ("duplicates", tin.duplicates),
         ("points_replaced", tin.points_replaced),
@@ -60,7 +75,10 @@ pub(crate) fn of_building(report: &Bound<'_, PyDict>, built: &BuildReport) -> Py
         ("breakline_vertices", tin.breakline_vertices),
         ("crossings", tin.crossings),
         ("triangles_beyond_max_edge", tin.faces_beyond_max_edge),
-        ("triangles_beyond_max_edge_inside", tin.faces_with_long_edges),
+        (
+            "triangles_beyond_max_edge_inside",
+            tin.faces_with_long_edges,
+        ),
         ("triangles_clipped", tin.faces_clipped),
         ("triangles_cut", tin.faces_cut),
         ("vertices_clipped", tin.vertices_clipped),
@@ -94,7 +112,10 @@ fn crossing_heights<'py>(py: Python<'py>, built: &BuildReport) -> PyResult<Bound
         let found = PyDict::new(py);
         found.set_item("at", crossing.site)?;
         found.set_item("height", crossing.chosen)?;
-        let heights = crossing.heights.iter().map(|&(line, height)| (built.line_names.name(line), height));
+        let heights = crossing
+            .heights
+            .iter()
+            .map(|&(line, height)| (built.line_names.name(line), height));
         found.set_item("lines", heights.collect::<Vec<_>>())?;
         differing.append(found)?;
     }
@@ -108,7 +129,10 @@ fn water_overlaps<'py>(py: Python<'py>, built: &BuildReport) -> PyResult<Bound<'
         let found = PyDict::new(py);
         found.set_item("at", overlap.at)?;
         found.set_item("step", overlap.step)?;
-        found.set_item("lines", overlap.lines.map(|line| built.line_names.name(line)))?;
+        found.set_item(
+            "lines",
+            overlap.lines.map(|line| built.line_names.name(line)),
+        )?;
         overlaps.append(found)?;
     }
     Ok(overlaps)

@@ -8,8 +8,8 @@ use breakline::data::{Bounds, Column, Lattice, Layer, PointBatch, PointFlags, Sh
 use breakline::io::OnDamage;
 use breakline::io::points;
 use breakline::run::{
-    Degrees, EdgeLimit, FlatOptions, FlatRule, FrameOptions, Input, LineRequest, LowerEdge, MemoryPoints, PerRecord,
-    ReplacedPoints, SystemOptions, TinRequest, WallOptions,
+    Degrees, EdgeLimit, FlatOptions, FlatRule, FrameOptions, Input, LineRequest, LowerEdge,
+    MemoryPoints, PerRecord, ReplacedPoints, SystemOptions, TinRequest, WallOptions,
 };
 use breakline::terrain::{Classes, CrossingRule, DuplicateRule, HighSide, Method};
 use breakline::triangulation::OnCrossing;
@@ -21,14 +21,18 @@ use crate::errors::{self, Failure};
 
 /// Returns what a name stands for.
 pub(crate) fn choose<T: Copy>(parameter: &str, name: &str, table: &[(&str, T)]) -> PyResult<T> {
-    table.iter().find(|(known, _)| *known == name).map(|(_, value)| *value).ok_or_else(|| {
-        let known: Vec<&str> = table.iter().map(|(known, _)| *known).collect();
-        errors::usage(
-            &format!("{parameter} has an unknown value"),
-            &format!("'{name}'"),
-            &format!("use one of {}", known.join(", ")),
-        )
-    })
+    table
+        .iter()
+        .find(|(known, _)| *known == name)
+        .map(|(_, value)| *value)
+        .ok_or_else(|| {
+            let known: Vec<&str> = table.iter().map(|(known, _)| *known).collect();
+            errors::usage(
+                &format!("{parameter} has an unknown value"),
+                &format!("'{name}'"),
+                &format!("use one of {}", known.join(", ")),
+            )
+        })
 }
 
 const DUPLICATES: [(&str, DuplicateRule); 5] = [
@@ -39,7 +43,8 @@ const DUPLICATES: [(&str, DuplicateRule); 5] = [
     ("last", DuplicateRule::Last),
 ];
 
-const ON_CROSSING: [(&str, OnCrossing); 2] = [("split", OnCrossing::Split), ("reject", OnCrossing::Reject)];
+const ON_CROSSING: [(&str, OnCrossing); 2] =
+    [("split", OnCrossing::Split), ("reject", OnCrossing::Reject)];
 
 const METHODS: [(&str, Method); 6] = [
     ("linear", Method::Linear),
@@ -74,7 +79,10 @@ pub(crate) fn crs(text: Option<&str>) -> PyResult<Option<Crs>> {
 
 /// A box in plan: west, south, east, north.
 pub(crate) fn bounds(corners: Option<[f64; 4]>) -> Option<Bounds> {
-    corners.map(|[x0, y0, x1, y1]| Bounds { min: [x0, y0, f64::NEG_INFINITY], max: [x1, y1, f64::INFINITY] })
+    corners.map(|[x0, y0, x1, y1]| Bounds {
+        min: [x0, y0, f64::NEG_INFINITY],
+        max: [x1, y1, f64::INFINITY],
+    })
 }
 
 /// A coordinate of many points: numbers, or whole steps of a lattice.
@@ -115,14 +123,30 @@ impl Axis<'_> {
 
 impl PointColumns<'_> {
     fn read(&self) -> PyResult<MemoryPoints> {
-        let lattice = Lattice { scale: self.scale, offset: self.offset };
+        let lattice = Lattice {
+            scale: self.scale,
+            offset: self.offset,
+        };
         let [x, y, z] = [0, 1, 2].map(|k| self.axes[k].read(k, &lattice));
         let bytes = |column: &Option<PyReadonlyArray1<'_, u8>>| -> Vec<u8> {
-            column.as_ref().map(|column| column.as_array().iter().copied().collect()).unwrap_or_default()
+            column
+                .as_ref()
+                .map(|column| column.as_array().iter().copied().collect())
+                .unwrap_or_default()
         };
         let flags = bytes(&self.flags).into_iter().map(PointFlags).collect();
-        let points = PointBatch { x, y, z, class: bytes(&self.classes), flags, ..PointBatch::default() };
-        Ok(MemoryPoints { points, crs: crs(self.crs.as_deref())? })
+        let points = PointBatch {
+            x,
+            y,
+            z,
+            class: bytes(&self.classes),
+            flags,
+            ..PointBatch::default()
+        };
+        Ok(MemoryPoints {
+            points,
+            crs: crs(self.crs.as_deref())?,
+        })
     }
 }
 
@@ -157,16 +181,35 @@ pub(crate) struct Shapes<'py> {
 impl Shapes<'_> {
     fn read(&self) -> PyResult<Layer> {
         let mut vertices = arrays::points::<3>(&self.vertices).into_iter();
-        let mut parts = self.parts.iter().map(|&count| vertices.by_ref().take(count).collect::<Vec<_>>());
+        let mut parts = self
+            .parts
+            .iter()
+            .map(|&count| vertices.by_ref().take(count).collect::<Vec<_>>());
         let shapes = self.shapes.iter().map(|&(kind, count)| {
             let parts = parts.by_ref().take(count).collect();
-            if kind == 2 { Shape::Polygon(parts) } else { Shape::Lines(parts) }
+            if kind == 2 {
+                Shape::Polygon(parts)
+            } else {
+                Shape::Lines(parts)
+            }
         });
         let shapes = shapes.collect();
-        let columns: Vec<Column> =
-            self.columns.iter().map(|(name, values)| Column { name: name.clone(), values: values.clone() }).collect();
+        let columns: Vec<Column> = self
+            .columns
+            .iter()
+            .map(|(name, values)| Column {
+                name: name.clone(),
+                values: values.clone(),
+            })
+            .collect();
         let fields = columns.iter().map(|column| column.name.clone()).collect();
-        Ok(Layer { shapes, crs: crs(self.crs.as_deref())?, fields, columns, ..Layer::default() })
+        Ok(Layer {
+            shapes,
+            crs: crs(self.crs.as_deref())?,
+            fields,
+            columns,
+            ..Layer::default()
+        })
     }
 }
 
@@ -213,11 +256,23 @@ impl ReadArguments {
     pub(crate) fn options(&self) -> PyResult<points::Options> {
         let columns = self.columns.as_deref().map(|text| {
             text.parse().map_err(|why: String| {
-                errors::usage(&format!("columns: {why}"), &format!("'{text}'"), "write 'PNEZD', 'XYZ' or (2, 1, 3)")
+                errors::usage(
+                    &format!("columns: {why}"),
+                    &format!("'{text}'"),
+                    "write 'PNEZD', 'XYZ' or (2, 1, 3)",
+                )
             })
         });
-        let cut = if self.partial { OnDamage::Accept } else { OnDamage::Refuse };
-        Ok(points::Options { columns: columns.transpose()?, cut, ..points::Options::default() })
+        let cut = if self.partial {
+            OnDamage::Accept
+        } else {
+            OnDamage::Refuse
+        };
+        Ok(points::Options {
+            columns: columns.transpose()?,
+            cut,
+            ..points::Options::default()
+        })
     }
 }
 
@@ -232,8 +287,16 @@ pub(crate) struct SystemArguments {
 
 impl SystemArguments {
     pub(crate) fn options(&self) -> PyResult<SystemOptions> {
-        let degrees = if self.force_degrees { Degrees::Allow } else { Degrees::Refuse };
-        Ok(SystemOptions { assign: crs(self.crs.as_deref())?, target: crs(self.to_crs.as_deref())?, degrees })
+        let degrees = if self.force_degrees {
+            Degrees::Allow
+        } else {
+            Degrees::Refuse
+        };
+        Ok(SystemOptions {
+            assign: crs(self.crs.as_deref())?,
+            target: crs(self.to_crs.as_deref())?,
+            degrees,
+        })
     }
 }
 
@@ -271,18 +334,29 @@ pub(crate) struct SurfaceArguments<'py> {
 
 impl SurfaceArguments<'_> {
     /// Returns the request for a TIN of these points.
-    pub(crate) fn request(&self, points: &[PointInput<'_>], read: &ReadArguments) -> PyResult<TinRequest> {
+    pub(crate) fn request(
+        &self,
+        points: &[PointInput<'_>],
+        read: &ReadArguments,
+    ) -> PyResult<TinRequest> {
         Ok(TinRequest {
             points: point_inputs(points)?,
             read: read.options()?,
-            classes: self.classes.clone().map_or(Classes::GroundOrAll, Classes::Only),
+            classes: self
+                .classes
+                .clone()
+                .map_or(Classes::GroundOrAll, Classes::Only),
             breaklines: layers(&self.breaklines)?,
             boundary: layers(&self.boundary)?,
             lines: self.lines()?,
             bounds: bounds(self.bounds),
             max_edge: self.edge_limit()?,
             max_edge_inside: positive("max_edge_inside", self.max_edge_inside)?,
-            replaced: if self.flat_points { ReplacedPoints::Keep } else { ReplacedPoints::Drop },
+            replaced: if self.flat_points {
+                ReplacedPoints::Keep
+            } else {
+                ReplacedPoints::Drop
+            },
             duplicates: choose("duplicates", &self.duplicates, &DUPLICATES)?,
             on_crossing: on_crossing(&self.on_crossing)?,
             crossing_heights: crossing_rule(&self.crossing_z)?,
@@ -295,11 +369,14 @@ impl SurfaceArguments<'_> {
             None => Ok(EdgeLimit::Standard),
             Some(NumberOrName::Number(length)) if length.is_infinite() => Ok(EdgeLimit::Unlimited),
             Some(NumberOrName::Number(length)) => {
-                Ok(positive("max_edge", Some(*length))?.map_or(EdgeLimit::Standard, EdgeLimit::Length))
+                Ok(positive("max_edge", Some(*length))?
+                    .map_or(EdgeLimit::Standard, EdgeLimit::Length))
             }
-            Some(NumberOrName::Name(name)) => {
-                choose("max_edge", name, &[("auto", EdgeLimit::Auto), ("none", EdgeLimit::Unlimited)])
-            }
+            Some(NumberOrName::Name(name)) => choose(
+                "max_edge",
+                name,
+                &[("auto", EdgeLimit::Auto), ("none", EdgeLimit::Unlimited)],
+            ),
         }
     }
 
@@ -309,10 +386,18 @@ impl SurfaceArguments<'_> {
             (None, Some(drop)) => Some(LowerEdge::Drop(drop.per_record())),
             (None, None) => None,
             (Some(_), Some(_)) => {
-                return Err(errors::usage("wall_bottom and wall_drop are given", "both", "use one of them"));
+                return Err(errors::usage(
+                    "wall_bottom and wall_drop are given",
+                    "both",
+                    "use one of them",
+                ));
             }
         };
-        let high = choose("wall_high", &self.wall_high, &[("left", HighSide::Left), ("right", HighSide::Right)])?;
+        let high = choose(
+            "wall_high",
+            &self.wall_high,
+            &[("left", HighSide::Left), ("right", HighSide::Right)],
+        )?;
         let height = match &self.flat_height {
             None => FlatRule::OfShore,
             Some(NumberOrName::Name(name)) if name == "lowest" => FlatRule::Lowest,
@@ -323,7 +408,11 @@ impl SurfaceArguments<'_> {
             soft: layers(&self.soft_lines)?,
             draped: layers(&self.draped_lines)?,
             walls: layers(&self.walls)?,
-            wall: WallOptions { lower, width: positive("wall_width", self.wall_width)?, high },
+            wall: WallOptions {
+                lower,
+                width: positive("wall_width", self.wall_width)?,
+                high,
+            },
             holes: layers(&self.holes)?,
             flats: layers(&self.flat)?,
             flat: FlatOptions {
@@ -374,7 +463,11 @@ pub(crate) struct FrameArguments {
 impl FrameArguments {
     pub(crate) fn options(&self) -> PyResult<FrameOptions> {
         if self.resolution.is_some() && self.align_to.is_some() {
-            return Err(errors::usage("resolution and align_to are given", "both", "use one of them"));
+            return Err(errors::usage(
+                "resolution and align_to are given",
+                "both",
+                "use one of them",
+            ));
         }
         Ok(FrameOptions {
             resolution: positive("resolution", self.resolution)?,

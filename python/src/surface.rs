@@ -7,8 +7,8 @@ use breakline::data::{ContourLine, EdgeKind, Frame, Grid};
 use breakline::io::geotiff::CellFormat;
 use breakline::io::{Destination, formats, mapped, mesh};
 use breakline::run::{
-    self, CellProduct, Context, ContourOptions, DemOptions, HillshadeOptions, LightOptions, Model, Source,
-    SurfaceProduct, SurfaceRequest,
+    self, CellProduct, Context, ContourOptions, DemOptions, HillshadeOptions, LightOptions, Model,
+    Source, SurfaceProduct, SurfaceRequest,
 };
 use breakline::terrain::{CompactTin, Method};
 use breakline::{Error, io};
@@ -17,7 +17,9 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 
 use crate::errors::{Failure, Result};
-use crate::requests::{self, FrameArguments, PointInput, ReadArguments, SurfaceArguments, SystemArguments};
+use crate::requests::{
+    self, FrameArguments, PointInput, ReadArguments, SurfaceArguments, SystemArguments,
+};
 use crate::work::{self, Call};
 use crate::{arrays, notices, reports};
 
@@ -40,7 +42,9 @@ pub(crate) struct Surface {
 
 impl Surface {
     fn of(product: SurfaceProduct) -> Self {
-        Surface { product: Arc::new(product) }
+        Surface {
+            product: Arc::new(product),
+        }
     }
 }
 
@@ -57,27 +61,47 @@ impl Surface {
         call: Call,
     ) -> PyResult<Self> {
         let source = Source::Points(Box::new(options.request(&points, &read)?));
-        let request = SurfaceRequest { source, systems: systems.options()? };
+        let request = SurfaceRequest {
+            source,
+            systems: systems.options()?,
+        };
         // The arrays are copied, and may be changed.
         drop((points, options));
-        work::run(py, &call, move |context| -> Result<_> { Ok(run::triangles(&request, context)?) }).map(Surface::of)
+        work::run(py, &call, move |context| -> Result<_> {
+            Ok(run::triangles(&request, context)?)
+        })
+        .map(Surface::of)
     }
 
     /// Reads a mesh or a raster, or opens a TIN; `None` if the file has points.
     #[staticmethod]
-    fn open(py: Python<'_>, file: PathBuf, systems: SystemArguments, call: Call) -> PyResult<Option<Self>> {
+    fn open(
+        py: Python<'_>,
+        file: PathBuf,
+        systems: SystemArguments,
+        call: Call,
+    ) -> PyResult<Option<Self>> {
         let source = work::short(py, || -> Result<_> { Ok(Source::of_files(&[file])?) })?;
         if matches!(source, Source::Points(_)) {
             return Ok(None);
         }
-        let request = SurfaceRequest { source, systems: systems.options()? };
-        let product = work::run(py, &call, |context| -> Result<_> { Ok(run::surface(&request, context)?) })?;
+        let request = SurfaceRequest {
+            source,
+            systems: systems.options()?,
+        };
+        let product = work::run(py, &call, |context| -> Result<_> {
+            Ok(run::surface(&request, context)?)
+        })?;
         Ok(Some(Surface::of(product)))
     }
 
     /// Returns the surface between the centers of the cells of a raster.
     #[staticmethod]
-    fn of_cells(cells: PyReadonlyArray2<'_, f64>, transform: [f64; 6], crs: Option<&str>) -> PyResult<Self> {
+    fn of_cells(
+        cells: PyReadonlyArray2<'_, f64>,
+        transform: [f64; 6],
+        crs: Option<&str>,
+    ) -> PyResult<Self> {
         let grid = grid(&cells, transform, crs)?;
         grid.frame.checked().map_err(Failure)?;
         Ok(Surface::of(Model::Raster(Box::new(grid)).into()))
@@ -117,7 +141,9 @@ impl Surface {
     /// The coordinate system: WKT, name and EPSG code.
     #[getter]
     fn crs(&self) -> Option<(String, String, Option<u32>)> {
-        self.product.crs().map(|crs| (crs.to_wkt(), crs.describe(), crs.epsg))
+        self.product
+            .crs()
+            .map(|crs| (crs.to_wkt(), crs.describe(), crs.epsg))
     }
 
     /// The lowest and the highest coordinates.
@@ -140,11 +166,22 @@ impl Surface {
 
     /// The points that water and walls replaced, (n, 3).
     fn replaced_points<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        arrays::table(py, self.product.built.as_ref().map(|built| built.replaced.clone()).unwrap_or_default())
+        arrays::table(
+            py,
+            self.product
+                .built
+                .as_ref()
+                .map(|built| built.replaced.clone())
+                .unwrap_or_default(),
+        )
     }
 
     /// Returns the vertices (n, 3) and the corners of the triangles (m, 3), as a file lists them.
-    fn list<'py>(&self, py: Python<'py>, call: Call) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+    fn list<'py>(
+        &self,
+        py: Python<'py>,
+        call: Call,
+    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
         let product = &self.product;
         let (vertices, faces) = work::run(py, &call, |_| -> Result<_> {
             let listed = mesh::list(product.triangles()?)?;
@@ -157,14 +194,23 @@ impl Surface {
     }
 
     /// Returns the ends of all edges (k, 2) and their kinds (k,).
-    fn edges<'py>(&self, py: Python<'py>, call: Call) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+    fn edges<'py>(
+        &self,
+        py: Python<'py>,
+        call: Call,
+    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
         let product = &self.product;
         let (ends, kinds) = work::run(py, &call, |_| -> Result<_> {
-            let (ends, kinds): (Vec<[u32; 2]>, Vec<u8>) =
-                mesh::edges(product.triangles()?)?.into_iter().map(|(ends, kind)| (ends, kind.number())).unzip();
+            let (ends, kinds): (Vec<[u32; 2]>, Vec<u8>) = mesh::edges(product.triangles()?)?
+                .into_iter()
+                .map(|(ends, kind)| (ends, kind.number()))
+                .unzip();
             Ok((signed(ends)?, kinds))
         })?;
-        let lists = (arrays::table(py, ends)?, arrays::column(py, kinds).into_any());
+        let lists = (
+            arrays::table(py, ends)?,
+            arrays::column(py, kinds).into_any(),
+        );
         arrays::read_only(&lists.0)?;
         arrays::read_only(&lists.1)?;
         Ok(lists)
@@ -181,7 +227,9 @@ impl Surface {
         let method = requests::method(method)?;
         let positions = arrays::points::<2>(&positions);
         let product = &self.product;
-        let find = |context: &Context<'_>| -> Result<_> { Ok(run::elevations(product, &positions, method, context)?) };
+        let find = |context: &Context<'_>| -> Result<_> {
+            Ok(run::elevations(product, &positions, method, context)?)
+        };
         let heights = if positions.len() <= FEW && method == Method::Linear && self.is_walked() {
             work::short(py, || find(&Context::default()))?
         } else {
@@ -191,13 +239,27 @@ impl Surface {
     }
 
     /// Computes heights at the centers of cells.
-    fn dem<'py>(&self, py: Python<'py>, frame: FrameArguments, method: &str, call: Call) -> PyResult<Raster<'py>> {
-        let options = DemOptions { frame: frame.options()?, method: requests::method(method)? };
+    fn dem<'py>(
+        &self,
+        py: Python<'py>,
+        frame: FrameArguments,
+        method: &str,
+        call: Call,
+    ) -> PyResult<Raster<'py>> {
+        let options = DemOptions {
+            frame: frame.options()?,
+            method: requests::method(method)?,
+        };
         let product = &self.product;
         let (frame, heights) = work::run(py, &call, |context| -> Result<_> {
             Ok(run::dem(product, &options, context)?.collect_cells(context)?)
         })?;
-        self.raster(&frame, arrays::column(py, heights).reshape([frame.height, frame.width])?.into_any())
+        self.raster(
+            &frame,
+            arrays::column(py, heights)
+                .reshape([frame.height, frame.width])?
+                .into_any(),
+        )
     }
 
     /// Computes shades from 1 to 255, 0 where there is no height.
@@ -210,15 +272,35 @@ impl Surface {
         call: Call,
     ) -> PyResult<Raster<'py>> {
         let (azimuth, altitude, z_factor) = light;
-        let light = LightOptions { azimuth, altitude, z_factor };
-        let options = HillshadeOptions { frame: frame.options()?, method: requests::method(method)?, light };
+        let light = LightOptions {
+            azimuth,
+            altitude,
+            z_factor,
+        };
+        let options = HillshadeOptions {
+            frame: frame.options()?,
+            method: requests::method(method)?,
+            light,
+        };
         let product = &self.product;
         let (frame, shades) = work::run(py, &call, |context| -> Result<_> {
-            let (frame, shades) = run::hillshade(product, &options, context)?.collect_cells(context)?;
+            let (frame, shades) =
+                run::hillshade(product, &options, context)?.collect_cells(context)?;
             // A conversion that saturates: NaN becomes 0.
-            Ok((frame, shades.into_iter().map(|shade| shade as u8).collect::<Vec<u8>>()))
+            Ok((
+                frame,
+                shades
+                    .into_iter()
+                    .map(|shade| shade as u8)
+                    .collect::<Vec<u8>>(),
+            ))
         })?;
-        self.raster(&frame, arrays::column(py, shades).reshape([frame.height, frame.width])?.into_any())
+        self.raster(
+            &frame,
+            arrays::column(py, shades)
+                .reshape([frame.height, frame.width])?
+                .into_any(),
+        )
     }
 
     /// Draws contours.
@@ -230,7 +312,11 @@ impl Surface {
         levels: Vec<f64>,
         call: Call,
     ) -> PyResult<Contours<'py>> {
-        let options = ContourOptions { interval, base, levels };
+        let options = ContourOptions {
+            interval,
+            base,
+            levels,
+        };
         let product = &self.product;
         let (points, starts, levels) = work::run(py, &call, |context| -> Result<_> {
             let lines = run::contour(product, &options, context)?.collect(context)?;
@@ -244,14 +330,23 @@ impl Surface {
             Ok((points, starts, levels))
         })?;
         let column = |values| arrays::column(py, values).into_any();
-        Ok((arrays::table(py, points)?, arrays::column(py, starts).into_any(), column(levels)))
+        Ok((
+            arrays::table(py, points)?,
+            arrays::column(py, starts).into_any(),
+            column(levels),
+        ))
     }
 
     /// Returns the flaws, each with the positions that it concerns.
     fn check(&self, py: Python<'_>, call: Call) -> PyResult<Vec<(String, Vec<[f64; 2]>)>> {
         let product = &self.product;
-        let flaws = work::run(py, &call, |context| -> Result<_> { Ok(run::surface_flaws(product, context)?) })?;
-        Ok(flaws.into_iter().map(|flaw| (flaw.flaw.to_string(), flaw.at)).collect())
+        let flaws = work::run(py, &call, |context| -> Result<_> {
+            Ok(run::surface_flaws(product, context)?)
+        })?;
+        Ok(flaws
+            .into_iter()
+            .map(|flaw| (flaw.flaw.to_string(), flaw.at))
+            .collect())
     }
 
     /// Writes the surface as a mesh.
@@ -275,7 +370,11 @@ impl Surface {
     }
 
     fn raster<'py>(&self, frame: &Frame, cells: Bound<'py, PyAny>) -> PyResult<Raster<'py>> {
-        Ok((cells, frame.transform, self.product.crs().map(breakline::crs::Crs::to_wkt)))
+        Ok((
+            cells,
+            frame.transform,
+            self.product.crs().map(breakline::crs::Crs::to_wkt),
+        ))
     }
 }
 
@@ -303,17 +402,35 @@ pub(crate) fn write_to(
 fn signed<const N: usize>(rows: Vec<[u32; N]>) -> Result<Vec<[i32; N]>> {
     let largest = rows.iter().flatten().max().copied().unwrap_or(0);
     if i32::try_from(largest).is_err() {
-        return Err(Error::limit(format!("vertex {largest} has no number of 32 bits with a sign")).into());
+        return Err(Error::limit(format!(
+            "vertex {largest} has no number of 32 bits with a sign"
+        ))
+        .into());
     }
-    Ok(rows.into_iter().map(|row| row.map(u32::cast_signed)).collect())
+    Ok(rows
+        .into_iter()
+        .map(|row| row.map(u32::cast_signed))
+        .collect())
 }
 
 /// Returns the cells of an array as a grid.
-fn grid(cells: &PyReadonlyArray2<'_, f64>, transform: [f64; 6], crs: Option<&str>) -> PyResult<Grid> {
+fn grid(
+    cells: &PyReadonlyArray2<'_, f64>,
+    transform: [f64; 6],
+    crs: Option<&str>,
+) -> PyResult<Grid> {
     let cells = cells.as_array();
     let (height, width) = cells.dim();
-    let frame = Frame { width, height, transform };
-    Ok(Grid { frame, crs: requests::crs(crs)?, values: cells.iter().copied().collect() })
+    let frame = Frame {
+        width,
+        height,
+        transform,
+    };
+    Ok(Grid {
+        frame,
+        crs: requests::crs(crs)?,
+        values: cells.iter().copied().collect(),
+    })
 }
 
 /// Writes cells as GeoTIFF: heights, or shades, which can also be written as PNG.
@@ -329,17 +446,29 @@ pub(crate) fn write_cells(
     call: Call,
 ) -> PyResult<()> {
     let grid = grid(&cells, transform, crs)?;
-    let format = if shades { CellFormat::Shades } else { CellFormat::Heights };
-    let is_picture = file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"));
+    let format = if shades {
+        CellFormat::Shades
+    } else {
+        CellFormat::Heights
+    };
+    let is_picture = file
+        .extension()
+        .is_some_and(|extension| extension.eq_ignore_ascii_case("png"));
     if is_picture && !shades {
         return Err(Failure(
-            Error::usage("heights are not written as a picture").in_file(&file).cure("write .tif, or a hillshade"),
+            Error::usage("heights are not written as a picture")
+                .in_file(&file)
+                .cure("write .tif, or a hillshade"),
         )
         .into());
     }
     write_to(py, &file, overwrite, &call, |target, context| {
         let cells = CellProduct::of_grid(&grid, format);
-        if is_picture { cells.write_picture(target, context) } else { cells.write(target, context).map(drop) }
+        if is_picture {
+            cells.write_picture(target, context)
+        } else {
+            cells.write(target, context).map(drop)
+        }
     })
 }
 
@@ -363,7 +492,10 @@ pub(crate) fn write_contours(
         .zip(levels)
         .map(|(ends, level)| {
             let count = usize::try_from(ends[1].saturating_sub(ends[0])).unwrap_or(0);
-            ContourLine { level, points: points.by_ref().take(count).collect() }
+            ContourLine {
+                level,
+                points: points.by_ref().take(count).collect(),
+            }
         })
         .collect();
     write_to(py, &file, overwrite, &call, |target, context| {
@@ -374,15 +506,31 @@ pub(crate) fn write_contours(
 /// Returns the flaws of a mesh in a file that may not be a surface, or of a surface of points, each
 /// with the positions that it concerns.
 #[pyfunction]
-pub(crate) fn check_file(py: Python<'_>, file: PathBuf, call: Call) -> PyResult<Vec<(String, Vec<[f64; 2]>)>> {
+pub(crate) fn check_file(
+    py: Python<'_>,
+    file: PathBuf,
+    call: Call,
+) -> PyResult<Vec<(String, Vec<[f64; 2]>)>> {
     let source = work::short(py, || -> Result<_> { Ok(Source::of_files(&[file])?) })?;
-    let request = SurfaceRequest { source, ..SurfaceRequest::default() };
-    let checked = work::run(py, &call, |context| -> Result<_> { Ok(run::check(&request, context)?) })?;
-    Ok(checked.flaws.into_iter().map(|flaw| (flaw.flaw.to_string(), flaw.at)).collect())
+    let request = SurfaceRequest {
+        source,
+        ..SurfaceRequest::default()
+    };
+    let checked = work::run(py, &call, |context| -> Result<_> {
+        Ok(run::check(&request, context)?)
+    })?;
+    Ok(checked
+        .flaws
+        .into_iter()
+        .map(|flaw| (flaw.flaw.to_string(), flaw.at))
+        .collect())
 }
 
 /// Returns the name of each kind of edges, by its number.
 #[pyfunction]
 pub(crate) fn edge_kinds() -> Vec<String> {
-    EdgeKind::ALL.iter().map(|kind| format!("{kind:?}").to_lowercase()).collect()
+    EdgeKind::ALL
+        .iter()
+        .map(|kind| format!("{kind:?}").to_lowercase())
+        .collect()
 }

@@ -56,17 +56,41 @@ pub(crate) fn triangulate_arrays<'py>(
     switches: Switches,
     call: Call,
 ) -> PyResult<(Bound<'py, PyDict>, usize)> {
-    let Switches { convex, min_angle, max_area, region_areas, max_added } = switches;
+    let Switches {
+        convex,
+        min_angle,
+        max_area,
+        region_areas,
+        max_added,
+    } = switches;
     let mut graph = graph.read();
     if !region_areas {
         // Without the switch they are not missed.
-        graph.regions.iter_mut().for_each(|region| region.max_area = None);
+        graph
+            .regions
+            .iter_mut()
+            .for_each(|region| region.max_area = None);
     }
-    let options = TriangulateOptions { convex, min_angle, max_area, region_areas, max_added, ..Default::default() };
+    let options = TriangulateOptions {
+        convex,
+        min_angle,
+        max_area,
+        region_areas,
+        max_added,
+        ..Default::default()
+    };
     let product = work::run(py, &call, |context| -> Result<_> {
-        Ok(triangulate_graph(&graph, Path::new(NAME), &options, context)?)
+        Ok(triangulate_graph(
+            &graph,
+            Path::new(NAME),
+            &options,
+            context,
+        )?)
     })?;
-    Ok((arrays(py, product.triangulated)?, product.report.shortfall.len()))
+    Ok((
+        arrays(py, product.triangulated)?,
+        product.report.shortfall.len(),
+    ))
 }
 
 impl Graph<'_> {
@@ -86,9 +110,17 @@ impl Graph<'_> {
             node_file: NAME.into(),
             segments: (0..)
                 .zip(segments.into_iter().zip(markers))
-                .map(|(line, (ends, &marker))| Segment { ends, marker, number: line as i64, line })
+                .map(|(line, (ends, &marker))| Segment {
+                    ends,
+                    marker,
+                    number: line as i64,
+                    line,
+                })
                 .collect(),
-            holes: (0..).zip(holes).map(|(line, at)| Hole { at, line }).collect(),
+            holes: (0..)
+                .zip(holes)
+                .map(|(line, at)| Hole { at, line })
+                .collect(),
             regions: (0..)
                 .zip(regions)
                 .map(|(line, [x, y, attribute, area])| Region {
@@ -105,20 +137,41 @@ impl Graph<'_> {
 
 /// Returns the arrays of a triangulation, by the names of the package `triangle`.
 fn arrays(py: Python<'_>, triangulated: Triangulated) -> PyResult<Bound<'_, PyDict>> {
-    let Triangulated { nodes, triangles, neighbors, attributes, edges, segments, .. } = triangulated;
+    let Triangulated {
+        nodes,
+        triangles,
+        neighbors,
+        attributes,
+        edges,
+        segments,
+        ..
+    } = triangulated;
     let number = |index: u32| index as i32;
     let beside = |neighbor: Option<u32>| neighbor.map_or(-1, number);
     let ends = |edges: &[Edge]| table(py, edges.iter().map(|edge| edge.ends.map(number)).collect());
     let markers = |edges: &[Edge]| table(py, edges.iter().map(|edge| [edge.marker]).collect());
-    let single = |markers: Vec<i32>| table(py, markers.into_iter().map(|marker| [marker]).collect());
+    let single =
+        |markers: Vec<i32>| table(py, markers.into_iter().map(|marker| [marker]).collect());
     let arrays = PyDict::new(py);
     let of_vertices = [nodes.points.len(), nodes.attribute_count];
     arrays.set_item("vertices", table(py, nodes.points)?)?;
-    arrays.set_item("vertex_attributes", column(py, nodes.attributes).reshape(of_vertices)?)?;
+    arrays.set_item(
+        "vertex_attributes",
+        column(py, nodes.attributes).reshape(of_vertices)?,
+    )?;
     arrays.set_item("vertex_markers", single(nodes.markers)?)?;
-    arrays.set_item("triangles", table(py, triangles.into_iter().map(|t| t.map(number)).collect())?)?;
-    arrays.set_item("neighbors", table(py, neighbors.into_iter().map(|t| t.map(beside)).collect())?)?;
-    arrays.set_item("triangle_attributes", table(py, attributes.into_iter().map(|value| [value]).collect())?)?;
+    arrays.set_item(
+        "triangles",
+        table(py, triangles.into_iter().map(|t| t.map(number)).collect())?,
+    )?;
+    arrays.set_item(
+        "neighbors",
+        table(py, neighbors.into_iter().map(|t| t.map(beside)).collect())?,
+    )?;
+    arrays.set_item(
+        "triangle_attributes",
+        table(py, attributes.into_iter().map(|value| [value]).collect())?,
+    )?;
     arrays.set_item("edges", ends(&edges)?)?;
     arrays.set_item("edge_markers", markers(&edges)?)?;
     arrays.set_item("segments", ends(&segments)?)?;

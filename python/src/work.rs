@@ -48,22 +48,41 @@ impl Pool {
 
 /// Locked only while the interpreter's lock is held, so that no other thread has it when the
 /// process forks.
-static POOLS: Mutex<Pools> = Mutex::new(Pools { process: 0, kept: Vec::new() });
+static POOLS: Mutex<Pools> = Mutex::new(Pools {
+    process: 0,
+    kept: Vec::new(),
+});
 
 impl Pools {
     /// Takes out the pool with this number of threads that has the fewest calls, if another one
     /// is not to be started: if it has none, or there are no cores for more threads.
     fn take(&mut self, threads: usize, cores: usize) -> Option<Pool> {
-        let of_size = self.kept.iter().enumerate().filter(|(_, kept)| kept.threads == threads);
-        let (known, calls) = of_size.map(|(i, kept)| (i, kept.calls())).min_by_key(|&(_, calls)| calls)?;
-        let busy: usize = self.kept.iter().filter(|kept| kept.calls() > 0).map(|kept| kept.threads).sum();
+        let of_size = self
+            .kept
+            .iter()
+            .enumerate()
+            .filter(|(_, kept)| kept.threads == threads);
+        let (known, calls) = of_size
+            .map(|(i, kept)| (i, kept.calls()))
+            .min_by_key(|&(_, calls)| calls)?;
+        let busy: usize = self
+            .kept
+            .iter()
+            .filter(|kept| kept.calls() > 0)
+            .map(|kept| kept.threads)
+            .sum();
         (calls == 0 || busy + threads > cores).then(|| self.kept.remove(known))
     }
 
     /// Ends pools without calls, those used longest ago first, until the others have at most so
     /// many threads.
     fn end_idle(&mut self, most: usize) {
-        let mut idle: usize = self.kept.iter().filter(|kept| kept.calls() == 0).map(|kept| kept.threads).sum();
+        let mut idle: usize = self
+            .kept
+            .iter()
+            .filter(|kept| kept.calls() == 0)
+            .map(|kept| kept.threads)
+            .sum();
         self.kept.retain(|kept| {
             let ends = kept.calls() == 0 && idle > most;
             idle -= if ends { kept.threads } else { 0 };
@@ -101,9 +120,16 @@ fn cores() -> usize {
 
 fn started(threads: usize) -> PyResult<Pool> {
     let name = |i: usize| format!("breakline-{i}");
-    let pool = ThreadPoolBuilder::new().num_threads(threads).thread_name(name).build();
-    let pool = pool.map_err(|e| errors::limit(&format!("{threads} threads cannot be started: {e}")))?;
-    Ok(Pool { threads, pool: Arc::new(pool) })
+    let pool = ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .thread_name(name)
+        .build();
+    let pool =
+        pool.map_err(|e| errors::limit(&format!("{threads} threads cannot be started: {e}")))?;
+    Ok(Pool {
+        threads,
+        pool: Arc::new(pool),
+    })
 }
 
 fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
@@ -149,7 +175,9 @@ pub(crate) fn run_alone<T: Send, E: Send + Into<PyErr>>(
     work: impl FnOnce(&Context<'_>) -> Result<T, E> + Send,
 ) -> PyResult<T> {
     let Pool { pool, .. } = started(call.0.unwrap_or_else(cores))?;
-    on_pool(py, &pool, call, |pool, context| pool.install(|| work(context)))
+    on_pool(py, &pool, call, |pool, context| {
+        pool.install(|| work(context))
+    })
 }
 
 /// Does the work with a pool.
@@ -167,12 +195,17 @@ fn on_pool<T: Send, E: Send + Into<PyErr>>(
             let (sender, receiver) = sync_channel(1);
             let (watch, cancel) = (&watch, &cancel);
             let worker = move || {
-                let context = Context { monitor: watch, cancel };
+                let context = Context {
+                    monitor: watch,
+                    cancel,
+                };
                 let outcome = catch_unwind(AssertUnwindSafe(|| work(pool, &context)));
                 // The receiver waits for as long as this is in scope.
                 let _ = sender.send(outcome);
             };
-            Builder::new().name("breakline-call".to_owned()).spawn_scoped(scope, worker)?;
+            Builder::new()
+                .name("breakline-call".to_owned())
+                .spawn_scoped(scope, worker)?;
             loop {
                 match receiver.recv_timeout(POLL) {
                     Ok(outcome) => return Ok(Some(outcome)),
@@ -188,7 +221,8 @@ fn on_pool<T: Send, E: Send + Into<PyErr>>(
             }
         })
     });
-    let outcome = outcome.map_err(|e: std::io::Error| errors::limit(&format!("a thread cannot be started: {e}")))?;
+    let outcome = outcome
+        .map_err(|e: std::io::Error| errors::limit(&format!("a thread cannot be started: {e}")))?;
     if let Some(interruption) = interruption {
         if let Some(Ok(Err(canceled))) = outcome {
             note_cure(py, &interruption, &canceled.into());
@@ -198,7 +232,13 @@ fn on_pool<T: Send, E: Send + Into<PyErr>>(
     match outcome {
         Some(Ok(Ok(done))) => {
             watch.finish(py, progress.as_ref())?;
-            notices::warn(py, &watch.notices.into_inner().unwrap_or_else(PoisonError::into_inner))?;
+            notices::warn(
+                py,
+                &watch
+                    .notices
+                    .into_inner()
+                    .unwrap_or_else(PoisonError::into_inner),
+            )?;
             Ok(done)
         }
         Some(Ok(Err(error))) => Err(error.into()),
@@ -210,7 +250,10 @@ fn on_pool<T: Send, E: Send + Into<PyErr>>(
 /// Adds how to go on, if the work said so when it was canceled, to the exception that has canceled
 /// it.
 fn note_cure(py: Python<'_>, interruption: &PyErr, canceled: &PyErr) {
-    let cure = canceled.value(py).getattr("cure").and_then(|cure| cure.extract::<Option<String>>());
+    let cure = canceled
+        .value(py)
+        .getattr("cure")
+        .and_then(|cure| cure.extract::<Option<String>>());
     if let Ok(Some(cure)) = cure {
         // Python before 3.11 has no notes.
         let _ = interruption.value(py).call_method1("add_note", (cure,));
@@ -257,7 +300,11 @@ impl Progress for Count {
 impl Monitor for Watch {
     fn start(&self, stage: Stage, size: Size) -> Box<dyn Progress> {
         let done = Arc::default();
-        *locked(&self.stage) = Some(Begun { stage, size, done: Arc::clone(&done) });
+        *locked(&self.stage) = Some(Begun {
+            stage,
+            size,
+            done: Arc::clone(&done),
+        });
         Box::new(Count(done))
     }
 
@@ -274,9 +321,13 @@ impl Watch {
     }
 
     fn report(&self, py: Python<'_>, progress: Option<&Py<PyAny>>) -> PyResult<()> {
-        let Some(progress) = progress else { return Ok(()) };
+        let Some(progress) = progress else {
+            return Ok(());
+        };
         let begun = locked(&self.stage);
-        let Some(Begun { stage, size, done }) = begun.as_ref() else { return Ok(()) };
+        let Some(Begun { stage, size, done }) = begun.as_ref() else {
+            return Ok(());
+        };
         let total = match size {
             Size::Items(count) => Some(*count),
             Size::Unknown | Size::Uncounted => None,

@@ -7,16 +7,18 @@ use std::sync::Arc;
 
 use breakline::Error;
 use breakline::run::{
-    self, BadFiles, ContourOptions, DemOptions, Division, Execution, Existing, HillshadeOptions, JobCommand, JobReport,
-    LightOptions, Look, Origin, Source, StoredJob, Summary, SurfaceOptions, SurfaceRequest, Targets, TileOptions, Verb,
-    WriteReport, WriteRequest, Written, WrittenOf,
+    self, BadFiles, ContourOptions, DemOptions, Division, Execution, Existing, HillshadeOptions,
+    JobCommand, JobReport, LightOptions, Look, Origin, Source, StoredJob, Summary, SurfaceOptions,
+    SurfaceRequest, Targets, TileOptions, Verb, WriteReport, WriteRequest, Written, WrittenOf,
 };
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
 use crate::errors::{self, Failure, Result};
 use crate::reports;
-use crate::requests::{self, FrameArguments, PointInput, ReadArguments, SurfaceArguments, SystemArguments};
+use crate::requests::{
+    self, FrameArguments, PointInput, ReadArguments, SurfaceArguments, SystemArguments,
+};
 use crate::work::{self, Call};
 
 /// What is written, and of what, under the names in Python.
@@ -52,29 +54,56 @@ impl Asked<'_> {
             (RASTER, [PointInput::File(path)]) => Source::Raster(path.clone()),
             _ => Source::Points(Box::new(self.surface.request(&self.points, &self.read)?)),
         };
-        let surface = SurfaceRequest { source, systems: self.systems.options()? };
-        Ok(WriteRequest { surface, verb: verb(&self.verb, &self.product)? })
+        let surface = SurfaceRequest {
+            source,
+            systems: self.systems.options()?,
+        };
+        Ok(WriteRequest {
+            surface,
+            verb: verb(&self.verb, &self.product)?,
+        })
     }
 
     fn targets(&self) -> Targets {
-        Targets { existing: Existing::of(self.overwrite), ..Targets::of(&self.output) }
+        Targets {
+            existing: Existing::of(self.overwrite),
+            ..Targets::of(&self.output)
+        }
     }
 
     fn tiles(&self) -> PyResult<TileOptions> {
         let division = self.tiles.as_deref().map(|text| {
-            text.parse::<Division>()
-                .map_err(|why| errors::usage(&format!("tiles: {why}"), &format!("'{text}'"), "write 'auto' or '8x8'"))
+            text.parse::<Division>().map_err(|why| {
+                errors::usage(
+                    &format!("tiles: {why}"),
+                    &format!("'{text}'"),
+                    "write 'auto' or '8x8'",
+                )
+            })
         });
         let memory = self.memory.as_deref().map(|text| {
-            run::memory_of(text)
-                .map_err(|why| errors::usage(&format!("memory: {why}"), &format!("'{text}'"), "write '200MB'"))
+            run::memory_of(text).map_err(|why| {
+                errors::usage(
+                    &format!("memory: {why}"),
+                    &format!("'{text}'"),
+                    "write '200MB'",
+                )
+            })
         });
         Ok(TileOptions {
             division: division.transpose()?.unwrap_or_default(),
             memory: memory.transpose()?,
             folder: self.job.clone(),
-            bad: if self.skip_bad { BadFiles::Skip } else { BadFiles::Refuse },
-            look: if self.headers_only { Look::Headers } else { Look::Points },
+            bad: if self.skip_bad {
+                BadFiles::Skip
+            } else {
+                BadFiles::Refuse
+            },
+            look: if self.headers_only {
+                Look::Headers
+            } else {
+                Look::Points
+            },
             task_memory: self.task_memory,
         })
     }
@@ -86,25 +115,48 @@ impl Asked<'_> {
         } else if self.tiles.is_some() || self.job.is_some() || self.skip_bad {
             Execution::Tiles(options)
         } else {
-            Execution::Auto { memory: options.memory }
+            Execution::Auto {
+                memory: options.memory,
+            }
         })
     }
 }
 
 /// Returns a verb with its options.
 fn verb(name: &str, options: &Bound<'_, PyDict>) -> PyResult<Arc<dyn Verb>> {
-    let frame = || options.as_any().get_item("frame")?.extract::<FrameArguments>()?.options();
+    let frame = || {
+        options
+            .as_any()
+            .get_item("frame")?
+            .extract::<FrameArguments>()?
+            .options()
+    };
     let method = || requests::method(&options.as_any().get_item("method")?.extract::<String>()?);
     Ok(match name {
-        "dem" => Arc::new(DemOptions { frame: frame()?, method: method()? }),
+        "dem" => Arc::new(DemOptions {
+            frame: frame()?,
+            method: method()?,
+        }),
         "hillshade" => {
             let (azimuth, altitude, z_factor) = options.as_any().get_item("light")?.extract()?;
-            let light = LightOptions { azimuth, altitude, z_factor };
-            Arc::new(HillshadeOptions { frame: frame()?, method: method()?, light })
+            let light = LightOptions {
+                azimuth,
+                altitude,
+                z_factor,
+            };
+            Arc::new(HillshadeOptions {
+                frame: frame()?,
+                method: method()?,
+                light,
+            })
         }
         "contour" => {
             let (interval, base, levels) = options.as_any().get_item("levels")?.extract()?;
-            Arc::new(ContourOptions { interval, base, levels })
+            Arc::new(ContourOptions {
+                interval,
+                base,
+                levels,
+            })
         }
         "tin" => Arc::new(SurfaceOptions),
         _ => {
@@ -119,7 +171,11 @@ fn verb(name: &str, options: &Bound<'_, PyDict>) -> PyResult<Arc<dyn Verb>> {
 
 /// Writes what a verb makes of a surface; returns the report.
 #[pyfunction]
-pub(crate) fn write<'py>(py: Python<'py>, asked: Asked<'py>, call: Call) -> PyResult<Bound<'py, PyDict>> {
+pub(crate) fn write<'py>(
+    py: Python<'py>,
+    asked: Asked<'py>,
+    call: Call,
+) -> PyResult<Bound<'py, PyDict>> {
     let (request, targets, execution) = (asked.request()?, asked.targets(), asked.execution()?);
     // The arrays are copied, and may be changed.
     drop(asked);
@@ -140,8 +196,22 @@ fn of_report<'py>(py: Python<'py>, report: &WriteReport) -> PyResult<Bound<'py, 
     Ok(found)
 }
 
-fn of_written(found: &Bound<'_, PyDict>, Written { surface, summary, files, .. }: &Written) -> PyResult<()> {
-    found.set_item("files", files.iter().map(|path| path.as_os_str()).collect::<Vec<&OsStr>>())?;
+fn of_written(
+    found: &Bound<'_, PyDict>,
+    Written {
+        surface,
+        summary,
+        files,
+        ..
+    }: &Written,
+) -> PyResult<()> {
+    found.set_item(
+        "files",
+        files
+            .iter()
+            .map(|path| path.as_os_str())
+            .collect::<Vec<&OsStr>>(),
+    )?;
     match surface {
         WrittenOf::Whole(report) => {
             found.set_item("in_tiles", false)?;
@@ -219,7 +289,9 @@ pub(crate) fn kind_of(py: Python<'_>, file: PathBuf) -> PyResult<&'static str> {
 /// Returns the folder that a job with this output has by default.
 #[pyfunction]
 pub(crate) fn job_folder(output: PathBuf) -> Option<OsString> {
-    Targets::of(output).job_folder().map(PathBuf::into_os_string)
+    Targets::of(output)
+        .job_folder()
+        .map(PathBuf::into_os_string)
 }
 
 /// The job in a folder.
@@ -260,7 +332,10 @@ impl Job {
         let (targets, tiles) = (asked.targets(), asked.tiles()?);
         let command = JobCommand::new(&asked.request()?, &targets, &tiles).map_err(Failure)?;
         drop(asked);
-        let folder = tiles.folder.or_else(|| targets.job_folder()).unwrap_or_default();
+        let folder = tiles
+            .folder
+            .or_else(|| targets.job_folder())
+            .unwrap_or_default();
         work::run_alone(py, &call, |context| -> Result<_> {
             let stored = match StoredJob::find(&folder)? {
                 Some(stored) => {
@@ -269,7 +344,10 @@ impl Job {
                 }
                 None => run::plan_job(&command, &folder, context)?,
             };
-            Ok(Job { folder: stored.folder().to_path_buf(), stored: Some(stored) })
+            Ok(Job {
+                folder: stored.folder().to_path_buf(),
+                stored: Some(stored),
+            })
         })
     }
 
@@ -288,14 +366,22 @@ impl Job {
     /// The first output.
     #[getter]
     fn output(&self, py: Python<'_>) -> PyResult<Option<PathBuf>> {
-        work::short(py, || -> Result<_> { Ok(self.stored()?.command.targets.files.first().cloned()) })
+        work::short(py, || -> Result<_> {
+            Ok(self.stored()?.command.targets.files.first().cloned())
+        })
     }
 
     /// Returns the tasks, each as a dictionary.
     fn tasks<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
         let tasks = work::run_alone(py, &Call::BRIEF, |context| -> Result<_> {
             let stored = self.stored()?;
-            let output = stored.command.targets.files.first().map(PathBuf::as_path).unwrap_or(Path::new(""));
+            let output = stored
+                .command
+                .targets
+                .files
+                .first()
+                .map(PathBuf::as_path)
+                .unwrap_or(Path::new(""));
             Ok(stored.job()?.tasks(output, context)?)
         })?;
         let listed = PyList::empty(py);
@@ -306,7 +392,10 @@ impl Job {
             found.set_item("stage", task.stage)?;
             found.set_item("needs", task.needs)?;
             found.set_item("input", task.input.map(PathBuf::into_os_string))?;
-            found.set_item("has_read", task.has_read.map(|state| (state.size, state.modified)))?;
+            found.set_item(
+                "has_read",
+                task.has_read.map(|state| (state.size, state.modified)),
+            )?;
             found.set_item("done", task.is_done)?;
             listed.append(found)?;
         }
@@ -321,16 +410,31 @@ impl Job {
     }
 
     /// Does a task; returns the report of the last one, which writes the output.
-    fn run_task<'py>(&self, py: Python<'py>, number: usize, call: Call) -> PyResult<Option<Bound<'py, PyDict>>> {
+    fn run_task<'py>(
+        &self,
+        py: Python<'py>,
+        number: usize,
+        call: Call,
+    ) -> PyResult<Option<Bound<'py, PyDict>>> {
         let report = work::run_alone(py, &call, |context| -> Result<_> {
             let stored = self.stored()?;
-            Ok(run::run_task(&stored.job()?, number, &stored.command.targets, context)?)
+            Ok(run::run_task(
+                &stored.job()?,
+                number,
+                &stored.command.targets,
+                context,
+            )?)
         })?;
         report.map(|report| of_report(py, &report)).transpose()
     }
 
     /// Does all tasks that are left, and writes the output; returns the report.
-    fn write<'py>(&self, py: Python<'py>, overwrite: Option<bool>, call: Call) -> PyResult<Bound<'py, PyDict>> {
+    fn write<'py>(
+        &self,
+        py: Python<'py>,
+        overwrite: Option<bool>,
+        call: Call,
+    ) -> PyResult<Bound<'py, PyDict>> {
         let report = work::run_alone(py, &call, |context| -> Result<_> {
             let mut stored = self.stored()?;
             if let Some(overwrite) = overwrite {
@@ -344,7 +448,9 @@ impl Job {
     /// True if files were skipped.
     #[getter]
     fn has_holes(&self, py: Python<'_>) -> PyResult<bool> {
-        work::run_alone(py, &Call::BRIEF, |context| -> Result<_> { Ok(self.stored()?.job()?.has_holes(context)?) })
+        work::run_alone(py, &Call::BRIEF, |context| -> Result<_> {
+            Ok(self.stored()?.job()?.has_holes(context)?)
+        })
     }
 
     /// Removes the files that the job has written, except the output.

@@ -23,8 +23,14 @@ impl Exit {
         (Exit::Done, "done"),
         (Exit::Failed, "failed"),
         (Exit::Usage, "wrong usage"),
-        (Exit::Holes, "done, with holes where files were skipped (--skip-bad)"),
-        (Exit::NotYet, "a task of a job needs others that are not done: later the same may work"),
+        (
+            Exit::Holes,
+            "done, with holes where files were skipped (--skip-bad)",
+        ),
+        (
+            Exit::NotYet,
+            "a task of a job needs others that are not done: later the same may work",
+        ),
     ];
 }
 

@@ -38,13 +38,19 @@ pub fn run(args: impl IntoIterator<Item = OsString>) -> Exit {
         Err(error) => {
             // Help goes to stdout and is not a failure; neither is a closed pipe.
             let _ = error.print();
-            return if error.use_stderr() { Exit::Usage } else { Exit::Done };
+            return if error.use_stderr() {
+                Exit::Usage
+            } else {
+                Exit::Done
+            };
         }
     };
     let console = Console::new(cli.console.level());
     if let Some(threads) = cli.console.threads {
         // Fails if a pool exists already: the demo runs several commands in one process.
-        let _ = rayon::ThreadPoolBuilder::new().num_threads(threads.get()).build_global();
+        let _ = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads.get())
+            .build_global();
     }
     let start = Instant::now();
     match dispatch(&cli.verb, &cli.console, &console) {
@@ -60,7 +66,9 @@ pub fn run(args: impl IntoIterator<Item = OsString>) -> Exit {
             match error.kind() {
                 Kind::Usage | Kind::OtherJob => Exit::Usage,
                 Kind::NotYet => Exit::NotYet,
-                Kind::Format | Kind::Unsupported | Kind::Limit | Kind::Io | Kind::Canceled => Exit::Failed,
+                Kind::Format | Kind::Unsupported | Kind::Limit | Kind::Io | Kind::Canceled => {
+                    Exit::Failed
+                }
             }
         }
     }
@@ -91,7 +99,9 @@ fn dispatch(verb: &Verb, how: &ConsoleArgs, console: &Console) -> Result<Exit> {
     match verb {
         Verb::Info(args) => verbs::info::run(args, console),
         Verb::Points(args) => verbs::points::run(args, console),
-        Verb::Tin(_) | Verb::Dem(_) | Verb::Contour(_) | Verb::Hillshade(_) => verbs::write::run(verb, console),
+        Verb::Tin(_) | Verb::Dem(_) | Verb::Contour(_) | Verb::Hillshade(_) => {
+            verbs::write::run(verb, console)
+        }
         Verb::Triangulate(args) => verbs::triangulate::run(args, console),
         Verb::Check(args) => verbs::check::run(args, console),
         Verb::Job(args) => verbs::job::run(args, console),

@@ -43,7 +43,10 @@ impl Definition {
             (None, None) => true,
             _ => false,
         };
-        self.kind == other.kind && self.unit.is_same(&other.unit) && projection && self.datum.is_same(&other.datum)
+        self.kind == other.kind
+            && self.unit.is_same(&other.unit)
+            && projection
+            && self.datum.is_same(&other.datum)
     }
 }
 
@@ -51,7 +54,10 @@ impl Datum {
     pub(super) fn is_same(&self, other: &Datum) -> bool {
         let same = match (self.code, other.code) {
             (Some(a), Some(b)) => a == b,
-            _ => normalized(&self.name) == normalized(&other.name) && self.ellipsoid.is_same(&other.ellipsoid),
+            _ => {
+                normalized(&self.name) == normalized(&other.name)
+                    && self.ellipsoid.is_same(&other.ellipsoid)
+            }
         };
         same && (self.meridian - other.meridian).abs() < 1e-7
     }

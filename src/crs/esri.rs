@@ -14,38 +14,158 @@ use super::definition::Datum;
 const WELL_KNOWN: &[(&str, u32, &str, &str, &str)] = &[
     ("WGS 84", 6326, "WGS_1984", "WGS_1984", "WGS_1984"),
     ("WGS 72", 6322, "WGS_1972", "WGS_1972", "WGS_1972"),
-    ("WGS 72BE", 6324, "WGS_1972_BE", "WGS_1972_BE", "WGS_1972_BE"),
+    (
+        "WGS 72BE",
+        6324,
+        "WGS_1972_BE",
+        "WGS_1972_BE",
+        "WGS_1972_BE",
+    ),
     ("ETRS89", 6258, "ETRS_1989", "ETRS_1989", "ETRS_1989"),
     ("ED50", 6230, "European_1950", "ED_1950", "European_1950"),
-    ("NAD27", 6267, "North_American_1927", "NAD_1927", "North_American_1927"),
-    ("NAD83", 6269, "North_American_1983", "NAD_1983", "North_American_1983"),
-    ("NAD83(HARN)", 6152, "North_American_1983_HARN", "NAD_1983_HARN", "North_American_1983_HARN"),
-    ("NAD83(CSRS)", 6140, "North_American_1983_CSRS", "NAD_1983_CSRS", "North_American_1983_CSRS"),
-    ("NAD83(NSRS2007)", 6759, "NAD_1983_NSRS2007", "NAD_1983_NSRS2007", "NAD_1983_NSRS2007"),
-    ("NAD83(CORS96)", 1133, "NAD_1983_CORS96", "NAD_1983_CORS96", "NAD_1983_CORS96"),
-    ("NAD83(2011)", 1116, "NAD_1983_2011", "NAD_1983_2011", "NAD_1983_2011"),
-    ("NAD83(PA11)", 1117, "NAD_1983_PA11", "NAD_1983_PA11", "NAD_1983_PA11"),
-    ("NAD83(MA11)", 1118, "NAD_1983_MA11", "NAD_1983_MA11", "NAD_1983_MA11"),
+    (
+        "NAD27",
+        6267,
+        "North_American_1927",
+        "NAD_1927",
+        "North_American_1927",
+    ),
+    (
+        "NAD83",
+        6269,
+        "North_American_1983",
+        "NAD_1983",
+        "North_American_1983",
+    ),
+    (
+        "NAD83(HARN)",
+        6152,
+        "North_American_1983_HARN",
+        "NAD_1983_HARN",
+        "North_American_1983_HARN",
+    ),
+    (
+        "NAD83(CSRS)",
+        6140,
+        "North_American_1983_CSRS",
+        "NAD_1983_CSRS",
+        "North_American_1983_CSRS",
+    ),
+    (
+        "NAD83(NSRS2007)",
+        6759,
+        "NAD_1983_NSRS2007",
+        "NAD_1983_NSRS2007",
+        "NAD_1983_NSRS2007",
+    ),
+    (
+        "NAD83(CORS96)",
+        1133,
+        "NAD_1983_CORS96",
+        "NAD_1983_CORS96",
+        "NAD_1983_CORS96",
+    ),
+    (
+        "NAD83(2011)",
+        1116,
+        "NAD_1983_2011",
+        "NAD_1983_2011",
+        "NAD_1983_2011",
+    ),
+    (
+        "NAD83(PA11)",
+        1117,
+        "NAD_1983_PA11",
+        "NAD_1983_PA11",
+        "NAD_1983_PA11",
+    ),
+    (
+        "NAD83(MA11)",
+        1118,
+        "NAD_1983_MA11",
+        "NAD_1983_MA11",
+        "NAD_1983_MA11",
+    ),
     ("RGF93 v1", 6171, "RGF_1993", "RGF_1993", "RGF_1993"),
     ("NTF", 6275, "NTF", "NTF", "NTF"),
-    ("DHDN", 6314, "Deutsches_Hauptdreiecksnetz", "DHDN", "Deutsches_Hauptdreiecksnetz"),
+    (
+        "DHDN",
+        6314,
+        "Deutsches_Hauptdreiecksnetz",
+        "DHDN",
+        "Deutsches_Hauptdreiecksnetz",
+    ),
     ("MGI", 6312, "MGI", "MGI", "MGI"),
     ("S-JTSK", 6156, "S_JTSK", "S-JTSK", "S_JTSK"),
     ("OSGB36", 6277, "OSGB_1936", "OSGB_1936", "OSGB_1936"),
     ("BD72", 6313, "Belge_1972", "Belge_1972", "Belge_1972"),
-    ("HD72", 6237, "Hungarian_1972", "Hungarian_1972", "Hungarian_1972"),
-    ("AGD66", 6202, "Australian_1966", "AGD_1966", "Australian_1966"),
-    ("AGD84", 6203, "Australian_1984", "AGD_1984", "Australian_1984"),
+    (
+        "HD72",
+        6237,
+        "Hungarian_1972",
+        "Hungarian_1972",
+        "Hungarian_1972",
+    ),
+    (
+        "AGD66",
+        6202,
+        "Australian_1966",
+        "AGD_1966",
+        "Australian_1966",
+    ),
+    (
+        "AGD84",
+        6203,
+        "Australian_1984",
+        "AGD_1984",
+        "Australian_1984",
+    ),
     ("GDA94", 6283, "GDA_1994", "GDA_1994", "GDA_1994"),
-    ("NZGD49", 6272, "New_Zealand_1949", "NZGD_1949", "New_Zealand_1949"),
+    (
+        "NZGD49",
+        6272,
+        "New_Zealand_1949",
+        "NZGD_1949",
+        "New_Zealand_1949",
+    ),
     ("NZGD2000", 6167, "NZGD_2000", "NZGD_2000", "NZGD_2000"),
     ("JGD2000", 6612, "JGD_2000", "JGD_2000", "JGD_2000"),
     ("JGD2011", 1128, "JGD_2011", "JGD_2011", "JGD_2011"),
-    ("SAD69", 6618, "South_American_1969", "SAD_1969", "South_American_1969"),
-    ("PSAD56", 6248, "Provisional_S_American_1956", "PSAD_1956", "Provisional_S_American_1956"),
-    ("SIRGAS 2000", 6674, "SIRGAS_2000", "SIRGAS_2000", "SIRGAS_2000"),
-    ("Pulkovo 1942(58)", 6179, "Pulkovo_1942_Adj_1958", "Pulkovo_1942_Adj_1958", "Pulkovo_1942_Adj_1958"),
-    ("Pulkovo 1942(83)", 6178, "Pulkovo_1942_Adj_1983", "Pulkovo_1942_Adj_1983", "Pulkovo_1942_Adj_1983"),
+    (
+        "SAD69",
+        6618,
+        "South_American_1969",
+        "SAD_1969",
+        "South_American_1969",
+    ),
+    (
+        "PSAD56",
+        6248,
+        "Provisional_S_American_1956",
+        "PSAD_1956",
+        "Provisional_S_American_1956",
+    ),
+    (
+        "SIRGAS 2000",
+        6674,
+        "SIRGAS_2000",
+        "SIRGAS_2000",
+        "SIRGAS_2000",
+    ),
+    (
+        "Pulkovo 1942(58)",
+        6179,
+        "Pulkovo_1942_Adj_1958",
+        "Pulkovo_1942_Adj_1958",
+        "Pulkovo_1942_Adj_1958",
+    ),
+    (
+        "Pulkovo 1942(83)",
+        6178,
+        "Pulkovo_1942_Adj_1983",
+        "Pulkovo_1942_Adj_1983",
+        "Pulkovo_1942_Adj_1983",
+    ),
 ];
 
 /// Ellipsoids with different names at Esri, from the same pages.
@@ -80,8 +200,11 @@ const PROJECTED: &[(u32, &str)] = &[
 ];
 
 /// Words within the names of projected systems.
-const WORDS: &[(&str, &str)] =
-    &[("3-degree Gauss-Kruger", "3_Degree_GK"), ("Gauss-Kruger zone", "GK_Zone"), ("zone", "Zone")];
+const WORDS: &[(&str, &str)] = &[
+    ("3-degree Gauss-Kruger", "3_Degree_GK"),
+    ("Gauss-Kruger zone", "GK_Zone"),
+    ("zone", "Zone"),
+];
 
 /// Esri's name of a datum.
 pub(super) fn datum(datum: &Datum) -> String {
@@ -107,15 +230,26 @@ pub(super) fn projected(name: &str, code: Option<u32>) -> String {
         return row.1.to_owned();
     }
     // "ETRS89 / UTM zone 32N"
-    let Some((geographic, rest)) = name.split_once(" / ") else { return underscored(name) };
-    let geographic = WELL_KNOWN.iter().find(|row| row.0 == geographic).map_or(geographic, |row| row.3);
-    let rest = WORDS.iter().fold(rest.to_owned(), |text, (epsg, esri)| text.replace(epsg, esri));
+    let Some((geographic, rest)) = name.split_once(" / ") else {
+        return underscored(name);
+    };
+    let geographic = WELL_KNOWN
+        .iter()
+        .find(|row| row.0 == geographic)
+        .map_or(geographic, |row| row.3);
+    let rest = WORDS.iter().fold(rest.to_owned(), |text, (epsg, esri)| {
+        text.replace(epsg, esri)
+    });
     underscored(&format!("{geographic}_{rest}"))
 }
 
 fn prefixed(prefix: &str, name: &str) -> String {
     let name = underscored(name);
-    if name.starts_with(prefix) { name } else { format!("{prefix}{name}") }
+    if name.starts_with(prefix) {
+        name
+    } else {
+        format!("{prefix}{name}")
+    }
 }
 
 /// Replaces signs by underscores: "ETRS89 / UTM zone 32N" becomes "ETRS89_UTM_zone_32N". Signs that
@@ -142,14 +276,29 @@ mod tests {
         assert_eq!(geographic("CH1903+"), "GCS_CH1903+");
         assert_eq!(geographic("NTF (Paris)"), "GCS_NTF_Paris");
         assert_eq!(geographic("NAD83"), "GCS_North_American_1983");
-        assert_eq!(projected("ETRS89 / UTM zone 32N", Some(25832)), "ETRS_1989_UTM_Zone_32N");
-        assert_eq!(projected("NAD83 / UTM zone 15N", None), "NAD_1983_UTM_Zone_15N");
+        assert_eq!(
+            projected("ETRS89 / UTM zone 32N", Some(25832)),
+            "ETRS_1989_UTM_Zone_32N"
+        );
+        assert_eq!(
+            projected("NAD83 / UTM zone 15N", None),
+            "NAD_1983_UTM_Zone_15N"
+        );
         assert_eq!(projected("CH1903+ / LV95", None), "CH1903+_LV95");
-        assert_eq!(projected("Pulkovo 1942 / 3-degree Gauss-Kruger zone 46", None), "Pulkovo_1942_3_Degree_GK_Zone_46");
-        assert_eq!(projected("WGS 84 / Pseudo-Mercator", Some(3857)), "WGS_1984_Web_Mercator_Auxiliary_Sphere");
+        assert_eq!(
+            projected("Pulkovo 1942 / 3-degree Gauss-Kruger zone 46", None),
+            "Pulkovo_1942_3_Degree_GK_Zone_46"
+        );
+        assert_eq!(
+            projected("WGS 84 / Pseudo-Mercator", Some(3857)),
+            "WGS_1984_Web_Mercator_Auxiliary_Sphere"
+        );
         // Esri: NAD_1983_StatePlane_North_Carolina_FIPS_3200_Feet, which nothing in EPSG's name
         // says.
-        assert_eq!(projected("NAD83 / North Carolina (ftUS)", Some(2264)), "NAD_1983_North_Carolina_ftUS");
+        assert_eq!(
+            projected("NAD83 / North Carolina (ftUS)", Some(2264)),
+            "NAD_1983_North_Carolina_ftUS"
+        );
         assert_eq!(underscored(" a (b)/c "), "a_b_c");
     }
 

@@ -92,7 +92,10 @@ impl GeoKeys {
         let mut writer = Writer::default();
         writer.short(key::RASTER_TYPE, 1);
         writer.text(key::CITATION, &crs.name);
-        let code = crs.epsg.and_then(|code| u16::try_from(code).ok()).filter(|&code| code < USER_DEFINED);
+        let code = crs
+            .epsg
+            .and_then(|code| u16::try_from(code).ok())
+            .filter(|&code| code < USER_DEFINED);
         match crs.kind {
             CrsKind::Projected => {
                 writer.unit(&crs.unit, (key::LENGTH, key::LENGTH_SIZE));
@@ -116,7 +119,10 @@ impl GeoKeys {
             CrsKind::Geocentric => {
                 writer.short(key::MODEL_TYPE, 3);
                 writer.short(key::GEODETIC, code.unwrap_or(USER_DEFINED));
-                writer.short(key::GEODETIC_LENGTH, crs.unit.code().unwrap_or(USER_DEFINED));
+                writer.short(
+                    key::GEODETIC_LENGTH,
+                    crs.unit.code().unwrap_or(USER_DEFINED),
+                );
             }
             CrsKind::Local => {
                 writer.short(key::MODEL_TYPE, USER_DEFINED);
@@ -154,21 +160,34 @@ impl Entries {
         let mut entries = Vec::new();
         let (header, rest) = match keys.directory.split_at_checked(4) {
             Some(parts) => parts,
-            None if keys.directory.iter().all(|&short| short == 0) => return Ok(Entries { entries }),
+            None if keys.directory.iter().all(|&short| short == 0) => {
+                return Ok(Entries { entries });
+            }
             None => {
                 let found = keys.directory.len();
-                return Err(Error::format(format!("GeoKey directory of {found} values, expected at least 4")));
+                return Err(Error::format(format!(
+                    "GeoKey directory of {found} values, expected at least 4"
+                )));
             }
         };
         let (count, room) = (usize::from(header[3]), rest.len() / 4);
         if count > room {
-            return Err(Error::format(format!("GeoKey directory states {count} keys, but holds {room}")));
+            return Err(Error::format(format!(
+                "GeoKey directory states {count} keys, but holds {room}"
+            )));
         }
         for entry in rest.chunks_exact(4).take(count) {
-            let (id, tag, length, offset) = (entry[0], entry[1], usize::from(entry[2]), usize::from(entry[3]));
+            let (id, tag, length, offset) = (
+                entry[0],
+                entry[1],
+                usize::from(entry[2]),
+                usize::from(entry[3]),
+            );
             let outside = |what: &str, held: usize| {
                 let end = offset + length;
-                Error::format(format!("GeoKey {id} uses {what} {offset} to {end}, but there are {held}"))
+                Error::format(format!(
+                    "GeoKey {id} uses {what} {offset} to {end}, but there are {held}"
+                ))
             };
             let value = match tag {
                 // Some writers leave unused entries, all zero.
@@ -176,7 +195,12 @@ impl Entries {
                 0 => Value::Short(entry[3]),
                 DIRECTORY => {
                     let held = keys.directory.len();
-                    Value::Short(*keys.directory.get(offset).ok_or_else(|| outside("directory values", held))?)
+                    Value::Short(
+                        *keys
+                            .directory
+                            .get(offset)
+                            .ok_or_else(|| outside("directory values", held))?,
+                    )
                 }
                 DOUBLES => {
                     let held = keys.doubles.len();
@@ -192,7 +216,9 @@ impl Entries {
                 }
                 tag => {
                     let tags = format!("0, {DIRECTORY}, {DOUBLES} or {ASCII}");
-                    return Err(Error::format(format!("GeoKey {id} lies in tag {tag}, expected {tags}")));
+                    return Err(Error::format(format!(
+                        "GeoKey {id} lies in tag {tag}, expected {tags}"
+                    )));
                 }
             };
             entries.push((id, value));
@@ -201,7 +227,10 @@ impl Entries {
     }
 
     fn get(&self, id: u16) -> Option<&Value> {
-        self.entries.iter().find(|entry| entry.0 == id).map(|entry| &entry.1)
+        self.entries
+            .iter()
+            .find(|entry| entry.0 == id)
+            .map(|entry| &entry.1)
     }
 
     fn short(&self, id: u16) -> Option<u16> {
@@ -213,7 +242,9 @@ impl Entries {
 
     /// A code of the registry, which is neither 0 (undefined) nor user-defined.
     fn code(&self, id: u16) -> Option<u32> {
-        self.short(id).filter(|&code| code > 0 && code < USER_DEFINED).map(u32::from)
+        self.short(id)
+            .filter(|&code| code > 0 && code < USER_DEFINED)
+            .map(u32::from)
     }
 
     fn number(&self, id: u16) -> Option<f64> {
@@ -234,16 +265,32 @@ impl Entries {
 
     /// The name in a citation, which may be a list: "PCS Name = NAD83 / Nebraska|..".
     fn name(&self) -> Option<String> {
-        let ids = [key::PROJECTED_CITATION, key::CITATION, key::GEODETIC_CITATION];
+        let ids = [
+            key::PROJECTED_CITATION,
+            key::CITATION,
+            key::GEODETIC_CITATION,
+        ];
         // The citation of ERDAS is about the software.
-        let is_name = |text: &&str| !text.starts_with(PE_STRING) && !text.starts_with("IMAGINE GeoTIFF Support");
+        let is_name = |text: &&str| {
+            !text.starts_with(PE_STRING) && !text.starts_with("IMAGINE GeoTIFF Support")
+        };
         let text = ids.iter().filter_map(|&id| self.text(id)).find(is_name)?;
-        let named = |label: &str| text.split('|').find_map(|part| part.trim().strip_prefix(label));
-        let name = named("PCS Name = ").or_else(|| named("GCS Name = ")).or_else(|| text.split('|').next());
+        let named = |label: &str| {
+            text.split('|')
+                .find_map(|part| part.trim().strip_prefix(label))
+        };
+        let name = named("PCS Name = ")
+            .or_else(|| named("GCS Name = "))
+            .or_else(|| text.split('|').next());
         Some(name.unwrap_or(text).trim().to_owned())
     }
 
-    fn unit(&self, (code, size): (u16, u16), table: fn(u16) -> Option<Unit>, custom: fn(f64) -> Unit) -> Option<Unit> {
+    fn unit(
+        &self,
+        (code, size): (u16, u16),
+        table: fn(u16) -> Option<Unit>,
+        custom: fn(f64) -> Unit,
+    ) -> Option<Unit> {
         match self.short(code)? {
             USER_DEFINED => self.number(size).filter(|&size| size > 0.0).map(custom),
             code => table(code),
@@ -251,15 +298,25 @@ impl Entries {
     }
 
     fn length(&self) -> Option<Unit> {
-        self.unit((key::LENGTH, key::LENGTH_SIZE), Unit::length_from_code, Unit::length)
+        self.unit(
+            (key::LENGTH, key::LENGTH_SIZE),
+            Unit::length_from_code,
+            Unit::length,
+        )
     }
 
     fn angle(&self) -> Option<Unit> {
-        self.unit((key::ANGLE, key::ANGLE_SIZE), Unit::angle_from_code, Unit::angle)
+        self.unit(
+            (key::ANGLE, key::ANGLE_SIZE),
+            Unit::angle_from_code,
+            Unit::angle,
+        )
     }
 
     fn horizontal(&self) -> Result<Option<Crs>> {
-        let citation = self.text(key::PROJECTED_CITATION).or_else(|| self.text(key::CITATION));
+        let citation = self
+            .text(key::PROJECTED_CITATION)
+            .or_else(|| self.text(key::CITATION));
         if let Some(wkt) = citation.and_then(|text| text.strip_prefix(PE_STRING)) {
             return Crs::from_wkt(wkt).map(Some);
         }
@@ -276,7 +333,9 @@ impl Entries {
         };
         let found = match (kind, projected, geodetic) {
             (CrsKind::Projected, Some(code), _) => Some(self.coded(code, kind, self.length())),
-            (CrsKind::Geographic | CrsKind::Geocentric, _, Some(code)) => Some(self.coded(code, kind, None)),
+            (CrsKind::Geographic | CrsKind::Geocentric, _, Some(code)) => {
+                Some(self.coded(code, kind, None))
+            }
             _ => None,
         };
         Ok(found.or_else(|| self.user_defined(kind)).or_else(|| {
@@ -293,7 +352,9 @@ impl Entries {
     /// The system of a code, in the unit that the keys state.
     fn coded(&self, code: u32, kind: CrsKind, stated: Option<Unit>) -> Crs {
         let name = || self.name().unwrap_or_default();
-        let Some(found) = registry::find(code).filter(|found| found.kind == kind || kind == CrsKind::Geocentric) else {
+        let Some(found) =
+            registry::find(code).filter(|found| found.kind == kind || kind == CrsKind::Geocentric)
+        else {
             let unit = match kind {
                 CrsKind::Geographic => Unit::degree(),
                 _ => stated.unwrap_or_else(Unit::metre),
@@ -305,7 +366,10 @@ impl Entries {
             (Some(mut definition), Some(unit)) => {
                 // The false origin keeps its position, and is measured in the new unit.
                 definition.unit = unit;
-                if let Some(datum) = self.code(key::GEODETIC).and_then(registry::find).and_then(|base| base.definition)
+                if let Some(datum) = self
+                    .code(key::GEODETIC)
+                    .and_then(registry::find)
+                    .and_then(|base| base.definition)
                 {
                     definition.datum = datum.datum;
                     definition.geographic = datum.geographic;
@@ -318,13 +382,18 @@ impl Entries {
                 defined(&definition, &found.name)
             }
             // The code is registered, so this cannot fail; if it does, the code is still kept.
-            _ => Crs::from_epsg(code).unwrap_or_else(|_| plain(name(), Some(code), kind, found.unit)),
+            _ => {
+                Crs::from_epsg(code).unwrap_or_else(|_| plain(name(), Some(code), kind, found.unit))
+            }
         }
     }
 
     fn user_defined(&self, kind: CrsKind) -> Option<Crs> {
         let angle = self.angle().unwrap_or_else(Unit::degree);
-        let base = self.code(key::GEODETIC).and_then(registry::find).and_then(|found| found.definition);
+        let base = self
+            .code(key::GEODETIC)
+            .and_then(registry::find)
+            .and_then(|found| found.definition);
         let (datum, geographic) = match base {
             Some(base) => (base.datum, base.geographic),
             None => {
@@ -341,22 +410,41 @@ impl Entries {
             _ => None,
         };
         let name = self.name().unwrap_or_default();
-        Some(defined(&Definition { kind, datum, geographic, angle, projection, unit }, &name))
+        Some(defined(
+            &Definition {
+                kind,
+                datum,
+                geographic,
+                angle,
+                projection,
+                unit,
+            },
+            &name,
+        ))
     }
 
     /// The name in a citation: "GCS Name = NAD83(HARN)|Primem = Greenwich" or a plain name.
     fn geodetic_name(&self) -> String {
         let text = self.text(key::GEODETIC_CITATION).unwrap_or("unknown");
         let first = text.split('|').next().unwrap_or(text).trim();
-        first.strip_prefix("GCS Name = ").unwrap_or(first).to_owned()
+        first
+            .strip_prefix("GCS Name = ")
+            .unwrap_or(first)
+            .to_owned()
     }
 
     fn datum(&self, geographic: &str) -> Option<Datum> {
         let stated = self.text(key::GEODETIC_CITATION).unwrap_or_default();
-        let part = |label: &str| stated.split('|').find_map(|part| part.trim().strip_prefix(label)).map(str::to_owned);
+        let part = |label: &str| {
+            stated
+                .split('|')
+                .find_map(|part| part.trim().strip_prefix(label))
+                .map(str::to_owned)
+        };
         let name = part("Datum = ");
-        let code =
-            self.code(key::DATUM).or_else(|| registry::datum_code(name.as_deref().unwrap_or_default(), geographic));
+        let code = self
+            .code(key::DATUM)
+            .or_else(|| registry::datum_code(name.as_deref().unwrap_or_default(), geographic));
         let a = self.number(key::SEMI_MAJOR);
         let rf = self.number(key::INVERSE_FLATTENING).or_else(|| {
             let (a, b) = (a?, self.number(key::SEMI_MINOR)?);
@@ -364,14 +452,19 @@ impl Entries {
         });
         let meridian = self.number(key::MERIDIAN).unwrap_or(0.0);
         let ellipsoid = match (a, rf) {
-            (Some(a), Some(rf)) if a > 0.0 && rf >= 0.0 => {
-                Some(Ellipsoid { name: part("Ellipsoid = ").unwrap_or_else(|| "unknown".into()), code: None, a, rf })
-            }
+            (Some(a), Some(rf)) if a > 0.0 && rf >= 0.0 => Some(Ellipsoid {
+                name: part("Ellipsoid = ").unwrap_or_else(|| "unknown".into()),
+                code: None,
+                a,
+                rf,
+            }),
             _ => None,
         };
         let known = code.and_then(registry::datum).filter(|known| {
             (known.meridian - meridian).abs() < 1e-6
-                && ellipsoid.as_ref().is_none_or(|ellipsoid| known.ellipsoid.is_same(ellipsoid))
+                && ellipsoid
+                    .as_ref()
+                    .is_none_or(|ellipsoid| known.ellipsoid.is_same(ellipsoid))
         });
         known.or_else(|| {
             Some(Datum {
@@ -390,7 +483,11 @@ impl Entries {
         let method = self.short(key::METHOD)?;
         let row = ROWS.iter().find(|row| row.geokey == Some(method))?;
         let value = |param: Param| {
-            let own = row.params.iter().find(|entry| entry.0 == param).map(|entry| entry.3);
+            let own = row
+                .params
+                .iter()
+                .find(|entry| entry.0 == param)
+                .map(|entry| entry.3);
             // Writers disagree on which of these keys belongs to which method.
             let others: &[u16] = match param {
                 Param::Lat0 => &[3081, 3085, 3089],
@@ -400,7 +497,10 @@ impl Entries {
                 Param::FalseNorthing => &[3083, 3087, 3091],
                 _ => &[],
             };
-            let value = own.into_iter().chain(others.iter().copied()).find_map(|id| self.number(id))?;
+            let value = own
+                .into_iter()
+                .chain(others.iter().copied())
+                .find_map(|id| self.number(id))?;
             Some(match param.measure() {
                 Measure::Angle => value * angle.factor.to_degrees(),
                 Measure::Length => value * unit.factor,
@@ -411,7 +511,9 @@ impl Entries {
     }
 
     fn add_vertical(&self, crs: &mut Crs) {
-        let unit = self.short(key::VERTICAL_LENGTH).and_then(Unit::length_from_code);
+        let unit = self
+            .short(key::VERTICAL_LENGTH)
+            .and_then(Unit::length_from_code);
         if let Some(code) = self.code(key::VERTICAL) {
             let found = registry::find_vertical(code);
             match (found, &unit) {
@@ -419,12 +521,17 @@ impl Entries {
                     crs.vertical_epsg = found.code;
                     crs.vertical_unit = Some(found.unit);
                 }
-                (Some(found), Some(unit)) if found.unit.is_same(unit) => crs.vertical_epsg = found.code,
+                (Some(found), Some(unit)) if found.unit.is_same(unit) => {
+                    crs.vertical_epsg = found.code
+                }
                 // The same heights in a different unit. In old files the code is that of the datum.
                 (found, unit) => {
                     let metre = Unit::metre();
-                    let datum = found.and_then(|_| registry::vertical_datum(code)).map_or(code, |(_, datum)| datum);
-                    crs.vertical_epsg = registry::vertical_of_datum(datum, unit.as_ref().unwrap_or(&metre));
+                    let datum = found
+                        .and_then(|_| registry::vertical_datum(code))
+                        .map_or(code, |(_, datum)| datum);
+                    crs.vertical_epsg =
+                        registry::vertical_of_datum(datum, unit.as_ref().unwrap_or(&metre));
                     if crs.vertical_epsg.is_some() && unit.is_none() {
                         crs.vertical_unit = Some(metre);
                     }
@@ -445,25 +552,45 @@ fn utm_zone(conversion: u32) -> Option<Projection> {
         16101..=16160 => (conversion - 16100, 10_000_000.0),
         _ => return None,
     };
-    Some(Projection::known(Method::TransverseMercator, |param| match param {
-        Param::Lat0 => Some(0.0),
-        Param::Lon0 => Some(f64::from(zone) * 6.0 - 183.0),
-        Param::K0 => Some(0.9996),
-        Param::FalseEasting => Some(500_000.0),
-        Param::FalseNorthing => Some(northing),
-        _ => None,
-    }))
+    Some(Projection::known(
+        Method::TransverseMercator,
+        |param| match param {
+            Param::Lat0 => Some(0.0),
+            Param::Lon0 => Some(f64::from(zone) * 6.0 - 183.0),
+            Param::K0 => Some(0.9996),
+            Param::FalseEasting => Some(500_000.0),
+            Param::FalseNorthing => Some(northing),
+            _ => None,
+        },
+    ))
 }
 
 fn plain(name: String, epsg: Option<u32>, kind: CrsKind, unit: Unit) -> Crs {
-    Crs { name, epsg, vertical_epsg: None, kind, unit, vertical_unit: None, wkt: None }
+    Crs {
+        name,
+        epsg,
+        vertical_epsg: None,
+        kind,
+        unit,
+        vertical_unit: None,
+        wkt: None,
+    }
 }
 
 /// The system of a definition. If `name` is empty, it gets that of the registry, if any.
 fn defined(definition: &Definition, name: &str) -> Crs {
     let epsg = registry::identify(definition, name);
-    let known = epsg.filter(|_| name.is_empty()).and_then(registry::find).map(|found| found.name);
-    let name = &known.unwrap_or_else(|| if name.is_empty() { "unnamed".into() } else { name.to_owned() });
+    let known = epsg
+        .filter(|_| name.is_empty())
+        .and_then(registry::find)
+        .map(|found| found.name);
+    let name = &known.unwrap_or_else(|| {
+        if name.is_empty() {
+            "unnamed".into()
+        } else {
+            name.to_owned()
+        }
+    });
     let mut crs = plain(name.clone(), epsg, definition.kind, definition.unit.clone());
     crs.wkt = wkt_write::write(definition, name, epsg, Dialect::Gdal);
     if crs.kind == CrsKind::Geocentric {
@@ -486,15 +613,28 @@ impl Writer {
     }
 
     fn double(&mut self, id: u16, value: f64) {
-        self.entries.push([id, DOUBLES, 1, self.doubles.len() as u16]);
+        self.entries
+            .push([id, DOUBLES, 1, self.doubles.len() as u16]);
         self.doubles.push(value);
     }
 
     /// Adds a text. All texts share one string of at most 64 kB, separated by bars; a text that
     /// does not fit is dropped.
     fn text(&mut self, id: u16, text: &str) {
-        let text: String = text.chars().map(|c| if c.is_ascii() && c != '|' && c != '\0' { c } else { '?' }).collect();
-        let (Ok(offset), Ok(length)) = (u16::try_from(self.ascii.len()), u16::try_from(text.len() + 1)) else {
+        let text: String = text
+            .chars()
+            .map(|c| {
+                if c.is_ascii() && c != '|' && c != '\0' {
+                    c
+                } else {
+                    '?'
+                }
+            })
+            .collect();
+        let (Ok(offset), Ok(length)) = (
+            u16::try_from(self.ascii.len()),
+            u16::try_from(text.len() + 1),
+        ) else {
             return;
         };
         if !text.is_empty() {
@@ -518,15 +658,23 @@ impl Writer {
 
     fn user_defined_projected(&mut self, crs: &Crs) {
         let definition = crs.definition();
-        let known = match definition.as_ref().and_then(|definition| definition.projection.as_ref()) {
-            Some(Projection::Known(method, values)) => method.row().geokey.map(|code| (method.row(), code, values)),
+        let known = match definition
+            .as_ref()
+            .and_then(|definition| definition.projection.as_ref())
+        {
+            Some(Projection::Known(method, values)) => {
+                method.row().geokey.map(|code| (method.row(), code, values))
+            }
             _ => None,
         };
         let (Some(definition), Some((row, code, values))) = (&definition, known) else {
             // Like GDAL: no keys for the projection, and the definition as text.
             self.short(key::MODEL_TYPE, USER_DEFINED);
             if definition.is_some() {
-                self.text(key::PROJECTED_CITATION, &format!("{PE_STRING}{}", crs.to_prj()));
+                self.text(
+                    key::PROJECTED_CITATION,
+                    &format!("{PE_STRING}{}", crs.to_prj()),
+                );
             }
             return;
         };
@@ -553,7 +701,10 @@ impl Writer {
     }
 
     fn user_defined_datum(&mut self, definition: &Definition) {
-        let short = |code: Option<u32>| code.and_then(|code| u16::try_from(code).ok()).unwrap_or(USER_DEFINED);
+        let short = |code: Option<u32>| {
+            code.and_then(|code| u16::try_from(code).ok())
+                .unwrap_or(USER_DEFINED)
+        };
         let geographic = short(definition.geographic.1);
         self.short(key::GEODETIC, geographic);
         if geographic != USER_DEFINED {
@@ -573,6 +724,10 @@ impl Writer {
         let revision = u16::from(self.entries.iter().any(|entry| entry[0] >= key::VERTICAL));
         let mut directory = vec![1, 1, revision, self.entries.len() as u16];
         directory.extend(self.entries.iter().flatten());
-        GeoKeys { directory, doubles: self.doubles, ascii: self.ascii }
+        GeoKeys {
+            directory,
+            doubles: self.doubles,
+            ascii: self.ascii,
+        }
     }
 }

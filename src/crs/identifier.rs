@@ -21,7 +21,12 @@ const CURE: &str = "write EPSG:25832, EPSG:25832+7837 (with heights), or WKT";
 
 /// The codes of OGC for systems with longitude before latitude, each with the code in EPSG of the
 /// system that has the same datum.
-const OF_OGC: &[(&str, u32)] = &[("crs84", 4326), ("crs84h", 4979), ("crs83", 4269), ("crs27", 4267)];
+const OF_OGC: &[(&str, u32)] = &[
+    ("crs84", 4326),
+    ("crs84h", 4979),
+    ("crs83", 4269),
+    ("crs27", 4267),
+];
 
 /// A system that an identifier names: `crs`, `epsg`, `25832`.
 struct Object {
@@ -32,7 +37,11 @@ struct Object {
 
 impl Object {
     fn new(kind: &str, authority: &str, code: &str) -> Self {
-        Object { kind: kind.to_owned(), authority: authority.to_owned(), code: code.to_owned() }
+        Object {
+            kind: kind.to_owned(),
+            authority: authority.to_owned(),
+            code: code.to_owned(),
+        }
     }
 }
 
@@ -42,19 +51,32 @@ impl Object {
 /// If the text is none of these forms, or names no system that is known.
 pub(super) fn read(text: &str) -> Result<Crs> {
     let objects = objects(&text.to_ascii_lowercase()).ok_or_else(|| not_a_system(text))?;
-    for Object { kind, authority, .. } in &objects {
+    for Object {
+        kind, authority, ..
+    } in &objects
+    {
         if kind != "crs" {
-            return Err(Error::unsupported(format!("\"{text}\" puts a system together from a {kind}")).cure(CURE));
+            return Err(Error::unsupported(format!(
+                "\"{text}\" puts a system together from a {kind}"
+            ))
+            .cure(CURE));
         }
         if authority != "epsg" && authority != "ogc" {
             let authority = authority.to_ascii_uppercase();
-            return Err(Error::unsupported(format!("\"{text}\": the codes of {authority} are not known")).cure(CURE));
+            return Err(Error::unsupported(format!(
+                "\"{text}\": the codes of {authority} are not known"
+            ))
+            .cure(CURE));
         }
     }
     match &objects[..] {
         [one] => horizontal(one, text),
         [one, other] => with_heights(horizontal(one, text)?, other, text),
-        _ => Err(Error::unsupported(format!("\"{text}\" has {} parts, expected one or two", objects.len())).cure(CURE)),
+        _ => Err(Error::unsupported(format!(
+            "\"{text}\" has {} parts, expected one or two",
+            objects.len()
+        ))
+        .cure(CURE)),
     }
 }
 
@@ -63,7 +85,10 @@ fn horizontal(object: &Object, text: &str) -> Result<Crs> {
         let found = OF_OGC.iter().find(|(name, _)| *name == object.code);
         let (_, code) = found.ok_or_else(|| {
             let code = object.code.to_ascii_uppercase();
-            Error::unsupported(format!("\"{text}\": OGC's {code} is not a system in plan that is known")).cure(CURE)
+            Error::unsupported(format!(
+                "\"{text}\": OGC's {code} is not a system in plan that is known"
+            ))
+            .cure(CURE)
         })?;
         return Crs::from_epsg(*code);
     }
@@ -80,7 +105,10 @@ fn with_heights(mut crs: Crs, object: &Object, text: &str) -> Result<Crs> {
         (_, code) => code.parse().map_err(|_| not_a_system(text))?,
     };
     let found = registry::find_vertical(code).ok_or_else(|| {
-        Error::usage(format!("EPSG:{code} is not the code of a vertical coordinate system")).cure(CURE)
+        Error::usage(format!(
+            "EPSG:{code} is not the code of a vertical coordinate system"
+        ))
+        .cure(CURE)
     })?;
     crs.name = format!("{} + {}", crs.name, found.name);
     crs.vertical_epsg = found.code;
@@ -95,10 +123,16 @@ fn not_a_system(text: &str) -> Error {
 
 /// Returns the objects that a text in lower case names; `None` for a form that is not known.
 fn objects(text: &str) -> Option<Vec<Object>> {
-    if let Some(urn) = ["urn:ogc:def:", "urn:x-ogc:def:"].iter().find_map(|prefix| text.strip_prefix(prefix)) {
+    if let Some(urn) = ["urn:ogc:def:", "urn:x-ogc:def:"]
+        .iter()
+        .find_map(|prefix| text.strip_prefix(prefix))
+    {
         return of_urn(urn);
     }
-    if let Some(url) = ["http://", "https://"].iter().find_map(|prefix| text.strip_prefix(prefix)) {
+    if let Some(url) = ["http://", "https://"]
+        .iter()
+        .find_map(|prefix| text.strip_prefix(prefix))
+    {
         return of_url(url);
     }
     match text.split_once(':') {
@@ -111,10 +145,12 @@ fn objects(text: &str) -> Option<Vec<Object>> {
 
 /// Splits `25832+7837` or `25832+epsg:7837`.
 fn of_code(authority: &str, code: &str) -> Option<Vec<Object>> {
-    let parts = code.split('+').map(|part| match part.trim().split_once(':') {
-        Some((authority, code)) => Object::new("crs", authority, code),
-        None => Object::new("crs", authority, part.trim()),
-    });
+    let parts = code
+        .split('+')
+        .map(|part| match part.trim().split_once(':') {
+            Some((authority, code)) => Object::new("crs", authority, code),
+            None => Object::new("crs", authority, part.trim()),
+        });
     Some(parts.collect())
 }
 
@@ -125,7 +161,15 @@ fn of_urn(urn: &str) -> Option<Vec<Object>> {
         match parts[..] {
             [kind, authority, code] | [kind, authority, _, code] => {
                 let codes = of_code(authority, code)?;
-                Some(codes.into_iter().map(|object| Object { kind: kind.to_owned(), ..object }).collect())
+                Some(
+                    codes
+                        .into_iter()
+                        .map(|object| Object {
+                            kind: kind.to_owned(),
+                            ..object
+                        })
+                        .collect(),
+                )
             }
             _ => None,
         }
@@ -142,22 +186,43 @@ fn of_urn(urn: &str) -> Option<Vec<Object>> {
 
 /// Splits the part after `http://`.
 fn of_url(url: &str) -> Option<Vec<Object>> {
-    let path = url.strip_prefix("www.").unwrap_or(url).strip_prefix("opengis.net/")?;
+    let path = url
+        .strip_prefix("www.")
+        .unwrap_or(url)
+        .strip_prefix("opengis.net/")?;
     if let Some(code) = path.strip_prefix("gml/srs/epsg.xml#") {
         return of_code("epsg", code);
     }
     if let Some(parameters) = path.strip_prefix("def/crs-compound?") {
-        let mut parts: Vec<(&str, String)> = parameters.split('&').map(parameter).collect::<Option<_>>()?;
+        let mut parts: Vec<(&str, String)> = parameters
+            .split('&')
+            .map(parameter)
+            .collect::<Option<_>>()?;
         parts.sort();
-        let parts: Vec<Vec<Object>> = parts.iter().map(|(_, part)| objects(part)).collect::<Option<_>>()?;
+        let parts: Vec<Vec<Object>> = parts
+            .iter()
+            .map(|(_, part)| objects(part))
+            .collect::<Option<_>>()?;
         return Some(parts.into_iter().flatten().collect());
     }
     if let Some(parameters) = path.strip_prefix("def/crs?") {
-        let parts: Vec<(&str, String)> = parameters.split('&').map(parameter).collect::<Option<_>>()?;
-        let value = |wanted: &str| parts.iter().find(|(name, _)| *name == wanted).map(|(_, value)| value.as_str());
+        let parts: Vec<(&str, String)> = parameters
+            .split('&')
+            .map(parameter)
+            .collect::<Option<_>>()?;
+        let value = |wanted: &str| {
+            parts
+                .iter()
+                .find(|(name, _)| *name == wanted)
+                .map(|(_, value)| value.as_str())
+        };
         return of_code(value("authority")?, value("code")?);
     }
-    let parts: Vec<&str> = path.strip_prefix("def/crs/")?.trim_end_matches('/').split('/').collect();
+    let parts: Vec<&str> = path
+        .strip_prefix("def/crs/")?
+        .trim_end_matches('/')
+        .split('/')
+        .collect();
     match parts[..] {
         [authority, code] | [authority, _, code] => of_code(authority, code),
         _ => None,

@@ -39,10 +39,19 @@ impl Crs {
     pub fn from_epsg(code: u32) -> Result<Self> {
         let Some(found) = registry::find(code) else {
             let error = match registry::find_vertical(code) {
-                Some(vertical) => Error::usage(format!("EPSG:{code} ({}) is only a vertical system", vertical.name))
-                    .cure(format!("state the horizontal system with it, as EPSG:25832+{code}")),
-                None => Error::usage(format!("EPSG:{code} is not the code of a coordinate system"))
-                    .cure("write the code of a horizontal or compound system, such as EPSG:25832, or WKT"),
+                Some(vertical) => Error::usage(format!(
+                    "EPSG:{code} ({}) is only a vertical system",
+                    vertical.name
+                ))
+                .cure(format!(
+                    "state the horizontal system with it, as EPSG:25832+{code}"
+                )),
+                None => Error::usage(format!(
+                    "EPSG:{code} is not the code of a coordinate system"
+                ))
+                .cure(
+                    "write the code of a horizontal or compound system, such as EPSG:25832, or WKT",
+                ),
             };
             return Err(error);
         };
@@ -51,7 +60,11 @@ impl Crs {
             name: found.name,
             epsg: Some(found.code),
             vertical_epsg: found.vertical.and_then(|part| part.code),
-            vertical_unit: if found.kind == CrsKind::Geocentric { Some(found.unit.clone()) } else { height },
+            vertical_unit: if found.kind == CrsKind::Geocentric {
+                Some(found.unit.clone())
+            } else {
+                height
+            },
             kind: found.kind,
             unit: found.unit,
             wkt: None,
@@ -120,8 +133,12 @@ impl Crs {
     fn write(&self, dialect: Dialect) -> String {
         let found = self.epsg.and_then(registry::find);
         // The name of the horizontal part, if the registry has it.
-        let name = found.as_ref().map_or(self.name.clone(), |found| found.name.clone());
-        let definition = found.and_then(|found| found.definition).or_else(|| self.definition());
+        let name = found
+            .as_ref()
+            .map_or(self.name.clone(), |found| found.name.clone());
+        let definition = found
+            .and_then(|found| found.definition)
+            .or_else(|| self.definition());
         definition
             .and_then(|definition| wkt_write::write(&definition, &name, self.epsg, dialect))
             .or_else(|| self.wkt.clone())
@@ -155,7 +172,12 @@ impl Crs {
         let by_definition = || match (self.definition(), other.definition()) {
             (Some(a), Some(b)) => a.is_same(&b),
             // Only the text is known.
-            _ => self.epsg.is_none() && other.epsg.is_none() && self.wkt.is_some() && self.wkt == other.wkt,
+            _ => {
+                self.epsg.is_none()
+                    && other.epsg.is_none()
+                    && self.wkt.is_some()
+                    && self.wkt == other.wkt
+            }
         };
         vertical && self.kind == other.kind && (by_code || by_definition())
     }
@@ -168,7 +190,8 @@ impl Crs {
         let name = self.name.replace('_', " ").to_ascii_lowercase();
         // In Esri's `.prj` the name begins with GCS.
         let name = name.strip_prefix("gcs ").unwrap_or(&name);
-        let is_undefined = self.epsg.is_none() && name.starts_with("undefined ") && name.ends_with(" srs");
+        let is_undefined =
+            self.epsg.is_none() && name.starts_with("undefined ") && name.ends_with(" srs");
         (!is_undefined).then_some(self)
     }
 
@@ -237,8 +260,16 @@ mod tests {
         };
         let local = "ENGCRS[\"Undefined Cartesian SRS\",EDATUM[\"\"],CS[Cartesian,2],AXIS[\"x\",east],AXIS[\"y\",north],\
                      LENGTHUNIT[\"metre\",1]]";
-        for undefined in [&geographic("Undefined geographic SRS"), &geographic("GCS_Undefined_geographic_SRS"), local] {
-            assert_eq!(Crs::from_wkt(undefined).unwrap().unless_undefined(), None, "{undefined}");
+        for undefined in [
+            &geographic("Undefined geographic SRS"),
+            &geographic("GCS_Undefined_geographic_SRS"),
+            local,
+        ] {
+            assert_eq!(
+                Crs::from_wkt(undefined).unwrap().unless_undefined(),
+                None,
+                "{undefined}"
+            );
         }
         let named = Crs::from_wkt(&geographic("Some SRS")).unwrap();
         assert_eq!(named.clone().unless_undefined(), Some(named));

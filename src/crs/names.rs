@@ -25,7 +25,10 @@ struct Geodetic {
 pub(super) fn projected(code: u32) -> Option<(String, Unit)> {
     let root = parse(u16::try_from(code).ok()?, "PROJCS")?;
     let name = root.name().trim_end_matches(" (deprecated)");
-    Some((name.to_owned(), Unit::length(root.find(&["UNIT"])?.number(0)?)))
+    Some((
+        name.to_owned(),
+        Unit::length(root.find(&["UNIT"])?.number(0)?),
+    ))
 }
 
 /// The geodetic datum with a code.
@@ -79,14 +82,25 @@ fn geodetic() -> &'static Geodetic {
     ALL.get_or_init(|| {
         let mut all_names = Geodetic::default();
         for root in all("GEOGCS") {
-            let Some(datum) = root.find(&["DATUM"]) else { continue };
+            let Some(datum) = root.find(&["DATUM"]) else {
+                continue;
+            };
             if let Some(code) = datum.epsg() {
                 let meridian = root.find(&["PRIMEM"]).and_then(Node::epsg);
-                let names = || DatumNames { name: datum.name().to_owned(), meridian };
+                let names = || DatumNames {
+                    name: datum.name().to_owned(),
+                    meridian,
+                };
                 all_names.datums.entry(code).or_insert_with(names);
             }
-            if let Some((ellipsoid, code)) = datum.find(&["SPHEROID"]).and_then(|node| Some((node, node.epsg()?))) {
-                all_names.ellipsoids.entry(code).or_insert_with(|| ellipsoid.name().to_owned());
+            if let Some((ellipsoid, code)) = datum
+                .find(&["SPHEROID"])
+                .and_then(|node| Some((node, node.epsg()?)))
+            {
+                all_names
+                    .ellipsoids
+                    .entry(code)
+                    .or_insert_with(|| ellipsoid.name().to_owned());
             }
         }
         all_names
@@ -101,7 +115,10 @@ fn all(keyword: &'static str) -> impl Iterator<Item = Node> {
 fn parse(code: u16, keyword: &str) -> Option<Node> {
     let wkt = crs_definitions::from_code(code)?.wkt;
     // The keyword is checked first, because most definitions are not wanted.
-    let nodes = wkt.strip_prefix(keyword).filter(|rest| rest.starts_with('[')).and_then(|_| Node::parse_all(wkt).ok());
+    let nodes = wkt
+        .strip_prefix(keyword)
+        .filter(|rest| rest.starts_with('['))
+        .and_then(|_| Node::parse_all(wkt).ok());
     nodes?.into_iter().next()
 }
 
@@ -116,16 +133,26 @@ mod tests {
         assert_eq!(ellipsoid(7004), Some("Bessel 1841"));
         assert_eq!(projected(2053).unwrap().0, "Hartebeesthoek94 / Lo29");
         assert_eq!(projected(2037).unwrap().0, "NAD83(CSRS98) / UTM zone 19N");
-        assert_eq!(vertical_datum(5103), Some("North American Vertical Datum 1988"));
+        assert_eq!(
+            vertical_datum(5103),
+            Some("North American Vertical Datum 1988")
+        );
         assert!(projected(4326).is_none() && projected(70_000).is_none() && datum(1).is_none());
     }
 
     #[test]
     fn every_definition_is_read() {
         // A change of form in a later version would be silent otherwise.
-        assert_eq!(all("GEOGCS").filter(|root| root.find(&["DATUM"]).is_some_and(|d| d.epsg().is_some())).count(), 545);
         assert_eq!(
-            all("PROJCS").filter(|root| root.find(&["UNIT"]).is_some_and(|u| u.number(0).is_some())).count(),
+            all("GEOGCS")
+                .filter(|root| root.find(&["DATUM"]).is_some_and(|d| d.epsg().is_some()))
+                .count(),
+            545
+        );
+        assert_eq!(
+            all("PROJCS")
+                .filter(|root| root.find(&["UNIT"]).is_some_and(|u| u.number(0).is_some()))
+                .count(),
             4963
         );
     }

@@ -37,7 +37,14 @@ pub(super) struct Vertical {
 pub(super) fn find(code: u32) -> Option<System> {
     let Some(found) = proj_core::lookup_epsg(code) else {
         let (name, unit) = names::projected(code)?;
-        return Some(System { name, kind: CrsKind::Projected, code, unit, definition: None, vertical: None });
+        return Some(System {
+            name,
+            kind: CrsKind::Projected,
+            code,
+            unit,
+            definition: None,
+            vertical: None,
+        });
     };
     let whole = found.name().to_owned();
     let mut system = match &found {
@@ -82,15 +89,28 @@ fn plain(found: &CrsDef) -> System {
             p.base_geographic_crs_epsg(),
             Some(Projection::from_registry(p.method())),
         ),
-        CrsDef::Geocentric(g) => (CrsKind::Geocentric, Unit::metre(), g.base_geographic_crs_epsg(), None),
+        CrsDef::Geocentric(g) => (
+            CrsKind::Geocentric,
+            Unit::metre(),
+            g.base_geographic_crs_epsg(),
+            None,
+        ),
         other => (CrsKind::Geographic, Unit::degree(), other.epsg(), None),
     };
     let code = found.datum().epsg();
-    let geographic_name = proj_core::lookup_epsg(geographic).map_or(String::new(), |g| g.name().to_owned());
+    let geographic_name =
+        proj_core::lookup_epsg(geographic).map_or(String::new(), |g| g.name().to_owned());
     // Definitions of the two French systems in grads use grads, as with Esri and GDAL.
-    let angle =
-        if [4807, 4902].contains(&geographic) { Unit::angle(std::f64::consts::PI / 200.0) } else { Unit::degree() };
-    let unit = if kind == CrsKind::Geographic { angle.clone() } else { unit };
+    let angle = if [4807, 4902].contains(&geographic) {
+        Unit::angle(std::f64::consts::PI / 200.0)
+    } else {
+        Unit::degree()
+    };
+    let unit = if kind == CrsKind::Geographic {
+        angle.clone()
+    } else {
+        unit
+    };
     System {
         name: found.name().to_owned(),
         kind,
@@ -113,16 +133,27 @@ pub(super) fn datum(code: u32) -> Option<Datum> {
     let found = proj_core::lookup_datum_epsg(code)?;
     let names = names::datum(code);
     // A datum that is newer than the definitions gets the name of a system that uses it.
-    let named_after =
-        || geographic().iter().find(|system| system.datum == code).map_or(String::new(), |system| system.name.clone());
+    let named_after = || {
+        geographic()
+            .iter()
+            .find(|system| system.datum == code)
+            .map_or(String::new(), |system| system.name.clone())
+    };
     let ellipsoid_code = proj_core::lookup_ellipsoid_code_for_datum(code);
     let ellipsoid = found.ellipsoid();
-    let rf = if ellipsoid.flattening() == 0.0 { 0.0 } else { 1.0 / ellipsoid.flattening() };
+    let rf = if ellipsoid.flattening() == 0.0 {
+        0.0
+    } else {
+        1.0 / ellipsoid.flattening()
+    };
     Some(Datum {
         name: names.map_or_else(named_after, |names| names.name.clone()),
         code: Some(code),
         ellipsoid: Ellipsoid {
-            name: ellipsoid_code.and_then(names::ellipsoid).unwrap_or("unknown").to_owned(),
+            name: ellipsoid_code
+                .and_then(names::ellipsoid)
+                .unwrap_or("unknown")
+                .to_owned(),
             code: ellipsoid_code,
             a: ellipsoid.semi_major_axis(),
             // The inverse of the flattening has spurious digits.
@@ -141,7 +172,10 @@ pub(super) fn meridian_name(longitude: f64) -> (&'static str, Option<u32>) {
 }
 
 fn meridian(code: u32) -> f64 {
-    MERIDIANS.iter().find(|row| row.0 == code).map_or(0.0, |row| row.2)
+    MERIDIANS
+        .iter()
+        .find(|row| row.0 == code)
+        .map_or(0.0, |row| row.2)
 }
 
 const MERIDIANS: &[(u32, &str, f64)] = &[
@@ -180,7 +214,10 @@ pub(super) fn datum_code(datum: &str, geographic: &str) -> Option<u32> {
         if key.is_empty() {
             return None;
         }
-        let alias = ALIASES.iter().find(|alias| alias.0 == key).map(|alias| alias.1);
+        let alias = ALIASES
+            .iter()
+            .find(|alias| alias.0 == key)
+            .map(|alias| alias.1);
         alias
             .or_else(|| proj_core::lookup_datum_code_for_name(name))
             .or_else(|| proj_core::lookup_datum_code_for_name(&format!("D_{name}")))
@@ -194,7 +231,10 @@ fn datum_of_geographic(name: &str) -> Option<u32> {
     let by_name = BY_NAME.get_or_init(|| {
         let mut by_name = HashMap::new();
         for system in geographic() {
-            for name in [normalized(&system.name), normalized(&esri::geographic(&system.name))] {
+            for name in [
+                normalized(&system.name),
+                normalized(&esri::geographic(&system.name)),
+            ] {
                 by_name.entry(name).or_insert(system.datum);
             }
         }
@@ -215,7 +255,11 @@ fn vertical_datum_name(system: &VerticalCrsDef) -> String {
     known.map_or_else(
         || {
             let name = system.name();
-            let end = [" height", " depth"].iter().filter_map(|word| name.find(word)).min().unwrap_or(name.len());
+            let end = [" height", " depth"]
+                .iter()
+                .filter_map(|word| name.find(word))
+                .min()
+                .unwrap_or(name.len());
             name[..end].to_owned()
         },
         str::to_owned,
@@ -233,13 +277,19 @@ pub(super) fn identify_vertical(datum: &str, name: &str, unit: &Unit) -> Option<
 
 /// The vertical system of heights above the datum with a code, in a unit.
 pub(super) fn vertical_of_datum(datum: u32, unit: &Unit) -> Option<u32> {
-    heights(unit).find(|system| system.vertical_datum_epsg() == Some(datum)).map(VerticalCrsDef::epsg)
+    heights(unit)
+        .find(|system| system.vertical_datum_epsg() == Some(datum))
+        .map(VerticalCrsDef::epsg)
 }
 
 /// The vertical systems of heights in a unit, by code.
 fn heights(unit: &Unit) -> impl Iterator<Item = &'static VerticalCrsDef> {
-    let in_unit = |system: &&VerticalCrsDef| unit.is_same(&Unit::length(system.linear_unit_to_meter()));
-    verticals().iter().filter(|system| system.name().contains("height")).filter(in_unit)
+    let in_unit =
+        |system: &&VerticalCrsDef| unit.is_same(&Unit::length(system.linear_unit_to_meter()));
+    verticals()
+        .iter()
+        .filter(|system| system.name().contains("height"))
+        .filter(in_unit)
 }
 
 /// The code of the system with a definition: the same method, parameters, datum and unit.
@@ -259,7 +309,11 @@ pub(super) fn identify(wanted: &Definition, name: &str) -> Option<u32> {
             .iter()
             .filter(|system| system.datum == datum)
             .map(|system| system.code)
-            .filter(|&code| find(code).and_then(|found| found.definition).is_some_and(|found| found.is_same(wanted)))
+            .filter(|&code| {
+                find(code)
+                    .and_then(|found| found.definition)
+                    .is_some_and(|found| found.is_same(wanted))
+            })
             .collect(),
         CrsKind::Geocentric if datum == 6326 && wanted.unit.is_same(&Unit::metre()) => vec![4978],
         _ => Vec::new(),
@@ -274,15 +328,19 @@ pub(super) fn identify(wanted: &Definition, name: &str) -> Option<u32> {
                 CrsKind::Projected => esri::projected(&found.name, Some(code)),
                 _ => esri::geographic(&found.name),
             };
-            [esri, found.name].iter().any(|name| normalized(name) == key)
+            [esri, found.name]
+                .iter()
+                .any(|name| normalized(name) == key)
         })
     };
     // New Jersey's system equals that of New York East. Esri's name shares the words of the state
     // with EPSG's name, and little else.
     let stated = words(name);
-    let common_words = |code: u32| find(code).map_or(0, |found| words(&found.name).intersection(&stated).count());
+    let common_words =
+        |code: u32| find(code).map_or(0, |found| words(&found.name).intersection(&stated).count());
     codes.into_iter().min_by_key(|&code| {
-        let northing_first = proj_core::lookup_authority_axis_order(code) == Some(AxisOrder::NorthEast);
+        let northing_first =
+            proj_core::lookup_authority_axis_order(code) == Some(AxisOrder::NorthEast);
         // All geographic systems have latitude first.
         let odd = northing_first && wanted.kind == CrsKind::Projected;
         (!is_named(code), Reverse(common_words(code)), odd, code)
@@ -292,7 +350,9 @@ pub(super) fn identify(wanted: &Definition, name: &str) -> Option<u32> {
 /// The words of a name that consist of letters alone ("New", "Jersey"): formats write the numbers
 /// of zones differently.
 fn words(name: &str) -> HashSet<String> {
-    let words = name.split(|c: char| !c.is_ascii_alphabetic()).filter(|word| word.len() > 2);
+    let words = name
+        .split(|c: char| !c.is_ascii_alphabetic())
+        .filter(|word| word.len() > 2);
     words.map(str::to_ascii_lowercase).collect()
 }
 
@@ -321,9 +381,11 @@ fn geographic() -> &'static [Geographic] {
     ALL.get_or_init(|| {
         (1024..=LAST_CODE)
             .filter_map(|code| match proj_core::lookup_epsg(code)? {
-                CrsDef::Geographic(found) => {
-                    Some(Geographic { code, name: found.name().to_owned(), datum: found.datum().epsg() })
-                }
+                CrsDef::Geographic(found) => Some(Geographic {
+                    code,
+                    name: found.name().to_owned(),
+                    datum: found.datum().epsg(),
+                }),
                 _ => None,
             })
             .collect()
@@ -333,7 +395,11 @@ fn geographic() -> &'static [Geographic] {
 /// All vertical systems, by code.
 fn verticals() -> &'static [VerticalCrsDef] {
     static ALL: OnceLock<Vec<VerticalCrsDef>> = OnceLock::new();
-    ALL.get_or_init(|| (1024..=LAST_CODE).filter_map(proj_core::lookup_vertical_epsg).collect())
+    ALL.get_or_init(|| {
+        (1024..=LAST_CODE)
+            .filter_map(proj_core::lookup_vertical_epsg)
+            .collect()
+    })
 }
 
 #[cfg(test)]
@@ -351,7 +417,10 @@ mod tests {
         for (code, definition) in projected() {
             let name = find(*code).unwrap().name;
             let found = identify(definition, &name).unwrap_or_else(|| panic!("EPSG:{code} {name}"));
-            assert!(find(found).unwrap().definition.unwrap().is_same(definition), "{code} is taken for {found}");
+            assert!(
+                find(found).unwrap().definition.unwrap().is_same(definition),
+                "{code} is taken for {found}"
+            );
         }
     }
 
@@ -372,11 +441,26 @@ mod tests {
     #[test]
     fn heights_are_identified_by_datum_else_by_name() {
         let metre = Unit::metre();
-        assert_eq!(identify_vertical("North_American_Vertical_Datum_1988", "", &metre), Some(5703));
-        assert_eq!(identify_vertical("Deutsches Haupthoehennetz 2016", "", &metre), Some(7837));
-        assert_eq!(identify_vertical("unknown", "SVS2000 height", &metre), Some(5779));
+        assert_eq!(
+            identify_vertical("North_American_Vertical_Datum_1988", "", &metre),
+            Some(5703)
+        );
+        assert_eq!(
+            identify_vertical("Deutsches Haupthoehennetz 2016", "", &metre),
+            Some(7837)
+        );
+        assert_eq!(
+            identify_vertical("unknown", "SVS2000 height", &metre),
+            Some(5779)
+        );
         assert_eq!(identify_vertical("of nobody", "of nobody", &metre), None);
-        assert_eq!(vertical_of_datum(5103, &Unit::length(12.0 / 39.37)), Some(6360));
-        assert_eq!(vertical_datum(7837).unwrap(), ("Deutsches Haupthoehennetz 2016".to_owned(), 1170));
+        assert_eq!(
+            vertical_of_datum(5103, &Unit::length(12.0 / 39.37)),
+            Some(6360)
+        );
+        assert_eq!(
+            vertical_datum(7837).unwrap(),
+            ("Deutsches Haupthoehennetz 2016".to_owned(), 1170)
+        );
     }
 }

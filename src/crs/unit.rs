@@ -98,7 +98,10 @@ const SAME_FACTOR: f64 = 1e-10;
 impl Unit {
     /// Creates a unit from a name and a factor.
     pub fn new(name: &str, factor: f64) -> Self {
-        Unit { name: name.to_owned(), factor }
+        Unit {
+            name: name.to_owned(),
+            factor,
+        }
     }
 
     /// Returns the meter.
@@ -114,13 +117,15 @@ impl Unit {
     /// Returns the unit of length with a number of meters: a known unit with its exact factor, or
     /// an unnamed one.
     pub fn length(factor: f64) -> Self {
-        Self::nearest(LENGTHS, factor).unwrap_or_else(|| Self::new(&format!("unit of {factor} m"), factor))
+        Self::nearest(LENGTHS, factor)
+            .unwrap_or_else(|| Self::new(&format!("unit of {factor} m"), factor))
     }
 
     /// Returns the unit of angle with a number of radians: a known unit with its exact factor, or
     /// an unnamed one.
     pub fn angle(factor: f64) -> Self {
-        Self::nearest(ANGLES, factor).unwrap_or_else(|| Self::new(&format!("unit of {factor} rad"), factor))
+        Self::nearest(ANGLES, factor)
+            .unwrap_or_else(|| Self::new(&format!("unit of {factor} rad"), factor))
     }
 
     /// Returns the unit of length with an EPSG code.
@@ -146,7 +151,11 @@ impl Unit {
 
     /// Returns the EPSG code of a known unit.
     pub fn code(&self) -> Option<u16> {
-        LENGTHS.iter().chain(ANGLES).find(|(_, name, _)| *name == self.name).map(|(code, ..)| *code)
+        LENGTHS
+            .iter()
+            .chain(ANGLES)
+            .find(|(_, name, _)| *name == self.name)
+            .map(|(code, ..)| *code)
     }
 
     /// Returns true if both have the same factor; names do not matter.
@@ -172,11 +181,17 @@ impl Unit {
     }
 
     fn from_code(table: &[(u16, &str, f64)], code: u16) -> Option<Self> {
-        table.iter().find(|unit| unit.0 == code).map(|&(_, name, factor)| Self::new(name, factor))
+        table
+            .iter()
+            .find(|unit| unit.0 == code)
+            .map(|&(_, name, factor)| Self::new(name, factor))
     }
 
     fn nearest(table: &[(u16, &str, f64)], factor: f64) -> Option<Self> {
-        table.iter().find(|unit| same_factor(unit.2, factor)).map(|&(_, name, factor)| Self::new(name, factor))
+        table
+            .iter()
+            .find(|unit| same_factor(unit.2, factor))
+            .map(|&(_, name, factor)| Self::new(name, factor))
     }
 
     fn from_name(table: &[(u16, &str, f64)], name: &str) -> Option<Self> {
@@ -194,7 +209,10 @@ fn same_factor(a: f64, b: f64) -> bool {
 }
 
 fn letters(name: &str) -> String {
-    name.chars().filter(char::is_ascii_alphabetic).map(|c| c.to_ascii_lowercase()).collect()
+    name.chars()
+        .filter(char::is_ascii_alphabetic)
+        .map(|c| c.to_ascii_lowercase())
+        .collect()
 }
 
 #[cfg(test)]
@@ -208,7 +226,10 @@ mod tests {
             assert_eq!(Unit::length(factor).name, "US survey foot");
         }
         assert!(!Unit::length(0.3048).is_same(&Unit::length(0.3048006096)));
-        assert_eq!(Unit::length_from_name("Foot_US").unwrap().code(), Some(9003));
+        assert_eq!(
+            Unit::length_from_name("Foot_US").unwrap().code(),
+            Some(9003)
+        );
         assert_eq!(Unit::length_from_name("metres").unwrap(), Unit::metre());
         assert_eq!(Unit::angle_from_name("Degree").unwrap(), Unit::degree());
         assert_eq!(Unit::length_from_name("Degree"), None);

@@ -33,14 +33,19 @@ impl Node {
     pub(super) fn parse_all(text: &str) -> Result<Vec<Node>> {
         let text = text.trim_matches(|c: char| c.is_whitespace() || c == '\0' || c == '\u{feff}');
         if text.len() > LONGEST {
-            return Err(Error::limit(format!("WKT of {} bytes, expected at most {LONGEST}", text.len())));
+            return Err(Error::limit(format!(
+                "WKT of {} bytes, expected at most {LONGEST}",
+                text.len()
+            )));
         }
         let mut reader = WktReader { text, at: 0 };
         let mut nodes = Vec::new();
         loop {
             match reader.value(0)? {
                 Value::Node(node) => nodes.push(node),
-                other => return Err(reader.error(&format!("found {other:?}, expected KEYWORD[...]"))),
+                other => {
+                    return Err(reader.error(&format!("found {other:?}, expected KEYWORD[...]")));
+                }
             }
             if !reader.eat(",") {
                 break;
@@ -65,7 +70,8 @@ impl Node {
 
     /// The first nested node with one of these keywords.
     pub(super) fn find(&self, keywords: &[&str]) -> Option<&Node> {
-        self.nodes().find(|node| keywords.contains(&node.keyword.as_str()))
+        self.nodes()
+            .find(|node| keywords.contains(&node.keyword.as_str()))
     }
 
     /// The first text, which is the name.
@@ -94,8 +100,8 @@ impl Node {
         self.nodes()
             .rev()
             .find_map(|node| {
-                let is_epsg =
-                    matches!(node.keyword.as_str(), "AUTHORITY" | "ID") && node.name().eq_ignore_ascii_case("EPSG");
+                let is_epsg = matches!(node.keyword.as_str(), "AUTHORITY" | "ID")
+                    && node.name().eq_ignore_ascii_case("EPSG");
                 match node.values.get(1).filter(|_| is_epsg)? {
                     Value::Text(code) | Value::Word(code) => code.trim().parse().ok(),
                     Value::Number(code) => Some(*code as u32).filter(|n| f64::from(*n) == *code),
@@ -131,7 +137,10 @@ impl WktReader<'_> {
 
     fn error(&self, what: &str) -> Error {
         let near: String = self.rest().chars().take(24).collect();
-        Error::format(format!("not WKT of a coordinate system: {what}, at character {} (\"{near}\")", self.at))
+        Error::format(format!(
+            "not WKT of a coordinate system: {what}, at character {} (\"{near}\")",
+            self.at
+        ))
     }
 
     fn value(&mut self, depth: usize) -> Result<Value> {
@@ -141,8 +150,10 @@ impl WktReader<'_> {
         if self.eat("\"") {
             return self.quoted().map(Value::Text);
         }
-        let end =
-            self.rest().find(|c: char| !(c.is_alphanumeric() || "_+-.:/".contains(c))).unwrap_or(self.rest().len());
+        let end = self
+            .rest()
+            .find(|c: char| !(c.is_alphanumeric() || "_+-.:/".contains(c)))
+            .unwrap_or(self.rest().len());
         let word = self.rest()[..end].to_owned();
         if word.is_empty() {
             return Err(self.error("a keyword, a number or a text in quotes was expected"));
@@ -159,7 +170,10 @@ impl WktReader<'_> {
                 _ => Value::Word(word),
             });
         };
-        let mut node = Node { keyword: word.to_ascii_uppercase(), values: Vec::new() };
+        let mut node = Node {
+            keyword: word.to_ascii_uppercase(),
+            values: Vec::new(),
+        };
         if self.eat(close) {
             return Ok(Value::Node(node));
         }
@@ -198,18 +212,26 @@ mod tests {
 
     #[test]
     fn reads_both_brackets_quotes_and_codes() {
-        let nodes = Node::parse_all(" A [ \"x \"\"y\"\"\" , -1.5e3, B(EAST),AUTHORITY[\"EPSG\",\"12\"] ] \0").unwrap();
+        let nodes = Node::parse_all(
+            " A [ \"x \"\"y\"\"\" , -1.5e3, B(EAST),AUTHORITY[\"EPSG\",\"12\"] ] \0",
+        )
+        .unwrap();
         assert_eq!(nodes.len(), 1);
         assert_eq!(nodes[0].name(), "x \"y\"");
         assert_eq!(nodes[0].number(0), Some(-1500.0));
-        assert_eq!(nodes[0].find(&["B"]).unwrap().values, [Value::Word("EAST".into())]);
+        assert_eq!(
+            nodes[0].find(&["B"]).unwrap().values,
+            [Value::Word("EAST".into())]
+        );
         assert_eq!(nodes[0].epsg(), Some(12));
         assert_eq!(Node::parse_all("A[1],B[2]").unwrap().len(), 2);
     }
 
     #[test]
     fn damage_is_an_error_with_the_place() {
-        for text in ["", "A", "A[", "A[\"x", "A[1", "A[1}", "A[1],", "[1]", "A[1]x", "A[,]", "\"A\"", "A[é"] {
+        for text in [
+            "", "A", "A[", "A[\"x", "A[1", "A[1}", "A[1],", "[1]", "A[1]x", "A[,]", "\"A\"", "A[é",
+        ] {
             let error = Node::parse_all(text).unwrap_err().to_string();
             assert!(error.contains("at character"), "{text}: {error}");
         }

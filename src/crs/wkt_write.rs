@@ -16,7 +16,12 @@ pub(super) enum Dialect {
 }
 
 /// The horizontal definition as WKT 1; `None` if the projection method has no name in it.
-pub(super) fn write(definition: &Definition, name: &str, epsg: Option<u32>, dialect: Dialect) -> Option<String> {
+pub(super) fn write(
+    definition: &Definition,
+    name: &str,
+    epsg: Option<u32>,
+    dialect: Dialect,
+) -> Option<String> {
     let writer = Writer { dialect };
     Some(match definition.kind {
         CrsKind::Projected => writer.projected(definition, name, epsg)?,
@@ -29,11 +34,19 @@ pub(super) fn write(definition: &Definition, name: &str, epsg: Option<u32>, dial
 /// The WKT of a system of which only name and unit are known.
 pub(super) fn write_local(name: &str, unit: &Unit, dialect: Dialect) -> String {
     let writer = Writer { dialect };
-    format!("LOCAL_CS[{},{},AXIS[\"Easting\",EAST],AXIS[\"Northing\",NORTH]]", quoted(name), writer.unit(unit))
+    format!(
+        "LOCAL_CS[{},{},AXIS[\"Easting\",EAST],AXIS[\"Northing\",NORTH]]",
+        quoted(name),
+        writer.unit(unit)
+    )
 }
 
 /// Horizontal WKT combined with a vertical system, as GDAL writes it.
-pub(super) fn write_compound(name: &str, horizontal: &str, vertical: (Option<u32>, &Unit)) -> String {
+pub(super) fn write_compound(
+    name: &str,
+    horizontal: &str,
+    vertical: (Option<u32>, &Unit),
+) -> String {
     let (code, unit) = vertical;
     let found = code.and_then(registry::find_vertical);
     let vertical_name = found.as_ref().map_or("unknown height", |found| &found.name);
@@ -41,7 +54,9 @@ pub(super) fn write_compound(name: &str, horizontal: &str, vertical: (Option<u32
         Some((datum, code)) => (datum, Some(code)),
         None => ("unknown".into(), None),
     };
-    let writer = Writer { dialect: Dialect::Gdal };
+    let writer = Writer {
+        dialect: Dialect::Gdal,
+    };
     format!(
         "COMPD_CS[{},{horizontal},VERT_CS[{},VERT_DATUM[{},2005{}],{},AXIS[\"Gravity-related height\",UP]{}]]",
         quoted(name),
@@ -67,7 +82,11 @@ impl Writer {
             return None;
         };
         let (method_name, parameters) = self.projection(definition, *method)?;
-        let geographic = self.geographic(definition, &definition.geographic.0, definition.geographic.1);
+        let geographic = self.geographic(
+            definition,
+            &definition.geographic.0,
+            definition.geographic.1,
+        );
         let mut text = format!(
             "PROJCS[{},{geographic},PROJECTION[{}]",
             quoted(&self.name(name, |name| esri::projected(name, epsg))),
@@ -91,7 +110,11 @@ impl Writer {
     }
 
     /// The name of the method and the parameters in order, in the units of the definition.
-    fn projection(&self, definition: &Definition, method: Method) -> Option<(&'static str, Vec<(&'static str, f64)>)> {
+    fn projection(
+        &self,
+        definition: &Definition,
+        method: Method,
+    ) -> Option<(&'static str, Vec<(&'static str, f64)>)> {
         let projection = definition.projection.as_ref()?;
         let row = method.row();
         let get = |param: Param| projection.get(&param).unwrap_or_default();
@@ -139,7 +162,9 @@ impl Writer {
                 _ => false,
             };
             let name = match (self.dialect, method, param) {
-                (Dialect::Esri, Method::PolarStereographic, Param::Lat1) if is_pole => "latitude_of_origin",
+                (Dialect::Esri, Method::PolarStereographic, Param::Lat1) if is_pole => {
+                    "latitude_of_origin"
+                }
                 _ => *name,
             };
             if !skip {
@@ -153,7 +178,11 @@ impl Writer {
                     parameters.insert(2, ("Standard_Parallel_1", lat0));
                 }
                 Method::WebMercator => parameters.push(("Auxiliary_Sphere_Type", 0.0)),
-                Method::Krovak => parameters.extend([("X_Scale", -1.0), ("Y_Scale", 1.0), ("XY_Plane_Rotation", 90.0)]),
+                Method::Krovak => parameters.extend([
+                    ("X_Scale", -1.0),
+                    ("Y_Scale", 1.0),
+                    ("XY_Plane_Rotation", 90.0),
+                ]),
                 _ => {}
             }
             // Esri's order: false origin first.
@@ -172,15 +201,27 @@ impl Writer {
 
     fn geographic(&self, definition: &Definition, name: &str, epsg: Option<u32>) -> String {
         let name = self.name(name, esri::geographic);
-        let codes = if self.is_esri() { String::new() } else { authority(epsg) };
-        format!("GEOGCS[{},{},{}{codes}]", quoted(&name), self.datum(definition), self.unit(&definition.angle))
+        let codes = if self.is_esri() {
+            String::new()
+        } else {
+            authority(epsg)
+        };
+        format!(
+            "GEOGCS[{},{},{}{codes}]",
+            quoted(&name),
+            self.datum(definition),
+            self.unit(&definition.angle)
+        )
     }
 
     fn geocentric(&self, definition: &Definition, name: &str, epsg: Option<u32>) -> String {
         format!(
             "GEOCCS[{},{},{},AXIS[\"Geocentric X\",OTHER],AXIS[\"Geocentric Y\",OTHER],AXIS[\"Geocentric Z\",NORTH]{}]",
             quoted(name),
-            Writer { dialect: Dialect::Gdal }.datum(definition),
+            Writer {
+                dialect: Dialect::Gdal
+            }
+            .datum(definition),
             self.unit(&definition.unit),
             authority(epsg),
         )
@@ -195,7 +236,13 @@ impl Writer {
             Dialect::Esri => (esri::datum(datum), esri::ellipsoid(&ellipsoid.name)),
         };
         let (meridian, meridian_code) = registry::meridian_name(datum.meridian);
-        let codes = |code: Option<u32>| if self.is_esri() { String::new() } else { authority(code) };
+        let codes = |code: Option<u32>| {
+            if self.is_esri() {
+                String::new()
+            } else {
+                authority(code)
+            }
+        };
         format!(
             "DATUM[{},SPHEROID[{},{},{}{}]{}],PRIMEM[{},{}{}]",
             quoted(&name),
@@ -224,7 +271,12 @@ impl Writer {
             Dialect::Gdal => (unit.name.as_str(), unit.code().map(u32::from)),
             Dialect::Esri => (esri, None),
         };
-        format!("UNIT[{},{}{}]", quoted(name), self.number(unit.factor), authority(code))
+        format!(
+            "UNIT[{},{}{}]",
+            quoted(name),
+            self.number(unit.factor),
+            authority(code)
+        )
     }
 
     fn name(&self, name: &str, esri: impl Fn(&str) -> String) -> String {
@@ -238,20 +290,32 @@ impl Writer {
     fn number(&self, value: f64) -> String {
         let value: f64 = format!("{value:.14e}").parse().unwrap_or(value);
         let text = unsigned_zero(value).to_string();
-        if self.is_esri() && !text.contains('.') { text + ".0" } else { text }
+        if self.is_esri() && !text.contains('.') {
+            text + ".0"
+        } else {
+            text
+        }
     }
 }
 
 /// Restores an angle: the registry's have 12 digits, but most were whole multiples of 1e-5 seconds.
 fn snap_angle(degrees: f64) -> f64 {
     let snapped = snap(degrees * 3.6e8, 0.01) / 3.6e8;
-    if (snapped - degrees).abs() < 2e-12 * degrees.abs().max(1.0) { snapped } else { degrees }
+    if (snapped - degrees).abs() < 2e-12 * degrees.abs().max(1.0) {
+        snapped
+    } else {
+        degrees
+    }
 }
 
 fn snap(value: f64, step: f64) -> f64 {
     let per_unit = (1.0 / step).round();
     let snapped = (value * per_unit).round() / per_unit;
-    if (snapped - value).abs() < 1e-11 * value.abs().max(1.0) { snapped } else { value }
+    if (snapped - value).abs() < 1e-11 * value.abs().max(1.0) {
+        snapped
+    } else {
+        value
+    }
 }
 
 fn gdal_datum_name(name: &str) -> String {
@@ -267,5 +331,7 @@ fn quoted(text: &str) -> String {
 }
 
 fn authority(code: Option<u32>) -> String {
-    code.map_or(String::new(), |code| format!(",AUTHORITY[\"EPSG\",\"{code}\"]"))
+    code.map_or(String::new(), |code| {
+        format!(",AUTHORITY[\"EPSG\",\"{code}\"]")
+    })
 }

@@ -12,7 +12,10 @@ pub struct Bounds {
 
 impl Default for Bounds {
     fn default() -> Self {
-        Bounds { min: [f64::INFINITY; 3], max: [f64::NEG_INFINITY; 3] }
+        Bounds {
+            min: [f64::INFINITY; 3],
+            max: [f64::NEG_INFINITY; 3],
+        }
     }
 }
 
@@ -58,7 +61,13 @@ mod tests {
         let whole = bounds;
         bounds.merge(&Bounds::default());
         assert_eq!(bounds, whole);
-        assert_eq!(bounds, Bounds { min: [1.0, -2.0, 5.0], max: [3.0, 2.0, 5.0] });
+        assert_eq!(
+            bounds,
+            Bounds {
+                min: [1.0, -2.0, 5.0],
+                max: [3.0, 2.0, 5.0]
+            }
+        );
         let mut empty = Bounds::default();
         empty.merge(&whole);
         assert_eq!(empty, whole);

@@ -18,7 +18,8 @@ pub struct Columns {
 impl fmt::Display for Columns {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "x {}, y {}, z {}", self.x, self.y, self.z)?;
-        self.class.map_or(Ok(()), |class| write!(f, ", class {class}"))
+        self.class
+            .map_or(Ok(()), |class| write!(f, ", class {class}"))
     }
 }
 
@@ -30,19 +31,45 @@ impl FromStr for Columns {
         if text.contains(|c: char| c.is_ascii_digit()) {
             return numbered(text);
         }
-        let find = |axis: &str, letters: [char; 2]| find(text, axis, |c| letters.contains(&c.to_ascii_uppercase()));
-        if let Some(unknown) = text.chars().find(|c| !"XYZENPDS".contains(c.to_ascii_uppercase())) {
-            return Err(format!("`{unknown}` is none of the letters P N E Z D, X Y and S"));
+        let find = |axis: &str, letters: [char; 2]| {
+            find(text, axis, |c| letters.contains(&c.to_ascii_uppercase()))
+        };
+        if let Some(unknown) = text
+            .chars()
+            .find(|c| !"XYZENPDS".contains(c.to_ascii_uppercase()))
+        {
+            return Err(format!(
+                "`{unknown}` is none of the letters P N E Z D, X Y and S"
+            ));
         }
-        Ok(Columns { x: find("x", ['E', 'X'])?, y: find("y", ['N', 'Y'])?, z: find("z", ['Z', 'Z'])?, class: None })
+        Ok(Columns {
+            x: find("x", ['E', 'X'])?,
+            y: find("y", ['N', 'Y'])?,
+            z: find("z", ['Z', 'Z'])?,
+            class: None,
+        })
     }
 }
 
 fn numbered(text: &str) -> Result<Columns, String> {
-    let numbers: Vec<usize> = text.split(',').map_while(|part| part.trim().parse().ok()).collect();
+    let numbers: Vec<usize> = text
+        .split(',')
+        .map_while(|part| part.trim().parse().ok())
+        .collect();
     match *numbers.as_slice() {
-        [x, y, z] if text.split(',').count() == 3 && x.min(y).min(z) > 0 && x != y && y != z && x != z => {
-            Ok(Columns { x, y, z, class: None })
+        [x, y, z]
+            if text.split(',').count() == 3
+                && x.min(y).min(z) > 0
+                && x != y
+                && y != z
+                && x != z =>
+        {
+            Ok(Columns {
+                x,
+                y,
+                z,
+                class: None,
+            })
         }
         _ => Err("expected the numbers of three columns, from 1 on, for x, y and z".to_owned()),
     }
@@ -55,19 +82,36 @@ impl Columns {
     /// If a letter is unknown, or x, y or z is missing or there twice.
     pub fn of_las_tools(text: &str) -> Result<Self, String> {
         const SKIPPED: &str = "saitrnRGBHIhgukwpedloSC0123456789";
-        if let Some(unknown) = text.chars().find(|&c| !"xyzc".contains(c) && !SKIPPED.contains(c)) {
-            return Err(format!("`{unknown}` is no letter for a field: x, y, z, c (class), s (skip), as in sxyz"));
+        if let Some(unknown) = text
+            .chars()
+            .find(|&c| !"xyzc".contains(c) && !SKIPPED.contains(c))
+        {
+            return Err(format!(
+                "`{unknown}` is no letter for a field: x, y, z, c (class), s (skip), as in sxyz"
+            ));
         }
         let one = |axis: &str, letter: char| find(text, axis, |c| c == letter);
-        let class = if text.contains('c') { Some(one("the class", 'c')?) } else { None };
-        Ok(Columns { x: one("x", 'x')?, y: one("y", 'y')?, z: one("z", 'z')?, class })
+        let class = if text.contains('c') {
+            Some(one("the class", 'c')?)
+        } else {
+            None
+        };
+        Ok(Columns {
+            x: one("x", 'x')?,
+            y: one("y", 'y')?,
+            z: one("z", 'z')?,
+            class,
+        })
     }
 }
 
 /// Returns the number of the only column whose letter satisfies `is_it`; an error if there is none
 /// or more than one.
 fn find(text: &str, axis: &str, is_it: impl Fn(char) -> bool) -> Result<usize, String> {
-    let mut numbers = (1..).zip(text.chars()).filter(|&(_, c)| is_it(c)).map(|(number, _)| number);
+    let mut numbers = (1..)
+        .zip(text.chars())
+        .filter(|&(_, c)| is_it(c))
+        .map(|(number, _)| number);
     match (numbers.next(), numbers.next()) {
         (Some(number), None) => Ok(number),
         (None, _) => Err(format!("no letter is for {axis}")),
@@ -92,13 +136,21 @@ mod tests {
         ] {
             assert_eq!(shown(typed.parse()).as_deref(), Ok(meant), "{typed}");
         }
-        for typed in ["", "XY", "XYZZ", "XEZ", "XYH", "0,1,2", "1,2", "1,2,3,4", "1,1,2", "1,x,2", "-1,2,3"] {
+        for typed in [
+            "", "XY", "XYZZ", "XEZ", "XYH", "0,1,2", "1,2", "1,2,3,4", "1,1,2", "1,x,2", "-1,2,3",
+        ] {
             assert!(typed.parse::<Columns>().is_err(), "{typed}");
         }
-        for (typed, meant) in
-            [("sxyz", "x 2, y 3, z 4"), ("txyzicRGB", "x 2, y 3, z 4, class 6"), ("sszyx", "x 5, y 4, z 3")]
-        {
-            assert_eq!(shown(Columns::of_las_tools(typed)).as_deref(), Ok(meant), "{typed}");
+        for (typed, meant) in [
+            ("sxyz", "x 2, y 3, z 4"),
+            ("txyzicRGB", "x 2, y 3, z 4, class 6"),
+            ("sszyx", "x 5, y 4, z 3"),
+        ] {
+            assert_eq!(
+                shown(Columns::of_las_tools(typed)).as_deref(),
+                Ok(meant),
+                "{typed}"
+            );
         }
         for typed in ["", "xy", "xyzz", "XYZ", "xyz c", "xyzcc", "x,y,z"] {
             assert!(Columns::of_las_tools(typed).is_err(), "{typed}");

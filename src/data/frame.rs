@@ -41,7 +41,11 @@ pub struct Window {
 impl Frame {
     /// Creates a north-up frame of square cells with its outer top left corner at `(left, top)`.
     pub fn north_up(left: f64, top: f64, resolution: f64, width: usize, height: usize) -> Self {
-        Frame { width, height, transform: [left, resolution, 0.0, top, 0.0, -resolution] }
+        Frame {
+            width,
+            height,
+            transform: [left, resolution, 0.0, top, 0.0, -resolution],
+        }
     }
 
     /// Creates the smallest north-up frame around `bounds` whose grid lines are multiples of
@@ -70,7 +74,8 @@ impl Frame {
     /// Those of [`snapped`](Frame::snapped).
     pub fn covering(bounds: &Bounds, resolution: f64) -> Result<Self> {
         check_extent(bounds, resolution)?;
-        let cells = |axis: usize| whole_above((bounds.max[axis] - bounds.min[axis]) / resolution).max(1.0);
+        let cells =
+            |axis: usize| whole_above((bounds.max[axis] - bounds.min[axis]) / resolution).max(1.0);
         let (width, height) = size(cells(0), cells(1))?;
         Frame::north_up(bounds.min[0], bounds.max[1], resolution, width, height).checked()
     }
@@ -101,7 +106,12 @@ impl Frame {
         let (width, height) = size(cells(0), cells(1))?;
         let mut transform = other.transform;
         [transform[0], transform[3]] = other.to_map(low[0], low[1]);
-        Frame { width, height, transform }.checked()
+        Frame {
+            width,
+            height,
+            transform,
+        }
+        .checked()
     }
 
     /// Returns the box around the outer corners of all cells; without heights.
@@ -123,26 +133,36 @@ impl Frame {
     pub fn checked(self) -> Result<Self> {
         let (width, height) = (self.width, self.height);
         if width == 0 || height == 0 {
-            return Err(Error::usage(format!("a raster of {width} x {height} cells")));
+            return Err(Error::usage(format!(
+                "a raster of {width} x {height} cells"
+            )));
         }
         if width > MAX_SIDE || height > MAX_SIDE {
             return Err(too_large(width as f64, height as f64));
         }
         let t = &self.transform;
         if t.iter().any(|v| !v.is_finite()) {
-            return Err(Error::format(format!("the geotransform {t:?} is not finite")));
+            return Err(Error::format(format!(
+                "the geotransform {t:?} is not finite"
+            )));
         }
         let determinant = t[1] * t[5] - t[2] * t[4];
         let pixel = determinant.abs() / t[1].hypot(t[4]).max(t[2].hypot(t[5]));
         if pixel.is_nan() || pixel <= 0.0 {
-            return Err(Error::format(format!("the geotransform {t:?} has no inverse")));
+            return Err(Error::format(format!(
+                "the geotransform {t:?} has no inverse"
+            )));
         }
         let end = self.to_map(width as f64, height as f64);
-        let largest = [t[0], t[3], end[0], end[1]].into_iter().fold(0.0, |most: f64, v| most.max(v.abs()));
+        let largest = [t[0], t[3], end[0], end[1]]
+            .into_iter()
+            .fold(0.0, |most: f64, v| most.max(v.abs()));
         let finest = largest * f64::EPSILON * MIN_PIXEL;
         if pixel < finest {
-            return Err(Error::usage(format!("cells of {pixel:.3e} are too small for coordinates of {largest}"))
-                .cure(format!("take a resolution above {finest:.3e}")));
+            return Err(Error::usage(format!(
+                "cells of {pixel:.3e} are too small for coordinates of {largest}"
+            ))
+            .cure(format!("take a resolution above {finest:.3e}")));
         }
         Ok(self)
     }
@@ -150,7 +170,10 @@ impl Frame {
     /// Converts pixels to coordinates (`column + 0.5` is a cell's center).
     pub fn to_map(&self, column: f64, row: f64) -> [f64; 2] {
         let t = &self.transform;
-        [t[0] + column * t[1] + row * t[2], t[3] + column * t[4] + row * t[5]]
+        [
+            t[0] + column * t[1] + row * t[2],
+            t[3] + column * t[4] + row * t[5],
+        ]
     }
 
     /// Returns the conversion from coordinates to pixels.
@@ -176,7 +199,8 @@ impl Frame {
     pub(crate) fn centers(&self) -> impl Fn(usize, usize) -> [f64; 2] + use<> {
         let frame = *self;
         let t = frame.transform;
-        let lines = (t[2] == 0.0 && t[4] == 0.0).then(|| [GridLines::new(t[0], t[1]), GridLines::new(t[3], t[5])]);
+        let lines = (t[2] == 0.0 && t[4] == 0.0)
+            .then(|| [GridLines::new(t[0], t[1]), GridLines::new(t[3], t[5])]);
         move |column, row| match &lines {
             Some([columns, rows]) => [columns.center(column), rows.center(row)],
             None => frame.to_map(column as f64 + 0.5, row as f64 + 0.5),
@@ -200,7 +224,12 @@ impl Frame {
 
     /// Returns the window of the whole raster.
     pub fn window(&self) -> Window {
-        Window { column: 0, row: 0, width: self.width, height: self.height }
+        Window {
+            column: 0,
+            row: 0,
+            width: self.width,
+            height: self.height,
+        }
     }
 
     /// Checks that `window` lies inside the raster and has `cells` cells.
@@ -208,8 +237,14 @@ impl Frame {
     /// # Errors
     /// If one of these is not the case; the message says which.
     pub fn check_window(&self, window: Window, cells: usize) -> Result<()> {
-        let Window { column, row, width, height } = window;
-        let inside = |first: usize, count: usize, limit: usize| first <= limit && count <= limit - first;
+        let Window {
+            column,
+            row,
+            width,
+            height,
+        } = window;
+        let inside =
+            |first: usize, count: usize, limit: usize| first <= limit && count <= limit - first;
         if !inside(column, width, self.width) || !inside(row, height, self.height) {
             return Err(Error::usage(format!(
                 "a window of {width} x {height} cells at column {column} and row {row} of a raster of {} x {}",
@@ -217,7 +252,9 @@ impl Frame {
             )));
         }
         if width.checked_mul(height) != Some(cells) {
-            return Err(Error::usage(format!("a block of {cells} values for {width} x {height} cells")));
+            return Err(Error::usage(format!(
+                "a block of {cells} values for {width} x {height} cells"
+            )));
         }
         Ok(())
     }
@@ -236,7 +273,11 @@ impl GridLines {
     pub(crate) fn new(origin: f64, step: f64) -> Self {
         let first = (origin / step).round();
         let first = (multiple(first, step) == origin && first.abs() < MOST_LINES).then_some(first);
-        GridLines { origin, step, first }
+        GridLines {
+            origin,
+            step,
+            first,
+        }
     }
 
     /// Returns the center between a line and the next one, counted from the first.
@@ -267,7 +308,10 @@ impl ToPixels {
     /// Returns column and row of a position; the center of the first cell is `[0.5, 0.5]`.
     pub fn apply(&self, x: f64, y: f64) -> [f64; 2] {
         let (x, y) = (x - self.corner[0], y - self.corner[1]);
-        [self.columns[0] * x + self.columns[1] * y, self.rows[0] * x + self.rows[1] * y]
+        [
+            self.columns[0] * x + self.columns[1] * y,
+            self.rows[0] * x + self.rows[1] * y,
+        ]
     }
 
     /// Returns the change of column and row per map unit along x.
@@ -282,7 +326,10 @@ impl ToPixels {
 
     /// Converts a gradient per column and row to one per map unit along x and y.
     pub fn gradient(&self, per_column: f64, per_row: f64) -> [f64; 2] {
-        [per_column * self.columns[0] + per_row * self.rows[0], per_column * self.columns[1] + per_row * self.rows[1]]
+        [
+            per_column * self.columns[0] + per_row * self.rows[0],
+            per_column * self.columns[1] + per_row * self.rows[1],
+        ]
     }
 }
 
@@ -304,22 +351,30 @@ fn whole_above(cells: f64) -> f64 {
 /// number, this divides by that number, because 10 is exact as a double and 1/10 is not.
 fn multiple(count: f64, resolution: f64) -> f64 {
     let parts = (1.0 / resolution).round();
-    if parts.abs() >= 1.0 && 1.0 / parts == resolution { count / parts } else { count * resolution }
+    if parts.abs() >= 1.0 && 1.0 / parts == resolution {
+        count / parts
+    } else {
+        count * resolution
+    }
 }
 
 fn check_bounds(bounds: &Bounds) -> Result<()> {
     let plan = [bounds.min[0], bounds.min[1], bounds.max[0], bounds.max[1]];
     if bounds.is_empty() || plan.iter().any(|v| !v.is_finite()) {
         let [xmin, ymin, xmax, ymax] = plan;
-        return Err(Error::usage(format!("the bounds {xmin} {ymin} {xmax} {ymax} are empty or not finite"))
-            .cure("give them as xmin ymin xmax ymax"));
+        return Err(Error::usage(format!(
+            "the bounds {xmin} {ymin} {xmax} {ymax} are empty or not finite"
+        ))
+        .cure("give them as xmin ymin xmax ymax"));
     }
     Ok(())
 }
 
 fn check_extent(bounds: &Bounds, resolution: f64) -> Result<()> {
     if !(resolution > 0.0 && resolution.is_finite()) {
-        return Err(Error::usage(format!("the resolution is {resolution}, expected a positive number")));
+        return Err(Error::usage(format!(
+            "the resolution is {resolution}, expected a positive number"
+        )));
     }
     check_bounds(bounds)
 }
@@ -333,8 +388,10 @@ fn size(width: f64, height: f64) -> Result<(usize, usize)> {
 
 #[cold]
 fn too_large(width: f64, height: f64) -> Error {
-    Error::limit(format!("a raster of {width} x {height} cells; a side has at most {MAX_SIDE}"))
-        .cure("take a coarser resolution or smaller bounds")
+    Error::limit(format!(
+        "a raster of {width} x {height} cells; a side has at most {MAX_SIDE}"
+    ))
+    .cure("take a coarser resolution or smaller bounds")
 }
 
 #[cfg(test)]
@@ -342,12 +399,16 @@ mod tests {
     use super::*;
 
     fn bounds(xmin: f64, ymin: f64, xmax: f64, ymax: f64) -> Bounds {
-        Bounds { min: [xmin, ymin, 0.0], max: [xmax, ymax, 0.0] }
+        Bounds {
+            min: [xmin, ymin, 0.0],
+            max: [xmax, ymax, 0.0],
+        }
     }
 
     #[test]
     fn snapped_frames_lie_on_multiples_and_cover_the_bounds() {
-        let frame = Frame::snapped(&bounds(885024.09, 629400.0, 885217.09, 629699.99), 1.0).unwrap();
+        let frame =
+            Frame::snapped(&bounds(885024.09, 629400.0, 885217.09, 629699.99), 1.0).unwrap();
         assert_eq!(frame, Frame::north_up(885024.0, 629700.0, 1.0, 194, 300));
         let frame = Frame::snapped(&bounds(-0.3, -7.0, 0.1, 0.3), 0.1).unwrap();
         assert_eq!(frame, Frame::north_up(-0.3, 0.3, 0.1, 4, 73));
@@ -368,10 +429,23 @@ mod tests {
         let north_up = Frame::north_up(0.25, 100.5, 2.0, 7, 9);
         let frame = Frame::aligned_to(&north_up, &bounds(-3.0, 90.0, 4.25, 110.5)).unwrap();
         assert_eq!(frame, Frame::north_up(-3.75, 110.5, 2.0, 4, 11));
-        let south_up = Frame { transform: [0.0, 1.0, 0.0, 0.0, 0.0, 1.0], ..north_up };
+        let south_up = Frame {
+            transform: [0.0, 1.0, 0.0, 0.0, 0.0, 1.0],
+            ..north_up
+        };
         let frame = Frame::aligned_to(&south_up, &bounds(1.5, 2.5, 3.5, 3.5)).unwrap();
-        assert_eq!(frame, Frame { width: 3, height: 2, transform: [1.0, 1.0, 0.0, 2.0, 0.0, 1.0] });
-        let rotated = Frame { transform: [10.0, 0.6, -0.8, 20.0, 0.8, 0.6], ..north_up };
+        assert_eq!(
+            frame,
+            Frame {
+                width: 3,
+                height: 2,
+                transform: [1.0, 1.0, 0.0, 2.0, 0.0, 1.0]
+            }
+        );
+        let rotated = Frame {
+            transform: [10.0, 0.6, -0.8, 20.0, 0.8, 0.6],
+            ..north_up
+        };
         let inside = bounds(11.0, 21.0, 17.0, 29.0);
         let frame = Frame::aligned_to(&rotated, &inside).unwrap();
         for (x, y) in [(11.0, 21.0), (17.0, 21.0), (11.0, 29.0), (17.0, 29.0)] {
@@ -379,7 +453,9 @@ mod tests {
             assert!(column > -1e-9 && column < frame.width as f64 + 1e-9);
             assert!(row > -1e-9 && row < frame.height as f64 + 1e-9);
         }
-        let [column, row] = rotated.inverse().apply(frame.transform[0], frame.transform[3]);
+        let [column, row] = rotated
+            .inverse()
+            .apply(frame.transform[0], frame.transform[3]);
         assert!((column - column.round()).abs() < 1e-12 && (row - row.round()).abs() < 1e-12);
     }
 
@@ -387,25 +463,44 @@ mod tests {
     #[test]
     fn a_cell_has_the_same_center_in_all_rasters_of_a_grid() {
         for resolution in [1.0, 0.1, 0.3, 0.7, 2.5, 1.0 / 3.0] {
-            let whole = Frame::snapped(&bounds(-500.0, 5e6, 300.0, 5e6 + 900.0), resolution).unwrap();
-            let part = Frame::snapped(&bounds(17.3, 5e6 + 40.0, 44.0, 5e6 + 321.7), resolution).unwrap();
+            let whole =
+                Frame::snapped(&bounds(-500.0, 5e6, 300.0, 5e6 + 900.0), resolution).unwrap();
+            let part =
+                Frame::snapped(&bounds(17.3, 5e6 + 40.0, 44.0, 5e6 + 321.7), resolution).unwrap();
             assert!(whole.has_shared_centers() && part.has_shared_centers());
-            let [column, row] =
-                whole.inverse().apply(part.transform[0], part.transform[3]).map(|at| at.round() as usize);
+            let [column, row] = whole
+                .inverse()
+                .apply(part.transform[0], part.transform[3])
+                .map(|at| at.round() as usize);
             for k in 0..part.width.min(part.height) {
-                assert_eq!(part.center(k, k), whole.center(column + k, row + k), "{resolution}");
+                assert_eq!(
+                    part.center(k, k),
+                    whole.center(column + k, row + k),
+                    "{resolution}"
+                );
                 let [x, y] = part.to_map(k as f64 + 0.5, k as f64 + 0.5);
-                assert!((part.center(k, k)[0] - x).abs() < 1e-12 && (part.center(k, k)[1] - y).abs() < 1e-8);
+                assert!(
+                    (part.center(k, k)[0] - x).abs() < 1e-12
+                        && (part.center(k, k)[1] - y).abs() < 1e-8
+                );
             }
         }
         assert!(!Frame::north_up(0.25, 0.25, 1.0, 4, 4).has_shared_centers());
-        let rotated = Frame { width: 4, height: 5, transform: [0.0, 0.6, -0.8, 0.0, -0.8, -0.6] };
+        let rotated = Frame {
+            width: 4,
+            height: 5,
+            transform: [0.0, 0.6, -0.8, 0.0, -0.8, -0.6],
+        };
         assert!(!rotated.has_shared_centers());
     }
 
     #[test]
     fn pixels_and_back() {
-        let frame = Frame { width: 4, height: 5, transform: [5e5, 0.6, -0.8, 5.4e6, -0.8, -0.6] };
+        let frame = Frame {
+            width: 4,
+            height: 5,
+            transform: [5e5, 0.6, -0.8, 5.4e6, -0.8, -0.6],
+        };
         let [x, y] = frame.center(3, 2);
         let [column, row] = frame.inverse().apply(x, y);
         assert!((column - 3.5).abs() < 1e-8 && (row - 2.5).abs() < 1e-8);
@@ -415,17 +510,48 @@ mod tests {
     fn says_what_is_wrong() {
         let message = |result: Result<Frame>| result.unwrap_err().to_string();
         let unit = bounds(0.0, 0.0, 1.0, 1.0);
-        assert_eq!(message(Frame::snapped(&unit, 0.0)), "the resolution is 0, expected a positive number");
-        assert_eq!(message(Frame::snapped(&unit, f64::NAN)), "the resolution is NaN, expected a positive number");
+        assert_eq!(
+            message(Frame::snapped(&unit, 0.0)),
+            "the resolution is 0, expected a positive number"
+        );
+        assert_eq!(
+            message(Frame::snapped(&unit, f64::NAN)),
+            "the resolution is NaN, expected a positive number"
+        );
         let empty = message(Frame::snapped(&Bounds::default(), 1.0));
-        assert_eq!(empty, "the bounds inf inf -inf -inf are empty or not finite");
+        assert_eq!(
+            empty,
+            "the bounds inf inf -inf -inf are empty or not finite"
+        );
         let large = message(Frame::snapped(&bounds(0.0, 0.0, 3e6, 1.0), 0.001));
-        assert_eq!(large, "a raster of 3000000000 x 1000 cells; a side has at most 2147483647");
+        assert_eq!(
+            large,
+            "a raster of 3000000000 x 1000 cells; a side has at most 2147483647"
+        );
         let fine = message(Frame::snapped(&bounds(5e6, 5e6, 5e6, 5e6), 1e-7));
-        assert_eq!(fine, "cells of 1.000e-7 are too small for coordinates of 5000000.0000001");
-        let singular = Frame { width: 1, height: 1, transform: [0.0, 1.0, 1.0, 0.0, 1.0, 1.0] };
-        assert_eq!(message(singular.checked()), "the geotransform [0.0, 1.0, 1.0, 0.0, 1.0, 1.0] has no inverse");
-        let window = Window { column: 1, row: 0, width: usize::MAX, height: 1 };
-        assert!(Frame::north_up(0.0, 0.0, 1.0, 4, 4).check_window(window, 4).is_err());
+        assert_eq!(
+            fine,
+            "cells of 1.000e-7 are too small for coordinates of 5000000.0000001"
+        );
+        let singular = Frame {
+            width: 1,
+            height: 1,
+            transform: [0.0, 1.0, 1.0, 0.0, 1.0, 1.0],
+        };
+        assert_eq!(
+            message(singular.checked()),
+            "the geotransform [0.0, 1.0, 1.0, 0.0, 1.0, 1.0] has no inverse"
+        );
+        let window = Window {
+            column: 1,
+            row: 0,
+            width: usize::MAX,
+            height: 1,
+        };
+        assert!(
+            Frame::north_up(0.0, 0.0, 1.0, 4, 4)
+                .check_window(window, 4)
+                .is_err()
+        );
     }
 }

@@ -25,7 +25,11 @@ impl Grid {
     /// If the raster does not fit into memory, or the source fails.
     pub fn collect(source: &dyn BlockSource) -> Result<Self> {
         let values = collected(source)?;
-        Ok(Grid { frame: source.frame(), crs: source.crs().cloned(), values })
+        Ok(Grid {
+            frame: source.frame(),
+            crs: source.crs().cloned(),
+            values,
+        })
     }
 
     /// Returns the box around all cells, with the lowest and the highest height if there are any.
@@ -35,14 +39,20 @@ impl Grid {
     pub fn extent(&self) -> Bounds {
         let mut bounds = self.frame.extent();
         let [x, y, _] = bounds.min;
-        self.values.iter().filter(|z| !z.is_nan()).for_each(|&z| bounds.add([x, y, z]));
+        self.values
+            .iter()
+            .filter(|z| !z.is_nan())
+            .for_each(|&z| bounds.add([x, y, z]));
         bounds
     }
 
     #[cold]
     fn too_short(&self) -> Error {
         let Frame { width, height, .. } = self.frame;
-        Error::usage(format!("a grid of {width} x {height} cells holds {} values", self.values.len()))
+        Error::usage(format!(
+            "a grid of {width} x {height} cells holds {} values",
+            self.values.len()
+        ))
     }
 
     /// Returns the value of a cell.
@@ -67,18 +77,28 @@ fn collected<T: From<f32> + Copy + Send>(source: &dyn BlockSource) -> Result<Vec
     let count = frame.width.saturating_mul(frame.height);
     let mut values = Vec::new();
     if values.try_reserve_exact(count).is_err() {
-        return Err(Error::limit(format!("{} x {} cells do not fit into memory", frame.width, frame.height)));
+        return Err(Error::limit(format!(
+            "{} x {} cells do not fit into memory",
+            frame.width, frame.height
+        )));
     }
     values.resize(count, T::from(f32::NAN));
-    values.par_chunks_mut((frame.width * ROWS).max(1)).enumerate().try_for_each(|(i, strip)| {
-        let window = Window { row: i * ROWS, height: strip.len() / frame.width, ..frame.window() };
-        let mut block = vec![0.0; strip.len()];
-        source.fill(window, &mut block)?;
-        for (to, from) in strip.iter_mut().zip(block) {
-            *to = T::from(from);
-        }
-        Ok::<(), Error>(())
-    })?;
+    values
+        .par_chunks_mut((frame.width * ROWS).max(1))
+        .enumerate()
+        .try_for_each(|(i, strip)| {
+            let window = Window {
+                row: i * ROWS,
+                height: strip.len() / frame.width,
+                ..frame.window()
+            };
+            let mut block = vec![0.0; strip.len()];
+            source.fill(window, &mut block)?;
+            for (to, from) in strip.iter_mut().zip(block) {
+                *to = T::from(from);
+            }
+            Ok::<(), Error>(())
+        })?;
     Ok(values)
 }
 
@@ -145,7 +165,10 @@ impl BlockSource for Grid {
         }
         for (i, row) in out.chunks_exact_mut(window.width).enumerate() {
             let first = (window.row + i) * self.frame.width + window.column;
-            let values = self.values.get(first..first + window.width).ok_or_else(|| self.too_short())?;
+            let values = self
+                .values
+                .get(first..first + window.width)
+                .ok_or_else(|| self.too_short())?;
             for (to, &from) in row.iter_mut().zip(values) {
                 *to = from as f32;
             }
@@ -161,18 +184,53 @@ mod tests {
     #[test]
     fn a_grid_gives_its_blocks_and_is_collected_from_them() {
         let (width, height) = (37, 150);
-        let values: Vec<f64> = (0..width * height).map(|i| f64::from(i as u32) / 2.0).collect();
-        let grid = Grid { frame: Frame::north_up(0.0, 0.0, 1.0, width, height), crs: None, values };
+        let values: Vec<f64> = (0..width * height)
+            .map(|i| f64::from(i as u32) / 2.0)
+            .collect();
+        let grid = Grid {
+            frame: Frame::north_up(0.0, 0.0, 1.0, width, height),
+            crs: None,
+            values,
+        };
         let mut block = vec![0.0; 6];
-        grid.fill(Window { column: 35, row: 148, width: 2, height: 2 }, &mut block[..4]).unwrap();
-        assert_eq!(&block[..2], [(148 * 37 + 35) as f32 / 2.0, (148 * 37 + 36) as f32 / 2.0]);
+        grid.fill(
+            Window {
+                column: 35,
+                row: 148,
+                width: 2,
+                height: 2,
+            },
+            &mut block[..4],
+        )
+        .unwrap();
+        assert_eq!(
+            &block[..2],
+            [(148 * 37 + 35) as f32 / 2.0, (148 * 37 + 36) as f32 / 2.0]
+        );
         assert_eq!(block[3], (150 * 37 - 1) as f32 / 2.0);
         assert_eq!(Grid::collect(&grid).unwrap().values, grid.values);
-        assert!(cells(&grid).unwrap().into_iter().map(f64::from).eq(grid.values.iter().copied()));
-        let beyond = Window { column: 35, row: 148, width: 3, height: 2 };
+        assert!(
+            cells(&grid)
+                .unwrap()
+                .into_iter()
+                .map(f64::from)
+                .eq(grid.values.iter().copied())
+        );
+        let beyond = Window {
+            column: 35,
+            row: 148,
+            width: 3,
+            height: 2,
+        };
         assert!(grid.fill(beyond, &mut block).is_err());
-        let short = Grid { values: vec![0.0; 37 * 149], ..grid };
+        let short = Grid {
+            values: vec![0.0; 37 * 149],
+            ..grid
+        };
         let error = Grid::collect(&short).unwrap_err();
-        assert_eq!(error.to_string(), "a grid of 37 x 150 cells holds 5513 values");
+        assert_eq!(
+            error.to_string(),
+            "a grid of 37 x 150 cells holds 5513 values"
+        );
     }
 }

@@ -22,13 +22,17 @@ impl Lattice {
     pub fn nearest(&self, point: [f64; 3]) -> Option<[i32; 3]> {
         let range = f64::from(i32::MIN)..=f64::from(i32::MAX);
         let steps = [0, 1, 2].map(|k| ((point[k] - self.offset[k]) / self.scale[k]).round());
-        steps.iter().all(|step| range.contains(step)).then(|| steps.map(|step| step as i32))
+        steps
+            .iter()
+            .all(|step| range.contains(step))
+            .then(|| steps.map(|step| step as i32))
     }
 
     /// Returns the steps to a point; `None` if it is not a [point](Self::point) of the lattice.
     #[inline]
     pub fn steps(&self, point: [f64; 3]) -> Option<[i32; 3]> {
-        self.nearest(point).filter(|&steps| self.point(steps) == point)
+        self.nearest(point)
+            .filter(|&steps| self.point(steps) == point)
     }
 
     /// Returns the embedding of this lattice in a finer one; `None` if the other lacks some of its
@@ -37,9 +41,15 @@ impl Lattice {
     /// A step here must be a whole number of steps there, and so must the distance between the
     /// origins, up to the rounding of coordinates to doubles.
     pub fn embed(&self, into: &Lattice) -> Option<Embedding> {
-        let mut embedding = Embedding { factor: [1; 3], shift: [0; 3] };
+        let mut embedding = Embedding {
+            factor: [1; 3],
+            shift: [0; 3],
+        };
         for k in 0..3 {
-            let (factor, shift) = (self.scale[k] / into.scale[k], (self.offset[k] - into.offset[k]) / into.scale[k]);
+            let (factor, shift) = (
+                self.scale[k] / into.scale[k],
+                (self.offset[k] - into.offset[k]) / into.scale[k],
+            );
             // Scales and offsets in decimals are rounded themselves.
             let size = (self.offset[k].abs() + into.offset[k].abs()) / into.scale[k];
             embedding.factor[k] = whole(factor, factor).filter(|&factor| factor > 0)?;
@@ -69,7 +79,9 @@ impl Embedding {
     pub fn steps(&self, steps: [i32; 3]) -> Option<[i32; 3]> {
         let mut there = [0; 3];
         for k in 0..3 {
-            there[k] = steps[k].checked_mul(self.factor[k])?.checked_add(self.shift[k])?;
+            there[k] = steps[k]
+                .checked_mul(self.factor[k])?
+                .checked_add(self.shift[k])?;
         }
         Some(there)
     }

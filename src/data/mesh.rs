@@ -85,8 +85,17 @@ impl Mesh {
         constrained_edges: &[[u32; 2]],
         crs: Option<Crs>,
     ) -> Result<Self> {
-        let lines = constrained_edges.iter().map(|&edge| (edge, EdgeKind::Breakline)).collect();
-        Self::of(Triangles { vertices, faces, lines, crs, ..Triangles::default() })
+        let lines = constrained_edges
+            .iter()
+            .map(|&edge| (edge, EdgeKind::Breakline))
+            .collect();
+        Self::of(Triangles {
+            vertices,
+            faces,
+            lines,
+            crs,
+            ..Triangles::default()
+        })
     }
 
     /// Like [`new`](Self::new), but from everything that a file can contain.
@@ -97,23 +106,45 @@ impl Mesh {
     /// Those of [`new`](Self::new), and if a clip edge is not an edge of a face, or two faces state
     /// different kinds for the edge that they share.
     pub fn of(triangles: Triangles) -> Result<Self> {
-        let Triangles { vertices, mut faces, lines, fragments, mut sides, crs, .. } = triangles;
+        let Triangles {
+            vertices,
+            mut faces,
+            lines,
+            fragments,
+            mut sides,
+            crs,
+            ..
+        } = triangles;
         check_numbers(&vertices, &faces)?;
         check_values(&vertices, &faces)?;
-        turn_counter_clockwise(&vertices, &mut faces, sides.as_deref_mut().unwrap_or_default())?;
+        turn_counter_clockwise(
+            &vertices,
+            &mut faces,
+            sides.as_deref_mut().unwrap_or_default(),
+        )?;
         let edges = EdgeTable::new(vertices.len(), &faces);
         let neighbors = match edges.neighbors(&faces) {
             (neighbors, flaws) if flaws.is_empty() => neighbors,
             (_, flaws) => return Err(folded(flaws[0])),
         };
-        if let Some(flaw) = different_kinds(&faces, &neighbors, sides.as_deref().unwrap_or_default()).next() {
-            return Err(Error::format(flaw.to_string()).cure("write the mesh again with the program that made it"));
+        if let Some(flaw) =
+            different_kinds(&faces, &neighbors, sides.as_deref().unwrap_or_default()).next()
+        {
+            return Err(Error::format(flaw.to_string())
+                .cure("write the mesh again with the program that made it"));
         }
         let (kinds, unmet) = edges.kinds(faces.len(), &lines);
         if let Some(flaw) = unmet.first() {
             return Err(Error::format(flaw.to_string()));
         }
-        Ok(Mesh { vertices, faces, neighbors, kinds, fragments, crs })
+        Ok(Mesh {
+            vertices,
+            faces,
+            neighbors,
+            kinds,
+            fragments,
+            crs,
+        })
     }
 
     /// Links triangles as far as possible, and returns the mesh with the flaws that were found.
@@ -128,17 +159,33 @@ impl Mesh {
     /// # Complexity
     /// That of [`new`](Self::new).
     pub fn link(triangles: Triangles) -> Result<(Self, Vec<LinkFlaw>)> {
-        let Triangles { vertices, mut faces, lines, fragments, mut sides, neighbors: stated, crs, .. } = triangles;
+        let Triangles {
+            vertices,
+            mut faces,
+            lines,
+            fragments,
+            mut sides,
+            neighbors: stated,
+            crs,
+            ..
+        } = triangles;
         check_numbers(&vertices, &faces)?;
         let is_turned = is_clockwise(&vertices, &faces);
         if is_turned {
             faces.iter_mut().for_each(|face| face.swap(1, 2));
-            sides.iter_mut().flatten().for_each(|kinds| kinds.swap(1, 2));
+            sides
+                .iter_mut()
+                .flatten()
+                .for_each(|kinds| kinds.swap(1, 2));
         }
         let edges = EdgeTable::new(vertices.len(), &faces);
         let (neighbors, mut flaws) = edges.neighbors(&faces);
         flaws.extend(strays(&vertices, &faces));
-        flaws.extend(different_kinds(&faces, &neighbors, sides.as_deref().unwrap_or_default()));
+        flaws.extend(different_kinds(
+            &faces,
+            &neighbors,
+            sides.as_deref().unwrap_or_default(),
+        ));
         let (kinds, unmet) = edges.kinds(faces.len(), &lines);
         flaws.extend(unmet);
         for (face, mut stated) in (0u32..).zip(stated.into_iter().flatten()).take(faces.len()) {
@@ -148,11 +195,26 @@ impl Mesh {
             for (corner, stated) in stated.into_iter().enumerate() {
                 let found = Some(neighbors[face as usize][corner]).filter(|&n| n != NONE);
                 if stated != found {
-                    flaws.push(LinkFlaw::Neighbor { face, corner, stated, found });
+                    flaws.push(LinkFlaw::Neighbor {
+                        face,
+                        corner,
+                        stated,
+                        found,
+                    });
                 }
             }
         }
-        Ok((Mesh { vertices, faces, neighbors, kinds, fragments, crs }, flaws))
+        Ok((
+            Mesh {
+                vertices,
+                faces,
+                neighbors,
+                kinds,
+                fragments,
+                crs,
+            },
+            flaws,
+        ))
     }
 }
 
@@ -170,19 +232,29 @@ fn check_numbers(vertices: &[[f64; 3]], faces: &[[u32; 3]]) -> Result<()> {
     for (i, face) in faces.iter().enumerate() {
         if let Some(v) = face.iter().find(|&&v| v as usize >= vertices.len()) {
             let count = vertices.len();
-            return Err(Error::format(format!("face {i} names vertex {v}, but there are {count} vertices")));
+            return Err(Error::format(format!(
+                "face {i} names vertex {v}, but there are {count} vertices"
+            )));
         }
     }
     Ok(())
 }
 
 fn check_values(vertices: &[[f64; 3]], faces: &[[u32; 3]]) -> Result<()> {
-    if let Some(i) = vertices.iter().position(|p| p.iter().any(|c| !c.is_finite())) {
+    if let Some(i) = vertices
+        .iter()
+        .position(|p| p.iter().any(|c| !c.is_finite()))
+    {
         return Err(not_finite(i, vertices[i]));
     }
-    if let Some(i) = faces.iter().position(|&[a, b, c]| a == b || b == c || c == a) {
+    if let Some(i) = faces
+        .iter()
+        .position(|&[a, b, c]| a == b || b == c || c == a)
+    {
         let [a, b, c] = faces[i];
-        return Err(Error::format(format!("face {i} names one vertex twice: {a} {b} {c}")));
+        return Err(Error::format(format!(
+            "face {i} names one vertex twice: {a} {b} {c}"
+        )));
     }
     Ok(())
 }
@@ -195,31 +267,51 @@ fn strays(vertices: &[[f64; 3]], faces: &[[u32; 3]]) -> Vec<LinkFlaw> {
         return Vec::new();
     }
     let used: HashSet<u32> = faces.iter().flatten().copied().collect();
-    nowhere.into_iter().filter(|vertex| !used.contains(vertex)).map(LinkFlaw::StrayVertex).collect()
+    nowhere
+        .into_iter()
+        .filter(|vertex| !used.contains(vertex))
+        .map(LinkFlaw::StrayVertex)
+        .collect()
 }
 
 /// The error for a vertex with coordinates that are not finite.
 #[cold]
 pub(crate) fn not_finite(vertex: usize, [x, y, z]: [f64; 3]) -> Error {
-    Error::format(format!("vertex {vertex} is at {x} {y} {z}, expected finite coordinates"))
+    Error::format(format!(
+        "vertex {vertex} is at {x} {y} {z}, expected finite coordinates"
+    ))
 }
 
 /// Returns true if there are clockwise faces and no counter-clockwise ones.
 fn is_clockwise(vertices: &[[f64; 3]], faces: &[[u32; 3]]) -> bool {
     let corners = faces.iter().map(|face| face.map(|v| vertices[v as usize]));
-    let finite = corners.filter(|corners| corners.iter().all(|[x, y, _]| x.is_finite() && y.is_finite()));
-    let mut signs = finite.map(orientation).filter(|sign| *sign != Sign::Zero).peekable();
+    let finite = corners.filter(|corners| {
+        corners
+            .iter()
+            .all(|[x, y, _]| x.is_finite() && y.is_finite())
+    });
+    let mut signs = finite
+        .map(orientation)
+        .filter(|sign| *sign != Sign::Zero)
+        .peekable();
     signs.peek().is_some() && signs.all(|sign| sign == Sign::Negative)
 }
 
 /// Turns faces, and the kinds of their edges if there are any.
-fn turn_counter_clockwise(vertices: &[[f64; 3]], faces: &mut [[u32; 3]], sides: &mut [[EdgeKind; 3]]) -> Result<()> {
+fn turn_counter_clockwise(
+    vertices: &[[f64; 3]],
+    faces: &mut [[u32; 3]],
+    sides: &mut [[EdgeKind; 3]],
+) -> Result<()> {
     for (i, face) in faces.iter_mut().enumerate() {
         match orientation(face.map(|v| vertices[v as usize])) {
             Sign::Positive => (),
             Sign::Negative => {
                 face.swap(1, 2);
-                sides.get_mut(i).into_iter().for_each(|kinds| kinds.swap(1, 2));
+                sides
+                    .get_mut(i)
+                    .into_iter()
+                    .for_each(|kinds| kinds.swap(1, 2));
             }
             Sign::Zero => {
                 let [a, b, c] = *face;
@@ -239,14 +331,20 @@ fn different_kinds(
     sides: &[[EdgeKind; 3]],
 ) -> impl Iterator<Item = LinkFlaw> {
     let line = |kind: EdgeKind| Some(kind).filter(|kind| kind.is_constrained());
-    let all = (0u32..).zip(sides).flat_map(|(face, kinds)| (0..3).map(move |i| (face, i, kinds[i])));
+    let all = (0u32..)
+        .zip(sides)
+        .flat_map(|(face, kinds)| (0..3).map(move |i| (face, i, kinds[i])));
     all.filter_map(move |(face, i, kind)| {
         let beside = neighbors.get(face as usize)?[i];
         let theirs = neighbors.get(beside as usize).filter(|_| face < beside)?;
         let other = sides.get(beside as usize)?[theirs.iter().position(|&back| back == face)?];
         let corners = faces.get(face as usize)?;
         let edge = [corners[(i + 1) % 3], corners[(i + 2) % 3]];
-        (line(kind) != line(other)).then_some(LinkFlaw::Kinds { faces: [face, beside], edge, kinds: [kind, other] })
+        (line(kind) != line(other)).then_some(LinkFlaw::Kinds {
+            faces: [face, beside],
+            edge,
+            kinds: [kind, other],
+        })
     })
 }
 
@@ -303,7 +401,10 @@ impl EdgeTable {
             for side in 0..3 {
                 let (low, high) = ends(face, side);
                 let slot = &mut next[low as usize];
-                halves[*slot as usize] = HalfEdge { high, number: (3 * i + side) as u32 };
+                halves[*slot as usize] = HalfEdge {
+                    high,
+                    number: (3 * i + side) as u32,
+                };
                 *slot += 1;
             }
         }
@@ -322,7 +423,9 @@ impl EdgeTable {
             for twins in around.chunk_by(|a, b| a.high == b.high) {
                 // Of three faces at an edge, two start at the same end.
                 let folded = twins.iter().enumerate().find_map(|(i, one)| {
-                    let other = twins[i + 1..].iter().find(|other| other.start(faces) == one.start(faces))?;
+                    let other = twins[i + 1..]
+                        .iter()
+                        .find(|other| other.start(faces) == one.start(faces))?;
                     Some(LinkFlaw::Folded {
                         faces: [one.face() as u32, other.face() as u32],
                         edge: [one.start(faces), faces[one.face()][(one.side() + 2) % 3]],
@@ -343,13 +446,19 @@ impl EdgeTable {
 
     /// Returns the kinds of the sides of `face_count` faces, and a flaw for each listed edge that
     /// is not a side of any face.
-    fn kinds(&self, face_count: usize, lines: &[([u32; 2], EdgeKind)]) -> (Vec<[EdgeKind; 3]>, Vec<LinkFlaw>) {
+    fn kinds(
+        &self,
+        face_count: usize,
+        lines: &[([u32; 2], EdgeKind)],
+    ) -> (Vec<[EdgeKind; 3]>, Vec<LinkFlaw>) {
         let mut kinds = vec![[EdgeKind::Plain; 3]; face_count];
         let mut strays = Vec::new();
         for &(edge, kind) in lines {
             let halves = self.find(edge);
             strays.extend(halves.is_empty().then_some(LinkFlaw::NoEdge(edge)));
-            halves.iter().for_each(|half| kinds[half.face()][half.side()] = kind);
+            halves
+                .iter()
+                .for_each(|half| kinds[half.face()][half.side()] = kind);
         }
         (kinds, strays)
     }
@@ -376,8 +485,16 @@ fn folded(flaw: LinkFlaw) -> Error {
 /// for all finite coordinates.
 pub(crate) fn orientation(corners: [[f64; 3]; 3]) -> Sign {
     let turn = Orientation2(corners.map(|[x, y, _]| [x, y]));
-    let is_ordinary = turn.0.as_flattened().iter().all(|&c| Adaptive::RANGE.admits(c));
-    if is_ordinary { Adaptive::sign(&turn) } else { Exact::sign(&turn) }
+    let is_ordinary = turn
+        .0
+        .as_flattened()
+        .iter()
+        .all(|&c| Adaptive::RANGE.admits(c));
+    if is_ordinary {
+        Adaptive::sign(&turn)
+    } else {
+        Exact::sign(&turn)
+    }
 }
 
 #[cfg(test)]
@@ -385,7 +502,12 @@ mod tests {
     use super::*;
 
     fn square() -> Vec<[f64; 3]> {
-        vec![[0.0, 0.0, 1.0], [1.0, 0.0, 2.0], [1.0, 1.0, 3.0], [0.0, 1.0, 4.0]]
+        vec![
+            [0.0, 0.0, 1.0],
+            [1.0, 0.0, 2.0],
+            [1.0, 1.0, 3.0],
+            [0.0, 1.0, 4.0],
+        ]
     }
 
     #[test]
@@ -399,14 +521,19 @@ mod tests {
             assert_eq!(mesh.neighbor(1, i), Some(0));
             assert!(mesh.is_constrained(0, 1) && mesh.is_constrained(1, i));
             assert!(!mesh.is_constrained(0, 0) && !mesh.is_constrained(0, 2));
-            assert_eq!(orientation(corners.map(|v| mesh.position(v))), Sign::Positive);
+            assert_eq!(
+                orientation(corners.map(|v| mesh.position(v))),
+                Sign::Positive
+            );
         }
     }
 
     #[test]
     fn neighbors_of_a_grid_share_two_corners_and_point_back() {
         let n = 12u32;
-        let vertices = (0..n * n).map(|i| [f64::from(i % n), f64::from(i / n), 0.0]).collect();
+        let vertices = (0..n * n)
+            .map(|i| [f64::from(i % n), f64::from(i / n), 0.0])
+            .collect();
         let mut faces = Vec::new();
         for row in 0..n - 1 {
             for column in 0..n - 1 {
@@ -443,17 +570,57 @@ mod tests {
     fn refuses_what_is_no_surface() {
         let mut odd = square();
         odd[3][2] = f64::NAN;
-        refuses(odd, vec![], &[], "vertex 3 is at 0 1 NaN, expected finite coordinates");
-        refuses(square(), vec![[0, 1, 4]], &[], "face 0 names vertex 4, but there are 4 vertices");
-        refuses(square(), vec![[0, 1, 0]], &[], "face 0 names one vertex twice: 0 1 0");
+        refuses(
+            odd,
+            vec![],
+            &[],
+            "vertex 3 is at 0 1 NaN, expected finite coordinates",
+        );
+        refuses(
+            square(),
+            vec![[0, 1, 4]],
+            &[],
+            "face 0 names vertex 4, but there are 4 vertices",
+        );
+        refuses(
+            square(),
+            vec![[0, 1, 0]],
+            &[],
+            "face 0 names one vertex twice: 0 1 0",
+        );
         let twice = vec![[0, 1, 2], [1, 0, 2]];
-        refuses(square(), twice, &[], "faces 0 and 1: both pass their edge 0 1 in the same direction");
+        refuses(
+            square(),
+            twice,
+            &[],
+            "faces 0 and 1: both pass their edge 0 1 in the same direction",
+        );
         let three = vec![[0, 1, 2], [0, 2, 3], [1, 3, 0], [2, 3, 0]];
-        refuses(square(), three, &[], "faces 0 and 2: both pass their edge 0 1 in the same direction");
+        refuses(
+            square(),
+            three,
+            &[],
+            "faces 0 and 2: both pass their edge 0 1 in the same direction",
+        );
         let flat = vec![[0.0, 0.0, 0.0], [0.1, 0.1, 5.0], [0.3, 0.3, 0.0]];
-        refuses(flat, vec![[0, 1, 2]], &[], "face 0 (0 1 2) has no area in plan");
-        refuses(square(), vec![[0, 1, 2]], &[[0, 3]], "the constrained edge 0 3 is not an edge of any face");
-        refuses(square(), vec![[0, 1, 2]], &[[9, 3]], "the constrained edge 9 3 is not an edge of any face");
+        refuses(
+            flat,
+            vec![[0, 1, 2]],
+            &[],
+            "face 0 (0 1 2) has no area in plan",
+        );
+        refuses(
+            square(),
+            vec![[0, 1, 2]],
+            &[[0, 3]],
+            "the constrained edge 0 3 is not an edge of any face",
+        );
+        refuses(
+            square(),
+            vec![[0, 1, 2]],
+            &[[9, 3]],
+            "the constrained edge 9 3 is not an edge of any face",
+        );
     }
 
     #[test]

@@ -194,7 +194,10 @@ mod tests {
             ..PointBatch::default()
         };
         batch.retain(&[true, false, true]);
-        assert_eq!((batch.x, batch.z, batch.class), (vec![1.0, 3.0], vec![7.0, 9.0], vec![1, 3]));
+        assert_eq!(
+            (batch.x, batch.z, batch.class),
+            (vec![1.0, 3.0], vec![7.0, 9.0], vec![1, 3])
+        );
         assert_eq!((batch.records, batch.flags.len()), (b"aacc".to_vec(), 0));
     }
 }

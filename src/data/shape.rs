@@ -62,7 +62,9 @@ impl Shape {
         match self {
             Shape::Null => {}
             Shape::Points(points) => points.iter_mut().for_each(|p| p[2] = z),
-            Shape::Lines(parts) | Shape::Polygon(parts) => parts.iter_mut().flatten().for_each(|p| p[2] = z),
+            Shape::Lines(parts) | Shape::Polygon(parts) => {
+                parts.iter_mut().flatten().for_each(|p| p[2] = z)
+            }
             Shape::Faces(faces) => faces.iter_mut().flatten().flatten().for_each(|p| p[2] = z),
         }
     }
@@ -100,7 +102,11 @@ impl Layer {
     /// Returns the column with this name: as written, else in any case.
     pub fn column(&self, name: &str) -> Option<&Column> {
         let exact = self.columns.iter().find(|column| column.name == name);
-        exact.or_else(|| self.columns.iter().find(|column| column.name.eq_ignore_ascii_case(name)))
+        exact.or_else(|| {
+            self.columns
+                .iter()
+                .find(|column| column.name.eq_ignore_ascii_case(name))
+        })
     }
 
     /// Returns the parts of all lines and the rings of all polygons.

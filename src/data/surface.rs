@@ -92,7 +92,10 @@ impl EdgeKind {
     /// Returns true for an edge that smooth methods of interpolation do not pass over: on a hard
     /// breakline, a wall, a shore or a bank.
     pub fn is_hard(self) -> bool {
-        matches!(self, EdgeKind::Breakline | EdgeKind::Wall | EdgeKind::Shore | EdgeKind::Bank)
+        matches!(
+            self,
+            EdgeKind::Breakline | EdgeKind::Wall | EdgeKind::Shore | EdgeKind::Bank
+        )
     }
 
     /// Returns the position of the kind among all kinds: where several lines share an edge, or meet
@@ -201,8 +204,10 @@ pub trait Surface: Sync {
     /// # Errors
     /// Those of `out`, and if the surface has no triangulation: if it was not built from points.
     fn write_tin(&self, _out: &mut dyn Write) -> Result<()> {
-        Err(Error::unsupported("a .tin holds a triangulation, and this surface has none")
-            .cure("build the surface from points, or write .ply"))
+        Err(
+            Error::unsupported("a .tin holds a triangulation, and this surface has none")
+                .cure("build the surface from points, or write .ply"),
+        )
     }
 
     /// The coordinates of the corners of a face; `None` if the [face](Self::face) does not
@@ -224,7 +229,11 @@ pub trait Surface: Sync {
     fn faces_in(&self, numbers: Range<u32>, faces: &mut Vec<Face>) {
         faces.extend(numbers.filter_map(|number| {
             let corners = self.face(number)?;
-            Some(Face { number, corners, edges: [0, 1, 2].map(|i| self.edge_kind(number, i)) })
+            Some(Face {
+                number,
+                corners,
+                edges: [0, 1, 2].map(|i| self.edge_kind(number, i)),
+            })
         }));
     }
 
@@ -243,7 +252,12 @@ pub trait Surface: Sync {
         faces.extend(numbers.filter_map(|number| {
             let corners = self.face(number)?;
             let neighbors = [0, 1, 2].map(|i| self.neighbor(number, i));
-            Some(BaseFace { number, corners, neighbors, edges: [0, 1, 2].map(|i| self.edge_kind(number, i)) })
+            Some(BaseFace {
+                number,
+                corners,
+                neighbors,
+                edges: [0, 1, 2].map(|i| self.edge_kind(number, i)),
+            })
         }));
     }
 
@@ -256,7 +270,12 @@ pub trait Surface: Sync {
     ///
     /// `PERF:` a raster calls it once for the four faces between four cells, and skips most of them
     /// together.
-    fn heights_in(&self, numbers: Range<u32>, is_wanted: &dyn Fn(f64, f64) -> bool, faces: &mut Vec<(u32, [f64; 3])>) {
+    fn heights_in(
+        &self,
+        numbers: Range<u32>,
+        is_wanted: &dyn Fn(f64, f64) -> bool,
+        faces: &mut Vec<(u32, [f64; 3])>,
+    ) {
         faces.extend(numbers.filter_map(|number| {
             let [a, b, c] = self.face(number)?.map(|v| self.position(v)[2]);
             is_wanted(a.min(b).min(c), a.max(b).max(c)).then_some((number, [a, b, c]))
@@ -281,12 +300,16 @@ impl LineEdges {
 
     /// Returns the kinds of which there are edges, with their numbers.
     pub fn kinds(&self) -> impl Iterator<Item = (EdgeKind, usize)> + '_ {
-        EdgeKind::ALL.into_iter().map(|kind| (kind, self.of(kind))).filter(|(_, count)| *count > 0)
+        EdgeKind::ALL
+            .into_iter()
+            .map(|kind| (kind, self.of(kind)))
+            .filter(|(_, count)| *count > 0)
     }
 
     /// Returns true if there are edges of kinds other than breaklines and clip lines.
     pub(crate) fn has_various(&self) -> bool {
-        self.kinds().any(|(kind, _)| !matches!(kind, EdgeKind::Breakline | EdgeKind::Clip))
+        self.kinds()
+            .any(|(kind, _)| !matches!(kind, EdgeKind::Breakline | EdgeKind::Clip))
     }
 
     /// Adds edges of a kind; plain edges and the rim do not count.
@@ -298,7 +321,12 @@ impl LineEdges {
 
     /// Adds the edges of a face. An edge between two faces counts with the face of the smaller
     /// number, so that it counts once when all faces are added.
-    pub(crate) fn add<S: Surface + ?Sized>(&mut self, surface: &S, face: u32, edges: [EdgeKind; 3]) {
+    pub(crate) fn add<S: Surface + ?Sized>(
+        &mut self,
+        surface: &S,
+        face: u32,
+        edges: [EdgeKind; 3],
+    ) {
         for (i, kind) in edges.into_iter().enumerate() {
             if kind.is_constrained() && surface.neighbor(face, i).is_none_or(|other| face < other) {
                 self.add_edges(kind, 1);
@@ -314,7 +342,9 @@ const BATCH: u32 = 1 << 11;
 ///
 /// `PERF:` `for_each` and the like loop over each batch; `next` checks each time whether the batch
 /// is exhausted.
-pub(crate) fn corners<S: Surface + ?Sized>(surface: &S) -> impl Iterator<Item = (u32, [u32; 3])> + '_ {
+pub(crate) fn corners<S: Surface + ?Sized>(
+    surface: &S,
+) -> impl Iterator<Item = (u32, [u32; 3])> + '_ {
     batches(surface, surface.face_count() as u32, S::corners_in)
 }
 
@@ -336,7 +366,11 @@ fn batches<'s, S: Surface + ?Sized, T: 's>(
     (0..count.div_ceil(BATCH)).flat_map(move |batch| {
         let start = batch * BATCH;
         let mut items = Vec::with_capacity(BATCH as usize);
-        ask(surface, start..start.saturating_add(BATCH).min(count), &mut items);
+        ask(
+            surface,
+            start..start.saturating_add(BATCH).min(count),
+            &mut items,
+        );
         items
     })
 }

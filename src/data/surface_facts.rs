@@ -33,6 +33,11 @@ impl SurfaceFacts {
                 }
             }
         });
-        SurfaceFacts { vertices, triangles, edges, extent }
+        SurfaceFacts {
+            vertices,
+            triangles,
+            edges,
+            extent,
+        }
     }
 }

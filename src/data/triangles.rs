@@ -66,11 +66,15 @@ impl LinkFlaw {
     /// The ends of a constrained edge that is not an edge of any face may not exist.
     pub fn vertices(&self, surface: &dyn Surface) -> Vec<u32> {
         match *self {
-            LinkFlaw::Folded { edge, .. } | LinkFlaw::NoEdge(edge) | LinkFlaw::Kinds { edge, .. } => edge.to_vec(),
+            LinkFlaw::Folded { edge, .. }
+            | LinkFlaw::NoEdge(edge)
+            | LinkFlaw::Kinds { edge, .. } => edge.to_vec(),
             LinkFlaw::StrayVertex(vertex) => vec![vertex],
             LinkFlaw::Neighbor { face, corner, .. } => {
                 let corners = surface.face(face).into_iter();
-                corners.flat_map(|corners| [1, 2].map(|k| corners[(corner + k) % 3])).collect()
+                corners
+                    .flat_map(|corners| [1, 2].map(|k| corners[(corner + k) % 3]))
+                    .collect()
             }
         }
     }
@@ -80,20 +84,46 @@ impl std::fmt::Display for LinkFlaw {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let name = |face: Option<u32>| face.map_or("none".to_owned(), |face| face.to_string());
         match *self {
-            LinkFlaw::Folded { faces: [one, other], edge: [a, b] } => {
-                write!(f, "faces {one} and {other}: both pass their edge {a} {b} in the same direction")
+            LinkFlaw::Folded {
+                faces: [one, other],
+                edge: [a, b],
+            } => {
+                write!(
+                    f,
+                    "faces {one} and {other}: both pass their edge {a} {b} in the same direction"
+                )
             }
             LinkFlaw::StrayVertex(vertex) => {
-                write!(f, "vertex {vertex}: a coordinate is not finite (no face uses it, but no reader can take it)")
+                write!(
+                    f,
+                    "vertex {vertex}: a coordinate is not finite (no face uses it, but no reader can take it)"
+                )
             }
-            LinkFlaw::NoEdge([a, b]) => write!(f, "the constrained edge {a} {b} is not an edge of any face"),
-            LinkFlaw::Kinds { faces: [one, other], edge: [a, b], kinds } => {
+            LinkFlaw::NoEdge([a, b]) => {
+                write!(f, "the constrained edge {a} {b} is not an edge of any face")
+            }
+            LinkFlaw::Kinds {
+                faces: [one, other],
+                edge: [a, b],
+                kinds,
+            } => {
                 let [first, second] = kinds.map(EdgeKind::noun);
-                write!(f, "faces {one} and {other}: their edge {a} {b} is of {first} in one, of {second} in the other")
+                write!(
+                    f,
+                    "faces {one} and {other}: their edge {a} {b} is of {first} in one, of {second} in the other"
+                )
             }
-            LinkFlaw::Neighbor { face, corner, stated, found } => {
+            LinkFlaw::Neighbor {
+                face,
+                corner,
+                stated,
+                found,
+            } => {
                 let (stated, found) = (name(stated), name(found));
-                write!(f, "face {face}, edge {corner}: its neighbor is stated as {stated}, by its edges it is {found}")
+                write!(
+                    f,
+                    "face {face}, edge {corner}: its neighbor is stated as {stated}, by its edges it is {found}"
+                )
             }
         }
     }

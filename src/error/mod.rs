@@ -134,7 +134,9 @@ impl Error {
     #[must_use]
     pub fn in_file(mut self, path: impl AsRef<Path>) -> Self {
         if self.inner.kind != Kind::Canceled {
-            self.inner.path.get_or_insert_with(|| path.as_ref().to_path_buf());
+            self.inner
+                .path
+                .get_or_insert_with(|| path.as_ref().to_path_buf());
         }
         self
     }
@@ -195,7 +197,11 @@ impl Error {
 
     /// Returns the error as it is displayed, with the names that a caller has for terms.
     pub fn render(&self, name: &dyn Fn(&Term) -> String) -> String {
-        let path = self.inner.path.as_ref().map(|path| path.display().to_string());
+        let path = self
+            .inner
+            .path
+            .as_ref()
+            .map(|path| path.display().to_string());
         let message = self.inner.message.render(name);
         let parts = [path, self.inner.location.clone(), Some(message)];
         parts.into_iter().flatten().collect::<Vec<_>>().join(": ")
@@ -233,17 +239,29 @@ fn plain_words(error: &std::io::Error) -> Option<(&'static str, &'static str)> {
     // Errors without a code of the system come from this crate, and say more themselves.
     error.raw_os_error()?;
     match error.kind() {
-        ErrorKind::StorageFull => Some(("the disk is full", "free some space, or write to another disk")),
-        ErrorKind::QuotaExceeded => Some(("your share of the disk is used up", "free some space, or write elsewhere")),
+        ErrorKind::StorageFull => Some((
+            "the disk is full",
+            "free some space, or write to another disk",
+        )),
+        ErrorKind::QuotaExceeded => Some((
+            "your share of the disk is used up",
+            "free some space, or write elsewhere",
+        )),
         ErrorKind::FileTooLarge => Some((
             "the file would be larger than is allowed here",
             "raise the limit (ulimit -f), or write to another disk",
         )),
-        ErrorKind::ReadOnlyFilesystem => Some(("the disk can only be read", "write to another disk")),
-        ErrorKind::PermissionDenied => {
-            Some(("no permission", "ask the owner for it: `ls -ld` shows who may read and write"))
+        ErrorKind::ReadOnlyFilesystem => {
+            Some(("the disk can only be read", "write to another disk"))
         }
-        ErrorKind::BrokenPipe => Some(("the program that read it has ended", "see what that program says")),
+        ErrorKind::PermissionDenied => Some((
+            "no permission",
+            "ask the owner for it: `ls -ld` shows who may read and write",
+        )),
+        ErrorKind::BrokenPipe => Some((
+            "the program that read it has ended",
+            "see what that program says",
+        )),
         _ => None,
     }
 }

@@ -95,7 +95,10 @@ settings! {
 impl Setting {
     /// Returns the setting with this name.
     pub fn from_name(name: &str) -> Option<Setting> {
-        Setting::ALL.iter().copied().find(|setting| setting.name() == name)
+        Setting::ALL
+            .iter()
+            .copied()
+            .find(|setting| setting.name() == name)
     }
 
     /// Returns the setting switched on.
@@ -218,7 +221,9 @@ impl Term {
     pub(super) fn plain(&self) -> String {
         match self {
             Term::Setting(setting) | Term::On(setting) => setting.name().to_owned(),
-            Term::Text(setting, value) | Term::Number(setting, value) => format!("{} {value}", setting.name()),
+            Term::Text(setting, value) | Term::Number(setting, value) => {
+                format!("{} {value}", setting.name())
+            }
             Term::Command(command, None) => format!("`{}`", command.name()),
             Term::Command(command, Some(file)) => format!("`{} {file}`", command.name()),
             Term::Build(feature) => format!("the feature `{}`", feature.name()),

@@ -37,7 +37,8 @@ impl Serialize for Wording {
 
 impl<'de> Deserialize<'de> for Wording {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        Wording::from_json(&Value::deserialize(deserializer)?).ok_or_else(|| D::Error::custom("this is no text"))
+        Wording::from_json(&Value::deserialize(deserializer)?)
+            .ok_or_else(|| D::Error::custom("this is no text"))
     }
 }
 
@@ -62,7 +63,10 @@ fn term_from_json(value: &Value) -> Option<Term> {
         "on" => Term::On(setting()?),
         "text" => Term::Text(setting()?, third?),
         "number" => Term::Number(setting()?, third?),
-        "command" => Term::Command(*Command::ALL.iter().find(|known| known.name() == name)?, third),
+        "command" => Term::Command(
+            *Command::ALL.iter().find(|known| known.name() == name)?,
+            third,
+        ),
         "build" => Term::Build(*Feature::ALL.iter().find(|known| known.name() == name)?),
         _ => return None,
     })
@@ -76,17 +80,28 @@ mod tests {
     #[test]
     fn every_term_is_restored() {
         let settings = Setting::ALL.iter().flat_map(|setting| {
-            [Term::Setting(*setting), setting.on(), setting.text("a \"b\""), setting.number("LENGTH")]
+            [
+                Term::Setting(*setting),
+                setting.on(),
+                setting.text("a \"b\""),
+                setting.number("LENGTH"),
+            ]
         });
-        let commands = Command::ALL.iter().flat_map(|command| [Term::Command(*command, None), command.on("a.tin")]);
+        let commands = Command::ALL
+            .iter()
+            .flat_map(|command| [Term::Command(*command, None), command.on("a.tin")]);
         let features = Feature::ALL.iter().map(|feature| Term::Build(*feature));
         for term in settings.chain(commands).chain(features) {
             let text = wording!["use ", term, " or [\"on\"] else"];
             assert_eq!(Wording::from_json(&text.to_json()), Some(text));
         }
-        for other in
-            [json!("text"), json!([["on"]]), json!([["on", "unheard-of"]]), json!([7]), json!([["text", "te"]])]
-        {
+        for other in [
+            json!("text"),
+            json!([["on"]]),
+            json!([["on", "unheard-of"]]),
+            json!([7]),
+            json!([["text", "te"]]),
+        ] {
             assert_eq!(Wording::from_json(&other), None, "{other}");
         }
     }

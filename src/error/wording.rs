@@ -128,7 +128,13 @@ mod tests {
 
     #[test]
     fn each_caller_has_names_for_terms() {
-        let text = wording!["use ", Setting::MaxEdge.number("LENGTH"), " or ", format!("{}: ", 7), Command::Info];
+        let text = wording![
+            "use ",
+            Setting::MaxEdge.number("LENGTH"),
+            " or ",
+            format!("{}: ", 7),
+            Command::Info
+        ];
         assert_eq!(text.plain(), "use max-edge LENGTH or 7: `info`");
         assert_eq!(text.parts().len(), 4, "words in a row are one part");
         let name = |term: &Term| match term {

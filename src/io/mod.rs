@@ -47,7 +47,8 @@ pub(crate) use bytes::contain::contain;
 pub use bytes::contain::is_contained;
 pub use bytes::mapped;
 pub use bytes::output::{
-    Abandoned, Destination, Output, OutputSet, abandon_outputs, is_stream, probe, remove_abandoned, require_absent,
+    Abandoned, Destination, Output, OutputSet, abandon_outputs, is_stream, probe, remove_abandoned,
+    require_absent,
 };
 pub use bytes::watch::Watch;
 pub use codec::{gdal, geojson, geotiff, las, png, shapefile, tetgen, text, triangle};

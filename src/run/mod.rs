@@ -79,43 +79,57 @@ mod verbs;
 mod write;
 
 pub use context::event::{Event, JobSize};
-pub use context::notice::{CrossingNote, LoweredRiver, Notice, Seed, SeedFlaw, Severity, WaterStep};
+pub use context::notice::{
+    CrossingNote, LoweredRiver, Notice, Seed, SeedFlaw, Severity, WaterStep,
+};
 pub(crate) use context::units;
 pub use context::units::Quantity;
 pub use context::{Context, Monitor, Progress, Silent, Size, Stage};
 pub use job::{
-    Division, FileState, Job, JobCommand, JobLock, JobReport, JobTask, Look, NotInTiles, StoredJob, TileOptions,
-    needs_tiles, remove_job,
+    Division, FileState, Job, JobCommand, JobLock, JobReport, JobTask, Look, NotInTiles, StoredJob,
+    TileOptions, needs_tiles, remove_job,
 };
 pub use lines::crossings::LineNames;
 pub use lines::notes::LineInput;
-pub use products::cells::{CellProduct, DemOptions, HillshadeOptions, LightOptions, dem, hillshade};
+pub use products::cells::{
+    CellProduct, DemOptions, HillshadeOptions, LightOptions, dem, hillshade,
+};
 pub use products::check::{CheckProduct, FlawKind, LocatedFlaw, check, surface_flaws};
 pub use products::contour::{ContourOptions, ContourProduct, contour, write_contours};
 pub use products::elevation::elevations;
-pub use products::facts::{Facts, LayerFacts, MeshFacts, PlaneFacts, PointFacts, RasterFacts, facts};
+pub use products::facts::{
+    Facts, LayerFacts, MeshFacts, PlaneFacts, PointFacts, RasterFacts, facts,
+};
 pub use products::frame::FrameOptions;
 pub use products::overlaps::Overlap;
-pub use products::points::{PointsProduct, PointsReport, PointsRequest, Withheld, read_points, write_points};
-pub use products::surface::{Model, Source, SurfaceProduct, SurfaceRequest, surface, triangles, write_mesh};
+pub use products::points::{
+    PointsProduct, PointsReport, PointsRequest, Withheld, read_points, write_points,
+};
+pub use products::surface::{
+    Model, Source, SurfaceProduct, SurfaceRequest, surface, triangles, write_mesh,
+};
 pub use products::tin::{BuildReport, EdgeLimit, ReplacedPoints, TinRequest};
 pub use request::input::{Input, MemoryPoints, STDIN};
-pub use request::lines::{FlatOptions, FlatRule, LineRequest, LineRole, LowerEdge, PerRecord, WallOptions};
+pub use request::lines::{
+    FlatOptions, FlatRule, LineRequest, LineRole, LowerEdge, PerRecord, WallOptions,
+};
 pub use request::sizes::memory_of;
 pub use sources::point_files::BadFiles;
 pub use sources::proj;
 pub use sources::systems::{Degrees, SystemOptions};
 pub use sources::tin_parts::{TinParts, WrittenParts};
 pub use space::{
-    Alpha, AlphaSolid, SpaceCheck, SpaceFlaw, SpaceLaw, SpaceOptions, SpaceProduct, SpaceReport, check_space,
-    is_of_space, triangulate_space,
+    Alpha, AlphaSolid, SpaceCheck, SpaceFlaw, SpaceLaw, SpaceOptions, SpaceProduct, SpaceReport,
+    check_space, is_of_space, triangulate_space,
 };
 pub use triangulate::{
-    Arithmetic, TriangulateOptions, TriangulateProduct, TriangulateReport, triangulate, triangulate_graph,
+    Arithmetic, TriangulateOptions, TriangulateProduct, TriangulateReport, triangulate,
+    triangulate_graph,
 };
 pub(crate) use verbs::targets;
 pub use verbs::targets::{Existing, Outputs, Target, Targets};
 pub use verbs::{Keeps, Summary, SurfaceOptions, TileUse, Tiles, Verb, WriteRequest};
 pub use write::{
-    Execution, Origin, SurfaceReport, WriteReport, Written, WrittenOf, plan_job, run_job, run_task, write,
+    Execution, Origin, SurfaceReport, WriteReport, Written, WrittenOf, plan_job, run_job, run_task,
+    write,
 };

@@ -8,7 +8,9 @@ use crate::triangulation::kernel::{RANGE, Range};
 pub(super) fn refused(p: [f64; 3]) -> Error {
     if p.iter().all(|x| x.is_finite()) {
         let Range { min, max } = RANGE;
-        return Error::limit(format!("{p:?} has a coordinate that is neither 0 nor between {min:.0e} and {max:.0e}"));
+        return Error::limit(format!(
+            "{p:?} has a coordinate that is neither 0 nor between {min:.0e} and {max:.0e}"
+        ));
     }
     Error::format(format!("{p:?} is not a finite point"))
 }

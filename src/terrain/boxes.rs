@@ -16,7 +16,10 @@ pub(super) struct Extent {
 }
 
 impl Extent {
-    const EMPTY: Extent = Extent { min: [f64::INFINITY; 2], max: [f64::NEG_INFINITY; 2] };
+    const EMPTY: Extent = Extent {
+        min: [f64::INFINITY; 2],
+        max: [f64::NEG_INFINITY; 2],
+    };
 
     /// Returns the box of some points.
     pub(super) fn of(points: impl IntoIterator<Item = [f64; 3]>) -> Self {
@@ -25,12 +28,20 @@ impl Extent {
 
     /// Returns the box of some positions.
     pub(super) fn of_plan(sites: impl IntoIterator<Item = [f64; 2]>) -> Self {
-        sites.into_iter().fold(Self::EMPTY, |extent, site| extent.with(Extent { min: site, max: site }))
+        sites.into_iter().fold(Self::EMPTY, |extent, site| {
+            extent.with(Extent {
+                min: site,
+                max: site,
+            })
+        })
     }
 
     /// Returns the box and a distance around it.
     pub(super) fn grown(self, by: f64) -> Self {
-        Extent { min: self.min.map(|c| c - by), max: self.max.map(|c| c + by) }
+        Extent {
+            min: self.min.map(|c| c - by),
+            max: self.max.map(|c| c + by),
+        }
     }
 
     fn with(self, other: Extent) -> Self {
@@ -97,7 +108,10 @@ impl<T: Boxed> Boxes<T> {
         }
         let mut views: Vec<&mut [Extent]> = levels.iter_mut().map(Vec::as_mut_slice).collect();
         build(&mut items, &mut views, alone);
-        Boxes { items, nodes: levels.concat() }
+        Boxes {
+            items,
+            nodes: levels.concat(),
+        }
     }
 
     /// Calls `each` with items whose box may contain a position, until it returns a value.
@@ -106,7 +120,11 @@ impl<T: Boxed> Boxes<T> {
     }
 
     /// Calls `each` with items whose box may overlap another box, until it returns a value.
-    pub(super) fn find_in<R>(&self, extent: Extent, mut each: impl FnMut(&T) -> Option<R>) -> Option<R> {
+    pub(super) fn find_in<R>(
+        &self,
+        extent: Extent,
+        mut each: impl FnMut(&T) -> Option<R>,
+    ) -> Option<R> {
         // Each level leaves one node behind. `PERF:` a list of its own for each call would cost
         // more than most calls.
         let mut left = [(0, 0, 0); usize::BITS as usize];
@@ -134,21 +152,47 @@ impl<T: Boxed> Boxes<T> {
     /// square of the distance up to which more are wanted.
     ///
     /// `left` is memory that is kept from one call to the next.
-    pub(super) fn around(&self, q: [f64; 2], left: &mut Vec<Near>, mut each: impl FnMut(&T) -> f64) {
+    pub(super) fn around(
+        &self,
+        q: [f64; 2],
+        left: &mut Vec<Near>,
+        mut each: impl FnMut(&T) -> f64,
+    ) {
         let mut wanted = f64::INFINITY;
         left.clear();
-        left.push(Near { node: 0, start: 0, end: self.items.len(), distance: 0.0 });
-        while let Some(Near { node, start, end, distance }) = left.pop() {
+        left.push(Near {
+            node: 0,
+            start: 0,
+            end: self.items.len(),
+            distance: 0.0,
+        });
+        while let Some(Near {
+            node,
+            start,
+            end,
+            distance,
+        }) = left.pop()
+        {
             if start == end || distance > wanted {
                 continue;
             }
             if 2 * node + 2 >= self.nodes.len() {
-                self.items[start..end].iter().for_each(|item| wanted = each(item));
+                self.items[start..end]
+                    .iter()
+                    .for_each(|item| wanted = each(item));
                 continue;
             }
             let middle = halved(start, end);
-            let child = |node: usize, start, end| Near { node, start, end, distance: self.nodes[node].distance(q) };
-            let mut children = [child(2 * node + 1, start, middle), child(2 * node + 2, middle, end)];
+            let child = |node: usize, start, end| Near {
+                node,
+                start,
+                end,
+                distance: self.nodes[node].distance(q),
+            };
+            let mut children = [
+                child(2 * node + 1, start, middle),
+                child(2 * node + 2, middle, end),
+            ];
             if children[0].distance < children[1].distance {
                 children.swap(0, 1);
             }
@@ -173,8 +217,12 @@ fn halved(start: usize, end: usize) -> usize {
 /// Sorts the items of a node into its subtrees, and finds all boxes. `levels` are the nodes below,
 /// its own first.
 fn build<T: Boxed>(items: &mut [T], levels: &mut [&mut [Extent]], alone: usize) {
-    let extent = items.iter().fold(Extent::EMPTY, |extent, item| extent.with(item.extent()));
-    let Some((own, below)) = levels.split_first_mut() else { return };
+    let extent = items
+        .iter()
+        .fold(Extent::EMPTY, |extent, item| extent.with(item.extent()));
+    let Some((own, below)) = levels.split_first_mut() else {
+        return;
+    };
     if let Some(node) = own.first_mut() {
         *node = extent;
     }
@@ -189,7 +237,10 @@ fn build<T: Boxed>(items: &mut [T], levels: &mut [&mut [Extent]], alone: usize) 
     }
     let is_small = items.len() < alone;
     let (low, high) = items.split_at_mut(middle);
-    let (mut left, mut right) = (Vec::with_capacity(below.len()), Vec::with_capacity(below.len()));
+    let (mut left, mut right) = (
+        Vec::with_capacity(below.len()),
+        Vec::with_capacity(below.len()),
+    );
     for level in below.iter_mut() {
         let (first, second) = level.split_at_mut(level.len() / 2);
         left.push(first);
@@ -199,6 +250,9 @@ fn build<T: Boxed>(items: &mut [T], levels: &mut [&mut [Extent]], alone: usize) 
         build(low, &mut left, alone);
         build(high, &mut right, alone);
     } else {
-        join(|| build(low, &mut left, alone), || build(high, &mut right, alone));
+        join(
+            || build(low, &mut left, alone),
+            || build(high, &mut right, alone),
+        );
     }
 }

@@ -41,29 +41,47 @@ impl Clip {
     ) -> Self {
         draped.iter_mut().for_each(|line| *line = plain(line));
         for rings in polygons.iter_mut().chain(&mut holes) {
-            rings.iter_mut().for_each(|ring| *ring = enclosing(plain(ring)));
+            rings
+                .iter_mut()
+                .for_each(|ring| *ring = enclosing(plain(ring)));
             rings.retain(|ring| !ring.is_empty());
         }
-        Clip { polygons, bounds, holes, draped }
+        Clip {
+            polygons,
+            bounds,
+            holes,
+            draped,
+        }
     }
 
     pub(super) fn is_everything(&self) -> bool {
-        self.polygons.is_empty() && self.bounds.is_none() && self.holes.is_empty() && self.draped.is_empty()
+        self.polygons.is_empty()
+            && self.bounds.is_none()
+            && self.holes.is_empty()
+            && self.draped.is_empty()
     }
 
     /// The lines to cut along, each with the number of the domain that it bounds.
     fn curves(&self) -> Vec<(usize, Vec<[f64; 2]>)> {
         let polygons = self.polygons.iter().chain(&self.holes).enumerate();
-        let mut rings: Vec<(usize, Vec<[f64; 2]>)> =
-            polygons.flat_map(|(i, rings)| rings.iter().map(move |ring| (POLYGONS + i, ring.clone()))).collect();
+        let mut rings: Vec<(usize, Vec<[f64; 2]>)> = polygons
+            .flat_map(|(i, rings)| rings.iter().map(move |ring| (POLYGONS + i, ring.clone())))
+            .collect();
         if let Some(Bounds { min, max }) = self.bounds {
             // A box beyond the range of the arithmetic is larger than any data.
             let within = |[x, y]: [f64; 2]| [x, y].map(|c| c.clamp(-RANGE.max, RANGE.max));
-            let corners = [[min[0], min[1]], [max[0], min[1]], [max[0], max[1]], [min[0], max[1]]];
+            let corners = [
+                [min[0], min[1]],
+                [max[0], min[1]],
+                [max[0], max[1]],
+                [min[0], max[1]],
+            ];
             rings.push((BOUNDS, enclosing(plain(&corners.map(within)))));
         }
         let draped = self.draped.iter().map(|line| (DRAPED, line.clone()));
-        rings.iter_mut().for_each(|(_, ring)| ring.extend(ring.first().copied()));
+        rings
+            .iter_mut()
+            .for_each(|(_, ring)| ring.extend(ring.first().copied()));
         rings.extend(draped);
         rings
     }
@@ -89,7 +107,9 @@ impl Clip {
         }
         let segments = |(domain, ring): &(Domain, Vec<[f64; 2]>)| {
             let domain = *domain;
-            ring.windows(2).map(move |pair| (domain, [pair[0], pair[1]])).collect::<Vec<_>>()
+            ring.windows(2)
+                .map(move |pair| (domain, [pair[0], pair[1]]))
+                .collect::<Vec<_>>()
         };
         Ok(rings.iter().flat_map(segments).collect())
     }
@@ -117,14 +137,26 @@ impl Clip {
     ) -> Result<(usize, usize)> {
         let holes = POLYGONS + self.polygons.len();
         let in_polygon = |within: &[Domain]| {
-            self.polygons.is_empty() || within.iter().any(|domain| (POLYGONS..holes).contains(domain))
+            self.polygons.is_empty()
+                || within
+                    .iter()
+                    .any(|domain| (POLYGONS..holes).contains(domain))
         };
         let in_hole = |within: &[Domain]| within.last().is_some_and(|&domain| domain >= holes);
-        let in_bounds = |within: &[Domain]| self.bounds.is_none() || within.first() == Some(&BOUNDS);
+        let in_bounds =
+            |within: &[Domain]| self.bounds.is_none() || within.first() == Some(&BOUNDS);
         let whole = |tin: &Tin| tin.inside.iter().filter(|&&inside| inside).count();
         let before = whole(tin);
-        let is_kept = |within: &[Domain]| in_polygon(within) && in_bounds(within) && !in_hole(within);
-        tin.cut = cut(&tin.triangulation, &tin.kinds, &mut tin.inside, segments, reach, is_kept)?;
+        let is_kept =
+            |within: &[Domain]| in_polygon(within) && in_bounds(within) && !in_hole(within);
+        tin.cut = cut(
+            &tin.triangulation,
+            &tin.kinds,
+            &mut tin.inside,
+            segments,
+            reach,
+            is_kept,
+        )?;
         let in_fragments = tin.cut.as_ref().map_or(0, SurfaceCut::cut_count);
         Ok((before - whole(tin) - in_fragments, in_fragments))
     }
@@ -133,7 +165,13 @@ impl Clip {
 /// Returns a line with one kind of zero, and none of its vertices twice in a row: coordinates below
 /// the range of the arithmetic count as zero.
 fn plain(line: &[[f64; 2]]) -> Vec<[f64; 2]> {
-    let positive_zero = |c: f64| if c == 0.0 || c.abs() < RANGE.min && !RANGE.admits(c) { 0.0 } else { c };
+    let positive_zero = |c: f64| {
+        if c == 0.0 || c.abs() < RANGE.min && !RANGE.admits(c) {
+            0.0
+        } else {
+            c
+        }
+    };
     let mut plain: Vec<[f64; 2]> = line.iter().map(|p| p.map(positive_zero)).collect();
     plain.dedup();
     plain
@@ -163,7 +201,10 @@ fn enclosing(ring: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     let mut left: VecDeque<[f64; 2]> = VecDeque::with_capacity(ring.len());
     for p in ring {
         left.push_back(p);
-        while let Some(at) = left.len().checked_sub(2).filter(|&at| is_spike(left.get(at.wrapping_sub(1)), left[at], p))
+        while let Some(at) = left
+            .len()
+            .checked_sub(2)
+            .filter(|&at| is_spike(left.get(at.wrapping_sub(1)), left[at], p))
         {
             left.remove(at);
         }
@@ -179,14 +220,20 @@ fn enclosing(ring: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
             break;
         }
     }
-    if left.len() < 3 { Vec::new() } else { left.into() }
+    if left.len() < 3 {
+        Vec::new()
+    } else {
+        left.into()
+    }
 }
 
 /// Returns true if a ring runs back over itself at `tip`, or stays there.
 fn is_spike(before: Option<&[f64; 2]>, tip: [f64; 2], after: [f64; 2]) -> bool {
     let turns_back = |before: &[f64; 2]| {
-        let is_beyond = |k: usize| before[k].max(after[k]) < tip[k] || tip[k] < before[k].min(after[k]);
-        let is_straight = || orientation([*before, tip, after].map(|[x, y]| [x, y, 0.0])) == Sign::Zero;
+        let is_beyond =
+            |k: usize| before[k].max(after[k]) < tip[k] || tip[k] < before[k].min(after[k]);
+        let is_straight =
+            || orientation([*before, tip, after].map(|[x, y]| [x, y, 0.0])) == Sign::Zero;
         (is_beyond(0) || is_beyond(1)) && is_straight()
     };
     tip == after || before.is_some_and(turns_back)
@@ -200,7 +247,10 @@ mod tests {
     fn what_encloses_nothing_is_left_out() {
         let of = |ring: &[[i32; 2]]| {
             let ring: Vec<[f64; 2]> = ring.iter().map(|p| p.map(f64::from)).collect();
-            enclosing(plain(&ring)).iter().map(|p| p.map(|c| c as i32)).collect::<Vec<_>>()
+            enclosing(plain(&ring))
+                .iter()
+                .map(|p| p.map(|c| c as i32))
+                .collect::<Vec<_>>()
         };
         let [a, b, c, d] = [[0, 0], [4, 0], [4, 4], [0, 4]];
         let square = vec![a, b, c, d];

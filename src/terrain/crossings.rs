@@ -57,9 +57,14 @@ impl CrossingHeights {
     /// Returns the lines with the lowest and with the highest height; among equals, the first.
     pub fn extremes(&self) -> [(usize, f64); 2] {
         let first = self.heights.first().copied().unwrap_or_default();
-        self.heights.iter().fold([first; 2], |[low, high], &(line, z)| {
-            [if z < low.1 { (line, z) } else { low }, if z > high.1 { (line, z) } else { high }]
-        })
+        self.heights
+            .iter()
+            .fold([first; 2], |[low, high], &(line, z)| {
+                [
+                    if z < low.1 { (line, z) } else { low },
+                    if z > high.1 { (line, z) } else { high },
+                ]
+            })
     }
 }
 
@@ -98,14 +103,34 @@ pub(super) fn choose_heights(
         let is_added = triangulation.is_added(vertex);
         let precedence = |pass: &Pass| precedences[pass.line.index()];
         let first = at_vertex.iter().map(precedence).min();
-        let own = at_vertex.iter().filter(|pass| pass.is_own).map(precedence).min();
-        let standing: Vec<&Pass> = at_vertex.iter().filter(|pass| Some(precedence(pass)) == first).collect();
+        let own = at_vertex
+            .iter()
+            .filter(|pass| pass.is_own)
+            .map(precedence)
+            .min();
+        let standing: Vec<&Pass> = at_vertex
+            .iter()
+            .filter(|pass| Some(precedence(pass)) == first)
+            .collect();
         if is_added || own.is_some() && first < own {
-            chosen = choice.choose(&mut standing.iter().map(|pass| pass.height).collect::<Vec<f64>>());
+            chosen = choice.choose(
+                &mut standing
+                    .iter()
+                    .map(|pass| pass.height)
+                    .collect::<Vec<f64>>(),
+            );
             triangulation.replace_point(vertex, [x, y, chosen]);
         }
-        let heights = standing.iter().map(|pass| (pass.line.index(), pass.height)).collect();
-        let crossing = CrossingHeights { site: [x, y], heights, chosen, is_added };
+        let heights = standing
+            .iter()
+            .map(|pass| (pass.line.index(), pass.height))
+            .collect();
+        let crossing = CrossingHeights {
+            site: [x, y],
+            heights,
+            chosen,
+            is_added,
+        };
         if crossing.difference() > tolerance {
             reported.push(crossing);
         }
@@ -119,24 +144,44 @@ pub(super) fn choose_heights(
 fn passes(triangulation: &ConstrainedDelaunay<Terrain>, disputed: Vec<Pass>) -> Vec<Pass> {
     let mut passes = Vec::new();
     for line in triangulation.lines() {
-        for pair in triangulation.line_vertices(line).windows(2).filter(|pair| pair[0] != pair[1]) {
+        for pair in triangulation
+            .line_vertices(line)
+            .windows(2)
+            .filter(|pair| pair[0] != pair[1])
+        {
             let [p, q] = [pair[0], pair[1]].map(|v| *triangulation.point(v));
-            passes.extend(triangulation.segment_chain(pair[0], pair[1]).into_iter().map(|vertex| {
-                let [x, y, _] = *triangulation.point(vertex);
-                Pass { vertex, line, height: height_along(p, q, [x, y]), is_own: false }
-            }));
+            passes.extend(
+                triangulation
+                    .segment_chain(pair[0], pair[1])
+                    .into_iter()
+                    .map(|vertex| {
+                        let [x, y, _] = *triangulation.point(vertex);
+                        Pass {
+                            vertex,
+                            line,
+                            height: height_along(p, q, [x, y]),
+                            is_own: false,
+                        }
+                    }),
+            );
         }
     }
     // A vertex that is passed may be one that other lines were given with. If these agree on its
     // height, they are not disputed, and have to be added.
-    let mut passed: HashSet<VertexId> =
-        passes.iter().map(|pass| pass.vertex).filter(|&vertex| !triangulation.is_added(vertex)).collect();
+    let mut passed: HashSet<VertexId> = passes
+        .iter()
+        .map(|pass| pass.vertex)
+        .filter(|&vertex| !triangulation.is_added(vertex))
+        .collect();
     for pass in &disputed {
         passed.remove(&pass.vertex);
     }
     if !passed.is_empty() {
         for line in triangulation.lines() {
-            let own = triangulation.line_vertices(line).iter().filter(|vertex| passed.contains(vertex));
+            let own = triangulation
+                .line_vertices(line)
+                .iter()
+                .filter(|vertex| passed.contains(vertex));
             passes.extend(own.map(|&vertex| Pass {
                 vertex,
                 line,
@@ -147,19 +192,32 @@ fn passes(triangulation: &ConstrainedDelaunay<Terrain>, disputed: Vec<Pass>) -> 
     }
     passes.extend(disputed);
     // A line that passes twice with different heights is kept twice.
-    passes.sort_by(|p, q| p.vertex.cmp(&q.vertex).then(p.line.cmp(&q.line)).then(p.height.total_cmp(&q.height)));
+    passes.sort_by(|p, q| {
+        p.vertex
+            .cmp(&q.vertex)
+            .then(p.line.cmp(&q.line))
+            .then(p.height.total_cmp(&q.height))
+    });
     passes.dedup();
     passes
 }
 
 fn by_site(p: &CrossingHeights, q: &CrossingHeights) -> Ordering {
-    p.site[0].total_cmp(&q.site[0]).then(p.site[1].total_cmp(&q.site[1]))
+    p.site[0]
+        .total_cmp(&q.site[0])
+        .then(p.site[1].total_cmp(&q.site[1]))
 }
 
 /// Returns an error that names the first of the crossings, if there is one; `name` returns what the
 /// user calls a line.
-pub(super) fn refuse(crossings: &[CrossingHeights], tolerance: f64, name: &dyn Fn(usize) -> String) -> Result<()> {
-    let Some(first) = crossings.first() else { return Ok(()) };
+pub(super) fn refuse(
+    crossings: &[CrossingHeights],
+    tolerance: f64,
+    name: &dyn Fn(usize) -> String,
+) -> Result<()> {
+    let Some(first) = crossings.first() else {
+        return Ok(());
+    };
     let [x, y] = first.site;
     let [(low, lowest), (high, highest)] = first.extremes();
     let more = match crossings.len() {
@@ -205,31 +263,63 @@ mod tests {
     }
 
     fn vertices(tin: &Tin) -> Vec<[u64; 3]> {
-        (0..tin.vertex_count() as u32).map(|v| tin.position(v).map(f64::to_bits)).collect()
+        (0..tin.vertex_count() as u32)
+            .map(|v| tin.position(v).map(f64::to_bits))
+            .collect()
     }
 
     #[test]
     fn each_rule_has_its_height() {
         use DuplicateRule::{First, Highest, Last, Lowest, Mean};
-        for (rule, expected) in [(Lowest, 1.0), (Highest, 4.0), (Mean, 2.5), (First, 1.0), (Last, 2.5)] {
+        for (rule, expected) in [
+            (Lowest, 1.0),
+            (Highest, 4.0),
+            (Mean, 2.5),
+            (First, 1.0),
+            (Last, 2.5),
+        ] {
             let tin = tin(&STAR, rule);
             assert_eq!(tin.elevation(0.0, 0.0), Some(expected), "{rule:?}");
             let heights = vec![(0, 1.0), (1, 4.0), (2, 2.5)];
-            let reported = CrossingHeights { site: [0.0; 2], heights, chosen: expected, is_added: true };
-            assert_eq!((reported.difference(), reported.extremes()), (3.0, [(0, 1.0), (1, 4.0)]));
+            let reported = CrossingHeights {
+                site: [0.0; 2],
+                heights,
+                chosen: expected,
+                is_added: true,
+            };
+            assert_eq!(
+                (reported.difference(), reported.extremes()),
+                (3.0, [(0, 1.0), (1, 4.0)])
+            );
             assert_eq!(tin.report().crossing_heights, [reported]);
         }
     }
 
     #[test]
     fn only_first_and_last_know_an_order() {
-        for order in [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]] {
+        for order in [
+            [0, 1, 2],
+            [0, 2, 1],
+            [1, 0, 2],
+            [1, 2, 0],
+            [2, 0, 1],
+            [2, 1, 0],
+        ] {
             let lines = order.map(|line| STAR[line]);
-            for rule in [DuplicateRule::Lowest, DuplicateRule::Highest, DuplicateRule::Mean] {
-                assert_eq!(vertices(&tin(&lines, rule)), vertices(&tin(&STAR, rule)), "{order:?} {rule:?}");
+            for rule in [
+                DuplicateRule::Lowest,
+                DuplicateRule::Highest,
+                DuplicateRule::Mean,
+            ] {
+                assert_eq!(
+                    vertices(&tin(&lines, rule)),
+                    vertices(&tin(&STAR, rule)),
+                    "{order:?} {rule:?}"
+                );
             }
             let own = [1.0, 4.0, 2.5];
-            let [first, last] = [DuplicateRule::First, DuplicateRule::Last].map(|rule| tin(&lines, rule));
+            let [first, last] =
+                [DuplicateRule::First, DuplicateRule::Last].map(|rule| tin(&lines, rule));
             assert_eq!(first.elevation(0.0, 0.0), Some(own[order[0]]));
             assert_eq!(last.elevation(0.0, 0.0), Some(own[order[2]]));
         }
@@ -252,7 +342,10 @@ mod tests {
             let mut builder = builder(&STAR);
             builder.crossing_heights = CrossingRule::Refuse;
             builder.crossing_tolerance = tolerance;
-            builder.build_named(&|line| format!("road {}", ["A", "B", "C"][line]), &AtomicBool::new(false))
+            builder.build_named(
+                &|line| format!("road {}", ["A", "B", "C"][line]),
+                &AtomicBool::new(false),
+            )
         };
         let message = "breaklines meet with different heights at 0 0: 1 of road A, 4 of road B, expected within 0.5";
         assert_eq!(refuse(0.5).unwrap_err().to_string(), message);
@@ -271,13 +364,32 @@ mod tests {
         let reported = |lines: &[Line]| {
             let tin = tin(lines, DuplicateRule::Highest);
             assert_eq!(tin.report().crossings, 0);
-            let heights: Vec<_> = tin.report().crossing_heights.iter().map(|c| c.heights.clone()).collect();
-            assert!(tin.report().crossing_heights.iter().all(|c| !c.is_added && c.site == [2.0, 0.0]));
+            let heights: Vec<_> = tin
+                .report()
+                .crossing_heights
+                .iter()
+                .map(|c| c.heights.clone())
+                .collect();
+            assert!(
+                tin.report()
+                    .crossing_heights
+                    .iter()
+                    .all(|c| !c.is_added && c.site == [2.0, 0.0])
+            );
             (tin.elevation(2.0, 0.0), heights)
         };
-        assert_eq!(reported(&lines), (Some(5.0), vec![vec![(0, 1.5), (1, 7.0), (2, 5.0)]]));
-        assert_eq!(reported(&lines[..2]), (Some(7.0), vec![vec![(0, 1.5), (1, 7.0)]]));
-        assert_eq!(reported(&lines[1..]), (Some(5.0), vec![vec![(0, 7.0), (1, 5.0)]]));
+        assert_eq!(
+            reported(&lines),
+            (Some(5.0), vec![vec![(0, 1.5), (1, 7.0), (2, 5.0)]])
+        );
+        assert_eq!(
+            reported(&lines[..2]),
+            (Some(7.0), vec![vec![(0, 1.5), (1, 7.0)]])
+        );
+        assert_eq!(
+            reported(&lines[1..]),
+            (Some(5.0), vec![vec![(0, 7.0), (1, 5.0)]])
+        );
         let level: Line = &[[2.0, 0.0, 1.5], [2.0, 4.0, 7.0]];
         assert_eq!(reported(&[lines[0], level]), (Some(1.5), vec![]));
     }
@@ -287,14 +399,27 @@ mod tests {
         let mut builder = builder(&STAR[..1]);
         builder.add_points(&[1.0], &[0.0], &[8.0]);
         let tin = builder.build().unwrap();
-        assert_eq!((tin.elevation(1.0, 0.0), tin.report().crossing_heights.len()), (Some(8.0), 0));
+        assert_eq!(
+            (tin.elevation(1.0, 0.0), tin.report().crossing_heights.len()),
+            (Some(8.0), 0)
+        );
     }
 
     #[test]
     fn a_ring_that_ends_at_a_height_other_than_its_first_is_reported() {
-        let ring: Line = &[[0.0, 0.0, 1.0], [4.0, 0.0, 1.0], [0.0, 4.0, 1.0], [0.0, 0.0, 3.0]];
+        let ring: Line = &[
+            [0.0, 0.0, 1.0],
+            [4.0, 0.0, 1.0],
+            [0.0, 4.0, 1.0],
+            [0.0, 0.0, 3.0],
+        ];
         let tin = tin(&[ring], DuplicateRule::Lowest);
-        let [reported] = tin.report().crossing_heights.as_slice() else { panic!() };
-        assert_eq!((reported.heights.as_slice(), reported.chosen), ([(0, 1.0), (0, 3.0)].as_slice(), 1.0));
+        let [reported] = tin.report().crossing_heights.as_slice() else {
+            panic!()
+        };
+        assert_eq!(
+            (reported.heights.as_slice(), reported.chosen),
+            ([(0, 1.0), (0, 3.0)].as_slice(), 1.0)
+        );
     }
 }

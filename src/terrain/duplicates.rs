@@ -53,7 +53,8 @@ impl DuplicateRule {
 pub(crate) fn one_per_site(points: &[[f64; 3]], rule: DuplicateRule) -> Result<Vec<[f64; 3]>> {
     // Neither zero is the lower one.
     let site = |i: u32| [0, 1].map(|k| unsigned_zero(points[i as usize][k]));
-    let order = spatial_order(points.len(), |i| site(i as u32)).map_err(|e| Error::limit(e.to_string()))?;
+    let order =
+        spatial_order(points.len(), |i| site(i as u32)).map_err(|e| Error::limit(e.to_string()))?;
     let mut heights = Vec::new();
     let of_site = |group: &[u32]| {
         heights.clear();
@@ -61,5 +62,8 @@ pub(crate) fn one_per_site(points: &[[f64; 3]], rule: DuplicateRule) -> Result<V
         let [x, y] = site(group[0]);
         [x, y, rule.choose(&mut heights)]
     };
-    Ok(order.chunk_by(|&i, &j| site(i) == site(j)).map(of_site).collect())
+    Ok(order
+        .chunk_by(|&i, &j| site(i) == site(j))
+        .map(of_site)
+        .collect())
 }

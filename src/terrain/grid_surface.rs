@@ -65,7 +65,10 @@ impl<'a> GridSurface<'a> {
     /// is singular.
     pub fn new(grid: &'a Grid) -> Result<Self> {
         let frame = &grid.frame;
-        let quads = [frame.width.saturating_sub(1), frame.height.saturating_sub(1)];
+        let quads = [
+            frame.width.saturating_sub(1),
+            frame.height.saturating_sub(1),
+        ];
         let cells = frame.width.checked_mul(frame.height);
         if cells != Some(grid.values.len()) {
             return Err(Error::usage(format!(
@@ -76,7 +79,8 @@ impl<'a> GridSurface<'a> {
             )));
         }
         // There are more faces than vertices, except in single rows.
-        let largest = (4 * (quads[0] as u128) * (quads[1] as u128)).max(2 * grid.values.len() as u128);
+        let largest =
+            (4 * (quads[0] as u128) * (quads[1] as u128)).max(2 * grid.values.len() as u128);
         if largest > u128::from(u32::MAX) {
             return Err(Error::limit(format!(
                 "raster of {} x {} cells is too large for contours, at most {} cells can be drawn at a time",
@@ -89,13 +93,19 @@ impl<'a> GridSurface<'a> {
         let t = &frame.transform;
         let area = t[1] * t[5] - t[2] * t[4];
         if !(area != 0.0 && area.is_finite()) {
-            return Err(Error::format(format!("raster transform {t:?} has cells without area")));
+            return Err(Error::format(format!(
+                "raster transform {t:?} has cells without area"
+            )));
         }
         let mut corners = [[0, 0], [1, 0], [1, 1], [0, 1]];
         if area < 0.0 {
             corners.reverse();
         }
-        Ok(GridSurface { grid, quads, corners })
+        Ok(GridSurface {
+            grid,
+            quads,
+            corners,
+        })
     }
 
     /// Column and row of a face's quad, and the position of the face among its four.
@@ -104,7 +114,10 @@ impl<'a> GridSurface<'a> {
     }
 
     fn quad(&self, [column, row]: [usize; 2]) -> Quad {
-        Quad::of(self.corners.map(|[right, down]| self.grid.value(column + right, row + down)))
+        Quad::of(
+            self.corners
+                .map(|[right, down]| self.grid.value(column + right, row + down)),
+        )
     }
 
     /// Implements [`heights_in`](Surface::heights_in) for the faces of a quad, numbered from
@@ -161,7 +174,10 @@ impl<'a> GridSurface<'a> {
             (1, 1) => Some(at + 1).filter(|&at| at < count),
             _ => Some(at),
         };
-        Some([step(column, a[0], b[0], self.quads[0])?, step(row, a[1], b[1], self.quads[1])?])
+        Some([
+            step(column, a[0], b[0], self.quads[0])?,
+            step(row, a[1], b[1], self.quads[1])?,
+        ])
     }
 }
 
@@ -195,7 +211,13 @@ impl Surface for GridSurface<'_> {
         }
         let [column, row] = cell_at(vertex - cells, self.quads[0]);
         let [x, y] = frame.to_map(column as f64 + 1.0, row as f64 + 1.0);
-        [x, y, center([0, 1].map(|down| [0, 1].map(|right| self.grid.value(column + right, row + down))))]
+        [
+            x,
+            y,
+            center(
+                [0, 1].map(|down| [0, 1].map(|right| self.grid.value(column + right, row + down))),
+            ),
+        ]
     }
 
     fn face_count(&self) -> usize {
@@ -242,10 +264,19 @@ impl Surface for GridSurface<'_> {
     }
 
     fn edge_kind(&self, face: u32, i: usize) -> EdgeKind {
-        if self.neighbor(face, i).is_some() { EdgeKind::Plain } else { EdgeKind::Rim }
+        if self.neighbor(face, i).is_some() {
+            EdgeKind::Plain
+        } else {
+            EdgeKind::Rim
+        }
     }
 
-    fn heights_in(&self, numbers: Range<u32>, is_wanted: &dyn Fn(f64, f64) -> bool, faces: &mut Vec<(u32, [f64; 3])>) {
+    fn heights_in(
+        &self,
+        numbers: Range<u32>,
+        is_wanted: &dyn Fn(f64, f64) -> bool,
+        faces: &mut Vec<(u32, [f64; 3])>,
+    ) {
         let [across, width] = [self.quads[0] as u32, self.grid.frame.width as u32];
         let end = numbers.end.div_ceil(4);
         let mut quad = numbers.start / 4;
@@ -254,7 +285,8 @@ impl Surface for GridSurface<'_> {
             let (column, row) = (quad % across, quad / across);
             let count = (across - column).min(end - quad);
             let upper = &self.grid.values[(row * width + column) as usize..][..=count as usize];
-            let lower = &self.grid.values[((row + 1) * width + column) as usize..][..=count as usize];
+            let lower =
+                &self.grid.values[((row + 1) * width + column) as usize..][..=count as usize];
             for (upper, lower) in upper.windows(2).zip(lower.windows(2)) {
                 let cells = [[upper[0], upper[1]], [lower[0], lower[1]]];
                 self.heights_between(cells, 4 * quad, &numbers, is_wanted, faces);
@@ -283,19 +315,43 @@ mod tests {
             0 => f64::NAN,
             height => f64::from(height),
         };
-        for transform in [[0.0, 1.0, 0.0, 0.0, 0.0, 1.0], [0.0, 1.0, 0.0, 0.0, 0.0, -1.0]] {
-            let frame = crate::data::Frame { width: 7, height: 9, transform };
-            let grid = Grid { frame, crs: None, values: (0..63).map(cell).collect() };
+        for transform in [
+            [0.0, 1.0, 0.0, 0.0, 0.0, 1.0],
+            [0.0, 1.0, 0.0, 0.0, 0.0, -1.0],
+        ] {
+            let frame = crate::data::Frame {
+                width: 7,
+                height: 9,
+                transform,
+            };
+            let grid = Grid {
+                frame,
+                crs: None,
+                values: (0..63).map(cell).collect(),
+            };
             let surface = GridSurface::new(&grid).unwrap();
             let count = surface.face_count() as u32;
-            for (start, end) in [(0, count), (1, count - 1), (5, 6), (22, 75), (24, 24), (30, 31)] {
+            for (start, end) in [
+                (0, count),
+                (1, count - 1),
+                (5, 6),
+                (22, 75),
+                (24, 24),
+                (30, 31),
+            ] {
                 for level in [0.0, 1.0, 2.25, 5.0, 7.0, 8.0] {
                     let is_wanted = |low: f64, high: f64| low < level && level <= high;
                     let mut found = Vec::new();
                     surface.heights_in(start..end, &is_wanted, &mut found);
-                    let faces = (start..end).filter_map(|face| Some((face, surface.triangle(face)?.map(|p| p[2]))));
-                    let expected = faces.filter(|(_, [a, b, c])| is_wanted(a.min(*b).min(*c), a.max(*b).max(*c)));
-                    assert_eq!(found, expected.collect::<Vec<_>>(), "{start}..{end} at {level}");
+                    let faces = (start..end)
+                        .filter_map(|face| Some((face, surface.triangle(face)?.map(|p| p[2]))));
+                    let expected = faces
+                        .filter(|(_, [a, b, c])| is_wanted(a.min(*b).min(*c), a.max(*b).max(*c)));
+                    assert_eq!(
+                        found,
+                        expected.collect::<Vec<_>>(),
+                        "{start}..{end} at {level}"
+                    );
                 }
             }
         }

@@ -19,7 +19,11 @@ pub struct Light {
 impl Default for Light {
     /// Light from the northwest at 45 degrees, as is usual on maps.
     fn default() -> Self {
-        Light { azimuth: 315.0, altitude: 45.0, z_factor: 1.0 }
+        Light {
+            azimuth: 315.0,
+            altitude: 45.0,
+            z_factor: 1.0,
+        }
     }
 }
 
@@ -37,7 +41,10 @@ impl Light {
                 _ => vertical.unwrap_or(crs.unit.factor) / crs.unit.factor,
             }
         });
-        Light { z_factor, ..Light::default() }
+        Light {
+            z_factor,
+            ..Light::default()
+        }
     }
 }
 
@@ -63,17 +70,33 @@ impl<S: BlockSource> Hillshade<S> {
     /// # Errors
     /// If a number of `light` is not finite, or the frame of the source has no inverse.
     pub fn new(source: S, light: Light) -> Result<Self> {
-        let Light { azimuth, altitude, z_factor } = light;
-        for (name, value) in [("azimuth", azimuth), ("altitude", altitude), ("z factor", z_factor)] {
+        let Light {
+            azimuth,
+            altitude,
+            z_factor,
+        } = light;
+        for (name, value) in [
+            ("azimuth", azimuth),
+            ("altitude", altitude),
+            ("z factor", z_factor),
+        ] {
             if !value.is_finite() {
-                return Err(Error::usage(format!("the {name} of the light is {value}, expected a number")));
+                return Err(Error::usage(format!(
+                    "the {name} of the light is {value}, expected a number"
+                )));
             }
         }
         let frame = source.frame().checked()?;
         let (east, north) = azimuth.to_radians().sin_cos();
         let (up, flat) = altitude.to_radians().sin_cos();
         let light = [east * flat, north * flat, up];
-        Ok(Hillshade { source, frame, to_pixels: frame.inverse(), light, z_factor })
+        Ok(Hillshade {
+            source,
+            frame,
+            to_pixels: frame.inverse(),
+            light,
+            z_factor,
+        })
     }
 
     /// The shade of the center of 3 x 3 heights, given row by row.
@@ -88,7 +111,9 @@ impl<S: BlockSource> Hillshade<S> {
         let [nw, n, ne, w, _, e, sw, s, se] = heights;
         let per_column = ((ne + 2.0 * e + se) - (nw + 2.0 * w + sw)) / 8.0;
         let per_row = ((sw + 2.0 * s + se) - (nw + 2.0 * n + ne)) / 8.0;
-        let [dx, dy] = self.to_pixels.gradient(per_column * self.z_factor, per_row * self.z_factor);
+        let [dx, dy] = self
+            .to_pixels
+            .gradient(per_column * self.z_factor, per_row * self.z_factor);
         let [east, north, up] = self.light;
         let lit = (up - dx * east - dy * north) / (1.0 + dx * dx + dy * dy).sqrt();
         (1.0 + 254.0 * lit.max(0.0)).round() as f32
@@ -123,7 +148,10 @@ impl<S: BlockSource> BlockSource for Hillshade<S> {
 
 impl<S> std::fmt::Debug for Hillshade<S> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Hillshade").field("frame", &self.frame).field("light", &self.light).finish_non_exhaustive()
+        f.debug_struct("Hillshade")
+            .field("frame", &self.frame)
+            .field("light", &self.light)
+            .finish_non_exhaustive()
     }
 }
 
@@ -135,7 +163,11 @@ fn continue_straight(heights: &mut [f64; 9]) {
     for i in [1, 3, 5, 7] {
         if known[i].is_nan() {
             let opposite = known[8 - i];
-            heights[i] = if opposite.is_nan() { center } else { 2.0 * center - opposite };
+            heights[i] = if opposite.is_nan() {
+                center
+            } else {
+                2.0 * center - opposite
+            };
         }
     }
     for (corner, beside) in [(0, [1, 3]), (2, [1, 5]), (6, [3, 7]), (8, [5, 7])] {
@@ -155,8 +187,10 @@ impl Around {
     fn new(source: &impl BlockSource, frame: &Frame, window: Window) -> Result<Self> {
         // The number of cells of the raster before and after the window, at most one.
         let before = [window.column.min(1), window.row.min(1)];
-        let after =
-            [(frame.width - window.column - window.width).min(1), (frame.height - window.row - window.height).min(1)];
+        let after = [
+            (frame.width - window.column - window.width).min(1),
+            (frame.height - window.row - window.height).min(1),
+        ];
         let grown = Window {
             column: window.column - before[0],
             row: window.row - before[1],
@@ -192,11 +226,17 @@ mod tests {
                 height(x, y)
             })
             .collect();
-        Grid { frame, crs: None, values }
+        Grid {
+            frame,
+            crs: None,
+            values,
+        }
     }
 
     fn shades(grid: &Grid, light: Light) -> Vec<f64> {
-        Grid::collect(&Hillshade::new(grid, light).unwrap()).unwrap().values
+        Grid::collect(&Hillshade::new(grid, light).unwrap())
+            .unwrap()
+            .values
     }
 
     #[test]
@@ -206,11 +246,18 @@ mod tests {
         // lit = (0.70711 + 0.5 * 0.53125 - 0.5 * -1.53125) / sqrt(1 + 0.28223 + 2.34473)
         //     = 1.73836 / 1.90446 = 0.91279, and 1 + 254 * that = 232.85
         let values = vec![1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.5];
-        let grid = Grid { frame: Frame::north_up(0.0, 0.0, 2.0, 3, 3), crs: None, values };
+        let grid = Grid {
+            frame: Frame::north_up(0.0, 0.0, 2.0, 3, 3),
+            crs: None,
+            values,
+        };
         assert_eq!(shades(&grid, Light::default())[4], 233.0);
         // A tenth of the height: (0.70711 + 0.02656 + 0.07656) / sqrt(1 + 0.00282 + 0.02345) =
         // 0.79980
-        let gentle = Light { z_factor: 0.1, ..Light::default() };
+        let gentle = Light {
+            z_factor: 0.1,
+            ..Light::default()
+        };
         assert_eq!(shades(&grid, gentle)[4], 204.0);
     }
 
@@ -220,12 +267,31 @@ mod tests {
         // It rises to the east and falls to the north, so it faces the light in the north-west.
         let lit = (0.5f64.sqrt() + 0.5 * 0.3 + 0.5 * 0.4) / 1.25f64.sqrt();
         let expected = (1.0 + 254.0 * lit).round();
-        for t in [[1.0, 0.0, 0.0, -1.0], [1.0, 0.0, 0.0, 1.0], [-2.0, 0.0, 0.0, 0.5], [0.6, 0.8, 0.8, -0.6]] {
+        for t in [
+            [1.0, 0.0, 0.0, -1.0],
+            [1.0, 0.0, 0.0, 1.0],
+            [-2.0, 0.0, 0.0, 0.5],
+            [0.6, 0.8, 0.8, -0.6],
+        ] {
             let transform = [10.0, t[0], t[1], 20.0, t[2], t[3]];
-            let mut grid = grid(Frame { width: 9, height: 7, transform }, plane);
+            let mut grid = grid(
+                Frame {
+                    width: 9,
+                    height: 7,
+                    transform,
+                },
+                plane,
+            );
             grid.values[30] = f64::NAN;
             for (i, shade) in shades(&grid, Light::default()).into_iter().enumerate() {
-                assert!(if i == 30 { shade.is_nan() } else { shade == expected }, "{shade}, not {expected}, at {i}");
+                assert!(
+                    if i == 30 {
+                        shade.is_nan()
+                    } else {
+                        shade == expected
+                    },
+                    "{shade}, not {expected}, at {i}"
+                );
             }
         }
     }
@@ -233,31 +299,65 @@ mod tests {
     #[test]
     fn level_ground_is_lit_from_above_and_slopes_away_from_the_light_are_dark() {
         let frame = Frame::north_up(0.0, 0.0, 1.0, 4, 4);
-        assert!(shades(&grid(frame, |_, _| 7.0), Light::default()).iter().all(|&v| v == 181.0));
+        assert!(
+            shades(&grid(frame, |_, _| 7.0), Light::default())
+                .iter()
+                .all(|&v| v == 181.0)
+        );
         let cliff = grid(frame, |x, y| 100.0 * (y - x));
         assert!(shades(&cliff, Light::default()).iter().all(|&v| v == 1.0));
-        let overhead = Light { altitude: 90.0, ..Light::default() };
-        assert!(shades(&grid(frame, |_, _| 7.0), overhead).iter().all(|&v| v == 255.0));
+        let overhead = Light {
+            altitude: 90.0,
+            ..Light::default()
+        };
+        assert!(
+            shades(&grid(frame, |_, _| 7.0), overhead)
+                .iter()
+                .all(|&v| v == 255.0)
+        );
     }
 
     #[test]
     fn blocks_do_not_show() {
-        let grid = grid(Frame::north_up(0.0, 0.0, 1.0, 30, 20), |x, y| (x * 1.7).sin() * 3.0 + (y * x / 9.0).cos());
+        let grid = grid(Frame::north_up(0.0, 0.0, 1.0, 30, 20), |x, y| {
+            (x * 1.7).sin() * 3.0 + (y * x / 9.0).cos()
+        });
         let whole = shades(&grid, Light::default());
         let source = Hillshade::new(&grid, Light::default()).unwrap();
-        for (column, row, width, height) in [(0, 0, 1, 1), (29, 19, 1, 1), (3, 0, 20, 4), (0, 5, 30, 15), (7, 7, 5, 5)]
-        {
+        for (column, row, width, height) in [
+            (0, 0, 1, 1),
+            (29, 19, 1, 1),
+            (3, 0, 20, 4),
+            (0, 5, 30, 15),
+            (7, 7, 5, 5),
+        ] {
             let mut block = vec![0.0; width * height];
-            source.fill(Window { column, row, width, height }, &mut block).unwrap();
+            source
+                .fill(
+                    Window {
+                        column,
+                        row,
+                        width,
+                        height,
+                    },
+                    &mut block,
+                )
+                .unwrap();
             for (i, value) in block.iter().enumerate() {
-                assert_eq!(f64::from(*value), whole[(row + i / width) * 30 + column + i % width]);
+                assert_eq!(
+                    f64::from(*value),
+                    whole[(row + i / width) * 30 + column + i % width]
+                );
             }
         }
     }
 
     #[test]
     fn units_make_the_z_factor() {
-        let unit = |factor| Unit { name: String::new(), factor };
+        let unit = |factor| Unit {
+            name: String::new(),
+            factor,
+        };
         let mut crs = Crs {
             name: String::new(),
             epsg: None,
@@ -278,7 +378,17 @@ mod tests {
     #[test]
     fn refuses_light_that_is_no_number() {
         let grid = grid(Frame::north_up(0.0, 0.0, 1.0, 4, 4), |_, _| 0.0);
-        let error = Hillshade::new(&grid, Light { altitude: f64::NAN, ..Light::default() }).unwrap_err();
-        assert_eq!(error.to_string(), "the altitude of the light is NaN, expected a number");
+        let error = Hillshade::new(
+            &grid,
+            Light {
+                altitude: f64::NAN,
+                ..Light::default()
+            },
+        )
+        .unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "the altitude of the light is NaN, expected a number"
+        );
     }
 }

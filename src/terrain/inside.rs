@@ -28,27 +28,53 @@ impl Inside {
     /// Linear in the number of edges, in time and memory.
     pub fn new(polygons: &[Vec<Vec<[f64; 2]>>]) -> Self {
         let mut edges: Vec<(usize, Edge)> = Vec::new();
-        for (number, ring) in polygons.iter().enumerate().flat_map(|(i, rings)| rings.iter().map(move |ring| (i, ring)))
+        for (number, ring) in polygons
+            .iter()
+            .enumerate()
+            .flat_map(|(i, rings)| rings.iter().map(move |ring| (i, ring)))
         {
             edges.extend(sides(ring).map(|side| (number, side)));
         }
         let ys = || edges.iter().flat_map(|(_, edge)| edge.map(|p| p[1]));
-        let (low, high) = (ys().fold(f64::INFINITY, f64::min), ys().fold(f64::NEG_INFINITY, f64::max));
+        let (low, high) = (
+            ys().fold(f64::INFINITY, f64::min),
+            ys().fold(f64::NEG_INFINITY, f64::max),
+        );
         // As high as the average edge: then an edge is in two or three bands on average.
-        let average = edges.iter().map(|(_, [a, b])| (a[1] - b[1]).abs() / edges.len() as f64).sum::<f64>();
+        let average = edges
+            .iter()
+            .map(|(_, [a, b])| (a[1] - b[1]).abs() / edges.len() as f64)
+            .sum::<f64>();
         let height = average.max((high - low) / MOST);
-        let mut inside = Inside { bands: Vec::new(), low, height };
-        inside.bands.resize_with(if edges.is_empty() { 0 } else { inside.band(high) + 1 }, Vec::new);
+        let mut inside = Inside {
+            bands: Vec::new(),
+            low,
+            height,
+        };
+        inside.bands.resize_with(
+            if edges.is_empty() {
+                0
+            } else {
+                inside.band(high) + 1
+            },
+            Vec::new,
+        );
         for (number, edge) in edges {
             let [a, b] = edge.map(|p| inside.band(p[1]));
-            inside.bands[a.min(b)..=a.max(b)].iter_mut().for_each(|band| band.push((number, edge)));
+            inside.bands[a.min(b)..=a.max(b)]
+                .iter_mut()
+                .for_each(|band| band.push((number, edge)));
         }
         inside
     }
 
     /// The band of a height; monotone in the height.
     fn band(&self, y: f64) -> usize {
-        if self.height > 0.0 { ((y - self.low) / self.height).clamp(0.0, 2.0 * MOST) as usize } else { 0 }
+        if self.height > 0.0 {
+            ((y - self.low) / self.height).clamp(0.0, 2.0 * MOST) as usize
+        } else {
+            0
+        }
     }
 
     /// Returns true if a point lies in a polygon or on one of its rings.
@@ -98,7 +124,9 @@ impl Inside {
 
 /// Returns the sides of a ring. One that does not end where it begins is closed.
 pub(super) fn sides(ring: &[[f64; 2]]) -> impl Iterator<Item = Edge> + '_ {
-    ring.iter().zip(ring.iter().skip(1).chain(ring.first())).map(|(&a, &b)| [a, b])
+    ring.iter()
+        .zip(ring.iter().skip(1).chain(ring.first()))
+        .map(|(&a, &b)| [a, b])
 }
 
 #[cfg(test)]
@@ -130,7 +158,9 @@ mod tests {
     fn random_polygons_agree_with_all_edges_one_after_the_other() {
         let mut state = 1_u64;
         let mut next = |n: u64| {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
             ((state >> 33) % n) as i64
         };
         for _ in 0..300 {
@@ -144,12 +174,21 @@ mod tests {
             }
             let floats: Vec<Vec<Vec<[f64; 2]>>> = polygons
                 .iter()
-                .map(|rings| rings.iter().map(|ring| ring.iter().map(|p| p.map(|c| c as f64)).collect()).collect())
+                .map(|rings| {
+                    rings
+                        .iter()
+                        .map(|ring| ring.iter().map(|p| p.map(|c| c as f64)).collect())
+                        .collect()
+                })
                 .collect();
             let inside = Inside::new(&floats);
             for x in -1..8 {
                 for y in -1..8 {
-                    assert_eq!(inside.contains([x as f64, y as f64]), naive(&polygons, [x, y]), "{polygons:?} {x} {y}");
+                    assert_eq!(
+                        inside.contains([x as f64, y as f64]),
+                        naive(&polygons, [x, y]),
+                        "{polygons:?} {x} {y}"
+                    );
                 }
             }
         }
@@ -162,9 +201,14 @@ mod tests {
         let ring = vec![[0.0, 0.0], [1e300, 0.0], [0.0, 1e300], [0.0, 0.0]];
         let inside = Inside::new(&[vec![ring]]);
         assert!(inside.contains([1e299, 1e299]) && inside.contains([5e299, 0.0]));
-        for odd in
-            [[f64::NAN, 0.0], [0.0, f64::NAN], [f64::INFINITY, 1.0], [1.0, f64::INFINITY], [-1.0, 1.0], [1.0, -1.0]]
-        {
+        for odd in [
+            [f64::NAN, 0.0],
+            [0.0, f64::NAN],
+            [f64::INFINITY, 1.0],
+            [1.0, f64::INFINITY],
+            [-1.0, 1.0],
+            [1.0, -1.0],
+        ] {
             assert!(!inside.contains(odd), "{odd:?}");
         }
     }

@@ -26,11 +26,15 @@ impl Levels {
     /// If the interval is not positive and finite, or the base is not finite.
     pub fn every(interval: f64, base: f64) -> Result<Self> {
         if !(interval > 0.0 && interval.is_finite()) {
-            return Err(Error::usage(format!("contour interval is {interval}, expected a positive number"))
-                .cure("use a number above zero"));
+            return Err(Error::usage(format!(
+                "contour interval is {interval}, expected a positive number"
+            ))
+            .cure("use a number above zero"));
         }
         if !base.is_finite() {
-            return Err(Error::usage(format!("contour base is {base}, expected a finite number")));
+            return Err(Error::usage(format!(
+                "contour base is {base}, expected a finite number"
+            )));
         }
         Ok(Levels(Choice::Every { interval, base }))
     }
@@ -41,13 +45,18 @@ impl Levels {
     /// If one is not finite, or there are more than [`MAX_LEVELS`].
     pub fn listed(levels: &[f64]) -> Result<Self> {
         if let Some(level) = levels.iter().find(|level| !level.is_finite()) {
-            return Err(Error::usage(format!("contour level is {level}, expected a finite number")));
+            return Err(Error::usage(format!(
+                "contour level is {level}, expected a finite number"
+            )));
         }
         let mut levels: Vec<f64> = levels.iter().map(|&level| plain_zero(level)).collect();
         levels.sort_by(f64::total_cmp);
         levels.dedup();
         if levels.len() > MAX_LEVELS {
-            return Err(Error::limit(format!("{} contour levels, expected at most {MAX_LEVELS}", levels.len())));
+            return Err(Error::limit(format!(
+                "{} contour levels, expected at most {MAX_LEVELS}",
+                levels.len()
+            )));
         }
         Ok(Levels(Choice::Listed(levels)))
     }
@@ -61,9 +70,11 @@ impl Levels {
         match &self.0 {
             _ if low > high || low.is_nan() || high.is_nan() => Ok(Vec::new()),
             Choice::Every { interval, base } => every_within(*interval, *base, low, high),
-            Choice::Listed(levels) => {
-                Ok(levels.iter().copied().filter(|&level| low <= level && level <= high).collect())
-            }
+            Choice::Listed(levels) => Ok(levels
+                .iter()
+                .copied()
+                .filter(|&level| low <= level && level <= high)
+                .collect()),
         }
     }
 }
@@ -89,7 +100,9 @@ fn every_within(interval: f64, base: f64, low: f64, high: f64) -> Result<Vec<f64
         )));
     }
     let progression = Progression::new(interval, base);
-    let mut levels: Vec<f64> = (first as i64..=last as i64).map(|k| progression.level(k)).collect();
+    let mut levels: Vec<f64> = (first as i64..=last as i64)
+        .map(|k| progression.level(k))
+        .collect();
     levels.retain(|&level| low <= level && level <= high);
     levels.dedup();
     if levels.len() > MAX_LEVELS {
@@ -118,19 +131,29 @@ enum Progression {
 
 impl Progression {
     fn new(interval: f64, base: f64) -> Self {
-        let decimal = (0..=9).map(|decimals| 10_f64.powi(decimals)).find_map(|unit| {
-            let whole = |value: f64| {
-                let count = (value * unit).round();
-                (count.abs() < EXACT && count / unit == value).then_some(count as i64)
-            };
-            Some(Progression::Decimal { interval: whole(interval)?, base: whole(base)?, unit })
-        });
+        let decimal = (0..=9)
+            .map(|decimals| 10_f64.powi(decimals))
+            .find_map(|unit| {
+                let whole = |value: f64| {
+                    let count = (value * unit).round();
+                    (count.abs() < EXACT && count / unit == value).then_some(count as i64)
+                };
+                Some(Progression::Decimal {
+                    interval: whole(interval)?,
+                    base: whole(base)?,
+                    unit,
+                })
+            });
         decimal.unwrap_or(Progression::Binary { interval, base })
     }
 
     fn level(&self, k: i64) -> f64 {
         plain_zero(match *self {
-            Progression::Decimal { interval, base, unit } => {
+            Progression::Decimal {
+                interval,
+                base,
+                unit,
+            } => {
                 // Below 2^107, and rounded only above 2^53.
                 (i128::from(k) * i128::from(interval) + i128::from(base)) as f64 / unit
             }
@@ -150,7 +173,10 @@ mod tests {
     use crate::error::Kind;
 
     fn within(interval: f64, base: f64, low: f64, high: f64) -> Vec<f64> {
-        Levels::every(interval, base).unwrap().within(low, high).unwrap()
+        Levels::every(interval, base)
+            .unwrap()
+            .within(low, high)
+            .unwrap()
     }
 
     #[test]
@@ -165,8 +191,13 @@ mod tests {
     #[test]
     fn decimal_levels_are_those_that_one_types() {
         for (interval, decimals) in [(0.1, 1), (0.05, 2), (0.3048, 4), (0.7, 1)] {
-            for (i, level) in within(interval, 0.0, 0.0, 100.0 * interval).iter().enumerate() {
-                let typed: f64 = format!("{:.decimals$}", i as f64 * interval).parse().unwrap();
+            for (i, level) in within(interval, 0.0, 0.0, 100.0 * interval)
+                .iter()
+                .enumerate()
+            {
+                let typed: f64 = format!("{:.decimals$}", i as f64 * interval)
+                    .parse()
+                    .unwrap();
                 assert_eq!(level.to_bits(), typed.to_bits(), "{i} times {interval}");
             }
         }
@@ -187,19 +218,48 @@ mod tests {
     #[test]
     fn nonsense_is_refused() {
         for interval in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-            assert_eq!(Levels::every(interval, 0.0).unwrap_err().kind(), Kind::Usage);
+            assert_eq!(
+                Levels::every(interval, 0.0).unwrap_err().kind(),
+                Kind::Usage
+            );
         }
-        assert_eq!(Levels::every(1.0, f64::NAN).unwrap_err().kind(), Kind::Usage);
-        assert_eq!(Levels::listed(&[1.0, f64::NAN]).unwrap_err().kind(), Kind::Usage);
-        assert_eq!(Levels::every(1.0, 1e300).unwrap().within(0.0, 9.0).unwrap_err().kind(), Kind::Usage);
+        assert_eq!(
+            Levels::every(1.0, f64::NAN).unwrap_err().kind(),
+            Kind::Usage
+        );
+        assert_eq!(
+            Levels::listed(&[1.0, f64::NAN]).unwrap_err().kind(),
+            Kind::Usage
+        );
+        assert_eq!(
+            Levels::every(1.0, 1e300)
+                .unwrap()
+                .within(0.0, 9.0)
+                .unwrap_err()
+                .kind(),
+            Kind::Usage
+        );
     }
 
     #[test]
     fn too_many_levels_are_counted_and_refused() {
-        let error = Levels::every(1e-4, 0.0).unwrap().within(0.0, 1000.0).unwrap_err();
+        let error = Levels::every(1e-4, 0.0)
+            .unwrap()
+            .within(0.0, 1000.0)
+            .unwrap_err();
         assert_eq!(error.kind(), Kind::Limit);
-        assert!(error.to_string().contains("0.0001") && error.to_string().contains("1000000"), "{error}");
-        assert_eq!(Levels::every(f64::MIN_POSITIVE, 0.0).unwrap().within(0.0, 1.0).unwrap_err().kind(), Kind::Limit);
+        assert!(
+            error.to_string().contains("0.0001") && error.to_string().contains("1000000"),
+            "{error}"
+        );
+        assert_eq!(
+            Levels::every(f64::MIN_POSITIVE, 0.0)
+                .unwrap()
+                .within(0.0, 1.0)
+                .unwrap_err()
+                .kind(),
+            Kind::Limit
+        );
         assert_eq!(within(1.0, 0.0, 1.0, 1_000_000.0).len(), MAX_LEVELS);
     }
 }

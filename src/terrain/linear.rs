@@ -10,7 +10,8 @@ const THINNEST: f64 = 1e-9;
 
 /// The height at `q` of the plane through three points; at a corner exactly its height.
 pub(super) fn linear([a, b, c]: [[f64; 3]; 3], q: [f64; 2]) -> f64 {
-    let cross = |p: [f64; 3], r: [f64; 3]| (p[0] - q[0]) * (r[1] - q[1]) - (p[1] - q[1]) * (r[0] - q[0]);
+    let cross =
+        |p: [f64; 3], r: [f64; 3]| (p[0] - q[0]) * (r[1] - q[1]) - (p[1] - q[1]) * (r[0] - q[0]);
     let (at_a, at_b, at_c) = (cross(b, c), cross(c, a), cross(a, b));
     let area = at_a + at_b + at_c;
     let longest = square(a, b).max(square(b, c)).max(square(c, a));
@@ -24,10 +25,17 @@ pub(super) fn linear([a, b, c]: [[f64; 3]; 3], q: [f64; 2]) -> f64 {
 fn along_sliver([a, b, c]: [[f64; 3]; 3], q: [f64; 2]) -> f64 {
     let sides = [(a, b, c), (b, c, a), (c, a, b)];
     let length = |&(p, r, _): &([f64; 3], [f64; 3], [f64; 3])| square(p, r);
-    let [from, to, middle] =
-        sides.into_iter().max_by(|s, t| length(s).total_cmp(&length(t))).map_or([a, b, c], Into::into);
-    let is_before = (q[0] - middle[0]) * (to[0] - from[0]) + (q[1] - middle[1]) * (to[1] - from[1]) <= 0.0;
-    if is_before { height_along(from, middle, q) } else { height_along(middle, to, q) }
+    let [from, to, middle] = sides
+        .into_iter()
+        .max_by(|s, t| length(s).total_cmp(&length(t)))
+        .map_or([a, b, c], Into::into);
+    let is_before =
+        (q[0] - middle[0]) * (to[0] - from[0]) + (q[1] - middle[1]) * (to[1] - from[1]) <= 0.0;
+    if is_before {
+        height_along(from, middle, q)
+    } else {
+        height_along(middle, to, q)
+    }
 }
 
 /// The distance of two points in plan.
@@ -49,9 +57,15 @@ mod tests {
         let [a, b, c] = [[0.0, 0.0, 1.0], [1.0, 3.0, 7.0], [0.5, 1.5 + 1e-13, 6.0]];
         for corners in [[a, b, c], [c, b, a], [b, c, a]] {
             for (y, z) in [(0.0, 1.0), (0.75, 3.5), (1.5, 6.0), (2.25, 6.5), (3.0, 7.0)] {
-                assert!((linear(corners, [y / 3.0, y]) - z).abs() < 1e-9, "{corners:?} at {y}");
+                assert!(
+                    (linear(corners, [y / 3.0, y]) - z).abs() < 1e-9,
+                    "{corners:?} at {y}"
+                );
             }
         }
-        assert_eq!([a, b, c].map(|p| linear([a, b, c], [p[0], p[1]])), [1.0, 7.0, 6.0]);
+        assert_eq!(
+            [a, b, c].map(|p| linear([a, b, c], [p[0], p[1]])),
+            [1.0, 7.0, 6.0]
+        );
     }
 }

@@ -74,7 +74,9 @@ pub use hillshade::{Hillshade, Light};
 pub use inside::Inside;
 pub use interpolate::{Interpolant, Method};
 pub use levels::{Levels, MAX_LEVELS};
-pub use lines::{Flat, FlatHeight, HighSide, River, RiverHeights, RiverLowering, Wall, WaterOverlap, densified};
+pub use lines::{
+    Flat, FlatHeight, HighSide, River, RiverHeights, RiverLowering, Wall, WaterOverlap, densified,
+};
 pub(crate) use near_lines::NearLines;
 pub use rasterize::{Canvas, CanvasBlock, Dem, DemOfParts};
 pub use selection::{Classes, Selection, SelectionReport};

@@ -28,9 +28,14 @@ impl NearLines {
     /// # Complexity
     /// O(log n) for n segments, if few of them are close.
     pub(crate) fn pass(&self, [x, y]: [f64; 2], distance: f64) -> bool {
-        let extent = Extent { min: [x - distance, y - distance], max: [x + distance, y + distance] };
+        let extent = Extent {
+            min: [x - distance, y - distance],
+            max: [x + distance, y + distance],
+        };
         let passes = |segment: &Segment| squared_distance(segment.0, [x, y]) <= distance * distance;
-        self.0.find_in(extent, |segment| passes(segment).then_some(())).is_some()
+        self.0
+            .find_in(extent, |segment| passes(segment).then_some(()))
+            .is_some()
     }
 }
 
@@ -51,14 +56,25 @@ mod tests {
                 for y in -1..10 {
                     let p = [f64::from(x), f64::from(y)];
                     for distance in [0.0, 0.5, 1.0, 2.0] {
-                        let wanted = segments.iter().any(|&s| squared_distance(s, p) <= distance * distance);
-                        assert_eq!(near.pass(p, distance), wanted, "{segments:?} {p:?} {distance}");
+                        let wanted = segments
+                            .iter()
+                            .any(|&s| squared_distance(s, p) <= distance * distance);
+                        assert_eq!(
+                            near.pass(p, distance),
+                            wanted,
+                            "{segments:?} {p:?} {distance}"
+                        );
                     }
                 }
             }
         }
         let near = NearLines::new([[[0.0; 2], [1.0; 2]]]);
-        for odd in [[f64::NAN, 0.0], [0.0, f64::NAN], [f64::INFINITY, 0.0], [0.0, f64::NEG_INFINITY]] {
+        for odd in [
+            [f64::NAN, 0.0],
+            [0.0, f64::NAN],
+            [f64::INFINITY, 0.0],
+            [0.0, f64::NEG_INFINITY],
+        ] {
             assert!(!near.pass(odd, 1.0));
         }
     }

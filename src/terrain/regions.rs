@@ -46,7 +46,9 @@ pub(super) fn label<T: Copy + Default>(
             labels[face as usize] = label;
             for side in 0..3 {
                 domains.clear();
-                let Some(beyond) = faces.beyond(face, side, &mut domains) else { continue };
+                let Some(beyond) = faces.beyond(face, side, &mut domains) else {
+                    continue;
+                };
                 if is_seen[beyond as usize] {
                     continue;
                 }
@@ -67,7 +69,10 @@ pub(super) fn label<T: Copy + Default>(
 fn toggled(within: &[Domain], listed: &[Domain]) -> Vec<Domain> {
     let mut all = [within, listed].concat();
     all.sort_unstable();
-    all.chunk_by(Domain::eq).filter(|same| same.len() % 2 == 1).map(|same| same[0]).collect()
+    all.chunk_by(Domain::eq)
+        .filter(|same| same.len() % 2 == 1)
+        .map(|same| same[0])
+        .collect()
 }
 
 /// The sorted domains that contain a triangle, given all segments of the curves, none of which
@@ -78,17 +83,37 @@ fn toggled(within: &[Domain], listed: &[Domain]) -> Vec<Domain> {
 ///
 /// # Complexity
 /// Linear in the number of segments.
-pub(super) fn domains_at(geometry: &Terrain, corners: [[f64; 3]; 3], curves: &[(Domain, Segment)]) -> Vec<Domain> {
-    let lowest = (0..3).fold(0, |lowest, k| if corners[k][1] < corners[lowest][1] { k } else { lowest });
+pub(super) fn domains_at(
+    geometry: &Terrain,
+    corners: [[f64; 3]; 3],
+    curves: &[(Domain, Segment)],
+) -> Vec<Domain> {
+    let lowest = (0..3).fold(0, |lowest, k| {
+        if corners[k][1] < corners[lowest][1] {
+            k
+        } else {
+            lowest
+        }
+    });
     let [start, next, last] = [0, 1, 2].map(|k| corners[(lowest + k) % 3]);
     let mut odd: FxHashMap<Domain, bool> = FxHashMap::default();
-    for &(domain, [a, b]) in curves.iter().filter(|(_, [a, b])| (a[1] > start[1]) != (b[1] > start[1])) {
+    for &(domain, [a, b]) in curves
+        .iter()
+        .filter(|(_, [a, b])| (a[1] > start[1]) != (b[1] > start[1]))
+    {
         let [low, high] = if a[1] < b[1] { [a, b] } else { [b, a] }.map(|[x, y]| [x, y, 0.0]);
         let side = |p: &[f64; 3]| geometry.orientation([&low, &high, p]);
-        let first = [start, next, last].iter().map(side).find(|side| *side != Sign::Zero);
+        let first = [start, next, last]
+            .iter()
+            .map(side)
+            .find(|side| *side != Sign::Zero);
         *odd.entry(domain).or_default() ^= first == Some(Sign::Positive);
     }
-    let mut within: Vec<Domain> = odd.into_iter().filter(|&(_, is_odd)| is_odd).map(|(domain, _)| domain).collect();
+    let mut within: Vec<Domain> = odd
+        .into_iter()
+        .filter(|&(_, is_odd)| is_odd)
+        .map(|(domain, _)| domain)
+        .collect();
     within.sort_unstable();
     within
 }

@@ -137,7 +137,12 @@ impl Selection {
     fn classes_of_source(&self) -> Option<Vec<Option<u8>>> {
         let before = self.before_source.as_deref()?;
         let now = self.tallies();
-        Some((0..now.len()).filter(|&i| now[i] > before[i]).map(|i| u8::try_from(i).ok()).collect())
+        Some(
+            (0..now.len())
+                .filter(|&i| now[i] > before[i])
+                .map(|i| u8::try_from(i).ok())
+                .collect(),
+        )
     }
 
     /// Returns the sources without points of a class that is used, numbered in the order of
@@ -146,9 +151,13 @@ impl Selection {
     /// It does not matter whether their points lie in the window.
     pub fn unused_sources(&self) -> Vec<usize> {
         let current = self.classes_of_source();
-        let is_unused = |classes: &[Option<u8>]| classes.iter().all(|&class| self.fate(class) == Use::No);
+        let is_unused =
+            |classes: &[Option<u8>]| classes.iter().all(|&class| self.fate(class) == Use::No);
         let sources = self.sources.iter().chain(&current).enumerate();
-        sources.filter(|(_, classes)| is_unused(classes)).map(|(source, _)| source).collect()
+        sources
+            .filter(|(_, classes)| is_unused(classes))
+            .map(|(source, _)| source)
+            .collect()
     }
 
     /// Removes and returns the points kept so far, which must be [certain](Self::certain), so that
@@ -188,8 +197,10 @@ impl Selection {
     pub fn add(&mut self, batch: &PointBatch) -> Result<()> {
         if self.kept.try_reserve(batch.len()).is_err() {
             let count = self.kept.len() + batch.len();
-            return Err(Error::limit(format!("not enough memory for {count} points"))
-                .cure("use fewer points: a part of the area, one class, or one tile at a time"));
+            return Err(
+                Error::limit(format!("not enough memory for {count} points"))
+                    .cure("use fewer points: a part of the area, one class, or one tile at a time"),
+            );
         }
         for i in 0..batch.len() {
             self.read += 1;
@@ -268,9 +279,13 @@ impl Selection {
     fn not_finite(&self, p: [f64; 3]) -> Error {
         let number = self.read - self.read_before_source;
         let error = if p[2].is_nan() && p[0].is_finite() && p[1].is_finite() {
-            Error::format("the point has no height").cure("name the attribute that holds the height: FILE:FIELD")
+            Error::format("the point has no height")
+                .cure("name the attribute that holds the height: FILE:FIELD")
         } else {
-            Error::format(format!("the coordinates {} {} {} are not all finite", p[0], p[1], p[2]))
+            Error::format(format!(
+                "the coordinates {} {} {} are not all finite",
+                p[0], p[1], p[2]
+            ))
         };
         error.at(format!("point {number}"))
     }
@@ -291,7 +306,10 @@ impl Selection {
             },
             ..SelectionReport::default()
         };
-        for (class, tally) in (0u8..=255).zip(self.by_class).filter(|(_, tally)| tally.all() > 0) {
+        for (class, tally) in (0u8..=255)
+            .zip(self.by_class)
+            .filter(|(_, tally)| tally.all() > 0)
+        {
             report.by_class.insert(class, tally.all());
             if self.fate(Some(class)) == Use::No {
                 report.other_class += tally.all();
@@ -327,10 +345,19 @@ mod tests {
     }
 
     fn classless(xs: &[f64]) -> PointBatch {
-        PointBatch { x: xs.to_vec(), y: vec![0.0; xs.len()], z: xs.to_vec(), ..PointBatch::default() }
+        PointBatch {
+            x: xs.to_vec(),
+            y: vec![0.0; xs.len()],
+            z: xs.to_vec(),
+            ..PointBatch::default()
+        }
     }
 
-    fn select(classes: Classes, window: Option<Bounds>, batches: &[PointBatch]) -> (Vec<f64>, SelectionReport) {
+    fn select(
+        classes: Classes,
+        window: Option<Bounds>,
+        batches: &[PointBatch],
+    ) -> (Vec<f64>, SelectionReport) {
         let mut selection = Selection::new(classes, window);
         for batch in batches {
             selection.next_source();
@@ -339,13 +366,20 @@ mod tests {
         let (points, report) = selection.finish();
         assert!(points.iter().all(|p| p[0] == p[2]));
         assert_eq!(points.len() as u64, report.used);
-        assert_eq!(report.read, report.used + report.withheld + report.other_class + report.outside);
+        assert_eq!(
+            report.read,
+            report.used + report.withheld + report.other_class + report.outside
+        );
         (points.iter().map(|p| p[0]).collect(), report)
     }
 
     #[test]
     fn ground_displaces_what_came_before_it() {
-        let batches = [batch(&[(1, 1.0), (1, 2.0)]), classless(&[3.0]), batch(&[(5, 4.0), (2, 5.0), (1, 6.0)])];
+        let batches = [
+            batch(&[(1, 1.0), (1, 2.0)]),
+            classless(&[3.0]),
+            batch(&[(5, 4.0), (2, 5.0), (1, 6.0)]),
+        ];
         let (kept, report) = select(Classes::GroundOrAll, None, &batches);
         assert_eq!(kept, [3.0, 5.0]);
         assert_eq!(report.classes, Some(vec![2]));
@@ -355,8 +389,13 @@ mod tests {
 
     #[test]
     fn sources_of_which_no_point_is_used_are_known() {
-        let batches =
-            [batch(&[(1, 1.0)]), classless(&[3.0]), batch(&[]), batch(&[(5, 4.0), (2, 99.0)]), batch(&[(7, 5.0)])];
+        let batches = [
+            batch(&[(1, 1.0)]),
+            classless(&[3.0]),
+            batch(&[]),
+            batch(&[(5, 4.0), (2, 99.0)]),
+            batch(&[(7, 5.0)]),
+        ];
         let mut window = Bounds::default();
         window.add([0.0, 0.0, 0.0]);
         window.add([10.0, 10.0, 0.0]);
@@ -376,7 +415,11 @@ mod tests {
 
     #[test]
     fn without_ground_all_are_kept_in_order() {
-        let batches = [batch(&[(1, 1.0)]), classless(&[2.0]), batch(&[(5, 3.0), (7, 4.0)])];
+        let batches = [
+            batch(&[(1, 1.0)]),
+            classless(&[2.0]),
+            batch(&[(5, 3.0), (7, 4.0)]),
+        ];
         let (kept, report) = select(Classes::GroundOrAll, None, &batches);
         assert_eq!(kept, [1.0, 2.0, 3.0, 4.0]);
         assert_eq!(report.classes, None);
@@ -387,7 +430,10 @@ mod tests {
         let (kept, report) = select(
             Classes::Only(vec![2, 8]),
             None,
-            &[batch(&[(8, 1.0), (2, 2.0), (1, 3.0)]), batch(&[(1, 4.0), (8, 5.0)])],
+            &[
+                batch(&[(8, 1.0), (2, 2.0), (1, 3.0)]),
+                batch(&[(1, 4.0), (8, 5.0)]),
+            ],
         );
         assert_eq!(kept, [1.0, 2.0, 5.0]);
         assert_eq!(report.other_class, 2);
@@ -398,15 +444,23 @@ mod tests {
         let mut window = Bounds::default();
         window.add([0.0, 0.0, 0.0]);
         window.add([10.0, 10.0, 0.0]);
-        let (kept, report) =
-            select(Classes::GroundOrAll, Some(window), &[batch(&[(1, 5.0), (2, 20.0), (2, 10.0), (1, 30.0)])]);
+        let (kept, report) = select(
+            Classes::GroundOrAll,
+            Some(window),
+            &[batch(&[(1, 5.0), (2, 20.0), (2, 10.0), (1, 30.0)])],
+        );
         assert_eq!(kept, [10.0]);
         assert_eq!((report.outside, report.other_class), (1, 2));
     }
 
     #[test]
     fn every_order_of_the_files_gives_the_same_set_and_report() {
-        let files = [batch(&[(1, 1.0), (1, 20.0)]), classless(&[2.0, 30.0]), batch(&[(2, 4.0)]), batch(&[(9, 5.0)])];
+        let files = [
+            batch(&[(1, 1.0), (1, 20.0)]),
+            classless(&[2.0, 30.0]),
+            batch(&[(2, 4.0)]),
+            batch(&[(9, 5.0)]),
+        ];
         let mut window = Bounds::default();
         window.add([0.0, 0.0, 0.0]);
         window.add([10.0, 10.0, 0.0]);
@@ -428,7 +482,10 @@ mod tests {
     fn withheld_points_are_dropped_before_anything_else_is_asked() {
         let mut points = batch(&[(2, 1.0), (1, 2.0)]);
         points.x[0] = f64::NAN;
-        points.flags = vec![PointFlags(PointFlags::WITHHELD), PointFlags(PointFlags::OVERLAP)];
+        points.flags = vec![
+            PointFlags(PointFlags::WITHHELD),
+            PointFlags(PointFlags::OVERLAP),
+        ];
         let (kept, report) = select(Classes::GroundOrAll, None, &[points]);
         assert_eq!(kept, [2.0]);
         assert_eq!((report.withheld, report.classes), (1, None));
@@ -439,11 +496,19 @@ mod tests {
         let mut selection = Selection::new(Classes::default(), None);
         selection.add(&classless(&[1.0, 2.0])).unwrap();
         selection.next_source();
-        let error = selection.add(&classless(&[1.0, f64::INFINITY])).unwrap_err();
-        assert_eq!(error.to_string(), "point 2: the coordinates inf 0 inf are not all finite");
+        let error = selection
+            .add(&classless(&[1.0, f64::INFINITY]))
+            .unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "point 2: the coordinates inf 0 inf are not all finite"
+        );
         let mut flat = classless(&[1.0]);
         flat.z[0] = f64::NAN;
         selection.next_source();
-        assert_eq!(selection.add(&flat).unwrap_err().to_string(), "point 1: the point has no height");
+        assert_eq!(
+            selection.add(&flat).unwrap_err().to_string(),
+            "point 1: the point has no height"
+        );
     }
 }

@@ -37,21 +37,45 @@ pub enum SurfaceFlaw {
 impl std::fmt::Display for SurfaceFlaw {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
-            SurfaceFlaw::Vertex(v) => write!(f, "vertex {v}: a coordinate is not finite or out of range"),
-            SurfaceFlaw::NotMutual(face, i) => write!(f, "face {face}, edge {i}: its neighbor does not share the edge"),
-            SurfaceFlaw::Orientation(face) => write!(f, "face {face}: no area in plan, or clockwise"),
-            SurfaceFlaw::NotManifold(v) => write!(f, "vertex {v}: its faces do not form a single fan"),
-            SurfaceFlaw::TwoHeights([a, b]) => {
-                write!(f, "vertices {a} and {b}: one position, but different heights")
+            SurfaceFlaw::Vertex(v) => {
+                write!(f, "vertex {v}: a coordinate is not finite or out of range")
             }
-            SurfaceFlaw::Crack { faces: [one, other], .. } => {
-                write!(f, "faces {one} and {other}: their edges have one position, but different heights: a crack")
+            SurfaceFlaw::NotMutual(face, i) => write!(
+                f,
+                "face {face}, edge {i}: its neighbor does not share the edge"
+            ),
+            SurfaceFlaw::Orientation(face) => {
+                write!(f, "face {face}: no area in plan, or clockwise")
+            }
+            SurfaceFlaw::NotManifold(v) => {
+                write!(f, "vertex {v}: its faces do not form a single fan")
+            }
+            SurfaceFlaw::TwoHeights([a, b]) => {
+                write!(
+                    f,
+                    "vertices {a} and {b}: one position, but different heights"
+                )
+            }
+            SurfaceFlaw::Crack {
+                faces: [one, other],
+                ..
+            } => {
+                write!(
+                    f,
+                    "faces {one} and {other}: their edges have one position, but different heights: a crack"
+                )
             }
             SurfaceFlaw::Kinds(face, i) => {
-                write!(f, "face {face}, edge {i}: for its neighbor the edge is of another kind")
+                write!(
+                    f,
+                    "face {face}, edge {i}: for its neighbor the edge is of another kind"
+                )
             }
             SurfaceFlaw::NotDelaunay(face, i) => {
-                write!(f, "face {face}, edge {i}: the vertex beyond lies in the circumcircle")
+                write!(
+                    f,
+                    "face {face}, edge {i}: the vertex beyond lies in the circumcircle"
+                )
             }
         }
     }
@@ -67,8 +91,13 @@ impl SurfaceFlaw {
             SurfaceFlaw::TwoHeights([a, _]) => vec![a],
             SurfaceFlaw::NotMutual(face, i)
             | SurfaceFlaw::Kinds(face, i)
-            | SurfaceFlaw::Crack { faces: [face, _], corner: i }
-            | SurfaceFlaw::NotDelaunay(face, i) => corners(face).flat_map(|corners| edge(corners, i)).collect(),
+            | SurfaceFlaw::Crack {
+                faces: [face, _],
+                corner: i,
+            }
+            | SurfaceFlaw::NotDelaunay(face, i) => {
+                corners(face).flat_map(|corners| edge(corners, i)).collect()
+            }
         }
     }
 }
@@ -85,7 +114,11 @@ impl SurfaceFlaw {
 #[must_use]
 pub fn surface_flaws(surface: &dyn Surface) -> Vec<SurfaceFlaw> {
     let flaws = shape_flaws(surface);
-    if flaws.is_empty() { bad_circles(surface) } else { flaws }
+    if flaws.is_empty() {
+        bad_circles(surface)
+    } else {
+        flaws
+    }
 }
 
 /// Returns the flaws of a surface in its shape.
@@ -100,9 +133,19 @@ pub fn surface_flaws(surface: &dyn Surface) -> Vec<SurfaceFlaw> {
 /// Linear, and O(n log n) in the edges at the rim.
 #[must_use]
 pub fn shape_flaws(surface: &dyn Surface) -> Vec<SurfaceFlaw> {
-    let checks: [fn(&dyn Surface) -> Vec<SurfaceFlaw>; 6] =
-        [bad_vertices, bad_links, bad_orientations, bad_fans, bad_heights, bad_kinds];
-    checks.iter().map(|check| check(surface)).find(|flaws| !flaws.is_empty()).unwrap_or_default()
+    let checks: [fn(&dyn Surface) -> Vec<SurfaceFlaw>; 6] = [
+        bad_vertices,
+        bad_links,
+        bad_orientations,
+        bad_fans,
+        bad_heights,
+        bad_kinds,
+    ];
+    checks
+        .iter()
+        .map(|check| check(surface))
+        .find(|flaws| !flaws.is_empty())
+        .unwrap_or_default()
 }
 
 fn bad_vertices(surface: &dyn Surface) -> Vec<SurfaceFlaw> {
@@ -111,7 +154,10 @@ fn bad_vertices(surface: &dyn Surface) -> Vec<SurfaceFlaw> {
         let p = surface.position(v);
         !geometry.admits(&p) || !p[2].is_finite()
     };
-    let mut flaws: Vec<u32> = data::corners(surface).flat_map(|(_, corners)| corners).filter(|&v| bad(v)).collect();
+    let mut flaws: Vec<u32> = data::corners(surface)
+        .flat_map(|(_, corners)| corners)
+        .filter(|&v| bad(v))
+        .collect();
     flaws.sort_unstable();
     flaws.dedup();
     flaws.into_iter().map(SurfaceFlaw::Vertex).collect()
@@ -127,7 +173,8 @@ fn mirror(surface: &dyn Surface, face: u32, corners: [u32; 3], i: usize) -> Opti
     let beside = surface.neighbor(face, i)?;
     let theirs = surface.face(beside)?;
     let [a, b] = edge(corners, i);
-    let j = (0..3).find(|&j| edge(theirs, j) == [b, a] && surface.neighbor(beside, j) == Some(face))?;
+    let j =
+        (0..3).find(|&j| edge(theirs, j) == [b, a] && surface.neighbor(beside, j) == Some(face))?;
     Some((beside, j))
 }
 
@@ -165,7 +212,9 @@ fn bad_fans(surface: &dyn Surface) -> Vec<SurfaceFlaw> {
             degree[v as usize] += 1;
             start[v as usize] = Some(face);
             if surface.neighbor(face, i).is_none() {
-                edge(corners, i).into_iter().for_each(|v| border[v as usize] = true);
+                edge(corners, i)
+                    .into_iter()
+                    .for_each(|v| border[v as usize] = true);
             }
         }
     }
@@ -175,10 +224,15 @@ fn bad_fans(surface: &dyn Surface) -> Vec<SurfaceFlaw> {
             let at = corners.iter().position(|&v| v == vertex)?;
             surface.neighbor(face, (at + 1) % 3).filter(|&n| n != start)
         };
-        std::iter::successors(Some(start), next).take(surface.face_count()).count() as u32
+        std::iter::successors(Some(start), next)
+            .take(surface.face_count())
+            .count() as u32
     };
     (0..surface.vertex_count() as u32)
-        .filter(|&v| !border[v as usize] && start[v as usize].is_some_and(|face| fan(v, face) != degree[v as usize]))
+        .filter(|&v| {
+            !border[v as usize]
+                && start[v as usize].is_some_and(|face| fan(v, face) != degree[v as usize])
+        })
         .map(SurfaceFlaw::NotManifold)
         .collect()
 }
@@ -196,11 +250,22 @@ impl RimEdge {
     fn new(surface: &dyn Surface, face: u32, corners: [u32; 3], corner: usize) -> Self {
         let mut vertices = edge(corners, corner);
         let in_plan = |[x, y, _]: [f64; 3]| [unsigned_zero(x), unsigned_zero(y)];
-        if order(&in_plan(surface.position(vertices[0])), &in_plan(surface.position(vertices[1]))).is_gt() {
+        if order(
+            &in_plan(surface.position(vertices[0])),
+            &in_plan(surface.position(vertices[1])),
+        )
+        .is_gt()
+        {
             vertices.reverse();
         }
         let points = vertices.map(|v| surface.position(v));
-        RimEdge { ends: points.map(in_plan), heights: points.map(|[_, _, z]| z), vertices, face, corner }
+        RimEdge {
+            ends: points.map(in_plan),
+            heights: points.map(|[_, _, z]| z),
+            vertices,
+            face,
+            corner,
+        }
     }
 }
 
@@ -210,22 +275,46 @@ fn order(a: &[f64; 2], b: &[f64; 2]) -> Ordering {
 
 /// Finds cracks, and vertices with the same position and different heights that are not at a crack.
 fn bad_heights(surface: &dyn Surface) -> Vec<SurfaceFlaw> {
-    let sides = data::corners(surface).flat_map(|(face, corners)| (0..3).map(move |i| (face, corners, i)));
+    let sides =
+        data::corners(surface).flat_map(|(face, corners)| (0..3).map(move |i| (face, corners, i)));
     let rim = sides.filter(|&(face, _, i)| surface.neighbor(face, i).is_none());
-    let mut rim: Vec<RimEdge> = rim.map(|(face, corners, i)| RimEdge::new(surface, face, corners, i)).collect();
-    rim.sort_by(|a, b| order(&a.ends[0], &b.ends[0]).then(order(&a.ends[1], &b.ends[1])).then(a.face.cmp(&b.face)));
+    let mut rim: Vec<RimEdge> = rim
+        .map(|(face, corners, i)| RimEdge::new(surface, face, corners, i))
+        .collect();
+    rim.sort_by(|a, b| {
+        order(&a.ends[0], &b.ends[0])
+            .then(order(&a.ends[1], &b.ends[1]))
+            .then(a.face.cmp(&b.face))
+    });
     let mut flaws = Vec::new();
     let mut cracked = Vec::new();
-    for pair in rim.windows(2).filter(|pair| pair[0].ends == pair[1].ends && pair[0].heights != pair[1].heights) {
-        flaws.push(SurfaceFlaw::Crack { faces: [pair[0].face, pair[1].face], corner: pair[0].corner });
+    for pair in rim
+        .windows(2)
+        .filter(|pair| pair[0].ends == pair[1].ends && pair[0].heights != pair[1].heights)
+    {
+        flaws.push(SurfaceFlaw::Crack {
+            faces: [pair[0].face, pair[1].face],
+            corner: pair[0].corner,
+        });
         cracked.extend(pair[0].ends);
     }
     cracked.sort_by(order);
-    let of_edge = |edge: &RimEdge| [0, 1].map(|k| (edge.ends[k], edge.heights[k], edge.vertices[k]));
+    let of_edge =
+        |edge: &RimEdge| [0, 1].map(|k| (edge.ends[k], edge.heights[k], edge.vertices[k]));
     let mut vertices: Vec<([f64; 2], f64, u32)> = rim.iter().flat_map(of_edge).collect();
-    vertices.sort_by(|a, b| order(&a.0, &b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2)));
-    for pair in vertices.windows(2).filter(|pair| pair[0].0 == pair[1].0 && pair[0].1 != pair[1].1) {
-        if cracked.binary_search_by(|end| order(end, &pair[0].0)).is_err() {
+    vertices.sort_by(|a, b| {
+        order(&a.0, &b.0)
+            .then(a.1.total_cmp(&b.1))
+            .then(a.2.cmp(&b.2))
+    });
+    for pair in vertices
+        .windows(2)
+        .filter(|pair| pair[0].0 == pair[1].0 && pair[0].1 != pair[1].1)
+    {
+        if cracked
+            .binary_search_by(|end| order(end, &pair[0].0))
+            .is_err()
+        {
             flaws.push(SurfaceFlaw::TwoHeights([pair[0].2, pair[1].2]));
         }
     }
@@ -239,7 +328,8 @@ fn bad_kinds(surface: &dyn Surface) -> Vec<SurfaceFlaw> {
         .flat_map(|(face, corners)| (0..3).map(move |i| (face, corners, i)))
         .filter(|&(face, corners, i)| {
             mirror(surface, face, corners, i).is_some_and(|(beside, j)| {
-                face < beside && line(surface.edge_kind(face, i)) != line(surface.edge_kind(beside, j))
+                face < beside
+                    && line(surface.edge_kind(face, i)) != line(surface.edge_kind(beside, j))
             })
         })
         .map(|(face, _, i)| SurfaceFlaw::Kinds(face, i))
@@ -252,11 +342,15 @@ fn bad_circles(surface: &dyn Surface) -> Vec<SurfaceFlaw> {
     for (face, corners) in data::corners(surface) {
         let points = corners.map(|v| surface.position(v));
         for i in (0..3).filter(|&i| !surface.is_constrained(face, i)) {
-            let Some((beside, j)) = mirror(surface, face, corners, i) else { continue };
+            let Some((beside, j)) = mirror(surface, face, corners, i) else {
+                continue;
+            };
             if surface.is_fragment(face) || surface.is_fragment(beside) {
                 continue;
             }
-            let Some(theirs) = surface.face(beside) else { continue };
+            let Some(theirs) = surface.face(beside) else {
+                continue;
+            };
             let far = surface.position(theirs[j]);
             if face < beside && geometry.side_of_sphere(points.each_ref(), &far) == Sign::Positive {
                 flaws.push(SurfaceFlaw::NotDelaunay(face, i));

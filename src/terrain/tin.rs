@@ -32,9 +32,20 @@ pub struct Tin {
 
 impl Tin {
     /// A surface of all finite faces of a triangulation.
-    pub(super) fn new(triangulation: ConstrainedDelaunay<Terrain>, kinds: LineKinds, crs: Option<Crs>) -> Self {
+    pub(super) fn new(
+        triangulation: ConstrainedDelaunay<Terrain>,
+        kinds: LineKinds,
+        crs: Option<Crs>,
+    ) -> Self {
         let report = TinReport::default();
-        let mut tin = Tin { triangulation, inside: Vec::new(), cut: None, kinds, report, crs };
+        let mut tin = Tin {
+            triangulation,
+            inside: Vec::new(),
+            cut: None,
+            kinds,
+            report,
+            crs,
+        };
         tin.include_all();
         tin
     }
@@ -43,7 +54,9 @@ impl Tin {
     pub(super) fn include_all(&mut self) {
         let tds = self.triangulation.tds();
         let is_face = |cell| tds.is_used(cell) && !tds.is_infinite(cell);
-        self.inside = (0..tds.cell_slots()).map(|index| is_face(CellId::new(index))).collect();
+        self.inside = (0..tds.cell_slots())
+            .map(|index| is_face(CellId::new(index)))
+            .collect();
     }
 
     /// Returns the counts of what was given and what was built.
@@ -90,21 +103,40 @@ impl Tin {
     pub fn elevation_near(&self, q: [f64; 2], near: &mut Option<CellId>) -> Option<f64> {
         // Coordinates below the range of the arithmetic count as zero; those above are beyond all
         // vertices.
-        let [x, y] = q.map(|c| if c.abs() < RANGE.min && !RANGE.admits(c) { 0.0 } else { c });
+        let [x, y] = q.map(|c| {
+            if c.abs() < RANGE.min && !RANGE.admits(c) {
+                0.0
+            } else {
+                c
+            }
+        });
         let location = self.triangulation.locate(&[x, y, 0.0], *near);
         *near = location.cell(&self.triangulation).or(*near);
         let in_whole = match location {
             Location::Vertex(vertex) => {
-                let inside = self.triangulation.tds().around(vertex).any(|cell| self.inside[cell.index()]);
+                let inside = self
+                    .triangulation
+                    .tds()
+                    .around(vertex)
+                    .any(|cell| self.inside[cell.index()]);
                 inside.then(|| self.triangulation.point(vertex)[2])
             }
             Location::Cell { cell, .. } => {
-                let beside = location.facets().map(|(cell, i)| self.triangulation.tds().neighbor(cell, i));
+                let beside = location
+                    .facets()
+                    .map(|(cell, i)| self.triangulation.tds().neighbor(cell, i));
                 // On an edge, rounded heights of both cells may differ: one of them, however it was
                 // reached.
-                let either = std::iter::once(cell).chain(beside).filter(|cell| self.inside[cell.index()]);
+                let either = std::iter::once(cell)
+                    .chain(beside)
+                    .filter(|cell| self.inside[cell.index()]);
                 let cell = either.min_by_key(|cell| cell.index());
-                let corners = |cell| self.triangulation.tds().corners(cell).map(|v| *self.triangulation.point(v));
+                let corners = |cell| {
+                    self.triangulation
+                        .tds()
+                        .corners(cell)
+                        .map(|v| *self.triangulation.point(v))
+                };
                 cell.map(|cell| linear(corners(cell), [x, y]))
             }
             Location::OutsideHull { .. } | Location::OutsideAffineHull | Location::Nowhere => None,
@@ -117,7 +149,9 @@ impl Tin {
     pub(super) fn peel(&mut self, limit: f64) -> usize {
         let tds = self.triangulation.tds();
         let mut peeled = 0;
-        let at_hull = tds.corners_around(VertexId::INFINITE).map(|(cell, i)| (tds.neighbor(cell, i), cell));
+        let at_hull = tds
+            .corners_around(VertexId::INFINITE)
+            .map(|(cell, i)| (tds.neighbor(cell, i), cell));
         let mut exposed: Vec<(CellId, CellId)> = at_hull.collect();
         while let Some((cell, from)) = exposed.pop() {
             let i = tds.index_of_neighbor(cell, from);
@@ -129,7 +163,12 @@ impl Tin {
             self.inside[cell.index()] = false;
             peeled += 1;
             let onward = [ccw(i), cw(i)].map(|k| tds.neighbor(cell, k));
-            exposed.extend(onward.into_iter().filter(|n| self.inside[n.index()]).map(|n| (n, cell)));
+            exposed.extend(
+                onward
+                    .into_iter()
+                    .filter(|n| self.inside[n.index()])
+                    .map(|n| (n, cell)),
+            );
         }
         peeled
     }
@@ -143,7 +182,11 @@ impl Tin {
                 continue;
             }
             let cell = CellId::new(index);
-            let corners = self.triangulation.tds().corners(cell).map(|v| *self.triangulation.point(v));
+            let corners = self
+                .triangulation
+                .tds()
+                .corners(cell)
+                .map(|v| *self.triangulation.point(v));
             let length = |i: usize| plan_distance(corners[ccw(i)], corners[cw(i)]);
             if (0..3).any(|i| length(i) > limit && !self.triangulation.is_constrained(cell, i)) {
                 self.inside[index] = false;
@@ -155,7 +198,10 @@ impl Tin {
 
     /// The triangles that the patch of a cut replaces.
     pub(super) fn replaced(&self) -> &[CellId] {
-        self.cut.as_ref().map(SurfaceCut::replaced).unwrap_or_default()
+        self.cut
+            .as_ref()
+            .map(SurfaceCut::replaced)
+            .unwrap_or_default()
     }
 
     /// Counts the vertices and faces of the surface.
@@ -166,7 +212,12 @@ impl Tin {
             faces += 1;
             corners.iter().for_each(|&v| used[v as usize] = true);
         }
-        let mut count = Count { old_vertices: 0, vertices: 0, faces, extent: Bounds::default() };
+        let mut count = Count {
+            old_vertices: 0,
+            vertices: 0,
+            faces,
+            extent: Bounds::default(),
+        };
         let old = self.triangulation.tds().vertex_slots();
         for vertex in (0..used.len()).filter(|&vertex| used[vertex]) {
             count.vertices += 1;
@@ -199,10 +250,17 @@ impl Tin {
     /// The numbers of edges of the surface that lie on lines.
     pub(super) fn count_lines(&self) -> LineEdges {
         let has_lines = |face: &u32| {
-            self.cut.is_some() || (0..3).any(|i| self.triangulation.is_constrained(CellId::new(*face as usize), i))
+            self.cut.is_some()
+                || (0..3).any(|i| {
+                    self.triangulation
+                        .is_constrained(CellId::new(*face as usize), i)
+                })
         };
         let mut count = LineEdges::default();
-        for face in (0..self.face_count() as u32).filter(has_lines).filter(|&face| self.face(face).is_some()) {
+        for face in (0..self.face_count() as u32)
+            .filter(has_lines)
+            .filter(|&face| self.face(face).is_some())
+        {
             count.add(self, face, self.kinds(face));
         }
         count
@@ -221,7 +279,10 @@ pub(super) struct Count {
 
 impl Surface for Tin {
     fn vertex_count(&self) -> usize {
-        self.cut.as_ref().map_or(self.triangulation.tds().vertex_slots(), SurfaceCut::vertex_count)
+        self.cut.as_ref().map_or(
+            self.triangulation.tds().vertex_slots(),
+            SurfaceCut::vertex_count,
+        )
     }
 
     #[inline(always)] // into the loops over many faces
@@ -234,22 +295,30 @@ impl Surface for Tin {
     }
 
     fn face_count(&self) -> usize {
-        self.cut.as_ref().map_or(self.inside.len(), SurfaceCut::face_count)
+        self.cut
+            .as_ref()
+            .map_or(self.inside.len(), SurfaceCut::face_count)
     }
 
     #[inline(always)] // into the loops over many faces
     fn face(&self, face: u32) -> Option<[u32; 3]> {
         match self.inside.get(face as usize) {
-            Some(inside) => {
-                inside.then(|| self.triangulation.tds().corners(CellId::new(face as usize)).map(|v| v.index() as u32))
-            }
+            Some(inside) => inside.then(|| {
+                self.triangulation
+                    .tds()
+                    .corners(CellId::new(face as usize))
+                    .map(|v| v.index() as u32)
+            }),
             None => self.cut.as_ref()?.face(face),
         }
     }
 
     fn neighbor(&self, face: u32, i: usize) -> Option<u32> {
         if (face as usize) < self.inside.len() {
-            let beside = self.triangulation.tds().neighbor(CellId::new(face as usize), i);
+            let beside = self
+                .triangulation
+                .tds()
+                .neighbor(CellId::new(face as usize), i);
             if self.inside[beside.index()] {
                 return Some(beside.index() as u32);
             }
@@ -264,7 +333,10 @@ impl Surface for Tin {
         }
         // The fragment beyond knows of all lines along the edge.
         let on_line = self.cut.as_ref().and_then(|cut| cut.kind_beside(face, i));
-        if let Some(kind) = on_line.or_else(|| self.kinds.of_edge(&self.triangulation, CellId::new(face as usize), i)) {
+        if let Some(kind) = on_line.or_else(|| {
+            self.kinds
+                .of_edge(&self.triangulation, CellId::new(face as usize), i)
+        }) {
             return kind;
         }
         if self.cut.as_ref().is_some_and(|cut| cut.is_draped(face, i)) {
@@ -296,7 +368,11 @@ impl Surface for Tin {
     fn faces_in(&self, numbers: Range<u32>, faces: &mut Vec<Face>) {
         faces.extend(numbers.filter_map(|number| {
             let corners = self.face(number)?;
-            Some(Face { number, corners, edges: self.kinds(number) })
+            Some(Face {
+                number,
+                corners,
+                edges: self.kinds(number),
+            })
         }));
     }
 
@@ -308,19 +384,24 @@ impl Surface for Tin {
     fn base_faces_in(&self, numbers: Range<u32>, faces: &mut Vec<BaseFace>) {
         let tds = self.triangulation.tds();
         let is_face = |cell: CellId| tds.is_used(cell) && !tds.is_infinite(cell);
-        faces.extend(numbers.map(|number| CellId::new(number as usize)).filter(|&cell| is_face(cell)).map(|cell| {
-            let beside = |i| Some(tds.neighbor(cell, i)).filter(|&beside| is_face(beside));
-            let kind = |i| match self.kinds.of_edge(&self.triangulation, cell, i) {
-                Some(kind) => kind,
-                None if beside(i).is_none() => EdgeKind::Rim,
-                None => EdgeKind::Plain,
-            };
-            BaseFace {
-                number: cell.index() as u32,
-                corners: tds.corners(cell).map(|v| v.index() as u32),
-                neighbors: [0, 1, 2].map(|i| beside(i).map(|beside| beside.index() as u32)),
-                edges: [0, 1, 2].map(kind),
-            }
-        }));
+        faces.extend(
+            numbers
+                .map(|number| CellId::new(number as usize))
+                .filter(|&cell| is_face(cell))
+                .map(|cell| {
+                    let beside = |i| Some(tds.neighbor(cell, i)).filter(|&beside| is_face(beside));
+                    let kind = |i| match self.kinds.of_edge(&self.triangulation, cell, i) {
+                        Some(kind) => kind,
+                        None if beside(i).is_none() => EdgeKind::Rim,
+                        None => EdgeKind::Plain,
+                    };
+                    BaseFace {
+                        number: cell.index() as u32,
+                        corners: tds.corners(cell).map(|v| v.index() as u32),
+                        neighbors: [0, 1, 2].map(|i| beside(i).map(|beside| beside.index() as u32)),
+                        edges: [0, 1, 2].map(kind),
+                    }
+                }),
+        );
     }
 }

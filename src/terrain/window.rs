@@ -34,7 +34,11 @@ impl ReadWindow {
             let (mut below, mut above) = (whole, whole);
             below[1][axis] = read.min[axis].next_down();
             above[0][axis] = read.max[axis].next_up();
-            unread.extend([below, above].into_iter().filter(|[min, max]| min[axis] <= max[axis]));
+            unread.extend(
+                [below, above]
+                    .into_iter()
+                    .filter(|[min, max]| min[axis] <= max[axis]),
+            );
         }
         unread
     }
@@ -59,9 +63,15 @@ pub(super) fn uncertain(
     if unread.is_empty() {
         return 0;
     }
-    let judge = Judge { triangulation, unread };
+    let judge = Judge {
+        triangulation,
+        unread,
+    };
     let tds = triangulation.tds();
-    let within: Box2 = [[bounds.min[0], bounds.min[1]], [bounds.max[0], bounds.max[1]]];
+    let within: Box2 = [
+        [bounds.min[0], bounds.min[1]],
+        [bounds.max[0], bounds.max[1]],
+    ];
     let mut is_seen = vec![false; tds.cell_slots()];
     let mut ahead: Vec<CellId> = tds
         .cells()
@@ -78,7 +88,12 @@ pub(super) fn uncertain(
     let mut uncertain = 0;
     while let Some(cell) = ahead.pop() {
         if let Some(edge) = judge.hull_edge(cell) {
-            uncertain += usize::from(judge.unread.iter().any(|&unread| judge.is_beyond(edge, unread, Sign::Positive)));
+            uncertain += usize::from(
+                judge
+                    .unread
+                    .iter()
+                    .any(|&unread| judge.is_beyond(edge, unread, Sign::Positive)),
+            );
             continue;
         }
         uncertain += usize::from(!judge.is_certain(cell));
@@ -107,21 +122,33 @@ impl Judge<'_> {
     }
 
     fn ends(&self, cell: CellId, i: usize) -> [[f64; 2]; 2] {
-        self.triangulation.tds().edge_ends(cell, i).map(|vertex| self.site(vertex))
+        self.triangulation
+            .tds()
+            .edge_ends(cell, i)
+            .map(|vertex| self.site(vertex))
     }
 
     fn corners(&self, cell: CellId) -> [[f64; 2]; 3] {
-        self.triangulation.tds().corners(cell).map(|vertex| self.site(vertex))
+        self.triangulation
+            .tds()
+            .corners(cell)
+            .map(|vertex| self.site(vertex))
     }
 
     fn box_of(&self, cell: CellId) -> Box2 {
         let [a, b, c] = self.corners(cell);
-        [[0, 1].map(|k| a[k].min(b[k]).min(c[k])), [0, 1].map(|k| a[k].max(b[k]).max(c[k]))]
+        [
+            [0, 1].map(|k| a[k].min(b[k]).min(c[k])),
+            [0, 1].map(|k| a[k].max(b[k]).max(c[k])),
+        ]
     }
 
     /// The hull edge of an infinite cell, with the outside on its left.
     fn hull_edge(&self, cell: CellId) -> Option<[[f64; 2]; 2]> {
-        let infinite = self.triangulation.tds().index_of(cell, VertexId::INFINITE)?;
+        let infinite = self
+            .triangulation
+            .tds()
+            .index_of(cell, VertexId::INFINITE)?;
         Some(self.ends(cell, infinite))
     }
 
@@ -130,9 +157,10 @@ impl Judge<'_> {
         let space = |[x, y]: [f64; 2]| [x, y, 0.0];
         let corners = [min, [max[0], min[1]], max, [min[0], max[1]]].map(space);
         let geometry = self.triangulation.geometry();
-        corners
-            .iter()
-            .any(|corner| !geometry.admits(corner) || geometry.orientation([&space(p), &space(q), corner]) >= least)
+        corners.iter().any(|corner| {
+            !geometry.admits(corner)
+                || geometry.orientation([&space(p), &space(q), corner]) >= least
+        })
     }
 
     /// Returns true if the longest side of a sliver is a constraint.
@@ -146,22 +174,34 @@ impl Judge<'_> {
         };
         let longest = (0..3).max_by(|i, j| length(i).total_cmp(&length(j)));
         let [min, max] = self.box_of(cell);
-        let width = THIN * (0..2).map(|k| min[k].abs().max(max[k].abs())).fold(0.0, f64::max);
+        let width = THIN
+            * (0..2)
+                .map(|k| min[k].abs().max(max[k].abs()))
+                .fold(0.0, f64::max);
         let around = [min.map(|c| c - width), max.map(|c| c + width)];
         longest.is_some_and(|i| self.triangulation.is_constrained(cell, i))
-            && !self.unread.iter().any(|&unread| overlap(around, unread).is_some())
+            && !self
+                .unread
+                .iter()
+                .any(|&unread| overlap(around, unread).is_some())
     }
 
     /// Returns true if no unread point can lie in the part of the circumdisk that is visible from
     /// the triangle.
     fn is_certain(&self, cell: CellId) -> bool {
-        let Some(disk) = Disk::around(self.corners(cell)) else { return self.is_hidden(cell) };
+        let Some(disk) = Disk::around(self.corners(cell)) else {
+            return self.is_hidden(cell);
+        };
         if !self.unread.iter().any(|&unread| disk.meets(unread)) {
             return true;
         }
         let is_open = |part: Box2| {
             let in_disk = overlap(part, disk.bounds());
-            in_disk.is_some_and(|part| self.unread.iter().any(|&unread| overlap(part, unread).is_some()))
+            in_disk.is_some_and(|part| {
+                self.unread
+                    .iter()
+                    .any(|&unread| overlap(part, unread).is_some())
+            })
         };
         let tds = self.triangulation.tds();
         // The triangles that are visible, each with the neighbor from which it was entered; it is
@@ -176,7 +216,8 @@ impl Judge<'_> {
             }
             for i in 0..3 {
                 let beyond = tds.neighbor(cell, i);
-                let is_open_edge = Some(beyond) != from && !self.triangulation.is_constrained(cell, i);
+                let is_open_edge =
+                    Some(beyond) != from && !self.triangulation.is_constrained(cell, i);
                 if is_open_edge && disk.meets_segment(self.ends(cell, i)) && seen.insert(beyond) {
                     ahead.push((beyond, Some(cell)));
                 }
@@ -192,8 +233,13 @@ const THIN: f64 = 1.0 / (1u64 << 40) as f64;
 
 /// The intersection of two boxes, if there is one.
 fn overlap([a, b]: Box2, [c, d]: Box2) -> Option<Box2> {
-    let common = [[0, 1].map(|k| a[k].max(c[k])), [0, 1].map(|k| b[k].min(d[k]))];
-    (0..2).all(|k| common[0][k] <= common[1][k]).then_some(common)
+    let common = [
+        [0, 1].map(|k| a[k].max(c[k])),
+        [0, 1].map(|k| b[k].min(d[k])),
+    ];
+    (0..2)
+        .all(|k| common[0][k] <= common[1][k])
+        .then_some(common)
 }
 
 /// A disk that contains the closed circumdisk of a triangle, and is about a hundredth larger.
@@ -218,7 +264,10 @@ impl Disk {
         }
         let [uu, vv] = [u, v].map(|w| w[0] * w[0] + w[1] * w[1]);
         let terms = [uu * v[1], vv * u[1], vv * u[0], uu * v[0]];
-        let to_center = [(terms[0] - terms[1]) / (2.0 * area), (terms[2] - terms[3]) / (2.0 * area)];
+        let to_center = [
+            (terms[0] - terms[1]) / (2.0 * area),
+            (terms[2] - terms[3]) / (2.0 * area),
+        ];
         let lost = LOST * terms.iter().map(|term| term.abs()).sum::<f64>() / area;
         let center = [a[0] + to_center[0], a[1] + to_center[1]];
         let far = a[0].abs() + a[1].abs();
@@ -227,16 +276,26 @@ impl Disk {
     }
 
     fn bounds(&self) -> Box2 {
-        [self.center.map(|c| c - self.radius), self.center.map(|c| c + self.radius)]
+        [
+            self.center.map(|c| c - self.radius),
+            self.center.map(|c| c + self.radius),
+        ]
     }
 
     fn meets(&self, [min, max]: Box2) -> bool {
-        let gap = |k: usize| (min[k] - self.center[k]).max(self.center[k] - max[k]).max(0.0);
+        let gap = |k: usize| {
+            (min[k] - self.center[k])
+                .max(self.center[k] - max[k])
+                .max(0.0)
+        };
         gap(0).hypot(gap(1)) <= self.radius
     }
 
     fn meets_segment(&self, [a, b]: [[f64; 2]; 2]) -> bool {
-        let [u, v] = [[b[0] - a[0], b[1] - a[1]], [self.center[0] - a[0], self.center[1] - a[1]]];
+        let [u, v] = [
+            [b[0] - a[0], b[1] - a[1]],
+            [self.center[0] - a[0], self.center[1] - a[1]],
+        ];
         let along = ((u[0] * v[0] + u[1] * v[1]) / (u[0] * u[0] + u[1] * u[1])).clamp(0.0, 1.0);
         (v[0] - along * u[0]).hypot(v[1] - along * u[1]) <= self.radius
     }

@@ -12,7 +12,10 @@ pub type Sites<const D: usize> = Vec<([f64; D], f64)>;
 
 /// Returns how many boxes are drawn.
 pub fn count() -> usize {
-    std::env::var("BREAKLINE_BOXES").ok().and_then(|n| n.parse().ok()).unwrap_or(120)
+    std::env::var("BREAKLINE_BOXES")
+        .ok()
+        .and_then(|n| n.parse().ok())
+        .unwrap_or(120)
 }
 
 /// Returns sites on grids, of whole numbers and of others, near them, on lines and planes, or
@@ -38,7 +41,9 @@ pub fn sites<const D: usize>(random: &mut Random, round: usize, is_weighted: boo
         let weight = match kind {
             0 => random.below(4) as f64 * spacing * spacing / 2.0,
             // The same power to all sites at the center.
-            1 => (0..D).map(|k| ((step[k] - center[k]) * spacing).powi(2)).sum(),
+            1 => (0..D)
+                .map(|k| ((step[k] - center[k]) * spacing).powi(2))
+                .sum(),
             _ => random.unit() * spacing * spacing,
         };
         if sites.iter().all(|&(other, _)| other != site) {
@@ -82,10 +87,16 @@ pub fn judge<const D: usize>(sites: &Sites<D>, within: [[f64; D]; 2], found: &[f
     for (k, &found) in found.iter().enumerate() {
         let right = volume_of_cell(sites, k, within).to_f64().value();
         let error = (found - right).abs();
-        assert!(error <= 1e-11 * size, "cell {k} has {found} instead of {right} in {within:?}: {sites:?}");
+        assert!(
+            error <= 1e-11 * size,
+            "cell {k} has {found} instead of {right} in {within:?}: {sites:?}"
+        );
     }
     let sum: f64 = found.iter().sum();
-    assert!((sum - whole).abs() <= 1e-11 * size, "{sum} instead of {whole} in {within:?}: {sites:?}");
+    assert!(
+        (sum - whole).abs() <= 1e-11 * size,
+        "{sum} instead of {whole} in {within:?}: {sites:?}"
+    );
 }
 
 /// A position, shared by simplices.
@@ -109,14 +120,23 @@ fn volume_of_cell<const D: usize>(sites: &Sites<D>, of: usize, within: [[f64; D]
     let mut simplices = simplices_of_box(within);
     for &(other, other_weight) in sites.iter().filter(|&&(other, _)| other != site) {
         // Positive where the other has less power.
-        let squares = |p: [f64; D]| p.map(|x| exact(x) * exact(x)).into_iter().fold(RBig::ZERO, |sum, x| sum + x);
+        let squares = |p: [f64; D]| {
+            p.map(|x| exact(x) * exact(x))
+                .into_iter()
+                .fold(RBig::ZERO, |sum, x| sum + x)
+        };
         let constant = squares(site) - exact(weight) - squares(other) + exact(other_weight);
         let gradient = std::array::from_fn(|k| RBig::from(2) * (exact(other[k]) - exact(site[k])));
-        simplices =
-            simplices.into_iter().flat_map(|simplex| part(simplex, &(gradient.clone(), constant.clone()))).collect();
+        simplices = simplices
+            .into_iter()
+            .flat_map(|simplex| part(simplex, &(gradient.clone(), constant.clone())))
+            .collect();
     }
     let factorial = (1..=D as u32).product::<u32>();
-    simplices.iter().fold(RBig::ZERO, |sum, simplex| sum + volume(simplex)) / RBig::from(factorial)
+    simplices
+        .iter()
+        .fold(RBig::ZERO, |sum, simplex| sum + volume(simplex))
+        / RBig::from(factorial)
 }
 
 /// Returns simplices that fill a box: one for each order of the axes, along which it walks from the
@@ -132,7 +152,8 @@ fn simplices_of_box<const D: usize>(within: [[f64; D]; 2]) -> Vec<Vec<Corner<D>>
                 let been = walk.windows(2).any(|pair| pair[0][axis] != pair[1][axis]);
                 let mut there = (*here).clone();
                 there[axis] = high[axis].clone();
-                (!been && there[axis] != here[axis]).then(|| [walk.clone(), vec![Rc::new(there)]].concat())
+                (!been && there[axis] != here[axis])
+                    .then(|| [walk.clone(), vec![Rc::new(there)]].concat())
             })
         };
         walks = walks.into_iter().flat_map(step).collect();
@@ -143,7 +164,10 @@ fn simplices_of_box<const D: usize>(within: [[f64; D]; 2]) -> Vec<Vec<Corner<D>>
 /// Returns simplices that fill the part of one in which a function is not positive.
 fn part<const D: usize>(simplex: Vec<Corner<D>>, function: &Linear<D>) -> Vec<Vec<Corner<D>>> {
     let mut parts = Vec::new();
-    let with_values = simplex.into_iter().map(|corner| (value(function, &corner), corner)).collect::<Vec<_>>();
+    let with_values = simplex
+        .into_iter()
+        .map(|corner| (value(function, &corner), corner))
+        .collect::<Vec<_>>();
     let mut open = vec![with_values];
     while let Some(simplex) = open.pop() {
         let inside = simplex.iter().position(|(value, _)| *value < RBig::ZERO);
@@ -152,7 +176,8 @@ fn part<const D: usize>(simplex: Vec<Corner<D>>, function: &Linear<D>) -> Vec<Ve
             // Both halves, on the two sides of where the edge crosses the border.
             let ((at_p, p), (at_q, q)) = (&simplex[i], &simplex[j]);
             let along = at_p / (at_p - at_q);
-            let border: Corner<D> = Rc::new(std::array::from_fn(|k| &p[k] + &along * (&q[k] - &p[k])));
+            let border: Corner<D> =
+                Rc::new(std::array::from_fn(|k| &p[k] + &along * (&q[k] - &p[k])));
             for end in [i, j] {
                 let mut half = simplex.clone();
                 half[end] = (RBig::ZERO, border.clone());
@@ -169,15 +194,24 @@ fn part<const D: usize>(simplex: Vec<Corner<D>>, function: &Linear<D>) -> Vec<Ve
 fn volume<const D: usize>(simplex: &[Corner<D>]) -> RBig {
     let row = |corner: &Corner<D>| (0..D).map(|k| &corner[k] - &simplex[0][k]).collect();
     let determinant = determinant(&simplex[1..].iter().map(row).collect::<Vec<_>>());
-    if determinant < RBig::ZERO { -determinant } else { determinant }
+    if determinant < RBig::ZERO {
+        -determinant
+    } else {
+        determinant
+    }
 }
 
 /// Along the first column.
 fn determinant(rows: &[Vec<RBig>]) -> RBig {
-    let mut sum = if rows.is_empty() { RBig::ONE } else { RBig::ZERO };
+    let mut sum = if rows.is_empty() {
+        RBig::ONE
+    } else {
+        RBig::ZERO
+    };
     for (i, row) in rows.iter().enumerate() {
         let others = rows.iter().enumerate().filter(|&(j, _)| j != i);
-        let minor = &row[0] * determinant(&others.map(|(_, row)| row[1..].to_vec()).collect::<Vec<_>>());
+        let minor =
+            &row[0] * determinant(&others.map(|(_, row)| row[1..].to_vec()).collect::<Vec<_>>());
         sum = if i % 2 == 0 { sum + minor } else { sum - minor };
     }
     sum

@@ -14,7 +14,10 @@ pub struct Case {
 impl Case {
     /// Returns a case of these points, and of each segment as a line with two points of its own.
     pub fn of_segments(points: &[Point], segments: &[[Point; 2]]) -> Case {
-        let mut case = Case { points: points.to_vec(), lines: Vec::new() };
+        let mut case = Case {
+            points: points.to_vec(),
+            lines: Vec::new(),
+        };
         segments.iter().for_each(|segment| case.draw(segment));
         case
     }
@@ -28,7 +31,10 @@ impl Case {
 
     /// The number of segments, including those of zero length.
     pub fn segment_count(&self) -> usize {
-        self.lines.iter().map(|line| line.len().saturating_sub(1)).sum()
+        self.lines
+            .iter()
+            .map(|line| line.len().saturating_sub(1))
+            .sum()
     }
 
     /// Returns the case in Triangle's format; the marker of a segment is the number of its line.
@@ -38,7 +44,11 @@ impl Case {
             writeln!(text, "{i} {x:?} {y:?}").unwrap();
         }
         writeln!(text, "{} 1", self.segment_count()).unwrap();
-        let segments = self.lines.iter().enumerate().flat_map(|(k, line)| line.windows(2).map(move |s| (k + 1, s)));
+        let segments = self
+            .lines
+            .iter()
+            .enumerate()
+            .flat_map(|(k, line)| line.windows(2).map(move |s| (k + 1, s)));
         for (i, (line, ends)) in segments.enumerate() {
             writeln!(text, "{i} {} {} {line}", ends[0], ends[1]).unwrap();
         }
@@ -49,7 +59,9 @@ impl Case {
     /// marker are a line.
     pub fn from_poly(text: &str) -> Case {
         let content = text.lines().map(|line| line.split('#').next().unwrap());
-        let mut rows = content.map(|line| line.split_whitespace().collect::<Vec<_>>()).filter(|row| !row.is_empty());
+        let mut rows = content
+            .map(|line| line.split_whitespace().collect::<Vec<_>>())
+            .filter(|row| !row.is_empty());
         let mut case = Case::default();
         for _ in 0..rows.next().unwrap()[0].parse().unwrap() {
             let row = rows.next().unwrap();
@@ -57,10 +69,19 @@ impl Case {
         }
         let mut last = None;
         for _ in 0..rows.next().unwrap()[0].parse().unwrap() {
-            let row: Vec<u32> = rows.next().unwrap().iter().map(|n| n.parse().unwrap()).collect();
+            let row: Vec<u32> = rows
+                .next()
+                .unwrap()
+                .iter()
+                .map(|n| n.parse().unwrap())
+                .collect();
             let (ends, marker) = ([row[1], row[2]], row.get(3).copied());
             match case.lines.last_mut() {
-                Some(line) if marker.is_some() && marker == last && line.last() == Some(&ends[0]) => line.push(ends[1]),
+                Some(line)
+                    if marker.is_some() && marker == last && line.last() == Some(&ends[0]) =>
+                {
+                    line.push(ends[1])
+                }
                 _ => case.lines.push(ends.to_vec()),
             }
             last = marker;

@@ -27,14 +27,21 @@ where
 }
 
 /// Returns all cells of the plane, the infinite ones included, by the numbers of their vertices.
-pub fn by_vertices<G: Geometry<3>, V, C: Copy + Default>(t: &Triangulation<G, 3, V, C>) -> BTreeSet<Vec<VertexId>> {
+pub fn by_vertices<G: Geometry<3>, V, C: Copy + Default>(
+    t: &Triangulation<G, 3, V, C>,
+) -> BTreeSet<Vec<VertexId>> {
     t.tds().cells().map(|cell| vertices(t, cell)).collect()
 }
 
 /// Returns the vertices of a cell, starting with the smallest, so that the orientation is kept.
-pub fn vertices<G: Geometry<3>, V, C: Copy + Default>(t: &Triangulation<G, 3, V, C>, cell: CellId) -> Vec<VertexId> {
+pub fn vertices<G: Geometry<3>, V, C: Copy + Default>(
+    t: &Triangulation<G, 3, V, C>,
+    cell: CellId,
+) -> Vec<VertexId> {
     let mut vertices = t.tds().cell_vertices(cell).to_vec();
-    let smallest = (0..vertices.len()).min_by_key(|&i| vertices[i]).unwrap_or(0);
+    let smallest = (0..vertices.len())
+        .min_by_key(|&i| vertices[i])
+        .unwrap_or(0);
     vertices.rotate_left(smallest);
     vertices
 }

@@ -17,7 +17,12 @@ use std::path::{Path, PathBuf};
 /// (`build.rs` checks): `#[cfg_attr(not(has_shared), ignore = "needs ../shared")]`.
 #[track_caller]
 pub fn shared(path: &str) -> PathBuf {
-    let full = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data").join(path);
-    assert!(full.exists(), "../shared/data has no {path}; tests that need it are to be marked, see `shared`");
+    let full = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../../shared/data")
+        .join(path);
+    assert!(
+        full.exists(),
+        "../shared/data has no {path}; tests that need it are to be marked, see `shared`"
+    );
     full
 }

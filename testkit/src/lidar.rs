@@ -2,7 +2,9 @@
 
 /// A LAS 1.2 file of point format 0, in steps of 0.01: points as x, y, z and class.
 pub fn las(points: &[([f64; 3], u8)], epsg: Option<u16>) -> Vec<u8> {
-    let keys: Vec<u16> = epsg.map_or(Vec::new(), |code| vec![1, 1, 0, 2, 1024, 0, 1, 1, 3072, 0, 1, code]);
+    let keys: Vec<u16> = epsg.map_or(Vec::new(), |code| {
+        vec![1, 1, 0, 2, 1024, 0, 1, 1, 3072, 0, 1, code]
+    });
     let records = if keys.is_empty() { 0u32 } else { 1 };
     let points_start = 227 + records * (54 + 2 * keys.len() as u32);
     let mut file = b"LASF".to_vec();
@@ -34,7 +36,11 @@ pub fn las(points: &[([f64; 3], u8)], epsg: Option<u16>) -> Vec<u8> {
     }
     assert_eq!(file.len(), points_start as usize);
     for (position, class) in points {
-        file.extend(position.map(|value| ((value * 100.0).round() as i32).to_le_bytes()).concat());
+        file.extend(
+            position
+                .map(|value| ((value * 100.0).round() as i32).to_le_bytes())
+                .concat(),
+        );
         file.extend([0, 0, 0x09, *class, 0, 0, 0, 0]);
     }
     file
@@ -42,5 +48,12 @@ pub fn las(points: &[([f64; 3], u8)], epsg: Option<u16>) -> Vec<u8> {
 
 /// A square of points a metre apart, all of one class.
 pub fn tile([x, y]: [f64; 2], class: u8) -> Vec<([f64; 3], u8)> {
-    (0..16).map(|i| ([x + f64::from(i % 4), y + f64::from(i / 4), f64::from(i)], class)).collect()
+    (0..16)
+        .map(|i| {
+            (
+                [x + f64::from(i % 4), y + f64::from(i / 4), f64::from(i)],
+                class,
+            )
+        })
+        .collect()
 }

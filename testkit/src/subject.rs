@@ -1,7 +1,9 @@
 //! The only module in which the tests of lines call the crate that they test.
 
 use breakline_triangulation::geometry::Plane;
-use breakline_triangulation::kernel::{Adaptive, Exact, Filter, Filtered, Kernel, Predicate, RANGE, Range};
+use breakline_triangulation::kernel::{
+    Adaptive, Exact, Filter, Filtered, Kernel, Predicate, RANGE, Range,
+};
 use breakline_triangulation::num::Sign;
 use breakline_triangulation::tds::VertexId;
 use breakline_triangulation::{ConstrainedDelaunay, InputError, OnCrossing, Rounding};
@@ -38,9 +40,21 @@ pub struct Built {
 }
 
 pub fn build(case: &Case) -> Result<Built, InputError> {
-    let (triangulation, vertices) =
-        Subject::from_lines(Plane::default(), &case.points, &case.lines, OnCrossing::Split)?;
-    let chains = triangulation.lines().map(|line| triangulation.chain(line)).collect();
+    let (triangulation, vertices) = Subject::from_lines(
+        Plane::default(),
+        &case.points,
+        &case.lines,
+        OnCrossing::Split,
+    )?;
+    let chains = triangulation
+        .lines()
+        .map(|line| triangulation.chain(line))
+        .collect();
     let rounding = triangulation.rounding();
-    Ok(Built { triangulation, vertices, chains, rounding })
+    Ok(Built {
+        triangulation,
+        vertices,
+        chains,
+        rounding,
+    })
 }

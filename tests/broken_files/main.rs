@@ -14,5 +14,8 @@ mod texts;
 
 /// The number of cases that a variable asks for, else a few.
 fn cases(variable: &str, few: usize) -> usize {
-    std::env::var(variable).ok().and_then(|n| n.parse().ok()).unwrap_or(few)
+    std::env::var(variable)
+        .ok()
+        .and_then(|n| n.parse().ok())
+        .unwrap_or(few)
 }

@@ -47,7 +47,11 @@ enum Expected {
 
 fn style(random: &mut Random) -> Style {
     let separator = random.pick(&[";", "\t", ",", " ", "; ", "  "]);
-    let mark = if separator == "," { '.' } else { random.pick(&['.', ',']) };
+    let mark = if separator == "," {
+        '.'
+    } else {
+        random.pick(&['.', ','])
+    };
     let mut marks = [mark; 3];
     if separator != "," && random.below(3) == 0 {
         marks[random.index(3)] = if mark == '.' { ',' } else { '.' };
@@ -77,7 +81,11 @@ fn style(random: &mut Random) -> Style {
         columns,
         has_header,
         // A unit has a blank.
-        names: if separator.trim().is_empty() { ["easting", "north", "height"] } else { names },
+        names: if separator.trim().is_empty() {
+            ["easting", "north", "height"]
+        } else {
+            names
+        },
         end: random.pick(&["\n", "\r\n", "\r"]),
         is_open: random.below(4) == 0,
         quotes: random.below(4) == 0,
@@ -90,7 +98,10 @@ fn rows(random: &mut Random) -> Vec<Row> {
         let whole = random.around(10_i64.pow(digits as u32));
         match random.index(4) {
             0 => whole.to_string(),
-            decimals => format!("{whole}.{:0decimals$}", random.below(10_u64.pow(decimals as u32))),
+            decimals => format!(
+                "{whole}.{:0decimals$}",
+                random.below(10_u64.pow(decimals as u32))
+            ),
         }
     };
     (0..1 + random.index(12))
@@ -104,7 +115,13 @@ fn rows(random: &mut Random) -> Vec<Row> {
 
 /// Writes the text, and computes what it contains from what is written, word by word.
 fn written(style: &Style, rows: &[Row]) -> (String, Expected) {
-    let quoted = |text: String| if style.quotes { format!("\"{text}\"") } else { text };
+    let quoted = |text: String| {
+        if style.quotes {
+            format!("\"{text}\"")
+        } else {
+            text
+        }
+    };
     let mut lines = Vec::new();
     if style.has_header {
         let name = |column: &Column| match *column {
@@ -112,14 +129,23 @@ fn written(style: &Style, rows: &[Row]) -> (String, Expected) {
             Column::Class => "Classification".to_owned(),
             Column::Note => "note".to_owned(),
         };
-        lines.push(style.columns.iter().map(|column| quoted(name(column))).collect::<Vec<_>>().join(style.separator));
+        lines.push(
+            style
+                .columns
+                .iter()
+                .map(|column| quoted(name(column)))
+                .collect::<Vec<_>>()
+                .join(style.separator),
+        );
     }
     let mut seen = Vec::new();
     for row in rows {
         let mut words = Vec::new();
         for column in &style.columns {
             words.push(match *column {
-                Column::Axis(axis) => row.numbers[axis].replace('.', &style.marks[axis].to_string()),
+                Column::Axis(axis) => {
+                    row.numbers[axis].replace('.', &style.marks[axis].to_string())
+                }
                 Column::Class => row.class.to_string(),
                 Column::Note if style.separator == "," => row.note.replace(',', "-"),
                 Column::Note => row.note.to_owned(),
@@ -128,19 +154,33 @@ fn written(style: &Style, rows: &[Row]) -> (String, Expected) {
                 seen.extend(word.chars().filter(|c| matches!(c, '.' | ',')));
             }
         }
-        lines.push(words.into_iter().map(quoted).collect::<Vec<_>>().join(style.separator));
+        lines.push(
+            words
+                .into_iter()
+                .map(quoted)
+                .collect::<Vec<_>>()
+                .join(style.separator),
+        );
     }
     let mut text = lines.join(style.end);
     if !style.is_open {
         text.push_str(style.end);
     }
-    let repeated =
-        (0..3).find(|&axis| style.columns.iter().filter(|&&column| column == Column::Axis(axis)).count() > 1);
+    let repeated = (0..3).find(|&axis| {
+        style
+            .columns
+            .iter()
+            .filter(|&&column| column == Column::Axis(axis))
+            .count()
+            > 1
+    });
     let expected = match repeated {
         Some(axis) => Expected::TwoNames(style.names[axis]),
         None if seen.contains(&'.') && seen.contains(&',') => Expected::TwoMarks,
         None => {
-            let points = rows.iter().map(|row| [0, 1, 2].map(|axis| row.numbers[axis].parse().unwrap()));
+            let points = rows
+                .iter()
+                .map(|row| [0, 1, 2].map(|axis| row.numbers[axis].parse().unwrap()));
             Expected::Points(points.collect())
         }
     };
@@ -177,9 +217,15 @@ fn random_texts_give_their_points_or_say_why_not() {
                 counts[0] += 1;
                 assert_eq!(found, points, "seed {seed}: {text:?}");
                 if style.columns.contains(&Column::Class) {
-                    assert_eq!(*classes, rows.iter().map(|row| row.class).collect::<Vec<_>>(), "seed {seed}: {text:?}");
+                    assert_eq!(
+                        *classes,
+                        rows.iter().map(|row| row.class).collect::<Vec<_>>(),
+                        "seed {seed}: {text:?}"
+                    );
                 }
-                let is_open = warnings.iter().any(|text| text.plain().contains("no line end"));
+                let is_open = warnings
+                    .iter()
+                    .any(|text| text.plain().contains("no line end"));
                 assert_eq!(is_open, style.is_open, "seed {seed}: {text:?}");
             }
             (Expected::TwoMarks, Err(error)) => {
@@ -192,7 +238,9 @@ fn random_texts_give_their_points_or_say_why_not() {
                 counts[2] += 1;
                 let name = name.split(' ').next().unwrap().to_lowercase();
                 assert!(
-                    error.to_string().contains(&format!("both called \"{name}\"")),
+                    error
+                        .to_string()
+                        .contains(&format!("both called \"{name}\"")),
                     "seed {seed}: {text:?}: {error}"
                 );
             }

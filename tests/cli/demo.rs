@@ -15,27 +15,52 @@ fn the_demo_runs_every_verb_and_prints_each_command() {
         "$ breakline contour ",
     ]);
     assert!(!run.stderr.contains("warning: "), "{}", run.stderr);
-    assert!(run.stdout.contains("62776 points") && run.stdout.contains("no flaw found"), "{}", run.stdout);
+    assert!(
+        run.stdout.contains("62776 points") && run.stdout.contains("no flaw found"),
+        "{}",
+        run.stdout
+    );
     let files = files_of(&folder.path().join("a valley"));
-    for name in
-        ["ground.ply", "ground.obj", "ground.tif", "hillshade.png", "contours.shp", "contours.prj", "contours.geojson"]
-    {
-        assert!(files.iter().any(|file| file == name), "{name} is not in {files:?}");
+    for name in [
+        "ground.ply",
+        "ground.obj",
+        "ground.tif",
+        "hillshade.png",
+        "contours.shp",
+        "contours.prj",
+        "contours.geojson",
+    ] {
+        assert!(
+            files.iter().any(|file| file == name),
+            "{name} is not in {files:?}"
+        );
     }
     // Once more, over what is there.
     run_in(&folder, &["demo", "a valley", "-q"]).works(&[]);
     // `FOLDER/*` names parts of shapefiles, which are no files of their own.
     let run = run_in(&folder, &["info", "a valley/b*", "a valley/contours.*"]);
     run.works(&[]);
-    assert!(run.stdout.contains("boundary.shp\n") && !run.stdout.contains(".dbf"), "{}", run.stdout);
+    assert!(
+        run.stdout.contains("boundary.shp\n") && !run.stdout.contains(".dbf"),
+        "{}",
+        run.stdout
+    );
 }
 
 /// Where `demo` writes if nothing else is said is no file of the repository.
 #[test]
 fn a_clone_stays_clean_after_the_demo() {
     let help = run_in(&folder_with(&[]), &["demo", "--help"]);
-    assert!(help.stdout.contains("[default: breakline-demo]"), "{}", help.stdout);
-    assert!(include_str!("../../.gitignore").lines().any(|line| line == "/breakline-demo"));
+    assert!(
+        help.stdout.contains("[default: breakline-demo]"),
+        "{}",
+        help.stdout
+    );
+    assert!(
+        include_str!("../../.gitignore")
+            .lines()
+            .any(|line| line == "/breakline-demo")
+    );
 }
 
 #[test]
@@ -43,12 +68,25 @@ fn the_tasks_of_the_readme_run_on_what_the_demo_leaves() {
     let folder = folder_with(&[]);
     run_in(&folder, &["demo", "."]).works(&[]);
     let readme = include_str!("../../README.md");
-    let tasks = readme.split("## Five tasks").nth(1).unwrap().split("\n## ").next().unwrap();
-    let commands: Vec<&str> = tasks.lines().filter_map(|line| line.strip_prefix("    breakline ")).collect();
+    let tasks = readme
+        .split("## Five tasks")
+        .nth(1)
+        .unwrap()
+        .split("\n## ")
+        .next()
+        .unwrap();
+    let commands: Vec<&str> = tasks
+        .lines()
+        .filter_map(|line| line.strip_prefix("    breakline "))
+        .collect();
     assert_eq!(commands.len(), 8, "{commands:?}");
     for command in commands {
         let run = run_in(&folder, &command.split_whitespace().collect::<Vec<_>>());
         assert_eq!(run.code, 0, "{command}:\n{}", run.stderr);
-        assert!(!run.stderr.contains("warning: "), "{command}:\n{}", run.stderr);
+        assert!(
+            !run.stderr.contains("warning: "),
+            "{command}:\n{}",
+            run.stderr
+        );
     }
 }

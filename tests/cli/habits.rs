@@ -6,7 +6,8 @@ use super::{SLOPE, bytes, files_of, folder_with, run_in};
 fn words_of_gdal_and_lastools_give_the_same_files() {
     let folder = folder_with(&[("a.xyz", SLOPE)]);
     let run = |line: &str| run_in(&folder, &line.split(' ').collect::<Vec<_>>());
-    run("dem a.xyz --resolution 0.5 --te 0 0 2 2 --a-srs EPSG:25832 --class 2 -o ours.tif").works(&[]);
+    run("dem a.xyz --resolution 0.5 --te 0 0 2 2 --a-srs EPSG:25832 --class 2 -o ours.tif")
+        .works(&[]);
     run("tin a.xyz -o ours.ply").works(&[]);
     for (i, line) in [
         "las2dem -i a.xyz -step 0.5 -te 0 0 2 2 -a_srs EPSG:25832 -keep_class 2 -o",
@@ -31,14 +32,29 @@ fn what_cannot_be_done_names_what_can() {
     let before = files_of(folder.path());
     let run = |line: &str| run_in(&folder, &line.split(' ').collect::<Vec<_>>());
     for (line, hint) in [
-        ("dem -tr 0.5 1 a.xyz -o d.tif", "hint: --resolution 0.5, or --resolution 1"),
-        ("tin -te 0 0 1 1 a.xyz -o t.ply", "hint: --bounds XMIN,YMIN,XMAX,YMAX clips the surface"),
+        (
+            "dem -tr 0.5 1 a.xyz -o d.tif",
+            "hint: --resolution 0.5, or --resolution 1",
+        ),
+        (
+            "tin -te 0 0 1 1 a.xyz -o t.ply",
+            "hint: --bounds XMIN,YMIN,XMAX,YMAX clips the surface",
+        ),
         ("dem -of AAIGrid a.xyz -o d.asc", "hint: leave -of out"),
-        ("dem -co COMPRESS=LZW a.xyz -o d.tif", "hint: leave it out: a GeoTIFF is tiled"),
+        (
+            "dem -co COMPRESS=LZW a.xyz -o d.tif",
+            "hint: leave it out: a GeoTIFF is tiled",
+        ),
         ("slope d.tif", "`gdaldem slope dem.tif OUT.tif`"),
         ("a.xyz", "hint: `breakline info a.xyz` shows what is in it"),
-        ("tin a.xyz b.ply", "hint: to replace b.ply, which exists: -o b.ply --overwrite"),
-        ("triangulate -tr 1 1 a.poly -o t.ele", "an option of this program has two dashes"),
+        (
+            "tin a.xyz b.ply",
+            "hint: to replace b.ply, which exists: -o b.ply --overwrite",
+        ),
+        (
+            "triangulate -tr 1 1 a.poly -o t.ele",
+            "an option of this program has two dashes",
+        ),
         ("tin a.xyz -o t.ply --class gras", "`gras` is not a class"),
     ] {
         run(line).fails(2, &["error: ", hint]);

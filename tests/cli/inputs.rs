@@ -7,7 +7,11 @@ use testkit::lidar::{las, tile};
 fn a_file_that_gives_no_points_is_named_and_not_asked_for_its_system() {
     let folder = folder_with(&[("text.xyz", SLOPE)]);
     let write = |name: &str, class: u8, epsg: Option<u16>| {
-        std::fs::write(folder.path().join(name), las(&tile([0.0, 0.0], class), epsg)).unwrap();
+        std::fs::write(
+            folder.path().join(name),
+            las(&tile([0.0, 0.0], class), epsg),
+        )
+        .unwrap();
     };
     write("ground.las", 2, None);
     write("utm.las", 2, Some(25832));
@@ -15,22 +19,53 @@ fn a_file_that_gives_no_points_is_named_and_not_asked_for_its_system() {
     std::fs::write(folder.path().join("none.las"), las(&[], Some(3005))).unwrap();
     let silent = "warning: trees.las: none of its points is used: it has none of class 2";
     let tin = |files: &[&str], said: &[&str]| {
-        let run = run_in(&folder, &[&["tin", "-o", "t.ply", "--overwrite"], files].concat());
+        let run = run_in(
+            &folder,
+            &[&["tin", "-o", "t.ply", "--overwrite"], files].concat(),
+        );
         run.works(said);
         run.stderr
     };
     for order in [["ground.las", "trees.las"], ["trees.las", "ground.las"]] {
-        tin(&order, &[silent, "CRS         not known", "32 read from 2 files, 16 used"]);
+        tin(
+            &order,
+            &[
+                silent,
+                "CRS         not known",
+                "32 read from 2 files, 16 used",
+            ],
+        );
     }
     // Two systems are none if one of them is nobody's.
     tin(
         &["utm.las", "trees.las", "none.las"],
-        &[silent, "warning: none.las: none of its points is used", "EPSG:25832"],
+        &[
+            silent,
+            "warning: none.las: none of its points is used",
+            "EPSG:25832",
+        ],
     );
-    let run = run_in(&folder, &["tin", "utm.las", "trees.las", "--class", "2,5", "-o", "u.ply"]);
+    let run = run_in(
+        &folder,
+        &[
+            "tin",
+            "utm.las",
+            "trees.las",
+            "--class",
+            "2,5",
+            "-o",
+            "u.ply",
+        ],
+    );
     run.fails(1, &["two coordinate systems"]);
     // Where no file has ground, all give points.
-    let said = tin(&["trees.las", "text.xyz"], &["warning: no point has class 2 (ground): all classes", "25833"]);
+    let said = tin(
+        &["trees.las", "text.xyz"],
+        &[
+            "warning: no point has class 2 (ground): all classes",
+            "25833",
+        ],
+    );
     assert!(!said.contains("none of its points is used"), "{said}");
     let said = tin(&["trees.las"], &["warning: no point has class 2"]);
     assert!(!said.contains("none of its points is used"), "{said}");
@@ -41,14 +76,30 @@ fn a_file_that_gives_no_points_is_named_and_not_asked_for_its_system() {
 fn what_lies_on_two_continents_is_told() {
     let far = "688000 5261000 1\n688004 5261000 2\n688000 5261004 3\n688004 5261004 4\n";
     let near = "40 0 1\n44 0 2\n40 4 3\n44 4 4\n";
-    let lines = geojson(25832, "LineString", "[[688001,5261001,1],[688002,5261003,2]]");
-    let folder = folder_with(&[("a.xyz", SLOPE), ("far.xyz", far), ("near.xyz", near), ("far.geojson", &lines)]);
-    let tin = |args: &[&str]| run_in(&folder, &[&["tin", "-o", "t.ply", "--overwrite"], args].concat());
-    tin(&["far.xyz", "near.xyz", "a.xyz"])
-        .works(&["warning: near.xyz and far.xyz are 687956 units apart, with nothing between them"]);
+    let lines = geojson(
+        25832,
+        "LineString",
+        "[[688001,5261001,1],[688002,5261003,2]]",
+    );
+    let folder = folder_with(&[
+        ("a.xyz", SLOPE),
+        ("far.xyz", far),
+        ("near.xyz", near),
+        ("far.geojson", &lines),
+    ]);
+    let tin = |args: &[&str]| {
+        run_in(
+            &folder,
+            &[&["tin", "-o", "t.ply", "--overwrite"], args].concat(),
+        )
+    };
+    tin(&["far.xyz", "near.xyz", "a.xyz"]).works(&[
+        "warning: near.xyz and far.xyz are 687956 units apart, with nothing between them",
+    ]);
     assert!(!tin(&["near.xyz", "a.xyz"]).stderr.contains("warning: "));
-    tin(&["a.xyz", "--breaklines", "far.geojson"])
-        .works(&["warning: the breaklines lie 5260998 m away from the points: are they in the same"]);
+    tin(&["a.xyz", "--breaklines", "far.geojson"]).works(&[
+        "warning: the breaklines lie 5260998 m away from the points: are they in the same",
+    ]);
 }
 
 #[test]
@@ -65,10 +116,14 @@ fn half_a_file_is_an_error_unless_that_is_wanted() {
         run_in(&folder, &["info", "--partial", name]).works(&["warning: cut.la", " the file "]);
     }
     assert!(!folder.path().join("t.ply").exists());
-    run_in(&folder, &["tin", "cut.las", "--partial", "-o", "t.ply"])
-        .works(&["states 16 points, but the file holds 14 and 10 bytes of another", "14 read, 14 used"]);
-    run_in(&folder, &["tin", "cut.laz", "--partial", "-o", "u.ply"])
-        .works(&["states 62776 points, but the file holds 50000", "50000 read"]);
+    run_in(&folder, &["tin", "cut.las", "--partial", "-o", "t.ply"]).works(&[
+        "states 16 points, but the file holds 14 and 10 bytes of another",
+        "14 read, 14 used",
+    ]);
+    run_in(&folder, &["tin", "cut.laz", "--partial", "-o", "u.ply"]).works(&[
+        "states 62776 points, but the file holds 50000",
+        "50000 read",
+    ]);
 }
 
 #[test]
@@ -76,19 +131,57 @@ fn half_a_shapefile_is_an_error_unless_that_is_wanted() {
     let folder = folder_with(&[]);
     for extension in ["shp", "dbf", "prj"] {
         let bytes = std::fs::read(fixture(&format!("breaklines.{extension}"))).unwrap();
-        let end = if extension == "shp" { bytes.len() / 2 } else { bytes.len() };
-        std::fs::write(folder.path().join(format!("half.{extension}")), &bytes[..end]).unwrap();
+        let end = if extension == "shp" {
+            bytes.len() / 2
+        } else {
+            bytes.len()
+        };
+        std::fs::write(
+            folder.path().join(format!("half.{extension}")),
+            &bytes[..end],
+        )
+        .unwrap();
     }
     let points = fixture("valley.laz");
     let tin = |more: &[&str]| {
-        run_in(&folder, &[&["tin", &points, "--breaklines", "half.shp", "-o", "t.ply", "--overwrite"], more].concat())
+        run_in(
+            &folder,
+            &[
+                &[
+                    "tin",
+                    &points,
+                    "--breaklines",
+                    "half.shp",
+                    "-o",
+                    "t.ply",
+                    "--overwrite",
+                ],
+                more,
+            ]
+            .concat(),
+        )
     };
-    tin(&[]).fails(1, &["half.shp: byte ", "its header states ", "hint: ", "--partial"]);
+    tin(&[]).fails(
+        1,
+        &[
+            "half.shp: byte ",
+            "its header states ",
+            "hint: ",
+            "--partial",
+        ],
+    );
     assert!(!folder.path().join("t.ply").exists());
-    tin(&["--partial"]).works(&["warning: half.shp: its header states ", "warning: half.shp: record "]);
+    tin(&["--partial"]).works(&[
+        "warning: half.shp: its header states ",
+        "warning: half.shp: record ",
+    ]);
     run_in(&folder, &["info", "half.shp"]).fails(1, &["half.shp: ", "--partial"]);
     run_in(&folder, &["info", "half.shp", "--partial"]).works(&["warning: "]);
-    run_in(&folder, &["tin", &points, "--boundary", "half.shp", "-o", "u.ply"]).fails(1, &["half.shp: byte "]);
+    run_in(
+        &folder,
+        &["tin", &points, "--boundary", "half.shp", "-o", "u.ply"],
+    )
+    .fails(1, &["half.shp: byte "]);
 }
 
 #[test]
@@ -100,53 +193,118 @@ fn systems_with_heights_are_compared_and_what_is_not_understood_is_not_joined() 
         )
     };
     let folder = folder_with(&[
-        ("33.geojson", &named("urn:ogc:def:crs,crs:EPSG::32633,crs:EPSG::5783")),
-        ("32.geojson", &named("urn:ogc:def:crs,crs:EPSG::32632,crs:EPSG::5783")),
+        (
+            "33.geojson",
+            &named("urn:ogc:def:crs,crs:EPSG::32633,crs:EPSG::5783"),
+        ),
+        (
+            "32.geojson",
+            &named("urn:ogc:def:crs,crs:EPSG::32632,crs:EPSG::5783"),
+        ),
         ("ign.geojson", &named("urn:ogc:def:crs:IGNF::LAMB93")),
         ("plain.xyz", SLOPE),
     ]);
-    std::fs::write(folder.path().join("utm.las"), las(&tile([0.0, 0.0], 2), Some(32632))).unwrap();
+    std::fs::write(
+        folder.path().join("utm.las"),
+        las(&tile([0.0, 0.0], 2), Some(32632)),
+    )
+    .unwrap();
     let tin = |points: &str, lines: &str, more: &[&str]| {
-        run_in(&folder, &[&["tin", points, "--breaklines", lines, "-o", "t.ply", "--overwrite"], more].concat())
+        run_in(
+            &folder,
+            &[
+                &[
+                    "tin",
+                    points,
+                    "--breaklines",
+                    lines,
+                    "-o",
+                    "t.ply",
+                    "--overwrite",
+                ],
+                more,
+            ]
+            .concat(),
+        )
     };
-    tin("utm.las", "33.geojson", &[]).fails(1, &["two coordinate systems", "EPSG:32632", "EPSG:32633"]);
+    tin("utm.las", "33.geojson", &[])
+        .fails(1, &["two coordinate systems", "EPSG:32632", "EPSG:32633"]);
     tin("utm.las", "32.geojson", &[]).works(&["EPSG:32632", "EPSG:5783"]);
     tin("utm.las", "ign.geojson", &[]).fails(
         1,
         &["a coordinate system that is not understood: ign.geojson states \"urn:ogc:def:crs:IGNF::LAMB93\", utm.las is in"],
     );
     let assigned = ["--a-srs", "http://www.opengis.net/def/crs/EPSG/0/32632"];
-    tin("utm.las", "ign.geojson", &assigned).works(&["warning: ign.geojson: crs not used", "EPSG:32632"]);
+    tin("utm.las", "ign.geojson", &assigned)
+        .works(&["warning: ign.geojson: crs not used", "EPSG:32632"]);
     tin("plain.xyz", "ign.geojson", &[]).works(&["warning: ign.geojson: crs not used"]);
 }
 
 /// The first number behind some words in a text.
 fn number_before(text: &str, what: &str) -> i64 {
     let Some(at) = text.find(what) else { return 0 };
-    let digits: String = text[..at].trim_end().chars().rev().take_while(char::is_ascii_digit).collect();
-    digits.chars().rev().collect::<String>().parse().unwrap_or_else(|_| panic!("no number before {what} in {text}"))
+    let digits: String = text[..at]
+        .trim_end()
+        .chars()
+        .rev()
+        .take_while(char::is_ascii_digit)
+        .collect();
+    digits
+        .chars()
+        .rev()
+        .collect::<String>()
+        .parse()
+        .unwrap_or_else(|_| panic!("no number before {what} in {text}"))
 }
 
 #[test]
 fn sums_of_vertices_add_up() {
-    let apart: String = (0..260).map(|i| format!("{} {} 1\n", 1000 * (i % 20 + 1), 1000 * (i / 20 + 1))).collect();
+    let apart: String = (0..260)
+        .map(|i| format!("{} {} 1\n", 1000 * (i % 20 + 1), 1000 * (i / 20 + 1)))
+        .collect();
     let folder = folder_with(&[("a.xyz", &format!("{SLOPE}{apart}"))]);
     let run = run_in(&folder, &["tin", "a.xyz", "-o", "a.ply"]);
-    run.works(&["276 used", "\nvertices    16 (260 left out with triangles at the rim)\n"]);
-    let (points, lines, ring) = (fixture("valley.laz"), fixture("breaklines.shp"), fixture("boundary.shp"));
+    run.works(&[
+        "276 used",
+        "\nvertices    16 (260 left out with triangles at the rim)\n",
+    ]);
+    let (points, lines, ring) = (
+        fixture("valley.laz"),
+        fixture("breaklines.shp"),
+        fixture("boundary.shp"),
+    );
     for more in [
         &["--max-edge", "none"][..],
         &["--max-edge", "3"],
         &["--max-edge", "3", "--boundary", &ring],
-        &["--max-edge", "none", "--bounds", "688100,5261050,688200,5261150"],
+        &[
+            "--max-edge",
+            "none",
+            "--bounds",
+            "688100,5261050,688200,5261150",
+        ],
     ] {
-        let args = [&["tin", &points, "--breaklines", &lines, "-o", "b.ply", "--overwrite"], more].concat();
+        let args = [
+            &[
+                "tin",
+                &points,
+                "--breaklines",
+                &lines,
+                "-o",
+                "b.ply",
+                "--overwrite",
+            ],
+            more,
+        ]
+        .concat();
         let run = run_in(&folder, &args);
         run.works(&[]);
         let said = |what: &str| number_before(&run.stderr, what);
         let vertices = run.stderr.split("\nvertices    ").nth(1).unwrap();
         let count: i64 = vertices.split([' ', '\n']).next().unwrap().parse().unwrap();
-        let sum = said(" used;") - said(" at the position of another point") - said(" at a breakline's vertex")
+        let sum = said(" used;")
+            - said(" at the position of another point")
+            - said(" at a breakline's vertex")
             + said(" vertices, ").max(said(" vertices\n"))
             + said(" crossings between vertices")
             - said(" left out with triangles at the rim")
@@ -160,12 +318,16 @@ fn sums_of_vertices_add_up() {
 fn a_vertex_that_is_nowhere_is_a_flaw_also_without_a_face() {
     let header = "ply\nformat ascii 1.0\nelement vertex 4\nproperty double x\nproperty double y\nproperty double z\n\
                   element face 1\nproperty list uchar int vertex_indices\nend_header\n";
-    let folder = folder_with(&[("m.ply", &format!("{header}0 0 1\n1 0 1\n0 1 1\nnan 5 1\n3 0 1 2\n"))]);
+    let folder = folder_with(&[(
+        "m.ply",
+        &format!("{header}0 0 1\n1 0 1\n0 1 1\nnan 5 1\n3 0 1 2\n"),
+    )]);
     run_in(&folder, &["dem", "m.ply", "-o", "d.tif"]).fails(1, &["m.ply: vertex 3 is at NaN 5 1"]);
     let run = run_in(&folder, &["check", "m.ply"]);
     assert_eq!(run.code, 1, "{}", run.stdout);
     assert!(
-        run.stdout.contains("vertex 3: a coordinate is not finite") && run.stdout.contains("1 flaw"),
+        run.stdout.contains("vertex 3: a coordinate is not finite")
+            && run.stdout.contains("1 flaw"),
         "{}",
         run.stdout
     );
@@ -175,7 +337,16 @@ fn a_vertex_that_is_nowhere_is_a_flaw_also_without_a_face() {
 fn tiles_that_a_tiff_leaves_out_are_0_unless_something_stands_for_none() {
     let tiff = |nodata: Option<&[u8; 4]>| {
         let mut entries: Vec<(u16, u16, u32, [u8; 4])> = Vec::new();
-        for (tag, value) in [(256, 32), (257, 16), (258, 8), (259, 1), (262, 1), (277, 1), (322, 16), (323, 16)] {
+        for (tag, value) in [
+            (256, 32),
+            (257, 16),
+            (258, 8),
+            (259, 1),
+            (262, 1),
+            (277, 1),
+            (322, 16),
+            (323, 16),
+        ] {
             entries.push((tag, 4, 1, u32::to_le_bytes(value)));
         }
         let count = entries.len() as u32 + 2 + u32::from(nodata.is_some());
@@ -200,12 +371,24 @@ fn tiles_that_a_tiff_leaves_out_are_0_unless_something_stands_for_none() {
         file
     };
     let folder = folder_with(&[]);
-    for (name, nodata, min) in [("plain.tif", None, 0.0), ("nodata.tif", Some(b"255\0"), 7.0)] {
+    for (name, nodata, min) in [
+        ("plain.tif", None, 0.0),
+        ("nodata.tif", Some(b"255\0"), 7.0),
+    ] {
         std::fs::write(folder.path().join(name), tiff(nodata)).unwrap();
         let run = run_in(&folder, &["info", "--json", name]);
         let files: serde_json::Value = serde_json::from_str(&run.stdout).unwrap();
-        assert_eq!((files[0]["min"].as_f64(), files[0]["max"].as_f64()), (Some(min), Some(7.0)), "{}", run.stdout);
-        assert_eq!(run.stderr.contains("1 of 2 blocks are not in the file: their cells are 0"), nodata.is_none());
+        assert_eq!(
+            (files[0]["min"].as_f64(), files[0]["max"].as_f64()),
+            (Some(min), Some(7.0)),
+            "{}",
+            run.stdout
+        );
+        assert_eq!(
+            run.stderr
+                .contains("1 of 2 blocks are not in the file: their cells are 0"),
+            nodata.is_none()
+        );
     }
 }
 
@@ -224,7 +407,20 @@ fn escape_sequences_in_files_do_not_reach_the_terminal() {
         run_in(&folder, &["info", &name, &other, "none\u{1b}[2J.xyz"]),
         run_in(&folder, &["info", &name, &other]),
         run_in(&folder, &["info", "--json", &name, &other]),
-        run_in(&folder, &["-v", "tin", &name, "--breaklines", &other, "--a-srs", &wkt, "-o", "\u{9b}t.ply"]),
+        run_in(
+            &folder,
+            &[
+                "-v",
+                "tin",
+                &name,
+                "--breaklines",
+                &other,
+                "--a-srs",
+                &wkt,
+                "-o",
+                "\u{9b}t.ply",
+            ],
+        ),
         run_in(&folder, &["info", "\u{9b}t.ply"]),
         run_in(&folder, &["check", "\u{9b}t.ply"]),
     ];
@@ -233,8 +429,19 @@ fn escape_sequences_in_files_do_not_reach_the_terminal() {
         let hidden = |c: &char| (c.is_control() && *c != '\n') || "\u{202e}\u{2066}".contains(*c);
         assert_eq!(all.chars().find(hidden), None, "{all:?}");
     }
-    assert!(runs[1].stdout.contains(r"x\u{1b}]0;owned\u{7}\u{1b}[31m\u{9b}2J\u{202e}gnp."), "{}", runs[1].stdout);
-    assert!(runs[4].stdout.contains(r"x\u{1b}]0;owned"), "{}{}", runs[3].stderr, runs[4].stdout);
+    assert!(
+        runs[1]
+            .stdout
+            .contains(r"x\u{1b}]0;owned\u{7}\u{1b}[31m\u{9b}2J\u{202e}gnp."),
+        "{}",
+        runs[1].stdout
+    );
+    assert!(
+        runs[4].stdout.contains(r"x\u{1b}]0;owned"),
+        "{}{}",
+        runs[3].stderr,
+        runs[4].stdout
+    );
     let files: serde_json::Value = serde_json::from_str(&runs[2].stdout).unwrap();
     assert_eq!(files[0]["file"], name.as_str());
 }
@@ -267,10 +474,20 @@ fn a_huge_block_is_held_once() {
     file.extend(data);
     let folder = folder_with(&[]);
     std::fs::write(folder.path().join("bomb.tif"), file).unwrap();
-    let run = run_in(&folder, &["contour", "bomb.tif", "--levels", "5", "-o", "c.geojson"]);
+    let run = run_in(
+        &folder,
+        &["contour", "bomb.tif", "--levels", "5", "-o", "c.geojson"],
+    );
     run.works(&["no contour crosses", "4096 x 4096 cells"]);
     // 8 bytes a cell, and one as it is stored: 151 MB.
-    let peak = run.stderr.split("peak memory ").nth(1).unwrap().split('.').next().unwrap();
+    let peak = run
+        .stderr
+        .split("peak memory ")
+        .nth(1)
+        .unwrap()
+        .split('.')
+        .next()
+        .unwrap();
     let peak: u32 = peak.trim_end().trim_end_matches(" MB").parse().unwrap();
     assert!((134..230).contains(&peak), "{}", run.stderr);
 }
@@ -289,13 +506,37 @@ fn the_layer_and_the_field_of_heights_follow_the_file() {
         ("p.geojson", &points),
         ("a.gpkg", "SQLite format 3"),
     ]);
-    let tin = |args: &[&str]| run_in(&folder, &[&["tin", "-o", "t.ply", "--overwrite"], args].concat());
+    let tin = |args: &[&str]| {
+        run_in(
+            &folder,
+            &[&["tin", "-o", "t.ply", "--overwrite"], args].concat(),
+        )
+    };
     let lines = |spec: &str| tin(&["a.xyz", "--breaklines", spec]);
-    for spec in ["l.geojson:Z", "l.geojson:l:Z", "l.geojson:edges:z", "l.geojson::Z", "10:30/l:Z.geojson:Z"] {
+    for spec in [
+        "l.geojson:Z",
+        "l.geojson:l:Z",
+        "l.geojson:edges:z",
+        "l.geojson::Z",
+        "10:30/l:Z.geojson:Z",
+    ] {
         lines(spec).works(&["breaklines  1 in"]);
     }
-    lines("l.geojson").fails(1, &["l.geojson: record 1: the line has no heights", "FILE:LAYER:FIELD"]);
-    lines("l.geojson:roads:Z").fails(2, &["there is no layer \"roads\"", "\"edges\" or \"l\"", "FILE::Z"]);
+    lines("l.geojson").fails(
+        1,
+        &[
+            "l.geojson: record 1: the line has no heights",
+            "FILE:LAYER:FIELD",
+        ],
+    );
+    lines("l.geojson:roads:Z").fails(
+        2,
+        &[
+            "there is no layer \"roads\"",
+            "\"edges\" or \"l\"",
+            "FILE::Z",
+        ],
+    );
     lines("l.geojson:H").fails(2, &["there is no field H", "name one of Z"]);
     lines("l.geojson:").fails(2, &["no name after the colon", "FILE::FIELD"]);
     lines("none.geojson:Z").fails(1, &["no such file"]);
@@ -306,6 +547,12 @@ fn the_layer_and_the_field_of_heights_follow_the_file() {
     tin(&["a.xyz", "--boundary", "ring.geojson:ring:Z"]).works(&[]);
     tin(&["a.xyz", "--boundary", "ring.geojson:site:Z"]).fails(2, &["there is no layer \"site\""]);
     if !breakline::io::gdal::IS_AVAILABLE {
-        lines("a.gpkg:roads:Z").fails(1, &["a.gpkg: not a vector format of this build", "--features gdal"]);
+        lines("a.gpkg:roads:Z").fails(
+            1,
+            &[
+                "a.gpkg: not a vector format of this build",
+                "--features gdal",
+            ],
+        );
     }
 }

@@ -29,10 +29,27 @@ fn a_lake_is_level_in_every_product() {
     let folder = folder(&[("Polygon", LAKE, r#"{"W":8.5}"#)]);
     let tin = run_in(
         &folder,
-        &["tin", "p.xyz", "--flat", "l.geojson", "--flat-points", "out.csv", "-o", "t.ply", "-o", "t.tin"],
+        &[
+            "tin",
+            "p.xyz",
+            "--flat",
+            "l.geojson",
+            "--flat-points",
+            "out.csv",
+            "-o",
+            "t.ply",
+            "-o",
+            "t.tin",
+        ],
     );
-    tin.works(&["1 in water or walls", "lakes       1 in, 4 edges out, of l.geojson"]);
-    assert_eq!(std::fs::read_to_string(folder.path().join("out.csv")).unwrap(), "x,y,z\n1,1,11\n");
+    tin.works(&[
+        "1 in water or walls",
+        "lakes       1 in, 4 edges out, of l.geojson",
+    ]);
+    assert_eq!(
+        std::fs::read_to_string(folder.path().join("out.csv")).unwrap(),
+        "x,y,z\n1,1,11\n"
+    );
     for file in ["t.ply", "t.tin"] {
         let info = run_in(&folder, &["info", "--json", file]);
         assert!(info.stdout.contains("\"shores\": 4"), "{}", info.stdout);
@@ -40,10 +57,23 @@ fn a_lake_is_level_in_every_product() {
     }
     // The attribute, a number and the rules.
     for (height, z) in [("W", "8.5"), ("-3", "-3"), ("lowest", "9"), ("mean", "9")] {
-        let args = ["tin", "p.xyz", "--flat", "l.geojson", "--flat-height", height, "-o", "h.obj", "--overwrite"];
+        let args = [
+            "tin",
+            "p.xyz",
+            "--flat",
+            "l.geojson",
+            "--flat-height",
+            height,
+            "-o",
+            "h.obj",
+            "--overwrite",
+        ];
         run_in(&folder, &args).works(&[]);
         let obj = std::fs::read_to_string(folder.path().join("h.obj")).unwrap();
-        let level = obj.lines().filter(|line| line.starts_with('v') && line.ends_with(&format!(" {z}"))).count();
+        let level = obj
+            .lines()
+            .filter(|line| line.starts_with('v') && line.ends_with(&format!(" {z}")))
+            .count();
         assert_eq!(level, 4, "{height}: {obj}");
     }
 }
@@ -53,16 +83,48 @@ fn summaries_say_what_lines_became() {
     let line = "[[0.2,2.5,20],[2.8,2.5,20]]";
     let folder = folder(&[("LineString", line, r#"{"D":4}"#)]);
     for (option, more, said) in [
-        ("--soft-lines", vec![], "soft lines  1 in, 1 edges out, of l.geojson"),
-        ("--walls", vec!["--wall-drop", "D"], "walls       1 in, 2 edges out, of l.geojson"),
-        ("--walls", vec!["--wall-bottom", "1"], "walls       1 in, 2 edges out, of l.geojson"),
-        ("--rivers", vec!["--river-width", "0.3"], "rivers      1 in, 6 edges out, of l.geojson"),
+        (
+            "--soft-lines",
+            vec![],
+            "soft lines  1 in, 1 edges out, of l.geojson",
+        ),
+        (
+            "--walls",
+            vec!["--wall-drop", "D"],
+            "walls       1 in, 2 edges out, of l.geojson",
+        ),
+        (
+            "--walls",
+            vec!["--wall-bottom", "1"],
+            "walls       1 in, 2 edges out, of l.geojson",
+        ),
+        (
+            "--rivers",
+            vec!["--river-width", "0.3"],
+            "rivers      1 in, 6 edges out, of l.geojson",
+        ),
         ("--draped-lines", vec![], "draped      1 in, of l.geojson ("),
-        ("--breaklines", vec!["--densify", "0.5"], "breaklines  1 in, 6 edges out"),
+        (
+            "--breaklines",
+            vec!["--densify", "0.5"],
+            "breaklines  1 in, 6 edges out",
+        ),
     ] {
         let run = run_in(
             &folder,
-            &[&["tin", "p.xyz", option, "l.geojson", "-o", "t.tin", "--overwrite"], &more[..]].concat(),
+            &[
+                &[
+                    "tin",
+                    "p.xyz",
+                    option,
+                    "l.geojson",
+                    "-o",
+                    "t.tin",
+                    "--overwrite",
+                ],
+                &more[..],
+            ]
+            .concat(),
         );
         run.works(&[said]);
         run_in(&folder, &["check", "t.tin"]).works(&[]);
@@ -72,8 +134,15 @@ fn summaries_say_what_lines_became() {
 #[test]
 fn the_longest_edge_can_follow_from_the_points() {
     let folder = folder_with(&[("p.xyz", SLOPE)]);
-    run_in(&folder, &["tin", "p.xyz", "--max-edge", "auto", "-o", "t.ply"]).works(&["75 units"]);
-    let run = run_in(&folder, &["tin", "p.xyz", "--max-edge-inside", "0.5", "-o", "u.ply"]);
+    run_in(
+        &folder,
+        &["tin", "p.xyz", "--max-edge", "auto", "-o", "t.ply"],
+    )
+    .works(&["75 units"]);
+    let run = run_in(
+        &folder,
+        &["tin", "p.xyz", "--max-edge-inside", "0.5", "-o", "u.ply"],
+    );
     run.fails(1, &["no triangle is left"]);
 }
 
@@ -88,32 +157,72 @@ fn mistakes_are_named() {
     let all = "[[[-9,-9],[9,-9],[9,9],[-9,9],[-9,-9]]]";
     let line = "[[0.5,0.5,9],[2.5,0.5,9]]";
     let two = "[[[0.2,0.4,5],[2.8,0.4,3]],[[0.2,1.4,5],[2.8,1.4,3]]]";
-    type Case<'a> = (&'a [(&'a str, &'a str, &'a str)], &'a [&'a str], &'a [&'a str]);
+    type Case<'a> = (
+        &'a [(&'a str, &'a str, &'a str)],
+        &'a [&'a str],
+        &'a [&'a str],
+    );
     let cases: [Case; 12] = [
-        (&[("Polygon", LAKE, "{}")], &["--rivers", "l.geojson"], &["record 1: a polygon is not a bank"]),
+        (
+            &[("Polygon", LAKE, "{}")],
+            &["--rivers", "l.geojson"],
+            &["record 1: a polygon is not a bank"],
+        ),
         (
             &[("LineString", line, "{}"), ("MultiLineString", two, "{}")],
             &["--rivers", "l.geojson"],
             &["record 2: the record has two banks, but the record before has one"],
         ),
-        (&[("LineString", open, "{}")], &["--flat", "l.geojson"], &["record 1: the shore is open", "close"]),
-        (&[("Polygon", nothing, "{}")], &["--flat", "l.geojson"], &["record 1: the shore at 0.5 0.5 encloses nothing"]),
-        (&[("Polygon", uneven, "{}")], &["--flat", "l.geojson"], &["the shore is not level: its heights are 9 to 9.5"]),
+        (
+            &[("LineString", open, "{}")],
+            &["--flat", "l.geojson"],
+            &["record 1: the shore is open", "close"],
+        ),
+        (
+            &[("Polygon", nothing, "{}")],
+            &["--flat", "l.geojson"],
+            &["record 1: the shore at 0.5 0.5 encloses nothing"],
+        ),
+        (
+            &[("Polygon", uneven, "{}")],
+            &["--flat", "l.geojson"],
+            &["the shore is not level: its heights are 9 to 9.5"],
+        ),
         (
             &[("Polygon", LAKE, "{}"), ("Polygon", other, "{}")],
             &["--flat", "l.geojson"],
             &["two lakes meet at", "l.geojson fid 0", "l.geojson fid 1"],
         ),
-        (&[("LineString", flat, "{}")], &["--soft-lines", "l.geojson"], &["the line has no heights", "--draped-lines"]),
-        (&[("LineString", flat, "{}")], &["--rivers", "l.geojson"], &["the line has no heights"]),
-        (&[("LineString", line, "{}")], &["--rivers", "l.geojson"], &["the bank has no opposite bank"]),
-        (&[("LineString", line, "{}")], &["--walls", "l.geojson"], &["the lower edge of the wall is not known"]),
+        (
+            &[("LineString", flat, "{}")],
+            &["--soft-lines", "l.geojson"],
+            &["the line has no heights", "--draped-lines"],
+        ),
+        (
+            &[("LineString", flat, "{}")],
+            &["--rivers", "l.geojson"],
+            &["the line has no heights"],
+        ),
+        (
+            &[("LineString", line, "{}")],
+            &["--rivers", "l.geojson"],
+            &["the bank has no opposite bank"],
+        ),
+        (
+            &[("LineString", line, "{}")],
+            &["--walls", "l.geojson"],
+            &["the lower edge of the wall is not known"],
+        ),
         (
             &[("LineString", line, "{}")],
             &["--walls", "l.geojson", "--wall-drop", "0"],
             &["record 1: the wall has no height"],
         ),
-        (&[("Polygon", all, "{}")], &["--holes", "l.geojson"], &["no triangle is left"]),
+        (
+            &[("Polygon", all, "{}")],
+            &["--holes", "l.geojson"],
+            &["no triangle is left"],
+        ),
     ];
     for (layer, args, said) in cases {
         let folder = folder(layer);
@@ -121,7 +230,19 @@ fn mistakes_are_named() {
         assert!(!folder.path().join("t.ply").exists(), "{args:?}");
     }
     let folder = folder(&[("LineString", line, "{}")]);
-    let run = run_in(&folder, &["tin", "p.xyz", "--walls", "l.geojson", "--wall-drop", "DEPTH", "-o", "t.ply"]);
+    let run = run_in(
+        &folder,
+        &[
+            "tin",
+            "p.xyz",
+            "--walls",
+            "l.geojson",
+            "--wall-drop",
+            "DEPTH",
+            "-o",
+            "t.ply",
+        ],
+    );
     run.fails(2, &["l.geojson: there is no field DEPTH"]);
 }
 
@@ -129,24 +250,79 @@ fn mistakes_are_named() {
 fn what_looks_wrong_is_a_warning() {
     let banks = "[[[0.2,0.4,5],[1.2,0.4,7],[2.8,0.4,3]],[[0.2,1.4,5],[2.8,1.4,3]]]";
     let river = folder(&[("MultiLineString", banks, "{}")]);
-    let run = run_in(&river, &["tin", "p.xyz", "--rivers", "l.geojson", "-o", "t.ply"]);
-    run.works(&["warning: the banks of the river l.geojson fid 0", "differ by up to"]);
+    let run = run_in(
+        &river,
+        &["tin", "p.xyz", "--rivers", "l.geojson", "-o", "t.ply"],
+    );
+    run.works(&[
+        "warning: the banks of the river l.geojson fid 0",
+        "differ by up to",
+    ]);
     let shore = folder(&[("Polygon", LAKE, "{}")]);
-    let run = run_in(&shore, &["tin", "p.xyz", "--breaklines", "l.geojson", "-o", "t.ply"]);
-    run.works(&["warning: a closed line of one height has 1 point of other heights inside, by up to 2", "--flat"]);
+    let run = run_in(
+        &shore,
+        &["tin", "p.xyz", "--breaklines", "l.geojson", "-o", "t.ply"],
+    );
+    run.works(&[
+        "warning: a closed line of one height has 1 point of other heights inside, by up to 2",
+        "--flat",
+    ]);
     let hairpin = folder(&[("LineString", "[[0.2,1,5],[2.5,1,4],[0.2,1.1,3]]", "{}")]);
-    let run = run_in(&hairpin, &["tin", "p.xyz", "--rivers", "l.geojson", "--river-width", "0.6", "-o", "t.ply"]);
-    run.works(&["warning: the banks of the river l.geojson fid 0 meet near", "twice is not water"]);
+    let run = run_in(
+        &hairpin,
+        &[
+            "tin",
+            "p.xyz",
+            "--rivers",
+            "l.geojson",
+            "--river-width",
+            "0.6",
+            "-o",
+            "t.ply",
+        ],
+    );
+    run.works(&[
+        "warning: the banks of the river l.geojson fid 0 meet near",
+        "twice is not water",
+    ]);
     let quay = folder_with(&[
         ("p.xyz", SLOPE),
         ("lake.geojson", &features(&[("Polygon", LAKE, "{}")])),
-        ("quay.geojson", &features(&[("LineString", "[[0.5,0.5,11],[1.5,0.5,11]]", "{}")])),
+        (
+            "quay.geojson",
+            &features(&[("LineString", "[[0.5,0.5,11],[1.5,0.5,11]]", "{}")]),
+        ),
     ]);
-    let args = ["tin", "p.xyz", "--flat", "lake.geojson", "--walls", "quay.geojson", "--wall-drop", "2", "-o", "t.ply"];
-    run_in(&quay, &args).works(&["2 vertices of walls have the height of water", "of quay.geojson fid 0"]);
+    let args = [
+        "tin",
+        "p.xyz",
+        "--flat",
+        "lake.geojson",
+        "--walls",
+        "quay.geojson",
+        "--wall-drop",
+        "2",
+        "-o",
+        "t.ply",
+    ];
+    run_in(&quay, &args).works(&[
+        "2 vertices of walls have the height of water",
+        "of quay.geojson fid 0",
+    ]);
     let far = folder(&[("Polygon", "[[[50,50],[51,50],[51,51],[50,50]]]", "{}")]);
     for option in ["--holes", "--draped-lines"] {
-        let run = run_in(&far, &["tin", "p.xyz", option, "l.geojson", "-o", "t.ply", "--overwrite"]);
+        let run = run_in(
+            &far,
+            &[
+                "tin",
+                "p.xyz",
+                option,
+                "l.geojson",
+                "-o",
+                "t.ply",
+                "--overwrite",
+            ],
+        );
         run.works(&[&format!("warning: nothing of {option} lies on the surface")]);
     }
 }
@@ -159,14 +335,36 @@ fn lowered_rivers_are_named_with_those_that_lower_them() {
         ("LineString", "[[1.5,1,4.5],[2.2,1,3]]", "{}"),
         ("LineString", "[[2.2,1,3.2],[2.8,1,2]]", "{}"),
     ];
-    let args = ["tin", "p.xyz", "--rivers", "l.geojson", "--river-width", "0.4", "-o", "t.ply"];
-    let first = ["the river l.geojson fid 1 is lowered by up to 0.5", "from 1.5 1 on, to the river l.geojson fid 0"];
-    let second = ["the river l.geojson fid 2 is lowered by up to 0.2", "from 2.2 1 on, to the river l.geojson fid 1"];
+    let args = [
+        "tin",
+        "p.xyz",
+        "--rivers",
+        "l.geojson",
+        "--river-width",
+        "0.4",
+        "-o",
+        "t.ply",
+    ];
+    let first = [
+        "the river l.geojson fid 1 is lowered by up to 0.5",
+        "from 1.5 1 on, to the river l.geojson fid 0",
+    ];
+    let second = [
+        "the river l.geojson fid 2 is lowered by up to 0.2",
+        "from 2.2 1 on, to the river l.geojson fid 1",
+    ];
     let run = run_in(&folder(&reaches[..2]), &args);
     run.works(&[&first[..], &["correct the heights of either"]].concat());
     assert!(!run.stderr.contains("not level"), "{}", run.stderr);
     let run = run_in(&folder(&reaches), &args);
-    run.works(&[&["warning: 2 rivers are lowered to others"], &first[..], &second[..]].concat());
+    run.works(
+        &[
+            &["warning: 2 rivers are lowered to others"],
+            &first[..],
+            &second[..],
+        ]
+        .concat(),
+    );
 }
 
 /// Steps between waters, and confluences.
@@ -174,29 +372,58 @@ fn lowered_rivers_are_named_with_those_that_lower_them() {
 fn waters_that_meet_are_reported_where_they_contradict_each_other() {
     let across = ("LineString", "[[0.2,1,5],[2.8,1,5]]", "{}");
     let over = ("LineString", "[[1.5,2.8,8],[1.5,0.2,7]]", "{}");
-    let args = ["tin", "p.xyz", "--rivers", "l.geojson", "--river-width", "0.5", "-o", "t.ply"];
+    let args = [
+        "tin",
+        "p.xyz",
+        "--rivers",
+        "l.geojson",
+        "--river-width",
+        "0.5",
+        "-o",
+        "t.ply",
+    ];
     let said = [
         "warning: two waters overlap or touch, and the lower height, or that of the lake, counts: a step of 2.4 m at",
         ", from l.geojson fid 1 to l.geojson fid 0",
     ];
     let crossing = folder(&[across, over]);
     run_in(&crossing, &args).works(&said);
-    let tiled = ["dem", "p.xyz", "--tiles", "2x2", "--resolution", "0.5", "-o", "t.tif"];
+    let tiled = [
+        "dem",
+        "p.xyz",
+        "--tiles",
+        "2x2",
+        "--resolution",
+        "0.5",
+        "-o",
+        "t.tif",
+    ];
     run_in(&crossing, &[&tiled[..], &args[2..6]].concat()).works(&said);
     let tolerant = [&args[..], &["--crossing-tolerance", "2.5", "--overwrite"]].concat();
     assert!(!run_in(&crossing, &tolerant).stderr.contains("overlap"));
     let lake = features(&[("Polygon", LAKE, "{}")]);
     let folder_of = |rivers: &[(&str, &str, &str)]| {
-        folder_with(&[("p.xyz", SLOPE), ("l.geojson", &features(rivers)), ("lake.geojson", &lake)])
+        folder_with(&[
+            ("p.xyz", SLOPE),
+            ("l.geojson", &features(rivers)),
+            ("lake.geojson", &lake),
+        ])
     };
-    let run = run_in(&folder_of(&[across, over]), &[&args[..], &["--flat", "lake.geojson"]].concat());
+    let run = run_in(
+        &folder_of(&[across, over]),
+        &[&args[..], &["--flat", "lake.geojson"]].concat(),
+    );
     run.works(&[
         "3 pairs of waters overlap or touch",
         "a step of 4 m at",
         "from l.geojson fid 0 to lake.geojson fid 0",
     ]);
     // A tributary from the north, which ends on the bank of the first river, rounded to mm.
-    let main = ("MultiLineString", "[[[0.2,1.2,5],[2.8,1.2,4]],[[0.2,0.6,5],[2.8,0.6,4]]]", "{}");
+    let main = (
+        "MultiLineString",
+        "[[[0.2,1.2,5],[2.8,1.2,4]],[[0.2,0.6,5],[2.8,0.6,4]]]",
+        "{}",
+    );
     let lowered = [
         "the river l.geojson fid 0, part 1 is lowered by up to 0.3",
         "from 1.5 0.9005 on, to the river l.geojson fid 1",
@@ -205,10 +432,26 @@ fn waters_that_meet_are_reported_where_they_contradict_each_other() {
         let bank = |x: f64| format!("[[{x},2.8,6],[{x},1.201,{south}]]");
         let tributary = format!("[{},{}]", bank(1.7), bank(1.5));
         let rivers = folder(&[main, ("MultiLineString", &tributary, "{}")]);
-        let run = run_in(&rivers, &["tin", "p.xyz", "--rivers", "l.geojson", "-o", "t.ply"]);
+        let run = run_in(
+            &rivers,
+            &["tin", "p.xyz", "--rivers", "l.geojson", "-o", "t.ply"],
+        );
         run.works(said);
-        let is_reported = [&run.stderr, &run.stdout].iter().any(|text| text.contains("warning: the"));
-        assert_eq!(is_reported, !said.is_empty(), "{}{}", run.stdout, run.stderr);
-        assert!(!run.stderr.contains("overlap") && !run.stdout.contains("overlap"), "{}{}", run.stdout, run.stderr);
+        let is_reported = [&run.stderr, &run.stdout]
+            .iter()
+            .any(|text| text.contains("warning: the"));
+        assert_eq!(
+            is_reported,
+            !said.is_empty(),
+            "{}{}",
+            run.stdout,
+            run.stderr
+        );
+        assert!(
+            !run.stderr.contains("overlap") && !run.stdout.contains("overlap"),
+            "{}{}",
+            run.stdout,
+            run.stderr
+        );
     }
 }

@@ -8,57 +8,162 @@ fn help_goes_to_stdout_and_tells_each_verb_with_an_example() {
     let folder = folder_with(&[]);
     let run = run_in(&folder, &["--help"]);
     assert_eq!((run.code, run.stderr.as_str()), (0, ""));
-    for verb in ["info", "points", "tin", "triangulate", "dem", "contour", "hillshade", "check", "demo"] {
+    for verb in [
+        "info",
+        "points",
+        "tin",
+        "triangulate",
+        "dem",
+        "contour",
+        "hillshade",
+        "check",
+        "demo",
+    ] {
         assert!(run.stdout.contains(&format!("\n  {verb} ")), "{verb}");
         let long = run_in(&folder, &[verb, "--help"]);
         assert_eq!(long.code, 0);
-        assert!(long.stdout.contains(&format!("Example:\n  breakline {verb} ")), "{verb}");
+        assert!(
+            long.stdout
+                .contains(&format!("Example:\n  breakline {verb} ")),
+            "{verb}"
+        );
         let short = run_in(&folder, &[verb, "-h"]);
         assert!(short.stdout.len() < long.stdout.len(), "{verb}");
     }
-    assert!(run_in(&folder, &["--version"]).stdout.starts_with("breakline 0."));
+    assert!(
+        run_in(&folder, &["--version"])
+            .stdout
+            .starts_with("breakline 0.")
+    );
 }
 
 #[test]
 fn wrong_usage_ends_with_2_and_leaves_nothing() {
-    let folder =
-        folder_with(&[("a.xyz", SLOPE), ("lines.geojson", &geojson(25832, "LineString", "[[0,0,1],[1,1,1]]"))]);
+    let folder = folder_with(&[
+        ("a.xyz", SLOPE),
+        (
+            "lines.geojson",
+            &geojson(25832, "LineString", "[[0,0,1],[1,1,1]]"),
+        ),
+    ]);
     let wrong: &[(&[&str], &str)] = &[
         (&[], "Usage"),
         (&["tim"], "unrecognized subcommand"),
         (&["tin"], "required"),
         (&["tin", "a.xyz"], "--output"),
-        (&["triangulate", "a.xyz", "-o", "t.tif"], ".ele, .node, .poly, .edge, .neigh, .ply, .obj, .off, .stl"),
-        (&["triangulate", "a.xyz", "-o", "t.ele", "--on-crossing", "ignore"], "split, reject"),
-        (&["triangulate", "a.xyz", "-o", "t.ele", "--kernel", "wide"], "adaptive, exact, fast"),
-        (&["tin", "a.xyz", "-o", "t.ply", "--max-edge", "-3"], "--max-edge"),
-        (&["tin", "a.xyz", "-o", "t.ply", "--max-edge", "all"], "`none`"),
-        (&["tin", "a.xyz", "-o", "t.ply", "--bounds", "3,0,1,2"], "xmin < xmax"),
+        (
+            &["triangulate", "a.xyz", "-o", "t.tif"],
+            ".ele, .node, .poly, .edge, .neigh, .ply, .obj, .off, .stl",
+        ),
+        (
+            &[
+                "triangulate",
+                "a.xyz",
+                "-o",
+                "t.ele",
+                "--on-crossing",
+                "ignore",
+            ],
+            "split, reject",
+        ),
+        (
+            &["triangulate", "a.xyz", "-o", "t.ele", "--kernel", "wide"],
+            "adaptive, exact, fast",
+        ),
+        (
+            &["tin", "a.xyz", "-o", "t.ply", "--max-edge", "-3"],
+            "--max-edge",
+        ),
+        (
+            &["tin", "a.xyz", "-o", "t.ply", "--max-edge", "all"],
+            "`none`",
+        ),
+        (
+            &["tin", "a.xyz", "-o", "t.ply", "--bounds", "3,0,1,2"],
+            "xmin < xmax",
+        ),
         (&["tin", "a.xyz", "-o", "t.ply", "--class", "2,300"], "300"),
-        (&["tin", "a.xyz", "-o", "t.ply", "--duplicates", "newest"], "lowest, highest, mean, first, last"),
-        (&["tin", "a.xyz", "-o", "t.ply", "--a-srs", "EPSG:nonsense"], "--a-srs"),
+        (
+            &["tin", "a.xyz", "-o", "t.ply", "--duplicates", "newest"],
+            "lowest, highest, mean, first, last",
+        ),
+        (
+            &["tin", "a.xyz", "-o", "t.ply", "--a-srs", "EPSG:nonsense"],
+            "--a-srs",
+        ),
         (&["tin", "a.xyz", "-o", "t.dxf"], ".ply, .obj, .off, .stl"),
         (&["tin", "a.xyz", "-o", "t"], ".ply, .obj, .off, .stl"),
         (&["dem", "a.xyz", "-o", "t.png"], ".tif"),
         (&["contour", "a.xyz", "-o", "t.dwg"], ".shp, .geojson"),
         (&["hillshade", "a.xyz", "-o", "t.jpg"], ".tif, .tiff, .png"),
-        (&["dem", "a.xyz", "-o", "t.tif", "--resolution", "0"], "above zero"),
-        (&["dem", "a.xyz", "-o", "t.tif", "--resolution", "1", "--align-to", "a.tif"], "cannot be used with"),
-        (&["contour", "a.xyz", "-o", "t.shp", "--levels", "1,2", "--interval", "1"], "cannot be used with"),
-        (&["hillshade", "a.xyz", "-o", "t.png", "--altitude", "91"], "between 0"),
-        (&["tin", "a.xyz", "-o", "a.xyz"], "not a format that can be written"),
         (
-            &["contour", "a.xyz", "--breaklines", "lines.geojson", "-o", "lines.geojson", "--overwrite"],
+            &["dem", "a.xyz", "-o", "t.tif", "--resolution", "0"],
+            "above zero",
+        ),
+        (
+            &[
+                "dem",
+                "a.xyz",
+                "-o",
+                "t.tif",
+                "--resolution",
+                "1",
+                "--align-to",
+                "a.tif",
+            ],
+            "cannot be used with",
+        ),
+        (
+            &[
+                "contour",
+                "a.xyz",
+                "-o",
+                "t.shp",
+                "--levels",
+                "1,2",
+                "--interval",
+                "1",
+            ],
+            "cannot be used with",
+        ),
+        (
+            &["hillshade", "a.xyz", "-o", "t.png", "--altitude", "91"],
+            "between 0",
+        ),
+        (
+            &["tin", "a.xyz", "-o", "a.xyz"],
+            "not a format that can be written",
+        ),
+        (
+            &[
+                "contour",
+                "a.xyz",
+                "--breaklines",
+                "lines.geojson",
+                "-o",
+                "lines.geojson",
+                "--overwrite",
+            ],
             "one of the inputs",
         ),
-        (&["tin", "a.xyz", "-o", "t.ply", "-o", "t.ply"], "named twice"),
-        (&["tin", "a.xyz", "-o", "t.ply", "-q", "-v"], "cannot be used with"),
+        (
+            &["tin", "a.xyz", "-o", "t.ply", "-o", "t.ply"],
+            "named twice",
+        ),
+        (
+            &["tin", "a.xyz", "-o", "t.ply", "-q", "-v"],
+            "cannot be used with",
+        ),
     ];
     let before = files_of(folder.path());
     for (args, said) in wrong {
         let run = run_in(&folder, args);
         assert_eq!(run.code, 2, "{args:?}: {}", run.stderr);
-        assert!(run.stderr.contains(said), "{args:?}: expected `{said}` in:\n{}", run.stderr);
+        assert!(
+            run.stderr.contains(said),
+            "{args:?}: expected `{said}` in:\n{}",
+            run.stderr
+        );
         assert_eq!(run.stdout, "", "{args:?}");
     }
     assert_eq!(files_of(folder.path()), before);
@@ -67,48 +172,89 @@ fn wrong_usage_ends_with_2_and_leaves_nothing() {
 #[test]
 fn negative_coordinates_are_no_options() {
     let folder = folder_with(&[("a.xyz", SLOPE)]);
-    let run = run_in(&folder, &["tin", "a.xyz", "-o", "t.ply", "--bounds", "-5,-5,nonsense,1"]);
+    let run = run_in(
+        &folder,
+        &[
+            "tin",
+            "a.xyz",
+            "-o",
+            "t.ply",
+            "--bounds",
+            "-5,-5,nonsense,1",
+        ],
+    );
     run.fails(2, &["`nonsense` is not a finite number"]);
-    let run = run_in(&folder, &["contour", "none.xyz", "-o", "t.shp", "--base", "-5"]);
+    let run = run_in(
+        &folder,
+        &["contour", "none.xyz", "-o", "t.shp", "--base", "-5"],
+    );
     run.fails(1, &["none.xyz: no such file"]);
 }
 
 #[test]
 fn what_exists_is_not_replaced_and_that_is_known_before_the_work() {
-    let folder = folder_with(&[("broken.xyz", "no numbers at all\n"), ("t.ply", "mine"), ("c.dbf", "mine")]);
+    let folder = folder_with(&[
+        ("broken.xyz", "no numbers at all\n"),
+        ("t.ply", "mine"),
+        ("c.dbf", "mine"),
+    ]);
     let run = run_in(&folder, &["tin", "broken.xyz", "-o", "t.ply"]);
-    run.fails(1, &["error: t.ply: the file exists", "hint: ", "--overwrite"]);
+    run.fails(
+        1,
+        &["error: t.ply: the file exists", "hint: ", "--overwrite"],
+    );
     // A shapefile is several files.
     let run = run_in(&folder, &["contour", "broken.xyz", "-o", "c.shp"]);
     run.fails(1, &["error: c.dbf: the file exists"]);
     let run = run_in(&folder, &["tin", "broken.xyz", "-o", "nowhere/t.ply"]);
     run.fails(1, &["nowhere/t.ply", "the folder does not exist"]);
     for name in ["t.ply", "c.dbf"] {
-        assert_eq!(std::fs::read_to_string(folder.path().join(name)).unwrap(), "mine");
+        assert_eq!(
+            std::fs::read_to_string(folder.path().join(name)).unwrap(),
+            "mine"
+        );
     }
 }
 
 #[test]
 fn a_glob_or_a_name_without_a_file_is_an_error() {
     let folder = folder_with(&[("a.xyz", SLOPE)]);
-    run_in(&folder, &["tin", "a.xyz", "tiles/*.laz", "-o", "t.ply"]).fails(1, &["no file matches `tiles/*.laz`"]);
+    run_in(&folder, &["tin", "a.xyz", "tiles/*.laz", "-o", "t.ply"])
+        .fails(1, &["no file matches `tiles/*.laz`"]);
     run_in(&folder, &["tin", "a.xyz", "b.xyz", "-o", "t.ply"]).fails(1, &["b.xyz: no such file"]);
     run_in(&folder, &["tin", "[", "-o", "t.ply"]).fails(2, &["not a valid glob"]);
-    let run = run_in(&folder, &["tin", "a.xyz", "--breaklines", "no.shp:Z", "-o", "t.ply"]);
+    let run = run_in(
+        &folder,
+        &["tin", "a.xyz", "--breaklines", "no.shp:Z", "-o", "t.ply"],
+    );
     run.fails(1, &["no.shp:Z: no such file"]);
     assert_eq!(files_of(folder.path()), ["a.xyz"]);
 }
 
 #[test]
 fn files_of_the_wrong_kind_are_named_before_the_work() {
-    let folder = folder_with(&[("a.xyz", SLOPE), ("d.tif", "II*\0"), ("p.las", "LASF"), ("folder/a.xyz", SLOPE)]);
+    let folder = folder_with(&[
+        ("a.xyz", SLOPE),
+        ("d.tif", "II*\0"),
+        ("p.las", "LASF"),
+        ("folder/a.xyz", SLOPE),
+    ]);
     let tin = |args: &[&str]| run_in(&folder, &[&["tin", "a.xyz", "-o", "t.ply"], args].concat());
-    tin(&["--breaklines", "d.tif"]).fails(2, &["d.tif: --breaklines takes lines or polygons, this is a raster"]);
+    tin(&["--breaklines", "d.tif"]).fails(
+        2,
+        &["d.tif: --breaklines takes lines or polygons, this is a raster"],
+    );
     tin(&["--breaklines", "p.las"]).fails(2, &["p.las: ", "this is lidar points"]);
-    tin(&["--boundary", "p.las"]).fails(2, &["p.las: --boundary takes polygons or closed lines, this is lidar points"]);
+    tin(&["--boundary", "p.las"]).fails(
+        2,
+        &["p.las: --boundary takes polygons or closed lines, this is lidar points"],
+    );
     tin(&["--class", "2", "8"]).fails(1, &["8: no such file", "hint: ", "commas", "--class 2,8"]);
     tin(&["folder"]).fails(1, &["folder: this is a folder", "hint: ", "folder/*.laz"]);
-    let run = run_in(&folder, &["dem", "a.xyz", "-o", "e.tif", "--align-to", "no.tif"]);
+    let run = run_in(
+        &folder,
+        &["dem", "a.xyz", "-o", "e.tif", "--align-to", "no.tif"],
+    );
     run.fails(1, &["no.tif: no such file"]);
     assert!(!run.stderr.contains("note: "), "{}", run.stderr);
 }
@@ -126,25 +272,50 @@ fn info_counts_what_is_in_files_lists_globs_and_stdin() {
     run.works(&[]);
     let counts = |run: &Run| -> Vec<u64> {
         let files: serde_json::Value = serde_json::from_str(&run.stdout).unwrap();
-        files.as_array().unwrap().iter().map(|file| file["count"].as_u64().unwrap()).collect()
+        files
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|file| file["count"].as_u64().unwrap())
+            .collect()
     };
     assert_eq!(counts(&run), [16, 1, 2]);
-    assert_eq!(counts(&run_in(&folder, &["info", "--json", "lists/tiles/*.xyz"])), [16, 1, 2]);
-    assert_eq!(counts(&run_with(&folder, &["info", "--json", "-"], SLOPE)), [16]);
+    assert_eq!(
+        counts(&run_in(&folder, &["info", "--json", "lists/tiles/*.xyz"])),
+        [16, 1, 2]
+    );
+    assert_eq!(
+        counts(&run_with(&folder, &["info", "--json", "-"], SLOPE)),
+        [16]
+    );
 
-    let run = run_in(&folder, &["info", "--json", "lists/tiles/b.xyz", "./lists/tiles/b.xyz"]);
+    let run = run_in(
+        &folder,
+        &["info", "--json", "lists/tiles/b.xyz", "./lists/tiles/b.xyz"],
+    );
     run.works(&["note: ./lists/tiles/b.xyz is named twice and used once"]);
     let files: serde_json::Value = serde_json::from_str(&run.stdout).unwrap();
-    assert_eq!(files[0]["bounds"], serde_json::json!({"min": [1.5, 2.25, -3.0], "max": [1.5, 2.25, -3.0]}));
+    assert_eq!(
+        files[0]["bounds"],
+        serde_json::json!({"min": [1.5, 2.25, -3.0], "max": [1.5, 2.25, -3.0]})
+    );
     assert_eq!(files[0]["crs"], serde_json::Value::Null);
 
     let text = run_in(&folder, &["info", "lists/tiles/b.xyz"]);
-    assert!(text.stdout.contains("x 1.5 .. 1.5, y 2.25 .. 2.25, z -3 .. -3"), "{}", text.stdout);
+    assert!(
+        text.stdout
+            .contains("x 1.5 .. 1.5, y 2.25 .. 2.25, z -3 .. -3"),
+        "{}",
+        text.stdout
+    );
 }
 
 #[test]
 fn a_list_names_its_line_when_a_file_is_missing() {
-    let folder = folder_with(&[("list.txt", "# nothing\n\nno*.laz\n"), ("empty.txt", "# nothing\n")]);
+    let folder = folder_with(&[
+        ("list.txt", "# nothing\n\nno*.laz\n"),
+        ("empty.txt", "# nothing\n"),
+    ]);
     run_in(&folder, &["info", "@list.txt"]).fails(1, &["list.txt: line 3: no file matches"]);
     run_in(&folder, &["info", "@empty.txt"]).fails(2, &["the input names no file"]);
     run_in(&folder, &["info", "@none.txt"]).fails(1, &["none.txt"]);
@@ -152,28 +323,88 @@ fn a_list_names_its_line_when_a_file_is_missing() {
 
 #[test]
 fn info_goes_on_after_a_file_that_cannot_be_read() {
-    let folder = folder_with(&[("a.xyz", SLOPE), ("b.laz", "this is no lidar"), ("c.xyz", "1 2 3\n")]);
+    let folder = folder_with(&[
+        ("a.xyz", SLOPE),
+        ("b.laz", "this is no lidar"),
+        ("c.xyz", "1 2 3\n"),
+    ]);
     let run = run_in(&folder, &["info", "a.xyz", "b.laz", "c.xyz"]);
     run.fails(1, &["error: b.laz: "]);
-    assert!(run.stdout.contains("a.xyz\n") && run.stdout.contains("c.xyz\n"), "{}", run.stdout);
+    assert!(
+        run.stdout.contains("a.xyz\n") && run.stdout.contains("c.xyz\n"),
+        "{}",
+        run.stdout
+    );
 }
 
 #[test]
 fn degrees_and_geocentric_systems_are_refused_with_the_cure() {
     let folder = folder_with(&[("a.xyz", SLOPE)]);
-    let run = run_in(&folder, &["tin", "a.xyz", "--a-srs", "EPSG:4326", "-o", "t.ply"]);
-    run.fails(1, &["a.xyz", "EPSG:4326", "degree", "hint: reproject ", "--force-degrees"]);
-    let run = run_in(&folder, &["tin", "a.xyz", "--a-srs", "EPSG:4978", "--force-degrees", "-o", "t.ply"]);
+    let run = run_in(
+        &folder,
+        &["tin", "a.xyz", "--a-srs", "EPSG:4326", "-o", "t.ply"],
+    );
+    run.fails(
+        1,
+        &[
+            "a.xyz",
+            "EPSG:4326",
+            "degree",
+            "hint: reproject ",
+            "--force-degrees",
+        ],
+    );
+    let run = run_in(
+        &folder,
+        &[
+            "tin",
+            "a.xyz",
+            "--a-srs",
+            "EPSG:4978",
+            "--force-degrees",
+            "-o",
+            "t.ply",
+        ],
+    );
     run.fails(1, &["a.xyz", "EPSG:4978", "geocentric", "hint: reproject "]);
     // A surface that is there is not reprojected.
-    let flags = ["--a-srs", "EPSG:4326", "--max-edge", "none", "--force-degrees"];
-    run_in(&folder, &[&["tin", "a.xyz", "-o", "d.ply"], &flags[..]].concat()).works(&[]);
+    let flags = [
+        "--a-srs",
+        "EPSG:4326",
+        "--max-edge",
+        "none",
+        "--force-degrees",
+    ];
+    run_in(
+        &folder,
+        &[&["tin", "a.xyz", "-o", "d.ply"], &flags[..]].concat(),
+    )
+    .works(&[]);
     let run = run_in(&folder, &["contour", "d.ply", "-o", "c.shp"]);
-    run.fails(1, &["d.ply", "EPSG:4326", "hint: build it from points in a projected system", "--force-degrees"]);
+    run.fails(
+        1,
+        &[
+            "d.ply",
+            "EPSG:4326",
+            "hint: build it from points in a projected system",
+            "--force-degrees",
+        ],
+    );
     assert_eq!(files_of(folder.path()), ["a.xyz", "d.ply"]);
     // Nothing that is checked is a length.
     run_in(&folder, &["check", "d.ply"]).works(&[]);
-    run_in(&folder, &["check", "a.xyz", "--a-srs", "EPSG:4326", "--max-edge", "none"]).works(&[]);
+    run_in(
+        &folder,
+        &[
+            "check",
+            "a.xyz",
+            "--a-srs",
+            "EPSG:4326",
+            "--max-edge",
+            "none",
+        ],
+    )
+    .works(&[]);
 }
 
 #[test]
@@ -182,10 +413,23 @@ fn local_coordinates_in_geojson_or_under_a_placeholder_have_a_cure() {
     let folder = folder_with(&[("a.xyz", SLOPE), ("l.geojson", &local)]);
     let args = ["tin", "a.xyz", "--breaklines", "l.geojson", "-o", "t.ply"];
     let run = run_in(&folder, &args);
-    run.fails(1, &["l.geojson", "EPSG:4326", "hint: GeoJSON without a `crs` member", "--a-srs EPSG:CODE"]);
+    run.fails(
+        1,
+        &[
+            "l.geojson",
+            "EPSG:4326",
+            "hint: GeoJSON without a `crs` member",
+            "--a-srs EPSG:CODE",
+        ],
+    );
     let site = "LOCAL_CS[\"local\",UNIT[\"metre\",1]]";
     assert!(run.stderr.contains(site), "{}", run.stderr);
-    assert_eq!(run.stderr.contains("--t-srs"), cfg!(feature = "proj"), "{}", run.stderr);
+    assert_eq!(
+        run.stderr.contains("--t-srs"),
+        cfg!(feature = "proj"),
+        "{}",
+        run.stderr
+    );
     run_in(&folder, &[&args[..], &["--a-srs", site]].concat()).works(&["local"]);
 
     // What ogr2ogr writes where there is no system.
@@ -193,7 +437,10 @@ fn local_coordinates_in_geojson_or_under_a_placeholder_have_a_cure() {
     let none = "GEOGCS[\"GCS_Undefined_geographic_SRS\",DATUM[\"D_unknown\",SPHEROID[\"unknown\",6378137.0,298.257223563]],\
                 PRIMEM[\"Greenwich\",0.0],UNIT[\"Degree\",0.0174532925199433]]";
     std::fs::write(folder.path().join("c.prj"), none).unwrap();
-    let run = run_in(&folder, &["tin", "a.xyz", "--breaklines", "c.shp", "-o", "u.ply"]);
+    let run = run_in(
+        &folder,
+        &["tin", "a.xyz", "--breaklines", "c.shp", "-o", "u.ply"],
+    );
     run.works(&["note: no coordinate system is stated"]);
 }
 
@@ -202,9 +449,15 @@ fn info_reads_whatever_the_program_writes() {
     let poly = "4 2 0 0\n1 0 0\n2 4 0\n3 4 4\n4 0 4\n4 0\n1 1 2\n2 2 3\n3 3 4\n4 4 1\n0\n";
     let folder = folder_with(&[("a.xyz", SLOPE), ("p.poly", poly)]);
     let run = |line: &str| run_in(&folder, &line.split(' ').collect::<Vec<_>>());
-    let all = "tin a.xyz --a-srs EPSG:25832 --crossing-report r.csv -o t.ply -o t.obj -o t.off -o t.stl";
-    run(all).works(&["written     r.csv", "written     t.stl", "written     t.stl.origin.txt"]);
-    run("contour a.xyz --a-srs EPSG:25832 -o c.shp -o c.geojson").works(&["c.shp", "c.shx", "c.dbf", "c.prj", "c.cpg"]);
+    let all =
+        "tin a.xyz --a-srs EPSG:25832 --crossing-report r.csv -o t.ply -o t.obj -o t.off -o t.stl";
+    run(all).works(&[
+        "written     r.csv",
+        "written     t.stl",
+        "written     t.stl.origin.txt",
+    ]);
+    run("contour a.xyz --a-srs EPSG:25832 -o c.shp -o c.geojson")
+        .works(&["c.shp", "c.shx", "c.dbf", "c.prj", "c.cpg"]);
     run("hillshade a.xyz --a-srs EPSG:25832 -o s.png -o s.tif")
         .works(&["written     s.pgw", "written     s.png.aux.xml"]);
     run("triangulate p.poly -o q.ele -o q.edge -o q.neigh -o q.stl").works(&[
@@ -218,10 +471,25 @@ fn info_reads_whatever_the_program_writes() {
         ("t.ply", &["triangles  18", "EPSG:25832"]),
         ("t.obj", &["triangles  18", "EPSG:25832"]),
         ("t.off", &["triangles  18", "EPSG:25832"]),
-        ("t.stl", &["STL, binary", "triangles  18", "x 0 .. 3, y 0 .. 3, z 10 .. 13"]),
+        (
+            "t.stl",
+            &[
+                "STL, binary",
+                "triangles  18",
+                "x 0 .. 3, y 0 .. 3, z 10 .. 13",
+            ],
+        ),
         ("c.shp", &["lines: 2", "EPSG:25832"]),
         ("c.geojson", &["lines: 2", "EPSG:25832"]),
-        ("s.png", &["PNG, 8 bits, gray and alpha", "3 x 3 cells", "x 0 .. 3, y 0 .. 3", "EPSG:25832"]),
+        (
+            "s.png",
+            &[
+                "PNG, 8 bits, gray and alpha",
+                "3 x 3 cells",
+                "x 0 .. 3, y 0 .. 3",
+                "EPSG:25832",
+            ],
+        ),
         ("s.tif", &["3 x 3 cells", "EPSG:25832"]),
         ("q.node", &["vertices   4"]),
         ("q.poly", &["segments   4", "vertices   4"]),
@@ -232,14 +500,24 @@ fn info_reads_whatever_the_program_writes() {
     ] {
         let info = run(&format!("info {file}"));
         assert_eq!(info.code, 0, "{file}: {}", info.stderr);
-        facts
-            .iter()
-            .for_each(|fact| assert!(info.stdout.contains(fact), "{file}: expected `{fact}` in {}", info.stdout));
+        facts.iter().for_each(|fact| {
+            assert!(
+                info.stdout.contains(fact),
+                "{file}: expected `{fact}` in {}",
+                info.stdout
+            )
+        });
     }
     // Parts go with their main files; without a system there is no auxiliary file, nor is an old
     // one left.
     let info = run("info s.png s.pgw s.png.aux.xml c.shp c.prj c.dbf t.stl t.stl.origin.txt");
-    assert_eq!((info.code, info.stdout.matches("  format ").count()), (0, 3), "{}{}", info.stdout, info.stderr);
+    assert_eq!(
+        (info.code, info.stdout.matches("  format ").count()),
+        (0, 3),
+        "{}{}",
+        info.stdout,
+        info.stderr
+    );
     run("hillshade a.xyz --overwrite -o s.png").works(&[]);
     assert!(!files_of(folder.path()).contains(&"s.png.aux.xml".to_owned()));
 }
@@ -248,29 +526,96 @@ fn info_reads_whatever_the_program_writes() {
 fn two_systems_are_an_error_that_names_both_and_the_files() {
     let folder = folder_with(&[
         ("a.xyz", SLOPE),
-        ("l.geojson", &geojson(25832, "LineString", "[[0,0,1],[1,1,1]]")),
-        ("m.geojson", &geojson(25833, "LineString", "[[0,0,1],[1,1,1]]")),
+        (
+            "l.geojson",
+            &geojson(25832, "LineString", "[[0,0,1],[1,1,1]]"),
+        ),
+        (
+            "m.geojson",
+            &geojson(25833, "LineString", "[[0,0,1],[1,1,1]]"),
+        ),
     ]);
-    let run =
-        run_in(&folder, &["tin", "a.xyz", "--breaklines", "l.geojson", "--breaklines", "m.geojson", "-o", "t.ply"]);
-    run.fails(1, &["l.geojson", "EPSG:25832", "m.geojson", "EPSG:25833", "hint: reproject ", "--a-srs"]);
+    let run = run_in(
+        &folder,
+        &[
+            "tin",
+            "a.xyz",
+            "--breaklines",
+            "l.geojson",
+            "--breaklines",
+            "m.geojson",
+            "-o",
+            "t.ply",
+        ],
+    );
+    run.fails(
+        1,
+        &[
+            "l.geojson",
+            "EPSG:25832",
+            "m.geojson",
+            "EPSG:25833",
+            "hint: reproject ",
+            "--a-srs",
+        ],
+    );
 }
 
 #[test]
 fn breaklines_without_heights_are_refused_never_taken_as_0() {
     let folder = folder_with(&[
         ("a.xyz", SLOPE),
-        ("flat.geojson", &geojson(25832, "LineString", "[[0,0],[1,1]]")),
-        ("part.geojson", &geojson(25832, "LineString", "[[0,0,7],[1,1]]")),
+        (
+            "flat.geojson",
+            &geojson(25832, "LineString", "[[0,0],[1,1]]"),
+        ),
+        (
+            "part.geojson",
+            &geojson(25832, "LineString", "[[0,0,7],[1,1]]"),
+        ),
         ("points.geojson", &geojson(25832, "Point", "[0,0,7]")),
     ]);
-    let tin = |lines: &str| run_in(&folder, &["tin", "a.xyz", "--breaklines", lines, "-o", "t.ply"]);
-    tin("flat.geojson").fails(1, &["flat.geojson: record 1: the line has no heights", "FILE:FIELD", "Z"]);
-    tin("part.geojson").fails(1, &["part.geojson: record 1: vertex 2 at 1 1 has no height"]);
+    let tin = |lines: &str| {
+        run_in(
+            &folder,
+            &["tin", "a.xyz", "--breaklines", lines, "-o", "t.ply"],
+        )
+    };
+    tin("flat.geojson").fails(
+        1,
+        &[
+            "flat.geojson: record 1: the line has no heights",
+            "FILE:FIELD",
+            "Z",
+        ],
+    );
+    tin("part.geojson").fails(
+        1,
+        &["part.geojson: record 1: vertex 2 at 1 1 has no height"],
+    );
     tin("points.geojson").fails(1, &["points.geojson", "no lines"]);
-    let run = run_in(&folder, &["tin", "a.xyz", "--boundary", "flat.geojson", "-o", "t.ply"]);
-    run.fails(1, &["flat.geojson: record 1: the lines are not closed: one ends at 0 0", "1.414213562 away, at 1 1"]);
-    let run = run_in(&folder, &["tin", "a.xyz", "--boundary", "points.geojson", "-o", "t.ply"]);
+    let run = run_in(
+        &folder,
+        &["tin", "a.xyz", "--boundary", "flat.geojson", "-o", "t.ply"],
+    );
+    run.fails(
+        1,
+        &[
+            "flat.geojson: record 1: the lines are not closed: one ends at 0 0",
+            "1.414213562 away, at 1 1",
+        ],
+    );
+    let run = run_in(
+        &folder,
+        &[
+            "tin",
+            "a.xyz",
+            "--boundary",
+            "points.geojson",
+            "-o",
+            "t.ply",
+        ],
+    );
     run.fails(1, &["points.geojson", "no polygons and no lines"]);
     assert!(!folder.path().join("t.ply").exists());
 }
@@ -281,9 +626,33 @@ fn a_feature_that_is_not_built_in_is_named() {
         return;
     }
     let folder = folder_with(&[("a.xyz", SLOPE)]);
-    let run = run_in(&folder, &["tin", "a.xyz", "--a-srs", "EPSG:25832", "--t-srs", "EPSG:25833", "-o", "t.ply"]);
+    let run = run_in(
+        &folder,
+        &[
+            "tin",
+            "a.xyz",
+            "--a-srs",
+            "EPSG:25832",
+            "--t-srs",
+            "EPSG:25833",
+            "-o",
+            "t.ply",
+        ],
+    );
     run.fails(1, &["PROJ", "hint: ", "--features proj"]);
-    let run = run_in(&folder, &["points", "a.xyz", "--a-srs", "EPSG:25832", "-t_srs", "EPSG:25833", "-o", "t.xyz"]);
+    let run = run_in(
+        &folder,
+        &[
+            "points",
+            "a.xyz",
+            "--a-srs",
+            "EPSG:25832",
+            "-t_srs",
+            "EPSG:25833",
+            "-o",
+            "t.xyz",
+        ],
+    );
     run.fails(1, &["PROJ", "hint: ", "--features proj"]);
 }
 
@@ -300,10 +669,14 @@ fn points_are_assigned_a_system() {
         "CRS         EPSG:25833",
     ]);
     assert!(run("info c.laz").stdout.contains("EPSG:7837"));
-    run("points a.las b.las -o d.las").works(&["b.las states no coordinate system", "points      32 points of 32"]);
+    run("points a.las b.las -o d.las").works(&[
+        "b.las states no coordinate system",
+        "points      32 points of 32",
+    ]);
     run("points c.laz a.las -o e.las").fails(1, &["two coordinate systems: c.laz", "--a-srs CRS"]);
     run("points a.las --a-srs EPSG:1 -o f.las").fails(2, &["--a-srs EPSG:1: "]);
-    run("points b.las --t-srs EPSG:25832 -o f.las").fails(1, &["b.las: the file states no coordinate system"]);
+    run("points b.las --t-srs EPSG:25832 -o f.las")
+        .fails(1, &["b.las: the file states no coordinate system"]);
 }
 
 #[cfg(feature = "proj")]
@@ -311,7 +684,10 @@ fn points_are_assigned_a_system() {
 fn a_file_without_points_does_not_prevent_reprojecting_the_others() {
     let folder = folder_with(&[]);
     let write = |name: &str, file: &[u8]| std::fs::write(folder.path().join(name), file).unwrap();
-    write("a.las", &las(&tile([500_000.0, 5_000_000.0], 2), Some(25832)));
+    write(
+        "a.las",
+        &las(&tile([500_000.0, 5_000_000.0], 2), Some(25832)),
+    );
     // The extent in the header is no box, or zero: neither is where points could be.
     let mut empty = las(&[], Some(25832));
     write("no-box.las", &empty);
@@ -319,9 +695,20 @@ fn a_file_without_points_does_not_prevent_reprojecting_the_others() {
     write("zero.las", &empty);
     let run = |line: &str| run_in(&folder, &line.split(' ').collect::<Vec<_>>());
     run("points a.las --t-srs EPSG:25833 -o alone.las").works(&["points      16 points of 16"]);
-    for inputs in ["no-box.las a.las", "a.las no-box.las", "zero.las a.las", "a.las zero.las no-box.las"] {
-        run(&format!("points {inputs} --t-srs EPSG:25833 -o all.las --overwrite")).works(&["16 points of 16"]);
-        assert!(super::bytes(&folder, "all.las") == super::bytes(&folder, "alone.las"), "{inputs}");
+    for inputs in [
+        "no-box.las a.las",
+        "a.las no-box.las",
+        "zero.las a.las",
+        "a.las zero.las no-box.las",
+    ] {
+        run(&format!(
+            "points {inputs} --t-srs EPSG:25833 -o all.las --overwrite"
+        ))
+        .works(&["16 points of 16"]);
+        assert!(
+            super::bytes(&folder, "all.las") == super::bytes(&folder, "alone.las"),
+            "{inputs}"
+        );
     }
     run("points zero.las --t-srs EPSG:25833 -o none.las").fails(1, &["no points in the input"]);
 }
@@ -330,7 +717,16 @@ fn a_file_without_points_does_not_prevent_reprojecting_the_others() {
 fn a_raster_is_no_input_of_tin_or_dem() {
     let folder = folder_with(&[("d.tif", "II*\0"), ("a.xyz", SLOPE)]);
     run_in(&folder, &["dem", "d.tif", "-o", "e.tif"]).fails(2, &["d.tif: the input is a raster"]);
-    run_in(&folder, &["contour", "d.tif", "a.xyz", "-o", "e.shp"]).fails(2, &["d.tif", "the file is a surface"]);
-    run_in(&folder, &["contour", "d.tif", "--class", "2", "-o", "e.shp"]).fails(2, &["d.tif", "--class"]);
-    run_in(&folder, &["hillshade", "d.tif", "-o", "d.tif", "--overwrite"]).fails(2, &["one of the inputs"]);
+    run_in(&folder, &["contour", "d.tif", "a.xyz", "-o", "e.shp"])
+        .fails(2, &["d.tif", "the file is a surface"]);
+    run_in(
+        &folder,
+        &["contour", "d.tif", "--class", "2", "-o", "e.shp"],
+    )
+    .fails(2, &["d.tif", "--class"]);
+    run_in(
+        &folder,
+        &["hillshade", "d.tif", "-o", "d.tif", "--overwrite"],
+    )
+    .fails(2, &["one of the inputs"]);
 }

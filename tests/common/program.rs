@@ -52,7 +52,12 @@ pub(crate) fn run_in(folder: &TempDir, args: &[&str]) -> Run {
 
 pub(crate) fn run_with(folder: &TempDir, args: &[&str], stdin: &str) -> Run {
     let mut command = Command::new(assert_cmd::cargo::cargo_bin!("breakline"));
-    let output = command.current_dir(folder.path()).args(args).write_stdin(stdin).output().unwrap();
+    let output = command
+        .current_dir(folder.path())
+        .args(args)
+        .write_stdin(stdin)
+        .output()
+        .unwrap();
     Run {
         code: output.status.code().expect("the program was killed"),
         stdout: String::from_utf8(output.stdout).unwrap(),
@@ -72,8 +77,10 @@ pub(crate) fn folder_with(files: &[(&str, &str)]) -> TempDir {
 
 /// The names in a folder, sorted.
 pub(crate) fn files_of(folder: &Path) -> Vec<String> {
-    let mut names: Vec<String> =
-        std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    let mut names: Vec<String> = std::fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
     names.sort();
     names
 }

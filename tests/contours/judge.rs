@@ -15,7 +15,10 @@ pub(crate) type Segment = [Point; 2];
 pub(crate) fn lattice_point(p: [f64; 2]) -> Point {
     p.map(|c| {
         let steps = (c * LATTICE as f64).round();
-        assert!((c * LATTICE as f64 - steps).abs() < 1e-9, "{c} is no multiple of 1/{LATTICE}");
+        assert!(
+            (c * LATTICE as f64 - steps).abs() < 1e-9,
+            "{c} is no multiple of 1/{LATTICE}"
+        );
         steps as i64
     })
 }
@@ -42,7 +45,12 @@ pub(crate) fn arcs(surface: &Faces, half_level: i64) -> Vec<Segment> {
     }
     for face in &surface.faces {
         let height = |v: u32| surface.vertices[v as usize][2] as i64 * 2 - half_level;
-        let site = |v: u32| lattice_point([surface.vertices[v as usize][0], surface.vertices[v as usize][1]]);
+        let site = |v: u32| {
+            lattice_point([
+                surface.vertices[v as usize][0],
+                surface.vertices[v as usize][1],
+            ])
+        };
         // Each vertex of the polygon with the side of the face that follows it.
         let mut polygon: Vec<(Point, usize)> = Vec::new();
         for i in 0..3 {
@@ -60,7 +68,9 @@ pub(crate) fn arcs(surface: &Faces, half_level: i64) -> Vec<Segment> {
                 polygon.push(([along(0), along(1)], if height(a) > 0 { 3 } else { i }));
             }
         }
-        let area: i64 = (0..polygon.len()).map(|i| cross(polygon[i].0, polygon[(i + 1) % polygon.len()].0)).sum();
+        let area: i64 = (0..polygon.len())
+            .map(|i| cross(polygon[i].0, polygon[(i + 1) % polygon.len()].0))
+            .sum();
         assert!(area >= 0);
         if area == 0 {
             continue;
@@ -80,13 +90,19 @@ pub(crate) fn arcs(surface: &Faces, half_level: i64) -> Vec<Segment> {
             *sum.entry([from, to]).or_default() -= 1;
         }
     }
-    sum.into_iter().flat_map(|(segment, count)| std::iter::repeat_n(segment, count.max(0) as usize)).collect()
+    sum.into_iter()
+        .flat_map(|(segment, count)| std::iter::repeat_n(segment, count.max(0) as usize))
+        .collect()
 }
 
 pub(crate) fn arcs_of(lines: &[ContourLine]) -> Vec<Segment> {
     let mut all: Vec<Segment> = lines
         .iter()
-        .flat_map(|line| line.points.windows(2).map(|pair| [lattice_point(pair[0]), lattice_point(pair[1])]))
+        .flat_map(|line| {
+            line.points
+                .windows(2)
+                .map(|pair| [lattice_point(pair[0]), lattice_point(pair[1])])
+        })
         .collect();
     all.sort_unstable();
     all
@@ -95,7 +111,10 @@ pub(crate) fn arcs_of(lines: &[ContourLine]) -> Vec<Segment> {
 /// Checks how the lines of one level are joined; the arcs must be checked before.
 pub(crate) fn check_lines(surface: &Faces, half_level: i64, lines: &[ContourLine]) {
     let segments = arcs_of(lines);
-    let undirected: BTreeSet<Segment> = segments.iter().map(|&[a, b]| [a.min(b), a.max(b)]).collect();
+    let undirected: BTreeSet<Segment> = segments
+        .iter()
+        .map(|&[a, b]| [a.min(b), a.max(b)])
+        .collect();
     assert_eq!(undirected.len(), segments.len(), "an arc occurs twice");
     for (i, &s) in segments.iter().enumerate() {
         assert_ne!(s[0], s[1], "an arc of no length");
@@ -110,10 +129,17 @@ pub(crate) fn check_lines(surface: &Faces, half_level: i64, lines: &[ContourLine
         let closed = points.first() == points.last();
         assert_eq!(closed, line.is_closed());
         if closed {
-            assert_eq!(points.iter().min(), points.first(), "a ring does not start at its smallest point");
+            assert_eq!(
+                points.iter().min(),
+                points.first(),
+                "a ring does not start at its smallest point"
+            );
         } else {
             for end in [points[0], points[points.len() - 1]] {
-                assert!(border.contains(&end), "a line ends at {end:?}, inside the data");
+                assert!(
+                    border.contains(&end),
+                    "a line ends at {end:?}, inside the data"
+                );
             }
         }
         for i in 0..points.len() {
@@ -121,7 +147,11 @@ pub(crate) fn check_lines(surface: &Faces, half_level: i64, lines: &[ContourLine
             if closed && i == last {
                 continue;
             }
-            let before = if closed && i == 0 { Some(points[last - 1]) } else { i.checked_sub(1).map(|i| points[i]) };
+            let before = if closed && i == 0 {
+                Some(points[last - 1])
+            } else {
+                i.checked_sub(1).map(|i| points[i])
+            };
             let after = points.get(i + 1).copied();
             arrivals.entry(points[i]).or_default().push((before, after));
         }
@@ -137,11 +167,19 @@ type Passage = (Option<Point>, Option<Point>);
 /// Checks that only whole pairs lie between an incoming ray and its outgoing one,
 /// counter-clockwise, and that not both kinds are left over.
 fn check_turns(node: Point, passages: &[Passage]) {
-    let starts = passages.iter().filter(|(before, _)| before.is_none()).count();
+    let starts = passages
+        .iter()
+        .filter(|(before, _)| before.is_none())
+        .count();
     let ends = passages.iter().filter(|(_, after)| after.is_none()).count();
-    assert!(starts == 0 || ends == 0, "a line ends at {node:?} where another one begins");
+    assert!(
+        starts == 0 || ends == 0,
+        "a line ends at {node:?} where another one begins"
+    );
     for &(before, after) in passages {
-        let (Some(before), Some(after)) = (before, after) else { continue };
+        let (Some(before), Some(after)) = (before, after) else {
+            continue;
+        };
         let is_inside = |p: &Point| {
             let from_before = |q| (direction(node, before, q), q);
             from_before(*p).0.cmp(&from_before(after).0) == Ordering::Less && *p != before
@@ -153,21 +191,29 @@ fn check_turns(node: Point, passages: &[Passage]) {
             let inside = [other_before, other_after].map(|p| p.as_ref().map(is_inside));
             match inside {
                 [Some(a), Some(b)] => assert_eq!(a, b, "lines cross at {node:?}"),
-                [a, b] => assert!(a != Some(true) && b != Some(true), "a sharper turn was left over at {node:?}"),
+                [a, b] => assert!(
+                    a != Some(true) && b != Some(true),
+                    "a sharper turn was left over at {node:?}"
+                ),
             }
         }
     }
     // The sharpest turn to the right stays in one sector: only whole pairs lie between, whose
     // first ray, counter-clockwise, is an incoming one.
     for &(before, after) in passages {
-        let (Some(before), Some(after)) = (before, after) else { continue };
+        let (Some(before), Some(after)) = (before, after) else {
+            continue;
+        };
         let next = passages
             .iter()
             .flat_map(|(b, a)| [b.map(|p| (p, true)), a.map(|p| (p, false))])
             .flatten()
             .filter(|(p, _)| *p != before)
             .min_by(|(p, _), (q, _)| direction(node, before, *p).cmp(&direction(node, before, *q)));
-        assert!(next.is_some_and(|(p, is_in)| p == after || is_in), "not the sharpest turn at {node:?}");
+        assert!(
+            next.is_some_and(|(p, is_in)| p == after || is_in),
+            "not the sharpest turn at {node:?}"
+        );
     }
 }
 
@@ -177,7 +223,11 @@ fn direction(node: Point, zero: Point, p: Point) -> Angle {
     let p = [p[0] - node[0], p[1] - node[1]];
     // Turned so that `zero` is east.
     let (x, y) = (zero[0] * p[0] + zero[1] * p[1], cross(zero, p));
-    Angle { lower: y < 0 || (y == 0 && x < 0), x, y }
+    Angle {
+        lower: y < 0 || (y == 0 && x < 0),
+        x,
+        y,
+    }
 }
 
 #[derive(PartialEq, Eq, Clone, Copy)]
@@ -189,7 +239,9 @@ struct Angle {
 
 impl Ord for Angle {
     fn cmp(&self, other: &Self) -> Ordering {
-        self.lower.cmp(&other.lower).then_with(|| (other.x * self.y).cmp(&(self.x * other.y)))
+        self.lower
+            .cmp(&other.lower)
+            .then_with(|| (other.x * self.y).cmp(&(self.x * other.y)))
     }
 }
 
@@ -208,12 +260,18 @@ fn border(surface: &Faces, half_level: i64) -> BTreeSet<Point> {
         }
     }
     let mut border = BTreeSet::new();
-    for &[a, b] in half_edges.iter().filter(|&&[a, b]| !half_edges.contains(&[b, a])) {
+    for &[a, b] in half_edges
+        .iter()
+        .filter(|&&[a, b]| !half_edges.contains(&[b, a]))
+    {
         let [a, b] = [a, b].map(|v| surface.vertices[v as usize]);
         border.extend([a, b].map(|p| lattice_point([p[0], p[1]])));
         let t = (half_level as f64 / 2.0 - a[2]) / (b[2] - a[2]);
         if t > 0.0 && t < 1.0 {
-            border.insert(lattice_point([a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])]));
+            border.insert(lattice_point([
+                a[0] + t * (b[0] - a[0]),
+                a[1] + t * (b[1] - a[1]),
+            ]));
         }
     }
     border
@@ -221,7 +279,13 @@ fn border(surface: &Faces, half_level: i64) -> BTreeSet<Point> {
 
 /// The faces that contain the middle of a segment, also on their border.
 pub(crate) fn faces_at(surface: &Faces, segment: Segment) -> Vec<usize> {
-    (0..surface.faces.len()).filter(|&i| turns_around(surface, i, segment).iter().all(|&turn| turn >= 0)).collect()
+    (0..surface.faces.len())
+        .filter(|&i| {
+            turns_around(surface, i, segment)
+                .iter()
+                .all(|&turn| turn >= 0)
+        })
+        .collect()
 }
 
 /// Returns true if the middle of a segment lies on a side of one face only.
@@ -254,8 +318,10 @@ fn is_between(p: Point, a: Point, b: Point) -> bool {
 
 /// Returns true if two segments share more than an end of both.
 fn cross_or_overlap(s: Segment, t: Segment) -> bool {
-    let touches = |p: Point, other: Segment| is_between(p, other[0], other[1]) && p != other[0] && p != other[1];
-    let proper =
-        turn(s[0], s[1], t[0]) * turn(s[0], s[1], t[1]) < 0 && turn(t[0], t[1], s[0]) * turn(t[0], t[1], s[1]) < 0;
+    let touches = |p: Point, other: Segment| {
+        is_between(p, other[0], other[1]) && p != other[0] && p != other[1]
+    };
+    let proper = turn(s[0], s[1], t[0]) * turn(s[0], s[1], t[1]) < 0
+        && turn(t[0], t[1], s[0]) * turn(t[0], t[1], s[1]) < 0;
     proper || s.iter().any(|&p| touches(p, t)) || t.iter().any(|&p| touches(p, s))
 }

@@ -11,7 +11,9 @@ use proptest::prelude::*;
 use surface::{Faces, any_grid, grid, wheel};
 
 fn draw(surface: &(impl Surface + ?Sized), levels: &[f64]) -> Vec<ContourLine> {
-    contours(surface, &Levels::listed(levels).unwrap()).unwrap().collect()
+    contours(surface, &Levels::listed(levels).unwrap())
+        .unwrap()
+        .collect()
 }
 
 /// Draws one level and compares it to the judge's.
@@ -35,12 +37,18 @@ fn heights<const N: usize>(mut number: u32) -> [i32; N] {
 fn all_small_grids() {
     for number in 0..3_u32.pow(8) {
         for diagonals in 0..8 {
-            check(&grid(4, &heights::<8>(number), |quad| diagonals >> quad & 1 == 1), 0);
+            check(
+                &grid(4, &heights::<8>(number), |quad| diagonals >> quad & 1 == 1),
+                0,
+            );
         }
     }
     for number in 0..3_u32.pow(9) {
         for diagonals in [0, 5, 6, 14] {
-            check(&grid(3, &heights::<9>(number), |quad| diagonals >> quad & 1 == 1), 0);
+            check(
+                &grid(3, &heights::<9>(number), |quad| diagonals >> quad & 1 == 1),
+                0,
+            );
         }
     }
 }
@@ -125,19 +133,32 @@ proptest! {
 
 fn bits(lines: &[ContourLine]) -> Vec<(u64, Vec<[u64; 2]>)> {
     let bits = |p: &[f64; 2]| p.map(f64::to_bits);
-    lines.iter().map(|line| (line.level.to_bits(), line.points.iter().map(bits).collect())).collect()
+    lines
+        .iter()
+        .map(|line| (line.level.to_bits(), line.points.iter().map(bits).collect()))
+        .collect()
 }
 
 /// A cone with its top in the middle; heights fall by one from ring to ring.
 fn cone(rings: u32, spokes: u32) -> Faces {
     let mut vertices = vec![[0.0, 0.0, f64::from(rings)]];
     let mut faces = Vec::new();
-    let number = |ring: u32, spoke: u32| if ring == 0 { 0 } else { 1 + (ring - 1) * spokes + spoke % spokes };
+    let number = |ring: u32, spoke: u32| {
+        if ring == 0 {
+            0
+        } else {
+            1 + (ring - 1) * spokes + spoke % spokes
+        }
+    };
     for ring in 1..=rings {
         for spoke in 0..spokes {
             let angle = std::f64::consts::TAU * f64::from(spoke) / f64::from(spokes);
             let radius = f64::from(ring);
-            vertices.push([radius * angle.cos(), radius * angle.sin(), f64::from(rings - ring)]);
+            vertices.push([
+                radius * angle.cos(),
+                radius * angle.sin(),
+                f64::from(rings - ring),
+            ]);
             let [a, b] = [number(ring - 1, spoke), number(ring - 1, spoke + 1)];
             let [c, d] = [number(ring, spoke), number(ring, spoke + 1)];
             faces.push([a, c, d]);
@@ -150,14 +171,20 @@ fn cone(rings: u32, spokes: u32) -> Faces {
 }
 
 fn signed_area(line: &ContourLine) -> f64 {
-    0.5 * line.points.windows(2).map(|p| p[0][0] * p[1][1] - p[0][1] * p[1][0]).sum::<f64>()
+    0.5 * line
+        .points
+        .windows(2)
+        .map(|p| p[0][0] * p[1][1] - p[0][1] * p[1][0])
+        .sum::<f64>()
 }
 
 #[test]
 fn contours_of_a_cone_are_circles() {
     let (rings, spokes) = (10_u32, 360_u32);
     let surface = cone(rings, spokes);
-    let lines: Vec<_> = contours(&surface, &Levels::every(0.25, 0.0).unwrap()).unwrap().collect();
+    let lines: Vec<_> = contours(&surface, &Levels::every(0.25, 0.0).unwrap())
+        .unwrap()
+        .collect();
     // The outer ring is the edge of the data and the top is a point.
     assert_eq!(lines.len(), 4 * rings as usize - 1);
     for (i, line) in lines.iter().enumerate() {
@@ -166,14 +193,29 @@ fn contours_of_a_cone_are_circles() {
         let radius = f64::from(rings) - line.level;
         let flat = radius * (std::f64::consts::PI / f64::from(spokes)).cos();
         let on_ring = radius.fract() == 0.0;
-        assert_eq!(line.points.len(), if on_ring || radius < 1.0 { spokes } else { 2 * spokes } as usize + 1);
+        assert_eq!(
+            line.points.len(),
+            if on_ring || radius < 1.0 {
+                spokes
+            } else {
+                2 * spokes
+            } as usize
+                + 1
+        );
         for p in &line.points {
             let r = p[0].hypot(p[1]);
-            assert!(r < radius + 1e-12 && r > if on_ring { radius } else { flat } - 1e-12, "{r} for {radius}");
+            assert!(
+                r < radius + 1e-12 && r > if on_ring { radius } else { flat } - 1e-12,
+                "{r} for {radius}"
+            );
         }
         // High ground, the middle, is on the right: clockwise.
         let circle = -std::f64::consts::PI * radius * radius;
-        assert!((signed_area(line) / circle - 1.0).abs() < 1e-4, "{} for {circle}", signed_area(line));
+        assert!(
+            (signed_area(line) / circle - 1.0).abs() < 1e-4,
+            "{} for {circle}",
+            signed_area(line)
+        );
     }
 }
 
@@ -213,9 +255,24 @@ fn a_lake_on_the_level_gives_its_shore() {
     assert!(draw(&grid(5, &bowl, |_| true), &[1.0]).is_empty());
     let plateau = bowl.map(|h| 4 - h);
     let lines = draw(&grid(5, &plateau, |_| true), &[3.0]);
-    let shore =
-        [[1.0, 1.0], [1.0, 2.0], [1.0, 3.0], [2.0, 3.0], [3.0, 3.0], [3.0, 2.0], [3.0, 1.0], [2.0, 1.0], [1.0, 1.0]];
-    assert_eq!(lines, [ContourLine { level: 3.0, points: shore.to_vec() }]);
+    let shore = [
+        [1.0, 1.0],
+        [1.0, 2.0],
+        [1.0, 3.0],
+        [2.0, 3.0],
+        [3.0, 3.0],
+        [3.0, 2.0],
+        [3.0, 1.0],
+        [2.0, 1.0],
+        [1.0, 1.0],
+    ];
+    assert_eq!(
+        lines,
+        [ContourLine {
+            level: 3.0,
+            points: shore.to_vec()
+        }]
+    );
 }
 
 /// The pass of a saddle on the level: the high ground on both sides stays separate.
@@ -225,7 +282,10 @@ fn a_saddle_on_the_level_parts_the_high_ground() {
     assert_eq!(lines.len(), 2);
     for line in &lines {
         assert_eq!(line.points[1], [0.0, 0.0]);
-        assert!(line.points[0][0] * line.points[2][0] > 0.0, "both ends are on one side: {line:?}");
+        assert!(
+            line.points[0][0] * line.points[2][0] > 0.0,
+            "both ends are on one side: {line:?}"
+        );
     }
 }
 
@@ -247,8 +307,15 @@ fn threads_do_not_matter() {
     let heights: Vec<i32> = (0..60 * 60).map(|i| i * 7919 % 101 % 17).collect();
     let surface = grid(60, &heights, |quad| quad % 3 == 0);
     let with = |threads| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| contours(&surface, &Levels::every(0.5, 0.0).unwrap()).unwrap().collect::<Vec<_>>())
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap();
+        pool.install(|| {
+            contours(&surface, &Levels::every(0.5, 0.0).unwrap())
+                .unwrap()
+                .collect::<Vec<_>>()
+        })
     };
     assert!(with(1).len() > 1000);
     assert_eq!(bits(&with(1)), bits(&with(3)));
@@ -256,6 +323,11 @@ fn threads_do_not_matter() {
 
 #[test]
 fn too_many_levels_are_refused() {
-    let error = contours(&cone(3, 8), &Levels::every(1e-6, 0.0).unwrap()).err().unwrap();
-    assert!(error.to_string().contains("0.000001") || error.to_string().contains("1e-6"), "{error}");
+    let error = contours(&cone(3, 8), &Levels::every(1e-6, 0.0).unwrap())
+        .err()
+        .unwrap();
+    assert!(
+        error.to_string().contains("0.000001") || error.to_string().contains("1e-6"),
+        "{error}"
+    );
 }

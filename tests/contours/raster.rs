@@ -11,21 +11,43 @@ use testkit::shared;
 const X: f64 = f64::NAN;
 
 fn raster(width: usize, values: &[f64], transform: [f64; 6]) -> Grid {
-    let frame = Frame { width, height: values.len() / width, transform };
-    Grid { frame, crs: None, values: values.to_vec() }
+    let frame = Frame {
+        width,
+        height: values.len() / width,
+        transform,
+    };
+    Grid {
+        frame,
+        crs: None,
+        values: values.to_vec(),
+    }
 }
 
 /// The surface as a list of faces, with links found by the test; checks those of the grid.
 fn copied(surface: &GridSurface<'_>) -> Faces {
-    let vertices = (0..surface.vertex_count()).map(|v| surface.position(v as u32)).collect();
-    let used: Vec<u32> = (0..surface.face_count() as u32).filter(|&f| surface.face(f).is_some()).collect();
-    let faces = Faces::new(vertices, used.iter().map(|&f| surface.face(f).unwrap()).collect());
+    let vertices = (0..surface.vertex_count())
+        .map(|v| surface.position(v as u32))
+        .collect();
+    let used: Vec<u32> = (0..surface.face_count() as u32)
+        .filter(|&f| surface.face(f).is_some())
+        .collect();
+    let faces = Faces::new(
+        vertices,
+        used.iter().map(|&f| surface.face(f).unwrap()).collect(),
+    );
     for (i, &face) in used.iter().enumerate() {
         let [a, b, c] = surface.face(face).unwrap().map(|v| surface.position(v));
-        assert!((b[0] - a[0]) * (c[1] - a[1]) > (b[1] - a[1]) * (c[0] - a[0]), "face {face} is not counter-clockwise");
+        assert!(
+            (b[0] - a[0]) * (c[1] - a[1]) > (b[1] - a[1]) * (c[0] - a[0]),
+            "face {face} is not counter-clockwise"
+        );
         for side in 0..3 {
             let expected = faces.neighbor(i as u32, side).map(|n| used[n as usize]);
-            assert_eq!(surface.neighbor(face, side), expected, "across side {side} of face {face}");
+            assert_eq!(
+                surface.neighbor(face, side),
+                expected,
+                "across side {side} of face {face}"
+            );
         }
     }
     faces
@@ -82,7 +104,10 @@ fn judged(width: usize, values: &[f64]) {
     let faces = copied(&surface);
     for half_level in -1..=9 {
         let lines = draw(&surface, &[f64::from(half_level) / 2.0]);
-        assert_eq!(judge::arcs_of(&lines), judge::arcs(&faces, half_level.into()));
+        assert_eq!(
+            judge::arcs_of(&lines),
+            judge::arcs(&faces, half_level.into())
+        );
         judge::check_lines(&faces, half_level.into(), &lines);
     }
 }
@@ -90,7 +115,9 @@ fn judged(width: usize, values: &[f64]) {
 #[test]
 fn all_rasters_of_six_cells() {
     for number in 0..3_usize.pow(6) {
-        let cells: Vec<f64> = (0..6).map(|i| [0.0, 4.0, X][number / 3_usize.pow(i) % 3]).collect();
+        let cells: Vec<f64> = (0..6)
+            .map(|i| [0.0, 4.0, X][number / 3_usize.pow(i) % 3])
+            .collect();
         judged(2, &cells);
         judged(3, &cells);
     }
@@ -116,26 +143,51 @@ fn a_raster_is_its_faces() {
         flat if (i / 150) % 7 < 3 => f64::from(flat % 2),
         rough => f64::from(rough % 9) / 4.0,
     };
-    let grid = raster(150, &(0..150 * 90).map(height).collect::<Vec<_>>(), NORTH_UP);
+    let grid = raster(
+        150,
+        &(0..150 * 90).map(height).collect::<Vec<_>>(),
+        NORTH_UP,
+    );
     let surface = GridSurface::new(&grid).unwrap();
     let levels = [0.0, 0.25, 0.6, 1.0, 1.5, 2.0];
     let drawing = contours(&surface, &Levels::listed(&levels).unwrap()).unwrap();
     let count = drawing.arc_count();
     let lines = bits(&drawing.collect::<Vec<_>>());
-    let drawn = lines.iter().map(|(_, points)| points.len() - 1).sum::<usize>();
-    assert!(drawn <= count && count <= drawn + drawn / 100, "{count} arcs counted, {drawn} drawn");
+    let drawn = lines
+        .iter()
+        .map(|(_, points)| points.len() - 1)
+        .sum::<usize>();
+    assert!(
+        drawn <= count && count <= drawn + drawn / 100,
+        "{count} arcs counted, {drawn} drawn"
+    );
     assert_eq!(lines, bits(&draw(&copied(&surface), &levels)));
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(3).build().unwrap();
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(3)
+        .build()
+        .unwrap();
     assert_eq!(lines, pool.install(|| bits(&draw(&surface, &levels))));
 }
 
 /// The number of lines of a raster, and a sum over all of their bits.
 fn sum(path: &Path, interval: f64) -> (usize, u64) {
-    let grid = breakline::io::raster::open(path).unwrap().read_grid().unwrap();
+    let grid = breakline::io::raster::open(path)
+        .unwrap()
+        .read_grid()
+        .unwrap();
     let surface = GridSurface::new(&grid).unwrap();
-    let lines: Vec<_> = contours(&surface, &Levels::every(interval, 0.0).unwrap()).unwrap().collect();
-    let all = bits(&lines).into_iter().flat_map(|(level, points)| points.into_iter().flatten().chain([level]));
-    (lines.len(), all.fold(0, |sum, bits| (sum.rotate_left(5) ^ bits).wrapping_mul(0x517c_c1b7_2722_0a95)))
+    let lines: Vec<_> = contours(&surface, &Levels::every(interval, 0.0).unwrap())
+        .unwrap()
+        .collect();
+    let all = bits(&lines)
+        .into_iter()
+        .flat_map(|(level, points)| points.into_iter().flatten().chain([level]));
+    (
+        lines.len(),
+        all.fold(0, |sum, bits| {
+            (sum.rotate_left(5) ^ bits).wrapping_mul(0x517c_c1b7_2722_0a95)
+        }),
+    )
 }
 
 /// The lines of revision 3b6a284, bit by bit.
@@ -150,10 +202,22 @@ fn lines_of_the_fixture_stay() {
 #[cfg_attr(not(has_shared), ignore = "needs ../shared")]
 fn lines_of_real_rasters_stay() {
     let sum = |file: &str, interval: f64| sum(&shared(file), interval);
-    assert_eq!(sum("dem/lidar_sinks/dem.tif", 0.5), (310, 2_935_360_354_142_851_916));
-    assert_eq!(sum("dem/zh_dem_25.tif", 10.0), (276, 16_581_145_096_892_220_449));
-    assert_eq!(sum("dem/qgis_3d/dtm_with_holes.tif", 10.0), (53, 7_132_536_982_392_338_645));
-    assert_eq!(sum("dem/hintereisferner/hef_srtm.tif", 100.0), (373, 5_507_965_940_822_481_662));
+    assert_eq!(
+        sum("dem/lidar_sinks/dem.tif", 0.5),
+        (310, 2_935_360_354_142_851_916)
+    );
+    assert_eq!(
+        sum("dem/zh_dem_25.tif", 10.0),
+        (276, 16_581_145_096_892_220_449)
+    );
+    assert_eq!(
+        sum("dem/qgis_3d/dtm_with_holes.tif", 10.0),
+        (53, 7_132_536_982_392_338_645)
+    );
+    assert_eq!(
+        sum("dem/hintereisferner/hef_srtm.tif", 100.0),
+        (373, 5_507_965_940_822_481_662)
+    );
 }
 
 #[test]
@@ -161,9 +225,18 @@ fn three_cells_make_a_triangle() {
     let grid = raster(2, &[0.0, X, 2.0, 2.0], NORTH_UP);
     let lines = draw(&GridSurface::new(&grid).unwrap(), &[1.0]);
     // Cell centers are at 101 and 103, 199 and 197. High ground, the south, is on the right.
-    let expected = ContourLine { level: 1.0, points: vec![[101.0, 198.0], [102.0, 198.0]] };
+    let expected = ContourLine {
+        level: 1.0,
+        points: vec![[101.0, 198.0], [102.0, 198.0]],
+    };
     assert_eq!(lines, [expected]);
-    assert!(draw(&GridSurface::new(&raster(2, &[0.0, X, X, 2.0], NORTH_UP)).unwrap(), &[1.0]).is_empty());
+    assert!(
+        draw(
+            &GridSurface::new(&raster(2, &[0.0, X, X, 2.0], NORTH_UP)).unwrap(),
+            &[1.0]
+        )
+        .is_empty()
+    );
 }
 
 #[test]
@@ -179,7 +252,12 @@ fn a_missing_cell_is_an_edge_of_the_data() {
     assert_eq!(lines.len(), 1);
     assert!(lines[0].is_closed() && signed_area(&lines[0]) < 0.0);
     // The four crossings on the edges to the neighbors: half way.
-    for p in [[102.0, 197.0], [104.0, 197.0], [103.0, 196.0], [103.0, 198.0]] {
+    for p in [
+        [102.0, 197.0],
+        [104.0, 197.0],
+        [103.0, 196.0],
+        [103.0, 198.0],
+    ] {
         assert!(lines[0].points.contains(&p), "{p:?} in {lines:?}");
     }
 }
@@ -188,12 +266,22 @@ fn a_missing_cell_is_an_edge_of_the_data() {
 fn a_cone_gives_circles() {
     let (size, step) = (201, 0.5);
     let center = step * f64::from(size) / 2.0;
-    let frame = Frame::north_up(0.0, step * f64::from(size), step, size as usize, size as usize);
+    let frame = Frame::north_up(
+        0.0,
+        step * f64::from(size),
+        step,
+        size as usize,
+        size as usize,
+    );
     let height = |i: i32| {
         let [x, y] = frame.to_map(f64::from(i % size) + 0.5, f64::from(i / size) + 0.5);
         -(x - center).hypot(y - center)
     };
-    let grid = Grid { frame, crs: None, values: (0..size * size).map(height).collect() };
+    let grid = Grid {
+        frame,
+        crs: None,
+        values: (0..size * size).map(height).collect(),
+    };
     for level in 5..45 {
         let radius = f64::from(level);
         let lines = draw(&GridSurface::new(&grid).unwrap(), &[-radius]);
@@ -203,7 +291,10 @@ fn a_cone_gives_circles() {
             // Linear interpolation over a diagonal of a cell: off by its square over 8 radii, at
             // most.
             let off = (p[0] - center).hypot(p[1] - center) - radius;
-            assert!(off.abs() < 2.0 * step * step / (8.0 * (radius - step)) + 1e-9, "{off} at radius {radius}");
+            assert!(
+                off.abs() < 2.0 * step * step / (8.0 * (radius - step)) + 1e-9,
+                "{off} at radius {radius}"
+            );
         }
         let circle = -std::f64::consts::PI * radius * radius;
         assert!((signed_area(&lines[0]) / circle - 1.0).abs() < 3e-3);
@@ -213,11 +304,26 @@ fn a_cone_gives_circles() {
 #[test]
 fn what_cannot_be_drawn_is_refused() {
     let skewed = raster(2, &[0.0; 4], [0.0, 1.0, 1.0, 0.0, 2.0, 2.0]);
-    assert!(GridSurface::new(&skewed).unwrap_err().to_string().contains("without area"));
+    assert!(
+        GridSurface::new(&skewed)
+            .unwrap_err()
+            .to_string()
+            .contains("without area")
+    );
     let mut short = raster(2, &[0.0; 4], NORTH_UP);
     short.frame.height = 3;
-    assert!(GridSurface::new(&short).unwrap_err().to_string().contains("2 x 3"));
+    assert!(
+        GridSurface::new(&short)
+            .unwrap_err()
+            .to_string()
+            .contains("2 x 3")
+    );
     short.frame.width = usize::MAX;
     assert!(GridSurface::new(&short).is_err());
-    assert_eq!(GridSurface::new(&raster(1, &[0.0; 0], NORTH_UP)).unwrap().face_count(), 0);
+    assert_eq!(
+        GridSurface::new(&raster(1, &[0.0; 0], NORTH_UP))
+            .unwrap()
+            .face_count(),
+        0
+    );
 }

@@ -17,7 +17,8 @@ fn tin(points: &[&str], breaklines: Option<&str>) -> Tin {
         while source.read(&mut batch).map(|()| !batch.is_empty()).unwrap() {
             let is_used = |i: &usize| batch.class.is_empty() || batch.class[*i] == 2;
             let used: Vec<usize> = (0..batch.len()).filter(is_used).collect();
-            let [x, y, z] = [&batch.x, &batch.y, &batch.z].map(|c| used.iter().map(|&i| c[i]).collect::<Vec<_>>());
+            let [x, y, z] = [&batch.x, &batch.y, &batch.z]
+                .map(|c| used.iter().map(|&i| c[i]).collect::<Vec<_>>());
             builder.add_points(&x, &y, &z);
         }
     }
@@ -33,17 +34,29 @@ fn tin(points: &[&str], breaklines: Option<&str>) -> Tin {
 }
 
 fn check(tin: &Tin, interval: f64) {
-    let lines: Vec<ContourLine> = contours(tin, &Levels::every(interval, 0.0).unwrap()).unwrap().collect();
+    let lines: Vec<ContourLine> = contours(tin, &Levels::every(interval, 0.0).unwrap())
+        .unwrap()
+        .collect();
     assert!(lines.len() > 20);
     let border = border(tin);
     for line in lines.iter().filter(|line| !line.is_closed()) {
         for end in [line.points[0], line.points[line.points.len() - 1]] {
-            let off = border.iter().map(|&edge| distance(end, edge)).fold(f64::INFINITY, f64::min);
+            let off = border
+                .iter()
+                .map(|&edge| distance(end, edge))
+                .fold(f64::INFINITY, f64::min);
             // A step of an f64 at such coordinates.
-            assert!(off < 1e-9, "a line ends at {end:?}, {off} from the edge of the data");
+            assert!(
+                off < 1e-9,
+                "a line ends at {end:?}, {off} from the edge of the data"
+            );
         }
     }
-    let segments: Vec<Segment> = lines.iter().flat_map(|line| line.points.windows(2)).map(|p| [p[0], p[1]]).collect();
+    let segments: Vec<Segment> = lines
+        .iter()
+        .flat_map(|line| line.points.windows(2))
+        .map(|p| [p[0], p[1]])
+        .collect();
     let mut seen = HashSet::new();
     for [a, b] in &segments {
         assert_ne!(a, b, "an arc of no length");
@@ -71,7 +84,11 @@ fn distance(p: [f64; 2], [a, b]: Segment) -> f64 {
 
 /// Two segments, of any levels, each with the ends of the other on both of its sides.
 fn crossing(segments: &[Segment]) -> Option<[Segment; 2]> {
-    let mean = segments.iter().map(|[a, b]| (a[0] - b[0]).hypot(a[1] - b[1])).sum::<f64>() / segments.len() as f64;
+    let mean = segments
+        .iter()
+        .map(|[a, b]| (a[0] - b[0]).hypot(a[1] - b[1]))
+        .sum::<f64>()
+        / segments.len() as f64;
     let cell = |c: f64| (c / (4.0 * mean)).floor() as i64;
     let mut cells = HashMap::<[i64; 2], Vec<Segment>>::new();
     for &[a, b] in segments {
@@ -84,10 +101,16 @@ fn crossing(segments: &[Segment]) -> Option<[Segment; 2]> {
     }
     let parts = |[a, b]: Segment, [c, d]: Segment| {
         let sign = |p| Adaptive::sign(&Orientation2([a, b, p]));
-        matches!((sign(c), sign(d)), (Sign::Negative, Sign::Positive) | (Sign::Positive, Sign::Negative))
+        matches!(
+            (sign(c), sign(d)),
+            (Sign::Negative, Sign::Positive) | (Sign::Positive, Sign::Negative)
+        )
     };
     cells.values().find_map(|near| {
-        let pairs = near.iter().enumerate().flat_map(|(i, s)| near[..i].iter().map(move |t| [*s, *t]));
+        let pairs = near
+            .iter()
+            .enumerate()
+            .flat_map(|(i, s)| near[..i].iter().map(move |t| [*s, *t]));
         pairs.into_iter().find(|&[s, t]| parts(s, t) && parts(t, s))
     })
 }
@@ -95,7 +118,10 @@ fn crossing(segments: &[Segment]) -> Option<[Segment; 2]> {
 #[test]
 #[cfg_attr(not(has_shared), ignore = "needs ../shared")]
 fn mass_points_and_breaklines() {
-    let tin = tin(&["shp/shapelib_eg/masspntz.shp"], Some("shp/shapelib_eg/brklinz.shp"));
+    let tin = tin(
+        &["shp/shapelib_eg/masspntz.shp"],
+        Some("shp/shapelib_eg/brklinz.shp"),
+    );
     check(&tin, 1.0);
     check(&tin, 5.0);
 }
@@ -103,7 +129,10 @@ fn mass_points_and_breaklines() {
 #[test]
 #[cfg_attr(not(has_shared), ignore = "needs ../shared")]
 fn a_lake_with_its_shore() {
-    let tin = tin(&["lidar/lake_breakline/lake.laz"], Some("lidar/lake_breakline/lake_breakline.shp"));
+    let tin = tin(
+        &["lidar/lake_breakline/lake.laz"],
+        Some("lidar/lake_breakline/lake_breakline.shp"),
+    );
     check(&tin, 0.5);
 }
 

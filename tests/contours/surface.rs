@@ -19,14 +19,27 @@ impl Faces {
         for (id, corners) in faces.iter().enumerate() {
             for i in 0..3 {
                 let half = [corners[(i + 1) % 3], corners[(i + 2) % 3]];
-                assert!(neighbors.insert(half, id as u32).is_none(), "two faces on one side of an edge");
+                assert!(
+                    neighbors.insert(half, id as u32).is_none(),
+                    "two faces on one side of an edge"
+                );
             }
         }
-        Faces { vertices, faces, neighbors }
+        Faces {
+            vertices,
+            faces,
+            neighbors,
+        }
     }
 
     pub(crate) fn subset(&self, keep: impl Fn(usize) -> bool) -> Self {
-        let faces = self.faces.iter().enumerate().filter(|(i, _)| keep(*i)).map(|(_, face)| *face).collect();
+        let faces = self
+            .faces
+            .iter()
+            .enumerate()
+            .filter(|(i, _)| keep(*i))
+            .map(|(_, face)| *face)
+            .collect();
         Faces::new(self.vertices.clone(), faces)
     }
 
@@ -70,7 +83,9 @@ impl Surface for Faces {
 
     fn neighbor(&self, face: u32, i: usize) -> Option<u32> {
         let corners = self.faces[face as usize];
-        self.neighbors.get(&[corners[(i + 2) % 3], corners[(i + 1) % 3]]).copied()
+        self.neighbors
+            .get(&[corners[(i + 2) % 3], corners[(i + 1) % 3]])
+            .copied()
     }
 
     fn edge_kind(&self, _face: u32, _i: usize) -> EdgeKind {
@@ -84,14 +99,22 @@ impl Surface for Faces {
 
 /// A grid of unit quads, each split along one of its diagonals.
 pub(crate) fn grid(width: usize, heights: &[i32], rising: impl Fn(usize) -> bool) -> Faces {
-    let vertices = heights.iter().enumerate().map(|(i, &h)| [(i % width) as f64, (i / width) as f64, h.into()]);
+    let vertices = heights
+        .iter()
+        .enumerate()
+        .map(|(i, &h)| [(i % width) as f64, (i / width) as f64, h.into()]);
     let mut faces = Vec::new();
     for row in 1..heights.len() / width {
         for column in 1..width {
             let quad = (row - 1) * (width - 1) + column - 1;
-            let [a, b] = [(row - 1) * width + column - 1, (row - 1) * width + column].map(|i| i as u32);
+            let [a, b] =
+                [(row - 1) * width + column - 1, (row - 1) * width + column].map(|i| i as u32);
             let [d, c] = [a, b].map(|i| i + width as u32);
-            faces.extend(if rising(quad) { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] });
+            faces.extend(if rising(quad) {
+                [[a, b, c], [a, c, d]]
+            } else {
+                [[a, b, d], [b, c, d]]
+            });
         }
     }
     Faces::new(vertices.collect(), faces)
@@ -99,11 +122,22 @@ pub(crate) fn grid(width: usize, heights: &[i32], rising: impl Fn(usize) -> bool
 
 /// A vertex in a ring of eight; the angles between its neighbors are below 90 degrees.
 pub(crate) fn wheel(center: i32, ring: [i32; 8], keep: u32) -> Faces {
-    const RING: [[f64; 2]; 8] =
-        [[2.0, 0.0], [2.0, 2.0], [0.0, 2.0], [-2.0, 2.0], [-2.0, 0.0], [-2.0, -2.0], [0.0, -2.0], [2.0, -2.0]];
+    const RING: [[f64; 2]; 8] = [
+        [2.0, 0.0],
+        [2.0, 2.0],
+        [0.0, 2.0],
+        [-2.0, 2.0],
+        [-2.0, 0.0],
+        [-2.0, -2.0],
+        [0.0, -2.0],
+        [2.0, -2.0],
+    ];
     let mut vertices = vec![[0.0, 0.0, center.into()]];
     vertices.extend(RING.iter().zip(ring).map(|([x, y], h)| [*x, *y, h.into()]));
-    let faces = (0..8).filter(|i| keep >> i & 1 == 1).map(|i| [0, 1 + i, 1 + (i + 1) % 8]).collect();
+    let faces = (0..8)
+        .filter(|i| keep >> i & 1 == 1)
+        .map(|i| [0, 1 + i, 1 + (i + 1) % 8])
+        .collect();
     Faces::new(vertices, faces)
 }
 
@@ -116,6 +150,8 @@ pub(crate) fn any_grid() -> impl Strategy<Value = (Faces, Vec<bool>)> {
             prop::collection::vec(any::<bool>(), quads),
             prop::collection::vec(prop::bool::weighted(0.7), 2 * quads),
         )
-            .prop_map(move |(heights, rising, keep)| (grid(width, &heights, |quad| rising[quad]), keep))
+            .prop_map(move |(heights, rising, keep)| {
+                (grid(width, &heights, |quad| rising[quad]), keep)
+            })
     })
 }

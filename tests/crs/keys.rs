@@ -8,10 +8,20 @@ use breakline::crs::{Crs, GeoKeys, RasterType};
 /// A minimal TIFF of one pixel with these keys.
 fn tiff(keys: &GeoKeys) -> Vec<u8> {
     let ascii: Vec<u8> = keys.ascii.bytes().chain([0]).collect();
-    let directory: Vec<u8> = keys.directory.iter().flat_map(|v| v.to_le_bytes()).collect();
+    let directory: Vec<u8> = keys
+        .directory
+        .iter()
+        .flat_map(|v| v.to_le_bytes())
+        .collect();
     let doubles: Vec<u8> = keys.doubles.iter().flat_map(|v| v.to_le_bytes()).collect();
-    let scale: Vec<u8> = [1.0f64, 1.0, 0.0].iter().flat_map(|v| v.to_le_bytes()).collect();
-    let tie: Vec<u8> = [0.0f64, 0.0, 0.0, 10.0, 20.0, 0.0].iter().flat_map(|v| v.to_le_bytes()).collect();
+    let scale: Vec<u8> = [1.0f64, 1.0, 0.0]
+        .iter()
+        .flat_map(|v| v.to_le_bytes())
+        .collect();
+    let tie: Vec<u8> = [0.0f64, 0.0, 0.0, 10.0, 20.0, 0.0]
+        .iter()
+        .flat_map(|v| v.to_le_bytes())
+        .collect();
     let mut tags: Vec<(u16, u16, u32, Vec<u8>)> = vec![
         (256, 3, 1, vec![1, 0, 0, 0]),
         (257, 3, 1, vec![1, 0, 0, 0]),
@@ -64,7 +74,10 @@ fn gdal_reads_our_geokeys_as_the_same_system() {
         assert_eq!(keys.raster_type(), RasterType::PixelIsArea);
         assert!(keys.crs().unwrap().unwrap().is_same(&crs), "{code}");
         std::fs::write(&path, tiff(&keys)).unwrap();
-        let Some(found) = output("gdalsrsinfo", &["--single-line", "-o", "wkt2", &path_text]) else { return };
+        let Some(found) = output("gdalsrsinfo", &["--single-line", "-o", "wkt2", &path_text])
+        else {
+            return;
+        };
         assert_eq!(last_epsg(&found), Some(code), "{found}");
     }
     let crs = Crs::from_user("EPSG:25832+7837").unwrap();
@@ -73,7 +86,10 @@ fn gdal_reads_our_geokeys_as_the_same_system() {
     assert_eq!(keys.crs().unwrap().unwrap().vertical_epsg, Some(7837));
     std::fs::write(&path, tiff(&keys)).unwrap();
     let found = output("gdalsrsinfo", &["--single-line", "-o", "wkt2", &path_text]).unwrap();
-    assert!(found.contains("ID[\"EPSG\",25832]") && found.contains("ID[\"EPSG\",7837]"), "{found}");
+    assert!(
+        found.contains("ID[\"EPSG\",25832]") && found.contains("ID[\"EPSG\",7837]"),
+        "{found}"
+    );
 }
 
 /// The position that GDAL computes for a point, as a judge independent of names.
@@ -88,7 +104,11 @@ fn position(system: &str, point: &[u8]) -> Option<Vec<f64>> {
     child.stdin.take()?.write_all(point).ok()?;
     let done = child.wait_with_output().ok()?;
     let text = String::from_utf8_lossy(&done.stdout).into_owned();
-    Some(text.split_whitespace().map(|number| number.parse().unwrap()).collect())
+    Some(
+        text.split_whitespace()
+            .map(|number| number.parse().unwrap())
+            .collect(),
+    )
 }
 
 #[test]
@@ -104,7 +124,11 @@ fn systems_without_a_code_keep_their_coordinates_in_geokeys_and_prj() {
         assert!(back.is_same(&crs), "{wkt}\n{:?}", back.wkt);
         assert_eq!((back.epsg, &back.unit), (None, &crs.unit));
 
-        let point: &[u8] = if wkt.contains("-70") { b"15 -68\n" } else { b"15 47.5\n" };
+        let point: &[u8] = if wkt.contains("-70") {
+            b"15 -68\n"
+        } else {
+            b"15 47.5\n"
+        };
         let Some(wanted) = position(&wkt, point) else {
             eprintln!("skipped: gdaltransform is not installed");
             return;
@@ -112,7 +136,11 @@ fn systems_without_a_code_keep_their_coordinates_in_geokeys_and_prj() {
         assert_eq!(wanted.len(), 2, "{wkt}");
         let tif = folder.path().join("keys.tif");
         std::fs::write(&tif, tiff(&keys)).unwrap();
-        let from_keys = output("gdalsrsinfo", &["--single-line", "-o", "wkt2", &tif.display().to_string()]).unwrap();
+        let from_keys = output(
+            "gdalsrsinfo",
+            &["--single-line", "-o", "wkt2", &tif.display().to_string()],
+        )
+        .unwrap();
         let from_keys = from_keys.trim().to_owned();
         let path = folder.path().join("our.prj");
         std::fs::write(&path, crs.to_prj()).unwrap();
@@ -129,7 +157,10 @@ fn systems_without_a_code_keep_their_coordinates_in_geokeys_and_prj() {
 
 #[test]
 fn damaged_keys_are_errors_and_absent_ones_are_none() {
-    let keys = |directory: &[u16]| GeoKeys { directory: directory.to_vec(), ..GeoKeys::default() };
+    let keys = |directory: &[u16]| GeoKeys {
+        directory: directory.to_vec(),
+        ..GeoKeys::default()
+    };
     for none in [
         &[][..],
         &[0, 0],
@@ -160,17 +191,31 @@ fn damaged_keys_are_errors_and_absent_ones_are_none() {
             state >> 16
         };
         const LIKELY: [u16; 24] = [
-            0, 1, 2, 3, 1024, 1026, 2048, 2050, 2057, 2059, 3072, 3074, 3075, 3076, 3077, 3080, 4096, 4099, 8, 15,
-            32767, 34735, 34736, 34737,
+            0, 1, 2, 3, 1024, 1026, 2048, 2050, 2057, 2059, 3072, 3074, 3075, 3076, 3077, 3080,
+            4096, 4099, 8, 15, 32767, 34735, 34736, 34737,
         ];
         let mut directory = vec![1, 1, 0, (next() % 6) as u16];
         for _ in 0..next() % 28 {
             let pick = next();
-            directory.push(if pick % 9 == 0 { next() as u16 } else { LIKELY[pick as usize % LIKELY.len()] });
+            directory.push(if pick % 9 == 0 {
+                next() as u16
+            } else {
+                LIKELY[pick as usize % LIKELY.len()]
+            });
         }
-        let keys = GeoKeys { directory, doubles: vec![0.0, f64::NAN, -1.0, 1e300], ascii: "é|PCS Name = |".into() };
+        let keys = GeoKeys {
+            directory,
+            doubles: vec![0.0, f64::NAN, -1.0, 1e300],
+            ascii: "é|PCS Name = |".into(),
+        };
         if let Ok(Some(crs)) = keys.crs() {
-            let _ = (crs.to_prj(), crs.to_wkt(), GeoKeys::from_crs(&crs), crs.describe(), crs.is_same(&crs.clone()));
+            let _ = (
+                crs.to_prj(),
+                crs.to_wkt(),
+                GeoKeys::from_crs(&crs),
+                crs.describe(),
+                crs.is_same(&crs.clone()),
+            );
         }
     }
 }
@@ -181,11 +226,15 @@ fn a_unit_beside_a_code_is_the_unit_of_the_coordinates() {
     // is newer.
     let keys = GeoKeys {
         directory: vec![
-            1, 1, 0, 5, 1024, 0, 1, 1, 2048, 0, 1, 6318, 3072, 0, 1, 32104, 3076, 0, 1, 9003, 4099, 0, 1, 9003,
+            1, 1, 0, 5, 1024, 0, 1, 1, 2048, 0, 1, 6318, 3072, 0, 1, 32104, 3076, 0, 1, 9003, 4099,
+            0, 1, 9003,
         ],
         ..GeoKeys::default()
     };
     let crs = keys.crs().unwrap().unwrap();
-    assert_eq!((crs.epsg, crs.unit.name.as_str()), (Some(6880), "US survey foot"));
+    assert_eq!(
+        (crs.epsg, crs.unit.name.as_str()),
+        (Some(6880), "US survey foot")
+    );
     assert_eq!(crs.vertical_unit.unwrap().name, "US survey foot");
 }

@@ -10,14 +10,17 @@ use std::process::Command;
 
 /// The systems that a `.prj` must carry through other programs.
 const CODES: &[u32] = &[
-    25832, 32633, 26915, 3005, 2154, 27700, 2056, 31287, 3857, 4326, 2264, 2994, 6880, 28992, 3031, 32661, 3035, 5070,
-    27572, 5514, 2953, 3395, 2193, 31467, 28356, 4258, 4269, 2949, 32128,
+    25832, 32633, 26915, 3005, 2154, 27700, 2056, 31287, 3857, 4326, 2264, 2994, 6880, 28992, 3031,
+    32661, 3035, 5070, 27572, 5514, 2953, 3395, 2193, 31467, 28356, 4258, 4269, 2949, 32128,
 ];
 
 /// The output of a program; `None`, with a note, if it is not installed.
 fn output(program: &str, args: &[&str]) -> Option<String> {
     match Command::new(program).args(args).output() {
-        Ok(done) => Some(String::from_utf8_lossy(&done.stdout).into_owned() + &String::from_utf8_lossy(&done.stderr)),
+        Ok(done) => Some(
+            String::from_utf8_lossy(&done.stdout).into_owned()
+                + &String::from_utf8_lossy(&done.stderr),
+        ),
         Err(_) => {
             eprintln!("skipped: {program} is not installed");
             None
@@ -28,7 +31,12 @@ fn output(program: &str, args: &[&str]) -> Option<String> {
 /// The code that a text of GDAL's ends with.
 fn last_epsg(text: &str) -> Option<u32> {
     let at = text.rfind("\"EPSG\",")? + 7;
-    text[at..].trim_start_matches('"').split(|c: char| !c.is_ascii_digit()).next()?.parse().ok()
+    text[at..]
+        .trim_start_matches('"')
+        .split(|c: char| !c.is_ascii_digit())
+        .next()?
+        .parse()
+        .ok()
 }
 
 /// Invented systems, one for every method that GeoKeys can represent, as GDAL writes them.
@@ -51,12 +59,32 @@ fn custom() -> Vec<String> {
         projected("Transverse_Mercator", &scaled, metre),
         projected("Transverse_Mercator", &scaled, foot),
         projected("Lambert_Conformal_Conic_1SP", &scaled, metre),
-        projected("Lambert_Conformal_Conic_2SP", &format!("{plain},{conic}"), foot),
-        projected("Albers_Conic_Equal_Area", &format!("{center},{conic}"), metre),
+        projected(
+            "Lambert_Conformal_Conic_2SP",
+            &format!("{plain},{conic}"),
+            foot,
+        ),
+        projected(
+            "Albers_Conic_Equal_Area",
+            &format!("{center},{conic}"),
+            metre,
+        ),
         projected("Oblique_Stereographic", &scaled, metre),
-        projected("Polar_Stereographic", &format!("{pole},PARAMETER[\"scale_factor\",1]"), metre),
-        projected("Mercator_1SP", "PARAMETER[\"central_meridian\",13.5],PARAMETER[\"scale_factor\",0.97]", metre),
-        projected("Mercator_2SP", "PARAMETER[\"central_meridian\",13.5],PARAMETER[\"standard_parallel_1\",42]", metre),
+        projected(
+            "Polar_Stereographic",
+            &format!("{pole},PARAMETER[\"scale_factor\",1]"),
+            metre,
+        ),
+        projected(
+            "Mercator_1SP",
+            "PARAMETER[\"central_meridian\",13.5],PARAMETER[\"scale_factor\",0.97]",
+            metre,
+        ),
+        projected(
+            "Mercator_2SP",
+            "PARAMETER[\"central_meridian\",13.5],PARAMETER[\"standard_parallel_1\",42]",
+            metre,
+        ),
         projected("Lambert_Azimuthal_Equal_Area", center, metre),
         projected("Cassini_Soldner", plain, metre),
         projected("Polyconic", plain, metre),
@@ -67,6 +95,10 @@ fn custom() -> Vec<String> {
             ),
             metre,
         ),
-        projected("Bonne", "PARAMETER[\"standard_parallel_1\",44],PARAMETER[\"central_meridian\",3]", metre),
+        projected(
+            "Bonne",
+            "PARAMETER[\"standard_parallel_1\",44],PARAMETER[\"central_meridian\",3]",
+            metre,
+        ),
     ]
 }

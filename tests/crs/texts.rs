@@ -36,7 +36,10 @@ fn gdal_identifies_our_prj_texts() {
         let path = folder.path().join(format!("{code}.prj"));
         std::fs::write(&path, Crs::from_epsg(code).unwrap().to_prj()).unwrap();
         let path = format!("ESRI::{}", path.display());
-        let Some(found) = output("gdalsrsinfo", &["-e", "--single-line", "-o", "wkt2", &path]) else { return };
+        let Some(found) = output("gdalsrsinfo", &["-e", "--single-line", "-o", "wkt2", &path])
+        else {
+            return;
+        };
         // Two codes of one system, that differ in the order of its axes only.
         let wanted = if code == 32661 { 5041 } else { code };
         assert_eq!(last_epsg(&found), Some(wanted), "{found}");
@@ -47,14 +50,21 @@ fn gdal_identifies_our_prj_texts() {
 fn gdal_reads_our_wkt_as_the_code() {
     for &code in CODES {
         let wkt = Crs::from_epsg(code).unwrap().to_wkt();
-        let Some(found) = output("gdalsrsinfo", &["--single-line", "-o", "epsg", &wkt]) else { return };
+        let Some(found) = output("gdalsrsinfo", &["--single-line", "-o", "epsg", &wkt]) else {
+            return;
+        };
         assert!(found.contains(&format!("EPSG:{code}")), "{found} {wkt}");
     }
 }
 
 #[test]
 fn feet_are_known_from_codes_alone() {
-    for (code, name) in [(6880, "US survey foot"), (2264, "US survey foot"), (2994, "foot"), (25832, "metre")] {
+    for (code, name) in [
+        (6880, "US survey foot"),
+        (2264, "US survey foot"),
+        (2994, "foot"),
+        (25832, "metre"),
+    ] {
         let crs = Crs::from_epsg(code).unwrap();
         assert_eq!(crs.unit.name, name);
         assert_eq!(crs.is_foot(), name != "metre");
@@ -63,7 +73,10 @@ fn feet_are_known_from_codes_alone() {
     assert_eq!(Crs::from_epsg(4326).unwrap().length_unit(), None);
     assert_eq!(Crs::from_epsg(4978).unwrap().kind, CrsKind::Geocentric);
     // No formula in the registry, yet a name and a unit.
-    assert_eq!(Crs::from_epsg(2053).unwrap().name, "Hartebeesthoek94 / Lo29");
+    assert_eq!(
+        Crs::from_epsg(2053).unwrap().name,
+        "Hartebeesthoek94 / Lo29"
+    );
 }
 
 #[test]
@@ -91,8 +104,18 @@ fn what_users_type() {
     ] {
         assert_eq!(Crs::from_user(text).unwrap().epsg, Some(4326), "{text}");
     }
-    assert_eq!(Crs::from_user("urn:ogc:def:crs:OGC:1.3:CRS83").unwrap().epsg, Some(4269));
-    assert_eq!(Crs::from_user("urn:ogc:def:crs:OGC:1.3:CRS27").unwrap().epsg, Some(4267));
+    assert_eq!(
+        Crs::from_user("urn:ogc:def:crs:OGC:1.3:CRS83")
+            .unwrap()
+            .epsg,
+        Some(4269)
+    );
+    assert_eq!(
+        Crs::from_user("urn:ogc:def:crs:OGC:1.3:CRS27")
+            .unwrap()
+            .epsg,
+        Some(4267)
+    );
     let both = Crs::from_user("EPSG:25832+7837").unwrap();
     assert_eq!((both.epsg, both.vertical_epsg), (Some(25832), Some(7837)));
     for text in [
@@ -112,9 +135,17 @@ fn what_users_type() {
     assert!(!both.is_same(&Crs::from_user("EPSG:25832+5783").unwrap()));
     let dutch = Crs::from_epsg(7415).unwrap();
     assert_eq!((dutch.epsg, dutch.vertical_epsg), (Some(28992), Some(5709)));
-    for text in
-        ["", "EPSG:", "EPSG:999999", "EPSG:1", "UTM 32", "EPSG:25832+", "EPSG:25832+25832", "EPSG:5703", "PROJCS["]
-    {
+    for text in [
+        "",
+        "EPSG:",
+        "EPSG:999999",
+        "EPSG:1",
+        "UTM 32",
+        "EPSG:25832+",
+        "EPSG:25832+25832",
+        "EPSG:5703",
+        "PROJCS[",
+    ] {
         let error = Crs::from_user(text).unwrap_err().to_string();
         assert!(!error.is_empty(), "{text}");
     }
@@ -123,21 +154,57 @@ fn what_users_type() {
 #[test]
 fn identifiers_that_are_not_understood_say_why() {
     for (text, why) in [
-        ("urn:ogc:def:crs:IGNF::LAMB93", "the codes of IGNF are not known"),
-        ("urn:ogc:def:crs:OGC:1.3:AUTO42001", "OGC's AUTO42001 is not a system in plan"),
-        ("urn:ogc:def:crs:OGC:1.3:AUTO42001:99:8888", "is not a coordinate system"),
-        ("urn:ogc:def:crs:OGC:1.3:CRS88", "OGC's CRS88 is not a system in plan"),
-        ("urn:ogc:def:crs,crs:EPSG::4979,cs:PROJ::ENh,coordinateOperation:EPSG::16031", "together from a cs"),
-        ("urn:ogc:def:crs,datum:EPSG::6326,cs:EPSG::6422", "together from a datum"),
-        ("urn:ogc:def:crs,crs:EPSG::25832,crs:EPSG::7837,crs:EPSG::5783", "has 3 parts"),
-        ("urn:ogc:def:crs,crs:EPSG::25832,crs:EPSG::25833", "EPSG:25833 is not the code of a vertical"),
-        ("urn:ogc:def:crs,crs:EPSG::7415,crs:EPSG::7837", "has heights of its own"),
+        (
+            "urn:ogc:def:crs:IGNF::LAMB93",
+            "the codes of IGNF are not known",
+        ),
+        (
+            "urn:ogc:def:crs:OGC:1.3:AUTO42001",
+            "OGC's AUTO42001 is not a system in plan",
+        ),
+        (
+            "urn:ogc:def:crs:OGC:1.3:AUTO42001:99:8888",
+            "is not a coordinate system",
+        ),
+        (
+            "urn:ogc:def:crs:OGC:1.3:CRS88",
+            "OGC's CRS88 is not a system in plan",
+        ),
+        (
+            "urn:ogc:def:crs,crs:EPSG::4979,cs:PROJ::ENh,coordinateOperation:EPSG::16031",
+            "together from a cs",
+        ),
+        (
+            "urn:ogc:def:crs,datum:EPSG::6326,cs:EPSG::6422",
+            "together from a datum",
+        ),
+        (
+            "urn:ogc:def:crs,crs:EPSG::25832,crs:EPSG::7837,crs:EPSG::5783",
+            "has 3 parts",
+        ),
+        (
+            "urn:ogc:def:crs,crs:EPSG::25832,crs:EPSG::25833",
+            "EPSG:25833 is not the code of a vertical",
+        ),
+        (
+            "urn:ogc:def:crs,crs:EPSG::7415,crs:EPSG::7837",
+            "has heights of its own",
+        ),
         ("urn:ogc:def:crs,crs:EPSG::5783", "EPSG:5783"),
         ("urn:ogc:def:datum:EPSG::6326", "together from a datum"),
         ("urn:adv:crs:ETRS89_UTM32", "is not a coordinate system"),
-        ("http://www.opengis.net/def/crs/EPSG", "is not a coordinate system"),
-        ("http://www.opengis.net/def/crs-compound?EPSG:25832", "is not a coordinate system"),
-        ("http://spatialreference.org/ref/epsg/25832/", "is not a coordinate system"),
+        (
+            "http://www.opengis.net/def/crs/EPSG",
+            "is not a coordinate system",
+        ),
+        (
+            "http://www.opengis.net/def/crs-compound?EPSG:25832",
+            "is not a coordinate system",
+        ),
+        (
+            "http://spatialreference.org/ref/epsg/25832/",
+            "is not a coordinate system",
+        ),
         ("urn:ogc:def:crs", "is not a coordinate system"),
         ("urn:ogc:def:crs,", "is not a coordinate system"),
     ] {
@@ -159,7 +226,10 @@ fn other_datums_zones_and_units_are_other_systems_whatever_their_names() {
     let moved = Crs::from_wkt(&moved).unwrap();
     assert_eq!(moved.epsg, None);
     assert!(!moved.is_same(&utm32));
-    let feet = utm32.to_wkt().replace("UNIT[\"metre\",1,AUTHORITY[\"EPSG\",\"9001\"]]", "UNIT[\"foot\",0.3048]");
+    let feet = utm32.to_wkt().replace(
+        "UNIT[\"metre\",1,AUTHORITY[\"EPSG\",\"9001\"]]",
+        "UNIT[\"foot\",0.3048]",
+    );
     let feet = Crs::from_wkt(&feet).unwrap();
     assert_eq!((feet.epsg, feet.unit.name.as_str()), (None, "foot"));
     assert!(!feet.is_same(&utm32));
@@ -184,8 +254,13 @@ fn compound_bound_local_and_vertical_wkt() {
     );
     assert_eq!(Crs::from_wkt(&bound).unwrap().epsg, Some(31287));
     let local = Crs::from_wkt("LOCAL_CS[\"mine\",UNIT[\"foot\",0.3048]]").unwrap();
-    assert_eq!((local.kind, local.unit.name.as_str()), (CrsKind::Local, "foot"));
-    assert!(local.is_same(&Crs::from_wkt(&local.to_prj()).unwrap()) || local.to_prj().contains("mine"));
+    assert_eq!(
+        (local.kind, local.unit.name.as_str()),
+        (CrsKind::Local, "foot")
+    );
+    assert!(
+        local.is_same(&Crs::from_wkt(&local.to_prj()).unwrap()) || local.to_prj().contains("mine")
+    );
     assert!(Crs::from_wkt("VERT_CS[\"x\",UNIT[\"metre\",1]]").is_err());
     assert!(Crs::from_wkt("PROJCS[\"x\"]").is_err());
 }
@@ -223,9 +298,14 @@ fn damaged_wkt_never_panics() {
     for round in 0..20_000 {
         let mut text = texts[round % texts.len()].clone();
         for _ in 0..=next(3) {
-            let at = (0..=next(text.len() + 1)).rev().find(|&at| text.is_char_boundary(at)).unwrap();
+            let at = (0..=next(text.len() + 1))
+                .rev()
+                .find(|&at| text.is_char_boundary(at))
+                .unwrap();
             let end = (at + next(12)).min(text.len());
-            let end = (end..=text.len()).find(|&end| text.is_char_boundary(end)).unwrap();
+            let end = (end..=text.len())
+                .find(|&end| text.is_char_boundary(end))
+                .unwrap();
             text.replace_range(at..end, parts[next(parts.len())]);
         }
         if let Ok(crs) = Crs::from_wkt(&text) {
@@ -241,10 +321,16 @@ fn damaged_wkt_never_panics() {
 fn projinfo_wkt_of_every_version_is_read_back_as_the_code() {
     for &code in CODES {
         for version in ["WKT1_GDAL", "WKT1_ESRI", "WKT2:2019", "WKT2:2015"] {
-            let Some(wkt) = output("projinfo", &["-q", "-o", version, &format!("EPSG:{code}")]) else { return };
-            let crs = Crs::from_wkt(&wkt).unwrap_or_else(|error| panic!("EPSG:{code} {version}: {error}\n{wkt}"));
+            let Some(wkt) = output("projinfo", &["-q", "-o", version, &format!("EPSG:{code}")])
+            else {
+                return;
+            };
+            let crs = Crs::from_wkt(&wkt)
+                .unwrap_or_else(|error| panic!("EPSG:{code} {version}: {error}\n{wkt}"));
             assert_eq!(crs.epsg, Some(code), "{version}\n{wkt}");
-            let bare = wkt.replace("ID[\"EPSG\"", "ID[\"NONE\"").replace("AUTHORITY[\"EPSG\"", "AUTHORITY[\"NONE\"");
+            let bare = wkt
+                .replace("ID[\"EPSG\"", "ID[\"NONE\"")
+                .replace("AUTHORITY[\"EPSG\"", "AUTHORITY[\"NONE\"");
             let crs = Crs::from_wkt(&bare).unwrap();
             assert_eq!(crs.epsg, Some(code), "{version}\n{bare}");
         }

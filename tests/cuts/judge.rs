@@ -27,7 +27,10 @@ pub(crate) fn judge(scene: &Scene) -> Result<usize, String> {
         _ => return Ok(0), // nothing to cut
     };
     let mut builder = scene.builder();
-    scene.polygons.iter().for_each(|rings| builder.add_boundary(rings));
+    scene
+        .polygons
+        .iter()
+        .for_each(|rings| builder.add_boundary(rings));
     builder.bounds = scene.bounds;
     let tin = builder.build().map_err(|error| error.to_string())?;
     let (before, after) = (Found::new(&uncut)?, Found::new(&tin)?);
@@ -52,12 +55,19 @@ fn judge_fragments(after: &Found) -> Result<(), String> {
     }
     for &[from, to] in &after.rim {
         let (p, q) = (after.at(from), after.at(to));
-        for vertex in after.faces.as_flattened().iter().filter(|&&v| v != from && v != to) {
+        for vertex in after
+            .faces
+            .as_flattened()
+            .iter()
+            .filter(|&&v| v != from && v != to)
+        {
             let v = after.at(*vertex);
             let along = (&v[0] - &p[0]) * (&q[0] - &p[0]) + (&v[1] - &p[1]) * (&q[1] - &p[1]);
             let length = (&q[0] - &p[0]) * (&q[0] - &p[0]) + (&q[1] - &p[1]) * (&q[1] - &p[1]);
             if turn(p, q, v) == RBig::ZERO && along > RBig::ZERO && along < length {
-                return Err(format!("vertex {vertex} lies in the middle of the side {from} {to}"));
+                return Err(format!(
+                    "vertex {vertex} lies in the middle of the side {from} {to}"
+                ));
             }
         }
     }
@@ -73,7 +83,9 @@ fn judge_area(region: &Region, after: &Found) -> Result<(), String> {
     let tolerance = UNITS * region.unit * region.perimeter;
     if off.abs() > tolerance {
         let area = region.area.to_f64().value();
-        return Err(format!("the area is off by {off}, tolerance {tolerance}, expected {area}"));
+        return Err(format!(
+            "the area is off by {off}, tolerance {tolerance}, expected {area}"
+        ));
     }
     Ok(())
 }
@@ -83,7 +95,10 @@ fn judge_rim(scene: &Scene, region: &Region, after: &Found) -> Result<(), String
         let (p, q) = (after.at(from), after.at(to));
         let exactly = [0, 1].map(|k| (&p[k] + &q[k]) / exact(2.0));
         let middle = [0, 1].map(|k| (&exactly[k] - &region.origin[k]).to_f64().value());
-        let is_near_rim = region.rim.iter().any(|&side| distance(side, middle) <= UNITS * region.unit);
+        let is_near_rim = region
+            .rim
+            .iter()
+            .any(|&side| distance(side, middle) <= UNITS * region.unit);
         if !is_near_rim && (region.holds(scene, &exactly) || !region.is_along_a_line(&exactly)) {
             return Err(format!(
                 "a crack: nothing bounds the surface along {from} {to}, at {middle:?} from its corner"
@@ -95,18 +110,29 @@ fn judge_rim(scene: &Scene, region: &Region, after: &Found) -> Result<(), String
 
 /// Each vertex and the middle of each face against the planes of the triangles there.
 fn judge_heights(region: &Region, before: &Found, after: &Found) -> Result<(), String> {
-    let vertices = (0..).zip(&after.vertices).filter_map(|(i, p)| Some((format!("vertex {i}"), p.clone()?)));
+    let vertices = (0..)
+        .zip(&after.vertices)
+        .filter_map(|(i, p)| Some((format!("vertex {i}"), p.clone()?)));
     let middle = |&face: &[usize; 3]| {
         let [a, b, c] = after.corners(face);
         let corners = [a, b, c].map(|p| [0, 1, 2].map(|k| p[k].to_f64().value()));
-        (format!("the middle of {face:?}, {corners:?}"), [0, 1, 2].map(|k| (&a[k] + &b[k] + &c[k]) / exact(3.0)))
+        (
+            format!("the middle of {face:?}, {corners:?}"),
+            [0, 1, 2].map(|k| (&a[k] + &b[k] + &c[k]) / exact(3.0)),
+        )
     };
     for (what, p) in vertices.chain(after.faces.iter().map(middle)) {
-        let here = before.faces.iter().map(|&face| before.corners(face)).filter(|face| is_near(face, &p, region.unit));
+        let here = before
+            .faces
+            .iter()
+            .map(|&face| before.corners(face))
+            .filter(|face| is_near(face, &p, region.unit));
         let off: Vec<(f64, f64)> = here.map(|face| off_plane(face, &p, region.unit)).collect();
         if !off.iter().any(|(off, tolerance)| off <= tolerance) {
             let site = [0, 1, 2].map(|k| p[k].to_f64().value());
-            return Err(format!("{what}, at {site:?}, is off by and may be by {off:?}"));
+            return Err(format!(
+                "{what}, at {site:?}, is off by and may be by {off:?}"
+            ));
         }
     }
     Ok(())
@@ -116,7 +142,8 @@ fn judge_heights(region: &Region, before: &Found, after: &Found) -> Result<(), S
 fn is_near([a, b, c]: &[&Exact; 3], p: &Exact, unit: f64) -> bool {
     // Rounding loses far less than this, and most triangles are farther away.
     const FAR: f64 = 1e-3;
-    let [at, corners] = [[p, p, p], [*a, *b, *c]].map(|points| points.map(|p| [0, 1].map(|k| p[k].to_f64().value())));
+    let [at, corners] = [[p, p, p], [*a, *b, *c]]
+        .map(|points| points.map(|p| [0, 1].map(|k| p[k].to_f64().value())));
     let is_far = |k: usize| {
         let [u, v, w] = corners.map(|corner| corner[k] - at[0][k]);
         u.min(v).min(w) > FAR || u.max(v).max(w) < -FAR
@@ -135,20 +162,37 @@ fn off_plane([a, b, c]: [&Exact; 3], p: &Exact, unit: f64) -> (f64, f64) {
     let size = turn(a, b, c);
     let (at_b, at_c) = (turn(a, p, c) / &size, turn(a, b, p) / &size);
     let [up_b, up_c] = [&b[2] - &a[2], &c[2] - &a[2]];
-    let off = (&p[2] - &a[2] - at_b * &up_b - at_c * &up_c).to_f64().value();
-    let slope = [(1, &up_b, &up_c), (0, &up_b, &up_c)]
-        .map(|(k, up_b, up_c)| (((&c[k] - &a[k]) * up_b - (&b[k] - &a[k]) * up_c) / &size).to_f64().value());
-    let highest = [a, b, c].map(|q| q[2].to_f64().value().abs()).into_iter().fold(0.0, f64::max);
-    (off.abs(), UNITS * unit * slope[0].hypot(slope[1]) + 1e-12 * highest)
+    let off = (&p[2] - &a[2] - at_b * &up_b - at_c * &up_c)
+        .to_f64()
+        .value();
+    let slope = [(1, &up_b, &up_c), (0, &up_b, &up_c)].map(|(k, up_b, up_c)| {
+        (((&c[k] - &a[k]) * up_b - (&b[k] - &a[k]) * up_c) / &size)
+            .to_f64()
+            .value()
+    });
+    let highest = [a, b, c]
+        .map(|q| q[2].to_f64().value().abs())
+        .into_iter()
+        .fold(0.0, f64::max);
+    (
+        off.abs(),
+        UNITS * unit * slope[0].hypot(slope[1]) + 1e-12 * highest,
+    )
 }
 
 /// Checks that the triangulation underneath is that of the uncut surface.
 fn judge_uncut(uncut: &Tin, tin: &Tin) -> Result<(), String> {
     let all = |tin: &Tin| {
         let t = tin.triangulation();
-        t.finite_cells().map(|cell| t.tds().corners(cell).map(|v| t.point(v).map(f64::to_bits))).collect::<Vec<_>>()
+        t.finite_cells()
+            .map(|cell| t.tds().corners(cell).map(|v| t.point(v).map(f64::to_bits)))
+            .collect::<Vec<_>>()
     };
-    if all(uncut) == all(tin) { Ok(()) } else { Err("the triangulation beneath has changed".to_owned()) }
+    if all(uncut) == all(tin) {
+        Ok(())
+    } else {
+        Err("the triangulation beneath has changed".to_owned())
+    }
 }
 
 /// The part of the surface that is to be kept.
@@ -187,9 +231,20 @@ impl Line {
         assert!(from[0] < to[0], "a side is upright when sheared");
         let slope = (&to[1] - &from[1]) / (&to[0] - &from[0]);
         let about = [&from, &to].map(|p| [0, 1].map(|k| p[k].to_f64().value()));
-        let largest = about.as_flattened().iter().fold(0.0, |sum: f64, x| sum.max(x.abs()));
+        let largest = about
+            .as_flattened()
+            .iter()
+            .fold(0.0, |sum: f64, x| sum.max(x.abs()));
         let doubt = DOUBT + RELATIVE_DOUBT * largest;
-        Line { domain, from, to, about_slope: slope.to_f64().value(), slope, about, doubt }
+        Line {
+            domain,
+            from,
+            to,
+            about_slope: slope.to_f64().value(),
+            slope,
+            about,
+            doubt,
+        }
     }
 
     fn height(&self, x: &RBig) -> RBig {
@@ -198,7 +253,10 @@ impl Line {
 
     /// The height, rounded, and its largest error.
     fn about(&self, x: f64) -> (f64, f64) {
-        (self.about[0][1] + (x - self.about[0][0]) * self.about_slope, self.doubt * (1.0 + self.about_slope.abs()))
+        (
+            self.about[0][1] + (x - self.about[0][0]) * self.about_slope,
+            self.doubt * (1.0 + self.about_slope.abs()),
+        )
     }
 
     fn is_apart(&self, other: &Line) -> bool {
@@ -214,7 +272,8 @@ impl Line {
         if self.is_apart(other) || self.slope == other.slope {
             return None;
         }
-        let x = (other.height(&RBig::ZERO) - self.height(&RBig::ZERO)) / (&self.slope - &other.slope);
+        let x =
+            (other.height(&RBig::ZERO) - self.height(&RBig::ZERO)) / (&self.slope - &other.slope);
         let is_within = |line: &Line| line.from[0] < x && x < line.to[0];
         (is_within(self) && is_within(other)).then_some(x)
     }
@@ -231,21 +290,36 @@ impl Region {
         let mut sides: Vec<(usize, [[RBig; 2]; 2])> = Vec::new();
         for (domain, ring) in &curves {
             let next = ring.iter().cycle().skip(1);
-            sides.extend(ring.iter().zip(next).map(|(p, q)| (*domain, [p, q].map(|p| sheared(&p.map(exact))))));
+            sides.extend(
+                ring.iter()
+                    .zip(next)
+                    .map(|(p, q)| (*domain, [p, q].map(|p| sheared(&p.map(exact))))),
+            );
         }
-        sides.extend(before.rim.iter().map(|ends| (surface, ends.map(|end| sheared(before.at(end))))));
+        sides.extend(
+            before
+                .rim
+                .iter()
+                .map(|ends| (surface, ends.map(|end| sheared(before.at(end))))),
+        );
         sides.retain(|(_, [p, q])| p != q);
         let length = |[p, q]: &[[RBig; 2]; 2]| {
             let [x, y] = [0, 1].map(|k| (&q[k] - &p[k]).to_f64().value());
             x.hypot(y)
         };
         // No side runs further through the surface than the sum of the rim's sides.
-        let around: f64 = sides.iter().filter(|(domain, _)| *domain == surface).map(|(_, side)| length(side)).sum();
+        let around: f64 = sides
+            .iter()
+            .filter(|(domain, _)| *domain == surface)
+            .map(|(_, side)| length(side))
+            .sum();
         let perimeter = sides.iter().map(|(_, side)| length(side).min(around)).sum();
         let coordinates = before.vertices.iter().flatten().flat_map(|p| &p[..2]);
         let of_surface = coordinates.fold(0.0, |sum: f64, x| sum.max(x.to_f64().value().abs()));
         let of_curves = curves.iter().flat_map(|(_, ring)| ring.as_flattened());
-        let largest = of_curves.fold(of_surface, |sum, x| sum.max(x.abs())).min(2.0 * of_surface);
+        let largest = of_curves
+            .fold(of_surface, |sum, x| sum.max(x.abs()))
+            .min(2.0 * of_surface);
         let lines: Vec<Line> = sides
             .into_iter()
             .map(|(domain, [p, q])| {
@@ -254,9 +328,19 @@ impl Region {
             })
             .collect();
         let unit = largest.next_up() - largest;
-        let mut region =
-            Region { area: RBig::ZERO, rim: Vec::new(), origin, perimeter, unit, surface, lines: Vec::new() };
-        let mut at: Vec<RBig> = lines.iter().flat_map(|line| [line.from[0].clone(), line.to[0].clone()]).collect();
+        let mut region = Region {
+            area: RBig::ZERO,
+            rim: Vec::new(),
+            origin,
+            perimeter,
+            unit,
+            surface,
+            lines: Vec::new(),
+        };
+        let mut at: Vec<RBig> = lines
+            .iter()
+            .flat_map(|line| [line.from[0].clone(), line.to[0].clone()])
+            .collect();
         for (i, line) in lines.iter().enumerate() {
             at.extend(lines[..i].iter().filter_map(|other| line.crossing(other)));
         }
@@ -273,7 +357,11 @@ impl Region {
     fn holds(&self, scene: &Scene, site: &[RBig; 2]) -> bool {
         let [x, y] = sheared(&self.origin, site);
         let mut within = vec![false; self.surface + 1];
-        for line in self.lines.iter().filter(|line| line.from[0] <= x && x < line.to[0]) {
+        for line in self
+            .lines
+            .iter()
+            .filter(|line| line.from[0] <= x && x < line.to[0])
+        {
             within[line.domain] ^= line.height(&x) > y;
         }
         within[self.surface] && scene.is_kept(|domain| within[domain])
@@ -291,9 +379,18 @@ impl Region {
         })
     }
 
-    fn add_slab(&mut self, scene: &Scene, surface: usize, lines: &[Line], left: &RBig, right: &RBig) {
+    fn add_slab(
+        &mut self,
+        scene: &Scene,
+        surface: usize,
+        lines: &[Line],
+        left: &RBig,
+        right: &RBig,
+    ) {
         let middle = (left + right) / exact(2.0);
-        let here = lines.iter().filter(|line| line.from[0] <= *left && *right <= line.to[0]);
+        let here = lines
+            .iter()
+            .filter(|line| line.from[0] <= *left && *right <= line.to[0]);
         let about = middle.to_f64().value();
         let mut here: Vec<&Line> = here.collect();
         let order = |p: &Line, q: &Line| {

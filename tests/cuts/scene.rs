@@ -16,10 +16,19 @@ pub(crate) struct Units {
 }
 
 pub(crate) const UNITS: [Units; 3] = [
-    Units { origin: [0.0, 0.0], step: 1.0 },
-    Units { origin: [500_000.0, 4_649_000.0], step: 1.37 },
+    Units {
+        origin: [0.0, 0.0],
+        step: 1.0,
+    },
+    Units {
+        origin: [500_000.0, 4_649_000.0],
+        step: 1.37,
+    },
     // On both sides of powers of two, where the doubles are twice as dense below as above.
-    Units { origin: [524_280.0, 4_194_296.0], step: 0.81 },
+    Units {
+        origin: [524_280.0, 4_194_296.0],
+        step: 0.81,
+    },
 ];
 
 /// Cells of the grid on a side.
@@ -53,7 +62,10 @@ pub(crate) const KINDS: [(&str, Draw); 10] = [
 
 impl Units {
     fn at(&self, [i, j]: [f64; 2]) -> Site {
-        [self.origin[0] + i * self.step, self.origin[1] + j * self.step]
+        [
+            self.origin[0] + i * self.step,
+            self.origin[1] + j * self.step,
+        ]
     }
 
     /// A corner of the grid, within the data or a little beyond.
@@ -62,7 +74,9 @@ impl Units {
     }
 
     fn ring(&self, random: &mut Random) -> Ring {
-        (0..3 + random.below(5)).map(|_| self.corner(random)).collect()
+        (0..3 + random.below(5))
+            .map(|_| self.corner(random))
+            .collect()
     }
 }
 
@@ -84,7 +98,9 @@ impl Scene {
         }
         for _ in 0..random.below(3) {
             let length = 2 + random.below(2);
-            scene.breaklines.push((0..length).map(|_| within(random)).collect());
+            scene
+                .breaklines
+                .push((0..length).map(|_| within(random)).collect());
         }
         scene.max_edge = (random.below(4) == 0).then_some(0.4 * side * units.step);
         draw(&mut scene, random, units);
@@ -97,7 +113,9 @@ impl Scene {
         for &[x, y, z] in &self.points {
             builder.add_points(&[x], &[y], &[z]);
         }
-        self.breaklines.iter().for_each(|line| builder.add_breakline(line));
+        self.breaklines
+            .iter()
+            .for_each(|line| builder.add_breakline(line));
         builder.max_edge = self.max_edge;
         builder
     }
@@ -105,10 +123,19 @@ impl Scene {
     /// The closed curves with the domain that each bounds: 0 for the bounds, polygons count from 1.
     pub(crate) fn curves(&self) -> Vec<(usize, Ring)> {
         let polygons = self.polygons.iter().zip(1..);
-        let mut curves: Vec<(usize, Ring)> =
-            polygons.flat_map(|(rings, number)| rings.iter().map(move |ring| (number, ring.clone()))).collect();
+        let mut curves: Vec<(usize, Ring)> = polygons
+            .flat_map(|(rings, number)| rings.iter().map(move |ring| (number, ring.clone())))
+            .collect();
         if let Some(Bounds { min, max }) = self.bounds {
-            curves.push((0, vec![[min[0], min[1]], [max[0], min[1]], [max[0], max[1]], [min[0], max[1]]]));
+            curves.push((
+                0,
+                vec![
+                    [min[0], min[1]],
+                    [max[0], min[1]],
+                    [max[0], max[1]],
+                    [min[0], max[1]],
+                ],
+            ));
         }
         curves
     }
@@ -122,7 +149,11 @@ impl Scene {
 
 fn anything(scene: &mut Scene, random: &mut Random, units: Units) {
     for _ in 0..1 + random.below(3) {
-        scene.polygons.push((0..1 + random.below(2)).map(|_| units.ring(random)).collect());
+        scene.polygons.push(
+            (0..1 + random.below(2))
+                .map(|_| units.ring(random))
+                .collect(),
+        );
     }
 }
 
@@ -138,7 +169,10 @@ fn adjacent(scene: &mut Scene, random: &mut Random, units: Units) {
     let mut below = between.clone();
     below.extend([units.at([side + 1.0, -1.0]), units.at([-1.0, -1.0])]);
     let mut above = between;
-    above.extend([units.at([side + 1.0, side - 1.0]), units.at([-1.0, side - 1.0])]);
+    above.extend([
+        units.at([side + 1.0, side - 1.0]),
+        units.at([-1.0, side - 1.0]),
+    ]);
     if random.below(2) == 0 {
         above.reverse();
     }
@@ -147,7 +181,11 @@ fn adjacent(scene: &mut Scene, random: &mut Random, units: Units) {
 
 /// A polygon with a corner in the middle of a side of another one, exactly or up to rounding.
 fn corners_on_sides(scene: &mut Scene, random: &mut Random, units: Units) {
-    let (a, b, c) = (units.corner(random), units.corner(random), units.corner(random));
+    let (a, b, c) = (
+        units.corner(random),
+        units.corner(random),
+        units.corner(random),
+    );
     let part = random.pick(&[0.5, 0.25, 1.0 / 3.0, 0.7]);
     let middle = [0, 1].map(|k| a[k] + part * (b[k] - a[k]));
     scene.polygons.push(vec![vec![a, b, c]]);
@@ -168,7 +206,14 @@ fn spikes(scene: &mut Scene, random: &mut Random, units: Units) {
     let tip = units.corner(random);
     let part = random.unit();
     let between = [0, 1].map(|k| ulps(from[k] + part * (tip[k] - from[k]), random.around(1)));
-    ring.splice(at + 1..at + 1, if random.below(2) == 0 { vec![tip, between] } else { vec![between, tip, from] });
+    ring.splice(
+        at + 1..at + 1,
+        if random.below(2) == 0 {
+            vec![tip, between]
+        } else {
+            vec![between, tip, from]
+        },
+    );
     scene.polygons.push(vec![ring]);
 }
 
@@ -176,7 +221,11 @@ fn spikes(scene: &mut Scene, random: &mut Random, units: Units) {
 fn no_area(scene: &mut Scene, random: &mut Random, units: Units) {
     let [a, b] = [units.corner(random), units.corner(random)];
     let between = [0, 1].map(|k| a[k] + 0.5 * (b[k] - a[k]));
-    scene.polygons.push(vec![random.pick(&[&[a, b, between][..], &[a, b, a], &[a, b], &[a, a, a]]).to_vec()]);
+    scene.polygons.push(vec![
+        random
+            .pick(&[&[a, b, between][..], &[a, b, a], &[a, b], &[a, a, a]])
+            .to_vec(),
+    ]);
     if random.below(2) == 0 {
         scene.polygons.push(vec![units.ring(random)]);
     }
@@ -187,9 +236,20 @@ fn no_area(scene: &mut Scene, random: &mut Random, units: Units) {
 fn holes(scene: &mut Scene, random: &mut Random, units: Units) {
     let side = SIDE as f64;
     let square = |low: [f64; 2], high: [f64; 2]| {
-        [[low[0], low[1]], [high[0], low[1]], [high[0], high[1]], [low[0], high[1]]].map(|p| units.at(p)).to_vec()
+        [
+            [low[0], low[1]],
+            [high[0], low[1]],
+            [high[0], high[1]],
+            [low[0], high[1]],
+        ]
+        .map(|p| units.at(p))
+        .to_vec()
     };
-    let hole = vec![units.at([1.0, random.below(SIDE) as f64]), units.corner(random), units.corner(random)];
+    let hole = vec![
+        units.at([1.0, random.below(SIDE) as f64]),
+        units.corner(random),
+        units.corner(random),
+    ];
     let shared = hole[random.index(3)];
     let island = vec![shared, units.corner(random), units.corner(random)];
     let mut rings = vec![square([1.0, 1.0], [side - 1.0, side - 2.0]), hole, island];
@@ -206,7 +266,11 @@ fn through_vertices(scene: &mut Scene, random: &mut Random, units: Units) {
     for _ in 0..1 + random.below(2) {
         let (p, q) = (vertex(scene, random), vertex(scene, random));
         let beyond = [0, 1].map(|k| q[k] + (q[k] - p[k]));
-        let third = if random.below(2) == 0 { vertex(scene, random) } else { units.corner(random) };
+        let third = if random.below(2) == 0 {
+            vertex(scene, random)
+        } else {
+            units.corner(random)
+        };
         scene.polygons.push(vec![vec![p, beyond, third]]);
     }
 }
@@ -219,16 +283,26 @@ fn across_breaklines(scene: &mut Scene, random: &mut Random, units: Units) {
     let ring: Ring = (0..4 + random.below(4))
         .map(|k| {
             let above = if k % 2 == 0 { 1.0 } else { -1.0 };
-            units.at([random.below(SIDE) as f64, j as f64 + above * (1 + random.below(3)) as f64])
+            units.at([
+                random.below(SIDE) as f64,
+                j as f64 + above * (1 + random.below(3)) as f64,
+            ])
         })
         .collect();
-    scene.points.extend(ring.iter().filter(|_| random.below(2) == 0).map(|&[x, y]| [x, y, 1.0]));
+    scene.points.extend(
+        ring.iter()
+            .filter(|_| random.below(2) == 0)
+            .map(|&[x, y]| [x, y, 1.0]),
+    );
     scene.polygons.push(vec![ring]);
 }
 
 fn bounds(scene: &mut Scene, random: &mut Random, units: Units) {
     let (a, b) = (units.corner(random), units.corner(random));
-    let [min, max] = [[a[0].min(b[0]), a[1].min(b[1]), 0.0], [a[0].max(b[0]), a[1].max(b[1]), 0.0]];
+    let [min, max] = [
+        [a[0].min(b[0]), a[1].min(b[1]), 0.0],
+        [a[0].max(b[0]), a[1].max(b[1]), 0.0],
+    ];
     scene.bounds = Some(Bounds { min, max });
     if random.below(2) == 0 {
         scene.polygons.push(vec![units.ring(random)]);
@@ -237,7 +311,8 @@ fn bounds(scene: &mut Scene, random: &mut Random, units: Units) {
 
 /// A polygon and bounds of which some corners are as far away as "no limit" is.
 fn far_corners(scene: &mut Scene, random: &mut Random, units: Units) {
-    let far = |random: &mut Random| random.around(1) as f64 * 2.0_f64.powi(4 + random.below(57) as i32);
+    let far =
+        |random: &mut Random| random.around(1) as f64 * 2.0_f64.powi(4 + random.below(57) as i32);
     let mut ring = units.ring(random);
     for _ in 0..1 + random.below(3) {
         let at = random.index(ring.len());
@@ -249,7 +324,9 @@ fn far_corners(scene: &mut Scene, random: &mut Random, units: Units) {
     if scene.polygons.is_empty() || random.below(2) == 0 {
         bounds(scene, random, units);
         if let Some(Bounds { min, max }) = &mut scene.bounds {
-            (0..2).for_each(|k| (min[k], max[k]) = (min[k] - far(random).abs(), max[k] + far(random).abs()));
+            (0..2).for_each(|k| {
+                (min[k], max[k]) = (min[k] - far(random).abs(), max[k] + far(random).abs())
+            });
         }
     }
 }

@@ -19,17 +19,39 @@ pub(crate) type Dependencies = BTreeMap<Module, BTreeSet<(String, String)>>;
 
 /// Returns the dependencies among files, given as paths below the folder `src` and texts.
 pub(crate) fn dependencies<P: AsRef<str>, T: AsRef<str>>(files: &[(P, T)]) -> Dependencies {
-    let files =
-        files.iter().map(|(path, text)| (path.as_ref(), text.as_ref())).filter(|(path, _)| !path.ends_with("tests.rs"));
-    let source = |path: &str, text| if path.contains(".py") { Source::of_python(text) } else { Source::of(text) };
-    let modules: BTreeMap<Module, Source> = files.map(|(path, text)| (module_of(path), source(path, text))).collect();
+    let files = files
+        .iter()
+        .map(|(path, text)| (path.as_ref(), text.as_ref()))
+        .filter(|(path, _)| !path.ends_with("tests.rs"));
+    let source = |path: &str, text| {
+        if path.contains(".py") {
+            Source::of_python(text)
+        } else {
+            Source::of(text)
+        }
+    };
+    let modules: BTreeMap<Module, Source> = files
+        .map(|(path, text)| (module_of(path), source(path, text)))
+        .collect();
     let mut dependencies = Dependencies::new();
     for (from, source) in &modules {
-        for to in source.used(from, &modules).iter().map(|path| resolved(&modules, from, path, 0)) {
+        for to in source
+            .used(from, &modules)
+            .iter()
+            .map(|path| resolved(&modules, from, path, 0))
+        {
             let shared = from.iter().zip(&to).take_while(|(a, b)| a == b).count();
-            let node = |module: &Module| module.get(shared).map_or(OWN_FILE, String::as_str).to_owned();
+            let node = |module: &Module| {
+                module
+                    .get(shared)
+                    .map_or(OWN_FILE, String::as_str)
+                    .to_owned()
+            };
             if *from != to {
-                dependencies.entry(from[..shared].to_vec()).or_default().insert((node(from), node(&to)));
+                dependencies
+                    .entry(from[..shared].to_vec())
+                    .or_default()
+                    .insert((node(from), node(&to)));
             }
         }
     }
@@ -38,7 +60,10 @@ pub(crate) fn dependencies<P: AsRef<str>, T: AsRef<str>>(files: &[(P, T)]) -> De
 
 /// `io/geotiff/mod.rs` is `io`, `geotiff`; `lib.rs` is the root.
 fn module_of(path: &str) -> Module {
-    let path = path.trim_end_matches(".rs").trim_end_matches(".py").trim_end_matches(".pyi");
+    let path = path
+        .trim_end_matches(".rs")
+        .trim_end_matches(".py")
+        .trim_end_matches(".pyi");
     let path = path.strip_suffix("/mod").unwrap_or(path);
     if ["lib", "main", "mod", "__init__"].contains(&path) {
         Vec::new()
@@ -48,7 +73,12 @@ fn module_of(path: &str) -> Module {
 }
 
 /// The module that a path leads to, from the module that has it in its text.
-fn resolved(modules: &BTreeMap<Module, Source>, from: &Module, path: &[String], depth: u32) -> Module {
+fn resolved(
+    modules: &BTreeMap<Module, Source>,
+    from: &Module,
+    path: &[String],
+    depth: u32,
+) -> Module {
     let mut here = from.clone();
     for (i, name) in path.iter().enumerate() {
         match name.as_str() {
@@ -62,9 +92,17 @@ fn resolved(modules: &BTreeMap<Module, Source>, from: &Module, path: &[String], 
                 }
                 here.pop();
                 // A re-export, if it is not the import that is asked about.
-                let import = modules.get(&here).and_then(|source| source.imports.get(name));
-                return match import.filter(|import| depth < 8 && (here != *from || *import != path)) {
-                    Some(import) => resolved(modules, &here, &[import, &path[i + 1..]].concat(), depth + 1),
+                let import = modules
+                    .get(&here)
+                    .and_then(|source| source.imports.get(name));
+                return match import.filter(|import| depth < 8 && (here != *from || *import != path))
+                {
+                    Some(import) => resolved(
+                        modules,
+                        &here,
+                        &[import, &path[i + 1..]].concat(),
+                        depth + 1,
+                    ),
                     None => here,
                 };
             }
@@ -88,8 +126,13 @@ struct Source {
 
 impl Source {
     fn of(text: &str) -> Self {
-        let text = text.split("#[cfg(test)]\nmod tests {").next().unwrap_or_default();
-        let lines = text.lines().map(|line| line.split("//").next().unwrap_or_default());
+        let text = text
+            .split("#[cfg(test)]\nmod tests {")
+            .next()
+            .unwrap_or_default();
+        let lines = text
+            .lines()
+            .map(|line| line.split("//").next().unwrap_or_default());
         let text = lines.collect::<Vec<_>>().join("\n");
         let mut source = Source::default();
         let mut rest = &text[..];
@@ -108,7 +151,11 @@ impl Source {
         }
         source.code.push_str(rest);
         for start in ["crate::", "super::", "self::"] {
-            for (at, _) in source.code.match_indices(start).filter(|&(at, _)| starts_path(&source.code, at)) {
+            for (at, _) in source
+                .code
+                .match_indices(start)
+                .filter(|&(at, _)| starts_path(&source.code, at))
+            {
                 source.paths.push(path(&source.code[at..]));
             }
         }
@@ -118,10 +165,23 @@ impl Source {
     /// What a file of Python imports from its own package, anywhere in it.
     fn of_python(text: &str) -> Self {
         let mut source = Source::default();
-        for line in text.lines().filter_map(|line| line.trim_start().strip_prefix("from .")) {
-            let Some((module, names)) = line.split_once(" import ") else { continue };
-            let modules: Vec<&str> = if module.is_empty() { names.split(',').collect() } else { vec![module] };
-            source.paths.extend(modules.iter().map(|name| vec!["crate".to_owned(), name.trim().to_owned()]));
+        for line in text
+            .lines()
+            .filter_map(|line| line.trim_start().strip_prefix("from ."))
+        {
+            let Some((module, names)) = line.split_once(" import ") else {
+                continue;
+            };
+            let modules: Vec<&str> = if module.is_empty() {
+                names.split(',').collect()
+            } else {
+                vec![module]
+            };
+            source.paths.extend(
+                modules
+                    .iter()
+                    .map(|name| vec!["crate".to_owned(), name.trim().to_owned()]),
+            );
         }
         source
     }
@@ -129,7 +189,10 @@ impl Source {
     /// Adds what one import names, braces and all.
     fn import(&mut self, mut path: Vec<String>, tree: &str, is_public: bool) {
         let mut tree = tree.trim();
-        while let Some((first, rest)) = tree.split_once("::").filter(|(first, _)| is_name(first.trim())) {
+        while let Some((first, rest)) = tree
+            .split_once("::")
+            .filter(|(first, _)| is_name(first.trim()))
+        {
             path.push(first.trim().to_owned());
             tree = rest.trim();
         }
@@ -149,7 +212,11 @@ impl Source {
         if item.trim() != "*" && item.trim() != "self" {
             path.push(item.trim().to_owned());
         }
-        let alias = if alias.trim() == "self" { path.last().cloned() } else { Some(alias.trim().to_owned()) };
+        let alias = if alias.trim() == "self" {
+            path.last().cloned()
+        } else {
+            Some(alias.trim().to_owned())
+        };
         if is_public {
             self.exported.extend(alias.clone());
         } else {
@@ -163,14 +230,19 @@ impl Source {
     fn used(&self, here: &Module, modules: &BTreeMap<Module, Source>) -> Vec<Vec<String>> {
         let mut used = self.paths.clone();
         let mut at = 0;
-        for word in self.code.split_inclusive(|c: char| !c.is_alphanumeric() && c != '_') {
+        for word in self
+            .code
+            .split_inclusive(|c: char| !c.is_alphanumeric() && c != '_')
+        {
             let name = word.trim_end_matches(|c: char| !c.is_alphanumeric() && c != '_');
             let behind = &self.code[at + name.len()..];
             if !name.is_empty() && starts_path(&self.code, at) {
                 let is_type = name.starts_with(|c: char| c.is_uppercase());
                 if self.exported.contains(name) && (is_type || behind.starts_with(['(', ':'])) {
                     used.push(self.imports[name].clone());
-                } else if behind.starts_with("::") && modules.contains_key(&[&here[..], &[name.to_owned()]].concat()) {
+                } else if behind.starts_with("::")
+                    && modules.contains_key(&[&here[..], &[name.to_owned()]].concat())
+                {
                     used.push(path(&self.code[at..]));
                 }
             }
@@ -184,8 +256,9 @@ impl Source {
 /// dot, or the word that defines a name.
 fn starts_path(code: &str, at: usize) -> bool {
     let before = &code[..at];
-    let is_defined =
-        ["fn", "mod", "struct", "enum", "trait", "type"].iter().any(|word| before.trim_end().ends_with(word));
+    let is_defined = ["fn", "mod", "struct", "enum", "trait", "type"]
+        .iter()
+        .any(|word| before.trim_end().ends_with(word));
     !before.ends_with(|c: char| c.is_alphanumeric() || ['_', ':', '.'].contains(&c)) && !is_defined
 }
 
@@ -197,7 +270,9 @@ fn is_name(word: &str) -> bool {
 fn path(mut text: &str) -> Vec<String> {
     let mut path = Vec::new();
     loop {
-        let end = text.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(text.len());
+        let end = text
+            .find(|c: char| !c.is_alphanumeric() && c != '_')
+            .unwrap_or(text.len());
         if end > 0 {
             path.push(text[..end].to_owned());
         }

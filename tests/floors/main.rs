@@ -46,7 +46,13 @@ const TRIANGULATIONS: Floors = &[
 /// The folders of `breakline` that have floors of their own. Their `mod.rs` only lists them.
 const FOLDERS: [(&str, Floors); 2] = [("io", IO), ("run", RUN)];
 
-const IO: Floors = &[&["bytes"], &["options"], &["codec"], &["formats"], &["fronts"]];
+const IO: Floors = &[
+    &["bytes"],
+    &["options"],
+    &["codec"],
+    &["formats"],
+    &["fronts"],
+];
 
 const RUN: Floors = &[
     &["request"],
@@ -97,7 +103,10 @@ fn files_use_lower_floors_only() {
 #[test]
 fn folders_use_lower_floors_only() {
     let files = sources("src");
-    let faults: Vec<String> = FOLDERS.iter().flat_map(|(folder, floors)| faults_in(folder, floors, &files)).collect();
+    let faults: Vec<String> = FOLDERS
+        .iter()
+        .flat_map(|(folder, floors)| faults_in(folder, floors, &files))
+        .collect();
     assert!(faults.is_empty(), "\n{}", faults.join("\n"));
 }
 
@@ -105,30 +114,68 @@ fn folders_use_lower_floors_only() {
 fn the_rule_of_folders_can_fail() {
     let faults = |low: &str, high: &str, own: &str| {
         let list = format!("mod high;\nmod low;\npub use high::High;\n{own}");
-        let files = [("hut/mod.rs", &list[..]), ("hut/low/mod.rs", ""), ("hut/low/a.rs", low), ("hut/high.rs", high)];
+        let files = [
+            ("hut/mod.rs", &list[..]),
+            ("hut/low/mod.rs", ""),
+            ("hut/low/a.rs", low),
+            ("hut/high.rs", high),
+        ];
         faults_in("hut", &[&["low"], &["high"]], &files)
     };
     let none: [&str; 0] = [];
     let upward = ["hut: low must not use high"];
     assert_eq!(faults("", "use super::low::a::A;", ""), none);
     assert_eq!(faults("use crate::hut::high::High;", "", ""), upward);
-    assert_eq!(faults("use crate::hut::High;", "", ""), upward, "by a re-export");
-    assert_eq!(faults("fn f() -> crate::hut::High", "", ""), upward, "a path in the text");
-    assert_eq!(faults("", "use super::Shared;", "pub struct Shared;"), ["hut: high must not use mod.rs"]);
-    assert_eq!(faults("", "", "fn f() { low::g() }"), ["hut: mod.rs must not use low"]);
+    assert_eq!(
+        faults("use crate::hut::High;", "", ""),
+        upward,
+        "by a re-export"
+    );
+    assert_eq!(
+        faults("fn f() -> crate::hut::High", "", ""),
+        upward,
+        "a path in the text"
+    );
+    assert_eq!(
+        faults("", "use super::Shared;", "pub struct Shared;"),
+        ["hut: high must not use mod.rs"]
+    );
+    assert_eq!(
+        faults("", "", "fn f() { low::g() }"),
+        ["hut: mod.rs must not use low"]
+    );
     let attic = [("hut/mod.rs", "mod attic;"), ("hut/attic.rs", "")];
-    assert_eq!(faults_in("hut", &[&["low"], &["high"]], &attic), ["hut: attic has no floor"]);
+    assert_eq!(
+        faults_in("hut", &[&["low"], &["high"]], &attic),
+        ["hut: attic has no floor"]
+    );
 }
 
 /// What stands in a folder without a floor, or uses something that is not on a lower one.
-fn faults_in<P: AsRef<str>, T: AsRef<str>>(folder: &str, floors: Floors, files: &[(P, T)]) -> Vec<String> {
+fn faults_in<P: AsRef<str>, T: AsRef<str>>(
+    folder: &str,
+    floors: Floors,
+    files: &[(P, T)],
+) -> Vec<String> {
     let floor = |module: &str| floors.iter().position(|modules| modules.contains(&module));
-    let inside = files.iter().filter_map(|(path, _)| path.as_ref().strip_prefix(folder)?.strip_prefix('/'));
-    let modules: BTreeSet<&str> = inside.map(|path| path.split('/').next().unwrap().trim_end_matches(".rs")).collect();
+    let inside = files
+        .iter()
+        .filter_map(|(path, _)| path.as_ref().strip_prefix(folder)?.strip_prefix('/'));
+    let modules: BTreeSet<&str> = inside
+        .map(|path| path.split('/').next().unwrap().trim_end_matches(".rs"))
+        .collect();
     let own_file = OWN_FILE.trim_end_matches(".rs");
-    let homeless = modules.into_iter().filter(|module| *module != own_file && floor(module).is_none());
-    let mut faults: Vec<String> = homeless.map(|module| format!("{folder}: {module} has no floor")).collect();
-    for (user, used) in dependencies(files).get(&[folder.to_owned()][..]).into_iter().flatten() {
+    let homeless = modules
+        .into_iter()
+        .filter(|module| *module != own_file && floor(module).is_none());
+    let mut faults: Vec<String> = homeless
+        .map(|module| format!("{folder}: {module} has no floor"))
+        .collect();
+    for (user, used) in dependencies(files)
+        .get(&[folder.to_owned()][..])
+        .into_iter()
+        .flatten()
+    {
         if !matches!((floor(user), floor(used)), (Some(high), Some(low)) if low < high) {
             faults.push(format!("{folder}: {user} must not use {used}"));
         }
@@ -138,48 +185,118 @@ fn faults_in<P: AsRef<str>, T: AsRef<str>>(folder: &str, floors: Floors, files: 
 
 #[test]
 fn the_rule_can_fail() {
-    let in_crate =
-        |floors, module, text: &str| used_modules(floors, text).iter().all(|used| may_use(floors, module, used));
+    let in_crate = |floors, module, text: &str| {
+        used_modules(floors, text)
+            .iter()
+            .all(|used| may_use(floors, module, used))
+    };
     let check = |module, text| in_crate(BREAKLINE, module, text);
-    assert!(check("terrain", "use crate::{data::Grid, error::Result};\nlet a = crate::tds::Id;"));
+    assert!(check(
+        "terrain",
+        "use crate::{data::Grid, error::Result};\nlet a = crate::tds::Id;"
+    ));
     assert!(check("data", "use crate::crs::Crs;"));
-    assert!(check("tds", "// use crate::geometry::Plane;\n/// [`io`](crate::io)"), "comments are not imports");
+    assert!(
+        check(
+            "tds",
+            "// use crate::geometry::Plane;\n/// [`io`](crate::io)"
+        ),
+        "comments are not imports"
+    );
     assert!(!check("terrain", "use crate::io::Output;"), "sideways");
-    assert!(!check("io", "fn f(tin: &crate::terrain::Tin)"), "a path in the text");
+    assert!(
+        !check("io", "fn f(tin: &crate::terrain::Tin)"),
+        "a path in the text"
+    );
     assert!(!check("tds", "use crate::geometry::Plane;"), "sideways");
-    assert!(!check("crs", "use crate::data::Grid;"), "neighbors, the other way round");
-    assert!(!check("kernel", "use crate::{\n    num::Sign,\n    triangulation::Delaunay,\n};"), "upward, in braces");
-    assert!(!check("num", "use crate::{error::Error, kernel};"), "upward, a whole module");
-    assert!(!check("geometry", "use crate::Tin;"), "a re-export hides its floor");
-    assert!(!check("geometry", "use crate::attic::Box;"), "a module that has no floor");
-    assert!(!check("tds", "use super::super::geometry::Plane;"), "by `super`");
+    assert!(
+        !check("crs", "use crate::data::Grid;"),
+        "neighbors, the other way round"
+    );
+    assert!(
+        !check(
+            "kernel",
+            "use crate::{\n    num::Sign,\n    triangulation::Delaunay,\n};"
+        ),
+        "upward, in braces"
+    );
+    assert!(
+        !check("num", "use crate::{error::Error, kernel};"),
+        "upward, a whole module"
+    );
+    assert!(
+        !check("geometry", "use crate::Tin;"),
+        "a re-export hides its floor"
+    );
+    assert!(
+        !check("geometry", "use crate::attic::Box;"),
+        "a module that has no floor"
+    );
+    assert!(
+        !check("tds", "use super::super::geometry::Plane;"),
+        "by `super`"
+    );
     let check_triangulations = |module, text| in_crate(TRIANGULATIONS, module, text);
-    assert!(check_triangulations("lines", "use crate::engine::Inserted;"));
-    assert!(!check_triangulations("engine", "use crate::lines::Rounding;"), "upward, in the other crate");
-    assert!(!check_triangulations("query", "use crate::Delaunay;"), "a re-export at the root");
-    assert!(check("data", "use crate::triangulation::kernel::Exact;"), "a low module of the other crate");
-    assert!(!check("data", "use crate::triangulation::Delaunay;"), "a high one");
+    assert!(check_triangulations(
+        "lines",
+        "use crate::engine::Inserted;"
+    ));
+    assert!(
+        !check_triangulations("engine", "use crate::lines::Rounding;"),
+        "upward, in the other crate"
+    );
+    assert!(
+        !check_triangulations("query", "use crate::Delaunay;"),
+        "a re-export at the root"
+    );
+    assert!(
+        check("data", "use crate::triangulation::kernel::Exact;"),
+        "a low module of the other crate"
+    );
+    assert!(
+        !check("data", "use crate::triangulation::Delaunay;"),
+        "a high one"
+    );
 }
 
 fn may_use(floors: Floors, user: &str, used: &str) -> bool {
     let floor = |module| floors.iter().position(|modules| modules.contains(&module));
-    let (Some(high), Some(low)) = (floor(user), floor(used)) else { return false };
+    let (Some(high), Some(low)) = (floor(user), floor(used)) else {
+        return false;
+    };
     low < high || user == used || NEIGHBORS.contains(&(user, used))
 }
 
 /// The text of a file without its tests, which may build what they need by modules above.
 fn without_tests<'a>(path: &str, text: &'a str) -> &'a str {
-    if path.ends_with("tests.rs") { "" } else { text.split("#[cfg(test)]\nmod tests {").next().unwrap_or_default() }
+    if path.ends_with("tests.rs") {
+        ""
+    } else {
+        text.split("#[cfg(test)]\nmod tests {")
+            .next()
+            .unwrap_or_default()
+    }
 }
 
 /// The first names of all paths that start at the crate, and of those that climb to it by `super`.
 fn used_modules(floors: Floors, text: &str) -> Vec<String> {
-    let code: String = text.lines().filter(|line| !line.trim_start().starts_with("//")).collect::<Vec<_>>().join("\n");
+    let code: String = text
+        .lines()
+        .filter(|line| !line.trim_start().starts_with("//"))
+        .collect::<Vec<_>>()
+        .join("\n");
     // Of the other crate, modules are named, too.
     let code = LOWER.iter().fold(code, |code, module| {
-        code.replace(&format!("crate::triangulation::{module}::"), &format!("crate::{module}::"))
+        code.replace(
+            &format!("crate::triangulation::{module}::"),
+            &format!("crate::{module}::"),
+        )
     });
-    let name = |s: &str| s.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect::<String>();
+    let name = |s: &str| {
+        s.chars()
+            .take_while(|c| c.is_alphanumeric() || *c == '_')
+            .collect::<String>()
+    };
     let mut modules = Vec::new();
     for path in code.split("crate::").skip(1) {
         let Some(group) = path.strip_prefix('{') else {
@@ -200,7 +317,10 @@ fn used_modules(floors: Floors, text: &str) -> Vec<String> {
         }
     }
     let climbs: Vec<_> = code.split("super::").collect();
-    let by_super = climbs.windows(2).filter(|pair| pair[0].is_empty()).map(|pair| name(pair[1]));
+    let by_super = climbs
+        .windows(2)
+        .filter(|pair| pair[0].is_empty())
+        .map(|pair| name(pair[1]));
     modules.extend(by_super.filter(|module| floors.concat().contains(&module.as_str())));
     modules
 }
@@ -215,13 +335,26 @@ fn sources(folder: &str) -> Vec<(String, String)> {
             let path = entry.unwrap().path();
             if path.is_dir() {
                 folders.push(path);
-            } else if path.extension().is_some_and(|e| ["rs", "py", "pyi"].iter().any(|known| e == *known)) {
-                let name =
-                    path.strip_prefix(&root).unwrap().components().map(|part| part.as_os_str().to_str().unwrap());
-                files.push((name.collect::<Vec<_>>().join("/"), fs::read_to_string(&path).unwrap()));
+            } else if path
+                .extension()
+                .is_some_and(|e| ["rs", "py", "pyi"].iter().any(|known| e == *known))
+            {
+                let name = path
+                    .strip_prefix(&root)
+                    .unwrap()
+                    .components()
+                    .map(|part| part.as_os_str().to_str().unwrap());
+                files.push((
+                    name.collect::<Vec<_>>().join("/"),
+                    fs::read_to_string(&path).unwrap(),
+                ));
             }
         }
     }
-    assert!(files.len() > 10, "found only {} files in {folder}", files.len());
+    assert!(
+        files.len() > 10,
+        "found only {} files in {folder}",
+        files.len()
+    );
     files
 }

@@ -14,19 +14,40 @@ pub(crate) struct Family {
 impl Family {
     /// The set of a seed, the same on every machine.
     pub(crate) fn case(&self, seed: u64) -> Case {
-        let name = self.name.bytes().fold(0u64, |hash, byte| hash.wrapping_mul(31) + u64::from(byte));
+        let name = self
+            .name
+            .bytes()
+            .fold(0u64, |hash, byte| hash.wrapping_mul(31) + u64::from(byte));
         let mut random = Random(Random(seed ^ name << 32).bits());
         (self.draw)(&mut random)
     }
 }
 
 pub(crate) const FAMILIES: [Family; 6] = [
-    Family { name: "grids", draw: grids },
-    Family { name: "bundles", draw: bundles },
-    Family { name: "ulps", draw: one_ulp_apart },
-    Family { name: "magnitudes", draw: magnitudes },
-    Family { name: "stars", draw: stars },
-    Family { name: "crossings", draw: crossings },
+    Family {
+        name: "grids",
+        draw: grids,
+    },
+    Family {
+        name: "bundles",
+        draw: bundles,
+    },
+    Family {
+        name: "ulps",
+        draw: one_ulp_apart,
+    },
+    Family {
+        name: "magnitudes",
+        draw: magnitudes,
+    },
+    Family {
+        name: "stars",
+        draw: stars,
+    },
+    Family {
+        name: "crossings",
+        draw: crossings,
+    },
 ];
 
 /// From 3 to 60, small numbers far more often: they break things as well, and a million sets take
@@ -39,11 +60,20 @@ fn count(random: &mut Random) -> usize {
 /// Lines through given points: segments, polylines, spikes and rings, some of them again; `count`
 /// segments.
 fn connect(random: &mut Random, points: Vec<Point>, count: usize) -> Case {
-    let mut case = Case { points, lines: Vec::new() };
+    let mut case = Case {
+        points,
+        lines: Vec::new(),
+    };
     let mut left = count;
     while left > 0 {
-        let length = if random.below(3) == 0 { 1 + random.index(left.min(9)) } else { 1 };
-        let mut line: Vec<u32> = (0..=length).map(|_| random.index(case.points.len()) as u32).collect();
+        let length = if random.below(3) == 0 {
+            1 + random.index(left.min(9))
+        } else {
+            1
+        };
+        let mut line: Vec<u32> = (0..=length)
+            .map(|_| random.index(case.points.len()) as u32)
+            .collect();
         match random.below(12) {
             0 if length > 2 => *line.last_mut().unwrap() = line[0],
             1 if length > 1 => line[2] = line[0],
@@ -78,7 +108,13 @@ fn grids(random: &mut Random) -> Case {
 /// Nearly collinear, far from the origin, in steps of a centimetre.
 fn bundles(random: &mut Random) -> Case {
     let count = count(random);
-    let (dx, dy) = random.pick(&[(10_000, 0), (10_000, 37), (10_000, 9_999), (-300, 1_200), (0, 5_000)]);
+    let (dx, dy) = random.pick(&[
+        (10_000, 0),
+        (10_000, 37),
+        (10_000, 9_999),
+        (-300, 1_200),
+        (0, 5_000),
+    ]);
     let spread = random.pick(&[1, 3, 12, 40]);
     let point = |random: &mut Random| {
         let along = match random.below(3) {
@@ -86,22 +122,42 @@ fn bundles(random: &mut Random) -> Case {
             1 => 1.0,
             _ => random.unit(),
         };
-        let [x, y] = [along * f64::from(dx), along * f64::from(dy)].map(|x| x.round() as i64 + random.around(spread));
+        let [x, y] = [along * f64::from(dx), along * f64::from(dy)]
+            .map(|x| x.round() as i64 + random.around(spread));
         [UTM[0] + x as f64 / 100.0, UTM[1] + y as f64 / 100.0]
     };
     let points = (0..2 * count).map(|_| point(random)).collect();
     if random.below(2) == 0 {
         return connect(random, points, count);
     }
-    Case { points, lines: (0..count as u32).map(|i| vec![2 * i, 2 * i + 1]).collect() }
+    Case {
+        points,
+        lines: (0..count as u32).map(|i| vec![2 * i, 2 * i + 1]).collect(),
+    }
 }
 
 fn one_ulp_apart(random: &mut Random) -> Case {
     let count = count(random);
-    let [x, y] = random.pick(&[[1.3, 2.7], [500_000.37, 4_649_000.12], [1.0, 1.0], [0.5, 1e-3], [0.1, -7.0]]);
+    let [x, y] = random.pick(&[
+        [1.3, 2.7],
+        [500_000.37, 4_649_000.12],
+        [1.0, 1.0],
+        [0.5, 1e-3],
+        [0.1, -7.0],
+    ]);
     let spread = random.pick(&[1, 2, 5, 30]);
-    let near = |random: &mut Random, [x, y]: Point| [ulps(x, random.around(spread)), ulps(y, random.around(spread))];
-    let others = random.pick(&[[x, y], [x + 10.0, y + 3.0], [x + 0.001, y], [2.0 * x, 2.0 * y]]);
+    let near = |random: &mut Random, [x, y]: Point| {
+        [
+            ulps(x, random.around(spread)),
+            ulps(y, random.around(spread)),
+        ]
+    };
+    let others = random.pick(&[
+        [x, y],
+        [x + 10.0, y + 3.0],
+        [x + 0.001, y],
+        [2.0 * x, 2.0 * y],
+    ]);
     let points = (0..2 * count)
         .map(|i| {
             let middle = [0.5 * (x + others[0]), 0.5 * (y + others[1])];
@@ -118,7 +174,10 @@ fn one_ulp_apart(random: &mut Random) -> Case {
     if random.below(3) == 0 {
         return connect(random, points, count);
     }
-    Case { points, lines: (0..count as u32).map(|i| vec![2 * i, 2 * i + 1]).collect() }
+    Case {
+        points,
+        lines: (0..count as u32).map(|i| vec![2 * i, 2 * i + 1]).collect(),
+    }
 }
 
 fn magnitudes(random: &mut Random) -> Case {
@@ -133,10 +192,16 @@ fn magnitudes(random: &mut Random) -> Case {
     };
     let is_coarse = random.below(2) == 0;
     let coordinate = |random: &mut Random| {
-        let x = if is_coarse { random.around(4) as f64 / 4.0 } else { 2.0 * random.unit() - 1.0 };
+        let x = if is_coarse {
+            random.around(4) as f64 / 4.0
+        } else {
+            2.0 * random.unit() - 1.0
+        };
         x * random.pick(scales)
     };
-    let points = (0..2 * count).map(|_| [coordinate(random), coordinate(random)]).collect();
+    let points = (0..2 * count)
+        .map(|_| [coordinate(random), coordinate(random)])
+        .collect();
     connect(random, points, count)
 }
 

@@ -47,8 +47,13 @@ impl Typed {
 }
 
 fn seeds(text: &str) -> Result<Range<u64>, String> {
-    let (from, to) = text.split_once("..").ok_or_else(|| format!("--seeds {text}: A..B is expected"))?;
-    let number = |n: &str| n.parse().map_err(|_| format!("--seeds {text}: {n:?} is no number"));
+    let (from, to) = text
+        .split_once("..")
+        .ok_or_else(|| format!("--seeds {text}: A..B is expected"))?;
+    let number = |n: &str| {
+        n.parse()
+            .map_err(|_| format!("--seeds {text}: {n:?} is no number"))
+    };
     Ok(number(from)?..number(to)?)
 }
 
@@ -64,14 +69,27 @@ fn main() -> ExitCode {
         return ExitCode::SUCCESS;
     }
     if let Some(file) = typed.file {
-        return if run::run_file(file.as_ref()) { ExitCode::SUCCESS } else { ExitCode::FAILURE };
+        return if run::run_file(file.as_ref()) {
+            ExitCode::SUCCESS
+        } else {
+            ExitCode::FAILURE
+        };
     }
     // Panics are caught, and told with the set that they come from.
     std::panic::set_hook(Box::new(|_| {}));
-    let is_wanted = |name: &str| typed.family.as_ref().is_none_or(|family| name.contains(family.as_str()));
+    let is_wanted = |name: &str| {
+        typed
+            .family
+            .as_ref()
+            .is_none_or(|family| name.contains(family.as_str()))
+    };
     let mut sound = true;
     for family in FAMILIES.iter().filter(|family| is_wanted(family.name)) {
         sound &= run::run(family, typed.seeds.clone().unwrap_or(SHORT));
     }
-    if sound { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+    if sound {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::FAILURE
+    }
 }

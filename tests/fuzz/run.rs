@@ -34,7 +34,8 @@ pub(crate) fn run(family: &Family, seeds: Range<u64>) -> bool {
     let next = AtomicU64::new(seeds.start);
     let total = Mutex::new(Tally::default());
     let failures = Mutex::new(Vec::new());
-    let running: Vec<Mutex<Option<(u64, Instant)>>> = (0..threads).map(|_| Mutex::new(None)).collect();
+    let running: Vec<Mutex<Option<(u64, Instant)>>> =
+        (0..threads).map(|_| Mutex::new(None)).collect();
     let is_done = AtomicBool::new(false);
     std::thread::scope(|scope| {
         let workers: Vec<_> = running
@@ -66,17 +67,29 @@ pub(crate) fn run(family: &Family, seeds: Range<u64>) -> bool {
                 std::thread::park_timeout(Duration::from_secs(5));
                 for (seed, since) in running.iter().filter_map(|at| *at.lock().unwrap()) {
                     if since.elapsed() > PATIENCE {
-                        eprintln!("{} seed {seed} hangs\n{}", family.name, family.case(seed).to_poly());
+                        eprintln!(
+                            "{} seed {seed} hangs\n{}",
+                            family.name,
+                            family.case(seed).to_poly()
+                        );
                         std::process::exit(1);
                     }
                 }
             }
         });
-        workers.into_iter().for_each(|worker| worker.join().unwrap());
+        workers
+            .into_iter()
+            .for_each(|worker| worker.join().unwrap());
         is_done.store(true, Ordering::Relaxed);
         watch.thread().unpark();
     });
-    println!("\n{} seeds {}..{}, {:.0} s", family.name, seeds.start, seeds.end, start.elapsed().as_secs_f64());
+    println!(
+        "\n{} seeds {}..{}, {:.0} s",
+        family.name,
+        seeds.start,
+        seeds.end,
+        start.elapsed().as_secs_f64()
+    );
     print!("{}", total.into_inner().unwrap());
     let mut failures = failures.into_inner().unwrap();
     failures.sort();
@@ -104,8 +117,12 @@ pub(crate) fn run_file(path: &Path) -> bool {
 }
 
 fn save_small(case: Case, seed: u64, what: &str, path: &Path) {
-    let small = shrink(case, kind(what), |case| trial(case, seed).err().map(|what| kind(&what).to_owned()));
-    let what_now = trial(&small, seed).err().unwrap_or_else(|| "not so a second time".to_owned());
+    let small = shrink(case, kind(what), |case| {
+        trial(case, seed).err().map(|what| kind(&what).to_owned())
+    });
+    let what_now = trial(&small, seed)
+        .err()
+        .unwrap_or_else(|| "not so a second time".to_owned());
     std::fs::write(path, small.to_poly()).expect("the folder can be written");
     println!("  made small: {what_now}\n  {}", path.display());
 }
@@ -133,6 +150,8 @@ fn trial(case: &Case, seed: u64) -> Result<(), String> {
 /// The law that was broken, without the place.
 fn kind(what: &str) -> &str {
     let what = what.strip_prefix("off the grid: ").unwrap_or(what);
-    let what = what.strip_prefix("line ").map_or(what, |rest| rest.split_once(": ").map_or(rest, |(_, what)| what));
+    let what = what.strip_prefix("line ").map_or(what, |rest| {
+        rest.split_once(": ").map_or(rest, |(_, what)| what)
+    });
     what.split_once(':').map_or(what, |(kind, _)| kind)
 }

@@ -23,13 +23,24 @@ pub(crate) fn shrink(case: Case, law: &str, fails: impl Fn(&Case) -> Option<Stri
 type Still<'a> = &'a dyn Fn(&Case) -> bool;
 
 fn or(best: Case, try_it: Case, still: Still) -> Case {
-    if try_it != best && still(&try_it) { try_it } else { best }
+    if try_it != best && still(&try_it) {
+        try_it
+    } else {
+        best
+    }
 }
 
 /// Polylines cut up; at once, or the last part of one.
 fn as_segments(best: Case, still: Still) -> Case {
-    let cut = best.lines.iter().flat_map(|line| line.windows(2).map(<[u32]>::to_vec)).collect();
-    let try_it = Case { points: best.points.clone(), lines: cut };
+    let cut = best
+        .lines
+        .iter()
+        .flat_map(|line| line.windows(2).map(<[u32]>::to_vec))
+        .collect();
+    let try_it = Case {
+        points: best.points.clone(),
+        lines: cut,
+    };
     let mut best = or(best, try_it, still);
     for line in 0..best.lines.len() {
         while best.lines[line].len() > 2 {
@@ -53,7 +64,11 @@ fn without_lines(mut best: Case, still: Still) -> Case {
         while at < best.lines.len() {
             let mut try_it = best.clone();
             try_it.lines.drain(at..(at + run).min(best.lines.len()));
-            if still(&try_it) { best = try_it } else { at += run }
+            if still(&try_it) {
+                best = try_it
+            } else {
+                at += run
+            }
         }
         run /= 2;
     }
@@ -72,7 +87,11 @@ fn without_points(mut best: Case, still: Still) -> Case {
                 points.push(p);
             }
         }
-        let lines = case.lines.iter().map(|line| line.iter().map(|&i| new_index[i as usize]).collect()).collect();
+        let lines = case
+            .lines
+            .iter()
+            .map(|line| line.iter().map(|&i| new_index[i as usize]).collect())
+            .collect();
         Case { points, lines }
     };
     let bare = drop(&best, &|i| !is_free(&best, i));
@@ -92,7 +111,10 @@ fn with_fewer_bits(mut best: Case, still: Still) -> Case {
     for bits in [52, 48, 44, 40, 36, 32, 28, 24, 20, 16, 12, 8, 6, 4, 3, 2, 1] {
         for axis in 0..2 {
             let mut try_it = best.clone();
-            try_it.points.iter_mut().for_each(|p| p[axis] = clear(p[axis], bits));
+            try_it
+                .points
+                .iter_mut()
+                .for_each(|p| p[axis] = clear(p[axis], bits));
             best = or(best, try_it, still);
         }
     }

@@ -49,14 +49,19 @@ fn bin(bins: &[usize; 8], n: usize) -> usize {
 
 impl fmt::Display for Tally {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let rows = [("segments", SEGMENTS, self.segments), ("crossings", CROSSINGS, self.crossings)];
+        let rows = [
+            ("segments", SEGMENTS, self.segments),
+            ("crossings", CROSSINGS, self.crossings),
+        ];
         writeln!(f, "  {} sets", self.sets)?;
         for (i, (name, bins, counts)) in rows.into_iter().enumerate() {
             let mean = self.sum[i] as f64 / self.sets.max(1) as f64;
             write!(f, "  {name:9} mean {mean:.1}, most {}; ", self.most[i])?;
             let cells: Vec<String> = (0..8)
                 .map(|k| match bins.get(k + 1) {
-                    Some(next) if next - 1 > bins[k] => format!("{}-{}: {}", bins[k], next - 1, counts[k]),
+                    Some(next) if next - 1 > bins[k] => {
+                        format!("{}-{}: {}", bins[k], next - 1, counts[k])
+                    }
                     Some(_) => format!("{}: {}", bins[k], counts[k]),
                     None => format!("{}+: {}", bins[k], counts[k]),
                 })

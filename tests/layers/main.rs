@@ -15,8 +15,13 @@ use serde_json::Value;
 fn facts() -> serde_json::Map<String, Value> {
     let text = std::fs::read_to_string(testkit::shared("FACTS.json")).unwrap();
     // Written by Python, which has numbers that JSON has not.
-    let text = text.replace("NaN", "null").replace("-Infinity", "null").replace("Infinity", "null");
-    let Value::Object(facts) = serde_json::from_str(&text).unwrap() else { panic!("FACTS.json is no object") };
+    let text = text
+        .replace("NaN", "null")
+        .replace("-Infinity", "null")
+        .replace("Infinity", "null");
+    let Value::Object(facts) = serde_json::from_str(&text).unwrap() else {
+        panic!("FACTS.json is no object")
+    };
     facts
 }
 

@@ -14,7 +14,11 @@ fn parts(layer: &Layer) -> usize {
 
 fn bounds(layer: &Layer) -> Bounds {
     let mut bounds = Bounds::default();
-    layer.shapes.iter().flat_map(Shape::vertices).for_each(|&v| bounds.add(v));
+    layer
+        .shapes
+        .iter()
+        .flat_map(Shape::vertices)
+        .for_each(|&v| bounds.add(v));
     bounds
 }
 
@@ -42,31 +46,63 @@ fn format_name(code: u64) -> &'static str {
 fn every_sound_shapefile_has_the_facts() {
     let facts = facts();
     let mut seen = 0;
-    for (name, fact) in facts.iter().filter(|(name, _)| name.ends_with(".shp") && !name.contains("/broken")) {
+    for (name, fact) in facts
+        .iter()
+        .filter(|(name, _)| name.ends_with(".shp") && !name.contains("/broken"))
+    {
         let layer = read(&testkit::shared(name)).unwrap_or_else(|e| panic!("{e}"));
-        let number = |key: &str| fact[key].as_u64().unwrap_or_else(|| panic!("{name}: no {key}")) as usize;
+        let number = |key: &str| {
+            fact[key]
+                .as_u64()
+                .unwrap_or_else(|| panic!("{name}: no {key}")) as usize
+        };
         seen += 1;
-        assert_eq!(layer.format, format!("shapefile {}", format_name(number("hdr_type") as u64)), "{name}");
+        assert_eq!(
+            layer.format,
+            format!("shapefile {}", format_name(number("hdr_type") as u64)),
+            "{name}"
+        );
         assert_eq!(layer.shapes.len(), number("records"), "{name}: records");
-        let nulls = layer.shapes.iter().filter(|shape| matches!(shape, Shape::Null)).count();
+        let nulls = layer
+            .shapes
+            .iter()
+            .filter(|shape| matches!(shape, Shape::Null))
+            .count();
         assert_eq!(nulls, number("nulls"), "{name}: nulls");
         // Parts of a multipatch become faces; the test below looks at them.
         if number("hdr_type") != 31 {
             assert_eq!(parts(&layer), number("parts"), "{name}: parts");
             let vertices = layer.shapes.iter().flat_map(Shape::vertices).count();
             // Its three rings lack their last vertex.
-            let closed = if name == "shp/types/polygon.shp" { 3 } else { 0 };
+            let closed = if name == "shp/types/polygon.shp" {
+                3
+            } else {
+                0
+            };
             assert_eq!(vertices, number("points") + closed, "{name}: points");
         }
         let found = bounds(&layer);
-        let bbox: Vec<f64> = fact["hdr_bbox"].as_array().unwrap().iter().map(|v| v.as_f64().unwrap()).collect();
+        let bbox: Vec<f64> = fact["hdr_bbox"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|v| v.as_f64().unwrap())
+            .collect();
         // The header of this one was written before its points were moved.
         if name != "shp/shapelib_eg/3dpoints.shp" {
-            assert_eq!([found.min[0], found.min[1], found.max[0], found.max[1]], bbox[..], "{name}: bbox");
+            assert_eq!(
+                [found.min[0], found.min[1], found.max[0], found.max[1]],
+                bbox[..],
+                "{name}: bbox"
+            );
         }
         match fact["z"].as_array() {
             Some(z) => {
-                assert_eq!([found.min[2], found.max[2]], [z[0].as_f64().unwrap(), z[1].as_f64().unwrap()], "{name}: z")
+                assert_eq!(
+                    [found.min[2], found.max[2]],
+                    [z[0].as_f64().unwrap(), z[1].as_f64().unwrap()],
+                    "{name}: z"
+                )
             }
             None => assert!(found.min[2] > found.max[2], "{name}: no heights"),
         }
@@ -79,13 +115,23 @@ fn every_sound_shapefile_has_the_facts() {
 fn multipatches_become_faces() {
     // A fan and a strip of n vertices give n - 2 triangles; a file has a ring with two holes.
     let holes: &[usize] = &[9, 5, 5];
-    for (name, triangles, last) in
-        [("shp/gdal/multipatch.shp", 4 + 6, holes), ("shp/types/multipatch.shp", 8 + 4, &[4])]
-    {
+    for (name, triangles, last) in [
+        ("shp/gdal/multipatch.shp", 4 + 6, holes),
+        ("shp/types/multipatch.shp", 8 + 4, &[4]),
+    ] {
         let layer = read(&testkit::shared(name)).unwrap();
-        let [Shape::Faces(faces)] = &layer.shapes[..] else { panic!("{name}: {:?}", layer.shapes) };
-        let lengths: Vec<Vec<usize>> = faces.iter().map(|face| face.iter().map(Vec::len).collect()).collect();
-        assert_eq!(lengths.iter().filter(|rings| **rings == [4]).count(), triangles, "{name}");
+        let [Shape::Faces(faces)] = &layer.shapes[..] else {
+            panic!("{name}: {:?}", layer.shapes)
+        };
+        let lengths: Vec<Vec<usize>> = faces
+            .iter()
+            .map(|face| face.iter().map(Vec::len).collect())
+            .collect();
+        assert_eq!(
+            lengths.iter().filter(|rings| **rings == [4]).count(),
+            triangles,
+            "{name}"
+        );
         assert_eq!(lengths.last().unwrap(), last, "{name}");
         assert_eq!(layer.warnings, [] as [&str; 0], "{name}");
     }
@@ -99,7 +145,13 @@ fn heights_come_from_an_attribute() {
     let layer = layer::read(&spec("recupz")).unwrap();
     assert_eq!(layer.shapes.len(), 1189);
     let heights = bounds(&layer);
-    assert!(layer.shapes.iter().flat_map(Shape::vertices).all(|v| v[2].is_finite()));
+    assert!(
+        layer
+            .shapes
+            .iter()
+            .flat_map(Shape::vertices)
+            .all(|v| v[2].is_finite())
+    );
 
     // The same lines as GeoJSON, for the lines in the tile: the heights agree line by line.
     let twin = testkit::shared("lidar/ign_0292_6833/Lignes_2d_0292_6833.geojson");
@@ -116,14 +168,33 @@ fn heights_come_from_an_attribute() {
     }
 
     let error = layer::read(&spec("ELEV")).unwrap_err();
-    assert_eq!(*error.cure_text().unwrap(), "name one of FID, ID_seg, RecupZ");
-    assert!(error.to_string().ends_with("Lignes_3d_0292_6833.dbf: there is no field ELEV"), "{error}");
+    assert_eq!(
+        *error.cure_text().unwrap(),
+        "name one of FID, ID_seg, RecupZ"
+    );
+    assert!(
+        error
+            .to_string()
+            .ends_with("Lignes_3d_0292_6833.dbf: there is no field ELEV"),
+        "{error}"
+    );
 }
 
 #[test]
 #[cfg_attr(not(has_shared), ignore = "needs ../shared")]
 fn geojson_has_heights_of_its_own() {
-    let layer = read(&testkit::shared("lidar/ign_0292_6833/Points_virtuels_0292_6833.geojson")).unwrap();
-    assert_eq!((layer.shapes.len(), layer.format.as_str()), (2423, "GeoJSON"));
-    assert!(layer.shapes.iter().all(|s| matches!(s, Shape::Points(p) if p.len() == 1 && p[0][2].is_finite())));
+    let layer = read(&testkit::shared(
+        "lidar/ign_0292_6833/Points_virtuels_0292_6833.geojson",
+    ))
+    .unwrap();
+    assert_eq!(
+        (layer.shapes.len(), layer.format.as_str()),
+        (2423, "GeoJSON")
+    );
+    assert!(
+        layer
+            .shapes
+            .iter()
+            .all(|s| matches!(s, Shape::Points(p) if p.len() == 1 && p[0][2].is_finite()))
+    );
 }

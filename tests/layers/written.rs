@@ -11,14 +11,31 @@ use serde_json::Value;
 
 fn lines() -> Vec<ContourLine> {
     vec![
-        ContourLine { level: 12.3, points: vec![[0.5, 0.25], [1e6 + 0.1, 5e6 + 0.7]] },
-        ContourLine { level: 0.0, points: vec![[0., 0.], [1., 0.], [1., 1.], [0., 0.]] },
-        ContourLine { level: -1.0 / 3.0, points: vec![[0., 0.], [0., 1.], [0., 2.], [3., 2.]] },
+        ContourLine {
+            level: 12.3,
+            points: vec![[0.5, 0.25], [1e6 + 0.1, 5e6 + 0.7]],
+        },
+        ContourLine {
+            level: 0.0,
+            points: vec![[0., 0.], [1., 0.], [1., 1.], [0., 0.]],
+        },
+        ContourLine {
+            level: -1.0 / 3.0,
+            points: vec![[0., 0.], [0., 1.], [0., 2.], [3., 2.]],
+        },
     ]
 }
 
 fn expected() -> Vec<Vec<[f64; 3]>> {
-    lines().iter().map(|line| line.points.iter().map(|p| [p[0], p[1], line.level]).collect()).collect()
+    lines()
+        .iter()
+        .map(|line| {
+            line.points
+                .iter()
+                .map(|p| [p[0], p[1], line.level])
+                .collect()
+        })
+        .collect()
 }
 
 #[test]
@@ -27,18 +44,33 @@ fn contours_come_back_from_both_formats() {
     for name in ["c.shp", "c.geojson", "c.JSON", "c.geojsonl"] {
         let target = folder.path().join(name);
         let summary = contours::write(&target, &mut lines().into_iter(), None).unwrap();
-        assert_eq!((summary.lines, summary.vertices, summary.closed), (3, 10, 1));
-        assert_eq!((summary.bounds.min, summary.bounds.max), ([0., 0., -1.0 / 3.0], [1e6 + 0.1, 5e6 + 0.7, 12.3]));
-        for spec in [target.display().to_string(), format!("{}:elev", target.display())] {
+        assert_eq!(
+            (summary.lines, summary.vertices, summary.closed),
+            (3, 10, 1)
+        );
+        assert_eq!(
+            (summary.bounds.min, summary.bounds.max),
+            ([0., 0., -1.0 / 3.0], [1e6 + 0.1, 5e6 + 0.7, 12.3])
+        );
+        for spec in [
+            target.display().to_string(),
+            format!("{}:elev", target.display()),
+        ] {
             let layer = layer::read(&spec).unwrap();
-            let shapes: Vec<Shape> = expected().into_iter().map(|line| Shape::Lines(vec![line])).collect();
+            let shapes: Vec<Shape> = expected()
+                .into_iter()
+                .map(|line| Shape::Lines(vec![line]))
+                .collect();
             assert_eq!(layer.shapes, shapes, "{spec}");
             assert!(layer.fields.contains(&"ELEV".to_owned()));
         }
     }
-    let error = contours::write(&folder.path().join("c.dxf"), &mut lines().into_iter(), None).unwrap_err();
+    let error =
+        contours::write(&folder.path().join("c.dxf"), &mut lines().into_iter(), None).unwrap_err();
     assert!(
-        error.to_string().ends_with("c.dxf: contours are written as .shp, .geojson, .json, .geojsonl or .geojsons")
+        error.to_string().ends_with(
+            "c.dxf: contours are written as .shp, .geojson, .json, .geojsonl or .geojsons"
+        )
     );
 }
 
@@ -49,14 +81,24 @@ fn another_reader_agrees_on_what_is_written() {
     contours::write(&target, &mut lines().into_iter(), None).unwrap();
     let mut reader = ::shapefile::Reader::from_path(&target).unwrap();
     for (i, pair) in reader.iter_shapes_and_records().enumerate() {
-        let (::shapefile::Shape::PolylineZ(line), record) = pair.unwrap() else { panic!("no PolyLineZ") };
-        let vertices: Vec<[f64; 3]> = line.parts().iter().flatten().map(|p| [p.x, p.y, p.z]).collect();
+        let (::shapefile::Shape::PolylineZ(line), record) = pair.unwrap() else {
+            panic!("no PolyLineZ")
+        };
+        let vertices: Vec<[f64; 3]> = line
+            .parts()
+            .iter()
+            .flatten()
+            .map(|p| [p.x, p.y, p.z])
+            .collect();
         assert_eq!(vertices, expected()[i]);
         let number = |name: &str| match record.get(name) {
             Some(::shapefile::dbase::FieldValue::Numeric(Some(value))) => *value,
             other => panic!("{name}: {other:?}"),
         };
-        assert_eq!((number("ID"), number("ELEV")), (i as f64 + 1.0, lines()[i].level));
+        assert_eq!(
+            (number("ID"), number("ELEV")),
+            (i as f64 + 1.0, lines()[i].level)
+        );
     }
     assert_eq!(reader.shape_count().unwrap(), 3);
 }
@@ -67,12 +109,16 @@ fn the_same_lines_give_the_same_bytes() {
     let bytes = |name: &str| {
         let target = folder.path().join(name);
         contours::write(&target, &mut lines().into_iter(), None).unwrap();
-        ["shp", "shx", "dbf", "cpg"].map(|extension| std::fs::read(target.with_extension(extension)).unwrap())
+        ["shp", "shx", "dbf", "cpg"]
+            .map(|extension| std::fs::read(target.with_extension(extension)).unwrap())
     };
     let [shp, shx, dbf, cpg] = bytes("a.shp");
     assert_eq!([&shp, &shx, &dbf, &cpg], bytes("b.shp").each_ref());
     assert_eq!(dbf[..4], [3, 70, 1, 1], "the date is constant");
-    assert_eq!((cpg.as_slice(), shx.len(), dbf.len()), (b"UTF-8".as_slice(), 100 + 3 * 8, 32 + 64 + 1 + 3 * 35 + 1));
+    assert_eq!(
+        (cpg.as_slice(), shx.len(), dbf.len()),
+        (b"UTF-8".as_slice(), 100 + 3 * 8, 32 + 64 + 1 + 3 * 35 + 1)
+    );
 }
 
 #[test]
@@ -81,7 +127,10 @@ fn a_failure_leaves_the_old_files() {
     let target = folder.path().join("c.shp");
     // A folder where the .dbf should go; it is committed before the .shp.
     std::fs::create_dir(target.with_extension("dbf")).unwrap();
-    std::fs::File::create(&target).unwrap().write_all(b"old").unwrap();
+    std::fs::File::create(&target)
+        .unwrap()
+        .write_all(b"old")
+        .unwrap();
     let error = contours::write(&target, &mut lines().into_iter(), None).unwrap_err();
     assert!(error.to_string().contains("c.dbf"), "{error}");
     assert_eq!(std::fs::read(&target).unwrap(), b"old");
@@ -94,12 +143,17 @@ fn ogrinfo_reads_the_contours() {
         return;
     }
     let folder = tempfile::tempdir().unwrap();
-    for (name, elevation) in
-        [("c.shp", ["ELEV: Real (24.6)", "= 12.300000\n"]), ("c.geojson", ["ELEV: Real (0.0)", "= 12.3\n"])]
-    {
+    for (name, elevation) in [
+        ("c.shp", ["ELEV: Real (24.6)", "= 12.300000\n"]),
+        ("c.geojson", ["ELEV: Real (0.0)", "= 12.3\n"]),
+    ] {
         let target = folder.path().join(name);
         contours::write(&target, &mut lines().into_iter(), None).unwrap();
-        let output = Command::new("ogrinfo").args(["-al", "-ro"]).arg(&target).output().unwrap();
+        let output = Command::new("ogrinfo")
+            .args(["-al", "-ro"])
+            .arg(&target)
+            .output()
+            .unwrap();
         let text = String::from_utf8_lossy(&output.stdout);
         assert_eq!(String::from_utf8_lossy(&output.stderr), "", "{name}");
         for wanted in [
@@ -111,7 +165,10 @@ fn ogrinfo_reads_the_contours() {
         .into_iter()
         .chain(elevation)
         {
-            assert!(text.contains(wanted), "{name}: {wanted:?} is not in\n{text}");
+            assert!(
+                text.contains(wanted),
+                "{name}: {wanted:?} is not in\n{text}"
+            );
         }
     }
 }
@@ -125,14 +182,34 @@ const SYSTEMS: &[(&str, &[&str], u32)] = &[
     ("lidar/delft_ahn3_bgt", &["breaklines_z_derived"], 28992),
     (
         "lidar/delft_ahn3_bgt/bgt_shp",
-        &["bgt_begroeidterreindeel", "bgt_kunstwerkdeel", "bgt_onbegroeidterreindeel"],
+        &[
+            "bgt_begroeidterreindeel",
+            "bgt_kunstwerkdeel",
+            "bgt_onbegroeidterreindeel",
+        ],
         28992,
     ),
-    ("lidar/delft_ahn3_bgt/bgt_shp", &["bgt_overbruggingsdeel", "bgt_pand", "bgt_scheiding"], 28992),
-    ("lidar/delft_ahn3_bgt/bgt_shp", &["bgt_waterdeel", "bgt_wegdeel"], 28992),
+    (
+        "lidar/delft_ahn3_bgt/bgt_shp",
+        &["bgt_overbruggingsdeel", "bgt_pand", "bgt_scheiding"],
+        28992,
+    ),
+    (
+        "lidar/delft_ahn3_bgt/bgt_shp",
+        &["bgt_waterdeel", "bgt_wegdeel"],
+        28992,
+    ),
     ("lidar/ign_0292_6833", &["Lignes_3d_0292_6833"], 2154),
-    ("lidar/quebec_lidR", &["efi_plot", "lake_polygons_UTM17"], 26917),
-    ("shp/geotools", &["archsites", "bugsites", "roads", "rstrct", "streams"], 26713),
+    (
+        "lidar/quebec_lidR",
+        &["efi_plot", "lake_polygons_UTM17"],
+        26917,
+    ),
+    (
+        "shp/geotools",
+        &["archsites", "bugsites", "roads", "rstrct", "streams"],
+        26713,
+    ),
 ];
 
 #[test]
@@ -143,15 +220,27 @@ fn every_prj_names_its_system() {
     for (folder, names, code) in SYSTEMS {
         for name in *names {
             let layer = read(&testkit::shared(&format!("{folder}/{name}.shp"))).unwrap();
-            assert_eq!(layer.crs.and_then(|crs| crs.epsg), Some(*code), "{folder}/{name}");
+            assert_eq!(
+                layer.crs.and_then(|crs| crs.epsg),
+                Some(*code),
+                "{folder}/{name}"
+            );
             seen += 1;
         }
     }
-    let with_prj = |fact: &Value| fact["sidecars"].as_array().is_some_and(|list| list.contains(&"prj".into()));
+    let with_prj = |fact: &Value| {
+        fact["sidecars"]
+            .as_array()
+            .is_some_and(|list| list.contains(&"prj".into()))
+    };
     assert_eq!(seen, facts.values().filter(|fact| with_prj(fact)).count());
     for name in ["Lignes_2d", "Lignes_3d", "Points_virtuels"] {
         let path = testkit::shared(&format!("lidar/ign_0292_6833/{name}_0292_6833.geojson"));
-        assert_eq!(read(&path).unwrap().crs.and_then(|crs| crs.epsg), Some(2154), "{name}");
+        assert_eq!(
+            read(&path).unwrap().crs.and_then(|crs| crs.epsg),
+            Some(2154),
+            "{name}"
+        );
     }
 }
 
@@ -163,18 +252,36 @@ fn contours_keep_their_system() {
         for name in ["c.shp", "c.geojson"] {
             let target = folder.path().join(name);
             // Where degrees can be, so that GeoJSON without a `crs` member means EPSG:4326.
-            let line = ContourLine { level: 5.0, points: vec![[1.0, 2.0], [3.0, 4.0]] };
+            let line = ContourLine {
+                level: 5.0,
+                points: vec![[1.0, 2.0], [3.0, 4.0]],
+            };
             let summary = contours::write(&target, &mut [line].into_iter(), Some(&crs)).unwrap();
             assert_eq!(summary.warnings, [] as [&str; 0]);
             let layer = read(&target).unwrap();
             assert_eq!(layer.warnings, [] as [&str; 0], "{name} in EPSG:{code}");
-            assert!(layer.crs.is_some_and(|found| found.is_same(&crs)), "{name} in EPSG:{code}");
-            if let Ok(output) = Command::new("ogrinfo").args(["-al", "-so", "-ro"]).arg(&target).output() {
+            assert!(
+                layer.crs.is_some_and(|found| found.is_same(&crs)),
+                "{name} in EPSG:{code}"
+            );
+            if let Ok(output) = Command::new("ogrinfo")
+                .args(["-al", "-so", "-ro"])
+                .arg(&target)
+                .output()
+            {
                 let text = String::from_utf8_lossy(&output.stdout);
                 // GDAL makes WGS 84 with heights of GeoJSON that names no system.
-                let shown = if name == "c.geojson" && code == 4326 { 4979 } else { code };
+                let shown = if name == "c.geojson" && code == 4326 {
+                    4979
+                } else {
+                    code
+                };
                 let last = text.lines().rfind(|line| line.contains("ID[\"EPSG\""));
-                assert_eq!(last.map(str::trim), Some(format!("ID[\"EPSG\",{shown}]]").as_str()), "{name}:\n{text}");
+                assert_eq!(
+                    last.map(str::trim),
+                    Some(format!("ID[\"EPSG\",{shown}]]").as_str()),
+                    "{name}:\n{text}"
+                );
             }
         }
     }

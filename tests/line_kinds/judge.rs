@@ -26,8 +26,15 @@ pub(crate) fn judge(scene: &Scene) -> Result<usize, String> {
     }
     edges(&tin)?;
     heights_of_lines(scene, &tin)?;
-    let without = Scene { draped: Vec::new(), holes: Vec::new(), bounds: None, ..scene.clone() };
-    let whole = without.build(0).map_err(|error| format!("without draped lines and holes: {error}"))?;
+    let without = Scene {
+        draped: Vec::new(),
+        holes: Vec::new(),
+        bounds: None,
+        ..scene.clone()
+    };
+    let whole = without
+        .build(0)
+        .map_err(|error| format!("without draped lines and holes: {error}"))?;
     walls(scene, &whole)?;
     rivers(scene, &whole)?;
     let mut judged = 0;
@@ -46,7 +53,9 @@ fn refused(scene: &Scene, error: &str) -> Result<(), String> {
     if error.starts_with("two lakes meet") && two_lakes_meet(scene) {
         return Ok(());
     }
-    if error.starts_with("no triangle is left") && (!scene.holes.is_empty() || scene.bounds.is_some()) {
+    if error.starts_with("no triangle is left")
+        && (!scene.holes.is_empty() || scene.bounds.is_some())
+    {
         return Ok(());
     }
     Err(format!("refused: {error}"))
@@ -55,13 +64,16 @@ fn refused(scene: &Scene, error: &str) -> Result<(), String> {
 /// Returns true if two lakes of different heights share a point.
 fn two_lakes_meet(scene: &Scene) -> bool {
     let lakes = &scene.lakes;
-    (0..lakes.len()).any(|i| (0..i).any(|j| lakes[i].1 != lakes[j].1 && meet(&lakes[i].0, &lakes[j].0)))
+    (0..lakes.len())
+        .any(|i| (0..i).any(|j| lakes[i].1 != lakes[j].1 && meet(&lakes[i].0, &lakes[j].0)))
 }
 
 /// Returns true if two closed rings or their insides share a point.
 fn meet(p: &Ring, q: &Ring) -> bool {
     let inside = |ring: &Ring, at: [i64; 2]| position(ring, at, 1) != Position::Outside;
-    let crossing = p.windows(2).any(|s| q.windows(2).any(|t| cross([s[0], s[1]], [t[0], t[1]])));
+    let crossing = p
+        .windows(2)
+        .any(|s| q.windows(2).any(|t| cross([s[0], s[1]], [t[0], t[1]])));
     crossing || inside(p, q[0]) || inside(q, p[0])
 }
 
@@ -75,13 +87,18 @@ fn edges(tin: &Tin) -> Result<(), String> {
                 return Err(format!("an edge of line {} is missing", line.index()));
             };
             if !triangulation.is_constrained(cell, i) {
-                return Err(format!("an edge of line {} is not constrained", line.index()));
+                return Err(format!(
+                    "an edge of line {} is not constrained",
+                    line.index()
+                ));
             }
             let face = cell.index() as u32;
             if tin.face(face).is_some() {
                 let found = tin.edge_kind(face, i);
                 let lines = triangulation.lines_through(pair[0], pair[1]);
-                let kinds: Vec<EdgeKind> = lines.filter_map(|line| tin.line_kind(line.index())).collect();
+                let kinds: Vec<EdgeKind> = lines
+                    .filter_map(|line| tin.line_kind(line.index()))
+                    .collect();
                 let first = first_of(&kinds);
                 if Some(found) != first || !kinds.contains(&kind) {
                     return Err(format!("an edge on lines of {kinds:?} is {found:?}"));
@@ -93,7 +110,13 @@ fn edges(tin: &Tin) -> Result<(), String> {
 }
 
 fn first_of(kinds: &[EdgeKind]) -> Option<EdgeKind> {
-    let order = [EdgeKind::Shore, EdgeKind::Bank, EdgeKind::Wall, EdgeKind::Breakline, EdgeKind::Soft];
+    let order = [
+        EdgeKind::Shore,
+        EdgeKind::Bank,
+        EdgeKind::Wall,
+        EdgeKind::Breakline,
+        EdgeKind::Soft,
+    ];
     order.into_iter().find(|kind| kinds.contains(kind))
 }
 
@@ -103,15 +126,24 @@ fn heights_of_lines(scene: &Scene, tin: &Tin) -> Result<(), String> {
     let in_water = |[x, y, _]: [f64; 3]| near_water(scene, [(x * 16.0) as i64, (y * 16.0) as i64]);
     for (lines, before) in [(&scene.hard, &[][..]), (&scene.soft, &scene.hard[..])] {
         for p in lines.iter().flat_map(|line| floats(line)) {
-            let same = lines.iter().flatten().filter(|q| q[0] as f64 == p[0] && q[1] as f64 == p[1]);
+            let same = lines
+                .iter()
+                .flatten()
+                .filter(|q| q[0] as f64 == p[0] && q[1] as f64 == p[1]);
             let lowest = same.map(|q| q[2] as f64).fold(f64::INFINITY, f64::min);
             let Location::Vertex(vertex) = tin.triangulation().locate(&p, None) else {
                 return Err(format!("no vertex at {p:?} of a line"));
             };
             let found = tin.triangulation().point(vertex)[2];
-            let is_theirs = scene.walls.iter().chain(before).any(|line| near_line(line, [p[0], p[1]], 4.0 * WALL));
+            let is_theirs = scene
+                .walls
+                .iter()
+                .chain(before)
+                .any(|line| near_line(line, [p[0], p[1]], 4.0 * WALL));
             if !is_theirs && !in_water(p) && found != lowest {
-                return Err(format!("the vertex {p:?} of a line is at {found}, expected {lowest}"));
+                return Err(format!(
+                    "the vertex {p:?} of a line is at {found}, expected {lowest}"
+                ));
             }
         }
     }
@@ -121,16 +153,35 @@ fn heights_of_lines(scene: &Scene, tin: &Tin) -> Result<(), String> {
 /// Where a segment of a wall meets nothing else, its upper edge has the heights of its line, and
 /// its lower edge is 3 lower.
 fn walls(scene: &Scene, tin: &Tin) -> Result<(), String> {
-    let shores: Vec<Line> =
-        scene.lakes.iter().map(|(ring, _)| ring.iter().map(|p| [p[0], p[1], 0]).collect()).collect();
+    let shores: Vec<Line> = scene
+        .lakes
+        .iter()
+        .map(|(ring, _)| ring.iter().map(|p| [p[0], p[1], 0]).collect())
+        .collect();
     for (number, wall) in scene.walls.iter().enumerate() {
-        let others = scene.walls.iter().enumerate().filter(|(other, _)| *other != number).map(|(_, wall)| wall);
-        let others: Vec<&Line> = others.chain(&scene.hard).chain(&scene.soft).chain(&shores).collect();
+        let others = scene
+            .walls
+            .iter()
+            .enumerate()
+            .filter(|(other, _)| *other != number)
+            .map(|(_, wall)| wall);
+        let others: Vec<&Line> = others
+            .chain(&scene.hard)
+            .chain(&scene.soft)
+            .chain(&shores)
+            .collect();
         for (k, pair) in wall.windows(2).enumerate() {
-            let own = wall.windows(2).enumerate().filter(|(other, _)| *other != k).map(|(_, pair)| pair);
+            let own = wall
+                .windows(2)
+                .enumerate()
+                .filter(|(other, _)| *other != k)
+                .map(|(_, pair)| pair);
             let is_sharp = own.into_iter().any(|other| turns_sharply(pair, other));
             let is_met = others.iter().any(|other| are_close(pair, other, 0.05))
-                || scene.rivers.iter().any(|river| are_close(pair, river, 1.5 * RIVER))
+                || scene
+                    .rivers
+                    .iter()
+                    .any(|river| are_close(pair, river, 1.5 * RIVER))
                 || near_lake(scene, [pair[0][0] as f64, pair[0][1] as f64]);
             if is_sharp || is_met {
                 continue;
@@ -144,9 +195,13 @@ fn walls(scene: &Scene, tin: &Tin) -> Result<(), String> {
                 // to 8. A position is rounded to 1e-15, where the slope is 3 / WALL.
                 for (by, expected, bound) in [(0.0, z, 1e-9), (WALL, z - 3.0, 16.0 * WALL)] {
                     let [x, y] = [x + by * along[1] / length, y - by * along[0] / length];
-                    let found = tin.elevation(x, y).ok_or_else(|| format!("no surface at {x} {y}, on a wall"))?;
+                    let found = tin
+                        .elevation(x, y)
+                        .ok_or_else(|| format!("no surface at {x} {y}, on a wall"))?;
                     if (found - expected).abs() > bound {
-                        return Err(format!("the wall at {x} {y} is at {found}, expected {expected}"));
+                        return Err(format!(
+                            "the wall at {x} {y} is at {found}, expected {expected}"
+                        ));
                     }
                 }
             }
@@ -159,7 +214,8 @@ fn walls(scene: &Scene, tin: &Tin) -> Result<(), String> {
 fn are_close(segment: &[[i64; 3]], line: &[[i64; 3]], distance: f64) -> bool {
     let plan = |pair: &[[i64; 3]]| [[pair[0][0], pair[0][1]], [pair[1][0], pair[1][1]]];
     line.windows(2).any(|other| {
-        let near = |line: &[[i64; 3]], p: &[i64; 3]| near_line(line, [p[0] as f64, p[1] as f64], distance);
+        let near =
+            |line: &[[i64; 3]], p: &[i64; 3]| near_line(line, [p[0] as f64, p[1] as f64], distance);
         cross(plan(segment), plan(other))
             || segment.iter().any(|p| near(other, p))
             || other.iter().any(|p| near(segment, p))
@@ -185,22 +241,36 @@ fn rivers(scene: &Scene, tin: &Tin) -> Result<(), String> {
         if River::along(&line, RIVER).is_ok_and(|river| river.overlap().is_some()) {
             continue;
         }
-        let directions: Vec<[f64; 2]> = line.windows(2).map(|pair| direction(pair[0], pair[1])).collect();
+        let directions: Vec<[f64; 2]> = line
+            .windows(2)
+            .map(|pair| direction(pair[0], pair[1]))
+            .collect();
         let mut level = f64::INFINITY;
         for (k, &[x, y, z]) in line.iter().enumerate() {
             level = level.min(z);
-            let [before, after] = [directions[k.saturating_sub(1)], directions[k.min(directions.len() - 1)]];
+            let [before, after] = [
+                directions[k.saturating_sub(1)],
+                directions[k.min(directions.len() - 1)],
+            ];
             let sum = [before[0] + after[0], before[1] + after[1]];
             let half_cosine = sum[0].hypot(sum[1]) / 2.0;
             let near = |line: &Line, by| near_line(line, [x, y], by);
-            let is_met = scene.rivers.iter().enumerate().any(|(other, line)| other != number && near(line, 4.0))
-                || scene.lakes.iter().any(|(ring, _)| near(&ring.iter().map(|p| [p[0], p[1], 0]).collect(), 2.0))
+            let is_met = scene
+                .rivers
+                .iter()
+                .enumerate()
+                .any(|(other, line)| other != number && near(line, 4.0))
+                || scene
+                    .lakes
+                    .iter()
+                    .any(|(ring, _)| near(&ring.iter().map(|p| [p[0], p[1], 0]).collect(), 2.0))
                 || near_lake(scene, [x, y]);
             // At sharp bends, level lines meet on the inner bank.
             if is_met || half_cosine < 0.9 {
                 continue;
             }
-            let normal = [-sum[1], sum[0]].map(|c| c / (2.0 * half_cosine) / half_cosine * RIVER / 2.0);
+            let normal =
+                [-sum[1], sum[0]].map(|c| c / (2.0 * half_cosine) / half_cosine * RIVER / 2.0);
             // Banks and ends are rounded: stay within.
             let inward = match k {
                 0 => after,
@@ -209,10 +279,15 @@ fn rivers(scene: &Scene, tin: &Tin) -> Result<(), String> {
             };
             for part in [-1.0, -0.6, 0.0, 0.25, 1.0] {
                 let part = part * (1.0 - 1e-9);
-                let [u, v] = [0, 1].map(|axis| [x, y][axis] + part * normal[axis] + 1e-9 * inward[axis]);
-                let found = tin.elevation(u, v).ok_or_else(|| format!("no surface at {u} {v}, in a river"))?;
+                let [u, v] =
+                    [0, 1].map(|axis| [x, y][axis] + part * normal[axis] + 1e-9 * inward[axis]);
+                let found = tin
+                    .elevation(u, v)
+                    .ok_or_else(|| format!("no surface at {u} {v}, in a river"))?;
                 if (found - level).abs() > 1e-6 {
-                    return Err(format!("the river at {u} {v} is at {found}, expected {level}"));
+                    return Err(format!(
+                        "the river at {u} {v} is at {found}, expected {level}"
+                    ));
                 }
             }
         }
@@ -237,10 +312,16 @@ fn probe(scene: &Scene, tin: &Tin, whole: &Tin, at: [i64; 2]) -> Result<bool, St
     {
         return match height {
             None => Ok(true),
-            Some(height) => Err(format!("at {x} {y}, outside of the bounds, the surface is at {height}")),
+            Some(height) => Err(format!(
+                "at {x} {y}, outside of the bounds, the surface is at {height}"
+            )),
         };
     }
-    let in_hole: Vec<Position> = scene.holes.iter().map(|hole| position(hole, at, 16)).collect();
+    let in_hole: Vec<Position> = scene
+        .holes
+        .iter()
+        .map(|hole| position(hole, at, 16))
+        .collect();
     if in_hole.contains(&Position::Rim) {
         return Ok(false);
     }
@@ -251,7 +332,9 @@ fn probe(scene: &Scene, tin: &Tin, whole: &Tin, at: [i64; 2]) -> Result<bool, St
         };
     }
     let (Some(height), Some(before)) = (height, before) else {
-        return Err(format!("at {x} {y} the surface is {height:?}, without draped lines and holes {before:?}"));
+        return Err(format!(
+            "at {x} {y} the surface is {height:?}, without draped lines and holes {before:?}"
+        ));
     };
     // A cut moves lines by some units in the last place, and the surface by that times its slope,
     // which is unlimited where lines cross between grid points.
@@ -259,13 +342,18 @@ fn probe(scene: &Scene, tin: &Tin, whole: &Tin, at: [i64; 2]) -> Result<bool, St
     let heights = around.map(|[u, v]| whole.elevation(x + u, y + v).unwrap_or(before));
     let lowest = heights.into_iter().fold(before, f64::min) - 1e-6;
     let highest = heights.into_iter().fold(before, f64::max) + 1e-6;
-    let is_as_before = (lowest..=highest).contains(&height) || may_be_exchanged(whole, [x, y], height);
+    let is_as_before =
+        (lowest..=highest).contains(&height) || may_be_exchanged(whole, [x, y], height);
     if !is_as_before && !near_wall(scene, [x, y]) {
-        return Err(format!("at {x} {y} draped lines change the height from {before} to {height}"));
+        return Err(format!(
+            "at {x} {y} draped lines change the height from {before} to {height}"
+        ));
     }
     for (lake, level) in &scene.lakes {
         if position(lake, at, 16) == Position::Inside && height != *level as f64 {
-            return Err(format!("at {x} {y}, in a lake at {level}, the surface is at {height}"));
+            return Err(format!(
+                "at {x} {y}, in a lake at {level}, the surface is at {height}"
+            ));
         }
     }
     Ok(true)
@@ -275,22 +363,36 @@ fn probe(scene: &Scene, tin: &Tin, whole: &Tin, at: [i64; 2]) -> Result<bool, St
 /// corners for vertices at most [`MOVED`] away.
 fn may_be_exchanged(tin: &Tin, p: [f64; 2], height: f64) -> bool {
     let triangulation = tin.triangulation();
-    let Location::Cell { cell, .. } = triangulation.locate(&[p[0], p[1], 0.0], None) else { return false };
-    let Some(corners) = tin.triangle(cell.index() as u32) else { return false };
-    let twice = |a: [f64; 2], b: [f64; 2], c: [f64; 2]| (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+    let Location::Cell { cell, .. } = triangulation.locate(&[p[0], p[1], 0.0], None) else {
+        return false;
+    };
+    let Some(corners) = tin.triangle(cell.index() as u32) else {
+        return false;
+    };
+    let twice = |a: [f64; 2], b: [f64; 2], c: [f64; 2]| {
+        (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+    };
     let [a, b, c] = corners.map(|[x, y, _]| [x, y]);
     let shares = [twice(b, c, p), twice(c, a, p), twice(a, b, p)].map(|area| area / twice(a, b, c));
     let near = corners.map(|[x, y, _]| {
-        let vertices = triangulation.tds().vertices().map(|vertex| *triangulation.point(vertex));
+        let vertices = triangulation
+            .tds()
+            .vertices()
+            .map(|vertex| *triangulation.point(vertex));
         let near = vertices.filter(|q| (q[0] - x).abs().max((q[1] - y).abs()) <= MOVED);
-        near.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], q| [low.min(q[2]), high.max(q[2])])
+        near.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], q| {
+            [low.min(q[2]), high.max(q[2])]
+        })
     });
     let [low, high] = [0, 1].map(|end| (0..3).map(|i| shares[i] * near[i][end]).sum::<f64>());
     (low - 1e-6..=high + 1e-6).contains(&height)
 }
 
 fn near_wall(scene: &Scene, p: [f64; 2]) -> bool {
-    scene.walls.iter().any(|wall| near_line(wall, p, 4.0 * WALL))
+    scene
+        .walls
+        .iter()
+        .any(|wall| near_line(wall, p, 4.0 * WALL))
 }
 
 /// Returns true if a position is no farther than a distance from a line.
@@ -299,21 +401,29 @@ fn near_line(line: &[[i64; 3]], [x, y]: [f64; 2], distance: f64) -> bool {
         let [a, b] = [pair[0], pair[1]];
         let along = [b[0] - a[0], b[1] - a[1]];
         let length = along[0].hypot(along[1]);
-        let part = (((x - a[0]) * along[0] + (y - a[1]) * along[1]) / (length * length)).clamp(0.0, 1.0);
+        let part =
+            (((x - a[0]) * along[0] + (y - a[1]) * along[1]) / (length * length)).clamp(0.0, 1.0);
         (a[0] + part * along[0] - x).hypot(a[1] + part * along[1] - y) <= distance
     })
 }
 
 fn near_lake(scene: &Scene, [x, y]: [f64; 2]) -> bool {
     let at = [(x * 16.0) as i64, (y * 16.0) as i64];
-    scene.lakes.iter().any(|(lake, _)| position(lake, at, 16) != Position::Outside)
+    scene
+        .lakes
+        .iter()
+        .any(|(lake, _)| position(lake, at, 16) != Position::Outside)
 }
 
 /// Returns true if a position, in units of 1 / 16, lies in a lake or on its shore, or may lie in a
 /// river.
 fn near_water(scene: &Scene, at: [i64; 2]) -> bool {
     let p = at.map(|c| c as f64 / 16.0);
-    near_lake(scene, p) || scene.rivers.iter().any(|river| near_line(river, p, 1.5 * RIVER))
+    near_lake(scene, p)
+        || scene
+            .rivers
+            .iter()
+            .any(|river| near_line(river, p, 1.5 * RIVER))
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -337,7 +447,11 @@ fn position(ring: &Ring, [x, y]: [i64; 2], scale: i64) -> Position {
             is_odd = !is_odd;
         }
     }
-    if is_odd { Position::Inside } else { Position::Outside }
+    if is_odd {
+        Position::Inside
+    } else {
+        Position::Outside
+    }
 }
 
 /// Returns true if two segments share a point.
@@ -346,5 +460,8 @@ fn cross([a, b]: [[i64; 2]; 2], [c, d]: [[i64; 2]; 2]) -> bool {
         ((q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0])).signum()
     };
     let within = |k: usize| a[k].min(b[k]) <= c[k].max(d[k]) && c[k].min(d[k]) <= a[k].max(b[k]);
-    within(0) && within(1) && turn(a, b, c) * turn(a, b, d) <= 0 && turn(c, d, a) * turn(c, d, b) <= 0
+    within(0)
+        && within(1)
+        && turn(a, b, c) * turn(a, b, d) <= 0
+        && turn(c, d, a) * turn(c, d, b) <= 0
 }

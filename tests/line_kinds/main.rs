@@ -24,24 +24,48 @@ use testkit::random::Random;
 const SELECTIONS: u64 = 1 << 7;
 
 fn count() -> u64 {
-    std::env::var("BREAKLINE_KINDS").ok().and_then(|n| n.parse().ok()).unwrap_or(4)
+    std::env::var("BREAKLINE_KINDS")
+        .ok()
+        .and_then(|n| n.parse().ok())
+        .unwrap_or(4)
 }
 
 #[test]
 fn each_kind_keeps_its_promises_whatever_it_meets() {
-    let sets: Vec<(u64, u64)> = (1..SELECTIONS).flat_map(|kinds| (0..count()).map(move |seed| (kinds, seed))).collect();
+    let sets: Vec<(u64, u64)> = (1..SELECTIONS)
+        .flat_map(|kinds| (0..count()).map(move |seed| (kinds, seed)))
+        .collect();
     let judged = sets.par_iter().map(|&(kinds, seed)| {
         let scene = Scene::random(&mut Random(1000 * seed + kinds), kinds);
-        judge::judge(&scene).map_err(|what| format!("kinds {kinds:07b}, seed {seed}: {what}\n{scene:?}"))
+        judge::judge(&scene)
+            .map_err(|what| format!("kinds {kinds:07b}, seed {seed}: {what}\n{scene:?}"))
     });
     let judged: Vec<Result<usize, String>> = judged.collect();
-    let wrong: Vec<&String> = judged.iter().filter_map(|judged| judged.as_ref().err()).collect();
+    let wrong: Vec<&String> = judged
+        .iter()
+        .filter_map(|judged| judged.as_ref().err())
+        .collect();
     if let Some(first) = wrong.first() {
-        let all: Vec<&str> = wrong.iter().filter_map(|what| what.lines().next()).take(40).collect();
-        panic!("{} of {} sets are wrong:\n{}\n{first}", wrong.len(), judged.len(), all.join("\n"));
+        let all: Vec<&str> = wrong
+            .iter()
+            .filter_map(|what| what.lines().next())
+            .take(40)
+            .collect();
+        panic!(
+            "{} of {} sets are wrong:\n{}\n{first}",
+            wrong.len(),
+            judged.len(),
+            all.join("\n")
+        );
     }
-    let built = judged.iter().filter(|judged| matches!(judged, Ok(1..))).count();
-    assert!(built as u64 > count() * SELECTIONS / 2, "{built} sets were built");
+    let built = judged
+        .iter()
+        .filter(|judged| matches!(judged, Ok(1..)))
+        .count();
+    assert!(
+        built as u64 > count() * SELECTIONS / 2,
+        "{built} sets were built"
+    );
 }
 
 /// The faces of a surface, with heights and kinds of edges, in an order of their own.
@@ -49,7 +73,13 @@ fn content(tin: &dyn Surface) -> Vec<String> {
     let faces = (0..tin.face_count() as u32).filter_map(|face| {
         tin.face(face)?;
         let mut corners: Vec<String> = (0..3)
-            .map(|i| format!("{:?} {:?}", tin.triangle(face).map(|t| t[i].map(f64::to_bits)), tin.edge_kind(face, i)))
+            .map(|i| {
+                format!(
+                    "{:?} {:?}",
+                    tin.triangle(face).map(|t| t[i].map(f64::to_bits)),
+                    tin.edge_kind(face, i)
+                )
+            })
             .collect();
         corners.sort();
         Some(corners.concat())
@@ -88,8 +118,13 @@ fn the_order_of_the_input_changes_nothing() {
         let Ok(first) = scene.build(0) else { return };
         let expected = content(&first);
         for order in 1..=shuffles {
-            let again = scene.build(order).unwrap_or_else(|error| panic!("{kinds:07b}, order {order}: {error}"));
-            assert!(content(&again) == expected, "kinds {kinds:07b}, order {order}: {scene:?}");
+            let again = scene
+                .build(order)
+                .unwrap_or_else(|error| panic!("{kinds:07b}, order {order}: {error}"));
+            assert!(
+                content(&again) == expected,
+                "kinds {kinds:07b}, order {order}: {scene:?}"
+            );
         }
     });
 }

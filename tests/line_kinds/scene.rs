@@ -39,17 +39,27 @@ impl Scene {
     pub(crate) fn random(random: &mut Random, kinds: u64) -> Self {
         let mut scene = Scene::default();
         for corner in [[0, 0], [SIDE, 0], [0, SIDE], [SIDE, SIDE]] {
-            scene.points.push([corner[0], corner[1], random.below(9) as i64]);
+            scene
+                .points
+                .push([corner[0], corner[1], random.below(9) as i64]);
         }
         for _ in 0..random.below(40) {
             let [x, y] = site(random, 0);
             scene.points.push([x, y, random.below(9) as i64]);
         }
-        let count = |random: &mut Random, bit: u64| if kinds >> bit & 1 == 1 { 1 + random.below(2) } else { 0 };
+        let count = |random: &mut Random, bit: u64| {
+            if kinds >> bit & 1 == 1 {
+                1 + random.below(2)
+            } else {
+                0
+            }
+        };
         scene.hard = (0..count(random, 0)).map(|_| line(random, 4)).collect();
         scene.soft = (0..count(random, 1)).map(|_| line(random, 3)).collect();
         scene.walls = (0..count(random, 2)).map(|_| line(random, 3)).collect();
-        scene.lakes = (0..count(random, 3)).map(|_| (triangle(random), 20 + random.below(3) as i64)).collect();
+        scene.lakes = (0..count(random, 3))
+            .map(|_| (triangle(random), 20 + random.below(3) as i64))
+            .collect();
         scene.rivers = (0..count(random, 4)).map(|_| line(random, 3)).collect();
         scene.holes = (0..count(random, 5)).map(|_| triangle(random)).collect();
         scene.draped = (0..count(random, 6)).map(|_| line(random, 3)).collect();
@@ -83,7 +93,10 @@ impl Scene {
         }
         let bounds = self.bounds.map(|[min, max]| {
             let corner = |[x, y]: [i64; 2], z: f64| [x as f64, y as f64, z];
-            Bounds { min: corner(min, f64::NEG_INFINITY), max: corner(max, f64::INFINITY) }
+            Bounds {
+                min: corner(min, f64::NEG_INFINITY),
+                max: corner(max, f64::INFINITY),
+            }
         });
         let mut builder = TinBuilder::default();
         builder.bounds = bounds;
@@ -96,11 +109,22 @@ impl Scene {
     fn add(&self, kind: u32, builder: &mut TinBuilder) -> breakline::Result<()> {
         match kind {
             0 => {
-                let axis = |k: usize| self.points.iter().map(|p| p[k] as f64).collect::<Vec<f64>>();
+                let axis = |k: usize| {
+                    self.points
+                        .iter()
+                        .map(|p| p[k] as f64)
+                        .collect::<Vec<f64>>()
+                };
                 builder.add_points(&axis(0), &axis(1), &axis(2));
             }
-            1 => self.hard.iter().for_each(|line| builder.add_breakline(&floats(line))),
-            2 => self.soft.iter().for_each(|line| builder.add_soft_line(&floats(line))),
+            1 => self
+                .hard
+                .iter()
+                .for_each(|line| builder.add_breakline(&floats(line))),
+            2 => self
+                .soft
+                .iter()
+                .for_each(|line| builder.add_soft_line(&floats(line))),
             3 => {
                 for upper in &self.walls {
                     builder.add_wall(&wall(upper)?);
@@ -108,7 +132,10 @@ impl Scene {
             }
             4 => {
                 for (ring, height) in &self.lakes {
-                    let ring = ring.iter().map(|p| [p[0] as f64, p[1] as f64, f64::NAN]).collect();
+                    let ring = ring
+                        .iter()
+                        .map(|p| [p[0] as f64, p[1] as f64, f64::NAN])
+                        .collect();
                     builder.add_flat(Flat::new(&[ring], FlatHeight::Given(*height as f64))?);
                 }
             }
@@ -117,9 +144,17 @@ impl Scene {
                     builder.add_river(River::along(&floats(middle), RIVER)?);
                 }
             }
-            6 => self.holes.iter().for_each(|ring| builder.add_hole(&[plan(ring)])),
+            6 => self
+                .holes
+                .iter()
+                .for_each(|ring| builder.add_hole(&[plan(ring)])),
             _ => self.draped.iter().for_each(|line| {
-                builder.add_draped_line(&line.iter().map(|p| [p[0] as f64, p[1] as f64]).collect::<Vec<_>>());
+                builder.add_draped_line(
+                    &line
+                        .iter()
+                        .map(|p| [p[0] as f64, p[1] as f64])
+                        .collect::<Vec<_>>(),
+                );
             }),
         }
         Ok(())

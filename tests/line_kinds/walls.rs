@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use breakline::data::{Layer, Shape};
 use breakline::run::{
-    Context, Input, LineRequest, LowerEdge, PerRecord, Source, SurfaceProduct, SurfaceRequest, TinRequest, WallOptions,
-    triangles,
+    Context, Input, LineRequest, LowerEdge, PerRecord, Source, SurfaceProduct, SurfaceRequest,
+    TinRequest, WallOptions, triangles,
 };
 use breakline::terrain::{HighSide, TinBuilder, Wall};
 use breakline::triangulation::LineId;
@@ -21,19 +21,42 @@ type Line = Vec<[f64; 3]>;
 fn field() -> Line {
     let along = || (-SIDE..=2 * SIDE).step_by(4).map(|c| c as f64);
     let sites = along().flat_map(|x| along().map(move |y| [x, y]));
-    sites.map(|[x, y]| [x + 0.371 + 0.013 * y, y + 0.249 - 0.0017 * x, 0.0]).collect()
+    sites
+        .map(|[x, y]| [x + 0.371 + 0.013 * y, y + 0.249 - 0.0017 * x, 0.0])
+        .collect()
 }
 
 /// Builds a surface over a field at 0 with walls, 3 high, in layers of records.
 fn build(layers: &[Vec<Line>], width: f64, high: HighSide) -> breakline::Result<SurfaceProduct> {
     let layer = |records: &Vec<Line>| {
-        let shapes = records.iter().map(|line| Shape::Lines(vec![line.clone()])).collect();
-        Input::Memory(Arc::new(Layer { shapes, ..Layer::default() }))
+        let shapes = records
+            .iter()
+            .map(|line| Shape::Lines(vec![line.clone()]))
+            .collect();
+        Input::Memory(Arc::new(Layer {
+            shapes,
+            ..Layer::default()
+        }))
     };
-    let wall = WallOptions { lower: Some(LowerEdge::Drop(PerRecord::Number(3.0))), width: Some(width), high };
-    let lines = LineRequest { walls: layers.iter().map(layer).collect(), wall, ..LineRequest::default() };
-    let tin = TinRequest { points: vec![Input::of_points(&field(), None)], lines, ..TinRequest::default() };
-    let request = SurfaceRequest { source: Source::Points(Box::new(tin)), ..SurfaceRequest::default() };
+    let wall = WallOptions {
+        lower: Some(LowerEdge::Drop(PerRecord::Number(3.0))),
+        width: Some(width),
+        high,
+    };
+    let lines = LineRequest {
+        walls: layers.iter().map(layer).collect(),
+        wall,
+        ..LineRequest::default()
+    };
+    let tin = TinRequest {
+        points: vec![Input::of_points(&field(), None)],
+        lines,
+        ..TinRequest::default()
+    };
+    let request = SurfaceRequest {
+        source: Source::Points(Box::new(tin)),
+        ..SurfaceRequest::default()
+    };
     triangles(&request, &Context::default())
 }
 
@@ -55,17 +78,24 @@ fn upper_edges(lines: &[Line], width: f64, high: HighSide) -> Result<usize, Stri
     let mut numbers = Vec::new();
     for (upper, ends) in uppers.iter().zip(Wall::neighbors(&uppers, high)) {
         let lower: Vec<f64> = upper.iter().map(|p| p[2] - 3.0).collect();
-        let wall = Wall::continued(upper, &lower, width, high, ends).map_err(|error| error.to_string())?;
+        let wall =
+            Wall::continued(upper, &lower, width, high, ends).map_err(|error| error.to_string())?;
         numbers.push(builder.add_wall(&wall).start);
     }
     let tin = builder.build().map_err(|error| error.to_string())?;
     let triangulation = tin.triangulation();
     let mut judged = 0;
-    for vertex in numbers.into_iter().flat_map(|number| triangulation.chain(LineId::new(number))) {
+    for vertex in numbers
+        .into_iter()
+        .flat_map(|number| triangulation.chain(LineId::new(number)))
+    {
         let [x, y, z] = *triangulation.point(vertex);
         judged += 1;
         if (z - height([x, y])).abs() > 1e-9 {
-            return Err(format!("the upper edge at {x} {y} is at {z}, expected {}", height([x, y])));
+            return Err(format!(
+                "the upper edge at {x} {y} is at {z}, expected {}",
+                height([x, y])
+            ));
         }
     }
     Ok(judged)
@@ -76,7 +106,8 @@ fn bent(random: &mut Random, width: f64) -> Line {
     let count = 3 + random.below(6);
     let mut line: Vec<[f64; 2]> = Vec::new();
     while (line.len() as u64) < count {
-        let near = |p: [f64; 2], random: &mut Random, by: f64| p.map(|c| c + by * random.around(3) as f64);
+        let near =
+            |p: [f64; 2], random: &mut Random, by: f64| p.map(|c| c + by * random.around(3) as f64);
         let next = match (random.below(6), line.as_slice()) {
             (0, &[.., p, _]) => p,
             (1, &[.., p, q]) => [(p[0] + q[0]) / 2.0, (p[1] + q[1]) / 2.0],
@@ -100,7 +131,10 @@ fn in_parts(line: &[[f64; 3]], random: &mut Random) -> Vec<Vec<Line>> {
     let cuts: Vec<usize> = (1..last).filter(|_| random.below(2) == 0).collect();
     let from = std::iter::once(0).chain(cuts.iter().copied());
     let to = cuts.iter().copied().chain([last]);
-    let mut parts: Vec<Line> = from.zip(to).map(|(from, to)| line[from..=to].to_vec()).collect();
+    let mut parts: Vec<Line> = from
+        .zip(to)
+        .map(|(from, to)| line[from..=to].to_vec())
+        .collect();
     random.shuffle(&mut parts);
     let mut layers: Vec<Vec<Line>> = vec![Vec::new(); 3];
     for part in parts {
@@ -113,7 +147,11 @@ fn in_parts(line: &[[f64; 3]], random: &mut Random) -> Vec<Vec<Line>> {
 /// Returns true if a line visits a site twice other than by closing, so that its parts do not say
 /// which one goes on in which.
 fn is_ambiguous(line: &[[f64; 3]]) -> bool {
-    let open = if line[0][..2] == line[line.len() - 1][..2] { &line[1..] } else { line };
+    let open = if line[0][..2] == line[line.len() - 1][..2] {
+        &line[1..]
+    } else {
+        line
+    };
     (0..open.len()).any(|i| (0..i).any(|j| open[i][..2] == open[j][..2]))
 }
 
@@ -130,7 +168,9 @@ fn judge_bent(seed: u64) -> Result<usize, String> {
     let judged = upper_edges(std::slice::from_ref(&line), width, high);
     let judged = judged.and_then(|_| upper_edges(&layers.concat(), width, high));
     if !is_ambiguous(&line) && super::content(whole) != super::content(parts) {
-        return Err(format!("in parts it differs: {line:?}, {layers:?}, width {width}, {high:?}"));
+        return Err(format!(
+            "in parts it differs: {line:?}, {layers:?}, width {width}, {high:?}"
+        ));
     }
     judged.map_err(|what| format!("{what}: {line:?}, {layers:?}, width {width}, {high:?}"))
 }
@@ -151,30 +191,56 @@ fn judge_star(seed: u64) -> Result<usize, String> {
         _ => with_heights(&[away(&mut random), middle, away(&mut random)]),
     });
     let lines: Vec<Line> = lines.collect();
-    let built = build(std::slice::from_ref(&lines), width, high).map_err(|error| error.to_string())?;
+    let built =
+        build(std::slice::from_ref(&lines), width, high).map_err(|error| error.to_string())?;
     let built = built.triangles().map_err(|error| error.to_string())?;
     let mut shuffled = lines.clone();
     random.shuffle(&mut shuffled);
-    let again = build(&shuffled.chunks(1).map(<[Line]>::to_vec).collect::<Vec<_>>(), width, high);
+    let again = build(
+        &shuffled.chunks(1).map(<[Line]>::to_vec).collect::<Vec<_>>(),
+        width,
+        high,
+    );
     let again = again.map_err(|error| error.to_string())?;
-    if super::content(built) != super::content(again.triangles().map_err(|error| error.to_string())?) {
-        return Err(format!("in another order it differs: {lines:?}, width {width}, {high:?}"));
+    if super::content(built)
+        != super::content(again.triangles().map_err(|error| error.to_string())?)
+    {
+        return Err(format!(
+            "in another order it differs: {lines:?}, width {width}, {high:?}"
+        ));
     }
-    upper_edges(&lines, width, high).map_err(|what| format!("{what}: {lines:?}, width {width}, {high:?}"))
+    upper_edges(&lines, width, high)
+        .map_err(|what| format!("{what}: {lines:?}, width {width}, {high:?}"))
 }
 
 /// However a wall turns, its upper edge has its heights, and its parts are the whole.
 #[test]
 fn upper_edges_are_never_tilted() {
-    for (name, judge) in [("bent", judge_bent as fn(u64) -> Result<usize, String>), ("star", judge_star)] {
-        let judged = (0..30 * count()).into_par_iter().map(|seed| judge(seed).map_err(|what| (seed, what)));
+    for (name, judge) in [
+        ("bent", judge_bent as fn(u64) -> Result<usize, String>),
+        ("star", judge_star),
+    ] {
+        let judged = (0..30 * count())
+            .into_par_iter()
+            .map(|seed| judge(seed).map_err(|what| (seed, what)));
         let judged: Vec<Result<usize, (u64, String)>> = judged.collect();
-        let wrong: Vec<_> = judged.iter().filter_map(|judged| judged.as_ref().err()).collect();
+        let wrong: Vec<_> = judged
+            .iter()
+            .filter_map(|judged| judged.as_ref().err())
+            .collect();
         if !wrong.is_empty() {
-            panic!("{name}: {} of {} are wrong: {:#?}", wrong.len(), judged.len(), &wrong[..wrong.len().min(8)]);
+            panic!(
+                "{name}: {} of {} are wrong: {:#?}",
+                wrong.len(),
+                judged.len(),
+                &wrong[..wrong.len().min(8)]
+            );
         }
         let vertices: usize = judged.iter().flatten().sum();
-        assert!(vertices > 3 * judged.len(), "{name}: {vertices} vertices were judged");
+        assert!(
+            vertices > 3 * judged.len(),
+            "{name}: {vertices} vertices were judged"
+        );
     }
 }
 
@@ -185,9 +251,15 @@ fn two_records_at_a_sharp_angle_are_level() {
     let [first, second] = [&line[..2], &line[1..]];
     for high in [HighSide::Left, HighSide::Right] {
         let whole = build(&[vec![line.clone()]], 0.01, high).unwrap();
-        for layers in [vec![vec![first.to_vec(), second.to_vec()]], vec![vec![second.to_vec()], vec![first.to_vec()]]] {
+        for layers in [
+            vec![vec![first.to_vec(), second.to_vec()]],
+            vec![vec![second.to_vec()], vec![first.to_vec()]],
+        ] {
             let found = build(&layers, 0.01, high).unwrap();
-            assert!(super::content(found.triangles().unwrap()) == super::content(whole.triangles().unwrap()));
+            assert!(
+                super::content(found.triangles().unwrap())
+                    == super::content(whole.triangles().unwrap())
+            );
             upper_edges(&layers.concat(), 0.01, high).unwrap();
         }
     }

@@ -34,7 +34,12 @@ fn breakline(folder: &Path, args: &[&str]) -> String {
         .output()
         .expect("the program can be started");
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(output.status.code(), Some(0), "breakline {}\n{said}", args.join(" "));
+    assert_eq!(
+        output.status.code(),
+        Some(0),
+        "breakline {}\n{said}",
+        args.join(" ")
+    );
     said
 }
 
@@ -48,7 +53,10 @@ fn fixture(name: &str) -> String {
 
 /// Points as text, as many decimals as it takes.
 fn text(points: &[[f64; 3]]) -> String {
-    points.iter().map(|[x, y, z]| format!("{x} {y} {z}\n")).collect()
+    points
+        .iter()
+        .map(|[x, y, z]| format!("{x} {y} {z}\n"))
+        .collect()
 }
 
 /// Lines as GeoJSON, one feature each.
@@ -61,6 +69,7 @@ fn geojson(lines: &[Vec<[f64; 3]>]) -> String {
             })
         })
         .collect();
-    let crs = serde_json::json!({"type": "name", "properties": {"name": "urn:ogc:def:crs:EPSG::25832"}});
+    let crs =
+        serde_json::json!({"type": "name", "properties": {"name": "urn:ogc:def:crs:EPSG::25832"}});
     serde_json::json!({"type": "FeatureCollection", "crs": crs, "features": features}).to_string()
 }

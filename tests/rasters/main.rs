@@ -27,7 +27,10 @@ impl BlockSource for Hills {
 
     fn fill(&self, window: Window, out: &mut [f32]) -> Result<()> {
         for (i, cell) in out.iter_mut().enumerate() {
-            *cell = self.height(window.column + i % window.width, window.row + i / window.width);
+            *cell = self.height(
+                window.column + i % window.width,
+                window.row + i / window.width,
+            );
         }
         Ok(())
     }
@@ -36,7 +39,14 @@ impl BlockSource for Hills {
 impl Hills {
     fn new(width: usize, height: usize) -> Self {
         let transform = [500_000.25, 0.5, 0.0, 4_000_000.125, 0.0, -0.5];
-        Hills { frame: Frame { width, height, transform }, is_empty: false }
+        Hills {
+            frame: Frame {
+                width,
+                height,
+                transform,
+            },
+            is_empty: false,
+        }
     }
 
     fn height(&self, column: usize, row: usize) -> f32 {
@@ -45,17 +55,34 @@ impl Hills {
             _ if self.is_empty || in_hole => f32::NAN,
             0 if column + row > 0 => f32::NAN,
             1 => f32::INFINITY,
-            noise => 300.0 + (column as f32 * 0.05).sin() * 40.0 + row as f32 * 0.1 + noise as f32 * 0.01,
+            noise => {
+                300.0 + (column as f32 * 0.05).sin() * 40.0 + row as f32 * 0.1 + noise as f32 * 0.01
+            }
         }
     }
 }
 
-fn written(source: &dyn BlockSource, cells: CellFormat) -> (geotiff::GeoTiffReader, RasterSummary, Vec<u8>) {
+fn written(
+    source: &dyn BlockSource,
+    cells: CellFormat,
+) -> (geotiff::GeoTiffReader, RasterSummary, Vec<u8>) {
     let folder = tempfile::tempdir().unwrap();
     let target = folder.path().join("out.tif");
-    let summary = geotiff::write(&target, source, WriteOptions { cells, ..WriteOptions::default() }).unwrap();
+    let summary = geotiff::write(
+        &target,
+        source,
+        WriteOptions {
+            cells,
+            ..WriteOptions::default()
+        },
+    )
+    .unwrap();
     let bytes = std::fs::read(&target).unwrap();
     let reader = geotiff::open(&target).unwrap();
-    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "nothing is left beside the file");
+    assert_eq!(
+        std::fs::read_dir(folder.path()).unwrap().count(),
+        1,
+        "nothing is left beside the file"
+    );
     (reader, summary, bytes)
 }

@@ -20,15 +20,25 @@ fn heights_come_back_as_they_were_written() {
             for column in 0..width {
                 let (found, wanted) = (grid.value(column, row), hills.height(column, row));
                 if wanted.is_finite() {
-                    assert_eq!(found, f64::from(wanted), "{width} x {height}: column {column}, row {row}");
+                    assert_eq!(
+                        found,
+                        f64::from(wanted),
+                        "{width} x {height}: column {column}, row {row}"
+                    );
                     valid += 1;
                 } else {
-                    assert!(found.is_nan(), "{width} x {height}: column {column}, row {row}");
+                    assert!(
+                        found.is_nan(),
+                        "{width} x {height}: column {column}, row {row}"
+                    );
                 }
             }
         }
         assert_eq!(summary.valid, valid);
-        assert_eq!(reader.extremes().unwrap().range, Some([summary.min, summary.max]));
+        assert_eq!(
+            reader.extremes().unwrap().range,
+            Some([summary.min, summary.max])
+        );
     }
 }
 
@@ -40,13 +50,23 @@ fn a_raster_without_values_is_a_few_bytes() {
     assert!(summary.valid == 0 && summary.min.is_nan() && summary.max.is_nan());
     // The directories of four images.
     assert!(bytes.len() < 2200, "{} bytes", bytes.len());
-    assert!(reader.read_grid().unwrap().values.iter().all(|v| v.is_nan()));
+    assert!(
+        reader
+            .read_grid()
+            .unwrap()
+            .values
+            .iter()
+            .all(|v| v.is_nan())
+    );
     assert_eq!(reader.info().warnings, [] as [&str; 0]);
 }
 
 #[test]
 fn rotated_and_south_up_frames_come_back() {
-    for transform in [[1841001.75, 1.5, -5.0, 1144003.25, -5.0, -1.5], [10.0, 0.5, 0.0, 20.0, 0.0, 0.5]] {
+    for transform in [
+        [1841001.75, 1.5, -5.0, 1144003.25, -5.0, -1.5],
+        [10.0, 0.5, 0.0, 20.0, 0.0, 0.5],
+    ] {
         let mut hills = Hills::new(20, 30);
         hills.frame.transform = transform;
         assert_eq!(written(&hills, CellFormat::Heights).0.frame(), hills.frame);
@@ -59,7 +79,9 @@ fn images(bytes: &[u8]) -> Vec<(usize, usize, Vec<f32>)> {
     let mut all = Vec::new();
     loop {
         let (width, height) = decoder.dimensions().unwrap();
-        let tiff::decoder::DecodingResult::F32(cells) = decoder.read_image().unwrap() else { panic!("not f32") };
+        let tiff::decoder::DecodingResult::F32(cells) = decoder.read_image().unwrap() else {
+            panic!("not f32")
+        };
         all.push((width as usize, height as usize, cells));
         if !decoder.more_images() {
             return all;
@@ -82,7 +104,10 @@ impl BlockSource for Cells {
 
     fn fill(&self, window: Window, out: &mut [f32]) -> Result<()> {
         for (i, cell) in out.iter_mut().enumerate() {
-            *cell = self.1(window.column + i % window.width, window.row + i / window.width);
+            *cell = self.1(
+                window.column + i % window.width,
+                window.row + i / window.width,
+            );
         }
         Ok(())
     }
@@ -91,19 +116,37 @@ impl BlockSource for Cells {
 /// Heights with gaps, but none as large as a tile: the `tiff` crate does not read sparse files.
 fn wave(column: usize, row: usize) -> f32 {
     let noise = (column * 31 + row * 17) % 53;
-    if noise == 0 { f32::NAN } else { (column as f32 * 0.05).sin() * 40.0 + row as f32 + noise as f32 }
+    if noise == 0 {
+        f32::NAN
+    } else {
+        (column as f32 * 0.05).sin() * 40.0 + row as f32 + noise as f32
+    }
 }
 
 /// Shades from 1 to 200 by columns, none in every third.
 fn shade(column: usize, _: usize) -> f32 {
-    if column % 3 == 2 { f32::NAN } else { (column % 200 + 1) as f32 }
+    if column % 3 == 2 {
+        f32::NAN
+    } else {
+        (column % 200 + 1) as f32
+    }
 }
 
 /// A ramp over and beyond the range of a byte, without a value in every third column.
-const RAMP: Cells =
-    Cells(Frame { width: 400, height: 300, transform: [100.0, 2.0, 0.0, 200.0, 0.0, -2.0] }, |column, _| {
-        if column % 3 == 2 { f32::NAN } else { column as f32 - 20.0 }
-    });
+const RAMP: Cells = Cells(
+    Frame {
+        width: 400,
+        height: 300,
+        transform: [100.0, 2.0, 0.0, 200.0, 0.0, -2.0],
+    },
+    |column, _| {
+        if column % 3 == 2 {
+            f32::NAN
+        } else {
+            column as f32 - 20.0
+        }
+    },
+);
 
 #[test]
 fn an_overview_has_the_means_of_four_cells_each() {
@@ -114,14 +157,29 @@ fn an_overview_has_the_means_of_four_cells_each() {
         assert_eq!(images.len(), 1 + reader.info().overviews.len());
         assert_eq!((images[0].0, images[0].1), (width, height));
         for (finer, (width, height, cells)) in images.iter().zip(&images[1..]) {
-            assert_eq!((*width, *height), (finer.0.div_ceil(2), finer.1.div_ceil(2)));
+            assert_eq!(
+                (*width, *height),
+                (finer.0.div_ceil(2), finer.1.div_ceil(2))
+            );
             for (i, cell) in cells.iter().enumerate() {
                 let of_four = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(right, down)| {
                     let (column, row) = (i % width * 2 + right, i / width * 2 + down);
-                    if column < finer.0 && row < finer.1 { finer.2[row * finer.0 + column] } else { -9999.0 }
+                    if column < finer.0 && row < finer.1 {
+                        finer.2[row * finer.0 + column]
+                    } else {
+                        -9999.0
+                    }
                 });
-                let values: Vec<f64> = of_four.into_iter().filter(|&v| v != -9999.0).map(f64::from).collect();
-                let mean = if values.is_empty() { -9999.0 } else { values.iter().sum::<f64>() / values.len() as f64 };
+                let values: Vec<f64> = of_four
+                    .into_iter()
+                    .filter(|&v| v != -9999.0)
+                    .map(f64::from)
+                    .collect();
+                let mean = if values.is_empty() {
+                    -9999.0
+                } else {
+                    values.iter().sum::<f64>() / values.len() as f64
+                };
                 assert_eq!(*cell, mean as f32, "{width} x {height}: cell {i}");
             }
         }
@@ -136,15 +194,25 @@ fn overviews_of_shades_are_shades_and_holes_stay() {
     assert_eq!(reader.info().overviews, [[350, 600], [175, 300]]);
     assert_eq!(reader.info().warnings, [] as [&str; 0]);
     // No value in every third column: where a pair of columns has one, it counts alone.
-    let (reader, _, bytes) = written(&Cells(Frame::north_up(0.0, 0.0, 1.0, 700, 100), shade), CellFormat::Shades);
+    let (reader, _, bytes) = written(
+        &Cells(Frame::north_up(0.0, 0.0, 1.0, 700, 100), shade),
+        CellFormat::Shades,
+    );
     assert_eq!(reader.info().overviews, [[350, 50]]);
     let mut decoder = tiff::decoder::Decoder::new(std::io::Cursor::new(bytes)).unwrap();
     decoder.next_image().unwrap();
-    let tiff::decoder::DecodingResult::U8(shades) = decoder.read_image().unwrap() else { panic!("not bytes") };
+    let tiff::decoder::DecodingResult::U8(shades) = decoder.read_image().unwrap() else {
+        panic!("not bytes")
+    };
     for (x, found) in shades[..350].iter().enumerate() {
-        let [a, b] =
-            [2 * x, 2 * x + 1].map(|column| shade(column, 0)).map(|shade| if shade.is_nan() { 0.0 } else { shade });
-        let mean = if a == 0.0 || b == 0.0 { a + b } else { (a + b) / 2.0 };
+        let [a, b] = [2 * x, 2 * x + 1]
+            .map(|column| shade(column, 0))
+            .map(|shade| if shade.is_nan() { 0.0 } else { shade });
+        let mean = if a == 0.0 || b == 0.0 {
+            a + b
+        } else {
+            (a + b) / 2.0
+        };
         assert_eq!(f32::from(*found), mean.round(), "column {x}");
     }
 }
@@ -162,10 +230,18 @@ fn tiles_are_arranged_for_readers_in_the_cloud() {
     let mut end_of_headers = 0;
     while directory != 0 {
         let count = half(directory);
-        let entry = |tag| (0..count).map(|i| directory + 2 + 12 * i).find(|&at| half(at) == tag).unwrap();
+        let entry = |tag| {
+            (0..count)
+                .map(|i| directory + 2 + 12 * i)
+                .find(|&at| half(at) == tag)
+                .unwrap()
+        };
         let [starts, lengths] = [324, 325].map(entry);
         for i in 0..word(starts + 4) {
-            tiles.push((word(word(starts + 8) + 4 * i), word(word(lengths + 8) + 4 * i)));
+            tiles.push((
+                word(word(starts + 8) + 4 * i),
+                word(word(lengths + 8) + 4 * i),
+            ));
         }
         end_of_headers = end_of_headers.max(word(lengths + 8) + 4 * word(lengths + 4));
         directory = word(directory + 2 + 12 * count);
@@ -174,13 +250,30 @@ fn tiles_are_arranged_for_readers_in_the_cloud() {
     let of_images = [6 * 3, 3 * 2, 2];
     let (whole, overviews) = tiles.split_at(of_images[0]);
     let (half_size, quarter) = overviews.split_at(of_images[1]);
-    let stored: Vec<_> = [quarter, half_size, whole].concat().into_iter().filter(|&(_, length)| length > 0).collect();
-    assert_eq!((tiles.len(), stored.len()), (of_images.iter().sum(), of_images.iter().sum::<usize>() - 1));
+    let stored: Vec<_> = [quarter, half_size, whole]
+        .concat()
+        .into_iter()
+        .filter(|&(_, length)| length > 0)
+        .collect();
+    assert_eq!(
+        (tiles.len(), stored.len()),
+        (of_images.iter().sum(), of_images.iter().sum::<usize>() - 1)
+    );
     let mut at = stored[0].0 - 4;
-    assert!(at >= end_of_headers, "all headers come before the first tile");
+    assert!(
+        at >= end_of_headers,
+        "all headers come before the first tile"
+    );
     for (start, length) in stored {
-        assert_eq!((start, word(at)), (at + 4, length), "the length stands before each tile");
-        assert_eq!(bytes[start + length - 4..start + length], bytes[start + length..start + length + 4]);
+        assert_eq!(
+            (start, word(at)),
+            (at + 4, length),
+            "the length stands before each tile"
+        );
+        assert_eq!(
+            bytes[start + length - 4..start + length],
+            bytes[start + length..start + length + 4]
+        );
         at = start + length + 4;
     }
     assert_eq!(at, bytes.len());
@@ -189,7 +282,10 @@ fn tiles_are_arranged_for_readers_in_the_cloud() {
 #[test]
 fn bytes_do_not_depend_on_the_number_of_threads() {
     let threads = |count| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(count).build().unwrap();
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(count)
+            .build()
+            .unwrap();
         pool.install(|| written(&Hills::new(5000, 1100), CellFormat::Heights).2)
     };
     assert!(threads(1) == threads(2));
@@ -201,7 +297,10 @@ fn shades_are_bytes_from_one() {
     assert_eq!(reader.info().sample.to_string(), "uint8");
     assert_eq!((summary.min, summary.max), (1.0, 255.0));
     let grid = reader.read_grid().unwrap();
-    assert_eq!([0, 31, 300].map(|column| grid.value(column, 77)), [1.0, 11.0, 255.0]);
+    assert_eq!(
+        [0, 31, 300].map(|column| grid.value(column, 77)),
+        [1.0, 11.0, 255.0]
+    );
     assert!(grid.value(2, 0).is_nan());
 }
 
@@ -214,10 +313,22 @@ fn a_picture_is_gray_and_knows_its_place() {
     let mut reader = ::png::Decoder::new(file).read_info().unwrap();
     let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
     let info = reader.next_frame(&mut pixels).unwrap();
-    assert_eq!((info.width, info.height, info.color_type), (400, 300, ::png::ColorType::GrayscaleAlpha));
+    assert_eq!(
+        (info.width, info.height, info.color_type),
+        (400, 300, ::png::ColorType::GrayscaleAlpha)
+    );
     for row in [0, 255, 256, 299] {
-        for (column, gray) in [(0, [0, 255]), (21, [1, 255]), (2, [0, 0]), (399, [255, 255])] {
-            assert_eq!(pixels[2 * (row * 400 + column)..][..2], gray, "column {column}, row {row}");
+        for (column, gray) in [
+            (0, [0, 255]),
+            (21, [1, 255]),
+            (2, [0, 0]),
+            (399, [255, 255]),
+        ] {
+            assert_eq!(
+                pixels[2 * (row * 400 + column)..][..2],
+                gray,
+                "column {column}, row {row}"
+            );
         }
     }
     let world_file = std::fs::read_to_string(folder.path().join("relief.pgw")).unwrap();
@@ -235,7 +346,11 @@ fn a_source_that_fails_leaves_no_file() {
             None
         }
         fn fill(&self, window: Window, _: &mut [f32]) -> Result<()> {
-            if window.row > 500 { Err(Error::format("the source broke")) } else { Ok(()) }
+            if window.row > 500 {
+                Err(Error::format("the source broke"))
+            } else {
+                Ok(())
+            }
         }
     }
     let folder = tempfile::tempdir().unwrap();

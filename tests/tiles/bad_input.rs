@@ -27,7 +27,10 @@ fn a_bad_file_is_named() {
 
 /// Returns the height of a raster in the folder at a position; NaN where it has none.
 fn height(folder: &TempDir, name: &str, x: f64, y: f64) -> f64 {
-    let grid = geotiff::open(folder.path().join(name)).unwrap().read_grid().unwrap();
+    let grid = geotiff::open(folder.path().join(name))
+        .unwrap()
+        .read_grid()
+        .unwrap();
     let [column, row] = grid.frame.inverse().apply(x, y);
     grid.values[row as usize * grid.frame.width + column as usize]
 }
@@ -49,11 +52,20 @@ fn a_bad_file_may_leave_a_hole_until_it_is_repaired() {
         let words = format!("dem in/*.laz --tiles {tiles} --skip-bad");
         let (_, said) = output_with(&folder, &words, "tiled.tif", 3);
         let hole = "skipped: in/002_001.laz: byte";
-        assert!(said.contains(hole) && said.contains("its extent is left empty, from "), "{said}");
-        assert!(said.contains("note: the result has holes: 1 file skipped; finished tasks are kept in tiled.tif.job"));
+        assert!(
+            said.contains(hole) && said.contains("its extent is left empty, from "),
+            "{said}"
+        );
+        assert!(said.contains(
+            "note: the result has holes: 1 file skipped; finished tasks are kept in tiled.tif.job"
+        ));
         let header = breakline::io::las::stated(&path).unwrap().bounds.unwrap();
         let [x, y] = [0, 1].map(|k| (header.min[k] + header.max[k]) / 2.0);
-        assert!(height(&folder, "tiled.tif", x, y).is_nan() && !height(&folder, "whole.tif", x, y).is_nan(), "{tiles}");
+        assert!(
+            height(&folder, "tiled.tif", x, y).is_nan()
+                && !height(&folder, "whole.tif", x, y).is_nan(),
+            "{tiles}"
+        );
         let tasks = folder.path().join("tiled.tif.job/tasks");
         let before = files_of(&tasks).len();
         // Nothing has changed; the option is part of the plan.
@@ -78,14 +90,34 @@ fn a_file_without_a_header_is_planned_with_once_it_has_one() {
     let whole = tempfile::tempdir().unwrap();
     landscape::write(&whole.path().join("in"), 16_000, 4).unwrap();
     std::fs::write(&path, "LASF, but nothing else").unwrap();
-    let (_, said) = output_with(&folder, "dem in/*.laz --tiles auto --skip-bad", "tiled.tif", 3);
-    assert!(said.contains("skipped: in/002_001.laz: byte 22: ") && said.contains("its extent is not known"), "{said}");
+    let (_, said) = output_with(
+        &folder,
+        "dem in/*.laz --tiles auto --skip-bad",
+        "tiled.tif",
+        3,
+    );
+    assert!(
+        said.contains("skipped: in/002_001.laz: byte 22: ")
+            && said.contains("its extent is not known"),
+        "{said}"
+    );
     assert!(said.contains("tiles       15 (the files)"), "{said}");
-    let (_, said) = output_with(&folder, "dem in/*.laz --tiles auto --resume", "tiled.tif", 3);
-    assert!(said.contains("resumed     ") && !said.contains("planned again"), "{said}");
+    let (_, said) = output_with(
+        &folder,
+        "dem in/*.laz --tiles auto --resume",
+        "tiled.tif",
+        3,
+    );
+    assert!(
+        said.contains("resumed     ") && !said.contains("planned again"),
+        "{said}"
+    );
     std::fs::write(&path, bytes(whole.path().join("in/002_001.laz"))).unwrap();
     let (tiled, said) = output_of(&folder, "dem in/*.laz --tiles auto --resume", "tiled.tif");
-    assert!(said.contains("in/002_001.laz was skipped, and can be read now: the job is planned again"), "{said}");
+    assert!(
+        said.contains("in/002_001.laz was skipped, and can be read now: the job is planned again"),
+        "{said}"
+    );
     let (expected, _) = output_of(&folder, "dem in/*.laz", "whole.tif");
     assert!(tiled == expected && !folder.path().join("tiled.tif.job").exists());
 }
@@ -94,38 +126,79 @@ fn a_file_without_a_header_is_planned_with_once_it_has_one() {
 #[test]
 fn a_hole_is_empty_where_other_files_have_points_too() {
     let folder = tempfile::tempdir().unwrap();
-    let strip: Vec<([f64; 3], u8)> =
-        (0..120).map(|i| ([f64::from(i % 20) - 6.0, f64::from(i / 20), f64::from(i % 7)], 2)).collect();
-    for (name, points) in
-        [("a.las", lidar::tile([0.0, 0.0], 2)), ("b.las", lidar::tile([20.0, 0.0], 2)), ("strip.las", strip)]
-    {
+    let strip: Vec<([f64; 3], u8)> = (0..120)
+        .map(|i| {
+            (
+                [f64::from(i % 20) - 6.0, f64::from(i / 20), f64::from(i % 7)],
+                2,
+            )
+        })
+        .collect();
+    for (name, points) in [
+        ("a.las", lidar::tile([0.0, 0.0], 2)),
+        ("b.las", lidar::tile([20.0, 0.0], 2)),
+        ("strip.las", strip),
+    ] {
         std::fs::write(folder.path().join(name), lidar::las(&points, Some(25832))).unwrap();
     }
     let whole = bytes(folder.path().join("a.las"));
     std::fs::write(folder.path().join("a.las"), &whole[..whole.len() - 30]).unwrap();
     let mut rasters = Vec::new();
     for tiles in ["auto", "1x1", "2x2", "7x3"] {
-        let words = format!("dem a.las b.las strip.las --resolution 0.5 --tiles {tiles} --skip-bad");
+        let words =
+            format!("dem a.las b.las strip.las --resolution 0.5 --tiles {tiles} --skip-bad");
         let (raster, said) = output_with(&folder, &words, "hole.tif", 3);
-        assert!(said.contains("from 0 0 to 3 3, also where strip.las has points"), "{said}");
-        assert!(height(&folder, "hole.tif", 1.3, 1.3).is_nan() && height(&folder, "hole.tif", 2.8, 2.8).is_nan());
-        assert!(!height(&folder, "hole.tif", -2.5, 1.3).is_nan() && !height(&folder, "hole.tif", 1.3, 4.2).is_nan());
+        assert!(
+            said.contains("from 0 0 to 3 3, also where strip.las has points"),
+            "{said}"
+        );
+        assert!(
+            height(&folder, "hole.tif", 1.3, 1.3).is_nan()
+                && height(&folder, "hole.tif", 2.8, 2.8).is_nan()
+        );
+        assert!(
+            !height(&folder, "hole.tif", -2.5, 1.3).is_nan()
+                && !height(&folder, "hole.tif", 1.3, 4.2).is_nan()
+        );
         rasters.push(raster);
         std::fs::remove_dir_all(folder.path().join("hole.tif.job")).unwrap();
     }
     assert!(rasters.iter().all(|raster| *raster == rasters[0]));
     // The surface of the others, without the triangles that reach into the hole.
-    output_of(&folder, "dem b.las strip.las --resolution 0.5 --te -6,0,23,5", "others.tif");
-    output_with(&folder, "dem a.las b.las strip.las --resolution 0.5 --te -6,0,23,5 --skip-bad", "hole.tif", 3);
-    let read = |name: &str| geotiff::open(folder.path().join(name)).unwrap().read_grid().unwrap();
+    output_of(
+        &folder,
+        "dem b.las strip.las --resolution 0.5 --te -6,0,23,5",
+        "others.tif",
+    );
+    output_with(
+        &folder,
+        "dem a.las b.las strip.las --resolution 0.5 --te -6,0,23,5 --skip-bad",
+        "hole.tif",
+        3,
+    );
+    let read = |name: &str| {
+        geotiff::open(folder.path().join(name))
+            .unwrap()
+            .read_grid()
+            .unwrap()
+    };
     let (others, hole) = (read("others.tif"), read("hole.tif"));
     let mut empty = 0;
     for (at, (a, b)) in others.values.iter().zip(&hole.values).enumerate() {
-        let [x, y] = others.frame.center(at % others.frame.width, at / others.frame.width);
+        let [x, y] = others
+            .frame
+            .center(at % others.frame.width, at / others.frame.width);
         let is_inside = 0.0 < x && x < 3.0 && 0.0 < y && y < 3.0;
         // Triangles of the strip are a unit wide.
         let is_near = -1.0 < x && x < 4.0 && y < 4.0;
-        assert!(if is_inside { b.is_nan() } else { is_near || a.to_bits() == b.to_bits() }, "{x} {y}: {a} {b}");
+        assert!(
+            if is_inside {
+                b.is_nan()
+            } else {
+                is_near || a.to_bits() == b.to_bits()
+            },
+            "{x} {y}: {a} {b}"
+        );
         empty += usize::from(is_inside);
     }
     assert_eq!(empty, 36);
@@ -146,14 +219,19 @@ fn damaged_files_do_not_stop_planning() {
     std::fs::write(folder.path().join("in/t.xyz"), "0 0 0\n1 0 0\n0 1 x\n").unwrap();
     let files = "in/*.laz in/t.xyz";
     let run = |words: &str| run_in(&folder, &words.split(' ').collect::<Vec<_>>());
-    let planned = run(&format!("job plan j -- dem {files} -o dem.tif --tiles auto --skip-bad"));
+    let planned = run(&format!(
+        "job plan j -- dem {files} -o dem.tif --tiles auto --skip-bad"
+    ));
     planned.works(&["next        breakline job run j"]);
     let ran = run("job run j");
     let skipped = ["000_000.laz: ", "002_001.laz: byte", "t.xyz: line 3"];
     assert_eq!(ran.code, 3, "{}", ran.stderr);
     // A job has whole names.
     let inputs = folder.path().canonicalize().unwrap().join("in");
-    let is_skipped = |text: &str| ran.stderr.contains(&format!("skipped: {}/{text}", inputs.display()));
+    let is_skipped = |text: &str| {
+        ran.stderr
+            .contains(&format!("skipped: {}/{text}", inputs.display()))
+    };
     assert!(skipped.into_iter().all(is_skipped), "{}", ran.stderr);
     assert!(
         ran.stderr.contains("holes: 3 files skipped") && ran.stderr.contains("`breakline job run "),
@@ -161,7 +239,11 @@ fn damaged_files_do_not_stop_planning() {
         ran.stderr
     );
     let status = run("job status j --json");
-    assert!(status.stdout.contains(r#""holes":true"#), "{}", status.stdout);
+    assert!(
+        status.stdout.contains(r#""holes":true"#),
+        "{}",
+        status.stdout
+    );
     let first = bytes(folder.path().join("dem.tif"));
     let again = run("job run j");
     assert_eq!(again.code, 3, "{}", again.stderr);
@@ -176,7 +258,11 @@ fn a_header_that_lies_is_an_error_that_names_tile_and_file() {
     for i in 0..9 {
         let name = format!("{i}.las");
         let corner = [f64::from(i % 3) * 10.0, f64::from(i / 3) * 10.0];
-        std::fs::write(folder.path().join(&name), lidar::las(&lidar::tile(corner, 2), Some(25832))).unwrap();
+        std::fs::write(
+            folder.path().join(&name),
+            lidar::las(&lidar::tile(corner, 2), Some(25832)),
+        )
+        .unwrap();
         names.push(name);
     }
     let files = names.join(" ");
@@ -190,22 +276,45 @@ fn a_header_that_lies_is_an_error_that_names_tile_and_file() {
     for (tiles, location, kept) in [("auto", "1.las: tile 1: ", 8), ("2x1", "1.las: ", 8)] {
         let words = format!("dem {files} --tiles {tiles} -o dem.tif --job {tiles} --threads 1");
         let words: Vec<&str> = words.split(' ').collect();
-        run_in(&folder, &words).fails(1, &[&format!("error: {location}{said}"), "are kept", "go on with --resume"]);
+        run_in(&folder, &words).fails(
+            1,
+            &[
+                &format!("error: {location}{said}"),
+                "are kept",
+                "go on with --resume",
+            ],
+        );
         assert!(!folder.path().join("dem.tif").exists());
         let tasks = files_of(&folder.path().join(tiles).join("tasks"));
-        assert!(tasks.len() < kept && tasks.iter().all(|name| name.ends_with(".task")), "{tasks:?}");
+        assert!(
+            tasks.len() < kept && tasks.iter().all(|name| name.ends_with(".task")),
+            "{tasks:?}"
+        );
 
         let words = format!("dem {files} --tiles {tiles} --job {tiles} --resume --skip-bad");
         let (_, said_then) = output_with(&folder, &words, "hole.tif", 3);
-        assert!(said_then.contains(&format!("skipped: 1.las: {said}")), "{said_then}");
+        assert!(
+            said_then.contains(&format!("skipped: 1.las: {said}")),
+            "{said_then}"
+        );
         // No triangle spans the file that is missing; around it all is there.
-        assert!(said_then.contains("left out over skipped files"), "{said_then}");
-        let grid = geotiff::open(folder.path().join("hole.tif")).unwrap().read_grid().unwrap();
+        assert!(
+            said_then.contains("left out over skipped files"),
+            "{said_then}"
+        );
+        let grid = geotiff::open(folder.path().join("hole.tif"))
+            .unwrap()
+            .read_grid()
+            .unwrap();
         let height = |x: f64, y: f64| {
             let [column, row] = grid.frame.inverse().apply(x, y);
             grid.values[row as usize * grid.frame.width + column as usize]
         };
-        assert!(height(11.5, 1.5).is_nan() && !height(1.5, 1.5).is_nan() && !height(11.5, 11.5).is_nan());
+        assert!(
+            height(11.5, 1.5).is_nan()
+                && !height(1.5, 1.5).is_nan()
+                && !height(11.5, 11.5).is_nan()
+        );
     }
     // A file with another extent is not the one that was planned with.
     std::fs::remove_dir_all(folder.path().join("auto")).unwrap();
@@ -232,9 +341,15 @@ fn a_file_that_touches_others_leaves_a_hole() {
         let words = format!("dem 0.las 1.las 2.las --tiles {tiles} --skip-bad");
         let (_, said) = output_with(&folder, &words, "hole.tif", 3);
         std::fs::remove_dir_all(folder.path().join("hole.tif.job")).unwrap();
-        let grid = geotiff::open(folder.path().join("hole.tif")).unwrap().read_grid().unwrap();
+        let grid = geotiff::open(folder.path().join("hole.tif"))
+            .unwrap()
+            .read_grid()
+            .unwrap();
         let [column, row] = grid.frame.inverse().apply(4.5, 1.5);
-        assert!(grid.values[row as usize * grid.frame.width + column as usize].is_nan(), "{tiles}: {said}");
+        assert!(
+            grid.values[row as usize * grid.frame.width + column as usize].is_nan(),
+            "{tiles}: {said}"
+        );
     }
 }
 
@@ -247,7 +362,11 @@ fn a_file_that_was_repaired_goes_on() {
     for i in 0..4 {
         let name = format!("{i}.las");
         let corner = [f64::from(i % 2) * 10.0, f64::from(i / 2) * 10.0];
-        std::fs::write(folder.path().join(&name), lidar::las(&lidar::tile(corner, 2), Some(25832))).unwrap();
+        std::fs::write(
+            folder.path().join(&name),
+            lidar::las(&lidar::tile(corner, 2), Some(25832)),
+        )
+        .unwrap();
         names.push(name);
     }
     let files = names.join(" ");
@@ -264,17 +383,24 @@ fn a_file_that_was_repaired_goes_on() {
     run(&words).fails(1, &["3.las: tile 3", "there is a point at"]);
     let tasks = folder.path().join("dem.tif.job/tasks");
     let times = || -> Vec<_> {
-        files_of(&tasks).iter().map(|name| tasks.join(name).metadata().unwrap().modified().unwrap()).collect()
+        files_of(&tasks)
+            .iter()
+            .map(|name| tasks.join(name).metadata().unwrap().modified().unwrap())
+            .collect()
     };
     let before = times();
     std::fs::write(&path, &good).unwrap();
-    let (tiled, said) =
-        output_of(&folder, &format!("{words} --resume").replace(" -o dem.tif", " --job dem.tif.job"), "dem.tif");
+    let (tiled, said) = output_of(
+        &folder,
+        &format!("{words} --resume").replace(" -o dem.tif", " --job dem.tif.job"),
+        "dem.tif",
+    );
     assert!(tiled == whole && said.contains("resumed"), "{said}");
     assert!(times()[..before.len()] == before[..]);
     // Once it is read, it must stay.
     std::fs::write(&path, &damaged).unwrap();
-    run(&format!("{words} --resume --overwrite")).fails(2, &["3.las", "has changed since the job was planned"]);
+    run(&format!("{words} --resume --overwrite"))
+        .fails(2, &["3.las", "has changed since the job was planned"]);
 }
 
 /// The length of a point's record.

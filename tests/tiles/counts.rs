@@ -3,8 +3,8 @@
 use std::fs;
 
 use breakline::run::{
-    self, Context, DemOptions, Division, Execution, Input, Origin, Source, SurfaceRequest, Targets, TileOptions,
-    TinRequest, WriteReport, WriteRequest, Written, WrittenOf,
+    self, Context, DemOptions, Division, Execution, Input, Origin, Source, SurfaceRequest, Targets,
+    TileOptions, TinRequest, WriteReport, WriteRequest, Written, WrittenOf,
 };
 
 use super::layer;
@@ -12,13 +12,17 @@ use super::layer;
 /// Returns the number of points merged into others, and of those at vertices of breaklines.
 fn counts(request: &WriteRequest, targets: &Targets, execution: &Execution) -> [u64; 2] {
     let report = run::write(request, targets, execution, &Context::default()).unwrap();
-    let WriteReport::Written(written) = report else { panic!("{report:?}") };
+    let WriteReport::Written(written) = report else {
+        panic!("{report:?}")
+    };
     let Written { surface, files, .. } = *written;
     files.iter().for_each(|file| fs::remove_file(file).unwrap());
     match surface {
         WrittenOf::Tiles { report, .. } => [report.duplicates, report.points_on_breaklines],
         WrittenOf::Whole(surface) => {
-            let Origin::Built(built) = surface.origin else { panic!("{:?}", surface.origin) };
+            let Origin::Built(built) = surface.origin else {
+                panic!("{:?}", surface.origin)
+            };
             [built.tin.duplicates, built.tin.points_on_breaklines].map(|count| count as u64)
         }
     }
@@ -34,31 +38,56 @@ fn points_at_one_site_are_counted_as_in_one_piece() {
         [6.0, 6.0, 2.0],
         [1.0, 1.0, 3.0], // at a vertex of a line: three points are replaced
         [1.0, 1.0, 4.0],
-        [3.0, 3.0, 5.0],   // at the crossing, where no line has a vertex: one duplicate
-        [2.0, 2.0, 6.0],   // on a line, between vertices: one
-        [-0.0, 0.0, 7.0],  // one, whatever the sign of zero
-        [5.0, -0.0, 8.0],  // at a vertex whose zero has the other sign: two are replaced
+        [3.0, 3.0, 5.0], // at the crossing, where no line has a vertex: one duplicate
+        [2.0, 2.0, 6.0], // on a line, between vertices: one
+        [-0.0, 0.0, 7.0], // one, whatever the sign of zero
+        [5.0, -0.0, 8.0], // at a vertex whose zero has the other sign: two are replaced
         [0.75, 5.25, 9.0], // at a vertex, alone: one is replaced
     ];
-    let rows = |points: &mut dyn Iterator<Item = [f64; 3]>| points.map(|[x, y, z]| format!("{x} {y} {z}\n")).collect();
-    let texts: [String; 2] = [rows(&mut on_grid.into_iter()), rows(&mut others.into_iter())];
+    let rows = |points: &mut dyn Iterator<Item = [f64; 3]>| {
+        points.map(|[x, y, z]| format!("{x} {y} {z}\n")).collect()
+    };
+    let texts: [String; 2] = [
+        rows(&mut on_grid.into_iter()),
+        rows(&mut others.into_iter()),
+    ];
     let names = [path("grid.xyz"), path("others.xyz")];
-    names.iter().zip(texts).for_each(|(name, text)| fs::write(name, text).unwrap());
+    names
+        .iter()
+        .zip(texts)
+        .for_each(|(name, text)| fs::write(name, text).unwrap());
     let lines = [
         vec![[1.0, 1.0, 0.0], [5.0, 5.0, 0.0]],
         vec![[0.75, 5.25, 0.0], [5.25, 0.75, 0.0]],
         vec![[5.0, 0.0, 0.0], [7.0, 0.5, 0.0]],
     ];
     fs::write(path("lines.geojson"), layer(&lines, "LineString")).unwrap();
-    let files = |names: &[std::path::PathBuf]| names.iter().cloned().map(Input::File).collect::<Vec<_>>();
-    for (breaklines, expected) in [(vec![], [8, 0]), (vec![Input::File(path("lines.geojson"))], [5, 7])] {
-        let tin = TinRequest { points: files(&names), breaklines, ..TinRequest::default() };
+    let files =
+        |names: &[std::path::PathBuf]| names.iter().cloned().map(Input::File).collect::<Vec<_>>();
+    for (breaklines, expected) in [
+        (vec![], [8, 0]),
+        (vec![Input::File(path("lines.geojson"))], [5, 7]),
+    ] {
+        let tin = TinRequest {
+            points: files(&names),
+            breaklines,
+            ..TinRequest::default()
+        };
         let source = Source::Points(Box::new(tin));
-        let request = WriteRequest::new(SurfaceRequest { source, ..SurfaceRequest::default() }, DemOptions::default());
+        let request = WriteRequest::new(
+            SurfaceRequest {
+                source,
+                ..SurfaceRequest::default()
+            },
+            DemOptions::default(),
+        );
         let targets = Targets::of(path("dem.tif"));
         assert_eq!(counts(&request, &targets, &Execution::Whole), expected);
         for division in [Division::Grid([3, 2]), Division::Grid([1, 1])] {
-            let tiles = Execution::Tiles(TileOptions { division, ..TileOptions::default() });
+            let tiles = Execution::Tiles(TileOptions {
+                division,
+                ..TileOptions::default()
+            });
             assert_eq!(counts(&request, &targets, &tiles), expected, "{division:?}");
         }
     }

@@ -34,17 +34,29 @@ fn product(folder: &TempDir, out: &str) -> Vec<u8> {
     let path = folder.path().join(out);
     let mut all = bytes(&path);
     let parts = format!("{out}.");
-    for name in files_of(folder.path()).iter().filter(|name| name.starts_with(&parts)) {
+    for name in files_of(folder.path())
+        .iter()
+        .filter(|name| name.starts_with(&parts))
+    {
         let parts = path.with_file_name(name);
-        files_of(&parts).iter().for_each(|part| all.extend(bytes(parts.join(part))));
+        files_of(&parts)
+            .iter()
+            .for_each(|part| all.extend(bytes(parts.join(part))));
     }
     all
 }
 
 fn remove_product(folder: &TempDir, out: &str) {
-    for name in files_of(folder.path()).iter().filter(|name| name.starts_with(out)) {
+    for name in files_of(folder.path())
+        .iter()
+        .filter(|name| name.starts_with(out))
+    {
         let path = folder.path().join(name);
-        if path.is_dir() { std::fs::remove_dir_all(path).unwrap() } else { std::fs::remove_file(path).unwrap() }
+        if path.is_dir() {
+            std::fs::remove_dir_all(path).unwrap()
+        } else {
+            std::fs::remove_file(path).unwrap()
+        }
     }
 }
 
@@ -52,7 +64,9 @@ fn copy_job(folder: &TempDir, from: &str, to: &str) {
     let [from, to] = [from, to].map(|name| folder.path().join(name));
     let _ = std::fs::remove_dir_all(&to);
     std::fs::create_dir_all(to.join("tasks")).unwrap();
-    let tasks = files_of(&from.join("tasks")).into_iter().map(|name| format!("tasks/{name}"));
+    let tasks = files_of(&from.join("tasks"))
+        .into_iter()
+        .map(|name| format!("tasks/{name}"));
     for name in tasks.chain(["plan.json".to_owned(), "command.json".to_owned()]) {
         std::fs::copy(from.join(&name), to.join(&name)).unwrap();
     }
@@ -62,31 +76,58 @@ fn copy_job(folder: &TempDir, from: &str, to: &str) {
 fn write_inputs(folder: &TempDir, random: &mut Random) {
     let mut points = |corner: [usize; 2], side: usize, count: usize| {
         let corners = [[0, 0], [side, 0], [0, side], [side, side]];
-        let others = (0..count).map(|_| [random.index(side + 1), random.index(side + 1)]).collect::<Vec<_>>();
+        let others = (0..count)
+            .map(|_| [random.index(side + 1), random.index(side + 1)])
+            .collect::<Vec<_>>();
         let all = corners.into_iter().chain(others);
         let point = |[x, y]: [usize; 2]| [(corner[0] + x) as f64, (corner[1] + y) as f64];
         let mut heights = Random(corner[0] as u64 + count as u64);
         let points = all.map(|at| (point(at), heights.index(40) as f64 / 4.0));
-        let points: Vec<([f64; 3], u8)> = points.map(|([x, y], z)| ([x, y, z], 2 + (z as u8) % 2)).collect();
+        let points: Vec<([f64; 3], u8)> = points
+            .map(|([x, y], z)| ([x, y, z], 2 + (z as u8) % 2))
+            .collect();
         lidar::las(&points, Some(25832))
     };
     for (i, corner) in [[0, 0], [8, 3], [5, 9]].into_iter().enumerate() {
-        std::fs::write(folder.path().join(format!("{i}.las")), points(corner, 16, 150)).unwrap();
+        std::fs::write(
+            folder.path().join(format!("{i}.las")),
+            points(corner, 16, 150),
+        )
+        .unwrap();
     }
     for (i, corner) in [[0, 0], [11, 0], [0, 11], [11, 11]].into_iter().enumerate() {
-        std::fs::write(folder.path().join(format!("tile{i}.las")), points(corner, 10, 80)).unwrap();
+        std::fs::write(
+            folder.path().join(format!("tile{i}.las")),
+            points(corner, 10, 80),
+        )
+        .unwrap();
     }
-    let lines = [vec![[1.0, 2.0, 5.0], [12.0, 11.5, 7.0], [20.0, 11.0, 3.0]], vec![[3.0, 14.0, 9.0], [14.0, 4.5, 1.0]]];
+    let lines = [
+        vec![[1.0, 2.0, 5.0], [12.0, 11.5, 7.0], [20.0, 11.0, 3.0]],
+        vec![[3.0, 14.0, 9.0], [14.0, 4.5, 1.0]],
+    ];
     std::fs::write(folder.path().join("l.geojson"), layer(&lines, "LineString")).unwrap();
-    let ring = vec![[1.5, 1.5, 0.0], [22.5, 2.5, 0.0], [19.5, 23.5, 0.0], [2.5, 21.5, 0.0], [1.5, 1.5, 0.0]];
+    let ring = vec![
+        [1.5, 1.5, 0.0],
+        [22.5, 2.5, 0.0],
+        [19.5, 23.5, 0.0],
+        [2.5, 21.5, 0.0],
+        [1.5, 1.5, 0.0],
+    ];
     std::fs::write(folder.path().join("b.geojson"), layer(&[ring], "Polygon")).unwrap();
 }
 
 fn prepared(folder: &TempDir, random: &mut Random) -> Vec<Done> {
     let commands = [
-        ("dem ?.las --breaklines l.geojson --boundary b.geojson --max-edge 9 --tiles 2x2", "dem.tif"),
+        (
+            "dem ?.las --breaklines l.geojson --boundary b.geojson --max-edge 9 --tiles 2x2",
+            "dem.tif",
+        ),
         ("contour ?.las --interval 0.5 --tiles 3x2", "lines.geojson"),
-        ("tin ?.las --breaklines l.geojson --max-edge none --tiles 2x2", "parts.tins"),
+        (
+            "tin ?.las --breaklines l.geojson --max-edge none --tiles 2x2",
+            "parts.tins",
+        ),
         ("hillshade tile?.las --tiles auto", "tiles.tif"),
     ];
     let job = |number: usize, what: &str, words: &str, out: &str| {
@@ -98,14 +139,26 @@ fn prepared(folder: &TempDir, random: &mut Random) -> Vec<Done> {
         (name, written)
     };
     write_inputs(folder, &mut Random(1));
-    let older: Vec<_> = (0..).zip(commands).map(|(i, (words, out))| job(i, "older", words, out)).collect();
+    let older: Vec<_> = (0..)
+        .zip(commands)
+        .map(|(i, (words, out))| job(i, "older", words, out))
+        .collect();
     write_inputs(folder, random);
-    let all = (0..).zip(commands).zip(older).map(|((i, (words, out)), older)| {
-        let (own, product) = job(i, "own", words, out);
-        let (other, other_product) = job(i, "other", &format!("{words} --class 3"), out);
-        assert!(product != other_product && product != older.1, "{words}");
-        Done { words: words.to_owned(), out, product, jobs: [own, older.0, other], other_product }
-    });
+    let all = (0..)
+        .zip(commands)
+        .zip(older)
+        .map(|((i, (words, out)), older)| {
+            let (own, product) = job(i, "own", words, out);
+            let (other, other_product) = job(i, "other", &format!("{words} --class 3"), out);
+            assert!(product != other_product && product != older.1, "{words}");
+            Done {
+                words: words.to_owned(),
+                out,
+                product,
+                jobs: [own, older.0, other],
+                other_product,
+            }
+        });
     all.collect()
 }
 
@@ -167,7 +220,11 @@ fn damage(tasks: &Path, folder: &TempDir, done: &Done, random: &mut Random) -> S
             let from = folder.path().join(job).join("tasks");
             let others = files_of(&from);
             let same = others.contains(name) && random.index(4) > 0;
-            let other = if same { name } else { &others[random.index(others.len())] };
+            let other = if same {
+                name
+            } else {
+                &others[random.index(others.len())]
+            };
             std::fs::copy(from.join(other), &path).unwrap();
             format!("{other} of {job}")
         }
@@ -179,12 +236,24 @@ fn damage(tasks: &Path, folder: &TempDir, done: &Done, random: &mut Random) -> S
 #[track_caller]
 fn judge(folder: &TempDir, ran: &Run, out: &str, expected: &[u8], case: &str) -> bool {
     if ran.code == 0 {
-        assert!(product(folder, out) == expected, "{case}: used\n{}", ran.stderr);
+        assert!(
+            product(folder, out) == expected,
+            "{case}: used\n{}",
+            ran.stderr
+        );
         return true;
     }
-    let names_it =
-        ["work/tasks/", "work/plan.json", "work/command.json", "work: the job in this folder is that of another"];
-    assert!(names_it.iter().any(|name| ran.stderr.contains(name)), "{case}: not named\n{}", ran.stderr);
+    let names_it = [
+        "work/tasks/",
+        "work/plan.json",
+        "work/command.json",
+        "work: the job in this folder is that of another",
+    ];
+    assert!(
+        names_it.iter().any(|name| ran.stderr.contains(name)),
+        "{case}: not named\n{}",
+        ran.stderr
+    );
     assert!(!folder.path().join(out).exists(), "{case}");
     false
 }
@@ -215,14 +284,22 @@ fn damaged_and_foreign_files_are_refused_or_made_again() {
         copy_job(&folder, &done.jobs[0], "work");
         let count = files_of(&tasks).len();
         let mode = random.index(4);
-        let (mut case, mut expected) = (format!("case {number}, mode {mode}, {}", done.words), &done.product);
+        let (mut case, mut expected) = (
+            format!("case {number}, mode {mode}, {}", done.words),
+            &done.product,
+        );
         let ran = if mode == 0 {
             // Damage while the tasks are done one by one.
-            files_of(&tasks).iter().for_each(|name| std::fs::remove_file(tasks.join(name)).unwrap());
+            files_of(&tasks)
+                .iter()
+                .for_each(|name| std::fs::remove_file(tasks.join(name)).unwrap());
             let stop = random.index(count);
             run_singly(&folder, count, 0, |task| {
                 if task == stop {
-                    case = format!("{case}; after task {task} {}", damage(&tasks, &folder, done, &mut random));
+                    case = format!(
+                        "{case}; after task {task} {}",
+                        damage(&tasks, &folder, done, &mut random)
+                    );
                 }
             })
         } else {
@@ -267,9 +344,10 @@ fn damaged_and_foreign_files_are_refused_or_made_again() {
             }
             match mode {
                 1 => run(&folder, "job run work"),
-                2 if expected == &done.product => {
-                    run(&folder, &format!("{} --job work --resume -o {}", done.words, done.out))
-                }
+                2 if expected == &done.product => run(
+                    &folder,
+                    &format!("{} --job work --resume -o {}", done.words, done.out),
+                ),
                 _ => run_singly(&folder, count, first, |_| {}),
             }
         };
@@ -281,12 +359,16 @@ fn damaged_and_foreign_files_are_refused_or_made_again() {
             run(&folder, "job status work --verify");
             let again = run(&folder, "job run work");
             let is_whole = judge(&folder, &again, done.out, expected, &case);
-            let is_of_plan =
-                ["plan.json", "command.json", "another command"].iter().any(|name| again.stderr.contains(name));
+            let is_of_plan = ["plan.json", "command.json", "another command"]
+                .iter()
+                .any(|name| again.stderr.contains(name));
             assert!(is_whole || is_of_plan, "{case}");
         }
         remove_product(&folder, done.out);
     }
     eprintln!("{cases} cases: {written} written, {refused} refused");
-    assert!(cases < 12 || (written > 0 && refused > 0), "{written} {refused}");
+    assert!(
+        cases < 12 || (written > 0 && refused > 0),
+        "{written} {refused}"
+    );
 }

@@ -16,7 +16,12 @@ fn assert_same(folder: &tempfile::TempDir, words: &str, tilings: &[&str]) -> Vec
         assert!(tiled == whole, "{words} {tiling}: {said}");
         assert!(said.contains("tiles       "), "{said}");
     }
-    assert!(!files_of(folder.path()).iter().any(|name| name.ends_with(".job")), "a job is left");
+    assert!(
+        !files_of(folder.path())
+            .iter()
+            .any(|name| name.ends_with(".job")),
+        "a job is left"
+    );
     whole
 }
 
@@ -24,7 +29,13 @@ fn assert_same(folder: &tempfile::TempDir, words: &str, tilings: &[&str]) -> Vec
 fn the_valley_in_tiles_is_the_valley() {
     let folder = tempfile::tempdir().unwrap();
     let valley = valley();
-    let all = ["--tiles 1x1", "--tiles 4x4", "--tiles 1x30", "--tiles 11x7", "--memory 16MB --tiles auto"];
+    let all = [
+        "--tiles 1x1",
+        "--tiles 4x4",
+        "--tiles 1x30",
+        "--tiles 11x7",
+        "--memory 16MB --tiles auto",
+    ];
     assert_same(&folder, &format!("dem {valley}"), &all);
     let few = ["--tiles 5x3"];
     // Triangles that wait for the rim: few, many, all; and none.
@@ -32,12 +43,24 @@ fn the_valley_in_tiles_is_the_valley() {
         let words = format!("dem {valley} --max-edge {max_edge} --resolution 0.7");
         assert_same(&folder, &words, &few);
     }
-    assert_same(&folder, &format!("dem {valley} --max-edge-inside 4 --max-edge 9"), &few);
-    assert_same(&folder, &format!("dem {valley} --class 2,5 --duplicates highest --resolution 0.3"), &few);
+    assert_same(
+        &folder,
+        &format!("dem {valley} --max-edge-inside 4 --max-edge 9"),
+        &few,
+    );
+    assert_same(
+        &folder,
+        &format!("dem {valley} --class 2,5 --duplicates highest --resolution 0.3"),
+        &few,
+    );
     let part = "--te 688100.3,5261050,688300,5261222.2 --resolution 0.9";
     assert_same(&folder, &format!("dem {valley} {part}"), &few);
     assert_same(&folder, &format!("hillshade {valley} --azimuth 200"), &few);
-    output_of(&folder, &format!("dem {valley} --resolution 2.5"), "grid.tif");
+    output_of(
+        &folder,
+        &format!("dem {valley} --resolution 2.5"),
+        "grid.tif",
+    );
     assert_same(&folder, &format!("dem {valley} --align-to grid.tif"), &few);
 }
 
@@ -48,13 +71,23 @@ fn contours_in_tiles_are_those_of_the_valley() {
     for (words, tiling) in [
         ("--interval 1", "--tiles 4x4"),
         ("--interval 0.25 --max-edge 3", "--tiles 1x30"),
-        ("--levels 800,812.35,844 --class 2,5 --duplicates highest", "--tiles 9x9"),
+        (
+            "--levels 800,812.35,844 --class 2,5 --duplicates highest",
+            "--tiles 9x9",
+        ),
     ] {
         let words = format!("contour {valley} {words}");
         for extension in ["geojson", "shp"] {
             let (whole, _) = output_of(&folder, &words, &format!("whole.{extension}"));
-            let (tiled, said) = output_of(&folder, &format!("{words} {tiling}"), &format!("tiled.{extension}"));
-            assert!(tiled == whole && said.contains("tiles       "), "{words}: {said}");
+            let (tiled, said) = output_of(
+                &folder,
+                &format!("{words} {tiling}"),
+                &format!("tiled.{extension}"),
+            );
+            assert!(
+                tiled == whole && said.contains("tiles       "),
+                "{words}: {said}"
+            );
         }
     }
 }
@@ -70,7 +103,13 @@ fn grids_in_overlapping_files_are_the_same_in_any_tiles() {
         let mut names = Vec::new();
         for file in 0..1 + round % 4 {
             let count = 3 + random.below(side * side);
-            let mut point = || [random.below(side) as f64, random.below(side) as f64, random.below(5) as f64];
+            let mut point = || {
+                [
+                    random.below(side) as f64,
+                    random.below(side) as f64,
+                    random.below(5) as f64,
+                ]
+            };
             let points: Vec<([f64; 3], u8)> = (0..count).map(|_| (point(), 2)).collect();
             let name = format!("{file}.las");
             std::fs::write(folder.path().join(&name), lidar::las(&points, Some(25832))).unwrap();
@@ -78,13 +117,27 @@ fn grids_in_overlapping_files_are_the_same_in_any_tiles() {
         }
         let rule = ["lowest", "highest", "mean", "first", "last"][round % 5];
         let edge = ["none", "2", "1.5"][round % 3];
-        let words = format!("dem {} --duplicates {rule} --resolution 0.25 --max-edge {edge}", names.join(" "));
+        let words = format!(
+            "dem {} --duplicates {rule} --resolution 0.25 --max-edge {edge}",
+            names.join(" ")
+        );
         let [columns, rows] = [1 + random.below(side + 2), 1 + random.below(side + 2)];
-        if run_in(&folder, &words.split(' ').chain(["-o", "try.tif", "--overwrite"]).collect::<Vec<_>>()).code == 0 {
+        if run_in(
+            &folder,
+            &words
+                .split(' ')
+                .chain(["-o", "try.tif", "--overwrite"])
+                .collect::<Vec<_>>(),
+        )
+        .code
+            == 0
+        {
             let tiles = format!("--tiles {columns}x{rows}");
             assert_same(&folder, &words, &[&tiles]);
             // Heights that are levels: plateaus, ridges, saddles.
-            let words = words.replace("dem ", "contour ").replace("--resolution 0.25", "--interval 1");
+            let words = words
+                .replace("dem ", "contour ")
+                .replace("--resolution 0.25", "--interval 1");
             let (whole, _) = output_of(&folder, &words, "whole.geojson");
             let (tiled, _) = output_of(&folder, &format!("{words} {tiles}"), "tiled.geojson");
             assert!(tiled == whole, "{words} {tiles}");
@@ -97,8 +150,17 @@ fn breaklines_in_tiles_are_those_of_the_valley() {
     let folder = tempfile::tempdir().unwrap();
     let valley = valley();
     let lines = valley.replace("valley.laz", "breaklines.shp");
-    let tilings = ["--tiles 1x1", "--tiles 4x4", "--tiles 17x9", "--tiles auto --memory 16MB"];
-    assert_same(&folder, &format!("dem {valley} --breaklines {lines} --resolution 0.7"), &tilings);
+    let tilings = [
+        "--tiles 1x1",
+        "--tiles 4x4",
+        "--tiles 17x9",
+        "--tiles auto --memory 16MB",
+    ];
+    assert_same(
+        &folder,
+        &format!("dem {valley} --breaklines {lines} --resolution 0.7"),
+        &tilings,
+    );
     let words = format!("dem {valley} --soft-lines {lines} --max-edge 2.5 --max-edge-inside 2");
     assert_same(&folder, &words, &["--tiles 6x6"]);
     let words = format!("contour {valley} --breaklines {lines} --interval 0.5");
@@ -118,16 +180,30 @@ fn lines_of_all_kinds_are_the_same_in_any_tiles() {
         let side = [6, 12, 30][round % 3];
         let mut point = || [0, 1, 2].map(|_| random.below(side) as f64);
         let points: Vec<([f64; 3], u8)> = (0..10 + 7 * (round % 9)).map(|_| (point(), 2)).collect();
-        std::fs::write(folder.path().join("points.las"), lidar::las(&points, Some(25832))).unwrap();
+        std::fs::write(
+            folder.path().join("points.las"),
+            lidar::las(&points, Some(25832)),
+        )
+        .unwrap();
         let mut words = "dem points.las --resolution 0.25".to_owned();
-        for (kind, count) in
-            [("breaklines", 1 + round % 5), ("soft-lines", round % 3), ("walls", usize::from(round % 7 == 0))]
-        {
+        for (kind, count) in [
+            ("breaklines", 1 + round % 5),
+            ("soft-lines", round % 3),
+            ("walls", usize::from(round % 7 == 0)),
+        ] {
             let lines: Vec<Vec<[f64; 3]>> = (0..count)
-                .map(|_| (0..2 + random.index(3)).map(|_| [0, 1, 2].map(|_| random.below(side) as f64)).collect())
+                .map(|_| {
+                    (0..2 + random.index(3))
+                        .map(|_| [0, 1, 2].map(|_| random.below(side) as f64))
+                        .collect()
+                })
                 .collect();
             if count > 0 {
-                std::fs::write(folder.path().join(format!("{kind}.geojson")), layer(&lines, "LineString")).unwrap();
+                std::fs::write(
+                    folder.path().join(format!("{kind}.geojson")),
+                    layer(&lines, "LineString"),
+                )
+                .unwrap();
                 words += &format!(" --{kind} {kind}.geojson");
             }
         }
@@ -137,28 +213,62 @@ fn lines_of_all_kinds_are_the_same_in_any_tiles() {
         if round % 3 == 2 {
             // They cross each other, and overlap the lake.
             let lines: Vec<Vec<[f64; 3]>> = (0..2 + round % 2)
-                .map(|_| (0..2 + random.index(2)).map(|_| [0, 1, 2].map(|_| random.below(side) as f64)).collect())
-                .filter(|line: &Vec<[f64; 3]>| line.windows(2).any(|pair| pair[0][..2] != pair[1][..2]))
+                .map(|_| {
+                    (0..2 + random.index(2))
+                        .map(|_| [0, 1, 2].map(|_| random.below(side) as f64))
+                        .collect()
+                })
+                .filter(|line: &Vec<[f64; 3]>| {
+                    line.windows(2).any(|pair| pair[0][..2] != pair[1][..2])
+                })
                 .collect();
-            std::fs::write(folder.path().join("rivers.geojson"), layer(&lines, "LineString")).unwrap();
+            std::fs::write(
+                folder.path().join("rivers.geojson"),
+                layer(&lines, "LineString"),
+            )
+            .unwrap();
             words += " --rivers rivers.geojson --river-width 1.5";
         }
         if round % 4 == 1 {
             let [x, y, z] = [0, 1, 2].map(|_| random.below(side) as f64);
-            let lake = vec![[x, y, z], [x + 3.0, y, z], [x + 4.0, y + 3.0, z], [x, y + 2.0, z], [x, y, z]];
-            std::fs::write(folder.path().join("lake.geojson"), layer(&[lake], "Polygon")).unwrap();
+            let lake = vec![
+                [x, y, z],
+                [x + 3.0, y, z],
+                [x + 4.0, y + 3.0, z],
+                [x, y + 2.0, z],
+                [x, y, z],
+            ];
+            std::fs::write(
+                folder.path().join("lake.geojson"),
+                layer(&[lake], "Polygon"),
+            )
+            .unwrap();
             words += " --flat lake.geojson";
         }
         words += [" --max-edge none", " --max-edge 2.5", ""][round % 3];
         let words: Vec<&str> = words.split(' ').collect();
-        let whole = run_in(&folder, &[&words[..], &["-o", "whole.tif", "--overwrite"]].concat());
+        let whole = run_in(
+            &folder,
+            &[&words[..], &["-o", "whole.tif", "--overwrite"]].concat(),
+        );
         if whole.code != 0 {
             continue;
         }
         built += 1;
         let tiles = format!("{}x{}", 1 + random.below(side), 1 + random.below(side));
-        let tiled = run_in(&folder, &[&words[..], &["--tiles", &tiles, "-o", "tiled.tif", "--overwrite"]].concat());
-        assert_eq!(tiled.code, 0, "round {round}: {words:?} {tiles}: {}", tiled.stderr);
+        let tiled = run_in(
+            &folder,
+            &[
+                &words[..],
+                &["--tiles", &tiles, "-o", "tiled.tif", "--overwrite"],
+            ]
+            .concat(),
+        );
+        assert_eq!(
+            tiled.code, 0,
+            "round {round}: {words:?} {tiles}: {}",
+            tiled.stderr
+        );
         let same = std::fs::read(folder.path().join("whole.tif")).unwrap()
             == std::fs::read(folder.path().join("tiled.tif")).unwrap();
         assert!(same, "round {round}: {words:?} {tiles}");
@@ -171,31 +281,49 @@ fn lines_of_all_kinds_are_the_same_in_any_tiles() {
 fn clipped_surfaces_are_the_same_in_tiles() {
     let folder = tempfile::tempdir().unwrap();
     let valley = valley();
-    let [lines, boundary] = ["breaklines.shp", "boundary.shp"].map(|name| valley.replace("valley.laz", name));
+    let [lines, boundary] =
+        ["breaklines.shp", "boundary.shp"].map(|name| valley.replace("valley.laz", name));
     let bounds = "--bounds 688100.3,5261050.2,688300.7,5261222.9";
     for (words, tiles) in [
         (format!("--boundary {boundary} --resolution 0.7"), "4x4"),
         (format!("{bounds} --resolution 0.5"), "auto"),
-        (format!("{bounds} --boundary {boundary} --breaklines {lines} --max-edge 3"), "7x5"),
-        (format!("--holes {boundary} --soft-lines {lines} --max-edge-inside 3"), "5x5"),
+        (
+            format!("{bounds} --boundary {boundary} --breaklines {lines} --max-edge 3"),
+            "7x5",
+        ),
+        (
+            format!("--holes {boundary} --soft-lines {lines} --max-edge-inside 3"),
+            "5x5",
+        ),
         (format!("--draped-lines {lines} {bounds}"), "3x9"),
     ] {
-        assert_same(&folder, &format!("dem {valley} {words}"), &[&format!("--tiles {tiles}")]);
+        assert_same(
+            &folder,
+            &format!("dem {valley} {words}"),
+            &[&format!("--tiles {tiles}")],
+        );
     }
-    for words in [format!("--boundary {boundary}"), format!("{bounds} --draped-lines {lines}")] {
+    for words in [
+        format!("--boundary {boundary}"),
+        format!("{bounds} --draped-lines {lines}"),
+    ] {
         let words = format!("contour {valley} {words} --interval 0.5");
         let (whole, _) = output_of(&folder, &words, "whole.geojson");
         let (tiled, _) = output_of(&folder, &format!("{words} --tiles 6x4"), "tiled.geojson");
         assert!(tiled == whole, "{words}");
     }
     let nothing = format!("dem {valley} --bounds 0,0,1,1 --resolution 1 --tiles 2x2 -o out.tif");
-    run_in(&folder, &nothing.split(' ').collect::<Vec<_>>()).fails(1, &["lie outside of the boundary or the bounds"]);
+    run_in(&folder, &nothing.split(' ').collect::<Vec<_>>())
+        .fails(1, &["lie outside of the boundary or the bounds"]);
 }
 
 /// The number of sets of lines, which the environment sets: `BREAKLINE_JOBS=2000 cargo test
 /// --release --test tiles`.
 fn rounds() -> usize {
-    std::env::var("BREAKLINE_JOBS").ok().and_then(|n| n.parse().ok()).unwrap_or(30)
+    std::env::var("BREAKLINE_JOBS")
+        .ok()
+        .and_then(|n| n.parse().ok())
+        .unwrap_or(30)
 }
 
 #[test]
@@ -214,15 +342,30 @@ fn files_that_are_tiles_are_not_divided() {
     let files = names.join(" ");
     let (whole, _) = output_of(&folder, &format!("dem {valley}"), "whole.tif");
     let (tiled, said) = output_of(&folder, &format!("dem {files} --tiles auto"), "tiled.tif");
-    assert!(tiled == whole && said.contains("tiles       3 (the files)"), "{said}");
+    assert!(
+        tiled == whole && said.contains("tiles       3 (the files)"),
+        "{said}"
+    );
     // Files that touch may both have points there.
-    output_of(&folder, &format!("points {valley} --bounds 688000,5261000,688200,5261150"), "a.laz");
-    output_of(&folder, &format!("points {valley} --bounds 688100,5261000,688500,5261150"), "b.laz");
+    output_of(
+        &folder,
+        &format!("points {valley} --bounds 688000,5261000,688200,5261150"),
+        "a.laz",
+    );
+    output_of(
+        &folder,
+        &format!("points {valley} --bounds 688100,5261000,688500,5261150"),
+        "b.laz",
+    );
     let (tiled, said) = output_of(&folder, &format!("dem {files} --tiles auto"), "tiled.tif");
     assert!(tiled == whole && said.contains("divided first"), "{said}");
     // Text states neither number nor extent.
     output_of(&folder, &format!("points {valley} --class 2"), "ground.xyz");
-    let (tiled, _) = output_of(&folder, "dem ground.xyz --a-srs EPSG:25832 --tiles 3x3", "tiled.tif");
+    let (tiled, _) = output_of(
+        &folder,
+        "dem ground.xyz --a-srs EPSG:25832 --tiles 3x3",
+        "tiled.tif",
+    );
     let (whole, _) = output_of(&folder, "dem ground.xyz --a-srs EPSG:25832", "whole.tif");
     assert!(tiled == whole);
 }
@@ -232,9 +375,16 @@ fn files_that_are_tiles_are_not_divided() {
 fn two_million_points_take_the_memory_that_is_allowed() {
     let folder = tempfile::tempdir().unwrap();
     landscape::write(&folder.path().join("in"), 2_000_000, 8).unwrap();
-    let (tiled, said) = output_of(&folder, "dem in/*.laz --memory 64MB --threads 2", "tiled.tif");
+    let (tiled, said) = output_of(
+        &folder,
+        "dem in/*.laz --memory 64MB --threads 2",
+        "tiled.tif",
+    );
     assert!(said.contains("tiles       64 (the files)"), "{said}");
-    let peak = said.split("peak memory ").nth(1).and_then(|text| text.split(" MB").next());
+    let peak = said
+        .split("peak memory ")
+        .nth(1)
+        .and_then(|text| text.split(" MB").next());
     let peak: f64 = peak.unwrap().parse().unwrap();
     assert!(peak < 100.0, "{said}");
     let (whole, _) = output_of(&folder, "dem in/*.laz --memory 10GB", "whole.tif");
@@ -247,17 +397,32 @@ fn what_tiles_do_not_have_is_refused() {
     let valley = valley();
     let lines = valley.replace("valley.laz", "breaklines.shp");
     for (words, said) in [
-        (format!("{valley} --crossing-report a.csv"), "--crossing-report does not work with tiles yet"),
-        (format!("{valley} --max-edge auto"), "--max-edge auto does not work with tiles yet"),
-        (format!("{valley} --method natural"), "tiles have linear heights only"),
-        (format!("{valley} --flat {lines} --max-edge-inside 3"), "--max-edge-inside together with --flat"),
+        (
+            format!("{valley} --crossing-report a.csv"),
+            "--crossing-report does not work with tiles yet",
+        ),
+        (
+            format!("{valley} --max-edge auto"),
+            "--max-edge auto does not work with tiles yet",
+        ),
+        (
+            format!("{valley} --method natural"),
+            "tiles have linear heights only",
+        ),
+        (
+            format!("{valley} --flat {lines} --max-edge-inside 3"),
+            "--max-edge-inside together with --flat",
+        ),
         ("-".to_owned(), "tiles are made of files"),
     ] {
         let words = format!("dem {words} --tiles 2x2 -o out.tif");
         run_in(&folder, &words.split(' ').collect::<Vec<_>>())
             .fails(if said.contains("made of") { 2 } else { 1 }, &[said]);
     }
-    for (words, said) in [("--bounds 5,5,1,1", "the bounds go from"), ("--boundary fixtures", "cannot")] {
+    for (words, said) in [
+        ("--bounds 5,5,1,1", "the bounds go from"),
+        ("--boundary fixtures", "cannot"),
+    ] {
         let words = format!("dem {valley} {words} --tiles 2x2 -o out.tif");
         let run = run_in(&folder, &words.split(' ').collect::<Vec<_>>());
         assert!(run.code != 0, "{said}: {}", run.stderr);

@@ -10,8 +10,20 @@ use program::{files_of, run_in};
 /// The tasks that are done, with the times at which they were.
 fn done(job: &Path) -> Vec<(String, SystemTime)> {
     let tasks = job.join("tasks");
-    let names = files_of(&tasks).into_iter().filter(|name| name.ends_with(".task"));
-    names.map(|name| (name.clone(), std::fs::metadata(tasks.join(&name)).unwrap().modified().unwrap())).collect()
+    let names = files_of(&tasks)
+        .into_iter()
+        .filter(|name| name.ends_with(".task"));
+    names
+        .map(|name| {
+            (
+                name.clone(),
+                std::fs::metadata(tasks.join(&name))
+                    .unwrap()
+                    .modified()
+                    .unwrap(),
+            )
+        })
+        .collect()
 }
 
 #[test]
@@ -31,18 +43,29 @@ fn what_is_missing_or_damaged_is_done_again_and_nothing_else() {
     std::fs::write(tasks.join("000002.task"), &cut[..cut.len() - 3]).unwrap();
     std::fs::write(tasks.join(".breakline-x.unfinished"), "x").unwrap();
 
-    let run = run_in(&folder, &words.split(' ').chain(["-o", "again.tif"]).collect::<Vec<_>>());
+    let run = run_in(
+        &folder,
+        &words
+            .split(' ')
+            .chain(["-o", "again.tif"])
+            .collect::<Vec<_>>(),
+    );
     run.fails(2, &["there is a job in this folder already", "--resume"]);
     let (again, said) = output_of(&folder, &format!("{words} --resume"), "whole.tif");
-    assert!(again == whole && said.contains("9 of 12 tasks are done"), "{said}");
+    assert!(
+        again == whole && said.contains("9 of 12 tasks are done"),
+        "{said}"
+    );
     let after = done(&folder.path().join("kept"));
     let same = before.iter().filter(|task| after.contains(task)).count();
     assert_eq!((after.len(), same, files_of(&tasks).len()), (12, 9, 12));
 
     // Another command, a changed input, a damaged plan.
     let other = format!("{words} --resume --resolution 2 -o other.tif");
-    run_in(&folder, &other.split(' ').collect::<Vec<_>>())
-        .fails(2, &["that of another command; what differs: --resolution\n"]);
+    run_in(&folder, &other.split(' ').collect::<Vec<_>>()).fails(
+        2,
+        &["that of another command; what differs: --resolution\n"],
+    );
     std::fs::copy(valley(), folder.path().join("b.laz")).unwrap();
     let others = format!("{words} b.laz --resume --class 2 --max-edge 7 -o other.tif");
     run_in(&folder, &others.split(' ').collect::<Vec<_>>())
@@ -51,17 +74,26 @@ fn what_is_missing_or_damaged_is_done_again_and_nothing_else() {
     run_in(&folder, &others.split(' ').collect::<Vec<_>>()).fails(2, &["what differs: the verb\n"]);
     std::fs::write(folder.path().join("kept/plan.json"), "{}").unwrap();
     let resumed = format!("{words} --resume -o other.tif");
-    run_in(&folder, &resumed.split(' ').collect::<Vec<_>>())
-        .fails(1, &["kept/plan.json: this is not the plan of a job, or it is damaged"]);
+    run_in(&folder, &resumed.split(' ').collect::<Vec<_>>()).fails(
+        1,
+        &["kept/plan.json: this is not the plan of a job, or it is damaged"],
+    );
 }
 
 /// What is left of a job whose plan is gone belongs to no other one.
 #[test]
 fn tasks_without_a_plan_do_not_count() {
     let folder = tempfile::tempdir().unwrap();
-    output_of(&folder, &format!("dem {} --tiles 2x2 --job kept", valley()), "one.tif");
+    output_of(
+        &folder,
+        &format!("dem {} --tiles 2x2 --job kept", valley()),
+        "one.tif",
+    );
     std::fs::remove_file(folder.path().join("kept/plan.json")).unwrap();
-    let words = format!("dem {} --tiles 2x2 --class 5 --duplicates highest", valley());
+    let words = format!(
+        "dem {} --tiles 2x2 --class 5 --duplicates highest",
+        valley()
+    );
     let (tiled, _) = output_of(&folder, &format!("{words} --job kept"), "two.tif");
     let (whole, _) = output_of(&folder, &words.replace(" --tiles 2x2", ""), "three.tif");
     assert!(tiled == whole);
@@ -76,7 +108,10 @@ fn a_plan_without_tasks_can_go_on_or_be_removed() {
     let tasks = folder.path().join("kept/tasks");
     std::fs::remove_dir_all(&tasks).unwrap();
     let (again, said) = output_of(&folder, &format!("{words} --resume"), "one.tif");
-    assert!(again == whole && said.contains("0 of 7 tasks are done"), "{said}");
+    assert!(
+        again == whole && said.contains("0 of 7 tasks are done"),
+        "{said}"
+    );
     std::fs::remove_dir_all(&tasks).unwrap();
     run_in(&folder, &["job", "clean", "kept"]).works(&[]);
     assert_eq!(files_of(folder.path()), ["one.tif"]);
@@ -105,21 +140,44 @@ fn a_plan_is_refused_if_its_output_cannot_be_written() {
 fn a_file_that_changes_after_the_plan_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::copy(valley(), folder.path().join("a.laz")).unwrap();
-    run_in(&folder, &["job", "plan", "j", "--", "dem", "a.laz", "-o", "dem.tif", "--tiles", "2x2"]).works(&[]);
+    run_in(
+        &folder,
+        &[
+            "job", "plan", "j", "--", "dem", "a.laz", "-o", "dem.tif", "--tiles", "2x2",
+        ],
+    )
+    .works(&[]);
     // Before a task has read it, it might have been repaired.
     run_in(&folder, &["job", "run", "j", "--task", "0"]).works(&[]);
     let mut changed = bytes(valley());
     changed.push(0);
     std::fs::write(folder.path().join("a.laz"), changed).unwrap();
-    run_in(&folder, &["job", "run", "j"]).fails(2, &["a.laz: the file has changed since the job was planned"]);
+    run_in(&folder, &["job", "run", "j"]).fails(
+        2,
+        &["a.laz: the file has changed since the job was planned"],
+    );
 
     // Lines, too.
-    let line = |z: f64| layer(&[vec![[688_050.0, 5_261_050.0, z], [688_300.0, 5_261_250.0, z]]], "LineString");
+    let line = |z: f64| {
+        layer(
+            &[vec![
+                [688_050.0, 5_261_050.0, z],
+                [688_300.0, 5_261_250.0, z],
+            ]],
+            "LineString",
+        )
+    };
     std::fs::write(folder.path().join("l.geojson"), line(800.0)).unwrap();
-    let words = format!("job plan k -- dem {} --breaklines l.geojson -o d.tif --tiles 2x2", valley());
+    let words = format!(
+        "job plan k -- dem {} --breaklines l.geojson -o d.tif --tiles 2x2",
+        valley()
+    );
     run_in(&folder, &words.split(' ').collect::<Vec<_>>()).works(&[]);
     std::fs::write(folder.path().join("l.geojson"), line(801.55)).unwrap();
-    run_in(&folder, &["job", "run", "k"]).fails(2, &["l.geojson: the file has changed since the job was planned"]);
+    run_in(&folder, &["job", "run", "k"]).fails(
+        2,
+        &["l.geojson: the file has changed since the job was planned"],
+    );
 }
 
 #[test]
@@ -152,7 +210,9 @@ fn a_task_needs_only_the_file_that_it_reads() {
         run_in(&folder, &["job", "run", job]).fails(2, &["a.laz: the file has changed"]);
         run_in(&folder, &["job", "run", job, "--task", "9"]).works(&[]);
         assert!(bytes(file("dem.tif")) == whole);
-        names.iter().for_each(|name| std::fs::rename(kept.path().join(name), file(name)).unwrap());
+        names
+            .iter()
+            .for_each(|name| std::fs::rename(kept.path().join(name), file(name)).unwrap());
     }
 }
 
@@ -166,8 +226,12 @@ fn files_that_were_repaired_may_be_read_in_any_order() {
     let words = "job plan j -- dem a.laz b.laz -o dem.tif --tiles 2x2";
     run_in(&folder, &words.split(' ').collect::<Vec<_>>()).works(&[]);
     for name in ["a.laz", "b.laz"] {
-        let file = std::fs::File::options().append(true).open(folder.path().join(name)).unwrap();
-        file.set_modified(SystemTime::now() + Duration::from_secs(5)).unwrap();
+        let file = std::fs::File::options()
+            .append(true)
+            .open(folder.path().join(name))
+            .unwrap();
+        file.set_modified(SystemTime::now() + Duration::from_secs(5))
+            .unwrap();
     }
     std::thread::scope(|scope| {
         for task in ["0", "1"] {
@@ -183,7 +247,10 @@ fn headers_alone_suffice_to_plan() {
     let folder = tempfile::tempdir().unwrap();
     let (whole, _) = output_of(&folder, &format!("dem {}", valley()), "whole.tif");
     let plan = |options: &str| {
-        let words = format!("job plan j --headers-only -- dem {} -o dem.tif --memory 16MB {options}", valley());
+        let words = format!(
+            "job plan j --headers-only -- dem {} -o dem.tif --memory 16MB {options}",
+            valley()
+        );
         run_in(&folder, &words.split_whitespace().collect::<Vec<_>>())
     };
     plan("").fails(2, &["from headers alone", "--class 2"]);
@@ -197,14 +264,19 @@ fn tasks_run_one_by_one_from_anywhere() {
     let folder = tempfile::tempdir().unwrap();
     let (whole, _) = output_of(&folder, &format!("dem {}", valley()), "whole.tif");
     let planned = format!("job plan j -- dem {} -o dem.tif --tiles 2x2", valley());
-    run_in(&folder, &planned.split(' ').collect::<Vec<_>>()).works(&["job run j, or j --task 0 to 7"]);
-    run_in(&folder, &planned.split(' ').collect::<Vec<_>>()).fails(2, &["there is a job in this folder already"]);
+    run_in(&folder, &planned.split(' ').collect::<Vec<_>>())
+        .works(&["job run j, or j --task 0 to 7"]);
+    run_in(&folder, &planned.split(' ').collect::<Vec<_>>())
+        .fails(2, &["there is a job in this folder already"]);
     let elsewhere = tempfile::tempdir().unwrap();
     let job = folder.path().join("j").to_str().unwrap().to_owned();
     let task = |number: &str| run_in(&elsewhere, &["job", "run", &job, "--task", number]);
     task("2").fails(4, &["task 0 (divide", "is not done"]);
     task("7").fails(4, &["task 0 (divide", "is not done"]);
-    task("8").fails(2, &["there is no task 8: the last is 7, which writes the output"]);
+    task("8").fails(
+        2,
+        &["there is no task 8: the last is 7, which writes the output"],
+    );
     for number in 0..8 {
         task(&number.to_string()).works(&[]);
     }
@@ -212,17 +284,28 @@ fn tasks_run_one_by_one_from_anywhere() {
     let status = run_in(&elsewhere, &["job", "status", &job, "--json"]);
     let status: serde_json::Value = serde_json::from_str(&status.stdout).unwrap();
     let tasks = status["tasks"].as_array().unwrap();
-    assert!(tasks.len() == 8 && tasks.iter().all(|task| task["done"] == true), "{status}");
+    assert!(
+        tasks.len() == 8 && tasks.iter().all(|task| task["done"] == true),
+        "{status}"
+    );
     assert_eq!(tasks[5]["needs"], serde_json::json!([1, 2, 3, 4]));
-    let stages: Vec<u64> = tasks.iter().map(|task| task["stage"].as_u64().unwrap()).collect();
+    let stages: Vec<u64> = tasks
+        .iter()
+        .map(|task| task["stage"].as_u64().unwrap())
+        .collect();
     assert_eq!(stages, [0, 1, 1, 1, 1, 2, 3, 4]);
-    assert_eq!(run_in(&elsewhere, &["job", "status", &job]).stdout, "7 of 7 tasks are done\n");
+    assert_eq!(
+        run_in(&elsewhere, &["job", "status", &job]).stdout,
+        "7 of 7 tasks are done\n"
+    );
     run_in(&elsewhere, &["job", "clean", &job]).works(&[]);
     assert_eq!(files_of(folder.path()), ["dem.tif", "whole.tif"]);
     run_in(&elsewhere, &["job", "clean", &job]).fails(2, &["there is no job in this folder"]);
-    run_in(&elsewhere, &["job", "plan", "k", "--", "check", "a.laz"]).fails(2, &["a job makes a DEM"]);
+    run_in(&elsewhere, &["job", "plan", "k", "--", "check", "a.laz"])
+        .fails(2, &["a job makes a DEM"]);
     let words = format!("job plan k -- tin {} -o b.ply", valley());
-    run_in(&elsewhere, &words.split(' ').collect::<Vec<_>>()).fails(2, &["tiles make a TIN in parts"]);
+    run_in(&elsewhere, &words.split(' ').collect::<Vec<_>>())
+        .fails(2, &["tiles make a TIN in parts"]);
     run_in(&elsewhere, &["job", "plan", "k", "--", "dem"]).fails(2, &["the command of the job"]);
 }
 
@@ -238,14 +321,22 @@ fn a_job_that_is_killed_goes_on() {
     for wait in 1.. {
         let mut program = Command::new(assert_cmd::cargo::cargo_bin!("breakline"));
         let words = words.split(' ').chain(["--resume", "-q", "-o", "dem.tif"]);
-        let mut child = program.current_dir(folder.path()).args(words).stderr(Stdio::null()).spawn().unwrap();
+        let mut child = program
+            .current_dir(folder.path())
+            .args(words)
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
         std::thread::sleep(Duration::from_millis(5 * wait));
         // SIGKILL.
         let _ = child.kill();
         kills += i32::from(!child.wait().unwrap().success());
         if folder.path().join("kept/tasks").exists() {
             let now = done(&folder.path().join("kept"));
-            assert!(known.iter().all(|task| now.contains(task)), "a task was done twice");
+            assert!(
+                known.iter().all(|task| now.contains(task)),
+                "a task was done twice"
+            );
             known = now;
         }
         if target.exists() {
@@ -263,19 +354,47 @@ fn a_run_that_a_signal_ends_says_how_to_go_on() {
     use std::os::unix::process::ExitStatusExt;
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
-    if ignored.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).is_some_and(|mask| mask >> 1 & 1 == 1) {
+    if ignored
+        .and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok())
+        .is_some_and(|mask| mask >> 1 & 1 == 1)
+    {
         return eprintln!("skipped: SIGINT is ignored here");
     }
     let folder = tempfile::tempdir().unwrap();
-    run_in(&folder, &["job", "plan", "j", "--", "dem", &valley(), "-o", "x.tif", "--tiles", "30x30"]).works(&[]);
+    run_in(
+        &folder,
+        &[
+            "job",
+            "plan",
+            "j",
+            "--",
+            "dem",
+            &valley(),
+            "-o",
+            "x.tif",
+            "--tiles",
+            "30x30",
+        ],
+    )
+    .works(&[]);
     let dem = format!("dem {} --tiles 30x30 -o dem.tif --threads 1", valley());
     for (words, said) in [
-        (dem.as_str(), "note: finished tasks are kept in dem.tif.job: go on with --resume\n"),
+        (
+            dem.as_str(),
+            "note: finished tasks are kept in dem.tif.job: go on with --resume\n",
+        ),
         ("job run j --threads 1", "j: go on with `breakline job run "),
     ] {
         let mut program = Command::new(assert_cmd::cargo::cargo_bin!("breakline"));
-        let child = program.current_dir(folder.path()).args(words.split(' ')).stderr(Stdio::piped()).spawn().unwrap();
-        let job = folder.path().join(if words == dem { "dem.tif.job" } else { "j" });
+        let child = program
+            .current_dir(folder.path())
+            .args(words.split(' '))
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let job = folder
+            .path()
+            .join(if words == dem { "dem.tif.job" } else { "j" });
         // Its 900 tiles take far longer than it takes to see the first.
         while !job.join("tasks/000001.task").exists() {
             std::thread::sleep(Duration::from_millis(1));
@@ -295,18 +414,31 @@ fn a_run_that_a_signal_ends_says_how_to_go_on() {
 #[test]
 fn a_run_that_cannot_fit_on_the_disk_is_refused() {
     let folder = tempfile::tempdir().unwrap();
-    std::fs::write(folder.path().join("w.xyz"), "0 0 0\n4000000 0 0\n0 4000000 0\n4000000 4000000 1\n").unwrap();
+    std::fs::write(
+        folder.path().join("w.xyz"),
+        "0 0 0\n4000000 0 0\n0 4000000 0\n4000000 4000000 1\n",
+    )
+    .unwrap();
     let run = |words: &str| run_in(&folder, &words.split(' ').collect::<Vec<_>>());
-    let said = ["the files of the tasks take about 1280000", "are free on the disk", "hint: choose larger cells"];
+    let said = [
+        "the files of the tasks take about 1280000",
+        "are free on the disk",
+        "hint: choose larger cells",
+    ];
     let words = "dem w.xyz --resolution 0.1 --max-edge none --tiles 2x2";
     run(&format!("{words} -o d.tif")).fails(1, &said);
     run(&format!("{words} -o d.tif --dry-run")).fails(1, &said);
     run(&format!("job plan j -- {words} -o d.tif")).fails(1, &said);
     // Files far apart: of the frame around them, hardly a cell is drawn.
-    let square = |x: u32| -> String { (0..100).map(|i| format!("{} {} {i}\n", x + i % 10, x + i / 10)).collect() };
+    let square = |x: u32| -> String {
+        (0..100)
+            .map(|i| format!("{} {} {i}\n", x + i % 10, x + i / 10))
+            .collect()
+    };
     for (name, x) in [("a.xyz", 0), ("b.xyz", 2_000_000)] {
         std::fs::write(folder.path().join(name), square(x)).unwrap();
     }
-    run("dem a.xyz b.xyz --resolution 0.5 --tiles 2x2 --dry-run -o d.tif").works(&["about 10 kB on the disk"]);
+    run("dem a.xyz b.xyz --resolution 0.5 --tiles 2x2 --dry-run -o d.tif")
+        .works(&["about 10 kB on the disk"]);
     assert_eq!(files_of(folder.path()), ["a.xyz", "b.xyz", "w.xyz"]);
 }

@@ -11,12 +11,18 @@ use crate::program::{Run, run_in};
 /// The number of pairs, which the environment sets:
 /// `BREAKLINE_PAIRS=3000 cargo test --release --test tiles pairs`.
 fn count() -> usize {
-    std::env::var("BREAKLINE_PAIRS").ok().and_then(|n| n.parse().ok()).unwrap_or(16)
+    std::env::var("BREAKLINE_PAIRS")
+        .ok()
+        .and_then(|n| n.parse().ok())
+        .unwrap_or(16)
 }
 
 /// The first of them, to begin in the middle: `BREAKLINE_FIRST_PAIR`.
 fn first() -> usize {
-    std::env::var("BREAKLINE_FIRST_PAIR").ok().and_then(|n| n.parse().ok()).unwrap_or(0)
+    std::env::var("BREAKLINE_FIRST_PAIR")
+        .ok()
+        .and_then(|n| n.parse().ok())
+        .unwrap_or(0)
 }
 
 /// Pairs that differed once: a point that is in a lake by a rounding error kept its height in
@@ -35,16 +41,26 @@ struct Scene {
 impl Scene {
     fn new(pair: usize) -> Self {
         // Sets do not depend on those before.
-        Scene { side: [5, 9, 16][pair % 3], kind: pair / 3 % 4, random: Random(977 + pair as u64) }
+        Scene {
+            side: [5, 9, 16][pair % 3],
+            kind: pair / 3 % 4,
+            random: Random(977 + pair as u64),
+        }
     }
 
     /// Whole numbers; a grid turned by a triangle of sides 3, 4 and 5; steps of 0.1; groups.
     fn position(&self, [i, j]: Site) -> Site {
         match self.kind {
             0 => [i, j],
-            1 => [500_000.0 + (3.0 * i - 4.0 * j) / 5.0, 5_000_000.0 + (4.0 * i + 3.0 * j) / 5.0],
+            1 => [
+                500_000.0 + (3.0 * i - 4.0 * j) / 5.0,
+                5_000_000.0 + (4.0 * i + 3.0 * j) / 5.0,
+            ],
             2 => [1e6 + i * 0.1, 2e6 + j * 0.1],
-            _ => [300.0 + i + (j * 1e-4).sin(), j.trunc() + (j - j.trunc()) * 1e-3],
+            _ => [
+                300.0 + i + (j * 1e-4).sin(),
+                j.trunc() + (j - j.trunc()) * 1e-3,
+            ],
         }
     }
 
@@ -72,7 +88,10 @@ impl Scene {
 
     fn line(&mut self) -> Vec<[f64; 3]> {
         let count = 2 + self.random.index(3);
-        (0..count).map(|_| (self.corner(), self.height())).map(|([x, y], z)| [x, y, z]).collect()
+        (0..count)
+            .map(|_| (self.corner(), self.height()))
+            .map(|([x, y], z)| [x, y, z])
+            .collect()
     }
 
     /// A ring of one height; now and then without an area, or with a part that has none.
@@ -91,7 +110,9 @@ impl Scene {
                 let (c, tip) = (self.corner(), self.site());
                 vec![a, b, tip, b, c]
             }
-            _ => (0..3 + self.random.index(4)).map(|_| self.corner()).collect(),
+            _ => (0..3 + self.random.index(4))
+                .map(|_| self.corner())
+                .collect(),
         };
         ring.push(ring[0]);
         ring.into_iter().map(|[x, y]| [x, y, z]).collect()
@@ -112,10 +133,21 @@ impl Scene {
         std::fs::write(folder.join("points.xyz"), rows).unwrap();
         let mut words = "points.xyz --a-srs EPSG:25832".to_owned();
         let mut add = |scene: &mut Self, option: &str, kind: &str, count: usize, more: &str| {
-            let shapes: Vec<Vec<[f64; 3]>> =
-                (0..count).map(|_| if kind == "Polygon" { scene.ring() } else { scene.line() }).collect();
+            let shapes: Vec<Vec<[f64; 3]>> = (0..count)
+                .map(|_| {
+                    if kind == "Polygon" {
+                        scene.ring()
+                    } else {
+                        scene.line()
+                    }
+                })
+                .collect();
             if !shapes.is_empty() {
-                std::fs::write(folder.join(format!("{option}.geojson")), layer(&shapes, kind)).unwrap();
+                std::fs::write(
+                    folder.join(format!("{option}.geojson")),
+                    layer(&shapes, kind),
+                )
+                .unwrap();
                 words += &format!(" --{option} {option}.geojson{more}");
             }
         };
@@ -138,7 +170,13 @@ impl Scene {
         }
         if self.random.below(4) == 0 {
             let ([a, b], [c, d]) = (self.corner(), self.corner());
-            words += &format!(" --bounds {},{},{},{}", a.min(c), b.min(d), a.max(c), b.max(d));
+            words += &format!(
+                " --bounds {},{},{},{}",
+                a.min(c),
+                b.min(d),
+                a.max(c),
+                b.max(d)
+            );
         }
         words + ["", " --max-edge none", " --max-edge 2.5"][self.random.index(3)]
     }
@@ -151,7 +189,11 @@ fn pairs_of_one_piece_and_tiles_are_the_same() {
         let folder = tempfile::tempdir().unwrap();
         let mut scene = Scene::new(pair);
         let words = scene.write(folder.path());
-        let tiles = format!("--tiles {}x{}", 1 + scene.random.below(6), 1 + scene.random.below(6));
+        let tiles = format!(
+            "--tiles {}x{}",
+            1 + scene.random.below(6),
+            1 + scene.random.below(6)
+        );
         let run = |words: &str, out: &str| -> Run {
             let words: Vec<&str> = words.split_whitespace().chain(["-o", out]).collect();
             run_in(&folder, &words)
@@ -159,33 +201,62 @@ fn pairs_of_one_piece_and_tiles_are_the_same() {
         // Each of both, which must end alike.
         let both = |whole: &str, tiled: &str, outs: [&str; 2]| -> bool {
             let [one, other] = [run(whole, outs[0]), run(tiled, outs[1])];
-            let said = format!("pair {pair}: {whole} {tiled}\n{}\n{}", one.stderr, other.stderr);
+            let said = format!(
+                "pair {pair}: {whole} {tiled}\n{}\n{}",
+                one.stderr, other.stderr
+            );
             assert_eq!(one.code == 0, other.code == 0, "{said}");
             assert!(!other.stderr.contains("not local"), "{said}");
             one.code == 0
         };
-        if !both(&format!("tin {words}"), &format!("tin {words} {tiles}"), ["whole.tin", "parts.tins"]) {
+        if !both(
+            &format!("tin {words}"),
+            &format!("tin {words} {tiles}"),
+            ["whole.tin", "parts.tins"],
+        ) {
             refused += 1;
             continue;
         }
         built += 1;
         let cell = if scene.kind == 2 { 0.05 } else { 0.5 };
-        let method = scene.random.pick(&["linear", "nearest", "natural", "laplace", "smooth", "idw"]);
-        let [dem, contour] = [format!("dem --resolution {cell}"), "contour --interval 0.25".to_owned()];
+        let method = scene
+            .random
+            .pick(&["linear", "nearest", "natural", "laplace", "smooth", "idw"]);
+        let [dem, contour] = [
+            format!("dem --resolution {cell}"),
+            "contour --interval 0.25".to_owned(),
+        ];
         let hillshade = format!("hillshade --resolution {cell}");
-        let (direct, out) = [(&dem, "tif"), (&hillshade, "png"), (&contour, "geojson")][scene.random.index(3)];
+        let (direct, out) =
+            [(&dem, "tif"), (&hillshade, "png"), (&contour, "geojson")][scene.random.index(3)];
         for (whole, tiled, out) in [
-            (format!("{dem} --method {method} whole.tin"), format!("{dem} --method {method} parts.tins"), "tif"),
-            (format!("{contour} whole.tin"), format!("{contour} parts.tins"), "geojson"),
-            (format!("{direct} {words}"), format!("{direct} {words} {tiles}"), out),
+            (
+                format!("{dem} --method {method} whole.tin"),
+                format!("{dem} --method {method} parts.tins"),
+                "tif",
+            ),
+            (
+                format!("{contour} whole.tin"),
+                format!("{contour} parts.tins"),
+                "geojson",
+            ),
+            (
+                format!("{direct} {words}"),
+                format!("{direct} {words} {tiles}"),
+                out,
+            ),
         ] {
             let outs = [format!("a.{out}"), format!("b.{out}")];
             if both(&whole, &tiled, [&outs[0], &outs[1]]) {
                 let [a, b] = outs.each_ref().map(|name| bytes(folder.path().join(name)));
                 assert!(a == b, "pair {pair}: {whole}, {tiled}: {words} {tiles}");
-                outs.iter().for_each(|name| std::fs::remove_file(folder.path().join(name)).unwrap());
+                outs.iter()
+                    .for_each(|name| std::fs::remove_file(folder.path().join(name)).unwrap());
             }
         }
     }
-    assert!(built > refused, "{built} pairs, and {refused} sets that are refused");
+    assert!(
+        built > refused,
+        "{built} pairs, and {refused} sets that are refused"
+    );
 }

@@ -40,7 +40,10 @@ fn output_of(folder: &TempDir, words: &str, out: &str) -> (Vec<u8>, String) {
 /// Like [`output_of`], for a run that ends with this status.
 #[track_caller]
 fn output_with(folder: &TempDir, words: &str, out: &str, code: i32) -> (Vec<u8>, String) {
-    let words: Vec<&str> = words.split_whitespace().chain(["-o", out, "--overwrite"]).collect();
+    let words: Vec<&str> = words
+        .split_whitespace()
+        .chain(["-o", out, "--overwrite"])
+        .collect();
     let run = run_in(folder, &words);
     assert_eq!(run.code, code, "{words:?}: {}", run.stderr);
     (std::fs::read(folder.path().join(out)).unwrap(), run.stderr)

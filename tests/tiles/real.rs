@@ -7,13 +7,26 @@ use super::output_of;
 #[track_caller]
 fn assert_same(verb: &str, files: &[&str], words: &str, tiles: &str) {
     let folder = tempfile::tempdir().unwrap();
-    let files: Vec<String> = files.iter().map(|file| testkit::shared(file).to_str().unwrap().to_owned()).collect();
-    let words = words.replace('@', &format!("{}/", testkit::shared("lidar").to_str().unwrap()));
+    let files: Vec<String> = files
+        .iter()
+        .map(|file| testkit::shared(file).to_str().unwrap().to_owned())
+        .collect();
+    let words = words.replace(
+        '@',
+        &format!("{}/", testkit::shared("lidar").to_str().unwrap()),
+    );
     let words = format!("{verb} {} {words}", files.join(" "));
     let extension = if verb == "contour" { "geojson" } else { "tif" };
     let (whole, _) = output_of(&folder, &words, &format!("whole.{extension}"));
-    let (tiled, said) = output_of(&folder, &format!("{words} --tiles {tiles}"), &format!("tiled.{extension}"));
-    assert!(tiled == whole && said.contains("tiles       "), "{words}: {said}");
+    let (tiled, said) = output_of(
+        &folder,
+        &format!("{words} --tiles {tiles}"),
+        &format!("tiled.{extension}"),
+    );
+    assert!(
+        tiled == whole && said.contains("tiles       "),
+        "{words}: {said}"
+    );
 }
 
 #[test]
@@ -28,7 +41,10 @@ fn four_tiles_of_a_survey() {
 #[test]
 #[cfg_attr(not(has_shared), ignore = "needs ../shared")]
 fn a_town_with_breaklines() {
-    let files = ["lidar/delft_ahn3_bgt/ahn3_cropped_1.laz", "lidar/delft_ahn3_bgt/ahn3_cropped_2.laz"];
+    let files = [
+        "lidar/delft_ahn3_bgt/ahn3_cropped_1.laz",
+        "lidar/delft_ahn3_bgt/ahn3_cropped_2.laz",
+    ];
     let lines = "--breaklines @delft_ahn3_bgt/breaklines_z_derived.shp";
     assert_same("dem", &files, lines, "16x16");
     assert_same("contour", &files, lines, "5x5");
@@ -38,11 +54,24 @@ fn a_town_with_breaklines() {
 #[test]
 #[cfg_attr(not(has_shared), ignore = "needs ../shared")]
 fn a_part_of_a_town() {
-    let files = ["lidar/delft_ahn3_bgt/ahn3_cropped_1.laz", "lidar/delft_ahn3_bgt/ahn3_cropped_2.laz"];
+    let files = [
+        "lidar/delft_ahn3_bgt/ahn3_cropped_1.laz",
+        "lidar/delft_ahn3_bgt/ahn3_cropped_2.laz",
+    ];
     let lines = "--breaklines @delft_ahn3_bgt/breaklines_z_derived.shp";
     let bounds = "84850.1,447450.3,84960.7,447600.9";
-    assert_same("dem", &files, &format!("{lines} --bounds {bounds} --resolution 0.25"), "9x7");
-    assert_same("contour", &files, &format!("{lines} --bounds {bounds} --interval 0.25"), "4x11");
+    assert_same(
+        "dem",
+        &files,
+        &format!("{lines} --bounds {bounds} --resolution 0.25"),
+        "9x7",
+    );
+    assert_same(
+        "contour",
+        &files,
+        &format!("{lines} --bounds {bounds} --interval 0.25"),
+        "4x11",
+    );
 }
 
 #[test]
@@ -50,12 +79,22 @@ fn a_part_of_a_town() {
 fn a_lake_that_is_level() {
     let water = "--flat @lake_breakline/lake_breakline.shp --flat-height 2733.95 --flat-buffer 1";
     assert_same("dem", &["lidar/lake_breakline/lake.laz"], water, "9x7");
-    assert_same("contour", &["lidar/lake_breakline/lake.laz"], &format!("{water} --interval 0.5"), "4x4");
+    assert_same(
+        "contour",
+        &["lidar/lake_breakline/lake.laz"],
+        &format!("{water} --interval 0.5"),
+        "4x4",
+    );
 }
 
 #[test]
 #[cfg_attr(not(has_shared), ignore = "needs ../shared")]
 fn a_national_tile() {
     let lines = "--breaklines @ign_0292_6833/Lignes_3d_0292_6833.geojson";
-    assert_same("dem", &["lidar/ign_0292_6833/test_semis_2023_0292_6833_LA93_IGN69.laz"], lines, "10x10");
+    assert_same(
+        "dem",
+        &["lidar/ign_0292_6833/test_semis_2023_0292_6833_LA93_IGN69.laz"],
+        lines,
+        "10x10",
+    );
 }

@@ -23,9 +23,18 @@ fn mark_of(folder: &TempDir, job: &str) -> String {
 fn temporary_files_of_an_equal_job_stay() {
     let folder = tempfile::tempdir().unwrap();
     for job in ["j", "k"] {
-        run(&folder, &format!("job plan {job} -- dem {} --tiles 2x2 -o {job}.tif", valley())).works(&[]);
+        run(
+            &folder,
+            &format!(
+                "job plan {job} -- dem {} --tiles 2x2 -o {job}.tif",
+                valley()
+            ),
+        )
+        .works(&[]);
     }
-    let live = folder.path().join(format!(".breakline-{}-live", mark_of(&folder, "k")));
+    let live = folder
+        .path()
+        .join(format!(".breakline-{}-live", mark_of(&folder, "k")));
     std::fs::write(&live, "being written").unwrap();
     run(&folder, "job run j").works(&[]);
     assert!(live.exists());
@@ -40,11 +49,17 @@ fn temporary_files_of_an_equal_job_stay() {
 fn a_job_whose_folder_has_its_output_goes_on_and_is_removed() {
     let folder = tempfile::tempdir().unwrap();
     let job = folder.path().join("j");
-    let planned = format!("job plan j -- tin {} --tiles 2x2 -o j/out.tins --overwrite", valley());
+    let planned = format!(
+        "job plan j -- tin {} --tiles 2x2 -o j/out.tins --overwrite",
+        valley()
+    );
     std::fs::create_dir(&job).unwrap();
     for end in ["job run j", "job clean j"] {
         run(&folder, &planned).works(&[]);
-        let own = job.join(format!(".breakline-{}-zz.unfinished", mark_of(&folder, "j")));
+        let own = job.join(format!(
+            ".breakline-{}-zz.unfinished",
+            mark_of(&folder, "j")
+        ));
         // What another run is about to write here.
         let other = job.join(".breakline-01234567-zz.unfinished");
         for left in [&own, &other] {
@@ -52,7 +67,11 @@ fn a_job_whose_folder_has_its_output_goes_on_and_is_removed() {
             std::fs::write(left.join("000000.tin"), "half").unwrap();
         }
         run(&folder, end).works(&[]);
-        assert!(!own.exists() && other.join("000000.tin").exists(), "{end}: {:?}", files_of(&job));
+        assert!(
+            !own.exists() && other.join("000000.tin").exists(),
+            "{end}: {:?}",
+            files_of(&job)
+        );
         if end == "job run j" {
             run(&folder, "job clean j").works(&[]);
             assert!(job.join("out.tins").exists());
@@ -65,12 +84,19 @@ fn a_job_whose_folder_has_its_output_goes_on_and_is_removed() {
 #[test]
 fn a_job_of_countless_tasks_is_removed() {
     let folder = tempfile::tempdir().unwrap();
-    let plan = format!(r#"{{"version":"0","request":{{}},"layout":[],"tasks":{}}}"#, u64::MAX);
+    let plan = format!(
+        r#"{{"version":"0","request":{{}},"layout":[],"tasks":{}}}"#,
+        u64::MAX
+    );
     let mut sum = Crc::new();
     sum.update(plan.as_bytes());
     let tasks = folder.path().join("j/tasks");
     std::fs::create_dir_all(&tasks).unwrap();
-    std::fs::write(folder.path().join("j/plan.json"), format!("{:08x}\n{plan}", sum.sum())).unwrap();
+    std::fs::write(
+        folder.path().join("j/plan.json"),
+        format!("{:08x}\n{plan}", sum.sum()),
+    )
+    .unwrap();
     for name in ["000000.task", "123456789.task", "1.task", "+00001.task"] {
         std::fs::write(tasks.join(name), "x").unwrap();
     }
@@ -81,7 +107,11 @@ fn a_job_of_countless_tasks_is_removed() {
 #[test]
 fn who_cannot_clean_a_job_learns_what_to_delete() {
     let folder = tempfile::tempdir().unwrap();
-    run(&folder, &format!("job plan j -- dem {} --tiles 2x2 -o dem.tif", valley())).works(&[]);
+    run(
+        &folder,
+        &format!("job plan j -- dem {} --tiles 2x2 -o dem.tif", valley()),
+    )
+    .works(&[]);
     run(&folder, "job run j --task 0").works(&[]);
     let path: PathBuf = folder.path().join("j/plan.json");
     let mut plan = bytes(&path);
@@ -89,8 +119,13 @@ fn who_cannot_clean_a_job_learns_what_to_delete() {
     std::fs::write(&path, plan).unwrap();
     let before = files_of(&folder.path().join("j/tasks"));
     for words in ["job clean j", "job run j"] {
-        run(&folder, words)
-            .fails(1, &["j/plan.json: this is not the plan of a job", "by hand: plan.json and tasks/*.task"]);
+        run(&folder, words).fails(
+            1,
+            &[
+                "j/plan.json: this is not the plan of a job",
+                "by hand: plan.json and tasks/*.task",
+            ],
+        );
     }
     assert_eq!(files_of(&folder.path().join("j/tasks")), before);
 }

@@ -6,9 +6,9 @@ use std::path::Path;
 use breakline::error::{Kind, Result, Setting};
 use breakline::io::formats::Product;
 use breakline::run::{
-    self, BadFiles, Context, DemOptions, Division, Execution, Existing, FrameOptions, HillshadeOptions, Input,
-    JobCommand, Keeps, LightOptions, Outputs, Source, StoredJob, Summary, SurfaceProduct, SurfaceRequest, Targets,
-    TileOptions, Tiles, Verb, WriteReport, WriteRequest,
+    self, BadFiles, Context, DemOptions, Division, Execution, Existing, FrameOptions,
+    HillshadeOptions, Input, JobCommand, Keeps, LightOptions, Outputs, Source, StoredJob, Summary,
+    SurfaceProduct, SurfaceRequest, Targets, TileOptions, Tiles, Verb, WriteReport, WriteRequest,
 };
 
 use super::{bytes, output_of, valley};
@@ -16,11 +16,20 @@ use crate::program::{files_of, run_in};
 
 fn request(verb: impl Verb + 'static) -> WriteRequest {
     let source = Source::of_points(&[valley().into()]);
-    WriteRequest::new(SurfaceRequest { source, ..SurfaceRequest::default() }, verb)
+    WriteRequest::new(
+        SurfaceRequest {
+            source,
+            ..SurfaceRequest::default()
+        },
+        verb,
+    )
 }
 
 fn tiles() -> TileOptions {
-    TileOptions { division: Division::Grid([2, 2]), ..TileOptions::default() }
+    TileOptions {
+        division: Division::Grid([2, 2]),
+        ..TileOptions::default()
+    }
 }
 
 fn command(targets: &Targets) -> JobCommand {
@@ -38,24 +47,51 @@ fn a_job_is_for_the_same_outputs_and_the_same_bad_files() {
     let planned = command(&one);
     let job = plan(&planned, &folder.path().join("j")).unwrap();
     job.require_for(&planned).unwrap();
-    StoredJob::read(job.folder()).unwrap().require_for(&planned).unwrap();
+    StoredJob::read(job.folder())
+        .unwrap()
+        .require_for(&planned)
+        .unwrap();
 
-    let replacing = Targets { existing: Existing::Replace, ..one.clone() };
-    let skipping = TileOptions { bad: BadFiles::Skip, ..tiles() };
-    let with_tiles = |tiles| JobCommand::new(&request(DemOptions::default()), &one, &tiles).unwrap();
-    let coarse = FrameOptions { resolution: Some(3.0), ..FrameOptions::default() };
-    let coarse = request(DemOptions { frame: coarse, ..DemOptions::default() });
+    let replacing = Targets {
+        existing: Existing::Replace,
+        ..one.clone()
+    };
+    let skipping = TileOptions {
+        bad: BadFiles::Skip,
+        ..tiles()
+    };
+    let with_tiles =
+        |tiles| JobCommand::new(&request(DemOptions::default()), &one, &tiles).unwrap();
+    let coarse = FrameOptions {
+        resolution: Some(3.0),
+        ..FrameOptions::default()
+    };
+    let coarse = request(DemOptions {
+        frame: coarse,
+        ..DemOptions::default()
+    });
     for (asked, what) in [
         (command(&other), "the output"),
         (command(&replacing), "overwrite"),
         (with_tiles(skipping), "skip-bad"),
         (with_tiles(TileOptions::default()), "tiles"),
-        (JobCommand::new(&coarse, &one, &tiles()).unwrap(), "resolution"),
-        (JobCommand::new(&request(HillshadeOptions::default()), &one, &tiles()).unwrap(), "the verb"),
+        (
+            JobCommand::new(&coarse, &one, &tiles()).unwrap(),
+            "resolution",
+        ),
+        (
+            JobCommand::new(&request(HillshadeOptions::default()), &one, &tiles()).unwrap(),
+            "the verb",
+        ),
     ] {
         let error = job.require_for(&asked).unwrap_err();
         assert_eq!(error.kind(), Kind::OtherJob, "{error}");
-        assert!(error.to_string().ends_with(&format!("what differs: {what}")), "{error}");
+        assert!(
+            error
+                .to_string()
+                .ends_with(&format!("what differs: {what}")),
+            "{error}"
+        );
     }
 }
 
@@ -76,7 +112,10 @@ fn a_job_that_was_replaced_is_not_taken_for_the_one_before() {
         ];
         for error in errors {
             let error = error.unwrap();
-            assert!(error.kind() == Kind::OtherJob && error.to_string().contains("removed or replaced"), "{error}");
+            assert!(
+                error.kind() == Kind::OtherJob && error.to_string().contains("removed or replaced"),
+                "{error}"
+            );
         }
     };
     is_gone();
@@ -95,11 +134,26 @@ fn what_is_left_of_a_job_is_done_once() {
     let context = Context::default();
     let output = folder.path().join("a.tif");
     let job = plan(&command(&Targets::of(&output)), &folder.path().join("j")).unwrap();
-    assert!(matches!(run::run_job(&job, &context).unwrap(), WriteReport::Written(_)));
+    assert!(matches!(
+        run::run_job(&job, &context).unwrap(),
+        WriteReport::Written(_)
+    ));
     let before = std::fs::metadata(&output).unwrap().modified().unwrap();
     let again = run::run_job(&job, &context).unwrap();
-    assert!(matches!(again, WriteReport::Kept { has_holes: false, .. }), "{again:?}");
-    assert_eq!(std::fs::metadata(&output).unwrap().modified().unwrap(), before);
+    assert!(
+        matches!(
+            again,
+            WriteReport::Kept {
+                has_holes: false,
+                ..
+            }
+        ),
+        "{again:?}"
+    );
+    assert_eq!(
+        std::fs::metadata(&output).unwrap().modified().unwrap(),
+        before
+    );
     // Another file in its place is not overwritten unasked.
     std::fs::write(&output, "mine").unwrap();
     assert_eq!(run::run_job(&job, &context).unwrap_err().kind(), Kind::Io);
@@ -119,19 +173,50 @@ fn the_names_of_a_command_are_whole() {
         points: vec![Input::from("a.laz"), Input::from("./b/c.laz")],
         breaklines: vec![Input::from("l.gpkg:roads:z")],
         boundary: vec![Input::from("b.geojson")],
-        lines: run::LineRequest { walls: vec![Input::from("w.shp")], ..run::LineRequest::default() },
+        lines: run::LineRequest {
+            walls: vec![Input::from("w.shp")],
+            ..run::LineRequest::default()
+        },
         ..run::TinRequest::default()
     };
-    let surface = SurfaceRequest { source: Source::Points(Box::new(tin)), ..SurfaceRequest::default() };
-    let frame = FrameOptions { align_to: Some("r.tif".into()), ..FrameOptions::default() };
-    let targets = Targets { also_read: vec!["list.txt".into()], ..Targets::of("d.tif") };
+    let surface = SurfaceRequest {
+        source: Source::Points(Box::new(tin)),
+        ..SurfaceRequest::default()
+    };
+    let frame = FrameOptions {
+        align_to: Some("r.tif".into()),
+        ..FrameOptions::default()
+    };
+    let targets = Targets {
+        also_read: vec!["list.txt".into()],
+        ..Targets::of("d.tif")
+    };
     for request in [
-        WriteRequest::new(surface.clone(), DemOptions { frame: frame.clone(), ..DemOptions::default() }),
-        WriteRequest::new(surface.clone(), HillshadeOptions { frame: frame.clone(), ..HillshadeOptions::default() }),
+        WriteRequest::new(
+            surface.clone(),
+            DemOptions {
+                frame: frame.clone(),
+                ..DemOptions::default()
+            },
+        ),
+        WriteRequest::new(
+            surface.clone(),
+            HillshadeOptions {
+                frame: frame.clone(),
+                ..HillshadeOptions::default()
+            },
+        ),
     ] {
         let command = JobCommand::new(&request, &targets, &TileOptions::default()).unwrap();
         let here = std::env::current_dir().unwrap();
-        let names = ["a.laz", "b/c.laz", "l.gpkg:roads:z", "w.shp", "b.geojson", "r.tif"];
+        let names = [
+            "a.laz",
+            "b/c.laz",
+            "l.gpkg:roads:z",
+            "w.shp",
+            "b.geojson",
+            "r.tif",
+        ];
         assert_eq!(command.request.files(), names.map(|name| here.join(name)));
         assert_eq!(command.targets.files, [here.join("d.tif")]);
         assert_eq!(command.targets.also_read, [here.join("list.txt")]);
@@ -145,7 +230,13 @@ fn the_names_of_a_command_are_whole() {
 fn relative_names_mean_the_files_where_the_job_was_planned() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::copy(valley(), folder.path().join("a.laz")).unwrap();
-    let line = super::layer(&[vec![[688_050.0, 5_261_050.0, 800.0], [688_300.0, 5_261_250.0, 801.0]]], "LineString");
+    let line = super::layer(
+        &[vec![
+            [688_050.0, 5_261_050.0, 800.0],
+            [688_300.0, 5_261_250.0, 801.0],
+        ]],
+        "LineString",
+    );
     std::fs::write(folder.path().join("l.geojson"), line).unwrap();
     output_of(&folder, "dem a.laz --resolution 4", "grid.tif");
     let words = "dem a.laz --breaklines l.geojson --align-to grid.tif";
@@ -153,7 +244,11 @@ fn relative_names_mean_the_files_where_the_job_was_planned() {
     let run = |folder, words: &str| run_in(folder, &words.split(' ').collect::<Vec<_>>());
     let elsewhere = tempfile::tempdir().unwrap();
     for (job, task) in [("j", None), ("k", Some(0))] {
-        run(&folder, &format!("job plan {job} -- {words} -o {job}.tif --tiles 2x2")).works(&[]);
+        run(
+            &folder,
+            &format!("job plan {job} -- {words} -o {job}.tif --tiles 2x2"),
+        )
+        .works(&[]);
         let path = folder.path().join(job).to_str().unwrap().to_owned();
         match task {
             None => run(&elsewhere, &format!("job run {path}")).works(&[]),
@@ -162,8 +257,11 @@ fn relative_names_mean_the_files_where_the_job_was_planned() {
                 let resume = format!("{words} --tiles 2x2 --job {job} --resume -o {job}.tif");
                 run(&folder, &resume).works(&["resumed     1 of"]);
                 // The same names, but other files.
-                run(&elsewhere, &resume.replace(&format!("--job {job}"), &format!("--job {path}")))
-                    .fails(1, &["a.laz"]);
+                run(
+                    &elsewhere,
+                    &resume.replace(&format!("--job {job}"), &format!("--job {path}")),
+                )
+                .fails(1, &["a.laz"]);
             }
         }
         assert!(bytes(folder.path().join(format!("{job}.tif"))) == whole);
@@ -215,7 +313,12 @@ impl Verb for Own {
         self.0.list(add);
     }
 
-    fn write(&self, surface: &SurfaceProduct, outputs: &Outputs, context: &Context) -> Result<Summary> {
+    fn write(
+        &self,
+        surface: &SurfaceProduct,
+        outputs: &Outputs,
+        context: &Context,
+    ) -> Result<Summary> {
         self.0.write(surface, outputs, context)
     }
 
@@ -223,7 +326,12 @@ impl Verb for Own {
         self.0.keeps()
     }
 
-    fn write_tiles(&self, tiles: &dyn Tiles, outputs: &Outputs, context: &Context) -> Result<Summary> {
+    fn write_tiles(
+        &self,
+        tiles: &dyn Tiles,
+        outputs: &Outputs,
+        context: &Context,
+    ) -> Result<Summary> {
         self.0.write_tiles(tiles, outputs, context)
     }
 }
@@ -232,9 +340,23 @@ impl Verb for Own {
 fn what_would_not_come_back_as_it_was_is_not_kept() {
     let folder = tempfile::tempdir().unwrap();
     let targets = Targets::of(folder.path().join("d.tif"));
-    let light = |z_factor| LightOptions { z_factor, ..LightOptions::default() };
-    let shades = |light| request(HillshadeOptions { light, ..HillshadeOptions::default() });
-    let line = super::layer(&[vec![[688_050.0, 5_261_050.0, 800.0], [688_300.0, 5_261_250.0, 801.0]]], "LineString");
+    let light = |z_factor| LightOptions {
+        z_factor,
+        ..LightOptions::default()
+    };
+    let shades = |light| {
+        request(HillshadeOptions {
+            light,
+            ..HillshadeOptions::default()
+        })
+    };
+    let line = super::layer(
+        &[vec![
+            [688_050.0, 5_261_050.0, 800.0],
+            [688_300.0, 5_261_250.0, 801.0],
+        ]],
+        "LineString",
+    );
     let path = folder.path().join("l.geojson");
     std::fs::write(&path, line).unwrap();
     let line = breakline::io::layer::read(path.to_str().unwrap()).unwrap();
@@ -244,24 +366,55 @@ fn what_would_not_come_back_as_it_was_is_not_kept() {
         breaklines: vec![Input::Memory(line.into())],
         ..run::TinRequest::default()
     }));
-    let in_memory = SurfaceRequest { source: in_memory, ..SurfaceRequest::default() };
+    let in_memory = SurfaceRequest {
+        source: in_memory,
+        ..SurfaceRequest::default()
+    };
     for (request, said) in [
         (shades(light(Some(f64::INFINITY))), "z-factor would be lost"),
         (shades(light(Some(f64::NAN))), "z-factor would be lost"),
-        (shades(LightOptions { azimuth: f64::NAN, ..LightOptions::default() }), "cannot be kept with a job"),
-        (request(Own(DemOptions::default())), "a job cannot keep the verb `dem`, which is not of this crate"),
-        (WriteRequest::new(in_memory, DemOptions::default()), "an input is in memory"),
+        (
+            shades(LightOptions {
+                azimuth: f64::NAN,
+                ..LightOptions::default()
+            }),
+            "cannot be kept with a job",
+        ),
+        (
+            request(Own(DemOptions::default())),
+            "a job cannot keep the verb `dem`, which is not of this crate",
+        ),
+        (
+            WriteRequest::new(in_memory, DemOptions::default()),
+            "an input is in memory",
+        ),
     ] {
         let command = JobCommand::new(&request, &targets, &tiles()).unwrap();
         let error = plan(&command, &folder.path().join("j")).unwrap_err();
-        assert!(error.kind() == Kind::Unsupported && error.to_string().contains(said), "{error}");
+        assert!(
+            error.kind() == Kind::Unsupported && error.to_string().contains(said),
+            "{error}"
+        );
         assert!(files_of(folder.path()).is_empty());
     }
     // The heights of a box do not count.
-    let extent =
-        Some(breakline::data::Bounds { min: [688_000.0, 5_261_000.0, 1.0], max: [688_100.0, 5_261_100.0, 2.0] });
-    let frame = FrameOptions { extent, ..FrameOptions::default() };
-    let command = JobCommand::new(&request(DemOptions { frame, ..DemOptions::default() }), &targets, &tiles()).unwrap();
+    let extent = Some(breakline::data::Bounds {
+        min: [688_000.0, 5_261_000.0, 1.0],
+        max: [688_100.0, 5_261_100.0, 2.0],
+    });
+    let frame = FrameOptions {
+        extent,
+        ..FrameOptions::default()
+    };
+    let command = JobCommand::new(
+        &request(DemOptions {
+            frame,
+            ..DemOptions::default()
+        }),
+        &targets,
+        &tiles(),
+    )
+    .unwrap();
     let job = plan(&command, &folder.path().join("j")).unwrap();
     run::run_job(&job, &Context::default()).unwrap();
 }
@@ -273,7 +426,10 @@ fn replaced_points_are_not_kept_in_tiles() {
         replaced: run::ReplacedPoints::Keep,
         ..run::TinRequest::default()
     };
-    let surface = SurfaceRequest { source: Source::Points(Box::new(points)), ..SurfaceRequest::default() };
+    let surface = SurfaceRequest {
+        source: Source::Points(Box::new(points)),
+        ..SurfaceRequest::default()
+    };
     let folder = tempfile::tempdir().unwrap();
     let command = JobCommand::new(
         &WriteRequest::new(surface, DemOptions::default()),
@@ -281,7 +437,12 @@ fn replaced_points_are_not_kept_in_tiles() {
         &tiles(),
     );
     let error = plan(&command.unwrap(), &folder.path().join("j")).unwrap_err();
-    assert!(error.to_string().contains("flat-points does not work with tiles yet"), "{error}");
+    assert!(
+        error
+            .to_string()
+            .contains("flat-points does not work with tiles yet"),
+        "{error}"
+    );
 }
 
 /// The plan is made here, and the tasks run elsewhere, with less memory.
@@ -290,7 +451,11 @@ fn the_memory_of_a_task_is_that_of_where_it_runs() {
     let folder = tempfile::tempdir().unwrap();
     let targets = Targets::of(folder.path().join("d.tif"));
     let with = |task_memory| {
-        let tiles = TileOptions { division: Division::Auto, task_memory: Some(task_memory), ..TileOptions::default() };
+        let tiles = TileOptions {
+            division: Division::Auto,
+            task_memory: Some(task_memory),
+            ..TileOptions::default()
+        };
         JobCommand::new(&request(DemOptions::default()), &targets, &tiles).unwrap()
     };
     let job = plan(&with(2_200_000), &folder.path().join("j")).unwrap();
@@ -307,7 +472,10 @@ fn what_reads_all_tasks_can_be_canceled() {
     let stored = plan(&command(&Targets::of(&output)), &folder.path().join("j")).unwrap();
     run::run_job(&stored, &Context::default()).unwrap();
     let cancel = std::sync::atomic::AtomicBool::new(true);
-    let context = Context { cancel: &cancel, ..Context::default() };
+    let context = Context {
+        cancel: &cancel,
+        ..Context::default()
+    };
     let job = stored.job().unwrap();
     for error in [
         job.tasks(&output, &context).err(),
@@ -342,17 +510,36 @@ fn an_error_of_a_job_says_where_tasks_are_kept_and_how_to_go_on() {
         classes: breakline::terrain::Classes::Only(vec![2]),
         ..run::TinRequest::default()
     };
-    let surface = SurfaceRequest { source: Source::Points(Box::new(points)), ..SurfaceRequest::default() };
+    let surface = SurfaceRequest {
+        source: Source::Points(Box::new(points)),
+        ..SurfaceRequest::default()
+    };
     let request = WriteRequest::new(surface, DemOptions::default());
     let targets = Targets::of(folder.path().join("d.tif"));
     let context = Context::default();
     let own = run::write(&request, &targets, &Execution::Tiles(tiles()), &context).unwrap_err();
-    let job = plan(&JobCommand::new(&request, &targets, &tiles()).unwrap(), &folder.path().join("j")).unwrap();
+    let job = plan(
+        &JobCommand::new(&request, &targets, &tiles()).unwrap(),
+        &folder.path().join("j"),
+    )
+    .unwrap();
     let stored = run::run_job(&job, &context).unwrap_err();
     let [own_folder, job_folder] = [targets.job_folder().unwrap(), job.folder().to_path_buf()];
     for (error, said) in [
-        (own, format!("finished tasks are kept in {}: go on with resume", own_folder.display())),
-        (stored, format!("finished tasks are kept in {0}: go on with `job run {0}`", job_folder.display())),
+        (
+            own,
+            format!(
+                "finished tasks are kept in {}: go on with resume",
+                own_folder.display()
+            ),
+        ),
+        (
+            stored,
+            format!(
+                "finished tasks are kept in {0}: go on with `job run {0}`",
+                job_folder.display()
+            ),
+        ),
     ] {
         assert_eq!(error.kind(), Kind::Format);
         let cure = error.cure_text().unwrap().plain();
@@ -368,7 +555,8 @@ fn a_dry_run_shows_the_job_that_is_there() {
     let words = format!("dem {} -o d.tif --tiles 2x2 --job j", valley());
     run(&words).works(&[]);
     for end in ["--dry-run", "--dry-run --resume"] {
-        run(&format!("{words} --overwrite {end}")).works(&["tiles       4 (of 1 files", "folder      j"]);
+        run(&format!("{words} --overwrite {end}"))
+            .works(&["tiles       4 (of 1 files", "folder      j"]);
         run(&format!("{words} --overwrite --class 5 {end}"))
             .fails(2, &["is that of another command; what differs: --class"]);
     }
@@ -380,14 +568,31 @@ fn a_dry_run_shows_the_job_that_is_there() {
 fn names_that_are_not_unicode_are_read_in_tiles_too() {
     use std::os::unix::ffi::OsStrExt;
     let folder = tempfile::tempdir().unwrap();
-    let [points, grid] = [b"a\xff.laz", b"g\xff.tif"].map(|name| folder.path().join(std::ffi::OsStr::from_bytes(name)));
+    let [points, grid] = [b"a\xff.laz", b"g\xff.tif"]
+        .map(|name| folder.path().join(std::ffi::OsStr::from_bytes(name)));
     std::fs::copy(valley(), &points).unwrap();
-    output_of(&folder, &format!("dem {} --resolution 4", valley()), "grid.tif");
+    output_of(
+        &folder,
+        &format!("dem {} --resolution 4", valley()),
+        "grid.tif",
+    );
     std::fs::rename(folder.path().join("grid.tif"), &grid).unwrap();
-    let frame = FrameOptions { align_to: Some(grid), ..FrameOptions::default() };
+    let frame = FrameOptions {
+        align_to: Some(grid),
+        ..FrameOptions::default()
+    };
     let source = Source::of_points(&[points]);
-    let surface = SurfaceRequest { source, ..SurfaceRequest::default() };
-    let request = WriteRequest::new(surface, DemOptions { frame, ..DemOptions::default() });
+    let surface = SurfaceRequest {
+        source,
+        ..SurfaceRequest::default()
+    };
+    let request = WriteRequest::new(
+        surface,
+        DemOptions {
+            frame,
+            ..DemOptions::default()
+        },
+    );
     let [one, other] = ["one.tif", "other.tif"].map(|name| Targets::of(folder.path().join(name)));
     let context = Context::default();
     run::write(&request, &one, &Execution::Whole, &context).unwrap();
@@ -395,8 +600,17 @@ fn names_that_are_not_unicode_are_read_in_tiles_too() {
     assert!(bytes(&one.files[0]) == bytes(&other.files[0]));
     // To be kept, it would have to be written as text.
     let other = Targets::of(folder.path().join("third.tif"));
-    let error = plan(&JobCommand::new(&request, &other, &tiles()).unwrap(), &folder.path().join("j")).unwrap_err();
-    assert!(error.to_string().contains("not valid Unicode, which a job needs"), "{error}");
+    let error = plan(
+        &JobCommand::new(&request, &other, &tiles()).unwrap(),
+        &folder.path().join("j"),
+    )
+    .unwrap_err();
+    assert!(
+        error
+            .to_string()
+            .contains("not valid Unicode, which a job needs"),
+        "{error}"
+    );
 }
 
 /// Its own command goes on with a job where the folder is, and the inputs are, now.
@@ -411,5 +625,8 @@ fn a_job_moves_with_its_inputs() {
     }
     std::fs::remove_file(now.path().join("j/tasks/000006.task")).unwrap();
     let (moved, said) = output_of(&now, &format!("{words} --resume"), "d.tif");
-    assert!(moved == whole && said.contains("resumed     6 of 7 tasks are done"), "{said}");
+    assert!(
+        moved == whole && said.contains("resumed     6 of 7 tasks are done"),
+        "{said}"
+    );
 }

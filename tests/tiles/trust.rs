@@ -17,7 +17,11 @@ fn contents(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
     let mut all = Vec::new();
     for name in files_of(folder) {
         let path = folder.join(name);
-        if path.is_dir() { all.extend(contents(&path)) } else { all.push((path.clone(), bytes(&path))) }
+        if path.is_dir() {
+            all.extend(contents(&path))
+        } else {
+            all.push((path.clone(), bytes(&path)))
+        }
     }
     all
 }
@@ -25,7 +29,12 @@ fn contents(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
 #[test]
 fn a_folder_that_is_no_job_is_left_as_it_is() {
     let valley = valley();
-    for plan in ["{}", "", "deadbeef\n{}", "{\"tasks\": 3, \"version\": \"1\", \"request\": \"x\", \"layout\": []}"] {
+    for plan in [
+        "{}",
+        "",
+        "deadbeef\n{}",
+        "{\"tasks\": 3, \"version\": \"1\", \"request\": \"x\", \"layout\": []}",
+    ] {
         let folder = program::folder_with(&[
             ("own/plan.json", plan),
             ("own/lock", "mine"),
@@ -38,17 +47,40 @@ fn a_folder_that_is_no_job_is_left_as_it_is() {
         let words = format!("dem {valley} --tiles 2x2 --job own -o dem.tif");
         for words in [&words, &format!("{words} --resume")] {
             let refused = run(&folder, words);
-            refused.fails(1, &["own/plan.json: this is not the plan of a job", "name another folder (--job)"]);
-            assert!(!refused.stderr.contains("clean") && !refused.stderr.contains("remove"), "{}", refused.stderr);
+            refused.fails(
+                1,
+                &[
+                    "own/plan.json: this is not the plan of a job",
+                    "name another folder (--job)",
+                ],
+            );
+            assert!(
+                !refused.stderr.contains("clean") && !refused.stderr.contains("remove"),
+                "{}",
+                refused.stderr
+            );
         }
-        run(&folder, &format!("job plan own -- dem {valley} --tiles 2x2 -o dem.tif")).fails(1, &["own/plan.json"]);
+        run(
+            &folder,
+            &format!("job plan own -- dem {valley} --tiles 2x2 -o dem.tif"),
+        )
+        .fails(1, &["own/plan.json"]);
         assert_eq!(contents(folder.path()), before);
     }
     // Without a plan, the command of something else.
     let folder = program::folder_with(&[("own/command.json", "[1]"), ("own/lock", "mine")]);
     let before = contents(folder.path());
-    run(&folder, &format!("dem {valley} --tiles 2x2 --job own -o dem.tif"))
-        .fails(2, &["own/command.json: this was not written by a job", "name another folder"]);
+    run(
+        &folder,
+        &format!("dem {valley} --tiles 2x2 --job own -o dem.tif"),
+    )
+    .fails(
+        2,
+        &[
+            "own/command.json: this was not written by a job",
+            "name another folder",
+        ],
+    );
     run(&folder, "job clean own").fails(2, &["there is no job in this folder"]);
     assert_eq!(contents(folder.path()), before);
 }
@@ -65,9 +97,19 @@ fn what_a_job_did_not_write_stays_when_it_is_removed() {
     ]);
     let before = contents(folder.path());
     let valley = valley();
-    run(&folder, &format!("job plan kept -- dem {valley} --tiles 2x2 -o dem.tif")).works(&[]);
+    run(
+        &folder,
+        &format!("job plan kept -- dem {valley} --tiles 2x2 -o dem.tif"),
+    )
+    .works(&[]);
     run(&folder, "job run kept").works(&[]);
-    std::fs::write(folder.path().join("kept/tasks/.breakline-abcdef.unfinished"), "of a task that was killed").unwrap();
+    std::fs::write(
+        folder
+            .path()
+            .join("kept/tasks/.breakline-abcdef.unfinished"),
+        "of a task that was killed",
+    )
+    .unwrap();
     assert_eq!(files_of(&folder.path().join("kept/tasks")).len(), 7 + 4);
     run(&folder, "job clean kept").works(&[]);
     std::fs::remove_file(folder.path().join("dem.tif")).unwrap();
@@ -84,24 +126,45 @@ fn what_a_job_did_not_write_stays_when_it_is_removed() {
 fn the_command_of_a_job_is_verified() {
     let folder = tempfile::tempdir().unwrap();
     let valley = valley();
-    run(&folder, &format!("job plan j -- dem {valley} --tiles 2x2 -o dem.tif")).works(&[]);
+    run(
+        &folder,
+        &format!("job plan j -- dem {valley} --tiles 2x2 -o dem.tif"),
+    )
+    .works(&[]);
     let path = folder.path().join("j/command.json");
     let text = String::from_utf8(bytes(&path)).unwrap();
     std::fs::write(&path, text.replace("dem.tif", "dam.tif")).unwrap();
     for words in ["job run j", "job run j --task 0", "job status j"] {
-        run(&folder, words).fails(1, &["j/command.json: the command of the job is damaged, or that of another one"]);
+        run(&folder, words).fails(
+            1,
+            &["j/command.json: the command of the job is damaged, or that of another one"],
+        );
     }
     assert_eq!(files_of(folder.path()), ["j"]);
     run(&folder, "job clean j").works(&[]);
-    run(&folder, &format!("dem {valley} --tiles 2x2 -o dem.tif --job j")).works(&[]);
-    run(&folder, "job run j").fails(2, &["that of a command which goes on itself", "with --resume and --job"]);
+    run(
+        &folder,
+        &format!("dem {valley} --tiles 2x2 -o dem.tif --job j"),
+    )
+    .works(&[]);
+    run(&folder, "job run j").fails(
+        2,
+        &[
+            "that of a command which goes on itself",
+            "with --resume and --job",
+        ],
+    );
 }
 
 /// A flipped byte in a divided file gave heights that were wrong by hundreds of meters.
 #[test]
 fn a_task_refuses_a_damaged_file_of_another() {
     let folder = tempfile::tempdir().unwrap();
-    run(&folder, &format!("job plan j -- dem {} --tiles 2x2 -o dem.tif", valley())).works(&[]);
+    run(
+        &folder,
+        &format!("job plan j -- dem {} --tiles 2x2 -o dem.tif", valley()),
+    )
+    .works(&[]);
     run(&folder, "job run j --task 0").works(&[]);
     let path = folder.path().join("j/tasks/000000.task");
     let whole = bytes(&path);
@@ -111,7 +174,15 @@ fn a_task_refuses_a_damaged_file_of_another() {
     std::fs::write(&path, &damaged).unwrap();
     // Whoever finds it removes it: a queue repeats what is not done.
     let refused = run(&folder, "job run j --task 1");
-    refused.fails(4, &["000000.task", "task 0 (divide", "its file was damaged", "do it again"]);
+    refused.fails(
+        4,
+        &[
+            "000000.task",
+            "task 0 (divide",
+            "its file was damaged",
+            "do it again",
+        ],
+    );
     run(&folder, "job status j").ends(0, &["0 of 7 tasks are done"]);
     run(&folder, "job run j --task 0").works(&[]);
     assert!(bytes(&path) == whole);
@@ -136,12 +207,17 @@ fn a_task_refuses_a_damaged_file_of_another() {
 fn a_task_waits_for_what_another_job_has_in_its_place() {
     let folder = tempfile::tempdir().unwrap();
     for job in ["j", "k"] {
-        run(&folder, &format!("job plan {job} -- dem {} --tiles 2x2 -o dem.tif", valley())).works(&[]);
+        run(
+            &folder,
+            &format!("job plan {job} -- dem {} --tiles 2x2 -o dem.tif", valley()),
+        )
+        .works(&[]);
         run(&folder, &format!("job run {job} --task 0")).works(&[]);
     }
     let [own, other] = ["j", "k"].map(|job| folder.path().join(job).join("tasks/000000.task"));
     std::fs::copy(&other, &own).unwrap();
-    run(&folder, "job run j --task 1").fails(4, &["j/tasks/000000.task: this is the file of another job"]);
+    run(&folder, "job run j --task 1")
+        .fails(4, &["j/tasks/000000.task: this is the file of another job"]);
     run(&folder, "job status j").ends(0, &["0 of 7 tasks are done", "next: 0"]);
     run(&folder, "job run j --task 0").works(&[]);
     run(&folder, "job run j --task 1").works(&[]);
@@ -152,13 +228,19 @@ fn a_task_waits_for_what_another_job_has_in_its_place() {
 fn what_was_made_from_another_file_is_made_again() {
     let folder = tempfile::tempdir().unwrap();
     let points = |z: f64| {
-        let points: Vec<([f64; 3], u8)> = (0..100).map(|i| ([f64::from(i % 10), f64::from(i / 10), z], 2)).collect();
+        let points: Vec<([f64; 3], u8)> = (0..100)
+            .map(|i| ([f64::from(i % 10), f64::from(i / 10), z], 2))
+            .collect();
         lidar::las(&points, Some(25832))
     };
     let [a, b] = ["a.las", "b.las"].map(|name| folder.path().join(name));
     std::fs::write(&a, points(1.0)).unwrap();
     std::fs::write(&b, points(3.0)).unwrap();
-    run(&folder, "job plan j -- dem a.las b.las --tiles 2x2 --duplicates mean -o dem.tif").works(&[]);
+    run(
+        &folder,
+        "job plan j -- dem a.las b.las --tiles 2x2 --duplicates mean -o dem.tif",
+    )
+    .works(&[]);
     let task_count = 2 + 4 + 1 + 1;
     for task in 0..task_count {
         run(&folder, &format!("job run j --task {task}")).works(&[]);
@@ -169,7 +251,14 @@ fn what_was_made_from_another_file_is_made_again() {
     std::fs::write(&a, points(2.0)).unwrap();
     run(&folder, "job run j --task 0").works(&[]);
     run(&folder, "job status j").ends(0, &["2 of 8 tasks are done", "next: 2"]);
-    run(&folder, "job run j --task 8").fails(4, &["task 2 (tile 0) is not done", "was made again", "do it again"]);
+    run(&folder, "job run j --task 8").fails(
+        4,
+        &[
+            "task 2 (tile 0) is not done",
+            "was made again",
+            "do it again",
+        ],
+    );
     run(&folder, "job run j").works(&[]);
     let (expected, _) = output_of(&folder, "dem a.las b.las --duplicates mean", "whole.tif");
     assert!(bytes(folder.path().join("dem.tif")) == expected);
@@ -185,13 +274,17 @@ mod at_once {
     /// Starts the program and waits until it waits for the lock of a job.
     fn start_and_wait(folder: &TempDir, words: &str, lock: &Path) -> Child {
         let mut program = Command::new(assert_cmd::cargo::cargo_bin!("breakline"));
-        let program = program.current_dir(folder.path()).args(words.split_whitespace());
+        let program = program
+            .current_dir(folder.path())
+            .args(words.split_whitespace());
         let child = program.stderr(Stdio::piped()).spawn().unwrap();
         let lock = lock.canonicalize().unwrap();
         let open = format!("/proc/{}/fd", child.id());
         let has_lock = || {
             let files = std::fs::read_dir(&open).unwrap().flatten();
-            files.filter_map(|file| std::fs::read_link(file.path()).ok()).any(|path| path == lock)
+            files
+                .filter_map(|file| std::fs::read_link(file.path()).ok())
+                .any(|path| path == lock)
         };
         while !has_lock() {
             std::thread::sleep(std::time::Duration::from_millis(10));
@@ -212,7 +305,11 @@ mod at_once {
         let words = format!("dem {valley} --tiles 2x2 -o one.tif --job kept --resume");
         run(&folder, &words).works(&[]);
         std::fs::remove_file(folder.path().join("one.tif")).unwrap();
-        run(&folder, &format!("job plan other -- dem {valley} --class 5 --tiles 2x2 -o two.tif")).works(&[]);
+        run(
+            &folder,
+            &format!("job plan other -- dem {valley} --class 5 --tiles 2x2 -o two.tif"),
+        )
+        .works(&[]);
         let [kept, other] = ["kept", "other"].map(|name| folder.path().join(name));
         let lock = kept.join("lock");
         let held = File::open(&lock).unwrap();
@@ -225,7 +322,11 @@ mod at_once {
             std::fs::copy(other.join("plan.json"), kept.join("plan.json")).unwrap();
             held.unlock().unwrap();
             let (code, text) = said(waiting);
-            assert!(code == Some(2) && text.contains("the job was removed or replaced by another process"), "{text}");
+            assert!(
+                code == Some(2)
+                    && text.contains("the job was removed or replaced by another process"),
+                "{text}"
+            );
             std::fs::write(kept.join("plan.json"), plan).unwrap();
             held.lock().unwrap();
         }
@@ -236,7 +337,10 @@ mod at_once {
         std::fs::copy(other.join("plan.json"), &plan).unwrap();
         held.unlock().unwrap();
         let (code, text) = said(waiting);
-        assert!(code == Some(2) && text.contains("there is a job in this folder already"), "{text}");
+        assert!(
+            code == Some(2) && text.contains("there is a job in this folder already"),
+            "{text}"
+        );
         assert_eq!(bytes(plan), bytes(other.join("plan.json")));
         assert!(!folder.path().join("one.tif").exists());
     }
@@ -246,7 +350,11 @@ mod at_once {
     fn a_lock_that_was_removed_holds_nothing() {
         let folder = tempfile::tempdir().unwrap();
         let words = format!("dem {} --tiles 2x2 -o one.tif --job kept", valley());
-        run(&folder, &format!("job plan kept -- {}", words.replace(" --job kept", ""))).works(&[]);
+        run(
+            &folder,
+            &format!("job plan kept -- {}", words.replace(" --job kept", "")),
+        )
+        .works(&[]);
         let lock = folder.path().join("kept/lock");
         let old = File::open(&lock).unwrap();
         old.lock().unwrap();
@@ -274,10 +382,16 @@ fn an_output_counts_by_its_bytes_and_not_by_its_date() {
     use std::time::{Duration, SystemTime};
     let folder = tempfile::tempdir().unwrap();
     let valley = valley();
-    for (job, verb, out) in
-        [("j", "dem", "dem.tif"), ("k", "contour --interval 5", "lines.shp"), ("l", "tin", "x.tins")]
-    {
-        run(&folder, &format!("job plan {job} -- {verb} {valley} --tiles 2x2 -o {out}")).works(&[]);
+    for (job, verb, out) in [
+        ("j", "dem", "dem.tif"),
+        ("k", "contour --interval 5", "lines.shp"),
+        ("l", "tin", "x.tins"),
+    ] {
+        run(
+            &folder,
+            &format!("job plan {job} -- {verb} {valley} --tiles 2x2 -o {out}"),
+        )
+        .works(&[]);
         assert!(!output_is_done(&folder, job));
         run(&folder, &format!("job run {job}")).works(&[]);
         let path = folder.path().join(out);
@@ -285,8 +399,12 @@ fn an_output_counts_by_its_bytes_and_not_by_its_date() {
         // Clocks that disagree: the files of the tasks are from tomorrow.
         let tasks = folder.path().join(job).join("tasks");
         for name in files_of(&tasks) {
-            let file = std::fs::File::options().append(true).open(tasks.join(name)).unwrap();
-            file.set_modified(SystemTime::now() + Duration::from_secs(86_400)).unwrap();
+            let file = std::fs::File::options()
+                .append(true)
+                .open(tasks.join(name))
+                .unwrap();
+            file.set_modified(SystemTime::now() + Duration::from_secs(86_400))
+                .unwrap();
         }
         assert!(output_is_done(&folder, job), "{verb}");
         run(&folder, &format!("job run {job}")).works(&["is written"]);
@@ -302,17 +420,27 @@ fn an_output_counts_by_its_bytes_and_not_by_its_date() {
         run(&folder, &format!("job run {job}")).fails(1, &["the file exists"]);
         assert!(bytes(&path) == other);
         let stem = format!("{}.", path.file_stem().unwrap().to_str().unwrap());
-        let own = files_of(folder.path()).into_iter().filter(|name| name.starts_with(&stem));
-        own.map(|name| folder.path().join(name)).filter(|path| path.is_file()).for_each(|path| {
-            std::fs::remove_file(path).unwrap();
-        });
+        let own = files_of(folder.path())
+            .into_iter()
+            .filter(|name| name.starts_with(&stem));
+        own.map(|name| folder.path().join(name))
+            .filter(|path| path.is_file())
+            .for_each(|path| {
+                std::fs::remove_file(path).unwrap();
+            });
         run(&folder, &format!("job run {job}")).works(&[]);
-        assert!(bytes(&path) == whole && output_is_done(&folder, job), "{verb}");
+        assert!(
+            bytes(&path) == whole && output_is_done(&folder, job),
+            "{verb}"
+        );
     }
     // What belongs to the output belongs to it here, too.
     std::fs::remove_file(folder.path().join("lines.dbf")).unwrap();
     assert!(!output_is_done(&folder, "k"));
-    let parts = files_of(folder.path()).into_iter().find(|name| name.starts_with("x.tins.")).unwrap();
+    let parts = files_of(folder.path())
+        .into_iter()
+        .find(|name| name.starts_with("x.tins."))
+        .unwrap();
     std::fs::remove_file(folder.path().join(parts).join("000000.tin")).unwrap();
     assert!(!output_is_done(&folder, "l"));
 }
@@ -321,7 +449,11 @@ fn an_output_counts_by_its_bytes_and_not_by_its_date() {
 #[test]
 fn temporary_files_of_an_output_are_removed_when_a_job_goes_on() {
     let folder = tempfile::tempdir().unwrap();
-    run(&folder, &format!("job plan j -- dem {} --tiles 2x2 -o dem.tif", valley())).works(&[]);
+    run(
+        &folder,
+        &format!("job plan j -- dem {} --tiles 2x2 -o dem.tif", valley()),
+    )
+    .works(&[]);
     let plan = String::from_utf8(bytes(folder.path().join("j/plan.json"))).unwrap();
     let mark = plan.lines().next().unwrap();
     let file = |name: &str| folder.path().join(name);
@@ -329,7 +461,13 @@ fn temporary_files_of_an_output_are_removed_when_a_job_goes_on() {
     std::fs::write(file(&left), "half of a DEM").unwrap();
     // Of another run, which may still write; and a file that a commit had set aside.
     let others = [".breakline-zyxwvu".to_owned(), format!("{left}.old")];
-    others.iter().for_each(|name| std::fs::write(file(name), "x").unwrap());
+    others
+        .iter()
+        .for_each(|name| std::fs::write(file(name), "x").unwrap());
     run(&folder, "job run j").works(&[]);
-    assert!(!file(&left).exists() && others.iter().all(|name| file(name).exists()), "{:?}", files_of(folder.path()));
+    assert!(
+        !file(&left).exists() && others.iter().all(|name| file(name).exists()),
+        "{:?}",
+        files_of(folder.path())
+    );
 }

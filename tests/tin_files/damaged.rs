@@ -82,7 +82,11 @@ fn possible_numbers_in_wrong_rows_lead_to_no_endless_walk() {
 fn no_truncated_file_is_opened() {
     for (bytes, _) in intact().into_iter().take(5) {
         for length in 0..bytes.len() {
-            assert!(open(bytes[..length].to_vec()).is_err(), "{length} of {}", bytes.len());
+            assert!(
+                open(bytes[..length].to_vec()).is_err(),
+                "{length} of {}",
+                bytes.len()
+            );
         }
         let mut longer = bytes.clone();
         longer.push(0);
@@ -98,7 +102,12 @@ fn messages_name_file_and_cure() {
     let mut note = |bytes: Vec<u8>| {
         let error = open(bytes).unwrap_err();
         assert_eq!(error.path(), Some("some.tin".as_ref()));
-        assert!(error.cure_text().is_some_and(|cure| cure.plain().contains("`tin`")), "{error:?}");
+        assert!(
+            error
+                .cure_text()
+                .is_some_and(|cure| cure.plain().contains("`tin`")),
+            "{error:?}"
+        );
         messages.insert(error.to_string());
     };
     note(b"solid".to_vec());
@@ -115,25 +124,45 @@ fn messages_name_file_and_cure() {
         "a triangulation without the section `inside` of a TIN",
         "not a compact triangulation: wrong magic bytes",
     ];
-    assert!(messages.iter().zip(expected).all(|(found, part)| found.contains(part)), "{messages:?}");
+    assert!(
+        messages
+            .iter()
+            .zip(expected)
+            .all(|(found, part)| found.contains(part)),
+        "{messages:?}"
+    );
 
     // A coordinate that is not a number, of a vertex that a face has.
     let opened = open(bytes.clone()).unwrap();
-    let vertex = (0..opened.face_count() as u32).find_map(|face| opened.face(face)).unwrap()[0];
+    let vertex = (0..opened.face_count() as u32)
+        .find_map(|face| opened.face(face))
+        .unwrap()[0];
     let mut damaged = bytes;
     damaged[48 + 24 * vertex as usize..][..8].copy_from_slice(&f64::NAN.to_le_bytes());
     let opened = open(damaged).unwrap();
     opened.ensure_intact().unwrap();
     let _ = opened.position(vertex);
     let error = opened.ensure_intact().unwrap_err();
-    assert!(error.to_string().starts_with(&format!("some.tin: vertex {vertex} ")), "{error}");
-    assert!(error.cure_text().is_some_and(|cure| cure.plain().contains("`check some.tin`")));
+    assert!(
+        error
+            .to_string()
+            .starts_with(&format!("some.tin: vertex {vertex} ")),
+        "{error}"
+    );
+    assert!(
+        error
+            .cure_text()
+            .is_some_and(|cure| cure.plain().contains("`check some.tin`"))
+    );
 }
 
 /// Where the rows of a section begin, and how many bytes they have together.
 fn section(bytes: &[u8], tag: &[u8; 8]) -> (usize, usize) {
     let at = bytes.windows(8).rposition(|word| word == tag).unwrap();
-    (at + 16, u64::from_le_bytes(bytes[at + 8..at + 16].try_into().unwrap()) as usize)
+    (
+        at + 16,
+        u64::from_le_bytes(bytes[at + 8..at + 16].try_into().unwrap()) as usize,
+    )
 }
 
 #[test]
@@ -141,7 +170,11 @@ fn a_kind_that_differs_between_the_two_faces_of_an_edge_is_found() {
     let mut changed = 0;
     for (bytes, _) in intact().into_iter().take(12) {
         let opened = open(bytes.clone()).unwrap();
-        assert!(!terrain::surface_flaws(&opened).iter().any(|flaw| matches!(flaw, SurfaceFlaw::Kinds(..))));
+        assert!(
+            !terrain::surface_flaws(&opened)
+                .iter()
+                .any(|flaw| matches!(flaw, SurfaceFlaw::Kinds(..)))
+        );
         let (first, length) = section(&bytes, b"fragment");
         // Some rows of each file: every change is a check of the whole.
         for row in (first..first + length).step_by(28).step_by(17) {
@@ -155,7 +188,9 @@ fn a_kind_that_differs_between_the_two_faces_of_an_edge_is_found() {
                 *kind = u8::from(*kind == 0);
                 let opened = open(bad).unwrap();
                 let flaws = terrain::surface_flaws(&opened);
-                let is_found = flaws.iter().any(|flaw| matches!(flaw, SurfaceFlaw::Kinds(..)));
+                let is_found = flaws
+                    .iter()
+                    .any(|flaw| matches!(flaw, SurfaceFlaw::Kinds(..)));
                 assert!(is_found || opened.check().is_err(), "{flaws:?}");
                 changed += 1;
             }

@@ -24,7 +24,11 @@ fn run(folder: &TempDir, args: &str) -> Run {
 fn table(folder: &TempDir, name: &str) -> Vec<Vec<f64>> {
     let text = std::fs::read_to_string(folder.path().join(name)).unwrap();
     let rows = text.lines().map(|line| line.split('#').next().unwrap());
-    let rows = rows.map(|line| line.split_whitespace().map(|word| word.parse().unwrap()).collect());
+    let rows = rows.map(|line| {
+        line.split_whitespace()
+            .map(|word| word.parse().unwrap())
+            .collect()
+    });
     rows.filter(|row: &Vec<f64>| !row.is_empty()).collect()
 }
 
@@ -37,14 +41,20 @@ fn twice_area([a, b, c]: [[f64; 2]; 3]) -> f64 {
 fn triangles(folder: &TempDir, name: &str) -> Vec<[[f64; 2]; 3]> {
     let nodes = table(folder, &format!("{name}.node"));
     let elements = table(folder, &format!("{name}.ele"));
-    assert_eq!((nodes[0][0], elements[0][0]), (nodes.len() as f64 - 1.0, elements.len() as f64 - 1.0));
+    assert_eq!(
+        (nodes[0][0], elements[0][0]),
+        (nodes.len() as f64 - 1.0, elements.len() as f64 - 1.0)
+    );
     let first = nodes.get(1).map_or(0.0, |row| row[0]);
     let site = |number: f64| {
         let row = &nodes[1 + (number - first) as usize];
         assert_eq!(row[0], number);
         [row[1], row[2]]
     };
-    elements[1..].iter().map(|row| [site(row[1]), site(row[2]), site(row[3])]).collect()
+    elements[1..]
+        .iter()
+        .map(|row| [site(row[1]), site(row[2]), site(row[3])])
+        .collect()
 }
 
 /// A square with a square hole, as Triangle's page on `.poly` files has it.

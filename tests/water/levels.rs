@@ -23,23 +23,40 @@ pub(crate) fn of(drawn: &[Drawn], rounding: f64) -> Vec<Vec<Station>> {
     let mut rivers: Vec<Vec<Station>> = drawn.iter().map(of_banks).collect();
     let joints = join(&mut rivers, rounding);
     loop {
-        let before = rivers.iter().flatten().map(|station| station.heights[0]).sum::<f64>();
+        let before = rivers
+            .iter()
+            .flatten()
+            .map(|station| station.heights[0])
+            .sum::<f64>();
         for joint in &joints {
             let [first, last] = along(&rivers, joint, rounding);
             if joint.is_end {
-                let level = rivers[joint.branch].last().expect("a river has an end").heights[0];
+                let level = rivers[joint.branch]
+                    .last()
+                    .expect("a river has an end")
+                    .heights[0];
                 lower(&mut rivers[joint.main][first..], level);
             } else {
                 let level = rivers[joint.main][last].heights[0];
                 lower(&mut rivers[joint.branch], level);
             }
         }
-        if rivers.iter().flatten().map(|station| station.heights[0]).sum::<f64>() == before {
+        if rivers
+            .iter()
+            .flatten()
+            .map(|station| station.heights[0])
+            .sum::<f64>()
+            == before
+        {
             break;
         }
     }
     for joint in &joints {
-        let end = if joint.is_end { rivers[joint.branch].len() - 1 } else { 0 };
+        let end = if joint.is_end {
+            rivers[joint.branch].len() - 1
+        } else {
+            0
+        };
         let corners = rivers[joint.branch][end].ends;
         rivers[joint.branch][end].heights = corners.map(|corner| {
             let station = station_at(&rivers[joint.main], joint.side, corner, rounding);
@@ -53,7 +70,10 @@ pub(crate) fn of(drawn: &[Drawn], rounding: f64) -> Vec<Vec<Station>> {
 fn of_banks(drawn: &Drawn) -> Vec<Station> {
     let [left, right] = &drawn.banks;
     let flat = |p: &[f64; 3]| [p[0], p[1]];
-    let station = |(l, r): (&[f64; 3], &[f64; 3])| Station { ends: [flat(l), flat(r)], heights: [l[2].min(r[2]); 2] };
+    let station = |(l, r): (&[f64; 3], &[f64; 3])| Station {
+        ends: [flat(l), flat(r)],
+        heights: [l[2].min(r[2]); 2],
+    };
     let mut stations: Vec<Station> = left.iter().zip(right).map(station).collect();
     if stations[0].heights[0] < stations[stations.len() - 1].heights[0] {
         stations.reverse();
@@ -67,7 +87,9 @@ fn of_banks(drawn: &Drawn) -> Vec<Station> {
 }
 
 fn lower(stations: &mut [Station], level: f64) {
-    stations.iter_mut().for_each(|station| station.heights = station.heights.map(|height| height.min(level)));
+    stations
+        .iter_mut()
+        .for_each(|station| station.heights = station.heights.map(|height| height.min(level)));
 }
 
 /// Finds ends of rivers on banks of others, and gives these level lines there.
@@ -79,15 +101,30 @@ fn join(rivers: &mut [Vec<Station>], rounding: f64) -> Vec<Joint> {
         for is_end in [false, true] {
             let corners = rivers[branch][if is_end { rivers[branch].len() - 1 } else { 0 }].ends;
             for side in [0, 1] {
-                let is_on = |segment: [Site; 2]| corners.iter().all(|p| distance(nearest(segment, *p), *p) <= rounding);
-                let segments = rivers[main].windows(2).map(|pair| [pair[0].ends[side], pair[1].ends[side]]);
-                let Some(stretch) = segments.into_iter().position(is_on) else { continue };
+                let is_on = |segment: [Site; 2]| {
+                    corners
+                        .iter()
+                        .all(|p| distance(nearest(segment, *p), *p) <= rounding)
+                };
+                let segments = rivers[main]
+                    .windows(2)
+                    .map(|pair| [pair[0].ends[side], pair[1].ends[side]]);
+                let Some(stretch) = segments.into_iter().position(is_on) else {
+                    continue;
+                };
                 // The farther one first, so that the other one is still in this stretch.
                 let from = rivers[main][stretch].ends[side];
                 let mut sorted = corners;
                 sorted.sort_by(|p, q| distance(from, *q).total_cmp(&distance(from, *p)));
-                sorted.into_iter().for_each(|corner| insert(&mut rivers[main], stretch, side, corner, rounding));
-                joints.push(Joint { branch, is_end, main, side });
+                sorted
+                    .into_iter()
+                    .for_each(|corner| insert(&mut rivers[main], stretch, side, corner, rounding));
+                joints.push(Joint {
+                    branch,
+                    is_end,
+                    main,
+                    side,
+                });
             }
         }
     }
@@ -102,20 +139,25 @@ fn insert(stations: &mut Vec<Station>, stretch: usize, side: usize, p: Site, rou
         return;
     }
     let between = |a: f64, b: f64| a + before / (before + after) * (b - a);
-    let ends = [0, 1].map(|side| [0, 1].map(|axis| between(from.ends[side][axis], to.ends[side][axis])));
+    let ends =
+        [0, 1].map(|side| [0, 1].map(|axis| between(from.ends[side][axis], to.ends[side][axis])));
     let heights = [0, 1].map(|side| between(from.heights[side], to.heights[side]));
     stations.insert(stretch + 1, Station { ends, heights });
 }
 
 fn station_at(stations: &[Station], side: usize, p: Site, rounding: f64) -> usize {
     let is_there = |station: &Station| distance(station.ends[side], p) <= 2.0 * rounding;
-    stations.iter().position(is_there).expect("a level line at each joint")
+    stations
+        .iter()
+        .position(is_there)
+        .expect("a level line at each joint")
 }
 
 /// The first and the last station of the main river at a joint.
 fn along(rivers: &[Vec<Station>], joint: &Joint, rounding: f64) -> [usize; 2] {
     let branch = &rivers[joint.branch];
     let corners = branch[if joint.is_end { branch.len() - 1 } else { 0 }].ends;
-    let [p, q] = corners.map(|corner| station_at(&rivers[joint.main], joint.side, corner, rounding));
+    let [p, q] =
+        corners.map(|corner| station_at(&rivers[joint.main], joint.side, corner, rounding));
     [p.min(q), p.max(q)]
 }

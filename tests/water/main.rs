@@ -40,9 +40,16 @@ fn water_is_level_across_and_never_rises() {
             judge::judge(&scene).map_err(|what| format!("{name}, seed {seed}: {what}\n{scene:?}"))
         });
         let judged: Vec<Result<Counts, String>> = judged.collect();
-        let counts = judged.iter().flatten().fold(Counts::default(), |sum, counts| sum.plus(*counts));
+        let counts = judged
+            .iter()
+            .flatten()
+            .fold(Counts::default(), |sum, counts| sum.plus(*counts));
         let scenes = judged.iter().flatten().count();
-        eprintln!("{name}: {} of {} are wrong, {counts:?}", judged.len() - scenes, judged.len());
+        eprintln!(
+            "{name}: {} of {} are wrong, {counts:?}",
+            judged.len() - scenes,
+            judged.len()
+        );
         wrong.extend(judged.into_iter().filter_map(Result::err));
         if number("BREAKLINE_WATER_SEED").is_some() {
             continue;
@@ -56,7 +63,15 @@ fn water_is_level_across_and_never_rises() {
         }
     }
     if let Some(first) = wrong.first() {
-        let all: Vec<&str> = wrong.iter().filter_map(|what| what.lines().next()).take(40).collect();
-        panic!("{} scenes are wrong:\n{}\n{first}", wrong.len(), all.join("\n"));
+        let all: Vec<&str> = wrong
+            .iter()
+            .filter_map(|what| what.lines().next())
+            .take(40)
+            .collect();
+        panic!(
+            "{} scenes are wrong:\n{}\n{first}",
+            wrong.len(),
+            all.join("\n")
+        );
     }
 }

@@ -21,7 +21,11 @@ fn dot(p: Site, q: Site) -> f64 {
 pub(crate) fn nearest([a, b]: [Site; 2], p: Site) -> Site {
     let along = from_to(a, b);
     let part = (dot(from_to(a, p), along) / dot(along, along)).clamp(0.0, 1.0);
-    if part.is_nan() { a } else { [a[0] + part * along[0], a[1] + part * along[1]] }
+    if part.is_nan() {
+        a
+    } else {
+        [a[0] + part * along[0], a[1] + part * along[1]]
+    }
 }
 
 pub(crate) fn distance(p: Site, q: Site) -> f64 {
@@ -30,7 +34,9 @@ pub(crate) fn distance(p: Site, q: Site) -> f64 {
 
 /// Returns the distance of a site from a line.
 pub(crate) fn distance_to_line(line: &[Site], p: Site) -> f64 {
-    line.windows(2).map(|pair| distance(nearest([pair[0], pair[1]], p), p)).fold(f64::INFINITY, f64::min)
+    line.windows(2)
+        .map(|pair| distance(nearest([pair[0], pair[1]], p), p))
+        .fold(f64::INFINITY, f64::min)
 }
 
 /// Returns true if a site is within closed rings by the even-odd rule. Sites on a ring may be
@@ -57,7 +63,12 @@ fn turn([a, b, c]: [&[RBig; 2]; 3]) -> RBig {
 }
 
 /// The height at a site of the plane through three points.
-fn height_on([a, b, c]: [usize; 3], corners: &[[RBig; 2]; 4], heights: &[RBig; 4], p: &[RBig; 2]) -> RBig {
+fn height_on(
+    [a, b, c]: [usize; 3],
+    corners: &[[RBig; 2]; 4],
+    heights: &[RBig; 4],
+    p: &[RBig; 2],
+) -> RBig {
     let [u, v, w] = [&corners[a], &corners[b], &corners[c]];
     let size = turn([u, v, w]);
     let [at_a, at_b, at_c] = [turn([p, v, w]), turn([u, p, w]), turn([u, v, p])];
@@ -71,12 +82,23 @@ pub(crate) fn heights_in(corners: [Site; 4], heights: [f64; 4], p: Site) -> [f64
     let heights = heights.map(exact);
     let p = p.map(exact);
     // The triangles on either side of a diagonal, first that of the left or the first corner.
-    let divided = [([1, 2], [0, 1, 2], [1, 3, 2]), ([0, 3], [0, 1, 3], [0, 3, 2])];
+    let divided = [
+        ([1, 2], [0, 1, 2], [1, 3, 2]),
+        ([0, 3], [0, 1, 3], [0, 3, 2]),
+    ];
     let of = divided.map(|([from, to], first, second)| {
         let side = |q: &[RBig; 2]| turn([&corners[from], &corners[to], q]);
-        let other = first.into_iter().find(|corner| *corner != from && *corner != to).expect("three corners");
+        let other = first
+            .into_iter()
+            .find(|corner| *corner != from && *corner != to)
+            .expect("three corners");
         let is_in_first = (side(&p) >= RBig::ZERO) == (side(&corners[other]) > RBig::ZERO);
-        rounded(&height_on(if is_in_first { first } else { second }, &corners, &heights, &p))
+        rounded(&height_on(
+            if is_in_first { first } else { second },
+            &corners,
+            &heights,
+            &p,
+        ))
     });
     [of[0].min(of[1]), of[0].max(of[1])]
 }

@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use breakline::data::{Bounds, Layer, Shape};
 use breakline::run::{
-    Context, EdgeLimit, FlatOptions, FlatRule, Input, LineRequest, LowerEdge, PerRecord, Source, SurfaceProduct,
-    SurfaceRequest, TinRequest, WallOptions, triangles,
+    Context, EdgeLimit, FlatOptions, FlatRule, Input, LineRequest, LowerEdge, PerRecord, Source,
+    SurfaceProduct, SurfaceRequest, TinRequest, WallOptions, triangles,
 };
 use testkit::random::Random;
 
@@ -83,7 +83,9 @@ pub(crate) const FAMILIES: &[(&str, Draw)] = &[
         }
         scene.add_lines(random, 4);
     }),
-    ("rivers with bends that cross", |scene, random| scene.add_bent(random, 2)),
+    ("rivers with bends that cross", |scene, random| {
+        scene.add_bent(random, 2)
+    }),
     ("rivers that cross", |scene, random| {
         for _ in 0..2 + random.below(2) {
             scene.add_river(random);
@@ -95,7 +97,9 @@ pub(crate) const FAMILIES: &[(&str, Draw)] = &[
     ("rivers in one band", |scene, random| {
         scene.add_rivers_in_a_row(random, &[Next::Same, Next::Same, Next::Wider, Next::Turned]);
     }),
-    ("waters that touch", |scene, random| scene.add_touching(random)),
+    ("waters that touch", |scene, random| {
+        scene.add_touching(random)
+    }),
     ("confluences", |scene, random| scene.add_confluences(random)),
     ("confluences and lines", |scene, random| {
         scene.add_confluences(random);
@@ -122,7 +126,13 @@ pub(crate) const FAMILIES: &[(&str, Draw)] = &[
 
 /// Directions of length 1, the rational ones first.
 fn direction(random: &mut Random) -> Site {
-    let [a, b, c] = random.pick(&[[1.0, 0.0, 1.0], [3.0, 4.0, 5.0], [5.0, 12.0, 13.0], [8.0, 15.0, 17.0], [0.0; 3]]);
+    let [a, b, c] = random.pick(&[
+        [1.0, 0.0, 1.0],
+        [3.0, 4.0, 5.0],
+        [5.0, 12.0, 13.0],
+        [8.0, 15.0, 17.0],
+        [0.0; 3],
+    ]);
     let [x, y] = if c == 0.0 {
         let angle = random.unit();
         [angle.cos(), angle.sin()]
@@ -143,7 +153,10 @@ fn beside(line: &[[f64; 3]], by: f64) -> Line {
         })
         .collect();
     let vertex = |(k, p): (usize, &[f64; 3])| {
-        let [before, after] = [normals[k.saturating_sub(1)], normals[k.min(normals.len() - 1)]];
+        let [before, after] = [
+            normals[k.saturating_sub(1)],
+            normals[k.min(normals.len() - 1)],
+        ];
         let sum = [before[0] + after[0], before[1] + after[1]];
         // The sum is twice the cosine of half the turn long, and the miter 1 / cosine.
         let factor = 2.0 * by / (sum[0] * sum[0] + sum[1] * sum[1]);
@@ -175,7 +188,12 @@ impl Scene {
             holes: Vec::new(),
             bounds: None,
         };
-        for corner in [[-40.0, -40.0], [100.0, -40.0], [-40.0, 100.0], [100.0, 100.0]] {
+        for corner in [
+            [-40.0, -40.0],
+            [100.0, -40.0],
+            [-40.0, 100.0],
+            [100.0, 100.0],
+        ] {
             let point = scene.at(corner, 20.0 + random.below(9) as f64);
             scene.points.push(point);
         }
@@ -188,7 +206,10 @@ impl Scene {
     }
 
     fn located(&self, [x, y]: Site) -> Site {
-        [self.origin[0] + self.scale * x, self.origin[1] + self.scale * y]
+        [
+            self.origin[0] + self.scale * x,
+            self.origin[1] + self.scale * y,
+        ]
     }
 
     fn at(&self, site: Site, z: f64) -> [f64; 3] {
@@ -199,7 +220,13 @@ impl Scene {
     /// A site of the area: on a grid of whole numbers, or any.
     fn site(random: &mut Random) -> Site {
         let is_whole = random.below(2) == 0;
-        [0, 0].map(|_| if is_whole { random.below(SIDE as u64 + 1) as f64 } else { SIDE * random.unit() })
+        [0, 0].map(|_| {
+            if is_whole {
+                random.below(SIDE as u64 + 1) as f64
+            } else {
+                SIDE * random.unit()
+            }
+        })
     }
 
     fn point(&self, random: &mut Random, low: f64, by: f64) -> [f64; 3] {
@@ -209,7 +236,9 @@ impl Scene {
 
     /// A line of two to four vertices.
     fn line(&self, random: &mut Random, low: f64, by: f64) -> Line {
-        (0..2 + random.below(3)).map(|_| self.point(random, low, by)).collect()
+        (0..2 + random.below(3))
+            .map(|_| self.point(random, low, by))
+            .collect()
     }
 
     fn triangle(&self, random: &mut Random) -> Vec<Site> {
@@ -245,7 +274,11 @@ impl Scene {
         let is_clean = random.below(2) == 0;
         let heights = (0..count).map(|_| {
             z -= 3.0 * random.unit();
-            if is_clean { [z, z] } else { [0, 0].map(|_| z + 1.5 * random.unit()) }
+            if is_clean {
+                [z, z]
+            } else {
+                [0, 0].map(|_| z + 1.5 * random.unit())
+            }
         });
         let mut heights: Vec<[f64; 2]> = heights.collect();
         // The ends say where it falls to.
@@ -269,7 +302,15 @@ impl Scene {
     }
 
     /// Adds a straight river of one width.
-    fn add_straight(&mut self, random: &mut Random, start: Site, along: Site, length: f64, half: f64, count: usize) {
+    fn add_straight(
+        &mut self,
+        random: &mut Random,
+        start: Site,
+        along: Site,
+        length: f64,
+        half: f64,
+        count: usize,
+    ) {
         let mut parts: Vec<f64> = (1..count - 1).map(|_| random.unit()).collect();
         parts.extend([0.0, 1.0]);
         parts.sort_by(f64::total_cmp);
@@ -281,8 +322,17 @@ impl Scene {
         let heights = Self::heights(random, parts.len());
         let bank = |side: f64, of: usize| {
             let vertex = |(part, heights): (&f64, &[f64; 2])| {
-                let site = [start[0] + length * part * along[0], start[1] + length * part * along[1]];
-                self.at([site[0] - side * half * along[1], site[1] + side * half * along[0]], heights[of])
+                let site = [
+                    start[0] + length * part * along[0],
+                    start[1] + length * part * along[1],
+                ];
+                self.at(
+                    [
+                        site[0] - side * half * along[1],
+                        site[1] + side * half * along[0],
+                    ],
+                    heights[of],
+                )
             };
             parts.iter().zip(&heights).map(vertex).collect::<Line>()
         };
@@ -299,12 +349,20 @@ impl Scene {
             let (reach, skew) = (0.5 + 3.0 * random.unit(), 2.0 * random.unit() - 1.0);
             [1.0, -1.0].map(|side| {
                 let [u, v] = [sign * half + side * skew, side * reach];
-                [x + u * along[0] - v * along[1], y + u * along[1] + v * along[0]]
+                [
+                    x + u * along[0] - v * along[1],
+                    y + u * along[1] + v * along[0],
+                ]
             })
         };
         let [from, to] = [end(-1.0), end(1.0)];
         let heights = Self::heights(random, 2);
-        let bank = |of: usize| vec![self.at(from[of], heights[0][of]), self.at(to[of], heights[1][of])];
+        let bank = |of: usize| {
+            vec![
+                self.at(from[of], heights[0][of]),
+                self.at(to[of], heights[1][of]),
+            ]
+        };
         let banks = [bank(0), bank(1)];
         self.draw(random, banks);
     }
@@ -316,7 +374,10 @@ impl Scene {
         if random.below(2) == 0 {
             banks.swap(0, 1);
         }
-        self.rivers.push(Drawn { banks, turns: random.below(2) == 0 });
+        self.rivers.push(Drawn {
+            banks,
+            turns: random.below(2) == 0,
+        });
     }
 
     /// Adds rivers with bends, drawn along their middle.
@@ -335,11 +396,21 @@ impl Scene {
                 site = [site[0] + length * along[0], site[1] + length * along[1]];
                 sites.push(site);
                 let (sin, cos) = (0.8 * random.unit() - 0.4).sin_cos();
-                along = [cos * along[0] - sin * along[1], sin * along[0] + cos * along[1]];
+                along = [
+                    cos * along[0] - sin * along[1],
+                    sin * along[0] + cos * along[1],
+                ];
             }
-            let middle = sites.iter().zip(&heights).map(|(&site, z)| self.at(site, z[0])).collect::<Line>();
+            let middle = sites
+                .iter()
+                .zip(&heights)
+                .map(|(&site, z)| self.at(site, z[0]))
+                .collect::<Line>();
             let banks = [1.0, -1.0].map(|side| beside(&middle, side * half * self.scale));
-            self.rivers.push(Drawn { banks, turns: false });
+            self.rivers.push(Drawn {
+                banks,
+                turns: false,
+            });
             middles.push(middle);
         }
         self.middles = Some((middles, 2.0 * half * self.scale));
@@ -371,15 +442,23 @@ impl Scene {
     fn add_confluences(&mut self, random: &mut Random) {
         let along = direction(random);
         let (length, half) = (30.0 + 10.0 * random.unit(), 1.0 + 2.0 * random.unit());
-        let start = [30.0 - length / 2.0 * along[0], 30.0 - length / 2.0 * along[1]];
+        let start = [
+            30.0 - length / 2.0 * along[0],
+            30.0 - length / 2.0 * along[1],
+        ];
         let stretches = 1 + random.index(3);
         let heights = Self::heights(random, stretches + 1);
         let on_bank = |part: f64, side: f64| {
             let [u, v] = [part * length / stretches as f64, side * half];
-            [start[0] + u * along[0] - v * along[1], start[1] + u * along[1] + v * along[0]]
+            [
+                start[0] + u * along[0] - v * along[1],
+                start[1] + u * along[1] + v * along[0],
+            ]
         };
         let bank = |side: f64, of: usize| {
-            (0..=stretches).map(|k| self.at(on_bank(k as f64, side), heights[k][of])).collect::<Line>()
+            (0..=stretches)
+                .map(|k| self.at(on_bank(k as f64, side), heights[k][of]))
+                .collect::<Line>()
         };
         let mut rivers = vec![[bank(1.0, 0), bank(-1.0, 1)]];
         for (stretch, [level, _]) in heights[..stretches].iter().enumerate() {
@@ -388,23 +467,39 @@ impl Scene {
                 continue;
             }
             let side = random.pick(&[1.0, -1.0]);
-            let first = if random.below(4) == 0 && stretch > 0 { 0.0 } else { 0.1 + 0.3 * random.unit() };
-            let parts = [stretch as f64 + first, stretch as f64 + 0.6 + 0.3 * random.unit()];
+            let first = if random.below(4) == 0 && stretch > 0 {
+                0.0
+            } else {
+                0.1 + 0.3 * random.unit()
+            };
+            let parts = [
+                stretch as f64 + first,
+                stretch as f64 + 0.6 + 0.3 * random.unit(),
+            ];
             let ends = parts.map(|part| on_bank(part, side));
             let (sin, cos) = (random.unit() - 0.5).sin_cos();
-            let away = [-side * (along[1] * cos + along[0] * sin), side * (along[0] * cos - along[1] * sin)];
+            let away = [
+                -side * (along[1] * cos + along[0] * sin),
+                side * (along[0] * cos - along[1] * sin),
+            ];
             let far = 8.0 + 4.0 * random.unit();
             let reach = 0.5 + random.unit();
             let middle = [0, 1].map(|k| (ends[0][k] + ends[1][k]) / 2.0 + far * away[k]);
             let across = [side * away[1], -side * away[0]];
-            let others = [-reach, reach].map(|by| [middle[0] + by * across[0], middle[1] + by * across[1]]);
+            let others =
+                [-reach, reach].map(|by| [middle[0] + by * across[0], middle[1] + by * across[1]]);
             let near = level + 4.0 * random.unit() - 3.0;
-            let there =
-                if random.below(2) == 0 { near + 0.1 + 3.0 * random.unit() } else { near - 0.1 - 3.0 * random.unit() };
+            let there = if random.below(2) == 0 {
+                near + 0.1 + 3.0 * random.unit()
+            } else {
+                near - 0.1 - 3.0 * random.unit()
+            };
             rivers.push([0, 1].map(|k| vec![self.at(others[k], there), self.at(ends[k], near)]));
         }
         random.shuffle(&mut rivers);
-        rivers.into_iter().for_each(|banks| self.draw(random, banks));
+        rivers
+            .into_iter()
+            .for_each(|banks| self.draw(random, banks));
     }
 
     /// Adds a river, and waters that have a vertex or a part of their border on its banks.
@@ -414,11 +509,16 @@ impl Scene {
         let stretches = 2 + random.index(4);
         let site = |part: f64, away: f64| {
             let u = (part / stretches as f64 - 0.5) * length;
-            [30.0 + u * along[0] - away * along[1], 30.0 + u * along[1] + away * along[0]]
+            [
+                30.0 + u * along[0] - away * along[1],
+                30.0 + u * along[1] + away * along[0],
+            ]
         };
         let heights = Self::heights(random, stretches + 1);
         let banks = [(1.0, 0), (-1.0, 1)].map(|(side, of): (f64, usize)| {
-            (0..=stretches).map(|k| self.at(site(k as f64, side * half), heights[k][of])).collect::<Line>()
+            (0..=stretches)
+                .map(|k| self.at(site(k as f64, side * half), heights[k][of]))
+                .collect::<Line>()
         });
         self.draw(random, banks);
         let mut sides = vec![1.0, -1.0];
@@ -428,16 +528,29 @@ impl Scene {
             // At its vertices, except for those of its ends, or between them.
             let first = 1 + random.index(stretches - 1);
             let last = first + random.index(stretches - first);
-            let between = if random.below(2) == 0 { 0.0 } else { 0.2 + 0.6 * random.unit() };
-            let mut border: Vec<(f64, f64)> = (first..=last).map(|k| (k as f64 - between, 0.0)).collect();
+            let between = if random.below(2) == 0 {
+                0.0
+            } else {
+                0.2 + 0.6 * random.unit()
+            };
+            let mut border: Vec<(f64, f64)> =
+                (first..=last).map(|k| (k as f64 - between, 0.0)).collect();
             let away = 1.0 + 4.0 * random.unit();
-            let (before, after) = (border[0].0 - 0.1 - random.unit(), border[border.len() - 1].0 + 0.1 + random.unit());
+            let (before, after) = (
+                border[0].0 - 0.1 - random.unit(),
+                border[border.len() - 1].0 + 0.1 + random.unit(),
+            );
             if random.below(3) == 0 {
                 border.extend([(after, away), (before, away)]);
-                let mut ring: Vec<Site> =
-                    border.iter().map(|(part, by)| self.located(site(*part, side * (half + by)))).collect();
+                let mut ring: Vec<Site> = border
+                    .iter()
+                    .map(|(part, by)| self.located(site(*part, side * (half + by))))
+                    .collect();
                 ring.push(ring[0]);
-                self.lakes.push(Lake { rings: vec![ring], level: 6.0 + 12.0 * random.unit() });
+                self.lakes.push(Lake {
+                    rings: vec![ring],
+                    level: 6.0 + 12.0 * random.unit(),
+                });
                 continue;
             }
             if random.below(2) == 0 {
@@ -468,7 +581,8 @@ impl Scene {
         let ring = |by: f64, random: &mut Random| {
             let mut ring: Vec<Site> = (0..corners)
                 .map(|k| {
-                    let angle = (k as f64 + 0.6 * random.unit()) / corners as f64 * std::f64::consts::TAU;
+                    let angle =
+                        (k as f64 + 0.6 * random.unit()) / corners as f64 * std::f64::consts::TAU;
                     let far = by * (0.8 + 0.2 * random.unit());
                     self.located([center[0] + far * angle.cos(), center[1] + far * angle.sin()])
                 })
@@ -482,17 +596,31 @@ impl Scene {
         if corners > 4 && random.below(2) == 0 {
             rings.push(ring(size / 5.0, random));
         }
-        self.lakes.push(Lake { rings, level: 6.0 + 12.0 * random.unit() });
+        self.lakes.push(Lake {
+            rings,
+            level: 6.0 + 12.0 * random.unit(),
+        });
     }
 
     /// Builds the surface as the command line does, of layers in memory.
     pub(crate) fn build(&self) -> breakline::Result<SurfaceProduct> {
         let layer = |shapes: Vec<Shape>| match shapes.len() {
             0 => Vec::new(),
-            _ => vec![Input::Memory(Arc::new(Layer { shapes, ..Layer::default() }))],
+            _ => vec![Input::Memory(Arc::new(Layer {
+                shapes,
+                ..Layer::default()
+            }))],
         };
-        let lines = |lines: &[Line]| layer(lines.iter().map(|line| Shape::Lines(vec![line.clone()])).collect());
-        let ring = |ring: &Vec<Site>, z: f64| ring.iter().map(|&[x, y]| [x, y, z]).collect::<Line>();
+        let lines = |lines: &[Line]| {
+            layer(
+                lines
+                    .iter()
+                    .map(|line| Shape::Lines(vec![line.clone()]))
+                    .collect(),
+            )
+        };
+        let ring =
+            |ring: &Vec<Site>, z: f64| ring.iter().map(|&[x, y]| [x, y, z]).collect::<Line>();
         let banks = |river: &Drawn| {
             let [first, mut second] = river.banks.clone();
             if river.turns {
@@ -500,7 +628,9 @@ impl Scene {
             }
             Shape::Lines(vec![first, second])
         };
-        let lake = |lake: &Lake| Shape::Polygon(lake.rings.iter().map(|one| ring(one, lake.level)).collect());
+        let lake = |lake: &Lake| {
+            Shape::Polygon(lake.rings.iter().map(|one| ring(one, lake.level)).collect())
+        };
         let request = LineRequest {
             soft: lines(&self.soft),
             draped: lines(&self.draped),
@@ -510,14 +640,25 @@ impl Scene {
                 width: Some(STEP),
                 ..WallOptions::default()
             },
-            holes: layer(self.holes.iter().map(|hole| Shape::Polygon(vec![ring(hole, 0.0)])).collect()),
+            holes: layer(
+                self.holes
+                    .iter()
+                    .map(|hole| Shape::Polygon(vec![ring(hole, 0.0)]))
+                    .collect(),
+            ),
             flats: layer(self.lakes.iter().map(lake).collect()),
-            flat: FlatOptions { height: FlatRule::OfShore, ..FlatOptions::default() },
+            flat: FlatOptions {
+                height: FlatRule::OfShore,
+                ..FlatOptions::default()
+            },
             rivers: match &self.middles {
                 Some((middles, _)) => lines(middles),
                 None => layer(self.rivers.iter().map(banks).collect()),
             },
-            river_width: self.middles.as_ref().map(|(_, width)| PerRecord::Number(*width)),
+            river_width: self
+                .middles
+                .as_ref()
+                .map(|(_, width)| PerRecord::Number(*width)),
             ..LineRequest::default()
         };
         let bounds = self.bounds.map(|[min, max]| Bounds {
@@ -532,19 +673,28 @@ impl Scene {
             max_edge: EdgeLimit::Unlimited,
             ..TinRequest::default()
         };
-        let request = SurfaceRequest { source: Source::Points(Box::new(tin)), ..SurfaceRequest::default() };
+        let request = SurfaceRequest {
+            source: Source::Points(Box::new(tin)),
+            ..SurfaceRequest::default()
+        };
         triangles(&request, &Context::default())
     }
 
     /// The box around the area, and the width of cells that divide it.
     pub(crate) fn frame(&self) -> ([Site; 2], f64) {
-        ([self.located([0.0; 2]), self.located([SIDE; 2])], self.scale * SIDE / 40.0)
+        (
+            [self.located([0.0; 2]), self.located([SIDE; 2])],
+            self.scale * SIDE / 40.0,
+        )
     }
 
     /// Far more than rounding moves vertices.
     pub(crate) fn rounding(&self) -> f64 {
-        let largest =
-            self.located([0.0; 2]).into_iter().chain(self.located([SIDE; 2])).fold(1.0, |a: f64, c| a.max(c.abs()));
+        let largest = self
+            .located([0.0; 2])
+            .into_iter()
+            .chain(self.located([SIDE; 2]))
+            .fold(1.0, |a: f64, c| a.max(c.abs()));
         16.0 * f64::EPSILON * largest
     }
 }

@@ -36,7 +36,10 @@ struct Random(u64);
 impl Random {
     /// From 0 to 1.
     fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        self.0 = self
+            .0
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 11) as f64 / (1u64 << 53) as f64
     }
 
@@ -55,20 +58,32 @@ fn bundle(shape: &str, count: usize) -> Option<Vec<Line>> {
     let from = |i: usize| [0.1 * i as f64, 0.0];
     let mut random = Random(1);
     Some(match shape {
-        "parallel" => (0..count).map(|i| vec![from(i), [from(i)[0] + 1000.0, 1000.0]]).collect(),
-        "varied" => (0..count).map(|i| vec![from(i), [1.3 * from(i)[0] + 1000.0, 1000.0]]).collect(),
-        "fan" => (0..count).map(|i| vec![[0.0; 2], around(i as f64 * turn, 1000.0)]).collect(),
+        "parallel" => (0..count)
+            .map(|i| vec![from(i), [from(i)[0] + 1000.0, 1000.0]])
+            .collect(),
+        "varied" => (0..count)
+            .map(|i| vec![from(i), [1.3 * from(i)[0] + 1000.0, 1000.0]])
+            .collect(),
+        "fan" => (0..count)
+            .map(|i| vec![[0.0; 2], around(i as f64 * turn, 1000.0)])
+            .collect(),
         "rings" => {
             let vertex = |ring: usize, k: usize| {
                 let angle = (k % 500) as f64 / 500.0 * std::f64::consts::TAU;
                 around(angle, (ring + 1) as f64 * (5.0 + (3.0 * angle).sin()))
             };
-            (0..count.div_ceil(500)).map(|ring| (0..=500).map(|k| vertex(ring, k)).collect()).collect()
+            (0..count.div_ceil(500))
+                .map(|ring| (0..=500).map(|k| vertex(ring, k)).collect())
+                .collect()
         }
         "crossed" => {
             let length = from(count)[0] + 1000.0;
-            let over = [0.25, 0.5, 0.75].map(|h| vec![[-1.0, 1000.0 * h], [length, 1000.0 * h + 1.0]]);
-            bundle("parallel", count - 3)?.into_iter().chain(over).collect()
+            let over =
+                [0.25, 0.5, 0.75].map(|h| vec![[-1.0, 1000.0 * h], [length, 1000.0 * h + 1.0]]);
+            bundle("parallel", count - 3)?
+                .into_iter()
+                .chain(over)
+                .collect()
         }
         "random" => {
             let length = 2.0 / (count as f64).sqrt();
@@ -98,13 +113,16 @@ fn from_lines(lines: &[Line]) -> ConstrainedDelaunay<Plane> {
         (next - line.len() as u32..next).collect::<Vec<u32>>()
     };
     let indexes: Vec<Vec<u32>> = lines.iter().map(&mut numbers).collect();
-    let built = ConstrainedDelaunay::from_lines(Plane::default(), &points, &indexes, OnCrossing::Split);
+    let built =
+        ConstrainedDelaunay::from_lines(Plane::default(), &points, &indexes, OnCrossing::Split);
     built.expect("the coordinates are finite").0
 }
 
 fn insert_lines(lines: &[Line]) -> ConstrainedDelaunay<Plane> {
     let mut triangulation = ConstrainedDelaunay::new(Plane::default());
-    triangulation.insert_lines(lines).expect("the coordinates are finite");
+    triangulation
+        .insert_lines(lines)
+        .expect("the coordinates are finite");
     triangulation
 }
 
@@ -122,7 +140,9 @@ fn main() -> ExitCode {
         counts = vec![25_000, 50_000, 100_000];
     }
     if counts.contains(&0) || bundle(&shape, 8).is_none() {
-        eprintln!("usage: bench_bundles [--shape parallel|varied|fan|rings|crossed|random] [--check] [COUNT...]");
+        eprintln!(
+            "usage: bench_bundles [--shape parallel|varied|fan|rings|crossed|random] [--check] [COUNT...]"
+        );
         return ExitCode::FAILURE;
     }
     let builders: [(&str, Build); 2] = [("from_lines", from_lines), ("insert_lines", insert_lines)];
@@ -138,15 +158,23 @@ fn main() -> ExitCode {
                 let built = black_box(build(&lines));
                 times.push((count, start.elapsed().as_secs_f64()));
                 if is_checked {
-                    assert!(built.check(Level::Law).is_empty(), "{shape} {builder} {count}");
+                    assert!(
+                        built.check(Level::Law).is_empty(),
+                        "{shape} {builder} {count}"
+                    );
                 }
             }
             let order = if is_shuffled { "shuffled" } else { "sorted" };
             print!("{shape} {builder} {order}:");
-            times.iter().for_each(|(count, seconds)| print!(" {count} {seconds:.3} s"));
+            times
+                .iter()
+                .for_each(|(count, seconds)| print!(" {count} {seconds:.3} s"));
             match times[..] {
                 [(few, short), .., (many, long)] => {
-                    println!(", slope {:.2}", (long / short).ln() / (many as f64 / few as f64).ln());
+                    println!(
+                        ", slope {:.2}",
+                        (long / short).ln() / (many as f64 / few as f64).ln()
+                    );
                 }
                 _ => println!(),
             }

@@ -23,13 +23,20 @@ use breakline_triangulation::{Delaunay, Hierarchy, Locate, Location};
 /// triangulations ask of it.
 macro_rules! in_geometry {
     ($name:ident, $geometry:ty, $dimension:literal, $vertices_of_a_cell:literal) => {
-        fn $name(stem: &str, points: &[[f64; $dimension]]) -> Result<(), Box<dyn std::error::Error>> {
+        fn $name(
+            stem: &str,
+            points: &[[f64; $dimension]],
+        ) -> Result<(), Box<dyn std::error::Error>> {
             let timed = |name: &str, start: Instant, done: usize| {
                 let seconds = start.elapsed().as_secs_f64();
-                println!("breakline_{name} {stem} {} 1 {seconds:.4} 0 0 {done} {seconds:.4}", points.len());
+                println!(
+                    "breakline_{name} {stem} {} 1 {seconds:.4} 0 0 {done} {seconds:.4}",
+                    points.len()
+                );
             };
             let mut t = Delaunay::<$geometry, $vertices_of_a_cell>::new(<$geometry>::default());
-            let mut hierarchy = Hierarchy::<$geometry, $vertices_of_a_cell>::new(<$geometry>::default());
+            let mut hierarchy =
+                Hierarchy::<$geometry, $vertices_of_a_cell>::new(<$geometry>::default());
             let mut vertices = Vec::with_capacity(points.len());
 
             let start = Instant::now();
@@ -38,10 +45,16 @@ macro_rules! in_geometry {
             }
             timed("insert", start, t.finite_cells().count());
 
-            let middle = |pair: &[[f64; $dimension]]| std::array::from_fn(|k| 0.5 * (pair[0][k] + pair[1][k]));
+            let middle = |pair: &[[f64; $dimension]]| {
+                std::array::from_fn(|k| 0.5 * (pair[0][k] + pair[1][k]))
+            };
             let start = Instant::now();
             let is_inside = |location: &Location| !matches!(location, Location::OutsideHull { .. });
-            let inside = points.windows(2).map(|pair| hierarchy.locate(&t, &middle(pair))).filter(is_inside).count();
+            let inside = points
+                .windows(2)
+                .map(|pair| hierarchy.locate(&t, &middle(pair)))
+                .filter(is_inside)
+                .count();
             timed("locate", start, inside);
 
             let start = Instant::now();
@@ -74,8 +87,17 @@ fn main() -> ExitCode {
             return ExitCode::FAILURE;
         }
     };
-    let numbers: Vec<f64> = bytes.as_chunks::<8>().0.iter().map(|number| f64::from_le_bytes(*number)).collect();
-    let stem = std::path::Path::new(&path).file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let numbers: Vec<f64> = bytes
+        .as_chunks::<8>()
+        .0
+        .iter()
+        .map(|number| f64::from_le_bytes(*number))
+        .collect();
+    let stem = std::path::Path::new(&path)
+        .file_stem()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .into_owned();
     let done = if path.ends_with(".xyz") {
         in_space(&stem, numbers.as_chunks::<3>().0)
     } else {

@@ -24,28 +24,48 @@ type Point = [f64; 2];
 fn line(random: &mut Random, side: f64, length: f64) -> [Point; 2] {
     let [x, y] = [0; 2].map(|_| random.unit() * (side - 2.0 * length) + length);
     let (sin, cos) = (random.unit() * std::f64::consts::TAU).sin_cos();
-    [[500_000.0 + x, 4_649_000.0 + y], [500_000.0 + x + length * cos, 4_649_000.0 + y + length * sin]]
+    [
+        [500_000.0 + x, 4_649_000.0 + y],
+        [500_000.0 + x + length * cos, 4_649_000.0 + y + length * sin],
+    ]
 }
 
 fn run(count: usize, edits: usize, lines: usize, length: f64) -> Result<(), InputError> {
     let mut random = Random(1);
     let side = (count as f64).sqrt();
-    let mut points: Vec<Point> =
-        (0..count).map(|_| [500_000.0 + side * random.unit(), 4_649_000.0 + side * random.unit()]).collect();
+    let mut points: Vec<Point> = (0..count)
+        .map(|_| {
+            [
+                500_000.0 + side * random.unit(),
+                4_649_000.0 + side * random.unit(),
+            ]
+        })
+        .collect();
     let mut there: Vec<[u32; 2]> = Vec::with_capacity(lines);
     for _ in 0..lines {
         there.push([points.len() as u32, points.len() as u32 + 1]);
         points.extend(line(&mut random, side, length));
     }
     let start = Instant::now();
-    let (mut t, _) = ConstrainedDelaunay::<_>::from_lines(<Plane>::default(), &points, &there, OnCrossing::Split)?;
-    println!("{lines} lines: built in {:.2} s", start.elapsed().as_secs_f64());
+    let (mut t, _) = ConstrainedDelaunay::<_>::from_lines(
+        <Plane>::default(),
+        &points,
+        &there,
+        OnCrossing::Split,
+    )?;
+    println!(
+        "{lines} lines: built in {:.2} s",
+        start.elapsed().as_secs_f64()
+    );
 
     let new: Vec<[Point; 2]> = (0..edits).map(|_| line(&mut random, side, 10.0)).collect();
     let order = spatial_order(new.len(), |i| new[i][0])?;
     let start = Instant::now();
     let first = t.insert_lines(&[new[order[0] as usize]])?;
-    println!("{lines} lines: first edit {:.1} ms", 1e3 * start.elapsed().as_secs_f64());
+    println!(
+        "{lines} lines: first edit {:.1} ms",
+        1e3 * start.elapsed().as_secs_f64()
+    );
     t.remove_line(first[0]);
 
     let before = (t.crossings().len(), t.rearrangements());
@@ -70,7 +90,9 @@ fn run(count: usize, edits: usize, lines: usize, length: f64) -> Result<(), Inpu
 }
 
 fn main() -> ExitCode {
-    let mut numbers = std::env::args().skip(1).map(|number| number.parse::<usize>());
+    let mut numbers = std::env::args()
+        .skip(1)
+        .map(|number| number.parse::<usize>());
     let count = numbers.next().and_then(Result::ok).unwrap_or(500_000);
     let edits = numbers.next().and_then(Result::ok).unwrap_or(10_000);
     match run(count, edits, 4_000, 100.0).and_then(|()| run(count, edits, 400_000, 1.5)) {

@@ -27,7 +27,8 @@ use std::time::Instant;
 
 use breakline_triangulation::geometry::{Plane, Space, WeightedSpace};
 use breakline_triangulation::kernel::{
-    Adaptive, ErrorBound, Expansions, Filter, Filtered, Kernel, OnFineLattice, OnLattice, Predicate, Range,
+    Adaptive, ErrorBound, Expansions, Filter, Filtered, Kernel, OnFineLattice, OnLattice,
+    Predicate, Range,
 };
 use breakline_triangulation::num::Sign;
 use breakline_triangulation::{ConstrainedDelaunay, Delaunay, Level, OnCrossing, Regular};
@@ -68,13 +69,21 @@ struct Options {
 }
 
 fn options() -> Result<Options, String> {
-    let mut options = Options { points: String::new(), segments: None, threads: 1, one_by_one: false, check: false };
+    let mut options = Options {
+        points: String::new(),
+        segments: None,
+        threads: 1,
+        one_by_one: false,
+        check: false,
+    };
     let mut arguments = std::env::args().skip(1);
     while let Some(argument) = arguments.next() {
         match argument.as_str() {
             "--threads" => {
                 let count = arguments.next().unwrap_or_default();
-                options.threads = count.parse().map_err(|_| format!("--threads {count}: a number is expected"))?;
+                options.threads = count
+                    .parse()
+                    .map_err(|_| format!("--threads {count}: a number is expected"))?;
             }
             "--one-by-one" => options.one_by_one = true,
             "--check" => options.check = true,
@@ -97,14 +106,23 @@ fn read(path: &str) -> Result<Vec<u8>, String> {
 
 fn points<const D: usize>(path: &str) -> Result<Vec<[f64; D]>, String> {
     let bytes = read(path)?;
-    let numbers = bytes.as_chunks::<8>().0.iter().map(|number| f64::from_le_bytes(*number));
+    let numbers = bytes
+        .as_chunks::<8>()
+        .0
+        .iter()
+        .map(|number| f64::from_le_bytes(*number));
     let numbers: Vec<f64> = numbers.collect();
     Ok(numbers.as_chunks::<D>().0.to_vec())
 }
 
 fn segments(path: &str) -> Result<Vec<[u32; 2]>, String> {
     let bytes = read(path)?;
-    let numbers: Vec<u32> = bytes.as_chunks::<4>().0.iter().map(|number| u32::from_le_bytes(*number)).collect();
+    let numbers: Vec<u32> = bytes
+        .as_chunks::<4>()
+        .0
+        .iter()
+        .map(|number| u32::from_le_bytes(*number))
+        .collect();
     Ok(numbers.as_chunks::<2>().0.to_vec())
 }
 
@@ -113,12 +131,17 @@ fn segments(path: &str) -> Result<Vec<[u32; 2]>, String> {
 fn memory(name: &str) -> f64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find_map(|line| line.strip_prefix(name));
-    line.and_then(|rest| rest.split_whitespace().next()?.parse::<f64>().ok()).unwrap_or(0.0) / 1024.0
+    line.and_then(|rest| rest.split_whitespace().next()?.parse::<f64>().ok())
+        .unwrap_or(0.0)
+        / 1024.0
 }
 
 /// Returns the seconds that the threads of this process have run.
 fn processor_seconds() -> f64 {
-    let tasks = std::fs::read_dir("/proc/self/task").into_iter().flatten().flatten();
+    let tasks = std::fs::read_dir("/proc/self/task")
+        .into_iter()
+        .flatten()
+        .flatten();
     let of_task = |task: std::fs::DirEntry| {
         let stat = std::fs::read_to_string(task.path().join("schedstat")).ok()?;
         stat.split_whitespace().next()?.parse::<f64>().ok()
@@ -137,11 +160,26 @@ fn time<T, E: std::fmt::Display>(
     let _ = std::fs::write("/proc/self/clear_refs", "5");
     let (before, processor, start) = (memory("VmRSS:"), processor_seconds(), Instant::now());
     let built = black_box(build().map_err(|refused| format!("{}: {refused}", options.points))?);
-    let (seconds, processor) = (start.elapsed().as_secs_f64(), processor_seconds() - processor);
+    let (seconds, processor) = (
+        start.elapsed().as_secs_f64(),
+        processor_seconds() - processor,
+    );
     let peak = memory("VmHWM:");
-    let stem = std::path::Path::new(&options.points).file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    let data = if options.segments.is_some() { stem + "+seg" } else { stem };
-    let program = if options.one_by_one { "breakline_one_by_one" } else { "breakline" };
+    let stem = std::path::Path::new(&options.points)
+        .file_stem()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .into_owned();
+    let data = if options.segments.is_some() {
+        stem + "+seg"
+    } else {
+        stem
+    };
+    let program = if options.one_by_one {
+        "breakline_one_by_one"
+    } else {
+        "breakline"
+    };
     println!(
         "{program} {data} {count} {} {seconds:.4} {peak:.1} {:.1} {} {processor:.4}",
         options.threads,
@@ -158,7 +196,11 @@ fn report(asked: [u64; 4], flaws: usize) -> Result<(), String> {
         "check: {flaws} flaws; asked of the kernel {all}, not certain by the error bound {lattice}, \
          nor as integers of 128 bits {fine}, nor of 256 {exact}"
     );
-    if flaws == 0 { Ok(()) } else { Err(format!("{flaws} flaws")) }
+    if flaws == 0 {
+        Ok(())
+    } else {
+        Err(format!("{flaws} flaws"))
+    }
 }
 
 fn asked() -> [u64; 4] {
@@ -191,7 +233,10 @@ fn space(points: &[[f64; 3]], one_by_one: bool) -> Result<Delaunay<Space, 4>, Bo
     Ok(t)
 }
 
-fn weighted(points: &[[f64; 4]], one_by_one: bool) -> Result<Regular<WeightedSpace, 4>, Box<dyn Error>> {
+fn weighted(
+    points: &[[f64; 4]],
+    one_by_one: bool,
+) -> Result<Regular<WeightedSpace, 4>, Box<dyn Error>> {
     let mut t = Regular::new(WeightedSpace::new());
     if !one_by_one {
         return Ok(Regular::from_points(WeightedSpace::new(), points)?.0);
@@ -203,37 +248,64 @@ fn weighted(points: &[[f64; 4]], one_by_one: bool) -> Result<Regular<WeightedSpa
 }
 
 fn run(options: &Options) -> Result<(), String> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build_global();
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(options.threads)
+        .build_global();
     pool.map_err(|error| error.to_string())?;
     if options.points.ends_with(".xyz") {
         let points = points::<3>(&options.points)?;
-        return time(options, points.len(), || space(&points, options.one_by_one), |t| t.finite_cells().count());
+        return time(
+            options,
+            points.len(),
+            || space(&points, options.one_by_one),
+            |t| t.finite_cells().count(),
+        );
     }
     if options.points.ends_with(".xyzw") {
         let points = points::<4>(&options.points)?;
-        return time(options, points.len(), || weighted(&points, options.one_by_one), |t| t.finite_cells().count());
+        return time(
+            options,
+            points.len(),
+            || weighted(&points, options.one_by_one),
+            |t| t.finite_cells().count(),
+        );
     }
     let points = points::<2>(&options.points)?;
     let Some(path) = &options.segments else {
         if options.check {
-            let (t, _) = plane::<Counting>(&points, options.one_by_one).map_err(|refused| refused.to_string())?;
+            let (t, _) = plane::<Counting>(&points, options.one_by_one)
+                .map_err(|refused| refused.to_string())?;
             let asked = asked();
             report(asked, t.check(Level::Law).len())?;
         }
         let build = || plane::<Adaptive>(&points, options.one_by_one);
-        return time(options, points.len(), build, |(t, _)| t.finite_cells().count());
+        return time(options, points.len(), build, |(t, _)| {
+            t.finite_cells().count()
+        });
     };
     let segments = segments(path)?;
     if options.check {
-        let built =
-            ConstrainedDelaunay::<Plane<Counting>>::from_lines(Plane::default(), &points, &segments, OnCrossing::Split);
+        let built = ConstrainedDelaunay::<Plane<Counting>>::from_lines(
+            Plane::default(),
+            &points,
+            &segments,
+            OnCrossing::Split,
+        );
         let (t, _) = built.map_err(|refused| refused.to_string())?;
         let asked = asked();
         report(asked, t.check(Level::Law).len())?;
     }
-    let build =
-        || ConstrainedDelaunay::<Plane<Adaptive>>::from_lines(Plane::default(), &points, &segments, OnCrossing::Split);
-    time(options, points.len(), build, |(t, _)| t.finite_cells().count())
+    let build = || {
+        ConstrainedDelaunay::<Plane<Adaptive>>::from_lines(
+            Plane::default(),
+            &points,
+            &segments,
+            OnCrossing::Split,
+        )
+    };
+    time(options, points.len(), build, |(t, _)| {
+        t.finite_cells().count()
+    })
 }
 
 fn main() -> ExitCode {

@@ -25,11 +25,19 @@ fn mixed(number: u64) -> u64 {
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     for path in std::env::args().skip(1) {
         let bytes = std::fs::read(&path)?;
-        let numbers: Vec<f64> = bytes.as_chunks::<8>().0.iter().map(|number| f64::from_le_bytes(*number)).collect();
+        let numbers: Vec<f64> = bytes
+            .as_chunks::<8>()
+            .0
+            .iter()
+            .map(|number| f64::from_le_bytes(*number))
+            .collect();
         let points = numbers.as_chunks::<3>().0;
         let (t, vertices) = Delaunay3::from_points(Space::new(), points)?;
         let mut point_of = vec![u64::MAX; t.tds().vertex_slots()];
-        vertices.iter().zip(0..).for_each(|(v, point)| point_of[v.index()] = point.min(point_of[v.index()]));
+        vertices
+            .iter()
+            .zip(0..)
+            .for_each(|(v, point)| point_of[v.index()] = point.min(point_of[v.index()]));
         let (mut count, mut hash) = (0, 0u64);
         for cell in t.finite_cells() {
             let mut corners = t.tds().corners(cell).map(|vertex| point_of[vertex.index()]);

@@ -36,7 +36,9 @@ impl Geometry<3> for Small {
     fn side_of_sphere(&self, simplex: [&[i32; 2]; 3], q: &[i32; 2]) -> Sign {
         let [a, b, c] = simplex.map(|p| minus(*p, *q));
         let lift = |[x, y]: [i128; 2]| x * x + y * y;
-        (lift(a) * cross(b, c) + lift(b) * cross(c, a) + lift(c) * cross(a, b)).cmp(&0).into()
+        (lift(a) * cross(b, c) + lift(b) * cross(c, a) + lift(c) * cross(a, b))
+            .cmp(&0)
+            .into()
     }
 }
 
@@ -72,13 +74,25 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for cell in ours.finite_cells() {
         let corners = ours.tds().cell_vertices(cell);
         let [a, b, c] = [corners[0], corners[1], corners[2]];
-        let there = theirs.tds().edge(a, b).zip(theirs.tds().edge(b, c)).zip(theirs.tds().edge(c, a));
-        assert!(there.is_some(), "the plane has no triangle {a:?} {b:?} {c:?}");
+        let there = theirs
+            .tds()
+            .edge(a, b)
+            .zip(theirs.tds().edge(b, c))
+            .zip(theirs.tds().edge(c, a));
+        assert!(
+            there.is_some(),
+            "the plane has no triangle {a:?} {b:?} {c:?}"
+        );
     }
 
     let square = [[0, 0], [9, 9], [9, 0], [0, 9]];
-    let (lines, _) = ConstrainedDelaunay::from_lines(Small, &square, &[[0, 1], [2, 3]], OnCrossing::Split)?;
+    let (lines, _) =
+        ConstrainedDelaunay::from_lines(Small, &square, &[[0, 1], [2, 3]], OnCrossing::Split)?;
     assert!(lines.check(Level::Law).is_empty());
-    assert_eq!(lines.point(lines.crossings()[0]), &[5, 5], "rounded to a whole step");
+    assert_eq!(
+        lines.point(lines.crossings()[0]),
+        &[5, 5],
+        "rounded to a whole step"
+    );
     Ok(())
 }

@@ -18,8 +18,14 @@ impl Geometry<3> for Forest {
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut trees = Delaunay::new(Forest(Plane::default()));
-    let forest = [Tree("oak", [0.0, 0.0]), Tree("elm", [9.0, 1.0]), Tree("ash", [4.0, 7.0])];
-    forest.into_iter().try_for_each(|tree| trees.insert(tree).map(drop))?;
+    let forest = [
+        Tree("oak", [0.0, 0.0]),
+        Tree("elm", [9.0, 1.0]),
+        Tree("ash", [4.0, 7.0]),
+    ];
+    forest
+        .into_iter()
+        .try_for_each(|tree| trees.insert(tree).map(drop))?;
     assert!(trees.tds().hull().any(|v| trees.point(v).0 == "elm"));
     Ok(())
 }

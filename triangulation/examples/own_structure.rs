@@ -35,15 +35,24 @@ struct Mesh {
 
 impl Mesh {
     fn new(points: Vec<[f64; 2]>, triangles: Vec<[u32; 3]>) -> Self {
-        let sides =
-            || (0u32..).zip(&triangles).flat_map(|(k, t)| (0..3).map(move |i| (k, i, t[(i + 1) % 3], t[(i + 2) % 3])));
-        let owner: HashMap<(u32, u32), (u32, usize)> = sides().map(|(k, i, a, b)| ((a, b), (k, i))).collect();
+        let sides = || {
+            (0u32..)
+                .zip(&triangles)
+                .flat_map(|(k, t)| (0..3).map(move |i| (k, i, t[(i + 1) % 3], t[(i + 2) % 3])))
+        };
+        let owner: HashMap<(u32, u32), (u32, usize)> =
+            sides().map(|(k, i, a, b)| ((a, b), (k, i))).collect();
         // Maps the start of each edge of the hull to the edge.
-        let next: HashMap<u32, (u32, u32, usize)> =
-            sides().filter(|(_, _, a, b)| !owner.contains_key(&(*b, *a))).map(|(k, i, a, b)| (a, (b, k, i))).collect();
+        let next: HashMap<u32, (u32, u32, usize)> = sides()
+            .filter(|(_, _, a, b)| !owner.contains_key(&(*b, *a)))
+            .map(|(k, i, a, b)| (a, (b, k, i)))
+            .collect();
         let mut hull = Vec::new();
         let mut at = next.keys().copied().min();
-        while let Some(&(b, k, i)) = at.and_then(|a| next.get(&a)).filter(|_| hull.len() < next.len()) {
+        while let Some(&(b, k, i)) = at
+            .and_then(|a| next.get(&a))
+            .filter(|_| hull.len() < next.len())
+        {
             hull.push((k, i));
             at = Some(b);
         }
@@ -58,9 +67,18 @@ impl Mesh {
         }
         let mut triangle_of = vec![0; points.len()];
         for (k, triangle) in triangles.iter().enumerate() {
-            triangle.iter().for_each(|&v| triangle_of[v as usize] = k as u32);
+            triangle
+                .iter()
+                .for_each(|&v| triangle_of[v as usize] = k as u32);
         }
-        Mesh { plane: Plane::new(), points, triangles, across, hull, triangle_of }
+        Mesh {
+            plane: Plane::new(),
+            points,
+            triangles,
+            across,
+            hull,
+            triangle_of,
+        }
     }
 
     /// Returns the number of a ghost, counted around the hull.
@@ -95,7 +113,11 @@ impl Complex<3> for Mesh {
             None => {
                 let (k, i) = self.hull[cell.index() - self.triangles.len()];
                 let triangle = self.triangles[k as usize];
-                [vertex(triangle[(i + 2) % 3]), vertex(triangle[(i + 1) % 3]), VertexId::INFINITE]
+                [
+                    vertex(triangle[(i + 2) % 3]),
+                    vertex(triangle[(i + 1) % 3]),
+                    VertexId::INFINITE,
+                ]
             }
         })
     }
@@ -118,7 +140,10 @@ impl Complex<3> for Mesh {
         if vertex == VertexId::INFINITE {
             return Ok(Some(self.ghost(0)));
         }
-        Ok(self.triangle_of.get(vertex.index()).map(|&k| CellId::new(k as usize)))
+        Ok(self
+            .triangle_of
+            .get(vertex.index())
+            .map(|&k| CellId::new(k as usize)))
     }
 
     fn ensure(&self, _: CellId, _: impl FnOnce() -> bool) -> Result<(), Infallible> {
@@ -158,7 +183,9 @@ fn faces_and_vertices(
     corners: &dyn Fn(CellId) -> Result<[VertexId; 3], Infallible>,
 ) -> Vec<VertexId> {
     let mut met = match passage {
-        Passage::Face(cell) | Passage::Edge(cell, _) => corners(cell).map_or(Vec::new(), |corners| corners.to_vec()),
+        Passage::Face(cell) | Passage::Edge(cell, _) => {
+            corners(cell).map_or(Vec::new(), |corners| corners.to_vec())
+        }
         Passage::Along(ends) => ends.to_vec(),
         Passage::Vertex(vertex) => vec![vertex],
     };
@@ -172,9 +199,14 @@ fn faces_and_vertices(
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     // A mesh with the points of a Delaunay triangulation, whose answers are the expected ones. Many
     // points share a circle.
-    let grid: Vec<[f64; 2]> = (0..400u32).map(|k| [f64::from(k % 20), f64::from(k * 7 % 20 + k / 20)]).collect();
+    let grid: Vec<[f64; 2]> = (0..400u32)
+        .map(|k| [f64::from(k % 20), f64::from(k * 7 % 20 + k / 20)])
+        .collect();
     let (t, _) = Delaunay::from_points(Plane::new(), &grid)?;
-    let triangles = t.finite_cells().map(|cell| t.tds().corners(cell).map(|v| v.index() as u32)).collect();
+    let triangles = t
+        .finite_cells()
+        .map(|cell| t.tds().corners(cell).map(|v| v.index() as u32))
+        .collect();
     let mesh = Mesh::new(t.points().to_vec(), triangles);
 
     // Cells of the two have different numbers but the same vertices.
@@ -195,29 +227,49 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let (Ok(found), expected) = (query::locate(&mesh, &q, None), t.locate(&q, None));
         match (found, expected) {
             (Location::Vertex(a), Location::Vertex(b)) => assert_eq!(a, b),
-            (Location::Cell { cell: a, facets }, Location::Cell { cell: b, .. }) if facets.is_empty() => {
+            (Location::Cell { cell: a, facets }, Location::Cell { cell: b, .. })
+                if facets.is_empty() =>
+            {
                 assert_eq!(ours(a), theirs(b));
             }
-            _ => assert_eq!(std::mem::discriminant(&found), std::mem::discriminant(&expected)),
+            _ => assert_eq!(
+                std::mem::discriminant(&found),
+                std::mem::discriminant(&expected)
+            ),
         }
         assert_eq!(query::nearest(&mesh, &q, None), Ok(t.nearest(&q, None)));
-        assert_eq!(query::within_rectangle(&mesh, [&q, &r], None), Ok(t.within_rectangle([&q, &r])));
-        let (Ok(zone), expected) = (query::conflict_zone(&mesh, &q, None, |_, _| Ok(true)), t.conflict_zone(&q, None));
+        assert_eq!(
+            query::within_rectangle(&mesh, [&q, &r], None),
+            Ok(t.within_rectangle([&q, &r]))
+        );
+        let (Ok(zone), expected) = (
+            query::conflict_zone(&mesh, &q, None, |_, _| Ok(true)),
+            t.conflict_zone(&q, None),
+        );
         let sorted = |mut cells: Vec<[VertexId; 3]>| {
             cells.sort_unstable();
             cells
         };
         let zone = zone.map(|zone| sorted(zone.cells.into_iter().map(ours).collect()));
-        assert_eq!(zone, expected.map(|zone| sorted(zone.cells.into_iter().map(theirs).collect())));
+        assert_eq!(
+            zone,
+            expected.map(|zone| sorted(zone.cells.into_iter().map(theirs).collect()))
+        );
         let Ok(along) = query::along(&mesh, [&q, &r], None);
-        let met: Vec<_> = along.map(|Ok(passage)| faces_and_vertices(passage, &|cell| mesh.corners(cell))).collect();
-        let expected =
-            t.along([&q, &r], None).map(|passage| faces_and_vertices(passage, &|cell| Ok(*t.tds().corners(cell))));
+        let met: Vec<_> = along
+            .map(|Ok(passage)| faces_and_vertices(passage, &|cell| mesh.corners(cell)))
+            .collect();
+        let expected = t
+            .along([&q, &r], None)
+            .map(|passage| faces_and_vertices(passage, &|cell| Ok(*t.tds().corners(cell))));
         assert_eq!(met, expected.collect::<Vec<_>>());
         compared += 1;
     }
     let Ok(faces) = query::faces_from(&mesh, VertexId::new(0));
     assert_eq!(faces.count(), mesh.triangles.len());
-    println!("{compared} queries on {} triangles: the answers agree", mesh.triangles.len());
+    println!(
+        "{compared} queries on {} triangles: the answers agree",
+        mesh.triangles.len()
+    );
     Ok(())
 }

@@ -70,15 +70,29 @@ impl fmt::Display for InputError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             InputError::Coordinate(index) => {
-                write!(f, "point {index} has a coordinate that is not finite or too large or small to compute with")
+                write!(
+                    f,
+                    "point {index} has a coordinate that is not finite or too large or small to compute with"
+                )
             }
             InputError::Unsorted(index) => {
-                write!(f, "point {index} is not in spatial order, or where the one before it is")
+                write!(
+                    f,
+                    "point {index} is not in spatial order, or where the one before it is"
+                )
             }
             InputError::TooMany => write!(f, "more than {MAX_VERTICES} points"),
-            InputError::Index { line, index } => write!(f, "line {line} names point {index}, which does not exist"),
-            InputError::Crossing { segments: [(line, segment), (other, crossed)], at: [x, y] } => {
-                write!(f, "segment {segment} of line {line} and segment {crossed} of line {other} cross at {x} {y}")
+            InputError::Index { line, index } => {
+                write!(f, "line {line} names point {index}, which does not exist")
+            }
+            InputError::Crossing {
+                segments: [(line, segment), (other, crossed)],
+                at: [x, y],
+            } => {
+                write!(
+                    f,
+                    "segment {segment} of line {line} and segment {crossed} of line {other} cross at {x} {y}"
+                )
             }
             InputError::Canceled => f.write_str("canceled"),
         }
@@ -109,8 +123,15 @@ pub struct GapError {
 
 impl fmt::Display for GapError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let GapError { line, ends: [[x0, y0], [x1, y1]] } = self;
-        write!(f, "the ring of line {} is not closed: it begins at {x0} {y0} and ends at {x1} {y1}", line.index())
+        let GapError {
+            line,
+            ends: [[x0, y0], [x1, y1]],
+        } = self;
+        write!(
+            f,
+            "the ring of line {} is not closed: it begins at {x0} {y0} and ends at {x1} {y1}",
+            line.index()
+        )
     }
 }
 

@@ -49,16 +49,35 @@ impl fmt::Display for Flaw {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Flaw::Structure(error) => error.fmt(f),
-            Flaw::NotInFlat(vertex) => write!(f, "vertex {} is outside of the flat of all others", vertex.index()),
+            Flaw::NotInFlat(vertex) => write!(
+                f,
+                "vertex {} is outside of the flat of all others",
+                vertex.index()
+            ),
             Flaw::Orientation(cell) => write!(f, "cell {cell:?} is flat or turned around"),
-            Flaw::NotConvex(cell, i) => write!(f, "beyond facet {i} of infinite cell {cell:?} the hull turns inwards"),
+            Flaw::NotConvex(cell, i) => write!(
+                f,
+                "beyond facet {i} of infinite cell {cell:?} the hull turns inwards"
+            ),
             Flaw::NotDelaunay(cell, i) => {
-                write!(f, "the vertex beyond facet {i} of cell {cell:?} lies in the cell's circumscribed sphere")
+                write!(
+                    f,
+                    "the vertex beyond facet {i} of cell {cell:?} lies in the cell's circumscribed sphere"
+                )
             }
-            Flaw::Hidden(vertex) => write!(f, "point {vertex:?} is hidden by a cell that does not hide it"),
-            Flaw::OneSided(cell, i) => write!(f, "edge {i} of cell {cell:?} is constrained on one side only"),
+            Flaw::Hidden(vertex) => write!(
+                f,
+                "point {vertex:?} is hidden by a cell that does not hide it"
+            ),
+            Flaw::OneSided(cell, i) => write!(
+                f,
+                "edge {i} of cell {cell:?} is constrained on one side only"
+            ),
             Flaw::Lines(flaw) => flaw.fmt(f),
-            Flaw::Missing(a, b) => write!(f, "the constraint between vertices {a:?} and {b:?} was left out"),
+            Flaw::Missing(a, b) => write!(
+                f,
+                "the constraint between vertices {a:?} and {b:?} was left out"
+            ),
         }
     }
 }
@@ -90,7 +109,12 @@ impl fmt::Display for LinesFlaw {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             LinesFlaw::Order(a, b) => {
-                write!(f, "the chain of the segment between vertices {} and {} is not in order", a.index(), b.index())
+                write!(
+                    f,
+                    "the chain of the segment between vertices {} and {} is not in order",
+                    a.index(),
+                    b.index()
+                )
             }
             LinesFlaw::Unconstrained(a, b) => {
                 write!(
@@ -102,10 +126,17 @@ impl fmt::Display for LinesFlaw {
             }
             LinesFlaw::Stray => f.write_str("the chain of a segment belongs to no line"),
             LinesFlaw::Waiting(a, b) => {
-                write!(f, "the constraint between vertices {} and {} waits for triangles", a.index(), b.index())
+                write!(
+                    f,
+                    "the constraint between vertices {} and {} waits for triangles",
+                    a.index(),
+                    b.index()
+                )
             }
             LinesFlaw::Rounding => f.write_str("the unit of the grid does not fit the lines"),
-            LinesFlaw::Index => f.write_str("the index of segments does not agree with their chains"),
+            LinesFlaw::Index => {
+                f.write_str("the index of segments does not agree with their chains")
+            }
             LinesFlaw::Added(v) => write!(f, "vertex {} was added where no lines cross", v.index()),
             LinesFlaw::Owned(v) => write!(f, "vertex {} came with no line", v.index()),
         }

@@ -65,12 +65,25 @@ impl<L: Geometry<N>, const N: usize> SampleLevel<L, N> {
     /// Returns a cell at a point and a vertex near it, given a vertex to start from.
     fn nearest(&self, q: &L::Point, start: Option<VertexId>) -> (Option<CellId>, Option<VertexId>) {
         let tds = self.sample.tds();
-        let cell = self.sample.approach(q, start.and_then(|vertex| tds.cell_of(vertex)));
+        let cell = self
+            .sample
+            .approach(q, start.and_then(|vertex| tds.cell_of(vertex)));
         let nearest = match cell {
             Some(cell) => {
-                let finite = tds.cell_vertices(cell).iter().copied().filter(|&v| v != VertexId::INFINITE);
-                let far = |v: VertexId| self.sample.geometry().rough_distance(self.sample.point(v), q);
-                finite.map(|v| (v, far(v))).reduce(|p, q| if q.1 < p.1 { q } else { p }).map(|(v, _)| v)
+                let finite = tds
+                    .cell_vertices(cell)
+                    .iter()
+                    .copied()
+                    .filter(|&v| v != VertexId::INFINITE);
+                let far = |v: VertexId| {
+                    self.sample
+                        .geometry()
+                        .rough_distance(self.sample.point(v), q)
+                };
+                finite
+                    .map(|v| (v, far(v)))
+                    .reduce(|p, q| if q.1 < p.1 { q } else { p })
+                    .map(|(v, _)| v)
             }
             None => tds.vertices().next(),
         };
@@ -85,7 +98,11 @@ impl<L: Geometry<N>, const N: usize> SampleLevel<L, N> {
 impl<L: Geometry<N> + Clone, const N: usize> Hierarchy<L, N> {
     /// Returns a hierarchy for a triangulation that is still empty.
     pub fn new(geometry: L) -> Self {
-        Hierarchy { geometry, levels: Vec::new(), dice: Dice::default() }
+        Hierarchy {
+            geometry,
+            levels: Vec::new(),
+            dice: Dice::default(),
+        }
     }
 
     /// Returns a hierarchy for the vertices of a triangulation. O(n).
@@ -112,13 +129,18 @@ impl<L: Geometry<N> + Clone, const N: usize> Hierarchy<L, N> {
         }
         if height > self.levels.len() {
             let sample = Delaunay::new(self.geometry.clone());
-            self.levels.push(SampleLevel { sample, of_below: FxHashMap::default() });
+            self.levels.push(SampleLevel {
+                sample,
+                of_below: FxHashMap::default(),
+            });
         }
         let mut near = Vec::with_capacity(self.levels.len());
         self.descend(point, |cell| near.push(cell));
         let mut below = vertex;
         for (level, near) in self.levels[..height].iter_mut().zip(near.into_iter().rev()) {
-            let Ok(Inserted { vertex, .. }) = level.sample.insert_near(*point, below, near) else { return };
+            let Ok(Inserted { vertex, .. }) = level.sample.insert_near(*point, below, near) else {
+                return;
+            };
             // If the site is taken, then by a vertex whose removal was not reported.
             *level.sample.inner.tds.vertex_data_mut(vertex) = below;
             level.of_below.insert(below, vertex);
@@ -150,9 +172,18 @@ where
     L: Geometry<N, Point = G::Point> + Clone,
     Triangulation<L, N, VertexId>: Removal,
 {
-    fn locate<V, C: Copy + Default>(&self, triangulation: &Triangulation<G, N, V, C>, q: &G::Point) -> Location {
-        let nearest = self.descend(q, |_| ()).filter(|&vertex| triangulation.tds.is_vertex(vertex));
-        triangulation.locate(q, nearest.and_then(|vertex| triangulation.tds.cell_of(vertex)))
+    fn locate<V, C: Copy + Default>(
+        &self,
+        triangulation: &Triangulation<G, N, V, C>,
+        q: &G::Point,
+    ) -> Location {
+        let nearest = self
+            .descend(q, |_| ())
+            .filter(|&vertex| triangulation.tds.is_vertex(vertex));
+        triangulation.locate(
+            q,
+            nearest.and_then(|vertex| triangulation.tds.cell_of(vertex)),
+        )
     }
 
     fn inserted(&mut self, _: &G, vertex: VertexId, point: &G::Point) {
@@ -162,7 +193,9 @@ where
     fn removed(&mut self, vertex: VertexId) {
         let mut below = vertex;
         for level in &mut self.levels {
-            let Some(vertex) = level.of_below.remove(&below) else { return };
+            let Some(vertex) = level.of_below.remove(&below) else {
+                return;
+            };
             let _ = level.sample.remove(vertex); // it was there
             below = vertex;
         }

@@ -154,15 +154,17 @@ pub use error::{GapError, InputError, MoveError, PointError, RemovalError};
 pub use flaw::{Flaw, Level, LinesFlaw};
 pub use hierarchy::Hierarchy;
 pub use kinds::{
-    Basic, Basic2, Basic3, Constrained, Constrained2, ConstraintError, Delaunay, Delaunay2, Delaunay3, Regular,
-    Regular2, Regular3,
+    Basic, Basic2, Basic3, Constrained, Constrained2, ConstraintError, Delaunay, Delaunay2,
+    Delaunay3, Regular, Regular2, Regular3,
 };
 pub use line_id::{LineId, LineTag};
 pub use lines::{ConstrainedDelaunay, ConstrainedDelaunay2, OnCrossing, Rounding};
-pub use locate::{Buckets, Facets, JumpAndWalk, Locate, Location, Near, SpacePassage, StraightLine};
+pub use locate::{
+    Buckets, Facets, JumpAndWalk, Locate, Location, Near, SpacePassage, StraightLine,
+};
 pub use query::{
-    AlphaShape, AlphaShapes, AlphaState, Boundary, ConflictZone, ConvexHull, Mark, Passage, VoronoiCell, VoronoiEdge,
-    VoronoiFacet, VoronoiSolid,
+    AlphaShape, AlphaShapes, AlphaState, Boundary, ConflictZone, ConvexHull, Mark, Passage,
+    VoronoiCell, VoronoiEdge, VoronoiFacet, VoronoiSolid,
 };
 pub use triangulation::Triangulation;
 

@@ -60,7 +60,13 @@ impl<G: Geometry<N>, const N: usize, V, C> Triangulation<G, N, V, C> {
         V: Clone,
         C: Clone,
     {
-        let Triangulation { geometry, tds, points, zone: _, last } = self;
+        let Triangulation {
+            geometry,
+            tds,
+            points,
+            zone: _,
+            last,
+        } = self;
         Triangulation {
             geometry: geometry.clone(),
             tds: tds.clone(),
@@ -73,7 +79,13 @@ impl<G: Geometry<N>, const N: usize, V, C> Triangulation<G, N, V, C> {
 
 impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V, C> {
     pub(crate) fn new(geometry: G) -> Self {
-        Triangulation { geometry, tds: Tds::new(), points: Vec::new(), zone: Zone::default(), last: None }
+        Triangulation {
+            geometry,
+            tds: Tds::new(),
+            points: Vec::new(),
+            zone: Zone::default(),
+            last: None,
+        }
     }
 
     pub(crate) fn with_capacity(geometry: G, vertices: usize) -> Self {
@@ -136,7 +148,8 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
     /// below full dimension.
     #[inline]
     pub fn cell_points(&self, cell: CellId) -> Option<[&G::Point; N]> {
-        (self.is_full() && self.tds.is_used(cell) && !self.tds.is_infinite(cell)).then(|| self.simplex(cell))
+        (self.is_full() && self.tds.is_used(cell) && !self.tds.is_infinite(cell))
+            .then(|| self.simplex(cell))
     }
 
     /// Returns true if the complex has full dimension.
@@ -171,7 +184,9 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
     }
 }
 
-impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Embedded<N> for Triangulation<G, N, V, C> {
+impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Embedded<N>
+    for Triangulation<G, N, V, C>
+{
     type Geometry = G;
     type Complex = Tds<N, V, C>;
     type Error = Infallible;

@@ -57,15 +57,27 @@ fn covers<K: Kernel>(t: &Constrained<K>, segments: &[Segment], tolerance: f64) -
 fn covers_exactly(t: &Constrained, segments: &[Segment]) -> bool {
     let exact = Plane::<Exact>::default();
     segments.iter().all(|[a, b]| {
-        let (low, high) = if exact.compare(a, b).is_lt() { (a, b) } else { (b, a) };
+        let (low, high) = if exact.compare(a, b).is_lt() {
+            (a, b)
+        } else {
+            (b, a)
+        };
         let lies_on = |p: &Point| {
             exact.orientation([a, b, p]) == Sign::Zero
                 && exact.compare(p, low).is_ge()
                 && exact.compare(p, high).is_le()
         };
-        let mut on: Vec<VertexId> = t.tds().vertices().filter(|&v| lies_on(t.point(v))).collect();
+        let mut on: Vec<VertexId> = t
+            .tds()
+            .vertices()
+            .filter(|&v| lies_on(t.point(v)))
+            .collect();
         on.sort_by(|&u, &v| exact.compare(t.point(u), t.point(v)));
-        on.windows(2).all(|pair| t.tds().edge(pair[0], pair[1]).is_some_and(|(cell, i)| t.is_constrained(cell, i)))
+        on.windows(2).all(|pair| {
+            t.tds()
+                .edge(pair[0], pair[1])
+                .is_some_and(|(cell, i)| t.is_constrained(cell, i))
+        })
     })
 }
 
@@ -74,7 +86,11 @@ fn any_cross(segments: &[Segment]) -> bool {
     let apart = |[a, b]: &Segment, [c, d]: &Segment| {
         exact.orientation([a, b, c]) * exact.orientation([a, b, d]) == Sign::Negative
     };
-    segments.iter().enumerate().any(|(i, s)| segments[..i].iter().any(|other| apart(s, other) && apart(other, s)))
+    segments.iter().enumerate().any(|(i, s)| {
+        segments[..i]
+            .iter()
+            .any(|other| apart(s, other) && apart(other, s))
+    })
 }
 
 /// Builds in some order, perhaps with every segment repeated and reversed; all laws must hold.
@@ -89,8 +105,15 @@ fn survives(points: &[Point], segments: &[Segment], random: &mut Random) {
     if t.dimension() < 2 {
         return;
     }
-    let largest = order.iter().flatten().flatten().fold(0.0f64, |largest, x| largest.max(x.abs()));
-    assert!(covers(&t, segments, 2000.0 * f64::EPSILON * largest), "{points:?} {order:?}");
+    let largest = order
+        .iter()
+        .flatten()
+        .flatten()
+        .fold(0.0f64, |largest, x| largest.max(x.abs()));
+    assert!(
+        covers(&t, segments, 2000.0 * f64::EPSILON * largest),
+        "{points:?} {order:?}"
+    );
     if !any_cross(segments) {
         assert_eq!(t.crossings(), [], "{points:?} {order:?}");
         assert!(covers_exactly(&t, segments), "{points:?} {order:?}");
@@ -98,11 +121,19 @@ fn survives(points: &[Point], segments: &[Segment], random: &mut Random) {
     // Each pair once, and some once more because the sub-constraints lie off the line by a
     // rounding.
     let pairs = segments.len() * segments.len();
-    assert!(t.crossings().len() <= pairs, "{} crossings of {order:?}", t.crossings().len());
+    assert!(
+        t.crossings().len() <= pairs,
+        "{} crossings of {order:?}",
+        t.crossings().len()
+    );
 }
 
 /// Each family of inputs, some hundred times. Longer runs use another seed and more rounds.
-fn fuzz(seed: u64, rounds: usize, mut input: impl FnMut(&mut Random, Point) -> (Vec<Point>, Vec<Segment>)) {
+fn fuzz(
+    seed: u64,
+    rounds: usize,
+    mut input: impl FnMut(&mut Random, Point) -> (Vec<Point>, Vec<Segment>),
+) {
     let mut random = Random(seed);
     for round in 0..rounds {
         let (points, segments) = input(&mut random, [NEAR, UTM][round % 2]);
@@ -111,7 +142,9 @@ fn fuzz(seed: u64, rounds: usize, mut input: impl FnMut(&mut Random, Point) -> (
 }
 
 fn segments_among(random: &mut Random, points: &[Point], up_to: u64) -> Vec<Segment> {
-    (0..random.below(up_to)).map(|_| [random.pick(points), random.pick(points)]).collect()
+    (0..random.below(up_to))
+        .map(|_| [random.pick(points), random.pick(points)])
+        .collect()
 }
 
 #[test]
@@ -119,7 +152,12 @@ fn on_tiny_grids() {
     fuzz(1, 1000, |random, [x, y]| {
         let side = 2 + random.below(6);
         let points: Vec<Point> = (0..3 + random.below(14))
-            .map(|_| [x + 4.0 * random.below(side) as f64, y + 4.0 * random.below(side) as f64])
+            .map(|_| {
+                [
+                    x + 4.0 * random.below(side) as f64,
+                    y + 4.0 * random.below(side) as f64,
+                ]
+            })
             .collect();
         let segments = segments_among(random, &points, 10);
         (points, segments)
@@ -129,8 +167,9 @@ fn on_tiny_grids() {
 #[test]
 fn one_unit_in_the_last_place_apart() {
     fuzz(2, 1000, |random, [x, y]| {
-        let points: Vec<Point> =
-            (0..3 + random.below(20)).map(|_| [ulps(x, random.around(2)), ulps(y, random.around(2))]).collect();
+        let points: Vec<Point> = (0..3 + random.below(20))
+            .map(|_| [ulps(x, random.around(2)), ulps(y, random.around(2))])
+            .collect();
         let segments = segments_among(random, &points, 8);
         (points, segments)
     });
@@ -140,9 +179,17 @@ fn one_unit_in_the_last_place_apart() {
 fn nearly_parallel_in_centimeters() {
     fuzz(3, 600, |random, [x, y]| {
         let end = |random: &mut Random, far: f64| {
-            [x + far + 0.01 * random.below(3) as f64, y + 0.01 * random.below(12) as f64]
+            [
+                x + far + 0.01 * random.below(3) as f64,
+                y + 0.01 * random.below(12) as f64,
+            ]
         };
-        (Vec::new(), (0..2 + random.below(12)).map(|_| [end(random, 0.0), end(random, 100.0)]).collect())
+        (
+            Vec::new(),
+            (0..2 + random.below(12))
+                .map(|_| [end(random, 0.0), end(random, 100.0)])
+                .collect(),
+        )
     });
 }
 
@@ -151,8 +198,12 @@ fn nearly_parallel_in_centimeters() {
 fn bundles_a_rounding_apart() {
     for spread in [1, 3, 10, 1000] {
         fuzz(4, 150, |random, [x, y]| {
-            let end =
-                |random: &mut Random, [x, y]: Point| [ulps(x, random.around(spread)), ulps(y, random.around(spread))];
+            let end = |random: &mut Random, [x, y]: Point| {
+                [
+                    ulps(x, random.around(spread)),
+                    ulps(y, random.around(spread)),
+                ]
+            };
             let segment = |_| [end(random, [x, y]), end(random, [x + 10.0, y + 3.0])];
             (Vec::new(), (0..10).map(segment).collect())
         });
@@ -162,15 +213,28 @@ fn bundles_a_rounding_apart() {
 #[test]
 fn stars_through_a_point() {
     fuzz(5, 600, |random, [x, y]| {
-        let center = [x + 0.1 * random.below(10) as f64, if random.below(4) == 0 { 0.0 } else { y }];
+        let center = [
+            x + 0.1 * random.below(10) as f64,
+            if random.below(4) == 0 { 0.0 } else { y },
+        ];
         let count = 2 + random.below(9);
         let segment = |_| {
             let (angle, length) = (random.unit() * 6.3, 1.0 + 10.0 * random.unit());
             let [dx, dy] = [length * angle.cos(), length * angle.sin()];
-            [[center[0] + dx, center[1] + dy], [center[0] - dx, center[1] - dy]]
+            [
+                [center[0] + dx, center[1] + dy],
+                [center[0] - dx, center[1] - dy],
+            ]
         };
         let segments = (0..count).map(segment).collect();
-        (if random.below(2) == 0 { vec![center] } else { Vec::new() }, segments)
+        (
+            if random.below(2) == 0 {
+                vec![center]
+            } else {
+                Vec::new()
+            },
+            segments,
+        )
     });
 }
 
@@ -213,7 +277,10 @@ fn scribbles() {
         let mut segments: Vec<Segment> = Vec::new();
         let mut last = [x, y];
         for _ in 0..2 + random.below(25) {
-            let next = [x + 0.01 * random.below(side) as f64, y + 0.01 * random.below(side) as f64];
+            let next = [
+                x + 0.01 * random.below(side) as f64,
+                y + 0.01 * random.below(side) as f64,
+            ];
             segments.push([last, next]);
             last = next;
         }
@@ -225,9 +292,12 @@ fn scribbles() {
 fn drawn_again_they_change_nothing() {
     let mut random = Random(9);
     for _ in 0..300 {
-        let points: Vec<Point> =
-            (0..10).map(|_| [UTM[0] + 20.0 * random.unit(), UTM[1] + 20.0 * random.unit()]).collect();
-        let segments: Vec<Segment> = (0..10).map(|_| [random.pick(&points), random.pick(&points)]).collect();
+        let points: Vec<Point> = (0..10)
+            .map(|_| [UTM[0] + 20.0 * random.unit(), UTM[1] + 20.0 * random.unit()])
+            .collect();
+        let segments: Vec<Segment> = (0..10)
+            .map(|_| [random.pick(&points), random.pick(&points)])
+            .collect();
         let mut t = built(&points, &segments);
         let before = t.vertex_count();
         for &[a, b] in &segments {
@@ -241,7 +311,9 @@ fn drawn_again_they_change_nothing() {
 /// Beyond 256 crossings, the rest of a segment was once left out.
 #[test]
 fn one_segment_crosses_a_thousand() {
-    let posts: Vec<Segment> = (1..=1000).map(|i| [[f64::from(i), -1.0], [f64::from(i), 2.0]]).collect();
+    let posts: Vec<Segment> = (1..=1000)
+        .map(|i| [[f64::from(i), -1.0], [f64::from(i), 2.0]])
+        .collect();
     let mut t = built(&[], &posts);
     let level = [[0.0, 0.0], [1001.0, 0.0]];
     t.insert_lines(&[level]).unwrap();
@@ -257,7 +329,16 @@ fn one_segment_crosses_a_thousand() {
 
 #[test]
 fn repeated_vertices_and_spikes_in_a_polyline() {
-    let chain = [[0.0, 0.0], [4.0, 0.0], [4.0, 0.0], [2.0, 0.0], [8.0, 0.0], [8.0, 4.0], [8.0, -4.0], [8.0, 4.0]];
+    let chain = [
+        [0.0, 0.0],
+        [4.0, 0.0],
+        [4.0, 0.0],
+        [2.0, 0.0],
+        [8.0, 0.0],
+        [8.0, 4.0],
+        [8.0, -4.0],
+        [8.0, 4.0],
+    ];
     let mut t = built(&[[5.0, 5.0], [0.0, 9.0]], &[]);
     t.insert_lines(&[chain]).unwrap();
     assert_eq!(t.check(Level::Law), []);
@@ -270,19 +351,34 @@ fn repeated_vertices_and_spikes_in_a_polyline() {
 fn crossings_at_the_ends_of_floating_point() {
     let crossings = |scale: f64| -> Vec<Point> {
         let mut t: Constrained<Exact> = ConstrainedDelaunay::new(Plane::default());
-        let segments = [[[-1.0, -0.5], [1.0, 0.5]], [[-1.0, 0.75], [0.5, -1.0]], [[-0.3, -1.0], [-0.3, 1.0]]];
+        let segments = [
+            [[-1.0, -0.5], [1.0, 0.5]],
+            [[-1.0, 0.75], [0.5, -1.0]],
+            [[-0.3, -1.0], [-0.3, 1.0]],
+        ];
         for segment in segments {
-            t.insert_lines(&[segment.map(|p| p.map(|x| x * scale))]).unwrap();
+            t.insert_lines(&[segment.map(|p| p.map(|x| x * scale))])
+                .unwrap();
         }
         assert_eq!(t.check(Level::Law), []);
-        t.crossings().iter().map(|&v| t.point(v).map(|x| x / scale)).collect()
+        t.crossings()
+            .iter()
+            .map(|&v| t.point(v).map(|x| x / scale))
+            .collect()
     };
     let expected = crossings(1.0);
     assert_eq!(expected.len(), 3);
     for scale in [f64::MAX, 1e300, 1e-300, 1e-310] {
         let scaled = crossings(scale);
-        let off = scaled.iter().flatten().zip(expected.iter().flatten()).map(|(x, y)| (x - y).abs());
-        assert!(scaled.len() == 3 && off.fold(0.0, f64::max) < 1e-12, "{scale:e}: {scaled:?}");
+        let off = scaled
+            .iter()
+            .flatten()
+            .zip(expected.iter().flatten())
+            .map(|(x, y)| (x - y).abs());
+        assert!(
+            scaled.len() == 3 && off.fold(0.0, f64::max) < 1e-12,
+            "{scale:e}: {scaled:?}"
+        );
     }
 }
 
@@ -293,7 +389,12 @@ fn crossings_stay_in_the_range() {
     let geometry = Plane::<breakline_triangulation::kernel::Adaptive>::default();
     let mut random = Random(10);
     for _ in 0..2000 {
-        let mut end = |sign: f64| [sign * tiny * (1.0 + random.unit()), sign * tiny * (1.0 + random.unit())];
+        let mut end = |sign: f64| {
+            [
+                sign * tiny * (1.0 + random.unit()),
+                sign * tiny * (1.0 + random.unit()),
+            ]
+        };
         let (a, b) = (end(-1.0), end(1.0));
         let (mut c, mut d) = (end(-1.0), end(1.0));
         (c[0], d[0]) = (-c[0], -d[0]);

@@ -23,10 +23,20 @@ struct Stated {
 impl Stated {
     fn read(path: &Path) -> Stated {
         let text = std::fs::read_to_string(path).unwrap();
-        let mut rows = text.lines().map(|row| row.split_whitespace().collect::<Vec<_>>());
-        let mut stated = Stated { case: Case::default(), facts: HashMap::new(), peers: Vec::new() };
+        let mut rows = text
+            .lines()
+            .map(|row| row.split_whitespace().collect::<Vec<_>>());
+        let mut stated = Stated {
+            case: Case::default(),
+            facts: HashMap::new(),
+            peers: Vec::new(),
+        };
         while let Some(row) = rows.next() {
-            let mut take = |count: &str| rows.by_ref().take(count.parse().unwrap()).collect::<Vec<_>>();
+            let mut take = |count: &str| {
+                rows.by_ref()
+                    .take(count.parse().unwrap())
+                    .collect::<Vec<_>>()
+            };
             match row[..] {
                 ["vertices", count, "2"] => {
                     let point = |row: Vec<&str>| [row[0].parse().unwrap(), row[1].parse().unwrap()];
@@ -38,7 +48,9 @@ impl Stated {
                 }
                 ["holes", count] => drop(take(count)),
                 ["expect", tag, count] => stated.peers.push((tag.to_owned(), take(count).len())),
-                ["fact", key, value] => stated.facts.extend(value.parse().map(|value| (key.to_owned(), value))),
+                ["fact", key, value] => stated
+                    .facts
+                    .extend(value.parse().map(|value| (key.to_owned(), value))),
                 _ => {}
             }
         }
@@ -53,21 +65,45 @@ fn ours(stated: &Stated, built: &Built) -> Vec<(&'static str, usize)> {
     let (delaunay, _) = Delaunay::from_points(Plane::default(), &case.points).unwrap();
     let _: &Delaunay<Plane, 3> = &delaunay;
     let t = &built.triangulation;
-    let triangles = if t.dimension() == 2 { t.finite_cells().count() } else { 0 };
+    let triangles = if t.dimension() == 2 {
+        t.finite_cells().count()
+    } else {
+        0
+    };
     let is_hull = |cell| t.tds().is_infinite(cell);
     let mut ours = vec![
         ("unique_vertices", delaunay.vertex_count()),
-        ("delaunay_triangles", if delaunay.dimension() == 2 { delaunay.finite_cells().count() } else { 0 }),
+        (
+            "delaunay_triangles",
+            if delaunay.dimension() == 2 {
+                delaunay.finite_cells().count()
+            } else {
+                0
+            },
+        ),
         ("cdt_triangles_convex_hull", triangles),
     ];
     if t.vertex_count() == delaunay.vertex_count() && t.dimension() == 2 {
-        ours.push(("hull_boundary_points", t.tds().cells().filter(|&cell| is_hull(cell)).count()));
+        ours.push((
+            "hull_boundary_points",
+            t.tds().cells().filter(|&cell| is_hull(cell)).count(),
+        ));
     }
     if facts.contains_key("edge_proper_crossings") {
-        ours.push(("edge_proper_crossings", judge::crossing_count(&without_repeats(case))));
+        ours.push((
+            "edge_proper_crossings",
+            judge::crossing_count(&without_repeats(case)),
+        ));
     }
-    let is_split = ["edge_proper_crossings", "edge_collinear_overlaps", "vertex_on_edge_interior"];
-    if is_split.iter().all(|fact| facts.get(*fact).is_none_or(|&count| count == 0)) {
+    let is_split = [
+        "edge_proper_crossings",
+        "edge_collinear_overlaps",
+        "vertex_on_edge_interior",
+    ];
+    if is_split
+        .iter()
+        .all(|fact| facts.get(*fact).is_none_or(|&count| count == 0))
+    {
         ours.push(("edges_unique", t.constrained_edges().count()));
     }
     ours
@@ -78,16 +114,24 @@ fn without_repeats(case: &Case) -> Case {
     let mut seen = HashSet::new();
     let mut lines = case.lines.clone();
     lines.retain(|line| {
-        let mut ends = [0, 1].map(|end| case.points[line[end] as usize].map(|x| (x + 0.0).to_bits()));
+        let mut ends =
+            [0, 1].map(|end| case.points[line[end] as usize].map(|x| (x + 0.0).to_bits()));
         ends.sort_unstable();
         ends[0] != ends[1] && seen.insert(ends)
     });
-    Case { points: case.points.clone(), lines }
+    Case {
+        points: case.points.clone(),
+        lines,
+    }
 }
 
 /// Peers that triangulate the whole hull, without points of their own.
 fn is_of_hull(tag: &str, facts: &HashMap<String, usize>) -> bool {
-    tag == "triangle" || (tag.ends_with("_super") && facts.get("edge_proper_crossings").is_none_or(|&count| count == 0))
+    tag == "triangle"
+        || (tag.ends_with("_super")
+            && facts
+                .get("edge_proper_crossings")
+                .is_none_or(|&count| count == 0))
 }
 
 /// Returns the faults of a case, and counts what was compared.
@@ -101,14 +145,20 @@ fn compare(path: &Path, compared: &mut BTreeMap<String, usize>) -> Result<(), St
     }
     let ours = ours(&stated, &built);
     for (fact, ours) in &ours {
-        let Some(&known) = stated.facts.get(*fact) else { continue };
+        let Some(&known) = stated.facts.get(*fact) else {
+            continue;
+        };
         *compared.entry((*fact).to_owned()).or_default() += 1;
         if *ours != known {
             return Err(format!("{fact}: {ours}, should be {known}"));
         }
     }
     let triangles = built.triangulation.finite_cells().count();
-    for (tag, known) in stated.peers.iter().filter(|(tag, _)| is_of_hull(tag, &stated.facts)) {
+    for (tag, known) in stated
+        .peers
+        .iter()
+        .filter(|(tag, _)| is_of_hull(tag, &stated.facts))
+    {
         *compared.entry("peers".to_owned()).or_default() += 1;
         if triangles != *known {
             return Err(format!("{triangles} triangles, {tag} has {known}"));
@@ -118,7 +168,10 @@ fn compare(path: &Path, compared: &mut BTreeMap<String, usize>) -> Result<(), St
 }
 
 fn entries(folder: &Path) -> Vec<PathBuf> {
-    let mut entries: Vec<PathBuf> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    let mut entries: Vec<PathBuf> = std::fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .collect();
     entries.sort();
     entries
 }
@@ -139,12 +192,22 @@ fn known_counts() {
         let before = faults.len();
         for file in &files {
             if let Err(what) = compare(file, &mut compared) {
-                faults.push(format!("{}: {what}", file.strip_prefix(&folder).unwrap().display()));
+                faults.push(format!(
+                    "{}: {what}",
+                    file.strip_prefix(&folder).unwrap().display()
+                ));
             }
         }
-        let compared: Vec<String> = compared.iter().map(|(what, count)| format!("{what} {count}")).collect();
+        let compared: Vec<String> = compared
+            .iter()
+            .map(|(what, count)| format!("{what} {count}"))
+            .collect();
         let passed = files.len() - (faults.len() - before);
-        println!("| {name} | {} | {passed} | {} |", files.len(), compared.join(", "));
+        println!(
+            "| {name} | {} | {passed} | {} |",
+            files.len(),
+            compared.join(", ")
+        );
     }
     assert!(faults.is_empty(), "\n{}", faults.join("\n"));
 }

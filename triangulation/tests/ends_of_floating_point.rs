@@ -23,12 +23,23 @@ fn thousands_of_points_of_one_size() {
     let mut random = Random(1);
     // Whole numbers, so that subnormal numbers can represent them, too.
     for side in [1 << 36, 40] {
-        let points: Vec<[f64; 2]> = (0..2000).map(|_| [(); 2].map(|()| random.around(side) as f64)).collect();
+        let points: Vec<[f64; 2]> = (0..2000)
+            .map(|_| [(); 2].map(|()| random.around(side) as f64))
+            .collect();
         let expected = bulk(&points);
         let order = spatial_order(points.len(), |i| points[i]).unwrap();
-        for unit in [2f64.powi(980), f64::from_bits(1), 2f64.powi(-1000), 2f64.powi(-300)] {
+        for unit in [
+            2f64.powi(980),
+            f64::from_bits(1),
+            2f64.powi(-1000),
+            2f64.powi(-300),
+        ] {
             let points = scaled(&points, unit);
-            assert_eq!(spatial_order(points.len(), |i| points[i]).unwrap(), order, "{unit:e}");
+            assert_eq!(
+                spatial_order(points.len(), |i| points[i]).unwrap(),
+                order,
+                "{unit:e}"
+            );
             let t = bulk(&points);
             assert!(
                 t.tds()
@@ -69,9 +80,12 @@ fn the_largest_box_there_is() {
 #[test]
 fn in_space() {
     let mut random = Random(3);
-    let points: Vec<[f64; 3]> = (0..150).map(|_| [(); 3].map(|()| random.around(1 << 30) as f64)).collect();
+    let points: Vec<[f64; 3]> = (0..150)
+        .map(|_| [(); 3].map(|()| random.around(1 << 30) as f64))
+        .collect();
     for unit in [2f64.powi(990), f64::from_bits(1)] {
-        let (t, _) = Delaunay::from_points(Space::<Wide>::default(), &scaled(&points, unit)).unwrap();
+        let (t, _) =
+            Delaunay::from_points(Space::<Wide>::default(), &scaled(&points, unit)).unwrap();
         assert_eq!(t.check(Level::Law), []);
     }
 }
@@ -92,7 +106,9 @@ fn crossings_near_the_smallest_numbers_that_are_admitted() {
         let points: Vec<[f64; 2]> = (0..12).map(|_| [coordinate(), coordinate()]).collect();
         let lines: Vec<[u32; 2]> = (0..6).map(|i| [2 * i, 2 * i + 1]).collect();
         let plane: Plane = Plane::default();
-        let (t, _) = ConstrainedDelaunay::<_>::from_lines(plane, &points, &lines, OnCrossing::Split).unwrap();
+        let (t, _) =
+            ConstrainedDelaunay::<_>::from_lines(plane, &points, &lines, OnCrossing::Split)
+                .unwrap();
         assert_eq!(t.check(Level::Law), [], "{points:?}");
         crossings += t.crossings().len();
     }

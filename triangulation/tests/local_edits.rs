@@ -60,9 +60,15 @@ fn seen<G: Coordinates>(t: &ConstrainedDelaunay<G>, lines: &[LineId]) -> Seen {
     };
     Seen {
         points: t.tds().vertices().map(|v| at(&v)).collect(),
-        triangles: t.finite_cells().map(|cell| sorted(t.tds().cell_vertices(cell))).collect(),
+        triangles: t
+            .finite_cells()
+            .map(|cell| sorted(t.tds().cell_vertices(cell)))
+            .collect(),
         constraints: t.constrained_edges().map(|edge| sorted(&edge)).collect(),
-        chains: lines.iter().map(|&line| t.chain(line).iter().map(at).collect()).collect(),
+        chains: lines
+            .iter()
+            .map(|&line| t.chain(line).iter().map(at).collect())
+            .collect(),
         crossings: t.crossings().iter().map(at).collect(),
         rounding: t.rounding(),
     }
@@ -82,18 +88,30 @@ impl<G: Coordinates> Model<G> {
             indexed.push((all.len() as u32..(all.len() + line.len()) as u32).collect());
             all.extend(line);
         }
-        let (t, _) = ConstrainedDelaunay::from_lines(G::default(), &all, &indexed, OnCrossing::Split).unwrap();
+        let (t, _) =
+            ConstrainedDelaunay::from_lines(G::default(), &all, &indexed, OnCrossing::Split)
+                .unwrap();
         let ids = t.lines().collect();
         (t, ids)
     }
 
     /// Makes one random edit of both; returns its name.
-    fn edit(&mut self, t: &mut ConstrainedDelaunay<G>, random: &mut Random, site: &Site, most: usize) -> String {
+    fn edit(
+        &mut self,
+        t: &mut ConstrainedDelaunay<G>,
+        random: &mut Random,
+        site: &Site,
+        most: usize,
+    ) -> String {
         let draw = |random: &mut Random| {
             let at = site(random);
             G::point(random, at)
         };
-        let kind = if self.lines.len() > most { 3 + random.below(2) } else { random.below(12) };
+        let kind = if self.lines.len() > most {
+            3 + random.below(2)
+        } else {
+            random.below(12)
+        };
         let same = |p: &G::Point, q: &G::Point| G::bits(p)[..2] == G::bits(q)[..2];
         match kind {
             0..3 => {
@@ -121,7 +139,10 @@ impl<G: Coordinates> Model<G> {
                 "split".to_owned()
             }
             6 if !self.lines.is_empty() => {
-                let (i, j) = (random.index(self.lines.len()), random.index(self.lines.len()));
+                let (i, j) = (
+                    random.index(self.lines.len()),
+                    random.index(self.lines.len()),
+                );
                 if t.join_lines(self.lines[i].0, self.lines[j].0) {
                     let tail = self.lines[j].1[1..].to_vec();
                     self.lines[i].1.extend(tail);
@@ -134,7 +155,9 @@ impl<G: Coordinates> Model<G> {
                 let vertex = random.pick(&vertices);
                 let p = *t.point(vertex);
                 if kind == 8 && self.lines.len() > most / 2 {
-                    let Ok((_, gone)) = t.remove_with_lines(vertex) else { return "kept".to_owned() };
+                    let Ok((_, gone)) = t.remove_with_lines(vertex) else {
+                        return "kept".to_owned();
+                    };
                     self.lines.retain(|(line, _)| !gone.contains(line));
                 } else if t.remove(vertex).is_err() {
                     return "kept".to_owned();
@@ -170,21 +193,43 @@ type Site = dyn Fn(&mut Random) -> [f64; 2];
 
 /// Returns the percentage of edits that arranged all lines anew.
 fn compare<G: Coordinates>(seed: u64, few: usize, most: usize, site: &Site) -> usize {
-    let count = std::env::var("BREAKLINE_EDITS").ok().and_then(|count| count.parse().ok()).unwrap_or(few);
+    let count = std::env::var("BREAKLINE_EDITS")
+        .ok()
+        .and_then(|count| count.parse().ok())
+        .unwrap_or(few);
     let mut random = Random(seed);
     let (mut done, mut anew) = (0, 0);
     while done < count {
-        let points = (0..3 + random.index(8)).map(|_| site(&mut random)).collect::<Vec<_>>();
-        let points: Vec<G::Point> = points.into_iter().map(|at| G::point(&mut random, at)).collect();
-        let mut t: ConstrainedDelaunay<G> = ConstrainedDelaunay::from_points(G::default(), &points).unwrap().0;
-        let mut model = Model { points, lines: Vec::new() };
+        let points = (0..3 + random.index(8))
+            .map(|_| site(&mut random))
+            .collect::<Vec<_>>();
+        let points: Vec<G::Point> = points
+            .into_iter()
+            .map(|at| G::point(&mut random, at))
+            .collect();
+        let mut t: ConstrainedDelaunay<G> = ConstrainedDelaunay::from_points(G::default(), &points)
+            .unwrap()
+            .0;
+        let mut model = Model {
+            points,
+            lines: Vec::new(),
+        };
         let mut names = Vec::new();
         for _ in 0..60 {
-            let before = format!("{:?} {:?}", model.points, model.lines.iter().map(|(_, l)| l).collect::<Vec<_>>());
+            let before = format!(
+                "{:?} {:?}",
+                model.points,
+                model.lines.iter().map(|(_, l)| l).collect::<Vec<_>>()
+            );
             names.push(model.edit(&mut t, &mut random, site, most));
             done += 1;
             let (fresh, fresh_ids) = model.built();
-            let history = || format!("seed {seed}, edit {done}: {before}: {}", names[names.len() - 1]);
+            let history = || {
+                format!(
+                    "seed {seed}, edit {done}: {before}: {}",
+                    names[names.len() - 1]
+                )
+            };
             assert_eq!(t.check(Level::Law), [], "{}", history());
             if fresh.dimension() == 2 {
                 let ids: Vec<LineId> = model.lines.iter().map(|(line, _)| *line).collect();
@@ -195,10 +240,17 @@ fn compare<G: Coordinates>(seed: u64, few: usize, most: usize, site: &Site) -> u
                 assert_eq!(there.chains, anew.chains, "{}", history());
                 let only = |p: &SiteSets, q: &SiteSets| -> Vec<Vec<Vec<f64>>> {
                     p.difference(q)
-                        .map(|c| c.iter().map(|b| b.iter().map(|&x| f64::from_bits(x)).collect()).collect())
+                        .map(|c| {
+                            c.iter()
+                                .map(|b| b.iter().map(|&x| f64::from_bits(x)).collect())
+                                .collect()
+                        })
                         .collect()
                 };
-                let apart = [only(&there.constraints, &anew.constraints), only(&anew.constraints, &there.constraints)];
+                let apart = [
+                    only(&there.constraints, &anew.constraints),
+                    only(&anew.constraints, &there.constraints),
+                ];
                 assert!(apart.iter().all(Vec::is_empty), "{apart:?} {}", history());
                 assert!(there == anew, "{}", history());
             }
@@ -210,32 +262,47 @@ fn compare<G: Coordinates>(seed: u64, few: usize, most: usize, site: &Site) -> u
 
 #[test]
 fn on_small_grids() {
-    let anew = compare::<Plane>(1, 2400, 12, &|random| [random.below(7) as f64 + 64.0, random.below(7) as f64 + 64.0]);
+    let anew = compare::<Plane>(1, 2400, 12, &|random| {
+        [random.below(7) as f64 + 64.0, random.below(7) as f64 + 64.0]
+    });
     assert!(anew < 25, "{anew} % of the edits arranged all lines anew");
 }
 
 #[test]
 fn around_zero() {
-    compare::<Plane>(2, 1200, 8, &|random| [random.below(7) as f64 - 3.0, random.below(7) as f64 - 3.0]);
+    compare::<Plane>(2, 1200, 8, &|random| {
+        [random.below(7) as f64 - 3.0, random.below(7) as f64 - 3.0]
+    });
 }
 
 /// Heights at crossings come from all lines there.
 #[test]
 fn with_heights() {
-    compare::<Terrain>(3, 1200, 12, &|random| [random.below(9) as f64 + 128.0, random.below(9) as f64 + 256.0]);
+    compare::<Terrain>(3, 1200, 12, &|random| {
+        [
+            random.below(9) as f64 + 128.0,
+            random.below(9) as f64 + 256.0,
+        ]
+    });
 }
 
 #[test]
 fn in_centimeters_far_away() {
     compare::<Plane>(4, 1200, 12, &|random| {
-        [500_000.0 + random.below(300) as f64 * 0.01, 4_649_000.0 + random.below(8) as f64 * 0.01]
+        [
+            500_000.0 + random.below(300) as f64 * 0.01,
+            4_649_000.0 + random.below(8) as f64 * 0.01,
+        ]
     });
 }
 
 #[test]
 fn a_rounding_apart() {
     let anew = compare::<Plane>(5, 2400, 10, &|random| {
-        [ulps(500_000.37, random.around(4)), ulps(4_649_000.12, random.around(4))]
+        [
+            ulps(500_000.37, random.around(4)),
+            ulps(4_649_000.12, random.around(4)),
+        ]
     });
     assert!(anew < 25, "{anew} % of the edits arranged all lines anew");
 }
@@ -243,9 +310,12 @@ fn a_rounding_apart() {
 #[test]
 fn off_the_grid() {
     compare::<Plane>(6, 1200, 10, &|random| {
-        let mut fine = || ulps(0.5, random.around(3)) * if random.below(4) == 0 { 64.0 } else { 1.0 };
+        let mut fine =
+            || ulps(0.5, random.around(3)) * if random.below(4) == 0 { 64.0 } else { 1.0 };
         [fine(), fine()]
     });
-    let anew = compare::<Plane>(7, 1200, 12, &|random| [10.0 * random.unit(), 10.0 * random.unit()]);
+    let anew = compare::<Plane>(7, 1200, 12, &|random| {
+        [10.0 * random.unit(), 10.0 * random.unit()]
+    });
     assert!(anew < 25, "{anew} % of the edits arranged all lines anew");
 }

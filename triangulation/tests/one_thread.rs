@@ -13,7 +13,10 @@ use testkit::random::Random;
 /// one around it.
 #[test]
 fn dense_ranges_within_dense_ranges() {
-    rayon::ThreadPoolBuilder::new().num_threads(1).build_global().unwrap();
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(1)
+        .build_global()
+        .unwrap();
     let mut random = Random(1);
     let mut points: Vec<[f64; 2]> = [1.0, 1e-10, 1e-20, 1e-30].map(|x| [x, x]).into();
     points.extend((0..40_000).map(|_| [random.unit() * 1e-35, random.unit() * 1e-35]));

@@ -32,27 +32,47 @@ impl Digest {
 /// More points than one thread processes at a time, of several kinds.
 fn point_sets() -> [(&'static str, Vec<Point>); 4] {
     let mut random = Random(17);
-    let uniform = (0..70_000).map(|_| [random.unit(), random.unit()]).collect();
+    let uniform = (0..70_000)
+        .map(|_| [random.unit(), random.unit()])
+        .collect();
     // Each site several times, and every four of them on a circle.
-    let lattice = (0..120_000).map(|_| [(); 2].map(|()| random.below(180) as f64)).collect();
+    let lattice = (0..120_000)
+        .map(|_| [(); 2].map(|()| random.below(180) as f64))
+        .collect();
     let clusters = (0..50_000).map(|_| {
         let scale = 10f64.powi(-3 * random.below(9) as i32);
         [(); 2].map(|()| scale * random.unit())
     });
     let clusters = clusters.collect();
-    let arc = (0..40_000).map(|i| f64::from(i) * 1e-4).map(|x| [x, x * x]).collect();
-    [("uniform", uniform), ("lattice", lattice), ("clusters", clusters), ("arc", arc)]
+    let arc = (0..40_000)
+        .map(|i| f64::from(i) * 1e-4)
+        .map(|x| [x, x * x])
+        .collect();
+    [
+        ("uniform", uniform),
+        ("lattice", lattice),
+        ("clusters", clusters),
+        ("arc", arc),
+    ]
 }
 
 fn digest(t: &ConstrainedDelaunay<Plane>) -> u64 {
     let points = t.points().iter().flatten().map(|x| x.to_bits());
-    let corners = t.tds().cells().flat_map(|cell| t.tds().corners(cell).map(|v| v.index() as u64));
-    let kinds = t.tds().cells().flat_map(|cell| (0..3).map(move |i| u64::from(t.is_constrained(cell, i))));
+    let corners = t
+        .tds()
+        .cells()
+        .flat_map(|cell| t.tds().corners(cell).map(|v| v.index() as u64));
+    let kinds = t
+        .tds()
+        .cells()
+        .flat_map(|cell| (0..3).map(move |i| u64::from(t.is_constrained(cell, i))));
     Digest::of(points.chain(corners).chain(kinds))
 }
 
 fn triangulated(points: &[Point], lines: &[[u32; 2]]) -> ConstrainedDelaunay<Plane> {
-    ConstrainedDelaunay::from_lines(Plane::default(), points, lines, OnCrossing::Split).unwrap().0
+    ConstrainedDelaunay::from_lines(Plane::default(), points, lines, OnCrossing::Split)
+        .unwrap()
+        .0
 }
 
 #[test]
@@ -65,7 +85,11 @@ fn order_and_triangulations_of_points() {
     ];
     let found = point_sets().map(|(name, points)| {
         let order = spatial_order(points.len(), |i| points[i]).unwrap();
-        (name, Digest::of(order.into_iter().map(u64::from)), digest(&triangulated(&points, &[])))
+        (
+            name,
+            Digest::of(order.into_iter().map(u64::from)),
+            digest(&triangulated(&points, &[])),
+        )
     });
     assert_eq!(found, recorded);
 }
@@ -75,7 +99,9 @@ fn order_and_triangulations_of_points() {
 #[test]
 fn segments_that_cross() {
     let mut random = Random(18);
-    let mut scattered: Vec<Point> = (0..20_000).map(|_| [random.unit(), random.unit()]).collect();
+    let mut scattered: Vec<Point> = (0..20_000)
+        .map(|_| [random.unit(), random.unit()])
+        .collect();
     for i in 0..4_000 {
         scattered.push([0, 1].map(|axis| scattered[i][axis] + 0.03 * (random.unit() - 0.5)));
     }
@@ -83,11 +109,18 @@ fn segments_that_cross() {
     let fan: Vec<Point> = (0..1_500)
         .flat_map(|i| {
             let x = 0.1 * f64::from(i);
-            [[x, 0.0], [x + 1000.0 + f64::from(u8::from(i % 40 == 0)), 1000.0]]
+            [
+                [x, 0.0],
+                [x + 1000.0 + f64::from(u8::from(i % 40 == 0)), 1000.0],
+            ]
         })
         .collect();
     let bundle: Vec<[u32; 2]> = (0..1_500).map(|i| [2 * i, 2 * i + 1]).collect();
-    let found = [triangulated(&scattered, &short), triangulated(&fan, &bundle)].map(|t| digest(&t));
+    let found = [
+        triangulated(&scattered, &short),
+        triangulated(&fan, &bundle),
+    ]
+    .map(|t| digest(&t));
     assert_eq!(found, [568871710230857583, 11297057009547932613]);
 }
 
@@ -97,7 +130,10 @@ fn a_mesh_that_is_refined() {
     let mut points: Vec<Point> = vec![[0.0, 0.0], [100.0, 0.0], [100.0, 80.0], [0.0, 80.0]];
     points.extend((0..400).map(|_| [100.0 * random.unit(), 80.0 * random.unit()]));
     let lines = [[0, 1], [1, 2], [2, 3], [3, 0], [4, 5], [6, 7], [8, 9]];
-    let mesh = triangulated(&points, &lines).refined(&Quality { max_area: 0.5, ..Quality::default() });
+    let mesh = triangulated(&points, &lines).refined(&Quality {
+        max_area: 0.5,
+        ..Quality::default()
+    });
     assert_eq!(digest(&mesh), 2062649117566102582);
 }
 
@@ -106,29 +142,50 @@ fn a_mesh_that_is_refined() {
 /// builds need less than 2 MiB.
 #[test]
 fn nested_clusters_do_not_exhaust_the_stack() {
-    let exponents = (-1074..1024).map(|e| if e < -1022 { f64::from_bits(1 << (e + 1074)) } else { 2f64.powi(e) });
-    let points: Vec<Point> = exponents.flat_map(|x| [[x, 0.0], [0.0, x], [x, x]]).collect();
+    let exponents = (-1074..1024).map(|e| {
+        if e < -1022 {
+            f64::from_bits(1 << (e + 1074))
+        } else {
+            2f64.powi(e)
+        }
+    });
+    let points: Vec<Point> = exponents
+        .flat_map(|x| [[x, 0.0], [0.0, x], [x, x]])
+        .collect();
     let work = move || {
         let (t, _) = Delaunay::from_points(Plane::<Wide>::default(), &points).unwrap();
         assert_eq!(t.vertex_count(), 3 * 2098);
         assert_eq!(t.check(Level::Manifold), []);
     };
-    std::thread::Builder::new().stack_size(1 << 22).spawn(work).unwrap().join().unwrap();
+    std::thread::Builder::new()
+        .stack_size(1 << 22)
+        .spawn(work)
+        .unwrap()
+        .join()
+        .unwrap();
 }
 
 #[test]
 fn triangulations_in_space() {
     let mut random = Random(18);
-    let uniform: Vec<[f64; 3]> = (0..20_000).map(|_| [(); 3].map(|()| random.unit())).collect();
+    let uniform: Vec<[f64; 3]> = (0..20_000)
+        .map(|_| [(); 3].map(|()| random.unit()))
+        .collect();
     // Each site several times, and nearly all ties.
-    let lattice: Vec<[f64; 3]> = (0..10_000).map(|_| [(); 3].map(|()| random.below(15) as f64)).collect();
-    for (name, points, recorded) in
-        [("uniform", uniform, 7634331805383617326), ("lattice", lattice, 2671457574273294758)]
-    {
+    let lattice: Vec<[f64; 3]> = (0..10_000)
+        .map(|_| [(); 3].map(|()| random.below(15) as f64))
+        .collect();
+    for (name, points, recorded) in [
+        ("uniform", uniform, 7634331805383617326),
+        ("lattice", lattice, 2671457574273294758),
+    ] {
         let (t, _) = Delaunay::<Space, 4>::from_points(Space::new(), &points).unwrap();
         assert_eq!(t.check(Level::Law), []);
         let coordinates = t.points().iter().flatten().map(|x| x.to_bits());
-        let corners = t.tds().cells().flat_map(|cell| t.tds().corners(cell).map(|v| v.index() as u64));
+        let corners = t
+            .tds()
+            .cells()
+            .flat_map(|cell| t.tds().corners(cell).map(|v| v.index() as u64));
         assert_eq!(Digest::of(coordinates.chain(corners)), recorded, "{name}");
     }
 }

@@ -11,14 +11,21 @@ const USUAL: usize = 2048;
 const SMALL: usize = 256;
 
 fn on_stack(kib: usize, work: impl FnOnce() + Send + 'static) {
-    std::thread::Builder::new().stack_size(kib << 10).spawn(work).unwrap().join().unwrap();
+    std::thread::Builder::new()
+        .stack_size(kib << 10)
+        .spawn(work)
+        .unwrap()
+        .join()
+        .unwrap();
 }
 
 /// Points that come closer and closer to the origin, by a factor of two each time: a divide and
 /// conquer that halves squares splits off one point at a time.
 fn closer_and_closer(powers: std::ops::Range<i32>) -> Vec<[f64; 2]> {
     let powers = powers.map(|k| 2f64.powi(k));
-    powers.flat_map(|r| [[r, 0.0], [-r, r / 2.0], [r, r], [0.0, -r]]).collect()
+    powers
+        .flat_map(|r| [[r, 0.0], [-r, r / 2.0], [r, r], [0.0, -r]])
+        .collect()
 }
 
 #[test]
@@ -50,7 +57,9 @@ fn points_on_a_line_on_a_spiral_and_in_a_grid() {
         for points in [line.collect::<Vec<_>>(), spiral.collect(), grid.collect()] {
             assert!(Delaunay::from_points(Plane::<Wide>::default(), &points).is_ok());
             let mut one_by_one = Delaunay::new(Plane::<Wide>::default());
-            points[..2000].iter().for_each(|&p| assert!(one_by_one.insert(p).is_ok()));
+            points[..2000]
+                .iter()
+                .for_each(|&p| assert!(one_by_one.insert(p).is_ok()));
         }
     });
 }

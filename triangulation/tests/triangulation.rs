@@ -5,7 +5,9 @@ use std::collections::BTreeSet;
 use breakline_triangulation::geometry::{Coordinates, Geometry, Plane, Space, Terrain};
 use breakline_triangulation::kernel::{Adaptive, Exact, Expansions, Kernel};
 use breakline_triangulation::tds::VertexId;
-use breakline_triangulation::{ConstrainedDelaunay, Delaunay, InputError, Level, PointError, Triangulation};
+use breakline_triangulation::{
+    ConstrainedDelaunay, Delaunay, InputError, Level, PointError, Triangulation,
+};
 use testkit::random::Random;
 
 /// The finite cells as sorted points, in whole steps of 1/1024.
@@ -14,11 +16,20 @@ where
     G: Coordinates<N>,
     C: Copy + Default,
 {
-    testkit::cells::cells(t, |p| p.as_ref().iter().map(|x| (x * 1024.0) as i64).collect())
+    testkit::cells::cells(t, |p| {
+        p.as_ref().iter().map(|x| (x * 1024.0) as i64).collect()
+    })
 }
 
-fn grid_points<const D: usize>(random: &mut Random, count: u64, side: u64, scale: f64) -> Vec<[f64; D]> {
-    (0..count).map(|_| std::array::from_fn(|_| random.below(side) as f64 * scale)).collect()
+fn grid_points<const D: usize>(
+    random: &mut Random,
+    count: u64,
+    side: u64,
+    scale: f64,
+) -> Vec<[f64; D]> {
+    (0..count)
+        .map(|_| std::array::from_fn(|_| random.below(side) as f64 * scale))
+        .collect()
 }
 
 /// Builds in several orders; every build must be flawless and have the same cells.
@@ -42,7 +53,12 @@ where
     let (first, second) = points.split_at(points.len() / 3);
     for part in [first, second] {
         let vertices = at_twice.insert_all(part).unwrap();
-        assert!(vertices.iter().zip(part).all(|(&v, p)| at_twice.geometry().compare(at_twice.point(v), p).is_eq()));
+        assert!(
+            vertices
+                .iter()
+                .zip(part)
+                .all(|(&v, p)| at_twice.geometry().compare(at_twice.point(v), p).is_eq())
+        );
     }
     assert_eq!(cells(&at_twice), expected, "{points:?}");
 }
@@ -72,7 +88,11 @@ fn spatial_delaunay_is_a_function_of_the_set() {
 #[test]
 fn kernels_agree() {
     fn build<K: Kernel>(points: &[[f64; 2]]) -> BTreeSet<Vec<Vec<i64>>> {
-        cells(&Delaunay::from_points(Plane::<K>::default(), points).unwrap().0)
+        cells(
+            &Delaunay::from_points(Plane::<K>::default(), points)
+                .unwrap()
+                .0,
+        )
     }
     let mut random = Random(3);
     for _ in 0..200 {
@@ -100,7 +120,11 @@ fn dimensions_grow_one_by_one() {
     for (p, dimension, finite_cells) in points {
         t.insert(p).unwrap();
         assert_eq!(t.check(Level::Law), []);
-        assert_eq!((t.dimension(), t.finite_cells().count()), (dimension, finite_cells), "{p:?}");
+        assert_eq!(
+            (t.dimension(), t.finite_cells().count()),
+            (dimension, finite_cells),
+            "{p:?}"
+        );
     }
     t.insert([1.0, 0.0, 0.0]).unwrap();
     assert_eq!(t.vertex_count(), points.len());
@@ -109,7 +133,10 @@ fn dimensions_grow_one_by_one() {
 #[test]
 fn refused_points_are_named() {
     let points = [[0.0, 0.0], [1.0, f64::NAN]];
-    assert_eq!(Delaunay::from_points(Plane::<Adaptive>::default(), &points).err(), Some(InputError::Coordinate(1)));
+    assert_eq!(
+        Delaunay::from_points(Plane::<Adaptive>::default(), &points).err(),
+        Some(InputError::Coordinate(1))
+    );
     let mut t = Delaunay::new(Plane::<Adaptive>::default());
     assert_eq!(t.insert([f64::INFINITY, 0.0]), Err(PointError::Coordinate));
     assert_eq!(t.insert([1e300, 0.0]), Err(PointError::Coordinate));
@@ -124,18 +151,27 @@ fn refused_points_are_named() {
 fn covers(t: &ConstrainedDelaunay<Plane>, a: [f64; 2], b: [f64; 2]) -> bool {
     let g = Plane::<Exact>::default();
     let between = |p: &[f64; 2]| {
-        let (low, high) = if g.compare(&a, &b).is_lt() { (a, b) } else { (b, a) };
+        let (low, high) = if g.compare(&a, &b).is_lt() {
+            (a, b)
+        } else {
+            (b, a)
+        };
         g.compare(p, &low).is_ge() && g.compare(p, &high).is_le()
     };
     let mut on: Vec<VertexId> = t
         .tds()
         .vertices()
         .filter(|&v| {
-            g.orientation([&a, &b, t.point(v)]) == breakline_triangulation::num::Sign::Zero && between(t.point(v))
+            g.orientation([&a, &b, t.point(v)]) == breakline_triangulation::num::Sign::Zero
+                && between(t.point(v))
         })
         .collect();
     on.sort_by(|&u, &v| g.compare(t.point(u), t.point(v)));
-    on.windows(2).all(|pair| t.tds().edge(pair[0], pair[1]).is_some_and(|(cell, i)| t.is_constrained(cell, i)))
+    on.windows(2).all(|pair| {
+        t.tds()
+            .edge(pair[0], pair[1])
+            .is_some_and(|(cell, i)| t.is_constrained(cell, i))
+    })
 }
 
 #[test]
@@ -172,7 +208,10 @@ fn constraints_hold_and_do_not_depend_on_their_order() {
             random.shuffle(&mut shuffled.1);
             let t = build(&shuffled.0, &shuffled.1);
             assert_eq!(t.check(Level::Law), [], "{shuffled:?}");
-            assert!(segments.iter().all(|&[a, b]| covers(&t, a, b)), "{shuffled:?}");
+            assert!(
+                segments.iter().all(|&[a, b]| covers(&t, a, b)),
+                "{shuffled:?}"
+            );
             assert_eq!(cells(&t), expected, "{shuffled:?}");
         }
     }
@@ -204,7 +243,11 @@ fn crossing_is_rounded([a, b]: [[f64; 2]; 2], [c, d]: [[f64; 2]; 2]) -> bool {
 fn wild_crossings_leave_a_valid_triangulation() {
     let mut random = Random(5);
     for round in 0..1500 {
-        let offset = if round % 2 == 0 { [0.0, 0.0] } else { [500_000.0, 4_649_000.0] };
+        let offset = if round % 2 == 0 {
+            [0.0, 0.0]
+        } else {
+            [500_000.0, 4_649_000.0]
+        };
         let mut t: ConstrainedDelaunay<Plane> = ConstrainedDelaunay::new(Plane::default());
         let mut segments = Vec::new();
         for _ in 0..2 + random.below(12) {
@@ -235,7 +278,9 @@ fn bulk_and_one_by_one_agree() {
                 .map(|p| [p[0] + 5e5, p[1] + 4_649_000.0])
                 .collect(),
             2 => (0..count).map(|i| [i as f64, (i * i) as f64]).collect(),
-            3 => (0..count).map(|_| [random.below(3) as f64 * 1e-9, random.below(1000) as f64]).collect(),
+            3 => (0..count)
+                .map(|_| [random.below(3) as f64 * 1e-9, random.below(1000) as f64])
+                .collect(),
             _ => grid_points::<2>(&mut random, count, 1 << 40, 1.0),
         };
         let (bulk, vertices): (ConstrainedDelaunay<Plane>, _) =
@@ -246,23 +291,42 @@ fn bulk_and_one_by_one_agree() {
             one_by_one.insert(p).unwrap();
         }
         assert_eq!(cells(&bulk), cells(&one_by_one), "{points:?}");
-        assert!(points.iter().zip(&vertices).all(|(p, &v)| bulk.point(v) == p));
+        assert!(
+            points
+                .iter()
+                .zip(&vertices)
+                .all(|(p, &v)| bulk.point(v) == p)
+        );
     }
 }
 
 #[test]
 fn points_fall_on_constraints() {
     let mut t: ConstrainedDelaunay<Terrain> = ConstrainedDelaunay::new(Terrain::default());
-    t.insert_lines(&[[[0.0, 0.0, 1.0], [8.0, 0.0, 1.0], [8.0, 8.0, 1.0], [0.0, 8.0, 1.0], [0.0, 0.0, 1.0]]]).unwrap();
-    t.insert_lines(&[[[0.0, 0.0, 1.0], [8.0, 8.0, 9.0]]]).unwrap();
-    for p in [[4.0, 4.0, 0.0], [4.0, 0.0, 0.0], [2.0, 2.0, 0.0], [1.0, 7.0, 0.0]] {
+    t.insert_lines(&[[
+        [0.0, 0.0, 1.0],
+        [8.0, 0.0, 1.0],
+        [8.0, 8.0, 1.0],
+        [0.0, 8.0, 1.0],
+        [0.0, 0.0, 1.0],
+    ]])
+    .unwrap();
+    t.insert_lines(&[[[0.0, 0.0, 1.0], [8.0, 8.0, 9.0]]])
+        .unwrap();
+    for p in [
+        [4.0, 4.0, 0.0],
+        [4.0, 0.0, 0.0],
+        [2.0, 2.0, 0.0],
+        [1.0, 7.0, 0.0],
+    ] {
         t.insert(p).unwrap();
         assert_eq!(t.check(Level::Law), []);
     }
     assert_eq!(t.constrained_edges().count(), 5 + 3);
     // A line at 3 crosses the diagonal, whose own ends are at 1 on the ring, whatever points lie on
     // it.
-    t.insert_lines(&[[[5.0, 1.0, 3.0], [5.0, 7.0, 3.0]]]).unwrap();
+    t.insert_lines(&[[[5.0, 1.0, 3.0], [5.0, 7.0, 3.0]]])
+        .unwrap();
     let crossing = t.crossings();
     assert_eq!(crossing.len(), 1);
     assert_eq!(t.point(crossing[0])[..2], [5.0, 5.0]);
@@ -279,9 +343,12 @@ fn a_segment_crosses_the_edges_that_it_crosses() {
         let points = grid_points::<2>(&mut random, count, 7, 1.0);
         let (t, _): (ConstrainedDelaunay<Plane>, _) =
             ConstrainedDelaunay::from_points(Plane::default(), &points).unwrap();
-        let [a, b]: [[f64; 2]; 2] = std::array::from_fn(|_| std::array::from_fn(|_| random.below(11) as f64 - 2.0));
+        let [a, b]: [[f64; 2]; 2] =
+            std::array::from_fn(|_| std::array::from_fn(|_| random.below(11) as f64 - 2.0));
         let turn = |p: [f64; 2], q: [f64; 2], r: [f64; 2]| {
-            ((p[0] - r[0]) * (q[1] - r[1]) - (p[1] - r[1]) * (q[0] - r[0])).partial_cmp(&0.0).unwrap() as i32
+            ((p[0] - r[0]) * (q[1] - r[1]) - (p[1] - r[1]) * (q[0] - r[0]))
+                .partial_cmp(&0.0)
+                .unwrap() as i32
         };
         if t.dimension() < 2 {
             continue;
@@ -314,7 +381,8 @@ fn crossings_in_the_last_bits_come_to_an_end() {
         for _ in 0..10 {
             let mut t: ConstrainedDelaunay<Plane> = ConstrainedDelaunay::new(Plane::default());
             for _ in 0..lines {
-                let ends = [0, 1].map(|_| [0, 1].map(|_| 1.0 + random.below(steps) as f64 * f64::EPSILON));
+                let ends =
+                    [0, 1].map(|_| [0, 1].map(|_| 1.0 + random.below(steps) as f64 * f64::EPSILON));
                 t.insert_lines(&[ends]).unwrap();
             }
             assert_eq!(t.check(Level::Law), []);

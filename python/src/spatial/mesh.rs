@@ -22,7 +22,11 @@ pub(super) trait Dimension<const N: usize, const D: usize>:
     Coordinates<N, Point = [f64; D]> + Metric<N> + Copy + Default
 {
     /// Returns Sibson's coordinates, see [`Delaunay::sibson`].
-    fn sibson(t: &Delaunay<Self, N>, q: &[f64; D], near: Option<CellId>) -> Option<Vec<(VertexId, f64)>>;
+    fn sibson(
+        t: &Delaunay<Self, N>,
+        q: &[f64; D],
+        near: Option<CellId>,
+    ) -> Option<Vec<(VertexId, f64)>>;
 
     /// Returns how far a position lies inside of each facet of a positively oriented simplex: the
     /// volumes, times `D!`, that both span, each right to the last bits.
@@ -65,7 +69,14 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
         let (t, vertices) = Delaunay::from_points_unless(G::default(), points, cancel)?;
         let bounds = [[f64::INFINITY; D], [f64::NEG_INFINITY; D]];
         let (point_of, repeated) = (Vec::new(), Vec::new());
-        let mut mesh = Mesh { t, count: 0, point_of, repeated, numbers: OnceLock::new(), bounds };
+        let mut mesh = Mesh {
+            t,
+            count: 0,
+            point_of,
+            repeated,
+            numbers: OnceLock::new(),
+            bounds,
+        };
         mesh.adopt(points, &vertices);
         Ok(mesh)
     }
@@ -107,7 +118,11 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
     /// Waits for nothing while it makes them, so that threads of a pool may ask.
     fn numbers(&self) -> &Numbers {
         self.numbers.get_or_init(|| {
-            let cells: Vec<CellId> = if self.has_no_simplices() { Vec::new() } else { self.t.finite_cells().collect() };
+            let cells: Vec<CellId> = if self.has_no_simplices() {
+                Vec::new()
+            } else {
+                self.t.finite_cells().collect()
+            };
             let mut simplex_of = vec![NONE; self.t.tds().cell_slots()];
             for (simplex, cell) in (0..).zip(&cells) {
                 simplex_of[cell.index()] = simplex;
@@ -153,7 +168,8 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
             let corners = self.t.tds().corners(cell).map(|v| *self.t.point(v));
             let last = corners[D];
             // Column `i` is the vector from the last corner to corner `i`.
-            let matrix = std::array::from_fn(|row| std::array::from_fn(|i| corners[i][row] - last[row]));
+            let matrix =
+                std::array::from_fn(|row| std::array::from_fn(|i| corners[i][row] - last[row]));
             let mut map = [last; N];
             match G::inverse(matrix) {
                 Some(inverse) => map[..D].copy_from_slice(&inverse),
@@ -164,7 +180,12 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
     }
 
     fn of_cells<T: Send>(&self, value: impl Fn(CellId) -> T + Sync) -> Vec<T> {
-        self.numbers().cells.par_iter().with_min_len(CHUNK).map(|&cell| value(cell)).collect()
+        self.numbers()
+            .cells
+            .par_iter()
+            .with_min_len(CHUNK)
+            .map(|&cell| value(cell))
+            .collect()
     }
 
     /// Returns the facets of the convex hull, as points: the corners of a simplex without one of
@@ -174,7 +195,8 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
         for &cell in &self.numbers().cells {
             for k in 0..N {
                 if self.simplex(self.t.tds().neighbor(cell, k)) == NONE {
-                    let corner = |j: usize| self.t.tds().vertex(cell, if j < k { j } else { j + 1 });
+                    let corner =
+                        |j: usize| self.t.tds().vertex(cell, if j < k { j } else { j + 1 });
                     facets.push(std::array::from_fn(|j| self.point_of[corner(j).index()]));
                 }
             }
@@ -219,19 +241,32 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
         Tds<N>: Neighbors<N, Error = Infallible>,
     {
         let mut vertex_of = vec![None; self.point_count()];
-        for (v, &point) in self.point_of.iter().enumerate().filter(|&(_, &point)| point != NONE) {
+        for (v, &point) in self
+            .point_of
+            .iter()
+            .enumerate()
+            .filter(|&(_, &point)| point != NONE)
+        {
             vertex_of[point as usize] = Some(VertexId::new(v));
         }
         let around = |vertex: VertexId, all: &mut Vec<i32>| {
             let start = all.len();
             let Ok(neighbors) = self.t.tds().neighbors_of(vertex);
-            let finite = neighbors.map(|Ok(v)| v).filter(|&v| v != VertexId::INFINITE);
+            let finite = neighbors
+                .map(|Ok(v)| v)
+                .filter(|&v| v != VertexId::INFINITE);
             all.extend(finite.map(|v| self.point_of[v.index()]));
             if D > 2 {
                 // In space a neighbor may be met several times.
                 all[start..].sort_unstable();
                 let unique = all.split_off(start);
-                all.extend(unique.iter().enumerate().filter(|&(i, v)| i == 0 || unique[i - 1] != *v).map(|(_, v)| v));
+                all.extend(
+                    unique
+                        .iter()
+                        .enumerate()
+                        .filter(|&(i, v)| i == 0 || unique[i - 1] != *v)
+                        .map(|(_, v)| v),
+                );
             }
             (all.len() - start) as i32
         };
@@ -239,7 +274,10 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
             .par_chunks(CHUNK)
             .map(|vertices| {
                 let mut all = Vec::new();
-                let counts = vertices.iter().map(|v| v.map_or(0, |v| around(v, &mut all))).collect();
+                let counts = vertices
+                    .iter()
+                    .map(|v| v.map_or(0, |v| around(v, &mut all)))
+                    .collect();
                 (counts, all)
             })
             .collect();
@@ -249,7 +287,10 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
             end += count;
             starts.push(end);
         }
-        (starts, chunks.into_iter().flat_map(|(_, all)| all).collect())
+        (
+            starts,
+            chunks.into_iter().flat_map(|(_, all)| all).collect(),
+        )
     }
 }
 

@@ -14,7 +14,9 @@ use breakline::triangulation::InputError;
 use breakline::triangulation::geometry::{Plane, Space};
 use breakline::triangulation::kernel::{Adaptive, Kernel, Range};
 use breakline::triangulation::num::unsigned_zero;
-use numpy::{IntoPyArray, PyArray1, PyArray3, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
+use numpy::{
+    IntoPyArray, PyArray1, PyArray3, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods,
+};
 use pyo3::prelude::*;
 
 use self::mesh::Mesh;
@@ -51,7 +53,9 @@ macro_rules! at_positions {
         match ($any, $positions) {
             (Any::Plane($mesh), Positions::Plane($at)) => $call,
             (Any::Space($mesh), Positions::Space($at)) => $call,
-            (Any::Plane(_), Positions::Space(_)) | (Any::Space(_), Positions::Plane(_)) => Default::default(),
+            (Any::Plane(_), Positions::Space(_)) | (Any::Space(_), Positions::Plane(_)) => {
+                Default::default()
+            }
         }
     };
 }
@@ -138,7 +142,9 @@ impl Tessellation {
     ) -> PyResult<T> {
         let positions = Positions::of(positions).rounded();
         if positions.count() <= FEW {
-            return work::short(py, || Result::Ok(answer(&self.read(), &positions, Context::default().cancel)));
+            return work::short(py, || {
+                Result::Ok(answer(&self.read(), &positions, Context::default().cancel))
+            });
         }
         self.compute(py, call, |any, cancel| answer(any, &positions, cancel))
     }
@@ -151,7 +157,9 @@ impl Tessellation {
     fn new(py: Python<'_>, points: PyReadonlyArray2<'_, f64>, call: Call) -> PyResult<Self> {
         let points = Positions::of(&points);
         let any = work::run(py, &call, |context| points.triangulated(context.cancel))?;
-        Ok(Tessellation { any: RwLock::new(any) })
+        Ok(Tessellation {
+            any: RwLock::new(any),
+        })
     }
 
     /// Inserts more points, of shape (n, d).
@@ -169,12 +177,16 @@ impl Tessellation {
 
     /// The number of simplices; 0 if the points do not span the plane or the space.
     fn simplex_count(&self, py: Python<'_>) -> PyResult<usize> {
-        work::short(py, || Result::Ok(of_dimension!(&*self.read(), mesh => mesh.simplex_count())))
+        work::short(py, || {
+            Result::Ok(of_dimension!(&*self.read(), mesh => mesh.simplex_count()))
+        })
     }
 
     /// True if the points do not span the plane or the space.
     fn has_no_simplices(&self, py: Python<'_>) -> PyResult<bool> {
-        work::short(py, || Result::Ok(of_dimension!(&*self.read(), mesh => mesh.has_no_simplices())))
+        work::short(py, || {
+            Result::Ok(of_dimension!(&*self.read(), mesh => mesh.has_no_simplices()))
+        })
     }
 
     /// The corners of simplices and their neighbors: two arrays of shape (m, d + 1).
@@ -215,17 +227,39 @@ impl Tessellation {
 
     /// Points at the site of an earlier one: an array of shape (k, 3).
     fn coplanar<'py>(&self, py: Python<'py>, call: Call) -> PyResult<Bound<'py, PyAny>> {
-        table(py, self.compute(py, &call, |any, _| of_dimension!(any, mesh => mesh.coplanar()))?)
+        table(
+            py,
+            self.compute(
+                py,
+                &call,
+                |any, _| of_dimension!(any, mesh => mesh.coplanar()),
+            )?,
+        )
     }
 
     /// A simplex at each point: an array of shape (n,).
     fn simplex_at<'py>(&self, py: Python<'py>, call: Call) -> PyResult<Bound<'py, PyArray1<i32>>> {
-        Ok(column(py, self.compute(py, &call, |any, _| of_dimension!(any, mesh => mesh.simplex_at()))?))
+        Ok(column(
+            py,
+            self.compute(
+                py,
+                &call,
+                |any, _| of_dimension!(any, mesh => mesh.simplex_at()),
+            )?,
+        ))
     }
 
     /// The neighbors of points: where those of each begin, and all of them.
-    fn neighbor_points<'py>(&self, py: Python<'py>, call: Call) -> PyResult<[Bound<'py, PyArray1<i32>>; 2]> {
-        let (starts, all) = self.compute(py, &call, |any, _| of_dimension!(any, mesh => mesh.neighbor_points()))?;
+    fn neighbor_points<'py>(
+        &self,
+        py: Python<'py>,
+        call: Call,
+    ) -> PyResult<[Bound<'py, PyArray1<i32>>; 2]> {
+        let (starts, all) = self.compute(
+            py,
+            &call,
+            |any, _| of_dimension!(any, mesh => mesh.neighbor_points()),
+        )?;
         Ok([column(py, starts), column(py, all)])
     }
 
@@ -294,7 +328,13 @@ impl Values {
             one_for_each_point(any, count)?;
             Result::Ok(of_dimension!(any, mesh => mesh.field(values.view())))
         })?;
-        Ok(Values { tessellation, field: field?, count, outside, tolerance })
+        Ok(Values {
+            tessellation,
+            field: field?,
+            count,
+            outside,
+            tolerance,
+        })
     }
 
     /// Values that are linear on each simplex, at positions of shape (q, d): an array of shape
@@ -305,12 +345,15 @@ impl Values {
         positions: PyReadonlyArray2<'py, f64>,
         call: Call,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let values = self.tessellation.get().answer(py, &call, &positions, |any, positions, cancel| {
-            one_for_each_point(any, self.count)?;
-            Result::Ok(at_positions!(any, positions, (mesh, at) => {
-                mesh.linear(at, &self.field, &self.outside, self.tolerance, cancel)
-            }))
-        })?;
+        let values =
+            self.tessellation
+                .get()
+                .answer(py, &call, &positions, |any, positions, cancel| {
+                    one_for_each_point(any, self.count)?;
+                    Result::Ok(at_positions!(any, positions, (mesh, at) => {
+                        mesh.linear(at, &self.field, &self.outside, self.tolerance, cancel)
+                    }))
+                })?;
         Ok(column(py, values?))
     }
 
@@ -321,12 +364,15 @@ impl Values {
         positions: PyReadonlyArray2<'py, f64>,
         call: Call,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let values = self.tessellation.get().answer(py, &call, &positions, |any, positions, cancel| {
-            one_for_each_point(any, self.count)?;
-            Result::Ok(at_positions!(any, positions, (mesh, at) => {
-                mesh.natural(at, &self.field, &self.outside, self.tolerance, cancel)
-            }))
-        })?;
+        let values =
+            self.tessellation
+                .get()
+                .answer(py, &call, &positions, |any, positions, cancel| {
+                    one_for_each_point(any, self.count)?;
+                    Result::Ok(at_positions!(any, positions, (mesh, at) => {
+                        mesh.natural(at, &self.field, &self.outside, self.tolerance, cancel)
+                    }))
+                })?;
         Ok(column(py, values?))
     }
 }
@@ -340,8 +386,12 @@ fn one_for_each_point(any: &Any, values: usize) -> Result<()> {
     if values == points {
         return Ok(());
     }
-    let error = Error::usage(format!("different number of values and points: {values} values, {points} points"));
-    Err(error.cure("give one value for each point; after `add_points`, make a new interpolator").into())
+    let error = Error::usage(format!(
+        "different number of values and points: {values} values, {points} points"
+    ));
+    Err(error
+        .cure("give one value for each point; after `add_points`, make a new interpolator")
+        .into())
 }
 
 /// Returns the error of points that were refused; it names the first of them.
@@ -360,8 +410,10 @@ fn refused<const D: usize>(error: &InputError, points: &[[f64; D]]) -> Failure {
         let expected = format!("expected coordinates of 0 or between {min:.0e} and {max:.0e}");
         Error::limit(format!("the point is at {point:?}, {expected}")).cure("scale the coordinates")
     } else {
-        Error::usage(format!("the point is at {point:?}: points cannot contain NaN or infinity"))
-            .cure("leave such points out: points[numpy.isfinite(points).all(axis=1)]")
+        Error::usage(format!(
+            "the point is at {point:?}: points cannot contain NaN or infinity"
+        ))
+        .cure("leave such points out: points[numpy.isfinite(points).all(axis=1)]")
     };
     Failure(refused.at(format!("row {row}")))
 }

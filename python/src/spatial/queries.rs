@@ -54,7 +54,9 @@ impl Field {
     /// Returns the weighted mean of values, exactly the value where only one weight is not zero.
     fn mean(&self, weights: impl Iterator<Item = (VertexId, f64)>, mean: &mut [f64]) {
         let mut weights = weights.filter(|&(_, weight)| weight != 0.0);
-        let Some((first, _)) = weights.next() else { return };
+        let Some((first, _)) = weights.next() else {
+            return;
+        };
         // Relative to one of them, so that constant values are reproduced.
         let origin = self.at(first);
         mean.copy_from_slice(origin);
@@ -80,17 +82,31 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
         let width = values.ncols();
         let mut of_vertices = vec![0.0; self.point_of.len() * width];
         if width > 0 {
-            let rows = of_vertices.par_chunks_exact_mut(width).with_min_len(CHUNK).zip(&self.point_of);
-            rows.filter(|(_, point)| **point != NONE).for_each(|(row, &point)| {
-                row.iter_mut().zip(values.row(point as usize)).for_each(|(to, from)| *to = *from);
-            });
+            let rows = of_vertices
+                .par_chunks_exact_mut(width)
+                .with_min_len(CHUNK)
+                .zip(&self.point_of);
+            rows.filter(|(_, point)| **point != NONE)
+                .for_each(|(row, &point)| {
+                    row.iter_mut()
+                        .zip(values.row(point as usize))
+                        .for_each(|(to, from)| *to = *from);
+                });
         }
-        Field { values: of_vertices, width }
+        Field {
+            values: of_vertices,
+            width,
+        }
     }
 
     /// Returns the simplex at each position, which is the one that contains it; [`NONE`] outside of
     /// the hull. Outside by at most a tolerance, in barycentric coordinates, counts as inside.
-    pub(super) fn find(&self, queries: &[[f64; D]], tolerance: f64, cancel: &AtomicBool) -> Vec<i32> {
+    pub(super) fn find(
+        &self,
+        queries: &[[f64; D]],
+        tolerance: f64,
+        cancel: &AtomicBool,
+    ) -> Vec<i32> {
         self.each(queries, &[NONE], cancel, |q, near, found| {
             let (cell, near) = match self.t.locate(q, near) {
                 Location::Cell { cell, .. } => (Some(cell), Some(cell)),
@@ -118,7 +134,9 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
         tolerance: f64,
         cancel: &AtomicBool,
     ) -> Vec<f64> {
-        self.each(queries, outside, cancel, |q, near, mean| self.linear_at(q, near, field, tolerance, mean))
+        self.each(queries, outside, cancel, |q, near, mean| {
+            self.linear_at(q, near, field, tolerance, mean)
+        })
     }
 
     fn linear_at(
@@ -133,7 +151,10 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
         match site {
             Site::Vertex(vertex) => mean.copy_from_slice(field.at(vertex)),
             Site::Cell(cell, weights) => {
-                field.mean(self.t.tds().corners(cell).iter().copied().zip(weights), mean);
+                field.mean(
+                    self.t.tds().corners(cell).iter().copied().zip(weights),
+                    mean,
+                );
             }
             Site::Outside => {}
         }
@@ -152,14 +173,21 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
         self.each(queries, outside, cancel, |q, near, mean| {
             let location = self.t.locate(q, near);
             let near = location.cell(&self.t).or(near);
-            let is_at_rim = matches!(location, Location::Cell { cell, .. } if self.is_at_rim(cell, q));
-            let Some(weights) = (if is_at_rim { None } else { G::sibson(&self.t, q, near) }) else {
+            let is_at_rim =
+                matches!(location, Location::Cell { cell, .. } if self.is_at_rim(cell, q));
+            let Some(weights) = (if is_at_rim {
+                None
+            } else {
+                G::sibson(&self.t, q, near)
+            }) else {
                 // On the hull up to a rounding error, where the limit is linear; outside; or where
                 // squares overflow or underflow.
                 return self.linear_at(q, near, field, tolerance, mean);
             };
             field.mean(weights.iter().copied(), mean);
-            weights.first().and_then(|&(vertex, _)| self.t.tds().cell_of(vertex))
+            weights
+                .first()
+                .and_then(|&(vertex, _)| self.t.tds().cell_of(vertex))
         })
     }
 
@@ -202,17 +230,24 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
             answer(&mut results, &|rank| rank);
             return results;
         }
-        let order = if self.are_far_apart(queries) { self.order_of(queries) } else { None };
-        results.par_chunks_mut(CHUNK * width).enumerate().for_each(|(chunk, results)| {
-            if cancel.load(Ordering::Relaxed) {
-                return;
-            }
-            let start = chunk * CHUNK;
-            match &order {
-                Some(order) => answer(results, &|rank| order[start + rank] as usize),
-                None => answer(results, &|rank| start + rank),
-            }
-        });
+        let order = if self.are_far_apart(queries) {
+            self.order_of(queries)
+        } else {
+            None
+        };
+        results
+            .par_chunks_mut(CHUNK * width)
+            .enumerate()
+            .for_each(|(chunk, results)| {
+                if cancel.load(Ordering::Relaxed) {
+                    return;
+                }
+                let start = chunk * CHUNK;
+                match &order {
+                    Some(order) => answer(results, &|rank| order[start + rank] as usize),
+                    None => answer(results, &|rank| start + rank),
+                }
+            });
         let Some(order) = order else { return results };
         let mut in_given_order = blank.repeat(queries.len());
         for (result, &index) in results.chunks_exact(width).zip(&order) {
@@ -253,14 +288,20 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
     /// That is where it is, except in simplices that are at the hull by rounding: values there are
     /// those of a neighbor, so that they do not depend on which points of a straight side are
     /// rounded inward.
-    fn site(&self, q: &[f64; D], near: Option<CellId>, tolerance: f64) -> (Site<N>, Option<CellId>) {
+    fn site(
+        &self,
+        q: &[f64; D],
+        near: Option<CellId>,
+        tolerance: f64,
+    ) -> (Site<N>, Option<CellId>) {
         let in_cell = |cell: CellId| Site::Cell(cell, weights(self.sides(cell, q)));
         match self.t.locate(q, near) {
             Location::Vertex(vertex) => (Site::Vertex(vertex), self.inside_at(vertex)),
             Location::Cell { cell, facets } => {
                 let mut sides = self.sides(cell, q);
                 let mut on = (0..N).filter(|&i| facets.contains(i));
-                let is_not_shared = on.all(|i| self.t.tds().is_infinite(self.t.tds().neighbor(cell, i)));
+                let is_not_shared =
+                    on.all(|i| self.t.tds().is_infinite(self.t.tds().neighbor(cell, i)));
                 if is_not_shared
                     && self.is_by_rounding(cell, &sides)
                     && self.reaches_hull(cell, q, |cell, sides| self.is_by_rounding(cell, sides))
@@ -268,12 +309,18 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
                 {
                     return (in_cell(beside), Some(cell));
                 }
-                (0..N).filter(|&i| facets.contains(i)).for_each(|i| sides[i] = 0.0);
+                (0..N)
+                    .filter(|&i| facets.contains(i))
+                    .for_each(|i| sides[i] = 0.0);
                 (Site::Cell(cell, weights(sides)), Some(cell))
             }
             Location::OutsideHull { cell } => {
                 let inside = self.inside_of(cell);
-                (self.within_tolerance(q, inside, tolerance).map_or(Site::Outside, in_cell), Some(inside))
+                (
+                    self.within_tolerance(q, inside, tolerance)
+                        .map_or(Site::Outside, in_cell),
+                    Some(inside),
+                )
             }
             Location::OutsideAffineHull | Location::Nowhere => (Site::Outside, None),
         }
@@ -281,7 +328,10 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
 
     /// Returns a finite cell at a vertex.
     fn inside_at(&self, vertex: VertexId) -> Option<CellId> {
-        self.t.tds().cell_of(vertex).map(|cell| self.inside_of(cell))
+        self.t
+            .tds()
+            .cell_of(vertex)
+            .map(|cell| self.inside_of(cell))
     }
 
     /// Returns the cell itself if it is finite, or the finite one across the hull.
@@ -296,7 +346,9 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
     fn sides(&self, cell: CellId, q: &[f64; D]) -> [f64; N] {
         let corners = self.t.tds().corners(cell).map(|v| self.t.point(v));
         let rough = self.t.geometry().rough_sides(corners, q);
-        rough.filter(|sides| !self.is_thin(cell, sides, THIN)).unwrap_or_else(|| G::sides(corners.map(|p| *p), *q))
+        rough
+            .filter(|sides| !self.is_thin(cell, sides, THIN))
+            .unwrap_or_else(|| G::sides(corners.map(|p| *p), *q))
     }
 
     /// Returns how wide a cell is along each axis.
@@ -322,14 +374,21 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
         let [low, high] = &self.bounds;
         let moved = |axis: usize| {
             let rounding = low[axis].abs().max(high[axis].abs()) * f64::EPSILON;
-            (0..D).filter(|&other| other != axis).fold(rounding, |volume, other| volume * widths[other])
+            (0..D)
+                .filter(|&other| other != axis)
+                .fold(rounding, |volume, other| volume * widths[other])
         };
         sides.iter().sum::<f64>() <= ROUNDINGS * (0..D).map(moved).sum::<f64>()
     }
 
     /// Returns true if a cell is infinite, or cells of a kind lead from it to an infinite one,
     /// given by their volumes.
-    fn reaches_hull(&self, start: CellId, q: &[f64; D], is_kind: impl Fn(CellId, &[f64; N]) -> bool) -> bool {
+    fn reaches_hull(
+        &self,
+        start: CellId,
+        q: &[f64; D],
+        is_kind: impl Fn(CellId, &[f64; N]) -> bool,
+    ) -> bool {
         let tds = self.t.tds();
         let mut seen = vec![start];
         let mut next = 0;
@@ -353,8 +412,11 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
     fn is_at_rim(&self, cell: CellId, q: &[f64; D]) -> bool {
         let sides = self.sides(cell, q);
         let sum: f64 = sides.iter().sum();
-        let is_rim = |cell: CellId| self.reaches_hull(cell, q, |cell, sides| self.is_thin(cell, sides, FLAT));
-        is_rim(cell) || (0..N).any(|i| sides[i] <= BROAD * sum && is_rim(self.t.tds().neighbor(cell, i)))
+        let is_rim = |cell: CellId| {
+            self.reaches_hull(cell, q, |cell, sides| self.is_thin(cell, sides, FLAT))
+        };
+        is_rim(cell)
+            || (0..N).any(|i| sides[i] <= BROAD * sum && is_rim(self.t.tds().neighbor(cell, i)))
     }
 
     /// Searches near a cell for one that contains a position up to a tolerance, and is not there by
@@ -396,8 +458,14 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
     fn distance_from_box(&self, cell: CellId, q: &[f64; D]) -> f64 {
         let corners = self.t.tds().corners(cell).map(|v| self.t.point(v));
         let outside = |axis: usize| {
-            let below = corners.iter().map(|p| p[axis] - q[axis]).fold(f64::INFINITY, f64::min);
-            let above = corners.iter().map(|p| q[axis] - p[axis]).fold(f64::INFINITY, f64::min);
+            let below = corners
+                .iter()
+                .map(|p| p[axis] - q[axis])
+                .fold(f64::INFINITY, f64::min);
+            let above = corners
+                .iter()
+                .map(|p| q[axis] - p[axis])
+                .fold(f64::INFINITY, f64::min);
             below.max(above)
         };
         (0..D).map(outside).fold(0.0, f64::max)

@@ -126,7 +126,9 @@ const AS_WRITTEN: &[&str] = &[
 /// If a habit has no equivalent; the hint says what to type instead.
 pub(crate) fn understood(args: impl IntoIterator<Item = OsString>) -> Result<Vec<OsString>> {
     let mut args: Vec<OsString> = args.into_iter().collect();
-    let Some(at) = verb_position(&args) else { return Ok(args) };
+    let Some(at) = verb_position(&args) else {
+        return Ok(args);
+    };
     let rest = args.split_off(at + 1);
     let verb = verb(&args[at])?;
     args[at] = verb.clone().into();
@@ -136,7 +138,9 @@ pub(crate) fn understood(args: impl IntoIterator<Item = OsString>) -> Result<Vec
     }
     let (words, formats) = translated(&verb, rest)?;
     let (words, targets) = with_output(&verb, words)?;
-    formats.iter().try_for_each(|format| confirm(format, &targets))?;
+    formats
+        .iter()
+        .try_for_each(|format| confirm(format, &targets))?;
     args.extend(words);
     Ok(args)
 }
@@ -160,8 +164,11 @@ fn verb(typed: &OsStr) -> Result<String> {
         )));
     }
     if !is_ours && (Path::new(typed).extension().is_some() || Path::new(typed).exists()) {
-        return Err(Error::usage(format!("expected a verb, found `{word}`"))
-            .cure(format!("`breakline info {word}` shows what is in it; `breakline --help` lists the verbs")));
+        return Err(
+            Error::usage(format!("expected a verb, found `{word}`")).cure(format!(
+                "`breakline info {word}` shows what is in it; `breakline --help` lists the verbs"
+            )),
+        );
     }
     Ok(word.into_owned())
 }
@@ -169,7 +176,12 @@ fn verb(typed: &OsStr) -> Result<String> {
 /// Returns the translated words after the verb, and the names of formats among them.
 fn translated(verb: &str, words: Vec<OsString>) -> Result<(Vec<OsString>, Vec<String>)> {
     let ours = Vec::with_capacity(words.len());
-    let mut translation = Translation { verb, rest: words.into(), ours, formats: Vec::new() };
+    let mut translation = Translation {
+        verb,
+        rest: words.into(),
+        ours,
+        formats: Vec::new(),
+    };
     while let Some(word) = translation.rest.pop_front() {
         if word == "--" {
             translation.ours.push(word);
@@ -178,8 +190,9 @@ fn translated(verb: &str, words: Vec<OsString>) -> Result<(Vec<OsString>, Vec<St
         let text = word.to_string_lossy().into_owned();
         let attached = text.split_once('=').filter(|_| text.starts_with("--"));
         let name = attached.map_or(text.as_str(), |(name, _)| name);
-        let fits =
-            |habit: &&Habit| habit.typed.contains(&name) && (habit.verbs.is_empty() || habit.verbs.contains(&verb));
+        let fits = |habit: &&Habit| {
+            habit.typed.contains(&name) && (habit.verbs.is_empty() || habit.verbs.contains(&verb))
+        };
         let Some(Habit { meaning, .. }) = HABITS.iter().find(fits) else {
             translation.ours.push(word);
             continue;
@@ -217,7 +230,10 @@ impl Translation<'_> {
                 self.ours.push(option.into());
                 match &self.numbers(4)[..] {
                     corners @ [_, _, _, _] => self.ours.push(corners.join(",").into()),
-                    fewer => fewer.iter().rev().for_each(|number| self.rest.push_front(number.into())),
+                    fewer => fewer
+                        .iter()
+                        .rev()
+                        .for_each(|number| self.rest.push_front(number.into())),
                 }
             }
             List(option) => {
@@ -228,8 +244,9 @@ impl Translation<'_> {
                 }
             }
             Input(option) => {
-                let is_number =
-                    |word: &OsString| word.to_str().is_some_and(|t| finite(t).is_ok()) && !Path::new(word).exists();
+                let is_number = |word: &OsString| {
+                    word.to_str().is_some_and(|t| finite(t).is_ok()) && !Path::new(word).exists()
+                };
                 let option = option.filter(|_| self.rest.front().is_some_and(is_number));
                 self.ours.extend(option.map(OsString::from));
             }
@@ -241,7 +258,10 @@ impl Translation<'_> {
             Nothing => {}
             Refused(cure) => {
                 let verb = self.verb;
-                return Err(Error::usage(format!("{name} is not an option of `breakline {verb}`")).cure(cure));
+                return Err(
+                    Error::usage(format!("{name} is not an option of `breakline {verb}`"))
+                        .cure(cure),
+                );
             }
         }
         Ok(())
@@ -263,20 +283,30 @@ impl Translation<'_> {
 
     /// Removes and returns the next word, empty if there is none.
     fn value(&mut self) -> String {
-        self.rest.pop_front().unwrap_or_default().to_string_lossy().into_owned()
+        self.rest
+            .pop_front()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .into_owned()
     }
 
     /// Removes and returns the numbers at the front, at most `most`.
     fn numbers(&mut self, most: usize) -> Vec<String> {
         let is_number = |word: &&OsString| word.to_str().is_some_and(|text| finite(text).is_ok());
         let count = self.rest.iter().take(most).take_while(is_number).count();
-        self.rest.drain(..count).map(|word| word.to_string_lossy().into_owned()).collect()
+        self.rest
+            .drain(..count)
+            .map(|word| word.to_string_lossy().into_owned())
+            .collect()
     }
 }
 
 /// Returns an error unless a creation option describes what a GeoTIFF is anyway.
 fn require_as_written(name: &str, value: &str) -> Result<()> {
-    if AS_WRITTEN.iter().any(|known| known.eq_ignore_ascii_case(value)) {
+    if AS_WRITTEN
+        .iter()
+        .any(|known| known.eq_ignore_ascii_case(value))
+    {
         return Ok(());
     }
     Err(Error::usage(format!("{name} {value}: there are no creation options")).cure(
@@ -297,13 +327,18 @@ fn with_output(verb: &str, mut words: Vec<OsString>) -> Result<(Vec<OsString>, V
         .chain(command.get_arguments())
         .collect();
     let takes_value = |is_it: &dyn Fn(&clap::Arg) -> bool| {
-        options.iter().any(|option| is_it(option) && option.get_action().takes_values())
+        options
+            .iter()
+            .any(|option| is_it(option) && option.get_action().takes_values())
     };
     let (mut files, mut targets) = (Vec::new(), Vec::new());
     let mut i = 0;
     while i < words.len() && words[i] != "--" {
         let text = words[i].to_string_lossy();
-        let is_short = text.len() > 1 && text.starts_with('-') && !text.starts_with("--") && finite(&text).is_err();
+        let is_short = text.len() > 1
+            && text.starts_with('-')
+            && !text.starts_with("--")
+            && finite(&text).is_err();
         // The letter of an option with a value, and the part of the word that is the value.
         let mut of_value = None;
         if is_short {
@@ -313,10 +348,16 @@ fn with_output(verb: &str, mut words: Vec<OsString>) -> Result<(Vec<OsString>, V
                     of_value = Some((letter, &text[at + letter.len_utf8()..]));
                     break;
                 }
-                let is_known = options.iter().any(|option| option.get_short() == Some(letter));
+                let is_known = options
+                    .iter()
+                    .any(|option| option.get_short() == Some(letter));
                 if letters.len() > 1 && !is_known {
-                    return Err(Error::usage(format!("{text} is not an option of `breakline {verb}`"))
-                        .cure(format!("long options begin with two dashes: `breakline {verb} --help` lists them")));
+                    return Err(Error::usage(format!(
+                        "{text} is not an option of `breakline {verb}`"
+                    ))
+                    .cure(format!(
+                        "long options begin with two dashes: `breakline {verb} --help` lists them"
+                    )));
                 }
             }
         }
@@ -339,12 +380,17 @@ fn with_output(verb: &str, mut words: Vec<OsString>) -> Result<(Vec<OsString>, V
     }
     if let (true, [_, .., last]) = (targets.is_empty(), &files[..]) {
         let path = PathBuf::from(&words[*last]);
-        let extension = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+        let extension = path
+            .extension()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .to_ascii_lowercase();
         if written(verb).contains(&extension.as_str()) {
             if path.exists() && !words.iter().any(|word| word == "--overwrite") {
                 let name = path.display();
-                return Err(Error::usage("no output is named")
-                    .cure(format!("to replace {name}, which exists: -o {name} --overwrite")));
+                return Err(Error::usage("no output is named").cure(format!(
+                    "to replace {name}, which exists: -o {name} --overwrite"
+                )));
             }
             words.insert(*last, "-o".into());
             targets.push(path);
@@ -367,16 +413,30 @@ fn written(verb: &str) -> Vec<&'static str> {
 
 /// Returns an error unless there are outputs and all have the extension of this format.
 fn confirm(format: &str, targets: &[PathBuf]) -> Result<()> {
-    let is_named = |known: &&formats::Format| known.gdal_names.iter().any(|name| name.eq_ignore_ascii_case(format));
-    let extensions = formats::FORMATS.iter().find(is_named).map_or(&[][..], |known| known.extensions);
+    let is_named = |known: &&formats::Format| {
+        known
+            .gdal_names
+            .iter()
+            .any(|name| name.eq_ignore_ascii_case(format))
+    };
+    let extensions = formats::FORMATS
+        .iter()
+        .find(is_named)
+        .map_or(&[][..], |known| known.extensions);
     let is_of = |target: &PathBuf| {
-        extensions.iter().any(|known| target.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(known)))
+        extensions.iter().any(|known| {
+            target
+                .extension()
+                .is_some_and(|extension| extension.eq_ignore_ascii_case(known))
+        })
     };
     if !targets.is_empty() && targets.iter().all(is_of) {
         return Ok(());
     }
-    Err(Error::usage(format!("-of {format}: the extension of the output selects the format"))
-        .cure("leave -of out, and give the output the extension, as in -o dem.tif"))
+    Err(Error::usage(format!(
+        "-of {format}: the extension of the output selects the format"
+    ))
+    .cure("leave -of out, and give the output the extension, as in -o dem.tif"))
 }
 
 #[cfg(test)]
@@ -385,20 +445,39 @@ mod tests {
 
     fn words(line: &str) -> Result<String> {
         let words = understood(line.split(' ').map(OsString::from))?;
-        Ok(words.iter().map(|word| word.to_string_lossy()).collect::<Vec<_>>().join(" "))
+        Ok(words
+            .iter()
+            .map(|word| word.to_string_lossy())
+            .collect::<Vec<_>>()
+            .join(" "))
     }
 
     #[test]
     fn what_is_certain_is_done() {
         for (typed, expected) in [
-            ("b dem --te -10 -2.5 1e3 4 a.laz -o b.tif", "b dem --te -10,-2.5,1e3,4 a.laz -o b.tif"),
-            ("b dem a.laz --bounds 1 2 3 4 -te 5 6 7 8", "b dem a.laz --bounds 1,2,3,4 --te 5,6,7,8"),
+            (
+                "b dem --te -10 -2.5 1e3 4 a.laz -o b.tif",
+                "b dem --te -10,-2.5,1e3,4 a.laz -o b.tif",
+            ),
+            (
+                "b dem a.laz --bounds 1 2 3 4 -te 5 6 7 8",
+                "b dem a.laz --bounds 1,2,3,4 --te 5,6,7,8",
+            ),
             ("b dem --te 1,2,3,4 5 6 7 8", "b dem --te 1,2,3,4 5 6 7 8"),
             ("b dem --te 1 2 3 a.laz", "b dem --te 1 2 3 a.laz"),
-            ("b dem --te=1,2,3,4 --class 1 2 3 4", "b dem --te 1,2,3,4 --class 1 2 3 4"),
+            (
+                "b dem --te=1,2,3,4 --class 1 2 3 4",
+                "b dem --te 1,2,3,4 --class 1 2 3 4",
+            ),
             ("b dem -- --te 1 2 3 4", "b dem -- --te 1 2 3 4"),
-            ("b dem -tr 0.5 0.50 a.laz -o b.tif", "b dem --resolution 0.5 a.laz -o b.tif"),
-            ("b dem --tr=2 --resolution 0.5 0.5 a.laz", "b dem --resolution 2 --resolution 0.5 a.laz"),
+            (
+                "b dem -tr 0.5 0.50 a.laz -o b.tif",
+                "b dem --resolution 0.5 a.laz -o b.tif",
+            ),
+            (
+                "b dem --tr=2 --resolution 0.5 0.5 a.laz",
+                "b dem --resolution 2 --resolution 0.5 a.laz",
+            ),
             (
                 "b --threads 2 las2dem -i a.laz -step 2 -keep_class 2 8 -o b.tif",
                 "b --threads 2 dem a.laz --resolution 2 --class 2,8 -o b.tif",
@@ -407,15 +486,27 @@ mod tests {
                 "b dem -of gtiff -co TILED=YES -a_srs EPSG:25832 -overwrite a.laz -o b.TIF",
                 "b dem --a-srs EPSG:25832 --overwrite a.laz -o b.TIF",
             ),
-            ("b dem a.laz --s-srs EPSG:1 b.tif", "b dem a.laz --a-srs EPSG:1 -o b.tif"),
+            (
+                "b dem a.laz --s-srs EPSG:1 b.tif",
+                "b dem a.laz --a-srs EPSG:1 -o b.tif",
+            ),
             ("b dem a.laz -qo b.tif", "b dem a.laz -qo b.tif"),
-            ("b dem a.laz b.tif -tr 1 -1", "b dem a.laz -o b.tif --resolution 1"),
-            ("b dem a.laz --class 2 b.tif -q", "b dem a.laz --class 2 -o b.tif -q"),
+            (
+                "b dem a.laz b.tif -tr 1 -1",
+                "b dem a.laz -o b.tif --resolution 1",
+            ),
+            (
+                "b dem a.laz --class 2 b.tif -q",
+                "b dem a.laz --class 2 -o b.tif -q",
+            ),
             (
                 "b gdal_contour -i 10 -off 5 -3d nowhere.tif out.shp",
                 "b contour --interval 10 --base 5 nowhere.tif -o out.shp",
             ),
-            ("b contour -fl 10 -2 -i in.tif -o c.shp", "b contour --levels 10,-2 in.tif -o c.shp"),
+            (
+                "b contour -fl 10 -2 -i in.tif -o c.shp",
+                "b contour --levels 10,-2 in.tif -o c.shp",
+            ),
             (
                 "b hillshade -az 300 -alt 30 -z 2 a.tif s.png",
                 "b hillshade --azimuth 300 --altitude 30 --z-factor 2 a.tif -o s.png",
@@ -425,7 +516,10 @@ mod tests {
             ("b tin a.xyz b.ply -oc.ply", "b tin a.xyz b.ply -oc.ply"),
             ("b contour a.shp", "b contour a.shp"),
             ("b info a.laz b.tif", "b info a.laz b.tif"),
-            ("b triangulate -a1e-7 x.poly", "b triangulate --max-area=1e-7 x.poly"),
+            (
+                "b triangulate -a1e-7 x.poly",
+                "b triangulate --max-area=1e-7 x.poly",
+            ),
             ("b tim", "b tim"),
             ("b", "b"),
         ] {
@@ -436,26 +530,69 @@ mod tests {
     #[test]
     fn what_is_not_certain_is_answered_with_our_words() {
         for (typed, message, cure) in [
-            ("b dem -tr 1 2 a.laz -o b.tif", "-tr 1 2: cells are square", "--resolution 1, or --resolution 2"),
-            ("b tin -te 1 2 3 4 a.laz", "-te is not an option of `breakline tin`", "--bounds"),
-            ("b dem -of AAIGrid a.laz -o b.tif", "-of AAIGrid: the extension", "-o dem.tif"),
-            ("b dem -of PNG a.laz -o b.tif", "-of PNG: the extension", "-o dem.tif"),
+            (
+                "b dem -tr 1 2 a.laz -o b.tif",
+                "-tr 1 2: cells are square",
+                "--resolution 1, or --resolution 2",
+            ),
+            (
+                "b tin -te 1 2 3 4 a.laz",
+                "-te is not an option of `breakline tin`",
+                "--bounds",
+            ),
+            (
+                "b dem -of AAIGrid a.laz -o b.tif",
+                "-of AAIGrid: the extension",
+                "-o dem.tif",
+            ),
+            (
+                "b dem -of PNG a.laz -o b.tif",
+                "-of PNG: the extension",
+                "-o dem.tif",
+            ),
             (
                 "b dem -co COMPRESS=LZW a.laz -o b.tif",
                 "-co COMPRESS=LZW: there are no creation options",
                 "gdal_translate",
             ),
-            ("b slope dem.tif", "`slope` is not a verb", "gdaldem slope dem.tif"),
-            ("b a.laz -o b.tif", "expected a verb, found `a.laz`", "breakline info a.laz"),
-            ("b dem -drop_class 7 a.laz", "-drop_class is not an option", "--class N"),
+            (
+                "b slope dem.tif",
+                "`slope` is not a verb",
+                "gdaldem slope dem.tif",
+            ),
+            (
+                "b a.laz -o b.tif",
+                "expected a verb, found `a.laz`",
+                "breakline info a.laz",
+            ),
+            (
+                "b dem -drop_class 7 a.laz",
+                "-drop_class is not an option",
+                "--class N",
+            ),
             ("b dem -odir out a.laz", "-odir is not an option", "-o FILE"),
-            ("b dem a.laz -o b.tif -hillshade", "-hillshade is not an option", "two dashes"),
-            ("b dem a.laz --crs EPSG:1 -o b.tif", "--crs is not an option", "--a-srs"),
-            ("b triangulate -tr 1 1 x.poly", "`-tr`: of Triangle's switches", "two dashes"),
+            (
+                "b dem a.laz -o b.tif -hillshade",
+                "-hillshade is not an option",
+                "two dashes",
+            ),
+            (
+                "b dem a.laz --crs EPSG:1 -o b.tif",
+                "--crs is not an option",
+                "--a-srs",
+            ),
+            (
+                "b triangulate -tr 1 1 x.poly",
+                "`-tr`: of Triangle's switches",
+                "two dashes",
+            ),
         ] {
             let error = words(typed).unwrap_err();
             assert!(error.to_string().starts_with(message), "{error}");
-            assert!(error.cure_text().unwrap().plain().contains(cure), "{error:?}");
+            assert!(
+                error.cure_text().unwrap().plain().contains(cure),
+                "{error:?}"
+            );
         }
     }
 }

@@ -25,10 +25,15 @@ pub(crate) fn expand(typed: &[PathBuf], console: &Console) -> Result<Vec<PathBuf
     let mut seen = HashSet::new();
     found.retain(|path| {
         // The layers of a file are inputs of their own.
-        let layer = path.to_str().and_then(|text| Some(Spec::parse(text).ok()?.layer_of_several()?.to_owned()));
+        let layer = path
+            .to_str()
+            .and_then(|text| Some(Spec::parse(text).ok()?.layer_of_several()?.to_owned()));
         let is_new = seen.insert((identity(path), layer));
         if !is_new {
-            console.note(format_args!("{} is named twice and used once", path.display()));
+            console.note(format_args!(
+                "{} is named twice and used once",
+                path.display()
+            ));
         }
         is_new
     });
@@ -40,7 +45,10 @@ pub(crate) fn expand(typed: &[PathBuf], console: &Console) -> Result<Vec<PathBuf
 
 /// Returns the lists of files among the inputs as typed; they are read, too.
 pub(crate) fn lists(typed: &[PathBuf]) -> impl Iterator<Item = PathBuf> {
-    typed.iter().filter_map(|path| list_of(path)).map(Path::to_path_buf)
+    typed
+        .iter()
+        .filter_map(|path| list_of(path))
+        .map(Path::to_path_buf)
 }
 
 /// Returns the list that `@LIST` names, unless a file has that name.
@@ -62,8 +70,15 @@ pub(crate) fn require<'a>(paths: impl IntoIterator<Item = &'a PathBuf>) -> Resul
 
 #[cold]
 fn no_such_file(path: &Path) -> Error {
-    let error = Error::from(std::io::Error::new(std::io::ErrorKind::NotFound, "no such file")).in_file(path);
-    match path.to_str().is_some_and(|text| text.parse::<f64>().is_ok()) {
+    let error = Error::from(std::io::Error::new(
+        std::io::ErrorKind::NotFound,
+        "no such file",
+    ))
+    .in_file(path);
+    match path
+        .to_str()
+        .is_some_and(|text| text.parse::<f64>().is_ok())
+    {
         true => error.cure("separate several values of one option by commas, as in --class 2,8"),
         false => error,
     }
@@ -71,9 +86,15 @@ fn no_such_file(path: &Path) -> Error {
 
 #[cold]
 fn folder(path: &Path) -> Error {
-    Error::from(std::io::Error::new(std::io::ErrorKind::IsADirectory, "this is a folder"))
-        .in_file(path)
-        .cure(format!("name the files in it, as in {}", path.join("*.laz").display()))
+    Error::from(std::io::Error::new(
+        std::io::ErrorKind::IsADirectory,
+        "this is a folder",
+    ))
+    .in_file(path)
+    .cure(format!(
+        "name the files in it, as in {}",
+        path.join("*.laz").display()
+    ))
 }
 
 fn read_list(list: &Path, found: &mut Vec<PathBuf>) -> Result<()> {
@@ -109,8 +130,8 @@ fn expand_one(path: &Path, found: &mut Vec<PathBuf>) -> Result<()> {
 }
 
 fn expand_glob(pattern: &str, found: &mut Vec<PathBuf>) -> Result<()> {
-    let matches =
-        glob::glob(pattern).map_err(|e| Error::usage(format!("`{pattern}` is not a valid glob: {}", e.msg)))?;
+    let matches = glob::glob(pattern)
+        .map_err(|e| Error::usage(format!("`{pattern}` is not a valid glob: {}", e.msg)))?;
     let before = found.len();
     for path in matches {
         let path = path.map_err(|e| {
@@ -122,7 +143,10 @@ fn expand_glob(pattern: &str, found: &mut Vec<PathBuf>) -> Result<()> {
         }
     }
     if found.len() == before {
-        let missing = std::io::Error::new(std::io::ErrorKind::NotFound, format!("no file matches `{pattern}`"));
+        let missing = std::io::Error::new(
+            std::io::ErrorKind::NotFound,
+            format!("no file matches `{pattern}`"),
+        );
         return Err(Error::from(missing));
     }
     Ok(())

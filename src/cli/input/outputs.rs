@@ -14,15 +14,28 @@ pub(crate) use crate::run::{Existing, Outputs, Target};
 /// # Errors
 /// If an extension is not among the formats, an output is an input or named twice, its folder does
 /// not exist, or it exists and may not be replaced.
-pub(crate) fn resolve<F: Copy>(args: &OutputArgs, formats: &[Format<F>], inputs: &[PathBuf]) -> Result<Outputs<F>> {
+pub(crate) fn resolve<F: Copy>(
+    args: &OutputArgs,
+    formats: &[Format<F>],
+    inputs: &[PathBuf],
+) -> Result<Outputs<F>> {
     targets::resolve(&args.output, Existing::of(args.overwrite), formats, inputs)
 }
 
 /// Returns the companions of a target, then the target itself.
 pub(crate) fn files_of<F: Copy>(target: &Target<F>, formats: &[Format<F>]) -> Vec<Target<F>> {
-    let format = formats.iter().find(|format| format.extension == target.extension);
+    let format = formats
+        .iter()
+        .find(|format| format.extension == target.extension);
     let companions = format.map_or(&[][..], |format| format.companions);
     let mut files = formats::with_companions(&target.path, target.extension, companions);
     files.rotate_left(1);
-    files.into_iter().map(|(path, extension)| Target { path, kind: target.kind, extension }).collect()
+    files
+        .into_iter()
+        .map(|(path, extension)| Target {
+            path,
+            kind: target.kind,
+            extension,
+        })
+        .collect()
 }

@@ -3,15 +3,17 @@
 use std::path::PathBuf;
 
 use super::args::{
-    CrossingZArg, DuplicatesArg, EdgeLength, FrameArgs, LineArgs, OnCrossingArg, OutputArgs, SurfaceArgs, SystemArgs,
+    CrossingZArg, DuplicatesArg, EdgeLength, FrameArgs, LineArgs, OnCrossingArg, OutputArgs,
+    SurfaceArgs, SystemArgs,
 };
 use super::inputs;
 use crate::cli::report::console::Console;
 use crate::crs::Crs;
 use crate::error::{Error, Result};
 use crate::run::{
-    Degrees, EdgeLimit, Existing, FlatOptions, FlatRule, FrameOptions, Input, LineRequest, LowerEdge, MemoryPoints,
-    ReplacedPoints, Source, SurfaceRequest, SystemOptions, Targets, TinRequest, WallOptions,
+    Degrees, EdgeLimit, Existing, FlatOptions, FlatRule, FrameOptions, Input, LineRequest,
+    LowerEdge, MemoryPoints, ReplacedPoints, Source, SurfaceRequest, SystemOptions, Targets,
+    TinRequest, WallOptions,
 };
 use crate::terrain::Classes;
 
@@ -30,16 +32,40 @@ impl SurfacePlan {
     /// If files are missing, kinds of input are mixed or options do not go together.
     pub(crate) fn resolve(args: &SurfaceArgs, console: &Console) -> Result<Self> {
         let files = inputs::expand(&args.inputs, console)?;
-        let degrees = if args.force_degrees { Degrees::Allow } else { Degrees::Refuse };
-        let systems = SystemOptions { degrees, ..systems(&args.systems)? };
-        let line_files: Vec<PathBuf> = args.lines.files().iter().flat_map(|(_, paths)| paths.iter().cloned()).collect();
-        inputs::require(args.breaklines.iter().chain(&line_files).chain(&args.boundary))?;
+        let degrees = if args.force_degrees {
+            Degrees::Allow
+        } else {
+            Degrees::Refuse
+        };
+        let systems = SystemOptions {
+            degrees,
+            ..systems(&args.systems)?
+        };
+        let line_files: Vec<PathBuf> = args
+            .lines
+            .files()
+            .iter()
+            .flat_map(|(_, paths)| paths.iter().cloned())
+            .collect();
+        inputs::require(
+            args.breaklines
+                .iter()
+                .chain(&line_files)
+                .chain(&args.boundary),
+        )?;
         let (breaklines, boundary) = (layers(&args.breaklines), layers(&args.boundary));
         let lines = line_request(&args.lines);
-        let building = TinRequest { breaklines, boundary, lines, ..TinRequest::default() };
+        let building = TinRequest {
+            breaklines,
+            boundary,
+            lines,
+            ..TinRequest::default()
+        };
         building.check_layers()?;
         let source = match Source::of_files(&files)? {
-            Source::Points(points) => Source::Points(Box::new(tin_request(points.points, building, args))),
+            Source::Points(points) => {
+                Source::Points(Box::new(tin_request(points.points, building, args)))
+            }
             Source::Mesh(path) => Source::Mesh(as_it_is(path, args)?),
             Source::Raster(path) => Source::Raster(as_it_is(path, args)?),
         };
@@ -49,13 +75,20 @@ impl SurfacePlan {
             also_read: inputs::lists(&args.inputs).collect(),
             ..Targets::default()
         };
-        Ok(SurfacePlan { request: SurfaceRequest { source, systems }, targets })
+        Ok(SurfacePlan {
+            request: SurfaceRequest { source, systems },
+            targets,
+        })
     }
 
     /// Returns the targets with these outputs.
     pub(crate) fn targets(&self, args: &OutputArgs) -> Targets {
         let existing = Existing::of(args.overwrite);
-        Targets { files: args.output.clone(), existing, ..self.targets.clone() }
+        Targets {
+            files: args.output.clone(),
+            existing,
+            ..self.targets.clone()
+        }
     }
 }
 
@@ -66,7 +99,11 @@ impl SurfacePlan {
 pub(crate) fn frame(args: &FrameArgs) -> Result<FrameOptions> {
     inputs::require(&args.align_to)?;
     let extent = args.te.map(|corners| corners.bounds());
-    Ok(FrameOptions { resolution: args.resolution, extent, align_to: args.align_to.clone() })
+    Ok(FrameOptions {
+        resolution: args.resolution,
+        extent,
+        align_to: args.align_to.clone(),
+    })
 }
 
 /// Returns the coordinate systems that the options name.
@@ -104,11 +141,18 @@ fn line_request(args: &LineArgs) -> LineRequest {
         soft: layers(&args.soft_lines),
         draped: layers(&args.draped_lines),
         walls: layers(&args.walls),
-        wall: WallOptions { lower, width: args.wall_width, high: args.wall_high.into() },
+        wall: WallOptions {
+            lower,
+            width: args.wall_width,
+            high: args.wall_high.into(),
+        },
         holes: layers(&args.holes),
         flats: layers(&args.flat),
         flat: FlatOptions {
-            height: args.flat_height.as_ref().map_or(FlatRule::OfShore, |height| height.0.clone()),
+            height: args
+                .flat_height
+                .as_ref()
+                .map_or(FlatRule::OfShore, |height| height.0.clone()),
             tolerance: args.flat_tolerance,
             buffer: args.flat_buffer,
         },
@@ -122,7 +166,11 @@ fn layers<T>(paths: &[PathBuf]) -> Vec<Input<T>> {
     paths.iter().cloned().map(Input::File).collect()
 }
 
-fn tin_request(points: Vec<Input<MemoryPoints>>, building: TinRequest, args: &SurfaceArgs) -> TinRequest {
+fn tin_request(
+    points: Vec<Input<MemoryPoints>>,
+    building: TinRequest,
+    args: &SurfaceArgs,
+) -> TinRequest {
     TinRequest {
         points,
         read: args.read.options(),
@@ -166,7 +214,10 @@ fn as_it_is(path: PathBuf, args: &SurfaceArgs) -> Result<PathBuf> {
         (lines.densify.is_some(), "--densify"),
         (!args.class.is_empty(), "--class"),
         (args.duplicates != DuplicatesArg::default(), "--duplicates"),
-        (args.on_crossing != OnCrossingArg::default(), "--on-crossing"),
+        (
+            args.on_crossing != OnCrossingArg::default(),
+            "--on-crossing",
+        ),
         (args.crossing_z != CrossingZArg::default(), "--crossing-z"),
         (args.crossing_tolerance.is_some(), "--crossing-tolerance"),
         (args.crossing_report.is_some(), "--crossing-report"),
@@ -175,13 +226,15 @@ fn as_it_is(path: PathBuf, args: &SurfaceArgs) -> Result<PathBuf> {
         (args.read.parse.is_some(), "--parse"),
         (args.read.partial, "--partial"),
     ];
-    let files = lines.files().map(|(option, paths)| (!paths.is_empty(), option));
+    let files = lines
+        .files()
+        .map(|(option, paths)| (!paths.is_empty(), option));
     match given.iter().chain(&files).find(|(is_given, _)| *is_given) {
-        Some((_, option)) => {
-            Err(Error::usage(format!("{option} is for building a TIN, but the input is a surface already"))
-                .in_file(path)
-                .cure("leave the option out, or pass the points that the surface was built from"))
-        }
+        Some((_, option)) => Err(Error::usage(format!(
+            "{option} is for building a TIN, but the input is a surface already"
+        ))
+        .in_file(path)
+        .cure("leave the option out, or pass the points that the surface was built from")),
         None => Ok(path),
     }
 }

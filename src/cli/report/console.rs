@@ -38,7 +38,11 @@ impl Console {
             // Hidden by itself if stderr is not a terminal.
             _ => ProgressDrawTarget::stderr(),
         };
-        Console { level, bars: MultiProgress::with_draw_target(target), said: Mutex::default() }
+        Console {
+            level,
+            bars: MultiProgress::with_draw_target(target),
+            said: Mutex::default(),
+        }
     }
 
     /// Prints an error, and its hint on a line of its own.
@@ -84,12 +88,19 @@ impl Console {
 
     /// Returns the context of a run that shows its notices and progress here.
     pub(crate) fn context(&self) -> Context<'_> {
-        Context { monitor: self, ..Context::default() }
+        Context {
+            monitor: self,
+            ..Context::default()
+        }
     }
 
     /// Prints a line unless it was printed before; returns true if it was printed.
     fn once(&self, text: String) -> bool {
-        let is_new = self.said.lock().unwrap_or_else(PoisonError::into_inner).insert(text.clone());
+        let is_new = self
+            .said
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .insert(text.clone());
         if is_new {
             self.print(&text);
         }
@@ -117,7 +128,10 @@ impl Monitor for Console {
             Severity::Warning => (Verbosity::Quiet, format!("warning: {text}")),
         };
         if self.level >= least && self.once(text) {
-            notice.details().iter().for_each(|line| self.line(format_args!("            {}", line.render(&name))));
+            notice
+                .details()
+                .iter()
+                .for_each(|line| self.line(format_args!("            {}", line.render(&name))));
         }
     }
 }

@@ -47,9 +47,18 @@ mod tests {
 
     #[test]
     fn what_is_hidden_is_shown_and_nothing_else_is_touched() {
-        assert!(matches!(line("C:\\Gr\u{fc}\u{df}e \"\u{6d4b}\u{8bd5}\" \u{200d}"), Cow::Borrowed(_)));
-        assert_eq!(line("a\u{1b}]0;x\u{7}\r\nb\u{7f}\u{9b}2J"), r"a\u{1b}]0;x\u{7}\r\nb\u{7f}\u{9b}2J");
-        assert_eq!(line("\u{202e}fig\u{2066}\u{2028}\u{feff}"), r"\u{202e}fig\u{2066}\u{2028}\u{feff}");
+        assert!(matches!(
+            line("C:\\Gr\u{fc}\u{df}e \"\u{6d4b}\u{8bd5}\" \u{200d}"),
+            Cow::Borrowed(_)
+        ));
+        assert_eq!(
+            line("a\u{1b}]0;x\u{7}\r\nb\u{7f}\u{9b}2J"),
+            r"a\u{1b}]0;x\u{7}\r\nb\u{7f}\u{9b}2J"
+        );
+        assert_eq!(
+            line("\u{202e}fig\u{2066}\u{2028}\u{feff}"),
+            r"\u{202e}fig\u{2066}\u{2028}\u{feff}"
+        );
         assert_eq!(lines("a\u{1b}\nb\r\n"), "a\\u{1b}\nb\\r\n");
         assert_eq!(json("{\n\"\u{9b}\u{202e}\"\n}"), "{\n\"\\u009b\\u202e\"\n}");
     }

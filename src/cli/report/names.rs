@@ -6,7 +6,9 @@ use crate::error::{Command, Setting, Term};
 pub(crate) fn name(term: &Term) -> String {
     match term {
         Term::Setting(setting) | Term::On(setting) => option(*setting),
-        Term::Text(setting, value) | Term::Number(setting, value) => format!("{} {value}", option(*setting)),
+        Term::Text(setting, value) | Term::Number(setting, value) => {
+            format!("{} {value}", option(*setting))
+        }
         Term::Command(verb, None) => format!("`breakline {}`", command(*verb)),
         Term::Command(verb, Some(file)) => format!("`breakline {} {file}`", command(*verb)),
         Term::Build(feature) => format!("`cargo build --release --features {}`", feature.name()),
@@ -50,15 +52,21 @@ mod tests {
     use crate::cli::input::args::Cli;
 
     fn options(command: &clap::Command) -> BTreeSet<String> {
-        let own = command.get_arguments().filter_map(|arg| arg.get_long()).map(|name| format!("--{name}"));
-        own.chain(command.get_subcommands().flat_map(options)).collect()
+        let own = command
+            .get_arguments()
+            .filter_map(|arg| arg.get_long())
+            .map(|name| format!("--{name}"));
+        own.chain(command.get_subcommands().flat_map(options))
+            .collect()
     }
 
     #[test]
     fn every_setting_is_an_option() {
         let known = options(&Cli::command());
-        let unknown: Vec<&Setting> =
-            Setting::ALL.iter().filter(|setting| !known.contains(&option(**setting))).collect();
+        let unknown: Vec<&Setting> = Setting::ALL
+            .iter()
+            .filter(|setting| !known.contains(&option(**setting)))
+            .collect();
         assert!(unknown.is_empty(), "{unknown:?}");
     }
 
@@ -70,7 +78,10 @@ mod tests {
                 if word.starts_with("--") {
                     assert!(options(&here).contains(word), "{words}");
                 } else {
-                    here = here.find_subcommand(word).unwrap_or_else(|| panic!("{words}")).clone();
+                    here = here
+                        .find_subcommand(word)
+                        .unwrap_or_else(|| panic!("{words}"))
+                        .clone();
                 }
             }
         }

@@ -15,10 +15,14 @@ pub(super) struct Bar(ProgressBar);
 impl Bar {
     pub(super) fn new(bars: &MultiProgress, stage: Stage, size: Size) -> Self {
         let (bar, template) = match size {
-            Size::Items(count) => {
-                (ProgressBar::new(count), "{msg} [{bar:30}] {human_pos} of {human_len}, {rate}, {eta} left")
-            }
-            Size::Unknown => (ProgressBar::no_length(), "{msg} {spinner} {human_pos}, {rate}, {elapsed}"),
+            Size::Items(count) => (
+                ProgressBar::new(count),
+                "{msg} [{bar:30}] {human_pos} of {human_len}, {rate}, {eta} left",
+            ),
+            Size::Unknown => (
+                ProgressBar::no_length(),
+                "{msg} {spinner} {human_pos}, {rate}, {elapsed}",
+            ),
             Size::Uncounted => (ProgressBar::no_length(), "{msg} {spinner} {elapsed}"),
         };
         let bar = bars.add(bar);

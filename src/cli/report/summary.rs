@@ -13,15 +13,25 @@ use crate::terrain::{DuplicateRule, SelectionReport, TinReport};
 pub(crate) fn print_surface(report: &SurfaceReport, console: &Console) {
     match &report.origin {
         Origin::Built(built) => {
-            console.line(format_args!("points      {}", points_line(&built.points, built.sources)));
+            console.line(format_args!(
+                "points      {}",
+                points_line(&built.points, built.sources)
+            ));
             if !built.columns.is_empty() {
                 console.line(format_args!("columns     {}", columns_line(&built.columns)));
             }
             print_tin(built, console);
-            console.line(format_args!("triangles   {}{}", built.tin.triangles, left_out(&built.tin)));
+            console.line(format_args!(
+                "triangles   {}{}",
+                built.tin.triangles,
+                left_out(&built.tin)
+            ));
         }
         Origin::Cells(frame) => {
-            console.line(format_args!("raster      {}", describe(frame, report.crs.as_ref())));
+            console.line(format_args!(
+                "raster      {}",
+                describe(frame, report.crs.as_ref())
+            ));
         }
         Origin::Triangles(facts) => {
             for (kind, edges) in facts.edges.kinds() {
@@ -44,14 +54,22 @@ fn print_tin(built: &BuildReport, console: &Console) {
             DuplicateRule::First => "the first is kept",
             DuplicateRule::Last => "the last is kept",
         };
-        console.line(format_args!("            {} at the position of another point ({rule})", tin.duplicates));
+        console.line(format_args!(
+            "            {} at the position of another point ({rule})",
+            tin.duplicates
+        ));
     }
     if tin.points_on_breaklines > 0 {
         let count = tin.points_on_breaklines;
-        console.line(format_args!("            {count} at a breakline's vertex (whose height is used)"));
+        console.line(format_args!(
+            "            {count} at a breakline's vertex (whose height is used)"
+        ));
     }
     if tin.points_replaced > 0 {
-        console.line(format_args!("            {} in water or walls (left out)", tin.points_replaced));
+        console.line(format_args!(
+            "            {} in water or walls (left out)",
+            tin.points_replaced
+        ));
     }
     print_lines(built, console);
     let parts = [
@@ -64,9 +82,20 @@ fn print_tin(built: &BuildReport, console: &Console) {
             },
         ),
         (tin.vertices_clipped, "clipped"),
-        (tin.vertices_cut, if tin.edges.of(EdgeKind::Draped) > 0 { "added by cuts" } else { "added by the clip" }),
+        (
+            tin.vertices_cut,
+            if tin.edges.of(EdgeKind::Draped) > 0 {
+                "added by cuts"
+            } else {
+                "added by the clip"
+            },
+        ),
     ];
-    console.line(format_args!("vertices    {}{}", tin.vertices, listed(&parts)));
+    console.line(format_args!(
+        "vertices    {}{}",
+        tin.vertices,
+        listed(&parts)
+    ));
     let clips = tin.edges.of(EdgeKind::Clip);
     if clips > 0 {
         console.line(format_args!("clip lines  {clips} edges"));
@@ -76,8 +105,11 @@ fn print_tin(built: &BuildReport, console: &Console) {
 /// Prints how many lines became how many edges, for each input.
 fn print_lines(built: &BuildReport, console: &Console) {
     let tin = &built.tin;
-    let of_breaklines: Vec<&LineInput> =
-        built.lines.iter().filter(|input| input.role == LineRole::Breaklines).collect();
+    let of_breaklines: Vec<&LineInput> = built
+        .lines
+        .iter()
+        .filter(|input| input.role == LineRole::Breaklines)
+        .collect();
     let breaklines: usize = of_breaklines.iter().map(|input| input.lines).sum();
     if breaklines > 0 {
         let crossings = match tin.crossings {
@@ -85,14 +117,29 @@ fn print_lines(built: &BuildReport, console: &Console) {
             n => format!(", {n} crossings between vertices"),
         };
         let (edges, vertices) = (tin.edges.of(EdgeKind::Breakline), tin.breakline_vertices);
-        console.line(format_args!("breaklines  {breaklines} in, {edges} edges out, {vertices} vertices{crossings}"));
+        console.line(format_args!(
+            "breaklines  {breaklines} in, {edges} edges out, {vertices} vertices{crossings}"
+        ));
         if of_breaklines.len() > 1 {
-            for LineInput { path, lines, edges, .. } in of_breaklines {
-                console.line(format_args!("            {lines} in, {edges} edges of {}", path.display()));
+            for LineInput {
+                path, lines, edges, ..
+            } in of_breaklines
+            {
+                console.line(format_args!(
+                    "            {lines} in, {edges} edges of {}",
+                    path.display()
+                ));
             }
         }
     }
-    for LineInput { role, path, lines, edges, .. } in &built.lines {
+    for LineInput {
+        role,
+        path,
+        lines,
+        edges,
+        ..
+    } in &built.lines
+    {
         let path = path.display();
         let (name, edges) = match role {
             LineRole::Breaklines | LineRole::Boundary => continue,
@@ -102,7 +149,9 @@ fn print_lines(built: &BuildReport, console: &Console) {
             LineRole::Rivers => ("rivers", *edges),
             LineRole::Draped => {
                 let all = tin.edges.of(EdgeKind::Draped);
-                console.line(format_args!("draped      {lines} in, of {path} ({all} edges of all draped lines)"));
+                console.line(format_args!(
+                    "draped      {lines} in, of {path} ({all} edges of all draped lines)"
+                ));
                 continue;
             }
             LineRole::Holes => {
@@ -110,13 +159,18 @@ fn print_lines(built: &BuildReport, console: &Console) {
                 continue;
             }
         };
-        console.line(format_args!("{name:<11} {lines} in, {edges} edges out, of {path}"));
+        console.line(format_args!(
+            "{name:<11} {lines} in, {edges} edges out, of {path}"
+        ));
     }
 }
 
 fn left_out(tin: &TinReport) -> String {
     listed(&[
-        (tin.faces_beyond_max_edge, "with long edges at the rim left out"),
+        (
+            tin.faces_beyond_max_edge,
+            "with long edges at the rim left out",
+        ),
         (tin.faces_with_long_edges, "with long edges left out"),
         (tin.faces_clipped, "clipped"),
         (tin.faces_cut, "cut"),
@@ -129,7 +183,9 @@ fn columns_line(columns: &[(Columns, u64)]) -> String {
     match columns {
         [(columns, _)] => columns.to_string(),
         several => {
-            let texts = several.iter().map(|(columns, count)| format!("{columns} ({})", counted(*count, "file")));
+            let texts = several
+                .iter()
+                .map(|(columns, count)| format!("{columns} ({})", counted(*count, "file")));
             texts.collect::<Vec<_>>().join("; ")
         }
     }
@@ -137,9 +193,16 @@ fn columns_line(columns: &[(Columns, u64)]) -> String {
 
 /// Formats counts as ` (5 clipped, 2 added)`, without those that are zero.
 fn listed(parts: &[(usize, &str)]) -> String {
-    let parts: Vec<String> =
-        parts.iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{count} {what}")).collect();
-    if parts.is_empty() { String::new() } else { format!(" ({})", parts.join(", ")) }
+    let parts: Vec<String> = parts
+        .iter()
+        .filter(|(count, _)| *count > 0)
+        .map(|(count, what)| format!("{count} {what}"))
+        .collect();
+    if parts.is_empty() {
+        String::new()
+    } else {
+        format!(" ({})", parts.join(", "))
+    }
 }
 
 /// Prints an extent and its coordinate system.
@@ -149,8 +212,16 @@ pub(crate) fn print_extent(extent: Bounds, crs: Option<&Crs>, console: &Console)
         let is_wide = (0..2).any(|i| extent.max[i] - extent.min[i] > 10.0);
         let shown = if is_wide { thousandths } else { neat };
         let axis = |i: usize| format!("{} .. {}", shown(extent.min[i]), shown(extent.max[i]));
-        let heights = if extent.min[2] <= extent.max[2] { format!(", z {}", axis(2)) } else { String::new() };
-        console.line(format_args!("extent      x {}, y {}{heights}", axis(0), axis(1)));
+        let heights = if extent.min[2] <= extent.max[2] {
+            format!(", z {}", axis(2))
+        } else {
+            String::new()
+        };
+        console.line(format_args!(
+            "extent      x {}, y {}{heights}",
+            axis(0),
+            axis(1)
+        ));
     }
     match crs {
         Some(crs) => console.line(format_args!("CRS         {}", crs.describe())),
@@ -166,20 +237,32 @@ fn points_line(report: &SelectionReport, files: usize) -> String {
     text += &format!(", {} used", report.used);
     let mut dropped = Vec::new();
     if report.other_class > 0 {
-        let is_used = |class| report.classes.as_ref().is_none_or(|used| used.contains(class));
+        let is_used = |class| {
+            report
+                .classes
+                .as_ref()
+                .is_none_or(|used| used.contains(class))
+        };
         let classes: Vec<String> = report
             .by_class
             .iter()
             .filter(|(class, _)| !is_used(class))
             .map(|(class, count)| format!("{class}: {count}"))
             .collect();
-        dropped.push(format!("{} of other classes ({})", report.other_class, classes.join(", ")));
+        dropped.push(format!(
+            "{} of other classes ({})",
+            report.other_class,
+            classes.join(", ")
+        ));
     }
     if report.withheld > 0 {
         dropped.push(format!("{} withheld", report.withheld));
     }
     if report.outside > 0 {
-        dropped.push(format!("{} outside of the bounds and their buffer", report.outside));
+        dropped.push(format!(
+            "{} outside of the bounds and their buffer",
+            report.outside
+        ));
     }
     if !dropped.is_empty() {
         text += &format!("; dropped: {}", dropped.join(", "));
@@ -215,7 +298,10 @@ fn thousandths(value: f64) -> String {
 pub(crate) fn print_cost(start: Instant, console: &Console) {
     let time = format!("{:.2} s", start.elapsed().as_secs_f64());
     match peak_memory() {
-        Some(bytes) => console.line(format_args!("done in {time}, peak memory {} MB", number(bytes as f64 / 1e6))),
+        Some(bytes) => console.line(format_args!(
+            "done in {time}, peak memory {} MB",
+            number(bytes as f64 / 1e6)
+        )),
         None => console.line(format_args!("done in {time}")),
     }
 }
@@ -223,7 +309,9 @@ pub(crate) fn print_cost(start: Instant, console: &Console) {
 /// Returns the peak memory of this process in bytes; `None` if the system does not report it.
 fn peak_memory() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    let line = status
+        .lines()
+        .find_map(|line| line.strip_prefix("VmHWM:"))?;
     let kilobytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
     Some(kilobytes * 1024)
 }

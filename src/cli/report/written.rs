@@ -14,8 +14,8 @@ use crate::io::geotiff::RasterSummary;
 use crate::io::mesh::MeshSummary;
 use crate::run::units::{Units, bytes};
 use crate::run::{
-    Context, Event, JobReport, JobSize, Monitor, Notice, Origin, Outputs, Progress, Size, Stage, Summary, WriteReport,
-    Written, WrittenOf,
+    Context, Event, JobReport, JobSize, Monitor, Notice, Origin, Outputs, Progress, Size, Stage,
+    Summary, WriteReport, Written, WrittenOf,
 };
 
 /// Shows what happens while files are written.
@@ -30,16 +30,27 @@ pub(crate) struct Shown<'a> {
 
 impl<'a> Shown<'a> {
     pub(crate) fn new(console: &'a Console, how_to_go_on: String) -> Self {
-        Shown { console, how_to_go_on, words: Mutex::default() }
+        Shown {
+            console,
+            how_to_go_on,
+            words: Mutex::default(),
+        }
     }
 
     /// Returns the context of a run that is shown.
     pub(crate) fn context(&self) -> Context<'_> {
-        Context { monitor: self, ..Context::default() }
+        Context {
+            monitor: self,
+            ..Context::default()
+        }
     }
 
     fn kept(&self, folder: &Path) -> String {
-        format!("finished tasks are kept in {}: go on with {}", folder.display(), self.how_to_go_on)
+        format!(
+            "finished tasks are kept in {}: go on with {}",
+            folder.display(),
+            self.how_to_go_on
+        )
     }
 
     fn set_words(&self, words: impl FnOnce() -> Option<LastWords>) {
@@ -53,27 +64,41 @@ impl<'a> Shown<'a> {
     pub(crate) fn print(&self, report: &WriteReport) -> Exit {
         match report {
             WriteReport::Planned { folder, .. } => {
-                self.console.line(format_args!("folder      {}", folder.display()));
+                self.console
+                    .line(format_args!("folder      {}", folder.display()));
                 Exit::Done
             }
             WriteReport::Kept { output, has_holes } => {
-                self.console.line(format_args!("output      {} is written", output.display()));
+                self.console
+                    .line(format_args!("output      {} is written", output.display()));
                 if *has_holes { Exit::Holes } else { Exit::Done }
             }
             WriteReport::Written(written) => self.print_written(written),
         }
     }
 
-    fn print_written(&self, Written { surface, summary, files, .. }: &Written) -> Exit {
+    fn print_written(
+        &self,
+        Written {
+            surface,
+            summary,
+            files,
+            ..
+        }: &Written,
+    ) -> Exit {
         let console = self.console;
         if let Summary::Meshes(meshes) = summary {
-            meshes.iter().for_each(|(path, mesh)| note_mesh(path, mesh, ".ply keeps them", console));
+            meshes
+                .iter()
+                .for_each(|(path, mesh)| note_mesh(path, mesh, ".ply keeps them", console));
         }
         let crs = match surface {
             WrittenOf::Whole(report) => {
                 match (&report.origin, summary) {
                     // The size of the raster is printed already.
-                    (Origin::Cells(_), Summary::Shades) => print_extent(report.extent, report.crs.as_ref(), console),
+                    (Origin::Cells(_), Summary::Shades) => {
+                        print_extent(report.extent, report.crs.as_ref(), console)
+                    }
                     _ => print_surface(report, console),
                 }
                 report.crs.as_ref()
@@ -87,8 +112,15 @@ impl<'a> Shown<'a> {
             Summary::Heights(cells) => print_heights(cells, crs, console),
             Summary::Contours(drawn) => print_contours(drawn, crs, console),
             Summary::Parts(parts) => {
-                let folder = files.first().map(|index| index.with_file_name(&parts.index.folder)).unwrap_or_default();
-                console.line(format_args!("parts       {}, in {}", parts.index.parts.len(), folder.display()));
+                let folder = files
+                    .first()
+                    .map(|index| index.with_file_name(&parts.index.folder))
+                    .unwrap_or_default();
+                console.line(format_args!(
+                    "parts       {}, in {}",
+                    parts.index.parts.len(),
+                    folder.display()
+                ));
             }
             Summary::Shades | Summary::Meshes(_) => {}
         }
@@ -124,12 +156,22 @@ impl Monitor for Shown<'_> {
             Event::Resumed { done, tasks } => {
                 console.line(format_args!("resumed     {done} of {tasks} tasks are done"));
             }
-            Event::PlannedAgain(path) => console
-                .note(format_args!("{} was skipped, and can be read now: the job is planned again", path.display())),
-            Event::TasksBegin(folder) => self.set_words(|| console.note_if_ended(self.kept(folder))),
-            Event::RasterBegins { frame, crs, bytes: size } => {
+            Event::PlannedAgain(path) => console.note(format_args!(
+                "{} was skipped, and can be read now: the job is planned again",
+                path.display()
+            )),
+            Event::TasksBegin(folder) => {
+                self.set_words(|| console.note_if_ended(self.kept(folder)))
+            }
+            Event::RasterBegins {
+                frame,
+                crs,
+                bytes: size,
+            } => {
                 let (cells, size) = (describe(frame, *crs), bytes(*size));
-                console.line(format_args!("raster      {cells}, {size} before compression"));
+                console.line(format_args!(
+                    "raster      {cells}, {size} before compression"
+                ));
             }
             Event::Written => self.set_words(|| None),
         }
@@ -138,8 +180,15 @@ impl Monitor for Shown<'_> {
 
 /// Prints what a plan consists of.
 pub(crate) fn print_size(size: &JobSize, console: &Console) {
-    let files = if size.divides { format!("of {} files, divided first", size.files) } else { "the files".to_owned() };
-    console.line(format_args!("tiles       {} ({files}), {} merges, {} tasks", size.tiles, size.merges, size.tasks));
+    let files = if size.divides {
+        format!("of {} files, divided first", size.files)
+    } else {
+        "the files".to_owned()
+    };
+    console.line(format_args!(
+        "tiles       {} ({files}), {} merges, {} tasks",
+        size.tiles, size.merges, size.tasks
+    ));
     let disk = match size.bytes_on_disk {
         0 => String::new(),
         disk => format!(", about {} on the disk", bytes(disk)),
@@ -153,32 +202,60 @@ pub(crate) fn print_size(size: &JobSize, console: &Console) {
 
 /// Prints what a surface in tiles was built of, and its size and extent.
 fn print_tiles(report: &JobReport, console: &Console) {
-    let dropped = [(report.other_class, "of other classes"), (report.withheld, "withheld")];
-    let dropped: Vec<String> =
-        dropped.iter().filter(|(count, _)| *count > 0).map(|(count, why)| format!("{count} {why}")).collect();
-    let dropped = if dropped.is_empty() { String::new() } else { format!("; dropped: {}", dropped.join(", ")) };
-    console.line(format_args!("points      {} read, {} used{dropped}", report.read, report.used));
+    let dropped = [
+        (report.other_class, "of other classes"),
+        (report.withheld, "withheld"),
+    ];
+    let dropped: Vec<String> = dropped
+        .iter()
+        .filter(|(count, _)| *count > 0)
+        .map(|(count, why)| format!("{count} {why}"))
+        .collect();
+    let dropped = if dropped.is_empty() {
+        String::new()
+    } else {
+        format!("; dropped: {}", dropped.join(", "))
+    };
+    console.line(format_args!(
+        "points      {} read, {} used{dropped}",
+        report.read, report.used
+    ));
     if report.duplicates > 0 {
-        console.line(format_args!("            {} at the position of another point", report.duplicates));
+        console.line(format_args!(
+            "            {} at the position of another point",
+            report.duplicates
+        ));
     }
     if report.points_on_breaklines > 0 {
         let count = report.points_on_breaklines;
-        console.line(format_args!("            {count} at a breakline's vertex (whose height is used)"));
+        console.line(format_args!(
+            "            {count} at a breakline's vertex (whose height is used)"
+        ));
     }
     if report.line_edges > 0 {
         console.line(format_args!("lines       {} edges", report.line_edges));
     }
     let mut left_out = Vec::new();
     if report.beyond_max_edge > 0 {
-        left_out.push(format!("{} left out at the rim; {} waited for that", report.beyond_max_edge, report.waited));
+        left_out.push(format!(
+            "{} left out at the rim; {} waited for that",
+            report.beyond_max_edge, report.waited
+        ));
     }
     if report.over_skipped > 0 {
-        left_out.push(format!("{} left out over skipped files", report.over_skipped));
+        left_out.push(format!(
+            "{} left out over skipped files",
+            report.over_skipped
+        ));
     }
     if report.clipped > 0 {
         left_out.push(format!("{} clipped", report.clipped));
     }
-    let left_out = if left_out.is_empty() { String::new() } else { format!(" ({})", left_out.join(", ")) };
+    let left_out = if left_out.is_empty() {
+        String::new()
+    } else {
+        format!(" ({})", left_out.join(", "))
+    };
     console.line(format_args!("triangles   {}{left_out}", report.triangles));
     console.line(format_args!("handed up   {} vertices", report.handed_up));
     print_extent(report.extent, report.crs.as_ref(), console);
@@ -190,7 +267,10 @@ fn print_heights(cells: &RasterSummary, crs: Option<&Crs>, console: &Console) {
     }
     let units = Units::of(crs);
     let (low, high) = (units.height(cells.min), units.height(cells.max));
-    console.line(format_args!("            {} with a height, from {low} to {high}", cells.valid));
+    console.line(format_args!(
+        "            {} with a height, from {low} to {high}",
+        cells.valid
+    ));
 }
 
 fn print_contours(drawn: &ContourSummary, crs: Option<&Crs>, console: &Console) {
@@ -198,9 +278,15 @@ fn print_contours(drawn: &ContourSummary, crs: Option<&Crs>, console: &Console) 
         return console.warning("no contour crosses the surface at these levels");
     }
     let units = Units::of(crs);
-    let (low, high) = (units.height(drawn.bounds.min[2]), units.height(drawn.bounds.max[2]));
+    let (low, high) = (
+        units.height(drawn.bounds.min[2]),
+        units.height(drawn.bounds.max[2]),
+    );
     let lines = counted(drawn.lines as u64, "line");
-    console.line(format_args!("contours    {lines} ({} closed) from {low} to {high}", drawn.closed));
+    console.line(format_args!(
+        "contours    {lines} ({} closed) from {low} to {high}",
+        drawn.closed
+    ));
 }
 
 /// Makes all files appear, and prints their names.
@@ -208,7 +294,11 @@ fn print_contours(drawn: &ContourSummary, crs: Option<&Crs>, console: &Console) 
 /// # Errors
 /// If one cannot appear; then none does.
 pub(crate) fn commit<F>(outputs: Outputs<F>, console: &Console) -> Result<()> {
-    outputs.set.commit()?.iter().for_each(|path| print_file(path, console));
+    outputs
+        .set
+        .commit()?
+        .iter()
+        .for_each(|path| print_file(path, console));
     Ok(())
 }
 
@@ -224,7 +314,9 @@ pub(crate) fn note_mesh(file: &Path, written: &MeshSummary, cure: &str, console:
     }
     if let Some(([x, y, z], beside)) = &written.origin {
         let beside = beside.display();
-        console.note(format_args!("{path}: coordinates are relative to {x} {y} {z}, see {beside}"));
+        console.note(format_args!(
+            "{path}: coordinates are relative to {x} {y} {z}, see {beside}"
+        ));
     }
 }
 
@@ -232,9 +324,10 @@ pub(crate) fn note_mesh(file: &Path, written: &MeshSummary, cure: &str, console:
 pub(crate) fn print_file(file: &Path, console: &Console) {
     let path = file.display();
     match std::fs::metadata(file) {
-        Ok(data) if data.is_file() => {
-            console.line(format_args!("written     {path} ({} kB)", data.len().div_ceil(1000)))
-        }
+        Ok(data) if data.is_file() => console.line(format_args!(
+            "written     {path} ({} kB)",
+            data.len().div_ceil(1000)
+        )),
         _ => console.line(format_args!("written     {path}")),
     }
 }

@@ -17,26 +17,47 @@ pub(crate) fn run(args: &CheckArgs, console: &Console) -> Result<Exit> {
     if let [path] = &args.surface.inputs[..]
         && run::is_of_space(path)
     {
-        let law = if args.weighted { SpaceLaw::Regular } else { SpaceLaw::Delaunay };
+        let law = if args.weighted {
+            SpaceLaw::Regular
+        } else {
+            SpaceLaw::Delaunay
+        };
         return check_space(path, law, console);
     }
     if args.weighted {
-        return Err(Error::usage("--weighted is for the tetrahedra of an .ele").cure("leave out --weighted"));
+        return Err(Error::usage("--weighted is for the tetrahedra of an .ele")
+            .cure("leave out --weighted"));
     }
     let plan = SurfacePlan::resolve(&args.surface, console)?;
-    let targets = Targets { existing: Existing::of(args.overwrite), ..plan.targets };
+    let targets = Targets {
+        existing: Existing::of(args.overwrite),
+        ..plan.targets
+    };
     let read = targets.with_lists(plan.request.files());
     targets.check_tables(&read)?;
     let outputs = OutputSet::default();
-    let CheckProduct { mut product, flaws, .. } = run::check(&plan.request, &console.context())?;
+    let CheckProduct {
+        mut product, flaws, ..
+    } = run::check(&plan.request, &console.context())?;
     targets.write_tables(&product, &outputs)?;
     for flaw in &flaws {
         print(&format!("{flaw}\n"))?;
     }
     print_surface(&SurfaceReport::take(&mut product)?, console);
-    outputs.commit()?.iter().for_each(|path| print_file(path, console));
-    let SurfaceFacts { vertices, triangles, edges, .. } = product.facts()?;
-    let what = format!("{vertices} vertices, {triangles} triangles, {} constrained edges", edges.total());
+    outputs
+        .commit()?
+        .iter()
+        .for_each(|path| print_file(path, console));
+    let SurfaceFacts {
+        vertices,
+        triangles,
+        edges,
+        ..
+    } = product.facts()?;
+    let what = format!(
+        "{vertices} vertices, {triangles} triangles, {} constrained edges",
+        edges.total()
+    );
     match flaws.len() {
         0 => {
             print(&format!("{what}: no flaw found\n"))?;
@@ -51,13 +72,20 @@ pub(crate) fn run(args: &CheckArgs, console: &Console) -> Result<Exit> {
 
 /// Lists the flaws of tetrahedra.
 fn check_space(path: &Path, law: SpaceLaw, console: &Console) -> Result<Exit> {
-    let SpaceCheck { vertices, tetrahedra, flaws, .. } = run::check_space(path, law, &console.context())?;
+    let SpaceCheck {
+        vertices,
+        tetrahedra,
+        flaws,
+        ..
+    } = run::check_space(path, law, &console.context())?;
     for flaw in &flaws {
         print(&format!("{flaw}\n"))?;
     }
     let what = format!("{vertices} vertices, {tetrahedra} tetrahedra");
     match flaws.len() {
         0 => print(&format!("{what}: no flaw found\n")).map(|()| Exit::Done),
-        count => print(&format!("{what}: {}\n", counted(count as u64, "flaw"))).map(|()| Exit::Failed),
+        count => {
+            print(&format!("{what}: {}\n", counted(count as u64, "flaw"))).map(|()| Exit::Failed)
+        }
     }
 }

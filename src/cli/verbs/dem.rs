@@ -8,7 +8,14 @@ use crate::run::{DemOptions, WriteRequest};
 /// Returns what is asked for: the heights of a TIN as a raster.
 pub(super) fn asked(args: &DemArgs, console: &Console) -> Result<Asked> {
     let plan = SurfacePlan::resolve(&args.surface, console)?;
-    let options = DemOptions { frame: frame(&args.frame)?, method: args.method.into() };
+    let options = DemOptions {
+        frame: frame(&args.frame)?,
+        method: args.method.into(),
+    };
     let targets = plan.targets(&args.output);
-    Ok(Asked { request: WriteRequest::new(plan.request, options), targets, tiles: args.tiles.clone() })
+    Ok(Asked {
+        request: WriteRequest::new(plan.request, options),
+        targets,
+        tiles: args.tiles.clone(),
+    })
 }

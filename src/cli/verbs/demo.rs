@@ -11,22 +11,58 @@ use crate::io::Output;
 /// The data that is part of the program, described in `fixtures/README.md`.
 const FIXTURES: &[(&str, &[u8])] = &[
     ("valley.laz", include_bytes!("../../../fixtures/valley.laz")),
-    ("breaklines.shp", include_bytes!("../../../fixtures/breaklines.shp")),
-    ("breaklines.shx", include_bytes!("../../../fixtures/breaklines.shx")),
-    ("breaklines.dbf", include_bytes!("../../../fixtures/breaklines.dbf")),
-    ("breaklines.prj", include_bytes!("../../../fixtures/breaklines.prj")),
-    ("breaklines.cpg", include_bytes!("../../../fixtures/breaklines.cpg")),
-    ("boundary.shp", include_bytes!("../../../fixtures/boundary.shp")),
-    ("boundary.shx", include_bytes!("../../../fixtures/boundary.shx")),
-    ("boundary.dbf", include_bytes!("../../../fixtures/boundary.dbf")),
-    ("boundary.prj", include_bytes!("../../../fixtures/boundary.prj")),
-    ("boundary.cpg", include_bytes!("../../../fixtures/boundary.cpg")),
+    (
+        "breaklines.shp",
+        include_bytes!("../../../fixtures/breaklines.shp"),
+    ),
+    (
+        "breaklines.shx",
+        include_bytes!("../../../fixtures/breaklines.shx"),
+    ),
+    (
+        "breaklines.dbf",
+        include_bytes!("../../../fixtures/breaklines.dbf"),
+    ),
+    (
+        "breaklines.prj",
+        include_bytes!("../../../fixtures/breaklines.prj"),
+    ),
+    (
+        "breaklines.cpg",
+        include_bytes!("../../../fixtures/breaklines.cpg"),
+    ),
+    (
+        "boundary.shp",
+        include_bytes!("../../../fixtures/boundary.shp"),
+    ),
+    (
+        "boundary.shx",
+        include_bytes!("../../../fixtures/boundary.shx"),
+    ),
+    (
+        "boundary.dbf",
+        include_bytes!("../../../fixtures/boundary.dbf"),
+    ),
+    (
+        "boundary.prj",
+        include_bytes!("../../../fixtures/boundary.prj"),
+    ),
+    (
+        "boundary.cpg",
+        include_bytes!("../../../fixtures/boundary.cpg"),
+    ),
     ("dem.tif", include_bytes!("../../../fixtures/dem.tif")),
 ];
 
 /// The commands of the demo; `@` stands for the folder.
 const COMMANDS: &[&[&str]] = &[
-    &["info", "@valley.laz", "@breaklines.shp", "@boundary.shp", "@dem.tif"],
+    &[
+        "info",
+        "@valley.laz",
+        "@breaklines.shp",
+        "@boundary.shp",
+        "@dem.tif",
+    ],
     &[
         "tin",
         "@valley.laz",
@@ -41,9 +77,35 @@ const COMMANDS: &[&[&str]] = &[
         "--overwrite",
     ],
     &["check", "@ground.ply"],
-    &["dem", "@ground.ply", "--resolution", "0.5", "-o", "@ground.tif", "--overwrite"],
-    &["hillshade", "@ground.ply", "--resolution", "0.5", "-o", "@hillshade.png", "--overwrite"],
-    &["contour", "@ground.ply", "--interval", "2", "-o", "@contours.shp", "-o", "@contours.geojson", "--overwrite"],
+    &[
+        "dem",
+        "@ground.ply",
+        "--resolution",
+        "0.5",
+        "-o",
+        "@ground.tif",
+        "--overwrite",
+    ],
+    &[
+        "hillshade",
+        "@ground.ply",
+        "--resolution",
+        "0.5",
+        "-o",
+        "@hillshade.png",
+        "--overwrite",
+    ],
+    &[
+        "contour",
+        "@ground.ply",
+        "--interval",
+        "2",
+        "-o",
+        "@contours.shp",
+        "-o",
+        "@contours.geojson",
+        "--overwrite",
+    ],
 ];
 
 /// Writes the data and calls `run` with each command on it, as if it were typed.
@@ -58,16 +120,28 @@ pub(crate) fn run(
     for (name, bytes) in FIXTURES {
         let path = folder.join(name);
         let mut output = Output::create(&path)?;
-        output.write_all(bytes).map_err(|e| Error::from(e).in_file(&path))?;
+        output
+            .write_all(bytes)
+            .map_err(|e| Error::from(e).in_file(&path))?;
         output.commit()?;
     }
-    console.line(format_args!("The data of a small fictitious valley is in {}.", folder.display()));
+    console.line(format_args!(
+        "The data of a small fictitious valley is in {}.",
+        folder.display()
+    ));
     for command in COMMANDS {
         let words: Vec<OsString> = command.iter().map(|word| in_folder(word, folder)).collect();
-        let typed: Vec<String> = words.iter().map(|word| quoted(&word.to_string_lossy())).collect();
+        let typed: Vec<String> = words
+            .iter()
+            .map(|word| quoted(&word.to_string_lossy()))
+            .collect();
         console.line("");
         console.line(format_args!("$ breakline {}", typed.join(" ")));
-        let exit = run([OsString::from("breakline")].into_iter().chain(words).chain(flags(how)).collect());
+        let exit = run([OsString::from("breakline")]
+            .into_iter()
+            .chain(words)
+            .chain(flags(how))
+            .collect());
         if exit != Exit::Done {
             return Ok(exit);
         }
@@ -87,7 +161,11 @@ fn in_folder(word: &str, folder: &Path) -> OsString {
 /// Quotes a word as a shell needs it.
 fn quoted(word: &str) -> String {
     let is_plain = |c: char| c.is_alphanumeric() || "-_./,:=+".contains(c);
-    if word.chars().all(is_plain) { word.to_owned() } else { format!("'{}'", word.replace('\'', r"'\''")) }
+    if word.chars().all(is_plain) {
+        word.to_owned()
+    } else {
+        format!("'{}'", word.replace('\'', r"'\''"))
+    }
 }
 
 fn flags(how: &ConsoleArgs) -> Vec<OsString> {

@@ -8,8 +8,20 @@ use crate::run::{HillshadeOptions, LightOptions, WriteRequest};
 /// Returns what is asked for: the shades of a TIN or a DEM.
 pub(super) fn asked(args: &HillshadeArgs, console: &Console) -> Result<Asked> {
     let plan = SurfacePlan::resolve(&args.surface, console)?;
-    let light = LightOptions { azimuth: args.azimuth, altitude: args.altitude, z_factor: args.z_factor };
-    let options = HillshadeOptions { frame: frame(&args.frame)?, method: args.method.into(), light };
+    let light = LightOptions {
+        azimuth: args.azimuth,
+        altitude: args.altitude,
+        z_factor: args.z_factor,
+    };
+    let options = HillshadeOptions {
+        frame: frame(&args.frame)?,
+        method: args.method.into(),
+        light,
+    };
     let targets = plan.targets(&args.output);
-    Ok(Asked { request: WriteRequest::new(plan.request, options), targets, tiles: args.tiles.clone() })
+    Ok(Asked {
+        request: WriteRequest::new(plan.request, options),
+        targets,
+        tiles: args.tiles.clone(),
+    })
 }

@@ -16,9 +16,20 @@ use crate::run::{self, Context, Job, JobCommand, JobTask, Look, StoredJob, TileO
 /// Plans a run in tiles, or does its tasks.
 pub(crate) fn run(args: &JobArgs, console: &Console) -> Result<Exit> {
     match &args.action {
-        JobAction::Plan { job, headers_only, command } => {
-            plan(job, if *headers_only { Look::Headers } else { Look::Points }, command, console)
-        }
+        JobAction::Plan {
+            job,
+            headers_only,
+            command,
+        } => plan(
+            job,
+            if *headers_only {
+                Look::Headers
+            } else {
+                Look::Points
+            },
+            command,
+            console,
+        ),
         JobAction::Run { job, task } => work(job, *task, console),
         JobAction::Status { job, json, verify } => {
             let context = console.context();
@@ -43,23 +54,45 @@ fn parse(words: &[String], console: &Console) -> Result<Asked> {
     let name = ["breakline".to_owned()];
     let cli = Cli::try_parse_from(name.iter().chain(words)).map_err(|e| {
         let text = e.to_string();
-        let first = text.lines().next().unwrap_or_default().trim_start_matches("error: ").to_owned();
-        Error::usage(format!("the command of the job: {first}")).cure("`breakline dem --help` lists its options")
+        let first = text
+            .lines()
+            .next()
+            .unwrap_or_default()
+            .trim_start_matches("error: ")
+            .to_owned();
+        Error::usage(format!("the command of the job: {first}"))
+            .cure("`breakline dem --help` lists its options")
     })?;
     let asked = write::asked(&cli.verb, console)?;
     let tiles = &asked.tiles;
-    let own = [(tiles.dry_run, "--dry-run"), (tiles.resume, "--resume"), (tiles.job.is_some(), "--job")];
+    let own = [
+        (tiles.dry_run, "--dry-run"),
+        (tiles.resume, "--resume"),
+        (tiles.job.is_some(), "--job"),
+    ];
     match own.iter().find(|(is_given, _)| *is_given) {
-        Some((_, option)) => Err(Error::usage(format!("the command of a job has no {option}")).cure("leave it out")),
+        Some((_, option)) => {
+            Err(Error::usage(format!("the command of a job has no {option}")).cure("leave it out"))
+        }
         None => Ok(asked),
     }
 }
 
 fn plan(job: &Path, look: Look, words: &[String], console: &Console) -> Result<Exit> {
-    let Asked { request, targets, tiles } = parse(words, console)?;
-    let tiles = TileOptions { look, ..write::options(&tiles) };
+    let Asked {
+        request,
+        targets,
+        tiles,
+    } = parse(words, console)?;
+    let tiles = TileOptions {
+        look,
+        ..write::options(&tiles)
+    };
     let shown = Shown::new(console, how_to_go_on(job));
-    let command = JobCommand { words: words.to_vec(), ..JobCommand::new(&request, &targets, &tiles)? };
+    let command = JobCommand {
+        words: words.to_vec(),
+        ..JobCommand::new(&request, &targets, &tiles)?
+    };
     let planned = run::plan_job(&command, job, &shown.context())?.job()?;
     console.line(format_args!(
         "next        breakline job run {0}, or {0} --task 0 to {1}",
@@ -78,12 +111,17 @@ fn work(job: &Path, task: Option<usize>, console: &Console) -> Result<Exit> {
     let stored = StoredJob::read(job)?;
     let shown = Shown::new(console, how_to_go_on(stored.folder()));
     let context = shown.context();
-    let Some(task) = task else { return run::run_job(&stored, &context).map(|report| shown.print(&report)) };
+    let Some(task) = task else {
+        return run::run_job(&stored, &context).map(|report| shown.print(&report));
+    };
     let open = stored.job()?;
     match run::run_task(&open, task, &stored.command.targets, &context)? {
         Some(report) => Ok(shown.print(&report)),
         None => {
-            console.line(format_args!("task {task}      {} is done", open.task_name(task)));
+            console.line(format_args!(
+                "task {task}      {} is done",
+                open.task_name(task)
+            ));
             Ok(Exit::Done)
         }
     }
@@ -109,6 +147,13 @@ fn print_tasks(open: &Job, words: &[String], output: &Path, context: &Context) -
             "has_read": task.has_read.map(|state| [state.size, state.modified]), "done": task.is_done,
         })
     };
-    let tasks: Vec<Value> = open.tasks(output, context)?.into_iter().map(of_task).collect();
-    print(&format!("{}\n", json!({ "command": words, "tasks": tasks, "holes": open.has_holes(context)? })))
+    let tasks: Vec<Value> = open
+        .tasks(output, context)?
+        .into_iter()
+        .map(of_task)
+        .collect();
+    print(&format!(
+        "{}\n",
+        json!({ "command": words, "tasks": tasks, "holes": open.has_holes(context)? })
+    ))
 }

@@ -14,11 +14,21 @@ use crate::run::{PointsRequest, Withheld, write_points};
 pub(crate) fn run(args: &PointsArgs, console: &Console) -> Result<Exit> {
     let files = inputs::expand(&args.inputs, console)?;
     inputs::require(&args.boundary)?;
-    let all: Vec<_> = files.iter().chain(&args.boundary).cloned().chain(inputs::lists(&args.inputs)).collect();
-    let outputs = outputs::resolve(&args.output, &outputs::formats_of(Product::Points, |_| ()), &all)?;
+    let all: Vec<_> = files
+        .iter()
+        .chain(&args.boundary)
+        .cloned()
+        .chain(inputs::lists(&args.inputs))
+        .collect();
+    let outputs = outputs::resolve(
+        &args.output,
+        &outputs::formats_of(Product::Points, |_| ()),
+        &all,
+    )?;
     let [target] = outputs.targets.as_slice() else {
         return Err(
-            Error::usage("several outputs are given, but points are read once").cure("run it once for each output")
+            Error::usage("several outputs are given, but points are read once")
+                .cure("run it once for each output"),
         );
     };
     let request = PointsRequest {
@@ -26,10 +36,18 @@ pub(crate) fn run(args: &PointsArgs, console: &Console) -> Result<Exit> {
         read: args.read.options(),
         classes: args.class.clone(),
         returns: args.returns.clone(),
-        withheld: if args.drop_withheld { Withheld::Drop } else { Withheld::Keep },
+        withheld: if args.drop_withheld {
+            Withheld::Drop
+        } else {
+            Withheld::Keep
+        },
         bounds: args.bounds.map(|corners| corners.bounds()),
         boundary: args.boundary.clone(),
-        rounding: if args.round { Rounding::Nearest } else { Rounding::Refuse },
+        rounding: if args.round {
+            Rounding::Nearest
+        } else {
+            Rounding::Refuse
+        },
         systems: systems(&args.systems)?,
     };
     let report = write_points(&request, target.within(&outputs.set), &console.context())?;
@@ -39,10 +57,16 @@ pub(crate) fn run(args: &PointsArgs, console: &Console) -> Result<Exit> {
         (report.other_return, "of other returns"),
         (report.outside, "outside"),
     ];
-    let left_out = left_out.iter().filter(|(count, _)| *count > 0).map(|(count, why)| format!(", {count} {why}"));
+    let left_out = left_out
+        .iter()
+        .filter(|(count, _)| *count > 0)
+        .map(|(count, why)| format!(", {count} {why}"));
     let left_out: String = left_out.collect();
     let count = counted(report.written.count, "point");
-    console.line(format_args!("points      {count} of {}{left_out}", report.read));
+    console.line(format_args!(
+        "points      {count} of {}{left_out}",
+        report.read
+    ));
     print_extent(report.written.bounds, report.crs.as_ref(), console);
     commit(outputs, console)?;
     Ok(Exit::Done)

@@ -9,5 +9,9 @@ use crate::run::{SurfaceOptions, WriteRequest};
 pub(super) fn asked(args: &TinArgs, console: &Console) -> Result<Asked> {
     let plan = SurfacePlan::resolve(&args.surface, console)?;
     let targets = plan.targets(&args.output);
-    Ok(Asked { request: WriteRequest::new(plan.request, SurfaceOptions), targets, tiles: args.tiles.clone() })
+    Ok(Asked {
+        request: WriteRequest::new(plan.request, SurfaceOptions),
+        targets,
+        tiles: args.tiles.clone(),
+    })
 }

@@ -26,7 +26,10 @@ const BESIDE_ELE_OF_POLY: &[&str] = &["node", "poly"];
 /// Returns the formats of the outputs.
 fn formats(is_poly: bool) -> Vec<Format<Family>> {
     let mut formats = outputs::formats_of(Product::Plane, |_| Family::Triangle);
-    if let Some(ele) = formats.iter_mut().find(|format| is_poly && format.extension == "ele") {
+    if let Some(ele) = formats
+        .iter_mut()
+        .find(|format| is_poly && format.extension == "ele")
+    {
         ele.companions = BESIDE_ELE_OF_POLY;
     }
     formats.extend(outputs::formats_of(Product::Surface, |_| Family::Mesh));
@@ -41,14 +44,21 @@ pub(crate) fn run(args: &TriangulateArgs, console: &Console) -> Result<Exit> {
         return triangulate_space::run(args, console);
     }
     if let Some(option) = args.option_of_space() {
-        return Err(Error::usage(format!("{option} is for points in space")).in_file(path).cure("add --3d"));
+        return Err(Error::usage(format!("{option} is for points in space"))
+            .in_file(path)
+            .cure("add --3d"));
     }
-    let is_poly = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("poly"));
+    let is_poly = path
+        .extension()
+        .is_some_and(|e| e.eq_ignore_ascii_case("poly"));
     let formats = formats(is_poly);
     let outputs = outputs::resolve(&args.output, &formats, std::slice::from_ref(path))?;
     let product = run::triangulate(path, &options(args), &console.context())?;
     if product.report.triangles_built == 0
-        && let Some(mesh) = outputs.targets.iter().find(|target| target.kind == Family::Mesh)
+        && let Some(mesh) = outputs
+            .targets
+            .iter()
+            .find(|target| target.kind == Family::Mesh)
     {
         return Err(Error::format("all vertices are on one line or at one position: there is no triangle to write")
             .in_file(&mesh.path)
@@ -79,7 +89,10 @@ fn write(
     product: &TriangulateProduct,
     console: &Console,
 ) -> Result<()> {
-    let (meshes, others): (Vec<_>, Vec<_>) = outputs.targets.iter().partition(|target| target.kind == Family::Mesh);
+    let (meshes, others): (Vec<_>, Vec<_>) = outputs
+        .targets
+        .iter()
+        .partition(|target| target.kind == Family::Mesh);
     if !meshes.is_empty() {
         let mesh = product.to_mesh()?;
         for target in meshes {
@@ -88,7 +101,10 @@ fn write(
         }
     }
     let mut files: Vec<Target<Family>> = Vec::new();
-    for file in others.into_iter().flat_map(|target| outputs::files_of(target, formats)) {
+    for file in others
+        .into_iter()
+        .flat_map(|target| outputs::files_of(target, formats))
+    {
         if !files.contains(&file) {
             files.push(file);
         }
@@ -101,7 +117,11 @@ fn write(
 fn print_report(product: &TriangulateProduct, max_added: Option<usize>, console: &Console) {
     let (report, triangulated) = (&product.report, &product.triangulated);
     let (given, between) = (report.vertices_given, report.vertices_for_quality);
-    let refined = if between > 0 { format!(", {between} for angles and areas") } else { String::new() };
+    let refined = if between > 0 {
+        format!(", {between} for angles and areas")
+    } else {
+        String::new()
+    };
     console.line(format_args!(
         "vertices    {} ({given} in, {} added where segments cross{refined})",
         triangulated.nodes.points.len(),
@@ -119,17 +139,33 @@ fn print_report(product: &TriangulateProduct, max_added: Option<usize>, console:
         report.segments_given
     ));
     let (all, kept) = (report.triangles_built, triangulated.triangles.len());
-    let left_out = if kept < all { format!(" ({} outside or in holes removed)", all - kept) } else { String::new() };
+    let left_out = if kept < all {
+        format!(" ({} outside or in holes removed)", all - kept)
+    } else {
+        String::new()
+    };
     console.line(format_args!("triangles   {kept}{left_out}"));
-    let limit = format!("left when {} vertices had been added (--max-added)", max_added.unwrap_or_default());
+    let limit = format!(
+        "left when {} vertices had been added (--max-added)",
+        max_added.unwrap_or_default()
+    );
     for (why, text) in [
         (Shortfall::SmallAngle, "at small angles between segments"),
         (Shortfall::Limit, &limit),
-        (Shortfall::Coordinates, "too small for the coordinates to resolve more vertices"),
+        (
+            Shortfall::Coordinates,
+            "too small for the coordinates to resolve more vertices",
+        ),
     ] {
-        let count = report.shortfall.iter().filter(|&&other| other == why).count();
+        let count = report
+            .shortfall
+            .iter()
+            .filter(|&&other| other == why)
+            .count();
         if count > 0 {
-            console.warning(format_args!("{count} triangles are not as requested: {text}"));
+            console.warning(format_args!(
+                "{count} triangles are not as requested: {text}"
+            ));
         }
     }
     if all == 0 {

@@ -22,7 +22,11 @@ fn formats() -> Vec<Format<Family>> {
     let mut formats = outputs::formats_of(Product::Space, |_| Family::Cells);
     let surfaces = outputs::formats_of(Product::Surface, |_| Family::Solid);
     // A .tin is a triangulation in the plane.
-    formats.extend(surfaces.into_iter().filter(|format| format.extension != "tin"));
+    formats.extend(
+        surfaces
+            .into_iter()
+            .filter(|format| format.extension != "tin"),
+    );
     formats
 }
 
@@ -36,38 +40,58 @@ pub(super) fn run(args: &TriangulateArgs, console: &Console) -> Result<Exit> {
     }
     let formats = formats();
     let weights = path.with_extension("weights");
-    let read: Vec<_> = [Some(path.clone()), Some(weights).filter(|_| args.weighted)].into_iter().flatten().collect();
+    let read: Vec<_> = [Some(path.clone()), Some(weights).filter(|_| args.weighted)]
+        .into_iter()
+        .flatten()
+        .collect();
     let outputs = outputs::resolve(&args.output, &formats, &read)?;
-    let (solids, others): (Vec<_>, Vec<_>) = outputs.targets.iter().partition(|target| target.kind == Family::Solid);
+    let (solids, others): (Vec<_>, Vec<_>) = outputs
+        .targets
+        .iter()
+        .partition(|target| target.kind == Family::Solid);
     match solids.first() {
         Some(target) if args.alpha.is_none() => {
-            return Err(Error::usage("this format has triangles only, and the result has tetrahedra")
-                .in_file(&target.path)
-                .cure("add --alpha auto for the surface of a solid, or write .vtu, .mesh or .ele"));
+            return Err(Error::usage(
+                "this format has triangles only, and the result has tetrahedra",
+            )
+            .in_file(&target.path)
+            .cure("add --alpha auto for the surface of a solid, or write .vtu, .mesh or .ele"));
         }
         None if args.alpha.is_some() => {
-            return Err(Error::usage("no output is for the alpha shape").cure("add -o NAME.ply, or leave out --alpha"));
+            return Err(Error::usage("no output is for the alpha shape")
+                .cure("add -o NAME.ply, or leave out --alpha"));
         }
         _ => {}
     }
-    let options = SpaceOptions { weighted: args.weighted, alpha: args.alpha, arithmetic: args.kernel.into() };
+    let options = SpaceOptions {
+        weighted: args.weighted,
+        alpha: args.alpha,
+        arithmetic: args.kernel.into(),
+    };
     let product = run::triangulate_space(path, &options, &console.context())?;
     print_report(&product, console);
     for target in solids {
         let solid = product.solid.as_ref().ok_or_else(|| {
-            Error::format("all points are in one plane or fewer than four: there is no solid to write")
-                .in_file(&target.path)
-                .cure("leave out --alpha")
+            Error::format(
+                "all points are in one plane or fewer than four: there is no solid to write",
+            )
+            .in_file(&target.path)
+            .cure("leave out --alpha")
         })?;
         let written = run::write_mesh(solid, target.within(&outputs.set), &console.context())?;
         note_mesh(&target.path, &written, "", console);
         if !solid.is_manifold() && target.extension == "stl" {
-            console
-                .warning(format_args!("{}: not a closed manifold, as programs expect of STL", target.path.display()));
+            console.warning(format_args!(
+                "{}: not a closed manifold, as programs expect of STL",
+                target.path.display()
+            ));
         }
     }
     let mut files: Vec<Target<Family>> = Vec::new();
-    for file in others.into_iter().flat_map(|target| outputs::files_of(target, &formats)) {
+    for file in others
+        .into_iter()
+        .flat_map(|target| outputs::files_of(target, &formats))
+    {
         if !files.contains(&file) {
             files.push(file);
         }
@@ -89,13 +113,22 @@ fn print_report(product: &SpaceProduct, console: &Console) {
         console.warning("the points are in degrees, but not their heights: spheres, radii and volumes have no meaning");
     }
     if report.duplicates > 0 {
-        console.line(format_args!("            {} at the position of another one", report.duplicates));
+        console.line(format_args!(
+            "            {} at the position of another one",
+            report.duplicates
+        ));
     }
     if report.hidden > 0 {
-        console.line(format_args!("            {} hidden by the weights of others", report.hidden));
+        console.line(format_args!(
+            "            {} hidden by the weights of others",
+            report.hidden
+        ));
     }
     console.line(format_args!("dimension   {}", report.dimension));
-    console.line(format_args!("tetrahedra  {}", product.triangulated.tetrahedra.len()));
+    console.line(format_args!(
+        "tetrahedra  {}",
+        product.triangulated.tetrahedra.len()
+    ));
     console.line(format_args!("volume      {}", report.volume));
     if let Some(solid) = &product.solid {
         print_solid(solid, console);

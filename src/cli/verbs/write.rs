@@ -19,14 +19,20 @@ pub(super) fn asked(verb: &Verb, console: &Console) -> Result<Asked> {
         Verb::Contour(args) => contour::asked(args, console),
         Verb::Hillshade(args) => hillshade::asked(args, console),
         Verb::Tin(args) => tin::asked(args, console),
-        _ => Err(Error::usage("a job makes a DEM, contours, a hillshade or a TIN in parts")
-            .cure("begin the command with `dem`, `contour`, `hillshade` or `tin`")),
+        _ => Err(
+            Error::usage("a job makes a DEM, contours, a hillshade or a TIN in parts")
+                .cure("begin the command with `dem`, `contour`, `hillshade` or `tin`"),
+        ),
     }
 }
 
 /// Writes what a verb asks for.
 pub(crate) fn run(verb: &Verb, console: &Console) -> Result<Exit> {
-    let Asked { request, targets, tiles } = asked(verb, console)?;
+    let Asked {
+        request,
+        targets,
+        tiles,
+    } = asked(verb, console)?;
     let shown = Shown::new(console, "--resume".to_owned());
     let report = run::write(&request, &targets, &execution(&tiles), &shown.context())?;
     Ok(shown.print(&report))
@@ -42,7 +48,9 @@ fn execution(args: &TileArgs) -> Execution {
     } else if args.are_asked_for() {
         Execution::Tiles(options)
     } else {
-        Execution::Auto { memory: args.memory }
+        Execution::Auto {
+            memory: args.memory,
+        }
     }
 }
 
@@ -52,7 +60,11 @@ pub(super) fn options(args: &TileArgs) -> TileOptions {
         division: args.tiles.unwrap_or_default(),
         memory: args.memory,
         folder: args.job.clone(),
-        bad: if args.skip_bad { BadFiles::Skip } else { BadFiles::Refuse },
+        bad: if args.skip_bad {
+            BadFiles::Skip
+        } else {
+            BadFiles::Refuse
+        },
         ..TileOptions::default()
     }
 }

@@ -74,7 +74,15 @@ impl Projection {
         let parallels = |first: f64, second: f64| [(Lat1, first), (Lat2, second)];
         let false_origin = |east: f64, north: f64| [(FalseEasting, east), (FalseNorthing, north)];
         match registered {
-            P::LambertConformalConic { lon0, lat0, lat1, lat2, k0, false_easting, false_northing } => {
+            P::LambertConformalConic {
+                lon0,
+                lat0,
+                lat1,
+                lat2,
+                k0,
+                false_easting,
+                false_northing,
+            } => {
                 let one = (lat1 - lat2).abs() < SAME_ANGLE && (lat1 - lat0).abs() < SAME_ANGLE;
                 let stated = [
                     &origin(lat0, lon0)[..],
@@ -82,7 +90,14 @@ impl Projection {
                     &[(K0, k0)],
                     &false_origin(false_easting, false_northing),
                 ];
-                Self::stated(if one { Method::Lambert1 } else { Method::Lambert2 }, &stated.concat())
+                Self::stated(
+                    if one {
+                        Method::Lambert1
+                    } else {
+                        Method::Lambert2
+                    },
+                    &stated.concat(),
+                )
             }
             P::HotineObliqueMercator {
                 latc,
@@ -99,7 +114,11 @@ impl Projection {
                     &[(Azimuth, azimuth), (Angle, rectified_grid_angle), (K0, k0)],
                     &false_origin(false_easting, false_northing),
                 ];
-                let method = if variant_b { Method::HotineCenter } else { Method::HotineNatural };
+                let method = if variant_b {
+                    Method::HotineCenter
+                } else {
+                    Method::HotineNatural
+                };
                 Self::stated(method, &stated.concat())
             }
             P::LambertConformalConicMichigan {
@@ -129,6 +148,11 @@ impl Projection {
 
     /// The projection of a method of the table with the stated parameters.
     fn stated(method: Method, stated: &[(Param, f64)]) -> Self {
-        Self::known(method, |param| stated.iter().find(|entry| entry.0 == param).map(|entry| entry.1))
+        Self::known(method, |param| {
+            stated
+                .iter()
+                .find(|entry| entry.0 == param)
+                .map(|entry| entry.1)
+        })
     }
 }

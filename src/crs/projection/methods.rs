@@ -74,14 +74,18 @@ impl Param {
             | "azimuthatprojectioncenter"
             | "azimuthatprojectioncentre"
             | "colatitudeofconeaxis" => Param::Azimuth,
-            "rectifiedgridangle" | "anglefromrectifiedtoskewgrid" | "xyplanerotation" => Param::Angle,
+            "rectifiedgridangle" | "anglefromrectifiedtoskewgrid" | "xyplanerotation" => {
+                Param::Angle
+            }
             "pseudostandardparallel1" | "latitudeofpseudostandardparallel" => Param::PseudoParallel,
-            "falseeasting" | "eastingatfalseorigin" | "eastingatprojectioncenter" | "eastingatprojectioncentre" => {
-                Param::FalseEasting
-            }
-            "falsenorthing" | "northingatfalseorigin" | "northingatprojectioncenter" | "northingatprojectioncentre" => {
-                Param::FalseNorthing
-            }
+            "falseeasting"
+            | "eastingatfalseorigin"
+            | "eastingatprojectioncenter"
+            | "eastingatprojectioncentre" => Param::FalseEasting,
+            "falsenorthing"
+            | "northingatfalseorigin"
+            | "northingatprojectioncenter"
+            | "northingatprojectioncentre" => Param::FalseNorthing,
             _ => Param::Other(name),
         }
     }
@@ -132,7 +136,9 @@ pub(crate) struct Row {
     pub(crate) params: &'static [(Param, &'static str, &'static str, u16)],
 }
 
-use Param::{Angle, Azimuth, FalseEasting, FalseNorthing, K0, Lat0, Lat1, Lat2, Lon0, PseudoParallel};
+use Param::{
+    Angle, Azimuth, FalseEasting, FalseNorthing, K0, Lat0, Lat1, Lat2, Lon0, PseudoParallel,
+};
 
 const LAT0: (Param, &str, &str, u16) = (Lat0, "latitude_of_origin", "Latitude_Of_Origin", 3081);
 const LON0: (Param, &str, &str, u16) = (Lon0, "central_meridian", "Central_Meridian", 3080);
@@ -141,8 +147,10 @@ const LAT2: (Param, &str, &str, u16) = (Lat2, "standard_parallel_2", "Standard_P
 const SCALE: (Param, &str, &str, u16) = (K0, "scale_factor", "Scale_Factor", 3092);
 const EAST: (Param, &str, &str, u16) = (FalseEasting, "false_easting", "False_Easting", 3082);
 const NORTH: (Param, &str, &str, u16) = (FalseNorthing, "false_northing", "False_Northing", 3083);
-const CENTER_LAT: (Param, &str, &str, u16) = (Lat0, "latitude_of_center", "Latitude_Of_Center", 3089);
-const CENTER_LON: (Param, &str, &str, u16) = (Lon0, "longitude_of_center", "Longitude_Of_Center", 3088);
+const CENTER_LAT: (Param, &str, &str, u16) =
+    (Lat0, "latitude_of_center", "Latitude_Of_Center", 3089);
+const CENTER_LON: (Param, &str, &str, u16) =
+    (Lon0, "longitude_of_center", "Longitude_Of_Center", 3088);
 const OBLIQUE: &[(Param, &str, &str, u16)] = &[
     CENTER_LAT,
     CENTER_LON,
@@ -252,7 +260,10 @@ pub(crate) const ROWS: &[Row] = &[
         method: Method::WebMercator,
         ogc: "Mercator_1SP",
         esri: "Mercator_Auxiliary_Sphere",
-        others: &["popularvisualisationpseudomercator", "popularvisualizationpseudomercator"],
+        others: &[
+            "popularvisualisationpseudomercator",
+            "popularvisualizationpseudomercator",
+        ],
         geokey: None,
         params: &[LON0, LAT1, EAST, NORTH],
     },
@@ -260,7 +271,10 @@ pub(crate) const ROWS: &[Row] = &[
         method: Method::HotineNatural,
         ogc: "Hotine_Oblique_Mercator",
         esri: "Hotine_Oblique_Mercator_Azimuth_Natural_Origin",
-        others: &["hotineobliquemercatorvarianta", "rectifiedskeworthomorphicnaturalorigin"],
+        others: &[
+            "hotineobliquemercatorvarianta",
+            "rectifiedskeworthomorphicnaturalorigin",
+        ],
         geokey: Some(3),
         params: OBLIQUE,
     },
@@ -268,7 +282,11 @@ pub(crate) const ROWS: &[Row] = &[
         method: Method::HotineCenter,
         ogc: "Hotine_Oblique_Mercator_Azimuth_Center",
         esri: "Hotine_Oblique_Mercator_Azimuth_Center",
-        others: &["hotineobliquemercatorvariantb", "rectifiedskeworthomorphiccenter", "obliquemercator"],
+        others: &[
+            "hotineobliquemercatorvariantb",
+            "rectifiedskeworthomorphiccenter",
+            "obliquemercator",
+        ],
         geokey: Some(9815),
         params: OBLIQUE,
     },
@@ -290,7 +308,12 @@ pub(crate) const ROWS: &[Row] = &[
             CENTER_LAT,
             CENTER_LON,
             (Azimuth, "azimuth", "Azimuth", 3094),
-            (PseudoParallel, "pseudo_standard_parallel_1", "Pseudo_Standard_Parallel_1", 3078),
+            (
+                PseudoParallel,
+                "pseudo_standard_parallel_1",
+                "Pseudo_Standard_Parallel_1",
+                3078,
+            ),
             SCALE,
             EAST,
             NORTH,
@@ -337,14 +360,19 @@ pub(crate) const ROWS: &[Row] = &[
 
 impl Method {
     pub(crate) fn row(self) -> &'static Row {
-        ROWS.iter().find(|row| row.method == self).unwrap_or(&ROWS[0])
+        ROWS.iter()
+            .find(|row| row.method == self)
+            .unwrap_or(&ROWS[0])
     }
 }
 
 /// A name reduced to lower case letters and digits: formats differ in blanks, underscores and
 /// brackets.
 pub(crate) fn normalized(name: &str) -> String {
-    name.chars().filter(char::is_ascii_alphanumeric).map(|c| c.to_ascii_lowercase()).collect()
+    name.chars()
+        .filter(char::is_ascii_alphanumeric)
+        .map(|c| c.to_ascii_lowercase())
+        .collect()
 }
 
 #[cfg(test)]

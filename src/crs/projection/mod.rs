@@ -3,7 +3,9 @@
 mod from_registry;
 mod methods;
 
-use methods::Param::{Angle, Azimuth, FalseEasting, FalseNorthing, K0, Lat0, Lat1, Lat2, Lon0, PseudoParallel};
+use methods::Param::{
+    Angle, Azimuth, FalseEasting, FalseNorthing, K0, Lat0, Lat1, Lat2, Lon0, PseudoParallel,
+};
 
 pub(super) use methods::{Measure, Method, Param, ROWS, normalized};
 
@@ -27,20 +29,33 @@ impl Projection {
     /// The projection with the name of a method in WKT and its parameters.
     pub(super) fn new(name: &str, stated: &[(Param, f64)]) -> Self {
         let name = normalized(name);
-        let get = |param: Param| stated.iter().find(|entry| entry.0 == param).map(|entry| entry.1);
+        let get = |param: Param| {
+            stated
+                .iter()
+                .find(|entry| entry.0 == param)
+                .map(|entry| entry.1)
+        };
         let method = match name.as_str() {
-            "lambertconformalconic" | "lambertconicconformal" => match (get(Lat1), get(Lat2), get(Lat0)) {
-                (Some(_), Some(_), _) => Some(Method::Lambert2),
-                (Some(lat1), None, Some(lat0)) if (lat1 - lat0).abs() > SAME_ANGLE => Some(Method::Lambert2),
-                _ => Some(Method::Lambert1),
-            },
-            "stereographic" if get(Lat0).is_some_and(|lat| (lat.abs() - 90.0).abs() < SAME_ANGLE) => {
+            "lambertconformalconic" | "lambertconicconformal" => {
+                match (get(Lat1), get(Lat2), get(Lat0)) {
+                    (Some(_), Some(_), _) => Some(Method::Lambert2),
+                    (Some(lat1), None, Some(lat0)) if (lat1 - lat0).abs() > SAME_ANGLE => {
+                        Some(Method::Lambert2)
+                    }
+                    _ => Some(Method::Lambert1),
+                }
+            }
+            "stereographic"
+                if get(Lat0).is_some_and(|lat| (lat.abs() - 90.0).abs() < SAME_ANGLE) =>
+            {
                 Some(Method::PolarStereographic)
             }
             _ => ROWS
                 .iter()
                 .find(|row| {
-                    normalized(row.ogc) == name || normalized(row.esri) == name || row.others.contains(&name.as_str())
+                    normalized(row.ogc) == name
+                        || normalized(row.esri) == name
+                        || row.others.contains(&name.as_str())
                 })
                 .map(|row| row.method),
         };
@@ -68,18 +83,34 @@ impl Projection {
         // The table has no scale together with two parallels, and no Mercator with a latitude of
         // origin off the equator.
         if method == Method::Lambert2 && (all(&K0) - 1.0).abs() > SAME_RATIO {
-            let stated = [Lat0, Lon0, Lat1, Lat2, K0, FalseEasting, FalseNorthing].map(|p| (p.clone(), all(&p)));
+            let stated = [Lat0, Lon0, Lat1, Lat2, K0, FalseEasting, FalseNorthing]
+                .map(|p| (p.clone(), all(&p)));
             return Projection::Other("lambertconformalconic2spscaled".into(), stated.to_vec());
         }
-        Projection::Known(method, method.row().params.iter().map(|(param, ..)| all(param)).collect())
+        Projection::Known(
+            method,
+            method
+                .row()
+                .params
+                .iter()
+                .map(|(param, ..)| all(param))
+                .collect(),
+        )
     }
 
     pub(super) fn get(&self, wanted: &Param) -> Option<f64> {
         match self {
-            Projection::Known(method, values) => {
-                method.row().params.iter().zip(values).find(|((param, ..), _)| param == wanted).map(|(_, value)| *value)
-            }
-            Projection::Other(_, stated) => stated.iter().find(|entry| entry.0 == *wanted).map(|entry| entry.1),
+            Projection::Known(method, values) => method
+                .row()
+                .params
+                .iter()
+                .zip(values)
+                .find(|((param, ..), _)| param == wanted)
+                .map(|(_, value)| *value),
+            Projection::Other(_, stated) => stated
+                .iter()
+                .find(|entry| entry.0 == *wanted)
+                .map(|entry| entry.1),
         }
     }
 
@@ -89,7 +120,12 @@ impl Projection {
             (Projection::Known(a, values), Projection::Known(b, others)) => {
                 let same = |(param, x, y): (&Param, f64, f64)| is_near(param, x, y);
                 let params = || a.row().params.iter().map(|entry| &entry.0);
-                let straight = || params().zip(values).zip(others).all(|((p, x), y)| same((p, *x, *y)));
+                let straight = || {
+                    params()
+                        .zip(values)
+                        .zip(others)
+                        .all(|((p, x), y)| same((p, *x, *y)))
+                };
                 // The order of two standard parallels does not matter.
                 let swapped = || {
                     let swap = |param: &Param| match param {
@@ -97,14 +133,19 @@ impl Projection {
                         Param::Lat2 => Param::Lat1,
                         other => other.clone(),
                     };
-                    params().zip(values).all(|(p, x)| other.get(&swap(p)).is_some_and(|y| same((p, *x, y))))
+                    params()
+                        .zip(values)
+                        .all(|(p, x)| other.get(&swap(p)).is_some_and(|y| same((p, *x, y))))
                 };
-                a == b && (straight() || (matches!(a, Method::Lambert2 | Method::Albers) && swapped()))
+                a == b
+                    && (straight() || (matches!(a, Method::Lambert2 | Method::Albers) && swapped()))
             }
             (Projection::Other(a, values), Projection::Other(b, others)) => {
                 a == b
                     && values.len() == others.len()
-                    && values.iter().all(|(p, x)| other.get(p).is_some_and(|y| is_near(p, *x, y)))
+                    && values
+                        .iter()
+                        .all(|(p, x)| other.get(p).is_some_and(|y| is_near(p, *x, y)))
             }
             _ => false,
         }
@@ -128,12 +169,25 @@ mod tests {
     fn one_lambert_name_is_two_methods() {
         let one = Projection::new(
             "Lambert_Conformal_Conic",
-            &[(Param::Lat1, 52.0), (Param::Lat0, 52.0), (Param::K0, 0.9999)],
+            &[
+                (Param::Lat1, 52.0),
+                (Param::Lat0, 52.0),
+                (Param::K0, 0.9999),
+            ],
         );
         assert!(matches!(one, Projection::Known(Method::Lambert1, _)));
-        let two = Projection::new("Lambert_Conformal_Conic", &[(Param::Lat1, 40.0), (Param::Lat2, 43.0)]);
-        let swapped = Projection::new("Lambert Conic Conformal (2SP)", &[(Param::Lat1, 43.0), (Param::Lat2, 40.0)]);
+        let two = Projection::new(
+            "Lambert_Conformal_Conic",
+            &[(Param::Lat1, 40.0), (Param::Lat2, 43.0)],
+        );
+        let swapped = Projection::new(
+            "Lambert Conic Conformal (2SP)",
+            &[(Param::Lat1, 43.0), (Param::Lat2, 40.0)],
+        );
         assert!(two.is_same(&swapped));
-        assert!(!two.is_same(&Projection::new("Albers", &[(Param::Lat1, 43.0), (Param::Lat2, 40.0)])));
+        assert!(!two.is_same(&Projection::new(
+            "Albers",
+            &[(Param::Lat1, 43.0), (Param::Lat2, 40.0)]
+        )));
     }
 }

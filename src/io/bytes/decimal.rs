@@ -22,10 +22,27 @@ mod tests {
 
     #[test]
     fn the_same_double_comes_back() {
-        for x in [0.0, -0.0, 0.1, -1.5, 1e-5, 9.9e-6, 1e15, 1e16, 1.0 / 3.0, f64::MAX, f64::MIN_POSITIVE, 5e-324] {
+        for x in [
+            0.0,
+            -0.0,
+            0.1,
+            -1.5,
+            1e-5,
+            9.9e-6,
+            1e15,
+            1e16,
+            1.0 / 3.0,
+            f64::MAX,
+            f64::MIN_POSITIVE,
+            5e-324,
+        ] {
             for x in [x, -x, x.next_up().min(f64::MAX)] {
                 let text = Decimal(x).to_string();
-                assert_eq!(text.parse::<f64>().unwrap().to_bits(), x.to_bits(), "{text}");
+                assert_eq!(
+                    text.parse::<f64>().unwrap().to_bits(),
+                    x.to_bits(),
+                    "{text}"
+                );
                 assert!(text.len() < 26, "{text}");
             }
         }

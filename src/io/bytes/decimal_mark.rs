@@ -32,9 +32,19 @@ impl DecimalMark {
     /// # Errors
     /// If an earlier number has the other mark; names both, and where the other one is.
     pub(crate) fn add(&mut self, number: &[u8], location: impl Fn() -> String) -> Result<()> {
-        let Some(mark) = number.iter().copied().find(|byte| matches!(byte, b',' | b'.')) else { return Ok(()) };
+        let Some(mark) = number
+            .iter()
+            .copied()
+            .find(|byte| matches!(byte, b',' | b'.'))
+        else {
+            return Ok(());
+        };
         let text = || String::from_utf8_lossy(number).into_owned();
-        let first = self.0.get_or_insert_with(|| First { mark, text: text(), location: location() });
+        let first = self.0.get_or_insert_with(|| First {
+            mark,
+            text: text(),
+            location: location(),
+        });
         if first.mark == mark {
             return Ok(());
         }
@@ -62,12 +72,15 @@ mod tests {
         let mut mark = DecimalMark::default();
         for (line, number) in ["12", "500,000", "-3", "7,5e3"].iter().enumerate() {
             assert!(mark.0.is_none() || !mark.concerns(b"12 13,5"));
-            mark.add(number.as_bytes(), || format!("line {line}")).unwrap();
+            mark.add(number.as_bytes(), || format!("line {line}"))
+                .unwrap();
         }
         assert!(mark.concerns(b"3.5"));
         let error = mark.add(b"3.5", || "line 9".to_owned()).unwrap_err();
         assert!(
-            error.to_string().starts_with("line 9: 3.5 has a point and 500,000, in line 1, has a comma"),
+            error
+                .to_string()
+                .starts_with("line 9: 3.5 has a point and 500,000, in line 1, has a comma"),
             "{error}"
         );
     }

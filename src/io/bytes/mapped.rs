@@ -46,7 +46,9 @@ pub fn open(path: impl AsRef<Path>) -> Result<Mapped> {
 fn map(path: &Path) -> Result<Mapped> {
     // Before it is opened: that of a pipe waits for a writer, and takes it.
     if !std::fs::metadata(path)?.is_file() {
-        return Err(Error::usage("not a file on a disk, which could be used without reading all of it"));
+        return Err(Error::usage(
+            "not a file on a disk, which could be used without reading all of it",
+        ));
     }
     let file = File::open(path)?;
     // SAFETY: the map is only read, and lives as long as the bytes that are borrowed from it. That

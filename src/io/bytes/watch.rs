@@ -30,7 +30,10 @@ pub(crate) struct Meter<'a> {
 impl<'a> Meter<'a> {
     /// Starts with this many bytes to parse.
     pub(crate) fn new(watch: Watch<'a>, left: usize) -> Self {
-        Meter { watch, left: left as u64 }
+        Meter {
+            watch,
+            left: left as u64,
+        }
     }
 
     /// Reports the bytes that are left.
@@ -61,9 +64,19 @@ pub(crate) fn bytes_of(path: &Path, watch: Watch) -> Result<Vec<u8>> {
     // Exact for a file, and no more than a hint: a device or a pipe states 0.
     let stated = file.metadata().map_err(failed)?.len();
     bytes
-        .try_reserve_exact(usize::try_from(stated).unwrap_or(usize::MAX).saturating_add(1))
+        .try_reserve_exact(
+            usize::try_from(stated)
+                .unwrap_or(usize::MAX)
+                .saturating_add(1),
+        )
         .map_err(|_| Error::limit(format!("not enough memory for {stated} bytes")).in_file(path))?;
-    while file.by_ref().take(PART).read_to_end(&mut bytes).map_err(failed)? > 0 {
+    while file
+        .by_ref()
+        .take(PART)
+        .read_to_end(&mut bytes)
+        .map_err(failed)?
+        > 0
+    {
         watch(0)?;
     }
     Ok(bytes)
@@ -79,7 +92,11 @@ mod tests {
         let sum = AtomicU64::new(0);
         let watch = |bytes| {
             let before = sum.fetch_add(bytes, Ordering::Relaxed);
-            if before + bytes > 3 << 20 { Err(Error::canceled()) } else { Ok(()) }
+            if before + bytes > 3 << 20 {
+                Err(Error::canceled())
+            } else {
+                Ok(())
+            }
         };
         let mut meter = Meter::new(&watch, 10 << 20);
         meter.left((10 << 20) - 1).unwrap();

@@ -19,8 +19,13 @@ pub(crate) const VALUES_AT_ONCE: usize = 1 << 10;
 /// That of the watch. If the text is not JSON, the inner result says so.
 pub(crate) fn of(bytes: &[u8], watch: Watch) -> Result<serde_json::Result<Value>> {
     let mut parser = serde_json::Deserializer::from_slice(bytes);
-    let state = State { watch, ended: Cell::new(None) };
-    let value = Root(&state).deserialize(&mut parser).and_then(|root| parser.end().map(|()| root));
+    let state = State {
+        watch,
+        ended: Cell::new(None),
+    };
+    let value = Root(&state)
+        .deserialize(&mut parser)
+        .and_then(|root| parser.end().map(|()| root));
     if let Some(error) = state.ended.take() {
         return Err(error);
     }
@@ -126,7 +131,9 @@ mod tests {
             let found = of(text.as_bytes(), &unwatched).unwrap();
             match (&found, &expected) {
                 (Ok(found), Ok(expected)) => assert_eq!(found, expected, "{text}"),
-                (Err(found), Err(expected)) => assert_eq!(found.to_string(), expected.to_string(), "{text}"),
+                (Err(found), Err(expected)) => {
+                    assert_eq!(found.to_string(), expected.to_string(), "{text}")
+                }
                 _ => panic!("{text}: {found:?} {expected:?}"),
             }
         }

@@ -21,6 +21,8 @@ impl ContourSummary {
         self.lines += 1;
         self.vertices += line.points.len();
         self.closed += usize::from(line.is_closed());
-        line.points.iter().for_each(|&[x, y]| self.bounds.add([x, y, line.level]));
+        line.points
+            .iter()
+            .for_each(|&[x, y]| self.bounds.add([x, y, line.level]));
     }
 }

@@ -20,7 +20,9 @@ pub(crate) fn write(target: Destination, mesh: &Listing, crs: Option<&Crs>) -> R
     for line in crs_text::comments(crs) {
         writeln!(output, "# {line}")?;
     }
-    write_lines(&mut output, mesh.vertices(), |text, [x, y, z]| writeln!(text, "v {x} {y} {z}"))?;
+    write_lines(&mut output, mesh.vertices(), |text, [x, y, z]| {
+        writeln!(text, "v {x} {y} {z}")
+    })?;
     write_lines(&mut output, mesh.faces(), |text, face| {
         // 64 bits, because the largest number plus one may not fit into 32.
         let [a, b, c] = face.map(|v| u64::from(v) + 1);
@@ -53,10 +55,17 @@ pub(crate) fn read(bytes: &[u8], watch: Watch) -> Result<Triangles> {
                 }
                 polygons.push((number, first..corners.len()));
             }
-            Some("#") => crs.push_str(line.strip_prefix("# ").and_then(crs_text::crs_comment).unwrap_or_default()),
+            Some("#") => crs.push_str(
+                line.strip_prefix("# ")
+                    .and_then(crs_text::crs_comment)
+                    .unwrap_or_default(),
+            ),
             Some(word) if !word.starts_with('#') && !STATEMENTS.contains(&word) => {
-                let error = Error::format(format!("'{}' is not a statement of OBJ", shortened(word)));
-                return Err(at_line(error.cure("correct the line, or make it a comment with # at its beginning")));
+                let error =
+                    Error::format(format!("'{}' is not a statement of OBJ", shortened(word)));
+                return Err(at_line(error.cure(
+                    "correct the line, or make it a comment with # at its beginning",
+                )));
             }
             _ => (),
         }
@@ -70,7 +79,13 @@ pub(crate) fn read(bytes: &[u8], watch: Watch) -> Result<Triangles> {
         polygon::add_polygon(&vertices, &corners[range], &mut faces).map_err(at_line)?;
     }
     let warnings = open_line(bytes).into_iter().collect();
-    Ok(Triangles { vertices, faces, crs: crs_text::parse(&crs)?, warnings, ..Default::default() })
+    Ok(Triangles {
+        vertices,
+        faces,
+        crs: crs_text::parse(&crs)?,
+        warnings,
+        ..Default::default()
+    })
 }
 
 /// The statements that are skipped (Wavefront, Appendix B1, and what later programs write).
@@ -127,12 +142,16 @@ fn logical_lines(bytes: &[u8]) -> impl Iterator<Item = (usize, String)> {
     let mut lines = bytes.split(|&b| b == b'\n').enumerate();
     std::iter::from_fn(move || {
         let (first, line) = lines.next()?;
-        let mut text = String::from_utf8_lossy(line).trim_end_matches('\r').to_owned();
+        let mut text = String::from_utf8_lossy(line)
+            .trim_end_matches('\r')
+            .to_owned();
         while text.ends_with('\\') {
             text.pop();
             text.push(' ');
             match lines.next() {
-                Some((_, line)) => text.push_str(String::from_utf8_lossy(line).trim_end_matches('\r')),
+                Some((_, line)) => {
+                    text.push_str(String::from_utf8_lossy(line).trim_end_matches('\r'))
+                }
                 None => break,
             }
         }
@@ -143,9 +162,12 @@ fn logical_lines(bytes: &[u8]) -> impl Iterator<Item = (usize, String)> {
 fn vertex<'a>(mut words: impl Iterator<Item = &'a str>) -> Result<[f64; 3]> {
     let mut p = [0.0; 3];
     for (value, axis) in p.iter_mut().zip(["x", "y", "z"]) {
-        let word = words.next().ok_or_else(|| Error::format(format!("a vertex without {axis}")))?;
-        *value =
-            word.parse().map_err(|_| Error::format(format!("'{}' is not a number for {axis}", shortened(word))))?;
+        let word = words
+            .next()
+            .ok_or_else(|| Error::format(format!("a vertex without {axis}")))?;
+        *value = word.parse().map_err(|_| {
+            Error::format(format!("'{}' is not a number for {axis}", shortened(word)))
+        })?;
     }
     Ok(p)
 }
@@ -153,11 +175,25 @@ fn vertex<'a>(mut words: impl Iterator<Item = &'a str>) -> Result<[f64; 3]> {
 /// Parses a corner `v`, `v/vt`, `v//vn` or `v/vt/vn`; negative numbers count back from the last
 /// vertex.
 fn corner(word: &str, vertices_so_far: usize) -> Result<u32> {
-    let number: Option<i64> = word.split('/').next().and_then(|number| number.parse().ok());
+    let number: Option<i64> = word
+        .split('/')
+        .next()
+        .and_then(|number| number.parse().ok());
     number
-        .and_then(|n| if n < 0 { n.checked_add(vertices_so_far as i64) } else { n.checked_sub(1) })
+        .and_then(|n| {
+            if n < 0 {
+                n.checked_add(vertices_so_far as i64)
+            } else {
+                n.checked_sub(1)
+            }
+        })
         .and_then(|index| u32::try_from(index).ok())
-        .ok_or_else(|| Error::format(format!("'{}' names no vertex (the first is 1)", shortened(word))))
+        .ok_or_else(|| {
+            Error::format(format!(
+                "'{}' names no vertex (the first is 1)",
+                shortened(word)
+            ))
+        })
 }
 
 fn shortened(word: &str) -> String {

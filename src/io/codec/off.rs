@@ -29,7 +29,9 @@ pub(crate) fn write(target: Destination, mesh: &Listing, crs: Option<&Crs>) -> R
         let [x, y, z] = p.map(Decimal);
         writeln!(text, "{x} {y} {z}")
     })?;
-    write_lines(&mut output, mesh.faces(), |text, [a, b, c]| writeln!(text, "3 {a} {b} {c}"))?;
+    write_lines(&mut output, mesh.faces(), |text, [a, b, c]| {
+        writeln!(text, "3 {a} {b} {c}")
+    })?;
     target.put(output)
 }
 
@@ -41,7 +43,11 @@ pub(crate) fn read(bytes: &[u8], watch: Watch) -> Result<Triangles> {
     for i in 0..vertex_count {
         let mut row = rows.expect(|| format!("vertex {i} of {vertex_count}"), "X Y Z")?;
         row.refuse_commas()?;
-        vertices.push([row.finite("x coordinate")?, row.finite("y coordinate")?, row.finite("z coordinate")?]);
+        vertices.push([
+            row.finite("x coordinate")?,
+            row.finite("y coordinate")?,
+            row.finite("z coordinate")?,
+        ]);
     }
     let mut faces = Vec::with_capacity(face_count.min(bytes.len() / MIN_BYTES));
     let mut corners = Vec::new();
@@ -52,14 +58,29 @@ pub(crate) fn read(bytes: &[u8], watch: Watch) -> Result<Triangles> {
         for _ in 0..count {
             corners.push(row.within("vertex number")?);
         }
-        polygon::add_polygon(&vertices, &corners, &mut faces).map_err(|e| e.at(format!("line {}", row.line)))?;
+        polygon::add_polygon(&vertices, &corners, &mut faces)
+            .map_err(|e| e.at(format!("line {}", row.line)))?;
     }
     rows.end("the last face")?;
-    let comments = bytes.split(|&b| b == b'\n').filter_map(|line| line.strip_prefix(b"# "));
-    let comments = comments.map(|text| String::from_utf8_lossy(text).trim_end_matches('\r').to_owned());
-    let crs: String = comments.filter_map(|text| crs_text::crs_comment(&text).map(str::to_owned)).collect();
+    let comments = bytes
+        .split(|&b| b == b'\n')
+        .filter_map(|line| line.strip_prefix(b"# "));
+    let comments = comments.map(|text| {
+        String::from_utf8_lossy(text)
+            .trim_end_matches('\r')
+            .to_owned()
+    });
+    let crs: String = comments
+        .filter_map(|text| crs_text::crs_comment(&text).map(str::to_owned))
+        .collect();
     let warnings = open_line(bytes).into_iter().collect();
-    Ok(Triangles { vertices, faces, crs: crs_text::parse(&crs)?, warnings, ..Default::default() })
+    Ok(Triangles {
+        vertices,
+        faces,
+        crs: crs_text::parse(&crs)?,
+        warnings,
+        ..Default::default()
+    })
 }
 
 /// The fewest bytes of a vertex or a face, which limit the memory allocated for a stated count.
@@ -74,11 +95,18 @@ fn read_header(rows: &mut Rows) -> Result<[usize; 2]> {
         b"OFF" | b"COFF" | b"NOFF" | b"CNOFF" | b"STOFF" => {}
         _ if keyword.ends_with(b"OFF") => {
             let kind = shown(keyword);
-            return Err(Error::unsupported(format!("'{kind}' is a variant of OFF that is not supported"))
-                .at(format!("line {}", row.line))
-                .cure("save it as plain OFF"));
+            return Err(Error::unsupported(format!(
+                "'{kind}' is a variant of OFF that is not supported"
+            ))
+            .at(format!("line {}", row.line))
+            .cure("save it as plain OFF"));
         }
-        _ => return Err(row.wrong(format!("the file begins with '{}', not with 'OFF'", shown(keyword)))),
+        _ => {
+            return Err(row.wrong(format!(
+                "the file begins with '{}', not with 'OFF'",
+                shown(keyword)
+            )));
+        }
     }
     if row.has_more() {
         return counts(row);
@@ -87,5 +115,8 @@ fn read_header(rows: &mut Rows) -> Result<[usize; 2]> {
 }
 
 fn counts(mut row: Row) -> Result<[usize; 2]> {
-    Ok([row.within("number of vertices")?, row.within("number of faces")?])
+    Ok([
+        row.within("number of vertices")?,
+        row.within("number of faces")?,
+    ])
 }

@@ -14,11 +14,20 @@ use crate::io::Destination;
 /// The origin is the minimum corner of the data, rounded to whole units. A float then has a
 /// resolution of a millimeter over 8 km; with map coordinates, it would lose the meter.
 pub(crate) fn write(target: Destination, mesh: &Listing) -> Result<([f64; 3], PathBuf)> {
-    let count = u32::try_from(mesh.face_count)
-        .map_err(|_| Error::limit(format!("{} triangles; an STL file supports up to {}", mesh.face_count, u32::MAX)))?;
+    let count = u32::try_from(mesh.face_count).map_err(|_| {
+        Error::limit(format!(
+            "{} triangles; an STL file supports up to {}",
+            mesh.face_count,
+            u32::MAX
+        ))
+    })?;
     let mut bounds = Bounds::default();
     mesh.vertices().for_each(|p| bounds.add(p));
-    let origin = if bounds.is_empty() { [0.0; 3] } else { bounds.min.map(f64::floor) };
+    let origin = if bounds.is_empty() {
+        [0.0; 3]
+    } else {
+        bounds.min.map(f64::floor)
+    };
     let [x, y, z] = origin;
 
     let mut header = [b' '; 80];
@@ -65,13 +74,23 @@ const FACET: usize = 50;
 /// Reads the number of triangles, extent and origin of a binary STL file.
 pub(crate) fn describe(path: &Path) -> Result<Solid> {
     let bytes = std::fs::read(path)?;
-    let count = bytes.get(80..HEADER).and_then(|count| count.try_into().ok()).map(u32::from_le_bytes);
+    let count = bytes
+        .get(80..HEADER)
+        .and_then(|count| count.try_into().ok())
+        .map(u32::from_le_bytes);
     let length = count.map(|count| HEADER as u64 + FACET as u64 * u64::from(count));
     let (Some(count), Some(length)) = (count, length) else {
-        return Err(Error::format(format!("{} bytes, a binary STL file has 84 and more", bytes.len())));
+        return Err(Error::format(format!(
+            "{} bytes, a binary STL file has 84 and more",
+            bytes.len()
+        )));
     };
     if length != bytes.len() as u64 {
-        let text = if bytes.starts_with(b"solid") { " (STL as text is not read)" } else { "" };
+        let text = if bytes.starts_with(b"solid") {
+            " (STL as text is not read)"
+        } else {
+            ""
+        };
         return Err(Error::format(format!(
             "{count} triangles need {length} bytes, the file has {}{text}",
             bytes.len()
@@ -81,11 +100,21 @@ pub(crate) fn describe(path: &Path) -> Result<Solid> {
     let mut bounds = Bounds::default();
     for facet in bytes[HEADER..].chunks_exact(FACET) {
         // A facet consists of the normal, then the corners, three numbers each.
-        let number = |i: usize| facet[4 * i..].first_chunk().map_or(f32::NAN, |bytes| f32::from_le_bytes(*bytes));
-        let corner = |k: usize| std::array::from_fn(|axis| f64::from(number(3 + 3 * k + axis)) + origin[axis]);
+        let number = |i: usize| {
+            facet[4 * i..]
+                .first_chunk()
+                .map_or(f32::NAN, |bytes| f32::from_le_bytes(*bytes))
+        };
+        let corner = |k: usize| {
+            std::array::from_fn(|axis| f64::from(number(3 + 3 * k + axis)) + origin[axis])
+        };
         (0..3).for_each(|k| bounds.add(corner(k)));
     }
-    Ok(Solid { triangles: count as usize, bounds, origin })
+    Ok(Solid {
+        triangles: count as usize,
+        bounds,
+        origin,
+    })
 }
 
 /// Returns the path of the file with the origin: `ground.stl` has `ground.stl.origin.txt`.
@@ -100,9 +129,16 @@ fn read_origin(path: &Path) -> Result<Option<[f64; 3]>> {
         return Ok(None);
     }
     let text = std::fs::read_to_string(path).map_err(|e| Error::from(e).in_file(path))?;
-    let numbers: Vec<f64> = text.split_ascii_whitespace().filter_map(|word| word.parse().ok()).collect();
-    let origin = <[f64; 3]>::try_from(numbers).ok().filter(|origin| origin.iter().all(|c| c.is_finite()));
-    origin.map(Some).ok_or_else(|| Error::format("expected the three numbers of an origin").in_file(path))
+    let numbers: Vec<f64> = text
+        .split_ascii_whitespace()
+        .filter_map(|word| word.parse().ok())
+        .collect();
+    let origin = <[f64; 3]>::try_from(numbers)
+        .ok()
+        .filter(|origin| origin.iter().all(|c| c.is_finite()));
+    origin
+        .map(Some)
+        .ok_or_else(|| Error::format("expected the three numbers of an origin").in_file(path))
 }
 
 fn local(p: [f64; 3], origin: [f64; 3]) -> [f64; 3] {
@@ -112,7 +148,15 @@ fn local(p: [f64; 3], origin: [f64; 3]) -> [f64; 3] {
 /// Returns the unit normal, which points up if the face is counter-clockwise in plan.
 fn normal([a, b, c]: [[f64; 3]; 3]) -> [f64; 3] {
     let (u, v) = (local(b, a), local(c, a));
-    let n = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+    let n = [
+        u[1] * v[2] - u[2] * v[1],
+        u[2] * v[0] - u[0] * v[2],
+        u[0] * v[1] - u[1] * v[0],
+    ];
     let length = n[0].hypot(n[1]).hypot(n[2]);
-    if length > 0.0 { n.map(|part| part / length) } else { [0.0; 3] }
+    if length > 0.0 {
+        n.map(|part| part / length)
+    } else {
+        [0.0; 3]
+    }
 }

@@ -107,9 +107,9 @@ impl Magic {
     fn matches(self, head: &[u8]) -> bool {
         match self {
             Magic::At(at, bytes) => head.get(at..).is_some_and(|rest| rest.starts_with(bytes)),
-            Magic::Word(word) => {
-                head.get(..word.len()).is_some_and(|start| start.eq_ignore_ascii_case(word.as_bytes()))
-            }
+            Magic::Word(word) => head
+                .get(..word.len())
+                .is_some_and(|start| start.eq_ignore_ascii_case(word.as_bytes())),
         }
     }
 }
@@ -151,7 +151,8 @@ type WriteHeights = fn(Destination, &dyn BlockSource) -> Result<RasterSummary>;
 type WriteShades = fn(Destination, &dyn BlockSource) -> Result<()>;
 type WriteSpace = fn(&[Destination], &Tetrahedralized) -> Result<()>;
 type WritePlane = fn(&[Destination], &Triangulated) -> Result<()>;
-type WriteContours = fn(Destination, &mut dyn Iterator<Item = ContourLine>, Option<&Crs>) -> Result<ContourSummary>;
+type WriteContours =
+    fn(Destination, &mut dyn Iterator<Item = ContourLine>, Option<&Crs>) -> Result<ContourSummary>;
 
 pub(super) type Sink<'a> = Result<Box<dyn PointSink + 'a>>;
 
@@ -238,7 +239,9 @@ impl Format {
 
     pub(super) fn has_extension(&self, path: &Path) -> bool {
         let extension = path.extension().unwrap_or_default();
-        self.extensions.iter().any(|known| extension.eq_ignore_ascii_case(known))
+        self.extensions
+            .iter()
+            .any(|known| extension.eq_ignore_ascii_case(known))
     }
 
     pub(super) fn begins_like(&self, head: &[u8]) -> bool {

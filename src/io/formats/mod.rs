@@ -23,7 +23,9 @@ use crate::error::{Error, Result};
 
 /// Returns the format for writing a product, by the extension of the target.
 pub fn for_output(path: &Path, product: Product) -> Option<&'static Format> {
-    FORMATS.iter().find(|format| format.writes(product) && format.has_extension(path))
+    FORMATS
+        .iter()
+        .find(|format| format.writes(product) && format.has_extension(path))
 }
 
 /// Number of bytes that suffice to recognize a file.
@@ -32,9 +34,10 @@ pub(crate) const HEAD: usize = 1024;
 /// Returns the format that a file's extension names, whether it can be read or not. Formats that
 /// share their extension with another are not returned.
 pub fn of_name(path: &Path) -> Option<&'static Format> {
-    FORMATS
-        .iter()
-        .find(|format| !matches!(format.known_by, KnownBy::Rest | KnownBy::NameAndBytes) && format.has_extension(path))
+    FORMATS.iter().find(|format| {
+        !matches!(format.known_by, KnownBy::Rest | KnownBy::NameAndBytes)
+            && format.has_extension(path)
+    })
 }
 
 /// Returns the format that a file is to be read as, by its first bytes (1024 are enough) and its
@@ -44,13 +47,23 @@ pub fn of_name(path: &Path) -> Option<&'static Format> {
 /// bytes only serve to name it.
 pub fn detect(head: &[u8], path: &Path) -> Option<&'static Format> {
     let find = |rule: KnownBy, matches: &dyn Fn(&Format) -> bool| {
-        FORMATS.iter().find(|format| format.known_by == rule && matches(format))
+        FORMATS
+            .iter()
+            .find(|format| format.known_by == rule && matches(format))
     };
     find(KnownBy::Bytes, &|format| format.begins_like(head))
-        .or_else(|| find(KnownBy::NameAndBytes, &|format| format.has_extension(path) && format.begins_like(head)))
+        .or_else(|| {
+            find(KnownBy::NameAndBytes, &|format| {
+                format.has_extension(path) && format.begins_like(head)
+            })
+        })
         .or_else(|| of_name(path))
         .or_else(|| find(KnownBy::Name, &|format| format.begins_like(head)))
-        .or_else(|| find(KnownBy::Rest, &|_| !is_binary(head) && of_bytes(head).is_none()))
+        .or_else(|| {
+            find(KnownBy::Rest, &|_| {
+                !is_binary(head) && of_bytes(head).is_none()
+            })
+        })
 }
 
 /// Like [`detect`], but opens the file. Input that cannot be read twice (a pipe) is not opened, and
@@ -85,10 +98,16 @@ pub(crate) fn named(head: &[u8], path: &Path) -> Option<&'static Format> {
 /// such as `.dbf`.
 pub(crate) fn format_of_part(path: &Path) -> Option<(&'static Format, &'static str)> {
     let extension = path.extension()?;
-    FORMATS.iter().filter(|format| matches!(format.reader, FormatReader::Layer(_))).find_map(|format| {
-        let part = format.parts.iter().find(|part| extension.eq_ignore_ascii_case(part))?;
-        Some((format, *part))
-    })
+    FORMATS
+        .iter()
+        .filter(|format| matches!(format.reader, FormatReader::Layer(_)))
+        .find_map(|format| {
+            let part = format
+                .parts
+                .iter()
+                .find(|part| extension.eq_ignore_ascii_case(part))?;
+            Some((format, *part))
+        })
 }
 
 /// Returns true if the bytes are not text. UTF-16 contains zeros too; the text reader refuses it by
@@ -100,13 +119,21 @@ fn is_binary(head: &[u8]) -> bool {
 
 /// Returns the extensions in which a product can be written.
 pub fn extensions(product: Product) -> Vec<&'static str> {
-    FORMATS.iter().filter(|format| format.writes(product)).flat_map(|format| format.extensions).copied().collect()
+    FORMATS
+        .iter()
+        .filter(|format| format.writes(product))
+        .flat_map(|format| format.extensions)
+        .copied()
+        .collect()
 }
 
 /// Returns the extensions in which a product can be written, for a sentence: ".shp, .geojson or
 /// .json".
 pub(crate) fn extensions_or(product: Product) -> String {
-    let all: Vec<String> = extensions(product).iter().map(|extension| format!(".{extension}")).collect();
+    let all: Vec<String> = extensions(product)
+        .iter()
+        .map(|extension| format!(".{extension}"))
+        .collect();
     match &all[..] {
         [most @ .., last] if !most.is_empty() => format!("{} or {last}", most.join(", ")),
         _ => all.join(", "),
@@ -172,7 +199,11 @@ impl FormatReader {
 pub fn help() -> String {
     let mut text = String::from("Formats, by extension (more are read with the feature `gdal`):\n");
     for format in FORMATS.iter().filter(|format| format.is_read()) {
-        let extensions: Vec<String> = format.extensions.iter().map(|extension| format!(".{extension}")).collect();
+        let extensions: Vec<String> = format
+            .extensions
+            .iter()
+            .map(|extension| format!(".{extension}"))
+            .collect();
         // Writing to a string does not fail.
         let _ = writeln!(text, "  {:<28} {}", extensions.join(" "), format.help);
     }
@@ -181,13 +212,31 @@ pub fn help() -> String {
 
 /// Returns the table of formats in `docs/formats.md`, in Markdown.
 pub fn markdown() -> String {
-    let mut text = String::from("| format | extensions | read | written | can hold |\n|---|---|---|---|---|\n");
-    for format in FORMATS.iter().filter(|format| !format.extensions.is_empty()) {
-        let extensions: Vec<String> = format.extensions.iter().map(|extension| format!("`.{extension}`")).collect();
-        let written: Vec<_> =
-            Product::ALL.into_iter().filter(|&product| format.writes(product)).map(Product::name).collect();
+    let mut text = String::from(
+        "| format | extensions | read | written | can hold |\n|---|---|---|---|---|\n",
+    );
+    for format in FORMATS
+        .iter()
+        .filter(|format| !format.extensions.is_empty())
+    {
+        let extensions: Vec<String> = format
+            .extensions
+            .iter()
+            .map(|extension| format!("`.{extension}`"))
+            .collect();
+        let written: Vec<_> = Product::ALL
+            .into_iter()
+            .filter(|&product| format.writes(product))
+            .map(Product::name)
+            .collect();
         let holds: Vec<_> = format.holds.iter().map(|holding| holding.name()).collect();
-        let cells = [format.name, &extensions.join(", "), format.reader.name(), &written.join(", "), &holds.join(", ")];
+        let cells = [
+            format.name,
+            &extensions.join(", "),
+            format.reader.name(),
+            &written.join(", "),
+            &holds.join(", "),
+        ];
         let _ = writeln!(text, "| {} |", cells.join(" | ").replace("|  |", "| |"));
     }
     text
@@ -197,7 +246,14 @@ pub fn markdown() -> String {
 /// `roads.shp`. The case of their extensions may differ.
 pub fn read_along_with(path: &Path) -> Vec<PathBuf> {
     let format = of_name(path).or_else(|| detect_file(path).ok().flatten());
-    let Some(Format { extensions: [extension, ..], read_along, .. }) = format else { return Vec::new() };
+    let Some(Format {
+        extensions: [extension, ..],
+        read_along,
+        ..
+    }) = format
+    else {
+        return Vec::new();
+    };
     let files = with_companions(path, extension, read_along);
     files.into_iter().skip(1).map(|(path, _)| path).collect()
 }
@@ -221,5 +277,7 @@ pub fn with_companions(
         };
         (path, companion)
     });
-    std::iter::once((path.to_path_buf(), extension)).chain(beside).collect()
+    std::iter::once((path.to_path_buf(), extension))
+        .chain(beside)
+        .collect()
 }

@@ -1,14 +1,19 @@
 //! The table of formats. Most rows override a few fields of another row: of [`ROW`], or of one that
 //! [`raster`], [`vector`] or [`plane`] returns.
 
-use super::format::{Content, Format, FormatReader, Holding, KnownBy, Magic, PointWriter, Sink, WriteSurface, Writers};
+use super::format::{
+    Content, Format, FormatReader, Holding, KnownBy, Magic, PointWriter, Sink, WriteSurface,
+    Writers,
+};
 use crate::data::PointInfo;
 use crate::error::{Command, Feature, Wording, wording};
 use crate::io::bytes::output::Destination;
 use crate::io::bytes::watch::bytes_of;
 use crate::io::codec::geotiff::CellFormat;
 use crate::io::codec::las::{Detail, Packing, Rounding};
-use crate::io::codec::{geojson, geotiff, las, obj, off, ply, png, shapefile, stl, tetgen, text, tin, triangle};
+use crate::io::codec::{
+    geojson, geotiff, las, obj, off, ply, png, shapefile, stl, tetgen, text, tin, triangle,
+};
 
 const NOT_WRITTEN: Writers = Writers {
     points: None,
@@ -26,9 +31,14 @@ pub(crate) fn with_gdal() -> Wording {
 }
 
 const AS_RASTER: fn() -> Wording = || "this is a raster: points are expected here".into();
-const AS_PLANE: fn() -> Wording =
-    || wording![Command::Triangulate, " reads it and writes its triangulation, to .ele, .ply or .obj"];
-const AS_SPACE: fn() -> Wording = || wording!["it is written only, by ", Command::TriangulateInSpace];
+const AS_PLANE: fn() -> Wording = || {
+    wording![
+        Command::Triangulate,
+        " reads it and writes its triangulation, to .ele, .ply or .obj"
+    ]
+};
+const AS_SPACE: fn() -> Wording =
+    || wording!["it is written only, by ", Command::TriangulateInSpace];
 const AS_MESH: fn() -> Wording = || "save its vertices as text or LAS".into();
 const UNPACK: fn() -> Wording = || "unpack it".into();
 
@@ -53,7 +63,13 @@ const ROW: Format = Format {
 
 const LIDAR: FormatReader = FormatReader::Points {
     file: |path, options| Ok(Box::new(las::open_with(path, options.las())?)),
-    stream: |stream, name, options| Ok(Box::new(las::from_stream_with(stream, name, options.las())?)),
+    stream: |stream, name, options| {
+        Ok(Box::new(las::from_stream_with(
+            stream,
+            name,
+            options.las(),
+        )?))
+    },
 };
 
 const TEXT: FormatReader = FormatReader::Points {
@@ -61,12 +77,23 @@ const TEXT: FormatReader = FormatReader::Points {
     stream: |stream, name, options| Ok(Box::new(text::from_stream(stream, name, options)?)),
 };
 
-const fn lidar_writer(create: for<'a> fn(Destination<'a>, &[&PointInfo], Rounding) -> Sink<'a>) -> Writers {
-    Writers { points: Some(PointWriter { detail: Detail::Records, create }), ..NOT_WRITTEN }
+const fn lidar_writer(
+    create: for<'a> fn(Destination<'a>, &[&PointInfo], Rounding) -> Sink<'a>,
+) -> Writers {
+    Writers {
+        points: Some(PointWriter {
+            detail: Detail::Records,
+            create,
+        }),
+        ..NOT_WRITTEN
+    }
 }
 
 const fn surface_writer(write: WriteSurface) -> Writers {
-    Writers { surface: Some(write), ..NOT_WRITTEN }
+    Writers {
+        surface: Some(write),
+        ..NOT_WRITTEN
+    }
 }
 
 const fn raster(
@@ -117,7 +144,10 @@ const fn plane(
         extensions,
         content: Content::Plane,
         reader: FormatReader::Own,
-        writers: Writers { plane: Some(triangle::write), ..NOT_WRITTEN },
+        writers: Writers {
+            plane: Some(triangle::write),
+            ..NOT_WRITTEN
+        },
         cure: AS_PLANE,
         help,
         ..ROW
@@ -125,16 +155,27 @@ const fn plane(
 }
 
 /// The writers of the formats that Triangle and TetGen share.
-const PLANE_OR_SPACE: Writers = Writers { plane: Some(triangle::write), space: Some(tetgen::write), ..NOT_WRITTEN };
+const PLANE_OR_SPACE: Writers = Writers {
+    plane: Some(triangle::write),
+    space: Some(tetgen::write),
+    ..NOT_WRITTEN
+};
 
 /// Returns the row for a file of a triangulation in space.
-const fn space(name: &'static str, noun: &'static str, extensions: &'static [&'static str]) -> Format {
+const fn space(
+    name: &'static str,
+    noun: &'static str,
+    extensions: &'static [&'static str],
+) -> Format {
     Format {
         name,
         noun,
         extensions,
         reader: FormatReader::Unread,
-        writers: Writers { space: Some(tetgen::write), ..NOT_WRITTEN },
+        writers: Writers {
+            space: Some(tetgen::write),
+            ..NOT_WRITTEN
+        },
         cure: AS_SPACE,
         ..ROW
     }
@@ -151,7 +192,12 @@ pub static FORMATS: &[Format] = &[
         holds: &[Holding::Points, Holding::Attributes, Holding::Crs],
         reader: LIDAR,
         writers: lidar_writer(|target, sources, rounding| {
-            Ok(Box::new(las::create(target, sources, Packing::Plain, rounding)?))
+            Ok(Box::new(las::create(
+                target,
+                sources,
+                Packing::Plain,
+                rounding,
+            )?))
         }),
         help: "lidar points",
         ..ROW
@@ -162,10 +208,20 @@ pub static FORMATS: &[Format] = &[
         extensions: &["laz"],
         magic: &[Magic::At(0, b"LASF")],
         known_by: KnownBy::Bytes,
-        holds: &[Holding::Points, Holding::Attributes, Holding::Crs, Holding::Compression],
+        holds: &[
+            Holding::Points,
+            Holding::Attributes,
+            Holding::Crs,
+            Holding::Compression,
+        ],
         reader: LIDAR,
         writers: lidar_writer(|target, sources, rounding| {
-            Ok(Box::new(las::create(target, sources, Packing::Compressed, rounding)?))
+            Ok(Box::new(las::create(
+                target,
+                sources,
+                Packing::Compressed,
+                rounding,
+            )?))
         }),
         help: "lidar points, compressed",
         ..ROW
@@ -205,7 +261,12 @@ pub static FORMATS: &[Format] = &[
         magic: &[Magic::At(0, &[0, 0, 0x27, 0x0a])],
         known_by: KnownBy::Name,
         content: Content::Layer,
-        holds: &[Holding::Points, Holding::Lines, Holding::Polygons, Holding::Crs],
+        holds: &[
+            Holding::Points,
+            Holding::Lines,
+            Holding::Polygons,
+            Holding::Crs,
+        ],
         beside: &["shx", "dbf", "prj", "cpg"],
         parts: &["shx", "dbf", "prj", "cpg", "qpj", "qix", "sbn", "sbx"],
         read_along: &["shx", "dbf", "prj", "cpg"],
@@ -225,7 +286,12 @@ pub static FORMATS: &[Format] = &[
         extensions: &["geojson", "json"],
         magic: &[Magic::At(0, b"{")],
         content: Content::Layer,
-        holds: &[Holding::Points, Holding::Lines, Holding::Polygons, Holding::Crs],
+        holds: &[
+            Holding::Points,
+            Holding::Lines,
+            Holding::Polygons,
+            Holding::Crs,
+        ],
         gdal_names: &["GeoJSON"],
         reader: FormatReader::Layer(geojson::read_layer_with),
         writers: Writers {
@@ -255,7 +321,12 @@ pub static FORMATS: &[Format] = &[
         noun: "a TIFF file",
         extensions: &["tif", "tiff"],
         // TIFF and BigTIFF, in both byte orders.
-        magic: &[Magic::At(0, b"II*\0"), Magic::At(0, b"MM\0*"), Magic::At(0, b"II+\0"), Magic::At(0, b"MM\0+")],
+        magic: &[
+            Magic::At(0, b"II*\0"),
+            Magic::At(0, b"MM\0*"),
+            Magic::At(0, b"II+\0"),
+            Magic::At(0, b"MM\0+"),
+        ],
         known_by: KnownBy::Bytes,
         content: Content::Raster,
         holds: &[Holding::Raster, Holding::Crs, Holding::Compression],
@@ -263,8 +334,12 @@ pub static FORMATS: &[Format] = &[
         gdal_names: &["GTiff", "COG"],
         reader: FormatReader::Raster(|path| geotiff::open(path)),
         writers: Writers {
-            heights: Some(|target, source| geotiff::write(target, source, CellFormat::Heights.into())),
-            shades: Some(|target, source| geotiff::write(target, source, CellFormat::Shades.into()).map(drop)),
+            heights: Some(|target, source| {
+                geotiff::write(target, source, CellFormat::Heights.into())
+            }),
+            shades: Some(|target, source| {
+                geotiff::write(target, source, CellFormat::Shades.into()).map(drop)
+            }),
             ..NOT_WRITTEN
         },
         cure: AS_RASTER,
@@ -283,7 +358,10 @@ pub static FORMATS: &[Format] = &[
         read_along: &["pgw", "pngw", "wld", "png.aux.xml"],
         gdal_names: &["PNG"],
         reader: FormatReader::InfoOnly,
-        writers: Writers { shades: Some(|target, source| png::write_gray(target, source)), ..NOT_WRITTEN },
+        writers: Writers {
+            shades: Some(|target, source| png::write_gray(target, source)),
+            ..NOT_WRITTEN
+        },
         cure: AS_RASTER,
         help: "hillshade",
         ..ROW
@@ -385,19 +463,34 @@ pub static FORMATS: &[Format] = &[
     Format {
         holds: &[Holding::Points],
         writers: PLANE_OR_SPACE,
-        ..plane("Triangle .node", "a .node file of Triangle", &["node"], "points (Triangle, TetGen)")
+        ..plane(
+            "Triangle .node",
+            "a .node file of Triangle",
+            &["node"],
+            "points (Triangle, TetGen)",
+        )
     },
     Format {
         holds: &[Holding::Points, Holding::Lines],
         beside: &["node"],
         read_along: &["node"],
-        ..plane("Triangle .poly", "a .poly file of Triangle", &["poly"], "points and segments in the plane (Triangle)")
+        ..plane(
+            "Triangle .poly",
+            "a .poly file of Triangle",
+            &["poly"],
+            "points and segments in the plane (Triangle)",
+        )
     },
     Format {
         reader: FormatReader::InfoOnly,
         beside: &["node"],
         writers: PLANE_OR_SPACE,
-        ..plane("Triangle .edge", "an .edge file of Triangle", &["edge"], "edges of a triangulation (Triangle, TetGen)")
+        ..plane(
+            "Triangle .edge",
+            "an .edge file of Triangle",
+            &["edge"],
+            "edges of a triangulation (Triangle, TetGen)",
+        )
     },
     Format {
         reader: FormatReader::InfoOnly,
@@ -409,43 +502,115 @@ pub static FORMATS: &[Format] = &[
             "neighbors in a triangulation (Triangle, TetGen)",
         )
     },
-    Format { holds: &[Holding::Mesh], beside: &["node"], ..space("TetGen .face", "a .face file of TetGen", &["face"]) },
-    Format { holds: &[Holding::Points, Holding::Mesh], ..space("MEDIT", "a MEDIT mesh", &["mesh"]) },
-    Format { holds: &[Holding::Points], ..space("VTU", "an unstructured grid of VTK", &["vtu"]) },
+    Format {
+        holds: &[Holding::Mesh],
+        beside: &["node"],
+        ..space("TetGen .face", "a .face file of TetGen", &["face"])
+    },
+    Format {
+        holds: &[Holding::Points, Holding::Mesh],
+        ..space("MEDIT", "a MEDIT mesh", &["mesh"])
+    },
+    Format {
+        holds: &[Holding::Points],
+        ..space("VTU", "an unstructured grid of VTK", &["vtu"])
+    },
     // Formats read by GDAL, or only named in messages.
     Format {
         known_by: KnownBy::NameAndBytes,
-        ..raster("Esri ASCII grid", "an ESRI ASCII grid", &["asc"], &[Magic::Word("ncols"), Magic::Word("nrows")])
+        ..raster(
+            "Esri ASCII grid",
+            "an ESRI ASCII grid",
+            &["asc"],
+            &[Magic::Word("ncols"), Magic::Word("nrows")],
+        )
     },
-    raster("GDAL virtual raster", "a GDAL virtual raster", &["vrt"], &[Magic::At(0, b"<VRTDataset")]),
-    raster("Erdas Imagine", "an Erdas Imagine file", &["img"], &[Magic::At(0, b"EHFA_HEADER_TAG")]),
-    raster("SRTM height file (HGT)", "an SRTM height file", &["hgt"], &[]),
+    raster(
+        "GDAL virtual raster",
+        "a GDAL virtual raster",
+        &["vrt"],
+        &[Magic::At(0, b"<VRTDataset")],
+    ),
+    raster(
+        "Erdas Imagine",
+        "an Erdas Imagine file",
+        &["img"],
+        &[Magic::At(0, b"EHFA_HEADER_TAG")],
+    ),
+    raster(
+        "SRTM height file (HGT)",
+        "an SRTM height file",
+        &["hgt"],
+        &[],
+    ),
     raster("USGS DEM", "a USGS DEM", &["dem"], &[]),
     raster(
         "DTED",
         "a DTED file",
         &["dt0", "dt1", "dt2"],
-        &[Magic::At(0, b"UHL1"), Magic::At(0, b"HDR1"), Magic::At(80, b"UHL1")],
+        &[
+            Magic::At(0, b"UHL1"),
+            Magic::At(0, b"HDR1"),
+            Magic::At(80, b"UHL1"),
+        ],
     ),
-    raster("raw raster (BIL, FLT)", "a raw raster", &["bil", "flt"], &[]),
-    raster("Surfer grid", "a Surfer grid", &[], &[Magic::At(0, b"DSAA"), Magic::At(0, b"DSBB"), Magic::At(0, b"DSRB")]),
+    raster(
+        "raw raster (BIL, FLT)",
+        "a raw raster",
+        &["bil", "flt"],
+        &[],
+    ),
+    raster(
+        "Surfer grid",
+        "a Surfer grid",
+        &[],
+        &[
+            Magic::At(0, b"DSAA"),
+            Magic::At(0, b"DSBB"),
+            Magic::At(0, b"DSRB"),
+        ],
+    ),
     raster(
         "netCDF or HDF",
         "an HDF5 or netCDF file",
         &[],
-        &[Magic::At(0, b"CDF\x01"), Magic::At(0, b"CDF\x02"), Magic::At(0, b"\x89HDF")],
+        &[
+            Magic::At(0, b"CDF\x01"),
+            Magic::At(0, b"CDF\x02"),
+            Magic::At(0, b"\x89HDF"),
+        ],
     ),
     raster("GRIB", "a GRIB file", &[], &[Magic::At(0, b"GRIB")]),
-    raster("JPEG", "a JPEG picture", &[], &[Magic::At(0, b"\xff\xd8\xff")]),
-    raster("JPEG 2000", "a JPEG 2000 picture", &[], &[Magic::At(4, b"jP  "), Magic::At(0, b"\xff\x4f\xff\x51")]),
+    raster(
+        "JPEG",
+        "a JPEG picture",
+        &[],
+        &[Magic::At(0, b"\xff\xd8\xff")],
+    ),
+    raster(
+        "JPEG 2000",
+        "a JPEG 2000 picture",
+        &[],
+        &[Magic::At(4, b"jP  "), Magic::At(0, b"\xff\x4f\xff\x51")],
+    ),
     vector(
         "GeoPackage (SQLite)",
         "a GeoPackage or another SQLite database",
         &["gpkg"],
         &[Magic::At(0, b"SQLite format 3\0")],
     ),
-    vector("FlatGeobuf", "a FlatGeobuf file", &["fgb"], &[Magic::At(0, b"fgb\x03fgb")]),
-    vector("XML (GML, KML)", "an XML file (GML, KML, LandXML)", &["kml", "gml"], &[Magic::At(0, b"<?xml")]),
+    vector(
+        "FlatGeobuf",
+        "a FlatGeobuf file",
+        &["fgb"],
+        &[Magic::At(0, b"fgb\x03fgb")],
+    ),
+    vector(
+        "XML (GML, KML)",
+        "an XML file (GML, KML, LandXML)",
+        &["kml", "gml"],
+        &[Magic::At(0, b"<?xml")],
+    ),
     vector("DXF", "a DXF drawing", &["dxf"], &[]),
     vector("file geodatabase", "a file geodatabase", &["gdb"], &[]),
     vector("DWG", "a DWG drawing", &[], &[Magic::At(0, b"AC10")]),

@@ -14,8 +14,11 @@ use crate::io::formats::{self, Product, Writers};
 /// If the file would be too large; the message states the minimum size.
 pub fn check_size<'a>(target: impl Into<Destination<'a>>, vertices: u64) -> Result<()> {
     let target = target.into();
-    let check_size = formats::of_name(&target.format_path()).and_then(|format| format.writers.check_size);
-    check_size.map_or(Ok(()), |check_size| check_size(vertices).map_err(|e| e.in_file(target.path())))
+    let check_size =
+        formats::of_name(&target.format_path()).and_then(|format| format.writers.check_size);
+    check_size.map_or(Ok(()), |check_size| {
+        check_size(vertices).map_err(|e| e.in_file(target.path()))
+    })
 }
 
 /// Writes contours in the format that the extension of `target` names, see
@@ -30,7 +33,10 @@ pub fn write<'a>(
 ) -> Result<ContourSummary> {
     let target = target.into();
     match formats::of_name(&target.format_path()).map(|format| format.writers) {
-        Some(Writers { contours: Some(write), .. }) => write(target, lines, crs),
+        Some(Writers {
+            contours: Some(write),
+            ..
+        }) => write(target, lines, crs),
         _ => {
             let known = formats::extensions_or(Product::Contours);
             Err(Error::usage(format!("contours are written as {known}")).in_file(target.path()))

@@ -40,7 +40,11 @@ impl Spec {
     pub fn parse(text: &str) -> Result<Self> {
         let (path, names) = split(text);
         let of_path = |layer: Option<&str>, field: Option<&str>| {
-            Ok(Spec { path: path.to_owned(), layer: layer.map(str::to_owned), field: field.map(str::to_owned) })
+            Ok(Spec {
+                path: path.to_owned(),
+                layer: layer.map(str::to_owned),
+                field: field.map(str::to_owned),
+            })
         };
         match names.map(|names| (names, names.split_once(':'))) {
             None => of_path(None, None),
@@ -61,7 +65,12 @@ impl Spec {
 
     /// Returns what to read of the layer, with these columns.
     pub(crate) fn options<'a>(&'a self, columns: &'a [&'a str], cut: OnDamage) -> Options<'a> {
-        Options { layer: self.layer.as_deref(), height_field: self.field.as_deref(), columns, cut }
+        Options {
+            layer: self.layer.as_deref(),
+            height_field: self.field.as_deref(),
+            columns,
+            cut,
+        }
     }
 }
 
@@ -81,7 +90,10 @@ fn split(text: &str) -> (&Path, Option<&str>) {
     }
     let name_start = text.rfind(['/', '\\']).map_or(0, |at| at + 1);
     // A single letter before a colon is a drive.
-    let colons = text.match_indices(':').map(|(at, _)| at).filter(|&at| at > 1 && at > name_start);
+    let colons = text
+        .match_indices(':')
+        .map(|(at, _)| at)
+        .filter(|&at| at > 1 && at > name_start);
     let parts = colons.map(|at| (Path::new(&text[..at]), Some(&text[at + 1..])));
     let mut parts: Vec<(&Path, Option<&str>)> = parts.collect();
     match parts.iter().rposition(|(path, _)| path.exists()) {
@@ -120,11 +132,13 @@ pub fn read(text: &str) -> Result<Layer> {
 pub fn read_with(path: &Path, options: &Options, watch: Watch) -> Result<Layer> {
     if let Some((whole, part)) = formats::format_of_part(path) {
         let whole_path = path.with_extension(whole.extensions[0]);
-        return Err(Error::usage(format!("a .{part} is part of {}", whole.noun)).in_file(path).cure(format!(
-            "name its .{}: {}",
-            whole.extensions[0],
-            whole_path.display()
-        )));
+        return Err(Error::usage(format!("a .{part} is part of {}", whole.noun))
+            .in_file(path)
+            .cure(format!(
+                "name its .{}: {}",
+                whole.extensions[0],
+                whole_path.display()
+            )));
     }
     match formats::detect_file(path)?.map(|format| format.reader) {
         Some(FormatReader::Layer(read)) => read(path, options, watch),
@@ -134,9 +148,15 @@ pub fn read_with(path: &Path, options: &Options, watch: Watch) -> Result<Layer> 
 
 /// Returns the error for formats that only GDAL may read.
 fn unsupported(path: &Path) -> Error {
-    Error::unsupported("not a vector format of this build, which reads shapefiles (.shp) and GeoJSON (.geojson)")
-        .in_file(path)
-        .cure(wording!["build with ", Feature::Gdal, " to read what GDAL reads"])
+    Error::unsupported(
+        "not a vector format of this build, which reads shapefiles (.shp) and GeoJSON (.geojson)",
+    )
+    .in_file(path)
+    .cure(wording![
+        "build with ",
+        Feature::Gdal,
+        " to read what GDAL reads"
+    ])
 }
 
 #[cfg(test)]
@@ -144,7 +164,11 @@ mod tests {
     use super::*;
 
     fn spec(path: impl Into<PathBuf>, layer: Option<&str>, field: Option<&str>) -> Spec {
-        Spec { path: path.into(), layer: layer.map(str::to_owned), field: field.map(str::to_owned) }
+        Spec {
+            path: path.into(),
+            layer: layer.map(str::to_owned),
+            field: field.map(str::to_owned),
+        }
     }
 
     #[test]
@@ -155,7 +179,12 @@ mod tests {
             ("a.geojson:Z", "a.geojson", None, Some("Z")),
             ("a.shp:a:Z", "a.shp", Some("a"), Some("Z")),
             ("a.shp::Z", "a.shp", None, Some("Z")),
-            ("a.geojson::ele:height", "a.geojson", None, Some("ele:height")),
+            (
+                "a.geojson::ele:height",
+                "a.geojson",
+                None,
+                Some("ele:height"),
+            ),
             ("dir/a.shp:RecupZ", "dir/a.shp", None, Some("RecupZ")),
             ("a.gpkg", "a.gpkg", None, None),
             ("a.gpkg:roads", "a.gpkg", Some("roads"), None),
@@ -167,19 +196,36 @@ mod tests {
             ("C:a.shp:Z", "C:a.shp", None, Some("Z")),
             (r"C:\dir\a.shp", r"C:\dir\a.shp", None, None),
             (r"C:\dir\a.shp:Z", r"C:\dir\a.shp", None, Some("Z")),
-            (r"C:\dir\a.gpkg:roads:Z", r"C:\dir\a.gpkg", Some("roads"), Some("Z")),
+            (
+                r"C:\dir\a.gpkg:roads:Z",
+                r"C:\dir\a.gpkg",
+                Some("roads"),
+                Some("Z"),
+            ),
             (r"C:\dir\a.gpkg::Z", r"C:\dir\a.gpkg", None, Some("Z")),
             ("C:/dir/a.shp", "C:/dir/a.shp", None, None),
             ("10:30/a.shp", "10:30/a.shp", None, None),
             ("10:30/a.shp:Z", "10:30/a.shp", None, Some("Z")),
-            ("10:30/a.gpkg:roads:Z", "10:30/a.gpkg", Some("roads"), Some("Z")),
+            (
+                "10:30/a.gpkg:roads:Z",
+                "10:30/a.gpkg",
+                Some("roads"),
+                Some("Z"),
+            ),
             (":Z", ":Z", None, None),
         ] {
-            assert_eq!(Spec::parse(text).unwrap(), spec(path, layer, field), "{text}");
+            assert_eq!(
+                Spec::parse(text).unwrap(),
+                spec(path, layer, field),
+                "{text}"
+            );
         }
         for text in ["a.shp:", "a.shp::", "a.shp:a:", "a.gpkg:", "a.gpkg:roads:"] {
             let error = Spec::parse(text).unwrap_err();
-            assert_eq!(error.to_string(), format!("{text}: no name after the colon"));
+            assert_eq!(
+                error.to_string(),
+                format!("{text}: no name after the colon")
+            );
             assert_eq!(*error.cure_text().unwrap(), FORMS);
         }
     }
@@ -191,14 +237,32 @@ mod tests {
         for file in ["a:Z.shp", "a", "b.gpkg", "b.gpkg:roads"] {
             std::fs::write(name(file), "").unwrap();
         }
-        assert_eq!(Spec::parse(&name("a:Z.shp")).unwrap(), spec(name("a:Z.shp"), None, None));
-        assert_eq!(Spec::parse(&name("a:Z.shp:F")).unwrap(), spec(name("a:Z.shp"), None, Some("F")));
-        assert_eq!(Spec::parse(&name("a:Z.shp:L:F")).unwrap(), spec(name("a:Z.shp"), Some("L"), Some("F")));
-        assert_eq!(Spec::parse(&name("b.gpkg:rivers:Z")).unwrap(), spec(name("b.gpkg"), Some("rivers"), Some("Z")));
-        assert_eq!(Spec::parse(&name("b.gpkg:roads")).unwrap(), spec(name("b.gpkg:roads"), None, None));
+        assert_eq!(
+            Spec::parse(&name("a:Z.shp")).unwrap(),
+            spec(name("a:Z.shp"), None, None)
+        );
+        assert_eq!(
+            Spec::parse(&name("a:Z.shp:F")).unwrap(),
+            spec(name("a:Z.shp"), None, Some("F"))
+        );
+        assert_eq!(
+            Spec::parse(&name("a:Z.shp:L:F")).unwrap(),
+            spec(name("a:Z.shp"), Some("L"), Some("F"))
+        );
+        assert_eq!(
+            Spec::parse(&name("b.gpkg:rivers:Z")).unwrap(),
+            spec(name("b.gpkg"), Some("rivers"), Some("Z"))
+        );
+        assert_eq!(
+            Spec::parse(&name("b.gpkg:roads")).unwrap(),
+            spec(name("b.gpkg:roads"), None, None)
+        );
         // A folder is a path like a file: a geodatabase is one.
         std::fs::create_dir(name("c.gdb")).unwrap();
-        assert_eq!(Spec::parse(&name("c.gdb:roads:Z")).unwrap(), spec(name("c.gdb"), Some("roads"), Some("Z")));
+        assert_eq!(
+            Spec::parse(&name("c.gdb:roads:Z")).unwrap(),
+            spec(name("c.gdb"), Some("roads"), Some("Z"))
+        );
         assert_eq!(file_of(&name("c.gdb:roads:Z")), Path::new(&name("c.gdb")));
     }
 
@@ -211,9 +275,25 @@ mod tests {
         assert!(error.to_string().ends_with(
             "a.gpkg: not a vector format of this build, which reads shapefiles (.shp) and GeoJSON (.geojson)"
         ));
-        assert!(error.cure_text().unwrap().plain().contains("the feature `gdal`"));
-        assert!(read(&format!("{}.shp:", path.display())).unwrap_err().to_string().contains("no name"));
-        assert!(read("nowhere/a.gpkg").unwrap_err().to_string().starts_with("nowhere/a.gpkg: "));
+        assert!(
+            error
+                .cure_text()
+                .unwrap()
+                .plain()
+                .contains("the feature `gdal`")
+        );
+        assert!(
+            read(&format!("{}.shp:", path.display()))
+                .unwrap_err()
+                .to_string()
+                .contains("no name")
+        );
+        assert!(
+            read("nowhere/a.gpkg")
+                .unwrap_err()
+                .to_string()
+                .starts_with("nowhere/a.gpkg: ")
+        );
         let error = read("nowhere/a.dbf").unwrap_err();
         assert_eq!(*error.cure_text().unwrap(), "name its .shp: nowhere/a.shp");
     }

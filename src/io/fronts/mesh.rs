@@ -67,7 +67,8 @@ pub struct MeshSummary {
 /// damaged, or the file cannot be written.
 pub fn write<'a>(target: impl Into<Destination<'a>>, surface: &dyn Surface) -> Result<MeshSummary> {
     let target = target.into();
-    let format = formats::of_name(&target.format_path()).filter(|format| format.content == Content::Mesh);
+    let format =
+        formats::of_name(&target.format_path()).filter(|format| format.content == Content::Mesh);
     let format = format.ok_or_else(|| unknown(target.path()))?;
     let Some(write) = format.writers.surface else {
         return Err(Error::unsupported(format!(
@@ -87,7 +88,11 @@ pub fn write<'a>(target: impl Into<Destination<'a>>, surface: &dyn Surface) -> R
         vertices: mesh.vertex_count,
         faces: mesh.face_count,
         constrained_edges: mesh.constrained_edges,
-        lost_edges: if format.can_hold(Holding::Edges) { 0 } else { mesh.constrained_edges },
+        lost_edges: if format.can_hold(Holding::Edges) {
+            0
+        } else {
+            mesh.constrained_edges
+        },
         origin: origin.map_err(|e| e.in_file(target.path()))?,
     })
 }
@@ -111,9 +116,16 @@ pub fn list(surface: &dyn Surface) -> Result<Triangles> {
     listed.vertices.extend(listing.vertices());
     listed.faces.extend(listing.faces());
     if surface.has_lines() {
-        listed.lines.extend(listing.edges().filter(|(_, kind)| kind.is_constrained()));
+        listed
+            .lines
+            .extend(listing.edges().filter(|(_, kind)| kind.is_constrained()));
         let is_fragment = |(_, (_, _, is_fragment)): &(u32, (_, _, bool))| *is_fragment;
-        listed.fragments.extend((0..).zip(listing.lined_faces()).filter(is_fragment).map(|(number, _)| number));
+        listed.fragments.extend(
+            (0..)
+                .zip(listing.lined_faces())
+                .filter(is_fragment)
+                .map(|(number, _)| number),
+        );
     }
     surface.ensure_intact()?;
     Ok(listed)
@@ -136,7 +148,9 @@ pub fn edges(surface: &dyn Surface) -> Result<Vec<([u32; 2], EdgeKind)>> {
 /// extension.
 pub fn is_tin(path: &Path) -> bool {
     let format = formats::detect_file(path).ok().flatten();
-    format.is_some_and(|format| matches!(format.reader, FormatReader::Tin(_) | FormatReader::Parts(_)))
+    format.is_some_and(|format| {
+        matches!(format.reader, FormatReader::Tin(_) | FormatReader::Parts(_))
+    })
 }
 
 /// Maps a TIN to memory; `None` for a file of another format, by its first bytes and its extension.
@@ -218,7 +232,10 @@ pub fn read_triangles_with(path: &Path, watch: Watch) -> Result<Triangles> {
     let may_be_empty = formats::of_name(path).is_some_and(|format| format.beside.contains(&"node"));
     if triangles.faces.is_empty() && !may_be_empty {
         let error = Error::format("there are no faces: the file is a point cloud").in_file(path);
-        return Err(error.cure(wording!["its points can be read in space only, by ", Command::TriangulateInSpace]));
+        return Err(error.cure(wording![
+            "its points can be read in space only, by ",
+            Command::TriangulateInSpace
+        ]));
     }
     Ok(triangles)
 }
@@ -238,9 +255,11 @@ fn parse(path: &Path, watch: Watch) -> Result<Triangles> {
         Some((_, FormatReader::Mesh(read))) => read,
         Some((format, FormatReader::Solid(_))) => {
             let name = format.name;
-            return Err(Error::unsupported(format!("{name} meshes are not read: they have no exact coordinates"))
-                .in_file(path)
-                .cure("use PLY, which keeps coordinates, breaklines and the coordinate system"));
+            return Err(Error::unsupported(format!(
+                "{name} meshes are not read: they have no exact coordinates"
+            ))
+            .in_file(path)
+            .cure("use PLY, which keeps coordinates, breaklines and the coordinate system"));
         }
         Some((_, FormatReader::Tin(_) | FormatReader::Parts(_))) => {
             return Err(Error::unsupported("a TIN is not read triangle by triangle")
@@ -255,5 +274,7 @@ fn parse(path: &Path, watch: Watch) -> Result<Triangles> {
 #[cold]
 fn unknown(path: &Path) -> Error {
     let known = formats::extensions_or(Product::Surface);
-    Error::usage("the file's extension names no mesh format").in_file(path).cure(format!("use {known}"))
+    Error::usage("the file's extension names no mesh format")
+        .in_file(path)
+        .cure(format!("use {known}"))
 }

@@ -49,8 +49,13 @@ pub fn open_with(path: impl AsRef<Path>, options: Options) -> Result<Box<dyn Poi
     match formats::detect(&head, path).map(|format| format.reader) {
         Some(FormatReader::Points { file, .. }) => file(path, options),
         Some(FormatReader::Layer(read)) => {
-            let of_layer = layer_options::Options { cut: options.cut, ..layer_options::Options::default() };
-            Ok(Box::new(from_layer(read(path, &of_layer, &unwatched)?).map_err(|e| e.in_file(path))?))
+            let of_layer = layer_options::Options {
+                cut: options.cut,
+                ..layer_options::Options::default()
+            };
+            Ok(Box::new(
+                from_layer(read(path, &of_layer, &unwatched)?).map_err(|e| e.in_file(path))?,
+            ))
         }
         _ => Err(refusal(&head, path)),
     }
@@ -67,9 +72,11 @@ fn open_stream(
     let whole = io::Cursor::new(head.clone()).chain(stream);
     match known {
         Some(FormatReader::Points { stream, .. }) => stream(Box::new(whole), name, options),
-        Some(FormatReader::Layer(_)) => Err(Error::unsupported("a shapefile cannot be read from a stream")
-            .in_file(name)
-            .cure("give its path: it is a set of files")),
+        Some(FormatReader::Layer(_)) => Err(Error::unsupported(
+            "a shapefile cannot be read from a stream",
+        )
+        .in_file(name)
+        .cure("give its path: it is a set of files")),
         _ => Err(refusal(&head, name)),
     }
 }
@@ -98,10 +105,12 @@ pub fn create<'a>(
 
 fn writer(target: Destination) -> Result<PointWriter> {
     let format = formats::for_output(&target.format_path(), Product::Points);
-    format.and_then(|format| format.writers.points).ok_or_else(|| {
-        let known = formats::extensions_or(Product::Points);
-        Error::usage(format!("points are written as {known}")).in_file(target.path())
-    })
+    format
+        .and_then(|format| format.writers.points)
+        .ok_or_else(|| {
+            let known = formats::extensions_or(Product::Points);
+            Error::usage(format!("points are written as {known}")).in_file(target.path())
+        })
 }
 
 fn head(source: &mut impl Read) -> io::Result<Vec<u8>> {
@@ -114,7 +123,9 @@ fn head(source: &mut impl Read) -> io::Result<Vec<u8>> {
 fn refusal(head: &[u8], path: &Path) -> Error {
     const SUPPORTED: &str = "points are read from LAS, LAZ, COPC, shapefiles and text (x y z)";
     let error = match formats::named(head, path) {
-        Some(Format { noun, cure, .. }) => Error::unsupported(format!("{noun}; {SUPPORTED}")).cure(cure()),
+        Some(Format { noun, cure, .. }) => {
+            Error::unsupported(format!("{noun}; {SUPPORTED}")).cure(cure())
+        }
         None => Error::unsupported(format!("a binary file of an unknown kind; {SUPPORTED}"))
             .cure(wording!["if GDAL knows it: ", formats::with_gdal()]),
     };
@@ -126,10 +137,20 @@ fn refusal(head: &[u8], path: &Path) -> Error {
 /// # Errors
 /// If the layer has shapes but no points, or a point has no height.
 pub fn from_layer(layer: Layer) -> Result<LayerPoints> {
-    let Layer { format, shapes, crs, unread_crs, mut warnings, .. } = layer;
+    let Layer {
+        format,
+        shapes,
+        crs,
+        unread_crs,
+        mut warnings,
+        ..
+    } = layer;
     let mut points = Vec::new();
     let mut others = 0_usize;
-    let total = shapes.iter().filter(|shape| !matches!(shape, Shape::Null)).count();
+    let total = shapes
+        .iter()
+        .filter(|shape| !matches!(shape, Shape::Null))
+        .count();
     for (i, shape) in shapes.into_iter().enumerate() {
         match shape {
             Shape::Points(found) => {
@@ -145,15 +166,28 @@ pub fn from_layer(layer: Layer) -> Result<LayerPoints> {
         }
     }
     if others > 0 && others == total {
-        return Err(Error::usage(format!("{format} has no points, but {others} other shapes"))
-            .cure(wording!["lines and polygons are read with ", Setting::Breaklines]));
+        return Err(
+            Error::usage(format!("{format} has no points, but {others} other shapes")).cure(
+                wording!["lines and polygons are read with ", Setting::Breaklines],
+            ),
+        );
     }
     if others > 0 {
         warnings.push(format!("shapes that are not points are left out: {others}").into());
     }
     let count = Some(points.len() as u64);
-    let info = PointInfo { format, count, crs, unread_crs, warnings, ..PointInfo::default() };
-    Ok(LayerPoints { info, points: points.into_iter() })
+    let info = PointInfo {
+        format,
+        count,
+        crs,
+        unread_crs,
+        warnings,
+        ..PointInfo::default()
+    };
+    Ok(LayerPoints {
+        info,
+        points: points.into_iter(),
+    })
 }
 
 /// The points of a layer, made by [`from_layer`].
@@ -184,13 +218,21 @@ mod tests {
     use super::*;
 
     fn layer(shapes: Vec<Shape>) -> Layer {
-        Layer { format: "shapefile PointZ".into(), shapes, ..Layer::default() }
+        Layer {
+            format: "shapefile PointZ".into(),
+            shapes,
+            ..Layer::default()
+        }
     }
 
     #[test]
     fn points_of_a_layer_come_in_batches() {
         let many: Vec<[f64; 3]> = (0..BATCH + 5).map(|i| [i as f64, 1.0, 2.0]).collect();
-        let shapes = vec![Shape::Points(vec![[9.0, 8.0, 7.0]]), Shape::Null, Shape::Points(many)];
+        let shapes = vec![
+            Shape::Points(vec![[9.0, 8.0, 7.0]]),
+            Shape::Null,
+            Shape::Points(many),
+        ];
         let mut source = from_layer(layer(shapes)).unwrap();
         assert_eq!(source.info().count, Some(BATCH as u64 + 6));
         assert_eq!(source.info().format, "shapefile PointZ");
@@ -215,30 +257,61 @@ mod tests {
     fn a_layer_without_points_or_heights_is_refused() {
         let line = Shape::Lines(vec![vec![[0.0; 3], [1.0; 3]]]);
         let error = from_layer(layer(vec![line.clone(), Shape::Null])).unwrap_err();
-        assert!(error.to_string().contains("has no points, but 1 other shapes"), "{error}");
+        assert!(
+            error
+                .to_string()
+                .contains("has no points, but 1 other shapes"),
+            "{error}"
+        );
         let flat = Shape::Points(vec![[1.0, 2.0, f64::NAN]]);
         let error = from_layer(layer(vec![Shape::Null, flat])).unwrap_err();
-        assert_eq!(error.to_string(), "record 2: the point at 1 2 has no height");
+        assert_eq!(
+            error.to_string(),
+            "record 2: the point at 1 2 has no height"
+        );
         let mixed = from_layer(layer(vec![line, Shape::Points(vec![[1.0, 2.0, 3.0]])])).unwrap();
-        assert_eq!(mixed.info().warnings, ["shapes that are not points are left out: 1"]);
+        assert_eq!(
+            mixed.info().warnings,
+            ["shapes that are not points are left out: 1"]
+        );
         assert_eq!(from_layer(layer(Vec::new())).unwrap().info().count, Some(0));
     }
 
     #[test]
     fn a_stream_is_known_by_its_first_bytes() {
-        let open = |bytes: &'static [u8]| open_stream(bytes, Path::new("stream"), Options::default());
+        let open =
+            |bytes: &'static [u8]| open_stream(bytes, Path::new("stream"), Options::default());
         let mut source = open(b"1 2 3\n4 5 6\n").unwrap();
         let mut batch = PointBatch::default();
         source.read(&mut batch).unwrap();
         assert_eq!(batch.x, [1.0, 4.0]);
-        assert_eq!(open(b"").unwrap().info().format, "text, separated by blanks");
+        assert_eq!(
+            open(b"").unwrap().info().format,
+            "text, separated by blanks"
+        );
         for (bytes, message, cure) in [
             (&b"LASF"[..], "ends after 4 bytes", "cut"),
-            (b"II*\0\x08\0\0\0", "a TIFF file; points are read from LAS, LAZ", "raster"),
+            (
+                b"II*\0\x08\0\0\0",
+                "a TIFF file; points are read from LAS, LAZ",
+                "raster",
+            ),
             (b"SQLite format 3\0", "a GeoPackage", "the feature `gdal`"),
-            (b"{\"type\": \"FeatureCollection\"}", "a JSON file", "the feature `gdal`"),
-            (b"\x7fELF\0\0", "a binary file of an unknown kind; points are read from LAS, LAZ", "gdal"),
-            (b"\0\0\x27\x0a\0\0", "a shapefile cannot be read from a stream", "path"),
+            (
+                b"{\"type\": \"FeatureCollection\"}",
+                "a JSON file",
+                "the feature `gdal`",
+            ),
+            (
+                b"\x7fELF\0\0",
+                "a binary file of an unknown kind; points are read from LAS, LAZ",
+                "gdal",
+            ),
+            (
+                b"\0\0\x27\x0a\0\0",
+                "a shapefile cannot be read from a stream",
+                "path",
+            ),
         ] {
             let error = open(bytes).map(|_| ()).unwrap_err();
             assert!(error.to_string().contains(message), "{error}");
@@ -250,6 +323,9 @@ mod tests {
     #[test]
     fn what_is_not_there_is_named() {
         let error = open("no/such/file.xyz").map(|_| ()).unwrap_err();
-        assert!(error.to_string().starts_with("no/such/file.xyz: "), "{error}");
+        assert!(
+            error.to_string().starts_with("no/such/file.xyz: "),
+            "{error}"
+        );
     }
 }

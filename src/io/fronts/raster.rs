@@ -29,7 +29,8 @@ fn first_bytes(path: &Path) -> Result<Vec<u8>> {
     }
     // Its bytes are needed in any order. Opening a pipe would take its writer.
     if !about.is_file() {
-        return Err(Error::usage("a raster is not read from a pipe or a device").cure("write it to a file first"));
+        return Err(Error::usage("a raster is not read from a pipe or a device")
+            .cure("write it to a file first"));
     }
     let mut head = Vec::new();
     File::open(path)?.take(HEAD as u64).read_to_end(&mut head)?;
@@ -41,11 +42,15 @@ fn refusal(head: &[u8], path: &Path) -> Error {
         return Error::format("is empty");
     }
     let named = formats::named(head, path);
-    match named.filter(|format| format.content == Content::Picture || matches!(format.reader, FormatReader::Gdal)) {
+    match named.filter(|format| {
+        format.content == Content::Picture || matches!(format.reader, FormatReader::Gdal)
+    }) {
         Some(Format { name, .. }) => Error::unsupported(format!("{name} needs GDAL"))
             .cure("build with the `gdal` feature, or convert with gdal_translate to GeoTIFF"),
-        None => Error::unsupported("not a GeoTIFF, nor any raster format that its first bytes identify")
-            .cure("build with the `gdal` feature for other raster formats"),
+        None => {
+            Error::unsupported("not a GeoTIFF, nor any raster format that its first bytes identify")
+                .cure("build with the `gdal` feature for other raster formats")
+        }
     }
 }
 
@@ -57,8 +62,14 @@ mod tests {
     fn other_formats_are_refused_by_name() {
         let refused = |head: &[u8], path: &str| refusal(head, Path::new(path)).to_string();
         assert_eq!(refused(b"UHL1080000", "n43.dt0"), "DTED needs GDAL");
-        assert_eq!(refused(b"NCOLS 4\nNROWS 5", "a.txt"), "Esri ASCII grid needs GDAL");
-        assert_eq!(refused(&[0; 100], "N50E012.HGT"), "SRTM height file (HGT) needs GDAL");
+        assert_eq!(
+            refused(b"NCOLS 4\nNROWS 5", "a.txt"),
+            "Esri ASCII grid needs GDAL"
+        );
+        assert_eq!(
+            refused(&[0; 100], "N50E012.HGT"),
+            "SRTM height file (HGT) needs GDAL"
+        );
         assert!(refused(b"hello", "a.txt").starts_with("not a GeoTIFF"));
         assert!(refused(b"hello", "a.tif").starts_with("not a GeoTIFF"));
     }

@@ -13,7 +13,12 @@ pub enum OnDamage {
 impl OnDamage {
     /// Reports that something is missing from a location on ("byte 4096"): as an error or a
     /// warning.
-    pub(crate) fn refuse_or_warn(self, text: String, location: &str, warnings: &mut Vec<Wording>) -> Result<()> {
+    pub(crate) fn refuse_or_warn(
+        self,
+        text: String,
+        location: &str,
+        warnings: &mut Vec<Wording>,
+    ) -> Result<()> {
         match self {
             OnDamage::Accept => warnings.push(text.into()),
             OnDamage::Refuse => {
@@ -28,7 +33,8 @@ impl OnDamage {
 }
 
 /// The warning for a text whose last line has no end.
-pub(crate) const OPEN_LINE: &str = "the last line has no line end: if the file was cut, its last number may be wrong";
+pub(crate) const OPEN_LINE: &str =
+    "the last line has no line end: if the file was cut, its last number may be wrong";
 
 /// Returns [`OPEN_LINE`] if the last line of a text has no end, and has more than a comment (`#`).
 pub(crate) fn open_line(text: &[u8]) -> Option<Wording> {

@@ -11,7 +11,10 @@ pub struct ReadOptions {
 
 impl From<OnDamage> for ReadOptions {
     fn from(cut: OnDamage) -> Self {
-        ReadOptions { cut, ..Self::default() }
+        ReadOptions {
+            cut,
+            ..Self::default()
+        }
     }
 }
 

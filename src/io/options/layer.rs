@@ -26,8 +26,10 @@ impl Options<'_> {
         match self.layer {
             Some(layer) if !names.iter().any(|name| name.eq_ignore_ascii_case(layer)) => {
                 let field = self.height_field.unwrap_or("FIELD");
-                let cure =
-                    format!("its only layer is \"{}\": name that, or write FILE::{field}", names.join("\" or \""));
+                let cure = format!(
+                    "its only layer is \"{}\": name that, or write FILE::{field}",
+                    names.join("\" or \"")
+                );
                 Err(Error::usage(format!("there is no layer \"{layer}\"")).cure(cure))
             }
             _ => Ok(()),

@@ -16,6 +16,9 @@ pub struct Options {
 impl Options {
     /// Returns the options for LAS and LAZ.
     pub(crate) fn las(self) -> ReadOptions {
-        ReadOptions { cut: self.cut, detail: self.detail }
+        ReadOptions {
+            cut: self.cut,
+            detail: self.detail,
+        }
     }
 }

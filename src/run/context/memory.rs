@@ -42,7 +42,11 @@ struct Left {
 /// # Errors
 /// Names the memory needed, the free memory, and what to do.
 pub(crate) fn require_for_points(count: usize) -> Result<()> {
-    require(count as u64 * BYTES_A_POINT, &format!("a surface of {count} points")).map_err(|e| {
+    require(
+        count as u64 * BYTES_A_POINT,
+        &format!("a surface of {count} points"),
+    )
+    .map_err(|e| {
         e.cure(wording![
             "use fewer points: a part of the area (",
             Setting::Bounds,
@@ -59,8 +63,18 @@ pub(crate) fn require_for_points(count: usize) -> Result<()> {
 /// # Errors
 /// Those of [`require_for_points`].
 pub(crate) fn require_for_columns(count: usize) -> Result<()> {
-    require(count as u64 * BYTES_OF_COLUMNS, &format!("columns of {count} points")).map_err(|e| {
-        e.cure(wording!["use fewer points: a part of the area (", Setting::Bounds, "), a class (", Setting::Class, ")"])
+    require(
+        count as u64 * BYTES_OF_COLUMNS,
+        &format!("columns of {count} points"),
+    )
+    .map_err(|e| {
+        e.cure(wording![
+            "use fewer points: a part of the area (",
+            Setting::Bounds,
+            "), a class (",
+            Setting::Class,
+            ")"
+        ])
     })
 }
 
@@ -69,8 +83,17 @@ pub(crate) fn require_for_columns(count: usize) -> Result<()> {
 /// # Errors
 /// Those of [`require_for_points`].
 pub(crate) fn require_for_space(count: usize) -> Result<()> {
-    require(count as u64 * BYTES_A_POINT_OF_SPACE, &format!("a triangulation of {count} points in space"))
-        .map_err(|e| e.cure(wording!["use fewer points: ", Command::Points, " selects them by area or class"]))
+    require(
+        count as u64 * BYTES_A_POINT_OF_SPACE,
+        &format!("a triangulation of {count} points in space"),
+    )
+    .map_err(|e| {
+        e.cure(wording![
+            "use fewer points: ",
+            Command::Points,
+            " selects them by area or class"
+        ])
+    })
 }
 
 /// Returns an error if there is not enough memory for a raster of this many cells.
@@ -78,8 +101,11 @@ pub(crate) fn require_for_space(count: usize) -> Result<()> {
 /// # Errors
 /// Those of [`require_for_points`].
 pub(crate) fn require_for_cells(count: u64) -> Result<()> {
-    require(count.saturating_mul(8), &format!("a raster of {count} cells"))
-        .map_err(|e| e.cure("use a part of it: gdal_translate -srcwin or -projwin cuts one out"))
+    require(
+        count.saturating_mul(8),
+        &format!("a raster of {count} cells"),
+    )
+    .map_err(|e| e.cure("use a part of it: gdal_translate -srcwin or -projwin cuts one out"))
 }
 
 /// Returns an error if there is not enough memory for the mesh in a file.
@@ -88,8 +114,14 @@ pub(crate) fn require_for_cells(count: u64) -> Result<()> {
 /// Those of [`require_for_points`].
 pub(crate) fn require_for_mesh(path: &Path) -> Result<()> {
     let length = std::fs::metadata(path).map_or(0, |data| data.len());
-    require(length.saturating_mul(BYTES_A_MESH_BYTE), &format!("a mesh in a file of {}", bytes(length)))
-        .map_err(|e| e.in_file(path).cure("build it from fewer points, or in parts"))
+    require(
+        length.saturating_mul(BYTES_A_MESH_BYTE),
+        &format!("a mesh in a file of {}", bytes(length)),
+    )
+    .map_err(|e| {
+        e.in_file(path)
+            .cure("build it from fewer points, or in parts")
+    })
 }
 
 /// Returns an error if there is not enough memory to join parts with this many triangles.
@@ -97,15 +129,24 @@ pub(crate) fn require_for_mesh(path: &Path) -> Result<()> {
 /// # Errors
 /// Those of [`require_for_points`].
 pub(crate) fn require_for_parts(triangles: usize) -> Result<()> {
-    require((triangles as u64).saturating_mul(BYTES_A_JOINED_TRIANGLE), &format!("a mesh of {triangles} triangles"))
-        .map_err(|e| e.cure("rasters with linear heights, contours and heights at positions need no mesh"))
+    require(
+        (triangles as u64).saturating_mul(BYTES_A_JOINED_TRIANGLE),
+        &format!("a mesh of {triangles} triangles"),
+    )
+    .map_err(|e| {
+        e.cure("rasters with linear heights, contours and heights at positions need no mesh")
+    })
 }
 
 /// Returns a notice if this many points, all used, would need more than the free memory.
 pub(crate) fn excess_of(points: u64) -> Option<Notice> {
     let need = need_of(points);
     let left = left().filter(|left| need > LITTLE && need > left.bytes)?;
-    Some(Notice::LittleMemory { need, left: left.bytes, limit: left.of })
+    Some(Notice::LittleMemory {
+        need,
+        left: left.bytes,
+        limit: left.of,
+    })
 }
 
 /// Returns half of the free memory; a gigabyte if the system does not say how much is free.
@@ -137,10 +178,19 @@ fn require(need: u64, what: &str) -> Result<()> {
 fn left() -> Option<Left> {
     let limits = [
         (of_machine(), "on this machine"),
-        (of_groups(), "in this container (limit of its control group)"),
-        (of_addresses(), "by the limit of the address space (ulimit -v)"),
+        (
+            of_groups(),
+            "in this container (limit of its control group)",
+        ),
+        (
+            of_addresses(),
+            "by the limit of the address space (ulimit -v)",
+        ),
     ];
-    limits.into_iter().filter_map(|(bytes, of)| Some(Left { bytes: bytes?, of })).min_by_key(|left| left.bytes)
+    limits
+        .into_iter()
+        .filter_map(|(bytes, of)| Some(Left { bytes: bytes?, of }))
+        .min_by_key(|left| left.bytes)
 }
 
 /// Returns the memory that is free or can be freed, including swap.
@@ -152,14 +202,22 @@ fn of_machine() -> Option<u64> {
 /// Parses a value such as `MemFree:  1234 kB`; returns bytes.
 fn kilobytes(text: &str, key: &str) -> Option<u64> {
     let rest = text.lines().find_map(|line| line.strip_prefix(key))?;
-    rest.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()?.checked_mul(1024)
+    rest.trim()
+        .strip_suffix("kB")?
+        .trim()
+        .parse::<u64>()
+        .ok()?
+        .checked_mul(1024)
 }
 
 #[cfg(unix)]
 fn of_addresses() -> Option<u64> {
     use rustix::process::{Resource, getrlimit};
     let limit = getrlimit(Resource::As).current?;
-    let used = kilobytes(&std::fs::read_to_string("/proc/self/status").ok()?, "VmSize:")?;
+    let used = kilobytes(
+        &std::fs::read_to_string("/proc/self/status").ok()?,
+        "VmSize:",
+    )?;
     Some(limit.saturating_sub(used))
 }
 
@@ -183,8 +241,12 @@ const VERSION_1: GroupFiles = GroupFiles {
     cache: "total_inactive_file",
 };
 
-const VERSION_2: GroupFiles =
-    GroupFiles { root: "/sys/fs/cgroup", limit: "memory.max", used: "memory.current", cache: "inactive_file" };
+const VERSION_2: GroupFiles = GroupFiles {
+    root: "/sys/fs/cgroup",
+    limit: "memory.max",
+    used: "memory.current",
+    cache: "inactive_file",
+};
 
 /// Returns the smallest free memory of the control group of this process and of those that contain
 /// it.
@@ -192,7 +254,9 @@ fn of_groups() -> Option<u64> {
     let text = std::fs::read_to_string("/proc/self/cgroup").ok()?;
     let (files, path) = text.lines().find_map(group)?;
     let own = PathBuf::from(format!("{}{path}", files.root));
-    let groups = own.ancestors().take_while(|folder| folder.starts_with(files.root));
+    let groups = own
+        .ancestors()
+        .take_while(|folder| folder.starts_with(files.root));
     groups.filter_map(|folder| files.left(folder)).min()
 }
 
@@ -215,7 +279,9 @@ impl GroupFiles {
         let (limit, used) = (number(self.limit)?, number(self.used)?);
         // Cached files are dropped when memory is needed.
         let statistics = read("memory.stat").unwrap_or_default();
-        let cache = statistics.lines().find_map(|line| line.strip_prefix(self.cache)?.trim().parse::<u64>().ok());
+        let cache = statistics
+            .lines()
+            .find_map(|line| line.strip_prefix(self.cache)?.trim().parse::<u64>().ok());
         Some(limit.saturating_sub(used.saturating_sub(cache.unwrap_or(0))))
     }
 }
@@ -227,7 +293,8 @@ mod tests {
     #[test]
     fn control_groups_of_both_versions() {
         let folder = tempfile::tempdir().unwrap();
-        let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+        let write =
+            |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
         write("memory.max", "1000\n");
         write("memory.current", "700\n");
         assert_eq!(VERSION_2.left(folder.path()), Some(300));
@@ -240,18 +307,26 @@ mod tests {
         assert_eq!(VERSION_1.left(folder.path()), Some(0));
         let path = |line: &'static str| group(line).map(|(files, path)| (files.limit, path));
         assert_eq!(path("0::/a/b"), Some(("memory.max", "/a/b")));
-        assert_eq!(path("4:cpu,memory:/x"), Some(("memory.limit_in_bytes", "/x")));
+        assert_eq!(
+            path("4:cpu,memory:/x"),
+            Some(("memory.limit_in_bytes", "/x"))
+        );
         assert_eq!(path("4:cpuset:/x"), None);
     }
 
     #[test]
     fn need_is_held_against_what_is_left() {
-        assert_eq!(kilobytes("A: 1 kB\nMemAvailable:   12 kB\n", "MemAvailable:"), Some(12 << 10));
+        assert_eq!(
+            kilobytes("A: 1 kB\nMemAvailable:   12 kB\n", "MemAvailable:"),
+            Some(12 << 10)
+        );
         require(LITTLE, "little").unwrap();
         if left().is_some() {
             let error = require_for_points(1 << 50).unwrap_err();
             assert!(
-                error.to_string().starts_with("a surface of 1125899906842624 points takes about 81064793"),
+                error
+                    .to_string()
+                    .starts_with("a surface of 1125899906842624 points takes about 81064793"),
                 "{error}"
             );
             assert!(excess_of(1 << 50).is_some());

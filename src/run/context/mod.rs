@@ -162,13 +162,18 @@ impl Progress for () {
 
 impl Default for Context<'_> {
     fn default() -> Self {
-        Context { monitor: &Silent, cancel: &NEVER }
+        Context {
+            monitor: &Silent,
+            cancel: &NEVER,
+        }
     }
 }
 
 impl std::fmt::Debug for Context<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Context").field("cancel", &self.cancel).finish_non_exhaustive()
+        f.debug_struct("Context")
+            .field("cancel", &self.cancel)
+            .finish_non_exhaustive()
     }
 }
 
@@ -178,13 +183,20 @@ impl<'a> Context<'a> {
     /// # Errors
     /// An error of the kind [`Canceled`](crate::error::Kind::Canceled) once the flag is set.
     pub fn check(&self) -> Result<()> {
-        if self.cancel.load(Ordering::Relaxed) { Err(Error::canceled()) } else { Ok(()) }
+        if self.cancel.load(Ordering::Relaxed) {
+            Err(Error::canceled())
+        } else {
+            Ok(())
+        }
     }
 
     /// Begins a stage; returns an error if the run is canceled.
     pub(crate) fn start(&self, stage: Stage, size: Size) -> Result<Work<'a>> {
         self.check()?;
-        Ok(Work { progress: self.monitor.start(stage, size), context: *self })
+        Ok(Work {
+            progress: self.monitor.start(stage, size),
+            context: *self,
+        })
     }
 }
 
@@ -197,7 +209,10 @@ pub(crate) struct Work<'a> {
 impl<'a> Work<'a> {
     /// A stage that is not reported.
     pub(crate) fn silent(context: &Context<'a>) -> Self {
-        Work { progress: Box::new(()), context: *context }
+        Work {
+            progress: Box::new(()),
+            context: *context,
+        }
     }
 
     /// Counts items that are done; returns an error once the run is canceled.
@@ -220,18 +235,26 @@ pub(crate) struct Journal<'a> {
 
 impl<'a> Journal<'a> {
     pub(crate) fn new(context: &Context<'a>) -> Self {
-        Journal { context: *context, notices: Mutex::default() }
+        Journal {
+            context: *context,
+            notices: Mutex::default(),
+        }
     }
 
     /// Passes a notice to the monitor and keeps it.
     pub(crate) fn add(&self, notice: Notice) {
         self.context.monitor.notice(&notice);
-        self.notices.lock().unwrap_or_else(PoisonError::into_inner).push(notice);
+        self.notices
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .push(notice);
     }
 
     /// Adds the warnings that the reader of a file gave.
     pub(crate) fn add_warnings(&self, path: &Path, warnings: &[Wording]) {
-        warnings.iter().for_each(|text| self.add(Notice::Reader(path.to_path_buf(), text.clone())));
+        warnings
+            .iter()
+            .for_each(|text| self.add(Notice::Reader(path.to_path_buf(), text.clone())));
     }
 
     /// Begins a stage, see [`Context::start`].
@@ -250,8 +273,8 @@ mod tests {
     use super::*;
     use crate::error::Kind;
     use crate::run::{
-        ContourOptions, DemOptions, HillshadeOptions, Input, Source, SurfaceRequest, TinRequest, check, contour, dem,
-        hillshade, triangles, write_mesh,
+        ContourOptions, DemOptions, HillshadeOptions, Input, Source, SurfaceRequest, TinRequest,
+        check, contour, dem, hillshade, triangles, write_mesh,
     };
 
     /// Cancels when a given stage begins, and lists the stages.
@@ -273,17 +296,29 @@ mod tests {
 
     /// Everything that can be done with a surface, into a folder.
     fn everything(folder: &Path, context: &Context) -> Result<()> {
-        let points: Vec<[f64; 3]> =
-            (0..400).map(|i| [f64::from(i % 20), f64::from(i / 20), f64::from(i % 7)]).collect();
-        let tin = TinRequest { points: vec![Input::of_points(&points, None)], ..TinRequest::default() };
-        let request = SurfaceRequest { source: Source::Points(Box::new(tin)), ..SurfaceRequest::default() };
+        let points: Vec<[f64; 3]> = (0..400)
+            .map(|i| [f64::from(i % 20), f64::from(i / 20), f64::from(i % 7)])
+            .collect();
+        let tin = TinRequest {
+            points: vec![Input::of_points(&points, None)],
+            ..TinRequest::default()
+        };
+        let request = SurfaceRequest {
+            source: Source::Points(Box::new(tin)),
+            ..SurfaceRequest::default()
+        };
         let product = triangles(&request, context)?;
         contour(&product, &ContourOptions::default(), context)?
             .write(folder.join("a.geojson").as_path().into(), context)?;
         hillshade(&product, &HillshadeOptions::default(), context)?
             .write_picture(folder.join("a.png").as_path().into(), context)?;
-        dem(&product, &DemOptions::default(), context)?.write(folder.join("a.tif").as_path().into(), context)?;
-        write_mesh(product.triangles()?, folder.join("a.ply").as_path().into(), context)?;
+        dem(&product, &DemOptions::default(), context)?
+            .write(folder.join("a.tif").as_path().into(), context)?;
+        write_mesh(
+            product.triangles()?,
+            folder.join("a.ply").as_path().into(),
+            context,
+        )?;
         check(&request, context).map(drop)
     }
 
@@ -291,8 +326,15 @@ mod tests {
     fn a_run_that_is_canceled_at_any_stage_is_an_error_and_writes_nothing_from_then_on() {
         let run = |at: Option<Stage>| {
             let folder = tempfile::tempdir().unwrap();
-            let canceler = Canceler { cancel: AtomicBool::new(false), at, stages: Mutex::default() };
-            let context = Context { monitor: &canceler, cancel: &canceler.cancel };
+            let canceler = Canceler {
+                cancel: AtomicBool::new(false),
+                at,
+                stages: Mutex::default(),
+            };
+            let context = Context {
+                monitor: &canceler,
+                cancel: &canceler.cancel,
+            };
             let done = everything(folder.path(), &context);
             let files = std::fs::read_dir(folder.path()).unwrap().count();
             (done, files, canceler.stages.into_inner().unwrap())
@@ -312,7 +354,11 @@ mod tests {
         ] {
             assert!(stages.contains(&stage), "{stage:?}");
             let (done, written, _) = run(Some(stage));
-            assert_eq!((done.unwrap_err().kind(), written), (Kind::Canceled, files), "{stage:?}");
+            assert_eq!(
+                (done.unwrap_err().kind(), written),
+                (Kind::Canceled, files),
+                "{stage:?}"
+            );
         }
     }
 }

@@ -29,19 +29,32 @@ impl Notice {
         let (count, first) = match self {
             Notice::CrossingHeights { count, first, .. } => (count, first),
             Notice::WaterOverlaps { count, first } if *count > 1 => return steps(*count, first),
-            Notice::RiversLowered { count, first } if *count > 1 => return lowerings(*count, first),
+            Notice::RiversLowered { count, first } if *count > 1 => {
+                return lowerings(*count, first);
+            }
             Notice::OfTask { details, .. } => return details.clone(),
             _ => return Vec::new(),
         };
-        let each = first.iter().map(|CrossingNote { at, low, high, chosen }| {
-            let [x, y] = at.map(neat);
-            let [low, high] = [low, high].map(|(z, line)| format!("{} of {line}", neat(*z)));
-            format!("{x} {y}: {low}, {high}; {} is used", neat(*chosen)).into()
-        });
+        let each = first.iter().map(
+            |CrossingNote {
+                 at,
+                 low,
+                 high,
+                 chosen,
+             }| {
+                let [x, y] = at.map(neat);
+                let [low, high] = [low, high].map(|(z, line)| format!("{} of {line}", neat(*z)));
+                format!("{x} {y}: {low}, {high}; {} is used", neat(*chosen)).into()
+            },
+        );
         let mut lines: Vec<Wording> = each.collect();
         if *count > first.len() {
             let more = format!("and {} more (", count - first.len());
-            lines.push(wording![more, Setting::CrossingReport.text("FILE.csv"), ")"]);
+            lines.push(wording![
+                more,
+                Setting::CrossingReport.text("FILE.csv"),
+                ")"
+            ]);
         }
         lines
     }
@@ -67,10 +80,19 @@ fn lowerings(count: usize, first: &[LoweredRiver]) -> Vec<Wording> {
 
 fn lowering(LoweredRiver { name, to, by, from }: &LoweredRiver) -> String {
     let [x, y] = from.map(neat);
-    format!("the river {name} is lowered by up to {by} from {x} {y} on, to the river {to}, which joins it there")
+    format!(
+        "the river {name} is lowered by up to {by} from {x} {y} on, to the river {to}, which joins it there"
+    )
 }
 
-fn step(WaterStep { inner, outer, step, at }: &WaterStep) -> String {
+fn step(
+    WaterStep {
+        inner,
+        outer,
+        step,
+        at,
+    }: &WaterStep,
+) -> String {
     let [x, y] = at.map(neat);
     format!("a step of {step} at {x} {y}, from {outer} to {inner}")
 }
@@ -149,7 +171,9 @@ fn layer_read(path: &Path, format: &str, records: usize) -> Wording {
 
 fn little_memory(need: u64, left: u64, limit: &str) -> String {
     let [need, left] = [need, left].map(bytes);
-    format!("memory may not suffice: if all points are used they take about {need}, and {left} are left {limit}")
+    format!(
+        "memory may not suffice: if all points are used they take about {need}, and {left} are left {limit}"
+    )
 }
 
 fn output_may_not_fit(need: u64, free: u64) -> String {
@@ -159,7 +183,9 @@ fn output_may_not_fit(need: u64, free: u64) -> String {
 
 fn tasks_may_not_fit(need: u64, free: u64) -> String {
     let [need, free] = [need, free].map(bytes);
-    format!("the files of the tasks may not fit: the files of the tasks take about {need}, {free} are free on the disk")
+    format!(
+        "the files of the tasks may not fit: the files of the tasks take about {need}, {free} are free on the disk"
+    )
 }
 
 fn no_point_used(path: &Path, classes: Option<&[u8]>) -> Wording {
@@ -178,15 +204,28 @@ fn points_without_class(count: u64) -> String {
 }
 
 fn all_classes_used() -> Wording {
-    wording!["no point has class 2 (ground): all classes are used (choose with ", Setting::Class, ")"]
+    wording![
+        "no point has class 2 (ground): all classes are used (choose with ",
+        Setting::Class,
+        ")"
+    ]
 }
 
 fn reassigned(path: &Path, stated: &Crs, assigned: &Crs) -> Wording {
-    wording![format!("{} states {stated}; {assigned} is used, as given by ", path.display()), Setting::Crs]
+    wording![
+        format!(
+            "{} states {stated}; {assigned} is used, as given by ",
+            path.display()
+        ),
+        Setting::Crs
+    ]
 }
 
 fn system_of_others(path: &Path, crs: &Crs) -> String {
-    format!("{} states no coordinate system; {crs} is used, as in the other files", path.display())
+    format!(
+        "{} states no coordinate system; {crs} is used, as in the other files",
+        path.display()
+    )
 }
 
 fn no_system() -> &'static str {
@@ -206,28 +245,42 @@ fn far_apart(before: &Path, after: &Path, gap: &Quantity) -> String {
 }
 
 fn breaklines_apart(gap: &Quantity) -> String {
-    format!("the breaklines lie {gap} away from the points: are they in the same coordinate system?")
+    format!(
+        "the breaklines lie {gap} away from the points: are they in the same coordinate system?"
+    )
 }
 
 fn breaklines_beyond(reach: &Quantity) -> Wording {
     wording![
-        format!("breaklines reach {reach} beyond the points: the surface there depends on them alone (clip with "),
+        format!(
+            "breaklines reach {reach} beyond the points: the surface there depends on them alone (clip with "
+        ),
         Setting::Bounds,
         ")"
     ]
 }
 
 fn edge_limit(length: &Quantity) -> Wording {
-    wording![format!("triangles at the rim with edges over {length} are left out ("), Setting::MaxEdge, ")"]
+    wording![
+        format!("triangles at the rim with edges over {length} are left out ("),
+        Setting::MaxEdge,
+        ")"
+    ]
 }
 
 fn no_edge_limit() -> Wording {
-    wording!["the whole convex hull is kept (", Setting::MaxEdge.text("none"), ")"]
+    wording![
+        "the whole convex hull is kept (",
+        Setting::MaxEdge.text("none"),
+        ")"
+    ]
 }
 
 fn unusual_edge_limit(limit: &Quantity, spacing: &Quantity) -> Wording {
     wording![
-        format!("the longest edge at the rim is {limit}, but points are {spacing} apart on average: choose it with "),
+        format!(
+            "the longest edge at the rim is {limit}, but points are {spacing} apart on average: choose it with "
+        ),
         Setting::MaxEdge.number("LENGTH"),
         " or ",
         Setting::MaxEdge.text("auto")
@@ -252,15 +305,25 @@ fn level_rings(rings: usize, points: usize, name: &str, largest: &Quantity) -> W
     } else {
         &format!("{rings} closed lines of one height have")
     };
-    let inside = if points == 1 { "1 point" } else { &format!("{points} points") };
+    let inside = if points == 1 {
+        "1 point"
+    } else {
+        &format!("{points} points")
+    };
     wording![
-        format!("{lines} {inside} of other heights inside, by up to {largest} ({name}): for lakes, use "),
+        format!(
+            "{lines} {inside} of other heights inside, by up to {largest} ({name}): for lakes, use "
+        ),
         Setting::Flat
     ]
 }
 
 fn banks(rivers: usize, name: &str) -> String {
-    let others = if rivers > 1 { &format!(" ({} others are not, either)", rivers - 1) } else { "" };
+    let others = if rivers > 1 {
+        &format!(" ({} others are not, either)", rivers - 1)
+    } else {
+        ""
+    };
     format!("the banks of the river {name} are not level{others}")
 }
 
@@ -268,7 +331,9 @@ fn banks_rise(vertices: usize, largest: &Quantity, at: [f64; 2]) -> String {
     let [x, y] = at.map(neat);
     match vertices {
         0 => String::new(),
-        _ => format!(": they rise downstream at {vertices} vertices, by up to {largest} (at {x} {y})"),
+        _ => format!(
+            ": they rise downstream at {vertices} vertices, by up to {largest} (at {x} {y})"
+        ),
     }
 }
 
@@ -283,14 +348,23 @@ fn banks_differ(largest: &Quantity, at: [f64; 2]) -> String {
 fn rivers_lowered(count: usize, first: &[LoweredRiver]) -> String {
     if count == 1 {
         let lowerings: Vec<String> = first.iter().map(lowering).collect();
-        return format!("{}: if it should not be, correct the heights of either", lowerings.join(", "));
+        return format!(
+            "{}: if it should not be, correct the heights of either",
+            lowerings.join(", ")
+        );
     }
-    format!("{count} rivers are lowered to others that join them: correct the heights of those that are wrong")
+    format!(
+        "{count} rivers are lowered to others that join them: correct the heights of those that are wrong"
+    )
 }
 
 fn river_overlap(rivers: usize, name: &str, at: [f64; 2]) -> String {
     let [x, y] = at.map(neat);
-    let others = if rivers > 1 { &format!(" (and {} others)", rivers - 1) } else { "" };
+    let others = if rivers > 1 {
+        &format!(" (and {} others)", rivers - 1)
+    } else {
+        ""
+    };
     format!(
         "the banks of the river {name} meet near {x} {y}{others}: what they enclose twice is not water; divide the \
          line, or make it narrower"
@@ -299,7 +373,11 @@ fn river_overlap(rivers: usize, name: &str, at: [f64; 2]) -> String {
 
 fn walls_in_water(vertices: usize, name: &str, at: [f64; 2]) -> String {
     let [x, y] = at.map(neat);
-    let count = if vertices == 1 { "1 vertex" } else { &format!("{vertices} vertices") };
+    let count = if vertices == 1 {
+        "1 vertex"
+    } else {
+        &format!("{vertices} vertices")
+    };
     format!(
         "{count} of walls have the height of water, which counts first (at {x} {y} of {name}): draw walls behind the \
          shore, by more than their width"
@@ -314,11 +392,17 @@ fn water_overlaps(count: usize, first: &[WaterStep]) -> String {
             steps.join(", ")
         );
     }
-    format!("{count} pairs of waters overlap or touch, and the lower height, or that of the lake, counts")
+    format!(
+        "{count} pairs of waters overlap or touch, and the lower height, or that of the lake, counts"
+    )
 }
 
 fn crossing_heights(count: usize, largest: &Quantity, at: [f64; 2]) -> String {
-    let points = if count == 1 { "1 point" } else { &format!("{count} points") };
+    let points = if count == 1 {
+        "1 point"
+    } else {
+        &format!("{count} points")
+    };
     let [x, y] = at.map(neat);
     format!("breaklines meet with different heights at {points}, by up to {largest} (at {x} {y})")
 }
@@ -328,32 +412,53 @@ fn lines_apart(role: LineRole) -> Wording {
 }
 
 fn extent_apart() -> Wording {
-    wording!["the rectangle of ", Setting::Extent, " does not touch the surface"]
+    wording![
+        "the rectangle of ",
+        Setting::Extent,
+        " does not touch the surface"
+    ]
 }
 
 fn default_resolution(width: &Quantity) -> Wording {
-    wording![format!("cells are {width} wide ("), Setting::Resolution, ")"]
+    wording![
+        format!("cells are {width} wide ("),
+        Setting::Resolution,
+        ")"
+    ]
 }
 
 fn default_interval(height: &Quantity) -> Wording {
-    wording![format!("contours are {height} apart ("), Setting::Interval, ")"]
+    wording![
+        format!("contours are {height} apart ("),
+        Setting::Interval,
+        ")"
+    ]
 }
 
 fn height_factor(factor: f64) -> Wording {
     wording![
-        format!("heights are multiplied by {} to match the units of x and y (", number(factor)),
+        format!(
+            "heights are multiplied by {} to match the units of x and y (",
+            number(factor)
+        ),
         Setting::ZFactor,
         ")"
     ]
 }
 
 fn delaunay_unchecked(path: &Path) -> Wording {
-    of_file(path, "the format does not store breaklines: the Delaunay law is not checked")
+    of_file(
+        path,
+        "the format does not store breaklines: the Delaunay law is not checked",
+    )
 }
 
 fn region_areas_unused(path: &Path) -> Wording {
     wording![
-        format!("{}: the largest areas of its regions are ignored: add ", path.display()),
+        format!(
+            "{}: the largest areas of its regions are ignored: add ",
+            path.display()
+        ),
         Setting::RegionAreas.on(),
         " to use them"
     ]
@@ -368,7 +473,10 @@ fn seed_unused(path: &Path, line: usize, seed: Seed, why: SeedFlaw) -> Wording {
         SeedFlaw::OnSegment => "lies on a segment, so that its side is ambiguous",
         SeedFlaw::OutsideHull => "lies outside of the convex hull",
     };
-    of_file(path, &format!("line {line}: the {what} {why}; it is not used"))
+    of_file(
+        path,
+        &format!("line {line}: the {what} {why}; it is not used"),
+    )
 }
 
 fn skipped(why: &str, hole: Option<&Bounds>, others: &[PathBuf]) -> String {
@@ -379,16 +487,26 @@ fn skipped(why: &str, hole: Option<&Bounds>, others: &[PathBuf]) -> String {
     let others = match others {
         [] => String::new(),
         [one] => format!(", also where {} has points", one.display()),
-        [one, more @ ..] => format!(", also where {} and {} other files have points", one.display(), more.len()),
+        [one, more @ ..] => format!(
+            ", also where {} and {} other files have points",
+            one.display(),
+            more.len()
+        ),
     };
     format!("skipped: {why}; its extent is left empty, from {x0} {y0} to {x1} {y1}{others}")
 }
 
 fn rounded([x, y]: &[Quantity; 2], on_grid: bool) -> String {
-    let unit = if x == y { x.to_string() } else { format!("{x} in x and {y} in y") };
+    let unit = if x == y {
+        x.to_string()
+    } else {
+        format!("{x} in x and {y} in y")
+    };
     let bound = match on_grid {
         true => "no line moves by more than half of that on each axis",
-        false => "some vertices are not on this grid, so that no bound is proven for lines that cross near them",
+        false => {
+            "some vertices are not on this grid, so that no bound is proven for lines that cross near them"
+        }
     };
     format!("crossings of breaklines are rounded to {unit}; {bound}")
 }

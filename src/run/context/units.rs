@@ -23,20 +23,33 @@ impl Units {
         // With degrees in plan, heights are in metres unless the definition says otherwise.
         let height = match crs.and_then(|crs| crs.vertical_unit.clone()) {
             Some(unit) => Some(unit),
-            None if is_angular => Some(Unit { name: "metre".to_owned(), factor: 1.0 }),
+            None if is_angular => Some(Unit {
+                name: "metre".to_owned(),
+                factor: 1.0,
+            }),
             None => plan.clone(),
         };
-        Units { plan, height, is_angular }
+        Units {
+            plan,
+            height,
+            is_angular,
+        }
     }
 
     /// Returns a length in plan with its unit.
     pub(crate) fn length(&self, value: f64) -> Quantity {
-        Quantity { value, unit: self.plan.clone() }
+        Quantity {
+            value,
+            unit: self.plan.clone(),
+        }
     }
 
     /// Returns a height with its unit.
     pub(crate) fn height(&self, value: f64) -> Quantity {
-        Quantity { value, unit: self.height.clone() }
+        Quantity {
+            value,
+            unit: self.height.clone(),
+        }
     }
 
     /// Converts metres to units of the plan; returns the number itself if the unit is not known.
@@ -136,7 +149,10 @@ mod tests {
     use super::*;
 
     fn crs(kind: CrsKind, unit: (&str, f64), vertical: Option<(&str, f64)>) -> Crs {
-        let unit_of = |(name, factor): (&str, f64)| Unit { name: name.to_owned(), factor };
+        let unit_of = |(name, factor): (&str, f64)| Unit {
+            name: name.to_owned(),
+            factor,
+        };
         Crs {
             name: "test".to_owned(),
             epsg: None,
@@ -154,13 +170,19 @@ mod tests {
         assert_eq!(feet.length(feet.of_metres(100.0)).to_string(), "328.08 ft");
         assert_eq!(feet.disagreement(), None);
         let unknown = Units::of(None);
-        assert_eq!(unknown.length(unknown.of_metres(100.0)).to_string(), "100 units");
+        assert_eq!(
+            unknown.length(unknown.of_metres(100.0)).to_string(),
+            "100 units"
+        );
     }
 
     #[test]
     fn feet_over_metres_are_told() {
-        let mixed =
-            Units::of(Some(&crs(CrsKind::Projected, ("metre", 1.0), Some(("US survey foot", 1200.0 / 3937.0)))));
+        let mixed = Units::of(Some(&crs(
+            CrsKind::Projected,
+            ("metre", 1.0),
+            Some(("US survey foot", 1200.0 / 3937.0)),
+        )));
         assert_eq!(mixed.disagreement(), Some(("metre", "US survey foot")));
         assert_eq!(mixed.height(2.5).to_string(), "2.5 ftUS");
     }
@@ -169,17 +191,32 @@ mod tests {
     fn degrees_have_heights_in_metres() {
         let degrees = Units::of(Some(&crs(CrsKind::Geographic, ("degree", 0.0174), None)));
         assert_eq!(degrees.disagreement(), Some(("degree", "metre")));
-        assert_eq!(degrees.length(degrees.of_metres(100.0)).to_string(), "0.000898 degrees");
+        assert_eq!(
+            degrees.length(degrees.of_metres(100.0)).to_string(),
+            "0.000898 degrees"
+        );
     }
 
     #[test]
     fn numbers_are_short() {
-        let cases =
-            [(0.0, "0"), (1.0, "1"), (-12.345, "-12.35"), (100.0, "100"), (0.25, "0.25"), (0.001234, "0.00123")];
+        let cases = [
+            (0.0, "0"),
+            (1.0, "1"),
+            (-12.345, "-12.35"),
+            (100.0, "100"),
+            (0.25, "0.25"),
+            (0.001234, "0.00123"),
+        ];
         for (value, text) in cases {
             assert_eq!(number(value), text);
         }
-        let cases = [(-0.0, "0"), (0.1 + 0.2, "0.3"), (-1e-12, "-0.000000000001"), (1e-3, "0.001"), (7e5, "700000")];
+        let cases = [
+            (-0.0, "0"),
+            (0.1 + 0.2, "0.3"),
+            (-1e-12, "-0.000000000001"),
+            (1e-3, "0.001"),
+            (7e5, "700000"),
+        ];
         for (value, text) in cases {
             assert_eq!(neat(value), text);
         }

@@ -22,7 +22,11 @@ pub(crate) struct Watched<'a, S: ?Sized> {
 
 impl<'a, S: ?Sized> Watched<'a, S> {
     fn new(source: &'a S, stage: Stage, size: Size, context: &Context<'a>) -> Result<Self> {
-        Ok(Watched { source, work: context.start(stage, size)?, is_canceled: AtomicBool::new(false) })
+        Ok(Watched {
+            source,
+            work: context.start(stage, size)?,
+            is_canceled: AtomicBool::new(false),
+        })
     }
 
     /// Counts faces; returns false once the run is canceled.
@@ -38,14 +42,29 @@ impl<'a, S: BlockSource + ?Sized> Watched<'a, S> {
     /// A source of cells that reports progress in cells.
     pub(crate) fn cells(source: &'a S, stage: Stage, context: &Context<'a>) -> Result<Self> {
         let Frame { width, height, .. } = source.frame();
-        Self::new(source, stage, Size::Items(width as u64 * height as u64), context)
+        Self::new(
+            source,
+            stage,
+            Size::Items(width as u64 * height as u64),
+            context,
+        )
     }
 }
 
 impl<'a, S: Surface + ?Sized> Watched<'a, S> {
     /// A surface that reports progress in faces, each of which is visited `times` times.
-    pub(crate) fn faces(source: &'a S, times: u64, stage: Stage, context: &Context<'a>) -> Result<Self> {
-        Self::new(source, stage, Size::Items(times * source.face_count() as u64), context)
+    pub(crate) fn faces(
+        source: &'a S,
+        times: u64,
+        stage: Stage,
+        context: &Context<'a>,
+    ) -> Result<Self> {
+        Self::new(
+            source,
+            stage,
+            Size::Items(times * source.face_count() as u64),
+            context,
+        )
     }
 
     /// Ends the stage.
@@ -64,7 +83,11 @@ impl<'a, S: Surface + ?Sized> Watched<'a, S> {
     /// A surface that is part of a stage in progress and reports nothing itself.
     pub(crate) fn polled(source: &'a S, context: &Context<'a>) -> Result<Self> {
         context.check()?;
-        Ok(Watched { source, work: Work::silent(context), is_canceled: AtomicBool::new(false) })
+        Ok(Watched {
+            source,
+            work: Work::silent(context),
+            is_canceled: AtomicBool::new(false),
+        })
     }
 }
 
@@ -125,7 +148,10 @@ impl<S: Surface + ?Sized> Surface for Watched<'_, S> {
     }
 
     fn write_tin(&self, out: &mut dyn Write) -> Result<()> {
-        self.source.write_tin(&mut Polled { out, work: &self.work })
+        self.source.write_tin(&mut Polled {
+            out,
+            work: &self.work,
+        })
     }
 
     fn corners_in(&self, numbers: Range<u32>, faces: &mut Vec<(u32, [u32; 3])>) {
@@ -140,7 +166,12 @@ impl<S: Surface + ?Sized> Surface for Watched<'_, S> {
         }
     }
 
-    fn heights_in(&self, numbers: Range<u32>, is_wanted: &dyn Fn(f64, f64) -> bool, faces: &mut Vec<(u32, [f64; 3])>) {
+    fn heights_in(
+        &self,
+        numbers: Range<u32>,
+        is_wanted: &dyn Fn(f64, f64) -> bool,
+        faces: &mut Vec<(u32, [f64; 3])>,
+    ) {
         if self.goes_on(numbers.len()) {
             self.source.heights_in(numbers, is_wanted, faces);
         }
@@ -198,7 +229,12 @@ mod tests {
     }
 
     fn square() -> Mesh {
-        let corners = vec![[0.0, 0.0, 1.0], [9.0, 0.0, 2.0], [9.0, 9.0, 3.0], [0.0, 9.0, 5.0]];
+        let corners = vec![
+            [0.0, 0.0, 1.0],
+            [9.0, 0.0, 2.0],
+            [9.0, 9.0, 3.0],
+            [0.0, 9.0, 5.0],
+        ];
         Mesh::new(corners, vec![[0, 1, 2], [0, 2, 3]], &[], None).unwrap()
     }
 
@@ -206,7 +242,10 @@ mod tests {
     fn all_items_are_counted_when_the_work_is_done() {
         let folder = tempfile::tempdir().unwrap();
         let counter = Counter::default();
-        let context = Context { monitor: &counter, ..Context::default() };
+        let context = Context {
+            monitor: &counter,
+            ..Context::default()
+        };
         let done = || counter.0.load(Ordering::Relaxed);
         let square = square();
         for name in ["a.ply", "a.obj", "a.off", "a.stl"] {
@@ -219,9 +258,18 @@ mod tests {
         assert_eq!(done(), 14);
 
         let frame = Frame::north_up(0.0, 0.0, 1.0, 300, 20);
-        let grid = Grid { frame, crs: None, values: vec![1.0; 6000] };
+        let grid = Grid {
+            frame,
+            crs: None,
+            values: vec![1.0; 6000],
+        };
         let watched = Watched::cells(&grid, Stage::WritingCells, &context).unwrap();
-        geotiff::write(folder.path().join("a.tif").as_path(), &watched, geotiff::WriteOptions::default()).unwrap();
+        geotiff::write(
+            folder.path().join("a.tif").as_path(),
+            &watched,
+            geotiff::WriteOptions::default(),
+        )
+        .unwrap();
         assert_eq!(done(), 6000);
     }
 
@@ -231,7 +279,10 @@ mod tests {
         builder.add_points(&[0.0, 9.0, 9.0], &[0.0, 0.0, 9.0], &[1.0; 3]);
         let tin = builder.build().unwrap();
         let cancel = AtomicBool::new(false);
-        let context = Context { cancel: &cancel, ..Context::default() };
+        let context = Context {
+            cancel: &cancel,
+            ..Context::default()
+        };
         let watched = Watched::faces(&tin, 2, Stage::WritingFaces, &context).unwrap();
         watched.write_tin(&mut Vec::new()).unwrap();
         cancel.store(true, Ordering::Relaxed);
@@ -242,7 +293,10 @@ mod tests {
     #[test]
     fn a_canceled_source_gives_no_more_and_stays_canceled() {
         let cancel = AtomicBool::new(false);
-        let context = Context { cancel: &cancel, ..Context::default() };
+        let context = Context {
+            cancel: &cancel,
+            ..Context::default()
+        };
         let square = square();
         let watched = Watched::faces(&square, 1, Stage::WritingFaces, &context).unwrap();
         let faces = || {
@@ -257,10 +311,16 @@ mod tests {
         assert_eq!(faces(), 0);
         assert_eq!(watched.end().unwrap_err().kind(), Kind::Canceled);
 
-        let grid = Grid { frame: Frame::north_up(0.0, 0.0, 1.0, 2, 2), crs: None, values: vec![1.0; 4] };
+        let grid = Grid {
+            frame: Frame::north_up(0.0, 0.0, 1.0, 2, 2),
+            crs: None,
+            values: vec![1.0; 4],
+        };
         let watched = Watched::cells(&grid, Stage::WritingCells, &context).unwrap();
         cancel.store(true, Ordering::Relaxed);
-        let error = watched.fill(grid.frame.window(), &mut [0.0; 4]).unwrap_err();
+        let error = watched
+            .fill(grid.frame.window(), &mut [0.0; 4])
+            .unwrap_err();
         assert_eq!(error.kind(), Kind::Canceled);
         assert!(Watched::cells(&grid, Stage::WritingCells, &context).is_err());
     }

@@ -2,7 +2,9 @@
 
 use super::task_file::Block;
 use crate::data::EdgeKind;
-use crate::terrain::tiles::{Gate, Residual, ResidualEdge, SubConstraint, TileTriangle, TileVertex, Waiting};
+use crate::terrain::tiles::{
+    Gate, Residual, ResidualEdge, SubConstraint, TileTriangle, TileVertex, Waiting,
+};
 
 pub(super) fn put_u32(to: &mut Vec<u8>, value: u32) {
     to.extend_from_slice(&value.to_le_bytes());
@@ -20,7 +22,9 @@ pub(super) fn put_block(to: &mut Vec<u8>, block: Block) {
 }
 
 pub(super) fn put_numbers(to: &mut Vec<u8>, values: &[f64]) {
-    values.iter().for_each(|value| to.extend_from_slice(&value.to_le_bytes()));
+    values
+        .iter()
+        .for_each(|value| to.extend_from_slice(&value.to_le_bytes()));
 }
 
 fn put_vertex(to: &mut Vec<u8>, vertex: &TileVertex) {
@@ -66,7 +70,11 @@ impl<'a> NumberReader<'a> {
     }
 
     pub(super) fn block(&mut self) -> Option<Block> {
-        Some(Block { at: self.u64()?, length: self.u64()?, sum: self.u32()? })
+        Some(Block {
+            at: self.u64()?,
+            length: self.u64()?,
+            sum: self.u32()?,
+        })
     }
 
     pub(super) fn point(&mut self) -> Option<[f64; 3]> {
@@ -75,7 +83,12 @@ impl<'a> NumberReader<'a> {
 
     fn vertex(&mut self) -> Option<TileVertex> {
         let (tile, number, position) = (self.u32()?, self.u32()?, self.point()?);
-        Some(TileVertex { tile, number, position, is_tight: self.boolean()? })
+        Some(TileVertex {
+            tile,
+            number,
+            position,
+            is_tight: self.boolean()?,
+        })
     }
 
     fn boolean(&mut self) -> Option<bool> {
@@ -127,21 +140,39 @@ pub(super) fn to_constraints(bytes: &[u8]) -> Option<Vec<SubConstraint>> {
     let mut reader = NumberReader::new(bytes);
     let mut constraints = Vec::with_capacity(bytes.len() / CONSTRAINT_BYTES);
     while !reader.is_empty() {
-        let ends = [[reader.f64()?, reader.f64()?], [reader.f64()?, reader.f64()?]];
-        constraints.push(SubConstraint { ends, kind: reader.kind()? });
+        let ends = [
+            [reader.f64()?, reader.f64()?],
+            [reader.f64()?, reader.f64()?],
+        ];
+        constraints.push(SubConstraint {
+            ends,
+            kind: reader.kind()?,
+        });
     }
     Some(constraints)
 }
 
 /// Returns the bytes of a residual.
 pub(super) fn of_residual(residual: &Residual) -> Vec<u8> {
-    let Residual { vertices, edges, pending, has_lines } = residual;
+    let Residual {
+        vertices,
+        edges,
+        pending,
+        has_lines,
+    } = residual;
     let mut bytes = Vec::with_capacity(17 + VERTEX_BYTES * vertices.len() + 10 * edges.len());
     bytes.push(u8::from(*has_lines));
     put_u64(&mut bytes, vertices.len() as u64);
     put_u64(&mut bytes, edges.len() as u64);
-    vertices.iter().for_each(|vertex| put_vertex(&mut bytes, vertex));
-    for ResidualEdge { ends, is_seam, kind } in edges {
+    vertices
+        .iter()
+        .for_each(|vertex| put_vertex(&mut bytes, vertex));
+    for ResidualEdge {
+        ends,
+        is_seam,
+        kind,
+    } in edges
+    {
         ends.iter().for_each(|&end| put_u32(&mut bytes, end));
         bytes.extend([u8::from(*is_seam), kind.number()]);
     }
@@ -153,15 +184,30 @@ pub(super) fn of_residual(residual: &Residual) -> Vec<u8> {
 pub(super) fn to_residual(bytes: &[u8]) -> Option<Residual> {
     let mut reader = NumberReader::new(bytes);
     let has_lines = reader.boolean()?;
-    let mut count = |size: usize| usize::try_from(reader.u64()?).ok().filter(|&count| count <= bytes.len() / size);
+    let mut count = |size: usize| {
+        usize::try_from(reader.u64()?)
+            .ok()
+            .filter(|&count| count <= bytes.len() / size)
+    };
     let (vertex_count, edge_count) = (count(VERTEX_BYTES)?, count(10)?);
-    let vertices = (0..vertex_count).map(|_| reader.vertex()).collect::<Option<_>>()?;
+    let vertices = (0..vertex_count)
+        .map(|_| reader.vertex())
+        .collect::<Option<_>>()?;
     let mut edge = || {
         let ends = [reader.u32()?, reader.u32()?];
-        Some(ResidualEdge { ends, is_seam: reader.boolean()?, kind: reader.kind()? })
+        Some(ResidualEdge {
+            ends,
+            is_seam: reader.boolean()?,
+            kind: reader.kind()?,
+        })
     };
     let edges = (0..edge_count).map(|_| edge()).collect::<Option<_>>()?;
-    Some(Residual { vertices, edges, pending: to_constraints(reader.rest)?, has_lines })
+    Some(Residual {
+        vertices,
+        edges,
+        pending: to_constraints(reader.rest)?,
+        has_lines,
+    })
 }
 
 /// Returns the bytes of the gates of what waits, and of its triangles.
@@ -179,7 +225,10 @@ pub(super) fn of_waiting(waiting: &Waiting) -> [Vec<u8>; 2] {
 
 /// Appends the bytes of a triangle that waits, with a number.
 pub(super) fn put_waiting(to: &mut Vec<u8>, triangle: &TileTriangle, number: u32) {
-    triangle.corners.iter().for_each(|corner| put_vertex(to, corner));
+    triangle
+        .corners
+        .iter()
+        .for_each(|corner| put_vertex(to, corner));
     to.extend(triangle.edges.map(EdgeKind::number));
     put_u32(to, number);
 }
@@ -189,7 +238,10 @@ pub(super) fn to_gates(bytes: &[u8]) -> Option<Vec<Gate>> {
     let mut reader = NumberReader::new(bytes);
     let mut gates = Vec::with_capacity(bytes.len() / 20);
     while !reader.is_empty() {
-        gates.push(Gate { edge: [reader.u64()?, reader.u64()?], group: reader.u32()? });
+        gates.push(Gate {
+            edge: [reader.u64()?, reader.u64()?],
+            group: reader.u32()?,
+        });
     }
     Some(gates)
 }

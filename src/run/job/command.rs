@@ -40,8 +40,16 @@ impl JobCommand {
     pub fn new(request: &WriteRequest, targets: &Targets, tiles: &TileOptions) -> Result<Self> {
         let mut targets = targets.clone();
         whole_names(|visit| targets.each_file(visit))?;
-        let tiles = TileOptions { folder: None, ..tiles.clone() };
-        Ok(JobCommand { request: whole(request)?, targets, tiles, words: Vec::new() })
+        let tiles = TileOptions {
+            folder: None,
+            ..tiles.clone()
+        };
+        Ok(JobCommand {
+            request: whole(request)?,
+            targets,
+            tiles,
+            words: Vec::new(),
+        })
     }
 
     /// Reads the command that is kept with a job; `None` if there is none: only the command itself
@@ -50,27 +58,44 @@ impl JobCommand {
     /// # Errors
     /// If it is damaged, or that of another job.
     pub(super) fn read(folder: &Path, stored: &StoredPlan) -> Result<Option<Self>> {
-        let Some(sum) = stored.command else { return Ok(None) };
+        let Some(sum) = stored.command else {
+            return Ok(None);
+        };
         let path = folder.join(COMMAND);
         let text = std::fs::read_to_string(&path).map_err(|e| Error::from(e).in_file(&path))?;
-        let command = if u64::from(checksum(text.as_bytes())) == sum { serde_json::from_str(&text).ok() } else { None };
+        let command = if u64::from(checksum(text.as_bytes())) == sum {
+            serde_json::from_str(&text).ok()
+        } else {
+            None
+        };
         command.map(Some).ok_or_else(|| {
-            Error::format("the command of the job is damaged, or that of another one").in_file(path).cure(wording![
-                "plan the job again: ",
-                Command::JobClean.on(folder.display().to_string()),
-                " removes this one"
-            ])
+            Error::format("the command of the job is damaged, or that of another one")
+                .in_file(path)
+                .cure(wording![
+                    "plan the job again: ",
+                    Command::JobClean.on(folder.display().to_string()),
+                    " removes this one"
+                ])
         })
     }
 
     /// Returns an error if this is not the same as what is asked for now.
     pub(super) fn require_same(&self, asked: &JobCommand, folder: &Path) -> Result<()> {
         let (own, asked) = (self.options()?, asked.options()?);
-        if own == asked { Ok(()) } else { Err(request::other_command(&own, &asked, folder)) }
+        if own == asked {
+            Ok(())
+        } else {
+            Err(request::other_command(&own, &asked, folder))
+        }
     }
 
     fn options(&self) -> Result<Options> {
-        let JobCommand { request, targets, tiles, .. } = self;
+        let JobCommand {
+            request,
+            targets,
+            tiles,
+            ..
+        } = self;
         let mut options = request::asked(request, tiles)?;
         request::add_targets(&mut options, targets, tiles);
         Ok(options)
@@ -83,9 +108,14 @@ impl JobCommand {
     /// that is not finite, a verb that is not one of this crate.
     pub(super) fn to_text(&self, planned: &Options) -> Result<String> {
         let mut files = self.request.files();
-        self.targets.clone().each_file(&mut |file| files.push(file.clone()));
+        self.targets
+            .clone()
+            .each_file(&mut |file| files.push(file.clone()));
         if let Some(path) = files.iter().find(|path| path.to_str().is_none()) {
-            return Err(Error::unsupported("the name is not valid Unicode, which a job needs").in_file(path));
+            return Err(
+                Error::unsupported("the name is not valid Unicode, which a job needs")
+                    .in_file(path),
+            );
         }
         let verb = self.request.verb.as_ref();
         if verbs::to_json(verb).is_none() {
@@ -101,10 +131,14 @@ impl JobCommand {
         };
         let text = serde_json::to_string(self).map_err(|e| refused(e.to_string().into()))?;
         // A number that is not finite would come back as if it was not given.
-        let kept: JobCommand = serde_json::from_str(&text).map_err(|e| refused(e.to_string().into()))?;
+        let kept: JobCommand =
+            serde_json::from_str(&text).map_err(|e| refused(e.to_string().into()))?;
         let kept = request::asked(&kept.request, &kept.tiles)?;
         if kept != *planned {
-            return Err(refused(wording![request::differing(planned, &kept), " would be lost"]));
+            return Err(refused(wording![
+                request::differing(planned, &kept),
+                " would be lost"
+            ]));
         }
         Ok(text)
     }
@@ -115,16 +149,26 @@ impl JobCommand {
 /// # Errors
 /// If a name is empty, or the working folder is not known.
 pub(super) fn whole(request: &WriteRequest) -> Result<WriteRequest> {
-    let WriteRequest { mut surface, mut verb } = request.clone();
+    let WriteRequest {
+        mut surface,
+        mut verb,
+    } = request.clone();
     whole_names(|visit| surface.each_file(visit))?;
     if let Some(file) = verb.also_reads() {
         let mut file = file.clone();
         whole_names(|visit| visit(&mut file))?;
-        let reading = || verb.reading(file.clone()).filter(|other| other.also_reads() == Some(&file));
-        verb = reading()
-            .ok_or_else(|| Error::unsupported("the verb cannot read this file under its whole name").in_file(&file))?;
+        let reading = || {
+            verb.reading(file.clone())
+                .filter(|other| other.also_reads() == Some(&file))
+        };
+        verb = reading().ok_or_else(|| {
+            Error::unsupported("the verb cannot read this file under its whole name").in_file(&file)
+        })?;
     }
-    Ok(WriteRequest { surface, verb: Arc::clone(&verb) })
+    Ok(WriteRequest {
+        surface,
+        verb: Arc::clone(&verb),
+    })
 }
 
 /// Makes names whole that a function visits.
@@ -149,16 +193,26 @@ struct StoredRequest {
 impl Serialize for WriteRequest {
     fn serialize<S: Serializer>(&self, to: S) -> std::result::Result<S::Ok, S::Error> {
         let WriteRequest { surface, verb } = self;
-        let (verb, options) =
-            verbs::to_json(verb.as_ref()).ok_or_else(|| S::Error::custom("the verb is not of this crate"))?;
-        StoredRequest { surface: surface.clone(), verb: verb.to_owned(), options }.serialize(to)
+        let (verb, options) = verbs::to_json(verb.as_ref())
+            .ok_or_else(|| S::Error::custom("the verb is not of this crate"))?;
+        StoredRequest {
+            surface: surface.clone(),
+            verb: verb.to_owned(),
+            options,
+        }
+        .serialize(to)
     }
 }
 
 impl<'de> Deserialize<'de> for WriteRequest {
     fn deserialize<D: Deserializer<'de>>(from: D) -> std::result::Result<Self, D::Error> {
-        let StoredRequest { surface, verb, options } = StoredRequest::deserialize(from)?;
-        let verb = verbs::from_json(&verb, options).ok_or_else(|| D::Error::custom("the verb is not known"))?;
+        let StoredRequest {
+            surface,
+            verb,
+            options,
+        } = StoredRequest::deserialize(from)?;
+        let verb = verbs::from_json(&verb, options)
+            .ok_or_else(|| D::Error::custom("the verb is not known"))?;
         Ok(WriteRequest { surface, verb })
     }
 }

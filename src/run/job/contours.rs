@@ -46,7 +46,9 @@ fn to_table(bytes: &[u8]) -> Option<([f64; 2], LevelTable)> {
     while !reader.is_empty() {
         table.push((reader.f64()?, reader.block()?));
     }
-    table.is_sorted_by(|a, b| a.0 < b.0).then_some((heights, table))
+    table
+        .is_sorted_by(|a, b| a.0 < b.0)
+        .then_some((heights, table))
 }
 
 /// The bytes of parts that are read at once, unless one level has more. The file of each task is
@@ -79,23 +81,38 @@ impl DrawnContours {
         for name in names {
             let mut file = TaskFile::open_done(&name)?;
             edges += file.facts.kept.contour_edges;
-            let (heights, table) = to_table(&file.section(LEVELS)?).ok_or_else(|| file.damaged())?;
+            let (heights, table) =
+                to_table(&file.section(LEVELS)?).ok_or_else(|| file.damaged())?;
             (low, high) = (low.min(heights[0]), high.max(heights[1]));
             tasks.push((name, table));
         }
-        let mut levels: Vec<(f64, u64)> = levels.within(low, high)?.into_iter().map(|level| (level, 0)).collect();
+        let mut levels: Vec<(f64, u64)> = levels
+            .within(low, high)?
+            .into_iter()
+            .map(|level| (level, 0))
+            .collect();
         for (name, table) in &tasks {
             for (level, block) in table {
-                let at = position(&levels, *level).ok_or_else(|| no_level(*level).in_file(&name.path))?;
+                let at = position(&levels, *level)
+                    .ok_or_else(|| no_level(*level).in_file(&name.path))?;
                 levels[at].1 = levels[at].1.saturating_add(block.length);
             }
         }
         levels.retain(|(_, bytes)| *bytes > 0);
-        Ok(DrawnContours { tasks, levels, edges })
+        Ok(DrawnContours {
+            tasks,
+            levels,
+            edges,
+        })
     }
 
     /// Joins the lines of all levels and writes them one after another.
-    pub(super) fn write(&self, target: Destination, crs: Option<&Crs>, context: &Context) -> Result<ContourSummary> {
+    pub(super) fn write(
+        &self,
+        target: Destination,
+        crs: Option<&Crs>,
+        context: &Context,
+    ) -> Result<ContourSummary> {
         contours::check_size(target, self.edges)?;
         let drawing = context.start(Stage::DrawingContours, Size::Items(self.edges))?;
         // The writer takes lines, so an error has to wait until it ends.
@@ -103,8 +120,12 @@ impl DrawnContours {
         let fail = |error: Error| *failed.borrow_mut() = Err(error);
         let read = |band| self.read(band).map_err(fail).unwrap_or_default();
         let join = |(level, parts)| join_level(level, parts).map_err(fail).unwrap_or_default();
-        let is_wanted = |line: &ContourLine| failed.borrow().is_ok() && drawing.add(edge_count(line)).is_ok();
-        let mut lines = bands(&self.levels).flat_map(read).flat_map(join).take_while(is_wanted);
+        let is_wanted =
+            |line: &ContourLine| failed.borrow().is_ok() && drawing.add(edge_count(line)).is_ok();
+        let mut lines = bands(&self.levels)
+            .flat_map(read)
+            .flat_map(join)
+            .take_while(is_wanted);
         let written = contours::write(target, &mut lines, crs);
         drop(lines);
         failed.into_inner()?;
@@ -114,12 +135,17 @@ impl DrawnContours {
 
     /// Returns the parts of each level of a band.
     fn read(&self, band: &[(f64, u64)]) -> Result<Vec<(f64, Vec<LevelParts>)>> {
-        let mut parts: Vec<(f64, Vec<LevelParts>)> = band.iter().map(|(level, _)| (*level, Vec::new())).collect();
-        let Some((first, _)) = band.first() else { return Ok(parts) };
+        let mut parts: Vec<(f64, Vec<LevelParts>)> =
+            band.iter().map(|(level, _)| (*level, Vec::new())).collect();
+        let Some((first, _)) = band.first() else {
+            return Ok(parts);
+        };
         let mut bytes = Vec::new();
         for (name, table) in &self.tasks {
             let from = table.partition_point(|(level, _)| level.total_cmp(first).is_lt());
-            let stored = table[from..].iter().map_while(|(level, block)| Some((position(band, *level)?, block)));
+            let stored = table[from..]
+                .iter()
+                .map_while(|(level, block)| Some((position(band, *level)?, block)));
             let mut file = None;
             for (at, &block) in stored {
                 let file = match &mut file {
@@ -127,7 +153,9 @@ impl DrawnContours {
                     None => file.insert(TaskFile::open_done(name)?),
                 };
                 file.read(block, &mut bytes)?;
-                parts[at].1.push(LevelParts::read(band[at].0, &bytes).map_err(|e| e.in_file(&name.path))?);
+                parts[at]
+                    .1
+                    .push(LevelParts::read(band[at].0, &bytes).map_err(|e| e.in_file(&name.path))?);
             }
         }
         Ok(parts)
@@ -152,13 +180,20 @@ fn bands(levels: &[(f64, u64)]) -> impl Iterator<Item = &[(f64, u64)]> {
 
 /// Returns where a level is among others, ascending.
 fn position(levels: &[(f64, u64)], level: f64) -> Option<usize> {
-    levels.binary_search_by(|(other, _)| other.total_cmp(&level)).ok()
+    levels
+        .binary_search_by(|(other, _)| other.total_cmp(&level))
+        .ok()
 }
 
 #[cold]
 fn no_level(level: f64) -> Error {
-    Error::format(format!("the file of a task has contours at {level}, which is none of the levels"))
-        .cure(wording!["remove it, and run the job again with ", Setting::Resume.on()])
+    Error::format(format!(
+        "the file of a task has contours at {level}, which is none of the levels"
+    ))
+    .cure(wording![
+        "remove it, and run the job again with ",
+        Setting::Resume.on()
+    ])
 }
 
 #[cfg(test)]
@@ -169,9 +204,17 @@ mod tests {
     #[test]
     fn levels_are_read_in_bands() {
         let of = |levels: &[(f64, u64)]| bands(levels).map(<[_]>::len).collect::<Vec<_>>();
-        let levels = |bytes: &[u64]| (0..).map(f64::from).zip(bytes.iter().copied()).collect::<Vec<_>>();
+        let levels = |bytes: &[u64]| {
+            (0..)
+                .map(f64::from)
+                .zip(bytes.iter().copied())
+                .collect::<Vec<_>>()
+        };
         assert!(of(&[]).is_empty());
         assert_eq!(of(&levels(&[5000; 6000])), [6000]);
-        assert_eq!(of(&levels(&[BAND / 2, BAND / 2, 1, BAND, 2 * BAND, 7, 7])), [2, 1, 1, 1, 2]);
+        assert_eq!(
+            of(&levels(&[BAND / 2, BAND / 2, 1, BAND, 2 * BAND, 7, 7])),
+            [2, 1, 1, 1, 2]
+        );
     }
 }

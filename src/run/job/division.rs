@@ -24,12 +24,19 @@ impl FromStr for Division {
         if text.eq_ignore_ascii_case("auto") {
             return Ok(Division::Auto);
         }
-        let count = |text: &str| text.trim().parse().ok().filter(|count| (1..=MOST_TILES).contains(count));
-        let counts = text.split_once(['x', 'X']).and_then(|(columns, rows)| Some([count(columns)?, count(rows)?]));
+        let count = |text: &str| {
+            text.trim()
+                .parse()
+                .ok()
+                .filter(|count| (1..=MOST_TILES).contains(count))
+        };
+        let counts = text
+            .split_once(['x', 'X'])
+            .and_then(|(columns, rows)| Some([count(columns)?, count(rows)?]));
         let counts = counts.filter(|[columns, rows]| columns * rows <= MOST_TILES);
-        counts
-            .map(Division::Grid)
-            .ok_or_else(|| format!("expected `auto`, or columns and rows, such as `8x8`: up to {MOST_TILES} tiles"))
+        counts.map(Division::Grid).ok_or_else(|| {
+            format!("expected `auto`, or columns and rows, such as `8x8`: up to {MOST_TILES} tiles")
+        })
     }
 }
 

@@ -21,7 +21,10 @@ pub(super) struct Sources<'j> {
 
 impl<'j> Sources<'j> {
     pub(super) fn new(job: &'j Job) -> Self {
-        Sources { job, sums: RefCell::default() }
+        Sources {
+            job,
+            sums: RefCell::default(),
+        }
     }
 
     /// Opens the file of a task that is done.
@@ -32,11 +35,11 @@ impl<'j> Sources<'j> {
     pub(super) fn open(&self, task: usize) -> Result<TaskFile> {
         let file = self.job.open_task(task)?;
         match self.sums.borrow_mut().insert(task, file.sum) {
-            Some(before) if before != file.sum => {
-                Err(Error::not_yet("the file of a task was made again while another one read it")
-                    .in_file(self.job.task_file(task).path)
-                    .cure(wording!["run the job again with ", Setting::Resume.on()]))
-            }
+            Some(before) if before != file.sum => Err(Error::not_yet(
+                "the file of a task was made again while another one read it",
+            )
+            .in_file(self.job.task_file(task).path)
+            .cure(wording!["run the job again with ", Setting::Resume.on()])),
             _ => Ok(file),
         }
     }
@@ -48,7 +51,9 @@ impl<'j> Sources<'j> {
                 self.open(task)?;
             }
         }
-        Ok(sum_of(self.sums.borrow().iter().map(|(task, sum)| (*task, *sum))))
+        Ok(sum_of(
+            self.sums.borrow().iter().map(|(task, sum)| (*task, *sum)),
+        ))
     }
 }
 
@@ -121,7 +126,10 @@ impl Job {
     fn sources_of(&self, task: usize, sums: &[Option<u32>]) -> Option<u32> {
         let mut needed = self.needs(task);
         needed.sort_unstable();
-        let sources: Option<Vec<_>> = needed.into_iter().map(|task| Some((task, sums[task]?))).collect();
+        let sources: Option<Vec<_>> = needed
+            .into_iter()
+            .map(|task| Some((task, sums[task]?)))
+            .collect();
         sources.map(|sources| sum_of(sources.into_iter()))
     }
 
@@ -141,7 +149,9 @@ impl Job {
     /// Returns the state in which a task has read its file of points; `None` if it is not done, or
     /// reads none.
     pub(super) fn state_of_input(&self, task: usize) -> Option<FileState> {
-        TaskFile::open(&self.task_file(task)).ok()??.state_of_input()
+        TaskFile::open(&self.task_file(task))
+            .ok()??
+            .state_of_input()
     }
 
     /// Returns an error unless all tasks are done; `last` is the number of the one that writes the
@@ -166,17 +176,22 @@ impl Job {
         let name = self.task_name(task);
         match TaskFile::open(&self.task_file(task)) {
             Err(error) => error,
-            Ok(None) => Error::not_yet(format!("task {task} ({name}) is not done")).cure("do it first"),
-            Ok(Some(_)) => {
-                Error::not_yet(format!("task {task} ({name}) is not done: what it was made from was made again"))
-                    .cure("do it again")
+            Ok(None) => {
+                Error::not_yet(format!("task {task} ({name}) is not done")).cure("do it first")
             }
+            Ok(Some(_)) => Error::not_yet(format!(
+                "task {task} ({name}) is not done: what it was made from was made again"
+            ))
+            .cure("do it again"),
         }
     }
 
     #[cold]
     pub(super) fn no_task(&self, task: usize) -> Error {
-        Error::usage(format!("there is no task {task}: the last is {}, which writes the output", self.task_count()))
+        Error::usage(format!(
+            "there is no task {task}: the last is {}, which writes the output",
+            self.task_count()
+        ))
     }
 
     /// Removes files that a run left when it was killed, and files of tasks that are damaged.
@@ -226,7 +241,9 @@ impl Job {
             None => self.do_unless_current(task, context),
         };
         match done {
-            Err(error) if error.kind() == Kind::Format => Err(self.remove_damaged_of(&needed)?.unwrap_or(error)),
+            Err(error) if error.kind() == Kind::Format => {
+                Err(self.remove_damaged_of(&needed)?.unwrap_or(error))
+            }
             done => done,
         }
     }
@@ -243,14 +260,20 @@ impl Job {
         }
         Ok(removed.map(|(task, path)| {
             let name = self.task_name(task);
-            Error::not_yet(format!("task {task} ({name}) is not done: its file was damaged, and is removed now"))
-                .in_file(path)
-                .cure("do it again")
+            Error::not_yet(format!(
+                "task {task} ({name}) is not done: its file was damaged, and is removed now"
+            ))
+            .in_file(path)
+            .cure("do it again")
         }))
     }
 
     /// Does a task that needs no other one any more, unless its file is there.
     pub(super) fn do_unless_current(&self, task: usize, context: &Context) -> Result<()> {
-        if self.is_current(task)? { Ok(()) } else { self.do_task(task, context) }
+        if self.is_current(task)? {
+            Ok(())
+        } else {
+            self.do_task(task, context)
+        }
     }
 }

@@ -46,7 +46,11 @@ impl StoredPlan {
         let path = folder.join(PLAN);
         let text = match std::fs::read(&path) {
             Ok(text) => text,
-            Err(error) if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => return Ok(None),
+            Err(error)
+                if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) =>
+            {
+                return Ok(None);
+            }
             Err(error) => return Err(Error::from(error).in_file(path)),
         };
         // The folder may be that of somebody else: only what is certain to be a job may go.
@@ -72,17 +76,28 @@ impl StoredPlan {
     /// # Errors
     /// If it is not in the folder any more.
     pub(super) fn read_of(sum: u32, folder: &Path) -> Result<Self> {
-        Self::read(folder)?.filter(|stored| stored.sum == sum).ok_or_else(|| replaced(folder))
+        Self::read(folder)?
+            .filter(|stored| stored.sum == sum)
+            .ok_or_else(|| replaced(folder))
     }
 
     fn parse(text: &[u8]) -> Option<Self> {
         let (stated, plan) = std::str::from_utf8(text).ok()?.split_once('\n')?;
         let sum = checksum(plan.as_bytes());
-        let value: Value = serde_json::from_str(plan).ok().filter(|_| stated == format!("{sum:08x}"))?;
+        let value: Value = serde_json::from_str(plan)
+            .ok()
+            .filter(|_| stated == format!("{sum:08x}"))?;
         let is_plan = value["version"].is_string() && value["request"].is_object();
-        let tasks = value["tasks"].as_u64().filter(|_| is_plan && value["layout"].is_array())?;
+        let tasks = value["tasks"]
+            .as_u64()
+            .filter(|_| is_plan && value["layout"].is_array())?;
         let command = value["command"].as_u64();
-        Some(StoredPlan { sum, plan: value, tasks, command })
+        Some(StoredPlan {
+            sum,
+            plan: value,
+            tasks,
+            command,
+        })
     }
 }
 
@@ -100,7 +115,11 @@ pub(super) fn write_plan(folder: &Path, plan: &str) -> Result<u32> {
         Ok(_) => Ok(sum),
         Err(_) if path.exists() => Err(there_is_a_job(folder)),
         // Some shared file systems can only replace files. The job is locked, and there is no plan.
-        Err(error) => error.file.persist(&path).map(|_| sum).map_err(|e| named(e.error)),
+        Err(error) => error
+            .file
+            .persist(&path)
+            .map(|_| sum)
+            .map_err(|e| named(e.error)),
     }
 }
 
@@ -117,15 +136,17 @@ pub(super) fn replace(path: &Path, text: &str) -> Result<()> {
 
 #[cold]
 fn there_is_a_job(folder: &Path) -> Error {
-    Error::usage("there is a job in this folder already").in_file(folder).cure(wording![
-        "go on with it (",
-        Setting::Resume.on(),
-        "), remove it (",
-        Command::JobClean,
-        "), or name another folder (",
-        Setting::Job,
-        ")"
-    ])
+    Error::usage("there is a job in this folder already")
+        .in_file(folder)
+        .cure(wording![
+            "go on with it (",
+            Setting::Resume.on(),
+            "), remove it (",
+            Command::JobClean,
+            "), or name another folder (",
+            Setting::Job,
+            ")"
+        ])
 }
 
 /// Returns an error if the folder of a new job has a file that the job would replace.
@@ -139,11 +160,9 @@ pub(super) fn require_no_job(folder: &Path) -> Result<()> {
     for name in [COMMAND, WRITTEN] {
         let path = folder.join(name);
         if path.exists() && !is_note(&path) {
-            return Err(Error::usage("this was not written by a job").in_file(path).cure(wording![
-                "name another folder (",
-                Setting::Job,
-                ")"
-            ]));
+            return Err(Error::usage("this was not written by a job")
+                .in_file(path)
+                .cure(wording!["name another folder (", Setting::Job, ")"]));
         }
     }
     Ok(())
@@ -151,9 +170,12 @@ pub(super) fn require_no_job(folder: &Path) -> Result<()> {
 
 /// Returns true if a file has what a job was planned for, or the record of an output.
 fn is_note(path: &Path) -> bool {
-    let value: Option<Value> = std::fs::read(path).ok().and_then(|text| serde_json::from_slice(&text).ok());
+    let value: Option<Value> = std::fs::read(path)
+        .ok()
+        .and_then(|text| serde_json::from_slice(&text).ok());
     value.is_some_and(|value| {
-        value["request"].is_object() && value["words"].is_array() || value["files"].is_array() && value["job"].is_u64()
+        value["request"].is_object() && value["words"].is_array()
+            || value["files"].is_array() && value["job"].is_u64()
     })
 }
 
@@ -176,8 +198,14 @@ fn task_of(path: &Path) -> Option<usize> {
 
 /// Returns true if a folder has a file that the task of a job has written, of whatever version.
 fn has_tasks(folder: &Path) -> bool {
-    let files = std::fs::read_dir(tasks_in(folder)).into_iter().flatten().flatten().map(|entry| entry.path());
-    files.filter(|path| task_of(path).is_some()).any(|path| looks_like_task(&path))
+    let files = std::fs::read_dir(tasks_in(folder))
+        .into_iter()
+        .flatten()
+        .flatten()
+        .map(|entry| entry.path());
+    files
+        .filter(|path| task_of(path).is_some())
+        .any(|path| looks_like_task(&path))
 }
 
 /// Returns what the names of temporary files contain that are written for a job, of which the
@@ -192,7 +220,10 @@ pub(super) fn mark(sum: u32) -> String {
 /// # Errors
 /// If one cannot be removed.
 pub(super) fn remove_unfinished(folder: &Path) -> Result<()> {
-    for folder in [folder, &tasks_in(folder)].into_iter().filter(|folder| folder.is_dir()) {
+    for folder in [folder, &tasks_in(folder)]
+        .into_iter()
+        .filter(|folder| folder.is_dir())
+    {
         remove_where(folder, is_unfinished)?;
     }
     Ok(())
@@ -219,11 +250,13 @@ pub(super) fn no_job(folder: &Path) -> Error {
 /// Returns the error for a folder that had another job before.
 #[cold]
 pub(super) fn replaced(folder: &Path) -> Error {
-    Error::other_job("the job was removed or replaced by another process").in_file(folder).cure(wording![
-        "begin again, or name another folder (",
-        Setting::Job,
-        ")"
-    ])
+    Error::other_job("the job was removed or replaced by another process")
+        .in_file(folder)
+        .cure(wording![
+            "begin again, or name another folder (",
+            Setting::Job,
+            ")"
+        ])
 }
 
 /// Removes the files of a job and its folder, if nothing else is in it.
@@ -252,7 +285,9 @@ pub(super) fn remove_files(folder: &Path, stored: &StoredPlan, _lock: &JobLock) 
     remove_unfinished(folder)?;
     let tasks = tasks_in(folder);
     if tasks.is_dir() {
-        remove_where(&tasks, |path| task_of(path).is_some_and(|task| (task as u64) < stored.tasks))?;
+        remove_where(&tasks, |path| {
+            task_of(path).is_some_and(|task| (task as u64) < stored.tasks)
+        })?;
         remove_if_empty(&tasks)?;
     }
     // Of an output in the folder itself.
@@ -285,5 +320,9 @@ fn remove(path: &Path) -> Result<()> {
 fn remove_if_empty(folder: &Path) -> Result<()> {
     let named = |e: std::io::Error| Error::from(e).in_file(folder);
     let is_empty = std::fs::read_dir(folder).map_err(named)?.next().is_none();
-    if is_empty { std::fs::remove_dir(folder).map_err(named) } else { Ok(()) }
+    if is_empty {
+        std::fs::remove_dir(folder).map_err(named)
+    } else {
+        Ok(())
+    }
 }

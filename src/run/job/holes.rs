@@ -40,7 +40,8 @@ impl Holes {
 /// Returns true unless a side of the box, or an edge of the triangle, has the two on different
 /// sides.
 fn reaches_into(corners: [[f64; 3]; 3], [min, max]: Hole) -> bool {
-    let is_beside = (0..2).any(|k| corners.iter().all(|p| p[k] <= min[k]) || corners.iter().all(|p| p[k] >= max[k]));
+    let is_beside = (0..2)
+        .any(|k| corners.iter().all(|p| p[k] <= min[k]) || corners.iter().all(|p| p[k] >= max[k]));
     if is_beside {
         return false;
     }
@@ -48,7 +49,9 @@ fn reaches_into(corners: [[f64; 3]; 3], [min, max]: Hole) -> bool {
     // The corners are counter-clockwise.
     let is_beyond = |i: usize| {
         let (a, b) = (corners[i], corners[(i + 1) % 3]);
-        of_box.iter().all(|p| (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]) <= 0.0)
+        of_box
+            .iter()
+            .all(|p| (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]) <= 0.0)
     };
     !(0..3).any(is_beyond)
 }
@@ -70,7 +73,11 @@ mod tests {
             ([[4.0, 3.0], [9.0, 3.0], [9.0, 9.0]], false),
         ] {
             let corners: [[f64; 2]; 3] = corners;
-            assert_eq!(reaches_into(corners.map(|[x, y]| [x, y, 0.0]), hole), expected, "{corners:?}");
+            assert_eq!(
+                reaches_into(corners.map(|[x, y]| [x, y, 0.0]), hole),
+                expected,
+                "{corners:?}"
+            );
         }
     }
 }

@@ -55,7 +55,12 @@ impl Known {
     ///
     /// # Errors
     /// If a layer cannot be read, or is not what its option takes.
-    pub(super) fn read(request: &TinRequest, crs: Option<&Crs>, extent: &Bounds, journal: &Journal) -> Result<Self> {
+    pub(super) fn read(
+        request: &TinRequest,
+        crs: Option<&Crs>,
+        extent: &Bounds,
+        journal: &Journal,
+    ) -> Result<Self> {
         Self::of_layers(&layers_of(request, journal)?, request, crs, extent, journal)
     }
 
@@ -78,20 +83,30 @@ impl Known {
         builder.mark_overlaps();
         let in_plan = builder.lines_in_plan();
         let mut of_lines = Bounds::default();
-        in_plan.iter().flatten().for_each(|&[x, y]| of_lines.add([x, y, 0.0]));
+        in_plan
+            .iter()
+            .flatten()
+            .for_each(|&[x, y]| of_lines.add([x, y, 0.0]));
         let mut all = *extent;
         all.merge(&of_lines);
         builder.judged = builder.bounds;
         let clip = TileClip::take_from(&mut builder, &all)?;
         let with_heights = layers.has_lines_with_heights();
-        let lines = with_heights.then(|| JobLines::new(builder, added, &in_plan, of_lines, request, &units));
+        let lines = with_heights
+            .then(|| JobLines::new(builder, added, &in_plan, of_lines, request, &units));
         Ok(Known { lines, clip })
     }
 }
 
 /// Reads the layers of lines of a request.
 pub(super) fn layers_of<'a>(request: &'a TinRequest, journal: &Journal) -> Result<LineLayers<'a>> {
-    LineLayers::read(&request.lines, &request.breaklines, &request.boundary, request.read.cut, journal)
+    LineLayers::read(
+        &request.lines,
+        &request.breaklines,
+        &request.boundary,
+        request.read.cut,
+        journal,
+    )
 }
 
 impl JobLines {
@@ -103,11 +118,20 @@ impl JobLines {
         request: &TinRequest,
         units: &Units,
     ) -> Self {
-        let largest = lines.iter().flatten().flatten().fold(0.0_f64, |most, c| most.max(c.abs()));
+        let largest = lines
+            .iter()
+            .flatten()
+            .flatten()
+            .fold(0.0_f64, |most, c| most.max(c.abs()));
         JobLines {
             builder,
             names: added.names,
-            near: NearLines::new(lines.iter().flat_map(|line| line.windows(2)).map(|ends| [ends[0], ends[1]])),
+            near: NearLines::new(
+                lines
+                    .iter()
+                    .flat_map(|line| line.windows(2))
+                    .map(|ends| [ends[0], ends[1]]),
+            ),
             reach: tiles::rounding_reach(largest),
             extent,
             extent_of_heights: added.extent,
@@ -117,14 +141,20 @@ impl JobLines {
 
     /// Returns the notice about lines that may be shores, from what all points say.
     pub(super) fn notice_of_rings(&self, found: &[OtherHeights], units: &Units) -> Option<Notice> {
-        self.rings.as_ref().and_then(|rings| rings.notice(found, &self.names, units))
+        self.rings
+            .as_ref()
+            .and_then(|rings| rings.notice(found, &self.names, units))
     }
 
     /// Removes the points that water and walls replace, and returns those of the others that may
     /// matter to a line.
     pub(super) fn take_points(&self, points: &mut Vec<[f64; 3]>) -> Vec<[f64; 3]> {
         self.builder.take_replaced(points);
-        points.iter().copied().filter(|&[x, y, _]| self.near.pass([x, y], self.reach)).collect()
+        points
+            .iter()
+            .copied()
+            .filter(|&[x, y, _]| self.near.pass([x, y], self.reach))
+            .collect()
     }
 
     /// Builds the lines with the points next to them. `extent` is that of all points.
@@ -142,10 +172,17 @@ impl JobLines {
         builder.add_owned_points(near);
         // A single line spans no area. These are far from all lines, and so decide nothing.
         let mut all = self.extent;
-        [extent.min, extent.max].into_iter().for_each(|corner| all.add(corner));
+        [extent.min, extent.max]
+            .into_iter()
+            .for_each(|corner| all.add(corner));
         let size = [0, 1].map(|k| 1.0 + all.max[k] - all.min[k]);
         let sides = [0, 1].map(|k| [all.min[k] - size[k], all.max[k] + size[k]]);
-        builder.add_owned_points(sides[0].iter().flat_map(|&x| sides[1].map(|y| [x, y, 0.0])).collect());
+        builder.add_owned_points(
+            sides[0]
+                .iter()
+                .flat_map(|&x| sides[1].map(|y| [x, y, 0.0]))
+                .collect(),
+        );
         builder.max_edge_inside = None;
         let tin = builder.build_named(&|line| self.names.name(line), journal.context.cancel)?;
         let units = Units::of(crs);
@@ -172,8 +209,12 @@ pub(super) fn write(tin: &Tin, layout: &TileLayout, writer: &mut TaskWriter) -> 
     let mut is_used = vec![false; tin.vertex_count()];
     let mut edges = 0;
     for face in 0..tin.face_count() as u32 {
-        let Some(corners) = tin.face(face) else { continue };
-        corners.iter().for_each(|&vertex| is_used[vertex as usize] = true);
+        let Some(corners) = tin.face(face) else {
+            continue;
+        };
+        corners
+            .iter()
+            .for_each(|&vertex| is_used[vertex as usize] = true);
         for i in 0..3 {
             let kind = tin.edge_kind(face, i);
             if !kind.is_constrained() || tin.neighbor(face, i).is_some_and(|other| other < face) {
@@ -182,28 +223,48 @@ pub(super) fn write(tin: &Tin, layout: &TileLayout, writer: &mut TaskWriter) -> 
             edges += 1;
             let vertices = [corners[(i + 1) % 3], corners[(i + 2) % 3]];
             let [a, b] = vertices.map(|vertex| tin.position(vertex));
-            let constraint = SubConstraint { ends: [[a[0], a[1]], [b[0], b[1]]], kind };
+            let constraint = SubConstraint {
+                ends: [[a[0], a[1]], [b[0], b[1]]],
+                kind,
+            };
             let [min, max] = [f64::min, f64::max].map(|of| [of(a[0], b[0]), of(a[1], b[1])]);
-            layout.tiles_in(min, max, &mut |tile| tiles[tile as usize].constraints.push(constraint));
+            layout.tiles_in(min, max, &mut |tile| {
+                tiles[tile as usize].constraints.push(constraint)
+            });
         }
     }
     // Points next to lines, too: one that is in water by a rounding error has its height now. The
     // corners of the box are those that only make it an area.
     let Bounds { min, max } = tin.report().extent;
     let is_corner = |p: [f64; 3]| (0..2).all(|k| p[k] == min[k] || p[k] == max[k]);
-    let used = (0..).zip(is_used).filter(|(_, is_used)| *is_used).map(|(vertex, _)| tin.position(vertex));
+    let used = (0..)
+        .zip(is_used)
+        .filter(|(_, is_used)| *is_used)
+        .map(|(vertex, _)| tin.position(vertex));
     for p in used.filter(|p| !is_corner(*p)) {
-        tiles[layout.tile_of([p[0], p[1]]) as usize].vertices.push(p);
+        tiles[layout.tile_of([p[0], p[1]]) as usize]
+            .vertices
+            .push(p);
     }
     writer.begin("lines");
     let mut table = Vec::new();
-    for (tile, LinesOfTile { vertices, constraints }) in (0..).zip(&tiles) {
+    for (
+        tile,
+        LinesOfTile {
+            vertices,
+            constraints,
+        },
+    ) in (0..).zip(&tiles)
+    {
         if vertices.is_empty() && constraints.is_empty() {
             continue;
         }
         put_u32(&mut table, tile);
         put_block(&mut table, writer.put_block(&bytes::of_points(vertices))?);
-        put_block(&mut table, writer.put_block(&bytes::of_constraints(constraints))?);
+        put_block(
+            &mut table,
+            writer.put_block(&bytes::of_constraints(constraints))?,
+        );
     }
     writer.begin("table");
     writer.put(&table)?;

@@ -58,6 +58,11 @@ impl Job {
                 is_done: done[number],
             })
         };
-        stages.into_iter().enumerate().map(of_task).chain([Ok(last)]).collect()
+        stages
+            .into_iter()
+            .enumerate()
+            .map(of_task)
+            .chain([Ok(last)])
+            .collect()
     }
 }

@@ -30,7 +30,12 @@ impl JobLock {
         loop {
             context.check()?;
             // Nothing is written to it: a folder that is no job yet may have such a file.
-            let file = File::options().write(true).create(true).truncate(false).open(&path).map_err(named)?;
+            let file = File::options()
+                .write(true)
+                .create(true)
+                .truncate(false)
+                .open(&path)
+                .map_err(named)?;
             let is_taken = match lock(&file) {
                 // The job may have been removed, and planned again, while this one waited.
                 Ok(()) => is_at(&file.metadata().map_err(named)?, &path),
@@ -42,11 +47,13 @@ impl JobLock {
                 return Ok(JobLock { _file: file });
             }
             if start.elapsed() > PATIENCE {
-                return Err(Error::usage("another process works on this job").in_file(folder).cure(wording![
-                    "wait for it, or name another folder (",
-                    Setting::Job,
-                    ")"
-                ]));
+                return Err(Error::usage("another process works on this job")
+                    .in_file(folder)
+                    .cure(wording![
+                        "wait for it, or name another folder (",
+                        Setting::Job,
+                        ")"
+                    ]));
             }
             std::thread::sleep(PATIENCE / 50);
         }
@@ -60,7 +67,8 @@ const PATIENCE: Duration = Duration::from_secs(10);
 #[cfg(unix)]
 fn is_at(open: &Metadata, path: &Path) -> bool {
     use std::os::unix::fs::MetadataExt;
-    std::fs::metadata(path).is_ok_and(|there| (there.dev(), there.ino()) == (open.dev(), open.ino()))
+    std::fs::metadata(path)
+        .is_ok_and(|there| (there.dev(), there.ino()) == (open.dev(), open.ino()))
 }
 
 /// Returns true: an open file cannot be removed here.

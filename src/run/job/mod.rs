@@ -125,13 +125,22 @@ impl Job {
     /// # Complexity
     /// Linear in the files, of which the headers are read; those that state no number or extent are
     /// read to their end.
-    pub fn plan(wanted: &WriteRequest, folder: &Path, options: &TileOptions, context: &Context) -> Result<Self> {
+    pub fn plan(
+        wanted: &WriteRequest,
+        folder: &Path,
+        options: &TileOptions,
+        context: &Context,
+    ) -> Result<Self> {
         let (request, systems) = tiled(wanted)?;
         let verb = wanted.verb.as_ref();
         let journal = Journal::new(context);
         let (plan, known) = Plan::new(request, systems, verb, options, &journal)?;
         let known = OnceLock::from(known);
-        Ok(Job { known, notices: journal.take(), ..Self::of_plan(wanted, (request, systems), folder, options, plan) })
+        Ok(Job {
+            known,
+            notices: journal.take(),
+            ..Self::of_plan(wanted, (request, systems), folder, options, plan)
+        })
     }
 
     fn of_plan(
@@ -146,7 +155,11 @@ impl Job {
             request: request.clone(),
             systems: systems.clone(),
             verb: Arc::clone(&wanted.verb),
-            bad: if plan.skips_bad { BadFiles::Skip } else { options.bad },
+            bad: if plan.skips_bad {
+                BadFiles::Skip
+            } else {
+                options.bad
+            },
             folder: folder.to_path_buf(),
             sum: 0,
             plan,
@@ -160,8 +173,14 @@ impl Job {
     /// Returns the request that the job is for.
     pub fn request(&self) -> WriteRequest {
         let source = Source::Points(Box::new(self.request.clone()));
-        let surface = SurfaceRequest { source, systems: self.systems.clone() };
-        WriteRequest { surface, verb: Arc::clone(&self.verb) }
+        let surface = SurfaceRequest {
+            source,
+            systems: self.systems.clone(),
+        };
+        WriteRequest {
+            surface,
+            verb: Arc::clone(&self.verb),
+        }
     }
 
     /// Returns what is kept with the job for others, if that is.
@@ -181,7 +200,9 @@ impl Job {
     /// If the folder has a job already, or files of something else that have the same names, or
     /// cannot be written; or if another process works on it.
     pub fn create(&mut self, command: Option<&JobCommand>, context: &Context) -> Result<JobLock> {
-        let command = command.map(|command| command.to_text(&self.plan.request)).transpose()?;
+        let command = command
+            .map(|command| command.to_text(&self.plan.request))
+            .transpose()?;
         folder::require_no_job(&self.folder)?;
         let named = |e: std::io::Error| Error::from(e).in_file(&self.folder);
         std::fs::create_dir_all(&self.folder).map_err(named)?;
@@ -205,7 +226,9 @@ impl Job {
     /// Checks that the file of points that a task reads, if any, is as the task has read it or as
     /// the plan expects it.
     fn check_input(&self, task: usize) -> Result<()> {
-        let Some(number) = self.file_of(task) else { return Ok(()) };
+        let Some(number) = self.file_of(task) else {
+            return Ok(());
+        };
         let path = &self.plan.files[number].path;
         match self.state_of_input(task) {
             None => match self.plan.require_same_points(number, &self.request) {
@@ -226,27 +249,44 @@ impl Job {
     ///
     /// # Errors
     /// If the job is that of another request, or damaged.
-    pub fn stored(wanted: &WriteRequest, folder: &Path, options: &TileOptions) -> Result<Option<Self>> {
-        let Some(stored) = StoredPlan::read(folder)? else { return Ok(None) };
+    pub fn stored(
+        wanted: &WriteRequest,
+        folder: &Path,
+        options: &TileOptions,
+    ) -> Result<Option<Self>> {
+        let Some(stored) = StoredPlan::read(folder)? else {
+            return Ok(None);
+        };
         match Self::of_stored(&stored, wanted, folder, options) {
             Err(error) if error.kind() == Kind::OtherJob => {
                 let whole = command::whole(wanted);
-                let opened = whole.and_then(|whole| Self::of_stored(&stored, &whole, folder, options));
+                let opened =
+                    whole.and_then(|whole| Self::of_stored(&stored, &whole, folder, options));
                 opened.map_err(|_| error).map(Some)
             }
             opened => opened.map(Some),
         }
     }
 
-    fn of_stored(stored: &StoredPlan, wanted: &WriteRequest, folder: &Path, options: &TileOptions) -> Result<Self> {
+    fn of_stored(
+        stored: &StoredPlan,
+        wanted: &WriteRequest,
+        folder: &Path,
+        options: &TileOptions,
+    ) -> Result<Self> {
         let (request, systems) = tiled(wanted)?;
         let plan = Plan::from_json(&stored.plan).ok_or_else(|| other_version(folder))?;
         let asked = request::asked(wanted, options)?;
         if plan.request != asked {
             return Err(request::other_command(&plan.request, &asked, folder));
         }
-        let plan = plan.named(request, wanted.verb.as_ref()).ok_or_else(|| other_version(folder))?;
-        Ok(Job { sum: stored.sum, ..Self::of_plan(wanted, (request, systems), folder, options, plan) })
+        let plan = plan
+            .named(request, wanted.verb.as_ref())
+            .ok_or_else(|| other_version(folder))?;
+        Ok(Job {
+            sum: stored.sum,
+            ..Self::of_plan(wanted, (request, systems), folder, options, plan)
+        })
     }
 
     /// Checks all inputs, before what is left is done.
@@ -280,7 +320,8 @@ impl Job {
 
     /// Returns the file of points that a task reads, if it reads one.
     pub(super) fn input(&self, task: usize) -> Option<&Path> {
-        self.file_of(task).map(|number| self.plan.files[number].path.as_path())
+        self.file_of(task)
+            .map(|number| self.plan.files[number].path.as_path())
     }
 
     /// The number of the file of points that a task reads.
@@ -312,20 +353,27 @@ impl Job {
             divides: plan.divides,
             merges: plan.merge_count(),
             tasks: self.task_count(),
-            bytes_on_disk: drawn.saturating_add(if plan.divides { points.saturating_mul(24) } else { 0 }),
+            bytes_on_disk: drawn.saturating_add(if plan.divides {
+                points.saturating_mul(24)
+            } else {
+                0
+            }),
             task_memory: plan.task_memory,
         }
     }
 
     /// Returns how many bytes the files of the tasks have that are there.
     pub fn bytes_there(&self) -> u64 {
-        let length = |task| std::fs::metadata(self.task_file(task).path).map_or(0, |about| about.len());
+        let length =
+            |task| std::fs::metadata(self.task_file(task).path).map_or(0, |about| about.len());
         (0..self.task_count()).map(length).sum()
     }
 
     /// Returns the number of tasks.
     pub fn task_count(&self) -> usize {
-        self.after_steps() + usize::from(self.plan.max_edge.is_some()) + usize::from(self.plan.has_clip)
+        self.after_steps()
+            + usize::from(self.plan.max_edge.is_some())
+            + usize::from(self.plan.has_clip)
     }
 
     /// The number of the task after the last step.
@@ -345,7 +393,11 @@ impl Job {
 
     /// The number of files that are divided.
     fn divided(&self) -> usize {
-        if self.plan.divides { self.plan.files.len() } else { 0 }
+        if self.plan.divides {
+            self.plan.files.len()
+        } else {
+            0
+        }
     }
 
     fn task(&self, number: usize) -> Task {
@@ -373,7 +425,10 @@ impl Job {
             return Ok(known);
         }
         // What there is to say about the layers was said with the plan.
-        let quiet = Context { cancel: context.cancel, ..Context::default() };
+        let quiet = Context {
+            cancel: context.cancel,
+            ..Context::default()
+        };
         let (crs, extent) = (self.plan.crs.as_ref(), self.plan.extent());
         let known = Known::read(&self.request, crs, &extent, &Journal::new(&quiet))?;
         Ok(self.known.get_or_init(|| known))
@@ -385,9 +440,12 @@ impl Job {
             Task::Divide(_) => Vec::new(),
             Task::Lines => (0..self.divided()).collect(),
             Task::Triangulate(step) => match &self.steps[step].work {
-                Work::Leaf(tile) if self.plan.divides => {
-                    self.files_of(*tile).iter().copied().chain(self.lines_task()).collect()
-                }
+                Work::Leaf(tile) if self.plan.divides => self
+                    .files_of(*tile)
+                    .iter()
+                    .copied()
+                    .chain(self.lines_task())
+                    .collect(),
                 Work::Leaf(_) => Vec::new(),
                 Work::Merge(parts) => parts.iter().map(|&part| self.task_of_step(part)).collect(),
             },
@@ -401,7 +459,11 @@ impl Job {
     pub(super) fn stages(&self) -> Vec<usize> {
         let mut stages: Vec<usize> = Vec::with_capacity(self.task_count());
         for task in 0..self.task_count() {
-            let before = self.needs(task).into_iter().map(|needed| stages[needed] + 1).max();
+            let before = self
+                .needs(task)
+                .into_iter()
+                .map(|needed| stages[needed] + 1)
+                .max();
             stages.push(before.unwrap_or(0));
         }
         stages
@@ -417,7 +479,9 @@ impl Job {
         let all = self.files_of_tiles.get_or_init(|| {
             let Plan { layout, files, .. } = &self.plan;
             let mut all = vec![Vec::new(); layout.tile_count()];
-            for (number, Spread { min, max, .. }) in files.iter().map(PlannedFile::spread).enumerate() {
+            for (number, Spread { min, max, .. }) in
+                files.iter().map(PlannedFile::spread).enumerate()
+            {
                 layout.tiles_in(min, max, &mut |tile| all[tile as usize].push(number));
             }
             all
@@ -432,7 +496,10 @@ impl Job {
             Task::Lines => "lines".to_owned(),
             Task::Triangulate(step) => match &self.steps[step].work {
                 Work::Leaf(tile) if self.plan.divides => format!("tile {tile}"),
-                Work::Leaf(tile) => format!("tile {tile}, {}", self.plan.files[*tile as usize].path.display()),
+                Work::Leaf(tile) => format!(
+                    "tile {tile}, {}",
+                    self.plan.files[*tile as usize].path.display()
+                ),
                 Work::Merge(parts) => format!("merge of {}", parts.len()),
             },
             Task::Rim => "rim".to_owned(),
@@ -442,7 +509,11 @@ impl Job {
 
     /// Returns what the file of a task is called.
     fn task_file(&self, task: usize) -> TaskName {
-        TaskName { path: folder::task_path(&self.folder, task), job: self.sum, task }
+        TaskName {
+            path: folder::task_path(&self.folder, task),
+            job: self.sum,
+            task,
+        }
     }
 
     /// Takes the whole job for this process, as long as the result lives. A task that still runs is
@@ -485,13 +556,15 @@ impl Job {
 
 #[cold]
 fn other_version(folder: &Path) -> Error {
-    Error::format("the job was planned by another version of this program").in_file(folder).cure(wording![
-        "remove it (",
-        Command::JobClean,
-        "), or name another folder (",
-        Setting::Job,
-        ")"
-    ])
+    Error::format("the job was planned by another version of this program")
+        .in_file(folder)
+        .cure(wording![
+            "remove it (",
+            Command::JobClean,
+            "), or name another folder (",
+            Setting::Job,
+            ")"
+        ])
 }
 
 /// Returns true if a request would need more memory than there is.
@@ -504,14 +577,24 @@ pub fn needs_tiles(wanted: &WriteRequest, memory: Option<u64>, context: &Context
     let memory = memory.unwrap_or_else(crate::run::context::memory::half_of_free);
     // Opening a layer reads it. A point takes a byte at least, so the lengths nearly always
     // suffice.
-    let bytes: u64 = points.points.iter().map(|input| planned_file::length_of(input.path())).sum();
+    let bytes: u64 = points
+        .points
+        .iter()
+        .map(|input| planned_file::length_of(input.path()))
+        .sum();
     if crate::run::context::memory::need_of(bytes) <= memory {
         return Ok(false);
     }
-    let quiet = Context { cancel: context.cancel, ..Context::default() };
+    let quiet = Context {
+        cancel: context.cancel,
+        ..Context::default()
+    };
     let files = PointFiles::open(&points.points, points.read, &Journal::new(&quiet))?;
     let stated = points.points.iter().zip(files.stated_extents());
-    let count: u64 =
-        stated.map(|(input, (count, _))| count.unwrap_or_else(|| planned_file::points_of_text(input.path()))).sum();
+    let count: u64 = stated
+        .map(|(input, (count, _))| {
+            count.unwrap_or_else(|| planned_file::points_of_text(input.path()))
+        })
+        .sum();
     Ok(crate::run::context::memory::need_of(count) > memory)
 }

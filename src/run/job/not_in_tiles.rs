@@ -30,12 +30,24 @@ impl NotInTiles {
     pub(super) fn of(request: &TinRequest, systems: &SystemOptions) -> Option<Self> {
         let has_water = !(request.lines.flats.is_empty() && request.lines.rivers.is_empty());
         let known = [
-            (NotInTiles::EdgeByPoints, request.max_edge == EdgeLimit::Auto),
+            (
+                NotInTiles::EdgeByPoints,
+                request.max_edge == EdgeLimit::Auto,
+            ),
             (NotInTiles::Reproject, systems.target.is_some()),
-            (NotInTiles::EdgesBesideWater, request.max_edge_inside.is_some() && has_water),
-            (NotInTiles::ReplacedPoints, request.replaced == ReplacedPoints::Keep),
+            (
+                NotInTiles::EdgesBesideWater,
+                request.max_edge_inside.is_some() && has_water,
+            ),
+            (
+                NotInTiles::ReplacedPoints,
+                request.replaced == ReplacedPoints::Keep,
+            ),
         ];
-        known.into_iter().find(|(_, is_given)| *is_given).map(|(what, _)| what)
+        known
+            .into_iter()
+            .find(|(_, is_given)| *is_given)
+            .map(|(what, _)| what)
     }
 
     /// Returns the settings that ask for it.
@@ -44,7 +56,13 @@ impl NotInTiles {
             NotInTiles::EdgeByPoints => Setting::MaxEdge.text("auto").into(),
             NotInTiles::Reproject => Setting::TargetCrs.into(),
             NotInTiles::EdgesBesideWater => {
-                wording![Setting::MaxEdgeInside, " together with ", Setting::Flat, " or ", Setting::Rivers]
+                wording![
+                    Setting::MaxEdgeInside,
+                    " together with ",
+                    Setting::Flat,
+                    " or ",
+                    Setting::Rivers
+                ]
             }
             NotInTiles::CrossingReport => Setting::CrossingReport.into(),
             NotInTiles::ReplacedPoints => Setting::FlatPoints.into(),
@@ -61,11 +79,9 @@ impl From<NotInTiles> for Error {
             return Error::unsupported("tiles have linear heights only").cure(cure);
         }
         let whole = " the whole surface is built in memory";
-        Error::unsupported(wording![what.settings(), " does not work with tiles yet"]).cure(wording![
-            "leave one of them out: without ",
-            Setting::Tiles,
-            whole
-        ])
+        Error::unsupported(wording![what.settings(), " does not work with tiles yet"]).cure(
+            wording!["leave one of them out: without ", Setting::Tiles, whole],
+        )
     }
 }
 
@@ -73,8 +89,10 @@ impl From<NotInTiles> for Error {
 pub(super) fn tiled(wanted: &WriteRequest) -> Result<(&TinRequest, &SystemOptions)> {
     let SurfaceRequest { source, systems } = &wanted.surface;
     let Source::Points(points) = source else {
-        return Err(Error::usage("tiles are made of points, but the input is a surface already")
-            .cure("leave out the options of tiles"));
+        return Err(
+            Error::usage("tiles are made of points, but the input is a surface already")
+                .cure("leave out the options of tiles"),
+        );
     };
     if wanted.verb.method() != Method::Linear {
         return Err(NotInTiles::Method.into());

@@ -22,27 +22,41 @@ use crate::terrain::Classes;
 /// them.
 pub(super) fn rings_found(found: &[OtherHeights]) -> Vec<(usize, u64, f64)> {
     let some = (0..found.len()).filter(|&ring| found[ring].0 > 0);
-    some.map(|ring| (ring, found[ring].0, found[ring].1)).collect()
+    some.map(|ring| (ring, found[ring].0, found[ring].1))
+        .collect()
 }
 
 impl Plan {
     /// Reports what is known of the points from what their files state.
-    pub(super) fn note(&self, request: &TinRequest, verb: &dyn Verb, known: &Known, journal: &Journal) {
+    pub(super) fn note(
+        &self,
+        request: &TinRequest,
+        verb: &dyn Verb,
+        known: &Known,
+        journal: &Journal,
+    ) {
         let units = Units::of(self.crs.as_ref());
         let paths: Vec<_> = self.files.iter().map(|file| file.path.as_path()).collect();
         let extents: Vec<Bounds> = self.files.iter().map(|file| file.bounds()).collect();
         extents::compare_files(&paths, &extents, &units, journal);
         journal.add(request.max_edge.notice(&units));
-        let unusual = request.max_edge.unusual(mean_distance(self.point_count(), extents), &units);
+        let unusual = request
+            .max_edge
+            .unusual(mean_distance(self.point_count(), extents), &units);
         unusual.into_iter().for_each(|notice| journal.add(notice));
         if request.bounds.is_some() {
             journal.add(Notice::BoundsBuffer(None));
         }
         if let Some(lines) = &known.lines {
-            note_of_lines(lines, &self.stated_extent(), request, &units).into_iter().for_each(|n| journal.add(n));
+            note_of_lines(lines, &self.stated_extent(), request, &units)
+                .into_iter()
+                .for_each(|n| journal.add(n));
         }
         if let Keeps::Contours(options) = verb.keeps() {
-            options.notice(self.crs.as_ref()).into_iter().for_each(|notice| journal.add(notice));
+            options
+                .notice(self.crs.as_ref())
+                .into_iter()
+                .for_each(|notice| journal.add(notice));
         }
     }
 }
@@ -53,8 +67,20 @@ fn is_cut(request: &TinRequest) -> bool {
 }
 
 /// Returns the notice about lines that are far from the points, or reach far beyond them.
-fn note_of_lines(lines: &JobLines, points: &Bounds, request: &TinRequest, units: &Units) -> Option<Notice> {
-    let compare = || extents::compare_lines(points, &lines.extent_of_heights, request.max_edge.buffer(units), units);
+fn note_of_lines(
+    lines: &JobLines,
+    points: &Bounds,
+    request: &TinRequest,
+    units: &Units,
+) -> Option<Notice> {
+    let compare = || {
+        extents::compare_lines(
+            points,
+            &lines.extent_of_heights,
+            request.max_edge.buffer(units),
+            units,
+        )
+    };
     if is_cut(request) { None } else { compare() }
 }
 
@@ -78,7 +104,8 @@ pub(super) struct Found {
 impl Found {
     /// Adds what a task found, which has read the file of points with this number, if any.
     pub(super) fn add(&mut self, facts: &TaskFacts, file: Option<usize>) {
-        self.notices.extend(facts.notices.iter().filter_map(TaskNotice::notice));
+        self.notices
+            .extend(facts.notices.iter().filter_map(TaskNotice::notice));
         self.met += facts.met + facts.kept.clipped;
         self.draped += facts.draped;
         if let Some(points) = facts.read() {
@@ -89,7 +116,9 @@ impl Found {
         }
         match (file, &facts.file) {
             (Some(file), Some(FileFacts::Skipped(why))) => self.skipped.push((file, why.clone())),
-            (Some(file), Some(FileFacts::Read(points))) if points.used == 0 => self.unused.push(file),
+            (Some(file), Some(FileFacts::Read(points))) if points.used == 0 => {
+                self.unused.push(file)
+            }
             _ => {}
         }
     }
@@ -99,7 +128,9 @@ impl Found {
     /// # Errors
     /// If the layers of lines cannot be read again.
     pub(super) fn note(self, job: &Job, context: &Context, journal: &Journal) -> Result<()> {
-        self.notices.iter().for_each(|notice| journal.add(notice.clone()));
+        self.notices
+            .iter()
+            .for_each(|notice| journal.add(notice.clone()));
         self.note_skipped(&job.plan, journal);
         self.note_points(job, journal);
         let units = Units::of(job.plan.crs.as_ref());
@@ -109,21 +140,38 @@ impl Found {
         {
             // A notice that came with the plan is not repeated for the points that are used.
             if note_of_lines(lines, &job.plan.stated_extent(), request, &units).is_none() {
-                note_of_lines(lines, &self.extent_used, request, &units).into_iter().for_each(|n| journal.add(n));
+                note_of_lines(lines, &self.extent_used, request, &units)
+                    .into_iter()
+                    .for_each(|n| journal.add(n));
             }
-            let mut found = lines.rings.as_ref().map(|rings| rings.none_found()).unwrap_or_default();
+            let mut found = lines
+                .rings
+                .as_ref()
+                .map(|rings| rings.none_found())
+                .unwrap_or_default();
             for (ring, count, largest) in &self.rings {
                 if let Some(all) = found.get_mut(*ring) {
                     *all = (all.0 + count, all.1.max(*largest));
                 }
             }
-            lines.notice_of_rings(&found, &units).into_iter().for_each(|notice| journal.add(notice));
+            lines
+                .notice_of_rings(&found, &units)
+                .into_iter()
+                .for_each(|notice| journal.add(notice));
         }
         let apart = [
-            (LineRole::Draped, !request.lines.draped.is_empty() && self.draped == 0),
-            (LineRole::Holes, !request.lines.holes.is_empty() && self.met == 0),
+            (
+                LineRole::Draped,
+                !request.lines.draped.is_empty() && self.draped == 0,
+            ),
+            (
+                LineRole::Holes,
+                !request.lines.holes.is_empty() && self.met == 0,
+            ),
         ];
-        let apart = apart.into_iter().filter(|(_, is_apart)| *is_apart && !is_cut(request));
+        let apart = apart
+            .into_iter()
+            .filter(|(_, is_apart)| *is_apart && !is_cut(request));
         apart.for_each(|(role, _)| journal.add(Notice::LinesApart(role)));
         Ok(())
     }
@@ -131,14 +179,28 @@ impl Found {
     /// Reports which files are skipped, and the holes that they leave.
     fn note_skipped(&self, plan: &Plan, journal: &Journal) {
         for (_, why) in &plan.skipped {
-            journal.add(Notice::Skipped { why: why.clone(), hole: None, others: Vec::new() });
+            journal.add(Notice::Skipped {
+                why: why.clone(),
+                hole: None,
+                others: Vec::new(),
+            });
         }
         for (number, why) in &self.skipped {
             let hole = plan.files[*number].bounds();
-            let overlaps = |other: &Bounds| (0..2).all(|k| other.min[k] < hole.max[k] && hole.min[k] < other.max[k]);
-            let others = plan.files.iter().enumerate().filter(|(at, file)| at != number && overlaps(&file.bounds()));
+            let overlaps = |other: &Bounds| {
+                (0..2).all(|k| other.min[k] < hole.max[k] && hole.min[k] < other.max[k])
+            };
+            let others = plan
+                .files
+                .iter()
+                .enumerate()
+                .filter(|(at, file)| at != number && overlaps(&file.bounds()));
             let others = others.map(|(_, file)| file.path.clone()).collect();
-            journal.add(Notice::Skipped { why: why.clone(), hole: Some(hole), others });
+            journal.add(Notice::Skipped {
+                why: why.clone(),
+                hole: Some(hole),
+                others,
+            });
         }
     }
 
@@ -150,14 +212,23 @@ impl Found {
     /// Reports which points are used.
     fn note_points(&self, job: &Job, journal: &Journal) {
         let Job { request, plan, .. } = job;
-        let classes = Some(plan.classes.clone()).filter(|classes| classes.len() <= usize::from(u8::MAX));
-        let is_known: BTreeSet<usize> =
-            plan.files.iter().map(|file| file.input).chain(plan.skipped.iter().map(|(input, _)| *input)).collect();
+        let classes =
+            Some(plan.classes.clone()).filter(|classes| classes.len() <= usize::from(u8::MAX));
+        let is_known: BTreeSet<usize> = plan
+            .files
+            .iter()
+            .map(|file| file.input)
+            .chain(plan.skipped.iter().map(|(input, _)| *input))
+            .collect();
         let path = |input: usize| request.points[input].path().to_path_buf();
         let empty = || (0..request.points.len()).filter(|input| !is_known.contains(input));
         empty().for_each(|input| journal.add(Notice::PointsRead(path(input), 0)));
         if request.points.len() > 1 {
-            let unused = self.unused.iter().map(|&file| plan.files[file].input).chain(empty());
+            let unused = self
+                .unused
+                .iter()
+                .map(|&file| plan.files[file].input)
+                .chain(empty());
             unused.for_each(|input| journal.add(Notice::NoPointUsed(path(input), classes.clone())));
         }
         match &request.classes {

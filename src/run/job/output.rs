@@ -68,7 +68,10 @@ impl Job {
     /// # Errors
     /// If a task is not done, or layers of lines cannot be read again.
     pub fn report(&self, context: &Context) -> Result<JobReport> {
-        let mut report = JobReport { crs: self.plan.crs.clone(), ..JobReport::default() };
+        let mut report = JobReport {
+            crs: self.plan.crs.clone(),
+            ..JobReport::default()
+        };
         let mut found = Found::default();
         let mut tasks = 0..;
         report.sources = self.open_all(|file| {
@@ -108,7 +111,13 @@ impl Job {
         if report.triangles > 0 {
             return Ok(());
         }
-        let JobReport { read, used, beyond_max_edge, clipped, .. } = report;
+        let JobReport {
+            read,
+            used,
+            beyond_max_edge,
+            clipped,
+            ..
+        } = report;
         Err(match (used, beyond_max_edge) {
             _ if *clipped > 0 => Error::format(format!(
                 "no triangle is left: {clipped} lie outside of the boundary or the bounds"
@@ -123,21 +132,31 @@ impl Job {
                 " shows the classes of each file: choose with ",
                 Setting::Class
             ]),
-            (_, 0) => Error::format(format!("{used} points on one line, or fewer than three, do not span a surface"))
-                .cure(wording!["check the inputs and the classes (", Setting::Class, ")"]),
-            _ => Error::format(format!("no triangle is left: {beyond_max_edge} have edges over the limit at the rim"))
-                .cure(wording![
-                    "allow longer edges with ",
-                    Setting::MaxEdge.number("LENGTH"),
-                    " or ",
-                    Setting::MaxEdge.text("none")
-                ]),
+            (_, 0) => Error::format(format!(
+                "{used} points on one line, or fewer than three, do not span a surface"
+            ))
+            .cure(wording![
+                "check the inputs and the classes (",
+                Setting::Class,
+                ")"
+            ]),
+            _ => Error::format(format!(
+                "no triangle is left: {beyond_max_edge} have edges over the limit at the rim"
+            ))
+            .cure(wording![
+                "allow longer edges with ",
+                Setting::MaxEdge.number("LENGTH"),
+                " or ",
+                Setting::MaxEdge.text("none")
+            ]),
         })
     }
 
     /// The files of all tasks that have triangles.
     fn step_files(&self) -> Vec<TaskName> {
-        (self.first_step()..self.task_count()).map(|task| self.task_file(task)).collect()
+        (self.first_step()..self.task_count())
+            .map(|task| self.task_file(task))
+            .collect()
     }
 }
 
@@ -154,9 +173,19 @@ impl Tiles for KeptTiles<'_> {
         let Some(drawn) = job.plan.frame else {
             return Err(Error::usage("the job makes no raster"));
         };
-        let frame = frame::over_extent(options, report.extent, report.crs.as_ref(), &Journal::new(context))?;
+        let frame = frame::over_extent(
+            options,
+            report.extent,
+            report.crs.as_ref(),
+            &Journal::new(context),
+        )?;
         frame::require_filled(options, &frame, &report.extent, || report.area)?;
-        Ok(Box::new(DrawnCells::open(job.step_files(), drawn, frame, report.crs.clone())?))
+        Ok(Box::new(DrawnCells::open(
+            job.step_files(),
+            drawn,
+            frame,
+            report.crs.clone(),
+        )?))
     }
 
     fn write_contours(

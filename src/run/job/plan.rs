@@ -53,7 +53,10 @@ pub(super) struct OtherFile {
 impl OtherFile {
     /// Returns a file with its present state.
     fn of(path: &Path) -> Result<Self> {
-        Ok(OtherFile { path: path.to_path_buf(), state: state_of(path)? })
+        Ok(OtherFile {
+            path: path.to_path_buf(),
+            state: state_of(path)?,
+        })
     }
 }
 
@@ -100,10 +103,16 @@ pub(super) fn require_tiled(request: &TinRequest, systems: &SystemOptions) -> Re
     }
     request.check_bounds()?;
     request.check_layers()?;
-    if let Some(input) = request.points.iter().find(|input| !matches!(input, Input::File(_)) || input.is_read_once()) {
-        return Err(Error::usage("tiles are made of files, which can be read again after an interruption")
-            .in_file(input.path())
-            .cure("write the points to a file first"));
+    if let Some(input) = request
+        .points
+        .iter()
+        .find(|input| !matches!(input, Input::File(_)) || input.is_read_once())
+    {
+        return Err(Error::usage(
+            "tiles are made of files, which can be read again after an interruption",
+        )
+        .in_file(input.path())
+        .cure("write the points to a file first"));
     }
     Ok(())
 }
@@ -119,31 +128,56 @@ impl Plan {
         journal: &Journal,
     ) -> Result<(Self, Known)> {
         require_tiled(request, systems)?;
-        let FilesOfPoints { points, closed, classes, files, skipped } =
-            FilesOfPoints::of(request, systems, options, journal)?;
+        let FilesOfPoints {
+            points,
+            closed,
+            classes,
+            files,
+            skipped,
+        } = FilesOfPoints::of(request, systems, options, journal)?;
         let extent = extent_of(&files);
         let layers = lines::layers_of(request, journal)?;
         let mut stated = points.stated(&request.classes, journal)?;
         drop(points);
-        stated.extend(closed.iter().filter_map(|file| file.stated(request)).map(Some));
+        stated.extend(
+            closed
+                .iter()
+                .filter_map(|file| file.stated(request))
+                .map(Some),
+        );
         stated.extend(layers.stated());
         let Systems { crs, .. } = systems::reconcile_some(&stated, systems, journal)?;
         let known = Known::of_layers(&layers, request, crs.as_ref(), &extent, journal)?;
         if files.is_empty() {
-            return Err(Error::format("no points in the input").cure("pass files that contain points"));
+            return Err(
+                Error::format("no points in the input").cure("pass files that contain points")
+            );
         }
         let task_memory = task_memory(options);
         let most = (task_memory / BYTES_A_POINT).clamp(LEAST_POINTS, MOST_POINTS);
-        let (layout, divides) = layout_of(&files, &classes, &known, most, request, options, &journal.context)?;
+        let (layout, divides) = layout_of(
+            &files,
+            &classes,
+            &known,
+            most,
+            request,
+            options,
+            &journal.context,
+        )?;
         let frame = match verb.keeps() {
-            Keeps::Heights(options) => {
-                Some(frame_of(options, drawn_extent(extent, &known, request), crs.as_ref(), journal)?)
-            }
+            Keeps::Heights(options) => Some(frame_of(
+                options,
+                drawn_extent(extent, &known, request),
+                crs.as_ref(),
+                journal,
+            )?),
             Keeps::Contours(_) | Keeps::Triangles => None,
         };
         let max_edge = request.max_edge.length(&Units::of(crs.as_ref()));
         let (has_lines, has_clip) = (known.lines.is_some(), known.clip.is_some());
-        let others = others(request, verb).map(|path| OtherFile::of(path)).collect::<Result<_>>()?;
+        let others = others(request, verb)
+            .map(|path| OtherFile::of(path))
+            .collect::<Result<_>>()?;
         let plan = Plan {
             request: options_of(request, systems, verb, options),
             files,
@@ -172,7 +206,9 @@ impl Plan {
     /// Returns the box in plan around all points, to the digit that the files state.
     pub(super) fn stated_extent(&self) -> Bounds {
         let mut extent = Bounds::default();
-        self.files.iter().for_each(|file| extent.merge(&file.bounds()));
+        self.files
+            .iter()
+            .for_each(|file| extent.merge(&file.bounds()));
         extent
     }
 
@@ -190,14 +226,24 @@ impl Plan {
             return all as u64;
         }
         let [min, max] = [frame.extent().min, frame.extent().max];
-        let side = |file: &PlannedFile, k: usize| (file.max[k].min(max[k]) - file.min[k].max(min[k])).max(0.0);
-        let covered: f64 = self.files.iter().map(|file| side(file, 0) * side(file, 1)).sum();
+        let side = |file: &PlannedFile, k: usize| {
+            (file.max[k].min(max[k]) - file.min[k].max(min[k])).max(0.0)
+        };
+        let covered: f64 = self
+            .files
+            .iter()
+            .map(|file| side(file, 0) * side(file, 1))
+            .sum();
         (all * (covered / ((max[0] - min[0]) * (max[1] - min[1]))).min(1.0)) as u64
     }
 
     /// Returns the number of merges.
     pub(super) fn merge_count(&self) -> usize {
-        self.layout.steps().iter().filter(|step| matches!(step.work, Work::Merge(_))).count()
+        self.layout
+            .steps()
+            .iter()
+            .filter(|step| matches!(step.work, Work::Merge(_)))
+            .count()
     }
 
     /// Returns an error if a file states another coordinate system than the others, which was not
@@ -205,16 +251,20 @@ impl Plan {
     pub(super) fn require_system(&self, number: usize, stated: Option<&Crs>) -> Result<()> {
         let is_same = |own: &Crs| self.crs.as_ref().is_some_and(|crs| crs.is_same(own));
         match stated.filter(|own| self.files[number].is_of_any_system && !is_same(own)) {
-            Some(own) => {
-                Err(does_not_fit(format!("the file states {own}, which was not known when the job was planned")))
-            }
+            Some(own) => Err(does_not_fit(format!(
+                "the file states {own}, which was not known when the job was planned"
+            ))),
             None => Ok(()),
         }
     }
 
     /// Returns an error if ground points are found after all were planned with, since there was
     /// none.
-    pub(super) fn require_classes(&self, report: &SelectionReport, request: &TinRequest) -> Result<()> {
+    pub(super) fn require_classes(
+        &self,
+        report: &SelectionReport,
+        request: &TinRequest,
+    ) -> Result<()> {
         let all_are_used = request.classes == Classes::GroundOrAll && self.classes.len() > 1;
         if all_are_used && report.by_class.contains_key(&GROUND) {
             return Err(does_not_fit(
@@ -226,7 +276,9 @@ impl Plan {
 
     /// Returns an error if any file but those of points has changed since the plan was made.
     pub(super) fn require_others_unchanged(&self) -> Result<()> {
-        self.others.iter().try_for_each(|OtherFile { path, state }| require_state(path, *state))
+        self.others
+            .iter()
+            .try_for_each(|OtherFile { path, state }| require_state(path, *state))
     }
 
     /// Returns the plan with the names that a request has for its files; `None` if it is not that
@@ -240,7 +292,10 @@ impl Plan {
         if others.len() != self.others.len() || !self.skipped.iter().all(is_known) {
             return None;
         }
-        self.others.iter_mut().zip(others).for_each(|(file, path)| file.path.clone_from(path));
+        self.others
+            .iter_mut()
+            .zip(others)
+            .for_each(|(file, path)| file.path.clone_from(path));
         Some(self)
     }
 
@@ -253,9 +308,15 @@ impl Plan {
         }
         let found = looked_at(file.input, request, &Context::default())?;
         match found {
-            Some(found) if (found.count, found.min, found.max) == (file.count, file.min, file.max) => Ok(()),
-            _ => Err(does_not_fit("the file was replaced by one of another extent or number of points".to_owned())
-                .in_file(&file.path)),
+            Some(found)
+                if (found.count, found.min, found.max) == (file.count, file.min, file.max) =>
+            {
+                Ok(())
+            }
+            _ => Err(does_not_fit(
+                "the file was replaced by one of another extent or number of points".to_owned(),
+            )
+            .in_file(&file.path)),
         }
     }
 }
@@ -275,7 +336,12 @@ struct FilesOfPoints {
 }
 
 impl FilesOfPoints {
-    fn of(request: &TinRequest, systems: &SystemOptions, options: &TileOptions, journal: &Journal) -> Result<Self> {
+    fn of(
+        request: &TinRequest,
+        systems: &SystemOptions,
+        options: &TileOptions,
+        journal: &Journal,
+    ) -> Result<Self> {
         let closed = match options.bad {
             BadFiles::Skip => closed(request, &journal.context)?,
             BadFiles::Refuse => Vec::new(),
@@ -284,18 +350,30 @@ impl FilesOfPoints {
         let points = PointFiles::open(&inputs, request.read, journal)?.with_bad(options.bad);
         let classes = classes_of(&points, request, options, journal)?;
         let mut files = Vec::new();
-        for ((number, input), stated) in numbers.into_iter().zip(&inputs).zip(points.stated_extents()) {
+        for ((number, input), stated) in numbers
+            .into_iter()
+            .zip(&inputs)
+            .zip(points.stated_extents())
+        {
             files.extend(planned(number, input, request, stated, &journal.context)?);
         }
         let mut skipped = Vec::new();
         for file in &closed {
             match file.extent() {
-                Some(extent) => files.extend(file.planned(extent, request, systems, &journal.context)?),
+                Some(extent) => {
+                    files.extend(file.planned(extent, request, systems, &journal.context)?)
+                }
                 None => skipped.push((file.number, file.why.clone())),
             }
         }
         files.sort_by_key(|file| file.input);
-        Ok(FilesOfPoints { points, closed, classes, files, skipped })
+        Ok(FilesOfPoints {
+            points,
+            closed,
+            classes,
+            files,
+            skipped,
+        })
     }
 }
 
@@ -303,14 +381,21 @@ impl FilesOfPoints {
 ///
 /// # Errors
 /// If the points would have to be read for that, but only headers may be.
-fn classes_of(points: &PointFiles, request: &TinRequest, options: &TileOptions, journal: &Journal) -> Result<Vec<u8>> {
+fn classes_of(
+    points: &PointFiles,
+    request: &TinRequest,
+    options: &TileOptions,
+    journal: &Journal,
+) -> Result<Vec<u8>> {
     let are_open = request.classes == Classes::GroundOrAll;
     if options.look == Look::Headers && are_open && points.have_classes() {
-        return Err(Error::usage("which classes are used is not known from headers alone").cure(wording![
-            "state them, such as ",
-            Setting::Class.number("2"),
-            " for ground"
-        ]));
+        return Err(
+            Error::usage("which classes are used is not known from headers alone").cure(wording![
+                "state them, such as ",
+                Setting::Class.number("2"),
+                " for ground"
+            ]),
+        );
     }
     let classes = points.used_classes(&request.classes, journal)?;
     if are_open {
@@ -350,7 +435,9 @@ fn layout_of(
     }
     let spreads: Vec<Spread> = files.iter().map(PlannedFile::spread).collect();
     let are_small = files.iter().all(|file| file.count <= most);
-    if let Some(layout) = TileLayout::of_boxes(&spreads).filter(|_| are_small && known.lines.is_none()) {
+    if let Some(layout) =
+        TileLayout::of_boxes(&spreads).filter(|_| are_small && known.lines.is_none())
+    {
         return Ok((layout, false));
     }
     let average = most as f64 * AVERAGE;
@@ -366,9 +453,14 @@ fn layout_of(
 fn drawn_extent(points: Bounds, known: &Known, request: &TinRequest) -> Bounds {
     let mut extent = points;
     if let Some(lines) = &known.lines {
-        [lines.extent.min, lines.extent.max].into_iter().for_each(|corner| extent.add(corner));
+        [lines.extent.min, lines.extent.max]
+            .into_iter()
+            .for_each(|corner| extent.add(corner));
     }
-    let within = request.bounds.map(|bounds| common(&bounds, &extent)).filter(|within| !within.is_empty());
+    let within = request
+        .bounds
+        .map(|bounds| common(&bounds, &extent))
+        .filter(|within| !within.is_empty());
     within.unwrap_or(extent)
 }
 
@@ -376,11 +468,21 @@ fn drawn_extent(points: Bounds, known: &Known, request: &TinRequest) -> Bounds {
 ///
 /// # Errors
 /// If tiles could not agree on its cells, or the frame is refused.
-fn frame_of(options: &FrameOptions, extent: Bounds, crs: Option<&Crs>, journal: &Journal) -> Result<Frame> {
+fn frame_of(
+    options: &FrameOptions,
+    extent: Bounds,
+    crs: Option<&Crs>,
+    journal: &Journal,
+) -> Result<Frame> {
     let frame = frame::over_extent(options, extent, crs, journal)?;
     if options.extent.is_none() && !frame.has_shared_centers() {
-        return Err(Error::unsupported("the raster's grid lines are not multiples of the size of its cells")
-            .cure(wording!["state the extent of the result with ", Setting::Extent]));
+        return Err(Error::unsupported(
+            "the raster's grid lines are not multiples of the size of its cells",
+        )
+        .cure(wording![
+            "state the extent of the result with ",
+            Setting::Extent
+        ]));
     }
     Ok(frame)
 }
@@ -388,14 +490,20 @@ fn frame_of(options: &FrameOptions, extent: Bounds, crs: Option<&Crs>, journal: 
 /// Returns the error for a file that was damaged when the job was planned, and does not fit it now.
 #[cold]
 fn does_not_fit(what: String) -> Error {
-    Error::usage(what).cure(wording!["plan the job again: ", Command::JobClean, " removes this one"])
+    Error::usage(what).cure(wording![
+        "plan the job again: ",
+        Command::JobClean,
+        " removes this one"
+    ])
 }
 
 /// Returns the box in plan around the points of files.
 fn extent_of(files: &[PlannedFile]) -> Bounds {
     let mut extent = Bounds::default();
     for Spread { min, max, .. } in files.iter().map(PlannedFile::spread) {
-        [min, max].into_iter().for_each(|[x, y]| extent.add([x, y, 0.0]));
+        [min, max]
+            .into_iter()
+            .for_each(|[x, y]| extent.add([x, y, 0.0]));
     }
     extent
 }
@@ -428,7 +536,10 @@ impl Closed {
     /// Returns the number of points and the box around them that its header states, if it states
     /// both.
     fn extent(&self) -> Option<(Option<u64>, Option<Bounds>)> {
-        let info = self.stated.as_ref().filter(|info| info.count.is_some() && info.bounds.is_some())?;
+        let info = self
+            .stated
+            .as_ref()
+            .filter(|info| info.count.is_some() && info.bounds.is_some())?;
         Some((info.count, info.bounds))
     }
 
@@ -440,10 +551,19 @@ impl Closed {
         systems: &SystemOptions,
         context: &Context,
     ) -> Result<Option<PlannedFile>> {
-        let file = planned(self.number, &request.points[self.number], request, extent, context)?;
+        let file = planned(
+            self.number,
+            &request.points[self.number],
+            request,
+            extent,
+            context,
+        )?;
         let states_system = self.stated.as_ref().is_some_and(|info| info.crs.is_some());
         let is_of_any_system = !states_system && systems.assign.is_none();
-        Ok(file.map(|file| PlannedFile { is_of_any_system, ..file }))
+        Ok(file.map(|file| PlannedFile {
+            is_of_any_system,
+            ..file
+        }))
     }
 }
 
@@ -454,7 +574,11 @@ fn closed(request: &TinRequest, context: &Context) -> Result<Vec<Closed>> {
         match looked_at(number, request, context) {
             Ok(_) => {}
             Err(error) if BadFiles::Skip.skips(&error) => {
-                closed.push(Closed { number, why: error.to_string(), stated: open::stated(input.path()) });
+                closed.push(Closed {
+                    number,
+                    why: error.to_string(),
+                    stated: open::stated(input.path()),
+                });
             }
             Err(error) => return Err(error),
         }
@@ -471,7 +595,11 @@ fn opened(request: &TinRequest, closed: &[Closed]) -> (Vec<usize>, Vec<Input<Mem
 
 /// Returns the files that are read beside the points: layers of lines, a raster to align to.
 fn others<'a>(request: &'a TinRequest, verb: &'a dyn Verb) -> impl Iterator<Item = &'a PathBuf> {
-    let layers = request.lines.inputs().into_iter().flat_map(|(_, inputs)| inputs);
+    let layers = request
+        .lines
+        .inputs()
+        .into_iter()
+        .flat_map(|(_, inputs)| inputs);
     let layers = layers.chain(&request.breaklines).chain(&request.boundary);
     let layers = layers.filter_map(|input| match input {
         Input::File(path) => Some(path),

@@ -18,7 +18,11 @@ impl Plan {
     /// is that of another version.
     pub(super) fn from_json(value: &Value) -> Option<Self> {
         let plan = || serde_json::from_value::<Plan>(value.clone()).ok();
-        let plan = if value["version"] == VERSION { plan() } else { None };
+        let plan = if value["version"] == VERSION {
+            plan()
+        } else {
+            None
+        };
         plan.filter(|plan| plan.divides || plan.files.len() == plan.layout.tile_count())
     }
 }
@@ -32,7 +36,9 @@ mod tests {
     fn systems_come_back_as_they_were() {
         let of_wkt = |wkt: &str| Crs::from_user(wkt).unwrap();
         let local = r#"LOCAL_CS["mine",UNIT["US survey foot",0.304800609601219]]"#;
-        let mut all: Vec<Crs> = [25832, 4326, 4979, 2994, 7415].map(|code| Crs::from_epsg(code).unwrap()).into();
+        let mut all: Vec<Crs> = [25832, 4326, 4979, 2994, 7415]
+            .map(|code| Crs::from_epsg(code).unwrap())
+            .into();
         all.push(of_wkt(local));
         all.push(of_wkt("EPSG:25832+7837"));
         for crs in all {

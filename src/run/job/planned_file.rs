@@ -50,16 +50,26 @@ impl PlannedFile {
     /// Returns the box around its points in plan, as its header states it.
     pub(super) fn bounds(&self) -> Bounds {
         let mut bounds = Bounds::default();
-        [self.min, self.max].into_iter().for_each(|[x, y]| bounds.add([x, y, 0.0]));
+        [self.min, self.max]
+            .into_iter()
+            .for_each(|[x, y]| bounds.add([x, y, 0.0]));
         bounds
     }
 
     /// Returns the box around its points, with what rounding may add to a header.
     pub(super) fn spread(&self) -> Spread {
         let PlannedFile { min, max, .. } = *self;
-        let rounding = [0, 1].map(|k: usize| HEADER_ROUNDING * f64::EPSILON * min[k].abs().max(max[k].abs()));
-        let (low, high) = ([0, 1].map(|k| min[k] - rounding[k]), [0, 1].map(|k| max[k] + rounding[k]));
-        Spread { min: low, max: high, count: self.count as f64 }
+        let rounding =
+            [0, 1].map(|k: usize| HEADER_ROUNDING * f64::EPSILON * min[k].abs().max(max[k].abs()));
+        let (low, high) = (
+            [0, 1].map(|k| min[k] - rounding[k]),
+            [0, 1].map(|k| max[k] + rounding[k]),
+        );
+        Spread {
+            min: low,
+            max: high,
+            count: self.count as f64,
+        }
     }
 }
 
@@ -96,16 +106,33 @@ pub(super) fn planned(
     }
     let is_finite = (0..2).all(|k| bounds.min[k].is_finite() && bounds.max[k].is_finite());
     if !is_finite {
-        return Err(Error::format("the header states an extent that is not finite")
-            .in_file(path)
-            .cure(wording![Command::Points, " writes a file with a true header"]));
+        return Err(
+            Error::format("the header states an extent that is not finite")
+                .in_file(path)
+                .cure(wording![
+                    Command::Points,
+                    " writes a file with a true header"
+                ]),
+        );
     }
     let [min, max] = [bounds.min, bounds.max].map(|[x, y, _]| [x, y]);
-    Ok(Some(PlannedFile { input: number, path: path.to_path_buf(), state, count, min, max, is_of_any_system: false }))
+    Ok(Some(PlannedFile {
+        input: number,
+        path: path.to_path_buf(),
+        state,
+        count,
+        min,
+        max,
+        is_of_any_system: false,
+    }))
 }
 
 /// Opens a file of points and returns what the plan has to know of it; `None` if it has no points.
-pub(super) fn looked_at(number: usize, request: &TinRequest, context: &Context) -> Result<Option<PlannedFile>> {
+pub(super) fn looked_at(
+    number: usize,
+    request: &TinRequest,
+    context: &Context,
+) -> Result<Option<PlannedFile>> {
     let input = &request.points[number];
     let look = || {
         let source = open::points(input, request.read, context)?;
@@ -116,7 +143,11 @@ pub(super) fn looked_at(number: usize, request: &TinRequest, context: &Context) 
 }
 
 /// Counts the points of a file that does not state their number or extent.
-fn measured(input: &Input<MemoryPoints>, request: &TinRequest, context: &Context) -> Result<(u64, Bounds)> {
+fn measured(
+    input: &Input<MemoryPoints>,
+    request: &TinRequest,
+    context: &Context,
+) -> Result<(u64, Bounds)> {
     let mut source = open::points(input, request.read, context)?;
     let work = context.start(Stage::ReadingPoints, Size::Unknown)?;
     let (mut count, mut bounds) = (0, Bounds::default());
@@ -137,11 +168,15 @@ pub(super) fn require_state(path: &Path, planned: FileState) -> Result<()> {
     if state_of(path)? == planned {
         return Ok(());
     }
-    Err(Error::usage("the file has changed since the job was planned").in_file(path).cure(wording![
-        "plan the job again: ",
-        Command::JobClean,
-        " removes this one"
-    ]))
+    Err(
+        Error::usage("the file has changed since the job was planned")
+            .in_file(path)
+            .cure(wording![
+                "plan the job again: ",
+                Command::JobClean,
+                " removes this one"
+            ]),
+    )
 }
 
 /// Returns the state of a file, which may be named together with a layer.
@@ -157,6 +192,12 @@ pub(super) fn state_of(path: &Path) -> Result<FileState> {
         }
         Err(error) => return Err(Error::from(error).in_file(path)),
     };
-    let modified = about.modified().ok().and_then(|time| time.duration_since(UNIX_EPOCH).ok());
-    Ok(FileState { size: about.len(), modified: modified.map_or(0, |time| time.as_nanos() as u64) })
+    let modified = about
+        .modified()
+        .ok()
+        .and_then(|time| time.duration_since(UNIX_EPOCH).ok());
+    Ok(FileState {
+        size: about.len(),
+        modified: modified.map_or(0, |time| time.as_nanos() as u64),
+    })
 }

@@ -31,15 +31,23 @@ impl Drawing {
     /// Begins the section of cells.
     pub(super) fn new(frame: Frame, writer: &mut TaskWriter) -> Result<Self> {
         writer.begin("cells");
-        Ok(Drawing { canvas: Canvas::new(frame)?, table: Vec::new() })
+        Ok(Drawing {
+            canvas: Canvas::new(frame)?,
+            table: Vec::new(),
+        })
     }
 
     pub(super) fn draw(&mut self, corners: [[f64; 3]; 3], writer: &mut TaskWriter) -> Result<()> {
         // A large triangle meets more blocks than memory has room for: one row of them at a time.
         let rows = self.canvas.block_rows(corners);
-        let step = if rows.len() > MOST_ROWS { 1 } else { rows.len().max(1) };
+        let step = if rows.len() > MOST_ROWS {
+            1
+        } else {
+            rows.len().max(1)
+        };
         for first in rows.clone().step_by(step) {
-            self.canvas.draw_in(corners, first..(first + step).min(rows.end));
+            self.canvas
+                .draw_in(corners, first..(first + step).min(rows.end));
             if self.canvas.block_count() > MOST_BLOCKS {
                 self.write_blocks(writer)?;
             }
@@ -51,7 +59,10 @@ impl Drawing {
         let mut bytes = Vec::new();
         for block in self.canvas.take_blocks() {
             bytes.clear();
-            block.heights.iter().for_each(|height| bytes.extend_from_slice(&height.to_le_bytes()));
+            block
+                .heights
+                .iter()
+                .for_each(|height| bytes.extend_from_slice(&height.to_le_bytes()));
             let first = [block.window.column as u64, block.window.row as u64];
             self.table.push((first, writer.put_block(&bytes)?));
         }
@@ -92,14 +103,21 @@ impl DrawnCells {
     ///
     /// # Errors
     /// If a file is missing or damaged.
-    pub(super) fn open(tasks: Vec<TaskName>, drawn: Frame, frame: Frame, crs: Option<Crs>) -> Result<Self> {
+    pub(super) fn open(
+        tasks: Vec<TaskName>,
+        drawn: Frame,
+        frame: Frame,
+        crs: Option<Crs>,
+    ) -> Result<Self> {
         let mut blocks: FxHashMap<[u32; 2], Vec<(u32, Block)>> = FxHashMap::default();
         for (number, name) in (0..).zip(&tasks) {
             let mut file = TaskFile::open_done(name)?;
             let table = file.section("table")?;
             let mut reader = NumberReader::new(&table);
             while !reader.is_empty() {
-                let (Some(column), Some(row), Some(block)) = (reader.u64(), reader.u64(), reader.block()) else {
+                let (Some(column), Some(row), Some(block)) =
+                    (reader.u64(), reader.u64(), reader.block())
+                else {
                     return Err(file.damaged());
                 };
                 let side = Canvas::SIDE as u64;
@@ -107,16 +125,30 @@ impl DrawnCells {
                 if !is_block || column % side + row % side != 0 {
                     return Err(file.damaged());
                 }
-                let size = 4 * side.min(drawn.width as u64 - column) * side.min(drawn.height as u64 - row);
+                let size =
+                    4 * side.min(drawn.width as u64 - column) * side.min(drawn.height as u64 - row);
                 if block.length != size {
                     return Err(file.damaged());
                 }
-                blocks.entry([column, row].map(|at| (at / side) as u32)).or_default().push((number, block));
+                blocks
+                    .entry([column, row].map(|at| (at / side) as u32))
+                    .or_default()
+                    .push((number, block));
             }
         }
-        let [column, row] = drawn.inverse().apply(frame.transform[0], frame.transform[3]);
+        let [column, row] = drawn
+            .inverse()
+            .apply(frame.transform[0], frame.transform[3]);
         let first = [column.round() as i64, row.round() as i64];
-        Ok(DrawnCells { frame, drawn, first, crs, tasks, blocks, open: Mutex::default() })
+        Ok(DrawnCells {
+            frame,
+            drawn,
+            first,
+            crs,
+            tasks,
+            blocks,
+            open: Mutex::default(),
+        })
     }
 
     fn file(&self, number: u32) -> Result<Arc<Mutex<TaskFile>>> {
@@ -136,7 +168,9 @@ impl DrawnCells {
     /// Reads the heights of a block from one of the files.
     fn heights(&self, number: u32, block: Block, bytes: &mut Vec<u8>) -> Result<()> {
         let file = self.file(number)?;
-        file.lock().unwrap_or_else(PoisonError::into_inner).read(block, bytes)
+        file.lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .read(block, bytes)
     }
 }
 
@@ -154,7 +188,10 @@ impl BlockSource for DrawnCells {
         out.fill(f32::NAN);
         let side = Canvas::SIDE as i64;
         // Columns and rows of the drawn frame; beyond it no cell has a height.
-        let from = [window.column as i64 + self.first[0], window.row as i64 + self.first[1]];
+        let from = [
+            window.column as i64 + self.first[0],
+            window.row as i64 + self.first[1],
+        ];
         let size = [window.width as i64, window.height as i64];
         let limits = [self.drawn.width as i64, self.drawn.height as i64];
         let range = |k: usize| from[k].max(0)..(from[k] + size[k]).min(limits[k]);
@@ -165,15 +202,23 @@ impl BlockSource for DrawnCells {
         let mut bytes = Vec::new();
         for block_row in rows.start / side..=(rows.end - 1) / side {
             for block_column in columns.start / side..=(columns.end - 1) / side {
-                let Some(parts) = self.blocks.get(&[block_column as u32, block_row as u32]) else { continue };
-                let [width, height] =
-                    [limits[0] - block_column * side, limits[1] - block_row * side].map(|n| n.min(side));
+                let Some(parts) = self.blocks.get(&[block_column as u32, block_row as u32]) else {
+                    continue;
+                };
+                let [width, height] = [
+                    limits[0] - block_column * side,
+                    limits[1] - block_row * side,
+                ]
+                .map(|n| n.min(side));
                 for &(number, block) in parts {
                     self.heights(number, block, &mut bytes)?;
-                    for row in rows.start.max(block_row * side)..rows.end.min(block_row * side + height) {
+                    for row in
+                        rows.start.max(block_row * side)..rows.end.min(block_row * side + height)
+                    {
                         let first = columns.start.max(block_column * side);
                         let end = columns.end.min(block_column * side + width);
-                        let line = ((row - block_row * side) * width + first - block_column * side) as usize;
+                        let line = ((row - block_row * side) * width + first - block_column * side)
+                            as usize;
                         let to = ((row - from[1]) * size[0] + first - from[0]) as usize;
                         let count = (end - first) as usize;
                         let heights = bytes[4 * line..4 * (line + count)].chunks_exact(4);

@@ -52,7 +52,11 @@ pub(super) fn options_of(
     // Whoever adds an option has to name it here.
     let TinRequest {
         points,
-        read: points::Options { columns, cut, detail },
+        read: points::Options {
+            columns,
+            cut,
+            detail,
+        },
         classes,
         breaklines,
         boundary,
@@ -81,7 +85,11 @@ pub(super) fn options_of(
     options.add(&[Setting::CrossingZ], crossing_heights);
     options.add(&[Setting::CrossingTolerance], crossing_tolerance);
     options.add_lines(lines);
-    let SystemOptions { assign, target, degrees } = systems;
+    let SystemOptions {
+        assign,
+        target,
+        degrees,
+    } = systems;
     options.add(&[Setting::Crs], assign);
     options.add(&[Setting::TargetCrs], target);
     options.add(&[Setting::ForceDegrees], degrees);
@@ -93,7 +101,13 @@ pub(super) fn options_of(
 
 /// Adds what a command says of its outputs, and of files that cannot be read.
 pub(super) fn add_targets(options: &mut Options, targets: &Targets, tiles: &TileOptions) {
-    let Targets { files, existing, crossings, replaced, also_read: _ } = targets;
+    let Targets {
+        files,
+        existing,
+        crossings,
+        replaced,
+        also_read: _,
+    } = targets;
     let mut listed = Listed(std::mem::take(options));
     listed.put(OUTPUT, files);
     listed.add(&[Setting::Overwrite], existing);
@@ -106,7 +120,10 @@ pub(super) fn add_targets(options: &mut Options, targets: &Targets, tiles: &Tile
 /// Returns the error for a folder whose job is that of another command.
 #[cold]
 pub(super) fn other_command(planned: &Options, now: &Options, folder: &Path) -> Error {
-    let what = wording!["the job in this folder is that of another command; what differs: ", differing(planned, now)];
+    let what = wording![
+        "the job in this folder is that of another command; what differs: ",
+        differing(planned, now)
+    ];
     Error::other_job(what).in_file(folder).cure(wording![
         "repeat that command, or name another folder (",
         Setting::Job,
@@ -120,10 +137,18 @@ pub(super) fn differing(planned: &Options, now: &Options) -> Wording {
     if planned.get(VERB) != now.get(VERB) {
         return VERB.into();
     }
-    let names = planned.keys().chain(now.keys()).filter(|name| planned.get(*name) != now.get(*name));
+    let names = planned
+        .keys()
+        .chain(now.keys())
+        .filter(|name| planned.get(*name) != now.get(*name));
     let names: BTreeSet<&str> = names.map(String::as_str).collect();
     let mention = |name: &str| Setting::from_name(name).map_or_else(|| name.into(), Wording::from);
-    Wording::join(names.into_iter().map(|names| Wording::join(names.split(OR).map(mention), OR)), ", ")
+    Wording::join(
+        names
+            .into_iter()
+            .map(|names| Wording::join(names.split(OR).map(mention), OR)),
+        ", ",
+    )
 }
 
 /// A list that grows.
@@ -137,7 +162,10 @@ impl Listed {
     }
 
     fn put(&mut self, name: &str, value: &dyn Debug) {
-        let before = self.0.insert(name.to_owned(), format!("{:08x}", checksum(format!("{value:?}").as_bytes())));
+        let before = self.0.insert(
+            name.to_owned(),
+            format!("{:08x}", checksum(format!("{value:?}").as_bytes())),
+        );
         debug_assert!(before.is_none(), "{name} is listed twice");
     }
 
@@ -149,7 +177,12 @@ impl Listed {
             wall: WallOptions { lower, width, high },
             holes,
             flats,
-            flat: FlatOptions { height, tolerance, buffer },
+            flat:
+                FlatOptions {
+                    height,
+                    tolerance,
+                    buffer,
+                },
             rivers,
             river_width,
             densify,

@@ -75,14 +75,27 @@ fn sampled(
         let used = selection.take_points();
         let wanted = (batch.len() as f64 / average * POSITIONS_A_TILE).max(POSITIONS_A_TILE);
         let step = (used.len() as f64 / wanted).ceil().max(1.0) as usize;
-        let own = used.chunks(step).enumerate().map(|(k, some)| some[scattered(k) % some.len()]);
-        let own: Vec<[f64; 2]> = own.map(|[x, y, _]| [x, y]).filter(|&position| extent.holds(position)).collect();
+        let own = used
+            .chunks(step)
+            .enumerate()
+            .map(|(k, some)| some[scattered(k) % some.len()]);
+        let own: Vec<[f64; 2]> = own
+            .map(|[x, y, _]| [x, y])
+            .filter(|&position| extent.holds(position))
+            .collect();
         let share = used.len() as f64 / own.len().max(1) as f64;
         positions.extend(own.into_iter().map(|position| (position, share)));
         read += batch.len() as u64;
     }
     let scale = file.count as f64 / read.max(1) as f64;
-    Ok(positions.into_iter().map(|(at, share)| Spread { min: at, max: at, count: share * scale }).collect())
+    Ok(positions
+        .into_iter()
+        .map(|(at, share)| Spread {
+            min: at,
+            max: at,
+            count: share * scale,
+        })
+        .collect())
 }
 
 /// Returns a number that has no rhythm, as scanners and their flights have one.
@@ -115,15 +128,24 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.las");
         let points = crowded(400_000);
-        let of_class: Vec<([f64; 3], u8)> =
-            points.iter().enumerate().map(|(i, &point)| (point, (i % 3) as u8)).collect();
+        let of_class: Vec<([f64; 3], u8)> = points
+            .iter()
+            .enumerate()
+            .map(|(i, &point)| (point, (i % 3) as u8))
+            .collect();
         std::fs::write(&path, testkit::lidar::las(&of_class, None)).unwrap();
-        let request = TinRequest { points: vec![Input::File(path.clone())], ..TinRequest::default() };
+        let request = TinRequest {
+            points: vec![Input::File(path.clone())],
+            ..TinRequest::default()
+        };
         let (average, most) = (10_000.0, 20_000);
         let file = PlannedFile {
             input: 0,
             path: path.clone(),
-            state: FileState { size: 0, modified: 0 },
+            state: FileState {
+                size: 0,
+                modified: 0,
+            },
             count: points.len() as u64,
             min: [0.0; 2],
             max: [402.0; 2],
@@ -132,19 +154,54 @@ mod tests {
         let largest = |spreads: &[Spread]| {
             let layout = TileLayout::balanced(spreads, average);
             let mut counts = vec![0; layout.tile_count()];
-            points.iter().for_each(|&[x, y, _]| counts[layout.tile_of([x, y]) as usize] += 1);
+            points
+                .iter()
+                .for_each(|&[x, y, _]| counts[layout.tile_of([x, y]) as usize] += 1);
             counts.into_iter().max().unwrap()
         };
         assert!(largest(&[file.spread()]) > 10 * most);
-        let found = spreads(from_ref(&file), &request, &[0, 1, 2], average, &Context::default()).unwrap();
+        let found = spreads(
+            from_ref(&file),
+            &request,
+            &[0, 1, 2],
+            average,
+            &Context::default(),
+        )
+        .unwrap();
         assert!(largest(&found) <= most, "{}", largest(&found));
-        let count = |spreads: &[Spread]| spreads.iter().map(|spread| spread.count).sum::<f64>().round();
+        let count = |spreads: &[Spread]| {
+            spreads
+                .iter()
+                .map(|spread| spread.count)
+                .sum::<f64>()
+                .round()
+        };
         assert_eq!(count(&found), 400_000.0);
-        let of_one = spreads(from_ref(&file), &request, &[2], average, &Context::default()).unwrap();
+        let of_one = spreads(
+            from_ref(&file),
+            &request,
+            &[2],
+            average,
+            &Context::default(),
+        )
+        .unwrap();
         assert_eq!(count(&of_one), 133_333.0);
         // Few points are taken to be even, and so are those of a file that cannot be read.
-        assert_eq!(spreads(from_ref(&file), &request, &[2], 1e6, &Context::default()).unwrap(), [file.spread()]);
+        assert_eq!(
+            spreads(from_ref(&file), &request, &[2], 1e6, &Context::default()).unwrap(),
+            [file.spread()]
+        );
         std::fs::write(&path, "LASF").unwrap();
-        assert_eq!(spreads(from_ref(&file), &request, &[2], average, &Context::default()).unwrap(), [file.spread()]);
+        assert_eq!(
+            spreads(
+                from_ref(&file),
+                &request,
+                &[2],
+                average,
+                &Context::default()
+            )
+            .unwrap(),
+            [file.spread()]
+        );
     }
 }

@@ -59,7 +59,10 @@ impl Job {
                     let pool = match pool {
                         Ok(pool) => pool,
                         Err(error) => {
-                            now.failed.get_or_insert(Failure::Error(Error::caused_by(Kind::Limit, error)));
+                            now.failed.get_or_insert(Failure::Error(Error::caused_by(
+                                Kind::Limit,
+                                error,
+                            )));
                             changed.notify_all();
                             return;
                         }
@@ -73,8 +76,10 @@ impl Job {
                             continue;
                         };
                         drop(now);
-                        let run =
-                            || pool.install(|| self.do_unless_current(task, context)).and_then(|()| progress.add(1));
+                        let run = || {
+                            pool.install(|| self.do_unless_current(task, context))
+                                .and_then(|()| progress.add(1))
+                        };
                         let done = catch_unwind(AssertUnwindSafe(run));
                         now = lock();
                         match done {
@@ -101,19 +106,30 @@ impl Job {
         let mut states = vec![State::Done; count];
         let is_done = self.done(context)?;
         for task in (0..count).filter(|&task| !is_done[task]) {
-            let needed: Vec<usize> = self.needs(task).into_iter().filter(|&before| !is_done[before]).collect();
+            let needed: Vec<usize> = self
+                .needs(task)
+                .into_iter()
+                .filter(|&before| !is_done[before])
+                .collect();
             needed.iter().for_each(|&before| after[before].push(task));
             states[task] = State::Waits(needed.len());
         }
         let left = is_done.iter().filter(|is_done| !**is_done).count();
-        Ok(Board { states, after, left, first: 0, failed: None })
+        Ok(Board {
+            states,
+            after,
+            left,
+            first: 0,
+            failed: None,
+        })
     }
 }
 
 impl Board {
     /// Returns the first task that waits for nothing, which runs from now on.
     fn next(&mut self) -> Option<usize> {
-        let task = (self.first..self.states.len()).find(|&task| self.states[task] == State::Waits(0))?;
+        let task =
+            (self.first..self.states.len()).find(|&task| self.states[task] == State::Waits(0))?;
         self.states[task] = State::Runs;
         self.first = task;
         Some(task)

@@ -38,16 +38,23 @@ impl Job {
     /// # Complexity
     /// Linear in the files that were skipped, which are read.
     pub fn outgrown_by(&self, context: &Context) -> Result<Option<&Path>> {
-        let quiet = Context { cancel: context.cancel, ..Context::default() };
+        let quiet = Context {
+            cancel: context.cancel,
+            ..Context::default()
+        };
         for (input, _) in &self.plan.skipped {
             if looked_at(*input, &self.request, &quiet).is_ok() {
                 return Ok(Some(self.request.points[*input].path()));
             }
         }
         for task in (0..self.task_count()).filter(|&task| self.skips(task)) {
-            let Some(number) = self.file_of(task) else { continue };
+            let Some(number) = self.file_of(task) else {
+                continue;
+            };
             match self.read_file(number, &Journal::new(&quiet), &mut |_| {}) {
-                Err(error) if error.kind() == Kind::Usage => return Ok(Some(&self.plan.files[number].path)),
+                Err(error) if error.kind() == Kind::Usage => {
+                    return Ok(Some(&self.plan.files[number].path));
+                }
                 Err(error) if !self.bad.skips(&error) => return Err(error),
                 _ => {}
             }

@@ -25,14 +25,25 @@ impl StoredJob {
     /// If its plan or its command is damaged, or it has none: then only the command that planned it
     /// goes on with it.
     pub fn find(folder: &Path) -> Result<Option<Self>> {
-        let Some(stored) = StoredPlan::read(folder)? else { return Ok(None) };
+        let Some(stored) = StoredPlan::read(folder)? else {
+            return Ok(None);
+        };
         let command = JobCommand::read(folder, &stored)?.ok_or_else(|| {
             Error::usage("the job in this folder is that of a command which goes on itself")
                 .in_file(folder)
-                .cure(wording!["repeat that command with ", Setting::Resume.on(), " and ", Setting::Job])
+                .cure(wording![
+                    "repeat that command with ",
+                    Setting::Resume.on(),
+                    " and ",
+                    Setting::Job
+                ])
         })?;
         let folder = std::path::absolute(folder).map_err(|e| Error::from(e).in_file(folder))?;
-        Ok(Some(StoredJob { command, folder, sum: stored.sum }))
+        Ok(Some(StoredJob {
+            command,
+            folder,
+            sum: stored.sum,
+        }))
     }
 
     /// Finds the job in a folder, which must have one.
@@ -45,8 +56,13 @@ impl StoredJob {
 
     /// Returns a job that was created for a command.
     pub(crate) fn new(command: JobCommand, job: &Job) -> Result<Self> {
-        let folder = std::path::absolute(&job.folder).map_err(|e| Error::from(e).in_file(&job.folder))?;
-        Ok(StoredJob { command, folder, sum: job.sum })
+        let folder =
+            std::path::absolute(&job.folder).map_err(|e| Error::from(e).in_file(&job.folder))?;
+        Ok(StoredJob {
+            command,
+            folder,
+            sum: job.sum,
+        })
     }
 
     /// Returns the folder.
@@ -70,7 +86,12 @@ impl StoredJob {
     /// [`OtherJob`](crate::error::Kind::OtherJob); if it is damaged.
     pub fn job(&self) -> Result<Job> {
         let JobCommand { request, tiles, .. } = &self.command;
-        Job::of_stored(&StoredPlan::read_of(self.sum, &self.folder)?, request, &self.folder, tiles)
+        Job::of_stored(
+            &StoredPlan::read_of(self.sum, &self.folder)?,
+            request,
+            &self.folder,
+            tiles,
+        )
     }
 
     /// Removes the files of the job, and its folder if nothing else is in it.

@@ -52,7 +52,9 @@ impl PartFaces {
             return writer.put(&self.decided.into_iter().map(to_byte).collect::<Vec<_>>());
         };
         let mut waiting = Vec::with_capacity(4 * self.waiting.len());
-        self.waiting.iter().for_each(|&at| put_u32(&mut waiting, part.faces()[at as usize]));
+        self.waiting
+            .iter()
+            .for_each(|&at| put_u32(&mut waiting, part.faces()[at as usize]));
         writer.begin(WAITING);
         writer.put(&waiting)?;
         writer.begin(PART);
@@ -70,7 +72,9 @@ fn to_byte(decided: PartCell) -> u8 {
 }
 
 fn from_byte(byte: u8) -> Option<PartCell> {
-    [PartCell::Under, PartCell::Face, PartCell::Elsewhere].into_iter().find(|&decided| to_byte(decided) == byte)
+    [PartCell::Under, PartCell::Face, PartCell::Elsewhere]
+        .into_iter()
+        .find(|&decided| to_byte(decided) == byte)
 }
 
 /// A vertex, by its tile and its number.
@@ -96,7 +100,10 @@ fn parts_of(index: &Path, name: &str) -> Option<(PathBuf, Vec<PathBuf>)> {
     let sum = folder.strip_prefix(name)?.strip_prefix('.')?;
     let is_own = sum.len() == 8 && sum.bytes().all(|byte| byte.is_ascii_hexdigit());
     let folder = index.with_file_name(folder);
-    let files = parts.into_iter().map(|part| folder.join(part.file)).collect();
+    let files = parts
+        .into_iter()
+        .map(|part| folder.join(part.file))
+        .collect();
     is_own.then_some((folder, files))
 }
 
@@ -104,7 +111,9 @@ fn parts_of(index: &Path, name: &str) -> Option<(PathBuf, Vec<PathBuf>)> {
 fn has_all(folder: &Path, index: &TinIndex) -> bool {
     index.parts.iter().all(|part| {
         let bytes = std::fs::read(folder.join(&part.file));
-        bytes.is_ok_and(|bytes| bytes.len() as u64 == part.bytes && checksum(&bytes) == part.checksum)
+        bytes.is_ok_and(|bytes| {
+            bytes.len() as u64 == part.bytes && checksum(&bytes) == part.checksum
+        })
     })
 }
 
@@ -136,18 +145,27 @@ impl Job {
             return Err(Error::usage("the job makes no surface"));
         }
         let path = target.path();
-        let name = path.file_name().and_then(|name| name.to_str()).ok_or_else(|| {
-            Error::unsupported("the name is not valid Unicode, which the index of parts needs").in_file(path)
-        })?;
+        let name = path
+            .file_name()
+            .and_then(|name| name.to_str())
+            .ok_or_else(|| {
+                Error::unsupported("the name is not valid Unicode, which the index of parts needs")
+                    .in_file(path)
+            })?;
         let superseded = parts_of(path, name);
-        let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let parent = path
+            .parent()
+            .filter(|parent| !parent.as_os_str().is_empty())
+            .unwrap_or(Path::new("."));
         let mut builder = tempfile::Builder::new();
         let prefix = target.temporary_prefix();
         builder.prefix(&prefix).suffix(UNFINISHED);
         // Others may read the parts: only the umask limits who.
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o777));
-        let staged = builder.tempdir_in(parent).map_err(|e| Error::from(e).in_file(path))?;
+        let staged = builder
+            .tempdir_in(parent)
+            .map_err(|e| Error::from(e).in_file(path))?;
         let parts = self.write_parts(staged.path(), report, context)?;
         let mut index = self.index_of(parts, report);
         index.folder = format!("{name}.{:08x}", checksum(index.to_text().as_bytes()));
@@ -165,30 +183,48 @@ impl Job {
         let superseded = superseded.filter(|(old, _)| *old != folder);
         let written = WrittenParts::new(index, (!is_there).then_some(folder), superseded);
         let mut output = target.create()?;
-        output.write_all(written.index.to_text().as_bytes()).map_err(|e| Error::from(e).in_file(path))?;
+        output
+            .write_all(written.index.to_text().as_bytes())
+            .map_err(|e| Error::from(e).in_file(path))?;
         target.put(output)?;
         Ok(written)
     }
 
     /// Writes the part of each task that has triangles, be they faces or not, those between tiles
     /// first: what they share with others is then known.
-    fn write_parts(&self, folder: &Path, report: &JobReport, context: &Context) -> Result<Vec<Written>> {
+    fn write_parts(
+        &self,
+        folder: &Path,
+        report: &JobReport,
+        context: &Context,
+    ) -> Result<Vec<Written>> {
         let decided = self.decided_at_rim()?;
         let is_leaf = |task: &usize| self.tile_of(*task).is_some();
-        let (leaves, others): (Vec<usize>, Vec<usize>) = (self.first_step()..self.task_count()).partition(is_leaf);
+        let (leaves, others): (Vec<usize>, Vec<usize>) =
+            (self.first_step()..self.task_count()).partition(is_leaf);
         let writing = context.start(Stage::WritingFaces, Size::Items(report.triangles))?;
         let write = |task: &usize, shared: &FxHashSet<VertexKey>| {
-            let decided = decided.get(*task - self.first_step()).map(Vec::as_slice).unwrap_or_default();
+            let decided = decided
+                .get(*task - self.first_step())
+                .map(Vec::as_slice)
+                .unwrap_or_default();
             let part = self.write_part(*task, decided, shared, folder, report)?;
             writing.add(part.as_ref().map_or(0, |part| part.row.triangles))?;
             Ok(part)
         };
         let none = FxHashSet::default();
-        let mut written: Vec<Written> =
-            others.par_iter().filter_map(|task| write(task, &none).transpose()).collect::<Result<_>>()?;
-        let shared: FxHashSet<VertexKey> = written.iter().flat_map(|part| part.shared.iter().copied()).collect();
-        let of_leaves: Vec<Written> =
-            leaves.par_iter().filter_map(|task| write(task, &shared).transpose()).collect::<Result<_>>()?;
+        let mut written: Vec<Written> = others
+            .par_iter()
+            .filter_map(|task| write(task, &none).transpose())
+            .collect::<Result<_>>()?;
+        let shared: FxHashSet<VertexKey> = written
+            .iter()
+            .flat_map(|part| part.shared.iter().copied())
+            .collect();
+        let of_leaves: Vec<Written> = leaves
+            .par_iter()
+            .filter_map(|task| write(task, &shared).transpose())
+            .collect::<Result<_>>()?;
         written.extend(of_leaves);
         writing.end()?;
         Ok(written)
@@ -208,14 +244,20 @@ impl Job {
     /// Returns, for each step, what each of its triangles that waited is.
     fn decided_at_rim(&self) -> Result<Vec<Vec<PartCell>>> {
         let mut all = vec![Vec::new(); self.steps.len()];
-        let Some(rim) = self.rim_task() else { return Ok(all) };
+        let Some(rim) = self.rim_task() else {
+            return Ok(all);
+        };
         let mut rim = self.open_task(rim)?;
         let decided = rim.section(KEPT)?;
         let mut rest = &decided[..];
         for (step, cells) in all.iter_mut().enumerate() {
             let count = self.open_task(self.task_of_step(step))?.facts.waiting as usize;
             let (own, others) = rest.split_at_checked(count).ok_or_else(|| rim.damaged())?;
-            *cells = own.iter().map(|&byte| from_byte(byte)).collect::<Option<_>>().ok_or_else(|| rim.damaged())?;
+            *cells = own
+                .iter()
+                .map(|&byte| from_byte(byte))
+                .collect::<Option<_>>()
+                .ok_or_else(|| rim.damaged())?;
             rest = others;
         }
         if !rest.is_empty() {
@@ -260,14 +302,31 @@ impl Job {
         };
         let out = written().map_err(|e| e.in_file(&path))?;
         let (bytes, checksum) = (out.length(), out.sum());
-        let row = TinIndexPart { file, tile, bytes, checksum, triangles: facts.triangles as u64, extent: facts.extent };
+        let row = TinIndexPart {
+            file,
+            tile,
+            bytes,
+            checksum,
+            triangles: facts.triangles as u64,
+            extent: facts.extent,
+        };
         let is_shared = |key: &VertexKey| tile.is_none() || shared.contains(key);
-        Ok(Some(Written { row, facts, shared: used_vertices(&tin, is_shared), at_rim: line_edges_at_rim(&tin) }))
+        Ok(Some(Written {
+            row,
+            facts,
+            shared: used_vertices(&tin, is_shared),
+            at_rim: line_edges_at_rim(&tin),
+        }))
     }
 
     /// Puts together what is true of the whole, without the name of the folder.
     fn index_of(&self, parts: Vec<Written>, report: &JobReport) -> TinIndex {
-        let mut facts = SurfaceFacts { vertices: 0, triangles: 0, edges: LineEdges::default(), extent: report.extent };
+        let mut facts = SurfaceFacts {
+            vertices: 0,
+            triangles: 0,
+            edges: LineEdges::default(),
+            extent: report.extent,
+        };
         let (mut shared, mut at_rim) = (FxHashSet::default(), FxHashMap::default());
         let mut rows = Vec::with_capacity(parts.len());
         for part in parts {
@@ -275,27 +334,50 @@ impl Job {
             facts.vertices += part.facts.vertices - part.shared.len();
             shared.extend(part.shared);
             for (kind, count) in part.facts.edges.kinds() {
-                let own = part.at_rim.iter().filter(|(_, of_edge)| *of_edge == kind).count();
+                let own = part
+                    .at_rim
+                    .iter()
+                    .filter(|(_, of_edge)| *of_edge == kind)
+                    .count();
                 facts.edges.add_edges(kind, count - own);
             }
             at_rim.extend(part.at_rim);
             rows.push(part.row);
         }
         facts.vertices += shared.len();
-        at_rim.values().for_each(|kind| facts.edges.add_edges(*kind, 1));
+        at_rim
+            .values()
+            .for_each(|kind| facts.edges.add_edges(*kind, 1));
         rows.sort_unstable_by(|a: &TinIndexPart, b| a.file.cmp(&b.file));
-        TinIndex { crs: report.crs.clone(), facts, area: report.area, folder: String::new(), parts: rows }
+        TinIndex {
+            crs: report.crs.clone(),
+            facts,
+            area: report.area,
+            folder: String::new(),
+            parts: rows,
+        }
     }
 }
 
 /// Returns the keys of those vertices that faces use and that others may have, too.
-fn used_vertices(tin: &CompactTin<Vec<u8>>, is_shared: impl Fn(&VertexKey) -> bool) -> Vec<VertexKey> {
+fn used_vertices(
+    tin: &CompactTin<Vec<u8>>,
+    is_shared: impl Fn(&VertexKey) -> bool,
+) -> Vec<VertexKey> {
     let mut is_used = vec![false; tin.vertex_count()];
     for face in 0..tin.face_count() as u32 {
-        tin.face(face).into_iter().flatten().for_each(|vertex| is_used[vertex as usize] = true);
+        tin.face(face)
+            .into_iter()
+            .flatten()
+            .for_each(|vertex| is_used[vertex as usize] = true);
     }
-    let used = (0..).zip(is_used).filter(|(_, is_used)| *is_used).map(|(vertex, _)| vertex);
-    used.filter_map(|vertex| tin.number_in_parts(vertex)).filter(is_shared).collect()
+    let used = (0..)
+        .zip(is_used)
+        .filter(|(_, is_used)| *is_used)
+        .map(|(vertex, _)| vertex);
+    used.filter_map(|vertex| tin.number_in_parts(vertex))
+        .filter(is_shared)
+        .collect()
 }
 
 /// Returns the edges on lines that have a face on one side only: another part may have one beyond.
@@ -305,11 +387,14 @@ fn line_edges_at_rim(tin: &CompactTin<Vec<u8>>) -> Vec<LineEdge> {
         return edges;
     }
     for face in 0..tin.face_count() as u32 {
-        let Some(corners) = tin.face(face) else { continue };
+        let Some(corners) = tin.face(face) else {
+            continue;
+        };
         for i in 0..3 {
             let kind = tin.edge_kind(face, i);
             if kind.is_constrained() && tin.neighbor(face, i).is_none() {
-                let ends = [corners[(i + 1) % 3], corners[(i + 2) % 3]].map(|vertex| tin.number_in_parts(vertex));
+                let ends = [corners[(i + 1) % 3], corners[(i + 2) % 3]]
+                    .map(|vertex| tin.number_in_parts(vertex));
                 if let [Some(a), Some(b)] = ends {
                     edges.push(([a.min(b), a.max(b)], kind));
                 }

@@ -102,7 +102,10 @@ impl Extent {
 
     /// Extends a box by this one.
     pub(super) fn add_to(self, bounds: &mut Bounds) {
-        self.0.into_iter().flatten().for_each(|corner| bounds.add(corner));
+        self.0
+            .into_iter()
+            .flatten()
+            .for_each(|corner| bounds.add(corner));
     }
 }
 
@@ -133,7 +136,9 @@ const SEVERITIES: [Severity; 3] = [Severity::Detail, Severity::Note, Severity::W
 
 impl TaskNotice {
     pub(super) fn of(notice: &Notice) -> Self {
-        let level = SEVERITIES.iter().position(|severity| *severity == notice.severity());
+        let level = SEVERITIES
+            .iter()
+            .position(|severity| *severity == notice.severity());
         TaskNotice(level.unwrap_or_default(), notice.text(), notice.details())
     }
 
@@ -141,7 +146,11 @@ impl TaskNotice {
     pub(super) fn notice(&self) -> Option<Notice> {
         let TaskNotice(level, text, details) = self;
         let severity = *SEVERITIES.get(*level)?;
-        Some(Notice::OfTask { severity, text: text.clone(), details: details.clone() })
+        Some(Notice::OfTask {
+            severity,
+            text: text.clone(),
+            details: details.clone(),
+        })
     }
 }
 
@@ -154,7 +163,10 @@ mod tests {
         let mut bounds = Bounds::default();
         bounds.add([0.1, -2e300, 5.0]);
         let read = ReadFacts {
-            state: FileState { size: u64::MAX, modified: 7 },
+            state: FileState {
+                size: u64::MAX,
+                modified: 7,
+            },
             classes: vec![2, 255],
             extent: Extent::of(&bounds),
             rings: vec![(3, 4, 0.1 + 0.2)],
@@ -178,8 +190,14 @@ mod tests {
             let text = serde_json::to_string(&facts).unwrap();
             assert_eq!(serde_json::from_str::<TaskFacts>(&text).unwrap(), facts);
         }
-        assert_eq!(TaskNotice::of(&note).notice().unwrap().to_string(), note.to_string());
-        assert!(serde_json::from_str::<TaskFacts>(r#"{"handed_down": 1}"#).is_err(), "a fact that nobody knows");
+        assert_eq!(
+            TaskNotice::of(&note).notice().unwrap().to_string(),
+            note.to_string()
+        );
+        assert!(
+            serde_json::from_str::<TaskFacts>(r#"{"handed_down": 1}"#).is_err(),
+            "a fact that nobody knows"
+        );
         let mut again = Bounds::default();
         Extent::of(&bounds).add_to(&mut again);
         Extent::of(&Bounds::default()).add_to(&mut again);

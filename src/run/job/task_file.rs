@@ -46,7 +46,10 @@ pub(super) fn unfinished_in(folder: &Path) -> std::io::Result<NamedTempFile> {
 
 /// Returns true if a file has a name that [`unfinished_in`] gives.
 pub(super) fn is_unfinished(path: &Path) -> bool {
-    let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
+    let name = path
+        .file_name()
+        .and_then(|name| name.to_str())
+        .unwrap_or_default();
     name.starts_with(UNFINISHED_BEGIN) && name.ends_with(UNFINISHED)
 }
 
@@ -125,12 +128,20 @@ impl TaskName {
         // Another process may have made it again since it was read: so it is renamed and read once
         // more before it goes.
         let named = |e: std::io::Error| Error::from(e).in_file(&self.path);
-        let aside = unfinished_in(self.path.parent().unwrap_or(Path::new("."))).map_err(named)?.into_temp_path();
+        let aside = unfinished_in(self.path.parent().unwrap_or(Path::new(".")))
+            .map_err(named)?
+            .into_temp_path();
         match std::fs::rename(&self.path, &aside) {
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Found::Nothing),
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
+                return Ok(Found::Nothing);
+            }
             renamed => renamed.map_err(named)?,
         }
-        let found = TaskName { path: aside.to_path_buf(), ..self.clone() }.found()?;
+        let found = TaskName {
+            path: aside.to_path_buf(),
+            ..self.clone()
+        }
+        .found()?;
         if found != Found::Damaged {
             aside.persist(&self.path).map_err(|e| named(e.error))?;
         }
@@ -164,7 +175,12 @@ impl TaskWriter {
         let folder = name.path.parent().unwrap_or(Path::new("."));
         let file = unfinished_in(folder).map_err(|e| Error::from(e).in_file(&name.path))?;
         let out = Summed::new(BufWriter::with_capacity(1 << 18, file));
-        Ok(TaskWriter { out, sections: Vec::new(), open: None, name })
+        Ok(TaskWriter {
+            out,
+            sections: Vec::new(),
+            open: None,
+            name,
+        })
     }
 
     /// Begins a section; it ends where the next one begins.
@@ -176,7 +192,14 @@ impl TaskWriter {
     fn end_section(&mut self) {
         let (end, sum) = (self.out.length(), self.out.take_sum());
         if let Some((name, at)) = self.open.take() {
-            self.sections.push((name, Block { at, length: end - at, sum }));
+            self.sections.push((
+                name,
+                Block {
+                    at,
+                    length: end - at,
+                    sum,
+                },
+            ));
         }
     }
 
@@ -186,12 +209,19 @@ impl TaskWriter {
 
     /// Writes bytes that will be read in one go, and not with the rest of the section.
     pub(super) fn put_block(&mut self, bytes: &[u8]) -> Result<Block> {
-        let block = Block { at: self.out.length(), length: bytes.len() as u64, sum: checksum(bytes) };
+        let block = Block {
+            at: self.out.length(),
+            length: bytes.len() as u64,
+            sum: checksum(bytes),
+        };
         self.put(bytes).map(|()| block)
     }
 
     /// Writes what a function writes.
-    pub(super) fn put_with(&mut self, write: impl FnOnce(&mut Self) -> std::io::Result<()>) -> Result<()> {
+    pub(super) fn put_with(
+        &mut self,
+        write: impl FnOnce(&mut Self) -> std::io::Result<()>,
+    ) -> Result<()> {
         write(self).map_err(|e| Error::from(e).in_file(&self.name.path))
     }
 
@@ -200,7 +230,8 @@ impl TaskWriter {
     pub(super) fn finish(mut self, facts: &TaskFacts, sources: u32) -> Result<()> {
         self.end_section();
         let facts = kept(facts).map_err(|e| e.in_file(&self.name.path))?;
-        let section = |(name, block): &(&str, Block)| json!([name, block.at, block.length, block.sum]);
+        let section =
+            |(name, block): &(&str, Block)| json!([name, block.at, block.length, block.sum]);
         let sections: Vec<Value> = self.sections.iter().map(section).collect();
         let TaskName { job, task, .. } = self.name;
         let end = json!({ "job": job, "task": task, "sources": sources, "sections": sections, "facts": facts });
@@ -212,7 +243,11 @@ impl TaskWriter {
         self.put(MAGIC)?;
         let target = self.name.path;
         let named = |e: std::io::Error| Error::from(e).in_file(&target);
-        let file = self.out.into_inner().into_inner().map_err(|e| named(e.into_error()))?;
+        let file = self
+            .out
+            .into_inner()
+            .into_inner()
+            .map_err(|e| named(e.into_error()))?;
         file.persist(&target).map(drop).map_err(|e| named(e.error))
     }
 }
@@ -241,7 +276,10 @@ struct FileReader {
 
 impl FileReader {
     fn new(file: File) -> Self {
-        FileReader { file: BufReader::new(file), at: Some(0) }
+        FileReader {
+            file: BufReader::new(file),
+            at: Some(0),
+        }
     }
 
     /// Reads the bytes from a position on.
@@ -280,7 +318,9 @@ impl TaskFile {
     /// If it is not complete, or the file of another job or task.
     pub(super) fn open(name: &TaskName) -> Result<Option<Self>> {
         match File::open(&name.path) {
-            Ok(file) => Self::read_end(file, name).map(Some).map_err(|e| e.in_file(&name.path)),
+            Ok(file) => Self::read_end(file, name)
+                .map(Some)
+                .map_err(|e| e.in_file(&name.path)),
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
             Err(error) => Err(Error::from(error).in_file(&name.path)),
         }
@@ -319,26 +359,48 @@ impl TaskFile {
             return Err(damaged());
         }
         let mut value: Value = serde_json::from_slice(&text).map_err(|_| damaged())?;
-        let (Some(job), Some(task)) = (value["job"].as_u64(), value["task"].as_u64()) else { return Err(damaged()) };
+        let (Some(job), Some(task)) = (value["job"].as_u64(), value["task"].as_u64()) else {
+            return Err(damaged());
+        };
         if job != u64::from(name.job) {
             return Err(Error::not_yet("this is the file of another job").cure(make_again()));
         }
         if task != name.task as u64 {
-            let message = format!("this is the file of task {task}, and not of task {}", name.task);
+            let message = format!(
+                "this is the file of task {task}, and not of task {}",
+                name.task
+            );
             return Err(Error::not_yet(message).cure(make_again()));
         }
         let number = |value: &Value| u32::try_from(value.as_u64()?).ok();
         let section = |value: &Value| {
-            let block = Block { at: value[1].as_u64()?, length: value[2].as_u64()?, sum: number(&value[3])? };
+            let block = Block {
+                at: value[1].as_u64()?,
+                length: value[2].as_u64()?,
+                sum: number(&value[3])?,
+            };
             Some((value[0].as_str()?.to_owned(), block))
         };
-        let sections: Option<Vec<_>> = value["sections"].as_array().and_then(|all| all.iter().map(section).collect());
+        let sections: Option<Vec<_>> = value["sections"]
+            .as_array()
+            .and_then(|all| all.iter().map(section).collect());
         let sources = number(&value["sources"]);
-        let facts = value.get_mut("facts").map(Value::take).and_then(|facts| serde_json::from_value(facts).ok());
+        let facts = value
+            .get_mut("facts")
+            .map(Value::take)
+            .and_then(|facts| serde_json::from_value(facts).ok());
         let (Some(sections), Some(sources), Some(facts)) = (sections, sources, facts) else {
             return Err(damaged());
         };
-        Ok(TaskFile { reader, path: name.path.clone(), sections, length: text_from, sum: stated, sources, facts })
+        Ok(TaskFile {
+            reader,
+            path: name.path.clone(),
+            sections,
+            length: text_from,
+            sum: stated,
+            sources,
+            facts,
+        })
     }
 
     /// Returns the state of the file of points that the task has read; `None` if it reads none.
@@ -360,7 +422,9 @@ impl TaskFile {
             while left > 0 {
                 let count = left.min(buffer.len() as u64) as usize;
                 let at = end - left;
-                self.reader.read(at, &mut buffer[..count]).map_err(|e| e.in_file(&self.path))?;
+                self.reader
+                    .read(at, &mut buffer[..count])
+                    .map_err(|e| e.in_file(&self.path))?;
                 sum.update(&buffer[..count]);
                 left -= count as u64;
             }
@@ -368,7 +432,11 @@ impl TaskFile {
                 return Err(self.damaged());
             }
         }
-        if end == self.length { Ok(()) } else { Err(self.damaged()) }
+        if end == self.length {
+            Ok(())
+        } else {
+            Err(self.damaged())
+        }
     }
 
     /// Returns the bytes of a section; none if it does not exist.
@@ -392,8 +460,14 @@ impl TaskFile {
             return Err(self.damaged());
         }
         bytes.resize(block.length as usize, 0);
-        self.reader.read(block.at, bytes).map_err(|e| e.in_file(&self.path))?;
-        if checksum(bytes) == block.sum { Ok(()) } else { Err(self.damaged()) }
+        self.reader
+            .read(block.at, bytes)
+            .map_err(|e| e.in_file(&self.path))?;
+        if checksum(bytes) == block.sum {
+            Ok(())
+        } else {
+            Err(self.damaged())
+        }
     }
 
     /// Returns an error that says that the file contains something else than was written.
@@ -405,7 +479,13 @@ impl TaskFile {
 
 /// What makes a file again.
 fn make_again() -> Wording {
-    wording!["run the job again with ", Setting::Resume.on(), ", or do this task again (", Command::JobRun, ")"]
+    wording![
+        "run the job again with ",
+        Setting::Resume.on(),
+        ", or do this task again (",
+        Command::JobRun,
+        ")"
+    ]
 }
 
 #[cold]
@@ -425,7 +505,11 @@ mod tests {
     use super::*;
 
     fn name(folder: &Path) -> TaskName {
-        TaskName { path: folder.join("1.task"), job: 0xfeed_beef, task: 1 }
+        TaskName {
+            path: folder.join("1.task"),
+            job: 0xfeed_beef,
+            task: 1,
+        }
     }
 
     /// A file with two blocks in its first section.
@@ -436,7 +520,15 @@ mod tests {
         writer.begin("none");
         writer.begin("two");
         writer.put(b"efgh").unwrap();
-        writer.finish(&TaskFacts { duplicates: 7, ..TaskFacts::default() }, 5).unwrap();
+        writer
+            .finish(
+                &TaskFacts {
+                    duplicates: 7,
+                    ..TaskFacts::default()
+                },
+                5,
+            )
+            .unwrap();
         blocks
     }
 
@@ -452,8 +544,13 @@ mod tests {
         file.verify().unwrap();
         assert_eq!(file.section("one").unwrap(), b"abcd");
         assert_eq!(file.section("two").unwrap(), b"efgh");
-        assert!(file.section("none").unwrap().is_empty() && file.section("three").unwrap().is_empty());
-        assert_eq!((file.facts.duplicates, file.facts.line_edges, file.sources), (7, 0, 5));
+        assert!(
+            file.section("none").unwrap().is_empty() && file.section("three").unwrap().is_empty()
+        );
+        assert_eq!(
+            (file.facts.duplicates, file.facts.line_edges, file.sources),
+            (7, 0, 5)
+        );
         let mut bytes = b"what was there before".to_vec();
         file.read(blocks[1], &mut bytes).unwrap();
         assert_eq!(bytes, b"cd");
@@ -463,14 +560,32 @@ mod tests {
     fn a_file_that_could_not_be_read_again_is_not_written() {
         let folder = tempfile::tempdir().unwrap();
         let name = name(folder.path());
-        let rings = ReadFacts { rings: vec![(0, 1, 1e308 - -1e308)], ..ReadFacts::default() };
+        let rings = ReadFacts {
+            rings: vec![(0, 1, 1e308 - -1e308)],
+            ..ReadFacts::default()
+        };
         for facts in [
-            TaskFacts { file: Some(FileFacts::Read(rings)), ..TaskFacts::default() },
-            TaskFacts { reach: [f64::INFINITY, 0.0], ..TaskFacts::default() },
-            TaskFacts { holes: vec![[[f64::NAN; 2]; 2]], ..TaskFacts::default() },
+            TaskFacts {
+                file: Some(FileFacts::Read(rings)),
+                ..TaskFacts::default()
+            },
+            TaskFacts {
+                reach: [f64::INFINITY, 0.0],
+                ..TaskFacts::default()
+            },
+            TaskFacts {
+                holes: vec![[[f64::NAN; 2]; 2]],
+                ..TaskFacts::default()
+            },
         ] {
-            let error = TaskWriter::create(name.clone()).unwrap().finish(&facts, 5).unwrap_err();
-            assert!(error.to_string().contains("a number that is not finite"), "{error}");
+            let error = TaskWriter::create(name.clone())
+                .unwrap()
+                .finish(&facts, 5)
+                .unwrap_err();
+            assert!(
+                error.to_string().contains("a number that is not finite"),
+                "{error}"
+            );
             assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
         }
     }
@@ -478,7 +593,9 @@ mod tests {
     /// Reads all of a file, as tasks do.
     fn read(name: &TaskName, blocks: [Block; 2]) -> Result<()> {
         let mut file = TaskFile::open_done(name)?;
-        blocks.iter().try_for_each(|block| file.read(*block, &mut Vec::new()))?;
+        blocks
+            .iter()
+            .try_for_each(|block| file.read(*block, &mut Vec::new()))?;
         file.section("two").map(drop)
     }
 
@@ -494,9 +611,11 @@ mod tests {
             std::fs::write(&name.path, bytes).unwrap();
             let verified = TaskFile::open_done(&name).and_then(|mut file| file.verify());
             [verified, read(&name, blocks)].iter().all(|checked| {
-                checked
-                    .as_ref()
-                    .is_err_and(|error| error.to_string().ends_with("1.task: the file of a task is damaged"))
+                checked.as_ref().is_err_and(|error| {
+                    error
+                        .to_string()
+                        .ends_with("1.task: the file of a task is damaged")
+                })
             })
         };
         for i in 0..whole.len() {
@@ -516,10 +635,22 @@ mod tests {
         let name = name(folder.path());
         written(&name);
         let said = |name: TaskName| TaskFile::open(&name).unwrap_err().to_string();
-        let of_other_job = said(TaskName { job: 0xfeed_beee, ..name.clone() });
-        assert!(of_other_job.ends_with("1.task: this is the file of another job"), "{of_other_job}");
-        let of_other_task = said(TaskName { task: 2, ..name.clone() });
-        assert!(of_other_task.ends_with("this is the file of task 1, and not of task 2"), "{of_other_task}");
+        let of_other_job = said(TaskName {
+            job: 0xfeed_beee,
+            ..name.clone()
+        });
+        assert!(
+            of_other_job.ends_with("1.task: this is the file of another job"),
+            "{of_other_job}"
+        );
+        let of_other_task = said(TaskName {
+            task: 2,
+            ..name.clone()
+        });
+        assert!(
+            of_other_task.ends_with("this is the file of task 1, and not of task 2"),
+            "{of_other_task}"
+        );
     }
 
     #[test]
@@ -528,9 +659,20 @@ mod tests {
         let name = name(folder.path());
         let [block, _] = written(&name);
         let mut file = TaskFile::open_done(&name).unwrap();
-        for block in
-            [Block { length: u64::MAX, ..block }, Block { at: u64::MAX, ..block }, Block { at: 1 << 40, ..block }]
-        {
+        for block in [
+            Block {
+                length: u64::MAX,
+                ..block
+            },
+            Block {
+                at: u64::MAX,
+                ..block
+            },
+            Block {
+                at: 1 << 40,
+                ..block
+            },
+        ] {
             assert!(file.read(block, &mut Vec::new()).is_err());
         }
     }

@@ -21,7 +21,9 @@ use crate::run::products::frame;
 use crate::run::sources::open;
 use crate::run::verbs::Keeps;
 use crate::terrain::contour::parts::{ContourCollector, LevelParts};
-use crate::terrain::tiles::{self, ClipSide, LongEdges, Rim, TileClip, TileTriangle, TinPart, Work, has_long_edge};
+use crate::terrain::tiles::{
+    self, ClipSide, LongEdges, Rim, TileClip, TileTriangle, TinPart, Work, has_long_edge,
+};
 use crate::terrain::{Classes, PartCell, Selection, one_per_site};
 
 /// Points that are read before they are divided among tiles: 24 bytes each, and as much again while
@@ -59,7 +61,11 @@ impl Job {
         writer.begin("points");
         let mut waiting: Vec<[f64; 3]> = Vec::new();
         let layout = &self.plan.layout;
-        let lines = if self.plan.has_lines { self.known(&journal.context)?.lines.as_ref() } else { None };
+        let lines = if self.plan.has_lines {
+            self.known(&journal.context)?.lines.as_ref()
+        } else {
+            None
+        };
         let rings = lines.and_then(|lines| lines.rings.as_ref());
         let mut near = Vec::new();
         let mut of_rings = rings.map(LevelRings::none_found).unwrap_or_default();
@@ -71,8 +77,10 @@ impl Job {
                 near.append(&mut lines.take_points(points));
             }
             let mut own = Vec::new();
-            let mut tiles: Vec<(u32, u32)> =
-                (0..).zip(points.iter()).map(|(i, &[x, y, _])| (layout.tile_of([x, y]), i)).collect();
+            let mut tiles: Vec<(u32, u32)> = (0..)
+                .zip(points.iter())
+                .map(|(i, &[x, y, _])| (layout.tile_of([x, y]), i))
+                .collect();
             // By tiles, and within each in the order of the file.
             tiles.sort_unstable();
             for of_tile in tiles.chunk_by(|a, b| a.0 == b.0) {
@@ -85,7 +93,8 @@ impl Job {
             points.clear();
             Ok(())
         };
-        let most = (self.plan.task_memory / BYTES_A_DIVIDED_POINT).clamp(1 << 14, DIVIDED_AT_ONCE) as usize;
+        let most = (self.plan.task_memory / BYTES_A_DIVIDED_POINT).clamp(1 << 14, DIVIDED_AT_ONCE)
+            as usize;
         let mut written = Ok(());
         let read = self.read_file(file, journal, &mut |mut points| {
             if waiting.is_empty() {
@@ -111,20 +120,32 @@ impl Job {
         writer.put(&table)?;
         writer.begin("near");
         writer.put(&bytes::of_points(&near))?;
-        Ok(TaskFacts { file: Some(of_file), ..TaskFacts::default() })
+        Ok(TaskFacts {
+            file: Some(of_file),
+            ..TaskFacts::default()
+        })
     }
 
     /// Arranges the lines, with the points next to them from all files.
-    fn arrange(&self, sources: &Sources, writer: &mut TaskWriter, journal: &Journal) -> Result<TaskFacts> {
+    fn arrange(
+        &self,
+        sources: &Sources,
+        writer: &mut TaskWriter,
+        journal: &Journal,
+    ) -> Result<TaskFacts> {
         let crs = self.plan.crs.as_ref();
-        let Some(lines) = &self.known(&journal.context)?.lines else { return Ok(TaskFacts::default()) };
+        let Some(lines) = &self.known(&journal.context)?.lines else {
+            return Ok(TaskFacts::default());
+        };
         let mut near = Vec::new();
         let mut extent = Bounds::default();
         for (number, file) in self.plan.files.iter().enumerate() {
             let mut divided = sources.open(number)?;
             let bytes = divided.section("near")?;
             bytes::add_points(&bytes, &mut near).ok_or_else(|| divided.damaged())?;
-            [file.min, file.max].into_iter().for_each(|[x, y]| extent.add([x, y, 0.0]));
+            [file.min, file.max]
+                .into_iter()
+                .for_each(|[x, y]| extent.add([x, y, 0.0]));
         }
         let tin = lines.build(near, &extent, crs, journal)?;
         let edges = lines::write(&tin, &self.plan.layout, writer)?;
@@ -141,7 +162,9 @@ impl Job {
     fn facts_of_file(&self, file: usize, read: Result<ReadFacts>) -> Result<FileFacts> {
         let path = &self.plan.files[file].path;
         match read {
-            Err(error) if self.bad.skips(&error) => Ok(FileFacts::Skipped(error.in_file(path).to_string())),
+            Err(error) if self.bad.skips(&error) => {
+                Ok(FileFacts::Skipped(error.in_file(path).to_string()))
+            }
             read => read.map(FileFacts::Read).map_err(|e| e.in_file(path)),
         }
     }
@@ -156,8 +179,13 @@ impl Job {
         self.plan.require_same_points(number, &self.request)?;
         let file = &self.plan.files[number];
         let state = state_of(&file.path)?;
-        let mut source = open::points(&self.request.points[file.input], self.request.read, &journal.context)?;
-        self.plan.require_system(number, source.info().crs.as_ref())?;
+        let mut source = open::points(
+            &self.request.points[file.input],
+            self.request.read,
+            &journal.context,
+        )?;
+        self.plan
+            .require_system(number, source.info().crs.as_ref())?;
         let mut selection = Selection::new(Classes::Only(self.plan.classes.clone()), None);
         let spread = file.spread();
         let mut batch = PointBatch::default();
@@ -184,7 +212,10 @@ impl Job {
             }
             selection.add(&batch)?;
             let points = selection.take_points();
-            if let Some(&[x, y, _]) = points.iter().find(|point| !spread.holds([point[0], point[1]])) {
+            if let Some(&[x, y, _]) = points
+                .iter()
+                .find(|point| !spread.holds([point[0], point[1]]))
+            {
                 let ([x0, y0], [x1, y1]) = (file.min.map(neat), file.max.map(neat));
                 let [x, y] = [x, y].map(neat);
                 return Err(Error::format(format!(
@@ -219,7 +250,11 @@ impl Job {
             let file = tile as usize;
             let mut all: Vec<[f64; 3]> = Vec::new();
             let read = self.read_file(file, journal, &mut |mut points| {
-                if all.is_empty() { all = points } else { all.append(&mut points) }
+                if all.is_empty() {
+                    all = points
+                } else {
+                    all.append(&mut points)
+                }
             });
             let facts = self.facts_of_file(file, read);
             let facts = facts.map_err(|e| e.within(format_args!("tile {tile}")))?;
@@ -242,14 +277,28 @@ impl Job {
         let constraints = lines.constraints;
         let rectangle = &self.steps[step].tile;
         let tight = self.tight(&journal.context)?;
-        let facts = TaskFacts { file, duplicates, reach: reach_of(&points), ..TaskFacts::default() };
-        self.emitting(writer, &journal.context, &holes, facts, |emit| match self.verb.keeps() {
-            Keeps::Triangles => tiles::leaf_with_part(rectangle, tile, &points, &constraints, tight, emit),
-            _ => tiles::leaf(rectangle, tile, &points, &constraints, tight, emit).map(|residual| (residual, None)),
+        let facts = TaskFacts {
+            file,
+            duplicates,
+            reach: reach_of(&points),
+            ..TaskFacts::default()
+        };
+        self.emitting(writer, &journal.context, &holes, facts, |emit| {
+            match self.verb.keeps() {
+                Keeps::Triangles => {
+                    tiles::leaf_with_part(rectangle, tile, &points, &constraints, tight, emit)
+                }
+                _ => tiles::leaf(rectangle, tile, &points, &constraints, tight, emit)
+                    .map(|residual| (residual, None)),
+            }
         })
         .map_err(|error| {
             let error = error.within(format_args!("tile {tile}"));
-            if self.plan.divides { error } else { error.in_file(&self.plan.files[tile as usize].path) }
+            if self.plan.divides {
+                error
+            } else {
+                error.in_file(&self.plan.files[tile as usize].path)
+            }
         })
     }
 
@@ -292,10 +341,16 @@ impl Job {
         }
         let tile = &self.steps[step].tile;
         let tight = self.tight(context)?;
-        self.emitting(writer, context, &holes, TaskFacts::default(), |emit| match self.verb.keeps() {
-            Keeps::Triangles => tiles::merge_with_part(tile, &residuals, tight, emit),
-            _ => tiles::merge(tile, &residuals, tight, emit).map(|residual| (residual, None)),
-        })
+        self.emitting(
+            writer,
+            context,
+            &holes,
+            TaskFacts::default(),
+            |emit| match self.verb.keeps() {
+                Keeps::Triangles => tiles::merge_with_part(tile, &residuals, tight, emit),
+                _ => tiles::merge(tile, &residuals, tight, emit).map(|residual| (residual, None)),
+            },
+        )
         .map_err(|e| e.within(format_args!("merge {step}")))
     }
 
@@ -344,13 +399,19 @@ impl Job {
     }
 
     /// Decides which of the triangles that wait are removed at the rim, and draws the others.
-    fn rim(&self, sources: &Sources, writer: &mut TaskWriter, context: &Context) -> Result<TaskFacts> {
+    fn rim(
+        &self,
+        sources: &Sources,
+        writer: &mut TaskWriter,
+        context: &Context,
+    ) -> Result<TaskFacts> {
         let mut rim = Rim::default();
         for step in 0..self.steps.len() {
             let mut file = sources.open(self.task_of_step(step))?;
             let bytes = file.section("gates")?;
             let groups = file.facts.groups;
-            let gates = bytes::to_gates(&bytes).filter(|gates| gates.iter().all(|gate| gate.group < groups));
+            let gates = bytes::to_gates(&bytes)
+                .filter(|gates| gates.iter().all(|gate| gate.group < groups));
             rim.add(groups, &gates.ok_or_else(|| file.damaged())?);
         }
         let mut removed = 0_u64;
@@ -371,12 +432,20 @@ impl Job {
             }
             context.check()?;
         }
-        Ok(TaskFacts { kept: kept.finish(None, writer)?, removed, ..TaskFacts::default() })
+        Ok(TaskFacts {
+            kept: kept.finish(None, writer)?,
+            removed,
+            ..TaskFacts::default()
+        })
     }
 
     /// What the surface is cut along, if it is.
     fn clip(&self, context: &Context) -> Result<Option<&TileClip>> {
-        if self.plan.has_clip { Ok(self.known(context)?.clip.as_ref()) } else { Ok(None) }
+        if self.plan.has_clip {
+            Ok(self.known(context)?.clip.as_ref())
+        } else {
+            Ok(None)
+        }
     }
 
     /// The width of triangles at which a cut may bend an edge; zero without a clip.
@@ -385,13 +454,19 @@ impl Job {
     }
 
     /// Cuts the triangles of all tasks that clip lines come near.
-    fn cut(&self, sources: &Sources, writer: &mut TaskWriter, context: &Context) -> Result<TaskFacts> {
+    fn cut(
+        &self,
+        sources: &Sources,
+        writer: &mut TaskWriter,
+        context: &Context,
+    ) -> Result<TaskFacts> {
         let mut triangles = Vec::new();
         let mut reach = [0.0_f64; 2];
         for task in self.first_step()..self.after_steps() + usize::from(self.rim_task().is_some()) {
             let mut file = sources.open(task)?;
             for bytes in file.section(NEAR_CLIP)?.chunks(bytes::WAITING_BYTES) {
-                let (triangle, is_inside) = bytes::to_waiting(bytes).ok_or_else(|| file.damaged())?;
+                let (triangle, is_inside) =
+                    bytes::to_waiting(bytes).ok_or_else(|| file.damaged())?;
                 triangles.push((triangle, is_inside == 1));
             }
             reach = [0, 1].map(|k| reach[k].max(file.facts.reach[k]));
@@ -411,7 +486,12 @@ impl Job {
             kept.keep(&triangle, writer)?;
         }
         let met = inside.saturating_sub(whole);
-        Ok(TaskFacts { met, draped, kept: kept.finish(part, writer)?, ..TaskFacts::default() })
+        Ok(TaskFacts {
+            met,
+            draped,
+            kept: kept.finish(part, writer)?,
+            ..TaskFacts::default()
+        })
     }
 }
 
@@ -443,11 +523,15 @@ struct KeptTriangles<'a> {
 impl<'a> KeptTriangles<'a> {
     fn new(job: &Job, writer: &mut TaskWriter, clip: Option<&'a TileClip>) -> Result<Self> {
         let drawn = match (job.verb.keeps(), job.plan.frame) {
-            (Keeps::Contours(options), _) => Drawn::Contours(ContourCollector::new(&options.to_levels()?)),
+            (Keeps::Contours(options), _) => {
+                Drawn::Contours(ContourCollector::new(&options.to_levels()?))
+            }
             (Keeps::Triangles, _) => Drawn::Faces(PartFaces::default()),
             (Keeps::Heights(_), Some(frame)) => Drawn::Cells(Drawing::new(frame, writer)?),
             (Keeps::Heights(_), None) => {
-                return Err(Error::format("the plan of the job lacks the frame of the raster"));
+                return Err(Error::format(
+                    "the plan of the job lacks the frame of the raster",
+                ));
             }
         };
         Ok(KeptTriangles {
@@ -464,8 +548,13 @@ impl<'a> KeptTriangles<'a> {
 
     /// Adds a triangle that is in the surface, unless an edge of it is too long.
     fn add(&mut self, triangle: &TileTriangle, writer: &mut TaskWriter) -> Result<()> {
-        let is_long = self.max_edge_inside.is_some_and(|limit| has_long_edge(triangle, limit));
-        match self.clip.map_or(ClipSide::Kept, |clip| clip.side_of_triangle(triangle)) {
+        let is_long = self
+            .max_edge_inside
+            .is_some_and(|limit| has_long_edge(triangle, limit));
+        match self
+            .clip
+            .map_or(ClipSide::Kept, |clip| clip.side_of_triangle(triangle))
+        {
             ClipSide::Kept if !is_long => self.keep(triangle, writer),
             ClipSide::Kept => {
                 self.leave_out();
@@ -501,7 +590,9 @@ impl<'a> KeptTriangles<'a> {
         let corners = triangle.corners.map(|corner| corner.position);
         self.triangles += 1;
         self.area += frame::area_of(corners);
-        corners.into_iter().for_each(|corner| self.extent.add(corner));
+        corners
+            .into_iter()
+            .for_each(|corner| self.extent.add(corner));
         match &mut self.drawn {
             Drawn::Cells(drawing) => drawing.draw(corners, writer),
             Drawn::Contours(collector) => {
@@ -544,7 +635,11 @@ impl<'a> KeptTriangles<'a> {
             Drawn::Contours(collector) => {
                 let parts = collector.finish()?;
                 contours::write(&parts, writer)?;
-                contour_edges = parts.levels().iter().map(LevelParts::edge_count).sum::<usize>() as u64;
+                contour_edges = parts
+                    .levels()
+                    .iter()
+                    .map(LevelParts::edge_count)
+                    .sum::<usize>() as u64;
             }
         }
         if self.clip.is_some() {
@@ -563,5 +658,7 @@ impl<'a> KeptTriangles<'a> {
 
 /// Returns the largest coordinates of points on both axes, without their signs.
 fn reach_of(points: &[[f64; 3]]) -> [f64; 2] {
-    points.iter().fold([0.0, 0.0], |most, p| [0, 1].map(|k: usize| f64::max(most[k], p[k].abs())))
+    points.iter().fold([0.0, 0.0], |most, p| {
+        [0, 1].map(|k: usize| f64::max(most[k], p[k].abs()))
+    })
 }

@@ -30,7 +30,11 @@ impl Job {
         let mut files = Vec::new();
         outputs.read_back(&mut |path, file| {
             let (length, sum) = sum_of_file(file)?;
-            files.push(json!([std::path::absolute(path)?.to_string_lossy(), length, sum]));
+            files.push(json!([
+                std::path::absolute(path)?.to_string_lossy(),
+                length,
+                sum
+            ]));
             Ok(())
         })?;
         let record = json!({ "job": self.sum, "sources": report.sources, "files": files });
@@ -45,19 +49,31 @@ impl Job {
     /// # Errors
     /// If the run is canceled.
     pub fn has_written(&self, output: &Path, context: &Context) -> Result<bool> {
-        let record = std::fs::read(self.folder.join(WRITTEN)).ok().and_then(|text| serde_json::from_slice(&text).ok());
+        let record = std::fs::read(self.folder.join(WRITTEN))
+            .ok()
+            .and_then(|text| serde_json::from_slice(&text).ok());
         let record: Value = record.unwrap_or_default();
-        let files = record["files"].as_array().map(Vec::as_slice).unwrap_or_default();
-        let is_of_these =
-            record["job"] == self.sum && self.sources(context)?.is_some_and(|sum| record["sources"] == sum);
-        let Ok(output) = std::path::absolute(output) else { return Ok(false) };
+        let files = record["files"]
+            .as_array()
+            .map(Vec::as_slice)
+            .unwrap_or_default();
+        let is_of_these = record["job"] == self.sum
+            && self
+                .sources(context)?
+                .is_some_and(|sum| record["sources"] == sum);
+        let Ok(output) = std::path::absolute(output) else {
+            return Ok(false);
+        };
         let is_there = |file: &Value| {
             let path = Path::new(file[0].as_str().unwrap_or_default());
-            let state = File::open(path).and_then(|file| sum_of_file(&mut Canceled { file, context }));
+            let state =
+                File::open(path).and_then(|file| sum_of_file(&mut Canceled { file, context }));
             state.is_ok_and(|(length, sum)| file[1] == length && file[2] == sum)
         };
         let is_written = is_of_these
-            && files.iter().any(|file| file[0] == output.to_string_lossy().as_ref())
+            && files
+                .iter()
+                .any(|file| file[0] == output.to_string_lossy().as_ref())
             && files.iter().all(is_there)
             && (!matches!(self.verb.keeps(), Keeps::Triangles) || has_all_parts(&output));
         context.check().map(|()| is_written)

@@ -30,19 +30,30 @@ struct LineName {
 
 impl LineNames {
     pub(crate) fn new(files: Vec<PathBuf>) -> Self {
-        LineNames { files, lines: Vec::new() }
+        LineNames {
+            files,
+            lines: Vec::new(),
+        }
     }
 
     /// Adds the name of the next line of the surface.
     pub(crate) fn add(&mut self, file: usize, line: &Drawn) {
-        self.lines.push(LineName { file, fid: line.fid, part: line.part });
+        self.lines.push(LineName {
+            file,
+            fid: line.fid,
+            part: line.part,
+        });
     }
 
     /// Returns the name of a line, such as "edges.shp fid 12, part 2", by its position among the
     /// breaklines; an empty string if there is no such line.
     pub fn name(&self, line: usize) -> String {
-        let Some(LineName { file, fid, part }) = self.lines.get(line) else { return String::new() };
-        let part = part.map(|part| format!(", part {part}")).unwrap_or_default();
+        let Some(LineName { file, fid, part }) = self.lines.get(line) else {
+            return String::new();
+        };
+        let part = part
+            .map(|part| format!(", part {part}"))
+            .unwrap_or_default();
         format!("{} fid {fid}{part}", self.files[*file].display())
     }
 
@@ -52,17 +63,37 @@ impl LineNames {
     ///
     /// # Errors
     /// If `out` cannot be written to.
-    pub fn write_table(&self, crossings: &[CrossingHeights], out: &mut impl Write) -> std::io::Result<()> {
-        writeln!(out, "x,y,z,vertex,difference,low_file,low_fid,low_part,low_z,high_file,high_fid,high_part,high_z")?;
-        for CrossingHeights { site: [x, y], heights, chosen, is_added } in crossings {
+    pub fn write_table(
+        &self,
+        crossings: &[CrossingHeights],
+        out: &mut impl Write,
+    ) -> std::io::Result<()> {
+        writeln!(
+            out,
+            "x,y,z,vertex,difference,low_file,low_fid,low_part,low_z,high_file,high_fid,high_part,high_z"
+        )?;
+        for CrossingHeights {
+            site: [x, y],
+            heights,
+            chosen,
+            is_added,
+        } in crossings
+        {
             let mut heights = heights.clone();
-            heights
-                .sort_by(|&(p, low), &(q, high)| low.total_cmp(&high).then(self.lines.get(p).cmp(&self.lines.get(q))));
+            heights.sort_by(|&(p, low), &(q, high)| {
+                low.total_cmp(&high)
+                    .then(self.lines.get(p).cmp(&self.lines.get(q)))
+            });
             let vertex = if *is_added { "added" } else { "given" };
-            let Some((&(low, lowest), above)) = heights.split_first() else { continue };
+            let Some((&(low, lowest), above)) = heights.split_first() else {
+                continue;
+            };
             for &(line, z) in above {
                 let (low, high, difference) = (self.columns(low), self.columns(line), z - lowest);
-                writeln!(out, "{x},{y},{chosen},{vertex},{difference},{low},{lowest},{high},{z}")?;
+                writeln!(
+                    out,
+                    "{x},{y},{chosen},{vertex},{difference},{low},{lowest},{high},{z}"
+                )?;
             }
         }
         Ok(())
@@ -70,7 +101,9 @@ impl LineNames {
 
     /// Formats a line as `edges.shp,12,2`.
     fn columns(&self, line: usize) -> String {
-        let Some(LineName { file, fid, part }) = self.lines.get(line) else { return ",,".to_owned() };
+        let Some(LineName { file, fid, part }) = self.lines.get(line) else {
+            return ",,".to_owned();
+        };
         format!("{},{fid},{}", quoted(&self.files[*file]), part.unwrap_or(1))
     }
 }
@@ -78,20 +111,35 @@ impl LineNames {
 /// Formats a name as a field of a table, in quotes if necessary.
 fn quoted(path: &Path) -> String {
     let text = path.to_string_lossy();
-    if text.contains([',', '"', '\n', '\r']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.into_owned() }
+    if text.contains([',', '"', '\n', '\r']) {
+        format!("\"{}\"", text.replace('"', "\"\""))
+    } else {
+        text.into_owned()
+    }
 }
 
 /// Adds notices about rounded crossings, and about lines that meet with different heights.
 pub(crate) fn note(report: &TinReport, names: &LineNames, units: &Units, journal: &Journal) {
     if let Some(Rounding { unit, on_grid }) = report.rounding {
-        journal.add(Notice::CrossingsRounded { unit: unit.map(|unit| units.length(unit)), on_grid });
+        journal.add(Notice::CrossingsRounded {
+            unit: unit.map(|unit| units.length(unit)),
+            on_grid,
+        });
     }
     let differing = &report.crossing_heights;
-    let by_difference = |p: &&CrossingHeights, q: &&CrossingHeights| p.difference().total_cmp(&q.difference());
-    let Some(worst) = differing.iter().rev().max_by(by_difference) else { return };
+    let by_difference =
+        |p: &&CrossingHeights, q: &&CrossingHeights| p.difference().total_cmp(&q.difference());
+    let Some(worst) = differing.iter().rev().max_by(by_difference) else {
+        return;
+    };
     let note = |crossing: &CrossingHeights| {
         let [low, high] = crossing.extremes().map(|(line, z)| (z, names.name(line)));
-        CrossingNote { at: crossing.site, low, high, chosen: crossing.chosen }
+        CrossingNote {
+            at: crossing.site,
+            low,
+            high,
+            chosen: crossing.chosen,
+        }
     };
     journal.add(Notice::CrossingHeights {
         count: differing.len(),
@@ -109,17 +157,39 @@ mod tests {
     fn a_row_for_every_line_above_the_lowest() {
         let mut names = LineNames::new(vec!["a,b.shp".into(), "c.shp".into()]);
         for (file, fid, part) in [(0, 7, None), (1, 0, Some(2)), (1, 3, None)] {
-            names.add(file, &Drawn { fid, part, points: Vec::new() });
+            names.add(
+                file,
+                &Drawn {
+                    fid,
+                    part,
+                    points: Vec::new(),
+                },
+            );
         }
-        assert_eq!([0, 1].map(|line| names.name(line)), ["a,b.shp fid 7", "c.shp fid 0, part 2"]);
+        assert_eq!(
+            [0, 1].map(|line| names.name(line)),
+            ["a,b.shp fid 7", "c.shp fid 0, part 2"]
+        );
         let heights = vec![(0, 2.5), (1, 1.0), (2, 2.0)];
-        let crossing = CrossingHeights { site: [0.1, -2.0], heights, chosen: 1.0, is_added: true };
+        let crossing = CrossingHeights {
+            site: [0.1, -2.0],
+            heights,
+            chosen: 1.0,
+            is_added: true,
+        };
         let mut bytes = Vec::new();
         names.write_table(&[crossing], &mut bytes).unwrap();
-        let rows: Vec<&str> = std::str::from_utf8(&bytes).unwrap().lines().skip(1).collect();
+        let rows: Vec<&str> = std::str::from_utf8(&bytes)
+            .unwrap()
+            .lines()
+            .skip(1)
+            .collect();
         assert_eq!(
             rows,
-            ["0.1,-2,1,added,1,c.shp,0,2,1,c.shp,3,1,2", "0.1,-2,1,added,1.5,c.shp,0,2,1,\"a,b.shp\",7,1,2.5"]
+            [
+                "0.1,-2,1,added,1,c.shp,0,2,1,c.shp,3,1,2",
+                "0.1,-2,1,added,1.5,c.shp,0,2,1,\"a,b.shp\",7,1,2.5"
+            ]
         );
     }
 }

@@ -14,10 +14,14 @@ use crate::run::context::Journal;
 use crate::run::context::notice::LoweredRiver;
 use crate::run::context::units::Units;
 use crate::run::request::input::Input;
-use crate::run::request::lines::{FlatRule, LineRequest, LineRole, LowerEdge, PerRecord, WallOptions};
+use crate::run::request::lines::{
+    FlatRule, LineRequest, LineRole, LowerEdge, PerRecord, WallOptions,
+};
 use crate::run::sources::systems::Stated;
 use crate::run::sources::transforms::Transforms;
-use crate::terrain::{Flat, FlatHeight, River, RiverHeights, RiverLowering, TinBuilder, Wall, densified};
+use crate::terrain::{
+    Flat, FlatHeight, River, RiverHeights, RiverLowering, TinBuilder, Wall, densified,
+};
 
 /// The default distance between the upper and the lower edge of a wall. Steps between waters are as
 /// wide.
@@ -57,7 +61,9 @@ impl<'a> LineLayers<'a> {
         cut: OnDamage,
         journal: &Journal,
     ) -> Result<Self> {
-        let all = [(LineRole::Breaklines, breaklines)].into_iter().chain(request.inputs());
+        let all = [(LineRole::Breaklines, breaklines)]
+            .into_iter()
+            .chain(request.inputs());
         let mut groups = Vec::new();
         for (role, inputs) in all.chain([(LineRole::Boundary, boundary)]) {
             let columns: Vec<&str> = request.column(role).into_iter().collect();
@@ -68,18 +74,30 @@ impl<'a> LineLayers<'a> {
 
     /// Returns the coordinate systems that the layers state, in order.
     pub(crate) fn stated(&self) -> impl Iterator<Item = Option<Stated>> + '_ {
-        self.groups.iter().flat_map(|(_, layers)| layers).map(|(path, layer)| Some(Stated::by_layer(path, layer)))
+        self.groups
+            .iter()
+            .flat_map(|(_, layers)| layers)
+            .map(|(path, layer)| Some(Stated::by_layer(path, layer)))
     }
 
     /// Returns true if there are lines or areas that points are not needed for.
     pub(crate) fn has_lines_with_heights(&self) -> bool {
-        let has = |role: &LineRole| !matches!(role, LineRole::Draped | LineRole::Holes | LineRole::Boundary);
-        self.groups.iter().any(|(role, layers)| has(role) && !layers.is_empty())
+        let has = |role: &LineRole| {
+            !matches!(
+                role,
+                LineRole::Draped | LineRole::Holes | LineRole::Boundary
+            )
+        };
+        self.groups
+            .iter()
+            .any(|(role, layers)| has(role) && !layers.is_empty())
     }
 
     /// Returns true if the surface is cut to a boundary.
     pub(crate) fn has_boundary(&self) -> bool {
-        self.groups.iter().any(|(role, layers)| *role == LineRole::Boundary && !layers.is_empty())
+        self.groups
+            .iter()
+            .any(|(role, layers)| *role == LineRole::Boundary && !layers.is_empty())
     }
 
     /// Adds all lines and areas to a builder, in the coordinate system of the result.
@@ -93,7 +111,12 @@ impl<'a> LineLayers<'a> {
         transforms: &Transforms,
         units: &Units,
     ) -> Result<Added> {
-        let paths = self.groups.iter().flat_map(|(_, layers)| layers).map(|(path, _)| path.to_path_buf()).collect();
+        let paths = self
+            .groups
+            .iter()
+            .flat_map(|(_, layers)| layers)
+            .map(|(path, _)| path.to_path_buf())
+            .collect();
         let mut adding = Adding {
             request: self.request,
             builder,
@@ -115,7 +138,8 @@ impl<'a> LineLayers<'a> {
         };
         let mut by_file = by_file.iter();
         for (role, layers) in &self.groups {
-            let by_layer: Vec<Option<usize>> = by_file.by_ref().take(layers.len()).copied().collect();
+            let by_layer: Vec<Option<usize>> =
+                by_file.by_ref().take(layers.len()).copied().collect();
             // Lines that depend on those of other layers.
             let mut joined = match role {
                 LineRole::Rivers => Joined::Rivers(adding.rivers(layers, &by_layer)?.into_iter()),
@@ -125,13 +149,23 @@ impl<'a> LineLayers<'a> {
             for ((path, layer), transform) in layers.iter().zip(by_layer) {
                 let first = adding.next;
                 let lines = match &mut joined {
-                    Joined::Rivers(by_layer) => adding.add_rivers(by_layer.next().unwrap_or_default()),
-                    Joined::Walls(by_layer) => adding.add_walls(by_layer.next().unwrap_or_default()),
+                    Joined::Rivers(by_layer) => {
+                        adding.add_rivers(by_layer.next().unwrap_or_default())
+                    }
+                    Joined::Walls(by_layer) => {
+                        adding.add_walls(by_layer.next().unwrap_or_default())
+                    }
                     Joined::Nothing => adding.add_layer(*role, layer, path, transform)?,
                 };
                 let numbers = first..adding.next;
                 let path = path.to_path_buf();
-                adding.added.inputs.push(LineInput { role: *role, path, lines, edges: 0, numbers });
+                adding.added.inputs.push(LineInput {
+                    role: *role,
+                    path,
+                    lines,
+                    edges: 0,
+                    numbers,
+                });
                 adding.file += 1;
             }
         }
@@ -165,11 +199,18 @@ struct Adding<'a> {
 
 impl Adding<'_> {
     /// Adds the lines of a layer; returns their number.
-    fn add_layer(&mut self, role: LineRole, layer: &Layer, path: &Path, transform: Option<usize>) -> Result<usize> {
+    fn add_layer(
+        &mut self,
+        role: LineRole,
+        layer: &Layer,
+        path: &Path,
+        transform: Option<usize>,
+    ) -> Result<usize> {
         match role {
             LineRole::Holes if layer.shapes.is_empty() => Ok(0),
             LineRole::Boundary | LineRole::Holes => {
-                let polygons = layers::polygons(layer, path, role.setting(), transform, self.transforms)?;
+                let polygons =
+                    layers::polygons(layer, path, role.setting(), transform, self.transforms)?;
                 for rings in &polygons {
                     if role == LineRole::Holes {
                         self.builder.add_hole(rings);
@@ -183,7 +224,9 @@ impl Adding<'_> {
                 let mut drawn = shapes::in_plan(layer, path, role.setting())?;
                 for line in &mut drawn {
                     line.points.iter_mut().for_each(|p| p[2] = 0.0);
-                    self.transforms.apply(transform, &mut line.points).map_err(|e| e.in_file(path))?;
+                    self.transforms
+                        .apply(transform, &mut line.points)
+                        .map_err(|e| e.in_file(path))?;
                     let sites: Vec<[f64; 2]> = line.points.iter().map(|p| [p[0], p[1]]).collect();
                     self.builder.add_draped_line(&sites);
                 }
@@ -202,7 +245,11 @@ impl Adding<'_> {
                     } else {
                         self.builder.add_breakline(points);
                     }
-                    self.added.level_rings.extend(LevelRing::of(&line.points, self.next, self.flat_tolerance()));
+                    self.added.level_rings.extend(LevelRing::of(
+                        &line.points,
+                        self.next,
+                        self.flat_tolerance(),
+                    ));
                     self.name(line, self.next..self.next + 1);
                 }
                 Ok(drawn.len())
@@ -214,8 +261,12 @@ impl Adding<'_> {
 
     /// Transforms a line to the coordinate system of the result, and adds it to the extent.
     fn transform(&mut self, line: &mut Drawn, path: &Path, transform: Option<usize>) -> Result<()> {
-        self.transforms.apply(transform, &mut line.points).map_err(|e| e.in_file(path))?;
-        line.points.iter().for_each(|&vertex| self.added.extent.add(vertex));
+        self.transforms
+            .apply(transform, &mut line.points)
+            .map_err(|e| e.in_file(path))?;
+        line.points
+            .iter()
+            .for_each(|&vertex| self.added.extent.add(vertex));
         Ok(())
     }
 
@@ -226,16 +277,25 @@ impl Adding<'_> {
     }
 
     fn flat_tolerance(&self) -> f64 {
-        self.request.flat.tolerance.unwrap_or_else(|| self.units.height_of_metres(FLAT_TOLERANCE_METRES))
+        self.request
+            .flat
+            .tolerance
+            .unwrap_or_else(|| self.units.height_of_metres(FLAT_TOLERANCE_METRES))
     }
 
     /// The walls of all layers, by layer: where one ends, others may go on.
-    fn walls(&mut self, layers: &Layers, by_layer: &[Option<usize>]) -> Result<Vec<Vec<(Drawn, Wall)>>> {
+    fn walls(
+        &mut self,
+        layers: &Layers,
+        by_layer: &[Option<usize>],
+    ) -> Result<Vec<Vec<(Drawn, Wall)>>> {
         match &self.request.wall.lower {
             Some(edge) => self.walls_above(edge, layers, by_layer),
             None => {
                 let layers = layers.iter().zip(by_layer);
-                layers.map(|((path, layer), transform)| self.walls_between(layer, path, *transform)).collect()
+                layers
+                    .map(|((path, layer), transform)| self.walls_between(layer, path, *transform))
+                    .collect()
             }
         }
     }
@@ -256,19 +316,28 @@ impl Adding<'_> {
                 edges.push((number, line, lower));
             }
         }
-        let uppers: Vec<&[[f64; 3]]> = edges.iter().map(|(_, line, _)| line.points.as_slice()).collect();
+        let uppers: Vec<&[[f64; 3]]> = edges
+            .iter()
+            .map(|(_, line, _)| line.points.as_slice())
+            .collect();
         let neighbors = Wall::neighbors(&uppers, high);
         let mut walls: Vec<Vec<(Drawn, Wall)>> = layers.iter().map(|_| Vec::new()).collect();
         for ((number, line, lower), neighbors) in edges.into_iter().zip(neighbors) {
             let wall = Wall::continued(&line.points, &lower, width, high, neighbors);
-            let wall = wall.map_err(|error| shapes::at_record(error, layers[number].0, line.fid + 1))?;
+            let wall =
+                wall.map_err(|error| shapes::at_record(error, layers[number].0, line.fid + 1))?;
             walls[number].push((line, wall));
         }
         Ok(walls)
     }
 
     /// Walls of which both edges are drawn.
-    fn walls_between(&mut self, layer: &Layer, path: &Path, transform: Option<usize>) -> Result<Vec<(Drawn, Wall)>> {
+    fn walls_between(
+        &mut self,
+        layer: &Layer,
+        path: &Path,
+        transform: Option<usize>,
+    ) -> Result<Vec<(Drawn, Wall)>> {
         let mut walls: Vec<(Drawn, Wall)> = Vec::new();
         for mut parts in records(shapes::with_heights(layer, path, Setting::Walls)?) {
             for part in &mut parts {
@@ -276,13 +345,15 @@ impl Adding<'_> {
             }
             let wall = match parts.as_slice() {
                 [upper, lower] => Wall::between(&upper.points, &lower.points),
-                _ => Err(Error::format("the lower edge of the wall is not known").cure(wording![
-                    "give its height with ",
-                    Setting::WallBottom,
-                    " or ",
-                    Setting::WallDrop,
-                    ", or make each record of two parts: the upper and the lower edge"
-                ])),
+                _ => Err(
+                    Error::format("the lower edge of the wall is not known").cure(wording![
+                        "give its height with ",
+                        Setting::WallBottom,
+                        " or ",
+                        Setting::WallDrop,
+                        ", or make each record of two parts: the upper and the lower edge"
+                    ]),
+                ),
             };
             let line = parts.swap_remove(0);
             let wall = wall.map_err(|error| shapes::at_record(error, path, line.fid + 1))?;
@@ -313,13 +384,14 @@ impl Adding<'_> {
         let (LowerEdge::Height(of_record) | LowerEdge::Drop(of_record)) = edge;
         let number = of_record.of(layer, line.fid);
         if !number.is_finite() {
-            let error = Error::format("the record has no height of the lower edge of the wall").cure(wording![
-                "fill the attribute of ",
-                Setting::WallBottom,
-                " or ",
-                Setting::WallDrop,
-                ", or remove the record"
-            ]);
+            let error = Error::format("the record has no height of the lower edge of the wall")
+                .cure(wording![
+                    "fill the attribute of ",
+                    Setting::WallBottom,
+                    " or ",
+                    Setting::WallDrop,
+                    ", or remove the record"
+                ]);
             return Err(shapes::at_record(error, path, line.fid + 1));
         }
         let below = |upper: &[[f64; 3]]| -> Vec<[f64; 3]> {
@@ -333,7 +405,9 @@ impl Adding<'_> {
             PerRecord::Field(_) => below(&line.points),
             PerRecord::Number(_) => Vec::new(),
         };
-        self.transforms.apply(transform, &mut lower).map_err(|e| e.in_file(path))?;
+        self.transforms
+            .apply(transform, &mut lower)
+            .map_err(|e| e.in_file(path))?;
         self.transform(line, path, transform)?;
         if lower.is_empty() {
             lower = below(&line.points);
@@ -351,20 +425,30 @@ impl Adding<'_> {
         for mut rings in lakes.iter().cloned() {
             let first = rings[0].clone();
             let height = match &self.request.flat.height {
-                FlatRule::OfShore => FlatHeight::OfShore { tolerance: self.flat_tolerance() },
+                FlatRule::OfShore => FlatHeight::OfShore {
+                    tolerance: self.flat_tolerance(),
+                },
                 FlatRule::Lowest => FlatHeight::Lowest,
                 FlatRule::Mean => FlatHeight::Mean,
-                FlatRule::Given(number) => FlatHeight::Given(self.water_level(number, layer, &first, path, transform)?),
+                FlatRule::Given(number) => {
+                    FlatHeight::Given(self.water_level(number, layer, &first, path, transform)?)
+                }
             };
             if !needs_heights {
-                rings.iter_mut().flat_map(|ring| &mut ring.points).for_each(|p| p[2] = 0.0);
+                rings
+                    .iter_mut()
+                    .flat_map(|ring| &mut ring.points)
+                    .for_each(|p| p[2] = 0.0);
             }
             for ring in &mut rings {
                 self.transform(ring, path, transform)?;
             }
             let rings: Vec<Vec<[f64; 3]>> = rings.into_iter().map(|ring| ring.points).collect();
-            let flat = Flat::new(&rings, height).map_err(|e| shapes::at_record(e, path, first.fid + 1))?;
-            let numbers = self.builder.add_flat(flat.with_buffer(self.request.flat.buffer));
+            let flat =
+                Flat::new(&rings, height).map_err(|e| shapes::at_record(e, path, first.fid + 1))?;
+            let numbers = self
+                .builder
+                .add_flat(flat.with_buffer(self.request.flat.buffer));
             self.name(&first, numbers);
         }
         Ok(lakes.len())
@@ -384,7 +468,9 @@ impl Adding<'_> {
         match (number, ring.points.first()) {
             (PerRecord::Field(_), Some(&[x, y, _])) if height.is_finite() => {
                 let mut on_shore = [[x, y, height]];
-                self.transforms.apply(transform, &mut on_shore).map_err(|e| e.in_file(path))?;
+                self.transforms
+                    .apply(transform, &mut on_shore)
+                    .map_err(|e| e.in_file(path))?;
                 Ok(on_shore[0][2])
             }
             _ => Ok(height),
@@ -392,7 +478,11 @@ impl Adding<'_> {
     }
 
     /// The rivers of all layers, by layer: where one ends, another may go on.
-    fn rivers(&mut self, layers: &Layers, by_layer: &[Option<usize>]) -> Result<Vec<Vec<(Drawn, River)>>> {
+    fn rivers(
+        &mut self,
+        layers: &Layers,
+        by_layer: &[Option<usize>],
+    ) -> Result<Vec<Vec<(Drawn, River)>>> {
         let mut lines: Vec<(usize, Drawn)> = Vec::new();
         let mut rivers: Vec<River> = Vec::new();
         for (number, ((path, layer), transform)) in layers.iter().zip(by_layer).enumerate() {
@@ -431,17 +521,32 @@ impl Adding<'_> {
     /// Names the rivers that were lowered, and those that they were lowered to.
     fn name_lowered(&mut self) {
         let name = |river: usize| self.added.names.name(self.rivers[river]);
-        let visible = self.lowerings.iter().filter(|lowering| lowering.by > self.flat_tolerance());
-        let named = visible.map(|&RiverLowering { river, to, by, from }| LoweredRiver {
-            name: name(river),
-            to: name(to),
-            by: self.units.height(by),
-            from,
-        });
+        let visible = self
+            .lowerings
+            .iter()
+            .filter(|lowering| lowering.by > self.flat_tolerance());
+        let named = visible.map(
+            |&RiverLowering {
+                 river,
+                 to,
+                 by,
+                 from,
+             }| LoweredRiver {
+                name: name(river),
+                to: name(to),
+                by: self.units.height(by),
+                from,
+            },
+        );
         self.added.lowered = named.collect();
     }
 
-    fn rivers_of(&mut self, layer: &Layer, path: &Path, transform: Option<usize>) -> Result<Vec<(Drawn, River)>> {
+    fn rivers_of(
+        &mut self,
+        layer: &Layer,
+        path: &Path,
+        transform: Option<usize>,
+    ) -> Result<Vec<(Drawn, River)>> {
         for (record, shape) in (1..).zip(&layer.shapes) {
             let error = match shape {
                 Shape::Polygon(_) => Error::format("a polygon is not a bank").cure(wording![
@@ -459,12 +564,21 @@ impl Adding<'_> {
         }
         let by_record = records(shapes::with_heights(layer, path, Setting::Rivers)?);
         let rivers = match &self.request.river_width {
-            Some(_) => by_record.into_iter().flatten().map(|line| vec![line]).collect(),
+            Some(_) => by_record
+                .into_iter()
+                .flatten()
+                .map(|line| vec![line])
+                .collect(),
             None => banks(by_record, path)?,
         };
         let mut named: Vec<(Drawn, River)> = Vec::with_capacity(rivers.len());
         for mut parts in rivers {
-            let length = |part: &Drawn| part.points.windows(2).map(|pair| distance(pair[0], pair[1])).sum::<f64>();
+            let length = |part: &Drawn| {
+                part.points
+                    .windows(2)
+                    .map(|pair| distance(pair[0], pair[1]))
+                    .sum::<f64>()
+            };
             let in_layer = length(&parts[0]);
             for part in &mut parts {
                 self.transform(part, path, transform)?;
@@ -475,7 +589,9 @@ impl Adding<'_> {
                     let width = width.of(layer, middle.fid) * (length(middle) / in_layer);
                     River::along(&middle.points, width)
                 }
-                (Some(PerRecord::Number(width)), [middle, ..]) => River::along(&middle.points, *width),
+                (Some(PerRecord::Number(width)), [middle, ..]) => {
+                    River::along(&middle.points, *width)
+                }
                 (_, [left, right, ..]) => River::between(&left.points, &right.points),
                 _ => continue, // banks come in pairs
             };
@@ -502,9 +618,13 @@ fn banks(by_record: Vec<Vec<Drawn>>, path: &Path) -> Result<Vec<Vec<Drawn>>> {
             (1, Some(open)) => open.extend(parts),
             (1 | 2, None) => pairs.push(parts),
             (count, _) => {
-                let error = Error::format(format!("the record has {count} parts, expected 1 or 2 banks"));
+                let error = Error::format(format!(
+                    "the record has {count} parts, expected 1 or 2 banks"
+                ));
                 let error = if is_open {
-                    Error::format("the record has two banks, but the record before has one without an opposite bank")
+                    Error::format(
+                        "the record has two banks, but the record before has one without an opposite bank",
+                    )
                 } else {
                     error
                 };
@@ -513,9 +633,11 @@ fn banks(by_record: Vec<Vec<Drawn>>, path: &Path) -> Result<Vec<Vec<Drawn>>> {
         }
     }
     match pairs.last() {
-        Some(pair) if pair.len() == 1 => {
-            Err(shapes::at_record(Error::format("the bank has no opposite bank").cure(cure), path, pair[0].fid + 1))
-        }
+        Some(pair) if pair.len() == 1 => Err(shapes::at_record(
+            Error::format("the bank has no opposite bank").cure(cure),
+            path,
+            pair[0].fid + 1,
+        )),
         _ => Ok(pairs),
     }
 }
@@ -525,7 +647,10 @@ const FLAT_TOLERANCE_METRES: f64 = 0.01;
 
 /// The lines of each record.
 fn records(drawn: Vec<Drawn>) -> Vec<Vec<Drawn>> {
-    drawn.chunk_by(|p, q| p.fid == q.fid).map(<[Drawn]>::to_vec).collect()
+    drawn
+        .chunk_by(|p, q| p.fid == q.fid)
+        .map(<[Drawn]>::to_vec)
+        .collect()
 }
 
 fn distance(p: [f64; 3], q: [f64; 3]) -> f64 {

@@ -30,9 +30,14 @@ pub(crate) fn read<'a>(
     for input in inputs {
         journal.context.check()?;
         let path = input.path();
-        let layer = open::layer_of(input, columns, cut, &journal.context).map_err(|e| e.in_file(path))?;
+        let layer =
+            open::layer_of(input, columns, cut, &journal.context).map_err(|e| e.in_file(path))?;
         let (format, records) = (layer.format.clone(), layer.shapes.len());
-        journal.add(Notice::LayerRead { path: path.to_path_buf(), format, records });
+        journal.add(Notice::LayerRead {
+            path: path.to_path_buf(),
+            format,
+            records,
+        });
         journal.add_warnings(path, &layer.warnings);
         layers.push((path, layer));
     }
@@ -43,10 +48,20 @@ pub(crate) fn read<'a>(
 ///
 /// # Errors
 /// Those of [`polygons`].
-pub(crate) fn boundaries(boundary: &Layers, by_file: &[Option<usize>], transforms: &Transforms) -> Result<Vec<Rings>> {
+pub(crate) fn boundaries(
+    boundary: &Layers,
+    by_file: &[Option<usize>],
+    transforms: &Transforms,
+) -> Result<Vec<Rings>> {
     let mut all = Vec::new();
     for ((path, layer), transform) in boundary.iter().zip(by_file) {
-        all.extend(polygons(layer, path, Setting::Boundary, *transform, transforms)?);
+        all.extend(polygons(
+            layer,
+            path,
+            Setting::Boundary,
+            *transform,
+            transforms,
+        )?);
     }
     Ok(all)
 }
@@ -65,7 +80,9 @@ pub(crate) fn polygons(
     let mut polygons = shapes::polygons(layer, path, setting)?;
     for ring in polygons.iter_mut().flatten() {
         let mut points: Vec<[f64; 3]> = ring.iter().map(|p| [p[0], p[1], 0.0]).collect();
-        transforms.apply(transform, &mut points).map_err(|e| e.in_file(path))?;
+        transforms
+            .apply(transform, &mut points)
+            .map_err(|e| e.in_file(path))?;
         *ring = points.into_iter().map(|p| [p[0], p[1]]).collect();
     }
     Ok(polygons)

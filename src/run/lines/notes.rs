@@ -46,14 +46,22 @@ impl LevelRing {
         if !is_ring || points.iter().any(|p| (p[2] - first[2]).abs() > tolerance) {
             return None;
         }
-        Some(LevelRing { line, ring: points.iter().map(|p| [p[0], p[1]]).collect(), height: first[2] })
+        Some(LevelRing {
+            line,
+            ring: points.iter().map(|p| [p[0], p[1]]).collect(),
+            height: first[2],
+        })
     }
 }
 
 /// Adds a notice about rivers that overlap themselves.
 pub(crate) fn note_overlaps(overlaps: &[(String, [f64; 2])], journal: &Journal) {
     if let Some((name, at)) = overlaps.first() {
-        journal.add(Notice::RiverOverlap { rivers: overlaps.len(), name: name.clone(), at: *at });
+        journal.add(Notice::RiverOverlap {
+            rivers: overlaps.len(),
+            name: name.clone(),
+            at: *at,
+        });
     }
 }
 
@@ -61,15 +69,28 @@ pub(crate) fn note_overlaps(overlaps: &[(String, [f64; 2])], journal: &Journal) 
 const LISTED: usize = 5;
 
 /// Adds a notice about waters of different heights that overlap.
-pub(crate) fn note_water_overlaps(report: &TinReport, names: &LineNames, units: &Units, journal: &Journal) {
+pub(crate) fn note_water_overlaps(
+    report: &TinReport,
+    names: &LineNames,
+    units: &Units,
+    journal: &Journal,
+) {
     let step = |overlap: &WaterOverlap| {
         let [inner, outer] = overlap.lines.map(|line| names.name(line));
-        WaterStep { inner, outer, step: units.height(overlap.step), at: overlap.at }
+        WaterStep {
+            inner,
+            outer,
+            step: units.height(overlap.step),
+            at: overlap.at,
+        }
     };
     let overlaps = &report.water_overlaps;
     if !overlaps.is_empty() {
         let first = overlaps.iter().take(LISTED).map(step).collect();
-        journal.add(Notice::WaterOverlaps { count: overlaps.len(), first });
+        journal.add(Notice::WaterOverlaps {
+            count: overlaps.len(),
+            first,
+        });
     }
 }
 
@@ -77,14 +98,22 @@ pub(crate) fn note_water_overlaps(report: &TinReport, names: &LineNames, units: 
 pub(crate) fn note_walls_in_water(report: &TinReport, names: &LineNames, journal: &Journal) {
     if let Some((line, at)) = report.walls_in_water.first() {
         let (vertices, name) = (report.walls_in_water.len(), names.name(*line));
-        journal.add(Notice::WallsInWater { vertices, name, at: *at });
+        journal.add(Notice::WallsInWater {
+            vertices,
+            name,
+            at: *at,
+        });
     }
 }
 
 /// Adds notices about draped lines and holes, none of which lies on the surface. Nothing else may
 /// clip it.
 pub(crate) fn note_apart(inputs: &[LineInput], report: &TinReport, journal: &Journal) {
-    let is_given = |role: LineRole| inputs.iter().any(|input| input.role == role && input.lines > 0);
+    let is_given = |role: LineRole| {
+        inputs
+            .iter()
+            .any(|input| input.role == role && input.lines > 0)
+    };
     if is_given(LineRole::Draped) && report.edges.of(EdgeKind::Draped) == 0 {
         journal.add(Notice::LinesApart(LineRole::Draped));
     }
@@ -95,8 +124,12 @@ pub(crate) fn note_apart(inputs: &[LineInput], report: &TinReport, journal: &Jou
 
 /// Adds a notice about rivers whose banks contradict water, with the worst of them.
 pub(crate) fn note_uneven(uneven: &[(String, RiverHeights)], units: &Units, journal: &Journal) {
-    let worst = |(_, heights): &&(String, RiverHeights)| heights.largest_rise.max(heights.largest_difference);
-    let Some((name, heights)) = uneven.iter().max_by(|p, q| worst(p).total_cmp(&worst(q))) else { return };
+    let worst = |(_, heights): &&(String, RiverHeights)| {
+        heights.largest_rise.max(heights.largest_difference)
+    };
+    let Some((name, heights)) = uneven.iter().max_by(|p, q| worst(p).total_cmp(&worst(q))) else {
+        return;
+    };
     journal.add(Notice::RiverHeights {
         rivers: uneven.len(),
         name: name.clone(),
@@ -114,7 +147,10 @@ pub(crate) fn note_lowered(mut lowered: Vec<LoweredRiver>, journal: &Journal) {
     if count > 0 {
         lowered.sort_by(|p, q| q.by.value.total_cmp(&p.by.value));
         lowered.truncate(LISTED);
-        journal.add(Notice::RiversLowered { count, first: lowered });
+        journal.add(Notice::RiversLowered {
+            count,
+            first: lowered,
+        });
     }
 }
 
@@ -137,8 +173,13 @@ impl LevelRings {
         if rings.is_empty() || !request.flats.is_empty() {
             return None;
         }
-        let polygons: Vec<Vec<Vec<[f64; 2]>>> = rings.iter().map(|ring| vec![ring.ring.clone()]).collect();
-        Some(LevelRings { inside: Inside::new(&polygons), rings, tolerance })
+        let polygons: Vec<Vec<Vec<[f64; 2]>>> =
+            rings.iter().map(|ring| vec![ring.ring.clone()]).collect();
+        Some(LevelRings {
+            inside: Inside::new(&polygons),
+            rings,
+            tolerance,
+        })
     }
 
     /// Returns what is found of each ring without points.
@@ -149,7 +190,9 @@ impl LevelRings {
     /// Adds what is found of each ring in some of the points.
     pub(crate) fn count(&self, points: &[[f64; 3]], found: &mut [OtherHeights]) {
         for [x, y, z] in points {
-            let Some(at) = self.inside.first_around([*x, *y]) else { continue };
+            let Some(at) = self.inside.first_around([*x, *y]) else {
+                continue;
+            };
             let difference = (z - self.rings[at].height).abs();
             if difference > self.tolerance {
                 found[at] = (found[at].0 + 1, found[at].1.max(difference));
@@ -158,8 +201,16 @@ impl LevelRings {
     }
 
     /// Returns the notice about what was found in all points, if anything was.
-    pub(crate) fn notice(&self, found: &[OtherHeights], names: &LineNames, units: &Units) -> Option<Notice> {
-        let differ = found.iter().enumerate().filter(|(_, (count, _))| *count > 0);
+    pub(crate) fn notice(
+        &self,
+        found: &[OtherHeights],
+        names: &LineNames,
+        units: &Units,
+    ) -> Option<Notice> {
+        let differ = found
+            .iter()
+            .enumerate()
+            .filter(|(_, (count, _))| *count > 0);
         let (at, (_, largest)) = differ.max_by(|p, q| p.1.1.total_cmp(&q.1.1))?;
         Some(Notice::LevelRings {
             rings: found.iter().filter(|(count, _)| *count > 0).count(),
@@ -173,10 +224,17 @@ impl LevelRings {
 /// Counts the distinct edges of the lines of each input.
 pub(crate) fn count_edges(inputs: &mut [LineInput], tin: &Tin) {
     let triangulation = tin.triangulation();
-    for input in inputs.iter_mut().filter(|input| input.role.edges().is_some()) {
+    for input in inputs
+        .iter_mut()
+        .filter(|input| input.role.edges().is_some())
+    {
         let mut edges: Vec<[u32; 2]> = Vec::new();
         // Level lines across rivers are not banks.
-        for line in input.numbers.clone().filter(|&line| tin.line_kind(line) == input.role.edges()) {
+        for line in input
+            .numbers
+            .clone()
+            .filter(|&line| tin.line_kind(line) == input.role.edges())
+        {
             let chain = triangulation.chain(LineId::new(line));
             edges.extend(chain.windows(2).map(|pair| {
                 let [a, b] = [pair[0], pair[1]].map(|vertex| vertex.index() as u32);

@@ -28,8 +28,14 @@ pub(crate) struct Gap {
 /// # Complexity
 /// Linear.
 pub(crate) fn close(lines: &[Vec<[f64; 2]>]) -> Result<Vec<Vec<[f64; 2]>>, Gap> {
-    let flat: Vec<Vec<[f64; 2]>> =
-        lines.iter().map(|line| line.iter().map(|p| [unsigned_zero(p[0]), unsigned_zero(p[1])]).collect()).collect();
+    let flat: Vec<Vec<[f64; 2]>> = lines
+        .iter()
+        .map(|line| {
+            line.iter()
+                .map(|p| [unsigned_zero(p[0]), unsigned_zero(p[1])])
+                .collect()
+        })
+        .collect();
     let mut at: HashMap<Key, Vec<usize>> = HashMap::new();
     for (number, line) in flat.iter().enumerate() {
         for end in ends(line) {
@@ -37,9 +43,15 @@ pub(crate) fn close(lines: &[Vec<[f64; 2]>]) -> Result<Vec<Vec<[f64; 2]>>, Gap> 
         }
     }
     let is_loose = |end: &[f64; 2]| at.get(&key(*end)).is_some_and(|lines| lines.len() % 2 == 1);
-    let mut loose = flat.iter().enumerate().flat_map(|(line, points)| ends(points).map(move |end| (line, end)));
+    let mut loose = flat
+        .iter()
+        .enumerate()
+        .flat_map(|(line, points)| ends(points).map(move |end| (line, end)));
     if let Some((line, end)) = loose.find(|(_, end)| is_loose(end)) {
-        let others = flat.iter().flat_map(|line| ends(line)).filter(|other| is_loose(other) && *other != end);
+        let others = flat
+            .iter()
+            .flat_map(|line| ends(line))
+            .filter(|other| is_loose(other) && *other != end);
         let nearest = others.min_by(|p, q| distance(end, *p).total_cmp(&distance(end, *q)));
         return Err(Gap { line, end, nearest });
     }
@@ -54,7 +66,9 @@ pub(crate) fn close(lines: &[Vec<[f64; 2]>]) -> Result<Vec<Vec<[f64; 2]>>, Gap> 
         }
         let mut ring = flat[first].clone();
         while let Some(here) = ring.last().copied().filter(|last| *last != flat[first][0]) {
-            let Some(next) = at.get_mut(&key(here)).and_then(Vec::pop) else { break };
+            let Some(next) = at.get_mut(&key(here)).and_then(Vec::pop) else {
+                break;
+            };
             if std::mem::replace(&mut used[next], true) {
                 continue;
             }
@@ -69,7 +83,10 @@ pub(crate) fn close(lines: &[Vec<[f64; 2]>]) -> Result<Vec<Vec<[f64; 2]>>, Gap> 
 }
 
 fn ends(line: &[[f64; 2]]) -> impl Iterator<Item = [f64; 2]> {
-    line.first().copied().into_iter().chain(line.last().copied())
+    line.first()
+        .copied()
+        .into_iter()
+        .chain(line.last().copied())
 }
 
 fn key(p: [f64; 2]) -> Key {
@@ -86,9 +103,19 @@ impl Gap {
     pub(crate) fn error(self) -> Error {
         let [x, y] = self.end;
         let far = |p| neat(distance(self.end, p));
-        let next = self.nearest.map(|p| format!(", the next loose end is {} away, at {} {}", far(p), p[0], p[1]));
-        Error::format(format!("the lines are not closed: one ends at {x} {y}{}", next.unwrap_or_default()))
-            .cure("close the gap, so that lines end where others begin, or use polygons")
+        let next = self.nearest.map(|p| {
+            format!(
+                ", the next loose end is {} away, at {} {}",
+                far(p),
+                p[0],
+                p[1]
+            )
+        });
+        Error::format(format!(
+            "the lines are not closed: one ends at {x} {y}{}",
+            next.unwrap_or_default()
+        ))
+        .cure("close the gap, so that lines end where others begin, or use polygons")
     }
 }
 
@@ -103,9 +130,15 @@ mod tests {
     #[test]
     fn lines_in_any_order_and_direction_make_rings() {
         let [a, b, c, d] = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]];
-        assert_eq!(rings(&[&[a, b, c], &[a, d], &[c, d]]).unwrap(), [vec![a, b, c, d, a]]);
+        assert_eq!(
+            rings(&[&[a, b, c], &[a, d], &[c, d]]).unwrap(),
+            [vec![a, b, c, d, a]]
+        );
         let hole = [[1.0, 1.0], [2.0, 1.0], [1.0, 2.0], [1.0, 1.0]];
-        assert_eq!(rings(&[&hole, &[a, b, c], &[c, [-0.0, 0.0]]]).unwrap(), [hole.to_vec(), vec![a, b, c, a]]);
+        assert_eq!(
+            rings(&[&hole, &[a, b, c], &[c, [-0.0, 0.0]]]).unwrap(),
+            [hole.to_vec(), vec![a, b, c, a]]
+        );
     }
 
     #[test]
@@ -118,12 +151,26 @@ mod tests {
 
     #[test]
     fn a_gap_is_reported_with_both_ends_and_its_width() {
-        let error = rings(&[&[[0.0, 0.0], [4.0, 0.0]], &[[4.0, 0.5], [0.0, 4.0]], &[[0.0, 4.0], [0.0, 0.0]]]);
+        let error = rings(&[
+            &[[0.0, 0.0], [4.0, 0.0]],
+            &[[4.0, 0.5], [0.0, 4.0]],
+            &[[0.0, 4.0], [0.0, 0.0]],
+        ]);
         assert_eq!(
             error.unwrap_err().error().to_string(),
             "the lines are not closed: one ends at 4 0, the next loose end is 0.5 away, at 4 0.5"
         );
-        let three = rings(&[&[[0.0, 0.0], [1.0, 0.0]], &[[0.0, 0.0], [0.0, 1.0]], &[[0.0, 0.0], [-1.0, 0.0]]]);
-        assert!(three.unwrap_err().error().to_string().contains("ends at 0 0, the next loose end is 1 away, at 1 0"));
+        let three = rings(&[
+            &[[0.0, 0.0], [1.0, 0.0]],
+            &[[0.0, 0.0], [0.0, 1.0]],
+            &[[0.0, 0.0], [-1.0, 0.0]],
+        ]);
+        assert!(
+            three
+                .unwrap_err()
+                .error()
+                .to_string()
+                .contains("ends at 0 0, the next loose end is 1 away, at 1 0")
+        );
     }
 }

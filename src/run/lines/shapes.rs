@@ -25,7 +25,9 @@ pub(crate) struct Drawn {
 /// If there are none, a vertex has no height or a coordinate is not finite; the error names the
 /// record and the vertex, counted from 1.
 pub(crate) fn with_heights(layer: &Layer, path: &Path, setting: Setting) -> Result<Vec<Drawn>> {
-    read(layer, path, setting, |parts| check_heights(parts, layer, setting))
+    read(layer, path, setting, |parts| {
+        check_heights(parts, layer, setting)
+    })
 }
 
 /// Returns the lines of a layer and the rings of its polygons, with or without heights.
@@ -33,7 +35,9 @@ pub(crate) fn with_heights(layer: &Layer, path: &Path, setting: Setting) -> Resu
 /// # Errors
 /// If there are none, or a coordinate in plan is not finite.
 pub(crate) fn in_plan(layer: &Layer, path: &Path, setting: Setting) -> Result<Vec<Drawn>> {
-    read(layer, path, setting, |parts| parts.iter().try_for_each(|part| check_sites(part)))
+    read(layer, path, setting, |parts| {
+        parts.iter().try_for_each(|part| check_sites(part))
+    })
 }
 
 fn read(
@@ -53,9 +57,14 @@ fn read(
     }
     // An empty layer is fine, as of a tile without lakes; a layer of points, say, is a mistake.
     if lines.is_empty() && !layer.shapes.is_empty() {
-        return Err(Error::format(format!("{} holds no lines and no polygons", kind_of(layer)))
-            .in_file(path)
-            .cure(wording![setting, " takes lines or polygons; points are inputs without an option"]));
+        return Err(
+            Error::format(format!("{} holds no lines and no polygons", kind_of(layer)))
+                .in_file(path)
+                .cure(wording![
+                    setting,
+                    " takes lines or polygons; points are inputs without an option"
+                ]),
+        );
     }
     Ok(lines)
 }
@@ -69,26 +78,40 @@ pub(crate) fn polygons(layer: &Layer, path: &Path, setting: Setting) -> Result<V
     let mut polygons = Vec::new();
     let mut lines: Vec<Drawn> = Vec::new();
     for (record, shape) in (1..).zip(&layer.shapes) {
-        let (Shape::Polygon(parts) | Shape::Lines(parts)) = shape else { continue };
+        let (Shape::Polygon(parts) | Shape::Lines(parts)) = shape else {
+            continue;
+        };
         for part in parts {
             check_sites(part).map_err(|e| at_record(e, path, record))?;
         }
         match shape {
             Shape::Polygon(_) => {
-                polygons.push(parts.iter().map(|ring| ring.iter().map(|p| [p[0], p[1]]).collect()).collect());
+                polygons.push(
+                    parts
+                        .iter()
+                        .map(|ring| ring.iter().map(|p| [p[0], p[1]]).collect())
+                        .collect(),
+                );
             }
             _ => lines.extend(drawn(parts, record - 1)),
         }
     }
     if !lines.is_empty() {
-        let flat: Vec<Vec<[f64; 2]>> =
-            lines.iter().map(|line| line.points.iter().map(|p| [p[0], p[1]]).collect()).collect();
-        polygons.push(rings::close(&flat).map_err(|gap| at_record(gap.error(), path, lines[gap.line].fid + 1))?);
+        let flat: Vec<Vec<[f64; 2]>> = lines
+            .iter()
+            .map(|line| line.points.iter().map(|p| [p[0], p[1]]).collect())
+            .collect();
+        polygons.push(
+            rings::close(&flat)
+                .map_err(|gap| at_record(gap.error(), path, lines[gap.line].fid + 1))?,
+        );
     }
     if polygons.is_empty() {
-        return Err(Error::format(format!("{} holds no polygons and no lines", kind_of(layer)))
-            .in_file(path)
-            .cure(wording![setting, " takes polygons, or lines that close"]));
+        return Err(
+            Error::format(format!("{} holds no polygons and no lines", kind_of(layer)))
+                .in_file(path)
+                .cure(wording![setting, " takes polygons, or lines that close"]),
+        );
     }
     Ok(polygons)
 }
@@ -97,12 +120,19 @@ pub(crate) fn polygons(layer: &Layer, path: &Path, setting: Setting) -> Result<V
 fn drawn(parts: &[Vec<[f64; 3]>], fid: usize) -> impl Iterator<Item = Drawn> {
     let is_one_of_many = parts.len() > 1;
     let lines = (1..).zip(parts).filter(|(_, points)| points.len() > 1);
-    lines.map(move |(number, points)| Drawn { fid, part: is_one_of_many.then_some(number), points: points.clone() })
+    lines.map(move |(number, points)| Drawn {
+        fid,
+        part: is_one_of_many.then_some(number),
+        points: points.clone(),
+    })
 }
 
 /// Returns an error if a coordinate in plan is not finite.
 fn check_sites(part: &[[f64; 3]]) -> Result<()> {
-    match part.iter().position(|p| !(p[0].is_finite() && p[1].is_finite())) {
+    match part
+        .iter()
+        .position(|p| !(p[0].is_finite() && p[1].is_finite()))
+    {
         Some(vertex) => Err(not_finite(part, vertex)),
         None => Ok(()),
     }
@@ -114,7 +144,10 @@ fn check_heights(parts: &[Vec<[f64; 3]>], layer: &Layer, setting: Setting) -> Re
         return Err(Error::format("the line has no heights").cure(cure(layer, setting)));
     }
     for part in parts {
-        if let Some(vertex) = part.iter().position(|p| !p.iter().all(|value| value.is_finite())) {
+        if let Some(vertex) = part
+            .iter()
+            .position(|p| !p.iter().all(|value| value.is_finite()))
+        {
             return Err(not_finite(part, vertex));
         }
     }
@@ -132,7 +165,13 @@ fn cure(layer: &Layer, setting: Setting) -> Wording {
         fields => format!(" (the attributes are {})", fields.join(", ")),
     };
     let named = setting.text("FILE:FIELD");
-    wording!["name the attribute with the heights, ", named, " or FILE:LAYER:FIELD", instead, attributes]
+    wording![
+        "name the attribute with the heights, ",
+        named,
+        " or FILE:LAYER:FIELD",
+        instead,
+        attributes
+    ]
 }
 
 #[cold]
@@ -140,11 +179,15 @@ fn not_finite(part: &[[f64; 3]], vertex: usize) -> Error {
     let [x, y, z] = part[vertex];
     let number = vertex + 1;
     if z.is_nan() && x.is_finite() && y.is_finite() {
-        return Error::format(format!("vertex {number} at {x} {y} has no height, though others have"))
-            .cure("add a height, or remove the record");
+        return Error::format(format!(
+            "vertex {number} at {x} {y} has no height, though others have"
+        ))
+        .cure("add a height, or remove the record");
     }
-    Error::format(format!("vertex {number} at {x} {y} {z}: expected finite coordinates"))
-        .cure("repair or remove the record")
+    Error::format(format!(
+        "vertex {number} at {x} {y} {z}: expected finite coordinates"
+    ))
+    .cure("repair or remove the record")
 }
 
 pub(crate) fn at_record(error: Error, path: &Path, record: usize) -> Error {
@@ -165,16 +208,36 @@ mod tests {
     const SETTING: Setting = Setting::Breaklines;
 
     fn layer(shapes: Vec<Shape>) -> Layer {
-        Layer { shapes, fields: vec!["ELEV".to_owned()], ..Layer::default() }
+        Layer {
+            shapes,
+            fields: vec!["ELEV".to_owned()],
+            ..Layer::default()
+        }
     }
 
     #[test]
     fn polygons_give_their_rings_and_null_shapes_nothing() {
-        let ring = vec![[0.0, 0.0, 1.0], [1.0, 0.0, 1.0], [0.0, 1.0, 1.0], [0.0, 0.0, 1.0]];
+        let ring = vec![
+            [0.0, 0.0, 1.0],
+            [1.0, 0.0, 1.0],
+            [0.0, 1.0, 1.0],
+            [0.0, 0.0, 1.0],
+        ];
         let line = vec![[5.0, 5.0, 1.0], [6.0, 5.0, 2.0]];
-        let shapes = vec![Shape::Polygon(vec![ring.clone()]), Shape::Null, Shape::Lines(vec![line.clone()])];
-        let drawn = |fid, points| Drawn { fid, part: None, points };
-        assert_eq!(with_heights(&layer(shapes), Path::new("l"), SETTING).unwrap(), [drawn(0, ring), drawn(2, line)]);
+        let shapes = vec![
+            Shape::Polygon(vec![ring.clone()]),
+            Shape::Null,
+            Shape::Lines(vec![line.clone()]),
+        ];
+        let drawn = |fid, points| Drawn {
+            fid,
+            part: None,
+            points,
+        };
+        assert_eq!(
+            with_heights(&layer(shapes), Path::new("l"), SETTING).unwrap(),
+            [drawn(0, ring), drawn(2, line)]
+        );
     }
 
     #[test]
@@ -182,7 +245,13 @@ mod tests {
         let part = |y: f64| vec![[0.0, y, 1.0], [1.0, y, 2.0]];
         let shapes = vec![Shape::Lines(vec![part(0.0), vec![], part(1.0)])];
         let lines = with_heights(&layer(shapes), Path::new("l"), SETTING).unwrap();
-        assert_eq!(lines.iter().map(|line| (line.fid, line.part)).collect::<Vec<_>>(), [(0, Some(1)), (0, Some(3))]);
+        assert_eq!(
+            lines
+                .iter()
+                .map(|line| (line.fid, line.part))
+                .collect::<Vec<_>>(),
+            [(0, Some(1)), (0, Some(3))]
+        );
     }
 
     #[test]
@@ -190,16 +259,30 @@ mod tests {
         let flat = vec![[0.0, 0.0, f64::NAN], [1.0, 0.0, f64::NAN]];
         let shapes = vec![Shape::Null, Shape::Lines(vec![flat])];
         let error = with_heights(&layer(shapes), Path::new("l.shp"), SETTING).unwrap_err();
-        assert_eq!(error.to_string(), "l.shp: record 2: the line has no heights");
+        assert_eq!(
+            error.to_string(),
+            "l.shp: record 2: the line has no heights"
+        );
         let cure = error.cure_text().unwrap().plain();
-        assert!(cure.contains("FILE:FIELD") && cure.contains("ELEV"), "{cure}");
+        assert!(
+            cure.contains("FILE:FIELD") && cure.contains("ELEV"),
+            "{cure}"
+        );
     }
 
     #[test]
     fn one_missing_height_is_refused_by_record_and_vertex() {
         let line = vec![[0.0, 0.0, 1.0], [1.0, 0.0, f64::NAN]];
-        let error = with_heights(&layer(vec![Shape::Lines(vec![line])]), Path::new("l.shp"), SETTING).unwrap_err();
-        assert_eq!(error.to_string(), "l.shp: record 1: vertex 2 at 1 0 has no height, though others have");
+        let error = with_heights(
+            &layer(vec![Shape::Lines(vec![line])]),
+            Path::new("l.shp"),
+            SETTING,
+        )
+        .unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "l.shp: record 1: vertex 2 at 1 0 has no height, though others have"
+        );
     }
 
     #[test]
@@ -208,7 +291,12 @@ mod tests {
         let shapes = vec![line(0.0), Shape::Null, line(2.0)];
         let error = polygons(&layer(shapes), Path::new("l.shp"), SETTING).unwrap_err();
         let text = error.to_string();
-        assert!(text.starts_with("l.shp: record 1: the lines are not closed: one ends at 0 0, the next"), "{text}");
+        assert!(
+            text.starts_with(
+                "l.shp: record 1: the lines are not closed: one ends at 0 0, the next"
+            ),
+            "{text}"
+        );
     }
 
     #[test]

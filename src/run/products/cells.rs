@@ -25,8 +25,14 @@ pub struct LightOptions {
 
 impl Default for LightOptions {
     fn default() -> Self {
-        let Light { azimuth, altitude, .. } = Light::default();
-        LightOptions { azimuth, altitude, z_factor: None }
+        let Light {
+            azimuth, altitude, ..
+        } = Light::default();
+        LightOptions {
+            azimuth,
+            altitude,
+            z_factor: None,
+        }
     }
 }
 
@@ -70,10 +76,19 @@ pub struct CellProduct<'a> {
 ///
 /// # Complexity
 /// Linear in the triangles.
-pub fn dem<'a>(product: &'a SurfaceProduct, options: &DemOptions, context: &Context) -> Result<CellProduct<'a>> {
+pub fn dem<'a>(
+    product: &'a SurfaceProduct,
+    options: &DemOptions,
+    context: &Context,
+) -> Result<CellProduct<'a>> {
     let journal = Journal::new(context);
     let (source, surface) = heights(product, options, &journal)?;
-    Ok(CellProduct { source, surface, cells: CellFormat::Heights, notices: journal.take() })
+    Ok(CellProduct {
+        source,
+        surface,
+        cells: CellFormat::Heights,
+        notices: journal.take(),
+    })
 }
 
 /// Prepares a hillshade: whole numbers from 1 (dark) to 255 (facing the light), NaN where there is
@@ -97,7 +112,10 @@ pub fn hillshade<'a>(
             (Box::new(grid.as_ref()), None)
         }
         Model::Tin(_) | Model::Mesh(_) | Model::Compact(_) | Model::Parts(_) => {
-            let heights_by = DemOptions { frame: options.frame.clone(), method: options.method };
+            let heights_by = DemOptions {
+                frame: options.frame.clone(),
+                method: options.method,
+            };
             heights(product, &heights_by, &journal)?
         }
     };
@@ -159,13 +177,22 @@ fn light(options: &LightOptions, crs: Option<&Crs>, journal: &Journal) -> Light 
         }
         factor
     });
-    Light { azimuth: options.azimuth, altitude: options.altitude, z_factor }
+    Light {
+        azimuth: options.azimuth,
+        altitude: options.altitude,
+        z_factor,
+    }
 }
 
 impl<'a> CellProduct<'a> {
     /// Heights that were drawn already.
     pub(crate) fn heights_of(source: Box<dyn BlockSource + 'a>) -> Self {
-        CellProduct { source, surface: None, cells: CellFormat::Heights, notices: Vec::new() }
+        CellProduct {
+            source,
+            surface: None,
+            cells: CellFormat::Heights,
+            notices: Vec::new(),
+        }
     }
 
     /// The hillshade of heights that were drawn already.
@@ -176,12 +203,22 @@ impl<'a> CellProduct<'a> {
         journal: &Journal,
     ) -> Result<Self> {
         let source = Box::new(Hillshade::new(source, light(options, crs, journal))?);
-        Ok(CellProduct { source, surface: None, cells: CellFormat::Shades, notices: journal.take() })
+        Ok(CellProduct {
+            source,
+            surface: None,
+            cells: CellFormat::Shades,
+            notices: journal.take(),
+        })
     }
 
     /// Returns the cells of a grid that is in memory, to be written as `cells`.
     pub fn of_grid(grid: &'a Grid, cells: CellFormat) -> Self {
-        CellProduct { source: Box::new(grid), surface: None, cells, notices: Vec::new() }
+        CellProduct {
+            source: Box::new(grid),
+            surface: None,
+            cells,
+            notices: Vec::new(),
+        }
     }
 }
 
@@ -193,7 +230,9 @@ impl CellProduct<'_> {
     pub fn covered(&self) -> f64 {
         let Frame { width, height, .. } = self.frame();
         let all = width as f64 * height as f64;
-        self.surface.map_or(all, |surface| all.min(frame::cells_on(surface, &self.frame())))
+        self.surface.map_or(all, |surface| {
+            all.min(frame::cells_on(surface, &self.frame()))
+        })
     }
 
     /// Computes all cells, on all cores.
@@ -220,7 +259,10 @@ impl CellProduct<'_> {
     pub fn write(&self, target: Destination, context: &Context) -> Result<RasterSummary> {
         let cells = geotiff::cells_written(self.frame());
         let work = context.start(self.stage(), Size::Items(cells))?;
-        let options = WriteOptions { cells: self.cells, watch: &|cells| work.add(cells) };
+        let options = WriteOptions {
+            cells: self.cells,
+            watch: &|cells| work.add(cells),
+        };
         geotiff::write(target, self.source.as_ref(), options)
     }
 

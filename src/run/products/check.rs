@@ -74,13 +74,22 @@ pub struct CheckProduct {
 /// Those of [`triangles`](surface::triangles), except for a mesh that is not a surface; and if the
 /// file of a TIN is damaged.
 pub fn check(request: &SurfaceRequest, context: &Context) -> Result<CheckProduct> {
-    let systems = SystemOptions { degrees: Degrees::Allow, ..request.systems.clone() };
+    let systems = SystemOptions {
+        degrees: Degrees::Allow,
+        ..request.systems.clone()
+    };
     if let Source::Mesh(path) = &request.source
         && !open::is_tin(path)
     {
         return check_mesh(path, &systems, context);
     }
-    let product = surface::triangles(&SurfaceRequest { source: request.source.clone(), systems }, context)?;
+    let product = surface::triangles(
+        &SurfaceRequest {
+            source: request.source.clone(),
+            systems,
+        },
+        context,
+    )?;
     let flaws = surface_flaws(&product, context)?;
     Ok(CheckProduct { product, flaws })
 }
@@ -109,16 +118,30 @@ fn check_mesh(path: &Path, systems: &SystemOptions, context: &Context) -> Result
         journal.add(Notice::DelaunayUnchecked(path.to_path_buf()));
     }
     // The Delaunay law cannot be checked without the lines.
-    let find = if keeps_lines { terrain::surface_flaws } else { terrain::shape_flaws };
+    let find = if keeps_lines {
+        terrain::surface_flaws
+    } else {
+        terrain::shape_flaws
+    };
     let triangles = open::mesh_triangles(path, &journal)?;
     let (mesh, flaws) = flaws_by(find, triangles, context).map_err(|e| e.in_file(path))?;
     let model = surface::mesh_model(path, mesh, systems, &journal)?;
-    Ok(CheckProduct { product: SurfaceProduct { model, built: None, notices: journal.take() }, flaws })
+    Ok(CheckProduct {
+        product: SurfaceProduct {
+            model,
+            built: None,
+            notices: journal.take(),
+        },
+        flaws,
+    })
 }
 
 /// Returns the first flaw of triangles in memory.
 pub(crate) fn first_flaw(triangles: Triangles, context: &Context) -> Result<Option<LocatedFlaw>> {
-    Ok(flaws_by(terrain::surface_flaws, triangles, context)?.1.into_iter().next())
+    Ok(flaws_by(terrain::surface_flaws, triangles, context)?
+        .1
+        .into_iter()
+        .next())
 }
 
 fn flaws_by(
@@ -137,29 +160,48 @@ fn flaws_by(
 
 /// Returns the surface with progress, for a check that visits its faces once for each of seven laws
 /// and once for overlaps.
-fn checked<'a>(surface: &'a dyn Surface, context: &Context<'a>) -> Result<Watched<'a, dyn Surface + 'a>> {
+fn checked<'a>(
+    surface: &'a dyn Surface,
+    context: &Context<'a>,
+) -> Result<Watched<'a, dyn Surface + 'a>> {
     Watched::faces(surface, 8, Stage::CheckingFaces, context)
 }
 
 /// Returns the flaws that were found, and overlaps if these are defined: if faces are linked and
 /// counter-clockwise.
-fn flaws_beside(links: &[LinkFlaw], found: &[SurfaceFlaw], surface: &dyn Surface) -> Vec<LocatedFlaw> {
-    let of_surface = |flaw: &SurfaceFlaw| located(FlawKind::Surface(*flaw), &flaw.vertices(surface), surface);
+fn flaws_beside(
+    links: &[LinkFlaw],
+    found: &[SurfaceFlaw],
+    surface: &dyn Surface,
+) -> Vec<LocatedFlaw> {
+    let of_surface =
+        |flaw: &SurfaceFlaw| located(FlawKind::Surface(*flaw), &flaw.vertices(surface), surface);
     let mut flaws: Vec<LocatedFlaw> = found.iter().map(of_surface).collect();
-    let is_folded = links.iter().any(|flaw| matches!(flaw, LinkFlaw::Folded { .. }));
+    let is_folded = links
+        .iter()
+        .any(|flaw| matches!(flaw, LinkFlaw::Folded { .. }));
     let is_harmless = |flaw: &SurfaceFlaw| {
         use SurfaceFlaw::{Crack, Kinds, NotDelaunay, TwoHeights};
-        matches!(flaw, TwoHeights(_) | Crack { .. } | Kinds(..) | NotDelaunay(..))
+        matches!(
+            flaw,
+            TwoHeights(_) | Crack { .. } | Kinds(..) | NotDelaunay(..)
+        )
     };
     if !is_folded && found.iter().all(is_harmless) {
-        let of_overlap = |flaw: &Overlap| located(FlawKind::Overlap(*flaw), &flaw.vertices(surface), surface);
+        let of_overlap =
+            |flaw: &Overlap| located(FlawKind::Overlap(*flaw), &flaw.vertices(surface), surface);
         flaws.extend(overlaps(surface).iter().map(of_overlap));
     }
     flaws
 }
 
 fn located(flaw: FlawKind, vertices: &[u32], surface: &dyn Surface) -> LocatedFlaw {
-    let there = vertices.iter().filter(|&&v| (v as usize) < surface.vertex_count());
-    let at = there.map(|&v| surface.position(v)).map(|[x, y, _]| [x, y]).collect();
+    let there = vertices
+        .iter()
+        .filter(|&&v| (v as usize) < surface.vertex_count());
+    let at = there
+        .map(|&v| surface.position(v))
+        .map(|[x, y, _]| [x, y])
+        .collect();
     LocatedFlaw { flaw, at }
 }

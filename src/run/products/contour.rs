@@ -68,8 +68,15 @@ pub fn contour<'a>(
     let journal = Journal::new(context);
     context.check()?;
     let levels = options.to_levels()?;
-    options.notice(product.crs()).into_iter().for_each(|notice| journal.add(notice));
-    Ok(ContourProduct { product, levels, notices: journal.take() })
+    options
+        .notice(product.crs())
+        .into_iter()
+        .for_each(|notice| journal.add(notice));
+    Ok(ContourProduct {
+        product,
+        levels,
+        notices: journal.take(),
+    })
 }
 
 /// Writes lines that are in memory, in the format that the extension of `target` names; see
@@ -88,7 +95,11 @@ pub fn write_contours(
         contours::check_size(target, count)?;
         let drawing = context.start(Stage::DrawingContours, Size::Items(count))?;
         let is_wanted = |line: &&ContourLine| drawing.add(edge_count(line)).is_ok();
-        let written = contours::write(target, &mut lines.iter().take_while(is_wanted).cloned(), crs);
+        let written = contours::write(
+            target,
+            &mut lines.iter().take_while(is_wanted).cloned(),
+            crs,
+        );
         drawing.end()?;
         written
     })

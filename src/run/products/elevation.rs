@@ -44,7 +44,10 @@ pub fn elevations(
     }
     let surface = product.triangles()?;
     context.check()?;
-    let finder = Finder { product, interpolant: Interpolant::new(surface, method)? };
+    let finder = Finder {
+        product,
+        interpolant: Interpolant::new(surface, method)?,
+    };
     let work = context.start(Stage::ComputingHeights, Size::Items(positions.len() as u64))?;
     let mut heights = vec![f64::NAN; positions.len()];
     if positions.len() <= FEW {
@@ -60,7 +63,10 @@ pub fn elevations(
             .par_chunks(BATCH)
             .map(|batch| {
                 let mut near = None;
-                let found = batch.iter().map(|&i| finder.height(positions[i as usize], &mut near)).collect();
+                let found = batch
+                    .iter()
+                    .map(|&i| finder.height(positions[i as usize], &mut near))
+                    .collect();
                 work.add(batch.len() as u64)?;
                 Ok(found)
             })
@@ -87,9 +93,19 @@ impl Finder<'_> {
             Model::Tin(tin) if self.is_linear() => tin.elevation_near(q, near),
             // What is in no whole triangle may be in a fragment.
             Model::Compact(tin) if self.is_linear() => {
-                tin.elevation_in_whole(q, near).or_else(|| if tin.has_fragments() { interpolated() } else { None })
+                tin.elevation_in_whole(q, near).or_else(|| {
+                    if tin.has_fragments() {
+                        interpolated()
+                    } else {
+                        None
+                    }
+                })
             }
-            Model::Tin(_) | Model::Compact(_) | Model::Parts(_) | Model::Mesh(_) | Model::Raster(_) => interpolated(),
+            Model::Tin(_)
+            | Model::Compact(_)
+            | Model::Parts(_)
+            | Model::Mesh(_)
+            | Model::Raster(_) => interpolated(),
         };
         found.unwrap_or(f64::NAN)
     }
@@ -102,12 +118,19 @@ impl Finder<'_> {
 /// Returns the numbers of positions in the order of a Z-curve over their extent.
 fn along_curve(positions: &[[f64; 2]]) -> Vec<u32> {
     let mut extent = Bounds::default();
-    positions.iter().filter(|q| q.iter().all(|c| c.is_finite())).for_each(|&[x, y]| extent.add([x, y, 0.0]));
-    let scale = |k: usize| f64::from(u16::MAX) / (extent.max[k] - extent.min[k]).max(f64::MIN_POSITIVE);
+    positions
+        .iter()
+        .filter(|q| q.iter().all(|c| c.is_finite()))
+        .for_each(|&[x, y]| extent.add([x, y, 0.0]));
+    let scale =
+        |k: usize| f64::from(u16::MAX) / (extent.max[k] - extent.min[k]).max(f64::MIN_POSITIVE);
     let (scales, low) = ([scale(0), scale(1)], extent.min);
     // What is not finite comes out as some number, and is found to be outside.
     let step = |q: &[f64; 2], k: usize| spread(((q[k] - low[k]) * scales[k]) as u16);
-    let mut keys: Vec<(u32, u32)> = (0..).zip(positions).map(|(i, q)| (step(q, 0) | step(q, 1) << 1, i)).collect();
+    let mut keys: Vec<(u32, u32)> = (0..)
+        .zip(positions)
+        .map(|(i, q)| (step(q, 0) | step(q, 1) << 1, i))
+        .collect();
     keys.par_sort_unstable();
     keys.into_iter().map(|(_, i)| i).collect()
 }
@@ -115,7 +138,12 @@ fn along_curve(positions: &[[f64; 2]]) -> Vec<u32> {
 /// Moves each bit of a number to twice its position.
 fn spread(number: u16) -> u32 {
     let mut bits = u32::from(number);
-    for (shift, mask) in [(8, 0x00FF_00FF), (4, 0x0F0F_0F0F), (2, 0x3333_3333), (1, 0x5555_5555)] {
+    for (shift, mask) in [
+        (8, 0x00FF_00FF),
+        (4, 0x0F0F_0F0F),
+        (2, 0x3333_3333),
+        (1, 0x5555_5555),
+    ] {
         bits = (bits | bits << shift) & mask;
     }
     bits
@@ -130,25 +158,58 @@ mod tests {
 
     /// A hilly TIN of a few hundred points, cut to a box unless `bounds` is `None`.
     fn hills(bounds: Option<Bounds>) -> SurfaceProduct {
-        let points: Vec<[f64; 3]> =
-            (0..400u32).map(|i| [f64::from(i * 37 % 101), f64::from(i * 53 % 103), f64::from(i * i % 17)]).collect();
-        let tin = TinRequest { points: vec![Input::of_points(&points, None)], bounds, ..TinRequest::default() };
-        let request = SurfaceRequest { source: Source::Points(Box::new(tin)), ..SurfaceRequest::default() };
+        let points: Vec<[f64; 3]> = (0..400u32)
+            .map(|i| {
+                [
+                    f64::from(i * 37 % 101),
+                    f64::from(i * 53 % 103),
+                    f64::from(i * i % 17),
+                ]
+            })
+            .collect();
+        let tin = TinRequest {
+            points: vec![Input::of_points(&points, None)],
+            bounds,
+            ..TinRequest::default()
+        };
+        let request = SurfaceRequest {
+            source: Source::Points(Box::new(tin)),
+            ..SurfaceRequest::default()
+        };
         run::triangles(&request, &Context::default()).unwrap()
     }
 
     #[test]
     fn many_positions_have_the_heights_of_each_alone_whatever_the_surface_is_kept_in() {
-        let inner = Bounds { min: [10.0, 12.5, 0.0], max: [70.25, 60.0, 0.0] };
+        let inner = Bounds {
+            min: [10.0, 12.5, 0.0],
+            max: [70.25, 60.0, 0.0],
+        };
         for bounds in [None, Some(inner)] {
             let product = hills(bounds);
-            let Model::Tin(tin) = &product.model else { unreachable!() };
-            let mut positions: Vec<[f64; 2]> =
-                (0..3000u32).map(|i| [f64::from(i * 7 % 1031) / 9.0, f64::from(i * 11 % 1033) / 9.0]).collect();
-            positions.extend([[f64::NAN, 1.0], [1e300, 5.0], [f64::INFINITY, 0.0], [-5.0, 3.0]]);
+            let Model::Tin(tin) = &product.model else {
+                unreachable!()
+            };
+            let mut positions: Vec<[f64; 2]> = (0..3000u32)
+                .map(|i| {
+                    [
+                        f64::from(i * 7 % 1031) / 9.0,
+                        f64::from(i * 11 % 1033) / 9.0,
+                    ]
+                })
+                .collect();
+            positions.extend([
+                [f64::NAN, 1.0],
+                [1e300, 5.0],
+                [f64::INFINITY, 0.0],
+                [-5.0, 3.0],
+            ]);
             let context = Context::default();
             let found = elevations(&product, &positions, Method::Linear, &context).unwrap();
-            let alone: Vec<f64> = positions.iter().map(|&[x, y]| tin.elevation(x, y).unwrap_or(f64::NAN)).collect();
+            let alone: Vec<f64> = positions
+                .iter()
+                .map(|&[x, y]| tin.elevation(x, y).unwrap_or(f64::NAN))
+                .collect();
             let bits = |heights: &[f64]| heights.iter().map(|z| z.to_bits()).collect::<Vec<_>>();
             assert!(bits(&found) == bits(&alone));
             assert!(found.iter().filter(|z| !z.is_nan()).count() > 500);
@@ -156,14 +217,26 @@ mod tests {
             let mut bytes = Vec::new();
             tin.write_tin(&mut bytes).unwrap();
             let opened = CompactTin::open(mapped::of_bytes(&bytes).unwrap(), "bytes").unwrap();
-            let opened = SurfaceProduct { model: Model::Compact(Box::new(opened)), built: None, notices: Vec::new() };
+            let opened = SurfaceProduct {
+                model: Model::Compact(Box::new(opened)),
+                built: None,
+                notices: Vec::new(),
+            };
             let of_bytes = elevations(&opened, &positions, Method::Linear, &context).unwrap();
             for ((found, there), q) in found.iter().zip(&of_bytes).zip(&positions) {
-                assert!(found.is_nan() && there.is_nan() || (found - there).abs() < 1e-9, "{found} {there} at {q:?}");
+                assert!(
+                    found.is_nan() && there.is_nan() || (found - there).abs() < 1e-9,
+                    "{found} {there} at {q:?}"
+                );
             }
             // A mesh is searched by a tree.
             let smooth = elevations(&product, &positions, Method::Natural, &context).unwrap();
-            assert!(smooth.iter().zip(&found).all(|(a, b)| a.is_nan() == b.is_nan()));
+            assert!(
+                smooth
+                    .iter()
+                    .zip(&found)
+                    .all(|(a, b)| a.is_nan() == b.is_nan())
+            );
         }
     }
 }

@@ -5,7 +5,8 @@ use std::path::Path;
 
 use crate::crs::Crs;
 use crate::data::{
-    BlockSource, Bounds, Frame, LinkFlaw, PointBatch, PointFlags, PointInfo, Shape, ShapeKind, Surface, SurfaceFacts,
+    BlockSource, Bounds, Frame, LinkFlaw, PointBatch, PointFlags, PointInfo, Shape, ShapeKind,
+    Surface, SurfaceFacts,
 };
 use crate::error::{Result, Wording};
 use crate::io::mesh::Solid;
@@ -173,7 +174,12 @@ pub fn facts(path: &Path, read: points::Options, context: &Context) -> Result<Fa
 }
 
 /// The flags that are counted, in order.
-const FLAGS: [u8; 4] = [PointFlags::SYNTHETIC, PointFlags::KEY_POINT, PointFlags::WITHHELD, PointFlags::OVERLAP];
+const FLAGS: [u8; 4] = [
+    PointFlags::SYNTHETIC,
+    PointFlags::KEY_POINT,
+    PointFlags::WITHHELD,
+    PointFlags::OVERLAP,
+];
 
 fn point_facts(path: &Path, read: points::Options, context: &Context) -> Result<PointFacts> {
     let mut source = open::points_of_file(path, read, context)?;
@@ -187,7 +193,10 @@ fn point_facts(path: &Path, read: points::Options, context: &Context) -> Result<
         flags: [0; FLAGS.len()],
         warnings: Vec::new(),
     };
-    let work = context.start(Stage::ReadingPoints, facts.info.count.map_or(Size::Unknown, Size::Items))?;
+    let work = context.start(
+        Stage::ReadingPoints,
+        facts.info.count.map_or(Size::Unknown, Size::Items),
+    )?;
     let mut batch = PointBatch::default();
     loop {
         source.read(&mut batch)?;
@@ -208,8 +217,14 @@ impl PointFacts {
             self.bounds.add([x, y, z]);
             self.not_finite += u64::from(!(x.is_finite() && y.is_finite() && z.is_finite()));
         }
-        batch.class.iter().for_each(|&class| self.classes[usize::from(class)] += 1);
-        batch.return_number.iter().for_each(|&number| self.returns[usize::from(number)] += 1);
+        batch
+            .class
+            .iter()
+            .for_each(|&class| self.classes[usize::from(class)] += 1);
+        batch
+            .return_number
+            .iter()
+            .for_each(|&number| self.returns[usize::from(number)] += 1);
         for flags in &batch.flags {
             for (count, bit) in self.flags.iter_mut().zip(FLAGS) {
                 *count += u64::from(flags.0 & bit != 0);
@@ -220,7 +235,10 @@ impl PointFacts {
 
 fn layer_facts(path: &Path, cut: OnDamage, context: &Context) -> Result<LayerFacts> {
     let layer = open::layer(path, &[], cut, context)?;
-    let mut facts = LayerFacts { records: layer.shapes.len(), ..LayerFacts::default() };
+    let mut facts = LayerFacts {
+        records: layer.shapes.len(),
+        ..LayerFacts::default()
+    };
     for shape in &layer.shapes {
         *facts.kinds.entry(shape.kind()).or_default() += 1;
         facts.parts += match shape {
@@ -233,7 +251,8 @@ fn layer_facts(path: &Path, cut: OnDamage, context: &Context) -> Result<LayerFac
             facts.bounds.add(vertex);
         }
     }
-    (facts.format, facts.crs, facts.fields, facts.warnings) = (layer.format, layer.crs, layer.fields, layer.warnings);
+    (facts.format, facts.crs, facts.fields, facts.warnings) =
+        (layer.format, layer.crs, layer.fields, layer.warnings);
     Ok(facts)
 }
 
@@ -262,10 +281,13 @@ fn raster_facts(path: &Path, context: &Context) -> Result<RasterFacts> {
         Raster::Gdal(raster) => {
             let values = raster.read_grid_with(&watch)?.values;
             let valid = values.into_iter().filter(|value| !value.is_nan());
-            let (count, range) = valid.fold((0, None), |(count, range): (u64, Option<[f64; 2]>), value| {
-                let [low, high] = range.unwrap_or([value; 2]);
-                (count + 1, Some([low.min(value), high.max(value)]))
-            });
+            let (count, range) = valid.fold(
+                (0, None),
+                |(count, range): (u64, Option<[f64; 2]>), value| {
+                    let [low, high] = range.unwrap_or([value; 2]);
+                    (count + 1, Some([low.min(value), high.max(value)]))
+                },
+            );
             Ok(RasterFacts {
                 format: raster.description(),
                 sample: None,
@@ -284,26 +306,46 @@ fn raster_facts(path: &Path, context: &Context) -> Result<RasterFacts> {
 
 fn mesh_facts(path: &Path, context: &Context) -> Result<MeshFacts> {
     let (mesh, flaws) = open::linked_mesh(path, &Journal::new(context))?;
-    Ok(MeshFacts { surface: SurfaceFacts::of(&mesh), crs: mesh.crs().cloned(), flaw: flaws.first().copied() })
+    Ok(MeshFacts {
+        surface: SurfaceFacts::of(&mesh),
+        crs: mesh.crs().cloned(),
+        flaw: flaws.first().copied(),
+    })
 }
 
 fn tin_facts<S: AsRef<[u8]> + Sync>(tin: &CompactTin<S>) -> MeshFacts {
-    MeshFacts { surface: tin.facts().clone(), crs: tin.crs().cloned(), flaw: None }
+    MeshFacts {
+        surface: tin.facts().clone(),
+        crs: tin.crs().cloned(),
+        flaw: None,
+    }
 }
 
 fn parts_facts(parts: &TinParts) -> MeshFacts {
-    MeshFacts { surface: parts.facts().clone(), crs: parts.crs().cloned(), flaw: None }
+    MeshFacts {
+        surface: parts.facts().clone(),
+        crs: parts.crs().cloned(),
+        flaw: None,
+    }
 }
 
 fn plane_facts(path: &Path, context: &Context) -> Result<PlaneFacts> {
-    let extension = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+    let extension = path
+        .extension()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .to_ascii_lowercase();
     Ok(match extension.as_str() {
         "edge" => PlaneFacts::Edges(open::listed(path)?),
         "neigh" => PlaneFacts::Neighbors(open::listed(path)?),
         _ => {
             let graph = open::line_graph(path, context)?;
             let mut bounds = Bounds::default();
-            graph.nodes.points.iter().for_each(|&[x, y]| bounds.add([x, y, f64::NAN]));
+            graph
+                .nodes
+                .points
+                .iter()
+                .for_each(|&[x, y]| bounds.add([x, y, f64::NAN]));
             PlaneFacts::Graph {
                 vertices: graph.nodes.points.len(),
                 attributes: graph.nodes.attribute_count,

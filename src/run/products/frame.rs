@@ -95,7 +95,9 @@ pub(crate) fn cells_on(surface: &dyn Surface, frame: &Frame) -> f64 {
 
 /// Returns the area of a surface in plan.
 fn area(surface: &dyn Surface) -> f64 {
-    data::corners(surface).map(|(_, corners)| area_of(corners.map(|vertex| surface.position(vertex)))).sum()
+    data::corners(surface)
+        .map(|(_, corners)| area_of(corners.map(|vertex| surface.position(vertex))))
+        .sum()
 }
 
 /// Returns the area of a triangle in plan.
@@ -142,7 +144,9 @@ pub(crate) fn over_extent(
 ) -> Result<Frame> {
     let units = Units::of(crs);
     if extent.is_empty() {
-        return Err(Error::format("the surface has no triangle, so there is no raster of it"));
+        return Err(Error::format(
+            "the surface has no triangle, so there is no raster of it",
+        ));
     }
     let extent = match options.extent {
         Some(given) => {
@@ -163,9 +167,8 @@ pub(crate) fn over_extent(
     let resolution = match options.resolution {
         Some(resolution) => resolution,
         None if units.is_angular() => {
-            return Err(
-                Error::usage("there is no default resolution in degrees").cure(wording!["add ", Setting::Resolution])
-            );
+            return Err(Error::usage("there is no default resolution in degrees")
+                .cure(wording!["add ", Setting::Resolution]));
         }
         None => {
             journal.add(Notice::DefaultResolution(units.length(DEFAULT_RESOLUTION)));

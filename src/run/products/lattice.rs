@@ -39,24 +39,36 @@ pub(crate) fn reprojected(
     let mut after = Bounds::default();
     points[4..].iter().for_each(|&point| after.add(point));
     let mut new = *lattice;
-    let keeps_heights = before.iter().zip(&points).all(|(before, after)| before[2] == after[2]);
+    let keeps_heights = before
+        .iter()
+        .zip(&points)
+        .all(|(before, after)| before[2] == after[2]);
     let axes = if keeps_heights { 0..2 } else { 0..3 };
     for k in axes {
-        let step = (1..4).map(|i| (points[i][k] - points[0][k]).abs() / LEAP).fold(0.0, f64::max);
+        let step = (1..4)
+            .map(|i| (points[i][k] - points[0][k]).abs() / LEAP)
+            .fold(0.0, f64::max);
         let half = (after.max[k] - after.min[k]) / 2.0;
         // A little is added, because a hundredth may come out as slightly less.
         let fine = (step * (1.0 + 1e-6)).log10().floor();
         let exponent = fine.max((half / REACH).log10().ceil());
         if !exponent.is_finite() {
-            return Err(Error::limit("the extent that the header states cannot be reprojected").cure(wording![
-                "write the file without ",
-                Setting::TargetCrs,
-                " first: that counts its extent anew"
-            ]));
+            return Err(
+                Error::limit("the extent that the header states cannot be reprojected").cure(
+                    wording![
+                        "write the file without ",
+                        Setting::TargetCrs,
+                        " first: that counts its extent anew"
+                    ],
+                ),
+            );
         }
         let middle = f64::midpoint(after.min[k], after.max[k]);
         new.scale[k] = decimal(1.0, exponent);
-        new.offset[k] = decimal((middle / (new.scale[k] * OFFSET_STEPS)).round() * OFFSET_STEPS, exponent);
+        new.offset[k] = decimal(
+            (middle / (new.scale[k] * OFFSET_STEPS)).round() * OFFSET_STEPS,
+            exponent,
+        );
     }
     Ok(new)
 }
@@ -65,26 +77,41 @@ pub(crate) fn reprojected(
 /// not.
 fn decimal(digits: f64, exponent: f64) -> f64 {
     let power = 10f64.powi(exponent.abs() as i32);
-    if exponent < 0.0 { digits / power } else { digits * power }
+    if exponent < 0.0 {
+        digits / power
+    } else {
+        digits * power
+    }
 }
 
 /// Returns points of a box, its corners among them.
 fn samples(bounds: &Bounds) -> impl Iterator<Item = [f64; 3]> {
     let Bounds { min, max } = *bounds;
-    let at = move |k: usize, i: u8| min[k] + (max[k] - min[k]) * f64::from(i) / f64::from(SAMPLES - 1);
-    (0..SAMPLES).flat_map(move |i| (0..SAMPLES).flat_map(move |j| [min[2], max[2]].map(|z| [at(0, i), at(1, j), z])))
+    let at =
+        move |k: usize, i: u8| min[k] + (max[k] - min[k]) * f64::from(i) / f64::from(SAMPLES - 1);
+    (0..SAMPLES).flat_map(move |i| {
+        (0..SAMPLES).flat_map(move |j| [min[2], max[2]].map(|z| [at(0, i), at(1, j), z]))
+    })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    const LIDAR: Lattice = Lattice { scale: [0.01, 0.01, 0.001], offset: [600_000.0, 5_000_000.0, 12.5] };
-    const TILE: Bounds = Bounds { min: [688_000.0, 5_261_000.0, 500.0], max: [688_999.99, 5_261_999.99, 707.25] };
+    const LIDAR: Lattice = Lattice {
+        scale: [0.01, 0.01, 0.001],
+        offset: [600_000.0, 5_000_000.0, 12.5],
+    };
+    const TILE: Bounds = Bounds {
+        min: [688_000.0, 5_261_000.0, 500.0],
+        max: [688_999.99, 5_261_999.99, 707.25],
+    };
 
     fn scaled(factor: [f64; 3], shift: [f64; 3]) -> Result<Lattice> {
         reprojected(&LIDAR, &TILE, |points| {
-            points.iter_mut().for_each(|p| *p = [0, 1, 2].map(|k| p[k] * factor[k] + shift[k]));
+            points
+                .iter_mut()
+                .for_each(|p| *p = [0, 1, 2].map(|k| p[k] * factor[k] + shift[k]));
             Ok(())
         })
     }
@@ -92,16 +119,30 @@ mod tests {
     #[test]
     fn steps_become_no_longer_and_offsets_are_short() {
         let moved = scaled([1.0; 3], [-500_000.0, 100.0, 0.0]).unwrap();
-        assert_eq!(moved, Lattice { scale: [0.01, 0.01, 0.001], offset: [188_000.0, 5_262_000.0, 12.5] });
+        assert_eq!(
+            moved,
+            Lattice {
+                scale: [0.01, 0.01, 0.001],
+                offset: [188_000.0, 5_262_000.0, 12.5]
+            }
+        );
         // Metres to degrees, and heights to feet.
         let degrees = scaled([1.0 / 111_000.0, 1.0 / 111_000.0, 1.0 / 0.3048], [0.0; 3]).unwrap();
         assert_eq!(degrees.scale, [1e-8, 1e-8, 0.001]);
         assert_eq!(degrees.offset, [6.203, 47.401, 2000.0]);
         // Steps of a millimetre would need more than 32 bits here.
-        let tile = Bounds { min: [6.0, 47.0, 0.0], max: [6.4, 47.4, 1.0] };
-        let fine = Lattice { scale: [1e-10, 1e-7, 0.25], offset: [0.0; 3] };
+        let tile = Bounds {
+            min: [6.0, 47.0, 0.0],
+            max: [6.4, 47.4, 1.0],
+        };
+        let fine = Lattice {
+            scale: [1e-10, 1e-7, 0.25],
+            offset: [0.0; 3],
+        };
         let metres = reprojected(&fine, &tile, |points| {
-            points.iter_mut().for_each(|p| (p[0], p[1]) = (p[0] * 1e7, p[1] * 1e5));
+            points
+                .iter_mut()
+                .for_each(|p| (p[0], p[1]) = (p[0] * 1e7, p[1] * 1e5));
             Ok(())
         });
         assert_eq!(metres.unwrap().scale, [0.01, 0.01, 0.25]);
@@ -111,6 +152,13 @@ mod tests {
     fn what_cannot_be_transformed_is_an_error() {
         assert!(reprojected(&LIDAR, &TILE, |_| Err(Error::limit("outside"))).is_err());
         let error = scaled([f64::NAN, 1.0, 1.0], [0.0; 3]).unwrap_err();
-        assert!(error.cure_text().unwrap().plain().contains("without target-crs"), "{error}");
+        assert!(
+            error
+                .cure_text()
+                .unwrap()
+                .plain()
+                .contains("without target-crs"),
+            "{error}"
+        );
     }
 }

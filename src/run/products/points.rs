@@ -4,7 +4,9 @@ use std::path::{Path, PathBuf};
 
 use super::lattice;
 use crate::crs::Crs;
-use crate::data::{Bounds, Layer, PointBatch, PointFlags, PointInfo, PointSink, PointSource, PointSummary};
+use crate::data::{
+    Bounds, Layer, PointBatch, PointFlags, PointInfo, PointSink, PointSource, PointSummary,
+};
 use crate::error::{Command, Error, Result, Setting, wording};
 use crate::io::Destination;
 use crate::io::las::{self, Detail, Rounding};
@@ -85,9 +87,15 @@ pub struct PointsReport {
 /// requested, reprojection is not possible, points cannot be written together without a loss (see
 /// [`las::create`](crate::io::las::create)), no point is left, or the run is canceled. Nothing is
 /// written then.
-pub fn write_points(request: &PointsRequest, target: Destination, context: &Context) -> Result<PointsReport> {
+pub fn write_points(
+    request: &PointsRequest,
+    target: Destination,
+    context: &Context,
+) -> Result<PointsReport> {
     let detail = points::detail_for(target)?;
-    transfer(request, detail, Stage::WritingPoints, context, |infos| points::create(target, infos, request.rounding))
+    transfer(request, detail, Stage::WritingPoints, context, |infos| {
+        points::create(target, infos, request.rounding)
+    })
 }
 
 /// Points in memory, and the report of reading them.
@@ -107,9 +115,13 @@ pub struct PointsProduct {
 /// Those of [`write_points`], except those of writing; and if there is not enough memory.
 pub fn read_points(request: &PointsRequest, context: &Context) -> Result<PointsProduct> {
     let mut points = PointBatch::default();
-    let report = transfer(request, Detail::Columns, Stage::ReadingPoints, context, |_| {
-        Ok(Box::new(Collected(&mut points)) as Box<dyn PointSink>)
-    })?;
+    let report = transfer(
+        request,
+        Detail::Columns,
+        Stage::ReadingPoints,
+        context,
+        |_| Ok(Box::new(Collected(&mut points)) as Box<dyn PointSink>),
+    )?;
     Ok(PointsProduct { points, report })
 }
 
@@ -122,8 +134,12 @@ fn transfer<'s>(
     create: impl FnOnce(&[&PointInfo]) -> Result<Box<dyn PointSink + 's>>,
 ) -> Result<PointsReport> {
     let journal = Journal::new(context);
-    let options = Options { detail, ..request.read };
-    let open = |path: &Path| open::points_of_file(path, options, context).map_err(|e| e.in_file(path));
+    let options = Options {
+        detail,
+        ..request.read
+    };
+    let open =
+        |path: &Path| open::points_of_file(path, options, context).map_err(|e| e.in_file(path));
     let mut sources: Vec<Option<Box<dyn PointSource + Send>>> = Vec::new();
     let mut infos: Vec<PointInfo> = Vec::new();
     for path in &request.files {
@@ -143,8 +159,12 @@ fn transfer<'s>(
     let restated = |((info, &number), path): ((PointInfo, &Option<usize>), &PathBuf)| {
         restated(info, &plan, number).map_err(|e| e.in_file(path))
     };
-    let mut infos: Vec<PointInfo> =
-        infos.into_iter().zip(of_points).zip(&request.files).map(restated).collect::<Result<_>>()?;
+    let mut infos: Vec<PointInfo> = infos
+        .into_iter()
+        .zip(of_points)
+        .zip(&request.files)
+        .map(restated)
+        .collect::<Result<_>>()?;
     share_lattice(&mut infos, of_points);
     let all: Vec<&PointInfo> = infos.iter().collect();
     let mut report = PointsReport::default();
@@ -152,7 +172,9 @@ fn transfer<'s>(
     let count = infos.iter().map(|info| info.count).sum::<Option<u64>>();
     let work = journal.start(stage, count.map_or(Size::Unknown, Size::Items))?;
     let mut batch = PointBatch::default();
-    for (((path, info), source), number) in request.files.iter().zip(&infos).zip(sources).zip(of_points) {
+    for (((path, info), source), number) in
+        request.files.iter().zip(&infos).zip(sources).zip(of_points)
+    {
         let mut source = source.map_or_else(|| open(path), Ok)?;
         sink.next_source(info).map_err(|e| e.in_file(path))?;
         loop {
@@ -162,7 +184,9 @@ fn transfer<'s>(
             }
             let count = batch.len() as u64;
             report.read += count;
-            plan.transforms.apply_to_batch(*number, &mut batch).map_err(|e| e.in_file(path))?;
+            plan.transforms
+                .apply_to_batch(*number, &mut batch)
+                .map_err(|e| e.in_file(path))?;
             if let (Some(_), Some(_), Some(lattice)) = (number, &info.head, &info.lattice) {
                 las::put_coordinates(&mut batch, lattice).map_err(|e| e.in_file(path))?;
             }
@@ -210,7 +234,10 @@ impl PointSink for Collected<'_> {
         let all = self.0;
         let mut bounds = Bounds::default();
         (0..all.len()).for_each(|i| bounds.add([all.x[i], all.y[i], all.z[i]]));
-        Ok(PointSummary { count: all.len() as u64, bounds })
+        Ok(PointSummary {
+            count: all.len() as u64,
+            bounds,
+        })
     }
 }
 
@@ -234,19 +261,39 @@ struct Plan {
 }
 
 impl Plan {
-    fn new(request: &PointsRequest, infos: &[PointInfo], boundary: &Layers, journal: &Journal) -> Result<Self> {
-        let points = request.files.iter().zip(infos).map(|(path, info)| Stated::by_points(path, info));
-        let lines = boundary.iter().map(|(path, layer)| Stated::by_layer(path, layer));
+    fn new(
+        request: &PointsRequest,
+        infos: &[PointInfo],
+        boundary: &Layers,
+        journal: &Journal,
+    ) -> Result<Self> {
+        let points = request
+            .files
+            .iter()
+            .zip(infos)
+            .map(|(path, info)| Stated::by_points(path, info));
+        let lines = boundary
+            .iter()
+            .map(|(path, layer)| Stated::by_layer(path, layer));
         let stated: Vec<Stated> = points.chain(lines).collect();
         let SystemOptions { assign, target, .. } = &request.systems;
         let Systems { from, crs } = systems::unify(&stated, &request.systems, journal)?;
         let transforms = Transforms::new(&from, crs.as_ref(), journal)?;
-        Ok(Plan { crs, is_new: assign.is_some() || target.is_some(), transforms })
+        Ok(Plan {
+            crs,
+            is_new: assign.is_some() || target.is_some(),
+            transforms,
+        })
     }
 }
 
 /// Removes the points that are not selected from a batch, and counts them.
-fn select(batch: &mut PointBatch, request: &PointsRequest, inside: Option<&Inside>, report: &mut PointsReport) {
+fn select(
+    batch: &mut PointBatch,
+    request: &PointsRequest,
+    inside: Option<&Inside>,
+    report: &mut PointsReport,
+) {
     let is_listed = |list: &[u8], column: &[u8], i: usize| {
         list.is_empty() || column.get(i).is_none_or(|value| list.contains(value))
     };
@@ -286,7 +333,9 @@ fn is_within(bounds: &Bounds, p: [f64; 2]) -> bool {
 /// the extent in its header means nothing.
 fn restated(mut info: PointInfo, plan: &Plan, number: Option<usize>) -> Result<PointInfo> {
     info.crs.clone_from(&plan.crs);
-    let Some(head) = &mut info.head else { return Ok(info) };
+    let Some(head) = &mut info.head else {
+        return Ok(info);
+    };
     if let Some(crs) = plan.crs.as_ref().filter(|_| plan.is_new) {
         las::state_system(head, crs)?;
     }
@@ -295,13 +344,16 @@ fn restated(mut info: PointInfo, plan: &Plan, number: Option<usize>) -> Result<P
         && let Some(lattice) = &mut info.lattice
     {
         let bounds = info.bounds.ok_or_else(|| {
-            Error::format("the header states no extent, which scale and offset would be chosen by").cure(wording![
-                "write the file without ",
-                Setting::TargetCrs,
-                " first: that counts its extent"
-            ])
+            Error::format("the header states no extent, which scale and offset would be chosen by")
+                .cure(wording![
+                    "write the file without ",
+                    Setting::TargetCrs,
+                    " first: that counts its extent"
+                ])
         })?;
-        *lattice = lattice::reprojected(lattice, &bounds, |points| plan.transforms.apply(number, points))?;
+        *lattice = lattice::reprojected(lattice, &bounds, |points| {
+            plan.transforms.apply(number, points)
+        })?;
     }
     Ok(info)
 }
@@ -309,7 +361,13 @@ fn restated(mut info: PointInfo, plan: &Plan, number: Option<usize>) -> Result<P
 /// Gives reprojected sources without points the lattice of the first source that has points: their
 /// own belongs to another coordinate system, and must not restrict that of the output.
 fn share_lattice(infos: &mut [PointInfo], numbers: &[Option<usize>]) {
-    let Some(lattice) = infos.iter().find(|info| info.count != Some(0)).map(|info| info.lattice) else { return };
+    let Some(lattice) = infos
+        .iter()
+        .find(|info| info.count != Some(0))
+        .map(|info| info.lattice)
+    else {
+        return;
+    };
     for (info, number) in infos.iter_mut().zip(numbers) {
         if info.head.is_some() && info.count == Some(0) && number.is_some() {
             info.lattice = lattice;
@@ -319,7 +377,14 @@ fn share_lattice(infos: &mut [PointInfo], numbers: &[Option<usize>]) {
 
 #[cold]
 fn nothing_left(report: &PointsReport, files: &[PathBuf]) -> Error {
-    let PointsReport { read, withheld, other_class, other_return, outside, .. } = report;
+    let PointsReport {
+        read,
+        withheld,
+        other_class,
+        other_return,
+        outside,
+        ..
+    } = report;
     let error = match read {
         0 => Error::format("no points in the input").cure("pass files that contain points"),
         _ => Error::usage(format!(

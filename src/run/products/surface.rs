@@ -69,14 +69,16 @@ impl Source {
     /// # Errors
     /// If a mesh or a raster is given together with other files.
     pub fn of_files(files: &[PathBuf]) -> Result<Self> {
-        let ready = files.iter().find(|path| matches!(content(path), Content::Mesh | Content::Raster));
+        let ready = files
+            .iter()
+            .find(|path| matches!(content(path), Content::Mesh | Content::Raster));
         match ready {
             None => Ok(Self::of_points(files)),
-            Some(path) if files.len() > 1 => {
-                Err(Error::usage("the file is a surface, and cannot be combined with other files")
-                    .in_file(path)
-                    .cure("pass one .tin, .ply or raster alone, or points only"))
-            }
+            Some(path) if files.len() > 1 => Err(Error::usage(
+                "the file is a surface, and cannot be combined with other files",
+            )
+            .in_file(path)
+            .cure("pass one .tin, .ply or raster alone, or points only")),
             Some(path) if content(path) == Content::Mesh => Ok(Source::Mesh(path.clone())),
             Some(path) => Ok(Source::Raster(path.clone())),
         }
@@ -84,8 +86,15 @@ impl Source {
 
     /// Returns files of points as a source. They are not looked at.
     pub fn of_points(files: &[PathBuf]) -> Self {
-        let points = files.iter().cloned().map(Input::<MemoryPoints>::File).collect();
-        Source::Points(Box::new(TinRequest { points, ..TinRequest::default() }))
+        let points = files
+            .iter()
+            .cloned()
+            .map(Input::<MemoryPoints>::File)
+            .collect();
+        Source::Points(Box::new(TinRequest {
+            points,
+            ..TinRequest::default()
+        }))
     }
 }
 
@@ -119,7 +128,11 @@ pub enum Model {
 impl From<Model> for SurfaceProduct {
     /// A surface that was made elsewhere, without a report.
     fn from(model: Model) -> Self {
-        SurfaceProduct { model, built: None, notices: Vec::new() }
+        SurfaceProduct {
+            model,
+            built: None,
+            notices: Vec::new(),
+        }
     }
 }
 
@@ -134,7 +147,9 @@ impl SurfaceProduct {
             Model::Mesh(mesh) => Ok(mesh.as_ref()),
             Model::Compact(tin) => Ok(tin.as_ref()),
             Model::Parts(parts) => Ok(parts.joined()?),
-            Model::Raster(_) => Err(Error::usage("the surface is a raster; points, a .tin or a .ply are needed")),
+            Model::Raster(_) => Err(Error::usage(
+                "the surface is a raster; points, a .tin or a .ply are needed",
+            )),
         }
     }
 
@@ -161,7 +176,9 @@ impl SurfaceProduct {
         match &self.model {
             Model::Compact(tin) => Ok(tin.facts().clone()),
             Model::Parts(parts) => Ok(parts.facts().clone()),
-            Model::Tin(_) | Model::Mesh(_) | Model::Raster(_) => self.triangles().map(SurfaceFacts::of),
+            Model::Tin(_) | Model::Mesh(_) | Model::Raster(_) => {
+                self.triangles().map(SurfaceFacts::of)
+            }
         }
     }
 
@@ -187,7 +204,11 @@ impl SurfaceProduct {
 /// # Errors
 /// If the extension names no such format, the surface is too large for it, the file cannot be
 /// written, or the run is canceled.
-pub fn write_mesh(surface: &dyn Surface, target: Destination, context: &Context) -> Result<MeshSummary> {
+pub fn write_mesh(
+    surface: &dyn Surface,
+    target: Destination,
+    context: &Context,
+) -> Result<MeshSummary> {
     target.put_whole(|target| {
         // Once to number the vertices, once to list the faces.
         let watched = Watched::faces(surface, 2, Stage::WritingFaces, context)?;
@@ -214,7 +235,12 @@ pub fn surface(request: &SurfaceRequest, context: &Context) -> Result<SurfacePro
             } else if let Some(parts) = open::tin_parts(path) {
                 parts_model(path, parts?, &request.systems, &journal)?
             } else {
-                mesh_model(path, open::mesh(path, &journal)?, &request.systems, &journal)?
+                mesh_model(
+                    path,
+                    open::mesh(path, &journal)?,
+                    &request.systems,
+                    &journal,
+                )?
             };
             (model, None)
         }
@@ -225,7 +251,11 @@ pub fn surface(request: &SurfaceRequest, context: &Context) -> Result<SurfacePro
             (Model::Raster(Box::new(grid)), None)
         }
     };
-    Ok(SurfaceProduct { model, built, notices: journal.take() })
+    Ok(SurfaceProduct {
+        model,
+        built,
+        notices: journal.take(),
+    })
 }
 
 /// Like [`surface`], for verbs that need triangles.
@@ -234,15 +264,22 @@ pub fn surface(request: &SurfaceRequest, context: &Context) -> Result<SurfacePro
 /// Those of [`surface`], and if the input is a raster, which is not read then.
 pub fn triangles(request: &SurfaceRequest, context: &Context) -> Result<SurfaceProduct> {
     if let Source::Raster(path) = &request.source {
-        return Err(Error::usage("the input is a raster; points, a .tin or a .ply are needed")
-            .in_file(path)
-            .cure("`contour` and `hillshade` take rasters"));
+        return Err(
+            Error::usage("the input is a raster; points, a .tin or a .ply are needed")
+                .in_file(path)
+                .cure("`contour` and `hillshade` take rasters"),
+        );
     }
     surface(request, context)
 }
 
 /// Returns a mesh as a model, in the coordinate system that it states or that is assigned.
-pub(crate) fn mesh_model(path: &Path, mut mesh: Mesh, options: &SystemOptions, journal: &Journal) -> Result<Model> {
+pub(crate) fn mesh_model(
+    path: &Path,
+    mut mesh: Mesh,
+    options: &SystemOptions,
+    journal: &Journal,
+) -> Result<Model> {
     mesh.set_crs(one_system(path, mesh.crs(), options, journal)?);
     Ok(Model::Mesh(Box::new(mesh)))
 }
@@ -259,12 +296,27 @@ pub(crate) fn tin_model(
 }
 
 /// Returns a TIN in parts as a model, in the coordinate system that it states or that is assigned.
-fn parts_model(path: &Path, mut parts: TinParts, options: &SystemOptions, journal: &Journal) -> Result<Model> {
+fn parts_model(
+    path: &Path,
+    mut parts: TinParts,
+    options: &SystemOptions,
+    journal: &Journal,
+) -> Result<Model> {
     parts.set_crs(one_system(path, parts.crs(), options, journal)?);
     Ok(Model::Parts(Box::new(parts)))
 }
 
-fn one_system(path: &Path, crs: Option<&Crs>, options: &SystemOptions, journal: &Journal) -> Result<Option<Crs>> {
-    let stated = [Stated { path: path.to_path_buf(), crs: crs.cloned(), unread: None, role: Role::Whole }];
+fn one_system(
+    path: &Path,
+    crs: Option<&Crs>,
+    options: &SystemOptions,
+    journal: &Journal,
+) -> Result<Option<Crs>> {
+    let stated = [Stated {
+        path: path.to_path_buf(),
+        crs: crs.cloned(),
+        unread: None,
+        role: Role::Whole,
+    }];
     Ok(systems::reconcile(&stated, options, journal)?.crs)
 }

@@ -25,7 +25,8 @@ use crate::run::sources::point_files::PointFiles;
 use crate::run::sources::systems::{self, SystemOptions, Systems};
 use crate::run::sources::transforms::Transforms;
 use crate::terrain::{
-    Classes, CrossingRule, DuplicateRule, ReadWindow, Selection, SelectionReport, Tin, TinBuilder, TinReport,
+    Classes, CrossingRule, DuplicateRule, ReadWindow, Selection, SelectionReport, Tin, TinBuilder,
+    TinReport,
 };
 use crate::triangulation::OnCrossing;
 
@@ -108,7 +109,10 @@ impl TinRequest {
             Some(Bounds { min, max })
                 if !(0..2).all(|i| min[i] < max[i] && min[i].is_finite() && max[i].is_finite()) =>
             {
-                Err(Error::usage(format!("the bounds go from {} {} to {} {}", min[0], min[1], max[0], max[1])))
+                Err(Error::usage(format!(
+                    "the bounds go from {} {} to {} {}",
+                    min[0], min[1], max[0], max[1]
+                )))
             }
             _ => Ok(()),
         }
@@ -118,7 +122,11 @@ impl TinRequest {
     fn replaced_to_report(&self, replaced: Vec<[f64; 3]>) -> Vec<[f64; 3]> {
         match self.replaced {
             ReplacedPoints::Keep => {
-                let is_within = |p: &[f64; 3]| self.bounds.as_ref().is_none_or(|bounds| bounds.holds(p[0], p[1]));
+                let is_within = |p: &[f64; 3]| {
+                    self.bounds
+                        .as_ref()
+                        .is_none_or(|bounds| bounds.holds(p[0], p[1]))
+                };
                 replaced.into_iter().filter(is_within).collect()
             }
             ReplacedPoints::Drop => Vec::new(),
@@ -132,12 +140,22 @@ impl TinRequest {
     /// Names the file and its kind.
     pub fn check_layers(&self) -> Result<()> {
         let takes = |role: LineRole, what: &str| wording![role.setting(), format!(" takes {what}")];
-        refuse_other_kinds(takes(LineRole::Breaklines, "lines or polygons"), &self.breaklines)?;
+        refuse_other_kinds(
+            takes(LineRole::Breaklines, "lines or polygons"),
+            &self.breaklines,
+        )?;
         for (role, inputs) in self.lines.inputs() {
-            let what = if role == LineRole::Holes { "polygons or closed lines" } else { "lines or polygons" };
+            let what = if role == LineRole::Holes {
+                "polygons or closed lines"
+            } else {
+                "lines or polygons"
+            };
             refuse_other_kinds(takes(role, what), inputs)?;
         }
-        refuse_other_kinds(takes(LineRole::Boundary, "polygons or closed lines"), &self.boundary)
+        refuse_other_kinds(
+            takes(LineRole::Boundary, "polygons or closed lines"),
+            &self.boundary,
+        )
     }
 }
 
@@ -192,29 +210,42 @@ impl EdgeLimit {
     /// Returns how far outside of bounds points are used at first, and how far lines may reach
     /// beyond the points without a notice.
     pub(crate) fn buffer(self, units: &Units) -> f64 {
-        self.length(units).unwrap_or_else(|| units.of_metres(DEFAULT_MAX_EDGE_METRES))
+        self.length(units)
+            .unwrap_or_else(|| units.of_metres(DEFAULT_MAX_EDGE_METRES))
     }
 
     /// Returns a notice if the default looks wrong for points with this mean distance.
     pub(crate) fn unusual(self, spacing: Option<f64>, units: &Units) -> Option<Notice> {
-        let (EdgeLimit::Standard, Some(limit), Some(spacing)) = (self, self.length(units), spacing) else {
+        let (EdgeLimit::Standard, Some(limit), Some(spacing)) = (self, self.length(units), spacing)
+        else {
             return None;
         };
         let is_usual = USUAL_SPACINGS.contains(&(limit / spacing));
-        (!is_usual).then(|| Notice::EdgeLimitUnusual { limit: units.length(limit), spacing: units.length(spacing) })
+        (!is_usual).then(|| Notice::EdgeLimitUnusual {
+            limit: units.length(limit),
+            spacing: units.length(spacing),
+        })
     }
 }
 
 /// Returns the mean distance between points, from the number of all points and the extents of all
 /// inputs; `None` if these have no area.
 pub(crate) fn mean_distance(read: u64, extents: impl IntoIterator<Item = Bounds>) -> Option<f64> {
-    let area = |b: Bounds| if b.is_empty() { 0.0 } else { (b.max[0] - b.min[0]) * (b.max[1] - b.min[1]) };
+    let area = |b: Bounds| {
+        if b.is_empty() {
+            0.0
+        } else {
+            (b.max[0] - b.min[0]) * (b.max[1] - b.min[1])
+        }
+    };
     let area: f64 = extents.into_iter().map(area).sum();
     Some((area / read as f64).sqrt()).filter(|spacing| spacing.is_normal())
 }
 
 fn note_of_limit(limit: Option<f64>, units: &Units) -> Notice {
-    limit.map_or(Notice::NoEdgeLimit, |length| Notice::EdgeLimit(units.length(length)))
+    limit.map_or(Notice::NoEdgeLimit, |length| {
+        Notice::EdgeLimit(units.length(length))
+    })
 }
 
 /// The report of a TIN that was built: its input and what was done with it.
@@ -247,16 +278,28 @@ impl BuildReport {
     /// If `out` cannot be written to.
     pub fn write_replaced(&self, out: &mut impl Write) -> std::io::Result<()> {
         writeln!(out, "x,y,z")?;
-        self.replaced.iter().try_for_each(|[x, y, z]| writeln!(out, "{x},{y},{z}"))
+        self.replaced
+            .iter()
+            .try_for_each(|[x, y, z]| writeln!(out, "{x},{y},{z}"))
     }
 }
 
 /// Reads the points and lines of a request and builds the TIN.
-pub(crate) fn build(request: &TinRequest, options: &SystemOptions, journal: &Journal) -> Result<(Tin, BuildReport)> {
+pub(crate) fn build(
+    request: &TinRequest,
+    options: &SystemOptions,
+    journal: &Journal,
+) -> Result<(Tin, BuildReport)> {
     request.check_bounds()?;
     request.check_layers()?;
     let mut files = PointFiles::open(&request.points, request.read, journal)?;
-    let layers = LineLayers::read(&request.lines, &request.breaklines, &request.boundary, request.read.cut, journal)?;
+    let layers = LineLayers::read(
+        &request.lines,
+        &request.breaklines,
+        &request.boundary,
+        request.read.cut,
+        journal,
+    )?;
 
     let mut stated = files.stated(&request.classes, journal)?;
     stated.extend(layers.stated());
@@ -269,8 +312,15 @@ pub(crate) fn build(request: &TinRequest, options: &SystemOptions, journal: &Jou
     let mut rim = Rim::new(request, &units, journal);
 
     // Lines first: they are few, and their errors are known before the points are read.
-    let Added { names, mut inputs, extent: line_extent, level_rings, uneven, lowered, overlaps } =
-        layers.add_to(&mut builder, of_layers, &transforms, &units)?;
+    let Added {
+        names,
+        mut inputs,
+        extent: line_extent,
+        level_rings,
+        uneven,
+        lowered,
+        overlaps,
+    } = layers.add_to(&mut builder, of_layers, &transforms, &units)?;
     notes::note_uneven(&uneven, &units, journal);
     notes::note_lowered(lowered, journal);
     notes::note_overlaps(&overlaps, journal);
@@ -289,7 +339,11 @@ pub(crate) fn build(request: &TinRequest, options: &SystemOptions, journal: &Jou
         paths: request.points.iter().map(Input::path).collect(),
     };
     let mut reach = Reach::new(request, &rim);
-    let Built { tin, points, replaced } = building.surface(&mut files, level_rings, &mut rim, &mut reach)?;
+    let Built {
+        tin,
+        points,
+        replaced,
+    } = building.surface(&mut files, level_rings, &mut rim, &mut reach)?;
     notes::count_edges(&mut inputs, &tin);
     building.note_lines(&inputs, tin.report());
     rim.note(&units, journal);
@@ -358,7 +412,11 @@ impl Building<'_> {
         reach: &mut Reach,
     ) -> Result<Built> {
         loop {
-            let Read { points, report, extents } = self.read(files, reach)?;
+            let Read {
+                points,
+                report,
+                extents,
+            } = self.read(files, reach)?;
             self.compare_lines(&points, rim.buffer);
             memory::require_for_points(points.len())?;
             rim.find_limit(&report, &extents);
@@ -366,10 +424,17 @@ impl Building<'_> {
             self.note_level_rings(std::mem::take(&mut level_rings), &points);
             let (tin, replaced) = self.triangulate(points, &report, rim, reach)?;
             match tin {
-                Ok(tin) if tin.report().uncertain == 0 => return Ok(Built { tin, points: report, replaced }),
+                Ok(tin) if tin.report().uncertain == 0 => {
+                    return Ok(Built {
+                        tin,
+                        points: report,
+                        replaced,
+                    });
+                }
                 Ok(tin) => {
                     let buffer = self.units.length(reach.buffer);
-                    self.journal.add(Notice::Uncertain(tin.report().uncertain, buffer));
+                    self.journal
+                        .add(Notice::Uncertain(tin.report().uncertain, buffer));
                 }
                 // Too few points are an error only if there are no more to add.
                 Err(_) if reach.may_grow_into(&report) => (),
@@ -391,10 +456,17 @@ impl Building<'_> {
         let (points, report) = selection.finish();
         self.transforms.warn(self.journal);
         note_classes(&report, classes, self.journal);
-        if points.is_empty() && !self.layers.has_lines_with_heights() && !reach.may_grow_into(&report) {
+        if points.is_empty()
+            && !self.layers.has_lines_with_heights()
+            && !reach.may_grow_into(&report)
+        {
             return Err(nothing_left(&report, &self.paths));
         }
-        Ok(Read { points, report, extents })
+        Ok(Read {
+            points,
+            report,
+            extents,
+        })
     }
 
     /// Adds a notice if the lines are farther than a length from all points.
@@ -405,7 +477,9 @@ impl Building<'_> {
         let mut extent = Bounds::default();
         points.iter().for_each(|&point| extent.add(point));
         let notice = extents::compare_lines(&extent, &self.line_extent, buffer, self.units);
-        notice.into_iter().for_each(|notice| self.journal.add(notice));
+        notice
+            .into_iter()
+            .for_each(|notice| self.journal.add(notice));
     }
 
     /// Adds a notice if points inside of closed lines of one height have other heights.
@@ -415,7 +489,9 @@ impl Building<'_> {
             let mut found = rings.none_found();
             rings.count(points, &mut found);
             let notice = rings.notice(&found, self.names, self.units);
-            notice.into_iter().for_each(|notice| self.journal.add(notice));
+            notice
+                .into_iter()
+                .for_each(|notice| self.journal.add(notice));
         }
     }
 
@@ -433,7 +509,10 @@ impl Building<'_> {
     ) -> Result<(Result<Tin>, Vec<[f64; 3]>)> {
         let mut builder = self.builder.clone();
         builder.max_edge = rim.max_edge;
-        builder.window = reach.window().map(|read| ReadWindow { read, all: report.extent });
+        builder.window = reach.window().map(|read| ReadWindow {
+            read,
+            all: report.extent,
+        });
         builder.add_owned_points(points);
         let replaced = builder.take_replaced_points();
         let work = self.journal.start(Stage::Triangulating, Size::Uncounted)?;
@@ -474,7 +553,9 @@ pub(crate) fn builder_of(request: &TinRequest, units: &Units, crs: Option<Crs>) 
     builder.duplicates = request.duplicates;
     builder.on_crossing = request.on_crossing;
     builder.crossing_heights = request.crossing_heights;
-    builder.crossing_tolerance = request.crossing_tolerance.unwrap_or_else(|| default_tolerance(units));
+    builder.crossing_tolerance = request
+        .crossing_tolerance
+        .unwrap_or_else(|| default_tolerance(units));
     builder.step_width = Some(units.of_metres(WALL_WIDTH_METRES));
     builder.max_edge_inside = request.max_edge_inside;
     builder.bounds = request.bounds.map(|bounds| grown(bounds, 0.0));
@@ -488,7 +569,10 @@ pub(crate) fn default_tolerance(units: &Units) -> f64 {
 
 /// Returns a box enlarged by a length on all sides in plan, and unbounded in z.
 fn grown(Bounds { min, max }: Bounds, by: f64) -> Bounds {
-    Bounds { min: [min[0] - by, min[1] - by, f64::NEG_INFINITY], max: [max[0] + by, max[1] + by, f64::INFINITY] }
+    Bounds {
+        min: [min[0] - by, min[1] - by, f64::NEG_INFINITY],
+        max: [max[0] + by, max[1] + by, f64::INFINITY],
+    }
 }
 
 /// How many mean distances between points the longest edge at the rim has with
@@ -512,7 +596,12 @@ struct Rim {
 impl Rim {
     fn new(request: &TinRequest, units: &Units, journal: &Journal) -> Self {
         let limit = request.max_edge;
-        let rim = Rim { limit, max_edge: limit.length(units), buffer: limit.buffer(units), spacing: None };
+        let rim = Rim {
+            limit,
+            max_edge: limit.length(units),
+            buffer: limit.buffer(units),
+            spacing: None,
+        };
         if rim.limit != EdgeLimit::Auto {
             rim.note_limit(units, journal);
         }
@@ -536,7 +625,10 @@ impl Rim {
         if self.limit == EdgeLimit::Auto {
             self.note_limit(units, journal);
         }
-        self.limit.unusual(self.spacing, units).into_iter().for_each(|notice| journal.add(notice));
+        self.limit
+            .unusual(self.spacing, units)
+            .into_iter()
+            .for_each(|notice| journal.add(notice));
     }
 }
 
@@ -550,7 +642,14 @@ struct Reach {
 impl Reach {
     fn new(request: &TinRequest, rim: &Rim) -> Self {
         let is_read_once = request.points.iter().any(Input::is_read_once);
-        Reach { bounds: request.bounds, buffer: if is_read_once { f64::INFINITY } else { rim.buffer } }
+        Reach {
+            bounds: request.bounds,
+            buffer: if is_read_once {
+                f64::INFINITY
+            } else {
+                rim.buffer
+            },
+        }
     }
 
     /// Returns the box in which points are used.
@@ -582,7 +681,10 @@ impl Reach {
 
 fn note_classes(report: &SelectionReport, wanted: &Classes, journal: &Journal) {
     if let Classes::Only(classes) = wanted {
-        for class in classes.iter().filter(|class| !report.by_class.contains_key(class)) {
+        for class in classes
+            .iter()
+            .filter(|class| !report.by_class.contains_key(class))
+        {
             journal.add(Notice::NoPointOfClass(*class));
         }
     } else if report.classes.is_some() {
@@ -597,7 +699,11 @@ fn note_classes(report: &SelectionReport, wanted: &Classes, journal: &Journal) {
 
 #[cold]
 fn no_triangle(report: &TinReport, rim: &Rim, units: &Units) -> Error {
-    let TinReport { faces_beyond_max_edge: long, faces_clipped: clipped, .. } = report;
+    let TinReport {
+        faces_beyond_max_edge: long,
+        faces_clipped: clipped,
+        ..
+    } = report;
     match rim.max_edge {
         Some(length) if *long > 0 => {
             let length = units.length(length);
@@ -611,31 +717,51 @@ fn no_triangle(report: &TinReport, rim: &Rim, units: &Units) -> Error {
                 Setting::MaxEdge.text("none")
             ])
         }
-        _ => Error::format(format!("no triangle is left: {clipped} lie outside of the boundary or the bounds"))
-            .cure(wording![Command::Info, " shows the extent of each file"]),
+        _ => Error::format(format!(
+            "no triangle is left: {clipped} lie outside of the boundary or the bounds"
+        ))
+        .cure(wording![Command::Info, " shows the extent of each file"]),
     }
 }
 
 #[cold]
 fn nothing_left(report: &SelectionReport, files: &[&Path]) -> Error {
-    let SelectionReport { read, withheld, other_class, outside, .. } = report;
+    let SelectionReport {
+        read,
+        withheld,
+        other_class,
+        outside,
+        ..
+    } = report;
     let named = |error: Error| match files {
         [file] => error.in_file(file),
         _ => error,
     };
     if *read == 0 {
-        return named(Error::format("no points in the input").cure("pass files that contain points"));
+        return named(
+            Error::format("no points in the input").cure("pass files that contain points"),
+        );
     }
     let error = named(Error::format(format!(
         "no point is left of {read} read: {withheld} withheld, {other_class} of other classes, {outside} outside of the bounds"
     )));
     if *outside > 0 {
-        return error.cure(wording!["compare ", Setting::Bounds, " with the extent that ", Command::Info, " shows"]);
+        return error.cure(wording![
+            "compare ",
+            Setting::Bounds,
+            " with the extent that ",
+            Command::Info,
+            " shows"
+        ]);
     }
     if *other_class > 0 {
         let classes: Vec<String> = report.by_class.keys().map(u8::to_string).collect();
-        return error
-            .cure(wording![format!("the points have class {}: choose with ", classes.join(", ")), Setting::Class]);
+        return error.cure(wording![
+            format!("the points have class {}: choose with ", classes.join(", ")),
+            Setting::Class
+        ]);
     }
-    error.cure("withheld points are never used: clear the withheld flag on points that should be used")
+    error.cure(
+        "withheld points are never used: clear the withheld flag on points that should be used",
+    )
 }

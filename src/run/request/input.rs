@@ -91,7 +91,8 @@ impl<T> Input<T> {
 
 /// Returns true if a file can be read only once: the standard input, a pipe, a device.
 pub(crate) fn is_read_once(path: &Path) -> bool {
-    path.as_os_str() == STDIN || std::fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir())
+    path.as_os_str() == STDIN
+        || std::fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir())
 }
 
 /// Points in memory, and their coordinate system if it is known.
@@ -107,7 +108,12 @@ impl Input<MemoryPoints> {
     /// An input of points in memory, without classes.
     pub fn of_points(points: &[[f64; 3]], crs: Option<Crs>) -> Self {
         let axis = |i: usize| points.iter().map(|p| p[i]).collect();
-        let points = PointBatch { x: axis(0), y: axis(1), z: axis(2), ..PointBatch::default() };
+        let points = PointBatch {
+            x: axis(0),
+            y: axis(1),
+            z: axis(2),
+            ..PointBatch::default()
+        };
         Input::Memory(Arc::new(MemoryPoints { points, crs }))
     }
 }
@@ -125,9 +131,20 @@ impl MemorySource {
     /// # Errors
     /// If columns differ in length.
     pub(crate) fn new(points: Arc<MemoryPoints>) -> Result<Self> {
-        let PointBatch { x, y, z, class, flags, .. } = &points.points;
+        let PointBatch {
+            x,
+            y,
+            z,
+            class,
+            flags,
+            ..
+        } = &points.points;
         let is_column = |length: usize| length == 0 || length == x.len();
-        if y.len() != x.len() || z.len() != x.len() || !is_column(class.len()) || !is_column(flags.len()) {
+        if y.len() != x.len()
+            || z.len() != x.len()
+            || !is_column(class.len())
+            || !is_column(flags.len())
+        {
             return Err(Error::usage("columns of points differ in length"));
         }
         let info = PointInfo {
@@ -137,7 +154,11 @@ impl MemorySource {
             has_classes: !class.is_empty(),
             ..PointInfo::default()
         };
-        Ok(MemorySource { points, info, next: 0 })
+        Ok(MemorySource {
+            points,
+            info,
+            next: 0,
+        })
     }
 }
 
@@ -147,15 +168,26 @@ impl PointSource for MemorySource {
     }
 
     fn read(&mut self, batch: &mut PointBatch) -> Result<()> {
-        let PointBatch { x, y, z, class, flags, .. } = &self.points.points;
+        let PointBatch {
+            x,
+            y,
+            z,
+            class,
+            flags,
+            ..
+        } = &self.points.points;
         let range = self.next..(self.next + BATCH).min(x.len());
         self.next = range.end;
         batch.clear();
         batch.x.extend_from_slice(&x[range.clone()]);
         batch.y.extend_from_slice(&y[range.clone()]);
         batch.z.extend_from_slice(&z[range.clone()]);
-        batch.class.extend_from_slice(class.get(range.clone()).unwrap_or_default());
-        batch.flags.extend_from_slice(flags.get(range).unwrap_or_default());
+        batch
+            .class
+            .extend_from_slice(class.get(range.clone()).unwrap_or_default());
+        batch
+            .flags
+            .extend_from_slice(flags.get(range).unwrap_or_default());
         Ok(())
     }
 }
@@ -167,7 +199,9 @@ mod tests {
     #[test]
     fn points_in_memory_come_in_batches() {
         let points: Vec<[f64; 3]> = (0..BATCH + 5).map(|i| [i as f64, 1.0, 2.0]).collect();
-        let Input::Memory(points) = Input::of_points(&points, None) else { unreachable!() };
+        let Input::Memory(points) = Input::of_points(&points, None) else {
+            unreachable!()
+        };
         let mut source = MemorySource::new(points).unwrap();
         let (mut batch, mut sizes) = (PointBatch::default(), Vec::new());
         loop {
@@ -182,7 +216,12 @@ mod tests {
 
     #[test]
     fn columns_of_different_lengths_are_refused() {
-        let points = PointBatch { x: vec![1.0, 2.0], y: vec![1.0, 2.0], z: vec![1.0], ..PointBatch::default() };
+        let points = PointBatch {
+            x: vec![1.0, 2.0],
+            y: vec![1.0, 2.0],
+            z: vec![1.0],
+            ..PointBatch::default()
+        };
         assert!(MemorySource::new(Arc::new(MemoryPoints { points, crs: None })).is_err());
     }
 }

@@ -161,8 +161,18 @@ impl LineRequest {
     /// Calls a function with the name of each file of lines.
     pub(crate) fn each_file(&mut self, visit: &mut dyn FnMut(&mut PathBuf)) {
         // Whoever adds files has to name them here.
-        let LineRequest { soft, draped, walls, wall: _, holes, flats, flat: _, rivers, river_width: _, densify: _ } =
-            self;
+        let LineRequest {
+            soft,
+            draped,
+            walls,
+            wall: _,
+            holes,
+            flats,
+            flat: _,
+            rivers,
+            river_width: _,
+            densify: _,
+        } = self;
         for layers in [soft, draped, walls, holes, flats, rivers] {
             Input::each_file(layers, visit);
         }
@@ -193,9 +203,11 @@ impl PerRecord {
     pub(crate) fn of(&self, layer: &Layer, fid: usize) -> f64 {
         match self {
             PerRecord::Number(number) => *number,
-            PerRecord::Field(name) => {
-                layer.column(name).and_then(|column| column.values.get(fid)).copied().unwrap_or(f64::NAN)
-            }
+            PerRecord::Field(name) => layer
+                .column(name)
+                .and_then(|column| column.values.get(fid))
+                .copied()
+                .unwrap_or(f64::NAN),
         }
     }
 }

@@ -10,7 +10,10 @@ pub(crate) mod in_plan {
 
     use crate::data::Bounds;
 
-    pub(crate) fn serialize<S: Serializer>(bounds: &Option<Bounds>, to: S) -> Result<S::Ok, S::Error> {
+    pub(crate) fn serialize<S: Serializer>(
+        bounds: &Option<Bounds>,
+        to: S,
+    ) -> Result<S::Ok, S::Error> {
         bounds.map(corners).serialize(to)
     }
 
@@ -19,9 +22,14 @@ pub(crate) mod in_plan {
         [min[0], min[1], max[0], max[1]]
     }
 
-    pub(crate) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Option<Bounds>, D::Error> {
+    pub(crate) fn deserialize<'de, D: Deserializer<'de>>(
+        from: D,
+    ) -> Result<Option<Bounds>, D::Error> {
         let corners = Option::<[f64; 4]>::deserialize(from)?;
-        Ok(corners.map(|[x0, y0, x1, y1]| Bounds { min: [x0, y0, f64::NEG_INFINITY], max: [x1, y1, f64::INFINITY] }))
+        Ok(corners.map(|[x0, y0, x1, y1]| Bounds {
+            min: [x0, y0, f64::NEG_INFINITY],
+            max: [x1, y1, f64::INFINITY],
+        }))
     }
 }
 
@@ -32,13 +40,33 @@ pub(crate) mod frame {
 
     use crate::data::Frame;
 
-    pub(crate) fn serialize<S: Serializer>(frame: &Option<Frame>, to: S) -> Result<S::Ok, S::Error> {
-        frame.map(|Frame { width, height, transform }| (width, height, transform)).serialize(to)
+    pub(crate) fn serialize<S: Serializer>(
+        frame: &Option<Frame>,
+        to: S,
+    ) -> Result<S::Ok, S::Error> {
+        frame
+            .map(
+                |Frame {
+                     width,
+                     height,
+                     transform,
+                 }| (width, height, transform),
+            )
+            .serialize(to)
     }
 
-    pub(crate) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Option<Frame>, D::Error> {
+    pub(crate) fn deserialize<'de, D: Deserializer<'de>>(
+        from: D,
+    ) -> Result<Option<Frame>, D::Error> {
         let stated = Option::<(usize, usize, [f64; 6])>::deserialize(from)?;
-        let checked = |(width, height, transform)| Frame { width, height, transform }.checked();
+        let checked = |(width, height, transform)| {
+            Frame {
+                width,
+                height,
+                transform,
+            }
+            .checked()
+        };
         stated.map(checked).transpose().map_err(D::Error::custom)
     }
 }

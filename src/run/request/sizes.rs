@@ -9,7 +9,9 @@ const LEAST_MEMORY: f64 = 16e6;
 /// Says what was expected.
 pub fn memory_of(text: &str) -> Result<u64, String> {
     let text = text.trim();
-    let digits = text.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(text.len());
+    let digits = text
+        .find(|c: char| !c.is_ascii_digit() && c != '.')
+        .unwrap_or(text.len());
     let (number, unit) = text.split_at(digits);
     let factor = match unit.trim().to_ascii_lowercase().as_str() {
         "" | "b" => 1.0,
@@ -20,12 +22,20 @@ pub fn memory_of(text: &str) -> Result<u64, String> {
         "kib" => 1024.0,
         "mib" => 1024.0 * 1024.0,
         "gib" => 1024.0 * 1024.0 * 1024.0,
-        _ => return Err(format!("`{unit}` is not a unit of memory; expected a size such as 500MB, 2GB or 2GiB")),
+        _ => {
+            return Err(format!(
+                "`{unit}` is not a unit of memory; expected a size such as 500MB, 2GB or 2GiB"
+            ));
+        }
     };
     match number.parse::<f64>() {
-        Ok(count) if count * factor >= LEAST_MEMORY && count * factor < 1e18 => Ok((count * factor) as u64),
+        Ok(count) if count * factor >= LEAST_MEMORY && count * factor < 1e18 => {
+            Ok((count * factor) as u64)
+        }
         Ok(_) => Err("expected at least 16MB".to_owned()),
-        Err(_) => Err(format!("`{text}` is not a size; expected one such as 500MB, 2GB or 2GiB")),
+        Err(_) => Err(format!(
+            "`{text}` is not a size; expected one such as 500MB, 2GB or 2GiB"
+        )),
     }
 }
 

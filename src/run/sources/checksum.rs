@@ -14,7 +14,10 @@ pub(crate) fn checksum(bytes: &[u8]) -> u32 {
 /// Returns the length and the CRC-32 of what is left to read of a file.
 pub(crate) fn sum_of_file(file: &mut impl Read) -> Result<(u64, u32)> {
     let mut summed = Summed::new(std::io::sink());
-    std::io::copy(&mut std::io::BufReader::with_capacity(1 << 18, file), &mut summed)?;
+    std::io::copy(
+        &mut std::io::BufReader::with_capacity(1 << 18, file),
+        &mut summed,
+    )?;
     Ok((summed.length(), summed.sum()))
 }
 
@@ -27,7 +30,11 @@ pub(crate) struct Summed<W> {
 
 impl<W: Write> Summed<W> {
     pub(crate) fn new(out: W) -> Self {
-        Summed { out, sum: Crc::new(), length: 0 }
+        Summed {
+            out,
+            sum: Crc::new(),
+            length: 0,
+        }
     }
 
     /// Returns the CRC-32 of all bytes so far.

@@ -13,17 +13,31 @@ const FAR: f64 = 100.0;
 /// Adds a notice if files are far apart, for example on two continents: one of them may be in a
 /// different coordinate system.
 pub(crate) fn compare_files(files: &[&Path], extents: &[Bounds], units: &Units, journal: &Journal) {
-    let width = |bounds: &Bounds| (bounds.max[0] - bounds.min[0]).hypot(bounds.max[1] - bounds.min[1]);
-    let mut known: Vec<(&Path, &Bounds)> =
-        files.iter().copied().zip(extents).filter(|(_, extent)| !extent.is_empty()).collect();
-    let widest = known.iter().map(|(_, extent)| width(extent)).fold(0.0, f64::max);
+    let width =
+        |bounds: &Bounds| (bounds.max[0] - bounds.min[0]).hypot(bounds.max[1] - bounds.min[1]);
+    let mut known: Vec<(&Path, &Bounds)> = files
+        .iter()
+        .copied()
+        .zip(extents)
+        .filter(|(_, extent)| !extent.is_empty())
+        .collect();
+    let widest = known
+        .iter()
+        .map(|(_, extent)| width(extent))
+        .fold(0.0, f64::max);
     for axis in 0..2 {
         known.sort_by(|(_, a), (_, b)| a.min[axis].total_cmp(&b.min[axis]));
         let mut last: Option<(&Path, f64)> = None;
         for &(file, extent) in &known {
-            if let Some((before, end)) = last.filter(|(_, end)| extent.min[axis] - end > FAR * widest) {
+            if let Some((before, end)) =
+                last.filter(|(_, end)| extent.min[axis] - end > FAR * widest)
+            {
                 let gap = units.length(extent.min[axis] - end);
-                return journal.add(Notice::FarApart(before.to_path_buf(), file.to_path_buf(), gap));
+                return journal.add(Notice::FarApart(
+                    before.to_path_buf(),
+                    file.to_path_buf(),
+                    gap,
+                ));
             }
             if last.is_none_or(|(_, end)| end < extent.max[axis]) {
                 last = Some((file, extent.max[axis]));
@@ -35,11 +49,18 @@ pub(crate) fn compare_files(files: &[&Path], extents: &[Bounds], units: &Units, 
 /// Returns a notice if lines are far from the points, or reach more than `buffer` beyond them, as
 /// the lines of a whole district do with the points of one tile: the extent of the surface may then
 /// be unexpected.
-pub(crate) fn compare_lines(points: &Bounds, lines: &Bounds, buffer: f64, units: &Units) -> Option<Notice> {
+pub(crate) fn compare_lines(
+    points: &Bounds,
+    lines: &Bounds,
+    buffer: f64,
+    units: &Units,
+) -> Option<Notice> {
     if points.is_empty() || lines.is_empty() {
         return None;
     }
-    let gap = (0..2).map(|i| (points.min[i] - lines.max[i]).max(lines.min[i] - points.max[i])).fold(0.0, f64::max);
+    let gap = (0..2)
+        .map(|i| (points.min[i] - lines.max[i]).max(lines.min[i] - points.max[i]))
+        .fold(0.0, f64::max);
     if gap > buffer {
         return Some(Notice::BreaklinesApart(units.length(gap)));
     }

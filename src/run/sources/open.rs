@@ -6,7 +6,9 @@ use std::sync::Arc;
 
 use super::tin_parts::TinParts;
 use crate::crs::Crs;
-use crate::data::{BlockSource, Frame, Grid, Layer, LinkFlaw, Mesh, PointInfo, PointSource, Triangles};
+use crate::data::{
+    BlockSource, Frame, Grid, Layer, LinkFlaw, Mesh, PointInfo, PointSource, Triangles,
+};
 use crate::error::{Error, Kind, Result, Wording};
 pub(crate) use crate::io::formats::Content;
 use crate::io::formats::{self, Format, Holding};
@@ -56,9 +58,18 @@ pub(crate) fn points(
 
 /// Opens points of any format; of a vector file, the layer and the attribute with the heights may
 /// be named, see [`layer::Spec`].
-pub(crate) fn points_of_file(path: &Path, options: Options, context: &Context) -> Result<Box<dyn PointSource + Send>> {
+pub(crate) fn points_of_file(
+    path: &Path,
+    options: Options,
+    context: &Context,
+) -> Result<Box<dyn PointSource + Send>> {
     let of_layer = || -> Result<Box<dyn PointSource + Send>> {
-        Ok(Box::new(points::from_layer(layer(path, &[], options.cut, context)?)?))
+        Ok(Box::new(points::from_layer(layer(
+            path,
+            &[],
+            options.cut,
+            context,
+        )?)?))
     };
     match content(path) {
         Content::Layer => of_layer(),
@@ -75,7 +86,11 @@ pub(crate) fn points_of_file(path: &Path, options: Options, context: &Context) -
 /// Returns what the header of a file of points states that cannot be opened; `None` if it has none
 /// that can be read.
 pub(crate) fn stated(path: &Path) -> Option<PointInfo> {
-    if is_lidar(path) { las::stated(path).ok() } else { None }
+    if is_lidar(path) {
+        las::stated(path).ok()
+    } else {
+        None
+    }
 }
 
 /// Returns a vector layer, from memory or from a file, with these columns: [`Layer::column`] finds
@@ -89,7 +104,9 @@ pub(crate) fn layer_of<'a>(
     match input {
         Input::File(path) => layer(path, columns, cut, context).map(Cow::Owned),
         Input::Memory(layer) => {
-            columns.iter().try_for_each(|name| check_column(layer, name))?;
+            columns
+                .iter()
+                .try_for_each(|name| check_column(layer, name))?;
             Ok(Cow::Borrowed(layer))
         }
     }
@@ -100,19 +117,35 @@ fn check_column(layer: &Layer, name: &str) -> Result<()> {
     let shapes = layer.shapes.len();
     match layer.column(name).map(|column| column.values.len()) {
         Some(count) if count == shapes => Ok(()),
-        Some(count) => Err(Error::usage(format!("column {name} has {count} values for {shapes} records"))),
+        Some(count) => Err(Error::usage(format!(
+            "column {name} has {count} values for {shapes} records"
+        ))),
         None => {
-            let names: Vec<&str> = layer.columns.iter().map(|column| column.name.as_str()).collect();
-            Err(Error::usage(format!("there is no column {name}")).cure(match names[..] {
-                [] => "add it to the columns of the layer, which has none".to_owned(),
-                _ => format!("add it to the columns of the layer, which has {}", names.join(", ")),
-            }))
+            let names: Vec<&str> = layer
+                .columns
+                .iter()
+                .map(|column| column.name.as_str())
+                .collect();
+            Err(
+                Error::usage(format!("there is no column {name}")).cure(match names[..] {
+                    [] => "add it to the columns of the layer, which has none".to_owned(),
+                    _ => format!(
+                        "add it to the columns of the layer, which has {}",
+                        names.join(", ")
+                    ),
+                }),
+            )
         }
     }
 }
 
 /// Reads a vector layer, named as in [`layer::Spec`]. It has these columns, in this order.
-pub(crate) fn layer(path: &Path, columns: &[&str], cut: OnDamage, context: &Context) -> Result<Layer> {
+pub(crate) fn layer(
+    path: &Path,
+    columns: &[&str],
+    cut: OnDamage,
+    context: &Context,
+) -> Result<Layer> {
     let Some(text) = path.to_str() else {
         return Err(Error::unsupported("the name is not valid Unicode").in_file(path));
     };
@@ -146,7 +179,9 @@ impl Raster {
     pub(crate) fn open(path: &Path) -> Result<Self> {
         match raster::open(path) {
             Ok(reader) => Ok(Raster::GeoTiff(Box::new(reader))),
-            Err(error) if gdal_may_help(&error) => gdal::open_raster(path).map(|raster| Raster::Gdal(Box::new(raster))),
+            Err(error) if gdal_may_help(&error) => {
+                gdal::open_raster(path).map(|raster| Raster::Gdal(Box::new(raster)))
+            }
             Err(error) => Err(error),
         }
     }
@@ -169,7 +204,10 @@ pub(crate) fn raster(path: &Path, journal: &Journal) -> Result<(Grid, Vec<Wordin
     let work = journal.start(Stage::ReadingCells, Size::Items(cells))?;
     let watch = |cells| work.add(cells);
     match raster {
-        Raster::GeoTiff(reader) => Ok((reader.read_grid_with(&watch)?, reader.info().warnings.clone())),
+        Raster::GeoTiff(reader) => Ok((
+            reader.read_grid_with(&watch)?,
+            reader.info().warnings.clone(),
+        )),
         Raster::Gdal(raster) => Ok((raster.read_grid_with(&watch)?, raster.warnings().to_vec())),
     }
 }
@@ -187,9 +225,17 @@ pub(crate) fn raster_frame(path: &Path) -> Result<RasterFrame> {
     Ok(match Raster::open(path)? {
         Raster::GeoTiff(reader) => {
             let (frame, info) = (reader.frame(), reader.info());
-            RasterFrame { frame, crs: info.crs.clone(), unread_crs: info.unread_crs.clone() }
+            RasterFrame {
+                frame,
+                crs: info.crs.clone(),
+                unread_crs: info.unread_crs.clone(),
+            }
         }
-        Raster::Gdal(raster) => RasterFrame { frame: raster.frame(), crs: raster.crs().cloned(), unread_crs: None },
+        Raster::Gdal(raster) => RasterFrame {
+            frame: raster.frame(),
+            crs: raster.crs().cloned(),
+            unread_crs: None,
+        },
     })
 }
 
@@ -201,12 +247,21 @@ pub(crate) fn mesh(path: &Path, journal: &Journal) -> Result<Mesh> {
 }
 
 /// Reads vertices, cells or their values under watch.
-pub(crate) fn reading_stage<T>(path: &Path, context: &Context, read: impl FnOnce(Watch) -> Result<T>) -> Result<T> {
+pub(crate) fn reading_stage<T>(
+    path: &Path,
+    context: &Context,
+    read: impl FnOnce(Watch) -> Result<T>,
+) -> Result<T> {
     reading(Stage::Reading, path, context, read)
 }
 
 /// Reads a file under watch, as a stage that is counted in bytes.
-fn reading<T>(stage: Stage, path: &Path, context: &Context, read: impl FnOnce(Watch) -> Result<T>) -> Result<T> {
+fn reading<T>(
+    stage: Stage,
+    path: &Path,
+    context: &Context,
+    read: impl FnOnce(Watch) -> Result<T>,
+) -> Result<T> {
     let work = context.start(stage, size(path))?;
     let found = read(&|bytes| work.add(bytes))?;
     work.end()?;
@@ -251,7 +306,9 @@ pub(crate) fn listed(path: &Path) -> Result<usize> {
 
 /// Reads a `.node` or a `.poly` file.
 pub(crate) fn line_graph(path: &Path, context: &Context) -> Result<LineGraph> {
-    reading(Stage::Reading, path, context, |watch| triangle::read_with(path, watch))
+    reading(Stage::Reading, path, context, |watch| {
+        triangle::read_with(path, watch)
+    })
 }
 
 /// Reads the vertices of a mesh, or of a cloud in the format of a mesh.
@@ -278,16 +335,39 @@ mod tests {
     #[test]
     fn columns_of_a_layer_in_memory_are_checked() {
         let columns = vec![
-            Column { name: "Width".to_owned(), values: vec![1.0, f64::NAN] },
-            Column { name: "LEFT".to_owned(), values: vec![2.0] },
+            Column {
+                name: "Width".to_owned(),
+                values: vec![1.0, f64::NAN],
+            },
+            Column {
+                name: "LEFT".to_owned(),
+                values: vec![2.0],
+            },
         ];
         let shapes = vec![Shape::Null, Shape::Null];
-        let input = Input::Memory(Arc::new(Layer { shapes, columns, ..Layer::default() }));
-        let open = |columns: &[&str]| layer_of(&input, columns, OnDamage::Refuse, &Context::default());
-        assert_eq!(open(&["WIDTH"]).unwrap().column("WIDTH").unwrap().values[0], 1.0);
+        let input = Input::Memory(Arc::new(Layer {
+            shapes,
+            columns,
+            ..Layer::default()
+        }));
+        let open =
+            |columns: &[&str]| layer_of(&input, columns, OnDamage::Refuse, &Context::default());
+        assert_eq!(
+            open(&["WIDTH"]).unwrap().column("WIDTH").unwrap().values[0],
+            1.0
+        );
         let error = open(&["Width", "right"]).unwrap_err();
         assert_eq!(error.to_string(), "there is no column right");
-        assert!(error.cure_text().unwrap().plain().ends_with("which has Width, LEFT"));
-        assert_eq!(open(&["left"]).unwrap_err().to_string(), "column left has 1 values for 2 records");
+        assert!(
+            error
+                .cure_text()
+                .unwrap()
+                .plain()
+                .ends_with("which has Width, LEFT")
+        );
+        assert_eq!(
+            open(&["left"]).unwrap_err().to_string(),
+            "column left has 1 values for 2 records"
+        );
     }
 }

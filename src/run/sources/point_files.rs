@@ -35,7 +35,10 @@ impl BadFiles {
     /// Returns true if a file is skipped that cannot be read for this reason. What the caller asks
     /// for is never skipped, nor is a file that has changed meanwhile.
     pub(crate) fn skips(self, error: &Error) -> bool {
-        let is_of_file = matches!(error.kind(), Kind::Format | Kind::Unsupported | Kind::Limit | Kind::Io);
+        let is_of_file = matches!(
+            error.kind(),
+            Kind::Format | Kind::Unsupported | Kind::Limit | Kind::Io
+        );
         self == BadFiles::Skip && is_of_file
     }
 }
@@ -82,11 +85,16 @@ pub(crate) struct PointFiles {
 
 impl PointFiles {
     /// Opens all files and adds a notice about the format of each.
-    pub(crate) fn open(inputs: &[Input<MemoryPoints>], options: Options, journal: &Journal) -> Result<Self> {
+    pub(crate) fn open(
+        inputs: &[Input<MemoryPoints>],
+        options: Options,
+        journal: &Journal,
+    ) -> Result<Self> {
         let mut files = Vec::with_capacity(inputs.len());
         for input in inputs {
             let path = input.path();
-            let source = open::points(input, options, &journal.context).map_err(|e| e.in_file(path))?;
+            let source =
+                open::points(input, options, &journal.context).map_err(|e| e.in_file(path))?;
             let info = source.info();
             journal.add(Notice::Opened(path.to_path_buf(), info.format.clone()));
             journal.add_warnings(path, &info.warnings);
@@ -98,7 +106,15 @@ impl PointFiles {
             let keep = inputs.len() <= FILES_KEPT_OPEN || input.is_read_once();
             let has_classes = info.has_classes;
             let (input, source) = (input.clone(), Some(source).filter(|_| keep));
-            files.push(PointFile { input, stated, count, bounds, has_classes, columns, source });
+            files.push(PointFile {
+                input,
+                stated,
+                count,
+                bounds,
+                has_classes,
+                columns,
+                source,
+            });
         }
         if options.columns.is_some() && files.iter().all(|file| file.columns.is_none()) {
             return Err(Error::usage(wording![
@@ -108,7 +124,11 @@ impl PointFiles {
                 " name columns of text, but no input is text"
             ]));
         }
-        Ok(PointFiles { files, options, bad: BadFiles::Refuse })
+        Ok(PointFiles {
+            files,
+            options,
+            bad: BadFiles::Refuse,
+        })
     }
 
     /// Decides what becomes of files whose points turn out to be damaged while something is looked
@@ -134,9 +154,20 @@ impl PointFiles {
     ///
     /// # Errors
     /// If a file cannot be read.
-    pub(crate) fn stated(&self, classes: &Classes, journal: &Journal) -> Result<Vec<Option<Stated>>> {
-        let mut stated: Vec<Option<Stated>> = self.files.iter().map(|file| Some(file.stated.clone())).collect();
-        let is_one = self.files.iter().all(|file| file.stated.agrees_with(&self.files[0].stated));
+    pub(crate) fn stated(
+        &self,
+        classes: &Classes,
+        journal: &Journal,
+    ) -> Result<Vec<Option<Stated>>> {
+        let mut stated: Vec<Option<Stated>> = self
+            .files
+            .iter()
+            .map(|file| Some(file.stated.clone()))
+            .collect();
+        let is_one = self
+            .files
+            .iter()
+            .all(|file| file.stated.agrees_with(&self.files[0].stated));
         // A pipe can be read only once.
         if is_one || self.files.iter().any(|file| file.input.is_read_once()) {
             return Ok(stated);
@@ -156,14 +187,20 @@ impl PointFiles {
             }
         }
         if or_all && !has_wanted {
-            stated = self.files.iter().map(|file| Some(file.stated.clone())).collect();
+            stated = self
+                .files
+                .iter()
+                .map(|file| Some(file.stated.clone()))
+                .collect();
         }
         Ok(stated)
     }
 
     /// Returns the number of points and the box around them that each file states, as far as it
     /// does.
-    pub(crate) fn stated_extents(&self) -> impl Iterator<Item = (Option<u64>, Option<Bounds>)> + '_ {
+    pub(crate) fn stated_extents(
+        &self,
+    ) -> impl Iterator<Item = (Option<u64>, Option<Bounds>)> + '_ {
         self.files.iter().map(|file| (file.count, file.bounds))
     }
 
@@ -209,19 +246,27 @@ impl PointFiles {
         selection: &mut Selection,
         journal: &Journal,
     ) -> Result<Vec<Bounds>> {
-        let length = self.files.iter().map(|file| file.count).sum::<Option<u64>>();
+        let length = self
+            .files
+            .iter()
+            .map(|file| file.count)
+            .sum::<Option<u64>>();
         if let Some(excess) = length.and_then(memory::excess_of) {
             journal.add(excess);
         }
         let mut asked = 0;
-        let progress = journal.start(Stage::ReadingPoints, length.map_or(Size::Unknown, Size::Items))?;
+        let progress = journal.start(
+            Stage::ReadingPoints,
+            length.map_or(Size::Unknown, Size::Items),
+        )?;
         let mut batch = PointBatch::default();
         let mut extents = Vec::new();
         let are_several = self.files.len() > 1;
         for (file, transform) in self.files.iter_mut().zip(by_file) {
             let source = file.source.take();
             let path = file.input.path();
-            let mut source = source.map_or_else(|| file.reopen(self.options, &journal.context), Ok)?;
+            let mut source =
+                source.map_or_else(|| file.reopen(self.options, &journal.context), Ok)?;
             selection.next_source();
             let mut count = 0;
             let mut extent = Bounds::default();
@@ -230,7 +275,9 @@ impl PointFiles {
                 if batch.is_empty() {
                     break;
                 }
-                transforms.apply_to_batch(*transform, &mut batch).map_err(|e| e.in_file(path))?;
+                transforms
+                    .apply_to_batch(*transform, &mut batch)
+                    .map_err(|e| e.in_file(path))?;
                 selection.add(&batch).map_err(|e| e.in_file(path))?;
                 if selection.certain() >= asked + ASK_EVERY {
                     asked = selection.certain();
@@ -248,7 +295,10 @@ impl PointFiles {
         if are_several {
             let classes = selection.report().classes;
             for i in selection.unused_sources() {
-                journal.add(Notice::NoPointUsed(self.files[i].stated.path.clone(), classes.clone()));
+                journal.add(Notice::NoPointUsed(
+                    self.files[i].stated.path.clone(),
+                    classes.clone(),
+                ));
             }
         }
         Ok(extents)

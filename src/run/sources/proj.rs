@@ -17,7 +17,10 @@
 /// If PROJ does not know one of the systems or no operation between them; without the feature
 /// `proj`, always.
 #[cfg(not(feature = "proj"))]
-pub fn transform(from: &crate::crs::Crs, to: &crate::crs::Crs) -> crate::error::Result<Box<dyn crate::crs::Transform>> {
+pub fn transform(
+    from: &crate::crs::Crs,
+    to: &crate::crs::Crs,
+) -> crate::error::Result<Box<dyn crate::crs::Transform>> {
     Err(crate::error::Error::unsupported(format!(
         "reprojecting from {from} to {to} needs PROJ, which this build does not have"
     ))
@@ -75,13 +78,17 @@ mod with_proj {
     pub fn transform(from: &Crs, to: &Crs) -> Result<Box<dyn Transform>> {
         for crs in [from, to] {
             if crs.kind == CrsKind::Local {
-                return Err(Error::usage(format!("{crs} is a local system: its position on the earth is unknown"))
-                    .cure(wording!["state the system with ", Setting::Crs]));
+                return Err(Error::usage(format!(
+                    "{crs} is a local system: its position on the earth is unknown"
+                ))
+                .cure(wording!["state the system with ", Setting::Crs]));
             }
         }
         if to.kind == CrsKind::Geocentric && !from.is_same(to) {
-            return Err(Error::unsupported(format!("reprojecting to {to}, which is geocentric"))
-                .cure("choose a projected system, such as EPSG:25832"));
+            return Err(
+                Error::unsupported(format!("reprojecting to {to}, which is geocentric"))
+                    .cure("choose a projected system, such as EPSG:25832"),
+            );
         }
         let (geocentric, base) = match from.kind {
             CrsKind::Geocentric => {
@@ -116,12 +123,20 @@ mod with_proj {
     }
 
     fn from_geocentric(from: &Crs) -> Result<(proj_core::Transform, String)> {
-        let failed = |reason: String| Error::unsupported(format!("reprojecting from {from}: {reason}"));
-        let code = from.epsg.ok_or_else(|| failed("a geocentric system without an EPSG code".into()))?;
-        let source = proj_core::lookup_epsg(code).ok_or_else(|| failed("it is not in the registry".into()))?;
-        let base = source.base_geographic_crs_epsg().ok_or_else(|| failed("its datum is unknown".into()))?;
-        let target = proj_core::lookup_epsg(base).ok_or_else(|| failed("its datum is unknown".into()))?;
-        let first = proj_core::Transform::from_crs_defs(&source, &target).map_err(|error| failed(error.to_string()))?;
+        let failed =
+            |reason: String| Error::unsupported(format!("reprojecting from {from}: {reason}"));
+        let code = from
+            .epsg
+            .ok_or_else(|| failed("a geocentric system without an EPSG code".into()))?;
+        let source = proj_core::lookup_epsg(code)
+            .ok_or_else(|| failed("it is not in the registry".into()))?;
+        let base = source
+            .base_geographic_crs_epsg()
+            .ok_or_else(|| failed("its datum is unknown".into()))?;
+        let target =
+            proj_core::lookup_epsg(base).ok_or_else(|| failed("its datum is unknown".into()))?;
+        let first = proj_core::Transform::from_crs_defs(&source, &target)
+            .map_err(|error| failed(error.to_string()))?;
         Ok((first, format!("EPSG:{base}")))
     }
 
@@ -137,19 +152,29 @@ mod with_proj {
         };
         if from.kind == CrsKind::Geocentric {
             let unit = target.as_ref().map_or(1.0, |unit| unit.factor);
-            let warning = to
-                .vertical_epsg
-                .map(|code| format!("heights are kept above the ellipsoid: they are not those of EPSG:{code}"));
-            return (1.0 / unit, warning.or_else(|| Some("heights are above the ellipsoid".to_owned())));
+            let warning = to.vertical_epsg.map(|code| {
+                format!("heights are kept above the ellipsoid: they are not those of EPSG:{code}")
+            });
+            return (
+                1.0 / unit,
+                warning.or_else(|| Some("heights are above the ellipsoid".to_owned())),
+            );
         }
-        let factor = target.as_ref().map_or(1.0, |target| source.factor / target.factor);
+        let factor = target
+            .as_ref()
+            .map_or(1.0, |target| source.factor / target.factor);
         let same = match (from.vertical_epsg, to.vertical_epsg) {
-            (Some(a), Some(b)) => a == b || vertical_datum(a).is_some() && vertical_datum(a) == vertical_datum(b),
+            (Some(a), Some(b)) => {
+                a == b || vertical_datum(a).is_some() && vertical_datum(a) == vertical_datum(b)
+            }
             (None, None) => true,
             _ => false,
         };
-        let name =
-            |code: Option<u32>| code.map_or("heights above the ellipsoid".to_owned(), |code| format!("EPSG:{code}"));
+        let name = |code: Option<u32>| {
+            code.map_or("heights above the ellipsoid".to_owned(), |code| {
+                format!("EPSG:{code}")
+            })
+        };
         let warning = match target {
             None => from.vertical_epsg.map(|code| {
                 format!(
@@ -175,15 +200,26 @@ mod with_proj {
     impl Operation {
         /// Returns this thread's PROJ object.
         fn object(&self) -> Result<Rc<Proj>> {
-            let kept =
-                OBJECTS.with_borrow(|kept| kept.iter().find(|entry| entry.0 == self.id).map(|entry| entry.1.clone()));
+            let kept = OBJECTS.with_borrow(|kept| {
+                kept.iter()
+                    .find(|entry| entry.0 == self.id)
+                    .map(|entry| entry.1.clone())
+            });
             if let Some(object) = kept {
                 return Ok(object);
             }
             let (from, to) = &self.definitions;
             let object = Proj::new_known_crs(from, to, None).map_err(|error| {
-                Error::unsupported(format!("PROJ has no operation from {} to {}: {error}", self.from, self.to))
-                    .cure(wording!["name other systems with ", Setting::Crs, " (of the input) or ", Setting::TargetCrs])
+                Error::unsupported(format!(
+                    "PROJ has no operation from {} to {}: {error}",
+                    self.from, self.to
+                ))
+                .cure(wording![
+                    "name other systems with ",
+                    Setting::Crs,
+                    " (of the input) or ",
+                    Setting::TargetCrs
+                ])
             })?;
             let object = Rc::new(object);
             OBJECTS.with_borrow_mut(|kept| {
@@ -197,7 +233,10 @@ mod with_proj {
 
         /// Records the accuracy of the operation that was used last.
         fn record_accuracy(&self, info: &ProjInfo) {
-            let name = info.description.as_deref().unwrap_or("an operation without a name");
+            let name = info
+                .description
+                .as_deref()
+                .unwrap_or("an operation without a name");
             // Before the first point, PROJ has not yet chosen among several operations.
             if info.id.as_deref() == Some("unknown") && name.starts_with("unavailable until") {
                 return;
@@ -206,20 +245,30 @@ mod with_proj {
             let warning = if info.accuracy < 0.0 {
                 format!("the accuracy of the operation from {from} to {to} is unknown ({name})")
             } else if info.accuracy > REPORTED {
-                format!("the operation from {from} to {to} is accurate to {} m ({name})", info.accuracy)
+                format!(
+                    "the operation from {from} to {to} is accurate to {} m ({name})",
+                    info.accuracy
+                )
             } else {
                 return;
             };
-            self.warnings.lock().unwrap_or_else(PoisonError::into_inner).insert(warning);
+            self.warnings
+                .lock()
+                .unwrap_or_else(PoisonError::into_inner)
+                .insert(warning);
         }
 
         fn one(&self, object: &Proj, point: [f64; 3]) -> std::result::Result<[f64; 3], String> {
             let mut start = point;
             if let Some(first) = &self.geocentric {
-                let position = first.convert_3d((point[0], point[1], point[2])).map_err(|error| error.to_string())?;
+                let position = first
+                    .convert_3d((point[0], point[1], point[2]))
+                    .map_err(|error| error.to_string())?;
                 start = [position.0, position.1, position.2];
             }
-            let (x, y) = object.convert((start[0], start[1])).map_err(|error| error.to_string())?;
+            let (x, y) = object
+                .convert((start[0], start[1]))
+                .map_err(|error| error.to_string())?;
             if x.is_finite() && y.is_finite() {
                 Ok([x, y, start[2] * self.height])
             } else {
@@ -252,7 +301,12 @@ mod with_proj {
         }
 
         fn warnings(&self) -> Vec<String> {
-            self.warnings.lock().unwrap_or_else(PoisonError::into_inner).iter().cloned().collect()
+            self.warnings
+                .lock()
+                .unwrap_or_else(PoisonError::into_inner)
+                .iter()
+                .cloned()
+                .collect()
         }
     }
 }

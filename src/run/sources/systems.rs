@@ -54,13 +54,23 @@ impl Stated {
     /// Returns what a file of points states.
     pub(crate) fn by_points(path: &Path, info: &PointInfo) -> Self {
         let (crs, unread) = (info.crs.clone(), info.unread_crs.clone());
-        Stated { path: path.to_path_buf(), crs, unread, role: Role::Ground }
+        Stated {
+            path: path.to_path_buf(),
+            crs,
+            unread,
+            role: Role::Ground,
+        }
     }
 
     /// Returns what a file of lines or polygons states.
     pub(crate) fn by_layer(path: &Path, layer: &Layer) -> Self {
         let (crs, unread) = (layer.crs.clone(), layer.unread_crs.clone());
-        Stated { path: path.to_path_buf(), crs, unread, role: Role::Lines }
+        Stated {
+            path: path.to_path_buf(),
+            crs,
+            unread,
+            role: Role::Lines,
+        }
     }
 
     /// Returns true if the file states the same system as another one, or neither states any.
@@ -98,7 +108,11 @@ pub(crate) struct Systems {
 /// # Errors
 /// If two files state different systems, the result would be in degrees or geocentric, or there is
 /// nothing to reproject from.
-pub(crate) fn reconcile(files: &[Stated], options: &SystemOptions, journal: &Journal) -> Result<Systems> {
+pub(crate) fn reconcile(
+    files: &[Stated],
+    options: &SystemOptions,
+    journal: &Journal,
+) -> Result<Systems> {
     let stated = assigned(files, options, journal);
     let systems = common(&stated, options, journal)?;
     match &systems.crs {
@@ -112,14 +126,21 @@ pub(crate) fn reconcile(files: &[Stated], options: &SystemOptions, journal: &Jou
 ///
 /// # Errors
 /// If two files state different systems, or there is nothing to reproject from.
-pub(crate) fn unify(files: &[Stated], options: &SystemOptions, journal: &Journal) -> Result<Systems> {
+pub(crate) fn unify(
+    files: &[Stated],
+    options: &SystemOptions,
+    journal: &Journal,
+) -> Result<Systems> {
     common(&assigned(files, options, journal), options, journal)
 }
 
 fn common(stated: &[Stated], options: &SystemOptions, journal: &Journal) -> Result<Systems> {
     match &options.target {
         Some(target) => reproject(stated, target, journal),
-        None => Ok(Systems { from: vec![None; stated.len()], crs: agree(stated, journal)? }),
+        None => Ok(Systems {
+            from: vec![None; stated.len()],
+            crs: agree(stated, journal)?,
+        }),
     }
 }
 
@@ -127,24 +148,41 @@ fn common(stated: &[Stated], options: &SystemOptions, journal: &Journal) -> Resu
 ///
 /// # Errors
 /// Those of [`reconcile`].
-pub(crate) fn reconcile_some(files: &[Option<Stated>], options: &SystemOptions, journal: &Journal) -> Result<Systems> {
+pub(crate) fn reconcile_some(
+    files: &[Option<Stated>],
+    options: &SystemOptions,
+    journal: &Journal,
+) -> Result<Systems> {
     let asked: Vec<Stated> = files.iter().flatten().cloned().collect();
     let Systems { from, crs } = reconcile(&asked, options, journal)?;
     let mut from = from.into_iter();
-    let from = files.iter().map(|file| file.as_ref().and_then(|_| from.next().flatten())).collect();
+    let from = files
+        .iter()
+        .map(|file| file.as_ref().and_then(|_| from.next().flatten()))
+        .collect();
     Ok(Systems { from, crs })
 }
 
 fn assigned(files: &[Stated], options: &SystemOptions, journal: &Journal) -> Vec<Stated> {
-    let Some(assign) = &options.assign else { return files.to_vec() };
+    let Some(assign) = &options.assign else {
+        return files.to_vec();
+    };
     files
         .iter()
         .map(|file| {
             if let Some(crs) = file.crs.as_ref().filter(|crs| !crs.is_same(assign)) {
                 let (stated, assigned) = (Box::new(crs.clone()), Box::new(assign.clone()));
-                journal.add(Notice::Reassigned { path: file.path.clone(), stated, assigned });
+                journal.add(Notice::Reassigned {
+                    path: file.path.clone(),
+                    stated,
+                    assigned,
+                });
             }
-            Stated { crs: Some(assign.clone()), unread: None, ..file.clone() }
+            Stated {
+                crs: Some(assign.clone()),
+                unread: None,
+                ..file.clone()
+            }
         })
         .collect()
 }
@@ -152,8 +190,12 @@ fn assigned(files: &[Stated], options: &SystemOptions, journal: &Journal) -> Vec
 /// Returns the common system of all files that state one.
 fn agree(files: &[Stated], journal: &Journal) -> Result<Option<Crs>> {
     require_understood(files)?;
-    let mut known = files.iter().filter_map(|file| file.crs.as_ref().map(|crs| (file, crs)));
-    let Some(mut best) = known.next() else { return Ok(None) };
+    let mut known = files
+        .iter()
+        .filter_map(|file| file.crs.as_ref().map(|crs| (file, crs)));
+    let Some(mut best) = known.next() else {
+        return Ok(None);
+    };
     for (file, crs) in known {
         if !crs.is_same(best.1) {
             return Err(two_systems(best, (file, crs)));
@@ -165,7 +207,10 @@ fn agree(files: &[Stated], journal: &Journal) -> Result<Option<Crs>> {
     }
     let best = best.1;
     for file in files.iter().filter(|file| file.crs.is_none()) {
-        journal.add(Notice::SystemOfOthers(file.path.clone(), Box::new(best.clone())));
+        journal.add(Notice::SystemOfOthers(
+            file.path.clone(),
+            Box::new(best.clone()),
+        ));
     }
     Ok(Some(best.clone()))
 }
@@ -174,8 +219,19 @@ fn agree(files: &[Stated], journal: &Journal) -> Result<Option<Crs>> {
 /// something else: whether they agree is not known.
 fn require_understood(files: &[Stated]) -> Result<()> {
     let stating = |file: &&Stated| file.crs.is_some() || file.unread.is_some();
-    let Some((file, text)) = files.iter().find_map(|file| Some((file, file.unread.as_ref()?))) else { return Ok(()) };
-    let Some(other) = files.iter().filter(stating).find(|other| !file.agrees_with(other)) else { return Ok(()) };
+    let Some((file, text)) = files
+        .iter()
+        .find_map(|file| Some((file, file.unread.as_ref()?)))
+    else {
+        return Ok(());
+    };
+    let Some(other) = files
+        .iter()
+        .filter(stating)
+        .find(|other| !file.agrees_with(other))
+    else {
+        return Ok(());
+    };
     let theirs = match (&other.crs, &other.unread) {
         (Some(crs), _) => format!("is in {crs}"),
         (None, stated) => format!("states {}", quoted(stated.as_deref().unwrap_or_default())),
@@ -186,18 +242,39 @@ fn require_understood(files: &[Stated]) -> Result<()> {
         quoted(text),
         other.path.display()
     ))
-    .cure(wording!["state the system of all files with ", Setting::Crs.text("CRS")]))
+    .cure(wording![
+        "state the system of all files with ",
+        Setting::Crs.text("CRS")
+    ]))
 }
 
 /// Returns what a file states as its coordinate system, as messages show it.
 pub(crate) fn quoted(stated: &str) -> String {
     const MAX_SHOWN: usize = 100;
-    let dots = if stated.chars().count() > MAX_SHOWN { "..." } else { "" };
-    format!("\"{}{dots}\"", stated.chars().take(MAX_SHOWN).collect::<String>().escape_debug())
+    let dots = if stated.chars().count() > MAX_SHOWN {
+        "..."
+    } else {
+        ""
+    };
+    format!(
+        "\"{}{dots}\"",
+        stated
+            .chars()
+            .take(MAX_SHOWN)
+            .collect::<String>()
+            .escape_debug()
+    )
 }
 
 fn rank<'a>(file: &Stated, crs: &'a Crs) -> impl PartialOrd + use<'a> {
-    (crs.vertical_epsg, crs.vertical_unit.is_some(), crs.epsg, file.role, crs.wkt.as_deref(), crs.name.as_str())
+    (
+        crs.vertical_epsg,
+        crs.vertical_unit.is_some(),
+        crs.epsg,
+        file.role,
+        crs.wkt.as_deref(),
+        crs.name.as_str(),
+    )
 }
 
 fn two_systems((a, a_crs): (&Stated, &Crs), (b, b_crs): (&Stated, &Crs)) -> Error {
@@ -206,22 +283,35 @@ fn two_systems((a, a_crs): (&Stated, &Crs), (b, b_crs): (&Stated, &Crs)) -> Erro
         a.path.display(),
         b.path.display()
     ))
-    .cure(wording![reproject_first(), "; or state the system of all files with ", Setting::Crs.text("CRS")])
+    .cure(wording![
+        reproject_first(),
+        "; or state the system of all files with ",
+        Setting::Crs.text("CRS")
+    ])
 }
 
 fn reproject(files: &[Stated], target: &Crs, journal: &Journal) -> Result<Systems> {
     let mut from = Vec::with_capacity(files.len());
-    let common = if files.iter().any(|file| file.crs.is_none()) { agree(files, journal)? } else { None };
+    let common = if files.iter().any(|file| file.crs.is_none()) {
+        agree(files, journal)?
+    } else {
+        None
+    };
     for file in files {
         let common = common.as_ref().filter(|_| file.unread.is_none());
         let Some(crs) = file.crs.as_ref().or(common) else {
-            return Err(Error::unsupported("the file states no coordinate system to reproject from")
-                .in_file(&file.path)
-                .cure(wording!["state its system with ", Setting::Crs.text("CRS")]));
+            return Err(Error::unsupported(
+                "the file states no coordinate system to reproject from",
+            )
+            .in_file(&file.path)
+            .cure(wording!["state its system with ", Setting::Crs.text("CRS")]));
         };
         from.push(Some(crs.clone()).filter(|crs| !crs.is_same(target)));
     }
-    Ok(Systems { from, crs: Some(target.clone()) })
+    Ok(Systems {
+        from,
+        crs: Some(target.clone()),
+    })
 }
 
 /// Returns an error if the coordinates of a system are not lengths in a plane.
@@ -238,9 +328,13 @@ fn judge(crs: &Crs, files: &[Stated], degrees: Degrees, journal: &Journal) -> Re
         }
         CrsKind::Geographic if degrees == Degrees::Refuse => {
             let unit = &crs.unit.name;
-            let error = Error::unsupported(format!("{crs} is geographic: its unit, the {unit}, is not a length"));
+            let error = Error::unsupported(format!(
+                "{crs} is geographic: its unit, the {unit}, is not a length"
+            ));
             let cure = match file {
-                Some(Stated { role: Role::Whole, .. }) => wording![
+                Some(Stated {
+                    role: Role::Whole, ..
+                }) => wording![
                     "build it from points in a projected system (a raster: gdalwarp), or continue with ",
                     Setting::ForceDegrees.on()
                 ],
@@ -270,7 +364,11 @@ fn judge(crs: &Crs, files: &[Stated], degrees: Degrees, journal: &Journal) -> Re
 }
 
 fn is_geojson(path: &Path) -> bool {
-    path.extension().is_some_and(|e| ["geojson", "json"].iter().any(|known| e.eq_ignore_ascii_case(known)))
+    path.extension().is_some_and(|e| {
+        ["geojson", "json"]
+            .iter()
+            .any(|known| e.eq_ignore_ascii_case(known))
+    })
 }
 
 #[cfg(test)]
@@ -281,7 +379,10 @@ mod tests {
     use crate::run::context::Context;
 
     fn crs(code: u32, kind: CrsKind) -> Crs {
-        let unit = Unit { name: "metre".to_owned(), factor: 1.0 };
+        let unit = Unit {
+            name: "metre".to_owned(),
+            factor: 1.0,
+        };
         Crs {
             name: format!("S{code}"),
             epsg: Some(code),
@@ -311,15 +412,24 @@ mod tests {
 
     #[test]
     fn a_file_without_a_system_takes_that_of_the_others() {
-        let systems = reconcile(&files(&[None, Some(25832), None]), &SystemOptions::default(), &quiet()).unwrap();
+        let systems = reconcile(
+            &files(&[None, Some(25832), None]),
+            &SystemOptions::default(),
+            &quiet(),
+        )
+        .unwrap();
         assert_eq!(systems.crs.unwrap().epsg, Some(25832));
         assert_eq!(systems.from, [None, None, None]);
     }
 
     #[test]
     fn two_systems_are_an_error_that_names_both_and_the_files() {
-        let error =
-            reconcile(&files(&[None, Some(25832), Some(3005)]), &SystemOptions::default(), &quiet()).unwrap_err();
+        let error = reconcile(
+            &files(&[None, Some(25832), Some(3005)]),
+            &SystemOptions::default(),
+            &quiet(),
+        )
+        .unwrap_err();
         let text = error.to_string();
         for part in ["f1", "EPSG:25832", "f2", "EPSG:3005"] {
             assert!(text.contains(part), "{text}");
@@ -330,7 +440,10 @@ mod tests {
     fn what_is_not_understood_is_an_error_where_it_decides() {
         let with = |systems: &[Option<u32>], unread: &[Option<&str>]| {
             let mut files = files(systems);
-            files.iter_mut().zip(unread).for_each(|(file, unread)| file.unread = unread.map(str::to_owned));
+            files
+                .iter_mut()
+                .zip(unread)
+                .for_each(|(file, unread)| file.unread = unread.map(str::to_owned));
             files
         };
         let options = SystemOptions::default();
@@ -342,49 +455,103 @@ mod tests {
         ] {
             let error = reconcile(&with(systems, unread), &options, &quiet()).unwrap_err();
             assert!(
-                error.to_string().contains("not understood: f") && error.to_string().contains("\"urn:x\""),
+                error.to_string().contains("not understood: f")
+                    && error.to_string().contains("\"urn:x\""),
                 "{error}"
             );
-            assert!(error.cure_text().unwrap().parts().contains(&Part::Term(Setting::Crs.text("CRS"))));
-            let assigned = SystemOptions { assign: Some(crs(1, CrsKind::Projected)), ..SystemOptions::default() };
+            assert!(
+                error
+                    .cure_text()
+                    .unwrap()
+                    .parts()
+                    .contains(&Part::Term(Setting::Crs.text("CRS")))
+            );
+            let assigned = SystemOptions {
+                assign: Some(crs(1, CrsKind::Projected)),
+                ..SystemOptions::default()
+            };
             assert!(reconcile(&with(systems, unread), &assigned, &quiet()).is_ok());
-            let target = SystemOptions { target: Some(crs(1, CrsKind::Projected)), ..SystemOptions::default() };
+            let target = SystemOptions {
+                target: Some(crs(1, CrsKind::Projected)),
+                ..SystemOptions::default()
+            };
             assert!(reconcile(&with(systems, unread), &target, &quiet()).is_err());
         }
         // Nothing to decide: no other file states a system, or all state the same.
         for unread in [&[Some("urn:x"), None], &[Some("urn:x"), Some("urn:x")]] {
-            assert_eq!(reconcile(&with(&[None, None], unread), &options, &quiet()).unwrap().crs, None);
+            assert_eq!(
+                reconcile(&with(&[None, None], unread), &options, &quiet())
+                    .unwrap()
+                    .crs,
+                None
+            );
         }
     }
 
     #[test]
     fn what_is_assigned_stands_for_what_is_stated() {
-        let options = SystemOptions { assign: Some(crs(1, CrsKind::Projected)), ..SystemOptions::default() };
-        let systems = reconcile(&files(&[None, Some(25832), Some(3005)]), &options, &quiet()).unwrap();
+        let options = SystemOptions {
+            assign: Some(crs(1, CrsKind::Projected)),
+            ..SystemOptions::default()
+        };
+        let systems =
+            reconcile(&files(&[None, Some(25832), Some(3005)]), &options, &quiet()).unwrap();
         assert_eq!(systems.crs, options.assign);
     }
 
     #[test]
     fn a_target_makes_different_systems_one() {
-        let options = SystemOptions { target: Some(crs(25832, CrsKind::Projected)), ..SystemOptions::default() };
+        let options = SystemOptions {
+            target: Some(crs(25832, CrsKind::Projected)),
+            ..SystemOptions::default()
+        };
         let systems = reconcile(&files(&[Some(25832), Some(3005)]), &options, &quiet()).unwrap();
         assert_eq!(systems.crs, options.target);
         assert_eq!(systems.from, [None, Some(crs(3005, CrsKind::Projected))]);
-        assert!(reconcile(&files(&[None]), &options, &quiet()).is_err(), "nothing to reproject from");
-        assert!(reconcile(&files(&[None, Some(1), Some(2)]), &options, &quiet()).is_err(), "which of the two?");
+        assert!(
+            reconcile(&files(&[None]), &options, &quiet()).is_err(),
+            "nothing to reproject from"
+        );
+        assert!(
+            reconcile(&files(&[None, Some(1), Some(2)]), &options, &quiet()).is_err(),
+            "which of the two?"
+        );
     }
 
     #[test]
     fn degrees_and_geocentric_are_refused() {
         let of = |kind, degrees| {
-            let stated = [Stated { path: "f".into(), crs: Some(crs(1, kind)), unread: None, role: Role::Ground }];
-            reconcile(&stated, &SystemOptions { degrees, ..SystemOptions::default() }, &quiet())
+            let stated = [Stated {
+                path: "f".into(),
+                crs: Some(crs(1, kind)),
+                unread: None,
+                role: Role::Ground,
+            }];
+            reconcile(
+                &stated,
+                &SystemOptions {
+                    degrees,
+                    ..SystemOptions::default()
+                },
+                &quiet(),
+            )
         };
         let refused = of(CrsKind::Geographic, Degrees::Refuse).unwrap_err();
-        assert!(refused.cure_text().unwrap().plain().contains("force-degrees"));
+        assert!(
+            refused
+                .cure_text()
+                .unwrap()
+                .plain()
+                .contains("force-degrees")
+        );
         assert!(of(CrsKind::Geographic, Degrees::Allow).is_ok());
         assert!(
-            of(CrsKind::Geocentric, Degrees::Allow).unwrap_err().cure_text().unwrap().plain().contains("reproject")
+            of(CrsKind::Geocentric, Degrees::Allow)
+                .unwrap_err()
+                .cure_text()
+                .unwrap()
+                .plain()
+                .contains("reproject")
         );
         assert!(of(CrsKind::Local, Degrees::Refuse).is_ok());
     }

@@ -21,14 +21,20 @@ pub(crate) struct Transforms {
 impl Transforms {
     pub(crate) fn new(from: &[Option<Crs>], to: Option<&Crs>, journal: &Journal) -> Result<Self> {
         let mut known: Vec<&Crs> = Vec::new();
-        let mut transforms = Transforms { transforms: Vec::new(), by_file: Vec::with_capacity(from.len()) };
+        let mut transforms = Transforms {
+            transforms: Vec::new(),
+            by_file: Vec::with_capacity(from.len()),
+        };
         for from in from {
             let number = match (from, to) {
                 (Some(from), Some(to)) => Some(match known.iter().position(|crs| *crs == from) {
                     Some(number) => number,
                     None => {
                         let transform = proj::transform(from, to)?;
-                        journal.add(Notice::Reprojecting(Box::new(from.clone()), Box::new(to.clone())));
+                        journal.add(Notice::Reprojecting(
+                            Box::new(from.clone()),
+                            Box::new(to.clone()),
+                        ));
                         known.push(from);
                         transforms.transforms.push(transform);
                         known.len() - 1
@@ -54,18 +60,29 @@ impl Transforms {
         match number {
             Some(number) => {
                 let transform = &self.transforms[number];
-                points.par_chunks_mut(REPROJECTED_AT_ONCE).try_for_each(|chunk| transform.transform(chunk))
+                points
+                    .par_chunks_mut(REPROJECTED_AT_ONCE)
+                    .try_for_each(|chunk| transform.transform(chunk))
             }
             None => Ok(()),
         }
     }
 
-    pub(crate) fn apply_to_batch(&self, number: Option<usize>, batch: &mut PointBatch) -> Result<()> {
+    pub(crate) fn apply_to_batch(
+        &self,
+        number: Option<usize>,
+        batch: &mut PointBatch,
+    ) -> Result<()> {
         if number.is_none() {
             return Ok(());
         }
-        let mut points: Vec<[f64; 3]> =
-            batch.x.iter().zip(&batch.y).zip(&batch.z).map(|((&x, &y), &z)| [x, y, z]).collect();
+        let mut points: Vec<[f64; 3]> = batch
+            .x
+            .iter()
+            .zip(&batch.y)
+            .zip(&batch.z)
+            .map(|((&x, &y), &z)| [x, y, z])
+            .collect();
         self.apply(number, &mut points)?;
         for (i, [x, y, z]) in points.into_iter().enumerate() {
             (batch.x[i], batch.y[i], batch.z[i]) = (x, y, z);

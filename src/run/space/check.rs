@@ -10,7 +10,9 @@ use crate::io::Watch;
 use crate::io::tetgen::{self, Tetrahedralized};
 use crate::run::context::{Context, Journal, Size, Stage};
 use crate::run::sources::open;
-use crate::triangulation::kernel::{InSphere, Kernel, Orientation2, Orientation3, PowerTest3, Wide};
+use crate::triangulation::kernel::{
+    InSphere, Kernel, Orientation2, Orientation3, PowerTest3, Wide,
+};
 use crate::triangulation::num::Sign;
 
 /// The law that a triangulation in space is held against.
@@ -54,17 +56,34 @@ impl fmt::Display for SpaceFlaw {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             SpaceFlaw::Flat(cell) => write!(f, "tetrahedron {cell}: its corners lie in a plane"),
-            SpaceFlaw::Folded(a, b) => write!(f, "tetrahedra {a} and {b}: on the same side of their common facet"),
-            SpaceFlaw::Crowded([a, b, c]) => write!(f, "facet {a} {b} {c}: more than two tetrahedra have it"),
+            SpaceFlaw::Folded(a, b) => write!(
+                f,
+                "tetrahedra {a} and {b}: on the same side of their common facet"
+            ),
+            SpaceFlaw::Crowded([a, b, c]) => {
+                write!(f, "facet {a} {b} {c}: more than two tetrahedra have it")
+            }
             SpaceFlaw::Neighbor(cell, i) => {
-                write!(f, "tetrahedron {cell}: the .neigh states another neighbor opposite corner {}", i + 1)
+                write!(
+                    f,
+                    "tetrahedron {cell}: the .neigh states another neighbor opposite corner {}",
+                    i + 1
+                )
             }
             SpaceFlaw::Dent([a, b]) => write!(f, "edge {a} {b}: the hull is not convex there"),
             SpaceFlaw::Apart => write!(f, "the tetrahedra are in several parts"),
-            SpaceFlaw::LeftOut(vertex) => write!(f, "vertex {vertex}: it is in no tetrahedron, but should be"),
-            SpaceFlaw::Empty => write!(f, "there are no tetrahedra, but the vertices are not in one plane"),
+            SpaceFlaw::LeftOut(vertex) => {
+                write!(f, "vertex {vertex}: it is in no tetrahedron, but should be")
+            }
+            SpaceFlaw::Empty => write!(
+                f,
+                "there are no tetrahedra, but the vertices are not in one plane"
+            ),
             SpaceFlaw::NotDelaunay(cell, vertex) => {
-                write!(f, "tetrahedron {cell}: vertex {vertex} is inside of its sphere")
+                write!(
+                    f,
+                    "tetrahedron {cell}: vertex {vertex} is inside of its sphere"
+                )
             }
         }
     }
@@ -94,7 +113,8 @@ pub struct SpaceCheck {
 /// If a file is damaged, weights are missing, or the run is canceled.
 pub fn check_space(path: &Path, law: SpaceLaw, context: &Context) -> Result<SpaceCheck> {
     let journal = Journal::new(context);
-    let (triangulated, warnings) = open::reading_stage(path, context, |watch: Watch| tetgen::read(path, watch))?;
+    let (triangulated, warnings) =
+        open::reading_stage(path, context, |watch: Watch| tetgen::read(path, watch))?;
     journal.add_warnings(path, &warnings);
     let weights = match law {
         SpaceLaw::Delaunay => None,
@@ -103,7 +123,11 @@ pub fn check_space(path: &Path, law: SpaceLaw, context: &Context) -> Result<Spac
     let work = context.start(Stage::CheckingFaces, Size::Uncounted)?;
     let flaws = flaws(&triangulated, weights.as_deref());
     work.end()?;
-    Ok(SpaceCheck { vertices: triangulated.nodes.points.len(), tetrahedra: triangulated.tetrahedra.len(), flaws })
+    Ok(SpaceCheck {
+        vertices: triangulated.nodes.points.len(),
+        tetrahedra: triangulated.tetrahedra.len(),
+        flaws,
+    })
 }
 
 /// A tetrahedron, and one of its facets by the corner opposite to it.
@@ -126,8 +150,17 @@ fn flaws(triangulated: &Tetrahedralized, weights: Option<&[f64]>) -> Vec<SpaceFl
         flaws.push(SpaceFlaw::Apart);
     }
     flaws.extend(checked.broken_law(&facets));
-    let dents = dents(checked.tetrahedra, &checked.signs, &facets.hull, &|corners| checked.orientation(corners));
-    flaws.extend(dents.into_iter().map(|edge| SpaceFlaw::Dent(edge.map(|v| v + checked.first))));
+    let dents = dents(
+        checked.tetrahedra,
+        &checked.signs,
+        &facets.hull,
+        &|corners| checked.orientation(corners),
+    );
+    flaws.extend(
+        dents
+            .into_iter()
+            .map(|edge| SpaceFlaw::Dent(edge.map(|v| v + checked.first))),
+    );
     if flaws.is_empty() {
         flaws = checked.left_out(&facets);
     }
@@ -155,7 +188,11 @@ struct Facets {
 
 impl<'a> Checked<'a> {
     fn new(triangulated: &'a Tetrahedralized, weights: Option<&'a [f64]>) -> Self {
-        let Tetrahedralized { nodes, tetrahedra, neighbors: stated } = triangulated;
+        let Tetrahedralized {
+            nodes,
+            tetrahedra,
+            neighbors: stated,
+        } = triangulated;
         let mut checked = Checked {
             points: &nodes.points,
             weights,
@@ -164,7 +201,10 @@ impl<'a> Checked<'a> {
             signs: Vec::new(),
             first: nodes.first_number,
         };
-        checked.signs = tetrahedra.iter().map(|&corners| checked.orientation(corners)).collect();
+        checked.signs = tetrahedra
+            .iter()
+            .map(|&corners| checked.orientation(corners))
+            .collect();
         checked
     }
 
@@ -189,7 +229,9 @@ impl<'a> Checked<'a> {
 
     /// Returns the tetrahedra whose corners lie in a plane.
     fn flat(&self) -> Vec<SpaceFlaw> {
-        let flat = (self.first..).zip(&self.signs).filter(|(_, sign)| **sign == Sign::Zero);
+        let flat = (self.first..)
+            .zip(&self.signs)
+            .filter(|(_, sign)| **sign == Sign::Zero);
         flat.map(|(cell, _)| SpaceFlaw::Flat(cell)).collect()
     }
 
@@ -205,7 +247,10 @@ impl<'a> Checked<'a> {
             }
         }
         all.sort_unstable();
-        let mut facets = Facets { neighbors: vec![[None; 4]; self.tetrahedra.len()], hull: Vec::new() };
+        let mut facets = Facets {
+            neighbors: vec![[None; 4]; self.tetrahedra.len()],
+            hull: Vec::new(),
+        };
         let mut flaws = Vec::new();
         for group in all.chunk_by(|a, b| a.0 == b.0) {
             match *group {
@@ -213,8 +258,10 @@ impl<'a> Checked<'a> {
                 [(facet, (a, i)), (_, (b, j))] => {
                     facets.neighbors[a as usize][i] = Some(b);
                     facets.neighbors[b as usize][j] = Some(a);
-                    let [p, q] = [(a, i), (b, j)].map(|(cell, i)| self.tetrahedra[cell as usize][i]);
-                    let [p, q] = [p, q].map(|apex| self.orientation([facet[0], facet[1], facet[2], apex]));
+                    let [p, q] =
+                        [(a, i), (b, j)].map(|(cell, i)| self.tetrahedra[cell as usize][i]);
+                    let [p, q] =
+                        [p, q].map(|apex| self.orientation([facet[0], facet[1], facet[2], apex]));
                     if p * q == Sign::Positive {
                         flaws.push(SpaceFlaw::Folded(a + self.first, b + self.first));
                     }
@@ -229,8 +276,13 @@ impl<'a> Checked<'a> {
     /// Returns the neighbors that a file states otherwise.
     fn wrong_neighbors(&self, facets: &Facets) -> Vec<SpaceFlaw> {
         let mut flaws = Vec::new();
-        for (cell, (found, stated)) in (self.first..).zip(facets.neighbors.iter().zip(self.stated)) {
-            flaws.extend((0..4).filter(|&i| found[i] != stated[i]).map(|i| SpaceFlaw::Neighbor(cell, i)));
+        for (cell, (found, stated)) in (self.first..).zip(facets.neighbors.iter().zip(self.stated))
+        {
+            flaws.extend(
+                (0..4)
+                    .filter(|&i| found[i] != stated[i])
+                    .map(|i| SpaceFlaw::Neighbor(cell, i)),
+            );
         }
         flaws
     }
@@ -241,9 +293,15 @@ impl<'a> Checked<'a> {
         for (cell, around) in (0u32..).zip(&facets.neighbors) {
             for next in around.iter().flatten().filter(|&&next| next > cell) {
                 let corners = self.tetrahedra[cell as usize];
-                for &vertex in self.tetrahedra[*next as usize].iter().filter(|v| !corners.contains(v)) {
+                for &vertex in self.tetrahedra[*next as usize]
+                    .iter()
+                    .filter(|v| !corners.contains(v))
+                {
                     if self.is_in_sphere(cell, vertex) {
-                        flaws.push(SpaceFlaw::NotDelaunay(cell + self.first, vertex + self.first));
+                        flaws.push(SpaceFlaw::NotDelaunay(
+                            cell + self.first,
+                            vertex + self.first,
+                        ));
                     }
                 }
             }
@@ -254,10 +312,17 @@ impl<'a> Checked<'a> {
     /// Returns the vertices that are in no tetrahedron, but should be. No other flaw may be there.
     fn left_out(&self, facets: &Facets) -> Vec<SpaceFlaw> {
         let mut is_used = vec![false; self.points.len()];
-        self.tetrahedra.as_flattened().iter().for_each(|&v| is_used[v as usize] = true);
+        self.tetrahedra
+            .as_flattened()
+            .iter()
+            .for_each(|&v| is_used[v as usize] = true);
         let mut flaws = Vec::new();
         let mut cell = 0;
-        for vertex in (0..).zip(&is_used).filter(|(_, is_used)| !**is_used).map(|(vertex, _)| vertex) {
+        for vertex in (0..)
+            .zip(&is_used)
+            .filter(|(_, is_used)| !**is_used)
+            .map(|(vertex, _)| vertex)
+        {
             let found = walk(self.tetrahedra, &facets.neighbors, cell, |cell, i| {
                 let mut corners = self.tetrahedra[cell as usize];
                 corners[i] = vertex;
@@ -308,14 +373,26 @@ fn walk(
 
 /// Returns true if all points lie in a plane.
 fn is_flat(points: &[[f64; 3]]) -> bool {
-    let Some(&a) = points.first() else { return true };
-    let Some(&b) = points.iter().find(|&&b| b != a) else { return true };
-    let turns = |c: [f64; 3]| {
-        let turn = |axes: [usize; 2]| Wide::sign(&Orientation2([a, b, c].map(|p| axes.map(|axis| p[axis]))));
-        [[0, 1], [1, 2], [2, 0]].into_iter().any(|axes| turn(axes) != Sign::Zero)
+    let Some(&a) = points.first() else {
+        return true;
     };
-    let Some(&c) = points.iter().find(|&&c| turns(c)) else { return true };
-    points.iter().all(|&d| Wide::sign(&Orientation3([a, b, c, d])) == Sign::Zero)
+    let Some(&b) = points.iter().find(|&&b| b != a) else {
+        return true;
+    };
+    let turns = |c: [f64; 3]| {
+        let turn = |axes: [usize; 2]| {
+            Wide::sign(&Orientation2([a, b, c].map(|p| axes.map(|axis| p[axis]))))
+        };
+        [[0, 1], [1, 2], [2, 0]]
+            .into_iter()
+            .any(|axes| turn(axes) != Sign::Zero)
+    };
+    let Some(&c) = points.iter().find(|&&c| turns(c)) else {
+        return true;
+    };
+    points
+        .iter()
+        .all(|&d| Wide::sign(&Orientation3([a, b, c, d])) == Sign::Zero)
 }
 
 /// Returns the edges of the hull at which it is not convex: those that have not exactly two facets,
@@ -335,7 +412,10 @@ fn dents(
         }
         let [a, b, c] = facet;
         for (p, q, apex) in [(a, b, c), (b, c, a), (c, a, b)] {
-            around.entry([p.min(q), p.max(q)]).or_default().push((facet, apex));
+            around
+                .entry([p.min(q), p.max(q)])
+                .or_default()
+                .push((facet, apex));
         }
     }
     // Facets are counter-clockwise as seen from outside: positive is what lies beyond.
@@ -343,7 +423,11 @@ fn dents(
         [([a, b, c], _), (_, apex)] => orientation([a, b, c, apex]) == Sign::Positive,
         _ => true,
     };
-    let mut dents: Vec<[u32; 2]> = around.iter().filter(|(_, facets)| is_dent(facets)).map(|(edge, _)| *edge).collect();
+    let mut dents: Vec<[u32; 2]> = around
+        .iter()
+        .filter(|(_, facets)| is_dent(facets))
+        .map(|(edge, _)| *edge)
+        .collect();
     dents.sort_unstable();
     dents
 }

@@ -145,7 +145,10 @@ impl Surface for AlphaSolid {
 /// Returns true if a file is a `.node` of dimension 3, or an `.ele` next to one. A `.node` that
 /// does not begin with a count is not.
 pub fn is_of_space(path: &Path) -> bool {
-    let has = |extension: &str| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(extension));
+    let has = |extension: &str| {
+        path.extension()
+            .is_some_and(|e| e.eq_ignore_ascii_case(extension))
+    };
     let nodes = match (has("node"), has("ele")) {
         (true, _) => path.to_path_buf(),
         (_, true) => path.with_extension("node"),
@@ -160,36 +163,62 @@ pub fn is_of_space(path: &Path) -> bool {
 /// # Errors
 /// If the file cannot be read, weights are missing, there is not enough memory, or the run is
 /// canceled.
-pub fn triangulate_space(path: &Path, options: &SpaceOptions, context: &Context) -> Result<SpaceProduct> {
+pub fn triangulate_space(
+    path: &Path,
+    options: &SpaceOptions,
+    context: &Context,
+) -> Result<SpaceProduct> {
     if options.arithmetic == Arithmetic::Fast {
         return Err(Error::usage("plain floating point is for the plane only")
             .cure(wording!["leave out ", Setting::Kernel.text("fast")]));
     }
     let journal = Journal::new(context);
-    let Cloud { mut nodes, has_classes, is_in_degrees, weight_column } = read(path, &journal)?;
+    let Cloud {
+        mut nodes,
+        has_classes,
+        is_in_degrees,
+        weight_column,
+    } = read(path, &journal)?;
     let weights = match (options.weighted, weight_column) {
         (false, _) => None,
-        (true, Some(columns)) if !weights_beside(path).exists() => Some(column_of_weights(path, columns, &journal)?),
+        (true, Some(columns)) if !weights_beside(path).exists() => {
+            Some(column_of_weights(path, columns, &journal)?)
+        }
         (true, _) => Some(weights(path, &nodes, &journal)?),
     };
     memory::require_for_space(nodes.points.len()).map_err(|e| e.in_file(path))?;
     let triangulating = context.start(Stage::Triangulating, Size::Uncounted)?;
-    let built = build(&nodes.points, weights.as_deref(), options).map_err(|e| explained(&e, &nodes, path))?;
+    let built = build(&nodes.points, weights.as_deref(), options)
+        .map_err(|e| explained(&e, &nodes, path))?;
     triangulating.end()?;
-    let Built { tetrahedra, neighbors, solid, duplicates, hidden, dimension } = built;
-    let mut triangulated = Tetrahedralized { nodes: Nodes::default(), tetrahedra, neighbors };
+    let Built {
+        tetrahedra,
+        neighbors,
+        solid,
+        duplicates,
+        hidden,
+        dimension,
+    } = built;
+    let mut triangulated = Tetrahedralized {
+        nodes: Nodes::default(),
+        tetrahedra,
+        neighbors,
+    };
     let hull: Vec<[u32; 3]> = triangulated.hull().collect();
     for vertex in hull.into_iter().flatten() {
         let marker = &mut nodes.markers[vertex as usize];
         *marker = if *marker == 0 { 1 } else { *marker };
     }
-    if let Some(weights) = weights.filter(|_| nodes.attribute_count == 0 || weights_beside(path).exists()) {
+    if let Some(weights) =
+        weights.filter(|_| nodes.attribute_count == 0 || weights_beside(path).exists())
+    {
         put_first(&mut nodes, &weights);
     }
     triangulated.nodes = nodes;
     let points = &triangulated.nodes.points;
-    let six =
-        triangulated.tetrahedra.iter().fold(0.0, |sum, corners| sum + six_volumes(corners.map(|v| points[v as usize])));
+    let six = triangulated.tetrahedra.iter().fold(0.0, |sum, corners| {
+        sum + six_volumes(corners.map(|v| points[v as usize]))
+    });
     let report = SpaceReport {
         points: points.len(),
         duplicates,
@@ -199,7 +228,12 @@ pub fn triangulate_space(path: &Path, options: &SpaceOptions, context: &Context)
         has_classes,
         is_in_degrees,
     };
-    Ok(SpaceProduct { triangulated, solid, report, notices: journal.take() })
+    Ok(SpaceProduct {
+        triangulated,
+        solid,
+        report,
+        notices: journal.take(),
+    })
 }
 
 impl SpaceProduct {
@@ -231,36 +265,72 @@ struct Cloud {
 
 impl Cloud {
     fn of(points: Vec<[f64; 3]>) -> Self {
-        Cloud { nodes: Nodes { markers: vec![0; points.len()], points, ..Nodes::default() }, ..Cloud::default() }
+        Cloud {
+            nodes: Nodes {
+                markers: vec![0; points.len()],
+                points,
+                ..Nodes::default()
+            },
+            ..Cloud::default()
+        }
     }
 }
 
 fn read(path: &Path, journal: &Journal) -> Result<Cloud> {
-    if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("node")) {
-        let (nodes, warnings) =
-            open::reading_stage(path, &journal.context, |watch: Watch| tetgen::read_nodes(path, watch))?;
+    if path
+        .extension()
+        .is_some_and(|extension| extension.eq_ignore_ascii_case("node"))
+    {
+        let (nodes, warnings) = open::reading_stage(path, &journal.context, |watch: Watch| {
+            tetgen::read_nodes(path, watch)
+        })?;
         journal.add_warnings(path, &warnings);
-        return Ok(Cloud { nodes, ..Cloud::default() });
+        return Ok(Cloud {
+            nodes,
+            ..Cloud::default()
+        });
     }
     if open::content(path) == open::Content::Mesh {
         return open::mesh_vertices(path, journal).map(Cloud::of);
     }
     let source = open::points_of_file(path, Options::default(), &journal.context)?;
     let info = source.info();
-    let is_in_degrees = info.crs.as_ref().is_some_and(|crs| crs.kind == CrsKind::Geographic);
+    let is_in_degrees = info
+        .crs
+        .as_ref()
+        .is_some_and(|crs| crs.kind == CrsKind::Geographic);
     let weight_column = info.columns.map(|columns| {
-        let after = [columns.x, columns.y, columns.z].into_iter().fold(0, usize::max) + 1;
-        Columns { z: after + usize::from(columns.class == Some(after)), class: None, ..columns }
+        let after = [columns.x, columns.y, columns.z]
+            .into_iter()
+            .fold(0, usize::max)
+            + 1;
+        Columns {
+            z: after + usize::from(columns.class == Some(after)),
+            class: None,
+            ..columns
+        }
     });
     let (points, has_classes) = read_all(path, source, journal)?;
-    Ok(Cloud { has_classes, is_in_degrees, weight_column, ..Cloud::of(points) })
+    Ok(Cloud {
+        has_classes,
+        is_in_degrees,
+        weight_column,
+        ..Cloud::of(points)
+    })
 }
 
 /// Reads all points of a source; true if they have classes.
-fn read_all(path: &Path, mut source: Box<dyn PointSource + Send>, journal: &Journal) -> Result<(Vec<[f64; 3]>, bool)> {
+fn read_all(
+    path: &Path,
+    mut source: Box<dyn PointSource + Send>,
+    journal: &Journal,
+) -> Result<(Vec<[f64; 3]>, bool)> {
     let count = source.info().count;
     journal.add_warnings(path, &source.info().warnings.clone());
-    let work = journal.start(Stage::ReadingPoints, count.map_or(Size::Unknown, Size::Items))?;
+    let work = journal.start(
+        Stage::ReadingPoints,
+        count.map_or(Size::Unknown, Size::Items),
+    )?;
     let (mut points, mut has_classes) = (Vec::new(), false);
     let mut batch = PointBatch::default();
     loop {
@@ -288,8 +358,12 @@ fn column_of_weights(path: &Path, columns: Columns, journal: &Journal) -> Result
         "give weights as the column after the coordinates, or put {} next to the file, one number a line",
         weights_beside(path).display()
     );
-    let options = Options { columns: Some(columns), ..Options::default() };
-    let read = open::points_of_file(path, options, &journal.context).and_then(|source| read_all(path, source, journal));
+    let options = Options {
+        columns: Some(columns),
+        ..Options::default()
+    };
+    let read = open::points_of_file(path, options, &journal.context)
+        .and_then(|source| read_all(path, source, journal));
     let (points, _) = read.map_err(|e| e.cure(cure))?;
     Ok(points.into_iter().map(|[_, _, weight]| weight).collect())
 }
@@ -297,7 +371,11 @@ fn column_of_weights(path: &Path, columns: Columns, journal: &Journal) -> Result
 /// Makes numbers the first attribute of the vertices.
 fn put_first(nodes: &mut Nodes<3>, numbers: &[f64]) {
     let rows = numbers.iter().enumerate();
-    let attributes = rows.flat_map(|(i, &number)| [number].into_iter().chain(nodes.attributes_of(i).iter().copied()));
+    let attributes = rows.flat_map(|(i, &number)| {
+        [number]
+            .into_iter()
+            .chain(nodes.attributes_of(i).iter().copied())
+    });
     nodes.attributes = attributes.collect();
     nodes.attribute_count += 1;
 }
@@ -315,10 +393,12 @@ fn weights(path: &Path, nodes: &Nodes<3>, journal: &Journal) -> Result<Vec<f64>>
     if nodes.attribute_count > 0 {
         return Ok((0..count).map(|i| nodes.attributes_of(i)[0]).collect());
     }
-    Err(Error::format("the points have no weights").in_file(path).cure(format!(
-        "put {} next to it, one number a line, or weights as the first attribute of a .node",
-        beside.display()
-    )))
+    Err(Error::format("the points have no weights")
+        .in_file(path)
+        .cure(format!(
+            "put {} next to it, one number a line, or weights as the first attribute of a .node",
+            beside.display()
+        )))
 }
 
 /// A triangulation in the numbers of the points.
@@ -357,8 +437,13 @@ fn build_with<K: Kernel>(
         built.solid = alpha.and_then(|alpha| solid(&t.alpha_shapes(), alpha, points, &vertices));
         return Ok(built);
     };
-    let weighted: Vec<[f64; 4]> = points.iter().zip(weights).map(|(&[x, y, z], &weight)| [x, y, z, weight]).collect();
-    let (t, vertices) = Regular::<WeightedSpace<K>, 4>::from_points(WeightedSpace::default(), &weighted)?;
+    let weighted: Vec<[f64; 4]> = points
+        .iter()
+        .zip(weights)
+        .map(|(&[x, y, z], &weight)| [x, y, z, weight])
+        .collect();
+    let (t, vertices) =
+        Regular::<WeightedSpace<K>, 4>::from_points(WeightedSpace::default(), &weighted)?;
     let mut built = listed(&t, &vertices);
     built.hidden = t.hidden().len();
     built.solid = alpha.and_then(|alpha| solid(&t.alpha_shapes(), alpha, points, &vertices));
@@ -381,9 +466,18 @@ fn listed<G: Geometry<4>>(t: &Triangulation<G, 4>, vertices: &[VertexId]) -> Bui
     let is_solid = t.dimension() == 3;
     let cells: Vec<_> = t.finite_cells().filter(|_| is_solid).collect();
     let mut number = vec![None; tds.cell_slots()];
-    cells.iter().zip(0..).for_each(|(cell, i)| number[cell.index()] = Some(i));
-    let tetrahedra = cells.iter().map(|&cell| tds.corners(cell).map(|vertex| point_of[vertex.index()])).collect();
-    let neighbors = cells.iter().map(|&cell| std::array::from_fn(|i| number[tds.neighbor(cell, i).index()])).collect();
+    cells
+        .iter()
+        .zip(0..)
+        .for_each(|(cell, i)| number[cell.index()] = Some(i));
+    let tetrahedra = cells
+        .iter()
+        .map(|&cell| tds.corners(cell).map(|vertex| point_of[vertex.index()]))
+        .collect();
+    let neighbors = cells
+        .iter()
+        .map(|&cell| std::array::from_fn(|i| number[tds.neighbor(cell, i).index()]))
+        .collect();
     Built {
         tetrahedra,
         neighbors,
@@ -395,17 +489,30 @@ fn listed<G: Geometry<4>>(t: &Triangulation<G, 4>, vertices: &[VertexId]) -> Bui
 }
 
 /// Returns an alpha shape as a mesh; `None` if there are no tetrahedra.
-fn solid(shapes: &AlphaShapes<'_>, alpha: Alpha, points: &[[f64; 3]], vertices: &[VertexId]) -> Option<AlphaSolid> {
+fn solid(
+    shapes: &AlphaShapes<'_>,
+    alpha: Alpha,
+    points: &[[f64; 3]],
+    vertices: &[VertexId],
+) -> Option<AlphaSolid> {
     let shape = match alpha {
         Alpha::Given(alpha) => shapes.at(alpha),
         Alpha::OneSolid => shapes.with_components(1)?,
     };
-    let slots = vertices.iter().map(|vertex| vertex.index() + 1).max().unwrap_or(0);
+    let slots = vertices
+        .iter()
+        .map(|vertex| vertex.index() + 1)
+        .max()
+        .unwrap_or(0);
     let point_of = points_of(vertices, slots);
     let boundary = shape.boundary();
     Some(AlphaSolid {
         points: points.to_vec(),
-        triangles: boundary.triangles.iter().map(|corners| corners.map(|v| point_of[v.index()])).collect(),
+        triangles: boundary
+            .triangles
+            .iter()
+            .map(|corners| corners.map(|v| point_of[v.index()]))
+            .collect(),
         alpha: shape.alpha(),
         parts: shape.components(),
         volume: shape.volume(),
@@ -417,9 +524,13 @@ fn solid(shapes: &AlphaShapes<'_>, alpha: Alpha, points: &[[f64; 3]], vertices: 
 /// Returns an error that names a point by its number in the file.
 #[cold]
 fn explained(error: &InputError, nodes: &Nodes<3>, path: &Path) -> Error {
-    let InputError::Coordinate(i) = *error else { return Error::limit(error.to_string()).in_file(path) };
+    let InputError::Coordinate(i) = *error else {
+        return Error::limit(error.to_string()).in_file(path);
+    };
     let number = i + nodes.first_number as usize;
     let [x, y, z] = nodes.points[i];
-    Error::limit(format!("point {number} is at {x:?} {y:?} {z:?}, expected finite coordinates and weights"))
-        .in_file(path)
+    Error::limit(format!(
+        "point {number} is at {x:?} {y:?} {z:?}, expected finite coordinates and weights"
+    ))
+    .in_file(path)
 }

@@ -7,7 +7,12 @@ use super::build::Built;
 use crate::io::triangle::{Edge, LineGraph, Nodes, Triangulated};
 
 /// Returns the kept triangles with their vertices, edges, segments, attributes and markers.
-pub(super) fn assemble(graph: &LineGraph, built: &Built, is_kept: &[bool], attributes: &[f64]) -> Triangulated {
+pub(super) fn assemble(
+    graph: &LineGraph,
+    built: &Built,
+    is_kept: &[bool],
+    attributes: &[f64],
+) -> Triangulated {
     let mut nodes = graph.nodes.clone();
     let node_of = number_nodes(graph, built, &mut nodes);
     let markers = segment_markers(graph, built);
@@ -18,13 +23,20 @@ pub(super) fn assemble(graph: &LineGraph, built: &Built, is_kept: &[bool], attri
     for (new, face) in (0u32..).zip(kept.clone()) {
         new_number[face] = Some(new);
     }
-    let mut triangulated =
-        Triangulated { holes: graph.holes.clone(), regions: graph.regions.clone(), ..Default::default() };
+    let mut triangulated = Triangulated {
+        holes: graph.holes.clone(),
+        regions: graph.regions.clone(),
+        ..Default::default()
+    };
     let mut rim = Vec::new();
     for face in kept {
         let this = &built.faces[face];
-        let neighbors = this.neighbors.map(|beside| beside.and_then(|beside| new_number[beside as usize]));
-        triangulated.triangles.push(this.corners.map(|v| node_of[v as usize]));
+        let neighbors = this
+            .neighbors
+            .map(|beside| beside.and_then(|beside| new_number[beside as usize]));
+        triangulated
+            .triangles
+            .push(this.corners.map(|v| node_of[v as usize]));
         triangulated.neighbors.push(neighbors);
         triangulated.attributes.extend(attributes.get(face));
         for (i, beside) in neighbors.into_iter().enumerate() {
@@ -32,7 +44,10 @@ pub(super) fn assemble(graph: &LineGraph, built: &Built, is_kept: &[bool], attri
                 continue; // listed from the other side
             }
             let ends = [this.corners[(i + 1) % 3], this.corners[(i + 2) % 3]];
-            let mut edge = Edge { ends: ends.map(|v| node_of[v as usize]), marker: marker_of(ends) };
+            let mut edge = Edge {
+                ends: ends.map(|v| node_of[v as usize]),
+                marker: marker_of(ends),
+            };
             if beside.is_none() {
                 rim.extend(edge.ends);
                 edge.marker = if edge.marker == 0 { 1 } else { edge.marker };
@@ -50,10 +65,14 @@ pub(super) fn assemble(graph: &LineGraph, built: &Built, is_kept: &[bool], attri
     // The vertex's own marker comes first, then that of a segment, then 1 on the rim.
     for (segment, chain) in graph.segments.iter().zip(&built.chains) {
         for &v in chain {
-            set_if_zero(&mut nodes.markers[node_of[v as usize] as usize], segment.marker);
+            set_if_zero(
+                &mut nodes.markers[node_of[v as usize] as usize],
+                segment.marker,
+            );
         }
     }
-    rim.into_iter().for_each(|node| set_if_zero(&mut nodes.markers[node as usize], 1));
+    rim.into_iter()
+        .for_each(|node| set_if_zero(&mut nodes.markers[node as usize], 1));
     triangulated.nodes = nodes;
     triangulated
 }
@@ -68,13 +87,17 @@ fn number_nodes(graph: &LineGraph, built: &Built, nodes: &mut Nodes) -> Vec<u32>
     }
     let mut segment_of = vec![None; built.vertices.len()];
     for (segment, chain) in graph.segments.iter().zip(&built.chains) {
-        chain.iter().for_each(|&vertex| _ = segment_of[vertex as usize].get_or_insert(segment));
+        chain
+            .iter()
+            .for_each(|&vertex| _ = segment_of[vertex as usize].get_or_insert(segment));
     }
     let numbered = node_of.iter().enumerate().map(|(vertex, node)| {
         node.unwrap_or_else(|| {
             let at = built.vertices[vertex];
             let attributes = match segment_of[vertex] {
-                Some(segment) => attributes_between(nodes, segment.ends.map(|end| end as usize), at),
+                Some(segment) => {
+                    attributes_between(nodes, segment.ends.map(|end| end as usize), at)
+                }
                 None => attributes_within(nodes, built, &node_of, vertex as u32),
             };
             nodes.points.push(at);
@@ -88,13 +111,23 @@ fn number_nodes(graph: &LineGraph, built: &Built, nodes: &mut Nodes) -> Vec<u32>
 
 /// Returns the attributes of an added vertex, linear in the triangle of the input's vertices that
 /// contains it. A corner at a crossing of segments has no attributes and counts as zero.
-fn attributes_within(nodes: &Nodes, built: &Built, node_of: &[Option<u32>], vertex: u32) -> Vec<f64> {
+fn attributes_within(
+    nodes: &Nodes,
+    built: &Built,
+    node_of: &[Option<u32>],
+    vertex: u32,
+) -> Vec<f64> {
     let mut attributes = vec![0.0; nodes.attribute_count];
     if let Some((corners, weights)) = built.between.get(&vertex) {
         for (corner, weight) in corners.iter().zip(weights) {
-            let Some(node) = node_of[*corner as usize] else { continue };
+            let Some(node) = node_of[*corner as usize] else {
+                continue;
+            };
             let values = nodes.attributes_of(node as usize);
-            attributes.iter_mut().zip(values).for_each(|(sum, value)| *sum += weight * value);
+            attributes
+                .iter_mut()
+                .zip(values)
+                .for_each(|(sum, value)| *sum += weight * value);
         }
     }
     attributes
@@ -108,27 +141,52 @@ fn attributes_between(nodes: &Nodes, [a, b]: [usize; 2], at: [f64; 2]) -> Vec<f6
     let axis = usize::from(half[1].abs() > half[0].abs());
     let along = ((at[axis] / 2.0 - from[axis] / 2.0) / half[axis]).clamp(0.0, 1.0);
     let values = nodes.attributes_of(a).iter().zip(nodes.attributes_of(b));
-    values.map(|(from, to)| if from == to { *from } else { from * (1.0 - along) + to * along }).collect()
+    values
+        .map(|(from, to)| {
+            if from == to {
+                *from
+            } else {
+                from * (1.0 - along) + to * along
+            }
+        })
+        .collect()
 }
 
 /// Returns the marker of each constrained edge: that of the first segment through it that has one.
 fn segment_markers(graph: &LineGraph, built: &Built) -> HashMap<[u32; 2], i32> {
     let mut markers = HashMap::new();
-    for (segment, chain) in graph.segments.iter().zip(&built.chains).filter(|(segment, _)| segment.marker != 0) {
+    for (segment, chain) in graph
+        .segments
+        .iter()
+        .zip(&built.chains)
+        .filter(|(segment, _)| segment.marker != 0)
+    {
         for pair in chain.windows(2) {
-            markers.entry(sorted([pair[0], pair[1]])).or_insert(segment.marker);
+            markers
+                .entry(sorted([pair[0], pair[1]]))
+                .or_insert(segment.marker);
         }
     }
     markers
 }
 
 /// Returns the segments of a triangulation without triangles; each constrained edge once.
-fn collinear_segments(built: &Built, node_of: &[u32], marker_of: &impl Fn([u32; 2]) -> i32) -> Vec<Edge> {
-    let mut sub_constraints: Vec<[u32; 2]> =
-        built.chains.iter().flat_map(|chain| chain.windows(2).map(|pair| sorted([pair[0], pair[1]]))).collect();
+fn collinear_segments(
+    built: &Built,
+    node_of: &[u32],
+    marker_of: &impl Fn([u32; 2]) -> i32,
+) -> Vec<Edge> {
+    let mut sub_constraints: Vec<[u32; 2]> = built
+        .chains
+        .iter()
+        .flat_map(|chain| chain.windows(2).map(|pair| sorted([pair[0], pair[1]])))
+        .collect();
     sub_constraints.sort_unstable();
     sub_constraints.dedup();
-    let edge = |ends: [u32; 2]| Edge { ends: ends.map(|v| node_of[v as usize]), marker: marker_of(ends) };
+    let edge = |ends: [u32; 2]| Edge {
+        ends: ends.map(|v| node_of[v as usize]),
+        marker: marker_of(ends),
+    };
     sub_constraints.into_iter().map(edge).collect()
 }
 

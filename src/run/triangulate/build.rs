@@ -59,10 +59,13 @@ pub(super) fn build<K: Kernel>(
 ) -> Result<Built, InputError> {
     // Negative zero becomes zero: sites are compared bit by bit when sorted.
     let sites: Vec<[f64; 2]> = points.iter().map(|p| p.map(unsigned_zero)).collect();
-    let (coarse, vertices) = ConstrainedDelaunay::from_lines(Plane::<K>::default(), &sites, segments, on_crossing)?;
+    let (coarse, vertices) =
+        ConstrainedDelaunay::from_lines(Plane::<K>::default(), &sites, segments, on_crossing)?;
     let refined = quality.map(|quality| coarse.clone().refined(quality));
     let t = refined.as_deref().unwrap_or(&coarse);
-    let chains: Vec<Vec<VertexId>> = (0..segments.len()).map(|i| t.chain(LineId::new(i))).collect();
+    let chains: Vec<Vec<VertexId>> = (0..segments.len())
+        .map(|i| t.chain(LineId::new(i)))
+        .collect();
 
     // Vertices that were added and removed again leave unused numbers.
     let mut numbers = vec![u32::MAX; t.tds().vertex_slots()];
@@ -70,7 +73,11 @@ pub(super) fn build<K: Kernel>(
         numbers[v.index()] = number;
     }
     let number = |v: &VertexId| numbers[v.index()];
-    let cells: Vec<CellId> = if t.dimension() == 2 { t.finite_cells().collect() } else { Vec::new() };
+    let cells: Vec<CellId> = if t.dimension() == 2 {
+        t.finite_cells().collect()
+    } else {
+        Vec::new()
+    };
     let mut face_of = vec![None; t.tds().cell_slots()];
     for (face, cell) in (0u32..).zip(&cells) {
         face_of[cell.index()] = Some(face);
@@ -84,8 +91,14 @@ pub(super) fn build<K: Kernel>(
         vertices: t.tds().vertices().map(|v| *t.point(v)).collect(),
         vertex_of: vertices.iter().map(number).collect(),
         faces: cells.iter().map(face).collect(),
-        chains: chains.iter().map(|chain| chain.iter().map(number).collect()).collect(),
-        seeds: seeds.iter().map(|p| locate_seed(t, &face_of, p.map(unsigned_zero))).collect(),
+        chains: chains
+            .iter()
+            .map(|chain| chain.iter().map(number).collect())
+            .collect(),
+        seeds: seeds
+            .iter()
+            .map(|p| locate_seed(t, &face_of, p.map(unsigned_zero)))
+            .collect(),
         between: refined
             .iter()
             .flat_map(|refined| refined.added())
@@ -94,39 +107,65 @@ pub(super) fn build<K: Kernel>(
                 Some((number(v), (corners.map(|v| number(&v)), weights)))
             })
             .collect(),
-        shortfall: refined.iter().flat_map(|refined| refined.shortfall()).map(|&(_, why)| why).collect(),
+        shortfall: refined
+            .iter()
+            .flat_map(|refined| refined.shortfall())
+            .map(|&(_, why)| why)
+            .collect(),
     })
 }
 
 /// Returns the corners of the triangle that contains a point, and their barycentric weights.
-fn weights<K: Kernel>(t: &ConstrainedDelaunay<Plane<K>>, p: &[f64; 2]) -> Option<([VertexId; 3], [f64; 3])> {
+fn weights<K: Kernel>(
+    t: &ConstrainedDelaunay<Plane<K>>,
+    p: &[f64; 2],
+) -> Option<([VertexId; 3], [f64; 3])> {
     let cell = match t.locate(p, None) {
         Location::Cell { cell, .. } => cell,
         // Outside of the hull by rounding only.
-        Location::OutsideHull { cell } => t.tds().neighbor(cell, t.tds().index_of(cell, VertexId::INFINITE)?),
+        Location::OutsideHull { cell } => t
+            .tds()
+            .neighbor(cell, t.tds().index_of(cell, VertexId::INFINITE)?),
         Location::Vertex(_) | Location::OutsideAffineHull | Location::Nowhere => return None,
     };
     let corners = *t.tds().corners(cell);
     let [a, b, c] = corners.map(|v| *t.point(v));
     let whole = twice_area(a, b, c);
-    Some((corners, [twice_area(b, c, *p), twice_area(c, a, *p), twice_area(a, b, *p)].map(|part| part / whole)))
+    Some((
+        corners,
+        [
+            twice_area(b, c, *p),
+            twice_area(c, a, *p),
+            twice_area(a, b, *p),
+        ]
+        .map(|part| part / whole),
+    ))
 }
 
-fn locate_seed<K: Kernel>(t: &ConstrainedDelaunay<Plane<K>>, face_of: &[Option<u32>], p: [f64; 2]) -> SeedLocation {
+fn locate_seed<K: Kernel>(
+    t: &ConstrainedDelaunay<Plane<K>>,
+    face_of: &[Option<u32>],
+    p: [f64; 2],
+) -> SeedLocation {
     if t.dimension() < 2 {
         return SeedLocation::Outside;
     }
-    let in_face = |cell: CellId| face_of[cell.index()].map_or(SeedLocation::Outside, SeedLocation::Face);
+    let in_face =
+        |cell: CellId| face_of[cell.index()].map_or(SeedLocation::Outside, SeedLocation::Face);
     match t.locate(&p, None) {
         Location::Vertex(v) if t.constrained_around(v).next().is_some() => SeedLocation::Constraint,
-        Location::Vertex(v) => {
-            t.tds().around(v).find_map(|cell| face_of[cell.index()]).map_or(SeedLocation::Outside, SeedLocation::Face)
-        }
+        Location::Vertex(v) => t
+            .tds()
+            .around(v)
+            .find_map(|cell| face_of[cell.index()])
+            .map_or(SeedLocation::Outside, SeedLocation::Face),
         Location::Cell { cell, facets } => match facets.iter().any(|i| t.is_constrained(cell, i)) {
             true => SeedLocation::Constraint,
             false => in_face(cell),
         },
         // `Nowhere` is a coordinate larger, or nearer to zero, than any vertex can have.
-        Location::OutsideHull { .. } | Location::OutsideAffineHull | Location::Nowhere => SeedLocation::Outside,
+        Location::OutsideHull { .. } | Location::OutsideAffineHull | Location::Nowhere => {
+            SeedLocation::Outside
+        }
     }
 }

@@ -103,7 +103,11 @@ pub struct TriangulateReport {
 /// # Errors
 /// If the file cannot be read, segments cross and that is refused, the refinement does not end, no
 /// triangle is left, or the run is canceled.
-pub fn triangulate(path: &Path, options: &TriangulateOptions, context: &Context) -> Result<TriangulateProduct> {
+pub fn triangulate(
+    path: &Path,
+    options: &TriangulateOptions,
+    context: &Context,
+) -> Result<TriangulateProduct> {
     let journal = Journal::new(context);
     let graph = open::line_graph(path, context)?;
     journal.add_warnings(path, &graph.warnings);
@@ -133,7 +137,10 @@ fn triangulate_journaled(
     journal: Journal,
 ) -> Result<TriangulateProduct> {
     if !options.region_areas
-        && graph.regions.iter().any(|region| region.max_area.is_some_and(|area| area != region.attribute))
+        && graph
+            .regions
+            .iter()
+            .any(|region| region.max_area.is_some_and(|area| area != region.attribute))
     {
         journal.add(Notice::RegionAreasUnused(path.to_path_buf()));
     }
@@ -145,18 +152,24 @@ fn triangulate_journaled(
     note_seeds(&built, graph, path, &journal);
     // In a refined triangulation the hull is a constraint; triangles beyond it are only effects of
     // rounding.
-    let outside = if options.keeps_hull(graph) && !options.refines() { Outside::Keep } else { Outside::Remove };
+    let outside = if options.keeps_hull(graph) && !options.refines() {
+        Outside::Keep
+    } else {
+        Outside::Remove
+    };
     let is_kept = carve::kept(&built, graph, outside);
     let attributes = carve::attributes(&built, graph, &is_kept);
     let triangulated = assemble::assemble(graph, &built, &is_kept, &attributes);
     if triangulated.triangles.is_empty() && !built.faces.is_empty() {
-        return Err(Error::format("no triangle is left: all can be reached from outside or from a hole")
-            .in_file(path)
-            .cure(wording![
-                "close the outer boundary with segments, or add ",
-                Setting::Convex.on(),
-                " to keep the hull"
-            ]));
+        return Err(Error::format(
+            "no triangle is left: all can be reached from outside or from a hole",
+        )
+        .in_file(path)
+        .cure(wording![
+            "close the outer boundary with segments, or add ",
+            Setting::Convex.on(),
+            " to keep the hull"
+        ]));
     }
     let given = graph.nodes.points.len();
     let added = triangulated.nodes.points.len() - given;
@@ -170,7 +183,11 @@ fn triangulate_journaled(
         triangles_built: built.faces.len(),
         shortfall: built.shortfall,
     };
-    Ok(TriangulateProduct { triangulated, report, notices: journal.take() })
+    Ok(TriangulateProduct {
+        triangulated,
+        report,
+        notices: journal.take(),
+    })
 }
 
 impl TriangulateProduct {
@@ -179,10 +196,19 @@ impl TriangulateProduct {
     /// # Errors
     /// If they are not a surface.
     pub fn to_mesh(&self) -> Result<Mesh> {
-        let Triangulated { nodes, triangles, segments, .. } = &self.triangulated;
+        let Triangulated {
+            nodes,
+            triangles,
+            segments,
+            ..
+        } = &self.triangulated;
         let vertices = nodes.points.iter().map(|&[x, y]| [x, y, 0.0]).collect();
         let edges: Vec<[u32; 2]> = segments.iter().map(|edge| edge.ends).collect();
-        let edges = if triangles.is_empty() { &[] } else { edges.as_slice() };
+        let edges = if triangles.is_empty() {
+            &[]
+        } else {
+            edges.as_slice()
+        };
         Mesh::new(vertices, triangles.clone(), edges, None)
     }
 
@@ -198,17 +224,26 @@ impl TriangulateProduct {
 }
 
 /// Triangulates with the selected arithmetic.
-fn build(graph: &LineGraph, options: &TriangulateOptions, path: &Path, context: &Context) -> Result<Built> {
+fn build(
+    graph: &LineGraph,
+    options: &TriangulateOptions,
+    path: &Path,
+    context: &Context,
+) -> Result<Built> {
     let triangulating = context.start(Stage::Triangulating, Size::Uncounted)?;
     let built = match options.arithmetic {
-        Arithmetic::Adaptive if is_ordinary(graph) => build_with::<Adaptive>(graph, options, context),
+        Arithmetic::Adaptive if is_ordinary(graph) => {
+            build_with::<Adaptive>(graph, options, context)
+        }
         Arithmetic::Adaptive => build_with::<Wide>(graph, options, context),
         Arithmetic::Exact => build_with::<Exact>(graph, options, context),
-        Arithmetic::Fast => contain(|| build_with::<Fast>(graph, options, context)).ok_or_else(|| {
-            Error::limit("plain floating point contradicts itself on these points")
-                .in_file(path)
-                .cure(wording!["leave out ", Setting::Kernel.text("fast")])
-        })?,
+        Arithmetic::Fast => {
+            contain(|| build_with::<Fast>(graph, options, context)).ok_or_else(|| {
+                Error::limit("plain floating point contradicts itself on these points")
+                    .in_file(path)
+                    .cure(wording!["leave out ", Setting::Kernel.text("fast")])
+            })?
+        }
     };
     triangulating.end()?;
     let built = built.map_err(|error| explained(error, graph, path))?;
@@ -221,7 +256,12 @@ fn build(graph: &LineGraph, options: &TriangulateOptions, path: &Path, context: 
 /// Returns true if no coordinate is so large or small that the default arithmetic would need wider
 /// numbers.
 fn is_ordinary(graph: &LineGraph) -> bool {
-    graph.nodes.points.as_flattened().iter().all(|&x| Adaptive::RANGE.admits(x))
+    graph
+        .nodes
+        .points
+        .as_flattened()
+        .iter()
+        .all(|&x| Adaptive::RANGE.admits(x))
 }
 
 fn build_with<K: Kernel>(
@@ -231,13 +271,25 @@ fn build_with<K: Kernel>(
 ) -> std::result::Result<Built, InputError> {
     let segments: Vec<[u32; 2]> = graph.segments.iter().map(|segment| segment.ends).collect();
     let holes = graph.holes.iter().map(|hole| hole.at);
-    let seeds: Vec<[f64; 2]> = holes.chain(graph.regions.iter().map(|region| region.at)).collect();
+    let seeds: Vec<[f64; 2]> = holes
+        .chain(graph.regions.iter().map(|region| region.at))
+        .collect();
     let quality = quality(options, graph, context);
-    build::build::<K>(&graph.nodes.points, &segments, &seeds, options.on_crossing, quality.as_ref())
+    build::build::<K>(
+        &graph.nodes.points,
+        &segments,
+        &seeds,
+        options.on_crossing,
+        quality.as_ref(),
+    )
 }
 
 /// Returns the requested quality of triangles, if any.
-fn quality<'a>(options: &TriangulateOptions, graph: &LineGraph, context: &Context<'a>) -> Option<Quality<'a>> {
+fn quality<'a>(
+    options: &TriangulateOptions,
+    graph: &LineGraph,
+    context: &Context<'a>,
+) -> Option<Quality<'a>> {
     if !options.refines() {
         return None;
     }
@@ -247,9 +299,18 @@ fn quality<'a>(options: &TriangulateOptions, graph: &LineGraph, context: &Contex
         min_angle: options.min_angle.unwrap_or(0.0),
         max_area: options.max_area.unwrap_or(f64::INFINITY),
         regions: bounds
-            .filter_map(|region| Some(RegionBound { seed: region.at, max_area: region.max_area? }))
+            .filter_map(|region| {
+                Some(RegionBound {
+                    seed: region.at,
+                    max_area: region.max_area?,
+                })
+            })
             .collect(),
-        domain: if options.keeps_hull(graph) { Domain::Hull { holes } } else { Domain::Enclosed { holes } },
+        domain: if options.keeps_hull(graph) {
+            Domain::Hull { holes }
+        } else {
+            Domain::Enclosed { holes }
+        },
         max_added: options.max_added.unwrap_or(Quality::MAX_ADDED),
         cancel: Some(context.cancel),
         ..Quality::default()
@@ -278,17 +339,33 @@ fn explained(error: InputError, graph: &LineGraph, path: &Path) -> Error {
             let expected = format!("expected coordinates of 0 or between {min:.0e} and {max:.0e}");
             Error::limit(format!("vertex {number} is at {x:?} {y:?}, {expected}"))
                 .in_file(&graph.node_file)
-                .at(graph.node_lines.get(i).map_or_else(|| format!("vertex {number}"), |line| format!("line {line}")))
-                .cure(wording!["leave out ", Setting::Kernel.text("fast"), ": the others take any finite coordinate"])
+                .at(graph
+                    .node_lines
+                    .get(i)
+                    .map_or_else(|| format!("vertex {number}"), |line| format!("line {line}")))
+                .cure(wording![
+                    "leave out ",
+                    Setting::Kernel.text("fast"),
+                    ": the others take any finite coordinate"
+                ])
         }
-        InputError::Crossing { segments, at: [x, y] } => {
+        InputError::Crossing {
+            segments,
+            at: [x, y],
+        } => {
             let mut positions = segments.map(|(line, _)| line);
             positions.sort_unstable();
             let [one, other] = positions.map(|i| &graph.segments[i]);
-            Error::format(format!("segments {} and {} cross at {x:?} {y:?}", one.number, other.number))
-                .in_file(path)
-                .at(format!("lines {} and {}", one.line, other.line))
-                .cure(wording!["divide both at a vertex there, or use ", Setting::OnCrossing.text("split")])
+            Error::format(format!(
+                "segments {} and {} cross at {x:?} {y:?}",
+                one.number, other.number
+            ))
+            .in_file(path)
+            .at(format!("lines {} and {}", one.line, other.line))
+            .cure(wording![
+                "divide both at a vertex there, or use ",
+                Setting::OnCrossing.text("split")
+            ])
         }
         _ => Error::limit(error.to_string()).in_file(&graph.node_file),
     }
@@ -309,21 +386,33 @@ fn refuse_flaws(built: &Built, context: &Context) -> Result<()> {
     };
     match check::first_flaw(triangles, context)? {
         None => Ok(()),
-        Some(flaw) => Err(Error::limit(format!("plain floating point gave a wrong triangulation ({flaw})"))
-            .cure(wording!["leave out ", Setting::Kernel.text("fast")])),
+        Some(flaw) => Err(Error::limit(format!(
+            "plain floating point gave a wrong triangulation ({flaw})"
+        ))
+        .cure(wording!["leave out ", Setting::Kernel.text("fast")])),
     }
 }
 
 /// Adds notices about holes and regions that are not used.
 fn note_seeds(built: &Built, graph: &LineGraph, path: &Path, journal: &Journal) {
     let holes = graph.holes.iter().map(|hole| (Seed::Hole, hole.line));
-    let listed = holes.chain(graph.regions.iter().map(|region| (Seed::Region, region.line)));
+    let listed = holes.chain(
+        graph
+            .regions
+            .iter()
+            .map(|region| (Seed::Region, region.line)),
+    );
     for ((seed, line), location) in listed.zip(&built.seeds) {
         let why = match location {
             SeedLocation::Face(_) => continue,
             SeedLocation::Constraint => SeedFlaw::OnSegment,
             SeedLocation::Outside => SeedFlaw::OutsideHull,
         };
-        journal.add(Notice::SeedUnused { path: path.to_path_buf(), line, seed, why });
+        journal.add(Notice::SeedUnused {
+            path: path.to_path_buf(),
+            line,
+            seed,
+            why,
+        });
     }
 }

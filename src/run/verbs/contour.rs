@@ -27,7 +27,11 @@ impl Verb for ContourOptions {
     }
 
     fn list(&self, add: &mut dyn FnMut(Setting, &dyn Debug)) {
-        let ContourOptions { interval, base, levels } = self;
+        let ContourOptions {
+            interval,
+            base,
+            levels,
+        } = self;
         add(Setting::Interval, interval);
         add(Setting::Base, base);
         add(Setting::Levels, levels);
@@ -37,7 +41,12 @@ impl Verb for ContourOptions {
         surface::surface(request, context)
     }
 
-    fn write(&self, surface: &SurfaceProduct, outputs: &Outputs, context: &Context) -> Result<Summary> {
+    fn write(
+        &self,
+        surface: &SurfaceProduct,
+        outputs: &Outputs,
+        context: &Context,
+    ) -> Result<Summary> {
         let contours = contour::contour(surface, self, context)?;
         write_all(outputs, context, |target| contours.write(target, context))
     }
@@ -46,8 +55,15 @@ impl Verb for ContourOptions {
         Keeps::Contours(self)
     }
 
-    fn write_tiles(&self, tiles: &dyn Tiles, outputs: &Outputs, context: &Context) -> Result<Summary> {
-        write_all(outputs, context, |target| tiles.write_contours(self, target, context))
+    fn write_tiles(
+        &self,
+        tiles: &dyn Tiles,
+        outputs: &Outputs,
+        context: &Context,
+    ) -> Result<Summary> {
+        write_all(outputs, context, |target| {
+            tiles.write_contours(self, target, context)
+        })
     }
 }
 
@@ -60,7 +76,10 @@ fn write_all(
     for target in &outputs.targets {
         drawn = write(target.within(&outputs.set))?;
         let warning = |text: &String| Notice::Reader(target.path.clone(), text.as_str().into());
-        drawn.warnings.iter().for_each(|text| context.monitor.notice(&warning(text)));
+        drawn
+            .warnings
+            .iter()
+            .for_each(|text| context.monitor.notice(&warning(text)));
     }
     Ok(Summary::Contours(drawn))
 }

@@ -40,11 +40,22 @@ impl Verb for DemOptions {
     }
 
     fn reading(&self, file: PathBuf) -> Option<Arc<dyn Verb>> {
-        let frame = FrameOptions { align_to: Some(file), ..self.frame.clone() };
-        Some(Arc::new(DemOptions { frame, ..self.clone() }))
+        let frame = FrameOptions {
+            align_to: Some(file),
+            ..self.frame.clone()
+        };
+        Some(Arc::new(DemOptions {
+            frame,
+            ..self.clone()
+        }))
     }
 
-    fn write(&self, surface: &SurfaceProduct, outputs: &Outputs, context: &Context) -> Result<Summary> {
+    fn write(
+        &self,
+        surface: &SurfaceProduct,
+        outputs: &Outputs,
+        context: &Context,
+    ) -> Result<Summary> {
         write(&cells::dem(surface, self, context)?, outputs, context)
     }
 
@@ -52,14 +63,27 @@ impl Verb for DemOptions {
         Keeps::Heights(&self.frame)
     }
 
-    fn write_tiles(&self, tiles: &dyn Tiles, outputs: &Outputs, context: &Context) -> Result<Summary> {
-        write(&CellProduct::heights_of(tiles.heights(&self.frame, context)?), outputs, context)
+    fn write_tiles(
+        &self,
+        tiles: &dyn Tiles,
+        outputs: &Outputs,
+        context: &Context,
+    ) -> Result<Summary> {
+        write(
+            &CellProduct::heights_of(tiles.heights(&self.frame, context)?),
+            outputs,
+            context,
+        )
     }
 }
 
 fn write(cells: &CellProduct, outputs: &Outputs, context: &Context) -> Result<Summary> {
     announce(cells, outputs, |_| (4, COPIES_ON_DISK), context)?;
-    let mut written = RasterSummary { min: f64::NAN, max: f64::NAN, valid: 0 };
+    let mut written = RasterSummary {
+        min: f64::NAN,
+        max: f64::NAN,
+        valid: 0,
+    };
     for target in &outputs.targets {
         written = cells.write(target.within(&outputs.set), context)?;
     }

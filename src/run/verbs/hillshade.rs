@@ -26,7 +26,16 @@ impl Verb for HillshadeOptions {
     }
 
     fn list(&self, add: &mut dyn FnMut(Setting, &dyn Debug)) {
-        let HillshadeOptions { frame, method, light: LightOptions { azimuth, altitude, z_factor } } = self;
+        let HillshadeOptions {
+            frame,
+            method,
+            light:
+                LightOptions {
+                    azimuth,
+                    altitude,
+                    z_factor,
+                },
+        } = self;
         list_frame(frame, add);
         add(Setting::Method, method);
         add(Setting::Azimuth, azimuth);
@@ -43,15 +52,26 @@ impl Verb for HillshadeOptions {
     }
 
     fn reading(&self, file: PathBuf) -> Option<Arc<dyn Verb>> {
-        let frame = FrameOptions { align_to: Some(file), ..self.frame.clone() };
-        Some(Arc::new(HillshadeOptions { frame, ..self.clone() }))
+        let frame = FrameOptions {
+            align_to: Some(file),
+            ..self.frame.clone()
+        };
+        Some(Arc::new(HillshadeOptions {
+            frame,
+            ..self.clone()
+        }))
     }
 
     fn surface(&self, request: &SurfaceRequest, context: &Context) -> Result<SurfaceProduct> {
         surface::surface(request, context)
     }
 
-    fn write(&self, surface: &SurfaceProduct, outputs: &Outputs, context: &Context) -> Result<Summary> {
+    fn write(
+        &self,
+        surface: &SurfaceProduct,
+        outputs: &Outputs,
+        context: &Context,
+    ) -> Result<Summary> {
         write(&cells::hillshade(surface, self, context)?, outputs, context)
     }
 
@@ -59,11 +79,20 @@ impl Verb for HillshadeOptions {
         Keeps::Heights(&self.frame)
     }
 
-    fn write_tiles(&self, tiles: &dyn Tiles, outputs: &Outputs, context: &Context) -> Result<Summary> {
+    fn write_tiles(
+        &self,
+        tiles: &dyn Tiles,
+        outputs: &Outputs,
+        context: &Context,
+    ) -> Result<Summary> {
         let heights = tiles.heights(&self.frame, context)?;
         let crs = heights.crs().cloned();
         let journal = Journal::new(context);
-        write(&CellProduct::shades_of(heights, &self.light, crs.as_ref(), &journal)?, outputs, context)
+        write(
+            &CellProduct::shades_of(heights, &self.light, crs.as_ref(), &journal)?,
+            outputs,
+            context,
+        )
     }
 }
 
@@ -81,13 +110,21 @@ fn write(cells: &CellProduct, outputs: &Outputs, context: &Context) -> Result<Su
 }
 
 fn is_picture(target: &Target) -> bool {
-    let is_of_target =
-        |format: &&Format| format.writes(Product::Shades) && format.extensions.contains(&target.extension);
-    FORMATS.iter().find(is_of_target).is_some_and(|format| format.content == Content::Picture)
+    let is_of_target = |format: &&Format| {
+        format.writes(Product::Shades) && format.extensions.contains(&target.extension)
+    };
+    FORMATS
+        .iter()
+        .find(is_of_target)
+        .is_some_and(|format| format.content == Content::Picture)
 }
 
 /// Returns the bytes of a cell before compression, and how many times they are on the disk.
 fn cell_bytes(target: &Target) -> (u64, f64) {
     // A picture has gray and alpha.
-    if is_picture(target) { (2, 1.0) } else { (1, COPIES_ON_DISK) }
+    if is_picture(target) {
+        (2, 1.0)
+    } else {
+        (1, COPIES_ON_DISK)
+    }
 }

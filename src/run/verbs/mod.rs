@@ -45,7 +45,10 @@ pub struct WriteRequest {
 impl WriteRequest {
     /// Returns the request for a product of a surface.
     pub fn new(surface: SurfaceRequest, verb: impl Verb + 'static) -> Self {
-        WriteRequest { surface, verb: Arc::new(verb) }
+        WriteRequest {
+            surface,
+            verb: Arc::new(verb),
+        }
     }
 
     /// Returns all files that are read.
@@ -112,7 +115,12 @@ pub trait Verb: Any + Debug + Send + Sync {
     ///
     /// # Errors
     /// If it cannot be made or written, or the run is canceled.
-    fn write(&self, surface: &SurfaceProduct, outputs: &Outputs, context: &Context) -> Result<Summary>;
+    fn write(
+        &self,
+        surface: &SurfaceProduct,
+        outputs: &Outputs,
+        context: &Context,
+    ) -> Result<Summary>;
 
     /// Returns what the tasks of a job keep of the triangles that they find.
     fn keeps(&self) -> Keeps<'_>;
@@ -121,7 +129,12 @@ pub trait Verb: Any + Debug + Send + Sync {
     ///
     /// # Errors
     /// As [`write`](Self::write).
-    fn write_tiles(&self, tiles: &dyn Tiles, outputs: &Outputs, context: &Context) -> Result<Summary>;
+    fn write_tiles(
+        &self,
+        tiles: &dyn Tiles,
+        outputs: &Outputs,
+        context: &Context,
+    ) -> Result<Summary>;
 }
 
 /// When a product is made in tiles.

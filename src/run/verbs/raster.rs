@@ -18,7 +18,11 @@ const BEST_COMPRESSION: f64 = 10.0;
 
 /// Calls a function with the options of a frame, by their names.
 pub(super) fn list_frame(
-    FrameOptions { resolution, extent, align_to }: &FrameOptions,
+    FrameOptions {
+        resolution,
+        extent,
+        align_to,
+    }: &FrameOptions,
     add: &mut dyn FnMut(Setting, &dyn Debug),
 ) {
     add(Setting::Resolution, resolution);
@@ -42,9 +46,19 @@ pub(super) fn announce(
     let sizes: Vec<(u64, f64)> = outputs.targets.iter().map(cell_bytes).collect();
     let all = frame.width as f64 * frame.height as f64;
     let a_cell = sizes.iter().map(|&(bytes, _)| bytes as f64).sum::<f64>();
-    let on_disk = sizes.iter().map(|&(bytes, copies)| bytes as f64 * copies).sum::<f64>();
-    context.monitor.event(&Event::RasterBegins { frame, crs: cells.crs(), bytes: (all * a_cell) as u64 });
-    let Some((free, target)) = outputs.free_space().filter(|(free, _)| (*free as f64) < all * on_disk) else {
+    let on_disk = sizes
+        .iter()
+        .map(|&(bytes, copies)| bytes as f64 * copies)
+        .sum::<f64>();
+    context.monitor.event(&Event::RasterBegins {
+        frame,
+        crs: cells.crs(),
+        bytes: (all * a_cell) as u64,
+    });
+    let Some((free, target)) = outputs
+        .free_space()
+        .filter(|(free, _)| (*free as f64) < all * on_disk)
+    else {
         return Ok(());
     };
     let covered = all.min(cells.covered());
@@ -64,7 +78,9 @@ pub(super) fn announce(
         ]));
     }
     if covered * on_disk > free as f64 {
-        context.monitor.notice(&Notice::OutputMayNotFit { need, free });
+        context
+            .monitor
+            .notice(&Notice::OutputMayNotFit { need, free });
     }
     Ok(())
 }

@@ -24,7 +24,11 @@ impl StoredVerb {
         StoredVerb {
             verb,
             to_json: |verb| serde_json::to_value(verb.downcast_ref::<V>()?).ok(),
-            from_json: |options| serde_json::from_value::<V>(options).ok().map(|verb| Arc::new(verb) as _),
+            from_json: |options| {
+                serde_json::from_value::<V>(options)
+                    .ok()
+                    .map(|verb| Arc::new(verb) as _)
+            },
         }
     }
 }
@@ -40,11 +44,16 @@ const STORED: &[StoredVerb] = &[
 /// Returns the name and the options of a verb in a form that can be kept; `None` if jobs cannot
 /// keep it.
 pub(crate) fn to_json(verb: &dyn Verb) -> Option<(&'static str, Value)> {
-    STORED.iter().find_map(|stored| Some((stored.verb, (stored.to_json)(verb)?)))
+    STORED
+        .iter()
+        .find_map(|stored| Some((stored.verb, (stored.to_json)(verb)?)))
 }
 
 /// Returns the verb with a name and these options; `None` if there is none, or they are not those
 /// of the verb.
 pub(crate) fn from_json(name: &str, options: Value) -> Option<Arc<dyn Verb>> {
-    STORED.iter().find(|stored| stored.verb == name).and_then(|stored| (stored.from_json)(options))
+    STORED
+        .iter()
+        .find(|stored| stored.verb == name)
+        .and_then(|stored| (stored.from_json)(options))
 }

@@ -41,19 +41,29 @@ pub enum Existing {
 impl Existing {
     /// Returns what an option to overwrite means.
     pub fn of(overwrite: bool) -> Self {
-        if overwrite { Existing::Replace } else { Existing::Keep }
+        if overwrite {
+            Existing::Replace
+        } else {
+            Existing::Keep
+        }
     }
 }
 
 impl Targets {
     /// Returns the target that is one file.
     pub fn of(file: impl Into<PathBuf>) -> Self {
-        Targets { files: vec![file.into()], ..Targets::default() }
+        Targets {
+            files: vec![file.into()],
+            ..Targets::default()
+        }
     }
 
     /// Returns the tables that are written with the results.
     fn tables(&self) -> impl Iterator<Item = &Path> {
-        [&self.crossings, &self.replaced].into_iter().flatten().map(PathBuf::as_path)
+        [&self.crossings, &self.replaced]
+            .into_iter()
+            .flatten()
+            .map(PathBuf::as_path)
     }
 
     /// Returns the folder that a job for these outputs has by default; `None` if there is no
@@ -72,8 +82,19 @@ impl Targets {
 
     /// Calls a function with the name of each file that is written, or read besides the request.
     pub(crate) fn each_file(&mut self, visit: &mut dyn FnMut(&mut PathBuf)) {
-        let Targets { files, existing: _, crossings, replaced, also_read } = self;
-        files.iter_mut().chain(crossings).chain(replaced).chain(also_read).for_each(visit);
+        let Targets {
+            files,
+            existing: _,
+            crossings,
+            replaced,
+            also_read,
+        } = self;
+        files
+            .iter_mut()
+            .chain(crossings)
+            .chain(replaced)
+            .chain(also_read)
+            .for_each(visit);
     }
 
     /// Finds the format of each output and makes sure that no file is lost that should be kept;
@@ -83,9 +104,19 @@ impl Targets {
     /// If an extension is not that of a format for the product, an output is an input or named
     /// twice, its folder does not exist, or it exists and may not be replaced.
     pub(crate) fn resolve(&self, product: Product, read: &[PathBuf]) -> Result<Outputs> {
-        let outputs = resolve(&self.files, self.existing, &formats_of(product, |_| ()), read)?;
+        let outputs = resolve(
+            &self.files,
+            self.existing,
+            &formats_of(product, |_| ()),
+            read,
+        )?;
         self.check_tables(read)?;
-        let is_target = |table: &&Path| outputs.targets.iter().any(|target| is_same(&target.path, table));
+        let is_target = |table: &&Path| {
+            outputs
+                .targets
+                .iter()
+                .any(|target| is_same(&target.path, table))
+        };
         match self.tables().find(is_target) {
             Some(table) => Err(Error::usage("the output is named twice").in_file(table)),
             None => Ok(outputs),
@@ -97,7 +128,8 @@ impl Targets {
     /// # Errors
     /// Those of [`resolve`](Self::resolve).
     pub(crate) fn check_tables(&self, read: &[PathBuf]) -> Result<()> {
-        self.tables().try_for_each(|table| require_free(table, find(table, TABLES)?, self.existing, read))
+        self.tables()
+            .try_for_each(|table| require_free(table, find(table, TABLES)?, self.existing, read))
     }
 
     /// Writes the tables of crossings and of replaced points, if they were requested.
@@ -105,9 +137,15 @@ impl Targets {
     /// # Errors
     /// If one cannot be written.
     pub(crate) fn write_tables(&self, product: &SurfaceProduct, set: &OutputSet) -> Result<()> {
-        let Some(built) = &product.built else { return Ok(()) };
+        let Some(built) = &product.built else {
+            return Ok(());
+        };
         if let Some(path) = &self.crossings {
-            add_table(path, set, |out| built.line_names.write_table(&built.tin.crossing_heights, out))?;
+            add_table(path, set, |out| {
+                built
+                    .line_names
+                    .write_table(&built.tin.crossing_heights, out)
+            })?;
         }
         if let Some(path) = &self.replaced {
             add_table(path, set, |out| built.write_replaced(out))?;
@@ -116,14 +154,22 @@ impl Targets {
     }
 }
 
-fn add_table(path: &Path, set: &OutputSet, write: impl FnOnce(&mut Output) -> std::io::Result<()>) -> Result<()> {
+fn add_table(
+    path: &Path,
+    set: &OutputSet,
+    write: impl FnOnce(&mut Output) -> std::io::Result<()>,
+) -> Result<()> {
     let mut output = Output::create(path)?;
     write(&mut output).map_err(|e| Error::from(e).in_file(path))?;
     set.add(output);
     Ok(())
 }
 
-const TABLES: &[Format<()>] = &[Format { extension: "csv", kind: (), companions: &[] }];
+const TABLES: &[Format<()>] = &[Format {
+    extension: "csv",
+    kind: (),
+    companions: &[],
+}];
 
 /// A file format that a verb can write.
 #[derive(Debug)]
@@ -135,11 +181,25 @@ pub(crate) struct Format<F: 'static> {
 }
 
 /// Returns the formats that a product can be written in, one for each extension.
-pub(crate) fn formats_of<F>(product: Product, kind: impl Fn(&formats::Format) -> F) -> Vec<Format<F>> {
-    let formats = formats::FORMATS.iter().filter(|format| format.writes(product));
-    let by_extension = formats.flat_map(|format| format.extensions.iter().map(move |extension| (format, extension)));
+pub(crate) fn formats_of<F>(
+    product: Product,
+    kind: impl Fn(&formats::Format) -> F,
+) -> Vec<Format<F>> {
+    let formats = formats::FORMATS
+        .iter()
+        .filter(|format| format.writes(product));
+    let by_extension = formats.flat_map(|format| {
+        format
+            .extensions
+            .iter()
+            .map(move |extension| (format, extension))
+    });
     by_extension
-        .map(|(format, extension)| Format { extension, kind: kind(format), companions: format.beside })
+        .map(|(format, extension)| Format {
+            extension,
+            kind: kind(format),
+            companions: format.beside,
+        })
         .collect()
 }
 
@@ -173,8 +233,14 @@ impl<F> Outputs<F> {
     /// Returns the smallest free space, in bytes, of the disks that are written to, and a file that
     /// goes there; `None` if the system does not report it.
     pub(crate) fn free_space(&self) -> Option<(u64, &Path)> {
-        let files = self.targets.iter().map(|target| target.path.as_path()).filter(|path| !io::is_stream(path));
-        files.filter_map(|path| Some((free_in(folder_of(path))?, path))).min_by_key(|(free, _)| *free)
+        let files = self
+            .targets
+            .iter()
+            .map(|target| target.path.as_path())
+            .filter(|path| !io::is_stream(path));
+        files
+            .filter_map(|path| Some((free_in(folder_of(path))?, path)))
+            .min_by_key(|(free, _)| *free)
     }
 }
 
@@ -196,9 +262,16 @@ pub(crate) fn resolve<F: Copy>(
             return Err(Error::usage("the output is named twice").in_file(path));
         }
         require_free(path, format, existing, inputs)?;
-        targets.push(Target { path: path.clone(), kind: format.kind, extension: format.extension });
+        targets.push(Target {
+            path: path.clone(),
+            kind: format.kind,
+            extension: format.extension,
+        });
     }
-    Ok(Outputs { targets, set: OutputSet::default() })
+    Ok(Outputs {
+        targets,
+        set: OutputSet::default(),
+    })
 }
 
 /// The part of what is announced for the files of tasks that is written at least: few points may be
@@ -211,11 +284,23 @@ const LEAST_SHARE: f64 = 0.1;
 /// # Errors
 /// If they cannot fit.
 pub(crate) fn require_room(need: u64, there: u64, folder: &Path, context: &Context) -> Result<()> {
-    let disk = folder.ancestors().map(|folder| if folder.as_os_str().is_empty() { Path::new(".") } else { folder });
-    let Some(free) = disk.filter(|folder| folder.is_dir()).find_map(free_in) else { return Ok(()) };
+    let disk = folder.ancestors().map(|folder| {
+        if folder.as_os_str().is_empty() {
+            Path::new(".")
+        } else {
+            folder
+        }
+    });
+    let Some(free) = disk.filter(|folder| folder.is_dir()).find_map(free_in) else {
+        return Ok(());
+    };
     let room = free.saturating_add(there) as f64;
     if need as f64 * LEAST_SHARE > room {
-        let stated = format!("the files of the tasks take about {}, {} are free on the disk", bytes(need), bytes(free));
+        let stated = format!(
+            "the files of the tasks take about {}, {} are free on the disk",
+            bytes(need),
+            bytes(free)
+        );
         return Err(Error::limit(stated).in_file(folder).cure(wording![
             "choose larger cells (",
             Setting::Resolution,
@@ -227,7 +312,9 @@ pub(crate) fn require_room(need: u64, there: u64, folder: &Path, context: &Conte
         ]));
     }
     if need as f64 > room {
-        context.monitor.notice(&Notice::TasksMayNotFit { need, free });
+        context
+            .monitor
+            .notice(&Notice::TasksMayNotFit { need, free });
     }
     Ok(())
 }
@@ -267,19 +354,33 @@ pub(crate) fn is_same(path: &Path, other: &Path) -> bool {
 }
 
 fn folder_of(path: &Path) -> &Path {
-    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
+    path.parent()
+        .filter(|folder| !folder.as_os_str().is_empty())
+        .unwrap_or(Path::new("."))
 }
 
 /// Makes sure that a file and its companions can be written, and that nothing is lost by it.
-fn require_free<F>(path: &Path, format: &Format<F>, existing: Existing, inputs: &[PathBuf]) -> Result<()> {
+fn require_free<F>(
+    path: &Path,
+    format: &Format<F>,
+    existing: Existing,
+    inputs: &[PathBuf],
+) -> Result<()> {
     let folder = folder_of(path);
     if !folder.is_dir() {
-        let missing = std::io::Error::new(std::io::ErrorKind::NotFound, "the folder does not exist");
-        return Err(Error::from(missing).in_file(path).cure(format!("mkdir -p {}", folder.display())));
+        let missing =
+            std::io::Error::new(std::io::ErrorKind::NotFound, "the folder does not exist");
+        return Err(Error::from(missing)
+            .in_file(path)
+            .cure(format!("mkdir -p {}", folder.display())));
     }
     let files = formats::with_companions(path, format.extension, format.companions);
-    files.iter().try_for_each(|(file, _)| require_no_input(file, inputs))?;
-    files.iter().try_for_each(|(file, _)| require_not_read_along(file, inputs))?;
+    files
+        .iter()
+        .try_for_each(|(file, _)| require_no_input(file, inputs))?;
+    files
+        .iter()
+        .try_for_each(|(file, _)| require_not_read_along(file, inputs))?;
     for (file, _) in files {
         if existing == Existing::Keep {
             io::require_absent(&file)?;
@@ -295,7 +396,9 @@ fn require_free<F>(path: &Path, format: &Format<F>, existing: Existing, inputs: 
 fn require_no_input(file: &Path, inputs: &[PathBuf]) -> Result<()> {
     let own = identity(file);
     match inputs.iter().any(|input| identity(input) == own) {
-        true => Err(Error::usage("the output is one of the inputs").in_file(file).cure("give it another name")),
+        true => Err(Error::usage("the output is one of the inputs")
+            .in_file(file)
+            .cure("give it another name")),
         false => Ok(()),
     }
 }
@@ -306,32 +409,53 @@ fn require_not_read_along(file: &Path, inputs: &[PathBuf]) -> Result<()> {
     let (own, folder) = (identity(file), identity(folder_of(file)));
     let is_own = |along: &PathBuf| {
         let [name, own_name] = [along, file].map(|path| path.file_name().unwrap_or_default());
-        identity(along) == own || name.eq_ignore_ascii_case(own_name) && identity(folder_of(along)) == folder
+        identity(along) == own
+            || name.eq_ignore_ascii_case(own_name) && identity(folder_of(along)) == folder
     };
     let is_along = |main: &Path| {
-        let is_part = || tin_parts::parts_folder(main).is_some_and(|parts| identity(&parts) == folder);
+        let is_part =
+            || tin_parts::parts_folder(main).is_some_and(|parts| identity(&parts) == folder);
         formats::read_along_with(main).iter().any(is_own) || is_part()
     };
-    match inputs.iter().map(|input| file_of(input).unwrap_or(input)).find(|main| is_along(main)) {
-        Some(main) => Err(Error::usage(format!("a file of this name is read with an input, {}", main.display()))
-            .in_file(file)
-            .cure("give it another name")),
+    match inputs
+        .iter()
+        .map(|input| file_of(input).unwrap_or(input))
+        .find(|main| is_along(main))
+    {
+        Some(main) => Err(Error::usage(format!(
+            "a file of this name is read with an input, {}",
+            main.display()
+        ))
+        .in_file(file)
+        .cure("give it another name")),
         None => Ok(()),
     }
 }
 
 fn find<'a, F>(path: &Path, formats: &'a [Format<F>]) -> Result<&'a Format<F>> {
-    let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default();
+    let extension = path
+        .extension()
+        .and_then(|e| e.to_str())
+        .unwrap_or_default();
     let named = |format: &&Format<F>| format.extension.eq_ignore_ascii_case(extension);
     // `/dev/stdout` names no format.
     let is_nameless = extension.is_empty() && io::is_stream(path);
-    let default = || formats.iter().find(|format| is_nameless && format.companions.is_empty());
+    let default = || {
+        formats
+            .iter()
+            .find(|format| is_nameless && format.companions.is_empty())
+    };
     formats.iter().find(named).or_else(default).ok_or_else(|| {
-        let known: Vec<String> = formats.iter().map(|format| format!(".{}", format.extension)).collect();
+        let known: Vec<String> = formats
+            .iter()
+            .map(|format| format!(".{}", format.extension))
+            .collect();
         let found = match extension {
             "" => "the output has no extension, which would select its format".to_owned(),
             _ => format!("`.{extension}` is not a format that can be written here"),
         };
-        Error::usage(found).in_file(path).cure(format!("use one of {}", known.join(", ")))
+        Error::usage(found)
+            .in_file(path)
+            .cure(format!("use one of {}", known.join(", ")))
     })
 }

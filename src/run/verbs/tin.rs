@@ -43,24 +43,41 @@ impl Verb for SurfaceOptions {
         }
     }
 
-    fn write(&self, surface: &SurfaceProduct, outputs: &Outputs, context: &Context) -> Result<Summary> {
+    fn write(
+        &self,
+        surface: &SurfaceProduct,
+        outputs: &Outputs,
+        context: &Context,
+    ) -> Result<Summary> {
         let triangles = surface.triangles()?;
         let write = |target: &Target| {
             let written = surface::write_mesh(triangles, target.within(&outputs.set), context)?;
             Ok((target.path.clone(), written))
         };
-        outputs.targets.iter().map(write).collect::<Result<_>>().map(Summary::Meshes)
+        outputs
+            .targets
+            .iter()
+            .map(write)
+            .collect::<Result<_>>()
+            .map(Summary::Meshes)
     }
 
     fn keeps(&self) -> Keeps<'_> {
         Keeps::Triangles
     }
 
-    fn write_tiles(&self, tiles: &dyn Tiles, outputs: &Outputs, context: &Context) -> Result<Summary> {
+    fn write_tiles(
+        &self,
+        tiles: &dyn Tiles,
+        outputs: &Outputs,
+        context: &Context,
+    ) -> Result<Summary> {
         let [target] = &outputs.targets[..] else {
             return Err(Error::usage("a TIN in parts is written alone"));
         };
-        tiles.write_parts(target.within(&outputs.set), context).map(|parts| Summary::Parts(Box::new(parts)))
+        tiles
+            .write_parts(target.within(&outputs.set), context)
+            .map(|parts| Summary::Parts(Box::new(parts)))
     }
 }
 

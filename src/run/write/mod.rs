@@ -74,7 +74,13 @@ pub fn write(
         Execution::Whole => prepared.whole(context),
         Execution::Auto { memory } => {
             if prepared.needs_tiles(*memory, context) {
-                prepared.in_tiles()?.anew(&TileOptions { memory: *memory, ..TileOptions::default() }, context)
+                prepared.in_tiles()?.anew(
+                    &TileOptions {
+                        memory: *memory,
+                        ..TileOptions::default()
+                    },
+                    context,
+                )
             } else {
                 prepared.whole(context)
             }
@@ -83,7 +89,10 @@ pub fn write(
         Execution::Resume(options) => prepared.in_tiles()?.resume(options, context),
         Execution::Plan(options) => {
             let job = prepared.in_tiles()?.looked_at(options, context)?;
-            Ok(WriteReport::Planned { size: job.size(), folder: job.folder().to_path_buf() })
+            Ok(WriteReport::Planned {
+                size: job.size(),
+                folder: job.folder().to_path_buf(),
+            })
         }
     }
 }
@@ -95,9 +104,19 @@ pub fn write(
 /// Those of [`Job::plan`] and [`Job::create`]; if an output cannot be written or may not be
 /// replaced, or the files of the tasks cannot fit on the disk.
 pub fn plan_job(command: &JobCommand, folder: &Path, context: &Context) -> Result<StoredJob> {
-    let JobCommand { request, targets, tiles, .. } = command;
-    let options = TileOptions { folder: Some(folder.to_path_buf()), ..tiles.clone() };
-    let mut job = Prepared::new(request, targets)?.in_tiles()?.planned(&options, context)?;
+    let JobCommand {
+        request,
+        targets,
+        tiles,
+        ..
+    } = command;
+    let options = TileOptions {
+        folder: Some(folder.to_path_buf()),
+        ..tiles.clone()
+    };
+    let mut job = Prepared::new(request, targets)?
+        .in_tiles()?
+        .planned(&options, context)?;
     drop(job.create(Some(command), context)?);
     StoredJob::new(command.clone(), &job)
 }
@@ -110,7 +129,12 @@ pub fn plan_job(command: &JobCommand, folder: &Path, context: &Context) -> Resul
 /// # Errors
 /// If a task that it needs is not done, if its input cannot be read, or another than planned; for
 /// the last one, those of [`write()`]; and if there is no task with this number.
-pub fn run_task(job: &Job, task: usize, targets: &Targets, context: &Context) -> Result<Option<WriteReport>> {
+pub fn run_task(
+    job: &Job,
+    task: usize,
+    targets: &Targets,
+    context: &Context,
+) -> Result<Option<WriteReport>> {
     job.check_input_of(task)?;
     if task < job.task_count() {
         return job.run_task(task, context).map(|()| None);
@@ -135,23 +159,37 @@ pub fn run_task(job: &Job, task: usize, targets: &Targets, context: &Context) ->
 /// # Errors
 /// If an input has changed, or the job was removed or replaced; and those of [`write()`].
 pub fn run_job(stored: &StoredJob, context: &Context) -> Result<WriteReport> {
-    let JobCommand { request, targets, tiles, .. } = &stored.command;
+    let JobCommand {
+        request,
+        targets,
+        tiles,
+        ..
+    } = &stored.command;
     let job = stored.job()?;
     job.check_inputs(context)?;
     let mut targets = targets.clone();
     match already_written(&job, &targets, context)? {
-        Some(WriteReport::Kept { has_holes: true, .. }) => targets.existing = Existing::Replace,
+        Some(WriteReport::Kept {
+            has_holes: true, ..
+        }) => targets.existing = Existing::Replace,
         Some(report) => return Ok(report),
         None => {}
     }
-    Prepared::new(request, &targets)?.in_tiles()?.go_on(job, tiles, Folder::Kept, context)
+    Prepared::new(request, &targets)?
+        .in_tiles()?
+        .go_on(job, tiles, Folder::Kept, context)
 }
 
 /// Returns the report of outputs that are there as they were written of the tasks that are done.
 fn already_written(job: &Job, targets: &Targets, context: &Context) -> Result<Option<WriteReport>> {
-    let Some(output) = targets.files.first() else { return Ok(None) };
+    let Some(output) = targets.files.first() else {
+        return Ok(None);
+    };
     match job.has_written(output, context)? {
-        true => Ok(Some(WriteReport::Kept { output: output.clone(), has_holes: job.has_holes(context)? })),
+        true => Ok(Some(WriteReport::Kept {
+            output: output.clone(),
+            has_holes: job.has_holes(context)?,
+        })),
         false => Ok(None),
     }
 }
@@ -171,14 +209,29 @@ impl<'a> Prepared<'a> {
         let read = targets.with_lists(request.files());
         let outputs = targets.resolve(verb.product(), &read)?;
         let use_of_tiles = verb.use_of_tiles(&outputs.targets)?;
-        Ok(Prepared { request, targets, outputs, use_of_tiles })
+        Ok(Prepared {
+            request,
+            targets,
+            outputs,
+            use_of_tiles,
+        })
     }
 
     /// Returns the error for what was asked for that tiles do not have.
     fn refused(&self) -> Option<Error> {
-        let Targets { crossings, replaced, .. } = self.targets;
-        let tables = [(crossings, NotInTiles::CrossingReport), (replaced, NotInTiles::ReplacedPoints)];
-        tables.into_iter().find(|(table, _)| table.is_some()).map(|(_, what)| what.into())
+        let Targets {
+            crossings,
+            replaced,
+            ..
+        } = self.targets;
+        let tables = [
+            (crossings, NotInTiles::CrossingReport),
+            (replaced, NotInTiles::ReplacedPoints),
+        ];
+        tables
+            .into_iter()
+            .find(|(table, _)| table.is_some())
+            .map(|(_, what)| what.into())
     }
 
     /// Returns true if the request has to be worked on in tiles.
@@ -197,14 +250,18 @@ impl<'a> Prepared<'a> {
             }
             (TileUse::Optional, Some(error)) => unused(stated(&error)),
             // Building in one piece reports what is wrong with files.
-            (TileUse::Optional, None) => {
-                needs_tiles(self.request, memory, context).unwrap_or_else(|error| unused(stated(&error)))
-            }
+            (TileUse::Optional, None) => needs_tiles(self.request, memory, context)
+                .unwrap_or_else(|error| unused(stated(&error))),
         }
     }
 
     fn whole(self, context: &Context) -> Result<WriteReport> {
-        let Prepared { request: WriteRequest { surface, verb }, targets, outputs, .. } = self;
+        let Prepared {
+            request: WriteRequest { surface, verb },
+            targets,
+            outputs,
+            ..
+        } = self;
         let mut product = verb.surface(surface, context)?;
         targets.write_tables(&product, &outputs.set)?;
         let summary = verb.write(&product, &outputs, context)?;
@@ -213,7 +270,11 @@ impl<'a> Prepared<'a> {
         drop(product);
         let files = outputs.set.commit()?;
         context.monitor.event(&Event::Written);
-        Ok(WriteReport::Written(Box::new(Written { surface, summary, files })))
+        Ok(WriteReport::Written(Box::new(Written {
+            surface,
+            summary,
+            files,
+        })))
     }
 
     /// Makes sure that tiles can be made.
@@ -228,10 +289,16 @@ impl<'a> Prepared<'a> {
     fn folder(&self, options: &TileOptions) -> Result<PathBuf> {
         let folder = options.folder.clone().or_else(|| self.targets.job_folder());
         let folder = folder.ok_or_else(|| Error::usage("no output is named"))?;
-        match self.outputs.targets.iter().find(|target| targets::is_same(&target.path, &folder)) {
-            Some(target) => {
-                Err(Error::usage("the output and the folder of the job have the same name").in_file(&target.path))
-            }
+        match self
+            .outputs
+            .targets
+            .iter()
+            .find(|target| targets::is_same(&target.path, &folder))
+        {
+            Some(target) => Err(Error::usage(
+                "the output and the folder of the job have the same name",
+            )
+            .in_file(&target.path)),
             None => Ok(folder),
         }
     }
@@ -272,7 +339,13 @@ impl<'a> Prepared<'a> {
     }
 
     /// Goes on with a job, whose inputs are checked.
-    fn go_on(self, mut job: Job, options: &TileOptions, keep: Folder, context: &Context) -> Result<WriteReport> {
+    fn go_on(
+        self,
+        mut job: Job,
+        options: &TileOptions,
+        keep: Folder,
+        context: &Context,
+    ) -> Result<WriteReport> {
         require_room(&job, context)?;
         let mut lock = job.lock(context)?;
         match job.outgrown_by(context)? {
@@ -280,7 +353,10 @@ impl<'a> Prepared<'a> {
                 context.monitor.event(&Event::PlannedAgain(path));
                 // Others go on with the job as before, if they did.
                 let command = job.command()?;
-                let options = TileOptions { bad: BadFiles::Skip, ..options.clone() };
+                let options = TileOptions {
+                    bad: BadFiles::Skip,
+                    ..options.clone()
+                };
                 let anew = Job::plan(&job.request(), job.folder(), &options, context)?;
                 job.remove(&lock)?;
                 drop(lock);
@@ -297,32 +373,61 @@ impl<'a> Prepared<'a> {
     fn clear_up(&self, job: &Job, lock: &JobLock, context: &Context) -> Result<()> {
         self.outputs.set.mark(job.mark());
         let done = job.clear_up(lock, context)?;
-        self.outputs.targets.iter().try_for_each(|target| job.remove_abandoned(&target.path, lock))?;
-        context.monitor.event(&Event::Resumed { done, tasks: job.task_count() });
+        self.outputs
+            .targets
+            .iter()
+            .try_for_each(|target| job.remove_abandoned(&target.path, lock))?;
+        context.monitor.event(&Event::Resumed {
+            done,
+            tasks: job.task_count(),
+        });
         Ok(())
     }
 
     /// Does the tasks that are left, and writes the outputs; an error says how to go on.
-    fn run(self, job: &Job, lock: &JobLock, keep: Folder, context: &Context) -> Result<WriteReport> {
+    fn run(
+        self,
+        job: &Job,
+        lock: &JobLock,
+        keep: Folder,
+        context: &Context,
+    ) -> Result<WriteReport> {
         self.run_all(job, lock, keep, context).map_err(|error| {
             let folder = job.folder().display().to_string();
             let again = match job.command() {
                 Ok(None) => Setting::Resume.on(),
                 Ok(Some(_)) | Err(_) => Command::JobRun.on(folder.clone()),
             };
-            let kept = wording!["finished tasks are kept in ", folder, ": go on with ", again];
-            let cure = error.cure_text().map(|own| wording![own.clone(), "; ", kept.clone()]);
+            let kept = wording![
+                "finished tasks are kept in ",
+                folder,
+                ": go on with ",
+                again
+            ];
+            let cure = error
+                .cure_text()
+                .map(|own| wording![own.clone(), "; ", kept.clone()]);
             error.cure(cure.unwrap_or(kept))
         })
     }
 
-    fn run_all(self, job: &Job, lock: &JobLock, keep: Folder, context: &Context) -> Result<WriteReport> {
-        let Prepared { request, outputs, .. } = self;
+    fn run_all(
+        self,
+        job: &Job,
+        lock: &JobLock,
+        keep: Folder,
+        context: &Context,
+    ) -> Result<WriteReport> {
+        let Prepared {
+            request, outputs, ..
+        } = self;
         let folder = job.folder().to_path_buf();
         context.monitor.event(&Event::TasksBegin(&folder));
         job.run(context)?;
         let report = job.report(context)?;
-        let mut summary = request.verb.write_tiles(&job.tiles(&report), &outputs, context)?;
+        let mut summary = request
+            .verb
+            .write_tiles(&job.tiles(&report), &outputs, context)?;
         let is_kept = keep == Folder::Kept || report.skipped > 0;
         if is_kept {
             job.record(&outputs.set, &report, lock)?;
@@ -335,8 +440,15 @@ impl<'a> Prepared<'a> {
         if !is_kept {
             job.remove(lock)?;
         }
-        let surface = WrittenOf::Tiles { report: Box::new(report), folder };
-        Ok(WriteReport::Written(Box::new(Written { surface, summary, files })))
+        let surface = WrittenOf::Tiles {
+            report: Box::new(report),
+            folder,
+        };
+        Ok(WriteReport::Written(Box::new(Written {
+            surface,
+            summary,
+            files,
+        })))
     }
 }
 
@@ -350,7 +462,11 @@ enum Folder {
 }
 
 fn is_named(options: &TileOptions) -> Folder {
-    if options.folder.is_some() { Folder::Kept } else { Folder::Removed }
+    if options.folder.is_some() {
+        Folder::Kept
+    } else {
+        Folder::Removed
+    }
 }
 
 /// Returns what an error says.

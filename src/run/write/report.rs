@@ -103,6 +103,10 @@ impl SurfaceReport {
                 (Origin::Triangles(facts), extent)
             }
         };
-        Ok(SurfaceReport { origin, extent, crs: product.crs().cloned() })
+        Ok(SurfaceReport {
+            origin,
+            extent,
+            crs: product.crs().cloned(),
+        })
     }
 }

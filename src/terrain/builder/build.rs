@@ -38,12 +38,29 @@ impl TinBuilder {
     /// # Errors
     /// Those of [`build`](TinBuilder::build), and one of kind
     /// [`Canceled`](crate::error::Kind::Canceled).
-    pub fn build_named(mut self, name: &dyn Fn(usize) -> String, cancel: &AtomicBool) -> Result<Tin> {
+    pub fn build_named(
+        mut self,
+        name: &dyn Fn(usize) -> String,
+        cancel: &AtomicBool,
+    ) -> Result<Tin> {
         self.mark_overlaps();
         let given = self.line_count();
-        let overlaps = self.overlaps.take().unwrap_or_else(|| Overlaps { given, ..Overlaps::default() });
-        let report = TinReport { points: self.points.len(), breaklines: overlaps.given, ..Default::default() };
-        let mut build = Build { builder: self, overlaps, report, name, cancel };
+        let overlaps = self.overlaps.take().unwrap_or_else(|| Overlaps {
+            given,
+            ..Overlaps::default()
+        });
+        let report = TinReport {
+            points: self.points.len(),
+            breaklines: overlaps.given,
+            ..Default::default()
+        };
+        let mut build = Build {
+            builder: self,
+            overlaps,
+            report,
+            name,
+            cancel,
+        };
         build.check_coordinates()?;
         build.leave_out_replaced();
         let given = build.builder.given_heights();
@@ -58,23 +75,36 @@ impl TinBuilder {
 
     /// The heights of the edges of walls and of the lines around waters.
     fn given_heights(&self) -> GivenHeights {
-        GivenHeights { walls: self.walls(), rims: self.rims() }
+        GivenHeights {
+            walls: self.walls(),
+            rims: self.rims(),
+        }
     }
 
     /// The numbers of the edges of walls, with the heights of their vertices; none if there is no
     /// water.
     fn walls(&self) -> Vec<(usize, Vec<f64>)> {
         let is_wall = |line: &usize| self.line_kinds[*line] == EdgeKind::Wall;
-        if self.waters.is_empty() { Vec::new() } else { self.heights_of((0..self.line_count()).filter(is_wall)) }
+        if self.waters.is_empty() {
+            Vec::new()
+        } else {
+            self.heights_of((0..self.line_count()).filter(is_wall))
+        }
     }
 
     /// The numbers of the lines around waters, with the heights of their vertices.
     fn rims(&self) -> Vec<(usize, Vec<f64>)> {
-        self.heights_of(self.waters.iter().flat_map(|water| water.rim.iter().copied()))
+        self.heights_of(
+            self.waters
+                .iter()
+                .flat_map(|water| water.rim.iter().copied()),
+        )
     }
 
     fn heights_of(&self, lines: impl Iterator<Item = usize>) -> Vec<(usize, Vec<f64>)> {
-        lines.map(|line| (line, self.line(line).iter().map(|p| p[2]).collect())).collect()
+        lines
+            .map(|line| (line, self.line(line).iter().map(|p| p[2]).collect()))
+            .collect()
     }
 }
 
@@ -101,7 +131,11 @@ struct Build<'a> {
 
 /// Returns an error if the work was canceled.
 fn go_on(cancel: &AtomicBool) -> Result<()> {
-    if cancel.load(Ordering::Relaxed) { Err(Error::canceled()) } else { Ok(()) }
+    if cancel.load(Ordering::Relaxed) {
+        Err(Error::canceled())
+    } else {
+        Ok(())
+    }
 }
 
 impl Build<'_> {
@@ -112,7 +146,12 @@ impl Build<'_> {
 
     /// Returns an error if a point or a vertex of a line has a coordinate that is not admitted.
     fn check_coordinates(&self) -> Result<()> {
-        let TinBuilder { points, line_points, line_ends, .. } = &self.builder;
+        let TinBuilder {
+            points,
+            line_points,
+            line_ends,
+            ..
+        } = &self.builder;
         let geometry: Terrain = Terrain::default();
         let bad = |p: &[f64; 3]| !geometry.admits(p) || !p[2].is_finite();
         if let Some(at) = points.iter().position(bad) {
@@ -128,9 +167,16 @@ impl Build<'_> {
     /// Removes the points in water and between the edges of walls, and reports where waters
     /// overlap.
     fn leave_out_replaced(&mut self) {
-        let Build { builder, overlaps, report, .. } = self;
+        let Build {
+            builder,
+            overlaps,
+            report,
+            ..
+        } = self;
         report.water_overlaps.clone_from(&overlaps.found);
-        report.water_overlaps.retain(|overlap| overlap.step > builder.crossing_tolerance);
+        report
+            .water_overlaps
+            .retain(|overlap| overlap.step > builder.crossing_tolerance);
         builder.take_replaced_points();
         report.points_replaced = builder.replaced_count;
     }
@@ -143,8 +189,11 @@ impl Build<'_> {
     fn triangulate(&mut self) -> Result<(ConstrainedDelaunay<Terrain>, Vec<Pass>)> {
         let cancel = self.cancel;
         // One vertex per site, in spatial order.
-        let Sites { vertices, line_vertices, mut disputed } =
-            self.builder.merge(&mut self.report, &|| go_on(cancel))?;
+        let Sites {
+            vertices,
+            line_vertices,
+            mut disputed,
+        } = self.builder.merge(&mut self.report, &|| go_on(cancel))?;
         go_on(cancel)?;
         let lines = lines_of(&line_vertices, &self.builder.line_ends);
         let (triangulation, renumbered) = ConstrainedDelaunay::from_sorted_lines(
@@ -156,7 +205,9 @@ impl Build<'_> {
         )
         .map_err(|error| not_built(error, &|line| self.name(line)))?;
         if let Some(renumbered) = renumbered {
-            disputed.iter_mut().for_each(|pass| pass.vertex = renumbered[pass.vertex.index()]);
+            disputed
+                .iter_mut()
+                .for_each(|pass| pass.vertex = renumbered[pass.vertex.index()]);
         }
         if triangulation.dimension() < 2 {
             return Err(no_surface(triangulation.vertex_count()));
@@ -165,7 +216,11 @@ impl Build<'_> {
     }
 
     /// Gives the vertices at which lines cross their heights, and reports where these differ.
-    fn choose_crossing_heights(&mut self, triangulation: &mut ConstrainedDelaunay<Terrain>, disputed: Vec<Pass>) {
+    fn choose_crossing_heights(
+        &mut self,
+        triangulation: &mut ConstrainedDelaunay<Terrain>,
+        disputed: Vec<Pass>,
+    ) {
         self.report.crossings = triangulation.crossings().len();
         self.report.rounding = triangulation.rounding();
         self.report.crossing_heights = choose_heights(
@@ -176,7 +231,9 @@ impl Build<'_> {
             self.builder.crossing_tolerance,
         );
         if let Some(bounds) = self.judged() {
-            self.report.crossing_heights.retain(|crossing| bounds.holds(crossing.site[0], crossing.site[1]));
+            self.report
+                .crossing_heights
+                .retain(|crossing| bounds.holds(crossing.site[0], crossing.site[1]));
         }
     }
 
@@ -195,30 +252,50 @@ impl Build<'_> {
         triangulation: &mut ConstrainedDelaunay<Terrain>,
         given: GivenHeights,
     ) -> Result<Vec<bool>> {
-        let Leveled { is_water, sites } =
-            areas::level(triangulation, &self.builder.waters, &given.rims, &self.overlaps.pairs, &|line| {
-                self.name(line)
-            })?;
+        let Leveled { is_water, sites } = areas::level(
+            triangulation,
+            &self.builder.waters,
+            &given.rims,
+            &self.overlaps.pairs,
+            &|line| self.name(line),
+        )?;
         let judged = self.judged();
         for (line, heights) in given.walls {
-            let vertices = triangulation.line_vertices(LineId::new(line)).iter().zip(heights);
+            let vertices = triangulation
+                .line_vertices(LineId::new(line))
+                .iter()
+                .zip(heights);
             let at = vertices.map(|(vertex, height)| (*triangulation.point(*vertex), height));
             let flooded = at.filter(|([x, y, z], height)| {
                 z != height
                     && sites.contains(&[x.to_bits(), y.to_bits()])
                     && judged.as_ref().is_none_or(|bounds| bounds.holds(*x, *y))
             });
-            self.report.walls_in_water.extend(flooded.map(|([x, y, _], _)| (line, [x, y])));
+            self.report
+                .walls_in_water
+                .extend(flooded.map(|([x, y, _], _)| (line, [x, y])));
         }
         // In water, no line decides.
-        let Build { overlaps, report, .. } = self;
-        report.crossing_heights.retain(|crossing| !sites.contains(&crossing.site.map(f64::to_bits)));
-        report.crossing_heights.iter_mut().flat_map(|crossing| &mut crossing.heights).for_each(|(line, _)| {
-            *line = overlaps.named(*line);
-        });
+        let Build {
+            overlaps, report, ..
+        } = self;
+        report
+            .crossing_heights
+            .retain(|crossing| !sites.contains(&crossing.site.map(f64::to_bits)));
+        report
+            .crossing_heights
+            .iter_mut()
+            .flat_map(|crossing| &mut crossing.heights)
+            .for_each(|(line, _)| {
+                *line = overlaps.named(*line);
+            });
         if self.builder.crossing_heights == CrossingRule::Refuse {
             let name = |line| self.name(line);
-            refuse(&self.report.crossing_heights, self.builder.crossing_tolerance, &name)?;
+            refuse(
+                &self.report.crossing_heights,
+                self.builder.crossing_tolerance,
+                &name,
+            )?;
         }
         Ok(is_water)
     }
@@ -227,7 +304,12 @@ impl Build<'_> {
     /// reports what is left.
     fn delimit(mut self, mut tin: Tin, is_water: &[bool]) -> Result<Tin> {
         let clip = self.builder.take_clip();
-        let Build { builder, mut report, cancel, .. } = self;
+        let Build {
+            builder,
+            mut report,
+            cancel,
+            ..
+        } = self;
         let all = tin.triangulation.vertex_count();
         if let Some(limit) = builder.max_edge {
             report.faces_beyond_max_edge = tin.peel(limit);
@@ -239,14 +321,29 @@ impl Build<'_> {
         // Counted only if it does not follow from the final counts.
         let mut left = None;
         if !clip.is_everything() {
-            left = Some(if is_whole { all } else { tin.count().old_vertices });
+            left = Some(if is_whole {
+                all
+            } else {
+                tin.count().old_vertices
+            });
             (report.faces_clipped, report.faces_cut) = clip.apply(&mut tin)?;
         }
         go_on(cancel)?;
         if let (Some(bounds), Some(window)) = (&builder.bounds, &builder.window) {
-            report.uncertain = uncertain(&tin.triangulation, bounds, window, builder.max_edge, tin.replaced());
+            report.uncertain = uncertain(
+                &tin.triangulation,
+                bounds,
+                window,
+                builder.max_edge,
+                tin.replaced(),
+            );
         }
-        let Count { old_vertices, vertices, faces, extent } = tin.count();
+        let Count {
+            old_vertices,
+            vertices,
+            faces,
+            extent,
+        } = tin.count();
         let left = left.unwrap_or(old_vertices);
         report.vertices_beyond_max_edge = all - left;
         report.vertices_clipped = left - old_vertices;
@@ -255,7 +352,10 @@ impl Build<'_> {
         if is_clipped || has_lines && !(is_whole && tin.kinds.are_breaklines()) {
             report.edges = tin.count_lines();
         } else if has_lines {
-            report.edges.add_edges(EdgeKind::Breakline, tin.triangulation.constrained_edges().count());
+            report.edges.add_edges(
+                EdgeKind::Breakline,
+                tin.triangulation.constrained_edges().count(),
+            );
         }
         (report.vertices, report.triangles, report.extent) = (vertices, faces, extent);
         tin.report = report;
@@ -279,16 +379,27 @@ fn no_surface(vertices: usize) -> Error {
 /// The vertices of each line.
 fn lines_of<'a>(vertices: &'a [u32], line_ends: &[usize]) -> Vec<&'a [u32]> {
     let starts = std::iter::once(&0).chain(line_ends);
-    starts.zip(line_ends).map(|(&start, &end)| &vertices[start..end]).collect()
+    starts
+        .zip(line_ends)
+        .map(|(&start, &end)| &vertices[start..end])
+        .collect()
 }
 
 #[cold]
 fn not_built(error: InputError, name: &dyn Fn(usize) -> String) -> Error {
     match error {
-        InputError::Crossing { segments: [(line, _), (other, _)], at: [x, y] } => {
+        InputError::Crossing {
+            segments: [(line, _), (other, _)],
+            at: [x, y],
+        } => {
             let (line, other) = (name(line), name(other));
-            Error::format(format!("{line} and {other} cross at {x} {y} without a common vertex"))
-                .cure(wording!["fix the lines, or split them there with ", Setting::OnCrossing.text("split")])
+            Error::format(format!(
+                "{line} and {other} cross at {x} {y} without a common vertex"
+            ))
+            .cure(wording![
+                "fix the lines, or split them there with ",
+                Setting::OnCrossing.text("split")
+            ])
         }
         InputError::Canceled => Error::canceled(),
         error => Error::limit(error.to_string()),

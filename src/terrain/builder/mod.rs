@@ -114,7 +114,9 @@ struct Overlaps {
 impl Overlaps {
     /// The line that names a line.
     fn named(&self, line: usize) -> usize {
-        line.checked_sub(self.given).and_then(|added| self.named.get(added).copied()).unwrap_or(line)
+        line.checked_sub(self.given)
+            .and_then(|added| self.named.get(added).copied())
+            .unwrap_or(line)
     }
 }
 
@@ -132,14 +134,24 @@ impl TinBuilder {
     /// # Panics
     /// If the columns differ in length.
     pub fn add_points(&mut self, x: &[f64], y: &[f64], z: &[f64]) {
-        assert!(x.len() == y.len() && y.len() == z.len(), "columns of different lengths");
+        assert!(
+            x.len() == y.len() && y.len() == z.len(),
+            "columns of different lengths"
+        );
         self.points.reserve(x.len());
-        self.points.extend(x.iter().zip(y).zip(z).map(|((&x, &y), &z)| positive_zero([x, y, z])));
+        self.points.extend(
+            x.iter()
+                .zip(y)
+                .zip(z)
+                .map(|((&x, &y), &z)| positive_zero([x, y, z])),
+        );
     }
 
     /// Adds points from a vector; the first vector is taken over without a copy.
     pub fn add_owned_points(&mut self, mut points: Vec<[f64; 3]>) {
-        points.iter_mut().for_each(|point| *point = positive_zero(*point));
+        points
+            .iter_mut()
+            .for_each(|point| *point = positive_zero(*point));
         if self.points.is_empty() {
             self.points = points;
         } else {
@@ -182,9 +194,15 @@ impl TinBuilder {
     pub fn add_flat(&mut self, flat: Flat) -> Range<usize> {
         self.replaced.add_flat(&flat);
         let first = self.line_count();
-        flat.rings.iter().for_each(|ring| self.add_line(ring, EdgeKind::Shore));
+        flat.rings
+            .iter()
+            .for_each(|ring| self.add_line(ring, EdgeKind::Shore));
         let lines = first..self.line_count();
-        self.waters.push(Water { lines: lines.clone(), rim: lines.clone().collect(), level: WaterLevel::Flat(flat) });
+        self.waters.push(Water {
+            lines: lines.clone(),
+            rim: lines.clone().collect(),
+            level: WaterLevel::Flat(flat),
+        });
         lines
     }
 
@@ -193,12 +211,22 @@ impl TinBuilder {
     pub fn add_river(&mut self, river: River) -> Range<usize> {
         self.replaced.add_river(&river);
         let first = self.line_count();
-        river.banks().iter().for_each(|bank| self.add_line(bank, EdgeKind::Bank));
-        river.level_lines().iter().for_each(|line| self.add_line(line, EdgeKind::Bank));
+        river
+            .banks()
+            .iter()
+            .for_each(|bank| self.add_line(bank, EdgeKind::Bank));
+        river
+            .level_lines()
+            .iter()
+            .for_each(|line| self.add_line(line, EdgeKind::Bank));
         let lines = first..self.line_count();
         // The banks, and the level lines at both ends.
         let rim = vec![first, first + 1, first + 2, lines.end - 1];
-        self.waters.push(Water { lines: lines.clone(), rim, level: WaterLevel::River(river) });
+        self.waters.push(Water {
+            lines: lines.clone(),
+            rim,
+            level: WaterLevel::River(river),
+        });
         lines
     }
 
@@ -218,7 +246,11 @@ impl TinBuilder {
     /// Removes the points in water and between the edges of walls, which are not part of the
     /// surface, and returns them in order.
     pub fn take_replaced_points(&mut self) -> Vec<[f64; 3]> {
-        let points = if self.replaced.is_empty() { Vec::new() } else { self.replaced.split_off(&mut self.points) };
+        let points = if self.replaced.is_empty() {
+            Vec::new()
+        } else {
+            self.replaced.split_off(&mut self.points)
+        };
         self.replaced_count += points.len();
         points
     }
@@ -233,8 +265,12 @@ impl TinBuilder {
     /// Returns the lines of all kinds in plan.
     pub(crate) fn lines_in_plan(&self) -> Vec<Vec<[f64; 2]>> {
         let starts = std::iter::once(&0).chain(&self.line_ends);
-        let lines = starts.zip(&self.line_ends).map(|(&start, &end)| &self.line_points[start..end]);
-        lines.map(|line| line.iter().map(|p| [p[0], p[1]]).collect()).collect()
+        let lines = starts
+            .zip(&self.line_ends)
+            .map(|(&start, &end)| &self.line_points[start..end]);
+        lines
+            .map(|line| line.iter().map(|p| [p[0], p[1]]).collect())
+            .collect()
     }
 
     /// Adds the lines that waters need where they overlap, once all of them are known. Building
@@ -243,29 +279,56 @@ impl TinBuilder {
         let geometry: Terrain = Terrain::default();
         let is_admitted = |p: &[f64; 3]| geometry.admits(p) && p[2].is_finite();
         // What is not admitted is refused when the surface is built.
-        if self.overlaps.is_some() || self.waters.len() < 2 || !self.line_points.iter().all(is_admitted) {
+        if self.overlaps.is_some()
+            || self.waters.len() < 2
+            || !self.line_points.iter().all(is_admitted)
+        {
             return;
         }
         let line = |line: usize| self.line(line).to_vec();
-        let Marks { replaced, added, pairs, overlaps } = overlap::mark(&self.waters, &line, self.step(), self.bounds);
+        let Marks {
+            replaced,
+            added,
+            pairs,
+            overlaps,
+        } = overlap::mark(&self.waters, &line, self.step(), self.bounds);
         self.replace_lines(replaced);
         let given = self.line_count();
         let named = added.iter().map(|(line, _)| *line).collect();
-        added.iter().for_each(|(_, line)| self.add_line(line, EdgeKind::Bank));
-        self.overlaps = Some(Overlaps { given, named, pairs, found: overlaps });
+        added
+            .iter()
+            .for_each(|(_, line)| self.add_line(line, EdgeKind::Bank));
+        self.overlaps = Some(Overlaps {
+            given,
+            named,
+            pairs,
+            found: overlaps,
+        });
     }
 
     /// The distance within which heights change where waters overlap.
     fn step(&self) -> f64 {
         let wanted = self.step_width.unwrap_or(STEP_WIDTH);
-        let largest = self.line_points.iter().flat_map(|p| [p[0].abs(), p[1].abs()]).fold(0.0, f64::max);
+        let largest = self
+            .line_points
+            .iter()
+            .flat_map(|p| [p[0].abs(), p[1].abs()])
+            .fold(0.0, f64::max);
         let narrowest = narrowest(largest);
-        if wanted.is_finite() { wanted.max(narrowest) } else { narrowest }
+        if wanted.is_finite() {
+            wanted.max(narrowest)
+        } else {
+            narrowest
+        }
     }
 
     /// The vertices of a line.
     fn line(&self, number: usize) -> &[[f64; 3]] {
-        let start = if number == 0 { 0 } else { self.line_ends[number - 1] };
+        let start = if number == 0 {
+            0
+        } else {
+            self.line_ends[number - 1]
+        };
         &self.line_points[start..self.line_ends[number]]
     }
 
@@ -276,7 +339,11 @@ impl TinBuilder {
         }
         let mut replaced: FxHashMap<usize, Vec<[f64; 3]>> = replaced.into_iter().collect();
         let lines: Vec<Vec<[f64; 3]>> = (0..self.line_count())
-            .map(|number| replaced.remove(&number).unwrap_or_else(|| self.line(number).to_vec()))
+            .map(|number| {
+                replaced
+                    .remove(&number)
+                    .unwrap_or_else(|| self.line(number).to_vec())
+            })
             .collect();
         self.line_points.clear();
         self.line_ends.clear();
@@ -291,7 +358,8 @@ impl TinBuilder {
     }
 
     fn add_line_as(&mut self, line: &[[f64; 3]], kind: EdgeKind, precedence: Precedence) {
-        self.line_points.extend(line.iter().copied().map(positive_zero));
+        self.line_points
+            .extend(line.iter().copied().map(positive_zero));
         self.line_ends.push(self.line_points.len());
         self.line_kinds.push(kind);
         self.precedences.push(precedence);
@@ -329,15 +397,25 @@ mod tests {
 
     fn square() -> TinBuilder {
         let mut builder = TinBuilder::default();
-        builder.add_points(&[-8.0, 8.0, 8.0, -8.0], &[-8.0, -8.0, 8.0, 8.0], &[1.0, 1.0, 3.0, 3.0]);
+        builder.add_points(
+            &[-8.0, 8.0, 8.0, -8.0],
+            &[-8.0, -8.0, 8.0, 8.0],
+            &[1.0, 1.0, 3.0, 3.0],
+        );
         builder
     }
 
     #[test]
     fn points_that_are_refused_are_named_as_they_came() {
         for (x, message) in [
-            (1e80, "point 4: [1e80, 0.0, 2.0] has a coordinate that is neither 0 nor between 7e-49 and 2e60"),
-            (1e-80, "point 4: [1e-80, 0.0, 2.0] has a coordinate that is neither 0 nor between 7e-49 and 2e60"),
+            (
+                1e80,
+                "point 4: [1e80, 0.0, 2.0] has a coordinate that is neither 0 nor between 7e-49 and 2e60",
+            ),
+            (
+                1e-80,
+                "point 4: [1e-80, 0.0, 2.0] has a coordinate that is neither 0 nor between 7e-49 and 2e60",
+            ),
             (f64::NAN, "point 4: [NaN, 0.0, 2.0] is not a finite point"),
         ] {
             let mut builder = square();
@@ -367,7 +445,12 @@ mod tests {
         is_shared(&tin);
         std::thread::scope(|scope| {
             for _ in 0..4 {
-                scope.spawn(|| assert_eq!((tin.elevation(0.0, 8.0), tin.face_count()), (Some(3.0), tin.face_count())));
+                scope.spawn(|| {
+                    assert_eq!(
+                        (tin.elevation(0.0, 8.0), tin.face_count()),
+                        (Some(3.0), tin.face_count())
+                    )
+                });
             }
         });
     }
@@ -376,18 +459,33 @@ mod tests {
     /// batch.
     #[test]
     fn many_faces_are_those_that_one_asks_for() {
-        let mut builder = TinBuilder { max_edge: Some(1.5), ..TinBuilder::default() };
-        let sites: Vec<[f64; 2]> = (0..2500).map(|k| [f64::from(k % 50), f64::from(k / 50)]).collect();
+        let mut builder = TinBuilder {
+            max_edge: Some(1.5),
+            ..TinBuilder::default()
+        };
+        let sites: Vec<[f64; 2]> = (0..2500)
+            .map(|k| [f64::from(k % 50), f64::from(k / 50)])
+            .collect();
         let [x, y] = [0, 1].map(|axis| sites.iter().map(|p| p[axis]).collect::<Vec<_>>());
         builder.add_points(&x, &y, &x);
         builder.add_points(&[90.0], &[20.0], &[0.0]);
         builder.add_breakline(&[[3.0, 3.0, 1.0], [40.0, 3.0, 2.0]]);
         let tin = builder.build().unwrap();
         let surface: &dyn Surface = &tin;
-        let numbers: Vec<u32> = (0..surface.face_count() as u32).filter(|&face| surface.face(face).is_some()).collect();
+        let numbers: Vec<u32> = (0..surface.face_count() as u32)
+            .filter(|&face| surface.face(face).is_some())
+            .collect();
         assert!(numbers.len() > 4000 && numbers.len() < surface.face_count());
-        assert!(data::corners(surface).eq(numbers.iter().map(|&face| (face, surface.face(face).unwrap()))));
-        assert!(data::faces(surface).map(|face| face.number).eq(numbers.iter().copied()));
+        assert!(
+            data::corners(surface).eq(numbers
+                .iter()
+                .map(|&face| (face, surface.face(face).unwrap())))
+        );
+        assert!(
+            data::faces(surface)
+                .map(|face| face.number)
+                .eq(numbers.iter().copied())
+        );
         let mut sides = 0;
         for face in data::faces(surface) {
             assert_eq!(Some(face.corners), surface.face(face.number));
@@ -395,7 +493,10 @@ mod tests {
             assert_eq!(surface.triangle(face.number), Some(corners));
             for i in 0..3 {
                 assert_eq!(face.edges[i], surface.edge_kind(face.number, i));
-                assert_eq!(face.edges[i].is_constrained(), surface.is_constrained(face.number, i));
+                assert_eq!(
+                    face.edges[i].is_constrained(),
+                    surface.is_constrained(face.number, i)
+                );
                 sides += usize::from(face.edges[i].is_constrained());
             }
         }

@@ -26,17 +26,25 @@ impl TinBuilder {
     /// # Errors
     /// If there is not enough memory for the vertices, or if `go_on`, which is called now and then,
     /// returns an error.
-    pub(super) fn merge(&mut self, report: &mut TinReport, go_on: &dyn Fn() -> Result<()>) -> Result<Sites> {
+    pub(super) fn merge(
+        &mut self,
+        report: &mut TinReport,
+        go_on: &dyn Fn() -> Result<()>,
+    ) -> Result<Sites> {
         let mut all = std::mem::take(&mut self.points);
         let lines_from = all.len();
         all.reserve_exact(self.line_points.len());
         all.append(&mut self.line_points);
-        let order = spatial_order(all.len(), |i| [all[i][0], all[i][1]]).map_err(|e| Error::limit(e.to_string()))?;
+        let order = spatial_order(all.len(), |i| [all[i][0], all[i][1]])
+            .map_err(|e| Error::limit(e.to_string()))?;
         go_on()?;
         let site = |i: u32| [all[i as usize][0], all[i as usize][1]];
         let mut vertices = Vec::new();
         if vertices.try_reserve_exact(all.len()).is_err() {
-            return Err(Error::limit(format!("not enough memory for {} vertices", all.len())));
+            return Err(Error::limit(format!(
+                "not enough memory for {} vertices",
+                all.len()
+            )));
         }
         let mut line_vertices = vec![u32::MAX; all.len() - lines_from];
         let mut disputed = Vec::new();
@@ -54,7 +62,10 @@ impl TinBuilder {
             // Within a site, indices are in the order of the input: points first, then lines.
             let first_of_lines = group.partition_point(|&i| (i as usize) < lines_from);
             let (points, lines) = group.split_at(first_of_lines);
-            let line_of = |i: u32| self.line_ends.partition_point(|&end| end <= i as usize - lines_from);
+            let line_of = |i: u32| {
+                self.line_ends
+                    .partition_point(|&end| end <= i as usize - lines_from)
+            };
             let precedence = |i: u32| self.precedences[line_of(i)];
             let standing = if lines.is_empty() {
                 report.duplicates += points.len() - 1;
@@ -65,7 +76,12 @@ impl TinBuilder {
                 // Those that count before all others.
                 first_lines.clear();
                 let first = lines.iter().map(|&i| precedence(i)).min();
-                first_lines.extend(lines.iter().copied().filter(|&i| lines.len() == 1 || Some(precedence(i)) == first));
+                first_lines.extend(
+                    lines
+                        .iter()
+                        .copied()
+                        .filter(|&i| lines.len() == 1 || Some(precedence(i)) == first),
+                );
                 &first_lines
             };
             heights.clear();
@@ -84,6 +100,10 @@ impl TinBuilder {
             }
             vertices.push([x, y, self.duplicates.choose(&mut heights)]);
         }
-        Ok(Sites { vertices, line_vertices, disputed })
+        Ok(Sites {
+            vertices,
+            line_vertices,
+            disputed,
+        })
     }
 }

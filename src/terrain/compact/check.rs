@@ -19,7 +19,11 @@ impl<B: AsRef<[u8]> + Sync> CompactTin<B> {
         self.find_damage().map_err(|damage| self.error(&damage))?;
         let counted = SurfaceFacts::of(self);
         self.ensure_intact()?;
-        if counted == *self.facts() { Ok(()) } else { Err(self.error(&Damage::Facts)) }
+        if counted == *self.facts() {
+            Ok(())
+        } else {
+            Err(self.error(&Damage::Facts))
+        }
     }
 
     fn find_damage(&self) -> Found<()> {
@@ -35,7 +39,13 @@ impl<B: AsRef<[u8]> + Sync> CompactTin<B> {
                 }
             }
         }
-        let rows = self.triangulation.bytes().get(self.sides.clone()).unwrap_or_default().as_chunks::<SIDE>().0;
+        let rows = self
+            .triangulation
+            .bytes()
+            .get(self.sides.clone())
+            .unwrap_or_default()
+            .as_chunks::<SIDE>()
+            .0;
         let key = |row: usize| rows.get(row).map(OpenSide::key);
         match (1..rows.len()).find(|&row| key(row - 1) >= key(row)) {
             Some(row) => Err(Damage::Side(row)),

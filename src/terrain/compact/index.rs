@@ -54,13 +54,36 @@ impl TinIndex {
     /// # Complexity
     /// Linear in the parts.
     pub fn to_text(&self) -> String {
-        let TinIndex { crs, facts, area, folder, parts } = self;
-        let attributes = Attributes { crs: crs.clone(), facts: facts.clone() };
+        let TinIndex {
+            crs,
+            facts,
+            area,
+            folder,
+            parts,
+        } = self;
+        let attributes = Attributes {
+            crs: crs.clone(),
+            facts: facts.clone(),
+        };
         let surface = attributes.to_json();
-        let mut text = format!("{VERSION}\n\"surface\":{surface},\n\"area\":{},\n", json!(area));
+        let mut text = format!(
+            "{VERSION}\n\"surface\":{surface},\n\"area\":{},\n",
+            json!(area)
+        );
         // Writing to a string does not fail.
         let _ = write!(text, "\"folder\":{},\n\"parts\":[", json!(folder));
-        for (number, TinIndexPart { file, tile, bytes, checksum, triangles, extent }) in parts.iter().enumerate() {
+        for (
+            number,
+            TinIndexPart {
+                file,
+                tile,
+                bytes,
+                checksum,
+                triangles,
+                extent,
+            },
+        ) in parts.iter().enumerate()
+        {
             let row = json!({
                 "file": file, "tile": tile, "bytes": bytes, "checksum": checksum, "triangles": triangles,
                 "extent": box_to_json(extent),
@@ -83,13 +106,19 @@ impl TinIndex {
             return Err(wrong("the version of the index"));
         }
         let value = parse(text)?;
-        let Attributes { crs, facts } =
-            Attributes::from_value(&value["surface"]).map_err(|e| e.within("the value `surface`"))?;
-        let folder = value["folder"].as_str().filter(|name| is_name(name)).ok_or_else(|| wrong("folder"))?;
+        let Attributes { crs, facts } = Attributes::from_value(&value["surface"])
+            .map_err(|e| e.within("the value `surface`"))?;
+        let folder = value["folder"]
+            .as_str()
+            .filter(|name| is_name(name))
+            .ok_or_else(|| wrong("folder"))?;
         let part = |(number, value): (usize, &Value)| {
             let read = || {
                 Some(TinIndexPart {
-                    file: value["file"].as_str().filter(|name| is_name(name))?.to_owned(),
+                    file: value["file"]
+                        .as_str()
+                        .filter(|name| is_name(name))?
+                        .to_owned(),
                     tile: match &value["tile"] {
                         Value::Null => None,
                         tile => Some(u32::try_from(tile.as_u64()?).ok()?),
@@ -125,25 +154,50 @@ mod tests {
     use crate::data::LineEdges;
 
     fn index() -> TinIndex {
-        let extent = Bounds { min: [0.1, -2.0, 3.0], max: [9.0, 1e7, 4.5] };
+        let extent = Bounds {
+            min: [0.1, -2.0, 3.0],
+            max: [9.0, 1e7, 4.5],
+        };
         let part = |number: u32| TinIndexPart {
             file: format!("{number}.tin"),
             tile: Some(number).filter(|number| *number > 0),
             bytes: 1 << 40,
             checksum: u32::MAX - number,
             triangles: 7,
-            extent: if number == 2 { Bounds::default() } else { extent },
+            extent: if number == 2 {
+                Bounds::default()
+            } else {
+                extent
+            },
         };
-        let facts = SurfaceFacts { vertices: 9, triangles: 21, edges: LineEdges::default(), extent };
+        let facts = SurfaceFacts {
+            vertices: 9,
+            triangles: 21,
+            edges: LineEdges::default(),
+            extent,
+        };
         let crs = Some(Crs::from_epsg(25832).unwrap());
-        TinIndex { crs, facts, area: 0.1 + 0.2, folder: "hills.tins.0f".to_owned(), parts: (0..3).map(part).collect() }
+        TinIndex {
+            crs,
+            facts,
+            area: 0.1 + 0.2,
+            folder: "hills.tins.0f".to_owned(),
+            parts: (0..3).map(part).collect(),
+        }
     }
 
     #[test]
     fn an_index_reads_as_it_was_written() {
-        let empty = TinIndex { parts: Vec::new(), crs: None, ..index() };
+        let empty = TinIndex {
+            parts: Vec::new(),
+            crs: None,
+            ..index()
+        };
         for index in [index(), empty] {
-            assert_eq!(TinIndex::from_text(index.to_text().as_bytes()).unwrap(), index);
+            assert_eq!(
+                TinIndex::from_text(index.to_text().as_bytes()).unwrap(),
+                index
+            );
         }
     }
 
@@ -152,7 +206,10 @@ mod tests {
         let whole = index().to_text();
         let last = whole.trim_end().len();
         for end in 0..last {
-            assert!(TinIndex::from_text(&whole.as_bytes()[..end]).is_err(), "length {end}");
+            assert!(
+                TinIndex::from_text(&whole.as_bytes()[..end]).is_err(),
+                "length {end}"
+            );
         }
         for (from, to) in [
             ("1.tin", "a/b"),
@@ -165,7 +222,10 @@ mod tests {
             ("\"area\":0", "\"area\":\"a"),
         ] {
             assert!(whole.contains(from));
-            assert!(TinIndex::from_text(whole.replace(from, to).as_bytes()).is_err(), "{to}");
+            assert!(
+                TinIndex::from_text(whole.replace(from, to).as_bytes()).is_err(),
+                "{to}"
+            );
         }
     }
 }

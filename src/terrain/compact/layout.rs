@@ -59,13 +59,23 @@ pub(super) struct OpenSide {
 
 impl Fragment {
     pub(super) fn new(face: &Face, neighbors: [Option<u32>; 3]) -> Self {
-        Fragment { corners: face.corners, neighbors, edges: face.edges }
+        Fragment {
+            corners: face.corners,
+            neighbors,
+            edges: face.edges,
+        }
     }
 
     pub(super) fn to_bytes(self) -> [u8; FRAGMENT] {
         let mut bytes = [0; FRAGMENT];
-        let numbers = self.corners.into_iter().chain(self.neighbors.map(|number| number.unwrap_or(NONE)));
-        bytes.chunks_exact_mut(4).zip(numbers).for_each(|(bytes, n)| bytes.copy_from_slice(&n.to_le_bytes()));
+        let numbers = self
+            .corners
+            .into_iter()
+            .chain(self.neighbors.map(|number| number.unwrap_or(NONE)));
+        bytes
+            .chunks_exact_mut(4)
+            .zip(numbers)
+            .for_each(|(bytes, n)| bytes.copy_from_slice(&n.to_le_bytes()));
         bytes[24..27].copy_from_slice(&self.edges.map(EdgeKind::number));
         bytes
     }
@@ -94,7 +104,12 @@ impl OpenSide {
     pub(super) fn read(bytes: &[u8; SIDE]) -> Option<Self> {
         let neighbor = Some(number(bytes, 8)).filter(|&number| number != NONE);
         let (face, corner) = OpenSide::key(bytes);
-        Some(OpenSide { face, corner, kind: kind(bytes[5])?, neighbor })
+        Some(OpenSide {
+            face,
+            corner,
+            kind: kind(bytes[5])?,
+            neighbor,
+        })
     }
 
     /// Returns what rows are sorted by: the face and the corner.
@@ -104,7 +119,10 @@ impl OpenSide {
 }
 
 fn number(bytes: &[u8], at: usize) -> u32 {
-    bytes.get(at..).and_then(|rest| rest.first_chunk()).map_or(NONE, |bytes| u32::from_le_bytes(*bytes))
+    bytes
+        .get(at..)
+        .and_then(|rest| rest.first_chunk())
+        .map_or(NONE, |bytes| u32::from_le_bytes(*bytes))
 }
 
 fn kind(number: u8) -> Option<EdgeKind> {
@@ -118,22 +136,46 @@ mod tests {
     #[test]
     fn rows_read_as_they_were_written() {
         let [plain, line, clip, rim, ..] = EdgeKind::ALL;
-        for (corners, neighbors, edges) in
-            [([0, 1, 2], [None; 3], [rim; 3]), ([7, 1 << 30, 9], [Some(5), None, Some(1 << 31)], [line, clip, plain])]
-        {
-            let fragment = Fragment { corners, neighbors, edges };
+        for (corners, neighbors, edges) in [
+            ([0, 1, 2], [None; 3], [rim; 3]),
+            (
+                [7, 1 << 30, 9],
+                [Some(5), None, Some(1 << 31)],
+                [line, clip, plain],
+            ),
+        ] {
+            let fragment = Fragment {
+                corners,
+                neighbors,
+                edges,
+            };
             assert_eq!(Fragment::read(&fragment.to_bytes()), Some(fragment));
-            let side = OpenSide { face: corners[1], corner: 2, kind: edges[0], neighbor: neighbors[0] };
+            let side = OpenSide {
+                face: corners[1],
+                corner: 2,
+                kind: edges[0],
+                neighbor: neighbors[0],
+            };
             assert_eq!(OpenSide::read(&side.to_bytes()), Some(side));
             assert_eq!(OpenSide::key(&side.to_bytes()), (corners[1], 2));
         }
-        let mut bytes = Fragment { corners: [0, 1, 2], neighbors: [None; 3], edges: [rim; 3] }.to_bytes();
+        let mut bytes = Fragment {
+            corners: [0, 1, 2],
+            neighbors: [None; 3],
+            edges: [rim; 3],
+        }
+        .to_bytes();
         bytes[26] = EdgeKind::ALL.len() as u8;
         assert_eq!(Fragment::read(&bytes), None);
     }
 
     #[test]
     fn kinds_are_at_their_numbers() {
-        assert!(EdgeKind::ALL.into_iter().enumerate().all(|(at, kind)| usize::from(kind.number()) == at));
+        assert!(
+            EdgeKind::ALL
+                .into_iter()
+                .enumerate()
+                .all(|(at, kind)| usize::from(kind.number()) == at)
+        );
     }
 }

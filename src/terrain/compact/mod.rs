@@ -29,7 +29,8 @@ use super::linear::linear;
 use attributes::Attributes;
 pub use index::{TinIndex, TinIndexPart};
 use layout::{
-    ATTRIBUTES, FRAGMENT, FRAGMENTS, Fragment, INSIDE, NUMBER, NUMBERS, OpenSide, SIDE, SIDES, UNDER, VERTEX, VERTICES,
+    ATTRIBUTES, FRAGMENT, FRAGMENTS, Fragment, INSIDE, NUMBER, NUMBERS, OpenSide, SIDE, SIDES,
+    UNDER, VERTEX, VERTICES,
 };
 pub use part::PartCell;
 pub(super) use write::{write, write_part};
@@ -105,7 +106,10 @@ impl fmt::Display for Damage {
             Damage::Vertex(vertex) => write!(f, "vertex {vertex} is damaged"),
             Damage::Face(face) => write!(f, "face {face} is damaged"),
             Damage::Link(face, neighbor) => {
-                write!(f, "face {face} does not share an edge with its neighbor {neighbor}")
+                write!(
+                    f,
+                    "face {face} does not share an edge with its neighbor {neighbor}"
+                )
             }
             Damage::Side(row) => write!(f, "row {row} of section `sides` is damaged"),
             Damage::Facts => f.write_str("the counts or the extent are not those of the faces"),
@@ -140,25 +144,38 @@ impl<B: AsRef<[u8]>> CompactTin<B> {
     }
 
     fn opened(bytes: B, path: &Path) -> Result<Self> {
-        let triangulation = Compact::open(Terrain::default(), bytes).map_err(|e| Error::format(e.to_string()))?;
+        let triangulation =
+            Compact::open(Terrain::default(), bytes).map_err(|e| Error::format(e.to_string()))?;
         if triangulation.dimension() != 2 {
             return Err(Error::format("the triangulation has no triangle"));
         }
         let section = |tag: [u8; 8]| {
             let name = tag.escape_ascii().to_string();
             triangulation.section_range(tag).ok_or_else(|| {
-                Error::format(format!("a triangulation without the section `{}` of a TIN", name.trim_end()))
+                Error::format(format!(
+                    "a triangulation without the section `{}` of a TIN",
+                    name.trim_end()
+                ))
             })
         };
         let rows = |tag: [u8; 8], size: usize| match section(tag)? {
             range if range.len() % size == 0 => Ok(range),
-            range => Err(Error::format(format!("{} bytes of rows of {size}", range.len()))
-                .at(format!("section `{}`", tag.escape_ascii().to_string().trim_end()))),
+            range => Err(
+                Error::format(format!("{} bytes of rows of {size}", range.len())).at(format!(
+                    "section `{}`",
+                    tag.escape_ascii().to_string().trim_end()
+                )),
+            ),
         };
         let bits = |tag: [u8; 8]| match (section(tag)?, triangulation.cell_count().div_ceil(8)) {
             (range, expected) if range.len() == expected => Ok(range),
-            (range, expected) => Err(Error::format(format!("{} bytes, expected {expected}", range.len()))
-                .at(format!("section `{}`", tag.escape_ascii().to_string().trim_end()))),
+            (range, expected) => {
+                Err(
+                    Error::format(format!("{} bytes, expected {expected}", range.len())).at(
+                        format!("section `{}`", tag.escape_ascii().to_string().trim_end()),
+                    ),
+                )
+            }
         };
         let inside = bits(INSIDE)?;
         let vertices = rows(VERTICES, VERTEX)?;
@@ -167,11 +184,17 @@ impl<B: AsRef<[u8]>> CompactTin<B> {
         let numbers = triangulation.section_range(NUMBERS).unwrap_or_default();
         let vertex_count = triangulation.vertex_count();
         if !numbers.is_empty() && numbers.len() != NUMBER * vertex_count {
-            return Err(
-                Error::format(format!("{} bytes for {vertex_count} vertices", numbers.len())).at("section `numbers`")
-            );
+            return Err(Error::format(format!(
+                "{} bytes for {vertex_count} vertices",
+                numbers.len()
+            ))
+            .at("section `numbers`"));
         }
-        let under = if numbers.is_empty() { 0..0 } else { bits(UNDER)? };
+        let under = if numbers.is_empty() {
+            0..0
+        } else {
+            bits(UNDER)?
+        };
         let attributes = &triangulation.bytes()[section(ATTRIBUTES)?];
         let attributes = Attributes::from_json(attributes).map_err(|e| e.at("section `tin`"))?;
         let tin = CompactTin {
@@ -228,17 +251,29 @@ impl<B: AsRef<[u8]>> CompactTin<B> {
     }
 
     fn find_elevation(&self, q: [f64; 2], near: &mut Option<CellId>) -> Found<Option<f64>> {
-        let q = q.map(|c| if c.abs() < RANGE.min && !RANGE.admits(c) { 0.0 } else { c });
+        let q = q.map(|c| {
+            if c.abs() < RANGE.min && !RANGE.admits(c) {
+                0.0
+            } else {
+                c
+            }
+        });
         let location = self.triangulation.locate(&[q[0], q[1], 0.0], *near)?;
         *near = location.cell_in(&self.triangulation)?.or(*near);
         // The first of them, however they were reached: rounded heights of two cells may differ.
-        let inside = location.cells(&self.triangulation)?.into_iter().filter(|cell| self.is_inside(cell.index()));
+        let inside = location
+            .cells(&self.triangulation)?
+            .into_iter()
+            .filter(|cell| self.is_inside(cell.index()));
         let inside = inside.min_by_key(|cell| cell.index());
         let Some(cell) = inside else { return Ok(None) };
         if let Location::Vertex(vertex) = location {
             return self.point(vertex.index() as u32).map(|[_, _, z]| Some(z));
         }
-        let [a, b, c] = self.triangulation.corners(cell)?.map(|vertex| self.point(vertex.index() as u32));
+        let [a, b, c] = self
+            .triangulation
+            .corners(cell)?
+            .map(|vertex| self.point(vertex.index() as u32));
         Ok(Some(linear([a?, b?, c?], q)))
     }
 
@@ -253,7 +288,11 @@ impl<B: AsRef<[u8]>> CompactTin<B> {
     /// Returns a row of a section; `None` beyond its end.
     #[inline]
     fn row<const W: usize>(&self, section: &Range<usize>, row: usize) -> Option<&[u8; W]> {
-        self.triangulation.bytes().get(section.clone())?.get(W * row..)?.first_chunk()
+        self.triangulation
+            .bytes()
+            .get(section.clone())?
+            .get(W * row..)?
+            .first_chunk()
     }
 
     /// Returns true if a whole cell is a face.
@@ -266,7 +305,9 @@ impl<B: AsRef<[u8]>> CompactTin<B> {
     #[inline]
     fn has_bit(&self, section: &Range<usize>, cell: usize) -> bool {
         cell < self.triangulation.cell_count()
-            && self.row(section, cell / 8).is_some_and(|[bits]| bits >> (cell % 8) & 1 == 1)
+            && self
+                .row(section, cell / 8)
+                .is_some_and(|[bits]| bits >> (cell % 8) & 1 == 1)
     }
 
     /// The number of a fragment; `None` for whole cells.
@@ -276,21 +317,38 @@ impl<B: AsRef<[u8]>> CompactTin<B> {
     }
 
     fn fragment(&self, face: u32, number: usize) -> Found<Fragment> {
-        self.row(&self.fragments, number).and_then(Fragment::read).ok_or(Damage::Face(face))
+        self.row(&self.fragments, number)
+            .and_then(Fragment::read)
+            .ok_or(Damage::Face(face))
     }
 
     #[inline]
     fn corners(&self, face: u32) -> Found<Option<[u32; 3]>> {
         let [a, b, c] = match self.fragment_number(face) {
             None if self.is_inside(face as usize) => {
-                let number = |v: VertexId| if v == VertexId::INFINITE { u32::MAX } else { v.index() as u32 };
-                self.triangulation.corners(CellId::new(face as usize))?.map(number)
+                let number = |v: VertexId| {
+                    if v == VertexId::INFINITE {
+                        u32::MAX
+                    } else {
+                        v.index() as u32
+                    }
+                };
+                self.triangulation
+                    .corners(CellId::new(face as usize))?
+                    .map(number)
             }
-            Some(number) if (face as usize) < self.face_numbers() => self.fragment(face, number)?.corners,
+            Some(number) if (face as usize) < self.face_numbers() => {
+                self.fragment(face, number)?.corners
+            }
             None | Some(_) => return Ok(None),
         };
-        let is_face = a != b && b != c && c != a && (a.max(b).max(c) as usize) < self.vertex_numbers();
-        if is_face { Ok(Some([a, b, c])) } else { Err(Damage::Face(face)) }
+        let is_face =
+            a != b && b != c && c != a && (a.max(b).max(c) as usize) < self.vertex_numbers();
+        if is_face {
+            Ok(Some([a, b, c]))
+        } else {
+            Err(Damage::Face(face))
+        }
     }
 
     #[inline]
@@ -298,7 +356,9 @@ impl<B: AsRef<[u8]>> CompactTin<B> {
         let point = match (vertex as usize).checked_sub(self.triangulation.vertex_count()) {
             None => self.triangulation.point(VertexId::new(vertex as usize))?,
             Some(number) => {
-                let row: &[u8; VERTEX] = self.row(&self.vertices, number).ok_or(Damage::Vertex(vertex))?;
+                let row: &[u8; VERTEX] = self
+                    .row(&self.vertices, number)
+                    .ok_or(Damage::Vertex(vertex))?;
                 let mut point = [0.0; 3];
                 for (x, bytes) in point.iter_mut().zip(row.as_chunks().0) {
                     *x = f64::from_le_bytes(*bytes);
@@ -308,12 +368,22 @@ impl<B: AsRef<[u8]>> CompactTin<B> {
         };
         // The geometry does not look at heights.
         let is_point = point[2].is_finite() && self.triangulation.geometry().admits(&point);
-        if is_point { Ok(point) } else { Err(Damage::Vertex(vertex)) }
+        if is_point {
+            Ok(point)
+        } else {
+            Err(Damage::Vertex(vertex))
+        }
     }
 
     /// The row of an edge of a whole triangle.
     fn side(&self, face: u32, corner: usize) -> Found<Option<OpenSide>> {
-        let rows = self.triangulation.bytes().get(self.sides.clone()).unwrap_or_default().as_chunks::<SIDE>().0;
+        let rows = self
+            .triangulation
+            .bytes()
+            .get(self.sides.clone())
+            .unwrap_or_default()
+            .as_chunks::<SIDE>()
+            .0;
         let key = (face, corner as u8);
         let at = rows.partition_point(|row| OpenSide::key(row) < key);
         match rows.get(at).filter(|row| OpenSide::key(row) == key) {
@@ -327,7 +397,10 @@ impl<B: AsRef<[u8]>> CompactTin<B> {
         if let Some(number) = self.fragment_number(face) {
             return Ok(self.fragment(face, number)?.neighbors[i]);
         }
-        let beside = self.triangulation.neighbor(CellId::new(face as usize), i)?.index();
+        let beside = self
+            .triangulation
+            .neighbor(CellId::new(face as usize), i)?
+            .index();
         if self.is_inside(beside) {
             Ok(Some(beside as u32))
         } else {
@@ -337,18 +410,32 @@ impl<B: AsRef<[u8]>> CompactTin<B> {
 
     /// The face across an edge. It links back, so that no walk from face to face is endless.
     fn linked_neighbor(&self, face: u32, i: usize) -> Found<Option<u32>> {
-        let Some(corners) = self.corners(face)?.filter(|_| i < 3) else { return Ok(None) };
-        let Some(beside) = self.stated_neighbor(face, i)? else { return Ok(None) };
+        let Some(corners) = self.corners(face)?.filter(|_| i < 3) else {
+            return Ok(None);
+        };
+        let Some(beside) = self.stated_neighbor(face, i)? else {
+            return Ok(None);
+        };
         let broken = || Damage::Link(face, beside);
         let theirs = self.corners(beside)?.ok_or_else(broken)?;
         let edge = [corners[(i + 2) % 3], corners[(i + 1) % 3]];
-        let j = (0..3).find(|j| [theirs[(j + 1) % 3], theirs[(j + 2) % 3]] == edge).ok_or_else(broken)?;
-        if beside != face && self.stated_neighbor(beside, j)? == Some(face) { Ok(Some(beside)) } else { Err(broken()) }
+        let j = (0..3)
+            .find(|j| [theirs[(j + 1) % 3], theirs[(j + 2) % 3]] == edge)
+            .ok_or_else(broken)?;
+        if beside != face && self.stated_neighbor(beside, j)? == Some(face) {
+            Ok(Some(beside))
+        } else {
+            Err(broken())
+        }
     }
 
     /// The kind of an edge of a whole triangle, if the file states kinds beside the triangulation.
     fn stated_kind(&self, face: u32, i: usize) -> Found<Option<EdgeKind>> {
-        Ok(if self.sides.is_empty() { None } else { self.side(face, i)?.map(|side| side.kind) })
+        Ok(if self.sides.is_empty() {
+            None
+        } else {
+            self.side(face, i)?.map(|side| side.kind)
+        })
     }
 
     fn kind(&self, face: u32, i: usize) -> Found<EdgeKind> {
@@ -391,7 +478,10 @@ impl<B: AsRef<[u8]>> CompactTin<B> {
             if !is_infinite(self.triangulation.corners(beside)?) {
                 face.neighbors[i] = Some(beside.index() as u32);
             }
-            face.edges[i] = match (self.triangulation.is_constrained(cell, i)?, face.neighbors[i]) {
+            face.edges[i] = match (
+                self.triangulation.is_constrained(cell, i)?,
+                face.neighbors[i],
+            ) {
                 (true, _) => self.stated_kind(number, i)?.unwrap_or(EdgeKind::Breakline),
                 (false, Some(_)) => EdgeKind::Plain,
                 (false, None) => EdgeKind::Rim,
@@ -411,13 +501,15 @@ impl<B: AsRef<[u8]>> CompactTin<B> {
 
     #[cold]
     fn error(&self, damage: &Damage) -> Error {
-        Error::format(damage.to_string()).in_file(&self.path).cure(wording![
-            "copy the file again, or write it again with ",
-            Command::Tin,
-            "; ",
-            Command::Check.on(self.path.display().to_string()),
-            " reads all of it"
-        ])
+        Error::format(damage.to_string())
+            .in_file(&self.path)
+            .cure(wording![
+                "copy the file again, or write it again with ",
+                Command::Tin,
+                "; ",
+                Command::Check.on(self.path.display().to_string()),
+                " reads all of it"
+            ])
     }
 }
 
@@ -476,15 +568,29 @@ impl<B: AsRef<[u8]> + Sync> Surface for CompactTin<B> {
     /// Copies the file; only the coordinate system may have changed.
     fn write_tin(&self, mut out: &mut dyn Write) -> Result<()> {
         self.triangulation.write_compact(&mut out)?;
-        for (tag, range) in
-            [(INSIDE, &self.inside), (VERTICES, &self.vertices), (FRAGMENTS, &self.fragments), (SIDES, &self.sides)]
-        {
-            let contents = self.triangulation.bytes().get(range.clone()).unwrap_or_default();
+        for (tag, range) in [
+            (INSIDE, &self.inside),
+            (VERTICES, &self.vertices),
+            (FRAGMENTS, &self.fragments),
+            (SIDES, &self.sides),
+        ] {
+            let contents = self
+                .triangulation
+                .bytes()
+                .get(range.clone())
+                .unwrap_or_default();
             CompactSection { tag, contents }.write(&mut out)?;
         }
         write::write_attributes(&self.attributes, &mut out)?;
-        for (tag, range) in [(NUMBERS, &self.numbers), (UNDER, &self.under)].into_iter().filter(|_| self.is_part()) {
-            let contents = self.triangulation.bytes().get(range.clone()).unwrap_or_default();
+        for (tag, range) in [(NUMBERS, &self.numbers), (UNDER, &self.under)]
+            .into_iter()
+            .filter(|_| self.is_part())
+        {
+            let contents = self
+                .triangulation
+                .bytes()
+                .get(range.clone())
+                .unwrap_or_default();
             CompactSection { tag, contents }.write(&mut out)?;
         }
         Ok(())

@@ -60,8 +60,13 @@ impl<B: AsRef<[u8]> + Sync> CompactTin<B> {
     /// Linear in the cells, of which a bit each is read.
     pub fn has_triangles(&self) -> bool {
         let bytes = self.triangulation.bytes();
-        let has_bits =
-            |range: &Range<usize>| bytes.get(range.clone()).unwrap_or_default().iter().any(|bits| *bits != 0);
+        let has_bits = |range: &Range<usize>| {
+            bytes
+                .get(range.clone())
+                .unwrap_or_default()
+                .iter()
+                .any(|bits| *bits != 0)
+        };
         self.has_fragments() || has_bits(&self.inside) || has_bits(&self.under)
     }
 }
@@ -75,16 +80,25 @@ impl CompactTin<Vec<u8>> {
     ///
     /// # Complexity
     /// Linear.
-    pub fn open_with_cells(mut bytes: Vec<u8>, path: impl AsRef<Path>, cells: &[(u32, PartCell)]) -> Result<Self> {
+    pub fn open_with_cells(
+        mut bytes: Vec<u8>,
+        path: impl AsRef<Path>,
+        cells: &[(u32, PartCell)],
+    ) -> Result<Self> {
         let path = path.as_ref();
         let opened = CompactTin::open(bytes.as_slice(), path)?;
-        let (inside, under, count) = (opened.inside.clone(), opened.under.clone(), opened.triangulation.cell_count());
+        let (inside, under, count) = (
+            opened.inside.clone(),
+            opened.under.clone(),
+            opened.triangulation.cell_count(),
+        );
         for &(cell, decided) in cells {
             let at = cell as usize;
             if at >= count || under.is_empty() {
-                return Err(
-                    Error::format(format!("there is no cell {cell} of a part: there are {count}")).in_file(path)
-                );
+                return Err(Error::format(format!(
+                    "there is no cell {cell} of a part: there are {count}"
+                ))
+                .in_file(path));
             }
             bytes[inside.start + at / 8] |= u8::from(decided == PartCell::Face) << (at % 8);
             bytes[under.start + at / 8] |= u8::from(decided != PartCell::Elsewhere) << (at % 8);

@@ -3,7 +3,9 @@
 use std::io::{self, BufWriter, Write};
 
 use super::attributes::Attributes;
-use super::layout::{ATTRIBUTES, FRAGMENTS, Fragment, INSIDE, NUMBERS, OpenSide, SIDES, UNDER, VERTICES};
+use super::layout::{
+    ATTRIBUTES, FRAGMENTS, Fragment, INSIDE, NUMBERS, OpenSide, SIDES, UNDER, VERTICES,
+};
 use crate::data::{EdgeKind, Face, Surface, SurfaceFacts};
 use crate::error::{Error, Result};
 use crate::terrain::lines::kinds::LineKinds;
@@ -28,10 +30,17 @@ pub(crate) fn write(
     // The rows are of a few bytes.
     let mut out = BufWriter::with_capacity(1 << 16, out);
     let facts = SurfaceFacts::of(surface);
-    let layers = Layers::of(surface, triangulation, facts.edges.has_various() || !kinds.are_breaklines())?;
+    let layers = Layers::of(
+        surface,
+        triangulation,
+        facts.edges.has_various() || !kinds.are_breaklines(),
+    )?;
     triangulation.write_compact(&mut out)?;
     layers.write(&mut out)?;
-    let attributes = Attributes { crs: surface.crs().cloned(), facts };
+    let attributes = Attributes {
+        crs: surface.crs().cloned(),
+        facts,
+    };
     write_attributes(&attributes, &mut out)?;
     Ok(out.flush()?)
 }
@@ -47,16 +56,34 @@ pub(crate) fn write_part(
     under: impl ExactSizeIterator<Item = bool>,
     mut out: &mut dyn Write,
 ) -> Result<()> {
-    let contents: Vec<u8> = numbers.as_flattened().iter().flat_map(|number| number.to_le_bytes()).collect();
-    CompactSection { tag: NUMBERS, contents: &contents }.write(&mut out)?;
+    let contents: Vec<u8> = numbers
+        .as_flattened()
+        .iter()
+        .flat_map(|number| number.to_le_bytes())
+        .collect();
+    CompactSection {
+        tag: NUMBERS,
+        contents: &contents,
+    }
+    .write(&mut out)?;
     let mut bits = vec![0_u8; under.len().div_ceil(8)];
-    under.enumerate().for_each(|(at, is_under)| bits[at / 8] |= u8::from(is_under) << (at % 8));
-    Ok(CompactSection { tag: UNDER, contents: &bits }.write(&mut out)?)
+    under
+        .enumerate()
+        .for_each(|(at, is_under)| bits[at / 8] |= u8::from(is_under) << (at % 8));
+    Ok(CompactSection {
+        tag: UNDER,
+        contents: &bits,
+    }
+    .write(&mut out)?)
 }
 
 /// Writes the section of coordinate system, counts and extent.
 pub(super) fn write_attributes(attributes: &Attributes, out: &mut impl Write) -> Result<()> {
-    Ok(CompactSection { tag: ATTRIBUTES, contents: attributes.to_json().as_bytes() }.write(out)?)
+    Ok(CompactSection {
+        tag: ATTRIBUTES,
+        contents: attributes.to_json().as_bytes(),
+    }
+    .write(out)?)
 }
 
 /// What a surface has beside its triangulation, in bytes.
@@ -68,28 +95,53 @@ struct Layers {
 }
 
 impl Layers {
-    fn of(surface: &dyn Surface, triangulation: &ConstrainedDelaunay<Terrain>, has_kinds: bool) -> Result<Self> {
+    fn of(
+        surface: &dyn Surface,
+        triangulation: &ConstrainedDelaunay<Terrain>,
+        has_kinds: bool,
+    ) -> Result<Self> {
         let tds = triangulation.tds();
         let mut fragments: Vec<Face> = Vec::new();
-        surface.faces_in(tds.cell_slots() as u32..surface.face_count() as u32, &mut fragments);
+        surface.faces_in(
+            tds.cell_slots() as u32..surface.face_count() as u32,
+            &mut fragments,
+        );
         let is_added = |vertex: &u32| *vertex as usize >= tds.vertex_slots();
-        let mut added: Vec<u32> = fragments.iter().flat_map(|face| face.corners).filter(is_added).collect();
+        let mut added: Vec<u32> = fragments
+            .iter()
+            .flat_map(|face| face.corners)
+            .filter(is_added)
+            .collect();
         added.sort_unstable();
         added.dedup();
-        let vertices = Numbers::new(tds.vertex_slots(), tds.vertices().map(VertexId::index), added);
+        let vertices = Numbers::new(
+            tds.vertex_slots(),
+            tds.vertices().map(VertexId::index),
+            added,
+        );
         let beyond = fragments.iter().map(|face| face.number).collect();
         let faces = Numbers::new(tds.cell_slots(), tds.cells().map(CellId::index), beyond);
         if faces.count() >= u32::MAX as usize || vertices.count() >= u32::MAX as usize {
-            return Err(Error::limit(format!("{} faces and {} vertices", faces.count(), vertices.count())));
+            return Err(Error::limit(format!(
+                "{} faces and {} vertices",
+                faces.count(),
+                vertices.count()
+            )));
         }
         let renumbered = |face: &Face| {
-            let neighbors = [0, 1, 2].map(|i| surface.neighbor(face.number, i).map(|face| faces.of(face)));
+            let neighbors =
+                [0, 1, 2].map(|i| surface.neighbor(face.number, i).map(|face| faces.of(face)));
             let corners = face.corners.map(|vertex| vertices.of(vertex));
             Fragment::new(&Face { corners, ..*face }, neighbors).to_bytes()
         };
         let mut inside = vec![0; tds.cell_count().div_ceil(8)];
         let mut sides = Vec::new();
-        let rows = SideRows { surface, triangulation, has_kinds, faces: &faces };
+        let rows = SideRows {
+            surface,
+            triangulation,
+            has_kinds,
+            faces: &faces,
+        };
         for (at, cell) in tds.cells().enumerate() {
             if surface.face(cell.index() as u32).is_some() {
                 inside[at / 8] |= 1 << (at % 8);
@@ -101,15 +153,30 @@ impl Layers {
         let position = |&vertex: &u32| surface.position(vertex).map(f64::to_le_bytes);
         Ok(Layers {
             inside,
-            vertices: vertices.beyond.iter().flat_map(position).flatten().collect(),
+            vertices: vertices
+                .beyond
+                .iter()
+                .flat_map(position)
+                .flatten()
+                .collect(),
             fragments: fragments.iter().flat_map(renumbered).collect(),
             sides,
         })
     }
 
     fn write(&self, out: &mut impl Write) -> io::Result<()> {
-        let Layers { inside, vertices, fragments, sides } = self;
-        for (tag, contents) in [(INSIDE, inside), (VERTICES, vertices), (FRAGMENTS, fragments), (SIDES, sides)] {
+        let Layers {
+            inside,
+            vertices,
+            fragments,
+            sides,
+        } = self;
+        for (tag, contents) in [
+            (INSIDE, inside),
+            (VERTICES, vertices),
+            (FRAGMENTS, fragments),
+            (SIDES, sides),
+        ] {
             CompactSection { tag, contents }.write(out)?;
         }
         Ok(())
@@ -129,14 +196,22 @@ struct SideRows<'a> {
 impl SideRows<'_> {
     /// Adds the rows of a face of the surface; `number` is that in the file.
     fn add_of_face(&self, cell: CellId, number: u32, rows: &mut Vec<u8>) {
-        let SideRows { surface, triangulation, has_kinds, faces } = *self;
+        let SideRows {
+            surface,
+            triangulation,
+            has_kinds,
+            faces,
+        } = *self;
         let face = cell.index() as u32;
         for i in 0..3 {
             let beside = surface.face(triangulation.tds().neighbor(cell, i).index() as u32);
             if beside.is_some() && !has_kinds {
                 continue; // the triangulation says it all
             }
-            let (kind, is_breakline) = (surface.edge_kind(face, i), triangulation.is_constrained(cell, i));
+            let (kind, is_breakline) = (
+                surface.edge_kind(face, i),
+                triangulation.is_constrained(cell, i),
+            );
             // What a reader takes the edge for if it has no row.
             let derived = match beside {
                 _ if is_breakline => EdgeKind::Breakline,
@@ -146,7 +221,15 @@ impl SideRows<'_> {
             let neighbor = surface.neighbor(face, i);
             if kind != derived || beside.is_none() && neighbor.is_some() {
                 let neighbor = neighbor.map(|face| faces.of(face));
-                rows.extend(OpenSide { face: number, corner: i as u8, kind, neighbor }.to_bytes());
+                rows.extend(
+                    OpenSide {
+                        face: number,
+                        corner: i as u8,
+                        kind,
+                        neighbor,
+                    }
+                    .to_bytes(),
+                );
             }
         }
     }
@@ -157,10 +240,20 @@ impl SideRows<'_> {
         let mut under = Vec::new();
         let face = cell.index() as u32;
         self.surface.base_faces_in(face..face + 1, &mut under);
-        let kinds = under.first().map_or([EdgeKind::Breakline; 3], |face| face.edges);
+        let kinds = under
+            .first()
+            .map_or([EdgeKind::Breakline; 3], |face| face.edges);
         for (corner, kind) in kinds.into_iter().enumerate() {
             if kind != EdgeKind::Breakline && self.triangulation.is_constrained(cell, corner) {
-                rows.extend(OpenSide { face: number, corner: corner as u8, kind, neighbor: None }.to_bytes());
+                rows.extend(
+                    OpenSide {
+                        face: number,
+                        corner: corner as u8,
+                        kind,
+                        neighbor: None,
+                    }
+                    .to_bytes(),
+                );
             }
         }
     }
@@ -181,10 +274,16 @@ impl Numbers {
         let count = used.len();
         let of_slots = (count < slots).then(|| {
             let mut numbers = vec![0; slots];
-            used.zip(0..).for_each(|(slot, number)| numbers[slot] = number);
+            used.zip(0..)
+                .for_each(|(slot, number)| numbers[slot] = number);
             numbers
         });
-        Numbers { slots, used: count, of_slots, beyond }
+        Numbers {
+            slots,
+            used: count,
+            of_slots,
+            beyond,
+        }
     }
 
     fn count(&self) -> usize {
@@ -195,7 +294,9 @@ impl Numbers {
         if old as usize >= self.slots {
             return (self.used + self.beyond.partition_point(|&other| other < old)) as u32;
         }
-        self.of_slots.as_ref().map_or(old, |numbers| numbers[old as usize])
+        self.of_slots
+            .as_ref()
+            .map_or(old, |numbers| numbers[old as usize])
     }
 }
 

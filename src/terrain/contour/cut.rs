@@ -63,7 +63,12 @@ impl<'a, S: Surface + ?Sized> LevelCut<'a, S> {
     pub(super) fn face(&self, id: u32) -> Option<Face> {
         let vertices = self.surface.face(id)?;
         let at = vertices.map(|v| self.surface.position(v));
-        Some(Face { id, vertices, at, side: at.map(|p| self.side(p)) })
+        Some(Face {
+            id,
+            vertices,
+            at,
+            side: at.map(|p| self.side(p)),
+        })
     }
 
     fn side(&self, at: [f64; 3]) -> Ordering {
@@ -76,9 +81,15 @@ impl<'a, S: Surface + ?Sized> LevelCut<'a, S> {
         let id = self.surface.neighbor(face.id, i)?;
         let vertices = self.surface.face(id)?;
         let edge = [(i + 2) % 3, (i + 1) % 3];
-        let j = (0..3).find(|&j| [1, 2].map(|k| vertices[(j + k) % 3]) == edge.map(|k| face.vertices[k]))?;
+        let j = (0..3)
+            .find(|&j| [1, 2].map(|k| vertices[(j + k) % 3]) == edge.map(|k| face.vertices[k]))?;
         let new = self.surface.position(vertices[j]);
-        let mut other = Face { id, vertices, at: [new; 3], side: [self.side(new); 3] };
+        let mut other = Face {
+            id,
+            vertices,
+            at: [new; 3],
+            side: [self.side(new); 3],
+        };
         for (k, old) in [1, 2].into_iter().zip(edge) {
             other.at[(j + k) % 3] = face.at[old];
             other.side[(j + k) % 3] = face.side[old];
@@ -112,16 +123,29 @@ impl<'a, S: Surface + ?Sized> LevelCut<'a, S> {
     ///
     /// Ends after a full turn (without the arc across the first face), or at the edge of the data.
     pub(super) fn fan(&self, face: &Face, corner: usize, turn: Direction) -> Fan<'_, 'a, S> {
-        Fan { cut: self, first: face.id, now: Some((*face, corner)), turn, waiting: None }
+        Fan {
+            cut: self,
+            first: face.id,
+            now: Some((*face, corner)),
+            turn,
+            waiting: None,
+        }
     }
 
     /// The arc that follows one that ends at a corner of its face (forward), or that precedes one
     /// that begins there (backward), by the turn rule within one fan of faces.
     ///
     /// `None` if the edge of the data comes first.
-    pub(super) fn continuation(&self, face: &Face, corner: usize, direction: Direction) -> Option<Ray> {
+    pub(super) fn continuation(
+        &self,
+        face: &Face,
+        corner: usize,
+        direction: Direction,
+    ) -> Option<Ray> {
         // High ground lies between the two, so the next arc is of the other kind.
-        self.fan(face, corner, direction).next().filter(|ray| ray.direction == direction)
+        self.fan(face, corner, direction)
+            .next()
+            .filter(|ray| ray.direction == direction)
     }
 
     /// The point of a node.
@@ -144,7 +168,9 @@ impl Face {
     pub(super) fn node(&self, arc: ContourArc, direction: Direction) -> Node {
         match (arc, direction) {
             (ContourArc::Along(_, i), Direction::Forward) => Node::Corner((usize::from(i) + 1) % 3),
-            (ContourArc::Along(_, i), Direction::Backward) => Node::Corner((usize::from(i) + 2) % 3),
+            (ContourArc::Along(_, i), Direction::Backward) => {
+                Node::Corner((usize::from(i) + 2) % 3)
+            }
             (ContourArc::Across(_), _) => {
                 // Counter-clockwise around the face, an arc ends where the ground falls below the
                 // level and begins where it rises above.
@@ -152,8 +178,14 @@ impl Face {
                     Direction::Forward => [Greater, Less],
                     Direction::Backward => [Less, Greater],
                 };
-                let edge = (0..3).find(|&i| [self.side[(i + 1) % 3], self.side[(i + 2) % 3]] == change);
-                let corner = || self.side.iter().position(|&side| side == Equal).unwrap_or(0);
+                let edge =
+                    (0..3).find(|&i| [self.side[(i + 1) % 3], self.side[(i + 2) % 3]] == change);
+                let corner = || {
+                    self.side
+                        .iter()
+                        .position(|&side| side == Equal)
+                        .unwrap_or(0)
+                };
                 edge.map_or_else(|| Node::Corner(corner()), Node::Edge)
             }
         }
@@ -161,7 +193,9 @@ impl Face {
 
     /// Returns true if the edge opposite corner `i` has an end at a point in plan.
     pub(super) fn ends_at(&self, i: usize, point: [f64; 2]) -> bool {
-        [1, 2].into_iter().any(|k| self.at[(i + k) % 3][..2] == point)
+        [1, 2]
+            .into_iter()
+            .any(|k| self.at[(i + k) % 3][..2] == point)
     }
 
     /// The arc across the face that begins or ends at a corner on the level.
@@ -171,7 +205,11 @@ impl Face {
             [Less, Greater] => Direction::Backward,
             _ => return None,
         };
-        Some(Ray { face: *self, arc: ContourArc::Across(self.id), direction })
+        Some(Ray {
+            face: *self,
+            arc: ContourArc::Across(self.id),
+            direction,
+        })
     }
 }
 
@@ -205,9 +243,21 @@ impl<S: Surface + ?Sized> Iterator for Fan<'_, '_, S> {
                 self.waiting = next.ray(next_corner);
             }
             if let Some(high) = self.cut.high_side(&face, i) {
-                let (k, at) = if high.id == face.id { (i, corner) } else { (j, next_corner) };
-                let direction = if at == (k + 2) % 3 { Direction::Forward } else { Direction::Backward };
-                return Some(Ray { face: high, arc: ContourArc::Along(high.id, k as u8), direction });
+                let (k, at) = if high.id == face.id {
+                    (i, corner)
+                } else {
+                    (j, next_corner)
+                };
+                let direction = if at == (k + 2) % 3 {
+                    Direction::Forward
+                } else {
+                    Direction::Backward
+                };
+                return Some(Ray {
+                    face: high,
+                    arc: ContourArc::Along(high.id, k as u8),
+                    direction,
+                });
             }
         }
     }
@@ -243,12 +293,22 @@ mod tests {
         let (a, b) = ([0.1, 1e300, -f64::MAX], [0.3, -1e300, f64::MAX]);
         for level in [-1e308, 0.0, 1e308, f64::MAX.next_down()] {
             let [x, y] = crossing(a, b, level);
-            assert!((0.1..=0.3).contains(&x) && (-1e300..=1e300).contains(&y), "{x} {y}");
+            assert!(
+                (0.1..=0.3).contains(&x) && (-1e300..=1e300).contains(&y),
+                "{x} {y}"
+            );
             assert_eq!(crossing(b, a, level), [x, y]);
         }
-        assert_eq!(crossing([0.0, 0.0, 0.0], [3.0, -6.0, 3.0], 1.0), [1.0, -2.0]);
+        assert_eq!(
+            crossing([0.0, 0.0, 0.0], [3.0, -6.0, 3.0], 1.0),
+            [1.0, -2.0]
+        );
         // Denormal heights: somewhere on the edge.
-        let [x, _] = crossing([1.0, 0.0, 0.0], [2.0, 0.0, 2.0 * f64::from_bits(1)], f64::from_bits(1));
+        let [x, _] = crossing(
+            [1.0, 0.0, 0.0],
+            [2.0, 0.0, 2.0 * f64::from_bits(1)],
+            f64::from_bits(1),
+        );
         assert!((1.0..=2.0).contains(&x), "{x}");
     }
 }

@@ -27,7 +27,10 @@ pub(super) fn height_range<S: Surface + ?Sized>(surface: &S) -> [f64; 2] {
         surface.heights_in(numbers, &widen, &mut Vec::new());
         range.get()
     };
-    stretches(surface).into_par_iter().map(of_stretch).reduce(|| [f64::INFINITY, f64::NEG_INFINITY], joined)
+    stretches(surface)
+        .into_par_iter()
+        .map(of_stretch)
+        .reduce(|| [f64::INFINITY, f64::NEG_INFINITY], joined)
 }
 
 pub(super) fn joined(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
@@ -40,11 +43,23 @@ pub(super) fn count<S: Surface + ?Sized>(surface: &S, index: &LevelIndex) -> Vec
     for waiting in stretches(surface).chunks(WAITING) {
         let of_stretch = |numbers: &Range<u32>| {
             let mut crossed = Vec::new();
-            faces_at(surface, index, 0..index.levels().len(), numbers.clone(), |face, heights, levels| {
-                let Crossed { across, along } = Crossed::of(heights, levels, index);
-                let has_shore = along && LevelCut { surface, level: index.levels()[across.end] }.shore(face).is_some();
-                crossed.push(across.start..across.end + usize::from(has_shore));
-            });
+            faces_at(
+                surface,
+                index,
+                0..index.levels().len(),
+                numbers.clone(),
+                |face, heights, levels| {
+                    let Crossed { across, along } = Crossed::of(heights, levels, index);
+                    let has_shore = along
+                        && LevelCut {
+                            surface,
+                            level: index.levels()[across.end],
+                        }
+                        .shore(face)
+                        .is_some();
+                    crossed.push(across.start..across.end + usize::from(has_shore));
+                },
+            );
             crossed
         };
         let crossed: Vec<Vec<Range<usize>>> = waiting.par_iter().map(of_stretch).collect();
@@ -82,7 +97,11 @@ impl LevelArcs {
             arcs[*slot] = arc;
             *slot += 1;
         }
-        LevelArcs { arcs, starts, first_level }
+        LevelArcs {
+            arcs,
+            starts,
+            first_level,
+        }
     }
 
     /// The arcs of a level of the band.
@@ -95,18 +114,30 @@ impl LevelArcs {
 /// Returns the number of arcs of each level of a band.
 pub(super) fn counts_of(found: &Found, band: Range<usize>) -> Vec<usize> {
     let mut counts = vec![0; band.len()];
-    found.iter().flatten().for_each(|&(level, _)| counts[level - band.start] += 1);
+    found
+        .iter()
+        .flatten()
+        .for_each(|&(level, _)| counts[level - band.start] += 1);
     counts
 }
 
 /// Returns the arcs of some levels.
-pub(super) fn arcs<S: Surface + ?Sized>(surface: &S, index: &LevelIndex, band: Range<usize>) -> Found {
-    let of_stretch = |numbers: Range<u32>| arcs_of_stretch(surface, index, band.clone(), numbers, |_| true);
+pub(super) fn arcs<S: Surface + ?Sized>(
+    surface: &S,
+    index: &LevelIndex,
+    band: Range<usize>,
+) -> Found {
+    let of_stretch =
+        |numbers: Range<u32>| arcs_of_stretch(surface, index, band.clone(), numbers, |_| true);
     stretches(surface).into_par_iter().map(of_stretch).collect()
 }
 
 /// Returns the arcs of all levels. `None` if there may be more than `most`.
-pub(super) fn few_arcs<S: Surface + ?Sized>(surface: &S, index: &LevelIndex, most: usize) -> Option<Found> {
+pub(super) fn few_arcs<S: Surface + ?Sized>(
+    surface: &S,
+    index: &LevelIndex,
+    most: usize,
+) -> Option<Found> {
     let total = AtomicUsize::new(0);
     let of_stretch = |numbers: Range<u32>| {
         let fits = |more: usize| total.fetch_add(more, Relaxed) + more <= most;
@@ -140,7 +171,10 @@ fn arcs_of_stretch<S: Surface + ?Sized>(
         let highest = across.end;
         arcs.extend(across.map(|level| (level, ContourArc::Across(face))));
         if along {
-            let cut = LevelCut { surface, level: index.levels()[highest] };
+            let cut = LevelCut {
+                surface,
+                level: index.levels()[highest],
+            };
             arcs.extend(cut.shore(face).map(|arc| (highest, arc)));
         }
     });
@@ -164,7 +198,10 @@ impl Crossed {
         let from = levels.start + usize::from(all.first() == Some(&low));
         let is_at_top = all.last() == Some(&high);
         let along = is_at_top && heights.into_iter().filter(|&h| h == high).count() == 2;
-        Crossed { across: from..levels.end - usize::from(is_at_top), along }
+        Crossed {
+            across: from..levels.end - usize::from(is_at_top),
+            along,
+        }
     }
 }
 
@@ -190,7 +227,10 @@ fn faces_at<S: Surface + ?Sized>(
     for (face, [a, b, c]) in faces {
         let first = first_at(a.min(b).min(c));
         let high = a.max(b).max(c);
-        let count = levels[first..band.end].iter().take_while(|&&level| level <= high).count();
+        let count = levels[first..band.end]
+            .iter()
+            .take_while(|&&level| level <= high)
+            .count();
         found(face, [a, b, c], first..first + count);
     }
 }
@@ -199,5 +239,7 @@ fn stretches<S: Surface + ?Sized>(surface: &S) -> Vec<Range<u32>> {
     // No more faces than there are numbers.
     let count = u32::try_from(surface.face_count()).unwrap_or(u32::MAX);
     let starts = (0..count).step_by(STRETCH as usize);
-    starts.map(|start| start..start.saturating_add(STRETCH).min(count)).collect()
+    starts
+        .map(|start| start..start.saturating_add(STRETCH).min(count))
+        .collect()
 }

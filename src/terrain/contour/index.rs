@@ -13,8 +13,15 @@ impl LevelIndex {
     pub(super) fn new(levels: Vec<f64>) -> Self {
         let low = levels.first().copied().unwrap_or(0.0);
         let high = levels.last().copied().unwrap_or(0.0);
-        let steps_per_unit = Some(levels.len() as f64 / (high - low)).filter(|s| s.is_finite()).unwrap_or(0.0);
-        let mut index = LevelIndex { starts: Vec::new(), low, steps_per_unit, levels };
+        let steps_per_unit = Some(levels.len() as f64 / (high - low))
+            .filter(|s| s.is_finite())
+            .unwrap_or(0.0);
+        let mut index = LevelIndex {
+            starts: Vec::new(),
+            low,
+            steps_per_unit,
+            levels,
+        };
         let mut starts = vec![0; index.levels.len() + 1];
         for i in (0..index.levels.len()).rev() {
             starts[index.step(index.levels[i])] = i as u32;
@@ -55,11 +62,24 @@ mod tests {
         let even: Vec<f64> = (0..50).map(|i| 3.0 + 0.1 * f64::from(i)).collect();
         let uneven: Vec<f64> = (0..50).map(|i| f64::from(i).powi(5)).collect();
         let huge = vec![-f64::MAX, 0.0, f64::MAX];
-        for levels in [vec![], vec![2.0], vec![1.0, 1.0_f64.next_up()], huge, even, uneven] {
+        for levels in [
+            vec![],
+            vec![2.0],
+            vec![1.0, 1.0_f64.next_up()],
+            huge,
+            even,
+            uneven,
+        ] {
             let index = LevelIndex::new(levels.clone());
             let between = (-40..1200).map(|i| 0.01 * f64::from(i));
-            for height in between.chain(levels.iter().flat_map(|l| [l.next_down(), *l, l.next_up()])) {
-                assert_eq!(index.first_from(height), levels.partition_point(|l| *l < height), "{height} in {levels:?}");
+            for height in
+                between.chain(levels.iter().flat_map(|l| [l.next_down(), *l, l.next_up()]))
+            {
+                assert_eq!(
+                    index.first_from(height),
+                    levels.partition_point(|l| *l < height),
+                    "{height} in {levels:?}"
+                );
             }
         }
     }

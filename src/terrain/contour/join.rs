@@ -23,13 +23,30 @@ pub(super) fn join<S: Surface + ?Sized>(surface: &S, traces: Vec<Trace>) -> Vec<
     };
     for trace in traces {
         match trace {
-            Trace::Closed(points) => joined.push(Joined { points, closed: true }),
-            Trace::Open { points, ends: loose } => {
+            Trace::Closed(points) => joined.push(Joined {
+                points,
+                closed: true,
+            }),
+            Trace::Open {
+                points,
+                ends: loose,
+            } => {
                 let line = open.len();
                 open.push(points);
-                for (loose, direction) in loose.into_iter().zip([Direction::Forward, Direction::Backward]) {
+                for (loose, direction) in loose
+                    .into_iter()
+                    .zip([Direction::Forward, Direction::Backward])
+                {
                     if let LooseEnd::Vertex { vertex, toward } = loose {
-                        ends.push((vertex, End { center: plan(vertex), toward: plan(toward), direction, line }));
+                        ends.push((
+                            vertex,
+                            End {
+                                center: plan(vertex),
+                                toward: plan(toward),
+                                direction,
+                                line,
+                            },
+                        ));
                     }
                 }
             }
@@ -49,22 +66,41 @@ pub(super) fn join<S: Surface + ?Sized>(surface: &S, traces: Vec<Trace>) -> Vec<
 /// Arcs without length are removed, opposite arcs that coincide cancel, and the others are joined
 /// again by the turn rule at each point.
 pub(super) fn rejoin(lines: &[Joined]) -> Vec<Joined> {
-    let mut arcs: Vec<[[f64; 2]; 2]> =
-        lines.iter().flat_map(|line| line.points.windows(2)).map(|p| [p[0], p[1]]).filter(|[a, b]| a != b).collect();
+    let mut arcs: Vec<[[f64; 2]; 2]> = lines
+        .iter()
+        .flat_map(|line| line.points.windows(2))
+        .map(|p| [p[0], p[1]])
+        .filter(|[a, b]| a != b)
+        .collect();
     let sorted = |[a, b]: [[f64; 2]; 2]| if a <= b { [a, b] } else { [b, a] };
-    let by_points = |a: &[[f64; 2]; 2], b: &[[f64; 2]; 2]| a.partial_cmp(b).unwrap_or(Ordering::Equal);
+    let by_points =
+        |a: &[[f64; 2]; 2], b: &[[f64; 2]; 2]| a.partial_cmp(b).unwrap_or(Ordering::Equal);
     arcs.sort_by(|&a, &b| by_points(&sorted(a), &sorted(b)).then_with(|| by_points(&a, &b)));
     let mut open = Vec::new();
     for same in arcs.chunk_by(|&a, &b| sorted(a) == sorted(b)) {
         let first_direction = same.iter().take_while(|&&arc| arc == same[0]).count();
         let cancelled = first_direction.min(same.len() - first_direction);
-        open.extend(same[cancelled..same.len() - cancelled].iter().map(|arc| arc.to_vec()));
+        open.extend(
+            same[cancelled..same.len() - cancelled]
+                .iter()
+                .map(|arc| arc.to_vec()),
+        );
     }
     let mut ends = Vec::new();
     for (line, points) in open.iter().enumerate() {
         let [a, b] = [points[0], points[1]];
-        ends.push(End { center: a, toward: b, direction: Direction::Forward, line });
-        ends.push(End { center: b, toward: a, direction: Direction::Backward, line });
+        ends.push(End {
+            center: a,
+            toward: b,
+            direction: Direction::Forward,
+            line,
+        });
+        ends.push(End {
+            center: b,
+            toward: a,
+            direction: Direction::Backward,
+            line,
+        });
     }
     ends.sort_by(|a, b| a.center.partial_cmp(&b.center).unwrap_or(Ordering::Equal));
     let mut next = vec![None; open.len()];
@@ -115,16 +151,22 @@ pub(super) fn pair(mut group: Vec<End>, next: &mut [Option<usize>]) {
 /// Compares the directions from the center to two points, counter-clockwise from east.
 fn around(center: [f64; 2], a: [f64; 2], b: [f64; 2]) -> Ordering {
     let lower_half = |p: [f64; 2]| p[1] < center[1] || (p[1] == center[1] && p[0] < center[0]);
-    lower_half(a).cmp(&lower_half(b)).then_with(|| match Exact::sign(&Orientation2([center, a, b])) {
-        Sign::Positive => Ordering::Less,
-        Sign::Zero => Ordering::Equal,
-        Sign::Negative => Ordering::Greater,
+    lower_half(a).cmp(&lower_half(b)).then_with(|| {
+        match Exact::sign(&Orientation2([center, a, b])) {
+            Sign::Positive => Ordering::Less,
+            Sign::Zero => Ordering::Equal,
+            Sign::Negative => Ordering::Greater,
+        }
     })
 }
 
 /// Follows `next` from line to line. Calls `found` with each line that results, and with the first
 /// and the last of those that it is made of.
-pub(super) fn chain(mut open: Vec<Vec<[f64; 2]>>, next: &[Option<usize>], mut found: impl FnMut(Joined, [usize; 2])) {
+pub(super) fn chain(
+    mut open: Vec<Vec<[f64; 2]>>,
+    next: &[Option<usize>],
+    mut found: impl FnMut(Joined, [usize; 2]),
+) {
     let mut has_previous = vec![false; open.len()];
     for &line in next.iter().flatten() {
         has_previous[line] = true;
@@ -142,6 +184,12 @@ pub(super) fn chain(mut open: Vec<Vec<[f64; 2]>>, next: &[Option<usize>], mut fo
             points.append(&mut open[following]);
             line = following;
         }
-        found(Joined { points, closed: next[line].is_some() }, [first, line]);
+        found(
+            Joined {
+                points,
+                closed: next[line].is_some(),
+            },
+            [first, line],
+        );
     }
 }

@@ -5,7 +5,11 @@ use std::cmp::Ordering;
 /// Returns the finished lines of a level, sorted. Where rounding shows, the rule is applied to the
 /// rounded arcs: if the crossing of an edge was rounded to one of its ends, or a line
 /// [falls together](falls_together).
-pub(super) fn finish_level(level: f64, mut lines: Vec<Joined>, touches_vertices: bool) -> Vec<ContourLine> {
+pub(super) fn finish_level(
+    level: f64,
+    mut lines: Vec<Joined>,
+    touches_vertices: bool,
+) -> Vec<ContourLine> {
     if touches_vertices || lines.iter().any(falls_together) {
         lines = rejoin(&lines);
     }
@@ -20,7 +24,9 @@ fn falls_together(line: &Joined) -> bool {
     // Also around the point where a ring closes.
     let closing = if line.closed { points.get(1) } else { None };
     let mut after_next = points.iter().skip(2).chain(closing);
-    points.windows(2).any(|pair| pair[0] == pair[1] || after_next.next() == Some(&pair[0]))
+    points
+        .windows(2)
+        .any(|pair| pair[0] == pair[1] || after_next.next() == Some(&pair[0]))
 }
 
 /// The finished line; the first point of a closed one depends on its shape alone.
@@ -40,7 +46,9 @@ fn start_at_smallest(ring: &mut [[f64; 2]]) {
     let from = |start: usize| ring[start..].iter().chain(&ring[..start]);
     let best = (0..ring.len()).min_by(|&a, &b| {
         let by_point = ring[a].partial_cmp(&ring[b]).filter(|order| order.is_ne());
-        by_point.or_else(|| from(a).partial_cmp(from(b))).unwrap_or(Ordering::Equal)
+        by_point
+            .or_else(|| from(a).partial_cmp(from(b)))
+            .unwrap_or(Ordering::Equal)
     });
     ring.rotate_left(best.unwrap_or(0));
 }
@@ -51,11 +59,18 @@ mod tests {
 
     fn line(names: &str) -> Joined {
         let points: Vec<_> = names.bytes().map(|b| [f64::from(b), 0.0]).collect();
-        Joined { closed: points.first() == points.last(), points }
+        Joined {
+            closed: points.first() == points.last(),
+            points,
+        }
     }
 
     fn finished(names: &str) -> String {
-        finish(0.0, line(names)).points.iter().map(|p| p[0] as u8 as char).collect()
+        finish(0.0, line(names))
+            .points
+            .iter()
+            .map(|p| p[0] as u8 as char)
+            .collect()
     }
 
     #[test]

@@ -105,7 +105,10 @@ use trace::Traces;
 /// comparison; in a raster, a quarter of one. Memory: 24 bytes per arc and 16 bytes per point, of
 /// those drawn together; 24 bytes per level; one bit per face for each thread. Faces are scanned in
 /// parallel, and levels are drawn in parallel.
-pub fn contours<'a, S: Surface + ?Sized>(surface: &'a S, levels: &Levels) -> Result<Contours<'a, S>> {
+pub fn contours<'a, S: Surface + ?Sized>(
+    surface: &'a S,
+    levels: &Levels,
+) -> Result<Contours<'a, S>> {
     let [low, high] = find::height_range(surface);
     let index = LevelIndex::new(levels.within(low, high)?);
     let found = find::few_arcs(surface, &index, BAND);
@@ -113,7 +116,14 @@ pub fn contours<'a, S: Surface + ?Sized>(surface: &'a S, levels: &Levels) -> Res
         Some(found) => find::counts_of(found, 0..index.levels().len()),
         None => find::count(surface, &index),
     };
-    Ok(Contours { surface, index, counts, found, next_level: 0, ready: Vec::new().into_iter() })
+    Ok(Contours {
+        surface,
+        index,
+        counts,
+        found,
+        next_level: 0,
+        ready: Vec::new().into_iter(),
+    })
 }
 
 /// An iterator over the contours of a surface, returned by [`contours`].
@@ -167,12 +177,20 @@ impl<S: Surface + ?Sized> Contours<'_, S> {
         };
         let band = first..first + self.counts[first..].iter().take_while(fits).count();
         self.next_level = band.end;
-        let found = self.found.take().unwrap_or_else(|| find::arcs(self.surface, &self.index, band.clone()));
+        let found = self
+            .found
+            .take()
+            .unwrap_or_else(|| find::arcs(self.surface, &self.index, band.clone()));
         let arcs = LevelArcs::new(found, first, &self.counts[band.clone()]);
-        let draw = |level, Traces { traces, touches_vertices }| {
+        let draw = |level,
+                    Traces {
+                        traces,
+                        touches_vertices,
+                    }| {
             line::finish_level(level, join::join(self.surface, traces), touches_vertices)
         };
-        let drawn: Vec<Vec<ContourLine>> = trace::each_level(self.surface, &self.index, band, &arcs, draw);
+        let drawn: Vec<Vec<ContourLine>> =
+            trace::each_level(self.surface, &self.index, band, &arcs, draw);
         drawn.into_iter().flatten().collect()
     }
 }

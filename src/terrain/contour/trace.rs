@@ -11,7 +11,10 @@ pub(super) enum Trace {
     /// The last point equals the first.
     Closed(Vec<[f64; 2]>),
     /// Begins and ends at the edge of the data.
-    Open { points: Vec<[f64; 2]>, ends: [LooseEnd; 2] },
+    Open {
+        points: Vec<[f64; 2]>,
+        ends: [LooseEnd; 2],
+    },
 }
 
 /// All lines of a level.
@@ -45,7 +48,10 @@ struct Done {
 
 impl Done {
     fn new(face_count: usize) -> Self {
-        Done { across: vec![0; face_count.div_ceil(64)], along: FxHashSet::default() }
+        Done {
+            across: vec![0; face_count.div_ceil(64)],
+            along: FxHashSet::default(),
+        }
     }
 
     /// Adds an arc; returns false if the set contains it already.
@@ -80,18 +86,37 @@ pub(super) fn each_level<S: Surface + ?Sized, T: Send>(
 ) -> Vec<T> {
     let traced = |done: &mut Done, at: usize| {
         let level = index.levels()[at];
-        finish(level, trace(&LevelCut { surface, level }, arcs.of(at), done))
+        finish(
+            level,
+            trace(&LevelCut { surface, level }, arcs.of(at), done),
+        )
     };
-    band.into_par_iter().map_init(|| Done::new(surface.face_count()), traced).collect()
+    band.into_par_iter()
+        .map_init(|| Done::new(surface.face_count()), traced)
+        .collect()
 }
 
 /// Joins the arcs of a level to lines. Each arc must be given once.
-fn trace<S: Surface + ?Sized>(cut: &LevelCut<'_, S>, arcs: &[ContourArc], done: &mut Done) -> Traces {
-    let mut tracer = Tracer { cut, done, touches_vertices: false };
-    let traces = arcs.iter().filter_map(|&seed| tracer.line_of(seed)).collect();
+fn trace<S: Surface + ?Sized>(
+    cut: &LevelCut<'_, S>,
+    arcs: &[ContourArc],
+    done: &mut Done,
+) -> Traces {
+    let mut tracer = Tracer {
+        cut,
+        done,
+        touches_vertices: false,
+    };
+    let traces = arcs
+        .iter()
+        .filter_map(|&seed| tracer.line_of(seed))
+        .collect();
     let touches_vertices = tracer.touches_vertices;
     done.clear(arcs);
-    Traces { traces, touches_vertices }
+    Traces {
+        traces,
+        touches_vertices,
+    }
 }
 
 struct Tracer<'t, 'a, S: ?Sized> {
@@ -115,10 +140,15 @@ impl<S: Surface + ?Sized> Tracer<'_, '_, S> {
         let mut points = Vec::new();
         // It comes back to the seed only if the links between faces contradict each other: else the
         // forward search would have.
-        let start = self.follow(face, seed, Direction::Backward, &mut points).unwrap_or(end);
+        let start = self
+            .follow(face, seed, Direction::Backward, &mut points)
+            .unwrap_or(end);
         points.reverse();
         points.append(&mut after);
-        Some(Trace::Open { points, ends: [start, end] })
+        Some(Trace::Open {
+            points,
+            ends: [start, end],
+        })
     }
 
     /// Follows arcs from the seed as far as possible; adds the far node of each arc. Returns where
@@ -138,12 +168,19 @@ impl<S: Surface + ?Sized> Tracer<'_, '_, S> {
             let next = match node {
                 Node::Edge(i) => {
                     self.touches_vertices |= face.ends_at(i, point);
-                    self.cut.across(&face, i).map(|(next, _)| (next, ContourArc::Across(next.id)))
+                    self.cut
+                        .across(&face, i)
+                        .map(|(next, _)| (next, ContourArc::Across(next.id)))
                 }
-                Node::Corner(i) => self.cut.continuation(&face, i, direction).map(|ray| (ray.face, ray.arc)),
+                Node::Corner(i) => self
+                    .cut
+                    .continuation(&face, i, direction)
+                    .map(|ray| (ray.face, ray.arc)),
             };
             match next {
-                Some((next, next_arc)) if self.done.insert(next_arc) => (face, arc) = (next, next_arc),
+                Some((next, next_arc)) if self.done.insert(next_arc) => {
+                    (face, arc) = (next, next_arc)
+                }
                 Some((_, next_arc)) if next_arc == seed => return None,
                 // `Some` occurs only if the links between faces contradict each other.
                 Some(_) | None => return Some(face.loose_end(arc, node)),
@@ -162,7 +199,10 @@ impl Face {
                     ContourArc::Along(_, opposite) => 3 - i - usize::from(opposite),
                     ContourArc::Across(_) => (i + 1) % 3,
                 };
-                LooseEnd::Vertex { vertex: self.vertices[i], toward: self.vertices[toward] }
+                LooseEnd::Vertex {
+                    vertex: self.vertices[i],
+                    toward: self.vertices[toward],
+                }
             }
         }
     }

@@ -27,7 +27,12 @@ pub(crate) fn divided(curves: &[(Domain, Segment)], reach: [f64; 2]) -> Vec<(Dom
         let is_far = (0..2).any(|k| a[k].abs().max(b[k].abs()) > limits[k]);
         let mut ends = vec![a, b];
         if is_far {
-            for (axis, limit) in [(0, -limits[0]), (0, limits[0]), (1, -limits[1]), (1, limits[1])] {
+            for (axis, limit) in [
+                (0, -limits[0]),
+                (0, limits[0]),
+                (1, -limits[1]),
+                (1, limits[1]),
+            ] {
                 let site = crossing([a, b], axis, limit).map(|site| geometry.on_step(site));
                 let admitted = site.filter(|&[x, y]| geometry.admits(&[x, y, 0.0]));
                 ends.extend(admitted.filter(|site| (0..2).all(|k| site[k].abs() <= limits[k])));
@@ -46,7 +51,10 @@ pub(crate) fn divided(curves: &[(Domain, Segment)], reach: [f64; 2]) -> Vec<(Dom
 
 /// Returns the largest coordinates of a triangulation on both axes, without their signs.
 pub(crate) fn reach_of(base: &ConstrainedDelaunay<Terrain>) -> [f64; 2] {
-    let vertices = base.tds().vertices().filter(|&vertex| vertex != VertexId::INFINITE);
+    let vertices = base
+        .tds()
+        .vertices()
+        .filter(|&vertex| vertex != VertexId::INFINITE);
     vertices.fold([0.0, 0.0], |most, vertex| {
         let p = base.point(vertex);
         [0, 1].map(|k: usize| f64::max(most[k], p[k].abs()))
@@ -64,7 +72,8 @@ fn crossing([a, b]: Segment, axis: usize, limit: f64) -> Option<[f64; 2]> {
     }
     let other = 1 - axis;
     let difference = |k: usize| Dyadic::difference(b[k], a[k]);
-    let numerator = Dyadic::from(a[other]) * difference(axis) + Dyadic::difference(limit, a[axis]) * difference(other);
+    let numerator = Dyadic::from(a[other]) * difference(axis)
+        + Dyadic::difference(limit, a[axis]) * difference(other);
     let mut site = [limit; 2];
     let (low, high) = (a[other].min(b[other]), a[other].max(b[other]));
     site[other] = unsigned_zero(numerator.quotient(&difference(axis)).clamp(low, high));

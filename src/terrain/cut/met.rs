@@ -19,7 +19,10 @@ pub(super) fn met<'t>(
 ) -> impl Iterator<Item = Vec<CellId>> + 't {
     let tds = triangulation.tds();
     let (mut min, mut max) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-    for vertex in tds.vertices().filter(|&vertex| vertex != VertexId::INFINITE) {
+    for vertex in tds
+        .vertices()
+        .filter(|&vertex| vertex != VertexId::INFINITE)
+    {
         let p = triangulation.point(vertex);
         (0..2).for_each(|k| (min[k], max[k]) = (min[k].min(p[k]), max[k].max(p[k])));
     }
@@ -31,7 +34,11 @@ pub(super) fn met<'t>(
             return cells;
         }
         let add_both = |cells: &mut Vec<CellId>, cell: CellId, i: usize| {
-            cells.extend([cell, tds.neighbor(cell, i)].into_iter().filter(|&cell| !tds.is_infinite(cell)));
+            cells.extend(
+                [cell, tds.neighbor(cell, i)]
+                    .into_iter()
+                    .filter(|&cell| !tds.is_infinite(cell)),
+            );
         };
         let [from, to] = [a, b].map(|[x, y]| [x, y, 0.0]);
         for passage in triangulation.along([&from, &to], near) {

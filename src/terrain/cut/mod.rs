@@ -108,7 +108,12 @@ pub(super) fn cut(
     let kept = regions::label(&patched, patched.count(), start, within, is_kept);
     let remains = patched.remains(inside, &kept);
     let (first_fragment, first_vertex) = (base.tds().cell_slots(), base.tds().vertex_slots());
-    Ok(Some(SurfaceCut { patch, remains, first_fragment, first_vertex }))
+    Ok(Some(SurfaceCut {
+        patch,
+        remains,
+        first_fragment,
+        first_vertex,
+    }))
 }
 
 /// The sorted domains that contain a triangle.
@@ -137,7 +142,9 @@ impl SurfaceCut {
     /// Returns the ends of each edge of a triangle that is divided.
     pub(super) fn divided_edges(&self) -> impl Iterator<Item = [VertexId; 2]> + '_ {
         let is_divided = |&edge: &usize| self.patch.chain_of_edge(edge).len() > 2;
-        (0..self.patch.edges.len()).filter(is_divided).map(|edge| self.patch.edges[edge])
+        (0..self.patch.edges.len())
+            .filter(is_divided)
+            .map(|edge| self.patch.edges[edge])
     }
 
     /// One more than the largest number of a face.
@@ -173,7 +180,13 @@ impl SurfaceCut {
             Some(vertex) => vertex.index() as u32,
             None => (self.first_vertex + vertex.index()) as u32,
         };
-        Some(self.patch.triangulation.tds().corners(self.fragment(face)?).map(number))
+        Some(
+            self.patch
+                .triangulation
+                .tds()
+                .corners(self.fragment(face)?)
+                .map(number),
+        )
     }
 
     /// The face across a side, if either of the two is a fragment.
@@ -189,7 +202,8 @@ impl SurfaceCut {
 
     /// The kind of a side of a fragment.
     pub(super) fn edge_kind(&self, face: u32, i: usize) -> Option<EdgeKind> {
-        self.fragment(face).map(|fragment| self.remains.kinds[fragment.index()][i])
+        self.fragment(face)
+            .map(|fragment| self.remains.kinds[fragment.index()][i])
     }
 
     /// The kind of the side that a fragment across a side of a whole triangle has, if it lies on a
@@ -214,13 +228,23 @@ impl SurfaceCut {
         let is_fragment = |cell: &CellId| self.remains.is_fragment[cell.index()];
         let location = triangulation.locate(&[x, y, 0.0], None);
         match location {
-            Location::Vertex(vertex) => {
-                triangulation.tds().around(vertex).any(|cell| is_fragment(&cell)).then(|| self.point(vertex)[2])
-            }
+            Location::Vertex(vertex) => triangulation
+                .tds()
+                .around(vertex)
+                .any(|cell| is_fragment(&cell))
+                .then(|| self.point(vertex)[2]),
             Location::Cell { cell, .. } => {
-                let beside = location.facets().map(|(cell, i)| triangulation.tds().neighbor(cell, i));
+                let beside = location
+                    .facets()
+                    .map(|(cell, i)| triangulation.tds().neighbor(cell, i));
                 let cell = std::iter::once(cell).chain(beside).find(is_fragment)?;
-                Some(linear(triangulation.tds().corners(cell).map(|vertex| self.point(vertex)), [x, y]))
+                Some(linear(
+                    triangulation
+                        .tds()
+                        .corners(cell)
+                        .map(|vertex| self.point(vertex)),
+                    [x, y],
+                ))
             }
             Location::OutsideHull { .. } | Location::OutsideAffineHull | Location::Nowhere => None,
         }

@@ -10,7 +10,9 @@ use crate::triangulation::tds::CellId;
 /// The index of the lexicographically smallest corner of a triangle.
 pub(super) fn first_corner(base: &ConstrainedDelaunay<Terrain>, cell: CellId) -> usize {
     let corners = base.tds().corners(cell).map(|corner| base.point(corner));
-    (0..3).min_by(|&i, &j| base.geometry().compare(corners[i], corners[j])).unwrap_or_default()
+    (0..3)
+        .min_by(|&i, &j| base.geometry().compare(corners[i], corners[j]))
+        .unwrap_or_default()
 }
 
 /// The corners of a triangle, counter-clockwise from the lexicographically smallest.
@@ -22,6 +24,12 @@ pub(super) fn corners(base: &ConstrainedDelaunay<Terrain>, cell: CellId) -> [[f6
 
 /// Compares triangles by the positions of their corners; infinite ones come last.
 pub(super) fn compare(base: &ConstrainedDelaunay<Terrain>, a: CellId, b: CellId) -> Ordering {
-    let key = |cell| if base.tds().is_infinite(cell) { [[f64::INFINITY; 3]; 3] } else { corners(base, cell) };
+    let key = |cell| {
+        if base.tds().is_infinite(cell) {
+            [[f64::INFINITY; 3]; 3]
+        } else {
+            corners(base, cell)
+        }
+    };
     key(a).partial_cmp(&key(b)).unwrap_or(Ordering::Equal)
 }

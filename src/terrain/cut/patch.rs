@@ -65,13 +65,18 @@ impl Drawing {
         is_met: &[bool],
     ) -> Self {
         let tds = base.tds();
-        let mut corners: Vec<VertexId> = cells.iter().flat_map(|&cell| *tds.corners(cell)).collect();
+        let mut corners: Vec<VertexId> =
+            cells.iter().flat_map(|&cell| *tds.corners(cell)).collect();
         // By position, so that results do not depend on the numbering of the vertices.
         corners.sort_unstable_by(|&u, &v| base.geometry().compare(base.point(u), base.point(v)));
         corners.dedup();
         let mut points: Vec<[f64; 3]> = corners.iter().map(|&vertex| *base.point(vertex)).collect();
         let key = |x: f64, y: f64| [x.to_bits(), y.to_bits()];
-        let mut at: HashMap<[u64; 2], u32> = points.iter().zip(0..).map(|(p, i)| (key(p[0], p[1]), i)).collect();
+        let mut at: HashMap<[u64; 2], u32> = points
+            .iter()
+            .zip(0..)
+            .map(|(p, i)| (key(p[0], p[1]), i))
+            .collect();
         let mut number: FxHashMap<Ends, u32> = FxHashMap::default();
         let mut lines: Vec<Ends> = Vec::new();
         let mut drawn = vec![None; segments.len()];
@@ -97,8 +102,19 @@ impl Drawing {
         }
         edges.sort_unstable();
         edges.dedup();
-        lines.extend(edges.iter().map(|edge| edge.map(|vertex| position[&vertex])));
-        Drawing { points, corners, lines, first_edge, edges, segments: drawn }
+        lines.extend(
+            edges
+                .iter()
+                .map(|edge| edge.map(|vertex| position[&vertex])),
+        );
+        Drawing {
+            points,
+            corners,
+            lines,
+            first_edge,
+            edges,
+            segments: drawn,
+        }
     }
 
     /// Arranges the lines. Returns the arrangement and the segment in it of each line.
@@ -107,7 +123,11 @@ impl Drawing {
     /// the rounding vanish. An edge that is also a cut line is arranged once.
     fn arrange(&self, step: f64) -> (Arrangement, Vec<u32>) {
         let site = |i: u32| [self.points[i as usize][0], self.points[i as usize][1]];
-        let cut: FxHashMap<Ends, u32> = self.lines[..self.first_edge].iter().copied().zip(0..).collect();
+        let cut: FxHashMap<Ends, u32> = self.lines[..self.first_edge]
+            .iter()
+            .copied()
+            .zip(0..)
+            .collect();
         let mut distinct = self.lines[..self.first_edge].to_vec();
         let mut at: Vec<u32> = (0..self.first_edge as u32).collect();
         for line in &self.lines[self.first_edge..] {
@@ -116,8 +136,9 @@ impl Drawing {
                 distinct.push(*line);
             }
         }
-        let arrangement = Arrangement::with_snapped(self.points.len(), site, &distinct, self.first_edge, step)
-            .crossing_free(site, &distinct, step);
+        let arrangement =
+            Arrangement::with_snapped(self.points.len(), site, &distinct, self.first_edge, step)
+                .crossing_free(site, &distinct, step);
         (arrangement, at)
     }
 }
@@ -145,10 +166,14 @@ impl Patch {
         loop {
             let drawing = Drawing::new(base, &cells, segments, &is_met);
             let patch = Self::triangulated(base, kinds, &cells, drawing)?;
-            let divided = (0..patch.edges.len()).filter(|&edge| patch.chain_of_edge(edge).len() > 2);
+            let divided =
+                (0..patch.edges.len()).filter(|&edge| patch.chain_of_edge(edge).len() > 2);
             let beside = divided.map(|edge| patch.edges[edge]);
             let beside = beside.flat_map(|[u, v]| [base.tds().edge(u, v), base.tds().edge(v, u)]);
-            let beside = beside.flatten().map(|(cell, _)| cell).filter(|&cell| !base.tds().is_infinite(cell));
+            let beside = beside
+                .flatten()
+                .map(|(cell, _)| cell)
+                .filter(|&cell| !base.tds().is_infinite(cell));
             let before = cells.len();
             cells.extend(beside);
             if cells.len() == before {
@@ -164,7 +189,14 @@ impl Patch {
         drawing: Drawing,
     ) -> Result<Self> {
         let (arrangement, at) = drawing.arrange(base.geometry().step());
-        let Drawing { mut points, corners, lines, first_edge, edges, segments } = drawing;
+        let Drawing {
+            mut points,
+            corners,
+            lines,
+            first_edge,
+            edges,
+            segments,
+        } = drawing;
         points.extend(arrangement.added().iter().map(|&[x, y]| [x, y, f64::NAN]));
         let chains = lines.iter().zip(at).map(|(&[a, b], at)| {
             let between = arrangement.chain(at).iter().copied();
@@ -172,12 +204,24 @@ impl Patch {
         });
         let chains: Vec<Vec<u32>> = chains.collect();
         let unit = arrangement.unit();
-        let mut arranged = Arranged { base, kinds, corners: &corners, edges: &edges, unit, points, chains };
+        let mut arranged = Arranged {
+            base,
+            kinds,
+            corners: &corners,
+            edges: &edges,
+            unit,
+            points,
+            chains,
+        };
         arranged.separate();
         let Arranged { points, chains, .. } = arranged;
-        let (triangulation, numbers) =
-            ConstrainedDelaunay::from_lines(Terrain::default(), &points, &chains, OnCrossing::Split)
-                .map_err(|error| Error::limit(error.to_string()))?;
+        let (triangulation, numbers) = ConstrainedDelaunay::from_lines(
+            Terrain::default(),
+            &points,
+            &chains,
+            OnCrossing::Split,
+        )
+        .map_err(|error| Error::limit(error.to_string()))?;
         let mut vertices = vec![None; triangulation.tds().vertex_slots()];
         for (corner, number) in corners.iter().zip(&numbers) {
             vertices[number.index()] = Some(*corner);
@@ -188,7 +232,10 @@ impl Patch {
             replaced,
             cells: Vec::new(),
             heights: Vec::new(),
-            segments: segments.into_iter().map(|line| Some(LineId::new(line? as usize))).collect(),
+            segments: segments
+                .into_iter()
+                .map(|line| Some(LineId::new(line? as usize)))
+                .collect(),
             triangulation,
             vertices,
             edges,
@@ -206,24 +253,34 @@ impl Patch {
 
     /// The vertices of an edge of the surface in the patch, in order.
     pub(super) fn chain_of_edge(&self, edge: usize) -> Vec<VertexId> {
-        self.triangulation.chain(LineId::new(self.first_edge + edge))
+        self.triangulation
+            .chain(LineId::new(self.first_edge + edge))
     }
 
     /// The edges of the surface that run along an edge of the patch, as indices.
     pub(super) fn edges_along(&self, [p, q]: [VertexId; 2]) -> impl Iterator<Item = usize> + '_ {
-        self.triangulation.lines_through(p, q).filter_map(|line| line.index().checked_sub(self.first_edge))
+        self.triangulation
+            .lines_through(p, q)
+            .filter_map(|line| line.index().checked_sub(self.first_edge))
     }
 
     /// Returns true if a cut line runs along an edge of the patch.
     pub(super) fn is_cut_along(&self, [p, q]: [VertexId; 2]) -> bool {
-        self.triangulation.lines_through(p, q).next().is_some_and(|line| line.index() < self.first_edge)
+        self.triangulation
+            .lines_through(p, q)
+            .next()
+            .is_some_and(|line| line.index() < self.first_edge)
     }
 
     /// For each face, the triangle of which it is a fragment.
     ///
     /// Next to the chain of an edge, this is the triangle at the edge. From there it is propagated
     /// to neighbors, but not across such chains.
-    fn find_cells(&self, base: &ConstrainedDelaunay<Terrain>, cells: &FxHashSet<CellId>) -> Vec<Option<CellId>> {
+    fn find_cells(
+        &self,
+        base: &ConstrainedDelaunay<Terrain>,
+        cells: &FxHashSet<CellId>,
+    ) -> Vec<Option<CellId>> {
         let tds = self.triangulation.tds();
         // The triangle on the left of each edge of the patch. Triangles that have collapsed onto an
         // edge are listed as well, on both of its sides.
@@ -232,7 +289,11 @@ impl Patch {
             let sides = [base.tds().edge(u, v), base.tds().edge(v, u)];
             for pair in self.chain_of_edge(edge).windows(2) {
                 let both = [[pair[0], pair[1]], [pair[1], pair[0]]];
-                left.extend(both.into_iter().zip(sides).filter_map(|(edge, side)| Some((edge, side?.0))));
+                left.extend(
+                    both.into_iter()
+                        .zip(sides)
+                        .filter_map(|(edge, side)| Some((edge, side?.0))),
+                );
             }
         }
         // By position, so that results do not depend on the numbering of the triangles.
@@ -247,8 +308,12 @@ impl Patch {
         let mut ahead = Vec::new();
         for [p, q] in left.chunk_by(|a, b| a.0 == b.0).map(|same| same[0].0) {
             let others = all_left([q, p]);
-            let standing = all_left([p, q]).iter().find(|(_, cell)| others.iter().all(|(_, other)| other != cell));
-            let (Some((_, cell)), Some((face, _))) = (standing, tds.edge(p, q)) else { continue };
+            let standing = all_left([p, q])
+                .iter()
+                .find(|(_, cell)| others.iter().all(|(_, other)| other != cell));
+            let (Some((_, cell)), Some((face, _))) = (standing, tds.edge(p, q)) else {
+                continue;
+            };
             if !std::mem::replace(&mut is_known[face.index()], true) {
                 found[face.index()] = Some(*cell).filter(|cell| cells.contains(cell));
                 ahead.push(face);
@@ -258,7 +323,9 @@ impl Patch {
             for i in 0..3 {
                 let beside = tds.neighbor(face, i);
                 let is_border = || self.edges_along(tds.edge_ends(face, i)).next().is_some();
-                if is_known[beside.index()] || self.triangulation.is_constrained(face, i) && is_border() {
+                if is_known[beside.index()]
+                    || self.triangulation.is_constrained(face, i) && is_border()
+                {
                     continue;
                 }
                 is_known[beside.index()] = true;
@@ -267,7 +334,9 @@ impl Patch {
             }
         }
         let is_face = |face: usize| !tds.is_infinite(CellId::new(face));
-        (0..found.len()).map(|face| found[face].filter(|_| is_face(face))).collect()
+        (0..found.len())
+            .map(|face| found[face].filter(|_| is_face(face)))
+            .collect()
     }
 
     /// The heights of the vertices.
@@ -285,7 +354,11 @@ impl Patch {
             let chain = self.chain_of_edge(edge);
             for &vertex in chain.iter().skip(1).rev().skip(1) {
                 let [x, y, _] = *self.triangulation.point(vertex);
-                let here = (is_plain, has_slope, height_along(*base.point(u), *base.point(v), [x, y]));
+                let here = (
+                    is_plain,
+                    has_slope,
+                    height_along(*base.point(u), *base.point(v), [x, y]),
+                );
                 let known = on_edges[vertex.index()].get_or_insert(here);
                 if here < *known {
                     *known = here;
@@ -303,7 +376,11 @@ impl Patch {
             if !self.triangulation.tds().is_vertex(vertex) {
                 return f64::NAN;
             }
-            let within = self.triangulation.tds().around(vertex).find_map(|face| self.cells[face.index()]);
+            let within = self
+                .triangulation
+                .tds()
+                .around(vertex)
+                .find_map(|face| self.cells[face.index()]);
             let [x, y, _] = *self.triangulation.point(vertex);
             within.map_or(f64::NAN, |cell| linear(corners(base, cell), [x, y]))
         };

@@ -60,24 +60,44 @@ impl<'a> Patched<'a> {
         curves: &[(Domain, Segment)],
     ) -> Self {
         let mut is_replaced = vec![false; base.tds().cell_slots()];
-        patch.replaced.iter().for_each(|cell| is_replaced[cell.index()] = true);
+        patch
+            .replaced
+            .iter()
+            .for_each(|cell| is_replaced[cell.index()] = true);
         let mut domains = vec![Vec::new(); patch.first_edge()];
         for (line, (domain, _)) in patch.segments.iter().zip(curves) {
             if let Some(line) = line {
                 domains[line.index()].push(*domain);
             }
         }
-        let mut patched = Patched { base, kinds, patch, is_replaced, domains, border: FxHashMap::default() };
+        let mut patched = Patched {
+            base,
+            kinds,
+            patch,
+            is_replaced,
+            domains,
+            border: FxHashMap::default(),
+        };
         for edge in 0..patch.edges.len() {
             let [u, v] = patch.edges[edge];
-            let (Some(left), Some(right)) = (base.tds().edge(u, v), base.tds().edge(v, u)) else { continue };
-            if [left, right].iter().any(|(cell, _)| base.tds().is_infinite(*cell)) {
+            let (Some(left), Some(right)) = (base.tds().edge(u, v), base.tds().edge(v, u)) else {
+                continue;
+            };
+            if [left, right]
+                .iter()
+                .any(|(cell, _)| base.tds().is_infinite(*cell))
+            {
                 continue;
             }
-            let [p, q] = patch.chain_of_edge(edge)[..] else { continue };
+            let [p, q] = patch.chain_of_edge(edge)[..] else {
+                continue;
+            };
             for ((cell, i), [p, q]) in [left, right].into_iter().zip([[q, p], [p, q]]) {
-                if let Some((face, k)) =
-                    patch.triangulation.tds().edge(p, q).filter(|_| !patched.is_replaced[cell.index()])
+                if let Some((face, k)) = patch
+                    .triangulation
+                    .tds()
+                    .edge(p, q)
+                    .filter(|_| !patched.is_replaced[cell.index()])
                 {
                     let [outer, inner] = [(cell.index() as u32, i), (patched.number(face), k)];
                     patched.border.extend([(outer, inner), (inner, outer)]);
@@ -101,23 +121,41 @@ impl<'a> Patched<'a> {
 
     /// The face of the patch with a number; `None` for faces of the triangulation.
     fn fragment(&self, face: u32) -> Option<CellId> {
-        (face as usize).checked_sub(self.first_fragment()).map(CellId::new)
+        (face as usize)
+            .checked_sub(self.first_fragment())
+            .map(CellId::new)
     }
 
     /// A finite face, if there is one.
     pub(super) fn first(&self) -> Option<u32> {
-        let whole = self.base.finite_cells().find(|cell| !self.is_replaced[cell.index()]);
-        let fragment = || self.patch.cells.iter().position(Option::is_some).map(|at| self.number(CellId::new(at)));
+        let whole = self
+            .base
+            .finite_cells()
+            .find(|cell| !self.is_replaced[cell.index()]);
+        let fragment = || {
+            self.patch
+                .cells
+                .iter()
+                .position(Option::is_some)
+                .map(|at| self.number(CellId::new(at)))
+        };
         whole.map(|cell| cell.index() as u32).or_else(fragment)
     }
 
     /// The corners of a face, counter-clockwise.
     pub(super) fn corners(&self, face: u32) -> [[f64; 3]; 3] {
         match self.fragment(face) {
-            Some(fragment) => {
-                self.patch.triangulation.tds().corners(fragment).map(|v| *self.patch.triangulation.point(v))
-            }
-            None => self.base.tds().corners(CellId::new(face as usize)).map(|v| *self.base.point(v)),
+            Some(fragment) => self
+                .patch
+                .triangulation
+                .tds()
+                .corners(fragment)
+                .map(|v| *self.patch.triangulation.point(v)),
+            None => self
+                .base
+                .tds()
+                .corners(CellId::new(face as usize))
+                .map(|v| *self.base.point(v)),
         }
     }
 
@@ -134,7 +172,11 @@ impl<'a> Patched<'a> {
                 [x, y]
             };
             let chain = self.patch.triangulation.chain(*line);
-            drawn.extend(chain.windows(2).map(|pair| (domain, [site(pair[0]), site(pair[1])])));
+            drawn.extend(
+                chain
+                    .windows(2)
+                    .map(|pair| (domain, [site(pair[0]), site(pair[1])])),
+            );
         }
         drawn
     }
@@ -142,14 +184,25 @@ impl<'a> Patched<'a> {
     /// The fragments of the triangles `inside`, given the faces that are kept. On return, `inside`
     /// contains the triangles that stay whole.
     pub(super) fn remains(&self, inside: &mut [bool], kept: &[bool]) -> Remains {
-        let was_inside: Vec<(CellId, bool)> =
-            self.patch.replaced.iter().map(|&cell| (cell, inside[cell.index()])).collect();
+        let was_inside: Vec<(CellId, bool)> = self
+            .patch
+            .replaced
+            .iter()
+            .map(|&cell| (cell, inside[cell.index()]))
+            .collect();
         let whole = self.whole(inside, kept);
         for (cell, inside) in inside.iter_mut().enumerate() {
-            *inside &= if self.is_replaced[cell] { whole.contains(&CellId::new(cell)) } else { kept[cell] };
+            *inside &= if self.is_replaced[cell] {
+                whole.contains(&CellId::new(cell))
+            } else {
+                kept[cell]
+            };
         }
-        let in_fragments: FxHashSet<CellId> =
-            was_inside.into_iter().filter(|(cell, was)| *was && !whole.contains(cell)).map(|(cell, _)| cell).collect();
+        let in_fragments: FxHashSet<CellId> = was_inside
+            .into_iter()
+            .filter(|(cell, was)| *was && !whole.contains(cell))
+            .map(|(cell, _)| cell)
+            .collect();
         let is_fragment: Vec<bool> = (0..self.patch.cells.len())
             .map(|face| {
                 kept[self.first_fragment() + face]
@@ -166,17 +219,28 @@ impl<'a> Patched<'a> {
             is_fragment,
         };
         let mut cut: Vec<CellId> = Vec::new();
-        for face in (0..remains.is_fragment.len()).filter(|&face| remains.is_fragment[face]).map(CellId::new) {
+        for face in (0..remains.is_fragment.len())
+            .filter(|&face| remains.is_fragment[face])
+            .map(CellId::new)
+        {
             cut.extend(self.patch.cells[face.index()]);
             for i in 0..3 {
                 let beyond = self.patch.triangulation.tds().neighbor(face, i);
-                let whole = self.whole_beside(face, i, beyond).filter(|(cell, _)| inside[*cell as usize]);
+                let whole = self
+                    .whole_beside(face, i, beyond)
+                    .filter(|(cell, _)| inside[*cell as usize]);
                 if let Some(side) = whole {
-                    remains.beside.extend([((self.number(face), i), side.0), (side, self.number(face))]);
+                    remains
+                        .beside
+                        .extend([((self.number(face), i), side.0), (side, self.number(face))]);
                 }
                 let is_rim = whole.is_none() && !remains.is_fragment[beyond.index()];
                 let kind = self.kind(face, i, is_rim);
-                remains.lines.extend(whole.filter(|_| kind.is_constrained()).map(|side| (side, kind)));
+                remains.lines.extend(
+                    whole
+                        .filter(|_| kind.is_constrained())
+                        .map(|side| (side, kind)),
+                );
                 remains.kinds[face.index()][i] = kind;
             }
         }
@@ -200,9 +264,17 @@ impl<'a> Patched<'a> {
         }
         let crossed = self.crossed();
         let is_whole = |cell: &CellId| {
-            inside[cell.index()] && !crossed.contains(cell) && faces.get(cell).is_some_and(|[all, left]| all == left)
+            inside[cell.index()]
+                && !crossed.contains(cell)
+                && faces.get(cell).is_some_and(|[all, left]| all == left)
         };
-        let mut whole: FxHashSet<CellId> = self.patch.replaced.iter().copied().filter(is_whole).collect();
+        let mut whole: FxHashSet<CellId> = self
+            .patch
+            .replaced
+            .iter()
+            .copied()
+            .filter(is_whole)
+            .collect();
         // If a triangle has collapsed, the neighbor beyond it is not known here.
         let is_gone = |cell: CellId| {
             self.base.tds().is_infinite(cell)
@@ -210,9 +282,13 @@ impl<'a> Patched<'a> {
                 || faces.get(&cell).is_some_and(|[_, left]| *left == 0)
         };
         let mut divided: FxHashMap<CellId, Vec<CellId>> = FxHashMap::default();
-        for edge in (0..self.patch.edges.len()).filter(|&edge| self.patch.chain_of_edge(edge).len() > 2) {
+        for edge in
+            (0..self.patch.edges.len()).filter(|&edge| self.patch.chain_of_edge(edge).len() > 2)
+        {
             let [u, v] = self.patch.edges[edge];
-            if let (Some((left, _)), Some((right, _))) = (self.base.tds().edge(u, v), self.base.tds().edge(v, u)) {
+            if let (Some((left, _)), Some((right, _))) =
+                (self.base.tds().edge(u, v), self.base.tds().edge(v, u))
+            {
                 divided.entry(left).or_default().push(right);
                 divided.entry(right).or_default().push(left);
             }
@@ -232,14 +308,26 @@ impl<'a> Patched<'a> {
     fn crossed(&self) -> FxHashSet<CellId> {
         let tds = self.patch.triangulation.tds();
         let mut crossed = FxHashSet::default();
-        if !self.domains.iter().flatten().any(|domain| *domain == DRAPED) {
+        if !self
+            .domains
+            .iter()
+            .flatten()
+            .any(|domain| *domain == DRAPED)
+        {
             return crossed;
         }
         for (face, cell) in self.patch.cells.iter().enumerate() {
-            let (Some(cell), face) = (cell, CellId::new(face)) else { continue };
-            let is_within = |i: &usize| self.patch.cells[tds.neighbor(face, *i).index()] == Some(*cell);
+            let (Some(cell), face) = (cell, CellId::new(face)) else {
+                continue;
+            };
+            let is_within =
+                |i: &usize| self.patch.cells[tds.neighbor(face, *i).index()] == Some(*cell);
             let sides = 0..3;
-            if sides.into_iter().filter(is_within).any(|i| self.runs_along(tds.edge_ends(face, i), |d| d == DRAPED)) {
+            if sides
+                .into_iter()
+                .filter(is_within)
+                .any(|i| self.runs_along(tds.edge_ends(face, i), |d| d == DRAPED))
+            {
                 crossed.insert(*cell);
             }
         }
@@ -249,7 +337,10 @@ impl<'a> Patched<'a> {
     /// Returns true if a cut line of some domain runs along an edge of the patch.
     fn runs_along(&self, [p, q]: [VertexId; 2], is_wanted: impl Fn(Domain) -> bool) -> bool {
         let lines = self.patch.triangulation.lines_through(p, q);
-        lines.filter_map(|line| self.domains.get(line.index())).flatten().any(|&domain| is_wanted(domain))
+        lines
+            .filter_map(|line| self.domains.get(line.index()))
+            .flatten()
+            .any(|&domain| is_wanted(domain))
     }
 
     /// The sides of triangles along which a cut line of some domain runs.
@@ -257,9 +348,17 @@ impl<'a> Patched<'a> {
         let mut found = FxHashSet::default();
         for (edge, &[u, v]) in self.patch.edges.iter().enumerate() {
             let chain = self.patch.chain_of_edge(edge);
-            if chain.windows(2).any(|pair| self.runs_along([pair[0], pair[1]], &is_wanted)) {
+            if chain
+                .windows(2)
+                .any(|pair| self.runs_along([pair[0], pair[1]], &is_wanted))
+            {
                 let sides = [self.base.tds().edge(u, v), self.base.tds().edge(v, u)];
-                found.extend(sides.into_iter().flatten().map(|(cell, i)| (cell.index() as u32, i)));
+                found.extend(
+                    sides
+                        .into_iter()
+                        .flatten()
+                        .map(|(cell, i)| (cell.index() as u32, i)),
+                );
             }
         }
         found
@@ -271,20 +370,29 @@ impl<'a> Patched<'a> {
         let Some(cell) = self.patch.cells[beyond.index()] else {
             return self.border.get(&(self.number(face), i)).copied();
         };
-        let ends = self.patch.triangulation.tds().edge_ends(face, i).map(|v| self.patch.vertices[v.index()]);
+        let ends = self
+            .patch
+            .triangulation
+            .tds()
+            .edge_ends(face, i)
+            .map(|v| self.patch.vertices[v.index()]);
         let sides = 0..3;
         let is_same = |&k: &usize| {
             let [u, v] = self.base.tds().edge_ends(cell, k);
             ends == [Some(v), Some(u)]
         };
-        sides.into_iter().find(is_same).map(|k| (cell.index() as u32, k))
+        sides
+            .into_iter()
+            .find(is_same)
+            .map(|k| (cell.index() as u32, k))
     }
 
     fn kind(&self, face: CellId, i: usize, is_rim: bool) -> EdgeKind {
         if self.patch.triangulation.is_constrained(face, i) {
             let ends = self.patch.triangulation.tds().edge_ends(face, i);
             let on_lines = self.patch.edges_along(ends);
-            let kinds = on_lines.filter_map(|edge| self.kinds.between(self.base, self.patch.edges[edge]));
+            let kinds =
+                on_lines.filter_map(|edge| self.kinds.between(self.base, self.patch.edges[edge]));
             if let Some(kind) = kinds.min_by_key(|kind| kind.rank()) {
                 return kind;
             }
@@ -295,7 +403,11 @@ impl<'a> Patched<'a> {
                 return EdgeKind::Clip;
             }
         }
-        if is_rim { EdgeKind::Rim } else { EdgeKind::Plain }
+        if is_rim {
+            EdgeKind::Rim
+        } else {
+            EdgeKind::Plain
+        }
     }
 }
 
@@ -314,14 +426,17 @@ impl Faces for Patched<'_> {
             (None, Some((beyond, i))) => (self.fragment(beyond)?, i, beyond),
             (None, None) => {
                 let beyond = self.base.tds().neighbor(CellId::new(face as usize), side);
-                let is_there = !self.base.tds().is_infinite(beyond) && !self.is_replaced[beyond.index()];
+                let is_there =
+                    !self.base.tds().is_infinite(beyond) && !self.is_replaced[beyond.index()];
                 return is_there.then_some(beyond.index() as u32);
             }
         };
         if self.patch.triangulation.is_constrained(fragment, i) {
             let [p, q] = tds.edge_ends(fragment, i);
             let lines = self.patch.triangulation.lines_through(p, q);
-            let of_lines = lines.filter_map(|line| self.domains.get(line.index())).flatten();
+            let of_lines = lines
+                .filter_map(|line| self.domains.get(line.index()))
+                .flatten();
             domains.extend(of_lines.filter(|domain| **domain != DRAPED));
         }
         Some(beyond)

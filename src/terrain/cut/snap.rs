@@ -22,7 +22,10 @@ use crate::terrain::regions::{Domain, Segment};
 ///
 /// # Complexity
 /// O(n log n + k) for n segments that meet triangles and k pairs whose boxes overlap.
-pub(super) fn snapped(base: &ConstrainedDelaunay<Terrain>, curves: &[(Domain, Segment)]) -> Vec<(Domain, Segment)> {
+pub(super) fn snapped(
+    base: &ConstrainedDelaunay<Terrain>,
+    curves: &[(Domain, Segment)],
+) -> Vec<(Domain, Segment)> {
     let mut points: Vec<[f64; 2]> = Vec::new();
     let mut at: HashMap<[u64; 2], u32> = HashMap::new();
     let mut number = |point: [f64; 2]| {
@@ -34,7 +37,10 @@ pub(super) fn snapped(base: &ConstrainedDelaunay<Terrain>, curves: &[(Domain, Se
     let mut distinct: FxHashMap<[u32; 2], usize> = FxHashMap::default();
     let mut segments: Vec<[u32; 2]> = Vec::new();
     let mut drawn: Vec<Option<([u32; 2], usize)>> = Vec::with_capacity(curves.len());
-    for ((_, segment), cells) in curves.iter().zip(met(base, curves.iter().map(|(_, segment)| *segment))) {
+    for ((_, segment), cells) in curves
+        .iter()
+        .zip(met(base, curves.iter().map(|(_, segment)| *segment)))
+    {
         let ends = (!cells.is_empty()).then(|| segment.map(&mut number));
         drawn.push(ends.map(|[a, b]| {
             let next = segments.len();
@@ -47,8 +53,9 @@ pub(super) fn snapped(base: &ConstrainedDelaunay<Terrain>, curves: &[(Domain, Se
     }
     let step = base.geometry().step();
     let site = |i: u32| points[i as usize];
-    let arrangement = Arrangement::with_snapped(points.len(), site, &segments, segments.len(), step)
-        .crossing_free(site, &segments, step);
+    let arrangement =
+        Arrangement::with_snapped(points.len(), site, &segments, segments.len(), step)
+            .crossing_free(site, &segments, step);
     let site = |site: u32| match (site as usize).checked_sub(points.len()) {
         Some(added) => arrangement.added()[added],
         None => points[site as usize],
@@ -64,7 +71,11 @@ pub(super) fn snapped(base: &ConstrainedDelaunay<Terrain>, curves: &[(Domain, Se
             chain.reverse();
         }
         let chain: Vec<u32> = std::iter::once(a).chain(chain).chain([b]).collect();
-        snapped.extend(chain.windows(2).map(|pair| (domain, [site(pair[0]), site(pair[1])])));
+        snapped.extend(
+            chain
+                .windows(2)
+                .map(|pair| (domain, [site(pair[0]), site(pair[1])])),
+        );
     }
     snapped
 }

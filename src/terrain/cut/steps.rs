@@ -76,8 +76,14 @@ impl Arranged<'_> {
     pub(super) fn separate(&mut self) {
         let first_edge = self.chains.len() - self.edges.len();
         let mut edges_at: FxHashMap<u32, Vec<usize>> = FxHashMap::default();
-        for (edge, chain) in self.chains[first_edge..].iter().enumerate().filter(|(_, chain)| chain.len() > 2) {
-            chain[1..chain.len() - 1].iter().for_each(|&site| edges_at.entry(site).or_default().push(edge));
+        for (edge, chain) in self.chains[first_edge..]
+            .iter()
+            .enumerate()
+            .filter(|(_, chain)| chain.len() > 2)
+        {
+            chain[1..chain.len() - 1]
+                .iter()
+                .for_each(|&site| edges_at.entry(site).or_default().push(edge));
         }
         let mut shared: Vec<(u32, Vec<usize>)> = edges_at.into_iter().collect();
         shared.retain(|(site, edges)| edges.len() > usize::from(self.corner(*site).is_none()));
@@ -103,7 +109,10 @@ impl Arranged<'_> {
         for (site, here) in steps {
             for SplitSide { edge, vertex, .. } in here {
                 let chain = &mut self.chains[first_edge + edge];
-                chain.iter_mut().filter(|at| **at == site).for_each(|at| *at = vertex);
+                chain
+                    .iter_mut()
+                    .filter(|at| **at == site)
+                    .for_each(|at| *at = vertex);
             }
         }
         self.chains[first_edge..].iter_mut().for_each(Vec::dedup);
@@ -122,7 +131,11 @@ impl Arranged<'_> {
         let geometry = self.base.geometry();
         let ends = |edge: usize| {
             let [p, q] = self.edges[edge].map(|vertex| self.base.point(vertex));
-            if geometry.compare(p, q) == Ordering::Greater { [q, p] } else { [p, q] }
+            if geometry.compare(p, q) == Ordering::Greater {
+                [q, p]
+            } else {
+                [p, q]
+            }
         };
         let ([a, b], [c, d]) = (ends(a), ends(b));
         geometry.compare(a, c).then_with(|| geometry.compare(b, d))
@@ -139,22 +152,32 @@ impl Arranged<'_> {
     fn origin(&self, site: u32, edges: &[usize]) -> Option<Origin> {
         let tds = self.base.tds();
         let mut origin = match self.corner(site) {
-            Some(vertex) => {
-                Origin { cells: tds.around(vertex).collect(), height: self.base.point(vertex)[2], edge: None }
-            }
+            Some(vertex) => Origin {
+                cells: tds.around(vertex).collect(),
+                height: self.base.point(vertex)[2],
+                edge: None,
+            },
             None => {
-                let heights = edges.iter().map(|&edge| (!self.is_breakline(edge), self.height_on(edge, site), edge));
+                let heights = edges
+                    .iter()
+                    .map(|&edge| (!self.is_breakline(edge), self.height_on(edge, site), edge));
                 let (_, height, edge) = heights.min_by(|p, q| {
                     let by_height = p.0.cmp(&q.0).then(p.1.total_cmp(&q.1));
                     by_height.then_with(|| self.compare_edges(p.2, q.2))
                 })?;
                 let [u, v] = self.edges[edge];
                 let sides = [tds.edge(u, v), tds.edge(v, u)];
-                Origin { cells: sides.into_iter().flatten().map(|(cell, _)| cell).collect(), height, edge: Some(edge) }
+                Origin {
+                    cells: sides.into_iter().flatten().map(|(cell, _)| cell).collect(),
+                    height,
+                    edge: Some(edge),
+                }
             }
         };
         // The order must not depend on the numbering of the triangles.
-        origin.cells.sort_unstable_by(|&a, &b| compare(self.base, a, b));
+        origin
+            .cells
+            .sort_unstable_by(|&a, &b| compare(self.base, a, b));
         Some(origin)
     }
 
@@ -168,10 +191,20 @@ impl Arranged<'_> {
         taken: &mut HashSet<[u64; 2]>,
     ) -> Vec<SplitSide> {
         let tds = self.base.tds();
-        let Some(Origin { cells, height, edge: own }) = self.origin(site, edges) else { return Vec::new() };
+        let Some(Origin {
+            cells,
+            height,
+            edge: own,
+        }) = self.origin(site, edges)
+        else {
+            return Vec::new();
+        };
         let mut steps: Vec<SplitSide> = Vec::new();
         let mut seen: FxHashSet<CellId> = cells.iter().copied().collect();
-        let mut ahead: Vec<(CellId, u32, f64, u32)> = cells.into_iter().map(|cell| (cell, site, height, 0)).collect();
+        let mut ahead: Vec<(CellId, u32, f64, u32)> = cells
+            .into_iter()
+            .map(|cell| (cell, site, height, 0))
+            .collect();
         while let Some((cell, vertex, height, distance)) = ahead.pop() {
             if tds.is_infinite(cell) {
                 continue;
@@ -180,26 +213,44 @@ impl Arranged<'_> {
             for i in [0, 1, 2].map(|k| (first + k) % 3) {
                 let [u, v] = tds.edge_ends(cell, i);
                 let edge = self.edges.binary_search(&[u.min(v), u.max(v)]);
-                let Some(edge) = edge.ok().filter(|edge| edges.contains(edge) && Some(*edge) != own) else { continue };
+                let Some(edge) = edge
+                    .ok()
+                    .filter(|edge| edges.contains(edge) && Some(*edge) != own)
+                else {
+                    continue;
+                };
                 let beyond = tds.neighbor(cell, i);
                 if !seen.insert(beyond) {
                     continue;
                 }
                 let z = self.height_on(edge, site);
-                let is_level = tds.is_infinite(beyond) || (z - height).abs() <= self.tolerance(beyond);
+                let is_level =
+                    tds.is_infinite(beyond) || (z - height).abs() <= self.tolerance(beyond);
                 let moved = if is_level {
                     None
                 } else {
                     let others = self.edges_of(beyond).filter(|other| !edges.contains(other));
                     let others: Vec<usize> = others.map(|other| first_edge + other).collect();
-                    self.beside(site, [u, v], first_edge + edge, distance + 1, &others, taken)
+                    self.beside(
+                        site,
+                        [u, v],
+                        first_edge + edge,
+                        distance + 1,
+                        &others,
+                        taken,
+                    )
                 };
                 let (vertex, height, distance) = match moved {
                     Some(vertex) => (vertex, z, distance + 1),
                     None => (vertex, height, distance),
                 };
                 if vertex != site {
-                    steps.push(SplitSide { edge, vertex, is_left: v < u, between: Vec::new() });
+                    steps.push(SplitSide {
+                        edge,
+                        vertex,
+                        is_left: v < u,
+                        between: Vec::new(),
+                    });
                 }
                 ahead.push((beyond, vertex, height, distance));
             }
@@ -211,7 +262,11 @@ impl Arranged<'_> {
 
     /// The largest error of a height in a triangle whose vertices are off by a unit.
     fn tolerance(&self, cell: CellId) -> f64 {
-        let [a, b, c] = self.base.tds().corners(cell).map(|vertex| *self.base.point(vertex));
+        let [a, b, c] = self
+            .base
+            .tds()
+            .corners(cell)
+            .map(|vertex| *self.base.point(vertex));
         let [u, v] = [b, c].map(|p| [p[0] - a[0], p[1] - a[1], p[2] - a[2]]);
         let area = u[0] * v[1] - u[1] * v[0];
         let slope = ((u[1] * v[2] - u[2] * v[1]) / area).hypot((u[2] * v[0] - u[0] * v[2]) / area);
@@ -248,14 +303,29 @@ impl Arranged<'_> {
             let [u, v] = [(u - x) / self.unit[0], (v - y) / self.unit[1]];
             u * j == v * i && u * i + v * j > 0.0
         };
-        if let Some(next) = self.beside_on(chain, site).into_iter().flatten().find(is_that_direction) {
+        if let Some(next) = self
+            .beside_on(chain, site)
+            .into_iter()
+            .flatten()
+            .find(is_that_direction)
+        {
             return Some(next);
         }
         // If it meets another chain, try a little to one side, or less far.
         let turned = |[i, j]: [f64; 2], turn: f64| [i - turn * j, j + turn * i].map(f64::round);
-        let tried = [[i, j], turned([i, j], 0.5), turned([i, j], -0.5), [i / 2.0, j / 2.0], [i / 4.0, j / 4.0]];
+        let tried = [
+            [i, j],
+            turned([i, j], 0.5),
+            turned([i, j], -0.5),
+            [i / 2.0, j / 2.0],
+            [i / 4.0, j / 4.0],
+        ];
         for [i, j] in tried {
-            let moved = [unsigned_zero(x + i * self.unit[0]), unsigned_zero(y + j * self.unit[1]), f64::NAN];
+            let moved = [
+                unsigned_zero(x + i * self.unit[0]),
+                unsigned_zero(y + j * self.unit[1]),
+                f64::NAN,
+            ];
             let is_new = self.base.geometry().admits(&moved) && !taken.contains(&bits(&moved));
             if is_new && self.is_free(site, &moved, chain, others) {
                 taken.insert(bits(&moved));
@@ -277,7 +347,9 @@ impl Arranged<'_> {
                 && side(moved, b, p) * side(moved, b, q) != Sign::Positive
                 && side(p, q, moved) * side(p, q, b) != Sign::Positive
         };
-        let mut edges = others.iter().flat_map(|&other| self.chains[other].windows(2).map(|pair| [pair[0], pair[1]]));
+        let mut edges = others
+            .iter()
+            .flat_map(|&other| self.chains[other].windows(2).map(|pair| [pair[0], pair[1]]));
         let ends = self.beside_on(chain, site);
         edges.all(|edge| !ends.into_iter().flatten().any(|end| crosses(end, edge)))
     }
@@ -287,7 +359,10 @@ impl Arranged<'_> {
         let chain = &self.chains[chain];
         let at = chain.iter().position(|&other| other == site);
         let next_to = |at: Option<usize>| at.and_then(|at| chain.get(at)).copied();
-        [next_to(at.and_then(|at| at.checked_sub(1))), next_to(at.map(|at| at + 1))]
+        [
+            next_to(at.and_then(|at| at.checked_sub(1))),
+            next_to(at.map(|at| at + 1)),
+        ]
     }
 
     /// The chain of a line with the vertices that it passes before and after steps.
@@ -299,7 +374,10 @@ impl Arranged<'_> {
             // From the innermost to the outermost between the site and its neighbor on the line.
             let passed = |beside: u32| {
                 let mut passed: Vec<u32> = Vec::new();
-                for step in here.iter().filter(|step| self.is_beyond(step, site, beside, first_edge)) {
+                for step in here
+                    .iter()
+                    .filter(|step| self.is_beyond(step, site, beside, first_edge))
+                {
                     passed.extend(step.between.iter().chain([&step.vertex]));
                 }
                 passed.dedup();
@@ -318,7 +396,9 @@ impl Arranged<'_> {
 
     /// Returns true if a point lies on the same side of an edge at a site as the step's vertex.
     fn is_beyond(&self, step: &SplitSide, site: u32, beside: u32, first_edge: usize) -> bool {
-        let [Some(before), Some(after)] = self.beside_on(first_edge + step.edge, site) else { return false };
+        let [Some(before), Some(after)] = self.beside_on(first_edge + step.edge, site) else {
+            return false;
+        };
         let side = |p: u32, q: u32, r: u32| {
             let [p, q, r] = [p, q, r].map(|site| self.points[site as usize]);
             self.base.geometry().orientation([&p, &q, &r])
@@ -337,15 +417,23 @@ impl Arranged<'_> {
 /// the vertices passed on the way. `order` is that of the sites.
 fn followed(mut steps: Steps, order: &dyn Fn(&u32) -> [u64; 3]) -> Steps {
     let on = |steps: &Steps, site: u32, edge: usize| {
-        steps.get(&site)?.iter().find(|step| step.edge == edge).map(|step| step.vertex)
+        steps
+            .get(&site)?
+            .iter()
+            .find(|step| step.edge == edge)
+            .map(|step| step.vertex)
     };
     let mut sites: Vec<u32> = steps.keys().copied().collect();
     sites.sort_unstable_by_key(order);
     for site in sites {
         for at in 0..steps[&site].len() {
-            let SplitSide { edge, mut vertex, .. } = steps[&site][at];
+            let SplitSide {
+                edge, mut vertex, ..
+            } = steps[&site][at];
             let mut between = Vec::new();
-            while let Some(next) = on(&steps, vertex, edge).filter(|next| *next != site && !between.contains(next)) {
+            while let Some(next) =
+                on(&steps, vertex, edge).filter(|next| *next != site && !between.contains(next))
+            {
                 between.push(vertex);
                 vertex = next;
             }

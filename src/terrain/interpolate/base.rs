@@ -87,20 +87,38 @@ impl Base {
     pub(super) fn new<S: Surface + ?Sized>(surface: &S) -> Result<Self> {
         let count = surface.base_count();
         if count >= CLOSED as usize {
-            return Err(Error::limit(format!("{count} triangles; this method needs less than {CLOSED}"))
-                .cure("use linear interpolation, or divide the area"));
+            return Err(Error::limit(format!(
+                "{count} triangles; this method needs less than {CLOSED}"
+            ))
+            .cure("use linear interpolation, or divide the area"));
         }
-        let mut faces = vec![Linked { corners: [NONE; 3], links: [Link(NONE); 3] }; count];
-        faces.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, linked)| {
-            let first = chunk * CHUNK;
-            let mut found = Vec::with_capacity(linked.len());
-            surface.base_faces_in(first as u32..(first + linked.len()) as u32, &mut found);
-            for face in found {
-                linked[face.number as usize - first] = Linked::new(&face);
-            }
-        });
-        let used = faces.par_iter().flat_map_iter(|face| face.corners).filter(|&v| v != NONE).max();
-        let points = (0..used.map_or(0, |last| last + 1)).into_par_iter().map(|v| surface.position(v)).collect();
+        let mut faces = vec![
+            Linked {
+                corners: [NONE; 3],
+                links: [Link(NONE); 3]
+            };
+            count
+        ];
+        faces
+            .par_chunks_mut(CHUNK)
+            .enumerate()
+            .for_each(|(chunk, linked)| {
+                let first = chunk * CHUNK;
+                let mut found = Vec::with_capacity(linked.len());
+                surface.base_faces_in(first as u32..(first + linked.len()) as u32, &mut found);
+                for face in found {
+                    linked[face.number as usize - first] = Linked::new(&face);
+                }
+            });
+        let used = faces
+            .par_iter()
+            .flat_map_iter(|face| face.corners)
+            .filter(|&v| v != NONE)
+            .max();
+        let points = (0..used.map_or(0, |last| last + 1))
+            .into_par_iter()
+            .map(|v| surface.position(v))
+            .collect();
         Ok(Base { faces, points })
     }
 
@@ -124,17 +142,27 @@ impl Base {
     fn is_clearly_flat(&self, face: u32, i: usize) -> bool {
         /// Far above the rounding errors of the sum below.
         const CLEAR: f64 = 1e-12;
-        let Some((beyond, j)) = self.across(face, i) else { return false };
+        let Some((beyond, j)) = self.across(face, i) else {
+            return false;
+        };
         let q = self.point(self.faces[beyond as usize].corners[j]);
-        let [a, b, c] = self.faces[face as usize].corners.map(|v| minus(self.point(v), q));
-        let terms = [square(a) * cross(b, c), square(b) * cross(c, a), square(c) * cross(a, b)];
+        let [a, b, c] = self.faces[face as usize]
+            .corners
+            .map(|v| minus(self.point(v), q));
+        let terms = [
+            square(a) * cross(b, c),
+            square(b) * cross(c, a),
+            square(c) * cross(a, b),
+        ];
         terms.iter().sum::<f64>() > CLEAR * terms.iter().map(|term| term.abs()).sum::<f64>()
     }
 
     /// Returns true if the triangle exists.
     #[inline]
     pub(super) fn is_face(&self, face: u32) -> bool {
-        self.faces.get(face as usize).is_some_and(|linked| linked.corners[0] != NONE)
+        self.faces
+            .get(face as usize)
+            .is_some_and(|linked| linked.corners[0] != NONE)
     }
 
     /// The number of triangles, those that do not exist included.
@@ -196,7 +224,13 @@ impl Base {
                 match self.face(face).links[i].any() {
                     Some(beyond) if self.is_face(beyond) => face = beyond,
                     // Outside of the base, because of rounding.
-                    _ => return Some(Site::Height(height_along(corners[next(i)], corners[before(i)], q))),
+                    _ => {
+                        return Some(Site::Height(height_along(
+                            corners[next(i)],
+                            corners[before(i)],
+                            q,
+                        )));
+                    }
                 }
                 continue;
             }
@@ -205,13 +239,22 @@ impl Base {
                 let height = height_along(p, r, q);
                 match self.across(face, i) {
                     None if self.face(face).is_hard(i) => return Some(Site::Height(height)),
-                    None => return Some(Site::Rim { height, face, first: smallest(corners) }),
+                    None => {
+                        return Some(Site::Rim {
+                            height,
+                            face,
+                            first: smallest(corners),
+                        });
+                    }
                     // Of two triangles at an edge, the one to its left, seen from its smaller end.
                     Some((beyond, _)) if is_smaller(r, p) => face = beyond,
                     Some(_) => {}
                 }
             }
-            return Some(Site::Inside { face, first: smallest(self.corners(face)) });
+            return Some(Site::Inside {
+                face,
+                first: smallest(self.corners(face)),
+            });
         }
         None
     }
@@ -220,10 +263,17 @@ impl Base {
 impl Linked {
     fn new(face: &BaseFace) -> Self {
         let link = |i: usize| match face.neighbors[i] {
-            Some(beyond) if beyond < CLOSED => Link(if face.edges[i].is_hard() { beyond | CLOSED } else { beyond }),
+            Some(beyond) if beyond < CLOSED => Link(if face.edges[i].is_hard() {
+                beyond | CLOSED
+            } else {
+                beyond
+            }),
             _ => Link(NONE),
         };
-        Linked { corners: face.corners, links: [0, 1, 2].map(link) }
+        Linked {
+            corners: face.corners,
+            links: [0, 1, 2].map(link),
+        }
     }
 
     /// Returns true if there is a triangle across the edge opposite corner `i`, which
@@ -271,7 +321,13 @@ fn is_smaller(p: [f64; 3], r: [f64; 3]) -> bool {
 /// Returns the index of the smallest corner by x, then y.
 #[inline]
 fn smallest(corners: [[f64; 3]; 3]) -> usize {
-    (1..3).fold(0, |first, i| if is_smaller(corners[i], corners[first]) { i } else { first })
+    (1..3).fold(0, |first, i| {
+        if is_smaller(corners[i], corners[first]) {
+            i
+        } else {
+            first
+        }
+    })
 }
 
 /// Returns on which side of the line from `p` to `r` a position is: positive on the left.
@@ -292,6 +348,10 @@ fn side(p: [f64; 3], r: [f64; 3], q: [f64; 2]) -> Sign {
 fn height_along(p: [f64; 3], r: [f64; 3], q: [f64; 2]) -> f64 {
     let (p, r) = if is_smaller(p, r) { (p, r) } else { (r, p) };
     let (dx, dy) = (r[0] - p[0], r[1] - p[1]);
-    let part = if dx.abs() > dy.abs() { (q[0] - p[0]) / dx } else { (q[1] - p[1]) / dy };
+    let part = if dx.abs() > dy.abs() {
+        (q[0] - p[0]) / dx
+    } else {
+        (q[1] - p[1]) / dy
+    };
     p[2] + part.clamp(0.0, 1.0) * (r[2] - p[2])
 }

@@ -141,7 +141,12 @@ impl<'a, S: Surface + ?Sized> Interpolant<'a, S> {
             Method::Idw => Rule::Idw(Vertices::new(surface)),
         };
         surface.ensure_intact()?;
-        Ok(Interpolant { surface, rule, faces: OnceLock::new(), beneath: OnceLock::new() })
+        Ok(Interpolant {
+            surface,
+            rule,
+            faces: OnceLock::new(),
+            beneath: OnceLock::new(),
+        })
     }
 
     /// Returns the method.
@@ -163,7 +168,11 @@ impl<'a, S: Surface + ?Sized> Interpolant<'a, S> {
     /// and about 50 bytes for each face.
     pub fn height(&self, x: f64, y: f64) -> Option<f64> {
         let q = [x, y];
-        let is_in = |face| self.surface.triangle(face).is_some_and(|triangle| holds(triangle, q));
+        let is_in = |face| {
+            self.surface
+                .triangle(face)
+                .is_some_and(|triangle| holds(triangle, q))
+        };
         let faces = self.faces.get_or_init(|| {
             let located = |(number, corners): (u32, [u32; 3])| Located {
                 number,
@@ -197,7 +206,11 @@ impl<'a, S: Surface + ?Sized> Interpolant<'a, S> {
                 }
             }),
         };
-        height.unwrap_or_else(|| self.surface.triangle(face).map_or(f64::NAN, |corners| linear(corners, q)))
+        height.unwrap_or_else(|| {
+            self.surface
+                .triangle(face)
+                .map_or(f64::NAN, |corners| linear(corners, q))
+        })
     }
 
     /// Returns the height at a position, given how to compute it from its site in the triangles
@@ -209,7 +222,11 @@ impl<'a, S: Surface + ?Sized> Interpolant<'a, S> {
         q: [f64; 2],
         height: impl FnOnce(Site) -> Option<f64>,
     ) -> Option<f64> {
-        let hint = if base.is_face(face) { Some(face) } else { self.triangle_under(base, q) };
+        let hint = if base.is_face(face) {
+            Some(face)
+        } else {
+            self.triangle_under(base, q)
+        };
         let site = base.site(q, hint?)?;
         height(site).or_else(|| match site {
             Site::Height(_) => None,
@@ -229,15 +246,28 @@ impl<'a, S: Surface + ?Sized> Interpolant<'a, S> {
             let faces = faces_under(self.surface).filter(|face| is_cut(face.number));
             let extent = |corners: [u32; 3]| Extent::of(corners.map(|v| base.point(v)));
             Boxes::by_one_thread(
-                faces.map(|face| Located { number: face.number, extent: extent(face.corners) }).collect(),
+                faces
+                    .map(|face| Located {
+                        number: face.number,
+                        extent: extent(face.corners),
+                    })
+                    .collect(),
             )
         });
-        beneath.find(q, |face| holds(base.corners(face.number), q).then_some(face.number))
+        beneath.find(q, |face| {
+            holds(base.corners(face.number), q).then_some(face.number)
+        })
     }
 }
 
 /// Returns the height on the patch over a triangle; `patch` is the last one that was used.
-fn smooth(base: &Base, face: u32, first: usize, q: [f64; 2], patch: &mut Option<Patch>) -> Option<f64> {
+fn smooth(
+    base: &Base,
+    face: u32,
+    first: usize,
+    q: [f64; 2],
+    patch: &mut Option<Patch>,
+) -> Option<f64> {
     if patch.as_ref().is_none_or(|patch| patch.face() != face) {
         *patch = Some(Patch::new(base, face, first));
     }
@@ -248,5 +278,7 @@ fn smooth(base: &Base, face: u32, first: usize, q: [f64; 2], patch: &mut Option<
 fn holds([a, b, c]: [[f64; 3]; 3], q: [f64; 2]) -> bool {
     let q = [q[0], q[1], 0.0];
     q.iter().all(|c| c.is_finite())
-        && [[a, b], [b, c], [c, a]].into_iter().all(|[p, r]| orientation([p, r, q]) != Sign::Negative)
+        && [[a, b], [b, c], [c, a]]
+            .into_iter()
+            .all(|[p, r]| orientation([p, r, q]) != Sign::Negative)
 }

@@ -89,14 +89,48 @@ trait Weigh {
 ///
 /// `face` contains the position, and `first` is one of its corners. `None` if a number overflows,
 /// underflows, or is lost to rounding.
-pub(super) fn sibson(base: &Base, face: u32, first: usize, q: [f64; 2], tour: &mut Tour) -> Option<f64> {
-    travel(base, face, first, q, tour, Areas { mean: Mean::new(base, face, first), ends: None, lost: 0.0, head: 0.0 })
+pub(super) fn sibson(
+    base: &Base,
+    face: u32,
+    first: usize,
+    q: [f64; 2],
+    tour: &mut Tour,
+) -> Option<f64> {
+    travel(
+        base,
+        face,
+        first,
+        q,
+        tour,
+        Areas {
+            mean: Mean::new(base, face, first),
+            ends: None,
+            lost: 0.0,
+            head: 0.0,
+        },
+    )
 }
 
 /// Like [`sibson`], but by Laplace's weights: the length of the border between a cell and the new
 /// one, over the distance.
-pub(super) fn laplace(base: &Base, face: u32, first: usize, q: [f64; 2], tour: &mut Tour) -> Option<f64> {
-    travel(base, face, first, q, tour, Lengths { mean: Mean::new(base, face, first), ends: None })
+pub(super) fn laplace(
+    base: &Base,
+    face: u32,
+    first: usize,
+    q: [f64; 2],
+    tour: &mut Tour,
+) -> Option<f64> {
+    travel(
+        base,
+        face,
+        first,
+        q,
+        tour,
+        Lengths {
+            mean: Mean::new(base, face, first),
+            ends: None,
+        },
+    )
 }
 
 /// Goes around the zone of a position, counter-clockwise from a corner of the triangle there.
@@ -110,7 +144,11 @@ fn travel(
 ) -> Option<f64> {
     let see = |number: u32| {
         let to = minus(base.point(number), [q[0], q[1], 0.0]);
-        SeenVertex { number, to, square: square(to) }
+        SeenVertex {
+            number,
+            to,
+            square: square(to),
+        }
     };
     let sides = ZoneEdge::of_face(face, base.face(face).corners.map(see));
     steps.clear();
@@ -129,11 +167,16 @@ fn travel(
         // Into the zone, along the edges that begin where this one does.
         while let Some((beyond, j)) = base.across(side.face, side.i) {
             let apex = see(base.face(beyond).corners[j]);
-            let Some([on_the_left, on_the_right]) = side.beyond(beyond, j, apex) else { break };
+            let Some([on_the_left, on_the_right]) = side.beyond(beyond, j, apex) else {
+                break;
+            };
             left = left.checked_sub(1)?;
             let new = on_the_left.center;
             weigh.pass(side.center, new);
-            steps.push(TourStep::Back { from: new, to: side.center });
+            steps.push(TourStep::Back {
+                from: new,
+                to: side.center,
+            });
             steps.push(TourStep::Edge(on_the_right));
             side = on_the_left;
         }
@@ -149,7 +192,14 @@ impl ZoneEdge {
         let center = circumcenter(corners);
         [0, 1, 2].map(|i| {
             let (from, to) = (corners[next(i)], corners[before(i)]);
-            ZoneEdge { face, i, from, to, area: cross(from.to, to.to), center }
+            ZoneEdge {
+                face,
+                i,
+                from,
+                to,
+                area: cross(from.to, to.to),
+                center,
+            }
         })
     }
 
@@ -164,8 +214,22 @@ impl ZoneEdge {
             return None;
         }
         let center = circumcenter([to, from, apex]);
-        let left = ZoneEdge { face, i: next(j), from, to: apex, area: left_area, center };
-        let right = ZoneEdge { face, i: before(j), from: apex, to, area: right_area, center };
+        let left = ZoneEdge {
+            face,
+            i: next(j),
+            from,
+            to: apex,
+            area: left_area,
+            center,
+        };
+        let right = ZoneEdge {
+            face,
+            i: before(j),
+            from: apex,
+            to,
+            area: right_area,
+            center,
+        };
         Some([left, right])
     }
 
@@ -191,8 +255,14 @@ fn circumcenter([a, b, c]: [SeenVertex; 3]) -> [f64; 2] {
     let area = cross(a.to, b.to) + cross(b.to, c.to) + cross(c.to, a.to);
     let scale = 0.5 / area;
     [
-        (a.square * (b.to[1] - c.to[1]) + b.square * (c.to[1] - a.to[1]) + c.square * (a.to[1] - b.to[1])) * scale,
-        (a.square * (c.to[0] - b.to[0]) + b.square * (a.to[0] - c.to[0]) + c.square * (b.to[0] - a.to[0])) * scale,
+        (a.square * (b.to[1] - c.to[1])
+            + b.square * (c.to[1] - a.to[1])
+            + c.square * (a.to[1] - b.to[1]))
+            * scale,
+        (a.square * (c.to[0] - b.to[0])
+            + b.square * (a.to[0] - c.to[0])
+            + c.square * (b.to[0] - a.to[0]))
+            * scale,
     ]
 }
 
@@ -206,7 +276,12 @@ struct Mean<'a> {
 
 impl<'a> Mean<'a> {
     fn new(base: &'a Base, face: u32, first: usize) -> Self {
-        Mean { base, origin: base.corners(face)[first][2], weights: 0.0, heights: 0.0 }
+        Mean {
+            base,
+            origin: base.corners(face)[first][2],
+            weights: 0.0,
+            heights: 0.0,
+        }
     }
 
     /// Adds a vertex. Rounding may make a weight negative that is about 0. A weight that is not a
@@ -252,20 +327,34 @@ impl Weigh for Areas<'_> {
     fn border(&mut self, from: SeenVertex, center: [f64; 2], new: [f64; 2]) {
         match &mut self.ends {
             Some(ends) => {
-                self.mean.add(from.number, self.lost + cross(new, center) + cross(ends.last, new));
+                self.mean.add(
+                    from.number,
+                    self.lost + cross(new, center) + cross(ends.last, new),
+                );
                 ends.last = new;
             }
             None => {
                 self.head = self.lost;
-                self.ends = Some(Ends { first: from.number, begin: [center, new], last: new });
+                self.ends = Some(Ends {
+                    first: from.number,
+                    begin: [center, new],
+                    last: new,
+                });
             }
         }
         self.lost = cross(center, new);
     }
 
     fn height(mut self) -> Option<f64> {
-        let Ends { first, begin: [center, new], last } = self.ends?;
-        self.mean.add(first, self.lost + self.head + cross(new, center) + cross(last, new));
+        let Ends {
+            first,
+            begin: [center, new],
+            last,
+        } = self.ends?;
+        self.mean.add(
+            first,
+            self.lost + self.head + cross(new, center) + cross(last, new),
+        );
         self.mean.height()
     }
 }

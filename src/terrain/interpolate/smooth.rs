@@ -68,7 +68,8 @@ impl Patch {
             [(ax + bx) / 3.0, (ay + by) / 3.0]
         };
         let beside = [0, 1, 2].map(|i| {
-            [vector(i, next(i)), vector(i, before(i)), inward(i)].map(|vector| height(i) + slope(i, vector) / 3.0)
+            [vector(i, next(i)), vector(i, before(i)), inward(i)]
+                .map(|vector| height(i) + slope(i, vector) / 3.0)
         });
         // The slope across an edge is linear along it.
         let middle = [0, 1, 2].map(|i| {
@@ -83,10 +84,21 @@ impl Patch {
         let hard = [0, 1, 2].map(|i| {
             let (j, k) = (next(i), before(i));
             let rise = height(k) - height(j);
-            base.face(face).is_hard(order[i]).then(|| [rise - slope(j, vector(j, k)), slope(k, vector(j, k)) - rise])
+            base.face(face)
+                .is_hard(order[i])
+                .then(|| [rise - slope(j, vector(j, k)), slope(k, vector(j, k)) - rise])
         });
         let area = cross(vector(0, 1), vector(0, 2));
-        Patch { face, corners, area, beside, middle, inner, center: inner.iter().sum::<f64>() / 3.0, hard }
+        Patch {
+            face,
+            corners,
+            area,
+            beside,
+            middle,
+            inner,
+            center: inner.iter().sum::<f64>() / 3.0,
+            hard,
+        }
     }
 
     /// Returns the number of the triangle.
@@ -100,14 +112,23 @@ impl Patch {
         let to = self.corners.map(|p| minus(p, [q[0], q[1], 0.0]));
         let parts = [0, 1, 2].map(|i| cross(to[next(i)], to[before(i)]) / self.area);
         // The polynomial over the part of the triangle between the centroid and the farthest edge.
-        let i = (1..3).fold(0, |least, i| if parts[i] < parts[least] { i } else { least });
+        let i = (1..3).fold(
+            0,
+            |least, i| if parts[i] < parts[least] { i } else { least },
+        );
         let (j, k) = (next(i), before(i));
         let [u, v, w] = [parts[j] - parts[i], parts[k] - parts[i], 3.0 * parts[i]];
         let ([jk, _, jm], [_, kj, km]) = (self.beside[j], self.beside[k]);
-        let at_edge = self.corners[j][2] * u * u * u + 3.0 * u * v * (jk * u + kj * v) + self.corners[k][2] * v * v * v;
+        let at_edge = self.corners[j][2] * u * u * u
+            + 3.0 * u * v * (jk * u + kj * v)
+            + self.corners[k][2] * v * v * v;
         let next_to_it = 3.0 * w * (jm * u * u + 2.0 * self.middle[i] * u * v + km * v * v);
         let next_to_center = 3.0 * w * w * (self.inner[j] * u + self.inner[k] * v);
-        let height = at_edge + next_to_it + next_to_center + self.center * w * w * w + self.correction(parts);
+        let height = at_edge
+            + next_to_it
+            + next_to_center
+            + self.center * w * w * w
+            + self.correction(parts);
         height.is_finite().then_some(height)
     }
 
@@ -123,7 +144,11 @@ impl Patch {
         }
         let of_edge = |i: usize| {
             self.hard[i].map_or(0.0, |[a, b]| {
-                products[i] * (a * parts[next(i)] + b * parts[before(i)]) * products[i] * products[i] / sum
+                products[i]
+                    * (a * parts[next(i)] + b * parts[before(i)])
+                    * products[i]
+                    * products[i]
+                    / sum
             })
         };
         of_edge(0) + of_edge(1) + of_edge(2)
@@ -203,7 +228,10 @@ fn each_neighbor(base: &Base, face: u32, i: usize, mut each: impl FnMut([f64; 2]
     };
     // Clockwise to a closed edge, or once around.
     let (mut at_face, mut at_corner, mut steps) = (face, i, 0);
-    while let Some((beyond, j)) = base.across(at_face, before(at_corner)).filter(|_| steps < base.count()) {
+    while let Some((beyond, j)) = base
+        .across(at_face, before(at_corner))
+        .filter(|_| steps < base.count())
+    {
         // The edge passed ends at the vertex, and its other end is next to it.
         (at_face, at_corner) = (beyond, before(j));
         steps += 1;

@@ -38,9 +38,17 @@ impl Vertices {
     /// O(n log n); about 35 bytes for each vertex.
     pub(super) fn new<S: Surface + ?Sized>(surface: &S) -> Self {
         let mut is_used = vec![false; surface.vertex_count()];
-        faces_under(surface).flat_map(|face| face.corners).for_each(|v| is_used[v as usize] = true);
-        let used = is_used.into_par_iter().enumerate().filter(|(_, is_used)| *is_used);
-        Vertices(Boxes::new(used.map(|(v, _)| Vertex(surface.position(v as u32))).collect()))
+        faces_under(surface)
+            .flat_map(|face| face.corners)
+            .for_each(|v| is_used[v as usize] = true);
+        let used = is_used
+            .into_par_iter()
+            .enumerate()
+            .filter(|(_, is_used)| *is_used);
+        Vertices(Boxes::new(
+            used.map(|(v, _)| Vertex(surface.position(v as u32)))
+                .collect(),
+        ))
     }
 
     /// Returns the height of the nearest vertex; of several, that of the smallest by x, then y.
@@ -63,11 +71,15 @@ impl Vertices {
         found.clear();
         self.0.around(q, nodes, |&Vertex(p)| {
             let neighbor = (distance(p, q), p);
-            let last = found.get(NEIGHBORS - 1).map_or(f64::INFINITY, |(distance, _)| *distance);
+            let last = found
+                .get(NEIGHBORS - 1)
+                .map_or(f64::INFINITY, |(distance, _)| *distance);
             if neighbor.0 <= last {
                 let at = found.partition_point(|other| key(other) < key(&neighbor));
                 found.insert(at, neighbor);
-                let last = found.get(NEIGHBORS - 1).map_or(f64::INFINITY, |(distance, _)| *distance);
+                let last = found
+                    .get(NEIGHBORS - 1)
+                    .map_or(f64::INFINITY, |(distance, _)| *distance);
                 while found.last().is_some_and(|(distance, _)| *distance > last) {
                     found.pop();
                 }

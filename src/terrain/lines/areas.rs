@@ -38,9 +38,11 @@ impl WaterLevel {
     /// The rings around the water, in plan.
     pub(crate) fn rings(&self) -> Rings {
         match self {
-            WaterLevel::Flat(flat) => {
-                flat.rings.iter().map(|ring| ring.iter().map(|p| [p[0], p[1]]).collect()).collect()
-            }
+            WaterLevel::Flat(flat) => flat
+                .rings
+                .iter()
+                .map(|ring| ring.iter().map(|p| [p[0], p[1]]).collect())
+                .collect(),
             WaterLevel::River(river) => vec![river.ring()],
         }
     }
@@ -64,9 +66,17 @@ const ROUNDING: f64 = 4.0;
 
 impl Replaced {
     pub(crate) fn add_flat(&mut self, flat: &Flat) {
-        let rings: Rings = flat.rings.iter().map(|ring| ring.iter().map(|p| [p[0], p[1]]).collect()).collect();
+        let rings: Rings = flat
+            .rings
+            .iter()
+            .map(|ring| ring.iter().map(|p| [p[0], p[1]]).collect())
+            .collect();
         if flat.buffer > 0.0 {
-            match self.buffers.iter_mut().find(|(buffer, _)| *buffer == flat.buffer) {
+            match self
+                .buffers
+                .iter_mut()
+                .find(|(buffer, _)| *buffer == flat.buffer)
+            {
                 Some((_, shores)) => shores.push(rings.clone()),
                 None => self.buffers.push((flat.buffer, vec![rings.clone()])),
             }
@@ -93,15 +103,31 @@ impl Replaced {
     /// O(n log n) for n sides of areas, and for each point linear in the sides at about its y.
     pub(crate) fn split_off(&self, points: &mut Vec<[f64; 3]>) -> Vec<[f64; 3]> {
         let inside = Inside::new(&self.polygons);
-        let largest = self.computed.iter().flatten().flatten().flatten().fold(0.0_f64, |most, c| most.max(c.abs()));
+        let largest = self
+            .computed
+            .iter()
+            .flatten()
+            .flatten()
+            .flatten()
+            .fold(0.0_f64, |most, c| most.max(c.abs()));
         let rounded = (ROUNDING * f64::EPSILON * largest, &self.computed);
-        let buffers = self.buffers.iter().map(|(buffer, shores)| (*buffer, shores)).chain([rounded]);
-        let sides_of = |rings: &[Rings]| NearLines::new(rings.iter().flatten().flat_map(|ring| sides(ring)));
-        let near: Vec<(f64, NearLines)> = buffers.map(|(distance, rings)| (distance, sides_of(rings))).collect();
+        let buffers = self
+            .buffers
+            .iter()
+            .map(|(buffer, shores)| (*buffer, shores))
+            .chain([rounded]);
+        let sides_of =
+            |rings: &[Rings]| NearLines::new(rings.iter().flatten().flat_map(|ring| sides(ring)));
+        let near: Vec<(f64, NearLines)> = buffers
+            .map(|(distance, rings)| (distance, sides_of(rings)))
+            .collect();
         let mut replaced = Vec::new();
         points.retain(|&p| {
             let site = [p[0], p[1]];
-            let is_replaced = inside.contains(site) || near.iter().any(|(buffer, shores)| shores.pass(site, *buffer));
+            let is_replaced = inside.contains(site)
+                || near
+                    .iter()
+                    .any(|(buffer, shores)| shores.pass(site, *buffer));
             if is_replaced {
                 replaced.push(p);
             }
@@ -124,7 +150,12 @@ impl Faces for Divided<'_> {
         let (tds, cell) = (self.triangulation.tds(), CellId::new(face as usize));
         if self.triangulation.is_constrained(cell, side) {
             let [p, q] = tds.edge_ends(cell, side);
-            domains.extend(self.domains.get(&[p.min(q), p.max(q)]).into_iter().flatten());
+            domains.extend(
+                self.domains
+                    .get(&[p.min(q), p.max(q)])
+                    .into_iter()
+                    .flatten(),
+            );
         }
         Some(tds.neighbor(cell, side).index() as u32)
     }
@@ -164,7 +195,9 @@ pub(crate) fn level(
         return Ok(Leveled::default());
     }
     let divided = Divided::by_rims(triangulation, waters);
-    let Some(labels) = divided.labels() else { return Ok(Leveled::default()) };
+    let Some(labels) = divided.labels() else {
+        return Ok(Leveled::default());
+    };
     let around = divided.areas_around(&labels);
     let heights = WaterHeights {
         waters,
@@ -172,7 +205,11 @@ pub(crate) fn level(
         surfaces: waters.iter().map(|_| OnceCell::new()).collect(),
         pairs: overlapping.iter().copied().collect(),
         reaches: reaches_of(waters, overlapping),
-        rounding: rounding_of(around.iter().map(|(vertex, _)| *triangulation.point(*vertex))),
+        rounding: rounding_of(
+            around
+                .iter()
+                .map(|(vertex, _)| *triangulation.point(*vertex)),
+        ),
     };
     let mut new_heights: Vec<(VertexId, f64)> = Vec::with_capacity(around.len());
     for (vertex, mut areas) in around {
@@ -209,11 +246,17 @@ impl<'a> Divided<'a> {
         for (domain, water) in waters.iter().enumerate() {
             for &line in &water.rim {
                 for pair in triangulation.chain(LineId::new(line)).windows(2) {
-                    domains.entry([pair[0].min(pair[1]), pair[0].max(pair[1])]).or_default().push(domain);
+                    domains
+                        .entry([pair[0].min(pair[1]), pair[0].max(pair[1])])
+                        .or_default()
+                        .push(domain);
                 }
             }
         }
-        Divided { triangulation, domains }
+        Divided {
+            triangulation,
+            domains,
+        }
     }
 
     /// The areas that each cell lies in; `None` if there are no cells.
@@ -221,13 +264,19 @@ impl<'a> Divided<'a> {
         let tds = self.triangulation.tds();
         let start = tds.cell_of(VertexId::INFINITE)?;
         let mut areas: Vec<Vec<Domain>> = vec![Vec::new()];
-        let of_cells = regions::label(self, tds.cell_slots(), start.index() as u32, Vec::new(), |within| {
-            if within.is_empty() {
-                return 0;
-            }
-            areas.push(within.to_vec());
-            areas.len() as u32 - 1
-        });
+        let of_cells = regions::label(
+            self,
+            tds.cell_slots(),
+            start.index() as u32,
+            Vec::new(),
+            |within| {
+                if within.is_empty() {
+                    return 0;
+                }
+                areas.push(within.to_vec());
+                areas.len() as u32 - 1
+            },
+        );
         Some(Labels { of_cells, areas })
     }
 
@@ -236,9 +285,16 @@ impl<'a> Divided<'a> {
     fn areas_around(&self, labels: &Labels) -> Vec<(VertexId, Vec<Domain>)> {
         let tds = self.triangulation.tds();
         let mut around: FxHashMap<VertexId, Vec<Domain>> = FxHashMap::default();
-        for cell in tds.cells().filter(|cell| labels.of_cells[cell.index()] != 0) {
+        for cell in tds
+            .cells()
+            .filter(|cell| labels.of_cells[cell.index()] != 0)
+        {
             let within = &labels.areas[labels.of_cells[cell.index()] as usize];
-            for &vertex in tds.corners(cell).iter().filter(|vertex| **vertex != VertexId::INFINITE) {
+            for &vertex in tds
+                .corners(cell)
+                .iter()
+                .filter(|vertex| **vertex != VertexId::INFINITE)
+            {
                 around.entry(vertex).or_default().extend(within);
             }
         }
@@ -281,17 +337,22 @@ impl WaterHeights<'_> {
     /// rounding goes. Then each area is named once, in order.
     fn add_near(&self, areas: &mut Vec<Domain>, [x, y]: [f64; 2]) {
         let mut near: Vec<Domain> = Vec::new();
-        self.reaches.find_in(Extent::of_plan([[x, y]]).grown(self.rounding), |reach| {
-            let is_other = !areas.contains(&reach.area) && !near.contains(&reach.area);
-            if is_other
-                && areas.iter().any(|area| self.pairs.contains(&[*area, reach.area]))
-                && let WaterLevel::River(river) = &self.waters[reach.area].level
-                && self.surface(reach.area, river).is_near([x, y], self.rounding)
-            {
-                near.push(reach.area);
-            }
-            None::<()>
-        });
+        self.reaches
+            .find_in(Extent::of_plan([[x, y]]).grown(self.rounding), |reach| {
+                let is_other = !areas.contains(&reach.area) && !near.contains(&reach.area);
+                if is_other
+                    && areas
+                        .iter()
+                        .any(|area| self.pairs.contains(&[*area, reach.area]))
+                    && let WaterLevel::River(river) = &self.waters[reach.area].level
+                    && self
+                        .surface(reach.area, river)
+                        .is_near([x, y], self.rounding)
+                {
+                    near.push(reach.area);
+                }
+                None::<()>
+            });
         areas.extend(near);
         areas.sort_unstable();
         areas.dedup();
@@ -301,12 +362,21 @@ impl WaterHeights<'_> {
     ///
     /// # Errors
     /// If their heights differ.
-    fn of_lakes(&self, areas: &[Domain], at: [f64; 2], name: &dyn Fn(usize) -> String) -> Result<Option<f64>> {
-        let mut lakes = areas.iter().filter_map(|&area| match &self.waters[area].level {
-            WaterLevel::Flat(flat) => Some((area, flat.height)),
-            WaterLevel::River(_) => None,
-        });
-        let Some((first, height)) = lakes.next() else { return Ok(None) };
+    fn of_lakes(
+        &self,
+        areas: &[Domain],
+        at: [f64; 2],
+        name: &dyn Fn(usize) -> String,
+    ) -> Result<Option<f64>> {
+        let mut lakes = areas
+            .iter()
+            .filter_map(|&area| match &self.waters[area].level {
+                WaterLevel::Flat(flat) => Some((area, flat.height)),
+                WaterLevel::River(_) => None,
+            });
+        let Some((first, height)) = lakes.next() else {
+            return Ok(None);
+        };
         match lakes.find(|(_, other)| *other != height) {
             Some(other) => Err(two_lakes([(first, height), other], at, self.waters, name)),
             None => Ok(Some(height)),
@@ -315,13 +385,15 @@ impl WaterHeights<'_> {
 
     /// The lowest height of the rivers among some areas at a vertex; `None` if there are none.
     fn of_rivers(&self, areas: &[Domain], vertex: VertexId, at: [f64; 2]) -> Option<f64> {
-        let rivers = areas.iter().filter_map(|&area| match &self.waters[area].level {
-            WaterLevel::River(river) => Some(match self.own.get(&(area, vertex)) {
-                Some(height) => *height,
-                None => self.surface(area, river).height(at),
-            }),
-            WaterLevel::Flat(_) => None,
-        });
+        let rivers = areas
+            .iter()
+            .filter_map(|&area| match &self.waters[area].level {
+                WaterLevel::River(river) => Some(match self.own.get(&(area, vertex)) {
+                    Some(height) => *height,
+                    None => self.surface(area, river).height(at),
+                }),
+                WaterLevel::Flat(_) => None,
+            });
         Some(rivers.fold(f64::INFINITY, f64::min)).filter(|lowest| lowest.is_finite())
     }
 }
@@ -344,9 +416,14 @@ fn reaches_of(waters: &[Water], pairs: &[[Domain; 2]]) -> Boxes<Reach> {
     let areas: BTreeSet<Domain> = pairs.iter().map(|[_, area]| *area).collect();
     let mut reaches = Vec::new();
     for area in areas {
-        let WaterLevel::River(river) = &waters[area].level else { continue };
+        let WaterLevel::River(river) = &waters[area].level else {
+            continue;
+        };
         let extent = |stretch| Extent::of(river.triangles(stretch).concat());
-        reaches.extend((0..river.stretch_count()).map(|stretch| Reach { area, extent: extent(stretch) }));
+        reaches.extend((0..river.stretch_count()).map(|stretch| Reach {
+            area,
+            extent: extent(stretch),
+        }));
     }
     Boxes::new(reaches)
 }
@@ -364,13 +441,23 @@ fn own_heights(
     waters: &[Water],
     given: &[(usize, Vec<f64>)],
 ) -> FxHashMap<(Domain, VertexId), f64> {
-    let rivers = waters.iter().enumerate().filter(|(_, water)| matches!(water.level, WaterLevel::River(_)));
-    let areas: FxHashMap<usize, Domain> =
-        rivers.flat_map(|(area, water)| water.rim.iter().map(move |&line| (line, area))).collect();
+    let rivers = waters
+        .iter()
+        .enumerate()
+        .filter(|(_, water)| matches!(water.level, WaterLevel::River(_)));
+    let areas: FxHashMap<usize, Domain> = rivers
+        .flat_map(|(area, water)| water.rim.iter().map(move |&line| (line, area)))
+        .collect();
     let mut own: FxHashMap<(Domain, VertexId), f64> = FxHashMap::default();
     for (line, heights) in given {
-        let Some(&area) = areas.get(line) else { continue };
-        for (&vertex, &height) in triangulation.line_vertices(LineId::new(*line)).iter().zip(heights) {
+        let Some(&area) = areas.get(line) else {
+            continue;
+        };
+        for (&vertex, &height) in triangulation
+            .line_vertices(LineId::new(*line))
+            .iter()
+            .zip(heights)
+        {
             let lowest = own.entry((area, vertex)).or_insert(height);
             *lowest = lowest.min(height);
         }
@@ -379,9 +466,18 @@ fn own_heights(
 }
 
 #[cold]
-fn two_lakes(lakes: [(Domain, f64); 2], [x, y]: [f64; 2], waters: &[Water], name: &dyn Fn(usize) -> String) -> Error {
-    let [(first, height), (other, different)] =
-        lakes.map(|(area, height)| (name(waters[area].rim.first().copied().unwrap_or_default()), height));
+fn two_lakes(
+    lakes: [(Domain, f64); 2],
+    [x, y]: [f64; 2],
+    waters: &[Water],
+    name: &dyn Fn(usize) -> String,
+) -> Error {
+    let [(first, height), (other, different)] = lakes.map(|(area, height)| {
+        (
+            name(waters[area].rim.first().copied().unwrap_or_default()),
+            height,
+        )
+    });
     Error::format(format!(
         "two lakes meet at {x} {y} with different heights: {height} of {first}, {different} of {other}"
     ))

@@ -9,14 +9,22 @@
 /// # Complexity
 /// Linear in the number of vertices of the result.
 pub fn densified(line: &[[f64; 3]], spacing: f64) -> Vec<[f64; 3]> {
-    let Some((first, rest)) = line.split_first() else { return Vec::new() };
+    let Some((first, rest)) = line.split_first() else {
+        return Vec::new();
+    };
     let mut dense = vec![*first];
     let mut from = *first;
     for &to in rest {
         let length = (to[0] - from[0]).hypot(to[1] - from[1]);
-        let count = if spacing > 0.0 && length.is_finite() { (length / spacing).ceil().clamp(1.0, MOST) } else { 1.0 };
+        let count = if spacing > 0.0 && length.is_finite() {
+            (length / spacing).ceil().clamp(1.0, MOST)
+        } else {
+            1.0
+        };
         let inner = (1..count as u32).map(|k| f64::from(k) / count);
-        dense.extend(inner.map(|part| [0, 1, 2].map(|axis| from[axis] + part * (to[axis] - from[axis]))));
+        dense.extend(
+            inner.map(|part| [0, 1, 2].map(|axis| from[axis] + part * (to[axis] - from[axis]))),
+        );
         dense.push(to);
         from = to;
     }
@@ -37,7 +45,9 @@ mod tests {
         assert_eq!(dense.len(), 5);
         let expected = [5.0 / 3.0, 5.0 / 3.0, 5.0 / 3.0, 1.0];
         for (pair, length) in dense.windows(2).zip(expected) {
-            assert!(((pair[1][0] - pair[0][0]).hypot(pair[1][1] - pair[0][1]) - length).abs() < 1e-12);
+            assert!(
+                ((pair[1][0] - pair[0][0]).hypot(pair[1][1] - pair[0][1]) - length).abs() < 1e-12
+            );
         }
         assert!((dense[1][2] - 10.0 / 3.0).abs() < 1e-12);
         assert_eq!([dense[0], dense[3], dense[4]], line);

@@ -41,7 +41,11 @@ impl Flat {
         for ring in rings {
             check_ring(ring)?;
         }
-        let mut heights: Vec<f64> = rings.iter().flat_map(|ring| ring.iter().skip(1)).map(|p| p[2]).collect();
+        let mut heights: Vec<f64> = rings
+            .iter()
+            .flat_map(|ring| ring.iter().skip(1))
+            .map(|p| p[2])
+            .collect();
         heights.sort_unstable_by(f64::total_cmp);
         let (Some(&lowest), Some(&highest)) = (heights.first(), heights.last()) else {
             return Err(Error::format("the lake has no ring"));
@@ -50,19 +54,23 @@ impl Flat {
         let level = match height {
             FlatHeight::Given(height) if height.is_finite() => height,
             FlatHeight::Given(height) => {
-                return Err(Error::format(format!("the height of the lake is {height}")).cure(wording![
-                    "fill the attribute of ",
-                    Setting::FlatHeight,
-                    ", or give a number"
-                ]));
+                return Err(
+                    Error::format(format!("the height of the lake is {height}")).cure(wording![
+                        "fill the attribute of ",
+                        Setting::FlatHeight,
+                        ", or give a number"
+                    ]),
+                );
             }
             _ if !is_known => {
-                return Err(Error::format("the shore has a vertex without a height").cure(wording![
-                    "name the attribute with the height (",
-                    Setting::Flat.text("FILE:FIELD"),
-                    "), or give one with ",
-                    Setting::FlatHeight
-                ]));
+                return Err(
+                    Error::format("the shore has a vertex without a height").cure(wording![
+                        "name the attribute with the height (",
+                        Setting::Flat.text("FILE:FIELD"),
+                        "), or give one with ",
+                        Setting::FlatHeight
+                    ]),
+                );
             }
             FlatHeight::Lowest => lowest,
             FlatHeight::Mean => heights.iter().sum::<f64>() / heights.len() as f64,
@@ -78,14 +86,24 @@ impl Flat {
                 ]));
             }
         };
-        let rings = rings.iter().map(|ring| ring.iter().map(|&[x, y, _]| [x, y, level]).collect()).collect();
-        Ok(Flat { rings, height: level, buffer: 0.0 })
+        let rings = rings
+            .iter()
+            .map(|ring| ring.iter().map(|&[x, y, _]| [x, y, level]).collect())
+            .collect();
+        Ok(Flat {
+            rings,
+            height: level,
+            buffer: 0.0,
+        })
     }
 
     /// Leaves out points up to a distance outside of the shore, too.
     #[must_use]
     pub fn with_buffer(self, buffer: f64) -> Self {
-        Flat { buffer: buffer.max(0.0), ..self }
+        Flat {
+            buffer: buffer.max(0.0),
+            ..self
+        }
     }
 
     /// Returns the height of the water.
@@ -106,17 +124,34 @@ fn check_ring(ring: &[[f64; 3]]) -> Result<()> {
         .cure("a lake needs a closed ring: join its ends, or pass polygons"));
     }
     // Twice the areas of a fan of triangles; rings like an 8 have parts of both signs.
-    let area: f64 = ring.windows(2).map(|pair| cross(*first, pair[0], pair[1]).abs()).sum();
-    let extent = ring.iter().fold(0.0_f64, |most, p| most.max((p[0] - first[0]).abs()).max((p[1] - first[1]).abs()));
+    let area: f64 = ring
+        .windows(2)
+        .map(|pair| cross(*first, pair[0], pair[1]).abs())
+        .sum();
+    let extent = ring.iter().fold(0.0_f64, |most, p| {
+        most.max((p[0] - first[0]).abs())
+            .max((p[1] - first[1]).abs())
+    });
     // What is drawn twice encloses nothing.
     let bits = |p: &[f64; 3]| [p[0], p[1]].map(|c| unsigned_zero(c).to_bits());
-    let side = |pair: &[[f64; 3]]| [bits(&pair[0]).min(bits(&pair[1])), bits(&pair[0]).max(bits(&pair[1]))];
+    let side = |pair: &[[f64; 3]]| {
+        [
+            bits(&pair[0]).min(bits(&pair[1])),
+            bits(&pair[0]).max(bits(&pair[1])),
+        ]
+    };
     let mut sides: Vec<[[u64; 2]; 2]> = ring.windows(2).map(side).collect();
     sides.sort_unstable();
-    let odd = sides.chunk_by(|p, q| p == q).filter(|same| same.len() % 2 == 1 && same[0][0] != same[0][1]).count();
+    let odd = sides
+        .chunk_by(|p, q| p == q)
+        .filter(|same| same.len() % 2 == 1 && same[0][0] != same[0][1])
+        .count();
     if odd < 3 || area <= extent * extent * f64::EPSILON {
-        return Err(Error::format(format!("the shore at {} {} encloses nothing", first[0], first[1]))
-            .cure("remove the record, or give the ring its vertices"));
+        return Err(Error::format(format!(
+            "the shore at {} {} encloses nothing",
+            first[0], first[1]
+        ))
+        .cure("remove the record, or give the ring its vertices"));
     }
     Ok(())
 }
@@ -131,7 +166,11 @@ mod tests {
 
     fn ring(heights: [f64; 4]) -> Vec<[f64; 3]> {
         let sites = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 0.0]];
-        sites.iter().zip(heights).map(|(p, z)| [p[0], p[1], z]).collect()
+        sites
+            .iter()
+            .zip(heights)
+            .map(|(p, z)| [p[0], p[1], z])
+            .collect()
     }
 
     #[test]
@@ -148,23 +187,55 @@ mod tests {
             assert!(flat.rings[0].iter().all(|p| p[2] == expected));
         }
         let error = Flat::new(&rings, FlatHeight::OfShore { tolerance: 0.5 }).unwrap_err();
-        assert_eq!(error.to_string(), "the shore is not level: its heights are 2 to 3, expected within 0.5");
+        assert_eq!(
+            error.to_string(),
+            "the shore is not level: its heights are 2 to 3, expected within 0.5"
+        );
     }
 
     #[test]
     fn what_is_no_lake_is_refused() {
         let message = |ring: Vec<[f64; 3]>, rule| Flat::new(&[ring], rule).unwrap_err().to_string();
         let open = ring([1.0; 4])[..3].to_vec();
-        assert_eq!(message(open, FlatHeight::Lowest), "the shore is open: it begins at 0 0 and ends at 4 4");
-        let thin = vec![[0.0, 0.0, 1.0], [4.0, 4.0, 1.0], [2.0, 2.0, 1.0], [0.0, 0.0, 1.0]];
-        assert_eq!(message(thin, FlatHeight::Lowest), "the shore at 0 0 encloses nothing");
-        assert!(message(ring([1.0, f64::NAN, 1.0, 1.0]), FlatHeight::Lowest).contains("without a height"));
+        assert_eq!(
+            message(open, FlatHeight::Lowest),
+            "the shore is open: it begins at 0 0 and ends at 4 4"
+        );
+        let thin = vec![
+            [0.0, 0.0, 1.0],
+            [4.0, 4.0, 1.0],
+            [2.0, 2.0, 1.0],
+            [0.0, 0.0, 1.0],
+        ];
+        assert_eq!(
+            message(thin, FlatHeight::Lowest),
+            "the shore at 0 0 encloses nothing"
+        );
+        assert!(
+            message(ring([1.0, f64::NAN, 1.0, 1.0]), FlatHeight::Lowest)
+                .contains("without a height")
+        );
         assert!(message(ring([1.0; 4]), FlatHeight::Given(f64::NAN)).contains("NaN"));
         assert!(Flat::new(&[ring([f64::NAN; 4])], FlatHeight::Given(1.0)).is_ok());
         assert!(Flat::new(&[], FlatHeight::Lowest).is_err());
-        let twice = [[0.0, 0.0, 1.0], [4.0, 0.0, 1.0], [4.0, 4.0, 1.0], [4.0, 0.0, 1.0], [0.0, 0.0, 1.0]];
-        assert_eq!(message(twice.to_vec(), FlatHeight::Lowest), "the shore at 0 0 encloses nothing");
-        let eight = [[0.0, 0.0, 1.0], [4.0, 4.0, 1.0], [4.0, 0.0, 1.0], [0.0, 4.0, 1.0], [0.0, 0.0, 1.0]];
+        let twice = [
+            [0.0, 0.0, 1.0],
+            [4.0, 0.0, 1.0],
+            [4.0, 4.0, 1.0],
+            [4.0, 0.0, 1.0],
+            [0.0, 0.0, 1.0],
+        ];
+        assert_eq!(
+            message(twice.to_vec(), FlatHeight::Lowest),
+            "the shore at 0 0 encloses nothing"
+        );
+        let eight = [
+            [0.0, 0.0, 1.0],
+            [4.0, 4.0, 1.0],
+            [4.0, 0.0, 1.0],
+            [0.0, 4.0, 1.0],
+            [0.0, 0.0, 1.0],
+        ];
         assert!(Flat::new(&[eight.to_vec()], FlatHeight::Lowest).is_ok());
     }
 }

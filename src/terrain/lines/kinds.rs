@@ -17,12 +17,18 @@ pub(crate) struct Precedence {
 
 impl Precedence {
     pub(crate) fn of(kind: EdgeKind) -> Self {
-        Precedence { rank: kind.rank(), is_lower_edge: false }
+        Precedence {
+            rank: kind.rank(),
+            is_lower_edge: false,
+        }
     }
 
     /// That of the lower edge of a wall.
     pub(crate) fn of_lower_edge() -> Self {
-        Precedence { is_lower_edge: true, ..Precedence::of(EdgeKind::Wall) }
+        Precedence {
+            is_lower_edge: true,
+            ..Precedence::of(EdgeKind::Wall)
+        }
     }
 }
 
@@ -37,7 +43,10 @@ pub(crate) struct LineKinds {
 impl LineKinds {
     pub(crate) fn new(of_lines: Vec<EdgeKind>) -> Self {
         let are_breaklines = of_lines.iter().all(|kind| *kind == EdgeKind::Breakline);
-        LineKinds { of_lines, are_breaklines }
+        LineKinds {
+            of_lines,
+            are_breaklines,
+        }
     }
 
     pub(crate) fn of_line(&self, line: usize) -> Option<EdgeKind> {
@@ -51,26 +60,42 @@ impl LineKinds {
 
     /// The kind of the edge opposite corner `i` of a cell; `None` if no line runs along it.
     #[inline]
-    pub(crate) fn of_edge(&self, base: &ConstrainedDelaunay<Terrain>, cell: CellId, i: usize) -> Option<EdgeKind> {
+    pub(crate) fn of_edge(
+        &self,
+        base: &ConstrainedDelaunay<Terrain>,
+        cell: CellId,
+        i: usize,
+    ) -> Option<EdgeKind> {
         if !base.is_constrained(cell, i) {
             None
         } else if self.are_breaklines {
             Some(EdgeKind::Breakline)
         } else {
             // A seam of a part of a surface is an edge as any other.
-            Some(self.first_of(base, base.tds().edge_ends(cell, i))).filter(|kind| kind.is_constrained())
+            Some(self.first_of(base, base.tds().edge_ends(cell, i)))
+                .filter(|kind| kind.is_constrained())
         }
     }
 
     /// The kind of the edge between two vertices; `None` if there is none, or no line runs along
     /// it.
-    pub(crate) fn between(&self, base: &ConstrainedDelaunay<Terrain>, [u, v]: [VertexId; 2]) -> Option<EdgeKind> {
-        base.tds().edge(u, v).and_then(|(cell, i)| self.of_edge(base, cell, i))
+    pub(crate) fn between(
+        &self,
+        base: &ConstrainedDelaunay<Terrain>,
+        [u, v]: [VertexId; 2],
+    ) -> Option<EdgeKind> {
+        base.tds()
+            .edge(u, v)
+            .and_then(|(cell, i)| self.of_edge(base, cell, i))
     }
 
     /// The kind that comes first among those of the lines along an edge.
     fn first_of(&self, base: &ConstrainedDelaunay<Terrain>, [u, v]: [VertexId; 2]) -> EdgeKind {
-        let kinds = base.lines_through(u, v).map(|line| self.of_lines[line.index()]);
-        kinds.min_by_key(|kind| kind.rank()).unwrap_or(EdgeKind::Breakline)
+        let kinds = base
+            .lines_through(u, v)
+            .map(|line| self.of_lines[line.index()]);
+        kinds
+            .min_by_key(|kind| kind.rank())
+            .unwrap_or(EdgeKind::Breakline)
     }
 }

@@ -23,9 +23,17 @@ pub(super) fn offset(line: &[[f64; 2]], distance: f64) -> Vec<[f64; 2]> {
 
 /// Like [`offset`], for a line that continues others: `neighbors` are the vertices before and after
 /// it, to which its ends are mitered.
-pub(super) fn offset_between(line: &[[f64; 2]], neighbors: [Option<[f64; 2]>; 2], distance: f64) -> Vec<[f64; 2]> {
+pub(super) fn offset_between(
+    line: &[[f64; 2]],
+    neighbors: [Option<[f64; 2]>; 2],
+    distance: f64,
+) -> Vec<[f64; 2]> {
     let is_closed = line.len() > 2 && line.first() == line.last();
-    let [before, after] = if is_closed { [Some(line[line.len() - 2]), Some(line[1])] } else { neighbors };
+    let [before, after] = if is_closed {
+        [Some(line[line.len() - 2]), Some(line[1])]
+    } else {
+        neighbors
+    };
     let at = |k: usize| {
         let from = k.checked_sub(1).map(|k| line[k]).or(before);
         let to = line.get(k + 1).copied().or(after);
@@ -37,7 +45,10 @@ pub(super) fn offset_between(line: &[[f64; 2]], neighbors: [Option<[f64; 2]>; 2]
 /// The vertex of a parallel line beside a vertex, by the vertices before and after it; `None` if
 /// there are none.
 fn beside([from, to]: [Option<[f64; 2]>; 2], vertex: [f64; 2], distance: f64) -> Option<[f64; 2]> {
-    let (arriving, leaving) = (from.map(|from| normal([from, vertex])), to.map(|to| normal([vertex, to])));
+    let (arriving, leaving) = (
+        from.map(|from| normal([from, vertex])),
+        to.map(|to| normal([vertex, to])),
+    );
     let (before, after) = (arriving.or(leaving)?, leaving.or(arriving)?);
     let sum = [before[0] + after[0], before[1] + after[1]];
     // The miter is 1 / cos(half the turn), and the sum of the normals twice that cosine.
@@ -54,7 +65,10 @@ fn beside([from, to]: [Option<[f64; 2]>; 2], vertex: [f64; 2], distance: f64) ->
         }
         _ => sum.map(|c| c / (2.0 * half_cosine)),
     };
-    Some([vertex[0] + scale * direction[0], vertex[1] + scale * direction[1]])
+    Some([
+        vertex[0] + scale * direction[0],
+        vertex[1] + scale * direction[1],
+    ])
 }
 
 /// Returns a parallel line without folds: where it runs against its line, as it does on the inside
@@ -72,7 +86,10 @@ pub(super) fn unfolded(parallel: &[[f64; 2]], line: &[[f64; 2]]) -> Vec<[f64; 2]
         while let Some((sums, count)) = runs.last()
             && !advances((sums, *count), (&run.0, run.1))
         {
-            run = ([0, 1].map(|of| [0, 1].map(|axis| sums[of][axis] + run.0[of][axis])), count + run.1);
+            run = (
+                [0, 1].map(|of| [0, 1].map(|axis| sums[of][axis] + run.0[of][axis])),
+                count + run.1,
+            );
             runs.pop();
         }
         runs.push(run);
@@ -82,12 +99,17 @@ pub(super) fn unfolded(parallel: &[[f64; 2]], line: &[[f64; 2]]) -> Vec<[f64; 2]
         let (first, next) = (smooth.len(), smooth.len() + count);
         let meet = || {
             let before = first.checked_sub(1)?;
-            let [from, to] = [[before, first], [next - 1, next]].map(|ends| ends.map(|k| line.get(k)));
+            let [from, to] =
+                [[before, first], [next - 1, next]].map(|ends| ends.map(|k| line.get(k)));
             let directions = [step(*from[0]?, *from[1]?), step(*to[0]?, *to[1]?)];
             meeting(parallel[before], parallel[next], directions)
         };
         let mean = sum.map(|c| c / count as f64);
-        let point = if count > 1 { meet().unwrap_or(mean) } else { mean };
+        let point = if count > 1 {
+            meet().unwrap_or(mean)
+        } else {
+            mean
+        };
         smooth.extend(std::iter::repeat_n(point, count));
     }
     smooth
@@ -119,7 +141,9 @@ fn step(from: [f64; 2], to: [f64; 2]) -> [f64; 2] {
 
 /// Returns true if a parallel line runs in the direction of its line from one run to the next.
 fn advances(from: (&[[f64; 2]; 2], usize), to: (&[[f64; 2]; 2], usize)) -> bool {
-    let step = |of: usize| [0, 1].map(|axis| to.0[of][axis] / to.1 as f64 - from.0[of][axis] / from.1 as f64);
+    let step = |of: usize| {
+        [0, 1].map(|axis| to.0[of][axis] / to.1 as f64 - from.0[of][axis] / from.1 as f64)
+    };
     let [parallel, line] = [step(0), step(1)];
     parallel[0] * line[0] + parallel[1] * line[1] > 0.0
 }
@@ -137,8 +161,14 @@ mod tests {
     #[test]
     fn corners_are_mitered() {
         let line = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0]];
-        assert_eq!(offset(&line, 1.0), [[0.0, 1.0], [3.0, 1.0], [3.0, 4.0]].map(near(&offset(&line, 1.0))));
-        assert_eq!(offset(&line, -1.0), [[0.0, -1.0], [5.0, -1.0], [5.0, 4.0]].map(near(&offset(&line, -1.0))));
+        assert_eq!(
+            offset(&line, 1.0),
+            [[0.0, 1.0], [3.0, 1.0], [3.0, 4.0]].map(near(&offset(&line, 1.0)))
+        );
+        assert_eq!(
+            offset(&line, -1.0),
+            [[0.0, -1.0], [5.0, -1.0], [5.0, 4.0]].map(near(&offset(&line, -1.0)))
+        );
     }
 
     #[test]
@@ -146,7 +176,10 @@ mod tests {
         let ring = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0], [0.0, 0.0]];
         let inner = offset(&ring, 1.0);
         assert_eq!(inner[0], inner[4]);
-        assert_eq!(inner, [[1.0, 1.0], [3.0, 1.0], [3.0, 3.0], [1.0, 3.0], [1.0, 1.0]].map(near(&inner)));
+        assert_eq!(
+            inner,
+            [[1.0, 1.0], [3.0, 1.0], [3.0, 3.0], [1.0, 3.0], [1.0, 1.0]].map(near(&inner))
+        );
         let hairpin = offset(&[[0.0, 0.0], [4.0, 0.0], [0.0, 0.0001]], 1.0);
         assert!((hairpin[1][0] - 4.0).hypot(hairpin[1][1]) < 2.001);
         // A line that turns back, or nearly so, is passed beyond its tip on its outer side.
@@ -162,12 +195,22 @@ mod tests {
     /// Parts of a line that know each other have the vertices of the whole, to the last bit.
     #[test]
     fn parts_of_a_line_continue_each_other() {
-        let line = [[0.1, 0.2], [10.0, 0.3], [1.0, 5.0], [1.5, 5.0], [1.0, 5.0], [4.0, -0.7], [0.1, 0.2]];
+        let line = [
+            [0.1, 0.2],
+            [10.0, 0.3],
+            [1.0, 5.0],
+            [1.5, 5.0],
+            [1.0, 5.0],
+            [4.0, -0.7],
+            [0.1, 0.2],
+        ];
         for distance in [0.3, -0.3] {
             let whole = offset(&line, distance);
             for k in 1..line.len() - 1 {
-                let first = offset_between(&line[..=k], [Some(line[5]), Some(line[k + 1])], distance);
-                let second = offset_between(&line[k..], [Some(line[k - 1]), Some(line[1])], distance);
+                let first =
+                    offset_between(&line[..=k], [Some(line[5]), Some(line[k + 1])], distance);
+                let second =
+                    offset_between(&line[k..], [Some(line[k - 1]), Some(line[1])], distance);
                 assert_eq!([first.as_slice(), &second[1..]].concat(), whole, "{k}");
             }
         }
@@ -176,33 +219,57 @@ mod tests {
     #[test]
     fn folds_become_one_point() {
         // A right angle, rounded with a radius of 1.
-        let arc = (0..=9).map(|k| (f64::from(k) * 10.0 - 90.0).to_radians()).map(|a| [9.0 + a.cos(), 1.0 + a.sin()]);
-        let line: Vec<[f64; 2]> = [[0.0, 0.0]].into_iter().chain(arc).chain([[10.0, 10.0]]).collect();
+        let arc = (0..=9)
+            .map(|k| (f64::from(k) * 10.0 - 90.0).to_radians())
+            .map(|a| [9.0 + a.cos(), 1.0 + a.sin()]);
+        let line: Vec<[f64; 2]> = [[0.0, 0.0]]
+            .into_iter()
+            .chain(arc)
+            .chain([[10.0, 10.0]])
+            .collect();
         for distance in [0.5, 3.0, -3.0] {
             let parallel = offset(&line, distance);
             let smooth = unfolded(&parallel, &line);
             assert_eq!(smooth == parallel, distance < 1.0);
             let steps = smooth.windows(2).zip(line.windows(2));
-            let along = steps.map(|(p, q)| (0..2).map(|k| (p[1][k] - p[0][k]) * (q[1][k] - q[0][k])).sum::<f64>());
-            assert!(along.into_iter().all(|along| along >= 0.0), "{distance}: {smooth:?}");
+            let along = steps.map(|(p, q)| {
+                (0..2)
+                    .map(|k| (p[1][k] - p[0][k]) * (q[1][k] - q[0][k]))
+                    .sum::<f64>()
+            });
+            assert!(
+                along.into_iter().all(|along| along >= 0.0),
+                "{distance}: {smooth:?}"
+            );
         }
         let inner = unfolded(&offset(&line, 3.0), &line);
         assert_eq!((inner[0], inner[11]), ([0.0, 3.0], [7.0, 10.0]));
-        assert!(inner[1..11].iter().all(|p| p == &inner[1] && (p[0] - 7.0).hypot(p[1] - 3.0) < 1e-9), "{inner:?}");
+        assert!(
+            inner[1..11]
+                .iter()
+                .all(|p| p == &inner[1] && (p[0] - 7.0).hypot(p[1] - 3.0) < 1e-9),
+            "{inner:?}"
+        );
     }
 
     /// In a turn of about half a circle, the parts before and after do not meet: the bank stays
     /// near.
     #[test]
     fn bends_that_turn_back_stay_near_their_lines() {
-        let turned = |[x, y]: [f64; 2], quarter: usize| [[x, y], [-y, x], [-x, -y], [y, -x]][quarter];
+        let turned =
+            |[x, y]: [f64; 2], quarter: usize| [[x, y], [-y, x], [-x, -y], [y, -x]][quarter];
         for end in [[0.0, 1.0], [0.0, 0.9], [0.0, 0.999], [0.0, 1.1], [9.0, 1.0]] {
             for (quarter, side) in (0..4).flat_map(|quarter| [(quarter, 1.0), (quarter, -1.0)]) {
-                let line = [[0.0, 0.0], [10.0, 0.0], [10.0, 1.0], end].map(|[x, y]| turned([x, side * y], quarter));
+                let line = [[0.0, 0.0], [10.0, 0.0], [10.0, 1.0], end]
+                    .map(|[x, y]| turned([x, side * y], quarter));
                 for distance in [2.0, -2.0] {
                     let parallel = unfolded(&offset(&line, distance), &line);
-                    let is_near = |(p, q): (&[f64; 2], &[f64; 2])| (p[0] - q[0]).hypot(p[1] - q[1]) < 12.0;
-                    assert!(parallel.iter().zip(&line).all(is_near), "{line:?} {distance}: {parallel:?}");
+                    let is_near =
+                        |(p, q): (&[f64; 2], &[f64; 2])| (p[0] - q[0]).hypot(p[1] - q[1]) < 12.0;
+                    assert!(
+                        parallel.iter().zip(&line).all(is_near),
+                        "{line:?} {distance}: {parallel:?}"
+                    );
                 }
             }
         }
@@ -210,6 +277,11 @@ mod tests {
 
     /// Maps an expected point to the computed one that is within a rounding of it.
     fn near(computed: &[[f64; 2]]) -> impl Fn([f64; 2]) -> [f64; 2] + '_ {
-        |[x, y]| *computed.iter().find(|p| (p[0] - x).hypot(p[1] - y) < 1e-12).unwrap_or(&[x, y])
+        |[x, y]| {
+            *computed
+                .iter()
+                .find(|p| (p[0] - x).hypot(p[1] - y) < 1e-12)
+                .unwrap_or(&[x, y])
+        }
     }
 }

@@ -9,14 +9,23 @@ use super::placement::Placement;
 ///
 /// `side` is the number of cells along a side of a bin. Corners are those in the plane of the scan.
 #[inline]
-pub(super) fn bins_of(corners: &[[f64; 3]; 3], placement: &Placement, side: usize, mut each: impl FnMut(usize, usize)) {
+pub(super) fn bins_of(
+    corners: &[[f64; 3]; 3],
+    placement: &Placement,
+    side: usize,
+    mut each: impl FnMut(usize, usize),
+) {
     if corners.as_flattened().iter().any(|c| !c.is_finite()) {
         // Vertices near the end of the range of doubles overflow in a rotated raster.
         return;
     }
     let [a, b, c] = corners;
-    let rows = placement.rows.cells(a[1].min(b[1]).min(c[1]), a[1].max(b[1]).max(c[1]));
-    let columns = placement.columns.cells(a[0].min(b[0]).min(c[0]), a[0].max(b[0]).max(c[0]));
+    let rows = placement
+        .rows
+        .cells(a[1].min(b[1]).min(c[1]), a[1].max(b[1]).max(c[1]));
+    let columns = placement
+        .columns
+        .cells(a[0].min(b[0]).min(c[0]), a[0].max(b[0]).max(c[0]));
     if rows.is_empty() || columns.is_empty() {
         return;
     }
@@ -32,7 +41,9 @@ pub(super) fn bins_of(corners: &[[f64; 3]; 3], placement: &Placement, side: usiz
         // One more cell on both sides, to allow for rounding.
         let below = placement.rows.center((row * side).max(1) - 1);
         let above = placement.rows.center((row + 1) * side);
-        let Some((left, right)) = extent_between(corners, below, above) else { continue };
+        let Some((left, right)) = extent_between(corners, below, above) else {
+            continue;
+        };
         let step = placement.columns.center(1) - placement.columns.center(0);
         let cells = placement.columns.cells(left - step, right + step);
         if !cells.is_empty() {

@@ -55,7 +55,13 @@ impl Canvas {
     pub fn new(frame: Frame) -> Result<Self> {
         let frame = frame.checked()?;
         let placement = Placement::new(&frame);
-        Ok(Canvas { frame, placement, blocks: Vec::new(), index: FxHashMap::default(), recent: 0 })
+        Ok(Canvas {
+            frame,
+            placement,
+            blocks: Vec::new(),
+            index: FxHashMap::default(),
+            recent: 0,
+        })
     }
 
     /// Returns the frame.
@@ -79,13 +85,22 @@ impl Canvas {
     /// Returns the rows of blocks, counted from the first, that a triangle may meet.
     pub fn block_rows(&self, corners: [[f64; 3]; 3]) -> Range<usize> {
         let ys = corners.map(|p| self.placement.to_plane(p)[1]);
-        let cells = self.placement.rows.cells(ys[0].min(ys[1]).min(ys[2]), ys[0].max(ys[1]).max(ys[2]));
+        let cells = self
+            .placement
+            .rows
+            .cells(ys[0].min(ys[1]).min(ys[2]), ys[0].max(ys[1]).max(ys[2]));
         cells.start / Self::SIDE..cells.end.div_ceil(Self::SIDE)
     }
 
     /// Draws what a triangle covers of some rows of blocks.
     pub fn draw_in(&mut self, corners: [[f64; 3]; 3], block_rows: Range<usize>) {
-        let Canvas { frame, placement, blocks, index, recent } = self;
+        let Canvas {
+            frame,
+            placement,
+            blocks,
+            index,
+            recent,
+        } = self;
         let corners = corners.map(|p| placement.to_plane(p));
         bins_of(&corners, placement, Self::SIDE, |row, column| {
             if !block_rows.contains(&row) {
@@ -98,9 +113,19 @@ impl Canvas {
                     blocks.len() - 1
                 });
             }
-            let Block { columns, rows, cells, .. } = &mut blocks[*recent];
+            let Block {
+                columns,
+                rows,
+                cells,
+                ..
+            } = &mut blocks[*recent];
             let (of_rows, of_columns) = (0..rows.values().len(), 0..columns.values().len());
-            Scan { columns, rows, cells }.draw(corners, &of_rows, &of_columns, &Heights);
+            Scan {
+                columns,
+                rows,
+                cells,
+            }
+            .draw(corners, &of_rows, &of_columns, &Heights);
         });
     }
 
@@ -113,13 +138,23 @@ impl Canvas {
         let has_height = |block: &Block| block.cells.iter().any(|height| !height.is_nan());
         let window_of = |at| window(at, &self.frame);
         let taken = blocks.into_iter().filter(has_height);
-        taken.map(|block| CanvasBlock { window: window_of(block.at), heights: block.cells }).collect()
+        taken
+            .map(|block| CanvasBlock {
+                window: window_of(block.at),
+                heights: block.cells,
+            })
+            .collect()
     }
 }
 
 impl Block {
     fn new(at: [usize; 2], frame: &Frame, placement: &Placement) -> Self {
-        let Window { column, row, width, height } = window(at, frame);
+        let Window {
+            column,
+            row,
+            width,
+            height,
+        } = window(at, frame);
         Block {
             at,
             columns: Centers::new(placement.columns, column, width),
@@ -131,8 +166,16 @@ impl Block {
 
 fn window([row, column]: [usize; 2], frame: &Frame) -> Window {
     let (column, row) = (column * Canvas::SIDE, row * Canvas::SIDE);
-    let (width, height) = (Canvas::SIDE.min(frame.width - column), Canvas::SIDE.min(frame.height - row));
-    Window { column, row, width, height }
+    let (width, height) = (
+        Canvas::SIDE.min(frame.width - column),
+        Canvas::SIDE.min(frame.height - row),
+    );
+    Window {
+        column,
+        row,
+        width,
+        height,
+    }
 }
 
 #[cfg(test)]
@@ -150,8 +193,9 @@ mod tests {
         for round in 0..40 {
             let size = [12.0, 150.0, 400.0][round % 3];
             let mut builder = TinBuilder::default();
-            let points: Vec<[f64; 3]> =
-                (0..20 + 10 * round).map(|_| [0, 1, 2].map(|_| (random.unit() * size * 4.0).round() / 4.0)).collect();
+            let points: Vec<[f64; 3]> = (0..20 + 10 * round)
+                .map(|_| [0, 1, 2].map(|_| (random.unit() * size * 4.0).round() / 4.0))
+                .collect();
             builder.add_owned_points(points);
             let tin = builder.build().unwrap();
             let side = size as usize;
@@ -160,30 +204,54 @@ mod tests {
                 [size, -0.7, 0.0, 3.0, 0.0, 0.7],
                 [size / 2.0, 0.6, -0.8, 0.0, 0.8, 0.6],
             ][round / 3 % 3];
-            let frame = Frame { width: side + 5, height: side, transform };
+            let frame = Frame {
+                width: side + 5,
+                height: side,
+                transform,
+            };
             let mut expected = vec![0.0; frame.width * frame.height];
-            Dem::new(&tin, frame).unwrap().fill(frame.window(), &mut expected).unwrap();
+            Dem::new(&tin, frame)
+                .unwrap()
+                .fill(frame.window(), &mut expected)
+                .unwrap();
 
             let mut found = vec![f32::NAN; expected.len()];
             let mut canvases = [0, 1].map(|_| Canvas::new(frame).unwrap());
             for face in 0..tin.face_count() as u32 {
-                let Some(corners) = tin.triangle(face) else { continue };
+                let Some(corners) = tin.triangle(face) else {
+                    continue;
+                };
                 let canvas = &mut canvases[random.index(2)];
                 match face % 2 {
                     0 => canvas.draw(corners),
-                    _ => canvas.block_rows(corners).for_each(|row| canvas.draw_in(corners, row..row + 1)),
+                    _ => canvas
+                        .block_rows(corners)
+                        .for_each(|row| canvas.draw_in(corners, row..row + 1)),
                 }
             }
             for block in canvases.iter_mut().flat_map(Canvas::take_blocks) {
-                let Window { column, row, width, .. } = block.window;
-                for (i, &height) in block.heights.iter().enumerate().filter(|(_, height)| !height.is_nan()) {
+                let Window {
+                    column, row, width, ..
+                } = block.window;
+                for (i, &height) in block
+                    .heights
+                    .iter()
+                    .enumerate()
+                    .filter(|(_, height)| !height.is_nan())
+                {
                     let cell = &mut found[(row + i / width) * frame.width + column + i % width];
                     assert!(cell.is_nan() || cell.to_bits() == height.to_bits());
                     *cell = height;
                 }
             }
             assert_eq!(canvases[0].block_count(), 0);
-            assert!(found.iter().map(|z| z.to_bits()).eq(expected.iter().map(|z| z.to_bits())), "round {round}");
+            assert!(
+                found
+                    .iter()
+                    .map(|z| z.to_bits())
+                    .eq(expected.iter().map(|z| z.to_bits())),
+                "round {round}"
+            );
         }
     }
 }

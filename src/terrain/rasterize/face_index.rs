@@ -36,20 +36,37 @@ impl FaceIndex {
     /// # Complexity
     /// Linear in the faces and in the bins they meet. Takes 4 bytes for each face in each bin, and
     /// 12 during construction.
-    pub(super) fn new<S: Surface + ?Sized>(surface: &S, placement: &Placement, window: Window) -> Self {
+    pub(super) fn new<S: Surface + ?Sized>(
+        surface: &S,
+        placement: &Placement,
+        window: Window,
+    ) -> Self {
         let face_count = surface.face_count() as u32;
-        let Window { column, row, width, height } = window;
+        let Window {
+            column,
+            row,
+            width,
+            height,
+        } = window;
         let bins = (f64::from(face_count) / FACES_PER_BIN).max(1.0);
-        let side = (width as f64 * height as f64 / bins).sqrt().max(SMALLEST_BIN).ceil() as usize;
-        let (columns, rows) =
-            (column / side..(column + width).div_ceil(side), row / side..(row + height).div_ceil(side));
-        let number = |row: usize, column: usize| (row - rows.start) * columns.len() + column - columns.start;
+        let side = (width as f64 * height as f64 / bins)
+            .sqrt()
+            .max(SMALLEST_BIN)
+            .ceil() as usize;
+        let (columns, rows) = (
+            column / side..(column + width).div_ceil(side),
+            row / side..(row + height).div_ceil(side),
+        );
+        let number =
+            |row: usize, column: usize| (row - rows.start) * columns.len() + column - columns.start;
         let chunks: Vec<Vec<(u32, u32)>> = (0..face_count.div_ceil(CHUNK))
             .into_par_iter()
             .map(|chunk| {
                 let mut found = Vec::new();
                 for face in chunk * CHUNK..(chunk + 1).saturating_mul(CHUNK).min(face_count) {
-                    let Some(corners) = surface.triangle(face) else { continue };
+                    let Some(corners) = surface.triangle(face) else {
+                        continue;
+                    };
                     let corners = corners.map(|p| placement.to_plane(p));
                     bins_of(&corners, placement, side, |row, column| {
                         if rows.contains(&row) && columns.contains(&column) {
@@ -78,7 +95,13 @@ impl FaceIndex {
                 *slot += 1;
             }
         }
-        FaceIndex { side, columns, rows, first, faces }
+        FaceIndex {
+            side,
+            columns,
+            rows,
+            first,
+            faces,
+        }
     }
 
     /// The faces of each bin that meets a window, and the intersection of bin and window, as rows
@@ -98,7 +121,8 @@ impl FaceIndex {
         bin_rows.flat_map(move |row| {
             let (rows, columns) = (common(row, &rows), columns.clone());
             bin_columns.clone().map(move |column| {
-                let bin = (row - self.rows.start) * self.columns.len() + column - self.columns.start;
+                let bin =
+                    (row - self.rows.start) * self.columns.len() + column - self.columns.start;
                 let faces = &self.faces[self.first[bin]..self.first[bin + 1]];
                 (faces, rows.clone(), common(column, &columns))
             })

@@ -49,9 +49,20 @@ impl<'a, S: Surface + ?Sized> Dem<'a, S> {
     pub fn new(surface: &'a S, frame: Frame) -> Result<Self> {
         let frame = frame.checked()?;
         let placement = Placement::new(&frame);
-        let all = Window { column: 0, row: 0, width: frame.width, height: frame.height };
+        let all = Window {
+            column: 0,
+            row: 0,
+            width: frame.width,
+            height: frame.height,
+        };
         let index = FaceIndex::new(surface, &placement, all);
-        Ok(Dem { surface, frame, placement, index, interpolant: None })
+        Ok(Dem {
+            surface,
+            frame,
+            placement,
+            index,
+            interpolant: None,
+        })
     }
 
     /// Chooses how heights between the vertices are computed.
@@ -71,7 +82,14 @@ impl<'a, S: Surface + ?Sized> Dem<'a, S> {
 
     /// Draws the faces that meet a window into its cells.
     fn draw<T, I: Ink<T>>(&self, window: Window, cells: &mut [T], ink: impl Fn(u32) -> I) {
-        draw(self.surface, &self.index, &self.placement, window, cells, ink);
+        draw(
+            self.surface,
+            &self.index,
+            &self.placement,
+            window,
+            cells,
+            ink,
+        );
     }
 
     /// Computes the heights of a window: finds the face of each cell, then goes from cell to cell.
@@ -80,9 +98,16 @@ impl<'a, S: Surface + ?Sized> Dem<'a, S> {
         self.draw(window, &mut faces, Number);
         let mut scratch = QueryBuffers::default();
         let center = self.frame.centers();
-        let cells = out.iter_mut().zip(faces).enumerate().filter(|(_, (_, face))| *face != NO_FACE);
+        let cells = out
+            .iter_mut()
+            .zip(faces)
+            .enumerate()
+            .filter(|(_, (_, face))| *face != NO_FACE);
         for (i, (height, face)) in cells {
-            let q = center(window.column + i % window.width, window.row + i / window.width);
+            let q = center(
+                window.column + i % window.width,
+                window.row + i / window.width,
+            );
             *height = interpolant.height_in(face, q, &mut scratch) as f32;
         }
     }
@@ -97,15 +122,26 @@ fn draw<T, I: Ink<T>, S: Surface + ?Sized>(
     cells: &mut [T],
     ink: impl Fn(u32) -> I,
 ) {
-    let Window { column, row, width, height } = window;
+    let Window {
+        column,
+        row,
+        width,
+        height,
+    } = window;
     let columns = Centers::new(placement.columns, column, width);
     let rows = Centers::new(placement.rows, row, height);
-    let mut scan = Scan { columns: &columns, rows: &rows, cells };
+    let mut scan = Scan {
+        columns: &columns,
+        rows: &rows,
+        cells,
+    };
     for (faces, rows, columns) in index.bins_in(row..row + height, column..column + width) {
         let rows = rows.start - row..rows.end - row;
         let columns = columns.start - column..columns.end - column;
         for &face in faces {
-            let Some(corners) = surface.triangle(face) else { continue };
+            let Some(corners) = surface.triangle(face) else {
+                continue;
+            };
             let corners = corners.map(|p| placement.to_plane(p));
             scan.draw(corners, &rows, &columns, &ink(face));
         }

@@ -51,8 +51,18 @@ impl<'a, S: Surface> DemOfParts<'a, S> {
     ) -> Result<Self> {
         let frame = frame.checked()?;
         let placement = Placement::new(&frame);
-        let windows = extents.iter().map(|extent| window_of(extent, &placement)).collect();
-        Ok(DemOfParts { frame, placement, crs, windows, open, recent: Mutex::default() })
+        let windows = extents
+            .iter()
+            .map(|extent| window_of(extent, &placement))
+            .collect();
+        Ok(DemOfParts {
+            frame,
+            placement,
+            crs,
+            windows,
+            open,
+            recent: Mutex::default(),
+        })
     }
 
     fn opened(&self, part: usize, window: Window) -> Result<Arc<Opened<S>>> {
@@ -83,18 +93,35 @@ fn window_of(extent: &Bounds, placement: &Placement) -> Option<Window> {
     if extent.is_empty() {
         return None;
     }
-    let Bounds { min: [x0, y0, _], max: [x1, y1, _] } = *extent;
-    let corners = [[x0, y0], [x1, y0], [x1, y1], [x0, y1]].map(|[x, y]| placement.to_plane([x, y, 0.0]));
+    let Bounds {
+        min: [x0, y0, _],
+        max: [x1, y1, _],
+    } = *extent;
+    let corners =
+        [[x0, y0], [x1, y0], [x1, y1], [x0, y1]].map(|[x, y]| placement.to_plane([x, y, 0.0]));
     let cells = |k: usize| {
-        let axis = if k == 0 { placement.columns } else { placement.rows };
+        let axis = if k == 0 {
+            placement.columns
+        } else {
+            placement.rows
+        };
         let along = corners.map(|corner| corner[k]);
-        let (low, high) = along.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &c| (l.min(c), h.max(c)));
+        let (low, high) = along
+            .iter()
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &c| {
+                (l.min(c), h.max(c))
+            });
         let cells = axis.cells(low, high);
         // One more cell on both sides: the box is rounded where the raster is rotated.
         (!cells.is_empty()).then(|| cells.start.saturating_sub(1)..(cells.end + 1).min(axis.count))
     };
     let (columns, rows) = (cells(0)?, cells(1)?);
-    Some(Window { column: columns.start, row: rows.start, width: columns.len(), height: rows.len() })
+    Some(Window {
+        column: columns.start,
+        row: rows.start,
+        width: columns.len(),
+        height: rows.len(),
+    })
 }
 
 impl<S: Surface + Send> BlockSource for DemOfParts<'_, S> {
@@ -116,9 +143,18 @@ impl<S: Surface + Send> BlockSource for DemOfParts<'_, S> {
                 && window.row < of_part.row + of_part.height
         };
         for (part, of_part) in self.windows.iter().enumerate() {
-            let Some(of_part) = of_part.filter(meet) else { continue };
+            let Some(of_part) = of_part.filter(meet) else {
+                continue;
+            };
             let opened = self.opened(part, of_part)?;
-            draw(&opened.surface, &opened.index, &self.placement, window, out, |_| Heights);
+            draw(
+                &opened.surface,
+                &opened.index,
+                &self.placement,
+                window,
+                out,
+                |_| Heights,
+            );
             opened.surface.ensure_intact()?;
         }
         Ok(())

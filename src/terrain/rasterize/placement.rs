@@ -53,7 +53,11 @@ impl Placement {
             Mapping::Mirror([sign_x, sign_y]) => [sign_x * x, sign_y * y, z],
             Mapping::Pixels(to_pixels, rounding) => {
                 let [column, row] = to_pixels.apply(x, y);
-                [to_center(column, rounding[0]), to_center(row, rounding[1]), z]
+                [
+                    to_center(column, rounding[0]),
+                    to_center(row, rounding[1]),
+                    z,
+                ]
             }
         }
     }
@@ -71,12 +75,21 @@ fn rounding(frame: &Frame) -> [f64; 2] {
 /// The center of the pixel if `value` is within `rounding` of it, otherwise `value`.
 fn to_center(value: f64, rounding: f64) -> f64 {
     let center = value.floor() + 0.5;
-    if (value - center).abs() <= rounding { center } else { value }
+    if (value - center).abs() <= rounding {
+        center
+    } else {
+        value
+    }
 }
 
 impl Axis {
     fn new(origin: f64, step: f64, count: usize) -> Self {
-        Axis { origin, lines: GridLines::new(origin, step), per_step: 1.0 / step, count }
+        Axis {
+            origin,
+            lines: GridLines::new(origin, step),
+            per_step: 1.0 / step,
+            count,
+        }
     }
 
     /// The center of one cell, bit for bit that of [`Frame::center`] except for its sign.
@@ -109,7 +122,11 @@ pub(super) struct Centers {
 
 impl Centers {
     pub(super) fn new(axis: Axis, first: usize, count: usize) -> Self {
-        Centers { axis, first, values: (first..first + count).map(|i| axis.center(i)).collect() }
+        Centers {
+            axis,
+            first,
+            values: (first..first + count).map(|i| axis.center(i)).collect(),
+        }
     }
 
     /// The center of each column or row of the window.

@@ -87,12 +87,20 @@ impl<T> Scan<'_, T> {
         for row in first..end {
             let y = rows_of_block.values()[row];
             let mut left = cut(low, high, y);
-            let mut right = if y < middle[1] { cut(low, middle, y) } else { cut(middle, high, y) };
+            let mut right = if y < middle[1] {
+                cut(low, middle, y)
+            } else {
+                cut(middle, high, y)
+            };
             if right.0 < left.0 {
                 std::mem::swap(&mut left, &mut right);
             }
-            let from = columns_of_block.at_or_after(left.0 - face.error).max(columns.start);
-            let to = columns_of_block.after(right.0 + face.error).min(columns.end);
+            let from = columns_of_block
+                .at_or_after(left.0 - face.error)
+                .max(columns.start);
+            let to = columns_of_block
+                .after(right.0 + face.error)
+                .min(columns.end);
             if from >= to {
                 continue;
             }
@@ -133,8 +141,13 @@ impl Face {
         }
         // The sum of the rounding errors in `cut`, with u = EPSILON / 2: 5 u of an extent in x of
         // at most 2 M, and u of the result. 16 u M is larger than that.
-        let largest = corners.iter().fold(0.0, |most: f64, p| most.max(p[0].abs()));
-        Face { corners, error: 8.0 * f64::EPSILON * largest }
+        let largest = corners
+            .iter()
+            .fold(0.0, |most: f64, p| most.max(p[0].abs()));
+        Face {
+            corners,
+            error: 8.0 * f64::EPSILON * largest,
+        }
     }
 
     /// Returns the height of a cell whose center is close to the border of the face, unless it is
@@ -156,7 +169,13 @@ impl Face {
             match turn * orientation([*p, *q, center]) {
                 Sign::Negative => return None,
                 // The direction of the edge must not depend on the face.
-                Sign::Zero => edge = Some(if (p[1], p[0]) < (q[1], q[0]) { (p, q) } else { (q, p) }),
+                Sign::Zero => {
+                    edge = Some(if (p[1], p[0]) < (q[1], q[0]) {
+                        (p, q)
+                    } else {
+                        (q, p)
+                    })
+                }
                 Sign::Positive => (),
             }
         }
@@ -185,7 +204,11 @@ fn cut(p: &[f64; 3], q: &[f64; 3], y: f64) -> (f64, f64) {
 /// The height at a point on the edge from `p` to `q`, interpolated along its longer extent.
 fn height_on_edge(p: &[f64; 3], q: &[f64; 3], x: f64, y: f64) -> f64 {
     let (dx, dy) = (q[0] - p[0], q[1] - p[1]);
-    let part = if dx.abs() > dy.abs() { (x - p[0]) / dx } else { (y - p[1]) / dy };
+    let part = if dx.abs() > dy.abs() {
+        (x - p[0]) / dx
+    } else {
+        (y - p[1]) / dy
+    };
     between(p[2], q[2], part)
 }
 

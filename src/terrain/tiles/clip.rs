@@ -77,13 +77,23 @@ impl TileClip {
             return Ok(None);
         }
         let segments = clip.segments()?;
-        let largest = [extent.min, extent.max].as_flattened().iter().fold(0.0_f64, |most, c| most.max(c.abs()));
+        let largest = [extent.min, extent.max]
+            .as_flattened()
+            .iter()
+            .fold(0.0_f64, |most, c| most.max(c.abs()));
         let margin = rounding_reach(largest.max(f64::MIN_POSITIVE));
         // Rounding depends on the lines' ends; those far away are left out.
         let reach = [0, 1].map(|k: usize| extent.min[k].abs().max(extent.max[k].abs()));
         let near = Boxes::new(boxes(&divided(&segments, reach), extent, margin));
         let (polygons, holes) = (Inside::new(&clip.polygons), Inside::new(&clip.holes));
-        Ok(Some(TileClip { clip, segments, near, margin, polygons, holes }))
+        Ok(Some(TileClip {
+            clip,
+            segments,
+            near,
+            margin,
+            polygons,
+            holes,
+        }))
     }
 
     /// Returns where a box in plan lies.
@@ -98,11 +108,16 @@ impl TileClip {
         }
         // Without a line near, each position of the box is as good, and none is on the border of
         // the bounds; if they are one position, they have no inside.
-        let is_within = |bounds: &Bounds| (0..2).all(|k| bounds.min[k] < min[k] && min[k] < bounds.max[k]);
+        let is_within =
+            |bounds: &Bounds| (0..2).all(|k| bounds.min[k] < min[k] && min[k] < bounds.max[k]);
         let is_kept = self.clip.bounds.as_ref().is_none_or(is_within)
             && (self.clip.polygons.is_empty() || self.polygons.contains(min))
             && !self.holes.contains(min);
-        if is_kept { ClipSide::Kept } else { ClipSide::Outside }
+        if is_kept {
+            ClipSide::Kept
+        } else {
+            ClipSide::Outside
+        }
     }
 
     /// Returns the width below which a triangle makes its vertices
@@ -132,13 +147,18 @@ impl TileClip {
     ///
     /// # Complexity
     /// O(n log n) for n triangles and segments.
-    pub fn cut(&self, triangles: &[(TileTriangle, bool)], reach: [f64; 2]) -> Result<Option<TinPart>> {
+    pub fn cut(
+        &self,
+        triangles: &[(TileTriangle, bool)],
+        reach: [f64; 2],
+    ) -> Result<Option<TinPart>> {
         if triangles.is_empty() {
             return Ok(None);
         }
         let uncut = Uncut::new(triangles);
         let (mut part, given) = uncut.triangulated()?;
-        self.clip.apply_to_part(&mut part.tin, &self.segments, reach)?;
+        self.clip
+            .apply_to_part(&mut part.tin, &self.segments, reach)?;
         match part.tin.cut.as_ref() {
             Some(cut) if self.lacks_triangles(cut, &part.tin, &given) => Err(contradiction()),
             Some(_) | None => Ok(Some(part)),
@@ -152,7 +172,10 @@ impl TileClip {
         let tds = tin.triangulation.tds();
         cut.divided_edges().any(|[u, v]| {
             let sides = [tds.edge(u, v), tds.edge(v, u)].into_iter().flatten();
-            let is_whole = sides.filter(|(cell, _)| given.is_given[cell.index()]).count() == 2;
+            let is_whole = sides
+                .filter(|(cell, _)| given.is_given[cell.index()])
+                .count()
+                == 2;
             let is_tight = [u, v].iter().any(|end| given.is_tight[end.index()]);
             let Extent { min, max } = Extent::of([u, v].map(|end| *tin.triangulation.point(end)));
             !is_whole && !is_tight && self.side_of(min, max) != ClipSide::Near
@@ -181,16 +204,25 @@ impl<'a> Uncut<'a> {
         let mut vertices: Vec<TileVertex> = Vec::new();
         let mut known: FxHashMap<[u32; 2], u32> = FxHashMap::default();
         let mut index = |corner: TileVertex| {
-            let at = *known.entry([corner.tile, corner.number]).or_insert_with(|| {
-                vertices.push(corner);
-                vertices.len() as u32 - 1
-            });
+            let at = *known
+                .entry([corner.tile, corner.number])
+                .or_insert_with(|| {
+                    vertices.push(corner);
+                    vertices.len() as u32 - 1
+                });
             // Tasks know of different triangles at it.
             vertices[at as usize].is_tight |= corner.is_tight;
             at
         };
-        let corners = triangles.iter().map(|(triangle, _)| triangle.corners.map(&mut index)).collect();
-        Uncut { triangles, vertices, corners }
+        let corners = triangles
+            .iter()
+            .map(|(triangle, _)| triangle.corners.map(&mut index))
+            .collect();
+        Uncut {
+            triangles,
+            vertices,
+            corners,
+        }
     }
 
     /// Returns the edges on lines, and those with a triangle on one side only, with their kinds.
@@ -201,14 +233,20 @@ impl<'a> Uncut<'a> {
         for (corners, (triangle, _)) in self.corners.iter().zip(self.triangles) {
             for i in 0..3 {
                 let [a, b] = [corners[(i + 1) % 3], corners[(i + 2) % 3]];
-                let (_, directions) = edges.entry([a.min(b), a.max(b)]).or_insert((triangle.edges[i], 0));
+                let (_, directions) = edges
+                    .entry([a.min(b), a.max(b)])
+                    .or_insert((triangle.edges[i], 0));
                 *directions |= if a < b { 1 } else { 2 };
             }
         }
-        let is_constraint =
-            |(_, (kind, directions)): &([u32; 2], (EdgeKind, u8))| kind.is_constrained() || *directions != 3;
-        let mut constraints: Vec<([u32; 2], EdgeKind)> =
-            edges.into_iter().filter(is_constraint).map(|(edge, (kind, _))| (edge, kind)).collect();
+        let is_constraint = |(_, (kind, directions)): &([u32; 2], (EdgeKind, u8))| {
+            kind.is_constrained() || *directions != 3
+        };
+        let mut constraints: Vec<([u32; 2], EdgeKind)> = edges
+            .into_iter()
+            .filter(is_constraint)
+            .map(|(edge, (kind, _))| (edge, kind))
+            .collect();
         constraints.sort_unstable_by_key(|(edge, _)| *edge);
         constraints
     }
@@ -217,8 +255,13 @@ impl<'a> Uncut<'a> {
     fn triangulated(&self) -> Result<(TinPart, Given)> {
         let (lines, kinds): (Vec<[u32; 2]>, Vec<EdgeKind>) = self.constraints().into_iter().unzip();
         let points: Vec<[f64; 3]> = self.vertices.iter().map(|vertex| vertex.position).collect();
-        let (t, ids) = ConstrainedDelaunay::from_lines(Terrain::default(), &points, &lines, OnCrossing::Reject)
-            .map_err(|_| contradiction())?;
+        let (t, ids) = ConstrainedDelaunay::from_lines(
+            Terrain::default(),
+            &points,
+            &lines,
+            OnCrossing::Reject,
+        )
+        .map_err(|_| contradiction())?;
         let mut inside = vec![false; t.tds().cell_slots()];
         let mut is_given = inside.clone();
         for (corners, (_, is_inside)) in self.corners.iter().zip(self.triangles) {
@@ -262,9 +305,17 @@ fn boxes(segments: &[(Domain, Segment)], extent: &Bounds, margin: f64) -> Vec<Li
             (from, to) = (from.max(p.min(q)), to.min(p.max(q)));
         }
         let at = |part: f64| [0, 1].map(|k| a[k] + part * (b[k] - a[k]));
-        (from <= to).then(|| [if from == 0.0 { *a } else { at(from) }, if to == 1.0 { *b } else { at(to) }])
+        (from <= to).then(|| {
+            [
+                if from == 0.0 { *a } else { at(from) },
+                if to == 1.0 { *b } else { at(to) },
+            ]
+        })
     };
-    let parts: Vec<Segment> = segments.iter().filter_map(|(_, segment)| within(segment)).collect();
+    let parts: Vec<Segment> = segments
+        .iter()
+        .filter_map(|(_, segment)| within(segment))
+        .collect();
     let length = |[a, b]: &Segment| (b[0] - a[0]).hypot(b[1] - a[1]);
     let most = parts.iter().map(length).sum::<f64>() / BOXES;
     let mut boxes = Vec::with_capacity(parts.len());
@@ -272,11 +323,25 @@ fn boxes(segments: &[(Domain, Segment)], extent: &Bounds, margin: f64) -> Vec<Li
         let [a, b] = *part;
         // A box along an axis is thin, however long it is.
         let is_straight = a[0] == b[0] || a[1] == b[1];
-        let count = if is_straight { 1.0 } else { (length(part) / most).ceil().clamp(1.0, BOXES) };
+        let count = if is_straight {
+            1.0
+        } else {
+            (length(part) / most).ceil().clamp(1.0, BOXES)
+        };
         for i in 0..count as usize {
             let at = |i: usize| [0, 1].map(|k| a[k] + (i as f64 / count) * (b[k] - a[k]));
-            let Extent { min, max } = Extent::of_plan([at(i), if i + 1 == count as usize { b } else { at(i + 1) }]);
-            boxes.push(LineBox(Extent { min: min.map(|c| c - margin), max: max.map(|c| c + margin) }));
+            let Extent { min, max } = Extent::of_plan([
+                at(i),
+                if i + 1 == count as usize {
+                    b
+                } else {
+                    at(i + 1)
+                },
+            ]);
+            boxes.push(LineBox(Extent {
+                min: min.map(|c| c - margin),
+                max: max.map(|c| c + margin),
+            }));
         }
     }
     boxes

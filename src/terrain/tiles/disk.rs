@@ -56,14 +56,18 @@ impl Disk {
         let offset = vector.map(|[p, q]| (p - q) / (2.0 * area));
         let mut error = 0.0;
         for (offset, [p, q]) in offset.iter().zip(vector) {
-            let of_quotient = (16.0 * U * (p.abs() + q.abs()) + 2.0 * offset.abs() * doubt) / (2.0 * least);
+            let of_quotient =
+                (16.0 * U * (p.abs() + q.abs()) + 2.0 * offset.abs() * doubt) / (2.0 * least);
             error += of_quotient * (1.0 + 8.0 * U) + 8.0 * U * offset.abs();
         }
         let center = [a[0] + offset[0], a[1] + offset[1]];
         let rounded = 2.0 * U * (center[0].abs() + center[1].abs());
         let length = (offset[0] * offset[0] + offset[1] * offset[1]).sqrt();
         if traps::is_off(Rule::DiskBound) {
-            return Some(Disk { center, radius: length });
+            return Some(Disk {
+                center,
+                radius: length,
+            });
         }
         let radius = (length * (1.0 + 8.0 * U) + 2.0 * error + rounded) * (1.0 + 8.0 * U);
         radius.is_finite().then_some(Disk { center, radius })
@@ -73,7 +77,10 @@ impl Disk {
     #[inline(always)]
     pub(super) fn is_within(&self, tile: &Tile) -> bool {
         (0..2).all(|axis| {
-            let [low, high] = [self.center[axis] - self.radius, self.center[axis] + self.radius];
+            let [low, high] = [
+                self.center[axis] - self.radius,
+                self.center[axis] + self.radius,
+            ];
             tile.min[axis] <= low.next_down() && high.next_up() < tile.max[axis]
         })
     }
@@ -89,7 +96,10 @@ impl Disk {
         let normal = [0, 1].map(|axis| share * along[axis] - to_center[axis]);
         // The proof of the bound needs a direction that is at least as long as the radius.
         let is_outside = dot(normal, normal) > self.radius * self.radius;
-        is_outside && [a, b].iter().all(|&origin| self.is_below([Slope { normal, origin }, Slope::FLAT]))
+        is_outside
+            && [a, b]
+                .iter()
+                .all(|&origin| self.is_below([Slope { normal, origin }, Slope::FLAT]))
     }
 
     /// Returns true if no point outside of a tile is both in the disk and to the right of the line
@@ -126,7 +136,10 @@ impl Disk {
             let (mut normal, mut origin) = ([0.0; 2], self.center);
             (normal[axis], origin[axis]) = (sign, side);
             let beyond_side = Slope { normal, origin };
-            let beyond_line = |weight: f64| Slope { normal: right.map(|x| weight * x), origin: p };
+            let beyond_line = |weight: f64| Slope {
+                normal: right.map(|x| weight * x),
+                origin: p,
+            };
             // Below, `weight f + g` is `weight distance + g(center) + radius |weight right +
             // normal|`, for a vector `right` of length 1; its derivative by the weight is zero at
             // the best one.
@@ -140,7 +153,8 @@ impl Disk {
                 self.is_below([Slope::FLAT, beyond_side]) // all of the disk is
             }
         };
-        (0..2).all(|axis| is_clear(axis, -1.0, tile.min[axis]) && is_clear(axis, 1.0, tile.max[axis]))
+        (0..2)
+            .all(|axis| is_clear(axis, -1.0, tile.min[axis]) && is_clear(axis, 1.0, tile.max[axis]))
     }
 
     /// Returns true if the sum of two linear functions is negative on the whole disk. In doubt
@@ -183,7 +197,10 @@ struct Slope {
 }
 
 impl Slope {
-    const FLAT: Self = Slope { normal: [0.0; 2], origin: [0.0; 2] };
+    const FLAT: Self = Slope {
+        normal: [0.0; 2],
+        origin: [0.0; 2],
+    };
 }
 
 fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
@@ -249,7 +266,10 @@ mod tests {
     #[test]
     fn what_is_in_the_circle_is_in_the_disk() {
         let [doubts, count] = each_position(|corners, disk, p| {
-            assert!(beside(p).iter().all(|tile| !disk.is_within(tile)), "{corners:?} {p:?}");
+            assert!(
+                beside(p).iter().all(|tile| !disk.is_within(tile)),
+                "{corners:?} {p:?}"
+            );
         });
         assert!(doubts > 5 && count > 10_000, "{doubts} {count}");
     }
@@ -259,13 +279,19 @@ mod tests {
         let mut random = Random(6);
         let mut missed = 0;
         each_position(|corners, disk, p| {
-            let mut other = || [0, 1].map(|k| disk.center[k] + 4.0 * disk.radius * (random.unit() - 0.5));
+            let mut other =
+                || [0, 1].map(|k| disk.center[k] + 4.0 * disk.radius * (random.unit() - 0.5));
             let q = other();
-            assert!(!disk.misses([p, q]) && !disk.misses([q, p]) && !disk.misses([p, p]), "{corners:?} {p:?} {q:?}");
+            assert!(
+                !disk.misses([p, q]) && !disk.misses([q, p]) && !disk.misses([p, p]),
+                "{corners:?} {p:?} {q:?}"
+            );
             // Beside the disk.
             let [x, y] = [0, 1].map(|k| disk.center[k] + 1.01 * (p[k] - disk.center[k]));
             let along = [p[1] - disk.center[1], disk.center[0] - p[0]];
-            missed += usize::from(disk.misses([[x - along[0], y - along[1]], [x + along[0], y + along[1]]]));
+            missed += usize::from(
+                disk.misses([[x - along[0], y - along[1]], [x + along[0], y + along[1]]]),
+            );
         });
         assert!(missed > 10_000, "{missed}");
     }
@@ -282,7 +308,14 @@ mod tests {
                 [0, 1].map(|k| from[k] + share * (to[k] - from[k]))
             };
             let [through, to] = [on(a, b), on(b, c)];
-            for [from, to] in [[a, b], [b, c], [c, a], [through, to], [to, through], [through, p]] {
+            for [from, to] in [
+                [a, b],
+                [b, c],
+                [c, a],
+                [through, to],
+                [to, through],
+                [through, p],
+            ] {
                 if from == to {
                     continue;
                 }
@@ -290,10 +323,16 @@ mod tests {
                 if Adaptive::sign(&Orientation2([from, to, p])) != Sign::Positive {
                     beyond += 1;
                     let is_wrong = |tile: &Tile| disk.is_within_beyond([from, to], tile);
-                    assert!(!beside(p).iter().any(is_wrong), "{corners:?} {from:?} {to:?} {p:?}");
+                    assert!(
+                        !beside(p).iter().any(is_wrong),
+                        "{corners:?} {from:?} {to:?} {p:?}"
+                    );
                     continue;
                 }
-                hidden += beside(p).iter().filter(|tile| disk.is_within_beyond([from, to], tile)).count();
+                hidden += beside(p)
+                    .iter()
+                    .filter(|tile| disk.is_within_beyond([from, to], tile))
+                    .count();
             }
         });
         assert!(beyond > 10_000 && hidden > 10_000, "{beyond} {hidden}");
@@ -316,11 +355,24 @@ mod tests {
                 continue;
             }
             count += 1;
-            let q = [p[0] + cos + random.unit() - 0.5, p[1] + sin + random.unit() - 0.5];
-            assert!(!disk.misses([p, q]) && !disk.misses([q, p]), "{disk:?} {p:?} {q:?}");
+            let q = [
+                p[0] + cos + random.unit() - 0.5,
+                p[1] + sin + random.unit() - 0.5,
+            ];
+            assert!(
+                !disk.misses([p, q]) && !disk.misses([q, p]),
+                "{disk:?} {p:?} {q:?}"
+            );
             // On the line is beyond it, too.
-            let is_wrong = |line| beside(p).iter().any(|tile| disk.is_within_beyond(line, tile));
-            assert!(!is_wrong([p, q]) && !is_wrong([q, p]), "{disk:?} {p:?} {q:?}");
+            let is_wrong = |line| {
+                beside(p)
+                    .iter()
+                    .any(|tile| disk.is_within_beyond(line, tile))
+            };
+            assert!(
+                !is_wrong([p, q]) && !is_wrong([q, p]),
+                "{disk:?} {p:?} {q:?}"
+            );
         }
         assert!(count > 5_000, "{count}");
     }

@@ -81,22 +81,38 @@ impl TileLayout {
     /// Returns columns by rows of tiles of the same size over a box.
     pub fn grid(min: [f64; 2], max: [f64; 2], counts: [usize; 2]) -> Self {
         let mut layout = TileLayout { nodes: Vec::new() };
-        let at = |axis: usize, i: usize| min[axis] + (max[axis] - min[axis]) * (i as f64 / counts[axis] as f64);
+        let at = |axis: usize, i: usize| {
+            min[axis] + (max[axis] - min[axis]) * (i as f64 / counts[axis] as f64)
+        };
         layout.add_grid(&at, [0, 0], counts, counts[0]);
         layout
     }
 
-    fn add_grid(&mut self, at: &dyn Fn(usize, usize) -> f64, from: [usize; 2], to: [usize; 2], columns: usize) -> u32 {
+    fn add_grid(
+        &mut self,
+        at: &dyn Fn(usize, usize) -> f64,
+        from: [usize; 2],
+        to: [usize; 2],
+        columns: usize,
+    ) -> u32 {
         let here = self.nodes.len();
         let size = [to[0] - from[0], to[1] - from[1]];
-        self.nodes.push(Node::Tile((from[1] * columns + from[0]) as u32));
+        self.nodes
+            .push(Node::Tile((from[1] * columns + from[0]) as u32));
         let axis = usize::from(size[1] > size[0]);
         if size[axis] > 1 {
             let middle = from[axis] + size[axis] / 2;
             let (mut low_to, mut high_from) = (to, from);
             (low_to[axis], high_from[axis]) = (middle, middle);
-            let parts = [self.add_grid(at, from, low_to, columns), self.add_grid(at, high_from, to, columns)];
-            self.nodes[here] = Node::Cut { axis, at: at(axis, middle), parts };
+            let parts = [
+                self.add_grid(at, from, low_to, columns),
+                self.add_grid(at, high_from, to, columns),
+            ];
+            self.nodes[here] = Node::Cut {
+                axis,
+                at: at(axis, middle),
+                parts,
+            };
         }
         here as u32
     }
@@ -122,7 +138,9 @@ impl TileLayout {
         // The gap nearest to the middle of the list, of both axes.
         let mut best: Option<(usize, usize, f64)> = None;
         for axis in 0..2 {
-            of.sort_by(|&a, &b| boxes[a as usize].min[axis].total_cmp(&boxes[b as usize].min[axis]));
+            of.sort_by(|&a, &b| {
+                boxes[a as usize].min[axis].total_cmp(&boxes[b as usize].min[axis])
+            });
             let mut reach = f64::NEG_INFINITY;
             for i in 1..of.len() {
                 reach = reach.max(boxes[of[i - 1] as usize].max[axis]);
@@ -134,7 +152,9 @@ impl TileLayout {
                 }
             }
         }
-        let Some((axis, count, at)) = best else { return false };
+        let Some((axis, count, at)) = best else {
+            return false;
+        };
         of.sort_by(|&a, &b| boxes[a as usize].min[axis].total_cmp(&boxes[b as usize].min[axis]));
         let (low, high) = of.split_at_mut(count);
         let first = self.nodes.len() as u32;
@@ -142,7 +162,11 @@ impl TileLayout {
             return false;
         }
         let second = self.nodes.len() as u32;
-        self.nodes[here] = Node::Cut { axis, at, parts: [first, second] };
+        self.nodes[here] = Node::Cut {
+            axis,
+            at,
+            parts: [first, second],
+        };
         self.add_boxes(boxes, high)
     }
 
@@ -157,35 +181,67 @@ impl TileLayout {
         layout
     }
 
-    fn add_balanced(&mut self, spreads: Vec<Spread>, most: f64, tiles: &mut u32, depth: usize) -> u32 {
+    fn add_balanced(
+        &mut self,
+        spreads: Vec<Spread>,
+        most: f64,
+        tiles: &mut u32,
+        depth: usize,
+    ) -> u32 {
         let here = self.nodes.len();
         self.nodes.push(Node::Tile(*tiles));
         let count: f64 = spreads.iter().map(|spread| spread.count).sum();
         let side = |axis: usize| {
-            let low = spreads.iter().map(|spread| spread.min[axis]).fold(f64::INFINITY, f64::min);
-            let high = spreads.iter().map(|spread| spread.max[axis]).fold(f64::NEG_INFINITY, f64::max);
+            let low = spreads
+                .iter()
+                .map(|spread| spread.min[axis])
+                .fold(f64::INFINITY, f64::min);
+            let high = spreads
+                .iter()
+                .map(|spread| spread.max[axis])
+                .fold(f64::NEG_INFINITY, f64::max);
             [low, high]
         };
         let sides = [side(0), side(1)];
         let axis = usize::from(sides[1][1] - sides[1][0] > sides[0][1] - sides[0][0]);
         let [low, high] = sides[axis];
-        if count <= most || depth == DEEPEST || low.partial_cmp(&high) != Some(std::cmp::Ordering::Less) {
+        if count <= most
+            || depth == DEEPEST
+            || low.partial_cmp(&high) != Some(std::cmp::Ordering::Less)
+        {
             *tiles += 1;
             return here as u32;
         }
-        let below = |at: f64| spreads.iter().map(|spread| spread.split(axis, at)[0].count).sum::<f64>();
+        let below = |at: f64| {
+            spreads
+                .iter()
+                .map(|spread| spread.split(axis, at)[0].count)
+                .sum::<f64>()
+        };
         let (mut from, mut to) = (low, high);
         for _ in 0..40 {
             let middle = f64::midpoint(from, to);
-            *(if below(middle) < count / 2.0 { &mut from } else { &mut to }) = middle;
+            *(if below(middle) < count / 2.0 {
+                &mut from
+            } else {
+                &mut to
+            }) = middle;
         }
         let half = |k: usize| -> Vec<Spread> {
-            spreads.iter().map(|spread| spread.split(axis, to)[k]).filter(|spread| spread.count > 0.0).collect()
+            spreads
+                .iter()
+                .map(|spread| spread.split(axis, to)[k])
+                .filter(|spread| spread.count > 0.0)
+                .collect()
         };
         let halves = [half(0), half(1)];
         drop(spreads);
         let parts = halves.map(|half| self.add_balanced(half, most, tiles, depth + 1));
-        self.nodes[here] = Node::Cut { axis, at: to, parts };
+        self.nodes[here] = Node::Cut {
+            axis,
+            at: to,
+            parts,
+        };
         here as u32
     }
 
@@ -193,7 +249,9 @@ impl TileLayout {
     pub fn from_nodes(nodes: Vec<Node>) -> Option<Self> {
         let mut uses = vec![0; nodes.len()];
         for (here, node) in nodes.iter().enumerate() {
-            let Node::Cut { axis, at, parts } = node else { continue };
+            let Node::Cut { axis, at, parts } = node else {
+                continue;
+            };
             let is_later = |part: &u32| *part as usize > here && (*part as usize) < nodes.len();
             if *axis > 1 || !at.is_finite() || !parts.iter().all(is_later) {
                 return None;
@@ -203,7 +261,8 @@ impl TileLayout {
         let mut numbers: Vec<u32> = nodes.iter().filter_map(|node| node.tile()).collect();
         numbers.sort_unstable();
         let is_tree = uses.first() == Some(&0) && uses[1..].iter().all(|&count| count == 1);
-        (is_tree && numbers.into_iter().eq(0..nodes.len().div_ceil(2) as u32)).then_some(TileLayout { nodes })
+        (is_tree && numbers.into_iter().eq(0..nodes.len().div_ceil(2) as u32))
+            .then_some(TileLayout { nodes })
     }
 
     /// Returns the tiles and cuts; the root is the first.
@@ -222,7 +281,9 @@ impl TileLayout {
         loop {
             match self.nodes[here] {
                 Node::Tile(number) => return number,
-                Node::Cut { axis, at, parts } => here = parts[usize::from(position[axis] >= at)] as usize,
+                Node::Cut { axis, at, parts } => {
+                    here = parts[usize::from(position[axis] >= at)] as usize
+                }
             }
         }
     }
@@ -251,7 +312,10 @@ impl TileLayout {
         let mut steps = Vec::new();
         let open = self.gather(0, Tile::PLANE, &mut steps);
         if open.len() > 1 {
-            steps.push(TileStep { tile: Tile::PLANE, work: Work::Merge(open) });
+            steps.push(TileStep {
+                tile: Tile::PLANE,
+                work: Work::Merge(open),
+            });
         }
         steps
     }
@@ -260,7 +324,10 @@ impl TileLayout {
     fn gather(&self, node: u32, tile: Tile, steps: &mut Vec<TileStep>) -> Vec<usize> {
         match self.nodes[node as usize] {
             Node::Tile(number) => {
-                steps.push(TileStep { tile, work: Work::Leaf(number) });
+                steps.push(TileStep {
+                    tile,
+                    work: Work::Leaf(number),
+                });
                 vec![steps.len() - 1]
             }
             Node::Cut { axis, at, parts } => {
@@ -272,7 +339,10 @@ impl TileLayout {
                 for i in 0..2 {
                     if open[0].0.len() + open[1].0.len() > FAN {
                         let merged = std::mem::take(&mut open[i].0);
-                        steps.push(TileStep { tile: open[i].1, work: Work::Merge(merged) });
+                        steps.push(TileStep {
+                            tile: open[i].1,
+                            work: Work::Merge(merged),
+                        });
                         open[i].0.push(steps.len() - 1);
                     }
                 }
@@ -324,14 +394,22 @@ mod tests {
     /// rectangles.
     fn check(layout: &TileLayout, random: &mut Random) {
         let steps = layout.steps();
-        let tile = |number: u32| steps.iter().find(|step| step.work == Work::Leaf(number)).unwrap().tile;
+        let tile = |number: u32| {
+            steps
+                .iter()
+                .find(|step| step.work == Work::Leaf(number))
+                .unwrap()
+                .tile
+        };
         let mut cuts = vec![-1.0, 0.0, 0.5, 1.0, 2.0];
         cuts.extend(layout.nodes().iter().filter_map(|node| match node {
             Node::Cut { at, .. } => Some(*at),
             Node::Tile(_) => None,
         }));
         for _ in 0..200 {
-            let position = [0, 1].map(|_| cuts[random.index(cuts.len())] + [0.0, 1e-3, random.unit()][random.index(3)]);
+            let position = [0, 1].map(|_| {
+                cuts[random.index(cuts.len())] + [0.0, 1e-3, random.unit()][random.index(3)]
+            });
             let owner = layout.tile_of(position);
             for number in 0..layout.tile_count() as u32 {
                 assert_eq!(tile(number).holds(position), number == owner);
@@ -344,11 +422,16 @@ mod tests {
                 let Tile { min, max } = tile(*number);
                 (0..2).all(|k| position[k] < max[k] && far[k] >= min[k])
             };
-            assert!(met.into_iter().eq((0..layout.tile_count() as u32).filter(meets)));
+            assert!(
+                met.into_iter()
+                    .eq((0..layout.tile_count() as u32).filter(meets))
+            );
         }
         let mut merged = vec![0; steps.len()];
         for (at, step) in steps.iter().enumerate() {
-            let Work::Merge(parts) = &step.work else { continue };
+            let Work::Merge(parts) = &step.work else {
+                continue;
+            };
             assert!((2..=FAN).contains(&parts.len()));
             for &part in parts {
                 assert!(part < at);
@@ -358,8 +441,15 @@ mod tests {
             }
         }
         let (root, others) = merged.split_last().unwrap();
-        assert!(*root == 0 && others.iter().all(|&count| count == 1) && steps.last().unwrap().tile.is_plane());
-        assert_eq!(TileLayout::from_nodes(layout.nodes().to_vec()).as_ref(), Some(layout));
+        assert!(
+            *root == 0
+                && others.iter().all(|&count| count == 1)
+                && steps.last().unwrap().tile.is_plane()
+        );
+        assert_eq!(
+            TileLayout::from_nodes(layout.nodes().to_vec()).as_ref(),
+            Some(layout)
+        );
     }
 
     #[test]
@@ -370,13 +460,28 @@ mod tests {
             assert_eq!(layout.tile_count(), counts[0] * counts[1]);
             check(&layout, &mut random);
         }
-        let spread = |x: f64, y: f64, size: f64, count: f64| Spread { min: [x, y], max: [x + size, y + size], count };
-        let files = [spread(0.0, 0.0, 9.9, 500.0), spread(10.0, 0.0, 9.9, 4_000.0), spread(0.0, 10.0, 0.0, 90.0)];
+        let spread = |x: f64, y: f64, size: f64, count: f64| Spread {
+            min: [x, y],
+            max: [x + size, y + size],
+            count,
+        };
+        let files = [
+            spread(0.0, 0.0, 9.9, 500.0),
+            spread(10.0, 0.0, 9.9, 4_000.0),
+            spread(0.0, 10.0, 0.0, 90.0),
+        ];
         let layout = TileLayout::balanced(&files, 100.0);
-        assert!((46..=92).contains(&layout.tile_count()), "{}", layout.tile_count());
+        assert!(
+            (46..=92).contains(&layout.tile_count()),
+            "{}",
+            layout.tile_count()
+        );
         check(&layout, &mut random);
         // Sites that coincide end the division.
-        check(&TileLayout::balanced(&[spread(1.0, 1.0, 0.0, 1e9)], 10.0), &mut random);
+        check(
+            &TileLayout::balanced(&[spread(1.0, 1.0, 0.0, 1e9)], 10.0),
+            &mut random,
+        );
         check(&TileLayout::balanced(&[], 10.0), &mut random);
     }
 
@@ -385,26 +490,55 @@ mod tests {
         let mut random = Random(3);
         let tile = |column: usize, row: usize| {
             let min = [column as f64 * 10.0, row as f64 * 10.0];
-            Spread { min, max: min.map(|at| at + 9.99), count: 1.0 }
+            Spread {
+                min,
+                max: min.map(|at| at + 9.99),
+                count: 1.0,
+            }
         };
         let mut files: Vec<Spread> = (0..35).map(|k| tile(k % 7, k / 7)).collect();
         files.remove(11);
         let layout = TileLayout::of_boxes(&files).unwrap();
         check(&layout, &mut random);
         for (number, file) in files.iter().enumerate() {
-            assert_eq!((layout.tile_of(file.min), layout.tile_of(file.max)), (number as u32, number as u32));
+            assert_eq!(
+                (layout.tile_of(file.min), layout.tile_of(file.max)),
+                (number as u32, number as u32)
+            );
         }
         // Touching, and overlapping without a cut between.
-        assert_eq!(TileLayout::of_boxes(&[tile(0, 0), Spread { min: [9.99, 0.0], ..tile(1, 0) }]), None);
-        let wheel = [[0.0, 0.0, 2.0, 1.0], [2.5, 0.0, 3.5, 2.0], [1.5, 2.5, 3.5, 3.5], [0.0, 1.5, 1.0, 3.5]];
-        let wheel = wheel.map(|[x, y, x1, y1]| Spread { min: [x, y], max: [x1, y1], count: 1.0 });
+        assert_eq!(
+            TileLayout::of_boxes(&[
+                tile(0, 0),
+                Spread {
+                    min: [9.99, 0.0],
+                    ..tile(1, 0)
+                }
+            ]),
+            None
+        );
+        let wheel = [
+            [0.0, 0.0, 2.0, 1.0],
+            [2.5, 0.0, 3.5, 2.0],
+            [1.5, 2.5, 3.5, 3.5],
+            [0.0, 1.5, 1.0, 3.5],
+        ];
+        let wheel = wheel.map(|[x, y, x1, y1]| Spread {
+            min: [x, y],
+            max: [x1, y1],
+            count: 1.0,
+        });
         assert_eq!(TileLayout::of_boxes(&wheel), None);
         assert_eq!(TileLayout::of_boxes(&[]), None);
     }
 
     #[test]
     fn lists_that_are_no_division_are_refused() {
-        let cut = |parts| Node::Cut { axis: 0, at: 1.0, parts };
+        let cut = |parts| Node::Cut {
+            axis: 0,
+            at: 1.0,
+            parts,
+        };
         for nodes in [
             vec![],
             vec![Node::Tile(1)],
@@ -412,8 +546,24 @@ mod tests {
             vec![cut([1, 1]), Node::Tile(0), Node::Tile(1)],
             vec![cut([1, 3]), Node::Tile(0), Node::Tile(1)],
             vec![cut([0, 1]), Node::Tile(0), Node::Tile(1)],
-            vec![Node::Cut { axis: 2, at: 1.0, parts: [1, 2] }, Node::Tile(0), Node::Tile(1)],
-            vec![Node::Cut { axis: 0, at: f64::NAN, parts: [1, 2] }, Node::Tile(0), Node::Tile(1)],
+            vec![
+                Node::Cut {
+                    axis: 2,
+                    at: 1.0,
+                    parts: [1, 2],
+                },
+                Node::Tile(0),
+                Node::Tile(1),
+            ],
+            vec![
+                Node::Cut {
+                    axis: 0,
+                    at: f64::NAN,
+                    parts: [1, 2],
+                },
+                Node::Tile(0),
+                Node::Tile(1),
+            ],
         ] {
             assert_eq!(TileLayout::from_nodes(nodes.clone()), None, "{nodes:?}");
         }

@@ -39,10 +39,17 @@ pub(super) fn of_tile(tile: &Tile, constraints: &[SubConstraint]) -> Result<Vec<
 /// If an end is in the tile and no vertex is there: a sub-constraint keeps the vertices on it in
 /// the residual, so its line was given without the point.
 pub(super) fn join_known(tile: &Tile, residual: &mut Residual) -> Result<()> {
-    let pending = residual.pending.iter().map(SubConstraint::checked).collect::<Result<Vec<_>>>()?;
+    let pending = residual
+        .pending
+        .iter()
+        .map(SubConstraint::checked)
+        .collect::<Result<Vec<_>>>()?;
     let key = |site: [f64; 2]| site.map(|x| unsigned_zero(x).to_bits());
-    let mut vertex_at: FxHashMap<[u64; 2], Option<u32>> =
-        pending.iter().flat_map(|constraint| constraint.ends).map(|end| (key(end), None)).collect();
+    let mut vertex_at: FxHashMap<[u64; 2], Option<u32>> = pending
+        .iter()
+        .flat_map(|constraint| constraint.ends)
+        .map(|end| (key(end), None))
+        .collect();
     if vertex_at.is_empty() {
         return Ok(());
     }
@@ -53,16 +60,24 @@ pub(super) fn join_known(tile: &Tile, residual: &mut Residual) -> Result<()> {
     }
     residual.pending.clear();
     for constraint in pending {
-        let ends = constraint.ends.map(|end| vertex_at.get(&key(end)).copied().flatten());
+        let ends = constraint
+            .ends
+            .map(|end| vertex_at.get(&key(end)).copied().flatten());
         for (&end, vertex) in constraint.ends.iter().zip(ends) {
             if vertex.is_none() && tile.holds(end) {
-                return Err(Error::format(format!("a line ends at {end:?}, where its tile has no point"))
-                    .cure("pass the vertices of lines as points, too, to the tile that they are in"));
+                return Err(Error::format(format!(
+                    "a line ends at {end:?}, where its tile has no point"
+                ))
+                .cure("pass the vertices of lines as points, too, to the tile that they are in"));
             }
         }
         match ends {
             [Some(a), Some(b)] => {
-                residual.edges.push(ResidualEdge { ends: [a, b], is_seam: false, kind: constraint.kind });
+                residual.edges.push(ResidualEdge {
+                    ends: [a, b],
+                    is_seam: false,
+                    kind: constraint.kind,
+                });
             }
             _ => residual.pending.push(constraint),
         }
@@ -87,10 +102,18 @@ pub(super) struct Lines<'a> {
 impl<'a> Lines<'a> {
     /// Returns the lines of a triangulation of dimension 2. The ids of its lines are the positions
     /// of the edges.
-    pub(super) fn new(tile: &Tile, t: &'a ConstrainedDelaunay<Terrain>, residual: &'a Residual) -> Self {
+    pub(super) fn new(
+        tile: &Tile,
+        t: &'a ConstrainedDelaunay<Terrain>,
+        residual: &'a Residual,
+    ) -> Self {
         let tds = t.tds();
         if !residual.has_lines {
-            return Lines { t, residual, entered: Vec::new() };
+            return Lines {
+                t,
+                residual,
+                entered: Vec::new(),
+            };
         }
         let mut entered = vec![false; tds.cell_slots()];
         for constraint in &residual.pending {
@@ -103,7 +126,10 @@ impl<'a> Lines<'a> {
                     Passage::Face(cell) => entered[cell.index()] = true,
                     Passage::Along(_) if traps::is_off(Rule::AlongEdges) => {}
                     Passage::Along([from, to]) => {
-                        for (cell, _) in [tds.edge(from, to), tds.edge(to, from)].into_iter().flatten() {
+                        for (cell, _) in [tds.edge(from, to), tds.edge(to, from)]
+                            .into_iter()
+                            .flatten()
+                        {
                             entered[cell.index()] = true;
                         }
                     }
@@ -112,7 +138,11 @@ impl<'a> Lines<'a> {
                 }
             }
         }
-        Lines { t, residual, entered }
+        Lines {
+            t,
+            residual,
+            entered,
+        }
     }
 
     /// Returns the kind of the edge opposite corner `i` of a cell.
@@ -121,13 +151,18 @@ impl<'a> Lines<'a> {
             return EdgeKind::Plain;
         }
         let [a, b] = self.t.tds().edge_ends(cell, i);
-        let kinds = self.t.lines_through(a, b).map(|line| self.residual.edges[line.index()].kind);
+        let kinds = self
+            .t
+            .lines_through(a, b)
+            .map(|line| self.residual.edges[line.index()].kind);
         kinds.min_by_key(|kind| kind.rank()).unwrap_or_default()
     }
 
     /// Returns true if a pending sub-constraint enters a cell or runs along one of its edges.
     pub(super) fn enter(&self, cell: CellId) -> bool {
-        self.entered.get(cell.index()).is_some_and(|is_entered| *is_entered)
+        self.entered
+            .get(cell.index())
+            .is_some_and(|is_entered| *is_entered)
     }
 
     /// Returns true if constraints hide from a cell all that is in its disk outside of the tile. In
@@ -151,7 +186,10 @@ impl<'a> Lines<'a> {
                 if reached.contains(&beyond) {
                     continue;
                 }
-                let edge = tds.edge_ends(from, i).map(|end| *self.t.point(end)).map(|[x, y, _]| [x, y]);
+                let edge = tds
+                    .edge_ends(from, i)
+                    .map(|end| *self.t.point(end))
+                    .map(|[x, y, _]| [x, y]);
                 if disk.misses(edge) || disk.is_within_beyond(edge, tile) {
                     continue;
                 }

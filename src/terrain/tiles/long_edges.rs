@@ -61,13 +61,18 @@ pub fn has_long_edge(triangle: &TileTriangle, limit: f64) -> bool {
 fn is_long(triangle: &TileTriangle, corners: &[[f64; 3]; 3], i: usize, limit: f64) -> bool {
     // PERF: `hypot` takes longer than the rest, and nearly all edges are short.
     let [dx, dy] = [0, 1].map(|k| (corners[ccw(i)][k] - corners[cw(i)][k]).abs());
-    dx + dy > limit && plan_distance(corners[ccw(i)], corners[cw(i)]) > limit && !triangle.edges[i].is_constrained()
+    dx + dy > limit
+        && plan_distance(corners[ccw(i)], corners[cw(i)]) > limit
+        && !triangle.edges[i].is_constrained()
 }
 
 impl LongEdges {
     /// Creates a collection for a longest edge.
     pub fn new(limit: f64) -> Self {
-        LongEdges { limit, ..LongEdges::default() }
+        LongEdges {
+            limit,
+            ..LongEdges::default()
+        }
     }
 
     /// Returns true if a triangle has to wait; it is then kept here.
@@ -101,10 +106,18 @@ impl LongEdges {
             }
             group_of.push(*number);
         }
-        let gate = |(edge, triangle): (EdgeKey, u32)| Gate { edge, group: group_of[triangle as usize] };
+        let gate = |(edge, triangle): (EdgeKey, u32)| Gate {
+            edge,
+            group: group_of[triangle as usize],
+        };
         let mut gates: Vec<Gate> = self.open.into_iter().map(gate).collect();
         gates.sort_unstable_by_key(|gate| gate.edge);
-        Waiting { triangles: self.triangles, group_of, gates, groups }
+        Waiting {
+            triangles: self.triangles,
+            group_of,
+            gates,
+            groups,
+        }
     }
 }
 
@@ -165,10 +178,18 @@ impl Rim {
         for group in self.open.into_values() {
             is_removed[self.groups.find(group) as usize] = true;
         }
-        let ends = self.first_of.iter().skip(1).copied().chain([self.groups.0.len() as u32]);
+        let ends = self
+            .first_of
+            .iter()
+            .skip(1)
+            .copied()
+            .chain([self.groups.0.len() as u32]);
         let ranges: Vec<_> = self.first_of.iter().copied().zip(ends).collect();
-        let mut of_task =
-            |(first, end)| (first..end).map(|group| is_removed[self.groups.find(group) as usize]).collect();
+        let mut of_task = |(first, end)| {
+            (first..end)
+                .map(|group| is_removed[self.groups.find(group) as usize])
+                .collect()
+        };
         ranges.into_iter().map(&mut of_task).collect()
     }
 }
@@ -182,7 +203,12 @@ mod tests {
 
     /// The triangles of a TIN, with vertices of different tiles.
     fn triangles(tin: &Tin) -> Vec<(u32, TileTriangle)> {
-        let vertex = |v: u32| TileVertex { tile: v % 3, number: v, position: tin.position(v), is_tight: false };
+        let vertex = |v: u32| TileVertex {
+            tile: v % 3,
+            number: v,
+            position: tin.position(v),
+            is_tight: false,
+        };
         let of = |face: u32| {
             let corners = tin.face(face)?.map(vertex);
             let edges = [0, 1, 2].map(|i| match tin.edge_kind(face, i) {
@@ -204,18 +230,26 @@ mod tests {
             let mut builder = TinBuilder::default();
             let side = 12;
             let mut coordinate = || random.below(side) as f64;
-            let points: Vec<[f64; 3]> = (0..8 + round % 40).map(|_| [coordinate(), coordinate(), 0.0]).collect();
+            let points: Vec<[f64; 3]> = (0..8 + round % 40)
+                .map(|_| [coordinate(), coordinate(), 0.0])
+                .collect();
             builder.add_owned_points(points);
             for _ in 0..round % 4 {
-                builder.add_breakline(&[[coordinate(), coordinate(), 0.0], [coordinate(), coordinate(), 0.0]]);
+                builder.add_breakline(&[
+                    [coordinate(), coordinate(), 0.0],
+                    [coordinate(), coordinate(), 0.0],
+                ]);
             }
             let limit = [2.0, 3.0, 4.5][round % 3];
-            let Ok(whole) = builder.clone().build() else { continue };
+            let Ok(whole) = builder.clone().build() else {
+                continue;
+            };
             builder.max_edge = Some(limit);
             let peeled = builder.build().unwrap();
 
             let tasks = 1 + round % 5;
-            let mut parts: Vec<(LongEdges, Vec<u32>)> = vec![(LongEdges::new(limit), Vec::new()); tasks];
+            let mut parts: Vec<(LongEdges, Vec<u32>)> =
+                vec![(LongEdges::new(limit), Vec::new()); tasks];
             let mut kept: Vec<u32> = Vec::new();
             for (face, triangle) in triangles(&whole) {
                 let (long, faces) = &mut parts[random.index(tasks)];
@@ -224,16 +258,26 @@ mod tests {
                 (if has_long { faces } else { &mut kept }).push(face);
             }
             let mut rim = Rim::default();
-            let parts: Vec<(Waiting, Vec<u32>)> =
-                parts.into_iter().map(|(long, faces)| (long.finish(), faces)).collect();
-            parts.iter().for_each(|(waiting, _)| rim.add(waiting.groups, &waiting.gates));
+            let parts: Vec<(Waiting, Vec<u32>)> = parts
+                .into_iter()
+                .map(|(long, faces)| (long.finish(), faces))
+                .collect();
+            parts
+                .iter()
+                .for_each(|(waiting, _)| rim.add(waiting.groups, &waiting.gates));
             for (is_removed, (waiting, faces)) in rim.removed().iter().zip(&parts) {
                 assert_eq!(waiting.triangles.len(), faces.len());
-                let stay = faces.iter().zip(&waiting.group_of).filter(|(_, group)| !is_removed[**group as usize]);
+                let stay = faces
+                    .iter()
+                    .zip(&waiting.group_of)
+                    .filter(|(_, group)| !is_removed[**group as usize]);
                 kept.extend(stay.map(|(face, _)| *face));
             }
             kept.sort_unstable();
-            let expected: Vec<u32> = triangles(&peeled).into_iter().map(|(face, _)| face).collect();
+            let expected: Vec<u32> = triangles(&peeled)
+                .into_iter()
+                .map(|(face, _)| face)
+                .collect();
             assert_eq!(kept, expected, "round {round}");
             removed_in_all += peeled.report().faces_beyond_max_edge;
         }

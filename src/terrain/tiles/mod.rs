@@ -112,7 +112,10 @@ pub struct Tile {
 
 impl Tile {
     /// All positions: the tile of the root.
-    pub const PLANE: Self = Tile { min: [f64::NEG_INFINITY; 2], max: [f64::INFINITY; 2] };
+    pub const PLANE: Self = Tile {
+        min: [f64::NEG_INFINITY; 2],
+        max: [f64::INFINITY; 2],
+    };
 
     /// Returns true if a position is in the tile.
     pub fn holds(&self, [x, y]: [f64; 2]) -> bool {

@@ -37,14 +37,22 @@ impl TinPart {
     ) -> Self {
         let mut tin = Tin::new(triangulation, LineKinds::new(kinds), None);
         tin.inside.fill(false);
-        TinPart { tin, emitted, numbers, given: Vec::new() }
+        TinPart {
+            tin,
+            emitted,
+            numbers,
+            given: Vec::new(),
+        }
     }
 
     /// Makes triangles that other tasks have found those of this part: cells for which `is_given`
     /// is true, and as faces those that are `inside`.
     pub(super) fn take_over(&mut self, is_given: &[bool], inside: Vec<bool>) {
         let cells = (0..).zip(self.tin.triangulation.tds().cells());
-        self.given = cells.filter(|(_, cell)| is_given[cell.index()]).map(|(at, _)| at).collect();
+        self.given = cells
+            .filter(|(_, cell)| is_given[cell.index()])
+            .map(|(at, _)| at)
+            .collect();
         self.tin.inside = inside;
     }
 
@@ -61,15 +69,25 @@ impl TinPart {
     pub fn triangles(&self) -> impl Iterator<Item = TileTriangle> + '_ {
         let tds = self.tin.triangulation.tds();
         let mut number_of = vec![[u32::MAX; 2]; tds.vertex_slots()];
-        tds.vertices().zip(&self.numbers).for_each(|(id, number)| number_of[id.index()] = *number);
+        tds.vertices()
+            .zip(&self.numbers)
+            .for_each(|(id, number)| number_of[id.index()] = *number);
         let vertex = move |tin: &Tin, vertex: u32| {
             let added = [u32::MAX, vertex.wrapping_sub(number_of.len() as u32)];
             let [tile, number] = number_of.get(vertex as usize).copied().unwrap_or(added);
-            TileVertex { tile, number, position: tin.position(vertex), is_tight: false }
+            TileVertex {
+                tile,
+                number,
+                position: tin.position(vertex),
+                is_tight: false,
+            }
         };
         (0..self.tin.face_count() as u32).filter_map(move |face| {
             let corners = self.tin.face(face)?.map(|corner| vertex(&self.tin, corner));
-            Some(TileTriangle { corners, edges: [0, 1, 2].map(|i| plain_at_rim(self.tin.edge_kind(face, i))) })
+            Some(TileTriangle {
+                corners,
+                edges: [0, 1, 2].map(|i| plain_at_rim(self.tin.edge_kind(face, i))),
+            })
         })
     }
 
@@ -81,10 +99,16 @@ impl TinPart {
     ///
     /// # Complexity
     /// Linear.
-    pub fn write(mut self, decided: impl IntoIterator<Item = PartCell>, out: &mut dyn Write) -> Result<()> {
+    pub fn write(
+        mut self,
+        decided: impl IntoIterator<Item = PartCell>,
+        out: &mut dyn Write,
+    ) -> Result<()> {
         let cells: Vec<_> = self.tin.triangulation.tds().cells().collect();
         let mut is_under = vec![false; cells.len()];
-        self.given.iter().for_each(|&at| is_under[at as usize] = true);
+        self.given
+            .iter()
+            .for_each(|&at| is_under[at as usize] = true);
         for (&at, decided) in self.emitted.iter().zip(decided) {
             self.tin.inside[cells[at as usize].index()] = decided == PartCell::Face;
             is_under[at as usize] = decided != PartCell::Elsewhere;
@@ -102,7 +126,12 @@ impl<B: AsRef<[u8]> + Sync> CompactTin<B> {
     /// Returns `None` if the vertex does not exist, or the file is not a part of a larger surface.
     pub fn tile_vertex(&self, vertex: u32) -> Option<TileVertex> {
         let [tile, number] = self.number_in_parts(vertex)?;
-        Some(TileVertex { tile, number, position: self.position(vertex), is_tight: false })
+        Some(TileVertex {
+            tile,
+            number,
+            position: self.position(vertex),
+            is_tight: false,
+        })
     }
 
     /// Returns the triangles of a part, in the order of its faces. Their edges at the rim of the
@@ -125,7 +154,11 @@ impl<B: AsRef<[u8]> + Sync> CompactTin<B> {
 
 /// What is at the rim of a part need not be at that of the surface.
 fn plain_at_rim(kind: EdgeKind) -> EdgeKind {
-    if kind == EdgeKind::Rim { EdgeKind::Plain } else { kind }
+    if kind == EdgeKind::Rim {
+        EdgeKind::Plain
+    } else {
+        kind
+    }
 }
 
 #[cfg(test)]
@@ -138,7 +171,10 @@ mod tests {
         let numbers = triangle.corners.map(|corner| [corner.tile, corner.number]);
         let first = (0..3).min_by_key(|&i| numbers[i]).unwrap();
         let order = [0, 1, 2].map(|k| (first + k) % 3);
-        (order.map(|i| numbers[i]), order.map(|i| triangle.edges[i].rank()))
+        (
+            order.map(|i| numbers[i]),
+            order.map(|i| triangle.edges[i].rank()),
+        )
     }
 
     /// Writes a part with every second of its triangles, some of which are under the surface, and
@@ -146,19 +182,31 @@ mod tests {
     fn opened(part: TinPart) -> CompactTin<Vec<u8>> {
         let faces = part.faces().to_vec();
         let mut bytes = Vec::new();
-        let decided = |at: usize| [PartCell::Face, PartCell::Elsewhere, PartCell::Under, PartCell::Elsewhere][at % 4];
-        part.write((0..faces.len()).map(decided), &mut bytes).unwrap();
+        let decided = |at: usize| {
+            [
+                PartCell::Face,
+                PartCell::Elsewhere,
+                PartCell::Under,
+                PartCell::Elsewhere,
+            ][at % 4]
+        };
+        part.write((0..faces.len()).map(decided), &mut bytes)
+            .unwrap();
         let some = CompactTin::open(bytes.clone(), "part").unwrap();
         some.check().unwrap();
         assert_eq!(some.tile_triangles().count(), faces.len().div_ceil(4));
         assert_eq!(some.faces_under_whole().count(), faces.len().div_ceil(2));
         assert_eq!(some.has_triangles(), !faces.is_empty());
-        let cells: Vec<(u32, PartCell)> = faces.iter().map(|&face| (face, PartCell::Face)).collect();
+        let cells: Vec<(u32, PartCell)> =
+            faces.iter().map(|&face| (face, PartCell::Face)).collect();
         let all = CompactTin::open_with_cells(bytes, "part", &cells).unwrap();
         all.check().unwrap();
         assert_eq!(all.faces_under_whole().count(), faces.len());
         let beyond = [(u32::MAX, PartCell::Face)];
-        assert!(CompactTin::open_with_cells(all.triangulation().bytes().to_vec(), "part", &beyond).is_err());
+        assert!(
+            CompactTin::open_with_cells(all.triangulation().bytes().to_vec(), "part", &beyond)
+                .is_err()
+        );
         // A copy has the numbers, too.
         let mut copy = Vec::new();
         all.write_tin(&mut copy).unwrap();
@@ -174,37 +222,71 @@ mod tests {
         for round in 0..200 {
             let side = [4, 9, 30][round % 3];
             let mut site = || [0, 1].map(|_| f64::from(random.below(side) as u32));
-            let mut points: Vec<[f64; 3]> = (0..round % 50).map(|_| site()).map(|[x, y]| [x, y, x - y]).collect();
+            let mut points: Vec<[f64; 3]> = (0..round % 50)
+                .map(|_| site())
+                .map(|[x, y]| [x, y, x - y])
+                .collect();
             // Lines side by side do not cross; some are short, and end within a tile.
             let lines: Vec<SubConstraint> = (0..round % 4)
                 .map(|row| {
                     let (y, ends) = (row as f64 + 0.5, [site()[0], site()[0] + 1.0]);
                     let kind = [EdgeKind::Breakline, EdgeKind::Wall][row % 2];
-                    SubConstraint { ends: ends.map(|x| [x, y]), kind }
+                    SubConstraint {
+                        ends: ends.map(|x| [x, y]),
+                        kind,
+                    }
                 })
                 .collect();
-            points.extend(lines.iter().flat_map(|line| line.ends).map(|[x, y]| [x, y, 1.0]));
+            points.extend(
+                lines
+                    .iter()
+                    .flat_map(|line| line.ends)
+                    .map(|[x, y]| [x, y, 1.0]),
+            );
             points.sort_by(|a, b| a.partial_cmp(b).unwrap());
             points.dedup_by_key(|p| [p[0], p[1]]);
-            let cut = [f64::NEG_INFINITY, f64::from(side as u32) / 2.0, f64::INFINITY];
+            let cut = [
+                f64::NEG_INFINITY,
+                f64::from(side as u32) / 2.0,
+                f64::INFINITY,
+            ];
             let (mut emitted, mut parts) = (Vec::new(), Vec::new());
             let mut emit = |triangle: TileTriangle| emitted.push(key(&triangle));
             let residuals: Vec<Residual> = (0..2)
                 .map(|k| {
-                    let tile = Tile { min: [cut[k], cut[0]], max: [cut[k + 1], cut[2]] };
-                    let own: Vec<[f64; 3]> = points.iter().copied().filter(|p| tile.holds([p[0], p[1]])).collect();
-                    let (residual, part) = leaf_with_part(&tile, k as u32, &own, &lines, 0.0, &mut emit).unwrap();
+                    let tile = Tile {
+                        min: [cut[k], cut[0]],
+                        max: [cut[k + 1], cut[2]],
+                    };
+                    let own: Vec<[f64; 3]> = points
+                        .iter()
+                        .copied()
+                        .filter(|p| tile.holds([p[0], p[1]]))
+                        .collect();
+                    let (residual, part) =
+                        leaf_with_part(&tile, k as u32, &own, &lines, 0.0, &mut emit).unwrap();
                     parts.extend(part);
                     residual
                 })
                 .collect();
-            parts.extend(merge_with_part(&Tile::PLANE, &residuals, 0.0, &mut emit).unwrap().1);
+            parts.extend(
+                merge_with_part(&Tile::PLANE, &residuals, 0.0, &mut emit)
+                    .unwrap()
+                    .1,
+            );
             let opened: Vec<CompactTin<Vec<u8>>> = parts.into_iter().map(opened).collect();
-            let mut found: Vec<_> = opened.iter().flat_map(|part| part.tile_triangles()).map(|t| key(&t)).collect();
+            let mut found: Vec<_> = opened
+                .iter()
+                .flat_map(|part| part.tile_triangles())
+                .map(|t| key(&t))
+                .collect();
             found.sort_unstable();
             emitted.sort_unstable();
             assert_eq!(found, emitted, "round {round}: {points:?} {lines:?}");
-            walls += found.iter().filter(|(_, edges)| edges.contains(&EdgeKind::Wall.rank())).count();
+            walls += found
+                .iter()
+                .filter(|(_, edges)| edges.contains(&EdgeKind::Wall.rank()))
+                .count();
         }
         assert!(walls > 100, "{walls} triangles at walls");
     }

@@ -41,7 +41,12 @@ impl Residual {
         let mut all = Residual::default();
         for (number, part) in parts.iter().enumerate() {
             let count = part.vertices.len();
-            if let Some(end) = part.edges.iter().flat_map(|edge| edge.ends).find(|&end| end as usize >= count) {
+            if let Some(end) = part
+                .edges
+                .iter()
+                .flat_map(|edge| edge.ends)
+                .find(|&end| end as usize >= count)
+            {
                 return Err(Error::format(format!(
                     "an edge of part {number} ends at vertex {end}, expected less than {count}"
                 ))
@@ -49,7 +54,10 @@ impl Residual {
             }
             let first = all.vertices.len() as u32;
             all.vertices.extend_from_slice(&part.vertices);
-            let edges = part.edges.iter().map(|edge| ResidualEdge { ends: edge.ends.map(|end| end + first), ..*edge });
+            let edges = part.edges.iter().map(|edge| ResidualEdge {
+                ends: edge.ends.map(|end| end + first),
+                ..*edge
+            });
             all.edges.extend(edges);
             all.pending.extend_from_slice(&part.pending);
             all.has_lines |= part.has_lines;

@@ -39,11 +39,16 @@ impl SubConstraint {
         }
         if !self.kind.is_constrained() {
             let ([a, b], kind) = (ends, self.kind);
-            return Err(Error::format(format!("the line from {a:?} to {b:?} has the kind {kind:?}"))
-                .cure("pass the kind of a line, such as Breakline"));
+            return Err(Error::format(format!(
+                "the line from {a:?} to {b:?} has the kind {kind:?}"
+            ))
+            .cure("pass the kind of a line, such as Breakline"));
         }
         ends.sort_unstable_by(|a, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal));
-        Ok(SubConstraint { ends, kind: self.kind })
+        Ok(SubConstraint {
+            ends,
+            kind: self.kind,
+        })
     }
 
     /// Returns true if it has a point in a tile. Exact.
@@ -59,10 +64,15 @@ impl SubConstraint {
                 return false;
             }
             // The box includes its sides, and so does the tile its lower ones.
-            bounds[axis] = [(low.max(tile.min[axis]), true), (high.min(tile.max[axis]), high < tile.max[axis])];
+            bounds[axis] = [
+                (low.max(tile.min[axis]), true),
+                (high.min(tile.max[axis]), high < tile.max[axis]),
+            ];
         }
         let [x, y] = bounds;
-        let corners = x.iter().flat_map(|x| y.iter().map(move |y| ([x.0, y.0], x.1 && y.1)));
+        let corners = x
+            .iter()
+            .flat_map(|x| y.iter().map(move |y| ([x.0, y.0], x.1 && y.1)));
         let mut sides = [false; 2];
         for (corner, is_included) in corners {
             match Wide::sign(&Orientation2([a, b, corner])) {

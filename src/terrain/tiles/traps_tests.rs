@@ -49,14 +49,22 @@ fn with_lines() -> impl Iterator<Item = Case> {
 
 /// The points of these sets.
 fn without_lines() -> impl Iterator<Item = Case> {
-    with_lines().map(|case| Case { constraints: Vec::new(), ..case })
+    with_lines().map(|case| Case {
+        constraints: Vec::new(),
+        ..case
+    })
 }
 
 /// Tasks that change the parts of a merge.
 struct Altered(fn(&mut Residual));
 
 impl Tasks for Altered {
-    fn merge(&self, tile: &Tile, parts: &[Residual], emit: &mut dyn FnMut(TileTriangle)) -> Result<Residual> {
+    fn merge(
+        &self,
+        tile: &Tile,
+        parts: &[Residual],
+        emit: &mut dyn FnMut(TileTriangle),
+    ) -> Result<Residual> {
         let mut parts = parts.to_vec();
         parts.iter_mut().for_each(self.0);
         merge(tile, &parts, 0.0, emit)
@@ -82,10 +90,17 @@ fn disks_without_a_bound_of_their_error_are_seen() {
         };
         (0..3).for_each(|_| add(radius));
         (0..8).for_each(|_| add(1.5 * radius));
-        Case { points, constraints: Vec::new(), cuts: [vec![0.0], Vec::new()], fan: 2 }
+        Case {
+            points,
+            constraints: Vec::new(),
+            cuts: [vec![0.0], Vec::new()],
+            fan: 2,
+        }
     };
     let cases = (0..SETS).map(|_| circle_at_cut());
-    let seen = seen(cases, |case| without(Rule::DiskBound, || case.found(&Unchanged)));
+    let seen = seen(cases, |case| {
+        without(Rule::DiskBound, || case.found(&Unchanged))
+    });
     assert!(seen.different > 0, "{seen:?}");
 }
 
@@ -93,20 +108,38 @@ fn disks_without_a_bound_of_their_error_are_seen() {
 fn is_final_hull(rest: &Residual, edge: &ResidualEdge) -> bool {
     let plane: Plane = Plane::default();
     let [from, to] = edge.ends.map(|end| rest.vertices[end as usize].site());
-    let is_right = |vertex: &TileVertex| plane.orientation([&from, &to, &vertex.site()]) == Sign::Negative;
+    let is_right =
+        |vertex: &TileVertex| plane.orientation([&from, &to, &vertex.site()]) == Sign::Negative;
     edge.is_seam && !rest.vertices.iter().any(is_right)
 }
 
 /// Drops vertices on the hull whose triangles are all final: they have no edges but two seams.
 fn drop_final_hull(rest: &mut Residual) {
     let mut is_dropped = vec![false; rest.vertices.len()];
-    let (on_hull, others): (Vec<ResidualEdge>, Vec<_>) = rest.edges.iter().partition(|edge| is_final_hull(rest, edge));
-    on_hull.iter().flat_map(|edge| edge.ends).for_each(|end| is_dropped[end as usize] = true);
-    others.iter().flat_map(|edge| edge.ends).for_each(|end| is_dropped[end as usize] = false);
+    let (on_hull, others): (Vec<ResidualEdge>, Vec<_>) = rest
+        .edges
+        .iter()
+        .partition(|edge| is_final_hull(rest, edge));
+    on_hull
+        .iter()
+        .flat_map(|edge| edge.ends)
+        .for_each(|end| is_dropped[end as usize] = true);
+    others
+        .iter()
+        .flat_map(|edge| edge.ends)
+        .for_each(|end| is_dropped[end as usize] = false);
 
-    rest.edges.retain(|edge| edge.ends.iter().all(|&end| !is_dropped[end as usize]));
-    let number = |end: u32| is_dropped[..end as usize].iter().filter(|&&is_dropped| !is_dropped).count() as u32;
-    rest.edges.iter_mut().for_each(|edge| edge.ends = edge.ends.map(number));
+    rest.edges
+        .retain(|edge| edge.ends.iter().all(|&end| !is_dropped[end as usize]));
+    let number = |end: u32| {
+        is_dropped[..end as usize]
+            .iter()
+            .filter(|&&is_dropped| !is_dropped)
+            .count() as u32
+    };
+    rest.edges
+        .iter_mut()
+        .for_each(|edge| edge.ends = edge.ends.map(number));
     let mut dropped = is_dropped.iter();
     rest.vertices.retain(|_| dropped.next() == Some(&false));
 }
@@ -115,7 +148,9 @@ fn drop_final_hull(rest: &mut Residual) {
 /// are left do not close.
 #[test]
 fn vertices_on_the_hull_that_are_dropped_are_seen() {
-    let seen = seen(without_lines(), |case| case.found(&Altered(drop_final_hull)));
+    let seen = seen(without_lines(), |case| {
+        case.found(&Altered(drop_final_hull))
+    });
     assert!(seen.different > 0, "{seen:?}");
 }
 
@@ -147,16 +182,29 @@ fn seams_that_are_no_constraints_are_seen() {
         let ends = [[x, -2.0], [x, 2.0]];
         let mut points: Vec<[f64; 3]> = ends.map(|[x, y]| [x, y, 0.0]).to_vec();
         for sign in [-1.0, 1.0] {
-            points.push([x + sign * (0.1 + 0.4 * random.unit()), 2.0 * random.unit() - 1.0, 0.0]);
+            points.push([
+                x + sign * (0.1 + 0.4 * random.unit()),
+                2.0 * random.unit() - 1.0,
+                0.0,
+            ]);
         }
         for _ in 0..4 + round % 20 {
             points.push([8.0 * random.unit() - 4.0, 8.0 * random.unit() - 4.0, 0.0]);
         }
-        let constraints = vec![SubConstraint { ends, kind: EdgeKind::Breakline }];
-        Case { points, constraints, cuts: [vec![0.0, width], Vec::new()], fan: 3 }
+        let constraints = vec![SubConstraint {
+            ends,
+            kind: EdgeKind::Breakline,
+        }];
+        Case {
+            points,
+            constraints,
+            cuts: [vec![0.0, width], Vec::new()],
+            fan: 3,
+        }
     };
     let unless_open = Altered(|rest| {
-        rest.has_lines = !rest.pending.is_empty() || rest.edges.iter().any(|edge| edge.kind.is_constrained());
+        rest.has_lines =
+            !rest.pending.is_empty() || rest.edges.iter().any(|edge| edge.kind.is_constrained());
     });
     let cases = (0..SETS).map(&mut line_in_strip);
     let seen = seen(cases, |case| case.found(&unless_open));
@@ -176,8 +224,13 @@ struct Hasty;
 
 impl Hasty {
     /// Returns the sub-constraints with both ends in a tile, and the others.
-    fn divided(tile: &Tile, constraints: &[SubConstraint]) -> (Vec<SubConstraint>, Vec<SubConstraint>) {
-        constraints.iter().partition(|constraint| constraint.ends.iter().all(|&end| tile.holds(end)))
+    fn divided(
+        tile: &Tile,
+        constraints: &[SubConstraint],
+    ) -> (Vec<SubConstraint>, Vec<SubConstraint>) {
+        constraints
+            .iter()
+            .partition(|constraint| constraint.ends.iter().all(|&end| tile.holds(end)))
     }
 }
 
@@ -197,7 +250,12 @@ impl Tasks for Hasty {
         Ok(rest)
     }
 
-    fn merge(&self, tile: &Tile, parts: &[Residual], emit: &mut dyn FnMut(TileTriangle)) -> Result<Residual> {
+    fn merge(
+        &self,
+        tile: &Tile,
+        parts: &[Residual],
+        emit: &mut dyn FnMut(TileTriangle),
+    ) -> Result<Residual> {
         let (mut parts, mut all_pending) = (parts.to_vec(), Vec::new());
         for part in &mut parts {
             let (known, pending) = Self::divided(tile, &part.pending);
@@ -205,7 +263,10 @@ impl Tasks for Hasty {
             all_pending.extend(pending);
         }
         let rest = merge(tile, &parts, 0.0, emit)?;
-        Ok(Residual { pending: all_pending, ..rest })
+        Ok(Residual {
+            pending: all_pending,
+            ..rest
+        })
     }
 }
 
@@ -220,7 +281,9 @@ fn triangles_that_do_not_wait_for_pending_lines_are_seen() {
 /// edges have the wrong kind, without an error.
 #[test]
 fn triangles_that_do_not_wait_for_lines_along_edges_are_seen() {
-    let seen = seen(with_lines(), |case| without(Rule::AlongEdges, || case.found(&Unchanged)));
+    let seen = seen(with_lines(), |case| {
+        without(Rule::AlongEdges, || case.found(&Unchanged))
+    });
     assert!(seen.different > 0, "{seen:?}");
 }
 
@@ -230,7 +293,9 @@ fn triangles_that_do_not_wait_for_lines_along_edges_are_seen() {
 #[test]
 fn seams_and_lines_that_exclude_each_other_are_seen() {
     fn shared(rest: &mut Residual) -> impl Iterator<Item = &mut ResidualEdge> {
-        rest.edges.iter_mut().filter(|edge| edge.is_seam && edge.kind.is_constrained())
+        rest.edges
+            .iter_mut()
+            .filter(|edge| edge.is_seam && edge.kind.is_constrained())
     }
     let seams_only = Altered(|rest| shared(rest).for_each(|edge| edge.kind = EdgeKind::Plain));
     let without_kinds = seen(with_lines(), |case| case.found(&seams_only));
@@ -245,7 +310,10 @@ struct Closed;
 
 impl Tasks for Closed {
     fn tile(&self, tile: Tile) -> Tile {
-        Tile { max: tile.max.map(f64::next_up), ..tile }
+        Tile {
+            max: tile.max.map(f64::next_up),
+            ..tile
+        }
     }
 }
 
@@ -272,8 +340,17 @@ impl Tasks for Misplaced {
         constraints: &[SubConstraint],
         emit: &mut dyn FnMut(TileTriangle),
     ) -> Result<Residual> {
-        let vertex = TileVertex { tile: 0, number: u32::MAX, position: self.0, is_tight: false };
-        let own: Vec<[f64; 3]> = points.iter().copied().filter(|p| p[..2] != vertex.site()).collect();
+        let vertex = TileVertex {
+            tile: 0,
+            number: u32::MAX,
+            position: self.0,
+            is_tight: false,
+        };
+        let own: Vec<[f64; 3]> = points
+            .iter()
+            .copied()
+            .filter(|p| p[..2] != vertex.site())
+            .collect();
         let mut rest = leaf(tile, number, &own, constraints, 0.0, emit)?;
         if number == 0 {
             // A leaf refuses it; so it is added to what may still change.
@@ -287,7 +364,10 @@ impl Tasks for Misplaced {
 #[test]
 fn a_point_in_a_wrong_tile_is_seen() {
     let seen = seen(without_lines(), |case| {
-        let max = case.cuts.each_ref().map(|cuts| cuts.first().copied().unwrap_or(f64::INFINITY));
+        let max = case
+            .cuts
+            .each_ref()
+            .map(|cuts| cuts.first().copied().unwrap_or(f64::INFINITY));
         let first = Tile { max, ..Tile::PLANE };
         match case.points.iter().find(|p| !first.holds([p[0], p[1]])) {
             Some(&point) => case.found(&Misplaced(point)),
@@ -305,7 +385,10 @@ impl Tasks for Finite {
         if tile.is_plane() {
             return tile;
         }
-        Tile { min: tile.min.map(|x| x.max(0.0)), max: tile.max.map(|x| x.min(1.0)) }
+        Tile {
+            min: tile.min.map(|x| x.max(0.0)),
+            max: tile.max.map(|x| x.min(1.0)),
+        }
     }
 }
 
@@ -313,9 +396,16 @@ impl Tasks for Finite {
 #[test]
 fn tiles_that_end_at_the_rim_are_seen() {
     let mut random = Random(3);
-    let points = (0..5_000).map(|_| [random.unit(), random.unit(), 0.0]).collect();
+    let points = (0..5_000)
+        .map(|_| [random.unit(), random.unit(), 0.0])
+        .collect();
     let cuts = [0, 1].map(|_| vec![0.25, 0.5, 0.75]);
-    let case = Case { points, constraints: Vec::new(), cuts, fan: 2 };
+    let case = Case {
+        points,
+        constraints: Vec::new(),
+        cuts,
+        fan: 2,
+    };
     let [infinite, finite] = [case.found(&Unchanged), case.found(&Finite)].map(Result::unwrap);
     assert!(finite.triangles == infinite.triangles);
     let (least, count) = (infinite.at_root * 4 / 3, finite.at_root);
@@ -334,12 +424,29 @@ fn whole_disks_beside_lines_are_seen() {
         let corner = [tile % 4, tile / 4].map(f64::from);
         for row in 1..20 {
             let y = corner[1] + 0.05 * f64::from(row);
-            let ends = [0.1, 0.8].map(|x| [corner[0] + x + 0.1 * random.unit(), y + 0.02 * random.unit()]);
-            constraints.push(SubConstraint { ends, kind: EdgeKind::Breakline });
+            let ends = [0.1, 0.8].map(|x| {
+                [
+                    corner[0] + x + 0.1 * random.unit(),
+                    y + 0.02 * random.unit(),
+                ]
+            });
+            constraints.push(SubConstraint {
+                ends,
+                kind: EdgeKind::Breakline,
+            });
         }
     }
-    let points = constraints.iter().flat_map(|constraint| constraint.ends).map(|[x, y]| [x, y, 0.0]).collect();
-    let case = Case { points, constraints, cuts: [0, 1].map(|_| vec![1.0, 2.0, 3.0]), fan: 2 };
+    let points = constraints
+        .iter()
+        .flat_map(|constraint| constraint.ends)
+        .map(|[x, y]| [x, y, 0.0])
+        .collect();
+    let case = Case {
+        points,
+        constraints,
+        cuts: [0, 1].map(|_| vec![1.0, 2.0, 3.0]),
+        fan: 2,
+    };
     let visible = case.found(&Unchanged).unwrap();
     let entire = without(Rule::VisiblePart, || case.found(&Unchanged)).unwrap();
     assert!(entire.triangles == visible.triangles);

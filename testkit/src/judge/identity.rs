@@ -10,13 +10,23 @@ use crate::subject::Built;
 pub(crate) fn judge(built: &Built) -> Verdict {
     let t = &built.triangulation;
     let given: HashSet<VertexId> = built.vertices.iter().copied().collect();
-    if let Some(v) = t.tds().vertices().find(|v| t.is_added(*v) == given.contains(v)) {
-        return Err(format!("identity: whether vertex {} was added is reported wrongly", v.index()));
+    if let Some(v) = t
+        .tds()
+        .vertices()
+        .find(|v| t.is_added(*v) == given.contains(v))
+    {
+        return Err(format!(
+            "identity: whether vertex {} was added is reported wrongly",
+            v.index()
+        ));
     }
     let mut lines: HashMap<[VertexId; 2], BTreeSet<usize>> = HashMap::new();
     for (line, chain) in built.chains.iter().enumerate() {
         for step in chain.windows(2) {
-            lines.entry([step[0].min(step[1]), step[0].max(step[1])]).or_default().insert(line);
+            lines
+                .entry([step[0].min(step[1]), step[0].max(step[1])])
+                .or_default()
+                .insert(line);
         }
     }
     for ([a, b], expected) in lines {

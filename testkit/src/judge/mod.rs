@@ -38,7 +38,10 @@ pub fn crossing_count(case: &Case) -> usize {
 pub fn judge(case: &Case, built: &Built) -> Verdict {
     let flaws = built.triangulation.check(Level::Law);
     if let Some(flaw) = flaws.first() {
-        return Err(format!("check: {} flaws, the first is {flaw:?}", flaws.len()));
+        return Err(format!(
+            "check: {} flaws, the first is {flaw:?}",
+            flaws.len()
+        ));
     }
     scene::judge_grid(case, built)?;
     let verdict = match Scene::<i128>::new(case, built) {
@@ -46,7 +49,13 @@ pub fn judge(case: &Case, built: &Built) -> Verdict {
         None => lines::judge(&Scene::<IBig>::new(case, built).expect("these have no limit")),
     };
     let is_off_grid = built.rounding.is_some_and(|rounding| !rounding.on_grid);
-    verdict.map_err(|what| if is_off_grid { format!("off the grid: {what}") } else { what })
+    verdict.map_err(|what| {
+        if is_off_grid {
+            format!("off the grid: {what}")
+        } else {
+            what
+        }
+    })
 }
 
 /// Checks what takes longer than building the triangulation.

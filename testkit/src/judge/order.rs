@@ -28,11 +28,16 @@ fn triangles(built: &Built) -> BTreeSet<Vec<Key>> {
 fn constrained_edges(built: &Built) -> BTreeSet<[Key; 2]> {
     let t = &built.triangulation;
     let sorted = |[a, b]: [Key; 2]| if a < b { [a, b] } else { [b, a] };
-    t.constrained_edges().map(|edge| sorted(edge.map(|v| key(t.point(v))))).collect()
+    t.constrained_edges()
+        .map(|edge| sorted(edge.map(|v| key(t.point(v)))))
+        .collect()
 }
 
 fn chain(built: &Built, line: usize) -> Vec<Key> {
-    built.chains[line].iter().map(|&v| key(built.triangulation.point(v))).collect()
+    built.chains[line]
+        .iter()
+        .map(|&v| key(built.triangulation.point(v)))
+        .collect()
 }
 
 /// Returns the case in another order, the old number of each of its lines, and for each old line
@@ -43,23 +48,32 @@ fn shuffled(case: &Case, random: &mut Random) -> (Case, Vec<usize>, Vec<bool>) {
     random.shuffle(&mut points);
     random.shuffle(&mut lines);
     let mut position = vec![0; points.len()];
-    points.iter().enumerate().for_each(|(new, &old)| position[old] = new as u32);
+    points
+        .iter()
+        .enumerate()
+        .for_each(|(new, &old)| position[old] = new as u32);
     let turned: Vec<bool> = case.lines.iter().map(|_| random.below(2) == 0).collect();
     let line = |&old: &usize| {
-        let mut line: Vec<u32> = case.lines[old].iter().map(|&i| position[i as usize]).collect();
+        let mut line: Vec<u32> = case.lines[old]
+            .iter()
+            .map(|&i| position[i as usize])
+            .collect();
         if turned[old] {
             line.reverse();
         }
         line
     };
-    let other =
-        Case { points: points.iter().map(|&i| case.points[i]).collect(), lines: lines.iter().map(line).collect() };
+    let other = Case {
+        points: points.iter().map(|&i| case.points[i]).collect(),
+        lines: lines.iter().map(line).collect(),
+    };
     (other, lines, turned)
 }
 
 pub(crate) fn judge(case: &Case, built: &Built, random: &mut Random) -> Verdict {
     let (other_case, lines, turned) = shuffled(case, random);
-    let other = build(&other_case).map_err(|refused| format!("order: refused in another order: {refused}"))?;
+    let other = build(&other_case)
+        .map_err(|refused| format!("order: refused in another order: {refused}"))?;
     if constrained_edges(&other) != constrained_edges(built) {
         return Err("order: different constrained edges".to_owned());
     }

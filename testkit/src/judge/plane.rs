@@ -33,12 +33,17 @@ fn hull_area(sites: &[Site]) -> RBig {
     for _ in 0..2 {
         let mut chain: Vec<&Site> = Vec::new();
         for p in &sorted {
-            while chain.len() > 1 && turn(chain[chain.len() - 2], chain[chain.len() - 1], p) <= RBig::ZERO {
+            while chain.len() > 1
+                && turn(chain[chain.len() - 2], chain[chain.len() - 1], p) <= RBig::ZERO
+            {
                 chain.pop();
             }
             chain.push(p);
         }
-        area += chain.windows(2).map(|s| &s[0][0] * &s[1][1] - &s[0][1] * &s[1][0]).fold(RBig::ZERO, |a, b| a + b);
+        area += chain
+            .windows(2)
+            .map(|s| &s[0][0] * &s[1][1] - &s[0][1] * &s[1][0])
+            .fold(RBig::ZERO, |a, b| a + b);
         sorted.reverse();
     }
     area
@@ -49,8 +54,11 @@ pub(crate) fn judge(built: &Built) -> Verdict {
     if t.dimension() < 2 {
         return Ok(());
     }
-    let sites: Vec<Site> =
-        t.points().iter().map(|p| p.map(|x| RBig::try_from(x).expect("coordinates are finite"))).collect();
+    let sites: Vec<Site> = t
+        .points()
+        .iter()
+        .map(|p| p.map(|x| RBig::try_from(x).expect("coordinates are finite")))
+        .collect();
     let mut opposite: HashMap<[usize; 2], usize> = HashMap::new();
     let mut area = RBig::ZERO;
     for cell in t.finite_cells() {
@@ -75,10 +83,17 @@ pub(crate) fn judge(built: &Built) -> Verdict {
             return Err(format!("constrained edge {a} {b} is not an edge"));
         }
     }
-    let constrained: std::collections::HashSet<[usize; 2]> =
-        t.constrained_edges().map(|edge| edge.map(|v| v.index())).collect();
-    for (&[a, b], &c) in opposite.iter().filter(|([a, b], _)| a < b && !constrained.contains(&[*a, *b])) {
-        let Some(&d) = opposite.get(&[b, a]) else { continue };
+    let constrained: std::collections::HashSet<[usize; 2]> = t
+        .constrained_edges()
+        .map(|edge| edge.map(|v| v.index()))
+        .collect();
+    for (&[a, b], &c) in opposite
+        .iter()
+        .filter(|([a, b], _)| a < b && !constrained.contains(&[*a, *b]))
+    {
+        let Some(&d) = opposite.get(&[b, a]) else {
+            continue;
+        };
         if in_circle([a, b, c].map(|v| &sites[v]), &sites[d]) > RBig::ZERO {
             return Err(format!("vertex {d} lies in the circle of {a} {b} {c}"));
         }

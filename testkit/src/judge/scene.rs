@@ -11,7 +11,13 @@ use crate::subject::Built;
 
 /// Whole numbers without rounding.
 pub(crate) trait Number:
-    Clone + Ord + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Neg<Output = Self> + From<i8>
+    Clone
+    + Ord
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Neg<Output = Self>
+    + From<i8>
 {
     /// Returns `mantissa * 2^shift`; `None` if it is too large. `judge` multiplies two differences
     /// of such numbers and adds two of the products.
@@ -39,28 +45,54 @@ pub(crate) fn magnitude<N: Number>(x: N) -> N {
 fn parts(x: f64) -> Option<(i64, i32)> {
     let bits = x.to_bits();
     let (biased, fraction) = ((bits >> 52 & 0x7FF) as i32, (bits & ((1 << 52) - 1)) as i64);
-    let (mantissa, exponent) = if biased == 0 { (fraction, -1074) } else { (fraction | 1 << 52, biased - 1075) };
+    let (mantissa, exponent) = if biased == 0 {
+        (fraction, -1074)
+    } else {
+        (fraction | 1 << 52, biased - 1075)
+    };
     let zeros = mantissa.trailing_zeros();
-    (mantissa != 0).then(|| ((mantissa >> zeros) * if x < 0.0 { -1 } else { 1 }, exponent + zeros as i32))
+    (mantissa != 0).then(|| {
+        (
+            (mantissa >> zeros) * if x < 0.0 { -1 } else { 1 },
+            exponent + zeros as i32,
+        )
+    })
 }
 
 /// Returns the unit in the last place of the largest magnitude on each axis among the points of
 /// lines, and whether all points are multiples of it. (Of the other points, only those on lines
 /// would matter.)
 fn grid(case: &Case) -> ([f64; 2], bool) {
-    let drawn = || case.lines.iter().flatten().map(|&i| case.points[i as usize]);
+    let drawn = || {
+        case.lines
+            .iter()
+            .flatten()
+            .map(|&i| case.points[i as usize])
+    };
     let unit = [0, 1].map(|axis| {
         let largest = drawn().map(|p| p[axis].abs()).fold(0.0, f64::max);
-        if largest == f64::MAX { largest - largest.next_down() } else { largest.next_up() - largest }
+        if largest == f64::MAX {
+            largest - largest.next_down()
+        } else {
+            largest.next_up() - largest
+        }
     });
-    let is_multiple = |x: f64, unit: f64| parts(x).is_none_or(|(_, low)| low >= parts(unit).unwrap().1);
-    (unit, case.points.iter().all(|p| is_multiple(p[0], unit[0]) && is_multiple(p[1], unit[1])))
+    let is_multiple =
+        |x: f64, unit: f64| parts(x).is_none_or(|(_, low)| low >= parts(unit).unwrap().1);
+    (
+        unit,
+        case.points
+            .iter()
+            .all(|p| is_multiple(p[0], unit[0]) && is_multiple(p[1], unit[1])),
+    )
 }
 
 /// Checks that the program's grid is no coarser than this one, and that it knows if all points are
 /// on it.
 pub(crate) fn judge_grid(case: &Case, built: &Built) -> Verdict {
-    let Some(rounding) = built.rounding else { return Ok(()) };
+    let Some(rounding) = built.rounding else {
+        return Ok(());
+    };
     let (unit, on_grid) = grid(case);
     let is_coarser = (0..2).any(|axis| rounding.unit[axis] > unit[axis]);
     if is_coarser || (on_grid && !rounding.on_grid) {
@@ -96,11 +128,23 @@ impl<'a, N: Number> Scene<'a, N> {
     /// Returns `None` if the number type cannot hold the coordinates.
     pub(crate) fn new(case: &'a Case, built: &Built) -> Option<Self> {
         let t = &built.triangulation;
-        let unit = |axis: usize| built.rounding.and_then(|rounding| parts(rounding.unit[axis]));
+        let unit = |axis: usize| {
+            built
+                .rounding
+                .and_then(|rounding| parts(rounding.unit[axis]))
+        };
         let half = [0, 1].map(|axis| unit(axis).map_or(-1074, |(_, exponent)| exponent) - 1);
         let lowest = [0, 1].map(|axis| {
-            let exponents = t.points().iter().filter_map(|p| parts(p[axis])).map(|(_, exponent)| exponent);
-            let coarsest = if built.rounding.is_some() { half[axis] } else { i32::MAX };
+            let exponents = t
+                .points()
+                .iter()
+                .filter_map(|p| parts(p[axis]))
+                .map(|(_, exponent)| exponent);
+            let coarsest = if built.rounding.is_some() {
+                half[axis]
+            } else {
+                i32::MAX
+            };
             exponents.fold(coarsest, i32::min)
         });
         let whole = |x: f64, axis: usize| {
@@ -114,7 +158,9 @@ impl<'a, N: Number> Scene<'a, N> {
             None => (zero.clone(), zero),
             Some(rounding) => {
                 let half = [0, 1].map(|axis| N::shifted(1, half[axis].abs_diff(lowest[axis])));
-                let [Some(x), Some(y)] = half else { return None };
+                let [Some(x), Some(y)] = half else {
+                    return None;
+                };
                 let halves = if rounding.on_grid { 1 } else { HALVES_OFF_GRID };
                 let bound = [x, y].map(|half| half * N::from(halves));
                 (bound.clone(), if rounding.on_grid { zero } else { bound })
@@ -124,9 +170,16 @@ impl<'a, N: Number> Scene<'a, N> {
             case,
             sites: t.points().iter().map(site).collect::<Option<_>>()?,
             vertices: built.vertices.iter().map(|v| v.index()).collect(),
-            chains: built.chains.iter().map(|chain| chain.iter().map(|v| v.index()).collect()).collect(),
+            chains: built
+                .chains
+                .iter()
+                .map(|chain| chain.iter().map(|v| v.index()).collect())
+                .collect(),
             is_collinear: t.dimension() < 2,
-            constrained: t.constrained_edges().map(|[a, b]| [a.index(), b.index()]).collect(),
+            constrained: t
+                .constrained_edges()
+                .map(|[a, b]| [a.index(), b.index()])
+                .collect(),
             bound,
             back,
         })

@@ -77,7 +77,12 @@ impl Arrangement {
     /// # Complexity
     /// O((n + k) log n) to find the k pairs that cross among n segments. Routing segments through
     /// sites takes about as much in practice.
-    pub fn new(given_count: usize, site_of: impl Fn(u32) -> Site + Sync, segments: &[[u32; 2]], step: f64) -> Self {
+    pub fn new(
+        given_count: usize,
+        site_of: impl Fn(u32) -> Site + Sync,
+        segments: &[[u32; 2]],
+        step: f64,
+    ) -> Self {
         Self::arrange(given_count, &site_of, segments, 0, step)
     }
 
@@ -97,7 +102,13 @@ impl Arrangement {
         Self::arrange(given_count, &site_of, segments, snapped, step)
     }
 
-    fn arrange(given_count: usize, site_of: &SiteOf<'_>, segments: &[[u32; 2]], snapped: usize, step: f64) -> Self {
+    fn arrange(
+        given_count: usize,
+        site_of: &SiteOf<'_>,
+        segments: &[[u32; 2]],
+        snapped: usize,
+        step: f64,
+    ) -> Self {
         let mut drawn: Vec<Segment> = segments.iter().map(|ends| ends.map(site_of)).collect();
         let larger = |sum: Site, p: &Site| [sum[0].max(p[0].abs()), sum[1].max(p[1].abs())];
         let largest = drawn.as_flattened().iter().fold([0.0; 2], larger);
@@ -105,9 +116,17 @@ impl Arrangement {
         const UP: f64 = f64::from_bits((1023 + 400) << 52);
         let scale: Site = largest.map(|x| if x < 1.0 / UP { UP } else { 1.0 });
         // Normalizes the sign of zero.
-        let scaled = |p: Site| [unsigned_zero(p[0] * scale[0]), unsigned_zero(p[1] * scale[1])];
+        let scaled = |p: Site| {
+            [
+                unsigned_zero(p[0] * scale[0]),
+                unsigned_zero(p[1] * scale[1]),
+            ]
+        };
         let site_of = |i: u32| scaled(site_of(i));
-        drawn.as_flattened_mut().iter_mut().for_each(|p| *p = scaled(*p));
+        drawn
+            .as_flattened_mut()
+            .iter_mut()
+            .for_each(|p| *p = scaled(*p));
         let smallest = scale.map(|s| step.max(f64::from_bits(1)) * s);
         // Sites on segments count like ends, once they are known.
         let mut on_segments: Vec<u32> = Vec::new();
@@ -115,9 +134,16 @@ impl Arrangement {
             let others: Vec<Site> = on_segments.iter().map(|&site| site_of(site)).collect();
             let grid = Grid::through(scaled(largest), smallest, [drawn.as_flattened(), &others]);
             let builder = Builder::new(grid, given_count, &site_of, segments, snapped, &drawn);
-            let arrangement = if grid.is_ordinary { builder.run::<Adaptive>() } else { builder.run::<Wide>() };
+            let arrangement = if grid.is_ordinary {
+                builder.run::<Adaptive>()
+            } else {
+                builder.run::<Wide>()
+            };
             let before = on_segments.len();
-            let given = arrangement.chain_sites.iter().filter(|&&site| (site as usize) < given_count);
+            let given = arrangement
+                .chain_sites
+                .iter()
+                .filter(|&&site| (site as usize) < given_count);
             on_segments.extend(given.filter(|&&site| !grid.has(site_of(site))));
             if on_segments.len() == before {
                 break arrangement;
@@ -125,7 +151,10 @@ impl Arrangement {
         };
         for axis in 0..2 {
             arrangement.unit[axis] /= scale[axis];
-            arrangement.added.iter_mut().for_each(|p| p[axis] /= scale[axis]);
+            arrangement
+                .added
+                .iter_mut()
+                .for_each(|p| p[axis] /= scale[axis]);
         }
         arrangement
     }
@@ -144,7 +173,12 @@ impl Arrangement {
     /// That of the arrangement for each round. There are one or two rounds, unless coordinates span
     /// hundreds of powers of two.
     #[must_use]
-    pub fn crossing_free(mut self, site_of: impl Fn(u32) -> Site + Sync, segments: &[[u32; 2]], step: f64) -> Self {
+    pub fn crossing_free(
+        mut self,
+        site_of: impl Fn(u32) -> Site + Sync,
+        segments: &[[u32; 2]],
+        step: f64,
+    ) -> Self {
         while self.again(&site_of, segments, step) {}
         self
     }
@@ -153,12 +187,17 @@ impl Arrangement {
     fn again(&mut self, site_of: &SiteOf<'_>, segments: &[[u32; 2]], step: f64) -> bool {
         let row = |i: usize| {
             let [a, b] = segments[i];
-            let sites = std::iter::once(a).chain(self.chain(i as u32).iter().copied()).chain([b]);
+            let sites = std::iter::once(a)
+                .chain(self.chain(i as u32).iter().copied())
+                .chain([b]);
             sites.collect::<Vec<u32>>()
         };
         let mut parts: Vec<[u32; 2]> = (0..segments.len())
             .flat_map(|i| {
-                row(i).windows(2).map(|ends| [ends[0].min(ends[1]), ends[0].max(ends[1])]).collect::<Vec<_>>()
+                row(i)
+                    .windows(2)
+                    .map(|ends| [ends[0].min(ends[1]), ends[0].max(ends[1])])
+                    .collect::<Vec<_>>()
             })
             .collect();
         parts.sort_unstable();
@@ -167,7 +206,8 @@ impl Arrangement {
             None => site_of(i),
             Some(added) => self.added[added],
         };
-        let inner = Arrangement::arrange(self.given_count + self.added.len(), &site, &parts, 0, step);
+        let inner =
+            Arrangement::arrange(self.given_count + self.added.len(), &site, &parts, 0, step);
         if inner.crossings.is_empty() {
             return false;
         }

@@ -30,7 +30,12 @@ impl Order {
         starts.extend([sum, sum + LEVELS as u32]);
         let links = vec![[head; 2]; sum as usize + LEVELS];
         let numbers: Vec<u32> = (0..head).collect();
-        Order { starts, links, held: numbers.clone(), nodes: numbers }
+        Order {
+            starts,
+            links,
+            held: numbers.clone(),
+            nodes: numbers,
+        }
     }
 
     fn head(&self) -> u32 {
@@ -115,7 +120,11 @@ impl Order {
 /// Returns the number of levels of a node: pseudo-random.
 fn levels(node: u32) -> usize {
     let mixed = node.wrapping_add(1).wrapping_mul(0x9E37_79B9);
-    1 + ((mixed ^ mixed >> 15).wrapping_mul(0x85EB_CA6B).leading_zeros() as usize / 2).min(LEVELS - 1)
+    1 + ((mixed ^ mixed >> 15)
+        .wrapping_mul(0x85EB_CA6B)
+        .leading_zeros() as usize
+        / 2)
+    .min(LEVELS - 1)
 }
 
 #[cfg(test)]
@@ -146,8 +155,14 @@ mod tests {
             }
         }
         for pair in naive.windows(2) {
-            assert_eq!((order.above(pair[0]), order.below(pair[1])), (Some(pair[1]), Some(pair[0])));
+            assert_eq!(
+                (order.above(pair[0]), order.below(pair[1])),
+                (Some(pair[1]), Some(pair[0]))
+            );
         }
-        assert_eq!((order.below(naive[0]), order.above(naive[naive.len() - 1])), (None, None));
+        assert_eq!(
+            (order.below(naive[0]), order.above(naive[naive.len() - 1])),
+            (None, None)
+        );
     }
 }

@@ -29,20 +29,37 @@ pub(super) struct Grid {
 pub(super) fn ulp(x: f64) -> f64 {
     let x = x.abs();
     // The largest numbers have no neighbor above.
-    if x < f64::MAX / 2.0 { x.next_up() - x } else { x - x.next_down() }
+    if x < f64::MAX / 2.0 {
+        x.next_up() - x
+    } else {
+        x - x.next_down()
+    }
 }
 
 impl Grid {
     /// Returns the grid for sites up to these magnitudes: with equal steps, if all given sites lie
     /// on it, else with the steps of doubles, but none smaller than `smallest`.
     pub(super) fn through(largest: Site, smallest: Site, sites: [&[Site]; 2]) -> Self {
-        let is_ordinary = sites.into_iter().all(|some| some.as_flattened().iter().all(|&x| RANGE.admits(x)));
+        let is_ordinary = sites
+            .into_iter()
+            .all(|some| some.as_flattened().iter().all(|&x| RANGE.admits(x)));
         // Crossings of what the fast kernels admit must be admitted.
         let ordinary = RANGE.min * f64::EPSILON;
-        let smallest = if is_ordinary { smallest.map(|step| step.max(ordinary)) } else { smallest };
+        let smallest = if is_ordinary {
+            smallest.map(|step| step.max(ordinary))
+        } else {
+            smallest
+        };
         let unit = [0, 1].map(|k| ulp(largest[k]).max(smallest[k]));
-        let mut grid = Grid { unit, is_even: true, smallest, is_ordinary };
-        grid.is_even = sites.into_iter().all(|some| some.iter().all(|&site| grid.holds(site)));
+        let mut grid = Grid {
+            unit,
+            is_even: true,
+            smallest,
+            is_ordinary,
+        };
+        grid.is_even = sites
+            .into_iter()
+            .all(|some| some.iter().all(|&site| grid.holds(site)));
         grid
     }
 
@@ -103,8 +120,13 @@ impl Grid {
     /// difference: it is the union of growing closed rectangles.
     pub(super) fn hits<K: Kernel>(&self, [a, b]: Segment, center: Site) -> bool {
         let within = |k: usize| {
-            let (low, high) = if a[k] < b[k] { (a[k], b[k]) } else { (b[k], a[k]) };
-            reaches(high, center[k], -self.down(k, center[k])) && !reaches(low, center[k], self.up(k, center[k]))
+            let (low, high) = if a[k] < b[k] {
+                (a[k], b[k])
+            } else {
+                (b[k], a[k])
+            };
+            reaches(high, center[k], -self.down(k, center[k]))
+                && !reaches(low, center[k], self.up(k, center[k]))
         };
         if !within(0) || !within(1) {
             return false;
@@ -115,7 +137,13 @@ impl Grid {
         }
         let [left, down] = [0, 1].map(|k| -self.down(k, center[k]));
         let [right, up] = [0, 1].map(|k| self.up(k, center[k]));
-        let side = |offset| K::sign(&CornerSide { segment: [a, b], center, offset });
+        let side = |offset| {
+            K::sign(&CornerSide {
+                segment: [a, b],
+                center,
+                offset,
+            })
+        };
         // The two corners furthest to the left and to the right of the line. Of all four corners,
         // only the lower left one belongs to the pixel.
         if (rightward > 0.0) == (upward > 0.0) {
@@ -135,11 +163,23 @@ impl Grid {
     /// and within a column from one side to the other.
     #[inline]
     pub(super) fn along(&self, [a, b]: Segment) -> impl Fn(Site) -> Site + use<> {
-        let (a, b) = if lexicographic(a, b).is_le() { (a, b) } else { (b, a) };
+        let (a, b) = if lexicographic(a, b).is_le() {
+            (a, b)
+        } else {
+            (b, a)
+        };
         let [dx, dy] = [0, 1].map(|k| b[k] / self.unit[k] - a[k] / self.unit[k]);
         let axes = if dx.abs() >= dy.abs() { [0, 1] } else { [1, 0] };
         let is_upward = axes.map(|k| a[k] <= b[k]);
-        move |site| [0, 1].map(|n| if is_upward[n] { site[axes[n]] } else { -site[axes[n]] })
+        move |site| {
+            [0, 1].map(|n| {
+                if is_upward[n] {
+                    site[axes[n]]
+                } else {
+                    -site[axes[n]]
+                }
+            })
+        }
     }
 
     /// Returns where two segments cross in their interiors, rounded to the grid: the center of the
@@ -165,21 +205,24 @@ impl Grid {
         let fraction = area / divisor;
         // Each area is computed from two products and a difference; ten roundings cover all that
         // they and the quotient have.
-        let error = |p: Pair, q: Pair| 10.0 * Pair::ERROR * (p.estimate().abs() + q.estimate().abs());
+        let error =
+            |p: Pair, q: Pair| 10.0 * Pair::ERROR * (p.estimate().abs() + q.estimate().abs());
         let divided = divisor.estimate().abs();
         let doubt = error(products[2], products[3]);
         if doubt.is_nan() || doubt >= divided / 4.0 {
             return None;
         }
-        let of_fraction = 2.0 * (error(products[0], products[1]) + doubt) / divided + 10.0 * Pair::ERROR;
+        let of_fraction =
+            2.0 * (error(products[0], products[1]) + doubt) / divided + 10.0 * Pair::ERROR;
         let mut center = [0.0; 2];
         for (along, center) in center.iter_mut().enumerate() {
             let x = Pair::difference(a[along], 0.0) - vector[along] * fraction;
-            let doubt = of_fraction * vector[along].estimate().abs() + 10.0 * Pair::ERROR * a[along].abs();
+            let doubt =
+                of_fraction * vector[along].estimate().abs() + 10.0 * Pair::ERROR * a[along].abs();
             *center = self.nearest(along, x.estimate());
             let beside = (x - Pair::difference(*center, 0.0)).estimate();
-            let inside =
-                -self.down(along, *center) + 2.0 * doubt < beside && beside < self.up(along, *center) - 2.0 * doubt;
+            let inside = -self.down(along, *center) + 2.0 * doubt < beside
+                && beside < self.up(along, *center) - 2.0 * doubt;
             if !inside {
                 return None;
             }
@@ -188,7 +231,15 @@ impl Grid {
     }
 
     fn round<K: Kernel>(&self, ab: Segment, cd: Segment, turn: Sign, along: usize) -> f64 {
-        let side = |center: f64, offset: f64| turn * K::sign(&CrossingSide { ab, cd, along, center, offset });
+        let side = |center: f64, offset: f64| {
+            turn * K::sign(&CrossingSide {
+                ab,
+                cd,
+                along,
+                center,
+                offset,
+            })
+        };
         let mut center = self.nearest(along, estimate(ab, cd, along));
         for tries in 0.. {
             let step = if side(center, -self.down(along, center)) == Sign::Negative {
@@ -200,10 +251,26 @@ impl Grid {
             };
             // An estimate is a step or two off, unless the angle is small. Then move by the exact
             // distance, rounded, as long as it is more than a step or two.
-            let exact = || CrossingSide { ab, cd, along, center, offset: 0.0 }.value(Dyadic::difference);
-            let move_by = if tries < 2 { step } else { exact().quotient(&divisor(ab, cd)) };
-            center =
-                if move_by.abs() <= 1.5 * step.abs() { center + step } else { self.nearest(along, center + move_by) };
+            let exact = || {
+                CrossingSide {
+                    ab,
+                    cd,
+                    along,
+                    center,
+                    offset: 0.0,
+                }
+                .value(Dyadic::difference)
+            };
+            let move_by = if tries < 2 {
+                step
+            } else {
+                exact().quotient(&divisor(ab, cd))
+            };
+            center = if move_by.abs() <= 1.5 * step.abs() {
+                center + step
+            } else {
+                self.nearest(along, center + move_by)
+            };
         }
         unsigned_zero(center)
     }
@@ -214,7 +281,11 @@ fn estimate([a, b]: Segment, [c, d]: Segment, along: usize) -> f64 {
     let area = |p: Site| (d[0] - c[0]) * (p[1] - c[1]) - (d[1] - c[1]) * (p[0] - c[0]);
     let (at_a, at_b) = (area(a), area(b));
     let fraction = at_a / (at_a - at_b);
-    let fraction = if (0.0..=1.0).contains(&fraction) { fraction } else { 0.5 };
+    let fraction = if (0.0..=1.0).contains(&fraction) {
+        fraction
+    } else {
+        0.5
+    };
     let x = a[along] * (1.0 - fraction) + b[along] * fraction;
     x.clamp(a[along].min(b[along]), a[along].max(b[along]))
 }

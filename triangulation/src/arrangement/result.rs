@@ -62,7 +62,9 @@ impl Arrangement {
     /// The sites that a segment is routed through between its ends, in order from the first end to
     /// the second. (It also passes exactly through the given sites that lie on its parts.)
     pub fn chain(&self, segment: u32) -> &[u32] {
-        self.chains.get(&segment).map_or(&[], |range| &self.chain_sites[range.start as usize..range.end as usize])
+        self.chains.get(&segment).map_or(&[], |range| {
+            &self.chain_sites[range.start as usize..range.end as usize]
+        })
     }
 
     /// Returns the segments that are routed through added sites: pairs of the site's position among
@@ -72,12 +74,18 @@ impl Arrangement {
         let added = |site: &u32| site.checked_sub(given);
         // Grouped by site, by counting.
         let mut ends = vec![0u32; self.added.len()];
-        self.chain_sites.iter().filter_map(added).for_each(|site| ends[site as usize] += 1);
+        self.chain_sites
+            .iter()
+            .filter_map(added)
+            .for_each(|site| ends[site as usize] += 1);
         let mut through = vec![(0, 0); starts(&mut ends) as usize];
         let mut chains: Vec<(&u32, &Range<u32>)> = self.chains.iter().collect();
         chains.sort_unstable_by_key(|(segment, _)| **segment);
         for (&segment, range) in chains {
-            for site in self.chain_sites[range.start as usize..range.end as usize].iter().filter_map(added) {
+            for site in self.chain_sites[range.start as usize..range.end as usize]
+                .iter()
+                .filter_map(added)
+            {
                 let end = &mut ends[site as usize];
                 through[*end as usize] = (site, segment);
                 *end += 1;
@@ -89,5 +97,7 @@ impl Arrangement {
 
 /// Replaces each count by the sum of those before it; returns the total.
 pub(super) fn starts(counts: &mut [u32]) -> u32 {
-    counts.iter_mut().fold(0, |sum, count| sum + std::mem::replace(count, sum))
+    counts
+        .iter_mut()
+        .fold(0, |sum, count| sum + std::mem::replace(count, sum))
 }

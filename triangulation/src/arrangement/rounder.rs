@@ -23,7 +23,9 @@ impl Rounder {
     pub(crate) fn new(largest: Site, step: f64, is_even: bool) -> Option<Self> {
         // Tiny numbers are arranged scaled.
         let is_in_range = largest.iter().all(|&x| x >= RANGE.min && RANGE.admits(x));
-        is_in_range.then(|| Rounder { grid: Grid::through(largest, [step; 2], [&[], &[]]).with_steps(is_even) })
+        is_in_range.then(|| Rounder {
+            grid: Grid::through(largest, [step; 2], [&[], &[]]).with_steps(is_even),
+        })
     }
 
     /// The largest of the steps between sites on each axis: a power of two.

@@ -35,9 +35,13 @@ pub(super) fn crossing_pairs<K: Kernel>(segments: &[Segment]) -> Vec<[u32; 2]> {
     let ends = sweep.ends();
     for (stop, here) in (0..).zip(ends.chunk_by(|p, q| p.at == q.at)) {
         sweep.exchange_until(stop);
-        here.iter().filter(|end| end.is_last).for_each(|end| sweep.remove(end.segment, stop));
+        here.iter()
+            .filter(|end| end.is_last)
+            .for_each(|end| sweep.remove(end.segment, stop));
         sweep.exchange_until(stop);
-        here.iter().filter(|end| !end.is_last).for_each(|end| sweep.insert(end.segment, stop));
+        here.iter()
+            .filter(|end| !end.is_last)
+            .for_each(|end| sweep.insert(end.segment, stop));
     }
     sweep.crossed
 }
@@ -68,7 +72,13 @@ struct Sweep<K> {
 
 impl<K: Kernel> Sweep<K> {
     fn over(segments: &[Segment]) -> Self {
-        let rightward = |&[a, b]: &Segment| if lexicographic(a, b).is_le() { [a, b] } else { [b, a] };
+        let rightward = |&[a, b]: &Segment| {
+            if lexicographic(a, b).is_le() {
+                [a, b]
+            } else {
+                [b, a]
+            }
+        };
         Sweep {
             segments: segments.iter().map(rightward).collect(),
             stops: Vec::new(),
@@ -86,7 +96,11 @@ impl<K: Kernel> Sweep<K> {
         let lines = (0..).zip(&self.segments).filter(|(_, [a, b])| a != b);
         let mut ends: Vec<SegmentEnd> = lines
             .flat_map(|(segment, &[a, b])| {
-                [(a, false), (b, true)].map(|(at, is_last)| SegmentEnd { at, segment, is_last })
+                [(a, false), (b, true)].map(|(at, is_last)| SegmentEnd {
+                    at,
+                    segment,
+                    is_last,
+                })
             })
             .collect();
         ends.par_sort_unstable_by(|p, q| lexicographic(p.at, q.at).then(p.segment.cmp(&q.segment)));
@@ -141,7 +155,9 @@ impl<K: Kernel> Sweep<K> {
 
     /// Records two neighbors as due to be exchanged, if they cross further on.
     fn look_at(&mut self, lower: Option<u32>, upper: Option<u32>, stop: u32) {
-        let (Some(lower), Some(upper)) = (lower, upper) else { return };
+        let (Some(lower), Some(upper)) = (lower, upper) else {
+            return;
+        };
         let [a, b] = self.segments[lower as usize];
         let [c, d] = self.segments[upper as usize];
         let will_cross = self.side(lower, d) == Sign::Negative
@@ -151,7 +167,8 @@ impl<K: Kernel> Sweep<K> {
         if will_cross {
             let last = self.lasts[lower as usize].min(self.lasts[upper as usize]);
             let ahead = &self.stops[stop as usize..last as usize];
-            let due = stop + ahead.partition_point(|&site| is_beyond::<K>([a, b], [c, d], site)) as u32;
+            let due =
+                stop + ahead.partition_point(|&site| is_beyond::<K>([a, b], [c, d], site)) as u32;
             self.due.push(Reverse((due, lower, upper)));
         }
     }
@@ -160,7 +177,15 @@ impl<K: Kernel> Sweep<K> {
 /// Returns true if two segments cross beyond a site. The second begins above the first.
 fn is_beyond<K: Kernel>(ab: Segment, cd: Segment, site: Site) -> bool {
     // Below `c d`, `a` is on its right: the turn of `c d a` is negative.
-    let side = |along: usize| K::sign(&CrossingSide { ab, cd, along, center: site[along], offset: 0.0 });
+    let side = |along: usize| {
+        K::sign(&CrossingSide {
+            ab,
+            cd,
+            along,
+            center: site[along],
+            offset: 0.0,
+        })
+    };
     match side(0) {
         Sign::Zero => side(1) == Sign::Negative,
         side => side == Sign::Negative,
@@ -191,7 +216,9 @@ mod tests {
     fn what_crosses_is_found_once() {
         let mut state = 7u64;
         let mut below = |n: u64| {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
             (state >> 33) % n
         };
         for round in 0..600 {
@@ -199,7 +226,10 @@ mod tests {
             let mut site = || [below(side) as f64, below(side) as f64];
             let mut segments: Vec<Segment> = (0..count).map(|_| [site(), site()]).collect();
             segments.retain(|[a, b]| a != b);
-            let (found, wide) = (crossing_pairs::<Adaptive>(&segments), crossing_pairs::<Wide>(&segments));
+            let (found, wide) = (
+                crossing_pairs::<Adaptive>(&segments),
+                crossing_pairs::<Wide>(&segments),
+            );
             assert_eq!(sorted(found), naive(&segments), "round {round}");
             assert_eq!(sorted(wide), naive(&segments), "round {round}");
         }
@@ -209,8 +239,13 @@ mod tests {
     #[test]
     fn a_sheaf_crosses_pair_by_pair() {
         let at = |angle: f64, r: f64| [0.1 + r * angle.cos(), 0.7 + r * angle.sin()];
-        let sheaf =
-            |i: u32| [f64::from(i) * 0.31, std::f64::consts::PI + f64::from(i) * 0.31].map(|angle| at(angle, 9.0));
+        let sheaf = |i: u32| {
+            [
+                f64::from(i) * 0.31,
+                std::f64::consts::PI + f64::from(i) * 0.31,
+            ]
+            .map(|angle| at(angle, 9.0))
+        };
         let segments: Vec<Segment> = (0..10).map(sheaf).collect();
         assert_eq!(crossing_pairs::<Adaptive>(&segments).len(), 45);
     }
@@ -232,7 +267,12 @@ mod tests {
     /// The boxes of 2 000 segments side by side all overlap: two million pairs.
     #[test]
     fn side_by_side_few_are_compared() {
-        let side_by_side = |i: u32| [[0.1 * f64::from(i), 0.0], [0.1 * f64::from(i) + 1000.0, 1000.0]];
+        let side_by_side = |i: u32| {
+            [
+                [0.1 * f64::from(i), 0.0],
+                [0.1 * f64::from(i) + 1000.0, 1000.0],
+            ]
+        };
         let mut segments: Vec<Segment> = (0..2000).map(side_by_side).collect();
         assert!(crossing_pairs::<Counting>(&segments).is_empty());
         assert!(ASKED.swap(0, Relaxed) < 60 * 2000);
@@ -249,7 +289,9 @@ mod tests {
         let diagonal = |x: f64, y: f64, size: f64| [[x, y], [x + size, y + size]];
         // In the first bundle nothing crosses, in the second one pair in fifty: just enough to go
         // on.
-        let mut segments: Vec<Segment> = (0..600).map(|i| diagonal(0.1 * f64::from(i), 0.0, 1000.0)).collect();
+        let mut segments: Vec<Segment> = (0..600)
+            .map(|i| diagonal(0.1 * f64::from(i), 0.0, 1000.0))
+            .collect();
         for i in 0..1200 {
             let [from, to] = diagonal(5000.0 + 0.1 * f64::from(i), 0.0, 1000.0);
             let across = if i % 10 == 0 { 12.0 } else { 0.0 };
@@ -257,11 +299,20 @@ mod tests {
         }
         let expected = sorted(crossing_pairs::<Adaptive>(&segments));
         let sites: Vec<Site> = segments.as_flattened().to_vec();
-        let ends: Vec<[u32; 2]> = (0..segments.len() as u32).map(|i| [2 * i, 2 * i + 1]).collect();
+        let ends: Vec<[u32; 2]> = (0..segments.len() as u32)
+            .map(|i| [2 * i, 2 * i + 1])
+            .collect();
         for _ in 0..50 {
-            let arranged =
-                on_threads(4, || crate::arrangement::Arrangement::new(sites.len(), |i| sites[i as usize], &ends, 0.0));
-            assert!(arranged.crossings().iter().map(|crossing| crossing.segments).eq(expected.iter().copied()));
+            let arranged = on_threads(4, || {
+                crate::arrangement::Arrangement::new(sites.len(), |i| sites[i as usize], &ends, 0.0)
+            });
+            assert!(
+                arranged
+                    .crossings()
+                    .iter()
+                    .map(|crossing| crossing.segments)
+                    .eq(expected.iter().copied())
+            );
         }
     }
 }

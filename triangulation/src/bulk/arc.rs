@@ -54,7 +54,14 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
         let samples = [0, 1, 2, 3].map(|k| VertexId::new(lo + (hi - 1 - lo) * k / 3));
         let sites = samples.map(|v| self.predicates.site(v));
         let rises = |i: usize, j: usize| (sites[j][0] - sites[i][0]) * (sites[j][1] - sites[i][1]);
-        let slopes = [rises(0, 1), rises(0, 2), rises(0, 3), rises(1, 2), rises(1, 3), rises(2, 3)];
+        let slopes = [
+            rises(0, 1),
+            rises(0, 2),
+            rises(0, 3),
+            rises(1, 2),
+            rises(1, 3),
+            rises(2, 3),
+        ];
         if slopes.iter().all(|&s| s >= 0.0) || slopes.iter().all(|&s| s <= 0.0) {
             return self.sampled_arc(lo, hi, slopes.iter().any(|&s| s > 0.0));
         }
@@ -67,7 +74,11 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
         // Start where the curvature is larger: the circle through three points of the arc does not
         // contain the fourth.
         let [a, b, c, d] = [0, 1, 2, 3].map(|k| chain[(chain.len() - 1) * k / 3]);
-        let ends = if turn == Sign::Positive { [a, b] } else { [b, a] };
+        let ends = if turn == Sign::Positive {
+            [a, b]
+        } else {
+            [b, a]
+        };
         if self.predicates.in_circle(c, ends, d) {
             chain.reverse();
             turn = -turn;
@@ -92,7 +103,11 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
             if hi - lo > FEW {
                 let (mid, axis) = self.halve(lo, hi)?;
                 let halves = [(lo, mid), (mid, hi)];
-                let [first, second] = if rises || axis == Axis::Y { halves } else { [halves[1], halves[0]] };
+                let [first, second] = if rises || axis == Axis::Y {
+                    halves
+                } else {
+                    [halves[1], halves[0]]
+                };
                 ranges.extend([second, first]);
                 continue;
             }
@@ -116,15 +131,25 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
     }
 
     /// Triangulates the vertices of a convex polygon, given in order.
-    fn insert_along(&mut self, chain: &[VertexId], turn: Sign, first_face: u32) -> Option<BuiltRange> {
-        let &[a, b, ref rest @ ..] = chain else { return None };
+    fn insert_along(
+        &mut self,
+        chain: &[VertexId],
+        turn: Sign,
+        first_face: u32,
+    ) -> Option<BuiltRange> {
+        let &[a, b, ref rest @ ..] = chain else {
+            return None;
+        };
         let turns_left = turn == Sign::Positive;
         let mut open = self.pair([a, b], first_face)[usize::from(turns_left)];
         let mut unchecked = Vec::new();
         let mut flips = 0;
         for (count, (&next, fresh)) in rest.iter().zip((first_face + 2..).step_by(2)).enumerate() {
             let before_and_after = self.add(next, open, fresh);
-            unchecked.push(std::mem::replace(&mut open, before_and_after[usize::from(turns_left)]));
+            unchecked.push(std::mem::replace(
+                &mut open,
+                before_and_after[usize::from(turns_left)],
+            ));
             while let Some(face) = unchecked.pop() {
                 if let Some(beside) = self.flip_outward(face) {
                     unchecked.extend([face, beside]);
@@ -135,7 +160,11 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
                 return None;
             }
         }
-        Some(BuiltRange { bottom: open, top: open, first: first_face / 2 })
+        Some(BuiltRange {
+            bottom: open,
+            top: open,
+            first: first_face / 2,
+        })
     }
 
     /// Turns a ghost into the triangle to a vertex that sees no other edge of the hull. Returns the
@@ -167,7 +196,10 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
             return None;
         }
         let beside = edge.face();
-        let (beyond_p, beyond_q) = (self.twin(beside, edge.next_slot()), self.twin(beside, edge.previous_slot()));
+        let (beyond_p, beyond_q) = (
+            self.twin(beside, edge.next_slot()),
+            self.twin(beside, edge.previous_slot()),
+        );
         let beyond_vertex = self.twin(face, 2);
         self.face_mut(face).vertices[0] = apex;
         self.face_mut(beside).vertices = [p, apex, vertex];

@@ -18,7 +18,9 @@ pub(super) fn reduced<T: Copy + Send + Sync>(
         return of_range(0..count);
     }
     let chunks = (0..count.div_ceil(chunk)).into_par_iter();
-    chunks.map(|c| of_range(c * chunk..count.min((c + 1) * chunk))).reduce(|| nothing, join)
+    chunks
+        .map(|c| of_range(c * chunk..count.min((c + 1) * chunk)))
+        .reduce(|| nothing, join)
 }
 
 /// Like [`reduced`], but ends early if the result for a chunk, or a joined one, is `None`.
@@ -36,10 +38,21 @@ pub(super) fn try_reduced<T: Copy + Send + Sync>(
 
 /// Returns so many equal values, written by all threads.
 pub(super) fn filled<T: Send>(count: usize, chunk: usize, value: impl Fn() -> T + Sync) -> Vec<T> {
-    (0..count).into_par_iter().with_min_len(chunk).map(|_| value()).collect()
+    (0..count)
+        .into_par_iter()
+        .with_min_len(chunk)
+        .map(|_| value())
+        .collect()
 }
 
 /// Returns the least number that is found in a range of numbers, or in one of its chunks.
-pub(super) fn first_of(range: Range<usize>, chunk: usize, is_it: &(dyn Fn(usize) -> bool + Sync)) -> Option<usize> {
-    range.into_par_iter().with_min_len(chunk).find_first(|&i| is_it(i))
+pub(super) fn first_of(
+    range: Range<usize>,
+    chunk: usize,
+    is_it: &(dyn Fn(usize) -> bool + Sync),
+) -> Option<usize> {
+    range
+        .into_par_iter()
+        .with_min_len(chunk)
+        .find_first(|&i| is_it(i))
 }

@@ -25,7 +25,11 @@ pub(super) struct Span {
 }
 
 impl Span {
-    pub(super) const EMPTY: Self = Span { min: [f64::INFINITY; 3], max: [f64::NEG_INFINITY; 3], axes: 0 };
+    pub(super) const EMPTY: Self = Span {
+        min: [f64::INFINITY; 3],
+        max: [f64::NEG_INFINITY; 3],
+        axes: 0,
+    };
 
     /// Returns the span of points.
     #[inline(always)]
@@ -38,8 +42,16 @@ impl Span {
         self.axes = point.len().min(3);
         for (axis, &x) in point.iter().take(3).enumerate() {
             // `f64::min` handles NaN, which takes time.
-            self.min[axis] = if x < self.min[axis] { x } else { self.min[axis] };
-            self.max[axis] = if x > self.max[axis] { x } else { self.max[axis] };
+            self.min[axis] = if x < self.min[axis] {
+                x
+            } else {
+                self.min[axis]
+            };
+            self.max[axis] = if x > self.max[axis] {
+                x
+            } else {
+                self.max[axis]
+            };
         }
         self
     }
@@ -56,13 +68,21 @@ impl Span {
 impl Curve {
     /// Returns the curve through `count` points, given the spans of ranges of them; one thread
     /// reads `chunk` points at a time.
-    pub(super) fn through(count: usize, span: &(dyn Fn(Range<usize>) -> Span + Sync), chunk: usize) -> Self {
+    pub(super) fn through(
+        count: usize,
+        span: &(dyn Fn(Range<usize>) -> Span + Sync),
+        chunk: usize,
+    ) -> Self {
         Self::along(chunks::reduced(count, chunk, span, Span::EMPTY, Span::and))
     }
 
     /// Returns the curve through all of a box.
     pub(super) fn along(Span { min, max, axes }: Span) -> Self {
-        let extent = |unit: f64| (0..axes).map(|axis| max[axis] * unit - min[axis] * unit).fold(0.0, f64::max);
+        let extent = |unit: f64| {
+            (0..axes)
+                .map(|axis| max[axis] * unit - min[axis] * unit)
+                .fold(0.0, f64::max)
+        };
         let unit = match extent(1.0) {
             f64::INFINITY => 0.5,
             tiny if tiny < 2f64.powi(-900) => 2f64.powi(900),
@@ -73,7 +93,13 @@ impl Curve {
         let scale = if scale.is_finite() { scale } else { 0.0 };
         // Where the unit makes a coordinate infinite, all are equal: the extent is tiny.
         let unit = min.map(|x| if (x * unit).is_finite() { unit } else { 0.0 });
-        let min = std::array::from_fn(|axis| if unit[axis] == 0.0 { 0.0 } else { min[axis] * unit[axis] });
+        let min = std::array::from_fn(|axis| {
+            if unit[axis] == 0.0 {
+                0.0
+            } else {
+                min[axis] * unit[axis]
+            }
+        });
         Curve { min, unit, scale }
     }
 
@@ -102,7 +128,8 @@ impl Curve {
             [x] => self.step(0, x) << 33,
             [x, y] => spread_by_two(self.step(0, x)) << 3 | spread_by_two(self.step(1, y)) << 2,
             [x, y, z, ..] => {
-                let [x, y, z] = [self.step(0, x), self.step(1, y), self.step(2, z)].map(spread_by_three);
+                let [x, y, z] =
+                    [self.step(0, x), self.step(1, y), self.step(2, z)].map(spread_by_three);
                 x << 3 | y << 2 | z << 1
             }
         }
@@ -131,7 +158,12 @@ impl<'a> Squares<'a> {
             true => (bits as usize + axes - 1 - axis) as u32 / axes as u32,
             false => 0,
         });
-        Squares { curve, axes, bits, low: bits.map(|bits| of_step - bits) }
+        Squares {
+            curve,
+            axes,
+            bits,
+            low: bits.map(|bits| of_step - bits),
+        }
     }
 
     /// Returns the square that a point is in, counted row by row.
@@ -149,7 +181,11 @@ impl<'a> Squares<'a> {
     /// Returns the highest bits of the keys in a square.
     pub(super) fn key_bits(&self, square: usize) -> usize {
         let [x, y, z] = self.bits;
-        let steps = [square >> (y + z), square >> z & ((1 << y) - 1), square & ((1 << z) - 1)];
+        let steps = [
+            square >> (y + z),
+            square >> z & ((1 << y) - 1),
+            square & ((1 << z) - 1),
+        ];
         let mut left = self.bits;
         let mut key = 0;
         for axis in (0..self.axes).cycle().take((x + y + z) as usize) {
@@ -204,7 +240,11 @@ mod tests {
                 let squares = Squares::new(&curve, axes, bits);
                 for point in (0..500).map(point) {
                     let (square, key) = (squares.of(&point), curve.key(&point));
-                    assert_eq!(squares.key_bits(square), (key >> 1 >> (63 - bits)) as usize, "{point:?} {bits}");
+                    assert_eq!(
+                        squares.key_bits(square),
+                        (key >> 1 >> (63 - bits)) as usize,
+                        "{point:?} {bits}"
+                    );
                 }
             }
         }

@@ -18,7 +18,11 @@ pub(super) struct Edge(NonZeroU32);
 impl Edge {
     #[inline(always)]
     pub(super) fn new(face: u32, slot: usize) -> Self {
-        const SLOTS: [NonZeroU32; 3] = [NonZeroU32::MIN, NonZeroU32::new(2).unwrap(), NonZeroU32::new(3).unwrap()];
+        const SLOTS: [NonZeroU32; 3] = [
+            NonZeroU32::MIN,
+            NonZeroU32::new(2).unwrap(),
+            NonZeroU32::new(3).unwrap(),
+        ];
         Edge(SLOTS[slot] | face << 2)
     }
 

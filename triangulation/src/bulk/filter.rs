@@ -62,7 +62,11 @@ impl Arrow {
     #[inline(always)]
     pub(super) fn between(from: Site, to: Site) -> Self {
         let (x, y) = (to[0] - from[0], to[1] - from[1]);
-        Arrow { x, y, square: x * x + y * y }
+        Arrow {
+            x,
+            y,
+            square: x * x + y * y,
+        }
     }
 
     /// Returns the orientation of the origin and the ends of two arrows.
@@ -70,7 +74,10 @@ impl Arrow {
     pub(super) fn turn(self, v: Arrow) -> Estimate {
         const BOUND: f64 = (3.0 + 8.0 * f64::EPSILON) * (f64::EPSILON / 2.0);
         let (left, right) = (self.x * v.y, self.y * v.x);
-        Estimate { value: left - right, bound: BOUND * (left.abs() + right.abs()) }
+        Estimate {
+            value: left - right,
+            bound: BOUND * (left.abs() + right.abs()),
+        }
     }
 
     /// Returns the larger side of the bounding box.
@@ -109,7 +116,12 @@ pub(super) struct Circle {
 
 impl Circle {
     /// A circle whose sides are neither positive nor negative.
-    pub(super) const NONE: Self = Circle { x: f64::NAN, y: f64::NAN, area: f64::NAN, squares: f64::NAN };
+    pub(super) const NONE: Self = Circle {
+        x: f64::NAN,
+        y: f64::NAN,
+        area: f64::NAN,
+        squares: f64::NAN,
+    };
 
     #[inline(always)]
     pub(super) fn through(u: Arrow, v: Arrow) -> Self {
@@ -126,7 +138,10 @@ impl Circle {
     pub(super) fn side(&self, w: Arrow) -> Estimate {
         const BOUND: f64 = 4.5e-16;
         let squares = self.squares + w.square;
-        Estimate { value: w.x * self.x + w.y * self.y - w.square * self.area, bound: BOUND * (squares * squares) }
+        Estimate {
+            value: w.x * self.x + w.y * self.y - w.square * self.area,
+            bound: BOUND * (squares * squares),
+        }
     }
 }
 
@@ -148,10 +163,26 @@ pub(super) struct PlanePredicates<'a, G: Coordinates<N>, const N: usize, const F
     pub(super) curve: &'a Curve,
 }
 
-impl<'a, G: Coordinates<N>, const N: usize, const FILTERED: bool> PlanePredicates<'a, G, N, FILTERED> {
-    pub(super) fn new(geometry: &'a G, points: &'a [G::Point], curve: &'a Curve, grain: Grain) -> Self {
-        let unit = if FILTERED { unit(geometry, points, grain) } else { 0.0 };
-        PlanePredicates { geometry, points, unit, curve }
+impl<'a, G: Coordinates<N>, const N: usize, const FILTERED: bool>
+    PlanePredicates<'a, G, N, FILTERED>
+{
+    pub(super) fn new(
+        geometry: &'a G,
+        points: &'a [G::Point],
+        curve: &'a Curve,
+        grain: Grain,
+    ) -> Self {
+        let unit = if FILTERED {
+            unit(geometry, points, grain)
+        } else {
+            0.0
+        };
+        PlanePredicates {
+            geometry,
+            points,
+            unit,
+            curve,
+        }
     }
 
     /// Returns the exact coordinates of a vertex; [`NOWHERE`] if it has none or is infinite.
@@ -166,7 +197,11 @@ impl<'a, G: Coordinates<N>, const N: usize, const FILTERED: bool> PlanePredicate
     /// Returns the coordinates of a finite vertex.
     #[inline(always)]
     pub(super) fn coordinates(&self, vertex: VertexId) -> Site {
-        match *self.geometry.coordinates(&self.points[vertex.index()]).as_ref() {
+        match *self
+            .geometry
+            .coordinates(&self.points[vertex.index()])
+            .as_ref()
+        {
             [x, y, ..] => [x, y],
             _ => NOWHERE,
         }
@@ -214,7 +249,8 @@ impl<'a, G: Coordinates<N>, const N: usize, const FILTERED: bool> PlanePredicate
             }
         }
         let corners = vertices.map(|v| &self.points[v.index()]);
-        self.geometry.orientation(std::array::from_fn(|i| corners[i]))
+        self.geometry
+            .orientation(std::array::from_fn(|i| corners[i]))
     }
 
     /// Returns true if `q` lies in the circle of a counter-clockwise triangle, ties broken. Seen
@@ -224,7 +260,11 @@ impl<'a, G: Coordinates<N>, const N: usize, const FILTERED: bool> PlanePredicate
         let at = self.site(opposite);
         let [u, v, w] = [ends[0], ends[1], q].map(|v| Arrow::between(at, self.site(v)));
         let estimate = Circle::through(u, v).side(w);
-        if self.is_open(estimate) { self.in_circle_slowly(opposite, ends, q) } else { estimate.is_positive() }
+        if self.is_open(estimate) {
+            self.in_circle_slowly(opposite, ends, q)
+        } else {
+            estimate.is_positive()
+        }
     }
 
     /// Like [`in_circle`](Self::in_circle), without the filter; false if a vertex is infinite.
@@ -236,7 +276,12 @@ impl<'a, G: Coordinates<N>, const N: usize, const FILTERED: bool> PlanePredicate
     /// common unit.
     #[cold]
     #[inline(never)]
-    pub(super) fn in_circle_slowly(&self, opposite: VertexId, ends: [VertexId; 2], q: VertexId) -> bool {
+    pub(super) fn in_circle_slowly(
+        &self,
+        opposite: VertexId,
+        ends: [VertexId; 2],
+        q: VertexId,
+    ) -> bool {
         if [opposite, ends[0], ends[1], q].contains(&VertexId::INFINITE) {
             return false;
         }
@@ -251,7 +296,11 @@ impl<'a, G: Coordinates<N>, const N: usize, const FILTERED: bool> PlanePredicate
             }
         }
         let corners = [opposite, ends[0], ends[1]].map(|v| &self.points[v.index()]);
-        in_sphere(self.geometry, std::array::from_fn::<_, N, _>(|i| corners[i]), &self.points[q.index()])
+        in_sphere(
+            self.geometry,
+            std::array::from_fn::<_, N, _>(|i| corners[i]),
+            &self.points[q.index()],
+        )
     }
 }
 
@@ -265,7 +314,11 @@ fn unit<G: Coordinates<N>, const N: usize>(geometry: &G, points: &[G::Point], gr
     let is_too_small = |lowest: i32, largest: f64| 2f64.powi(lowest) < part * largest;
     let of_chunk = |range: Range<usize>| {
         let (mut lowest, mut largest) = (i32::MAX, 0.0);
-        for x in points[range].iter().filter_map(|p| geometry.exact_plan(p)).flatten() {
+        for x in points[range]
+            .iter()
+            .filter_map(|p| geometry.exact_plan(p))
+            .flatten()
+        {
             largest = if x.abs() > largest { x.abs() } else { largest };
             let bit = lattice::lowest_bit(x).unwrap_or(lowest);
             if bit < lowest {
@@ -278,7 +331,13 @@ fn unit<G: Coordinates<N>, const N: usize>(geometry: &G, points: &[G::Point], gr
         Some((lowest, largest))
     };
     let least = |(i, x): (i32, f64), (j, y): (i32, f64)| (i.min(j), x.max(y));
-    let of_all = chunks::try_reduced(points.len(), grain.points, &of_chunk, (i32::MAX, 0.0), least);
+    let of_all = chunks::try_reduced(
+        points.len(),
+        grain.points,
+        &of_chunk,
+        (i32::MAX, 0.0),
+        least,
+    );
     let unit = of_all.filter(|&(lowest, largest)| !is_too_small(lowest, largest));
     unit.map_or(0.0, |(lowest, _)| 2f64.powi(lowest))
 }

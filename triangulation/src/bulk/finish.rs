@@ -26,11 +26,19 @@ struct FoundInRange {
 /// Most faces that were built with a range of points still have vertices in that range, so that
 /// threads can fill ranges of the cells of vertices. The ranges do not depend on the number of
 /// threads, and therefore neither do the cells.
-pub(super) fn finish(faces: &mut [Links<3>], count: usize, grain: Grain) -> Option<CellsOfVertices> {
+pub(super) fn finish(
+    faces: &mut [Links<3>],
+    count: usize,
+    grain: Grain,
+) -> Option<CellsOfVertices> {
     let mut of_vertices = chunks::filled(count, grain.points, || CellId::NONE);
-    let ranges = of_vertices.par_chunks_mut(grain.points).zip(faces.par_chunks_mut(2 * grain.points)).enumerate();
-    let found: Vec<FoundInRange> =
-        ranges.map(|(i, (cells, faces))| finish_range(faces, cells, i * grain.points)).collect();
+    let ranges = of_vertices
+        .par_chunks_mut(grain.points)
+        .zip(faces.par_chunks_mut(2 * grain.points))
+        .enumerate();
+    let found: Vec<FoundInRange> = ranges
+        .map(|(i, (cells, faces))| finish_range(faces, cells, i * grain.points))
+        .collect();
     if !found.iter().any(|found| found.has_finite) {
         return None;
     }
@@ -41,15 +49,24 @@ pub(super) fn finish(faces: &mut [Links<3>], count: usize, grain: Grain) -> Opti
         }
     }
     let of_infinite = found.iter().find_map(|found| found.infinite)?;
-    Some(CellsOfVertices { of_vertices, of_infinite })
+    Some(CellsOfVertices {
+        of_vertices,
+        of_infinite,
+    })
 }
 
 /// Converts the faces of the vertices from number `first` on.
 fn finish_range(faces: &mut [Links<3>], cells: &mut [CellId], first: usize) -> FoundInRange {
-    let mut found = FoundInRange { has_finite: false, infinite: None, elsewhere: Vec::new() };
+    let mut found = FoundInRange {
+        has_finite: false,
+        infinite: None,
+        elsewhere: Vec::new(),
+    };
     for (i, links) in faces.iter_mut().enumerate() {
         let cell = CellId::new(2 * first + i);
-        let offsets = links.vertices.map(|vertex| vertex.index().wrapping_sub(first));
+        let offsets = links
+            .vertices
+            .map(|vertex| vertex.index().wrapping_sub(first));
         // `PERF:` one branch for nearly all faces instead of three.
         if offsets[0].max(offsets[1]).max(offsets[2]) < cells.len() {
             offsets.into_iter().for_each(|i| cells[i] = cell);
@@ -64,7 +81,9 @@ fn finish_range(faces: &mut [Links<3>], cells: &mut [CellId], first: usize) -> F
         }
         found.has_finite |= links.vertices[2] != VertexId::INFINITE;
         // The edge from vertex 0 to 1 lies opposite vertex 2, and so on.
-        let [a, b, c] = links.neighbors.map(|twin| CellId::new(Edge::of(twin).face() as usize));
+        let [a, b, c] = links
+            .neighbors
+            .map(|twin| CellId::new(Edge::of(twin).face() as usize));
         links.neighbors = [b, c, a];
     }
     found

@@ -17,14 +17,22 @@ pub(crate) struct Grain<'a> {
 
 impl Default for Grain<'_> {
     fn default() -> Self {
-        Grain { points: 1 << 14, group: 1 << 14, range: 1 << 14, stop: None }
+        Grain {
+            points: 1 << 14,
+            group: 1 << 14,
+            range: 1 << 14,
+            stop: None,
+        }
     }
 }
 
 impl<'a> Grain<'a> {
     /// The usual sizes; the work ends early once `stop` is asked for it.
     pub(crate) fn until(stop: &'a Stop<'a>) -> Self {
-        Grain { stop: Some(stop), ..Grain::default() }
+        Grain {
+            stop: Some(stop),
+            ..Grain::default()
+        }
     }
 
     /// Returns true if the work should stop. Then [`is_stopped`](Self::is_stopped) is true, too.
@@ -34,7 +42,8 @@ impl<'a> Grain<'a> {
 
     /// Returns true if a thread has ended its work early: what it should have built is not there.
     pub(crate) fn is_stopped(&self) -> bool {
-        self.stop.is_some_and(|stop| stop.is_seen.load(Ordering::Relaxed))
+        self.stop
+            .is_some_and(|stop| stop.is_seen.load(Ordering::Relaxed))
     }
 }
 
@@ -48,7 +57,10 @@ pub(crate) struct Stop<'a> {
 
 impl<'a> Stop<'a> {
     pub(crate) fn new(flag: &'a AtomicBool) -> Self {
-        Stop { flag, is_seen: AtomicBool::new(false) }
+        Stop {
+            flag,
+            is_seen: AtomicBool::new(false),
+        }
     }
 
     fn is_asked_for(&self) -> bool {

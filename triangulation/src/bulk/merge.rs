@@ -82,9 +82,28 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
     /// coordinates one ghost ahead, as the prototype did against mispredictions: +7 % instructions,
     /// no gain. Testing both candidates without branches: 8.6 instead of 11.6 simulated
     /// mispredictions a point, no gain on 1 million uniform points, and +10 % on a parabola.
-    pub(super) fn merge(&mut self, left: BuiltRange, right: BuiltRange, mid: usize, axis: Axis) -> BuiltRange {
-        let [Foot { vertex: mut a, at: mut at_a, ghost: gl }, Foot { vertex: mut b, at: mut at_b, ghost: gr }] =
-            self.lower_tangent(self.extreme::<LEFT>(left, axis), self.extreme::<RIGHT>(right, axis));
+    pub(super) fn merge(
+        &mut self,
+        left: BuiltRange,
+        right: BuiltRange,
+        mid: usize,
+        axis: Axis,
+    ) -> BuiltRange {
+        let [
+            Foot {
+                vertex: mut a,
+                at: mut at_a,
+                ghost: gl,
+            },
+            Foot {
+                vertex: mut b,
+                at: mut at_b,
+                ghost: gr,
+            },
+        ] = self.lower_tangent(
+            self.extreme::<LEFT>(left, axis),
+            self.extreme::<RIGHT>(right, axis),
+        );
 
         // The ghosts below and above.
         let (below, above) = (2 * mid as u32 - 2, 2 * mid as u32 - 1);
@@ -136,7 +155,11 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
         }
         let last = |of_half: u32, climb: &Climb| if of_half == NONE { NONE } else { climb.ghost };
         self.close_above(above, [a, b], open, [last(gl, &l), last(gr, &r)]);
-        BuiltRange { bottom: below, top: above, first: left.first }
+        BuiltRange {
+            bottom: below,
+            top: above,
+            first: left.first,
+        }
     }
 
     /// Starts the gap between the halves with the ghost below it, from `b` to `a`. The ghosts of
@@ -159,7 +182,13 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
     /// Ends the gap with the ghost above it, from `a` to `b`, at the last open edge. The ghosts of
     /// the halves beside it are given, too.
     #[inline(always)]
-    fn close_above(&mut self, above: u32, [a, b]: [VertexId; 2], open: Edge, [left, right]: [u32; 2]) {
+    fn close_above(
+        &mut self,
+        above: u32,
+        [a, b]: [VertexId; 2],
+        open: Edge,
+        [left, right]: [u32; 2],
+    ) {
         self.face_mut(above).vertices = [a, b, VertexId::INFINITE];
         self.link_to((above, 0), open);
         if right != NONE {
@@ -189,8 +218,14 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
             let inside = circle.side(to_q);
             let mut flips = inside.is_positive();
             if self.predicates.is_open(inside) {
-                let (start, chord) = if SIDE == LEFT { (b, [climb.vertex, a]) } else { (a, [b, climb.vertex]) };
-                flips = self.predicates.in_circle_slowly(start, chord, self.opposite(climb.behind));
+                let (start, chord) = if SIDE == LEFT {
+                    (b, [climb.vertex, a])
+                } else {
+                    (a, [b, climb.vertex])
+                };
+                flips = self
+                    .predicates
+                    .in_circle_slowly(start, chord, self.opposite(climb.behind));
             }
             if !flips {
                 break;
@@ -229,7 +264,11 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
         };
         if ghost == NONE {
             let vertex = VertexId::new(half.first as usize);
-            return Foot { vertex, at: self.predicates.site(vertex), ghost };
+            return Foot {
+                vertex,
+                at: self.predicates.site(vertex),
+                ghost,
+            };
         }
         // The start of the ghost's hull edge.
         let mut furthest = along(self.vertex(ghost, 1));
@@ -255,8 +294,16 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
             }
         }
         let vertex = self.vertex(ghost, 1);
-        let ghost = if SIDE == LEFT { ghost } else { self.twin(ghost, 1).face() };
-        Foot { vertex, at: self.predicates.site(vertex), ghost }
+        let ghost = if SIDE == LEFT {
+            ghost
+        } else {
+            self.twin(ghost, 1).face()
+        };
+        Foot {
+            vertex,
+            at: self.predicates.site(vertex),
+            ghost,
+        }
     }
 
     /// Returns the feet of the lower common tangent: climbs down both rings until no vertex lies
@@ -295,7 +342,9 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
         let at = self.predicates.site(vertex);
         let turn = turn(left.at, right.at, at);
         let is_below = if self.predicates.is_open(turn) {
-            self.predicates.turn_slowly([left.vertex, right.vertex, vertex]) == Sign::Negative
+            self.predicates
+                .turn_slowly([left.vertex, right.vertex, vertex])
+                == Sign::Negative
         } else {
             turn.is_negative()
         };
@@ -308,7 +357,14 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
         if ghost == NONE {
             let none = Edge::new(0, 0);
             let vertex = VertexId::INFINITE;
-            return Climb { ghost, behind: none, onward: none, vertex, candidate: NOWHERE, apex: NOWHERE };
+            return Climb {
+                ghost,
+                behind: none,
+                onward: none,
+                vertex,
+                candidate: NOWHERE,
+                apex: NOWHERE,
+            };
         }
         let vertex = self.vertex(ghost, SIDE);
         let behind = self.twin(ghost, 0);
@@ -368,8 +424,18 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
     /// Turns the chosen candidate's ghost into the triangle on the base, whose other end is given.
     /// Returns the edge that is open then, and its new end.
     #[inline(always)]
-    fn step<const SIDE: usize>(&mut self, climb: &mut Climb, open: Edge, other: VertexId) -> (Edge, VertexId) {
-        let Climb { ghost, vertex, onward: next, .. } = *climb;
+    fn step<const SIDE: usize>(
+        &mut self,
+        climb: &mut Climb,
+        open: Edge,
+        other: VertexId,
+    ) -> (Edge, VertexId) {
+        let Climb {
+            ghost,
+            vertex,
+            onward: next,
+            ..
+        } = *climb;
         self.face_mut(ghost).vertices[2] = other;
         self.link_to((ghost, back(SIDE)), open);
         *climb = self.climb::<SIDE>(next.face());

@@ -108,12 +108,18 @@ where
     V: Default,
     C: Copy + Default,
 {
-    let Sites { points, keys, curve, have_plans } = sites;
+    let Sites {
+        points,
+        keys,
+        curve,
+        have_plans,
+    } = sites;
     let count = points.len();
     if N == 4 && have_plans {
         drop(keys);
         let built = space::build(geometry, &points, grain);
-        let tds = built.and_then(|built| assemble(built.links, built.of_vertices, built.of_infinite));
+        let tds =
+            built.and_then(|built| assemble(built.links, built.of_vertices, built.of_infinite));
         return (points, tds);
     }
     if N != 3 || !(3..=MAX_POINTS).contains(&count) {
@@ -171,21 +177,36 @@ fn fill<G: Coordinates<N>, const N: usize, const FILTERED: bool>(
     grain: Grain,
 ) {
     let predicates = PlanePredicates::<G, N, FILTERED>::new(geometry, points, curve, grain);
-    Range { predicates: &predicates, keys, first: 0, faces, offset: 0, grain, nesting: 0 }.build(
-        0,
-        points.len(),
-        arc::MOST,
-    );
+    Range {
+        predicates: &predicates,
+        keys,
+        first: 0,
+        faces,
+        offset: 0,
+        grain,
+        nesting: 0,
+    }
+    .build(0, points.len(), arc::MOST);
 }
 
 impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FILTERED> {
     /// Triangulates a range; ranges of up to `arcs` points are tested for being an arc.
     fn build(&mut self, lo: usize, hi: usize, mut arcs: usize) -> BuiltRange {
         match hi - lo {
-            1 => return BuiltRange { bottom: NONE, top: NONE, first: lo as u32 },
+            1 => {
+                return BuiltRange {
+                    bottom: NONE,
+                    top: NONE,
+                    first: lo as u32,
+                };
+            }
             2 => {
                 let [bottom, top] = self.pair([lo, lo + 1].map(VertexId::new), 2 * lo as u32);
-                return BuiltRange { bottom, top, first: lo as u32 };
+                return BuiltRange {
+                    bottom,
+                    top,
+                    first: lo as u32,
+                };
             }
             3 => return self.triple(lo),
             4 => {
@@ -201,16 +222,44 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
             }
             arcs = (hi - lo) / 4 * 3;
         }
-        let Some((mid, axis)) = self.halve(lo, hi) else { return self.build_dense(lo, hi, arcs) };
+        let Some((mid, axis)) = self.halve(lo, hi) else {
+            return self.build_dense(lo, hi, arcs);
+        };
         let (left, right) = if hi - lo > self.grain.range {
             if self.grain.stops() {
                 return self.unbuilt(lo);
             }
-            let Range { predicates, keys, first, offset, grain, nesting, .. } = *self;
+            let Range {
+                predicates,
+                keys,
+                first,
+                offset,
+                grain,
+                nesting,
+                ..
+            } = *self;
             let (left, right) = self.faces.split_at_mut(2 * mid - offset);
-            let mut left = Range { predicates, keys, first, faces: left, offset, grain, nesting };
-            let mut right = Range { predicates, keys, first, faces: right, offset: 2 * mid, grain, nesting };
-            both(&mut || left.build(lo, mid, arcs), &mut || right.build(mid, hi, arcs))
+            let mut left = Range {
+                predicates,
+                keys,
+                first,
+                faces: left,
+                offset,
+                grain,
+                nesting,
+            };
+            let mut right = Range {
+                predicates,
+                keys,
+                first,
+                faces: right,
+                offset: 2 * mid,
+                grain,
+                nesting,
+            };
+            both(&mut || left.build(lo, mid, arcs), &mut || {
+                right.build(mid, hi, arcs)
+            })
         } else {
             (self.build(lo, mid, arcs), self.build(mid, hi, arcs))
         };
@@ -225,7 +274,11 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
     /// merged.
     #[cold]
     fn unbuilt(&self, lo: usize) -> BuiltRange {
-        BuiltRange { bottom: NONE, top: NONE, first: lo as u32 }
+        BuiltRange {
+            bottom: NONE,
+            top: NONE,
+            first: lo as u32,
+        }
     }
 
     /// Returns where the keys cut a range in two, and along which axis; `None` if the keys of all
@@ -238,7 +291,10 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
         }
         let bit = 63 - differing.leading_zeros();
         // The bit of x stands above that of y.
-        Some((self.cut(lo, hi, bit), if bit % 2 == 1 { Axis::X } else { Axis::Y }))
+        Some((
+            self.cut(lo, hi, bit),
+            if bit % 2 == 1 { Axis::X } else { Axis::Y },
+        ))
     }
 
     /// Returns the first point of a range whose key has the bit set.
@@ -268,21 +324,46 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
         let coordinates = |i: usize| self.predicates.coordinates(VertexId::new(lo + i));
         let mut keys = Keys::default();
         if !self.keys.are_whole() {
-            keys = Keys::of(count, &|i| self.predicates.curve.key(coordinates(i).as_ref()), self.grain);
+            keys = Keys::of(
+                count,
+                &|i| self.predicates.curve.key(coordinates(i).as_ref()),
+                self.grain,
+            );
         }
         if keys.is_empty() || keys.difference(0, count - 1) == 0 {
-            let curve = Curve::through(count, &|range| Span::of(range.map(coordinates)), self.grain.points);
+            let curve = Curve::through(
+                count,
+                &|range| Span::of(range.map(coordinates)),
+                self.grain.points,
+            );
             keys = Keys::of(count, &|i| curve.key(coordinates(i).as_ref()), self.grain);
         }
-        let Range { predicates, offset, grain, nesting, .. } = *self;
-        let mut range =
-            Range { predicates, keys: &keys, first: lo, faces: &mut *self.faces, offset, grain, nesting: nesting + 1 };
+        let Range {
+            predicates,
+            offset,
+            grain,
+            nesting,
+            ..
+        } = *self;
+        let mut range = Range {
+            predicates,
+            keys: &keys,
+            first: lo,
+            faces: &mut *self.faces,
+            offset,
+            grain,
+            nesting: nesting + 1,
+        };
         // Each range with keys of its own is up to 64 calls deep. How many lie within each other is
         // limited only by the exponents of doubles, however few points there are.
         if range.nesting.is_multiple_of(NESTED) {
             // The new thread is not one of the pool, but the one that waits for it may be. So the
             // new thread must not wait for the pool.
-            range.grain = Grain { points: usize::MAX, range: usize::MAX, ..grain };
+            range.grain = Grain {
+                points: usize::MAX,
+                range: usize::MAX,
+                ..grain
+            };
             on_new_stack(&mut || range.build(lo, hi, arcs))
         } else {
             range.build(lo, hi, arcs)

@@ -49,7 +49,14 @@ impl Keys {
     /// Returns the keys of points that are in spatial order already.
     pub(super) fn of(count: usize, key: &(dyn Fn(usize) -> u64 + Sync), grain: Grain) -> Self {
         let key = |i: usize| AtomicU64::new(key(i));
-        Keys { records: (0..count).into_par_iter().with_min_len(grain.points).map(key).collect(), low: 0 }
+        Keys {
+            records: (0..count)
+                .into_par_iter()
+                .with_min_len(grain.points)
+                .map(key)
+                .collect(),
+            low: 0,
+        }
     }
 
     /// Returns the bits in which the keys of two points differ.
@@ -152,7 +159,11 @@ where
     }
 
     fn axes(&self) -> usize {
-        if self.count == 0 { 0 } else { (self.coordinates)(0).as_ref().len() }
+        if self.count == 0 {
+            0
+        } else {
+            (self.coordinates)(0).as_ref().len()
+        }
     }
 
     fn key(&self, i: usize, curve: &Curve) -> u64 {
@@ -167,7 +178,13 @@ where
         points.for_each(|i| counts[squares.of((self.coordinates)(i).as_ref())][i % 2] += 1);
     }
 
-    fn write(&self, points: Range<usize>, curve: &Curve, buckets: BucketRecords, nexts: &mut [u32]) {
+    fn write(
+        &self,
+        points: Range<usize>,
+        curve: &Curve,
+        buckets: BucketRecords,
+        nexts: &mut [u32],
+    ) {
         for i in points {
             let key = curve.key((self.coordinates)(i).as_ref());
             let next = &mut nexts[(key >> 1 >> (63 - buckets.bits)) as usize];
@@ -197,7 +214,9 @@ impl SortedSites {
 
     /// Returns the positions of the first points of all sites, in order.
     fn positions(&self) -> Vec<u32> {
-        let ranks = (0..self.keys.records.len()).into_par_iter().with_min_len(1 << 12);
+        let ranks = (0..self.keys.records.len())
+            .into_par_iter()
+            .with_min_len(1 << 12);
         ranks.map(|rank| self.position(rank) as u32).collect()
     }
 
@@ -210,12 +229,19 @@ impl SortedSites {
             points[position]
         };
         let count = self.keys.records.len();
-        let sites = (0..count).into_par_iter().with_min_len(grain.points).map(site).collect();
+        let sites = (0..count)
+            .into_par_iter()
+            .with_min_len(grain.points)
+            .map(site)
+            .collect();
         for &(position, rank) in &self.others {
             ranks[position as usize].store(rank, Relaxed);
         }
         // In place.
-        let vertices = ranks.into_iter().map(|rank| VertexId::new(rank.into_inner() as usize)).collect();
+        let vertices = ranks
+            .into_iter()
+            .map(|rank| VertexId::new(rank.into_inner() as usize))
+            .collect();
         (sites, vertices)
     }
 }
@@ -241,8 +267,20 @@ pub fn spatial_order<A: AsRef<[f64]>>(
         return Err(InputError::TooMany);
     }
     let grain = Grain::default();
-    let curve = Curve::through(count, &|range| Span::of(range.map(&coordinates)), grain.points);
-    let sorted = sort(&PointsOf { count, coordinates, is_same: |_, _| false }, &curve, grain);
+    let curve = Curve::through(
+        count,
+        &|range| Span::of(range.map(&coordinates)),
+        grain.points,
+    );
+    let sorted = sort(
+        &PointsOf {
+            count,
+            coordinates,
+            is_same: |_, _| false,
+        },
+        &curve,
+        grain,
+    );
     Ok(sorted.positions())
 }
 
@@ -258,10 +296,30 @@ impl<P: Copy + Send + Sync> Sites<P> {
     ) -> Result<(Self, Vec<VertexId>), InputError> {
         let (curve, have_plans) = survey(geometry, points, grain)?;
         let coordinates = |i: usize| geometry.coordinates(&points[i]);
-        let is_same = |i: u32, j: u32| geometry.compare(&points[i as usize], &points[j as usize]).is_eq();
-        let sorted = sort(&PointsOf { count: points.len(), coordinates, is_same }, &curve, grain);
+        let is_same = |i: u32, j: u32| {
+            geometry
+                .compare(&points[i as usize], &points[j as usize])
+                .is_eq()
+        };
+        let sorted = sort(
+            &PointsOf {
+                count: points.len(),
+                coordinates,
+                is_same,
+            },
+            &curve,
+            grain,
+        );
         let (sites, vertices) = sorted.sites(points, grain);
-        Ok((Sites { points: sites, keys: sorted.keys, curve, have_plans }, vertices))
+        Ok((
+            Sites {
+                points: sites,
+                keys: sorted.keys,
+                curve,
+                have_plans,
+            },
+            vertices,
+        ))
     }
 
     /// Returns the sites of points that are all different and in [`spatial_order`] already.
@@ -274,15 +332,25 @@ impl<P: Copy + Send + Sync> Sites<P> {
     ) -> Result<Self, InputError> {
         let grain = Grain::default();
         let (curve, have_plans) = survey(geometry, &points, grain)?;
-        let keys = Keys::of(points.len(), &|i| curve.key(geometry.coordinates(&points[i]).as_ref()), grain);
+        let keys = Keys::of(
+            points.len(),
+            &|i| curve.key(geometry.coordinates(&points[i]).as_ref()),
+            grain,
+        );
         let is_wrong = |i: usize| {
             keys.is_before(i, i - 1)
-                || keys.difference(i, i - 1) == 0 && geometry.compare(&points[i - 1], &points[i]).is_eq()
+                || keys.difference(i, i - 1) == 0
+                    && geometry.compare(&points[i - 1], &points[i]).is_eq()
         };
         if let Some(position) = chunks::first_of(1..points.len(), grain.points, &is_wrong) {
             return Err(InputError::Unsorted(position));
         }
-        Ok(Sites { points, keys, curve, have_plans })
+        Ok(Sites {
+            points,
+            keys,
+            curve,
+            have_plans,
+        })
     }
 }
 
@@ -296,14 +364,24 @@ fn survey<G: Coordinates<N>, const N: usize>(
     grain: Grain,
 ) -> Result<(Curve, bool), InputError> {
     let look = |(admitted, planned, span): (bool, bool, Span), p: &G::Point| {
-        let planned =
-            planned & if N == 3 { geometry.exact_plan(p).is_some() } else { geometry.exact_site(p).is_some() };
-        (admitted & geometry.admits(p), planned, span.with(geometry.coordinates(p).as_ref()))
+        let planned = planned
+            & if N == 3 {
+                geometry.exact_plan(p).is_some()
+            } else {
+                geometry.exact_site(p).is_some()
+            };
+        (
+            admitted & geometry.admits(p),
+            planned,
+            span.with(geometry.coordinates(p).as_ref()),
+        )
     };
     let nothing = (true, true, Span::EMPTY);
     let look_at = |range: Range<usize>| points[range].iter().fold(nothing, look);
     let (admitted, have_plans, span) =
-        chunks::reduced(points.len(), grain.points, &look_at, nothing, |p, q| (p.0 & q.0, p.1 & q.1, p.2.and(q.2)));
+        chunks::reduced(points.len(), grain.points, &look_at, nothing, |p, q| {
+            (p.0 & q.0, p.1 & q.1, p.2.and(q.2))
+        });
     if !admitted && let Some(bad) = points.iter().position(|p| !geometry.admits(p)) {
         return Err(InputError::Coordinate(bad));
     }
@@ -325,11 +403,18 @@ fn sort(points: &dyn Unsorted, curve: &Curve, grain: Grain) -> SortedSites {
     let low = u64::MAX >> key_bits;
 
     let (records, starts) = distribute(points, curve, low, grain);
-    let sorter = Sorter { curve, points, low, grain };
+    let sorter = Sorter {
+        curve,
+        points,
+        low,
+        grain,
+    };
     let groups = groups(&starts, grain);
     let sorted: Vec<(usize, Vec<(u32, u32)>)> = groups
         .par_windows(2)
-        .map_init(GroupBuffers::default, |buffers, ends| sorter.sort(&records[ends[0]..ends[1]], buffers))
+        .map_init(GroupBuffers::default, |buffers, ends| {
+            sorter.sort(&records[ends[0]..ends[1]], buffers)
+        })
         .collect();
 
     // Close the gaps behind groups in which sites have several points.
@@ -337,19 +422,32 @@ fn sort(points: &dyn Unsorted, curve: &Curve, grain: Grain) -> SortedSites {
     let mut rank = 0;
     for (&start, (sites, repeated)) in groups.iter().zip(&sorted) {
         if rank != start {
-            (0..*sites).for_each(|i| records[rank + i].store(records[start + i].load(Relaxed), Relaxed));
+            (0..*sites)
+                .for_each(|i| records[rank + i].store(records[start + i].load(Relaxed), Relaxed));
         }
-        others.extend(repeated.iter().map(|&(position, site)| (position, rank as u32 + site)));
+        others.extend(
+            repeated
+                .iter()
+                .map(|&(position, site)| (position, rank as u32 + site)),
+        );
         rank += sites;
     }
     let mut records = records;
     records.truncate(rank);
-    SortedSites { keys: Keys { records, low }, others }
+    SortedSites {
+        keys: Keys { records, low },
+        others,
+    }
 }
 
 /// Returns the records in the order of their buckets, and the start of each bucket, followed by the
 /// end.
-fn distribute(points: &dyn Unsorted, curve: &Curve, low: u64, grain: Grain) -> (Vec<AtomicU64>, Vec<usize>) {
+fn distribute(
+    points: &dyn Unsorted,
+    curve: &Curve,
+    low: u64,
+    grain: Grain,
+) -> (Vec<AtomicU64>, Vec<usize>) {
     let count = points.count();
     let index_bits = usize::BITS - count.leading_zeros();
     let bits = index_bits.saturating_sub(9).min(BUCKET_BITS);
@@ -362,10 +460,16 @@ fn distribute(points: &dyn Unsorted, curve: &Curve, low: u64, grain: Grain) -> (
         let mut counts = vec![[0u32; 2]; 1 << bits];
         points.count_by_square(range(c), &squares, &mut counts);
         let mut by_bucket = vec![0u32; 1 << bits];
-        counts.iter().enumerate().for_each(|(square, [even, odd])| by_bucket[squares.key_bits(square)] += even + odd);
+        counts
+            .iter()
+            .enumerate()
+            .for_each(|(square, [even, odd])| by_bucket[squares.key_bits(square)] += even + odd);
         by_bucket
     };
-    let mut counts: Vec<Vec<u32>> = (0..count.div_ceil(chunk)).into_par_iter().map(counted).collect();
+    let mut counts: Vec<Vec<u32>> = (0..count.div_ceil(chunk))
+        .into_par_iter()
+        .map(counted)
+        .collect();
     // Where each chunk writes its share of each bucket: buckets in order, and in each the chunks in
     // order.
     let mut starts = Vec::with_capacity((1 << bits) + 1);
@@ -377,8 +481,15 @@ fn distribute(points: &dyn Unsorted, curve: &Curve, low: u64, grain: Grain) -> (
         }
     }
     starts.push(count);
-    let buckets = BucketRecords { records: &records, low, bits };
-    counts.par_iter_mut().enumerate().for_each(|(c, nexts)| points.write(range(c), curve, buckets, nexts));
+    let buckets = BucketRecords {
+        records: &records,
+        low,
+        bits,
+    };
+    counts
+        .par_iter_mut()
+        .enumerate()
+        .for_each(|(c, nexts)| points.write(range(c), curve, buckets, nexts));
     (records, starts)
 }
 
@@ -451,7 +562,10 @@ impl Sorter<'_> {
     /// Sorts records whose stored bits of the key are equal.
     #[cold]
     fn sort_run(&self, run: &mut [u64]) {
-        let mut positions: Vec<(u64, u32)> = run.iter().map(|record| (0, (record & self.low) as u32)).collect();
+        let mut positions: Vec<(u64, u32)> = run
+            .iter()
+            .map(|record| (0, (record & self.low) as u32))
+            .collect();
         self.sort_along(self.curve, &mut positions);
         for (record, (_, position)) in run.iter_mut().zip(positions) {
             *record = *record & !self.low | u64::from(position);
@@ -462,13 +576,20 @@ impl Sorter<'_> {
     fn sort_along(&self, curve: &Curve, points: &mut [(u64, u32)]) {
         let key = |position: u32| self.points.key(position as usize, curve);
         if points.len() > self.grain.points {
-            points.par_iter_mut().for_each(|(of_point, position)| *of_point = key(*position));
+            points
+                .par_iter_mut()
+                .for_each(|(of_point, position)| *of_point = key(*position));
             points.par_sort_unstable();
         } else {
-            points.iter_mut().for_each(|(of_point, position)| *of_point = key(*position));
+            points
+                .iter_mut()
+                .for_each(|(of_point, position)| *of_point = key(*position));
             points.sort_unstable();
         }
-        for equal in points.chunk_by_mut(|(p, _), (q, _)| p == q).filter(|equal| equal.len() > 1) {
+        for equal in points
+            .chunk_by_mut(|(p, _), (q, _)| p == q)
+            .filter(|equal| equal.len() > 1)
+        {
             let span = |range: Range<usize>| self.points.span_of(&equal[range]);
             let inner = Curve::through(equal.len(), &span, self.grain.points);
             if !inner.is_point() {
@@ -489,7 +610,9 @@ fn sort_records(records: &mut Vec<u64>, spare: &mut Vec<u64>, low: u64) {
     }
     // A group has the smallest and the largest key in its first and last bucket, so that no record
     // needs the keys below the first one.
-    let (least, largest) = records.iter().fold((u64::MAX, 0), |(least, largest), &r| (least.min(r), largest.max(r)));
+    let (least, largest) = records.iter().fold((u64::MAX, 0), |(least, largest), &r| {
+        (least.min(r), largest.max(r))
+    });
     let shift = low.count_ones();
     let key = |record: u64| (record >> shift) - (least >> shift);
     let bits = u64::BITS - key(largest).leading_zeros();
@@ -498,16 +621,22 @@ fn sort_records(records: &mut Vec<u64>, spare: &mut Vec<u64>, low: u64) {
         return;
     }
     let digit_bits = bits.div_ceil(passes);
-    let digit =
-        |record: u64, pass: usize| (key(record) >> (pass as u32 * digit_bits)) as usize & ((1 << digit_bits) - 1);
+    let digit = |record: u64, pass: usize| {
+        (key(record) >> (pass as u32 * digit_bits)) as usize & ((1 << digit_bits) - 1)
+    };
     let mut counts = vec![[0u32; 1 << DIGIT_BITS]; passes as usize];
     for &record in records.iter() {
-        counts.iter_mut().enumerate().for_each(|(pass, counts)| counts[digit(record, pass)] += 1);
+        counts
+            .iter_mut()
+            .enumerate()
+            .for_each(|(pass, counts)| counts[digit(record, pass)] += 1);
     }
     spare.resize(records.len(), 0);
     for (pass, counts) in counts.iter_mut().enumerate() {
         let mut start = 0;
-        counts.iter_mut().for_each(|count| start += std::mem::replace(count, start));
+        counts
+            .iter_mut()
+            .for_each(|count| start += std::mem::replace(count, start));
         for &record in records.iter() {
             let next = &mut counts[digit(record, pass)];
             spare[*next as usize] = record;

@@ -26,7 +26,9 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
         let turn = self.predicates.turn([a, b, c]);
         if turn == Sign::Zero {
             let mut chain = [a, b, c].map(|v| (self.predicates.coordinates(v), v));
-            chain.sort_unstable_by(|(p, _), (q, _)| p.partial_cmp(q).unwrap_or(std::cmp::Ordering::Equal));
+            chain.sort_unstable_by(|(p, _), (q, _)| {
+                p.partial_cmp(q).unwrap_or(std::cmp::Ordering::Equal)
+            });
             [a, b, c] = chain.map(|(_, v)| v);
             self.close([f, g, h, i], [[a, b], [b, c], [c, b], [b, a]]);
             self.link((f, 0), (i, 0));
@@ -41,7 +43,11 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
                 self.link((f, slot), (ghost, 0));
             }
         }
-        BuiltRange { bottom: g, top: i, first: lo as u32 }
+        BuiltRange {
+            bottom: g,
+            top: i,
+            first: lo as u32,
+        }
     }
 
     /// Triangulates four points of which no three are collinear: two triangles, or three around the
@@ -79,7 +85,11 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
         .map(|k: usize| v[k]);
         if matches!(right, 0b001 | 0b010 | 0b100) {
             // The diagonal from a to c, or that from b to d.
-            let [a, b, c, d] = if self.predicates.in_circle(d, [a, c], b) { [b, c, d, a] } else { [a, b, c, d] };
+            let [a, b, c, d] = if self.predicates.in_circle(d, [a, c], b) {
+                [b, c, d, a]
+            } else {
+                [a, b, c, d]
+            };
             self.face_mut(f).vertices = [a, b, c];
             self.face_mut(g).vertices = [a, c, d];
             self.close([h, i, j, k], [[a, b], [b, c], [c, d], [d, a]]);
@@ -87,7 +97,11 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
                 self.link(inner, (outer, 0));
             }
             self.link((f, 2), (g, 0));
-            Some(BuiltRange { bottom: h, top: j, first: lo as u32 })
+            Some(BuiltRange {
+                bottom: h,
+                top: j,
+                first: lo as u32,
+            })
         } else {
             for (face, ghost, [p, q]) in [(f, i, [a, b]), (g, j, [b, c]), (h, k, [c, a])] {
                 self.face_mut(face).vertices = [p, q, d];
@@ -97,13 +111,21 @@ impl<G: Coordinates<N>, const N: usize, const FILTERED: bool> Range<'_, G, N, FI
             for (face, after) in [(f, g), (g, h), (h, f)] {
                 self.link((face, 1), (after, 2));
             }
-            Some(BuiltRange { bottom: i, top: j, first: lo as u32 })
+            Some(BuiltRange {
+                bottom: i,
+                top: j,
+                first: lo as u32,
+            })
         }
     }
 
     /// Makes the ghosts of a hull, counter-clockwise, and links them to each other.
     #[inline(always)]
-    fn close<const LENGTH: usize>(&mut self, ghosts: [u32; LENGTH], edges: [[VertexId; 2]; LENGTH]) {
+    fn close<const LENGTH: usize>(
+        &mut self,
+        ghosts: [u32; LENGTH],
+        edges: [[VertexId; 2]; LENGTH],
+    ) {
         for (k, [p, q]) in edges.into_iter().enumerate() {
             self.face_mut(ghosts[k]).vertices = [q, p, INFINITE];
             self.link((ghosts[k], 2), (ghosts[(k + 1) % LENGTH], 1));

@@ -15,7 +15,12 @@ use super::faces::Range;
 use super::filter::{Arrow, Circle, PlanePredicates};
 use super::{Grain, Sites, Stop, build};
 
-const TINY: Grain = Grain { points: 3, group: 2, range: 3, stop: None };
+const TINY: Grain = Grain {
+    points: 3,
+    group: 2,
+    range: 3,
+    stop: None,
+};
 
 type Cells = BTreeSet<[[u64; 2]; 3]>;
 
@@ -58,7 +63,11 @@ fn cells<G: Geometry<3, Point = [f64; 2]>>(t: &Delaunay<G, 3>) -> Cells {
         corners.rotate_left(least);
         corners
     };
-    if t.dimension() < 2 { Cells::new() } else { t.finite_cells().map(cell).collect() }
+    if t.dimension() < 2 {
+        Cells::new()
+    } else {
+        t.finite_cells().map(cell).collect()
+    }
 }
 
 fn one_by_one<G: Geometry<3, Point = [f64; 2]>>(geometry: G, points: &[[f64; 2]]) -> Cells {
@@ -69,7 +78,11 @@ fn one_by_one<G: Geometry<3, Point = [f64; 2]>>(geometry: G, points: &[[f64; 2]]
     cells(&t)
 }
 
-fn in_bulk<G: Coordinates<3, Point = [f64; 2]>>(geometry: G, points: &[[f64; 2]], grain: Grain) -> Cells {
+fn in_bulk<G: Coordinates<3, Point = [f64; 2]>>(
+    geometry: G,
+    points: &[[f64; 2]],
+    grain: Grain,
+) -> Cells {
     let (sites, vertices) = Sites::of(&geometry, points, grain).unwrap();
     assert_eq!(vertices.len(), points.len());
     for (&p, v) in points.iter().zip(vertices) {
@@ -105,7 +118,11 @@ fn points(random: &mut Random, round: u64) -> Vec<[f64; 2]> {
         // On a circle of lattice points.
         4 => Box::new(|r| {
             let [x, y] = [[3.0, 4.0], [0.0, 5.0], [4.0, 3.0], [5.0, 0.0]][r.below(4) as usize];
-            [x * [1.0, -1.0][r.below(2) as usize], y * [1.0, -1.0][r.below(2) as usize]].map(|x| x * 13.0)
+            [
+                x * [1.0, -1.0][r.below(2) as usize],
+                y * [1.0, -1.0][r.below(2) as usize],
+            ]
+            .map(|x| x * 13.0)
         }),
         // Neighboring floating-point numbers.
         5 => Box::new(|r| [0, 1].map(|_| f64::from_bits(1f64.to_bits() + r.below(8)))),
@@ -122,7 +139,9 @@ fn points(random: &mut Random, round: u64) -> Vec<[f64; 2]> {
             [x, x * x]
         }),
         // Centimeters far from the origin.
-        _ => Box::new(|r| [443_000.0, 5_212_000.0].map(|x| ((x + 20.0 * r.unit()) * 100.0).round() / 100.0)),
+        _ => Box::new(|r| {
+            [443_000.0, 5_212_000.0].map(|x| ((x + 20.0 * r.unit()) * 100.0).round() / 100.0)
+        }),
     };
     let mut points: Vec<_> = (0..count).map(|_| point(random)).collect();
     for _ in 0..random.below(4) {
@@ -171,11 +190,21 @@ fn bulk_is_one_by_one() {
         let expected = one_by_one(Plane::<Adaptive>::default(), &points);
         for threads in [1, 2] {
             random.shuffle(&mut points);
-            let found = on_threads(threads, || in_bulk(Plane::<Adaptive>::default(), &points, TINY));
+            let found = on_threads(threads, || {
+                in_bulk(Plane::<Adaptive>::default(), &points, TINY)
+            });
             assert_eq!(found, expected, "{points:?}");
         }
-        assert_eq!(in_bulk(Plane::<Adaptive>::default(), &points, Grain::default()), expected, "{points:?}");
-        assert_eq!(in_bulk(Closed::default(), &points, TINY), expected, "{points:?}");
+        assert_eq!(
+            in_bulk(Plane::<Adaptive>::default(), &points, Grain::default()),
+            expected,
+            "{points:?}"
+        );
+        assert_eq!(
+            in_bulk(Closed::default(), &points, TINY),
+            expected,
+            "{points:?}"
+        );
         in_bulk_fast(&points);
     }
 }
@@ -192,7 +221,10 @@ fn ends_with_wrong_answers() {
     let mut random = Random(12);
     for _ in 0..20_000 {
         let slope = random.unit();
-        let mut points: Vec<_> = (0..6).map(|_| random.unit()).map(|x| [x, 0.07 + slope * x]).collect();
+        let mut points: Vec<_> = (0..6)
+            .map(|_| random.unit())
+            .map(|x| [x, 0.07 + slope * x])
+            .collect();
         points.push([0, 1].map(|_| random.unit()));
         in_bulk_fast(&points);
     }
@@ -207,11 +239,24 @@ fn in_bulk_fast(points: &[[f64; 2]]) {
 /// Returns true if points are triangulated along an arc, as a whole.
 fn is_arc(points: &[[f64; 2]]) -> bool {
     let geometry = Plane::<Adaptive>::default();
-    let Sites { points, keys, curve, .. } = Sites::of(&geometry, points, TINY).unwrap().0;
-    let predicates = PlanePredicates::<_, 3, true>::new(&geometry, &points, &curve, Grain::default());
+    let Sites {
+        points,
+        keys,
+        curve,
+        ..
+    } = Sites::of(&geometry, points, TINY).unwrap().0;
+    let predicates =
+        PlanePredicates::<_, 3, true>::new(&geometry, &points, &curve, Grain::default());
     let mut faces = vec![Links::UNUSED; 2 * points.len()];
-    let mut range =
-        Range { predicates: &predicates, keys: &keys, first: 0, faces: &mut faces, offset: 0, grain: TINY, nesting: 0 };
+    let mut range = Range {
+        predicates: &predicates,
+        keys: &keys,
+        first: 0,
+        faces: &mut faces,
+        offset: 0,
+        grain: TINY,
+        nesting: 0,
+    };
     range.arc(0, points.len()).is_some()
 }
 
@@ -223,19 +268,33 @@ fn arcs_from_their_sharp_ends() {
         let count = 200 + random.below(200);
         // The curvature falls, or rises and falls, or all lattice points lie on one circle.
         let mut arc: Vec<[f64; 2]> = match round / 8 % 4 {
-            0 => (0..count).map(|_| random.unit()).map(|x| [x, x * x]).collect(),
-            1 => (0..count).map(|_| 1.57 * random.unit()).map(|t| [20.0 * t.sin(), 3.0 - 3.0 * t.cos()]).collect(),
-            2 => (0..count).map(|_| 9.0 * random.unit() + 0.1).map(|x| [x, 9.1 - 1.0 / x]).collect(),
+            0 => (0..count)
+                .map(|_| random.unit())
+                .map(|x| [x, x * x])
+                .collect(),
+            1 => (0..count)
+                .map(|_| 1.57 * random.unit())
+                .map(|t| [20.0 * t.sin(), 3.0 - 3.0 * t.cos()])
+                .collect(),
+            2 => (0..count)
+                .map(|_| 9.0 * random.unit() + 0.1)
+                .map(|x| [x, 9.1 - 1.0 / x])
+                .collect(),
             _ => {
                 const RADIUS: i64 = 5 * 13 * 17 * 29 * 37;
                 let height = |x: i64| (x, ((RADIUS * RADIUS - x * x) as f64).sqrt().round() as i64);
-                let quarter = (0..=RADIUS).map(height).filter(|(x, y)| x * x + y * y == RADIUS * RADIUS);
+                let quarter = (0..=RADIUS)
+                    .map(height)
+                    .filter(|(x, y)| x * x + y * y == RADIUS * RADIUS);
                 quarter.map(|(x, y)| [x as f64, y as f64]).collect()
             }
         };
         // On every side, in every direction.
         for p in &mut arc {
-            *p = [p[0] * [1.0, -1.0][round & 1], p[1] * [1.0, -1.0][round >> 1 & 1]];
+            *p = [
+                p[0] * [1.0, -1.0][round & 1],
+                p[1] * [1.0, -1.0][round >> 1 & 1],
+            ];
             if round & 4 == 4 {
                 p.swap(0, 1);
             }
@@ -248,8 +307,16 @@ fn arcs_from_their_sharp_ends() {
         for elsewhere in [0, 1, 20] {
             arc.extend((0..elsewhere).map(|_| [0, 1].map(|_| 2.0 * random.unit() - 1.0)));
             let expected = one_by_one(Plane::<Adaptive>::default(), &arc);
-            assert_eq!(in_bulk(Plane::<Adaptive>::default(), &arc, TINY), expected, "{arc:?}");
-            assert_eq!(in_bulk(Plane::<Adaptive>::default(), &arc, Grain::default()), expected, "{arc:?}");
+            assert_eq!(
+                in_bulk(Plane::<Adaptive>::default(), &arc, TINY),
+                expected,
+                "{arc:?}"
+            );
+            assert_eq!(
+                in_bulk(Plane::<Adaptive>::default(), &arc, Grain::default()),
+                expected,
+                "{arc:?}"
+            );
             in_bulk_fast(&arc);
         }
     }
@@ -264,12 +331,20 @@ fn every_finite_coordinate_will_do() {
         for scale in [1.0, 1e-300, 1e290] {
             let points: Vec<_> = points.iter().map(|p| p.map(|x| x * scale)).collect();
             let expected = one_by_one(Plane::<Wide>::default(), &points);
-            assert_eq!(in_bulk(Plane::<Wide>::default(), &points, TINY), expected, "{points:?}");
+            assert_eq!(
+                in_bulk(Plane::<Wide>::default(), &points, TINY),
+                expected,
+                "{points:?}"
+            );
         }
         // Some within the range of filters, some not.
         points.iter_mut().step_by(3).for_each(|p| p[0] *= 1e-200);
         let expected = one_by_one(Plane::<Wide>::default(), &points);
-        assert_eq!(in_bulk(Plane::<Wide>::default(), &points, TINY), expected, "{points:?}");
+        assert_eq!(
+            in_bulk(Plane::<Wide>::default(), &points, TINY),
+            expected,
+            "{points:?}"
+        );
     }
 }
 
@@ -285,7 +360,9 @@ fn the_numbers_do_not_depend_on_threads() {
                 let (points, tds) = build::<_, 3, (), ()>(&geometry, sites, TINY);
                 let cells = |v: usize| tds.as_ref().and_then(|tds| tds.cell_of(VertexId::new(v)));
                 let cells: Vec<_> = (0..points.len()).map(cells).collect();
-                let corners = |tds: &crate::tds::Tds<3>| tds.cells().map(|c| *tds.corners(c)).collect::<Vec<_>>();
+                let corners = |tds: &crate::tds::Tds<3>| {
+                    tds.cells().map(|c| *tds.corners(c)).collect::<Vec<_>>()
+                };
                 (vertices, cells, tds.as_ref().map(corners))
             })
         };
@@ -301,14 +378,24 @@ fn certain_answers_are_right() {
         // Nearly on a circle, nearly collinear.
         let [x, y] = [random.unit() * 1e3, random.unit() * 1e3];
         let tiny = 2f64.powi(-(random.below(60) as i32));
-        let angles = [0, 1, 2, 3].map(|_| random.unit() * if round % 2 == 1 { std::f64::consts::TAU } else { tiny });
+        let angles = [0, 1, 2, 3].map(|_| {
+            random.unit()
+                * if round % 2 == 1 {
+                    std::f64::consts::TAU
+                } else {
+                    tiny
+                }
+        });
         let radius = 10f64.powi(random.below(7) as i32 - 3);
         let mut p = angles.map(|t| [x + radius * t.cos(), y + radius * t.sin()]);
         p[3][0] += tiny * radius * (random.unit() - 0.5);
         let arrows = [1, 2, 3].map(|i| Arrow::between(p[0], p[i]));
         let circle = Circle::through(arrows[0], arrows[1]);
         for (estimate, sign) in [
-            (arrows[0].turn(arrows[1]), Exact::sign(&Orientation2([p[0], p[1], p[2]]))),
+            (
+                arrows[0].turn(arrows[1]),
+                Exact::sign(&Orientation2([p[0], p[1], p[2]])),
+            ),
             (circle.side(arrows[2]), Exact::sign(&InCircle(p))),
         ] {
             if estimate.is_positive() || estimate.is_negative() {
@@ -328,11 +415,16 @@ fn certain_answers_are_right() {
 #[test]
 fn canceled_work_ends_without_a_result() {
     use std::sync::atomic::{AtomicBool, Ordering};
-    let points: Vec<[f64; 2]> = (0..900).map(|i| [f64::from(i % 30), f64::from(i / 30)]).collect();
+    let points: Vec<[f64; 2]> = (0..900)
+        .map(|i| [f64::from(i % 30), f64::from(i / 30)])
+        .collect();
     let geometry = Plane::<Adaptive>::default();
     let built = |flag: &AtomicBool| {
         let stop = Stop::new(flag);
-        let grain = Grain { stop: Some(&stop), ..TINY };
+        let grain = Grain {
+            stop: Some(&stop),
+            ..TINY
+        };
         let (sites, _) = Sites::of(&geometry, &points, TINY).unwrap();
         let (points, tds) = build::<_, 3, (), ()>(&geometry, sites, grain);
         assert_eq!((points.len(), tds.is_none()), (900, grain.is_stopped()));

@@ -9,7 +9,9 @@ use crate::flaw::Level;
 
 use super::{Compact, CompactError, Law};
 
-impl<G: Geometry<N, Point = [f64; D]>, B: AsRef<[u8]>, const N: usize, const D: usize> Compact<G, B, N> {
+impl<G: Geometry<N, Point = [f64; D]>, B: AsRef<[u8]>, const N: usize, const D: usize>
+    Compact<G, B, N>
+{
     pub(super) fn cells(&self) -> impl Iterator<Item = CellId> + use<G, B, N, D> {
         (0..self.cell_count()).map(CellId::new)
     }
@@ -17,7 +19,9 @@ impl<G: Geometry<N, Point = [f64; D]>, B: AsRef<[u8]>, const N: usize, const D: 
     /// Checks that every number exists, that every point is admitted, and that no cell has a vertex
     /// twice.
     pub(super) fn check_numbers(&self) -> Result<(), CompactError> {
-        let infinite = self.cell_of(VertexId::INFINITE)?.map(|_| Ok(VertexId::INFINITE));
+        let infinite = self
+            .cell_of(VertexId::INFINITE)?
+            .map(|_| Ok(VertexId::INFINITE));
         for vertex in vertices_of(self).chain(infinite) {
             let vertex = vertex?;
             if vertex != VertexId::INFINITE {
@@ -30,7 +34,9 @@ impl<G: Geometry<N, Point = [f64; D]>, B: AsRef<[u8]>, const N: usize, const D: 
         }
         for cell in self.cells() {
             let corners = self.corners(cell)?;
-            self.ensure(cell, || (1..self.width()).all(|i| !corners[..i].contains(&corners[i])))?;
+            self.ensure(cell, || {
+                (1..self.width()).all(|i| !corners[..i].contains(&corners[i]))
+            })?;
         }
         Ok(())
     }
@@ -86,9 +92,11 @@ impl<G: Geometry<N, Point = [f64; D]>, B: AsRef<[u8]>, const N: usize, const D: 
             for i in 0..self.width() {
                 let beside = self.neighbor(cell, i)?;
                 let is_constrained = self.is_constrained(cell, i)?;
-                let is_other = self.is_constrained(beside, self.index_of_neighbor(beside, cell)?)?;
+                let is_other =
+                    self.is_constrained(beside, self.index_of_neighbor(beside, cell)?)?;
                 self.ensure(cell, || is_constrained == is_other)?;
-                let is_lawful = !is_delaunay || !is_finite || is_constrained || is_empty(self, cell, i)?;
+                let is_lawful =
+                    !is_delaunay || !is_finite || is_constrained || is_empty(self, cell, i)?;
                 self.ensure(cell, || is_lawful)?;
             }
         }

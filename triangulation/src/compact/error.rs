@@ -53,7 +53,11 @@ impl fmt::Display for CompactError {
         match self {
             CompactError::Foreign => write!(f, "not a compact triangulation: wrong magic bytes"),
             CompactError::Version(version) => {
-                write!(f, "a compact triangulation of version {version}; the known version is {}", VERSION)
+                write!(
+                    f,
+                    "a compact triangulation of version {version}; the known version is {}",
+                    VERSION
+                )
             }
             CompactError::Header(what) => write!(f, "the header is damaged: {what}"),
             CompactError::Length { expected, found } => {
@@ -61,15 +65,28 @@ impl fmt::Display for CompactError {
             }
             CompactError::Space { expected, found } => {
                 let name = |corners: usize| if corners == 4 { "space" } else { "the plane" };
-                write!(f, "a triangulation of {}; one of {} is expected", name(*found), name(*expected))
+                write!(
+                    f,
+                    "a triangulation of {}; one of {} is expected",
+                    name(*found),
+                    name(*expected)
+                )
             }
             CompactError::Coordinates { expected, found } => {
-                write!(f, "points of {found} coordinates; the geometry has {expected}")
+                write!(
+                    f,
+                    "points of {found} coordinates; the geometry has {expected}"
+                )
             }
-            CompactError::Vertex(vertex) => write!(f, "vertex {vertex:?} does not exist or is damaged"),
+            CompactError::Vertex(vertex) => {
+                write!(f, "vertex {vertex:?} does not exist or is damaged")
+            }
             CompactError::Cell(cell) => write!(f, "cell {cell:?} does not exist or is damaged"),
             CompactError::Unanswerable(law) => {
-                write!(f, "a query for Delaunay triangulations; the law here is {law:?}")
+                write!(
+                    f,
+                    "a query for Delaunay triangulations; the law here is {law:?}"
+                )
             }
         }
     }

@@ -54,8 +54,12 @@ impl Header {
         let mut bytes = MAGIC.to_vec();
         let numbers = [VERSION, self.width, self.doubles, self.law as u32];
         numbers.iter().for_each(|n| bytes.extend(n.to_le_bytes()));
-        [self.vertices, self.cells].iter().for_each(|n| bytes.extend(n.to_le_bytes()));
-        [self.infinite_cell, self.full - 3].iter().for_each(|n| bytes.extend(n.to_le_bytes()));
+        [self.vertices, self.cells]
+            .iter()
+            .for_each(|n| bytes.extend(n.to_le_bytes()));
+        [self.infinite_cell, self.full - 3]
+            .iter()
+            .for_each(|n| bytes.extend(n.to_le_bytes()));
         bytes
     }
 
@@ -67,7 +71,10 @@ impl Header {
             return Err(CompactError::Foreign);
         }
         if found < HEADER {
-            return Err(CompactError::Length { expected: HEADER as u64, found: found as u64 });
+            return Err(CompactError::Length {
+                expected: HEADER as u64,
+                found: found as u64,
+            });
         }
         let version = u32::from_le_bytes(taken(bytes));
         if version != VERSION {
@@ -95,13 +102,23 @@ impl Header {
             _ => false,
         };
         if !fits || cells >= CellId::LIMIT as u64 {
-            return Err(CompactError::Header("the dimension and the numbers of vertices and cells"));
+            return Err(CompactError::Header(
+                "the dimension and the numbers of vertices and cells",
+            ));
         }
         let is_cell = u64::from(infinite_cell) < cells || width == 0 && infinite_cell == NONE;
         if !is_cell {
             return Err(CompactError::Header("the cell of the infinite vertex"));
         }
-        Ok(Header { full, width, doubles, law, vertices, cells, infinite_cell })
+        Ok(Header {
+            full,
+            width,
+            doubles,
+            law,
+            vertices,
+            cells,
+            infinite_cell,
+        })
     }
 
     /// Bytes of a cell: its vertices and its neighbors.
@@ -112,12 +129,20 @@ impl Header {
 
     /// Returns the offsets of the arrays; `None` if they exceed the address space of this machine.
     pub(super) fn offsets(&self) -> Option<Offsets> {
-        let points = self.vertices.checked_mul(8)?.checked_mul(self.doubles.into())?;
+        let points = self
+            .vertices
+            .checked_mul(8)?
+            .checked_mul(self.doubles.into())?;
         let cells_of_vertices = points.checked_add(HEADER as u64)?;
         let cells = cells_of_vertices.checked_add(padded(self.vertices.checked_mul(4)?)?)?;
         let constraints = cells.checked_add(self.bytes_of_cell() as u64 * self.cells)?;
-        let end = constraints.checked_add(if self.law.has_constraints() { padded(self.cells)? } else { 0 })?;
-        let [cells_of_vertices, cells, constraints] = [cells_of_vertices, cells, constraints].map(usize::try_from);
+        let end = constraints.checked_add(if self.law.has_constraints() {
+            padded(self.cells)?
+        } else {
+            0
+        })?;
+        let [cells_of_vertices, cells, constraints] =
+            [cells_of_vertices, cells, constraints].map(usize::try_from);
         Some(Offsets {
             cells_of_vertices: cells_of_vertices.ok()?,
             cells: cells.ok()?,

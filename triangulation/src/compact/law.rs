@@ -15,7 +15,14 @@ pub enum Law {
 
 impl Law {
     pub(super) fn from_number(number: u32) -> Option<Self> {
-        [Law::None, Law::Delaunay, Law::Constrained, Law::ConstrainedDelaunay].into_iter().find(|&l| l as u32 == number)
+        [
+            Law::None,
+            Law::Delaunay,
+            Law::Constrained,
+            Law::ConstrainedDelaunay,
+        ]
+        .into_iter()
+        .find(|&l| l as u32 == number)
     }
 
     pub(super) fn has_constraints(self) -> bool {

@@ -72,7 +72,9 @@ pub struct Compact<G, B, const N: usize = 3> {
     offsets: Offsets,
 }
 
-impl<G: Geometry<N, Point = [f64; D]>, B: AsRef<[u8]>, const N: usize, const D: usize> Compact<G, B, N> {
+impl<G: Geometry<N, Point = [f64; D]>, B: AsRef<[u8]>, const N: usize, const D: usize>
+    Compact<G, B, N>
+{
     /// Opens a compact triangulation; checks its header and the number of bytes.
     ///
     /// # Errors
@@ -86,19 +88,37 @@ impl<G: Geometry<N, Point = [f64; D]>, B: AsRef<[u8]>, const N: usize, const D: 
         let all = bytes.as_ref();
         let header = Header::read(&all[..all.len().min(HEADER)])?;
         if header.full as usize != N {
-            return Err(CompactError::Space { expected: N, found: header.full as usize });
+            return Err(CompactError::Space {
+                expected: N,
+                found: header.full as usize,
+            });
         }
         if header.doubles as usize != D {
-            return Err(CompactError::Coordinates { expected: D, found: header.doubles as usize });
+            return Err(CompactError::Coordinates {
+                expected: D,
+                found: header.doubles as usize,
+            });
         }
-        let offsets = header.offsets().ok_or(CompactError::Header("more bytes than can be addressed"))?;
-        let length = |expected: u64| CompactError::Length { expected, found: all.len() as u64 };
+        let offsets = header
+            .offsets()
+            .ok_or(CompactError::Header("more bytes than can be addressed"))?;
+        let length = |expected: u64| CompactError::Length {
+            expected,
+            found: all.len() as u64,
+        };
         let mut rest = all.get(offsets.end..).ok_or(length(offsets.end as u64))?;
         while !rest.is_empty() {
             let start = (all.len() - rest.len()) as u64;
-            rest = CompactSection::split_first(rest).map_err(|needed| length(start.saturating_add(needed)))?.1;
+            rest = CompactSection::split_first(rest)
+                .map_err(|needed| length(start.saturating_add(needed)))?
+                .1;
         }
-        Ok(Compact { geometry, bytes, header, offsets })
+        Ok(Compact {
+            geometry,
+            bytes,
+            header,
+            offsets,
+        })
     }
 
     /// Returns the law that the file claims.
@@ -153,7 +173,9 @@ impl<G: Geometry<N, Point = [f64; D]>, B: AsRef<[u8]>, const N: usize, const D: 
     /// Returns the contents of the first section with a tag; `None` if there is none. They begin at
     /// a multiple of 8 bytes.
     pub fn section(&self, tag: [u8; 8]) -> Option<&[u8]> {
-        self.sections().find(|section| section.tag == tag).map(|section| section.contents)
+        self.sections()
+            .find(|section| section.tag == tag)
+            .map(|section| section.contents)
     }
 
     /// Returns where the contents of [`section`](Self::section) are in [`bytes`](Self::bytes), for
@@ -197,7 +219,9 @@ impl<G: Geometry<N, Point = [f64; D]>, B: AsRef<[u8]>, const N: usize, const D: 
     fn link(&self, cell: CellId, slot: usize) -> Result<u32, CompactError> {
         let at = self.offsets.cells + 8 * N * cell.index() + 4 * slot;
         let number = self.is_used(cell).then(|| self.number(at)).flatten();
-        number.map(u32::from_le_bytes).ok_or(CompactError::Cell(cell))
+        number
+            .map(u32::from_le_bytes)
+            .ok_or(CompactError::Cell(cell))
     }
 
     fn cell(&self, stored: u32) -> Option<CellId> {
@@ -205,7 +229,9 @@ impl<G: Geometry<N, Point = [f64; D]>, B: AsRef<[u8]>, const N: usize, const D: 
     }
 }
 
-impl<G: Geometry<N, Point = [f64; D]>, B: AsRef<[u8]>, const N: usize, const D: usize> Complex<N> for Compact<G, B, N> {
+impl<G: Geometry<N, Point = [f64; D]>, B: AsRef<[u8]>, const N: usize, const D: usize> Complex<N>
+    for Compact<G, B, N>
+{
     type Error = CompactError;
 
     #[inline]
@@ -234,7 +260,9 @@ impl<G: Geometry<N, Point = [f64; D]>, B: AsRef<[u8]>, const N: usize, const D: 
         for (slot, corner) in corners.iter_mut().enumerate().take(self.width()) {
             *corner = match self.link(cell, slot)? {
                 header::INFINITE => VertexId::INFINITE,
-                stored if u64::from(stored) < self.header.vertices => VertexId::new(stored as usize),
+                stored if u64::from(stored) < self.header.vertices => {
+                    VertexId::new(stored as usize)
+                }
                 _ => return Err(CompactError::Cell(cell)),
             };
         }
@@ -246,7 +274,8 @@ impl<G: Geometry<N, Point = [f64; D]>, B: AsRef<[u8]>, const N: usize, const D: 
         if i >= self.width() {
             return Err(CompactError::Cell(cell));
         }
-        self.cell(self.link(cell, N + i)?).ok_or(CompactError::Cell(cell))
+        self.cell(self.link(cell, N + i)?)
+            .ok_or(CompactError::Cell(cell))
     }
 
     #[inline]
@@ -264,7 +293,11 @@ impl<G: Geometry<N, Point = [f64; D]>, B: AsRef<[u8]>, const N: usize, const D: 
 
     #[inline]
     fn ensure(&self, at: CellId, holds: impl FnOnce() -> bool) -> Result<(), CompactError> {
-        if holds() { Ok(()) } else { Err(CompactError::Cell(at)) }
+        if holds() {
+            Ok(())
+        } else {
+            Err(CompactError::Cell(at))
+        }
     }
 }
 
@@ -298,7 +331,11 @@ impl<G: Geometry<N, Point = [f64; D]>, B: AsRef<[u8]>, const N: usize, const D: 
                 *x = self.number(at).map_or(f64::NAN, f64::from_le_bytes);
             }
         }
-        if self.geometry.admits(&point) { Ok(point) } else { Err(CompactError::Vertex(vertex)) }
+        if self.geometry.admits(&point) {
+            Ok(point)
+        } else {
+            Err(CompactError::Vertex(vertex))
+        }
     }
 
     #[inline]

@@ -8,7 +8,9 @@ use crate::tds::{CellId, Neighbors, VertexId};
 
 use super::{Compact, CompactError, Law};
 
-impl<G: Geometry<N, Point = [f64; D]>, B: AsRef<[u8]>, const N: usize, const D: usize> Compact<G, B, N> {
+impl<G: Geometry<N, Point = [f64; D]>, B: AsRef<[u8]>, const N: usize, const D: usize>
+    Compact<G, B, N>
+{
     /// Returns where a point lies; see
     /// [`Triangulation::locate`](crate::Triangulation::locate). A long walk
     /// continues from the nearest of `n^(1/3)` of the `n` vertices.
@@ -25,7 +27,11 @@ impl<G: Geometry<N, Point = [f64; D]>, B: AsRef<[u8]>, const N: usize, const D: 
     ///
     /// # Errors
     /// If a cell or vertex that is met is damaged, or if the law is not one of these two.
-    pub fn conflict_zone(&self, q: &[f64; D], near: Option<CellId>) -> Result<Option<ConflictZone>, CompactError> {
+    pub fn conflict_zone(
+        &self,
+        q: &[f64; D],
+        near: Option<CellId>,
+    ) -> Result<Option<ConflictZone>, CompactError> {
         match self.law() {
             Law::Delaunay | Law::ConstrainedDelaunay => {
                 let passes = |cell, i| Ok(!self.is_constrained(cell, i)?);
@@ -36,7 +42,8 @@ impl<G: Geometry<N, Point = [f64; D]>, B: AsRef<[u8]>, const N: usize, const D: 
     }
 }
 
-impl<G: Metric<N> + Geometry<N, Point = [f64; D]>, B: AsRef<[u8]>, const N: usize, const D: usize> Compact<G, B, N>
+impl<G: Metric<N> + Geometry<N, Point = [f64; D]>, B: AsRef<[u8]>, const N: usize, const D: usize>
+    Compact<G, B, N>
 where
     Self: Neighbors<N, Error = CompactError>,
 {
@@ -46,7 +53,11 @@ where
     /// # Errors
     /// If a cell or vertex that is met is damaged, or if the law is not that of a Delaunay
     /// triangulation.
-    pub fn nearest(&self, q: &[f64; D], near: Option<CellId>) -> Result<Option<VertexId>, CompactError> {
+    pub fn nearest(
+        &self,
+        q: &[f64; D],
+        near: Option<CellId>,
+    ) -> Result<Option<VertexId>, CompactError> {
         self.demand_delaunay()?;
         query::nearest(self, q, near)
     }
@@ -61,7 +72,10 @@ where
         &self,
         q: &[f64; D],
         near: Option<CellId>,
-    ) -> Result<impl Iterator<Item = Result<VertexId, CompactError>> + use<'_, G, B, N, D>, CompactError> {
+    ) -> Result<
+        impl Iterator<Item = Result<VertexId, CompactError>> + use<'_, G, B, N, D>,
+        CompactError,
+    > {
         self.demand_delaunay()?;
         query::nearest_first(self, q, near)
     }
@@ -75,7 +89,10 @@ where
         &self,
         center: &[f64; D],
         rim: &[f64; D],
-    ) -> Result<impl Iterator<Item = Result<VertexId, CompactError>> + use<'_, G, B, N, D>, CompactError> {
+    ) -> Result<
+        impl Iterator<Item = Result<VertexId, CompactError>> + use<'_, G, B, N, D>,
+        CompactError,
+    > {
         self.demand_delaunay()?;
         query::within(self, center, rim, None)
     }

@@ -61,8 +61,14 @@ impl<'a> CompactSection<'a> {
         let mut rest = bytes;
         let tag = taken(&mut rest);
         let length = u64::from_le_bytes(taken(&mut rest));
-        let needed = HEAD.checked_add(length).and_then(padded).unwrap_or(u64::MAX);
-        match usize::try_from(needed).ok().and_then(|needed| bytes.split_at_checked(needed)) {
+        let needed = HEAD
+            .checked_add(length)
+            .and_then(padded)
+            .unwrap_or(u64::MAX);
+        match usize::try_from(needed)
+            .ok()
+            .and_then(|needed| bytes.split_at_checked(needed))
+        {
             Some((section, rest)) => {
                 let contents = &section[HEAD as usize..][..length as usize];
                 Ok((CompactSection { tag, contents }, rest))

@@ -19,7 +19,8 @@ impl DenseNumbers {
             return DenseNumbers(None);
         }
         let mut numbers = vec![NONE; slots];
-        used.zip(0..).for_each(|(slot, number)| numbers[slot] = number);
+        used.zip(0..)
+            .for_each(|(slot, number)| numbers[slot] = number);
         DenseNumbers(Some(numbers))
     }
 
@@ -43,7 +44,11 @@ impl FileNumbers {
     }
 
     fn cell(&self, cell: CellId) -> u32 {
-        if cell == CellId::NONE { NONE } else { self.cells.at(cell.index()) }
+        if cell == CellId::NONE {
+            NONE
+        } else {
+            self.cells.at(cell.index())
+        }
     }
 }
 
@@ -65,7 +70,9 @@ fn write<G: Geometry<N, Point = [f64; D]>, V, C: Copy + Default, const N: usize,
         law,
         vertices: tds.vertex_count() as u64,
         cells: tds.cell_count() as u64,
-        infinite_cell: tds.cell_of(VertexId::INFINITE).map_or(NONE, |cell| numbers.cell(cell)),
+        infinite_cell: tds
+            .cell_of(VertexId::INFINITE)
+            .map_or(NONE, |cell| numbers.cell(cell)),
     };
     let bytes = header.to_bytes();
     debug_assert_eq!(bytes.len(), HEADER);
@@ -100,7 +107,9 @@ fn bits<C>(constraints: &ConstrainedEdges<C>) -> u8 {
     (0..3).map(|i| u8::from(constraints.has(i)) << i).sum()
 }
 
-impl<G: Geometry<N, Point = [f64; D]>, V, C: Copy + Default, const N: usize, const D: usize> Basic<G, N, V, C> {
+impl<G: Geometry<N, Point = [f64; D]>, V, C: Copy + Default, const N: usize, const D: usize>
+    Basic<G, N, V, C>
+{
     /// Writes the triangulation in the format of [`Compact`](super::Compact), without payloads.
     ///
     /// Vertices and cells keep their numbers, unless some have been removed: then the gaps close.
@@ -113,7 +122,9 @@ impl<G: Geometry<N, Point = [f64; D]>, V, C: Copy + Default, const N: usize, con
     }
 }
 
-impl<G: Geometry<N, Point = [f64; D]>, V, C: Copy + Default, const N: usize, const D: usize> Regular<G, N, V, C> {
+impl<G: Geometry<N, Point = [f64; D]>, V, C: Copy + Default, const N: usize, const D: usize>
+    Regular<G, N, V, C>
+{
     /// Writes the triangulation like [`Basic::write_compact`], without its law and without hidden
     /// points.
     ///
@@ -124,7 +135,9 @@ impl<G: Geometry<N, Point = [f64; D]>, V, C: Copy + Default, const N: usize, con
     }
 }
 
-impl<G: Geometry<N, Point = [f64; D]>, V, C: Copy + Default, const N: usize, const D: usize> Delaunay<G, N, V, C> {
+impl<G: Geometry<N, Point = [f64; D]>, V, C: Copy + Default, const N: usize, const D: usize>
+    Delaunay<G, N, V, C>
+{
     /// Writes the triangulation like [`Basic::write_compact`], with its law, which queries for
     /// nearest vertices need.
     ///
@@ -145,7 +158,9 @@ impl<G: Geometry<3, Point = [f64; D]>, V, C: Copy + Default, const D: usize> Con
     }
 }
 
-impl<G: Crossing<Point = [f64; D]>, V, C: Copy + Default, const D: usize> ConstrainedDelaunay<G, V, C> {
+impl<G: Crossing<Point = [f64; D]>, V, C: Copy + Default, const D: usize>
+    ConstrainedDelaunay<G, V, C>
+{
     /// Writes the triangulation like [`Basic::write_compact`], with its law and its constrained
     /// edges, but without its lines.
     ///
@@ -156,12 +171,19 @@ impl<G: Crossing<Point = [f64; D]>, V, C: Copy + Default, const D: usize> Constr
     }
 }
 
-impl<G: Geometry<N, Point = [f64; D]>, B: AsRef<[u8]>, const N: usize, const D: usize> Compact<G, B, N> {
+impl<G: Geometry<N, Point = [f64; D]>, B: AsRef<[u8]>, const N: usize, const D: usize>
+    Compact<G, B, N>
+{
     /// Writes the triangulation again, without its sections.
     ///
     /// # Errors
     /// Those of `out`.
     pub fn write_compact(&self, out: &mut impl Write) -> io::Result<()> {
-        out.write_all(self.bytes.as_ref().get(..self.offsets.end).unwrap_or_default())
+        out.write_all(
+            self.bytes
+                .as_ref()
+                .get(..self.offsets.end)
+                .unwrap_or_default(),
+        )
     }
 }

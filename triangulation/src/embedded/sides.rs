@@ -18,7 +18,15 @@ pub(crate) fn points_with<const N: usize, T: Embedded<N>>(
 ) -> Result<Vec<PointOf<T, N>>, T::Error> {
     let corners = t.complex().corners(cell)?;
     let vertices = corners[..t.complex().width()].iter().enumerate();
-    vertices.map(|(i, &v)| if i == replaced { Ok(*q) } else { Ok(*t.point(v)?.borrow()) }).collect()
+    vertices
+        .map(|(i, &v)| {
+            if i == replaced {
+                Ok(*q)
+            } else {
+                Ok(*t.point(v)?.borrow())
+            }
+        })
+        .collect()
 }
 
 /// Returns the orientation of a cell with `q` in place of one vertex; all others are finite.
@@ -41,7 +49,8 @@ pub(crate) fn side_of_facet<const N: usize, T: Embedded<N>>(
             simplex[i] = t.point(corners[i])?;
         }
     }
-    Ok(t.geometry().orientation(simplex.each_ref().map(Borrow::borrow)))
+    Ok(t.geometry()
+        .orientation(simplex.each_ref().map(Borrow::borrow)))
 }
 
 #[cold]
@@ -52,7 +61,8 @@ fn side_of_facet_in_flat<const N: usize, T: Embedded<N>>(
     q: &PointOf<T, N>,
 ) -> Result<Sign, T::Error> {
     let points = points_with(t, cell, replaced, q)?;
-    Ok(t.geometry().orientation_in_flat(&points.iter().collect::<Vec<_>>()))
+    Ok(t.geometry()
+        .orientation_in_flat(&points.iter().collect::<Vec<_>>()))
 }
 
 /// Returns true if `q` lies outside of the line or plane of all points, which a finite cell spans.
@@ -73,7 +83,10 @@ pub(crate) fn leaves_flat<const N: usize, T: Embedded<N>>(
 
 /// Returns the points of a finite cell of full dimension.
 #[inline(always)]
-pub(crate) fn simplex<const N: usize, T: Embedded<N>>(t: &T, cell: CellId) -> Result<[T::PointRef<'_>; N], T::Error> {
+pub(crate) fn simplex<const N: usize, T: Embedded<N>>(
+    t: &T,
+    cell: CellId,
+) -> Result<[T::PointRef<'_>; N], T::Error> {
     let corners = t.complex().corners(cell)?;
     let mut simplex = [t.point(corners[0])?; N];
     for i in 1..N {
@@ -95,7 +108,11 @@ pub(crate) fn in_conflict<const N: usize, T: Embedded<N>>(
         return in_conflict_in_flat(t, cell, q);
     }
     match t.complex().index_of(cell, VertexId::INFINITE)? {
-        None => Ok(in_sphere(t.geometry(), simplex(t, cell)?.each_ref().map(Borrow::borrow), q)),
+        None => Ok(in_sphere(
+            t.geometry(),
+            simplex(t, cell)?.each_ref().map(Borrow::borrow),
+            q,
+        )),
         Some(infinite) => beyond_hull(t, cell, infinite, q),
     }
 }
@@ -112,13 +129,19 @@ fn beyond_hull<const N: usize, T: Embedded<N>>(
         Sign::Zero => {
             let corners = t.complex().corners(cell)?;
             let mut facet = [T::point_ref(q); N];
-            let finite = corners[..t.complex().width()].iter().filter(|&&v| v != VertexId::INFINITE);
+            let finite = corners[..t.complex().width()]
+                .iter()
+                .filter(|&&v| v != VertexId::INFINITE);
             let mut length = 0;
             for &v in finite {
                 facet[length] = t.point(v)?;
                 length += 1;
             }
-            in_sphere_of_flat(t.geometry(), &facet.each_ref().map(Borrow::borrow)[..length], q)
+            in_sphere_of_flat(
+                t.geometry(),
+                &facet.each_ref().map(Borrow::borrow)[..length],
+                q,
+            )
         }
     })
 }
@@ -133,7 +156,11 @@ fn in_conflict_in_flat<const N: usize, T: Embedded<N>>(
     match complex.index_of(cell, VertexId::INFINITE)? {
         None => {
             let points = points_with(t, cell, usize::MAX, q)?;
-            Ok(in_sphere_of_flat(t.geometry(), &points.iter().collect::<Vec<_>>(), q))
+            Ok(in_sphere_of_flat(
+                t.geometry(),
+                &points.iter().collect::<Vec<_>>(),
+                q,
+            ))
         }
         Some(infinite) if complex.width() == 2 => {
             // The end of a line: the edge inwards shows which direction is out.

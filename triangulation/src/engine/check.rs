@@ -10,14 +10,22 @@ use crate::triangulation::Triangulation;
 
 /// Returns true if a finite cell is positively oriented, below full dimension in the line or plane
 /// of all points.
-pub(crate) fn is_positive<const N: usize, T: Embedded<N>>(t: &T, cell: CellId) -> Result<bool, T::Error> {
+pub(crate) fn is_positive<const N: usize, T: Embedded<N>>(
+    t: &T,
+    cell: CellId,
+) -> Result<bool, T::Error> {
     if t.complex().width() < N {
         let first = t.point(t.complex().vertex(cell, 0)?)?;
         let points = points_with(t, cell, 0, first.borrow())?;
-        return Ok(t.geometry().orientation_in_flat(&points.iter().collect::<Vec<_>>()) == Sign::Positive);
+        return Ok(t
+            .geometry()
+            .orientation_in_flat(&points.iter().collect::<Vec<_>>())
+            == Sign::Positive);
     }
     let simplex = simplex(t, cell)?;
-    Ok(t.geometry().orientation(simplex.each_ref().map(Borrow::borrow)) == Sign::Positive)
+    Ok(t.geometry()
+        .orientation(simplex.each_ref().map(Borrow::borrow))
+        == Sign::Positive)
 }
 
 /// Returns true if the hull is convex between two infinite cells: one whose vertex at `infinite` is
@@ -29,19 +37,29 @@ pub(crate) fn is_convex<const N: usize, T: Embedded<N>>(
     i: usize,
 ) -> Result<bool, T::Error> {
     let far = vertex_beyond(t, cell, i)?;
-    Ok(far == VertexId::INFINITE || side_of_facet(t, cell, infinite, t.point(far)?.borrow())? != Sign::Positive)
+    Ok(far == VertexId::INFINITE
+        || side_of_facet(t, cell, infinite, t.point(far)?.borrow())? != Sign::Positive)
 }
 
 /// Returns true if the sphere of a finite cell does not contain the vertex beyond its facet `i`,
 /// ties decided.
-pub(crate) fn is_empty<const N: usize, T: Embedded<N>>(t: &T, cell: CellId, i: usize) -> Result<bool, T::Error> {
+pub(crate) fn is_empty<const N: usize, T: Embedded<N>>(
+    t: &T,
+    cell: CellId,
+    i: usize,
+) -> Result<bool, T::Error> {
     let far = vertex_beyond(t, cell, i)?;
     Ok(far == VertexId::INFINITE || !in_conflict(t, cell, t.point(far)?.borrow())?)
 }
 
-fn vertex_beyond<const N: usize, T: Embedded<N>>(t: &T, cell: CellId, i: usize) -> Result<VertexId, T::Error> {
+fn vertex_beyond<const N: usize, T: Embedded<N>>(
+    t: &T,
+    cell: CellId,
+    i: usize,
+) -> Result<VertexId, T::Error> {
     let neighbor = t.complex().neighbor(cell, i)?;
-    t.complex().vertex(neighbor, t.complex().index_of_neighbor(neighbor, cell)?)
+    t.complex()
+        .vertex(neighbor, t.complex().index_of_neighbor(neighbor, cell)?)
 }
 
 impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V, C> {
@@ -49,15 +67,22 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
     /// level that has any. The law is that of a Delaunay triangulation, tested at the facets that
     /// `passes` accepts.
     pub(crate) fn flaws(&self, level: Level, passes: impl Fn(CellId, usize) -> bool) -> Vec<Flaw> {
-        let structure = |flaws: Vec<tds::TdsError>| flaws.into_iter().map(Flaw::Structure).collect::<Vec<_>>();
+        let structure =
+            |flaws: Vec<tds::TdsError>| flaws.into_iter().map(Flaw::Structure).collect::<Vec<_>>();
         let checks: [(Level, &dyn Fn() -> Vec<Flaw>); 4] = [
             (Level::Links, &|| structure(self.tds.check_links())),
             (Level::Manifold, &|| structure(self.tds.check_sphere())),
             (Level::Orientation, &|| self.check_orientation()),
             (Level::Law, &|| self.check_empty_spheres(&passes)),
         ];
-        let found = checks.iter().filter(|(l, _)| *l <= level).map(|(_, check)| check());
-        found.into_iter().find(|flaws| !flaws.is_empty()).unwrap_or_default()
+        let found = checks
+            .iter()
+            .filter(|(l, _)| *l <= level)
+            .map(|(_, check)| check());
+        found
+            .into_iter()
+            .find(|flaws| !flaws.is_empty())
+            .unwrap_or_default()
     }
 
     /// Returns the flaws of the tiling of the convex hull, with exact predicates. Checks

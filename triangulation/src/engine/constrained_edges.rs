@@ -84,24 +84,34 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, ConstrainedEdg
 
     /// The constrained edges, each once, as pairs of vertices with the smaller first.
     pub fn constrained_edges(&self) -> impl Iterator<Item = [VertexId; 2]> + '_ {
-        self.tds.cells().filter(|_| self.dimension() == 2).flat_map(move |cell| {
-            (0..3).filter(move |&i| self.is_constrained(cell, i)).filter_map(move |i| {
-                let [a, b] = self.tds.edge_ends(cell, i);
-                (a < b).then_some([a, b]) // the cell on the other side has it as `b a`
+        self.tds
+            .cells()
+            .filter(|_| self.dimension() == 2)
+            .flat_map(move |cell| {
+                (0..3)
+                    .filter(move |&i| self.is_constrained(cell, i))
+                    .filter_map(move |i| {
+                        let [a, b] = self.tds.edge_ends(cell, i);
+                        (a < b).then_some([a, b]) // the cell on the other side has it as `b a`
+                    })
             })
-        })
     }
 
     /// The other ends of the constrained edges at a vertex, counter-clockwise; none below dimension
     /// 2. Linear in its degree.
     pub fn constrained_around(&self, vertex: VertexId) -> impl Iterator<Item = VertexId> + '_ {
-        let constrained = self.tds.edges_around(vertex).filter(|&(cell, i)| self.is_constrained(cell, i));
+        let constrained = self
+            .tds
+            .edges_around(vertex)
+            .filter(|&(cell, i)| self.is_constrained(cell, i));
         constrained.map(|(cell, i)| self.tds.vertex(cell, cw(i)))
     }
 
     /// Returns true if the edge between two vertices exists and is constrained.
     pub(crate) fn has_constraint(&self, a: VertexId, b: VertexId) -> bool {
-        self.tds.edge(a, b).is_some_and(|(cell, i)| self.is_constrained(cell, i))
+        self.tds
+            .edge(a, b)
+            .is_some_and(|(cell, i)| self.is_constrained(cell, i))
     }
 
     /// Constrains the edge between two vertices; returns false if there is no such edge.
@@ -120,12 +130,19 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, ConstrainedEdg
     /// Releases the constrained edge between two vertices and returns the cells on both sides;
     /// `None` if there is no such constraint.
     pub(crate) fn release_edge(&mut self, a: VertexId, b: VertexId) -> Option<[CellId; 2]> {
-        let constraint = self.tds.edge(a, b).filter(|&(cell, i)| self.is_constrained(cell, i))?;
+        let constraint = self
+            .tds
+            .edge(a, b)
+            .filter(|&(cell, i)| self.is_constrained(cell, i))?;
         Some(self.set_constrained(constraint, false))
     }
 
     /// Marks an edge as constrained or not, in the cells on both sides; returns these cells.
-    pub(crate) fn set_constrained(&mut self, (cell, i): (CellId, usize), is_constrained: bool) -> [CellId; 2] {
+    pub(crate) fn set_constrained(
+        &mut self,
+        (cell, i): (CellId, usize),
+        is_constrained: bool,
+    ) -> [CellId; 2] {
         let neighbor = self.tds.neighbor(cell, i);
         let j = self.tds.index_of_neighbor(neighbor, cell);
         for (cell, i) in [(cell, i), (neighbor, j)] {
@@ -155,16 +172,26 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, ConstrainedEdg
     pub(crate) fn is_within(&self, [a, b, c]: [VertexId; 3], p: VertexId) -> bool {
         let [a, b, c, p] = [a, b, c, p].map(|v| self.point(v));
         let sides = [[a, b, p], [b, c, p], [c, a, p]];
-        sides.into_iter().all(|side| self.geometry.orientation(side) != Sign::Negative)
+        sides
+            .into_iter()
+            .all(|side| self.geometry.orientation(side) != Sign::Negative)
     }
 
     /// Returns a flaw for each edge that is constrained on one side only.
     pub(crate) fn one_sided_constraints(&self) -> Vec<Flaw> {
-        let edges = self.tds.cells().filter(|_| self.dimension() == 2).flat_map(|cell| (0..3).map(move |i| (cell, i)));
+        let edges = self
+            .tds
+            .cells()
+            .filter(|_| self.dimension() == 2)
+            .flat_map(|cell| (0..3).map(move |i| (cell, i)));
         let is_one_sided = |&(cell, i): &(CellId, usize)| {
             let neighbor = self.tds.neighbor(cell, i);
-            self.is_constrained(cell, i) != self.is_constrained(neighbor, self.tds.index_of_neighbor(neighbor, cell))
+            self.is_constrained(cell, i)
+                != self.is_constrained(neighbor, self.tds.index_of_neighbor(neighbor, cell))
         };
-        edges.filter(is_one_sided).map(|(cell, i)| Flaw::OneSided(cell, i)).collect()
+        edges
+            .filter(is_one_sided)
+            .map(|(cell, i)| Flaw::OneSided(cell, i))
+            .collect()
     }
 }

@@ -54,9 +54,14 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, ConstrainedEdg
     /// and its second half. Returns `None`, and adds nothing, if predicates contradict each other.
     ///
     /// Expected time linear in the length of the chain.
-    pub(crate) fn triangulate_long(&self, side: &CorridorSide, apexes: &mut Vec<u32>) -> Option<()> {
+    pub(crate) fn triangulate_long(
+        &self,
+        side: &CorridorSide,
+        apexes: &mut Vec<u32>,
+    ) -> Option<()> {
         let count = side.chain.len();
-        let (gone, neighbors) = random_removal_order(count, |u, [p, n]| self.may_be_removed(side, u, p, n))?;
+        let (gone, neighbors) =
+            random_removal_order(count, |u, [p, n]| self.may_be_removed(side, u, p, n))?;
         let mut tree = Tree {
             triangulation: self,
             side,
@@ -93,14 +98,19 @@ fn random_removal_order(
     count: usize,
     may_be_removed: impl Fn(u32, [u32; 2]) -> bool,
 ) -> Option<(Vec<u32>, Vec<[u32; 2]>)> {
-    let mut neighbors: Vec<[u32; 2]> = (0..count as u32).map(|u| [u.wrapping_sub(1), u + 1]).collect();
+    let mut neighbors: Vec<[u32; 2]> = (0..count as u32)
+        .map(|u| [u.wrapping_sub(1), u + 1])
+        .collect();
     let mut left: Vec<u32> = (1..count as u32 - 1).collect();
     let mut gone = Vec::with_capacity(left.len());
     let mut dice = Dice::default();
     while !left.is_empty() {
-        let is_good = |&at: &usize| left.len() == 1 || may_be_removed(left[at], neighbors[left[at] as usize]);
+        let is_good =
+            |&at: &usize| left.len() == 1 || may_be_removed(left[at], neighbors[left[at] as usize]);
         let mut tries = (0..16).map(|_| dice.below(left.len()));
-        let at = tries.find(is_good).or_else(|| (0..left.len()).find(is_good))?;
+        let at = tries
+            .find(is_good)
+            .or_else(|| (0..left.len()).find(is_good))?;
         let u = left.swap_remove(at);
         let [p, n] = neighbors[u as usize];
         neighbors[p as usize][1] = n;
@@ -116,7 +126,8 @@ impl<G: Geometry<3>, V, C: Copy + Default> Tree<'_, G, V, C> {
     }
 
     fn turn(&self, [a, b, c]: [u32; 3]) -> Sign {
-        self.triangulation.turn(self.vertex(a), self.vertex(b), self.vertex(c))
+        self.triangulation
+            .turn(self.vertex(a), self.vertex(b), self.vertex(c))
     }
 
     fn is_end(&self, u: u32) -> bool {
@@ -189,8 +200,14 @@ impl<G: Geometry<3>, V, C: Copy + Default> Tree<'_, G, V, C> {
         self.wrap(&left)?;
         self.wrap(&right)?;
         self.children[u as usize] = [NONE; 2];
-        path.iter().for_each(|&node| self.children[node as usize] = [NONE; 2]);
-        let renewed = path.iter().chain(&hanging).chain([&u]).copied().filter(|&node| node != NONE);
+        path.iter()
+            .for_each(|&node| self.children[node as usize] = [NONE; 2]);
+        let renewed = path
+            .iter()
+            .chain(&hanging)
+            .chain([&u])
+            .copied()
+            .filter(|&node| node != NONE);
         for node in renewed {
             self.link(node);
             self.to_legalize.push(node);
@@ -207,7 +224,10 @@ impl<G: Geometry<3>, V, C: Copy + Default> Tree<'_, G, V, C> {
             if last - first < 2 {
                 continue;
             }
-            let apex = first + self.triangulation.apex(&chain[first..=last], &Triangulation::is_in_circle)?;
+            let apex = first
+                + self
+                    .triangulation
+                    .apex(&chain[first..=last], &Triangulation::is_in_circle)?;
             let mut triangle = [first, apex, last].map(|k| polygon[k]);
             triangle.sort_unstable();
             self.bounds[triangle[1] as usize] = [triangle[0], triangle[2]];
@@ -219,12 +239,17 @@ impl<G: Geometry<3>, V, C: Copy + Default> Tree<'_, G, V, C> {
     /// Flips edges until no vertex lies in the circle of its neighbor's triangle (Lawson 1977).
     fn legalize(&mut self) {
         while let Some(u) = self.to_legalize.pop() {
-            let Some((parent, child)) = self.parent(u) else { continue };
+            let Some((parent, child)) = self.parent(u) else {
+                continue;
+            };
             let [i, k] = self.bounds[u as usize];
             let outer = self.bounds[parent as usize];
             let triangle = [i, k, u].map(|corner| self.vertex(corner));
             let opposite = outer[1 - child];
-            if !self.triangulation.is_in_circle(triangle, self.vertex(opposite)) {
+            if !self
+                .triangulation
+                .is_in_circle(triangle, self.vertex(opposite))
+            {
                 continue;
             }
             let above = self.parent(parent);
@@ -236,7 +261,9 @@ impl<G: Geometry<3>, V, C: Copy + Default> Tree<'_, G, V, C> {
             if let Some((above, child)) = above {
                 self.children[above as usize][child] = u;
             }
-            let around = [u, self.children[u as usize][child]].into_iter().chain(self.children[parent as usize]);
+            let around = [u, self.children[u as usize][child]]
+                .into_iter()
+                .chain(self.children[parent as usize]);
             self.to_legalize.extend(around.filter(|&node| node != NONE));
         }
     }
@@ -269,8 +296,13 @@ mod tests {
     type Points = Vec<[f64; 2]>;
     type Segments = Vec<[u32; 2]>;
 
-    fn build<K: Kernel>(points: &[[f64; 2]], segments: &[[u32; 2]]) -> ConstrainedDelaunay<Plane<K>> {
-        ConstrainedDelaunay::from_lines(Plane::default(), points, segments, OnCrossing::Split).unwrap().0
+    fn build<K: Kernel>(
+        points: &[[f64; 2]],
+        segments: &[[u32; 2]],
+    ) -> ConstrainedDelaunay<Plane<K>> {
+        ConstrainedDelaunay::from_lines(Plane::default(), points, segments, OnCrossing::Split)
+            .unwrap()
+            .0
     }
 
     /// Compares both methods on the sides of the corridors between some vertices; returns the
@@ -285,7 +317,10 @@ mod tests {
                 continue;
             }
             buffers.right.reverse();
-            for side in [&buffers.left, &buffers.right].into_iter().filter(|side| side.chain.len() > 3) {
+            for side in [&buffers.left, &buffers.right]
+                .into_iter()
+                .filter(|side| side.chain.len() > 3)
+            {
                 let (mut naive, mut random) = (Vec::new(), Vec::new());
                 t.inner.wrap(side, Triangulation::is_in_circle, &mut naive);
                 assert_eq!(t.inner.triangulate_long(side, &mut random), Some(()));
@@ -307,8 +342,13 @@ mod tests {
             let points: Points = (0..10 * (1 + round)).map(|_| position()).collect();
             let count = (round % 4) as u32 * 10;
             // Short segments, which make spikes.
-            let segments: Segments = (0..count.min(points.len() as u32 / 2)).map(|i| [2 * i, 2 * i + 1]).collect();
-            let few: Segments = segments.into_iter().filter(|_| dice.below(3) == 0).collect();
+            let segments: Segments = (0..count.min(points.len() as u32 / 2))
+                .map(|i| [2 * i, 2 * i + 1])
+                .collect();
+            let few: Segments = segments
+                .into_iter()
+                .filter(|_| dice.below(3) == 0)
+                .collect();
             compared += compare(&build(&points, &few), &mut dice, 60);
         }
         let comb = |i: u32| {
@@ -342,7 +382,12 @@ mod tests {
     #[test]
     fn bundles_take_time_near_linear() {
         let counts = [500, 1000].map(|count: u32| {
-            let ends = |i: u32| [[0.1 * f64::from(i), 0.0], [0.1 * f64::from(i) + 1000.0, 1000.0]];
+            let ends = |i: u32| {
+                [
+                    [0.1 * f64::from(i), 0.0],
+                    [0.1 * f64::from(i) + 1000.0, 1000.0],
+                ]
+            };
             let points: Points = (0..count).flat_map(ends).collect();
             let segments: Segments = (0..count).map(|i| [2 * i, 2 * i + 1]).collect();
             ASKED.store(0, Relaxed);

@@ -42,7 +42,12 @@ impl<C: Copy> Edges<ConstrainedEdges<C>> for WithConstraints {
     }
 
     #[inline(always)]
-    fn with_constraint(self, data: ConstrainedEdges<C>, i: usize, is_constrained: bool) -> ConstrainedEdges<C> {
+    fn with_constraint(
+        self,
+        data: ConstrainedEdges<C>,
+        i: usize,
+        is_constrained: bool,
+    ) -> ConstrainedEdges<C> {
         data.with(i, is_constrained)
     }
 }
@@ -65,10 +70,14 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
             }
             let flippable = (0..3).find(|&i| {
                 let neighbor = self.tds.neighbor(cell, i);
-                if edges.is_constrained(self.tds.cell_data(cell), i) || self.tds.is_infinite(neighbor) {
+                if edges.is_constrained(self.tds.cell_data(cell), i)
+                    || self.tds.is_infinite(neighbor)
+                {
                     return false;
                 }
-                let far = self.tds.vertex(neighbor, self.tds.index_of_neighbor(neighbor, cell));
+                let far = self
+                    .tds
+                    .vertex(neighbor, self.tds.index_of_neighbor(neighbor, cell));
                 in_sphere(&self.geometry, self.simplex(cell), self.point(far))
             });
             if let Some(i) = flippable {
@@ -92,7 +101,9 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
         }
         let [a, b, c] = [i, ccw(i), cw(i)].map(|k| self.point(tds.vertex(cell, k)));
         let d = self.point(tds.vertex(neighbor, tds.index_of_neighbor(neighbor, cell)));
-        [[a, b, d], [a, d, c]].into_iter().all(|turn| self.geometry.orientation(turn) == Sign::Positive)
+        [[a, b, d], [a, d, c]]
+            .into_iter()
+            .all(|turn| self.geometry.orientation(turn) == Sign::Positive)
     }
 
     /// Flips the edge opposite vertex `i` of a cell: exchanges the diagonal of the quadrilateral
@@ -102,7 +113,11 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
         let neighbor = tds.neighbor(cell, i);
         let j = tds.index_of_neighbor(neighbor, cell);
         // cell = (p, q, r), neighbor = (s, r, q), the edge q r becomes p s.
-        let (p, q, r) = (tds.vertex(cell, i), tds.vertex(cell, ccw(i)), tds.vertex(cell, cw(i)));
+        let (p, q, r) = (
+            tds.vertex(cell, i),
+            tds.vertex(cell, ccw(i)),
+            tds.vertex(cell, cw(i)),
+        );
         let s = tds.vertex(neighbor, j);
         let side = |tds: &Tds<3, V, C>, of: CellId, k: usize| {
             let outside = tds.neighbor(of, k);

@@ -68,11 +68,17 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
         data: impl Fn(&C, usize) -> C,
     ) -> Inserted<V> {
         if let Location::Vertex(vertex) = location {
-            return Inserted { vertex, unused: Some(vertex_data) };
+            return Inserted {
+                vertex,
+                unused: Some(vertex_data),
+            };
         }
         let vertex = self.add_vertex(p, vertex_data);
         self.connect(vertex, location, takes, data);
-        Inserted { vertex, unused: None }
+        Inserted {
+            vertex,
+            unused: None,
+        }
     }
 
     /// Inserts the vertex that was removed last again, with another point at its location. Returns
@@ -106,7 +112,10 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
     /// Returns a finite neighbor of a vertex, which still exists after the vertex has been removed.
     pub(crate) fn finite_neighbor(&self, vertex: VertexId) -> Option<VertexId> {
         let corners = self.tds.cell_vertices(self.tds.cell_of(vertex)?);
-        corners.iter().copied().find(|&v| v != vertex && v != VertexId::INFINITE)
+        corners
+            .iter()
+            .copied()
+            .find(|&v| v != vertex && v != VertexId::INFINITE)
     }
 
     /// Reserves memory for that many more vertices, and for their cells.
@@ -181,7 +190,12 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
             let positive = if self.is_full() {
                 self.geometry.orientation(self.simplex(cell)) == Sign::Positive
             } else {
-                let simplex: Vec<_> = self.tds.cell_vertices(cell).iter().map(|&v| self.point(v)).collect();
+                let simplex: Vec<_> = self
+                    .tds
+                    .cell_vertices(cell)
+                    .iter()
+                    .map(|&v| self.point(v))
+                    .collect();
                 self.geometry.orientation_in_flat(&simplex) == Sign::Positive
             };
             if !positive {

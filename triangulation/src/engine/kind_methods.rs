@@ -16,7 +16,9 @@ macro_rules! construction_methods {
 
         /// Like [`new`](Self::new), but with room for that many vertices.
         pub fn with_capacity(geometry: G, vertices: usize) -> Self {
-            Self::over($crate::triangulation::Triangulation::with_capacity(geometry, vertices))
+            Self::over($crate::triangulation::Triangulation::with_capacity(
+                geometry, vertices,
+            ))
         }
     };
 }
@@ -35,7 +37,10 @@ macro_rules! from_points_with_method {
             data: impl FnMut(usize) -> V,
         ) -> Result<($with_data, Vec<$crate::tds::VertexId>), $crate::error::InputError> {
             let (triangulation, vertices) = Self::from_points(geometry, points)?;
-            Ok((triangulation.with_inner(|inner| inner.with_data_of_points(&vertices, data)), vertices))
+            Ok((
+                triangulation.with_inner(|inner| inner.with_data_of_points(&vertices, data)),
+                vertices,
+            ))
         }
     };
 }
@@ -148,7 +153,10 @@ macro_rules! insert_method {
         ///
         /// # Errors
         /// See [`insert_with`](Self::insert_with).
-        pub fn insert(&mut self, p: G::Point) -> Result<$crate::tds::VertexId, $crate::error::PointError> {
+        pub fn insert(
+            &mut self,
+            p: G::Point,
+        ) -> Result<$crate::tds::VertexId, $crate::error::PointError> {
             Ok(self.insert_with(p, ())?.vertex)
         }
     };
@@ -172,5 +180,6 @@ macro_rules! remove_by_method {
 }
 
 pub(crate) use {
-    construction_methods, from_points_with_method, insert_method, insertion_methods, payload_methods, remove_by_method,
+    construction_methods, from_points_with_method, insert_method, insertion_methods,
+    payload_methods, remove_by_method,
 };

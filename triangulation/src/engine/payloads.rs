@@ -6,14 +6,32 @@ use crate::triangulation::Triangulation;
 
 impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V, C> {
     /// Returns the triangulation with new payloads of all vertices, in order of their numbers.
-    pub(crate) fn with_vertex_data<W>(self, data: impl FnMut(VertexId) -> W) -> Triangulation<G, N, W, C> {
-        let data = (0..self.tds.vertex_slots()).map(VertexId::new).map(data).collect();
+    pub(crate) fn with_vertex_data<W>(
+        self,
+        data: impl FnMut(VertexId) -> W,
+    ) -> Triangulation<G, N, W, C> {
+        let data = (0..self.tds.vertex_slots())
+            .map(VertexId::new)
+            .map(data)
+            .collect();
         self.with_data_of_all(data)
     }
 
     fn with_data_of_all<W>(self, data: Vec<W>) -> Triangulation<G, N, W, C> {
-        let Triangulation { geometry, tds, points, zone, last } = self;
-        Triangulation { geometry, tds: tds.with_vertex_data(data), points, zone, last }
+        let Triangulation {
+            geometry,
+            tds,
+            points,
+            zone,
+            last,
+        } = self;
+        Triangulation {
+            geometry,
+            tds: tds.with_vertex_data(data),
+            points,
+            zone,
+            last,
+        }
     }
 
     /// Returns the triangulation with payloads of points, given the vertex of each point. `data` is
@@ -52,14 +70,30 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
         self,
         data: impl FnMut(CellId, &C) -> D,
     ) -> Triangulation<G, N, V, D> {
-        let Triangulation { geometry, tds, points, zone, last } = self;
-        Triangulation { geometry, tds: tds.map_cell_data(data), points, zone, last }
+        let Triangulation {
+            geometry,
+            tds,
+            points,
+            zone,
+            last,
+        } = self;
+        Triangulation {
+            geometry,
+            tds: tds.map_cell_data(data),
+            points,
+            zone,
+            last,
+        }
     }
 }
 
 /// Returns the payload of each vertex that has a point, by number. `data` is called with the
 /// position of the vertex's first point, in increasing order.
-fn data_of_points<V>(slots: usize, vertices: &[VertexId], mut data: impl FnMut(usize) -> V) -> Vec<Option<V>> {
+fn data_of_points<V>(
+    slots: usize,
+    vertices: &[VertexId],
+    mut data: impl FnMut(usize) -> V,
+) -> Vec<Option<V>> {
     let mut payloads: Vec<Option<V>> = Vec::new();
     payloads.resize_with(slots, || None);
     for (position, vertex) in vertices.iter().enumerate() {

@@ -100,7 +100,12 @@ impl CorridorSide {
     fn spikes(&self) -> Vec<[usize; 2]> {
         let mut seen: FxHashMap<[VertexId; 2], usize> = FxHashMap::default();
         let mut spikes = Vec::new();
-        for (k, ends) in self.chain.windows(2).enumerate().filter(|&(k, _)| self.edges[k].is_spike) {
+        for (k, ends) in self
+            .chain
+            .windows(2)
+            .enumerate()
+            .filter(|&(k, _)| self.edges[k].is_spike)
+        {
             match seen.get(&[ends[1], ends[0]]) {
                 Some(&other) => spikes.push([other, k]),
                 None => _ = seen.insert([ends[0], ends[1]], k),
@@ -129,7 +134,11 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, ConstrainedEdg
     /// Returns true if a vertex is in the circle of a counter-clockwise triangle.
     #[inline(always)]
     pub(crate) fn is_in_circle(&self, triangle: [VertexId; 3], p: VertexId) -> bool {
-        in_sphere(&self.geometry, triangle.map(|v| self.point(v)), self.point(p))
+        in_sphere(
+            &self.geometry,
+            triangle.map(|v| self.point(v)),
+            self.point(p),
+        )
     }
 
     #[inline]
@@ -139,7 +148,8 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, ConstrainedEdg
 
     /// Returns true if `p` lies ahead of `a` in the direction of `b`; all three are collinear.
     fn is_ahead(&self, a: VertexId, b: VertexId, p: VertexId) -> bool {
-        let compare = |p: VertexId, q: VertexId| self.geometry.compare(self.point(p), self.point(q));
+        let compare =
+            |p: VertexId, q: VertexId| self.geometry.compare(self.point(p), self.point(q));
         compare(a, p) == compare(a, b)
     }
 
@@ -157,13 +167,23 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, ConstrainedEdg
         &self,
         a: VertexId,
         b: VertexId,
-        TraceBuffers { corridor, left, right, .. }: &mut TraceBuffers,
+        TraceBuffers {
+            corridor,
+            left,
+            right,
+            ..
+        }: &mut TraceBuffers,
     ) -> TraceEnd {
         let tds = &self.tds;
         let edge = |cell: CellId, i: usize| {
             let outside = tds.neighbor(cell, i);
             let j = tds.index_of_neighbor(outside, cell);
-            BorderEdge { cell: outside, i: j, is_constrained: tds.cell_data(cell).has(i), is_spike: false }
+            BorderEdge {
+                cell: outside,
+                i: j,
+                is_constrained: tds.cell_data(cell).has(i),
+                is_spike: false,
+            }
         };
         // The triangle at `a` through which the segment leaves, or a neighbor on the segment.
         let mut leaves = None;
@@ -174,7 +194,9 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, ConstrainedEdg
             }
             match self.turn(a, u, b) {
                 Sign::Zero if self.is_ahead(a, b, u) => return TraceEnd::Vertex(u),
-                Sign::Positive if w != VertexId::INFINITE && self.turn(a, w, b) == Sign::Negative => {
+                Sign::Positive
+                    if w != VertexId::INFINITE && self.turn(a, w, b) == Sign::Negative =>
+                {
                     right.push(u, w, edge(cell, cw(i)));
                     left.push(w, u, edge(cell, ccw(i)));
                     leaves = Some((cell, i));
@@ -243,7 +265,14 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, ConstrainedEdg
     /// base.
     fn retriangulate(
         &mut self,
-        TraceBuffers { corridor, left, right, parts, apexes, .. }: &mut TraceBuffers,
+        TraceBuffers {
+            corridor,
+            left,
+            right,
+            parts,
+            apexes,
+            ..
+        }: &mut TraceBuffers,
         triangulate: impl Fn(&Self, &CorridorSide, &mut Vec<u32>),
     ) {
         for &cell in corridor.iter() {
@@ -288,7 +317,8 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, ConstrainedEdg
                 continue;
             };
             let apex = apex as usize;
-            self.tds.set_corners(cell, [first, last, apex].map(|k| side.chain[k]));
+            self.tds
+                .set_corners(cell, [first, last, apex].map(|k| side.chain[k]));
             match above {
                 Some((other, i)) => self.tds.link(cell, BASE, other, i),
                 None => on_base = Some(cell),
@@ -310,7 +340,11 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, ConstrainedEdg
             *self.tds.cell_data_mut(cell) = constrained;
         }
         if side.edges.iter().any(|edge| edge.is_spike) {
-            for [p, q] in side.spikes().into_iter().map(|pair| pair.map(|k| side.edges[k])) {
+            for [p, q] in side
+                .spikes()
+                .into_iter()
+                .map(|pair| pair.map(|k| side.edges[k]))
+            {
                 self.tds.link(p.cell, p.i, q.cell, q.i);
             }
         }
@@ -337,13 +371,18 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, ConstrainedEdg
         let (mut from, mut to) = (0, side.chain.len() - 1);
         let mut open = Vec::new();
         loop {
-            let Some(apex) = self.apex(&side.chain[from..=to], &is_closer) else { return };
+            let Some(apex) = self.apex(&side.chain[from..=to], &is_closer) else {
+                return;
+            };
             let apex = from + apex;
             apexes.push(apex as u32);
             if to - apex > 1 {
                 open.push((apex, to));
             }
-            (from, to) = match (apex - from > 1).then_some((from, apex)).or_else(|| open.pop()) {
+            (from, to) = match (apex - from > 1)
+                .then_some((from, apex))
+                .or_else(|| open.pop())
+            {
                 Some(part) => part,
                 None => return,
             };

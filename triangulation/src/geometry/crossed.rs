@@ -19,9 +19,18 @@ type Segment = [[f64; 2]; 2];
 /// The end divides that segment into shorter ones, so no sequence of such crossings goes on
 /// forever. Does not depend on the order of segments and ends.
 pub(super) fn site(ab: Segment, cd: Segment) -> [f64; 2] {
-    let sorted = |[p, q]: Segment| if lexicographic(p, q).is_gt() { [q, p] } else { [p, q] };
+    let sorted = |[p, q]: Segment| {
+        if lexicographic(p, q).is_gt() {
+            [q, p]
+        } else {
+            [p, q]
+        }
+    };
     let (mut ab, mut cd) = (sorted(ab), sorted(cd));
-    if lexicographic(ab[0], cd[0]).then_with(|| lexicographic(ab[1], cd[1])).is_gt() {
+    if lexicographic(ab[0], cd[0])
+        .then_with(|| lexicographic(ab[1], cd[1]))
+        .is_gt()
+    {
         std::mem::swap(&mut ab, &mut cd);
     }
     let ([a, b], [c, d]) = (ab, cd);
@@ -30,25 +39,41 @@ pub(super) fn site(ab: Segment, cd: Segment) -> [f64; 2] {
         let (low, high) = (a[axis].min(b[axis]), a[axis].max(b[axis]));
         between(a[axis], b[axis], along).clamp(low, high)
     });
-    if [ab, cd].iter().all(|&[p, q]| kernel::twice_area(p, q, site) == 0.0) {
+    if [ab, cd]
+        .iter()
+        .all(|&[p, q]| kernel::twice_area(p, q, site) == 0.0)
+    {
         return site;
     }
-    let reach: [f64; 2] =
-        std::array::from_fn(|axis| REACH * [a, b, c, d].map(|p| p[axis].abs()).into_iter().fold(0.0, f64::max));
+    let reach: [f64; 2] = std::array::from_fn(|axis| {
+        REACH
+            * [a, b, c, d]
+                .map(|p| p[axis].abs())
+                .into_iter()
+                .fold(0.0, f64::max)
+    });
     let ends = [(a, cd), (b, cd), (c, ab), (d, ab)];
-    let near = ends.into_iter().find(|&(p, segment)| divides(p, segment) && is_near(p, segment, reach));
+    let near = ends
+        .into_iter()
+        .find(|&(p, segment)| divides(p, segment) && is_near(p, segment, reach));
     near.map_or(site, |(end, _)| end)
 }
 
 /// Returns the number at a fraction of the interval between two others.
 fn between(from: f64, to: f64, along: f64) -> f64 {
     let length = to - from;
-    if length.is_finite() { from + along * length } else { from * (1.0 - along) + to * along }
+    if length.is_finite() {
+        from + along * length
+    } else {
+        from * (1.0 - along) + to * along
+    }
 }
 
 /// Returns true if `p` is nearer to both ends of a segment than these are to each other.
 fn divides(p: [f64; 2], [a, b]: Segment) -> bool {
-    [[a, b], [b, a]].into_iter().all(|[a, b]| Exact::sign(&CompareDistance([a, b, p])) == Sign::Positive)
+    [[a, b], [b, a]]
+        .into_iter()
+        .all(|[a, b]| Exact::sign(&CompareDistance([a, b, p])) == Sign::Positive)
 }
 
 /// Returns true if the line through a segment touches the box of half sides `reach` around `p`.
@@ -70,7 +95,10 @@ mod tests {
         let (ab, cd) = ([[0.0, 0.0], [1.0, 1.0]], [[-1.0, tiny], [1.0, 0.0]]);
         let x = geometry.crossing(ab.each_ref(), cd.each_ref());
         assert_eq!(x, [0.0, 0.0]);
-        let x = geometry.crossing([[0.0, 0.0], [8.0, 8.0]].each_ref(), [[0.0, 2.0], [2.0, 0.0]].each_ref());
+        let x = geometry.crossing(
+            [[0.0, 0.0], [8.0, 8.0]].each_ref(),
+            [[0.0, 2.0], [2.0, 0.0]].each_ref(),
+        );
         assert_eq!(x, [1.0, 1.0]);
     }
 }

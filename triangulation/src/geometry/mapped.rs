@@ -50,12 +50,18 @@ pub struct Mapped<P, F, K = Adaptive> {
 impl<P, F: Fn(&P) -> [f64; 2]> Mapped<P, F> {
     /// Returns the geometry whose points lie at the sites that the function computes.
     pub fn new(site: F) -> Self {
-        Mapped { site, of: PhantomData }
+        Mapped {
+            site,
+            of: PhantomData,
+        }
     }
 
     /// Returns the same geometry with another arithmetic.
     pub fn with_kernel<K: Kernel>(self) -> Mapped<P, F, K> {
-        Mapped { site: self.site, of: PhantomData }
+        Mapped {
+            site: self.site,
+            of: PhantomData,
+        }
     }
 }
 
@@ -86,7 +92,9 @@ pub fn seen_along(normal: [f64; 3]) -> Option<impl Fn(&[f64; 3]) -> [f64; 2] + C
 /// *Building an Orthonormal Basis, Revisited*, 2017).
 fn axes_across(normal: [f64; 3]) -> Option<[[f64; 3]; 2]> {
     // Relative to the largest: squares of extreme magnitudes would overflow or vanish.
-    let largest = normal.iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
+    let largest = normal
+        .iter()
+        .fold(0.0, |largest: f64, x| largest.max(x.abs()));
     let parts = normal.map(|x| x / largest);
     let length = parts.iter().map(|x| x * x).sum::<f64>().sqrt();
     if !length.is_finite() {
@@ -96,7 +104,10 @@ fn axes_across(normal: [f64; 3]) -> Option<[[f64; 3]; 2]> {
     let side = 1f64.copysign(z);
     let a = -1.0 / (side + z);
     let b = x * y * a;
-    Some([[1.0 + side * x * x * a, side * b, -side * x], [b, side + y * y * a, -y]])
+    Some([
+        [1.0 + side * x * x * a, side * b, -side * x],
+        [b, side + y * y * a, -y],
+    ])
 }
 
 impl<P, F, K: Kernel> Debug for Mapped<P, F, K> {

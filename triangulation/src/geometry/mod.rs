@@ -336,7 +336,11 @@ pub trait Crossing: Coordinates<3> {
     /// The site lies on a line between points that are admitted.
     fn on_step(&self, site: [f64; 2]) -> [f64; 2] {
         let step = self.step();
-        if step == 0.0 { site } else { site.map(|x| unsigned_zero((x / step).round() * step)) }
+        if step == 0.0 {
+            site
+        } else {
+            site.map(|x| unsigned_zero((x / step).round() * step))
+        }
     }
 }
 

@@ -7,7 +7,11 @@ use std::cmp::Ordering;
 pub(super) fn lexicographic<const D: usize>(p: [f64; D], q: [f64; D]) -> Ordering {
     for axis in 0..D {
         if p[axis] != q[axis] {
-            return if p[axis] < q[axis] { Ordering::Less } else { Ordering::Greater };
+            return if p[axis] < q[axis] {
+                Ordering::Less
+            } else {
+                Ordering::Greater
+            };
         }
     }
     Ordering::Equal

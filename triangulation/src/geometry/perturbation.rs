@@ -16,7 +16,11 @@ use crate::num::Sign;
 /// Returns true if `q` lies inside the circumscribed sphere of a positively oriented simplex; on
 /// the sphere, if it does after the perturbation.
 #[inline(always)]
-pub(crate) fn in_sphere<G: Geometry<N>, const N: usize>(geometry: &G, simplex: [&G::Point; N], q: &G::Point) -> bool {
+pub(crate) fn in_sphere<G: Geometry<N>, const N: usize>(
+    geometry: &G,
+    simplex: [&G::Point; N],
+    q: &G::Point,
+) -> bool {
     match geometry.side_of_sphere(simplex, q) {
         Sign::Positive => true,
         Sign::Negative => false,

@@ -2,7 +2,9 @@ use std::cmp::Ordering;
 use std::marker::PhantomData;
 
 use super::{Coordinates, Geometry, lexicographic, manhattan};
-use crate::kernel::{Adaptive, InCircleOfPlane, InSphere, Kernel, Orientation2, Orientation3, Predicate};
+use crate::kernel::{
+    Adaptive, InCircleOfPlane, InSphere, Kernel, Orientation2, Orientation3, Predicate,
+};
 use crate::num::Sign;
 
 /// The geometry of points in space, `[x, y, z]`.
@@ -74,7 +76,10 @@ impl<K: Kernel> Geometry<4> for Space<K> {
             [_] => Sign::Zero,
             [a, b] => Sign::from(self.compare(q, a)) * Sign::from(self.compare(b, q)),
             [a, b, c] => projection::<K>([*a, *b, *c]).map_or(Sign::Negative, |(axes, turn)| {
-                turn * K::sign(&InCircleOfPlane { points: [*a, *b, *c, *q], axes })
+                turn * K::sign(&InCircleOfPlane {
+                    points: [*a, *b, *c, *q],
+                    axes,
+                })
             }),
             _ => Sign::Negative,
         }

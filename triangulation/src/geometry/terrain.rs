@@ -92,11 +92,20 @@ impl<K: Kernel> Crossing for Terrain<K> {
 /// If the ends have the same x and y, it is the lower height. In the unit of the ends' heights,
 /// which need not be that of the plan. O(1).
 pub fn height_along(p: [f64; 3], q: [f64; 3], [x, y]: [f64; 2]) -> f64 {
-    let (p, q) = if lexicographic(plan(&p), plan(&q)).is_gt() { (q, p) } else { (p, q) };
+    let (p, q) = if lexicographic(plan(&p), plan(&q)).is_gt() {
+        (q, p)
+    } else {
+        (p, q)
+    };
     // Relative to the longer side: squares of extreme magnitudes would overflow or vanish.
     let [dx, dy] = [0, 1].map(|k| q[k] / 2.0 - p[k] / 2.0);
     let longer = dx.abs().max(dy.abs());
     let [ux, uy] = [dx / longer, dy / longer];
-    let along = ((x / 2.0 - p[0] / 2.0) / longer * ux + (y / 2.0 - p[1] / 2.0) / longer * uy) / (ux * ux + uy * uy);
-    if along.is_nan() { p[2].min(q[2]) } else { p[2] + along.clamp(0.0, 1.0) * (q[2] - p[2]) }
+    let along = ((x / 2.0 - p[0] / 2.0) / longer * ux + (y / 2.0 - p[1] / 2.0) / longer * uy)
+        / (ux * ux + uy * uy);
+    if along.is_nan() {
+        p[2].min(q[2])
+    } else {
+        p[2] + along.clamp(0.0, 1.0) * (q[2] - p[2])
+    }
 }

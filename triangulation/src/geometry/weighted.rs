@@ -85,10 +85,19 @@ impl<K: Kernel> Geometry<3> for Weighted<K> {
 /// Returns a positive sign if the lift of `q`, a weighted point on the line through `a` and `b`, is
 /// below the line through their lifts; zero if on it. Negative if `a` and `b` are one site. The
 /// last of the `D` coordinates is the weight.
-pub(super) fn power_on_line<K: Kernel, const D: usize>(a: [f64; D], b: [f64; D], q: [f64; D]) -> Sign {
-    let Some(along) = (0..D - 1).find(|&axis| a[axis] != b[axis]) else { return Sign::Negative };
+pub(super) fn power_on_line<K: Kernel, const D: usize>(
+    a: [f64; D],
+    b: [f64; D],
+    q: [f64; D],
+) -> Sign {
+    let Some(along) = (0..D - 1).find(|&axis| a[axis] != b[axis]) else {
+        return Sign::Negative;
+    };
     let (a, b) = if a[along] < b[along] { (a, b) } else { (b, a) };
-    K::sign(&PowerOnLine { points: [a, b, q], along })
+    K::sign(&PowerOnLine {
+        points: [a, b, q],
+        along,
+    })
 }
 
 /// Coordinates for sorting and positions. There is no [`exact_plan`](Coordinates::exact_plan),

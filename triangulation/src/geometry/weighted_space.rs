@@ -65,7 +65,8 @@ impl<K: Kernel> Geometry<4> for WeightedSpace<K> {
 
     #[inline(always)]
     fn rough_sides(&self, simplex: [&[f64; 4]; 4], q: &[f64; 4]) -> Option<[f64; 4]> {
-        self.space().rough_sides(simplex.map(site).each_ref(), &site(q))
+        self.space()
+            .rough_sides(simplex.map(site).each_ref(), &site(q))
     }
 
     #[inline(always)]
@@ -81,7 +82,9 @@ impl<K: Kernel> Geometry<4> for WeightedSpace<K> {
     fn orientation_in_flat(&self, simplex: &[&[f64; 4]]) -> Sign {
         match *simplex {
             [p, q] => self.compare(q, p).into(),
-            [a, b, c] => self.space().orientation_in_flat(&[a, b, c].map(site).each_ref()),
+            [a, b, c] => self
+                .space()
+                .orientation_in_flat(&[a, b, c].map(site).each_ref()),
             _ => Sign::Zero,
         }
     }
@@ -93,9 +96,14 @@ impl<K: Kernel> Geometry<4> for WeightedSpace<K> {
         match *simplex {
             [a] => self.compare_weights(q, a).into(),
             [a, b] => power_on_line::<K, 4>(*a, *b, *q),
-            [a, b, c] => projection::<K>([a, b, c].map(site)).map_or(Sign::Negative, |(axes, turn)| {
-                turn * K::sign(&PowerInPlane { points: [*a, *b, *c, *q], axes })
-            }),
+            [a, b, c] => {
+                projection::<K>([a, b, c].map(site)).map_or(Sign::Negative, |(axes, turn)| {
+                    turn * K::sign(&PowerInPlane {
+                        points: [*a, *b, *c, *q],
+                        axes,
+                    })
+                })
+            }
             _ => Sign::Negative,
         }
     }

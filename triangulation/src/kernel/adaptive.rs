@@ -65,7 +65,10 @@ impl Filter for IntervalBound {
 pub struct FixedBound<const BITS: i32>;
 
 impl<const BITS: i32> Filter for FixedBound<BITS> {
-    const RANGE: Range = Range { max: f64::from_bits((1023 + BITS as u64) << 52), ..WholeNumbers::RANGE };
+    const RANGE: Range = Range {
+        max: f64::from_bits((1023 + BITS as u64) << 52),
+        ..WholeNumbers::RANGE
+    };
 
     #[inline(always)]
     fn try_sign<P: Predicate>(predicate: &P) -> Option<Sign> {
@@ -101,7 +104,9 @@ impl Filter for OnLattice {
     fn try_sign<P: Predicate>(predicate: &P) -> Option<Sign> {
         let axes = (0..P::AXES).map(|axis| predicate.axis(axis));
         let inverse_unit = lattice::inverse_unit(axes, coarse_bits(P::DEGREE))?;
-        Some(Sign::of(&predicate.value(|a, b| lattice::difference(a, b, inverse_unit))))
+        Some(Sign::of(
+            &predicate.value(|a, b| lattice::difference(a, b, inverse_unit)),
+        ))
     }
 }
 
@@ -120,7 +125,11 @@ impl Filter for OnFineLattice {
         // differences.
         let axes = (0..P::AXES).map(|axis| predicate.axis(axis).chain([0.0]));
         let inverse_unit = lattice::inverse_unit(axes, bits(256, P::DEGREE, 62))?;
-        Some(predicate.value(|a, b| lattice::long_difference(a, b, inverse_unit)).sign())
+        Some(
+            predicate
+                .value(|a, b| lattice::long_difference(a, b, inverse_unit))
+                .sign(),
+        )
     }
 }
 
@@ -131,7 +140,10 @@ pub struct WholeNumbers;
 
 impl Filter for WholeNumbers {
     /// Of the numbers below `2^52`, only multiples of 1 are admitted.
-    const RANGE: Range = Range { min: 1.0 / f64::EPSILON, max: 2.0 / f64::EPSILON };
+    const RANGE: Range = Range {
+        min: 1.0 / f64::EPSILON,
+        max: 2.0 / f64::EPSILON,
+    };
 
     #[inline]
     fn try_sign<P: Predicate>(predicate: &P) -> Option<Sign> {

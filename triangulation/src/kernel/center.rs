@@ -60,7 +60,10 @@ impl Simplex<2> for InPlane {
     fn scaled_offset<T: Number>(&self, difference: impl Fn(f64, f64) -> T + Copy) -> ([T; 2], T) {
         let [a, b, c] = self.0.map(|[x, y, weight]| ([x, y], weight));
         let [(u, u_length), (v, v_length)] = [b, c].map(|p| lifted(p, a, difference));
-        let offset = [cross(&u_length, &v[1], &v_length, &u[1]), cross(&v_length, &u[0], &u_length, &v[0])];
+        let offset = [
+            cross(&u_length, &v[1], &v_length, &u[1]),
+            cross(&v_length, &u[0], &u_length, &v[0]),
+        ];
         (offset, cross(&u[0], &v[1], &u[1], &v[0]))
     }
 }
@@ -118,7 +121,8 @@ pub(super) fn offset_in_space<T: Number>(
     let [a, b, c] = others.map(|p| lifted(p, first, difference));
     let (u, v, w) = (normal(&b.0, &c.0), normal(&c.0, &a.0), normal(&a.0, &b.0));
     let term = |length: &T, normal: &[T; 3], axis: usize| length.clone() * normal[axis].clone();
-    let offset = [0, 1, 2].map(|axis| term(&a.1, &u, axis) + term(&b.1, &v, axis) + term(&c.1, &w, axis));
+    let offset =
+        [0, 1, 2].map(|axis| term(&a.1, &u, axis) + term(&b.1, &v, axis) + term(&c.1, &w, axis));
     let along = |axis: usize| a.0[axis].clone() * u[axis].clone();
     (offset, along(0) + along(1) + along(2))
 }

@@ -1,7 +1,8 @@
 //! The kernels that combine filters.
 
 use super::adaptive::{
-    ErrorBound, FixedBound, FlooredErrorBound, IntervalBound, OnFineLattice, OnLattice, PairBound, WholeNumbers,
+    ErrorBound, FixedBound, FlooredErrorBound, IntervalBound, OnFineLattice, OnLattice, PairBound,
+    WholeNumbers,
 };
 use super::scaled::Scaled;
 use super::{Exact, Expansions, Filtered};

@@ -22,7 +22,11 @@ pub(super) fn squared_length<T: Number, const D: usize>(vector: &[T; D]) -> T {
 
 /// Returns `p - q`, axis by axis.
 #[inline(always)]
-pub(super) fn minus<T: Number, const D: usize>(p: [f64; D], q: [f64; D], difference: impl Fn(f64, f64) -> T) -> [T; D] {
+pub(super) fn minus<T: Number, const D: usize>(
+    p: [f64; D],
+    q: [f64; D],
+    difference: impl Fn(f64, f64) -> T,
+) -> [T; D] {
     std::array::from_fn(|axis| difference(p[axis], q[axis]))
 }
 
@@ -114,7 +118,10 @@ impl Predicate for Orientation3 {
 /// Returns the in-sphere determinant of four vectors in space, which start at the query point, and
 /// their squared lengths.
 #[inline(always)]
-pub(super) fn in_sphere<T: Number>([b, a, c, d]: [[T; 3]; 4], [b_length, a_length, c_length, d_length]: [T; 4]) -> T {
+pub(super) fn in_sphere<T: Number>(
+    [b, a, c, d]: [[T; 3]; 4],
+    [b_length, a_length, c_length, d_length]: [T; 4],
+) -> T {
     // With rows in this order, the 4 x 4 determinant is positive inside.
     let plane = |p: &[T; 3], q: &[T; 3]| cross(&p[0], &q[1], &p[1], &q[0]);
     let (ab, bc, cd, da) = (plane(&a, &b), plane(&b, &c), plane(&c, &d), plane(&d, &a));
@@ -252,11 +259,17 @@ pub fn twice_area(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
 pub fn crossing(a: [f64; 2], b: [f64; 2], c: [f64; 2], d: [f64; 2]) -> f64 {
     let (area_a, area_b) = (Orientation2([c, d, a]), Orientation2([c, d, b]));
     if in_range(&area_a) && in_range(&area_b) {
-        let (at_a, at_b) = (area_a.value(Expansion::difference), area_b.value(Expansion::difference));
+        let (at_a, at_b) = (
+            area_a.value(Expansion::difference),
+            area_b.value(Expansion::difference),
+        );
         let from_a = at_a.estimate();
         from_a / (at_a - at_b).estimate()
     } else {
-        let (at_a, at_b) = (area_a.value(Dyadic::difference), area_b.value(Dyadic::difference));
+        let (at_a, at_b) = (
+            area_a.value(Dyadic::difference),
+            area_b.value(Dyadic::difference),
+        );
         at_a.clone().quotient(&(at_a - at_b))
     }
 }

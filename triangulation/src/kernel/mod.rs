@@ -33,13 +33,15 @@ mod scaled;
 mod smallest;
 
 pub use adaptive::{
-    ErrorBound, FixedBound, FlooredErrorBound, IntervalBound, OnFineLattice, OnLattice, PairBound, WholeNumbers,
+    ErrorBound, FixedBound, FlooredErrorBound, IntervalBound, OnFineLattice, OnLattice, PairBound,
+    WholeNumbers,
 };
 pub use center::{circumcenter, circumcenter_in_space, power_center, power_center_in_space};
 pub(crate) use center::{normal_of_facet, power_center_of_facet};
 pub use combined::{Adaptive, Fixed, Interval, Lattice, Wide};
 pub use formula::{
-    CompareDistance, DotProduct, InCircle, InCircleOfPlane, InSphere, Orientation2, Orientation3, crossing, twice_area,
+    CompareDistance, DotProduct, InCircle, InCircleOfPlane, InSphere, Orientation2, Orientation3,
+    crossing, twice_area,
 };
 pub use pixel_sides::{CornerSide, CrossingSide};
 pub use power::{ComparePower, PowerInPlane, PowerOnLine, PowerTest2, PowerTest3};
@@ -136,17 +138,31 @@ pub struct Range {
 /// `2^(5 * 201 + 7) = 2^1012`, and the components of an expansion below twice its value. The
 /// largest factor of a product is a volume of `6 (2^201)^3 < 2^606`, so splitting it, by
 /// `2^27 + 1`, does not come near an overflow.
-pub const RANGE: Range = Range { min: f64::from_bits((1023 - 160) << 52), max: f64::from_bits((1023 + 200) << 52) };
+pub const RANGE: Range = Range {
+    min: f64::from_bits((1023 - 160) << 52),
+    max: f64::from_bits((1023 + 200) << 52),
+};
 
 impl Range {
     /// Every finite number.
-    pub const FINITE: Range = Range { min: 0.0, max: f64::MAX };
+    pub const FINITE: Range = Range {
+        min: 0.0,
+        max: f64::MAX,
+    };
 
     /// Returns the range that both admit.
     const fn and(self, other: Range) -> Range {
         Range {
-            min: if self.min > other.min { self.min } else { other.min },
-            max: if self.max < other.max { self.max } else { other.max },
+            min: if self.min > other.min {
+                self.min
+            } else {
+                other.min
+            },
+            max: if self.max < other.max {
+                self.max
+            } else {
+                other.max
+            },
         }
     }
 
@@ -161,7 +177,9 @@ impl Range {
     #[inline]
     pub fn admits(self, x: f64) -> bool {
         let magnitude = x.abs();
-        let is_multiple = |magnitude: f64| magnitude == 0.0 || (magnitude / (self.min * f64::EPSILON)).fract() == 0.0;
+        let is_multiple = |magnitude: f64| {
+            magnitude == 0.0 || (magnitude / (self.min * f64::EPSILON)).fract() == 0.0
+        };
         magnitude <= self.max && (self.min <= magnitude || is_multiple(magnitude))
     }
 }

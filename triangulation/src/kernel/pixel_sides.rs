@@ -65,7 +65,11 @@ impl Predicate for CrossingSide {
         let [c, d] = self.cd;
         // On the other axis only the segments enter; one of their coordinates stands in for the
         // center.
-        let [center, offset] = if axis == self.along { [self.center, self.offset] } else { [a[axis], 0.0] };
+        let [center, offset] = if axis == self.along {
+            [self.center, self.offset]
+        } else {
+            [a[axis], 0.0]
+        };
         [a[axis], b[axis], c[axis], d[axis], center, offset, 0.0].into_iter()
     }
 

@@ -11,7 +11,10 @@ use crate::num::Number;
 
 /// Returns the coordinates of weighted points on an axis: those in the plane or in space, weights,
 /// and the two whose difference is 1. The last coordinate of a point is its weight.
-fn axis<const D: usize, const N: usize>(points: &[[f64; D]; N], axis: usize) -> impl Iterator<Item = f64> + Clone {
+fn axis<const D: usize, const N: usize>(
+    points: &[[f64; D]; N],
+    axis: usize,
+) -> impl Iterator<Item = f64> + Clone {
     let of_point = move |p: &[f64; D]| if axis < D { p[axis] } else { 1.0 };
     let zero = (axis == D).then_some(0.0);
     points.iter().map(of_point).chain(zero)
@@ -51,7 +54,8 @@ impl Predicate for PowerTest2 {
     fn value<T: Number>(&self, difference: impl Fn(f64, f64) -> T + Copy) -> T {
         let [a, b, c, d] = self.0;
         let [u, v, w] = [a, b, c].map(|p| minus([p[0], p[1]], [d[0], d[1]], difference));
-        let lifts = [(&u, a), (&v, b), (&w, c)].map(|(vector, p)| lift(squared_length(vector), p, d, difference));
+        let lifts = [(&u, a), (&v, b), (&w, c)]
+            .map(|(vector, p)| lift(squared_length(vector), p, d, difference));
         in_circle(u, v, w, lifts)
     }
 }
@@ -75,7 +79,8 @@ impl Predicate for PowerTest3 {
     fn value<T: Number>(&self, difference: impl Fn(f64, f64) -> T + Copy) -> T {
         let [a, b, c, d, q] = self.0;
         let vectors = [a, b, c, d].map(|p| minus(site(p), site(q), difference));
-        let lifts = std::array::from_fn(|k| lift(squared_length(&vectors[k]), self.0[k], q, difference));
+        let lifts =
+            std::array::from_fn(|k| lift(squared_length(&vectors[k]), self.0[k], q, difference));
         in_sphere(vectors, lifts)
     }
 }
@@ -102,7 +107,9 @@ impl Predicate for PowerInPlane {
     fn value<T: Number>(&self, difference: impl Fn(f64, f64) -> T + Copy) -> T {
         let [a, b, c, q] = self.points;
         let vectors = [a, b, c].map(|p| minus(site(p), site(q), difference));
-        let lifts = std::array::from_fn(|k| lift(squared_length(&vectors[k]), self.points[k], q, difference));
+        let lifts = std::array::from_fn(|k| {
+            lift(squared_length(&vectors[k]), self.points[k], q, difference)
+        });
         let [a, b, c] = vectors.map(|v| self.axes.map(|axis| v[axis].clone()));
         in_circle(a, b, c, lifts)
     }
@@ -167,7 +174,16 @@ impl<const D: usize> Predicate for ComparePower<D> {
 
 /// Returns the lift of a weighted point relative to another one, on any number of axes.
 #[inline(always)]
-fn power<T: Number, const D: usize>(p: [f64; D], q: [f64; D], difference: impl Fn(f64, f64) -> T + Copy) -> T {
+fn power<T: Number, const D: usize>(
+    p: [f64; D],
+    q: [f64; D],
+    difference: impl Fn(f64, f64) -> T + Copy,
+) -> T {
     let axis = |k: usize| square(&difference(p[k], q[k]));
-    lift((1..D - 1).fold(axis(0), |sum, k| sum + axis(k)), p, q, difference)
+    lift(
+        (1..D - 1).fold(axis(0), |sum, k| sum + axis(k)),
+        p,
+        q,
+        difference,
+    )
 }

@@ -17,7 +17,10 @@ struct Quotient<T> {
 
 /// Returns the squared radius, and the volume that it is divided by, which is not zero unless the
 /// points are coplanar.
-fn quotient<T: Number>(corners: [[f64; 4]; 4], difference: impl Fn(f64, f64) -> T + Copy) -> (Quotient<T>, T) {
+fn quotient<T: Number>(
+    corners: [[f64; 4]; 4],
+    difference: impl Fn(f64, f64) -> T + Copy,
+) -> (Quotient<T>, T) {
     let (offset, volume) = offset_in_space(corners, difference);
     let double = volume.clone() + volume.clone();
     let below = square(&double);
@@ -31,9 +34,16 @@ pub(crate) fn squared_radius_bounds(corners: [[f64; 4]; 4]) -> (f64, f64) {
     /// Error bounds above this one cover all that is lost by underflow.
     const LEAST: f64 = 1e-280;
     let (Quotient { above, below }, _) = quotient(corners, Bounded::difference);
-    let ([above, below], [above_error, below_error]) = ([above.value(), below.value()], [above.error(), below.error()]);
+    let ([above, below], [above_error, below_error]) = (
+        [above.value(), below.value()],
+        [above.error(), below.error()],
+    );
     let (least, most) = (below - below_error, below + below_error);
-    if !(above_error > LEAST && below_error > LEAST && least > 0.0 && above.abs() + most < f64::INFINITY) {
+    if !(above_error > LEAST
+        && below_error > LEAST
+        && least > 0.0
+        && above.abs() + most < f64::INFINITY)
+    {
         return (f64::NEG_INFINITY, f64::INFINITY);
     }
     let (low, high) = (above - above_error, above + above_error);
@@ -57,13 +67,18 @@ impl SquaredRadius {
 
     /// Returns the number, rounded.
     pub(crate) fn value(&self) -> f64 {
-        self.0.as_ref().map_or(f64::INFINITY, |Quotient { above, below }| above.quotient(below))
+        self.0
+            .as_ref()
+            .map_or(f64::INFINITY, |Quotient { above, below }| {
+                above.quotient(below)
+            })
     }
 
     pub(crate) fn compare(&self, other: &Self) -> Ordering {
         match (&self.0, &other.0) {
             (Some(p), Some(q)) => {
-                let difference = p.above.clone() * q.below.clone() - q.above.clone() * p.below.clone();
+                let difference =
+                    p.above.clone() * q.below.clone() - q.above.clone() * p.below.clone();
                 match difference.sign() {
                     Sign::Negative => Ordering::Less,
                     Sign::Zero => Ordering::Equal,

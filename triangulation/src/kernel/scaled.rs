@@ -13,13 +13,17 @@ impl<K: Kernel> Filter for Scaled<K> {
 
     fn try_sign<P: Predicate>(predicate: &P) -> Option<Sign> {
         let mut coordinates = (0..P::AXES).flat_map(|axis| predicate.axis(axis));
-        let largest = coordinates.clone().fold(0.0, |largest: f64, x| largest.max(x.abs()));
+        let largest = coordinates
+            .clone()
+            .fold(0.0, |largest: f64, x| largest.max(x.abs()));
         // The largest goes to the upper end of the range, so that as many as possible of the others
         // fit below.
         let factor = power_of_two(exponent(K::RANGE.max) - 1 - exponent(largest));
         // A normal number was not rounded.
         let fits = |x: f64| x == 0.0 || (x * factor).is_normal() && K::RANGE.admits(x * factor);
-        coordinates.all(fits).then(|| K::sign(&Times { predicate, factor }))
+        coordinates
+            .all(fits)
+            .then(|| K::sign(&Times { predicate, factor }))
     }
 }
 
@@ -52,6 +56,7 @@ impl<P: Predicate> Predicate for Times<'_, P> {
     #[inline(always)]
     fn value<T: Number>(&self, difference: impl Fn(f64, f64) -> T + Copy) -> T {
         let factor = self.factor;
-        self.predicate.value(move |a, b| difference(a * factor, b * factor))
+        self.predicate
+            .value(move |a, b| difference(a * factor, b * factor))
     }
 }

@@ -9,7 +9,11 @@ use crate::num::{Bounded, Dyadic, Number, Sign};
 /// The center is `a + s u + t v` for the vectors `u` and `v` from the first point to the others.
 /// That it has the same power to all points is a linear system in `s` and `t`, solved by Cramer's
 /// rule; the multiple is its determinant.
-fn power<T: Number>(simplex: &[[f64; 4]], q: [f64; 4], difference: impl Fn(f64, f64) -> T + Copy) -> Option<T> {
+fn power<T: Number>(
+    simplex: &[[f64; 4]],
+    q: [f64; 4],
+    difference: impl Fn(f64, f64) -> T + Copy,
+) -> Option<T> {
     let (&a, others) = simplex.split_first()?;
     let relative = |p: [f64; 4]| {
         let vector = minus([p[0], p[1], p[2]], [a[0], a[1], a[2]], difference);
@@ -48,7 +52,9 @@ fn power<T: Number>(simplex: &[[f64; 4]], q: [f64; 4], difference: impl Fn(f64, 
 pub(crate) fn side_of_smallest_sphere(simplex: &[[f64; 4]], q: [f64; 4]) -> Sign {
     /// Larger errors cover all that is lost by underflow.
     const LEAST: f64 = 1e-280;
-    let Some(rough) = power(simplex, q, Bounded::difference) else { return Sign::Zero };
+    let Some(rough) = power(simplex, q, Bounded::difference) else {
+        return Sign::Zero;
+    };
     let (value, error) = (rough.value(), rough.error());
     let outside = if error > LEAST && value.abs() > error && value.is_finite() {
         Sign::of(&value)

@@ -7,7 +7,8 @@ use crate::engine::Inserted;
 use crate::engine::flip::NoConstraints;
 use crate::engine::insert::{insert_each, move_vertex};
 use crate::engine::kind_methods::{
-    construction_methods, from_points_with_method, insert_method, insertion_methods, payload_methods, remove_by_method,
+    construction_methods, from_points_with_method, insert_method, insertion_methods,
+    payload_methods, remove_by_method,
 };
 use crate::error::{InputError, MoveError, RemovalError};
 use crate::flaw::{Flaw, Level};
@@ -54,7 +55,9 @@ impl<G: Geometry<N>, const N: usize, V, C> Deref for Basic<G, N, V, C> {
 
 impl<G: Geometry<N> + Clone, const N: usize, V: Clone, C: Clone> Clone for Basic<G, N, V, C> {
     fn clone(&self) -> Self {
-        Basic { inner: self.inner.duplicate() }
+        Basic {
+            inner: self.inner.duplicate(),
+        }
     }
 }
 
@@ -71,7 +74,10 @@ impl<G: Coordinates<N>, const N: usize> Basic<G, N> {
     ///
     /// # Complexity
     /// Linear in the number of points if they are spread evenly.
-    pub fn from_points(geometry: G, points: &[G::Point]) -> Result<(Self, Vec<VertexId>), InputError> {
+    pub fn from_points(
+        geometry: G,
+        points: &[G::Point],
+    ) -> Result<(Self, Vec<VertexId>), InputError> {
         let mut triangulation = Self::with_capacity(geometry, points.len());
         let vertices = triangulation.insert_all(points)?;
         Ok((triangulation, vertices))
@@ -93,7 +99,9 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Basic<G, N, V, C> {
     where
         D: Copy + Default,
     {
-        Basic { inner: convert(self.inner) }
+        Basic {
+            inner: convert(self.inner),
+        }
     }
 
     payload_methods! {
@@ -115,7 +123,8 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Basic<G, N, V, C> {
     }
 
     fn insert_at(&mut self, p: G::Point, data: V, location: Location) -> Inserted<V> {
-        self.inner.insert_at(p, location, data, takes(&p), |data, _| *data)
+        self.inner
+            .insert_at(p, location, data, takes(&p), |data, _| *data)
     }
 
     /// Returns the flaws found by a check up to the given level, with exact predicates. There is no
@@ -180,7 +189,10 @@ impl<G: Geometry<3>, V, C: Copy + Default> Basic<G, 3, V, C> {
             |t| &mut t.inner,
             (vertex, p),
             Self::remove,
-            |t, p, location, _| t.inner.insert_again(p, location, takes(&p), |data, _| *data),
+            |t, p, location, _| {
+                t.inner
+                    .insert_again(p, location, takes(&p), |data, _| *data)
+            },
         )
     }
 

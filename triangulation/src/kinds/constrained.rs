@@ -4,7 +4,8 @@ use std::ops::Deref;
 use crate::engine::flip::WithConstraints;
 use crate::engine::insert::{insert_each, move_vertex};
 use crate::engine::kind_methods::{
-    construction_methods, from_points_with_method, insert_method, insertion_methods, payload_methods, remove_by_method,
+    construction_methods, from_points_with_method, insert_method, insertion_methods,
+    payload_methods, remove_by_method,
 };
 use crate::engine::trace::{CorridorSide, TraceBuffers, TraceEnd};
 use crate::engine::{ConstrainedEdges, Inserted};
@@ -58,10 +59,17 @@ impl fmt::Display for ConstraintError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             ConstraintError::Crosses([a, b]) => {
-                write!(f, "the constraint between vertices {} and {} is crossed", a.index(), b.index())
+                write!(
+                    f,
+                    "the constraint between vertices {} and {} is crossed",
+                    a.index(),
+                    b.index()
+                )
             }
             ConstraintError::NoVertex(vertex) => write!(f, "there is no vertex {vertex:?}"),
-            ConstraintError::NoTriangles => f.write_str("there are no triangles to hold a constraint"),
+            ConstraintError::NoTriangles => {
+                f.write_str("there are no triangles to hold a constraint")
+            }
         }
     }
 }
@@ -78,7 +86,10 @@ impl<G: Geometry<3>, V, C> Deref for Constrained<G, V, C> {
 
 impl<G: Geometry<3> + Clone, V: Clone, C: Clone> Clone for Constrained<G, V, C> {
     fn clone(&self) -> Self {
-        Constrained { inner: self.inner.duplicate(), buffers: TraceBuffers::default() }
+        Constrained {
+            inner: self.inner.duplicate(),
+            buffers: TraceBuffers::default(),
+        }
     }
 }
 
@@ -95,7 +106,10 @@ impl<G: Coordinates<3>> Constrained<G> {
     ///
     /// # Complexity
     /// Linear in the number of points if they are spread evenly.
-    pub fn from_points(geometry: G, points: &[G::Point]) -> Result<(Self, Vec<VertexId>), InputError> {
+    pub fn from_points(
+        geometry: G,
+        points: &[G::Point],
+    ) -> Result<(Self, Vec<VertexId>), InputError> {
         let mut triangulation = Self::with_capacity(geometry, points.len());
         let vertices = triangulation.insert_all(points)?;
         Ok((triangulation, vertices))
@@ -106,18 +120,26 @@ impl<G: Coordinates<3>> Constrained<G> {
 
 impl<G: Geometry<3>, V, C: Copy + Default> Constrained<G, V, C> {
     pub(crate) fn over(inner: Triangulation<G, 3, V, ConstrainedEdges<C>>) -> Self {
-        Constrained { inner, buffers: TraceBuffers::default() }
+        Constrained {
+            inner,
+            buffers: TraceBuffers::default(),
+        }
     }
 
     /// Converts the triangulation below; its law stays.
     fn with_inner<W, D>(
         self,
-        convert: impl FnOnce(Triangulation<G, 3, V, ConstrainedEdges<C>>) -> Triangulation<G, 3, W, ConstrainedEdges<D>>,
+        convert: impl FnOnce(
+            Triangulation<G, 3, V, ConstrainedEdges<C>>,
+        ) -> Triangulation<G, 3, W, ConstrainedEdges<D>>,
     ) -> Constrained<G, W, D>
     where
         D: Copy + Default,
     {
-        Constrained { inner: convert(self.inner), buffers: self.buffers }
+        Constrained {
+            inner: convert(self.inner),
+            buffers: self.buffers,
+        }
     }
 
     payload_methods! {
@@ -141,7 +163,11 @@ impl<G: Geometry<3>, V, C: Copy + Default> Constrained<G, V, C> {
 
     fn insert_at(&mut self, p: G::Point, data: V, location: Location) -> Inserted<V> {
         let split = self.inner.constraint_at(location);
-        let inserted = self.inner.insert_at(p, location, data, takes(&p), |constrained, i| constrained.only(i));
+        let inserted = self
+            .inner
+            .insert_at(p, location, data, takes(&p), |constrained, i| {
+                constrained.only(i)
+            });
         self.inner.constrain_halves(split, inserted.vertex);
         inserted
     }
@@ -177,12 +203,16 @@ impl<G: Geometry<3>, V, C: Copy + Default> Constrained<G, V, C> {
         }
         let mut from = a;
         while from != b {
-            let TraceEnd::Vertex(v) = self.inner.trace(from, b, &mut self.buffers) else { break };
-            let triangulate =
-                |t: &Triangulation<G, 3, V, ConstrainedEdges<C>>, side: &CorridorSide, apexes: &mut Vec<u32>| {
-                    t.wrap(side, Triangulation::is_within, apexes);
-                };
-            self.inner.insert_traced(from, v, &mut self.buffers, triangulate);
+            let TraceEnd::Vertex(v) = self.inner.trace(from, b, &mut self.buffers) else {
+                break;
+            };
+            let triangulate = |t: &Triangulation<G, 3, V, ConstrainedEdges<C>>,
+                               side: &CorridorSide,
+                               apexes: &mut Vec<u32>| {
+                t.wrap(side, Triangulation::is_within, apexes);
+            };
+            self.inner
+                .insert_traced(from, v, &mut self.buffers, triangulate);
             from = v;
         }
         Ok(())
@@ -207,7 +237,8 @@ impl<G: Geometry<3>, V, C: Copy + Default> Constrained<G, V, C> {
         if !self.tds().is_vertex(vertex) {
             return Err(RemovalError::NoVertex);
         }
-        let leaves_no_triangles = || self.inner.is_flat_without(vertex) && self.constrained_edges().next().is_some();
+        let leaves_no_triangles =
+            || self.inner.is_flat_without(vertex) && self.constrained_edges().next().is_some();
         if self.inner.is_on_constraint(vertex) || leaves_no_triangles() {
             return Err(RemovalError::Constraint);
         }
@@ -234,7 +265,9 @@ impl<G: Geometry<3>, V, C: Copy + Default> Constrained<G, V, C> {
             Self::remove,
             |t, p, location, _| {
                 let split = t.inner.constraint_at(location);
-                let moved = t.inner.insert_again(p, location, takes(&p), |constrained, i| constrained.only(i))?;
+                let moved = t
+                    .inner
+                    .insert_again(p, location, takes(&p), |constrained, i| constrained.only(i))?;
                 t.inner.constrain_halves(split, moved);
                 Some(moved)
             },

@@ -6,7 +6,8 @@ use crate::bulk;
 use crate::engine::Inserted;
 use crate::engine::insert::{insert_each, move_vertex};
 use crate::engine::kind_methods::{
-    construction_methods, from_points_with_method, insert_method, insertion_methods, payload_methods, remove_by_method,
+    construction_methods, from_points_with_method, insert_method, insertion_methods,
+    payload_methods, remove_by_method,
 };
 use crate::engine::removal::Removal;
 use crate::error::{InputError, MoveError, RemovalError};
@@ -77,7 +78,9 @@ impl<G: Geometry<N>, const N: usize, V, C> Deref for Delaunay<G, N, V, C> {
 
 impl<G: Geometry<N> + Clone, const N: usize, V: Clone, C: Clone> Clone for Delaunay<G, N, V, C> {
     fn clone(&self) -> Self {
-        Delaunay { inner: self.inner.duplicate() }
+        Delaunay {
+            inner: self.inner.duplicate(),
+        }
     }
 }
 
@@ -99,7 +102,10 @@ impl<G: Coordinates<N>, const N: usize> Delaunay<G, N> {
     /// point, besides two copies of the points. In space by insertion in rounds (Amenta, Choi and
     /// Rote 2003), on one thread: linear in practice, quadratic at worst, as is the result. Peak
     /// memory is about 380 bytes for each point, if they are spread evenly.
-    pub fn from_points(geometry: G, points: &[G::Point]) -> Result<(Self, Vec<VertexId>), InputError> {
+    pub fn from_points(
+        geometry: G,
+        points: &[G::Point],
+    ) -> Result<(Self, Vec<VertexId>), InputError> {
         Self::from_points_in_grains(geometry, points, bulk::Grain::default())
     }
 
@@ -162,7 +168,9 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Delaunay<G, N, V, C> 
     where
         D: Copy + Default,
     {
-        Delaunay { inner: convert(self.inner) }
+        Delaunay {
+            inner: convert(self.inner),
+        }
     }
 
     payload_methods! {
@@ -186,7 +194,8 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Delaunay<G, N, V, C> 
     }
 
     fn insert_at(&mut self, p: G::Point, data: V, location: Location) -> Inserted<V> {
-        self.inner.insert_at(p, location, data, takes(&p), |data, _| *data)
+        self.inner
+            .insert_at(p, location, data, takes(&p), |data, _| *data)
     }
 
     /// Returns the flaws found by a check up to the given level, with exact predicates. If there
@@ -256,7 +265,10 @@ where
             |t| &mut t.inner,
             (vertex, p),
             Self::remove,
-            |t, p, location, _| t.inner.insert_again(p, location, takes(&p), |data, _| *data),
+            |t, p, location, _| {
+                t.inner
+                    .insert_again(p, location, takes(&p), |data, _| *data)
+            },
         )
     }
 }

@@ -8,7 +8,8 @@ use crate::bulk;
 use crate::engine::Inserted;
 use crate::engine::insert::insert_each;
 use crate::engine::kind_methods::{
-    construction_methods, from_points_with_method, insert_method, insertion_methods, payload_methods, remove_by_method,
+    construction_methods, from_points_with_method, insert_method, insertion_methods,
+    payload_methods, remove_by_method,
 };
 use crate::engine::removal::Removal;
 use crate::error::{InputError, MoveError, RemovalError};
@@ -79,7 +80,9 @@ impl Hidden {
 
     /// Takes one point out; returns false if it was not there.
     fn take(&mut self, vertex: VertexId) -> bool {
-        let Some(cell) = self.host.remove(&vertex) else { return false };
+        let Some(cell) = self.host.remove(&vertex) else {
+            return false;
+        };
         if let Some(under) = self.under.get_mut(&cell) {
             under.retain(|&other| other != vertex);
         }
@@ -91,7 +94,11 @@ impl Hidden {
         if self.host.is_empty() {
             return Vec::new();
         }
-        let taken: Vec<VertexId> = cells.into_iter().filter_map(|cell| self.under.remove(&cell)).flatten().collect();
+        let taken: Vec<VertexId> = cells
+            .into_iter()
+            .filter_map(|cell| self.under.remove(&cell))
+            .flatten()
+            .collect();
         for vertex in &taken {
             self.host.remove(vertex);
         }
@@ -125,7 +132,9 @@ fn choose_heaviest<G: Coordinates<N>, const N: usize>(
     for (p, vertex) in points.iter().zip(&*vertices) {
         is_mixed[vertex.index()] |= compare(&sites[vertex.index()], p) != Sign::Zero;
     }
-    let mut mixed: Vec<usize> = (0..points.len()).filter(|&i| is_mixed[vertices[i].index()]).collect();
+    let mut mixed: Vec<usize> = (0..points.len())
+        .filter(|&i| is_mixed[vertices[i].index()])
+        .collect();
     mixed.sort_unstable_by(|&i, &j| {
         let by_weight = || match compare(&points[i], &points[j]) {
             Sign::Positive => Ordering::Greater,
@@ -138,7 +147,9 @@ fn choose_heaviest<G: Coordinates<N>, const N: usize>(
     for i in mixed {
         let site = vertices[i];
         match last {
-            Some((of, vertex, at)) if of == site && compare(&points[at], &points[i]) == Sign::Zero => {
+            Some((of, vertex, at))
+                if of == site && compare(&points[at], &points[i]) == Sign::Zero =>
+            {
                 vertices[i] = vertex;
             }
             Some((of, ..)) if of == site => {
@@ -162,7 +173,10 @@ impl<G: Geometry<N>, const N: usize, V, C> Deref for Regular<G, N, V, C> {
 
 impl<G: Geometry<N> + Clone, const N: usize, V: Clone, C: Clone> Clone for Regular<G, N, V, C> {
     fn clone(&self) -> Self {
-        Regular { inner: self.inner.duplicate(), hidden: self.hidden.clone() }
+        Regular {
+            inner: self.inner.duplicate(),
+            hidden: self.hidden.clone(),
+        }
     }
 }
 
@@ -182,7 +196,10 @@ impl<G: Coordinates<N>, const N: usize> Regular<G, N> {
     ///
     /// # Complexity
     /// Linear in the number of points if they are spread evenly.
-    pub fn from_points(geometry: G, points: &[G::Point]) -> Result<(Self, Vec<VertexId>), InputError> {
+    pub fn from_points(
+        geometry: G,
+        points: &[G::Point],
+    ) -> Result<(Self, Vec<VertexId>), InputError> {
         let mut regular = Self::new(geometry);
         // The builder of the plane knows no hidden points.
         let vertices = if N == 4 { regular.build(points)? } else { None };
@@ -201,7 +218,9 @@ impl<G: Coordinates<N>, const N: usize> Regular<G, N> {
         let (geometry, grain) = (&self.inner.geometry, bulk::Grain::default());
         let (mut sites, mut vertices) = bulk::Sites::of(geometry, points, grain)?;
         let lighter = choose_heaviest(geometry, points, &mut sites.points, &mut vertices);
-        let (sites, Some(tds)) = bulk::build(geometry, sites, grain) else { return Ok(None) };
+        let (sites, Some(tds)) = bulk::build(geometry, sites, grain) else {
+            return Ok(None);
+        };
         self.inner.points = sites;
         self.inner.tds = tds;
         for p in lighter {
@@ -209,7 +228,9 @@ impl<G: Coordinates<N>, const N: usize> Regular<G, N> {
             self.inner.tds.detach(vertex);
         }
         let numbers = (0..self.tds().vertex_slots()).map(VertexId::new);
-        let hidden = numbers.filter(|&vertex| !self.tds().is_vertex(vertex)).collect();
+        let hidden = numbers
+            .filter(|&vertex| !self.tds().is_vertex(vertex))
+            .collect();
         self.connect_again(hidden);
         Ok(Some(vertices))
     }
@@ -219,7 +240,10 @@ impl<G: Coordinates<N>, const N: usize> Regular<G, N> {
 
 impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Regular<G, N, V, C> {
     fn over(inner: Triangulation<G, N, V, C>) -> Self {
-        Regular { inner, hidden: Hidden::default() }
+        Regular {
+            inner,
+            hidden: Hidden::default(),
+        }
     }
 
     /// Converts the triangulation below; its law stays.
@@ -230,7 +254,10 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Regular<G, N, V, C> {
     where
         D: Copy + Default,
     {
-        Regular { inner: convert(self.inner), hidden: self.hidden }
+        Regular {
+            inner: convert(self.inner),
+            hidden: self.hidden,
+        }
     }
 
     /// Returns the triangulation with its table of hidden points, which are the vertices in no
@@ -264,30 +291,45 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Regular<G, N, V, C> {
 
     fn insert_at(&mut self, p: G::Point, data: V, location: Location) -> Inserted<V> {
         if let Some(vertex) = self.same(&p, location) {
-            return Inserted { vertex, unused: Some(data) };
+            return Inserted {
+                vertex,
+                unused: Some(data),
+            };
         }
         let vertex = self.inner.add_vertex(p, data);
         self.connect(vertex, location);
-        Inserted { vertex, unused: None }
+        Inserted {
+            vertex,
+            unused: None,
+        }
     }
 
     /// Returns the point with the same site and weight, visible or hidden.
     fn same(&self, p: &G::Point, location: Location) -> Option<VertexId> {
-        let is_same =
-            |v: &VertexId| self.inner.geometry.compare(self.point(*v), p).is_eq() && self.side_of(*v, p) == Sign::Zero;
+        let is_same = |v: &VertexId| {
+            self.inner.geometry.compare(self.point(*v), p).is_eq()
+                && self.side_of(*v, p) == Sign::Zero
+        };
         // Any of the cells at the location may hide it.
         let Ok(cells) = match location {
             Location::Vertex(vertex) if is_same(&vertex) => return Some(vertex),
             _ if self.hidden.host.is_empty() => return None,
             _ => location.cells(self.tds()),
         };
-        cells.iter().filter_map(|cell| self.hidden.under.get(cell)).flatten().copied().find(is_same)
+        cells
+            .iter()
+            .filter_map(|cell| self.hidden.under.get(cell))
+            .flatten()
+            .copied()
+            .find(is_same)
     }
 
     /// Compares a point on a vertex's site with the vertex: negative if the vertex would hide it,
     /// positive if it would hide the vertex.
     fn side_of(&self, vertex: VertexId, p: &G::Point) -> Sign {
-        self.inner.geometry.side_of_sphere_in_flat(&[self.point(vertex)], p)
+        self.inner
+            .geometry
+            .side_of_sphere_in_flat(&[self.point(vertex)], p)
     }
 
     /// Inserts a vertex into the cells, or hides it, given the location of its point.
@@ -295,7 +337,9 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Regular<G, N, V, C> {
         let p = *self.inner.point(vertex);
         let host = match location {
             Location::Cell { cell, .. } => (!self.inner.in_conflict(cell, &p)).then_some(cell),
-            Location::Vertex(there) if self.side_of(there, &p) != Sign::Positive => self.tds().cell_of(there),
+            Location::Vertex(there) if self.side_of(there, &p) != Sign::Positive => {
+                self.tds().cell_of(there)
+            }
             _ => None,
         };
         if let Some(cell) = host {
@@ -306,7 +350,10 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Regular<G, N, V, C> {
             self.hidden.put(vertex, cell);
             return;
         }
-        let Some(mut zone) = self.inner.collect(location, |t, _, _, beyond| t.in_conflict(beyond, &p)) else {
+        let Some(mut zone) = self
+            .inner
+            .collect(location, |t, _, _, beyond| t.in_conflict(beyond, &p))
+        else {
             let hidden = self.hidden.take_all();
             self.inner.raise_dimension(vertex);
             return self.connect_again(hidden);
@@ -316,7 +363,12 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Regular<G, N, V, C> {
             self.inner.tds.detach(vertex);
             hidden.push(vertex);
         }
-        self.inner.last = self.inner.tds.star(&mut zone, vertex, |data, _| *data).last().copied();
+        self.inner.last = self
+            .inner
+            .tds
+            .star(&mut zone, vertex, |data, _| *data)
+            .last()
+            .copied();
         self.inner.zone = zone;
         self.connect_again(hidden);
     }
@@ -356,22 +408,30 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Regular<G, N, V, C> {
     pub fn check(&self, level: Level) -> Vec<Flaw> {
         let mut flaws = self.flaws(level, |_, _| true);
         if flaws.is_empty() && level == Level::Law {
-            flaws.extend(self.hidden().filter(|&vertex| !self.is_rightly_hidden(vertex)).map(Flaw::Hidden));
+            flaws.extend(
+                self.hidden()
+                    .filter(|&vertex| !self.is_rightly_hidden(vertex))
+                    .map(Flaw::Hidden),
+            );
         }
         flaws
     }
 
     fn is_rightly_hidden(&self, vertex: VertexId) -> bool {
         let p = self.point(vertex);
-        let Some(&host) = self.hidden.host.get(&vertex) else { return false };
-        if !self.tds().is_used(host) || self.tds().is_infinite(host) || self.tds().is_vertex(vertex) {
+        let Some(&host) = self.hidden.host.get(&vertex) else {
+            return false;
+        };
+        if !self.tds().is_used(host) || self.tds().is_infinite(host) || self.tds().is_vertex(vertex)
+        {
             return false;
         }
         match self.tds().dimension() {
             0 => self.side_of(self.tds().vertex(host, 0), p) != Sign::Positive,
             _ => {
                 let width = self.tds().cell_vertices(host).len();
-                let holds = (0..width).all(|i| self.inner.side_of_facet(host, i, p) != Sign::Negative);
+                let holds =
+                    (0..width).all(|i| self.inner.side_of_facet(host, i, p) != Sign::Negative);
                 holds && !self.inner.in_conflict(host, p)
             }
         }

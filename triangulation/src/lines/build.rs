@@ -59,7 +59,10 @@ impl<G: Crossing + Coordinates<3>> ConstrainedDelaunay<G> {
         check_numbers(points.len(), lines)?;
         let (sites, mut vertices) = Sites::of(&geometry, points, Grain::default())?;
         if lines.is_empty() {
-            return Ok((Self::from_sites(geometry, sites, Grain::default())?, vertices));
+            return Ok((
+                Self::from_sites(geometry, sites, Grain::default())?,
+                vertices,
+            ));
         }
         let named = |line: &L| LineVertices::of(line.as_ref(), |i| vertices[i as usize]);
         let lines = lines.iter().map(named).collect();
@@ -84,8 +87,15 @@ impl<G: Crossing + Coordinates<3>> ConstrainedDelaunay<G> {
         on_crossing: OnCrossing,
         data: impl FnMut(usize) -> V,
     ) -> Result<(ConstrainedDelaunay<G, V>, Vec<VertexId>), InputError> {
-        let (ConstrainedDelaunay { inner, lines }, vertices) = Self::from_lines(geometry, points, lines, on_crossing)?;
-        Ok((ConstrainedDelaunay { inner: inner.with_data_of_some(&vertices, data), lines }, vertices))
+        let (ConstrainedDelaunay { inner, lines }, vertices) =
+            Self::from_lines(geometry, points, lines, on_crossing)?;
+        Ok((
+            ConstrainedDelaunay {
+                inner: inner.with_data_of_some(&vertices, data),
+                lines,
+            },
+            vertices,
+        ))
     }
 
     /// Triangulates sorted points and lines through them, for callers that have sorted and merged
@@ -136,7 +146,10 @@ impl<G: Crossing + Coordinates<3>> ConstrainedDelaunay<G> {
                 return Ok((triangulation, None));
             }
             // The arrangement finds the first crossing, or that all are at vertices.
-            let ConstrainedDelaunay { inner, lines: crossing } = triangulation;
+            let ConstrainedDelaunay {
+                inner,
+                lines: crossing,
+            } = triangulation;
             lines = crossing.chains.given.into_iter().flatten().collect();
             geometry = inner.geometry;
             sites = Sites::sorted(&geometry, inner.points)?;
@@ -159,7 +172,10 @@ impl<G: Crossing + Coordinates<3>> ConstrainedDelaunay<G> {
             None => VertexId::new(site as usize),
         };
         if let Some(renumbered) = &renumbered {
-            lines.iter_mut().flat_map(|line| line.iter_mut()).for_each(|v| *v = renumbered[v.index()]);
+            lines
+                .iter_mut()
+                .flat_map(|line| line.iter_mut())
+                .for_each(|v| *v = renumbered[v.index()]);
         }
 
         let mut triangulation = Self::from_sites(geometry, sites, grain)?;
@@ -168,7 +184,10 @@ impl<G: Crossing + Coordinates<3>> ConstrainedDelaunay<G> {
         }
         triangulation.lines.chains.given = lines.into_iter().map(Some).collect();
         triangulation.lines.added = added.into_iter().collect();
-        let parts = triangulation.lines.chains.record(&arrangement, &segments, vertex);
+        let parts = triangulation
+            .lines
+            .chains
+            .record(&arrangement, &segments, vertex);
         triangulation.lines.rounding = Rounding::of(&arrangement);
         let crossing = triangulation.constrain_all(parts, grain);
         if grain.is_stopped() {
@@ -230,7 +249,11 @@ fn check_numbers<L: AsRef<[u32]>>(points: usize, lines: &[L]) -> Result<(), Inpu
 impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
     /// Inserts sub-constraints. Returns those that cross others; they are present up to the first
     /// crossing only. Ends early if the flag of `grain` is set.
-    pub(crate) fn constrain_all(&mut self, mut parts: Vec<[VertexId; 2]>, grain: Grain) -> Vec<[VertexId; 2]> {
+    pub(crate) fn constrain_all(
+        &mut self,
+        mut parts: Vec<[VertexId; 2]>,
+        grain: Grain,
+    ) -> Vec<[VertexId; 2]> {
         if self.dimension() < 2 {
             self.lines.waiting = parts;
             // The vertices that split them, when there were triangles, may be removed.
@@ -279,11 +302,17 @@ fn reject<G: Crossing>(
         let is_on = |[p, q]: [&G::Point; 2], x| geometry.orientation([p, q, x]) == Sign::Zero;
         let [chain, other] = crossing.segments.map(|i| arrangement.chain(i));
         let is_vertex = |site: &u32| {
-            other.contains(site) && sites.get(*site as usize).is_some_and(|x| is_on(ab, x) && is_on(cd, x))
+            other.contains(site)
+                && sites
+                    .get(*site as usize)
+                    .is_some_and(|x| is_on(ab, x) && is_on(cd, x))
         };
         if !chain.iter().any(is_vertex) {
             let at = geometry.plan(&geometry.crossing(ab, cd));
-            return Err(InputError::Crossing { segments: ends.map(|segment| find(lines, segment)), at });
+            return Err(InputError::Crossing {
+                segments: ends.map(|segment| find(lines, segment)),
+                at,
+            });
         }
     }
     Ok(())
@@ -292,8 +321,14 @@ fn reject<G: Crossing>(
 /// Returns the first line that contains a segment, and the segment's position in it.
 fn find(lines: &[LineVertices], segment: [u32; 2]) -> (usize, usize) {
     let segment = segment.map(|site| VertexId::new(site as usize));
-    let in_line = |line: &[VertexId]| line.windows(2).position(|pair| undirected(pair[0], pair[1]) == segment);
-    let mut found = lines.iter().enumerate().filter_map(|(i, line)| Some((i, in_line(line)?)));
+    let in_line = |line: &[VertexId]| {
+        line.windows(2)
+            .position(|pair| undirected(pair[0], pair[1]) == segment)
+    };
+    let mut found = lines
+        .iter()
+        .enumerate()
+        .filter_map(|(i, line)| Some((i, in_line(line)?)));
     found.next().unwrap_or_default()
 }
 
@@ -309,13 +344,17 @@ pub(crate) fn points_added<G: Crossing>(
     let mut rest = &through[..];
     let mut ends: Vec<[G::Point; 2]> = Vec::new();
     let meet = |(added, &position): (usize, &[f64; 2])| {
-        let (here, others) = rest.split_at(rest.partition_point(|&(other, _)| other as usize <= added));
+        let (here, others) =
+            rest.split_at(rest.partition_point(|&(other, _)| other as usize <= added));
         rest = others;
         ends.clear();
         ends.extend(here.iter().map(|&(_, i)| segments[i as usize].map(&point)));
         match &ends[..] {
             [[a, b], [c, d]] => geometry.meet(position, &[[a, b], [c, d]]), // nearly always
-            ends => geometry.meet(position, &ends.iter().map(|ends| ends.each_ref()).collect::<Vec<_>>()),
+            ends => geometry.meet(
+                position,
+                &ends.iter().map(|ends| ends.each_ref()).collect::<Vec<_>>(),
+            ),
         }
     };
     arrangement.added().iter().enumerate().map(meet).collect()

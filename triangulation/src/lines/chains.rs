@@ -87,8 +87,12 @@ pub(crate) fn segments_of<'a, T: Ord>(
     lines: impl Iterator<Item = &'a [VertexId]>,
     of_vertex: impl Fn(VertexId) -> T,
 ) -> Vec<[T; 2]> {
-    let pairs = lines.flat_map(|line| line.windows(2)).filter(|pair| pair[0] != pair[1]);
-    let mut segments: Vec<[T; 2]> = pairs.map(|pair| undirected(pair[0], pair[1]).map(&of_vertex)).collect();
+    let pairs = lines
+        .flat_map(|line| line.windows(2))
+        .filter(|pair| pair[0] != pair[1]);
+    let mut segments: Vec<[T; 2]> = pairs
+        .map(|pair| undirected(pair[0], pair[1]).map(&of_vertex))
+        .collect();
     segments.sort_unstable();
     segments.dedup();
     segments
@@ -116,7 +120,11 @@ impl Chains {
                 parts.push(undirected(a, b));
                 continue;
             }
-            let mut between: Box<[VertexId]> = arrangement.chain(i).iter().map(|&site| vertex(site)).collect();
+            let mut between: Box<[VertexId]> = arrangement
+                .chain(i)
+                .iter()
+                .map(|&site| vertex(site))
+                .collect();
             let mut at = a;
             for &next in between.iter().chain([&b]) {
                 parts.push(undirected(at, next));
@@ -188,7 +196,13 @@ impl Chains {
     /// Calls `visit` with each part of a segment's chain: its sub-constraints.
     pub(super) fn parts(&self, segment: Ends, mut visit: impl FnMut(Ends)) {
         let mut at = segment[0];
-        for &site in self.bent.get(&segment).into_iter().flatten().chain([&segment[1]]) {
+        for &site in self
+            .bent
+            .get(&segment)
+            .into_iter()
+            .flatten()
+            .chain([&segment[1]])
+        {
             visit(undirected(at, site));
             at = site;
         }
@@ -208,7 +222,10 @@ impl Chains {
 
     /// Returns the vertices by which a line was given; none if it does not exist.
     pub(super) fn vertices(&self, line: LineId) -> &[VertexId] {
-        self.given.get(line.index()).and_then(Option::as_deref).unwrap_or_default()
+        self.given
+            .get(line.index())
+            .and_then(Option::as_deref)
+            .unwrap_or_default()
     }
 
     /// The lines that exist, each with the vertices by which it was given.
@@ -222,13 +239,20 @@ impl Chains {
         let mut splits = FxHashMap::default();
         for ends in self.segments() {
             let sites = self.sites(ends);
-            sites.windows(2).for_each(|part| self.copy_splits(part[0], part[1], &mut splits));
+            sites
+                .windows(2)
+                .for_each(|part| self.copy_splits(part[0], part[1], &mut splits));
         }
         self.splits = splits;
     }
 
     /// Copies the splits of a sub-constraint into another table.
-    pub(crate) fn copy_splits(&self, a: VertexId, b: VertexId, to: &mut FxHashMap<[VertexId; 2], VertexId>) {
+    pub(crate) fn copy_splits(
+        &self,
+        a: VertexId,
+        b: VertexId,
+        to: &mut FxHashMap<[VertexId; 2], VertexId>,
+    ) {
         let mut parts = vec![undirected(a, b)];
         while let Some([a, b]) = parts.pop() {
             if let Some(&between) = self.splits.get(&[a, b]) {
@@ -247,9 +271,25 @@ mod tests {
     #[test]
     fn lines_are_small() {
         assert_eq!(size_of::<Option<LineVertices>>(), 24, "a line");
-        assert_eq!(size_of::<VertexId>(), 4, "a vertex of a line, a site on a segment");
-        assert_eq!(size_of::<([VertexId; 2], Box<[VertexId]>)>(), 24, "a segment that crosses others, in the table");
-        assert_eq!(size_of::<([VertexId; 2], VertexId)>(), 12, "an edge that was split, in the table");
-        assert_eq!(size_of::<crate::engine::ConstrainedEdges>(), 1, "the flags of three edges, at each triangle");
+        assert_eq!(
+            size_of::<VertexId>(),
+            4,
+            "a vertex of a line, a site on a segment"
+        );
+        assert_eq!(
+            size_of::<([VertexId; 2], Box<[VertexId]>)>(),
+            24,
+            "a segment that crosses others, in the table"
+        );
+        assert_eq!(
+            size_of::<([VertexId; 2], VertexId)>(),
+            12,
+            "an edge that was split, in the table"
+        );
+        assert_eq!(
+            size_of::<crate::engine::ConstrainedEdges>(),
+            1,
+            "the flags of three edges, at each triangle"
+        );
     }
 }

@@ -31,17 +31,33 @@ pub(super) struct Change {
 impl Change {
     /// Returns the change from one chain to another. The chain of a segment that does not exist is
     /// empty.
-    pub(super) fn new(segment: Ends, old: Vec<VertexId>, new: Vec<VertexId>, is_bent: bool) -> Self {
+    pub(super) fn new(
+        segment: Ends,
+        old: Vec<VertexId>,
+        new: Vec<VertexId>,
+        is_bent: bool,
+    ) -> Self {
         let head = count_shared(old.iter(), new.iter()).saturating_sub(1);
         let tail = count_shared(old.iter().rev(), new.iter().rev()).saturating_sub(1);
-        Change { segment, is_bent, old, new, head, tail }
+        Change {
+            segment,
+            is_bent,
+            old,
+            new,
+            head,
+            tail,
+        }
     }
 
     /// Lets the parts at a vertex change, too: the part of the old chain with this number, and the
     /// next one if the vertex is between them.
     pub(super) fn include(&mut self, part: usize, vertex: VertexId) {
         let sites = self.old_sites();
-        let last = if sites.get(part) == Some(&vertex) { part + 1 } else { part };
+        let last = if sites.get(part) == Some(&vertex) {
+            part + 1
+        } else {
+            part
+        };
         let after = sites.len() - last;
         self.head = self.head.min(part);
         self.tail = self.tail.min(after);
@@ -69,11 +85,14 @@ impl Change {
 
     /// The sites of both chains that lie between the parts that stay.
     pub(super) fn sites_that_change(&self) -> impl Iterator<Item = VertexId> {
-        [&self.old, &self.new].into_iter().flat_map(|chain| self.changed(chain).skip(1).map(|part| chain[part]))
+        [&self.old, &self.new]
+            .into_iter()
+            .flat_map(|chain| self.changed(chain).skip(1).map(|part| chain[part]))
     }
 
     fn parts<'a>(&self, chain: &'a [VertexId]) -> impl Iterator<Item = Ends> + use<'a> {
-        self.changed(chain).map(|part| undirected(chain[part], chain[part + 1]))
+        self.changed(chain)
+            .map(|part| undirected(chain[part], chain[part + 1]))
     }
 
     /// Returns which parts of a chain change.
@@ -83,11 +102,18 @@ impl Change {
 }
 
 /// Returns how many elements two lists share before the first one that differs.
-fn count_shared<'a>(old: impl Iterator<Item = &'a VertexId>, new: impl Iterator<Item = &'a VertexId>) -> usize {
+fn count_shared<'a>(
+    old: impl Iterator<Item = &'a VertexId>,
+    new: impl Iterator<Item = &'a VertexId>,
+) -> usize {
     old.zip(new).take_while(|(u, v)| u == v).count()
 }
 
 /// Returns the sites of a chain without its ends.
 fn between(chain: &[VertexId]) -> &[VertexId] {
-    if let [_, between @ .., _] = chain { between } else { &[] }
+    if let [_, between @ .., _] = chain {
+        between
+    } else {
+        &[]
+    }
 }

@@ -20,10 +20,18 @@ impl Lines {
     ) -> Vec<Flaw> {
         let is_flat = t.dimension() < 2;
         let constraints: FxHashSet<[VertexId; 2]> = match is_flat {
-            true => self.waiting.iter().map(|&[a, b]| undirected(a, b)).collect(),
+            true => self
+                .waiting
+                .iter()
+                .map(|&[a, b]| undirected(a, b))
+                .collect(),
             false => t.constrained_edges().collect(),
         };
-        let waiting = self.waiting.iter().filter(|_| !is_flat).map(|&[a, b]| LinesFlaw::Waiting(a, b));
+        let waiting = self
+            .waiting
+            .iter()
+            .filter(|_| !is_flat)
+            .map(|&[a, b]| LinesFlaw::Waiting(a, b));
         let segments = self.chains.segments();
         let mut flaws: Vec<LinesFlaw> = waiting.collect();
         self.check_chains(t, &segments, &constraints, &mut flaws);
@@ -31,10 +39,25 @@ impl Lines {
         let named: FxHashSet<VertexId> = self.chains.each().flatten().copied().collect();
         let constrained: FxHashSet<VertexId> = constraints.into_iter().flatten().collect();
         let is_crossing = |v: &VertexId| constrained.contains(v) && !named.contains(v);
-        flaws.extend(self.added.iter().filter(|v| !is_crossing(v)).map(LinesFlaw::Added));
-        flaws.extend(self.owned.iter().filter(|v| !named.contains(v)).map(LinesFlaw::Owned));
+        flaws.extend(
+            self.added
+                .iter()
+                .filter(|v| !is_crossing(v))
+                .map(LinesFlaw::Added),
+        );
+        flaws.extend(
+            self.owned
+                .iter()
+                .filter(|v| !named.contains(v))
+                .map(LinesFlaw::Owned),
+        );
         if let Some(index) = self.index.get() {
-            flaws.extend(segments.iter().filter(|&&ends| !index.knows(&self.chains, ends)).map(|_| LinesFlaw::Index));
+            flaws.extend(
+                segments
+                    .iter()
+                    .filter(|&&ends| !index.knows(&self.chains, ends))
+                    .map(|_| LinesFlaw::Index),
+            );
         }
         let missing = self.missing.iter().map(|&[a, b]| Flaw::Missing(a, b));
         missing.chain(flaws.into_iter().map(Flaw::Lines)).collect()
@@ -55,11 +78,18 @@ impl Lines {
             bent += usize::from(self.chains.bent.contains_key(&ends));
             let sites = self.chains.sites(ends);
             let mut met: FxHashSet<VertexId> = sites.iter().copied().collect();
-            if met.len() < sites.len() || !sites.windows(2).all(|pair| runs_along(t, ends, [pair[0], pair[1]])) {
+            if met.len() < sites.len()
+                || !sites
+                    .windows(2)
+                    .all(|pair| runs_along(t, ends, [pair[0], pair[1]]))
+            {
                 flaws.push(LinesFlaw::Order(ends[0], ends[1]));
                 continue;
             }
-            let mut parts: Vec<[VertexId; 2]> = sites.windows(2).map(|pair| undirected(pair[0], pair[1])).collect();
+            let mut parts: Vec<[VertexId; 2]> = sites
+                .windows(2)
+                .map(|pair| undirected(pair[0], pair[1]))
+                .collect();
             while let Some(part) = parts.pop() {
                 match self.chains.splits.get(&part) {
                     Some(&between) if met.insert(between) => {
@@ -75,7 +105,9 @@ impl Lines {
                 }
             }
         }
-        if flaws.is_empty() && (bent, splits.len()) != (self.chains.bent.len(), self.chains.splits.len()) {
+        if flaws.is_empty()
+            && (bent, splits.len()) != (self.chains.bent.len(), self.chains.splits.len())
+        {
             flaws.push(LinesFlaw::Stray);
         }
     }
@@ -89,7 +121,9 @@ impl Lines {
     where
         C: Copy + Default,
     {
-        let Some(Rounding { unit, on_grid }) = self.rounding else { return !self.recrossed };
+        let Some(Rounding { unit, on_grid }) = self.rounding else {
+            return !self.recrossed;
+        };
         let is_power_of_two = |x: f64| {
             let bits = x.to_bits();
             x > 0.0 && x.is_finite() && (bits.trailing_zeros() >= 52 || bits.is_power_of_two())
@@ -99,7 +133,9 @@ impl Lines {
             (0..2).all(|axis| at[axis] % unit[axis] == 0.0)
         };
         let mut sites = segments.iter().flat_map(|&ends| self.chains.sites(ends));
-        unit.into_iter().all(is_power_of_two) && !(self.recrossed && on_grid) && (!on_grid || sites.all(is_multiple))
+        unit.into_iter().all(is_power_of_two)
+            && !(self.recrossed && on_grid)
+            && (!on_grid || sites.all(is_multiple))
     }
 }
 
@@ -110,5 +146,7 @@ fn runs_along<G: Crossing, V, C: Copy + Default>(
     part: [VertexId; 2],
 ) -> bool {
     let [[a, b], [p, q]] = [segment, part].map(|ends| ends.map(|v| t.geometry.plan(t.point(v))));
-    (0..2).all(|axis| p[axis] == q[axis] || (p[axis] < q[axis]) == (a[axis] < b[axis]) && a[axis] != b[axis])
+    (0..2).all(|axis| {
+        p[axis] == q[axis] || (p[axis] < q[axis]) == (a[axis] < b[axis]) && a[axis] != b[axis]
+    })
 }

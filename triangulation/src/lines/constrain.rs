@@ -21,8 +21,12 @@ fn insert_through<G: Crossing, V, C: Copy + Default>(
     location: Location,
 ) -> Inserted<V> {
     let split = t.constraint_at(location);
-    let takes = |t: &Mesh<G, V, C>, from, i, beyond| !t.tds.cell_data(from).has(i) && t.in_conflict(beyond, &p);
-    let inserted = t.insert_at(p, location, data, takes, |constrained, i| constrained.only(i));
+    let takes = |t: &Mesh<G, V, C>, from, i, beyond| {
+        !t.tds.cell_data(from).has(i) && t.in_conflict(beyond, &p)
+    };
+    let inserted = t.insert_at(p, location, data, takes, |constrained, i| {
+        constrained.only(i)
+    });
     t.constrain_halves(split, inserted.vertex);
     inserted
 }
@@ -79,7 +83,16 @@ impl Lines {
         cell: CellId,
         i: usize,
     ) -> VertexId {
-        insert_through(t, p, V::default(), Location::Cell { cell, facets: Facets::only(i) }).vertex
+        insert_through(
+            t,
+            p,
+            V::default(),
+            Location::Cell {
+                cell,
+                facets: Facets::only(i),
+            },
+        )
+        .vertex
     }
 
     /// Inserts the sub-constraint between two vertices. All constraints enter the triangulation by
@@ -109,7 +122,11 @@ impl Lines {
                 continue;
             }
             // Finding the direction takes long at a vertex of high degree.
-            let [a, b] = if t.tds.is_busier(a, b) { [b, a] } else { [a, b] };
+            let [a, b] = if t.tds.is_busier(a, b) {
+                [b, a]
+            } else {
+                [a, b]
+            };
             match t.trace(a, b, &mut self.buffers) {
                 TraceEnd::Vertex(v) => {
                     t.insert_traced(a, v, &mut self.buffers, Triangulation::triangulate);
@@ -125,7 +142,10 @@ impl Lines {
     }
 
     /// Inserts the segments that were stored while all points were collinear.
-    pub(super) fn constrain_waiting<G: Crossing, V, C: Copy + Default>(&mut self, t: &mut Mesh<G, V, C>) {
+    pub(super) fn constrain_waiting<G: Crossing, V, C: Copy + Default>(
+        &mut self,
+        t: &mut Mesh<G, V, C>,
+    ) {
         if t.dimension() == 2 && !self.waiting.is_empty() {
             self.index.take();
             for [a, b] in std::mem::take(&mut self.waiting) {
@@ -149,8 +169,11 @@ impl Lines {
         }
         if let Some(line) = t.line_without(vertex) {
             // No triangles will be left to hold the constraints.
-            let constrained = line.windows(2).filter(|pair| t.has_constraint(pair[0], pair[1]));
-            self.waiting.extend(constrained.map(|pair| [pair[0], pair[1]]));
+            let constrained = line
+                .windows(2)
+                .filter(|pair| t.has_constraint(pair[0], pair[1]));
+            self.waiting
+                .extend(constrained.map(|pair| [pair[0], pair[1]]));
         }
         t.remove_vertex(WithConstraints, vertex);
         Some(*t.point(vertex))
@@ -180,7 +203,8 @@ impl Lines {
     ) -> bool {
         let Some(sides) = t.release_edge(a, b) else {
             let waiting = self.waiting.len();
-            self.waiting.retain(|&pair| pair != [a, b] && pair != [b, a]);
+            self.waiting
+                .retain(|&pair| pair != [a, b] && pair != [b, a]);
             return self.waiting.len() < waiting;
         };
         self.buffers.to_legalize.extend(sides);

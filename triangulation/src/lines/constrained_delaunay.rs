@@ -71,7 +71,10 @@ impl<G: Crossing, V, C> Deref for ConstrainedDelaunay<G, V, C> {
 
 impl<G: Crossing + Clone, V: Clone, C: Clone> Clone for ConstrainedDelaunay<G, V, C> {
     fn clone(&self) -> Self {
-        ConstrainedDelaunay { inner: self.inner.duplicate(), lines: self.lines.clone() }
+        ConstrainedDelaunay {
+            inner: self.inner.duplicate(),
+            lines: self.lines.clone(),
+        }
     }
 }
 
@@ -81,18 +84,26 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
 
 impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
     fn over(inner: Triangulation<G, 3, V, ConstrainedEdges<C>>) -> Self {
-        ConstrainedDelaunay { inner, lines: Lines::default() }
+        ConstrainedDelaunay {
+            inner,
+            lines: Lines::default(),
+        }
     }
 
     /// Converts the triangulation below; its law stays.
     fn with_inner<W, D>(
         self,
-        convert: impl FnOnce(Triangulation<G, 3, V, ConstrainedEdges<C>>) -> Triangulation<G, 3, W, ConstrainedEdges<D>>,
+        convert: impl FnOnce(
+            Triangulation<G, 3, V, ConstrainedEdges<C>>,
+        ) -> Triangulation<G, 3, W, ConstrainedEdges<D>>,
     ) -> ConstrainedDelaunay<G, W, D>
     where
         D: Copy + Default,
     {
-        ConstrainedDelaunay { inner: convert(self.inner), lines: self.lines }
+        ConstrainedDelaunay {
+            inner: convert(self.inner),
+            lines: self.lines,
+        }
     }
 
     payload_methods! {
@@ -109,7 +120,11 @@ impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
     /// its height; returns the old one. Returns `None`, and changes nothing, if the site differs.
     pub fn replace_point(&mut self, vertex: VertexId, p: G::Point) -> Option<G::Point> {
         let old = self.inner.points.get_mut(vertex.index())?;
-        self.inner.geometry.compare(&p, old).is_eq().then(|| std::mem::replace(old, p))
+        self.inner
+            .geometry
+            .compare(&p, old)
+            .is_eq()
+            .then(|| std::mem::replace(old, p))
     }
 
     /// Returns the flaws found by a check up to the given level, with exact predicates. If there
@@ -134,7 +149,11 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
     ///
     /// # Errors
     /// [`InputError::Canceled`] if the flag of the grain is set.
-    pub(crate) fn from_sites(geometry: G, sites: Sites<G::Point>, grain: bulk::Grain) -> Result<Self, InputError> {
+    pub(crate) fn from_sites(
+        geometry: G,
+        sites: Sites<G::Point>,
+        grain: bulk::Grain,
+    ) -> Result<Self, InputError> {
         let mut triangulation = Self::new(geometry);
         let (points, tds) = bulk::build(&triangulation.inner.geometry, sites, grain);
         let count = points.len();
@@ -150,7 +169,11 @@ impl<G: Crossing + Coordinates<3>, V: Default> ConstrainedDelaunay<G, V> {
             let ConstrainedDelaunay { inner, lines } = &mut triangulation;
             lines.insert_point(inner, inner.points[index], None);
         }
-        debug_assert_eq!(triangulation.vertex_count(), count, "two points on one site");
+        debug_assert_eq!(
+            triangulation.vertex_count(),
+            count,
+            "two points on one site"
+        );
         Ok(triangulation)
     }
 }
@@ -165,9 +188,15 @@ impl<G: Crossing + Coordinates<3>> ConstrainedDelaunay<G> {
     ///
     /// # Complexity
     /// That of [`Delaunay::from_points`](crate::Delaunay::from_points) in the plane.
-    pub fn from_points(geometry: G, points: &[G::Point]) -> Result<(Self, Vec<VertexId>), InputError> {
+    pub fn from_points(
+        geometry: G,
+        points: &[G::Point],
+    ) -> Result<(Self, Vec<VertexId>), InputError> {
         let (sites, vertices) = Sites::of(&geometry, points, bulk::Grain::default())?;
-        Ok((Self::from_sites(geometry, sites, bulk::Grain::default())?, vertices))
+        Ok((
+            Self::from_sites(geometry, sites, bulk::Grain::default())?,
+            vertices,
+        ))
     }
 
     from_points_with_method!(ConstrainedDelaunay<G, V>);

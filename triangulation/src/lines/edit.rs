@@ -21,7 +21,12 @@ use super::tables::Lines;
 impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
     /// Updates the lines for a given vertex, which is new, or may have been added for a crossing
     /// before.
-    pub(super) fn make_given(&mut self, vertex: VertexId, p: G::Point, is_new: bool) -> Result<(), NotLocal> {
+    pub(super) fn make_given(
+        &mut self,
+        vertex: VertexId,
+        p: G::Point,
+        is_new: bool,
+    ) -> Result<(), NotLocal> {
         let was_added = self.lines.added.remove(vertex);
         if was_added {
             self.lines.touch();
@@ -41,8 +46,15 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
     ///
     /// # Errors
     /// If there is no such vertex, or it was added where lines cross.
-    pub fn remove_with_lines(&mut self, vertex: VertexId) -> Result<(G::Point, Vec<LineId>), RemovalError> {
-        let p = self.tds().is_vertex(vertex).then(|| *self.point(vertex)).ok_or(RemovalError::NoVertex)?;
+    pub fn remove_with_lines(
+        &mut self,
+        vertex: VertexId,
+    ) -> Result<(G::Point, Vec<LineId>), RemovalError> {
+        let p = self
+            .tds()
+            .is_vertex(vertex)
+            .then(|| *self.point(vertex))
+            .ok_or(RemovalError::NoVertex)?;
         let lines = self.lines.given_by(&self.inner, vertex);
         if lines.is_empty() {
             return Ok((self.remove(vertex)?, lines));
@@ -68,8 +80,15 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
     /// [`from_lines`](Self::from_lines). So are few lines that change the unit of the grid, or that
     /// cross others off the grid (see [`Rounding`](crate::Rounding));
     /// [`rearrangements`](Self::rearrangements) counts how often.
-    pub fn insert_lines<L: AsRef<[G::Point]>>(&mut self, lines: &[L]) -> Result<Vec<LineId>, InputError> {
-        let points: Vec<G::Point> = lines.iter().flat_map(|line| line.as_ref()).copied().collect();
+    pub fn insert_lines<L: AsRef<[G::Point]>>(
+        &mut self,
+        lines: &[L],
+    ) -> Result<Vec<LineId>, InputError> {
+        let points: Vec<G::Point> = lines
+            .iter()
+            .flat_map(|line| line.as_ref())
+            .copied()
+            .collect();
         for (i, p) in points.iter().enumerate() {
             self.inner.admit(p).map_err(|error| error.at(i))?;
         }
@@ -79,12 +98,18 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
         for line in lines {
             let (here, others) = rest.split_at(line.as_ref().len());
             rest = others;
-            changes.push((LineId::new(self.lines.chains.given.len()), Some(here.into())));
+            changes.push((
+                LineId::new(self.lines.chains.given.len()),
+                Some(here.into()),
+            ));
             self.lines.chains.given.push(None);
         }
         let ids = changes.iter().map(|(line, _)| *line).collect();
         let before = self.lines.replace(changes);
-        if is_known.and_then(|()| self.lines.change(&mut self.inner, &before)).is_err() {
+        if is_known
+            .and_then(|()| self.lines.change(&mut self.inner, &before))
+            .is_err()
+        {
             self.rearrange();
         }
         Ok(ids)
@@ -123,7 +148,12 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
     /// # Complexity
     /// As for [`insert_lines`](Self::insert_lines).
     pub fn remove_line(&mut self, line: LineId) -> bool {
-        let is_there = self.lines.chains.given.get(line.index()).is_some_and(Option::is_some);
+        let is_there = self
+            .lines
+            .chains
+            .given
+            .get(line.index())
+            .is_some_and(Option::is_some);
         if is_there {
             self.change_lines(vec![(line, None)]);
         }
@@ -198,13 +228,25 @@ impl Lines {
     ) -> Vec<LineId> {
         let names = |line: &LineId| self.chains.vertices(*line).contains(&vertex);
         if t.dimension() < 2 {
-            return self.chains.numbered().map(|(line, _)| line).filter(names).collect();
+            return self
+                .chains
+                .numbered()
+                .map(|(line, _)| line)
+                .filter(names)
+                .collect();
         }
         let index = self.index();
-        let edges = t.constrained_around(vertex).map(|other| undirected(vertex, other));
+        let edges = t
+            .constrained_around(vertex)
+            .map(|other| undirected(vertex, other));
         let segments = edges.flat_map(|edge| index.segments_on(&self.chains, edge));
-        let lines = segments.filter(|segment| segment.contains(&vertex)).flat_map(|segment| index.lines_of(segment));
-        let mut lines: Vec<LineId> = lines.chain(index.dots.iter().filter(|line| names(line))).copied().collect();
+        let lines = segments
+            .filter(|segment| segment.contains(&vertex))
+            .flat_map(|segment| index.lines_of(segment));
+        let mut lines: Vec<LineId> = lines
+            .chain(index.dots.iter().filter(|line| names(line)))
+            .copied()
+            .collect();
         lines.sort_unstable();
         lines.dedup();
         lines
@@ -215,14 +257,21 @@ impl Lines {
     fn replace(&mut self, changes: Vec<(LineId, Option<LineVertices>)>) -> LinesBefore {
         self.index(); // computed before the change
         let given = &mut self.chains.given;
-        changes.into_iter().map(|(line, new)| (line, std::mem::replace(&mut given[line.index()], new))).collect()
+        changes
+            .into_iter()
+            .map(|(line, new)| (line, std::mem::replace(&mut given[line.index()], new)))
+            .collect()
     }
 
     /// Changes the vertices of a line whose new segments are present already.
     fn rename(&mut self, line: LineId, vertices: Option<LineVertices>) {
         let old = std::mem::replace(&mut self.chains.given[line.index()], vertices);
         if let Some(index) = self.index.get_mut() {
-            index.rename(line, old.as_deref().unwrap_or_default(), self.chains.vertices(line));
+            index.rename(
+                line,
+                old.as_deref().unwrap_or_default(),
+                self.chains.vertices(line),
+            );
         }
     }
 
@@ -241,7 +290,8 @@ impl Lines {
         for (line, old) in before {
             let old = old.as_deref().unwrap_or_default();
             let new = self.chains.vertices(*line).to_vec();
-            let [gone, come]: [Vec<Ends>; 2] = [old, &new].map(|vertices| segments_of([vertices].into_iter(), |v| v));
+            let [gone, come]: [Vec<Ends>; 2] =
+                [old, &new].map(|vertices| segments_of([vertices].into_iter(), |v| v));
             let is_in = |segments: &[Ends], segment: &Ends| segments.binary_search(segment).is_ok();
             for &segment in gone.iter().filter(|segment| !is_in(&come, segment)) {
                 if self.measured(t)?.detach(segment, *line) {
@@ -263,7 +313,11 @@ impl Lines {
                 self.measured(t)?.dots.push(*line);
             }
         }
-        for &vertex in before.iter().filter_map(|(_, old)| old.as_deref()).flatten() {
+        for &vertex in before
+            .iter()
+            .filter_map(|(_, old)| old.as_deref())
+            .flatten()
+        {
             if self.owned.contains(vertex) && self.given_by(t, vertex).is_empty() {
                 self.owned.remove(vertex);
                 if self.remove_free(t, vertex).is_none() {

@@ -17,9 +17,12 @@ impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
         // While all points are collinear, the table has no splits.
         let first = chain.len();
         let ends = [a, b].map(|v| self.point(v));
-        let is_between = |&v: &VertexId| self.geometry().side_of_sphere_in_flat(&ends, self.point(v)) == Sign::Positive;
+        let is_between = |&v: &VertexId| {
+            self.geometry().side_of_sphere_in_flat(&ends, self.point(v)) == Sign::Positive
+        };
         chain.extend(self.tds().vertices().filter(is_between));
-        chain[first..].sort_unstable_by(|&u, &v| self.geometry().compare(self.point(u), self.point(v)));
+        chain[first..]
+            .sort_unstable_by(|&u, &v| self.geometry().compare(self.point(u), self.point(v)));
         if self.geometry().compare(ends[0], ends[1]).is_gt() {
             chain[first..].reverse();
         }
@@ -29,7 +32,9 @@ impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
     /// The ids of all lines, in order.
     pub fn lines(&self) -> impl Iterator<Item = LineId> + '_ {
         let given = self.lines.chains.given.iter().enumerate();
-        given.filter(|(_, line)| line.is_some()).map(|(index, _)| LineId::new(index))
+        given
+            .filter(|(_, line)| line.is_some())
+            .map(|(index, _)| LineId::new(index))
     }
 
     /// Returns the vertices by which a line was given, in order; points on one site share a vertex.
@@ -75,16 +80,27 @@ impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
     /// Constant time for each line. The first call after construction takes linear time and
     /// allocates about 40 bytes for each segment, and for each edge of segments that are more than
     /// one.
-    pub fn lines_through(&self, a: VertexId, b: VertexId) -> impl ExactSizeIterator<Item = LineId> + '_ {
+    pub fn lines_through(
+        &self,
+        a: VertexId,
+        b: VertexId,
+    ) -> impl ExactSizeIterator<Item = LineId> + '_ {
         let edge = undirected(a, b);
         let mut lines: Vec<LineId> = Vec::new();
         if self.dimension() < 2 {
-            let runs_along =
-                |line: &LineId| self.chain(*line).windows(2).any(|pair| undirected(pair[0], pair[1]) == edge);
+            let runs_along = |line: &LineId| {
+                self.chain(*line)
+                    .windows(2)
+                    .any(|pair| undirected(pair[0], pair[1]) == edge)
+            };
             lines.extend(self.lines().filter(runs_along));
         } else if !self.lines.chains.splits.contains_key(&edge) {
             let index = self.lines.index();
-            lines.extend(index.segments_on(&self.lines.chains, edge).flat_map(|segment| index.lines_of(segment)));
+            lines.extend(
+                index
+                    .segments_on(&self.lines.chains, edge)
+                    .flat_map(|segment| index.lines_of(segment)),
+            );
             lines.sort_unstable();
             lines.dedup();
         }

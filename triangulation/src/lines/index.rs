@@ -132,21 +132,40 @@ impl Index {
             self.count(at(end), true);
         }
         let is_even = rounding.is_none_or(|rounding| rounding.on_grid);
-        let Some(largest) = self.largest() else { return };
-        let Some(rounder) = Rounder::new(largest, t.geometry.step(), is_even) else { return };
-        self.uneven = segments.as_flattened().iter().filter(|&&end| !rounder.holds(at(end))).count();
-        let is_hit = |ends: &Ends, sites: &[VertexId]| sites.iter().all(|&site| rounder.hits(ends.map(at), at(site)));
-        let is_on = |([a, b], between): (&Ends, &VertexId)| is_aligned([at(*a), at(*b)], at(*between));
+        let Some(largest) = self.largest() else {
+            return;
+        };
+        let Some(rounder) = Rounder::new(largest, t.geometry.step(), is_even) else {
+            return;
+        };
+        self.uneven = segments
+            .as_flattened()
+            .iter()
+            .filter(|&&end| !rounder.holds(at(end)))
+            .count();
+        let is_hit = |ends: &Ends, sites: &[VertexId]| {
+            sites
+                .iter()
+                .all(|&site| rounder.hits(ends.map(at), at(site)))
+        };
+        let is_on =
+            |([a, b], between): (&Ends, &VertexId)| is_aligned([at(*a), at(*b)], at(*between));
         let is_known = t.tds.vertices().all(|v| is_ordinary(at(v)))
-            && rounding.is_none_or(|rounding| rounding.unit == rounder.unit() && (self.uneven == 0) == is_even)
+            && rounding.is_none_or(|rounding| {
+                rounding.unit == rounder.unit() && (self.uneven == 0) == is_even
+            })
             && chains.bent.iter().all(|(ends, sites)| is_hit(ends, sites))
             && chains.splits.iter().all(is_on);
-        self.rounder = is_known.then(|| Rounder::new(largest, t.geometry.step(), self.uneven == 0)).flatten();
+        self.rounder = is_known
+            .then(|| Rounder::new(largest, t.geometry.step(), self.uneven == 0))
+            .flatten();
     }
 
     /// Returns, for each axis, the largest coordinate of an end, up to a factor of two.
     fn largest(&self) -> Option<[f64; 2]> {
-        let largest = |steps: &BTreeMap<u64, usize>| Some(f64::from_bits(*steps.last_key_value()?.0) / f64::EPSILON);
+        let largest = |steps: &BTreeMap<u64, usize>| {
+            Some(f64::from_bits(*steps.last_key_value()?.0) / f64::EPSILON)
+        };
         Some([largest(&self.steps[0])?, largest(&self.steps[1])?])
     }
 
@@ -155,13 +174,21 @@ impl Index {
         for (steps, x) in self.steps.iter_mut().zip(at) {
             let step = step_at(x).to_bits();
             let count = steps.entry(step).or_default();
-            *count = if is_added { *count + 1 } else { count.saturating_sub(1) };
+            *count = if is_added {
+                *count + 1
+            } else {
+                count.saturating_sub(1)
+            };
             if *count == 0 {
                 steps.remove(&step);
             }
         }
         if self.rounder.is_some_and(|rounder| !rounder.holds(at)) {
-            self.uneven = if is_added { self.uneven + 1 } else { self.uneven.saturating_sub(1) };
+            self.uneven = if is_added {
+                self.uneven + 1
+            } else {
+                self.uneven.saturating_sub(1)
+            };
         }
     }
 
@@ -169,10 +196,15 @@ impl Index {
     ///
     /// # Errors
     /// If the grid changes.
-    pub(super) fn count_ends(&mut self, ends: [[f64; 2]; 2], is_added: bool) -> Result<(), NotLocal> {
+    pub(super) fn count_ends(
+        &mut self,
+        ends: [[f64; 2]; 2],
+        is_added: bool,
+    ) -> Result<(), NotLocal> {
         let before = self.largest();
         ends.into_iter().for_each(|at| self.count(at, is_added));
-        let is_same = |rounder: &Rounder| rounder.is_even() == (self.uneven == 0) && before == self.largest();
+        let is_same =
+            |rounder: &Rounder| rounder.is_even() == (self.uneven == 0) && before == self.largest();
         self.rounder.filter(is_same).map(|_| ()).ok_or(NotLocal)
     }
 
@@ -213,15 +245,22 @@ impl Index {
 
     /// The segments that have an edge as a node.
     pub(super) fn segments_on(&self, chains: &Chains, edge: Ends) -> impl Iterator<Item = Ends> {
-        let is_one = self.has_segment(edge) && chains.bent.get(&edge).is_none_or(|sites| sites.is_empty());
-        self.segments_on.get(edge).iter().copied().chain(is_one.then_some(edge))
+        let is_one =
+            self.has_segment(edge) && chains.bent.get(&edge).is_none_or(|sites| sites.is_empty());
+        self.segments_on
+            .get(edge)
+            .iter()
+            .copied()
+            .chain(is_one.then_some(edge))
     }
 
     /// Returns true if the index has all nodes of a segment.
     pub(super) fn knows(&self, chains: &Chains, segment: Ends) -> bool {
         let mut is_known = self.has_segment(segment);
         let is_on = |node| self.segments_on(chains, node).any(|other| other == segment);
-        chains.parts(segment, |part| chains.nodes_of_part(part, |node| is_known &= is_on(node)));
+        chains.parts(segment, |part| {
+            chains.nodes_of_part(part, |node| is_known &= is_on(node))
+        });
         is_known
     }
 
@@ -241,7 +280,13 @@ impl Index {
 
     /// Removes a segment from the nodes of a part of its chain, and appends these to `nodes`. The
     /// node that is the segment itself stays.
-    pub(super) fn remove_part(&mut self, chains: &Chains, segment: Ends, part: Ends, nodes: &mut Vec<Ends>) {
+    pub(super) fn remove_part(
+        &mut self,
+        chains: &Chains,
+        segment: Ends,
+        part: Ends,
+        nodes: &mut Vec<Ends>,
+    ) {
         chains.nodes_of_part(part, |node| {
             self.segments_on.remove(node, segment);
             nodes.push(node);
@@ -261,5 +306,8 @@ impl Index {
 
 /// The segments of a line, from the smaller vertex to the larger; with repetitions.
 fn segments_of_line(vertices: &[VertexId]) -> impl Iterator<Item = Ends> + '_ {
-    vertices.windows(2).filter(|pair| pair[0] != pair[1]).map(|pair| undirected(pair[0], pair[1]))
+    vertices
+        .windows(2)
+        .filter(|pair| pair[0] != pair[1])
+        .map(|pair| undirected(pair[0], pair[1]))
 }

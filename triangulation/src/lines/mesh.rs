@@ -11,6 +11,9 @@ pub(super) type Mesh<G, V, C> = Triangulation<G, 3, V, ConstrainedEdges<C>>;
 
 /// Returns the coordinates of a vertex; negative zeros become positive.
 #[inline]
-pub(super) fn position<G: Crossing, V, C: Copy + Default>(t: &Mesh<G, V, C>, vertex: VertexId) -> [f64; 2] {
+pub(super) fn position<G: Crossing, V, C: Copy + Default>(
+    t: &Mesh<G, V, C>,
+    vertex: VertexId,
+) -> [f64; 2] {
     t.geometry.plan(t.point(vertex)).map(unsigned_zero)
 }

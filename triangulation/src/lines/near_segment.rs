@@ -37,7 +37,8 @@ impl Band {
             return false;
         }
         let edge = [0, 1].map(|k| w[k] - u[k]);
-        !is_beside(self.ends[0], self.along, self.reach, [u, w]) && !is_beside(u, edge, self.reach, self.ends)
+        !is_beside(self.ends[0], self.along, self.reach, [u, w])
+            && !is_beside(u, edge, self.reach, self.ends)
     }
 
     fn has(&self, p: [f64; 2]) -> bool {
@@ -56,7 +57,8 @@ fn is_beside(from: [f64; 2], along: [f64; 2], reach: [f64; 2], points: [[f64; 2]
         let doubt = 8.0 * f64::EPSILON * (products[0].abs() + products[1].abs());
         (products[0] - products[1], width + doubt)
     });
-    sides.iter().all(|(side, limit)| side > limit) || sides.iter().all(|(side, limit)| *side < -limit)
+    sides.iter().all(|(side, limit)| side > limit)
+        || sides.iter().all(|(side, limit)| *side < -limit)
 }
 
 /// What lies near a segment or a vertex.
@@ -76,11 +78,21 @@ pub(super) struct Nearby {
 ///
 /// # Complexity
 /// Linear in the number of triangles that the band meets, and in the degree of the vertex.
-pub(super) fn near<G: Crossing, V, C: Copy + Default>(t: &mut Mesh<G, V, C>, band: &Band, start: VertexId) -> Nearby {
-    let mut nearby = Nearby { edges: Vec::new(), vertices: Vec::new() };
-    let Some(first) = t.tds.around(start).find(|&cell| !t.tds.is_infinite(cell)) else { return nearby };
+pub(super) fn near<G: Crossing, V, C: Copy + Default>(
+    t: &mut Mesh<G, V, C>,
+    band: &Band,
+    start: VertexId,
+) -> Nearby {
+    let mut nearby = Nearby {
+        edges: Vec::new(),
+        vertices: Vec::new(),
+    };
+    let Some(first) = t.tds.around(start).find(|&cell| !t.tds.is_infinite(cell)) else {
+        return nearby;
+    };
     let mut zone = std::mem::take(&mut t.zone);
-    let meets = |cell: CellId, i: usize| band.meets(t.tds.edge_ends(cell, i).map(|v| position(t, v)));
+    let meets =
+        |cell: CellId, i: usize| band.meets(t.tds.edge_ends(cell, i).map(|v| position(t, v)));
     let mut meet = |vertex: VertexId| {
         if band.has(position(t, vertex)) {
             nearby.vertices.push(vertex);

@@ -31,7 +31,10 @@ impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
     ///
     /// # Complexity
     /// O(n log n) for n edges of the lines' chains, and linear in the number of cells.
-    pub fn nesting_of(&self, lines: impl IntoIterator<Item = LineId>) -> Result<Vec<u32>, GapError> {
+    pub fn nesting_of(
+        &self,
+        lines: impl IntoIterator<Item = LineId>,
+    ) -> Result<Vec<u32>, GapError> {
         let mut counts: HashMap<[VertexId; 2], bool> = HashMap::new();
         let mut ends: HashMap<VertexId, (bool, LineId)> = HashMap::new();
         for line in lines {
@@ -43,16 +46,24 @@ impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
                 ends.entry(end).or_insert((false, line)).0 ^= true;
             }
         }
-        let mut loose: Vec<(VertexId, LineId)> =
-            ends.into_iter().filter(|(_, (is_odd, _))| *is_odd).map(|(end, (_, line))| (end, line)).collect();
+        let mut loose: Vec<(VertexId, LineId)> = ends
+            .into_iter()
+            .filter(|(_, (is_odd, _))| *is_odd)
+            .map(|(end, (_, line))| (end, line))
+            .collect();
         loose.sort_unstable();
         if let Some(&(end, line)) = loose.first() {
             let at = |v: VertexId| self.geometry().plan(self.point(v));
             let [x, y] = at(end);
             let far = |v: VertexId| (at(v)[0] - x).hypot(at(v)[1] - y);
             let others = loose[1..].iter().map(|&(other, _)| other);
-            let other = others.min_by(|&u, &v| far(u).total_cmp(&far(v))).unwrap_or(end);
-            return Err(GapError { line, ends: [at(end), at(other)] });
+            let other = others
+                .min_by(|&u, &v| far(u).total_cmp(&far(v)))
+                .unwrap_or(end);
+            return Err(GapError {
+                line,
+                ends: [at(end), at(other)],
+            });
         }
         Ok(self.nest(|cell, i| {
             self.is_constrained(cell, i) && {

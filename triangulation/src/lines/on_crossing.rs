@@ -28,6 +28,9 @@ impl Rounding {
     /// Returns how an arrangement rounded crossings; `None` without any.
     pub(crate) fn of(arrangement: &Arrangement) -> Option<Self> {
         let has_crossings = !arrangement.crossings().is_empty();
-        has_crossings.then(|| Rounding { unit: arrangement.unit(), on_grid: arrangement.is_on_grid() })
+        has_crossings.then(|| Rounding {
+            unit: arrangement.unit(),
+            on_grid: arrangement.is_on_grid(),
+        })
     }
 }

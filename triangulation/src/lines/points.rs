@@ -70,7 +70,11 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
     /// As [`Delaunay::remove`](crate::Delaunay::remove), or, on a constraint, as
     /// [`remove_line`](Self::remove_line). The first edit after construction takes linear time.
     pub fn remove(&mut self, vertex: VertexId) -> Result<G::Point, RemovalError> {
-        let p = self.points().get(vertex.index()).copied().ok_or(RemovalError::NoVertex)?;
+        let p = self
+            .points()
+            .get(vertex.index())
+            .copied()
+            .ok_or(RemovalError::NoVertex)?;
         self.extract(vertex).map(|_| p)
     }
 
@@ -108,7 +112,8 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
             return Err(RemovalError::Line(line));
         }
         let data = std::mem::take(self.vertex_data_mut(vertex));
-        let is_removed = !self.lines.recrossed && self.lines.remove_free(&mut self.inner, vertex).is_some();
+        let is_removed =
+            !self.lines.recrossed && self.lines.remove_free(&mut self.inner, vertex).is_some();
         if !is_removed && self.lines.withdraw(&mut self.inner, vertex).is_err() {
             self.rearrange();
         }

@@ -41,10 +41,19 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
         self.lines.index.take();
         self.lines.rearrangements += 1;
         let used: HashSet<VertexId> = self.lines.chains.each().flatten().copied().collect();
-        let leaving: HashSet<VertexId> = self.lines.owned.iter().filter(|v| !used.contains(v)).collect();
+        let leaving: HashSet<VertexId> = self
+            .lines
+            .owned
+            .iter()
+            .filter(|v| !used.contains(v))
+            .collect();
         let demand = self.demand(&leaving);
         if self.dimension() < 2 {
-            self.lines.waiting = demand.segments.iter().map(|ends| ends.map(|i| demand.given[i as usize])).collect();
+            self.lines.waiting = demand
+                .segments
+                .iter()
+                .map(|ends| ends.map(|i| demand.given[i as usize]))
+                .collect();
             // The vertices that bend or split them may be removed.
             self.lines.chains.bent.clear();
             self.lines.chains.splits.clear();
@@ -84,7 +93,11 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
         let number = |v: VertexId| given.partition_point(|&other| other < v) as u32;
         let segments = segments_of(self.lines.chains.each(), number);
         let positions = given.iter().map(|&v| self.plan_of(v)).collect();
-        LinesDemand { given, positions, segments }
+        LinesDemand {
+            given,
+            positions,
+            segments,
+        }
     }
 
     /// Makes the triangulation that of an arrangement of what the lines demand, without the
@@ -95,12 +108,23 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
         demand: &LinesDemand,
         mut leaving: HashSet<VertexId>,
     ) -> Vec<SubConstraint> {
-        let LinesDemand { given, segments, .. } = demand;
+        let LinesDemand {
+            given, segments, ..
+        } = demand;
         // Phase 1: sites that stay keep their vertices, other added vertices leave.
-        let mut vertex_at: HashMap<[u64; 2], VertexId> =
-            self.lines.added.iter().map(|v| (key(self.plan_of(v)), v)).collect();
+        let mut vertex_at: HashMap<[u64; 2], VertexId> = self
+            .lines
+            .added
+            .iter()
+            .map(|v| (key(self.plan_of(v)), v))
+            .collect();
         let mut sites: Vec<Option<VertexId>> = given.iter().copied().map(Some).collect();
-        sites.extend(arrangement.added().iter().map(|&position| vertex_at.remove(&key(position))));
+        sites.extend(
+            arrangement
+                .added()
+                .iter()
+                .map(|&position| vertex_at.remove(&key(position))),
+        );
         leaving.extend(vertex_at.into_values());
 
         // Phase 2: which sub-constraints exist already.
@@ -118,7 +142,10 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
         // Phase 4: new sites and sub-constraints are inserted.
         self.insert_sites(arrangement, demand, &mut sites);
         let sites: Vec<VertexId> = sites.into_iter().flatten().collect(); // all are known now
-        let parts = self.lines.chains.record(arrangement, segments, |site| sites[site as usize]);
+        let parts = self
+            .lines
+            .chains
+            .record(arrangement, segments, |site| sites[site as usize]);
         self.lines.rounding = Rounding::of(arrangement);
         let crossing = self.constrain_all(parts, Grain::default());
         self.lines.chains.drop_stray_splits();
@@ -148,7 +175,9 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
                 chain.clear();
                 chain.push(from);
                 self.lines.chains.walk_part(from, to, &mut chain);
-                let is_there = chain.windows(2).all(|edge| self.inner.has_constraint(edge[0], edge[1]));
+                let is_there = chain
+                    .windows(2)
+                    .all(|edge| self.inner.has_constraint(edge[0], edge[1]));
                 if is_there && !chain.iter().any(|v| leaving.contains(v)) {
                     kept.extend(chain.windows(2).map(|edge| undirected(edge[0], edge[1])));
                     self.lines.chains.copy_splits(from, to, &mut splits);
@@ -159,9 +188,18 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
     }
 
     /// Inserts the added sites that have no vertex yet; those that have one get its new point.
-    fn insert_sites(&mut self, arrangement: &Arrangement, demand: &LinesDemand, sites: &mut [Option<VertexId>]) {
-        let LinesDemand { given, segments, .. } = demand;
-        let added = points_added(&self.inner.geometry, arrangement, segments, |i| *self.point(given[i as usize]));
+    fn insert_sites(
+        &mut self,
+        arrangement: &Arrangement,
+        demand: &LinesDemand,
+        sites: &mut [Option<VertexId>],
+    ) {
+        let LinesDemand {
+            given, segments, ..
+        } = demand;
+        let added = points_added(&self.inner.geometry, arrangement, segments, |i| {
+            *self.point(given[i as usize])
+        });
         let mut near = None;
         for i in order_of_insertion(&self.inner.geometry, &added) {
             let (site, p) = (&mut sites[given.len() + i as usize], added[i as usize]);
@@ -202,7 +240,11 @@ pub(super) fn order_of_insertion<G: Coordinates<3>>(geometry: &G, points: &[G::P
     let mut dice = Dice::default();
     let mut rounds = vec![0; points.len()];
     // Points on one site are consecutive; the first of them stays the first.
-    for here in order.chunk_by(|&i, &j| geometry.compare(&points[i as usize], &points[j as usize]).is_eq()) {
+    for here in order.chunk_by(|&i, &j| {
+        geometry
+            .compare(&points[i as usize], &points[j as usize])
+            .is_eq()
+    }) {
         let round = (1 << 16 | dice.below(1 << 16)).trailing_zeros();
         here.iter().for_each(|&i| rounds[i as usize] = round);
     }

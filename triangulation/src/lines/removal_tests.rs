@@ -32,13 +32,20 @@ fn cells(t: &Constrained) -> BTreeSet<Vec<[u64; 2]>> {
 fn cross([a, b]: &[Point; 2], [c, d]: &[Point; 2]) -> bool {
     let g = Plane::<Exact>::default();
     let turn = |p, q, r| g.orientation([p, q, r]);
-    turn(a, b, c) * turn(a, b, d) == Sign::Negative && turn(c, d, a) * turn(c, d, b) == Sign::Negative
+    turn(a, b, c) * turn(a, b, d) == Sign::Negative
+        && turn(c, d, a) * turn(c, d, b) == Sign::Negative
 }
 
 fn lies_on([a, b]: &[Point; 2], p: &Point) -> bool {
     let g = Plane::<Exact>::default();
-    let (low, high) = if g.compare(a, b).is_lt() { (a, b) } else { (b, a) };
-    g.orientation([a, b, p]) == Sign::Zero && g.compare(low, p).is_le() && g.compare(p, high).is_le()
+    let (low, high) = if g.compare(a, b).is_lt() {
+        (a, b)
+    } else {
+        (b, a)
+    };
+    g.orientation([a, b, p]) == Sign::Zero
+        && g.compare(low, p).is_le()
+        && g.compare(p, high).is_le()
 }
 
 fn with_constraints(points: &[Point], constraints: &[[Point; 2]]) -> Constrained {
@@ -58,7 +65,10 @@ fn insert_segment(t: &mut Constrained, a: VertexId, b: VertexId) {
 /// All flaws, except that the tables contain constraints that are on no line, which is the case
 /// here.
 fn flaws(t: &Constrained) -> Vec<Flaw> {
-    t.check(Level::Law).into_iter().filter(|flaw| *flaw != Flaw::Lines(LinesFlaw::Stray)).collect()
+    t.check(Level::Law)
+        .into_iter()
+        .filter(|flaw| *flaw != Flaw::Lines(LinesFlaw::Stray))
+        .collect()
 }
 
 fn same_constraints(t: &Constrained, points: &[Point], constraints: &[[Point; 2]]) {
@@ -72,7 +82,9 @@ fn same_constraints(t: &Constrained, points: &[Point], constraints: &[[Point; 2]
     assert_eq!(cells(t), cells(&expected), "{points:?} {constraints:?}");
     let edges = |t: &Constrained| -> BTreeSet<[[u64; 2]; 2]> {
         let sorted = |[a, b]: [[u64; 2]; 2]| if a < b { [a, b] } else { [b, a] };
-        t.constrained_edges().map(|edge| sorted(edge.map(|v| t.point(v).map(f64::to_bits)))).collect()
+        t.constrained_edges()
+            .map(|edge| sorted(edge.map(|v| t.point(v).map(f64::to_bits))))
+            .collect()
     };
     assert_eq!(edges(t), edges(&expected), "{points:?} {constraints:?}");
 }
@@ -80,7 +92,11 @@ fn same_constraints(t: &Constrained, points: &[Point], constraints: &[[Point; 2]
 /// Removes the free vertices one after the other; then releases the constraints, edge by edge; then
 /// removes the other vertices and inserts the points again. Returns the number of free vertices
 /// removed.
-fn constraints_hold(points: Vec<Point>, constraints: Vec<[Point; 2]>, random: &mut Random) -> usize {
+fn constraints_hold(
+    points: Vec<Point>,
+    constraints: Vec<[Point; 2]>,
+    random: &mut Random,
+) -> usize {
     let mut t = with_constraints(&points, &constraints);
     let mut left = points.clone();
     let mut removed = 0;
@@ -98,7 +114,10 @@ fn constraints_hold(points: Vec<Point>, constraints: Vec<[Point; 2]>, random: &m
                 removed += 1;
                 same_constraints(&t, &left, &constraints);
             }
-            None => assert!(on_constraint || is_met, "{p:?} of {points:?} {constraints:?}"),
+            None => assert!(
+                on_constraint || is_met,
+                "{p:?} of {points:?} {constraints:?}"
+            ),
         }
     }
     let mut edges: Vec<[VertexId; 2]> = t.constrained_edges().collect();
@@ -107,10 +126,15 @@ fn constraints_hold(points: Vec<Point>, constraints: Vec<[Point; 2]>, random: &m
         while let Some([a, b]) = edges.pop() {
             assert!(t.lines.release(&mut t.inner, b, a));
             assert!(!t.lines.release(&mut t.inner, a, b));
-            let kept: Vec<[Point; 2]> = edges.iter().map(|edge| edge.map(|v| *t.point(v))).collect();
+            let kept: Vec<[Point; 2]> =
+                edges.iter().map(|edge| edge.map(|v| *t.point(v))).collect();
             same_constraints(&t, &left, &kept);
             // Ends in sight of other constraints, which are free now.
-            let gone = if random.below(2) == 0 { t.lines.remove_free(&mut t.inner, a) } else { None };
+            let gone = if random.below(2) == 0 {
+                t.lines.remove_free(&mut t.inner, a)
+            } else {
+                None
+            };
             if let Some(p) = gone {
                 left.retain(|q| *q != p);
                 removed += 1;
@@ -136,12 +160,15 @@ fn constraints_stay_on_tiny_grids() {
     let mut removed = 0;
     for _ in 0..3000 {
         let side = 2 + random.below(5);
-        let points: Vec<Point> =
-            (0..3 + random.below(22)).map(|_| [(); 2].map(|()| random.below(side) as f64)).collect();
+        let points: Vec<Point> = (0..3 + random.below(22))
+            .map(|_| [(); 2].map(|()| random.below(side) as f64))
+            .collect();
         let mut constraints: Vec<[Point; 2]> = Vec::new();
         for _ in 0..random.below(7) {
             let constraint = [random.pick(&points), random.pick(&points)];
-            if constraint[0] != constraint[1] && !constraints.iter().any(|other| cross(other, &constraint)) {
+            if constraint[0] != constraint[1]
+                && !constraints.iter().any(|other| cross(other, &constraint))
+            {
                 constraints.push(constraint);
             }
         }
@@ -162,12 +189,16 @@ fn thin_corridors_between_constraints() {
             let [x, y] = [100.0 * random.unit(), 100.0 * random.unit()];
             let angle = random.pick(&[0.0, 0.1, 0.2]) + 0.01 * random.unit();
             let length = 60.0 * random.unit();
-            let constraint = [[x, y], [x + length * f64::cos(angle), y + length * f64::sin(angle)]];
+            let constraint = [
+                [x, y],
+                [x + length * f64::cos(angle), y + length * f64::sin(angle)],
+            ];
             if !constraints.iter().any(|other| cross(other, &constraint)) {
                 constraints.push(constraint);
             }
         }
-        points.extend((0..random.below(12)).map(|_| [100.0 * random.unit(), 100.0 * random.unit()]));
+        points
+            .extend((0..random.below(12)).map(|_| [100.0 * random.unit(), 100.0 * random.unit()]));
         points.extend(constraints.iter().flatten());
         removed += constraints_hold(points, constraints, &mut random);
     }
@@ -184,8 +215,16 @@ fn constraints_wait_while_all_is_on_a_line() {
     assert_eq!(t.constrained_edges().count(), 2);
     assert_eq!(t.lines.remove_free(&mut t.inner, apex), Some([1.0, 5.0]));
     assert_eq!((t.dimension(), t.constrained_edges().count()), (1, 0));
-    let first = t.tds().vertices().find(|&v| *t.point(v) == points[0]).unwrap();
-    let second = t.tds().vertices().find(|&v| *t.point(v) == points[1]).unwrap();
+    let first = t
+        .tds()
+        .vertices()
+        .find(|&v| *t.point(v) == points[0])
+        .unwrap();
+    let second = t
+        .tds()
+        .vertices()
+        .find(|&v| *t.point(v) == points[1])
+        .unwrap();
     assert_eq!(t.lines.remove_free(&mut t.inner, second), None);
     assert_eq!(t.lines.remove_free(&mut t.inner, first), Some(points[0]));
     t.insert([9.0, -5.0]).unwrap();

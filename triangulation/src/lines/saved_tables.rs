@@ -27,12 +27,23 @@ impl Lines {
     /// Returns a copy of the content.
     pub(crate) fn saved_tables(&self) -> SavedTables {
         let segments = self.chains.segments();
-        let mut splits: Vec<[VertexId; 3]> =
-            self.chains.splits.iter().map(|(&[a, b], &between)| [a, b, between]).collect();
+        let mut splits: Vec<[VertexId; 3]> = self
+            .chains
+            .splits
+            .iter()
+            .map(|(&[a, b], &between)| [a, b, between])
+            .collect();
         splits.sort_unstable();
-        let bent = segments.iter().filter(|ends| self.chains.bent.contains_key(*ends));
+        let bent = segments
+            .iter()
+            .filter(|ends| self.chains.bent.contains_key(*ends));
         SavedTables {
-            given: self.chains.given.iter().map(|line| line.as_deref().map(<[_]>::to_vec)).collect(),
+            given: self
+                .chains
+                .given
+                .iter()
+                .map(|line| line.as_deref().map(<[_]>::to_vec))
+                .collect(),
             bent: bent.map(|&ends| self.chains.sites(ends)).collect(),
             splits,
             waiting: self.waiting.clone(),
@@ -51,18 +62,30 @@ impl Lines {
         if tables.given.len() >= LineId::LIMIT {
             return Err("there are too many lines");
         }
-        let given = tables.given.into_iter().map(|line| line.map(|vertices| vertices[..].into()));
-        let mut chains = Chains { given: given.collect(), ..Chains::default() };
+        let given = tables
+            .given
+            .into_iter()
+            .map(|line| line.map(|vertices| vertices[..].into()));
+        let mut chains = Chains {
+            given: given.collect(),
+            ..Chains::default()
+        };
         for chain in tables.bent {
             let is_new = match chain[..] {
-                [a, ref between @ .., b] => a < b && chains.bent.insert([a, b], between.into()).is_none(),
+                [a, ref between @ .., b] => {
+                    a < b && chains.bent.insert([a, b], between.into()).is_none()
+                }
                 _ => false,
             };
-            is_new.then_some(()).ok_or("a segment has two chains, or is turned around")?;
+            is_new
+                .then_some(())
+                .ok_or("a segment has two chains, or is turned around")?;
         }
         for [a, b, between] in tables.splits {
             let is_new = a < b && chains.splits.insert([a, b], between).is_none();
-            is_new.then_some(()).ok_or("an edge is split twice, or is turned around")?;
+            is_new
+                .then_some(())
+                .ok_or("an edge is split twice, or is turned around")?;
         }
         if tables.waiting.iter().any(|[a, b]| a == b) {
             return Err("a constraint has one end");

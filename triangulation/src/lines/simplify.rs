@@ -28,7 +28,11 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
             return 0;
         }
         let mut seen = HashSet::new();
-        let twice: HashSet<VertexId> = vertices.iter().copied().filter(|&v| !seen.insert(v)).collect();
+        let twice: HashSet<VertexId> = vertices
+            .iter()
+            .copied()
+            .filter(|&v| !seen.insert(v))
+            .collect();
         let mut gone = HashSet::new();
         let mut kept = vec![vertices[0]];
         // The vertices removed since the last one that is kept.
@@ -37,7 +41,9 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
             let (from, at, to) = (kept[kept.len() - 1], pair[0], pair[1]);
             skipped.push(at);
             let ends = [from, to].map(|v| self.geometry().plan(self.point(v)));
-            let is_near = |&v: &VertexId| distance_to_segment(self.geometry().plan(self.point(v)), ends) <= tolerance;
+            let is_near = |&v: &VertexId| {
+                distance_to_segment(self.geometry().plan(self.point(v)), ends) <= tolerance
+            };
             if !twice.contains(&at)
                 && from != to
                 && skipped.iter().all(is_near)
@@ -59,7 +65,10 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
 
     /// Returns true if all constrained edges at a vertex belong to this line and to no other.
     fn is_of_one_line(&self, vertex: VertexId, line: LineId) -> bool {
-        let mut edges = self.tds().around(vertex).flat_map(|cell| *self.tds().corners(cell));
+        let mut edges = self
+            .tds()
+            .around(vertex)
+            .flat_map(|cell| *self.tds().corners(cell));
         edges.all(|other| {
             other == vertex
                 || other == VertexId::INFINITE
@@ -71,8 +80,10 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
     /// Returns true if no vertex of a line lies in a triangle or on its border, except for its
     /// corners and removed vertices.
     fn is_free(&self, [a, b, c]: [VertexId; 3], gone: &HashSet<VertexId>) -> bool {
-        let turn =
-            |p: VertexId, q: VertexId, r: VertexId| self.geometry().orientation([p, q, r].map(|v| self.point(v)));
+        let turn = |p: VertexId, q: VertexId, r: VertexId| {
+            self.geometry()
+                .orientation([p, q, r].map(|v| self.point(v)))
+        };
         let corners = match turn(a, b, c) {
             Sign::Positive => [a, b, c],
             Sign::Negative => [a, c, b],
@@ -84,19 +95,30 @@ impl<G: Crossing + Coordinates<3>, V: Default, C: Copy + Default> ConstrainedDel
             }
         };
         let beyond = |triangle: [VertexId; 3], points: [VertexId; 3]| {
-            (0..3).any(|i| points.iter().all(|&p| turn(triangle[i], triangle[ccw(i)], p) != Sign::Positive))
+            (0..3).any(|i| {
+                points
+                    .iter()
+                    .all(|&p| turn(triangle[i], triangle[ccw(i)], p) != Sign::Positive)
+            })
         };
-        let holds = |p: VertexId| (0..3).all(|i| turn(corners[i], corners[ccw(i)], p) != Sign::Negative);
+        let holds =
+            |p: VertexId| (0..3).all(|i| turn(corners[i], corners[ccw(i)], p) != Sign::Negative);
         let mut seen: HashSet<CellId> = HashSet::new();
         let mut open: Vec<CellId> = self.tds().around(b).collect();
         while let Some(cell) = open.pop() {
             let theirs = *self.tds().corners(cell);
-            if self.tds().is_infinite(cell) || !seen.insert(cell) || beyond(corners, theirs) || beyond(theirs, corners)
+            if self.tds().is_infinite(cell)
+                || !seen.insert(cell)
+                || beyond(corners, theirs)
+                || beyond(theirs, corners)
             {
                 continue;
             }
             let blocks = |&v: &VertexId| {
-                !corners.contains(&v) && !gone.contains(&v) && self.lines.is_on_constraint(&self.inner, v) && holds(v)
+                !corners.contains(&v)
+                    && !gone.contains(&v)
+                    && self.lines.is_on_constraint(&self.inner, v)
+                    && holds(v)
             };
             if theirs.iter().any(blocks) {
                 return false;

@@ -107,7 +107,10 @@ impl Lines {
             }
             self.index = OnceLock::from(index);
         }
-        self.index.get_mut().filter(|index| index.rounder.is_some()).ok_or(NotLocal)
+        self.index
+            .get_mut()
+            .filter(|index| index.rounder.is_some())
+            .ok_or(NotLocal)
     }
 
     /// Returns the index, if it exists, and the tables.

@@ -37,7 +37,9 @@ impl VertexSet {
     /// The vertices, in order. Time linear in the largest number.
     pub(super) fn iter(&self) -> impl Iterator<Item = VertexId> + '_ {
         self.0.iter().enumerate().flat_map(|(word, &bits)| {
-            (0..64).filter(move |bit| bits >> bit & 1 == 1).map(move |bit| VertexId::new(word * 64 + bit))
+            (0..64)
+                .filter(move |bit| bits >> bit & 1 == 1)
+                .map(move |bit| VertexId::new(word * 64 + bit))
         })
     }
 }
@@ -45,7 +47,9 @@ impl VertexSet {
 impl FromIterator<VertexId> for VertexSet {
     fn from_iter<I: IntoIterator<Item = VertexId>>(vertices: I) -> Self {
         let mut set = VertexSet::default();
-        vertices.into_iter().for_each(|vertex| _ = set.insert(vertex));
+        vertices
+            .into_iter()
+            .for_each(|vertex| _ = set.insert(vertex));
         set
     }
 }

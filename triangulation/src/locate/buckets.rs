@@ -35,13 +35,25 @@ impl Buckets {
         // The sides of buckets that fill the box, one layer of it, one row: the largest prevents
         // that a flat box has too many. Roots come first, so that no product overflows.
         let root = |length: f64| (length / count.sqrt()).sqrt();
-        let of_box = [x, y, z].map(|length| (length / count.cbrt()).cbrt()).iter().product();
+        let of_box = [x, y, z]
+            .map(|length| (length / count.cbrt()).cbrt())
+            .iter()
+            .product();
         let of_layers = [root(x) * root(y), root(y) * root(z), root(z) * root(x)];
         let of_rows = [x, y, z].map(|length| length / count);
         let side = of_layers.into_iter().chain(of_rows).fold(of_box, f64::max);
-        let scale = if (1.0 / side).is_finite() { 1.0 / side } else { 0.0 };
+        let scale = if (1.0 / side).is_finite() {
+            1.0 / side
+        } else {
+            0.0
+        };
         let counts = [x, y, z].map(|length| (length * scale).ceil().max(1.0) as usize);
-        Buckets { low, scale, counts, vertices: vec![None; counts.iter().product()] }
+        Buckets {
+            low,
+            scale,
+            counts,
+            vertices: vec![None; counts.iter().product()],
+        }
     }
 
     /// Creates a grid for the vertices of a triangulation, two vertices to a bucket on average.
@@ -50,9 +62,16 @@ impl Buckets {
     ) -> Self {
         let site = |v: VertexId| position(triangulation.geometry(), triangulation.point(v));
         let nothing = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
-        let bounds = triangulation.tds.vertices().map(site).fold(nothing, |[low, high], p| {
-            [[0, 1, 2].map(|k| low[k].min(p[k])), [0, 1, 2].map(|k| high[k].max(p[k]))]
-        });
+        let bounds = triangulation
+            .tds
+            .vertices()
+            .map(site)
+            .fold(nothing, |[low, high], p| {
+                [
+                    [0, 1, 2].map(|k| low[k].min(p[k])),
+                    [0, 1, 2].map(|k| high[k].max(p[k])),
+                ]
+            });
         let mut buckets = Self::over_box(bounds, triangulation.vertex_count() / 2);
         for vertex in triangulation.tds.vertices() {
             let at = buckets.bucket(site(vertex));
@@ -62,13 +81,18 @@ impl Buckets {
     }
 
     fn bucket(&self, site: [f64; 3]) -> usize {
-        let along = |k: usize| (((site[k] - self.low[k]) * self.scale) as usize).min(self.counts[k] - 1);
+        let along =
+            |k: usize| (((site[k] - self.low[k]) * self.scale) as usize).min(self.counts[k] - 1);
         (along(2) * self.counts[1] + along(1)) * self.counts[0] + along(0)
     }
 }
 
 impl<G: Coordinates<N>, const N: usize> Locate<G, N> for Buckets {
-    fn locate<V, C: Copy + Default>(&self, triangulation: &Triangulation<G, N, V, C>, q: &G::Point) -> Location {
+    fn locate<V, C: Copy + Default>(
+        &self,
+        triangulation: &Triangulation<G, N, V, C>,
+        q: &G::Point,
+    ) -> Location {
         let vertex = self.vertices[self.bucket(position(triangulation.geometry(), q))];
         let vertex = vertex.filter(|&v| triangulation.tds.is_vertex(v));
         triangulation.locate(q, vertex.and_then(|v| triangulation.tds.cell_of(v)))

@@ -50,7 +50,9 @@ impl SpacePassage {
             | SpacePassage::Facet(cell, _)
             | SpacePassage::WithinFacet(cell, _)
             | SpacePassage::Edge((cell, ..)) => Ok(Some(cell)),
-            SpacePassage::Along([vertex, _]) | SpacePassage::Vertex(vertex) => complex.cell_of(vertex),
+            SpacePassage::Along([vertex, _]) | SpacePassage::Vertex(vertex) => {
+                complex.cell_of(vertex)
+            }
         }
     }
 }
@@ -61,7 +63,11 @@ pub(crate) type Span = [bool; 4];
 /// Returns the last cell on the line from a vertex to a point, or one at what the line meets last.
 ///
 /// The triangulation has full dimension.
-pub(super) fn last_cell<T: Embedded<4>>(t: &T, from: VertexId, q: &PointOf<T, 4>) -> Result<Option<CellId>, T::Error> {
+pub(super) fn last_cell<T: Embedded<4>>(
+    t: &T,
+    from: VertexId,
+    q: &PointOf<T, 4>,
+) -> Result<Option<CellId>, T::Error> {
     let mut line = LineWalk::new(t, [t.point(from)?.borrow(), q]);
     let mut met = SpacePassage::Vertex(from);
     for _ in 0..line.most() {
@@ -83,7 +89,12 @@ pub(crate) struct LineWalk<'t, T: Embedded<4>> {
 
 impl<'t, T: Embedded<4>> LineWalk<'t, T> {
     pub(crate) fn new(t: &'t T, [a, b]: [&PointOf<T, 4>; 2]) -> Self {
-        LineWalk { t, a: *a, b: *b, ahead: None }
+        LineWalk {
+            t,
+            a: *a,
+            b: *b,
+            ahead: None,
+        }
     }
 
     /// Returns a bound of the number of passages: each cell, facet, edge and vertex is met once.
@@ -95,30 +106,52 @@ impl<'t, T: Embedded<4>> LineWalk<'t, T> {
     /// Returns the orientation of the segment and an edge: on which side the line passes the edge.
     pub(crate) fn side(&self, from: VertexId, to: VertexId) -> Result<Sign, T::Error> {
         let [from, to] = [self.t.point(from)?, self.t.point(to)?];
-        Ok(self.t.geometry().orientation([&self.a, &self.b, from.borrow(), to.borrow()]))
+        Ok(self
+            .t
+            .geometry()
+            .orientation([&self.a, &self.b, from.borrow(), to.borrow()]))
     }
 
     /// Returns the side of the line that a vertex lies on, within a plane that contains both.
     pub(crate) fn side_in_plane(&self, vertex: VertexId) -> Result<Sign, T::Error> {
-        Ok(self.t.geometry().orientation_in_flat(&[&self.a, &self.b, self.t.point(vertex)?.borrow()]))
+        Ok(self.t.geometry().orientation_in_flat(&[
+            &self.a,
+            &self.b,
+            self.t.point(vertex)?.borrow(),
+        ]))
     }
 
     /// Returns the side of an edge that a point lies on, within a plane that contains both.
-    pub(crate) fn beside(&self, [from, to]: [VertexId; 2], p: &PointOf<T, 4>) -> Result<Sign, T::Error> {
+    pub(crate) fn beside(
+        &self,
+        [from, to]: [VertexId; 2],
+        p: &PointOf<T, 4>,
+    ) -> Result<Sign, T::Error> {
         let [from, to] = [self.t.point(from)?, self.t.point(to)?];
-        Ok(self.t.geometry().orientation_in_flat(&[from.borrow(), to.borrow(), p]))
+        Ok(self
+            .t
+            .geometry()
+            .orientation_in_flat(&[from.borrow(), to.borrow(), p]))
     }
 
     /// Compares points on the line: `Less` if the first comes first.
     fn order(&self, p: &PointOf<T, 4>, q: &PointOf<T, 4>) -> Ordering {
         let geometry = self.t.geometry();
         let order = geometry.compare(p, q);
-        if geometry.compare(&self.b, &self.a).is_lt() { order.reverse() } else { order }
+        if geometry.compare(&self.b, &self.a).is_lt() {
+            order.reverse()
+        } else {
+            order
+        }
     }
 
     /// Returns what is met first by a segment that starts in the interior of a face of a finite
     /// cell.
-    pub(crate) fn first_from(&mut self, cell: CellId, span: Span) -> Result<Option<SpacePassage>, T::Error> {
+    pub(crate) fn first_from(
+        &mut self,
+        cell: CellId,
+        span: Span,
+    ) -> Result<Option<SpacePassage>, T::Error> {
         let width = self.t.complex().width().min(4);
         let mut off = None;
         for i in (0..width).filter(|&i| !span[i]) {
@@ -137,7 +170,10 @@ impl<'t, T: Embedded<4>> LineWalk<'t, T> {
 
     /// Returns what is met first by a segment that starts outside of the hull, beyond the finite
     /// facet of an infinite cell. Visits facets of the hull that are visible from there.
-    pub(crate) fn first_from_outside(&mut self, start: CellId) -> Result<Option<SpacePassage>, T::Error> {
+    pub(crate) fn first_from_outside(
+        &mut self,
+        start: CellId,
+    ) -> Result<Option<SpacePassage>, T::Error> {
         let complex = self.t.complex();
         let width = complex.width().min(4);
         let mut seen = FxHashSet::from_iter([start]);
@@ -145,7 +181,9 @@ impl<'t, T: Embedded<4>> LineWalk<'t, T> {
         let mut done = 0;
         while let Some(&cell) = visible.get(done) {
             done += 1;
-            let Some(infinite) = complex.index_of(cell, VertexId::INFINITE)? else { continue };
+            let Some(infinite) = complex.index_of(cell, VertexId::INFINITE)? else {
+                continue;
+            };
             let inner = complex.inner(cell)?;
             let i = complex.index_of_neighbor(inner, cell)?;
             if side_of_facet(self.t, inner, i, &self.a)? != Sign::Negative {
@@ -180,8 +218,14 @@ impl<'t, T: Embedded<4>> LineWalk<'t, T> {
             4 => pierced(i, |k, l| self.side(corners[l], corners[k])),
             3 => {
                 let ends @ [from, to] = [(i + 1) % 3, (i + 2) % 3];
-                let turn = self.beside([corners[from], corners[to]], self.t.point(corners[i])?.borrow())?;
-                let sides = [self.side_in_plane(corners[from])?, self.side_in_plane(corners[to])?];
+                let turn = self.beside(
+                    [corners[from], corners[to]],
+                    self.t.point(corners[i])?.borrow(),
+                )?;
+                let sides = [
+                    self.side_in_plane(corners[from])?,
+                    self.side_in_plane(corners[to])?,
+                ];
                 Ok(crossed(sides.map(|side| -turn * side)).map(|spans| span_of(ends, spans)))
             }
             _ => Ok(Some(span_of([1 - i.min(1)], [true]))),
@@ -190,7 +234,10 @@ impl<'t, T: Embedded<4>> LineWalk<'t, T> {
 
     /// Returns what is met after a passage.
     #[inline]
-    pub(crate) fn after(&mut self, passage: SpacePassage) -> Result<Option<SpacePassage>, T::Error> {
+    pub(crate) fn after(
+        &mut self,
+        passage: SpacePassage,
+    ) -> Result<Option<SpacePassage>, T::Error> {
         let complex = self.t.complex();
         match passage {
             SpacePassage::Cell(cell) => self.after_cell(cell),
@@ -212,14 +259,22 @@ impl<'t, T: Embedded<4>> LineWalk<'t, T> {
                 }
                 let beyond = complex.neighbor(cell, 3 - i - j)?;
                 let opposite = complex.index_of_neighbor(beyond, cell)?;
-                self.onward(beyond, span_of([(opposite + 1) % 3, (opposite + 2) % 3], [true; 2]))
+                self.onward(
+                    beyond,
+                    span_of([(opposite + 1) % 3, (opposite + 2) % 3], [true; 2]),
+                )
             }
             SpacePassage::Along([_, to]) => {
                 let is_met = self.order(self.t.point(to)?.borrow(), &self.b).is_le();
                 Ok(is_met.then_some(SpacePassage::Vertex(to)))
             }
             SpacePassage::Vertex(vertex) => {
-                if self.t.geometry().compare(self.t.point(vertex)?.borrow(), &self.b).is_eq() {
+                if self
+                    .t
+                    .geometry()
+                    .compare(self.t.point(vertex)?.borrow(), &self.b)
+                    .is_eq()
+                {
                     return Ok(None);
                 }
                 for (cell, i) in space::cells_around(complex, vertex)? {
@@ -248,7 +303,11 @@ impl<'t, T: Embedded<4>> LineWalk<'t, T> {
             }
         }
         // Equal where the segment ends.
-        if span == face { Ok(None) } else { self.within(cell, span).map(Some) }
+        if span == face {
+            Ok(None)
+        } else {
+            self.within(cell, span).map(Some)
+        }
     }
 
     /// Returns a passage along the interior of what corners of a cell span, two or more.
@@ -262,7 +321,11 @@ impl<'t, T: Embedded<4>> LineWalk<'t, T> {
         let [from, to] = ends(span).map(|i| self.t.complex().vertex(cell, i));
         let [from, to] = [from?, to?];
         let order = self.order(self.t.point(from)?.borrow(), self.t.point(to)?.borrow());
-        Ok(SpacePassage::Along(if order.is_gt() { [to, from] } else { [from, to] }))
+        Ok(SpacePassage::Along(if order.is_gt() {
+            [to, from]
+        } else {
+            [from, to]
+        }))
     }
 
     /// Returns a facet that is crossed out of a cell, given on which side of it the segment ends.
@@ -284,7 +347,11 @@ impl<'t, T: Embedded<4>> LineWalk<'t, T> {
     /// `PERF:` if it came through the interior of a facet, three orientations are known.
     fn after_cell(&mut self, cell: CellId) -> Result<Option<SpacePassage>, T::Error> {
         let corners = self.t.complex().corners(cell)?;
-        let through = self.ahead.take().filter(|&(ahead, _)| ahead == cell).map(|(_, i)| i);
+        let through = self
+            .ahead
+            .take()
+            .filter(|&(ahead, _)| ahead == cell)
+            .map(|(_, i)| i);
         let mut sides = [[Sign::Zero; 4]; 4];
         for [k, l] in [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]] {
             let side = match through.filter(|&i| i != k && i != l) {
@@ -299,7 +366,9 @@ impl<'t, T: Embedded<4>> LineWalk<'t, T> {
                 let end = side_of_facet(self.t, cell, i, &self.b)?;
                 return match end {
                     Sign::Positive => Ok(None),
-                    _ if only(span.map(|spans| !spans)).is_some() => self.facet(cell, i, end).map(Some),
+                    _ if only(span.map(|spans| !spans)).is_some() => {
+                        self.facet(cell, i, end).map(Some)
+                    }
                     _ => at_point(self.t.complex(), cell, span),
                 };
             }
@@ -333,7 +402,10 @@ impl<'t, T: Embedded<4>> LineWalk<'t, T> {
 
 /// Returns the face through which a line leaves a tetrahedron, if that is the facet opposite vertex
 /// `i` or on its border. `side` returns on which side the line passes an edge.
-pub(crate) fn pierced<E>(i: usize, side: impl Fn(usize, usize) -> Result<Sign, E>) -> Result<Option<Span>, E> {
+pub(crate) fn pierced<E>(
+    i: usize,
+    side: impl Fn(usize, usize) -> Result<Sign, E>,
+) -> Result<Option<Span>, E> {
     let mut span = [false; 4];
     for j in (0..4).filter(|&j| j != i) {
         let [k, l] = space::beside(i, j);
@@ -378,7 +450,11 @@ fn ends(span: Span) -> [usize; 2] {
 }
 
 /// Returns a passage through one point in the interior of what corners of a finite cell span.
-pub(crate) fn at_point<T: Complex<4>>(complex: &T, cell: CellId, span: Span) -> Result<Option<SpacePassage>, T::Error> {
+pub(crate) fn at_point<T: Complex<4>>(
+    complex: &T,
+    cell: CellId,
+    span: Span,
+) -> Result<Option<SpacePassage>, T::Error> {
     if let Some(missing) = only(span.map(|spans| !spans)) {
         return Ok(Some(SpacePassage::Facet(cell, missing)));
     }
@@ -386,5 +462,9 @@ pub(crate) fn at_point<T: Complex<4>>(complex: &T, cell: CellId, span: Span) -> 
         return Ok(Some(SpacePassage::Vertex(complex.vertex(cell, vertex)?)));
     }
     let [from, to] = ends(span);
-    Ok(Some(if span == [true; 4] { SpacePassage::Cell(cell) } else { SpacePassage::Edge((cell, from, to)) }))
+    Ok(Some(if span == [true; 4] {
+        SpacePassage::Cell(cell)
+    } else {
+        SpacePassage::Edge((cell, from, to))
+    }))
 }

@@ -120,7 +120,8 @@ impl Location {
             Location::Cell { cell, facets } => Some((cell, facets)),
             _ => None,
         };
-        on.into_iter().flat_map(|(cell, facets)| facets.iter().map(move |i| (cell, i)))
+        on.into_iter()
+            .flat_map(|(cell, facets)| facets.iter().map(move |i| (cell, i)))
     }
 
     /// Returns all cells that contain the point, inside or on their border, infinite ones included:
@@ -144,12 +145,17 @@ impl Location {
     /// assert_eq!(cells.len(), around_edge.count());
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn cells<const N: usize, T: Complex<N>>(self, complex: &T) -> Result<Vec<CellId>, T::Error> {
+    pub fn cells<const N: usize, T: Complex<N>>(
+        self,
+        complex: &T,
+    ) -> Result<Vec<CellId>, T::Error> {
         let start = match self {
             Location::Vertex(_) | Location::Cell { .. } => self.cell_in(complex)?,
             Location::OutsideHull { .. } | Location::OutsideAffineHull | Location::Nowhere => None,
         };
-        let Some(start) = start else { return Ok(Vec::new()) };
+        let Some(start) = start else {
+            return Ok(Vec::new());
+        };
         let width = complex.width().min(N);
         let corners = complex.corners(start)?;
         let spans = |i: &usize| match self {
@@ -179,7 +185,10 @@ impl Location {
     ///
     /// # Errors
     /// If the vertex does not exist.
-    pub fn cell_in<const N: usize, T: Complex<N>>(self, complex: &T) -> Result<Option<CellId>, T::Error> {
+    pub fn cell_in<const N: usize, T: Complex<N>>(
+        self,
+        complex: &T,
+    ) -> Result<Option<CellId>, T::Error> {
         match self {
             Location::Vertex(vertex) => complex.cell_of(vertex),
             Location::Cell { cell, .. } | Location::OutsideHull { cell } => Ok(Some(cell)),

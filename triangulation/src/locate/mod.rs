@@ -86,7 +86,8 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
 
     fn nearest_of_some(&self, q: &G::Point) -> Option<VertexId> {
         let samples = LOOKS[0](self.tds.vertex_slots() as f64) as usize;
-        let Ok(nearest) = walk::nearest_of_some(self, q, f64::INFINITY, samples, &mut Dice::default());
+        let Ok(nearest) =
+            walk::nearest_of_some(self, q, f64::INFINITY, samples, &mut Dice::default());
         nearest
     }
 }

@@ -51,7 +51,11 @@ use super::Location;
 pub trait Locate<G: Geometry<N>, const N: usize> {
     /// Returns where a point lies; [`Location::Nowhere`] if the geometry does not
     /// [admit](Geometry::admits) it.
-    fn locate<V, C: Copy + Default>(&self, triangulation: &Triangulation<G, N, V, C>, q: &G::Point) -> Location;
+    fn locate<V, C: Copy + Default>(
+        &self,
+        triangulation: &Triangulation<G, N, V, C>,
+        q: &G::Point,
+    ) -> Location;
 
     /// Updates the strategy for a new vertex of a triangulation with this geometry.
     fn inserted(&mut self, _geometry: &G, _vertex: VertexId, _point: &G::Point) {}
@@ -67,7 +71,11 @@ pub trait Locate<G: Geometry<N>, const N: usize> {
 pub struct Near(pub Option<CellId>);
 
 impl<G: Geometry<N>, const N: usize> Locate<G, N> for Near {
-    fn locate<V, C: Copy + Default>(&self, triangulation: &Triangulation<G, N, V, C>, q: &G::Point) -> Location {
+    fn locate<V, C: Copy + Default>(
+        &self,
+        triangulation: &Triangulation<G, N, V, C>,
+        q: &G::Point,
+    ) -> Location {
         triangulation.locate(q, self.0)
     }
 }
@@ -82,8 +90,15 @@ impl<G: Geometry<N>, const N: usize> Locate<G, N> for Near {
 pub struct JumpAndWalk;
 
 impl<G: Geometry<N>, const N: usize> Locate<G, N> for JumpAndWalk {
-    fn locate<V, C: Copy + Default>(&self, triangulation: &Triangulation<G, N, V, C>, q: &G::Point) -> Location {
+    fn locate<V, C: Copy + Default>(
+        &self,
+        triangulation: &Triangulation<G, N, V, C>,
+        q: &G::Point,
+    ) -> Location {
         let nearest = triangulation.nearest_of_some(q);
-        triangulation.locate(q, nearest.and_then(|vertex| triangulation.tds.cell_of(vertex)))
+        triangulation.locate(
+            q,
+            nearest.and_then(|vertex| triangulation.tds.cell_of(vertex)),
+        )
     }
 }

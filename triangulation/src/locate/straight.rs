@@ -24,24 +24,43 @@ impl StraightLine {
         triangulation: &Triangulation<G, N, V, C>,
     ) -> Option<VertexId> {
         let last = || {
-            let finite = triangulation.last.filter(|&cell| triangulation.tds.is_used(cell))?;
-            triangulation.tds.cell_vertices(finite).iter().copied().find(|&v| v != VertexId::INFINITE)
+            let finite = triangulation
+                .last
+                .filter(|&cell| triangulation.tds.is_used(cell))?;
+            triangulation
+                .tds
+                .cell_vertices(finite)
+                .iter()
+                .copied()
+                .find(|&v| v != VertexId::INFINITE)
         };
         let start = self.0.filter(|&v| triangulation.tds.is_vertex(v));
-        start.or_else(last).or_else(|| triangulation.tds.vertices().next())
+        start
+            .or_else(last)
+            .or_else(|| triangulation.tds.vertices().next())
     }
 }
 
 impl<G: Geometry<3>> Locate<G, 3> for StraightLine {
-    fn locate<V, C: Copy + Default>(&self, triangulation: &Triangulation<G, 3, V, C>, q: &G::Point) -> Location {
-        let start = self.start(triangulation).filter(|_| triangulation.geometry.admits(q));
+    fn locate<V, C: Copy + Default>(
+        &self,
+        triangulation: &Triangulation<G, 3, V, C>,
+        q: &G::Point,
+    ) -> Location {
+        let start = self
+            .start(triangulation)
+            .filter(|_| triangulation.geometry.admits(q));
         let cell = start.and_then(|from| triangulation.walk_straight(from, q));
         triangulation.locate(q, cell)
     }
 }
 
 impl<G: Geometry<4>> Locate<G, 4> for StraightLine {
-    fn locate<V, C: Copy + Default>(&self, triangulation: &Triangulation<G, 4, V, C>, q: &G::Point) -> Location {
+    fn locate<V, C: Copy + Default>(
+        &self,
+        triangulation: &Triangulation<G, 4, V, C>,
+        q: &G::Point,
+    ) -> Location {
         let is_full = triangulation.is_full() && triangulation.geometry.admits(q);
         let start = self.start(triangulation).filter(|_| is_full);
         let cell = start.and_then(|from| {
@@ -83,7 +102,11 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
             let j = self.tds.index_of_neighbor(beyond, cell);
             // Seen from beyond, the edge runs from `l` to `r`: the edge that keeps `l` lies
             // opposite `r`, and vice versa.
-            i = if side(self.tds.vertex(beyond, j)) == Sign::Negative { cw(j) } else { ccw(j) };
+            i = if side(self.tds.vertex(beyond, j)) == Sign::Negative {
+                cw(j)
+            } else {
+                ccw(j)
+            };
             cell = beyond;
         }
     }

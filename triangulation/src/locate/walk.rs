@@ -100,7 +100,9 @@ pub fn locate<const N: usize, T: Embedded<N>>(
     let mut steps = 0;
     let (mut patience, mut looks) = (PATIENCE, LOOKS.into_iter());
     loop {
-        complex.ensure(cell, || steps < WANDERING * (complex.cell_slots() + PATIENCE))?;
+        complex.ensure(cell, || {
+            steps < WANDERING * (complex.cell_slots() + PATIENCE)
+        })?;
         let mut seems = Seems::Elsewhere;
         if width == N {
             let reached = approach(t, q, cell, patience.saturating_sub(steps))?;
@@ -111,7 +113,9 @@ pub fn locate<const N: usize, T: Embedded<N>>(
         if let Seems::Outside(i) = seems
             && side_of_facet(t, cell, i, q)? == Sign::Negative
         {
-            return Ok(Location::OutsideHull { cell: complex.neighbor(cell, i)? });
+            return Ok(Location::OutsideHull {
+                cell: complex.neighbor(cell, i)?,
+            });
         }
         // `PERF:` a test order that is known at compile time halves the code. It is used for the
         // first steps only: a walk in a fixed order may go around in circles.
@@ -143,7 +147,11 @@ pub fn locate<const N: usize, T: Embedded<N>>(
 
 /// Returns where a point lies if there is a single vertex, that of a cell.
 #[cold]
-fn beside_only<const N: usize, T: Embedded<N>>(t: &T, cell: CellId, q: &PointOf<T, N>) -> Result<Location, T::Error> {
+fn beside_only<const N: usize, T: Embedded<N>>(
+    t: &T,
+    cell: CellId,
+    q: &PointOf<T, N>,
+) -> Result<Location, T::Error> {
     let only = t.complex().vertex(cell, 0)?;
     Ok(match t.geometry().compare(q, t.point(only)?.borrow()) {
         Ordering::Equal => Location::Vertex(only),
@@ -153,7 +161,11 @@ fn beside_only<const N: usize, T: Embedded<N>>(t: &T, cell: CellId, q: &PointOf<
 
 /// Returns the location of a point in a cell, on these facets of it.
 #[inline(always)]
-fn location_on<const N: usize, T: Complex<N>>(complex: &T, cell: CellId, facets: Facets) -> Result<Location, T::Error> {
+fn location_on<const N: usize, T: Complex<N>>(
+    complex: &T,
+    cell: CellId,
+    facets: Facets,
+) -> Result<Location, T::Error> {
     let width = complex.width();
     // A point on all facets means a flat cell.
     complex.ensure(cell, || facets.len() < width)?;
@@ -202,8 +214,15 @@ pub(super) fn approach<const N: usize, T: Embedded<N>>(
     let mut from = None;
     for steps in 0..at_most {
         complex.fetch_neighbors(cell);
-        let Some(sides) = t.geometry().rough_sides(simplex(t, cell)?.each_ref().map(Borrow::borrow), q) else {
-            return Ok(Reached { cell, steps, seems: Seems::Elsewhere });
+        let Some(sides) = t
+            .geometry()
+            .rough_sides(simplex(t, cell)?.each_ref().map(Borrow::borrow), q)
+        else {
+            return Ok(Reached {
+                cell,
+                steps,
+                seems: Seems::Elsewhere,
+            });
         };
         let mut next = None;
         for i in 0..N {
@@ -214,24 +233,49 @@ pub(super) fn approach<const N: usize, T: Embedded<N>>(
         }
         let Some((i, beyond)) = next else {
             // All are zero if the cell is too small to be distinguished from there.
-            let is_there = sides.iter().all(|&side| side >= 0.0) && sides.iter().any(|&side| side > 0.0);
-            return Ok(Reached { cell, steps, seems: if is_there { Seems::There } else { Seems::Elsewhere } });
+            let is_there =
+                sides.iter().all(|&side| side >= 0.0) && sides.iter().any(|&side| side > 0.0);
+            return Ok(Reached {
+                cell,
+                steps,
+                seems: if is_there {
+                    Seems::There
+                } else {
+                    Seems::Elsewhere
+                },
+            });
         };
         if complex.is_infinite(beyond)? {
-            return Ok(Reached { cell, steps, seems: Seems::Outside(i) });
+            return Ok(Reached {
+                cell,
+                steps,
+                seems: Seems::Outside(i),
+            });
         }
         if steps % LOOKOUT == LOOKOUT - 1
             && let Some(facet) = hull_exit(t, cell, q)?
         {
-            return Ok(Reached { cell, steps, seems: Seems::Outside(facet) });
+            return Ok(Reached {
+                cell,
+                steps,
+                seems: Seems::Outside(facet),
+            });
         }
         if from == Some(beyond) {
-            return Ok(Reached { cell, steps, seems: Seems::Elsewhere }); // rounded numbers go in circles
+            return Ok(Reached {
+                cell,
+                steps,
+                seems: Seems::Elsewhere,
+            }); // rounded numbers go in circles
         }
         from = Some(cell);
         cell = beyond;
     }
-    Ok(Reached { cell, steps: at_most, seems: Seems::Elsewhere })
+    Ok(Reached {
+        cell,
+        steps: at_most,
+        seems: Seems::Elsewhere,
+    })
 }
 
 /// Returns the facet of a cell that is on the hull and that `q` seems to lie beyond.
@@ -244,7 +288,10 @@ fn hull_exit<const N: usize, T: Embedded<N>>(
     cell: CellId,
     q: &PointOf<T, N>,
 ) -> Result<Option<usize>, T::Error> {
-    let Some(sides) = t.geometry().rough_sides(simplex(t, cell)?.each_ref().map(Borrow::borrow), q) else {
+    let Some(sides) = t
+        .geometry()
+        .rough_sides(simplex(t, cell)?.each_ref().map(Borrow::borrow), q)
+    else {
         return Ok(None);
     };
     for i in (0..N).filter(|&i| sides[i] < 0.0) {
@@ -277,7 +324,11 @@ fn ask_sides<const N: usize, T: Embedded<N>>(
     let width = t.complex().width();
     let mut on = Facets::default();
     for turn in 0..N.min(width) {
-        let i = if first + turn < width { first + turn } else { first + turn - width };
+        let i = if first + turn < width {
+            first + turn
+        } else {
+            first + turn - width
+        };
         if from.is_some() && from == Some(t.complex().neighbor(cell, i)?) {
             continue;
         }
@@ -299,13 +350,19 @@ fn jump<const N: usize, T: Embedded<N>>(
     samples: usize,
     dice: &mut Dice,
 ) -> Result<Option<CellId>, T::Error> {
-    let Some(distance) = t.geometry().rough_distance(t.point(t.complex().vertex(cell, 0)?)?.borrow(), q) else {
+    let Some(distance) = t
+        .geometry()
+        .rough_distance(t.point(t.complex().vertex(cell, 0)?)?.borrow(), q)
+    else {
         return Ok(None);
     };
     let Some(nearer) = nearest_of_some(t, q, distance, samples, dice)? else {
         return Ok(None);
     };
-    t.complex().cell_of(nearer)?.map(|cell| t.complex().inner(cell)).transpose()
+    t.complex()
+        .cell_of(nearer)?
+        .map(|cell| t.complex().inner(cell))
+        .transpose()
 }
 
 /// Returns the vertex nearest to `q` among some vertices, if its distance is less than `than`.
@@ -323,7 +380,9 @@ pub(super) fn nearest_of_some<const N: usize, T: Embedded<N>>(
         if t.complex().cell_of(vertex)?.is_none() {
             continue;
         }
-        let Some(distance) = t.geometry().rough_distance(t.point(vertex)?.borrow(), q) else { break };
+        let Some(distance) = t.geometry().rough_distance(t.point(vertex)?.borrow(), q) else {
+            break;
+        };
         if distance < than {
             (than, nearest) = (distance, Some(vertex));
         }

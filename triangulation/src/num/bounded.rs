@@ -63,7 +63,11 @@ impl Bounded {
     #[inline(always)]
     pub fn difference(a: f64, b: f64) -> Self {
         let value = a - b;
-        Bounded { value, magnitude: value.abs(), roundings: 1 }
+        Bounded {
+            value,
+            magnitude: value.abs(),
+            roundings: 1,
+        }
     }
 
     /// Returns `a - b`, rounded once, with a magnitude of at least `2^-160`: sound for all finite
@@ -76,7 +80,11 @@ impl Bounded {
     #[inline(always)]
     pub fn floored_difference(a: f64, b: f64) -> Self {
         let value = a - b;
-        Bounded { value, magnitude: floored(value.abs()), roundings: 1 }
+        Bounded {
+            value,
+            magnitude: floored(value.abs()),
+            roundings: 1,
+        }
     }
 
     /// The computed value.
@@ -97,7 +105,11 @@ impl Bounded<Pair> {
     #[inline(always)]
     pub fn exact_difference(a: f64, b: f64) -> Self {
         let value = Pair::difference(a, b);
-        Bounded { value, magnitude: floored(value.estimate().abs()), roundings: 0 }
+        Bounded {
+            value,
+            magnitude: floored(value.estimate().abs()),
+            roundings: 0,
+        }
     }
 }
 

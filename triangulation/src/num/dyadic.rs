@@ -47,12 +47,20 @@ impl Dyadic {
     /// Returns the leading digits as a double of magnitude at most `2^128`, and the exponent of the
     /// power of two to multiply it with.
     fn leading(&self) -> (f64, i64) {
-        let Some((&high, lower)) = self.limbs.split_last() else { return (0.0, 0) };
+        let Some((&high, lower)) = self.limbs.split_last() else {
+            return (0.0, 0);
+        };
         let (magnitude, below) = match lower.split_last() {
-            Some((&low, below)) => ((u128::from(high) << 64 | u128::from(low)) as f64, below.len()),
+            Some((&low, below)) => (
+                (u128::from(high) << 64 | u128::from(low)) as f64,
+                below.len(),
+            ),
             None => (high as f64, 0),
         };
-        (if self.negative { -magnitude } else { magnitude }, self.exponent + 64 * below as i64)
+        (
+            if self.negative { -magnitude } else { magnitude },
+            self.exponent + 64 * below as i64,
+        )
     }
 
     /// Returns the mantissa counted in units of `2^exponent`, for an exponent that is at most its
@@ -78,7 +86,11 @@ impl Dyadic {
         while limbs.last() == Some(&0) {
             limbs.pop();
         }
-        Dyadic { negative, limbs, exponent }
+        Dyadic {
+            negative,
+            limbs,
+            exponent,
+        }
     }
 
     fn plus(self, other: &Self, other_negative: bool) -> Self {
@@ -86,7 +98,10 @@ impl Dyadic {
             return self;
         }
         if self.limbs.is_empty() {
-            return Dyadic { negative: other_negative, ..other.clone() };
+            return Dyadic {
+                negative: other_negative,
+                ..other.clone()
+            };
         }
         let exponent = self.exponent.min(other.exponent);
         let (a, b) = (self.limbs_at(exponent), other.limbs_at(exponent));
@@ -118,7 +133,11 @@ fn limb(limbs: &[u64], i: usize) -> u64 {
 
 fn compare(a: &[u64], b: &[u64]) -> Ordering {
     let length = a.len().max(b.len());
-    (0..length).rev().map(|i| limb(a, i).cmp(&limb(b, i))).find(|o| o.is_ne()).unwrap_or(Ordering::Equal)
+    (0..length)
+        .rev()
+        .map(|i| limb(a, i).cmp(&limb(b, i)))
+        .find(|o| o.is_ne())
+        .unwrap_or(Ordering::Equal)
 }
 
 fn add(a: &[u64], b: &[u64]) -> Vec<u64> {
@@ -154,7 +173,11 @@ impl From<f64> for Dyadic {
         let bits = x.to_bits();
         let biased = ((bits >> 52) & 0x7ff) as i64;
         let fraction = bits & ((1 << 52) - 1);
-        let (mantissa, exponent) = if biased == 0 { (fraction, -1074) } else { (fraction | 1 << 52, biased - 1075) };
+        let (mantissa, exponent) = if biased == 0 {
+            (fraction, -1074)
+        } else {
+            (fraction | 1 << 52, biased - 1075)
+        };
         Self::trimmed(x < 0.0, vec![mantissa], exponent)
     }
 }
@@ -189,6 +212,10 @@ impl Mul for Dyadic {
             }
             limbs[i + other.limbs.len()] = carry as u64;
         }
-        Self::trimmed(self.negative != other.negative, limbs, self.exponent + other.exponent)
+        Self::trimmed(
+            self.negative != other.negative,
+            limbs,
+            self.exponent + other.exponent,
+        )
     }
 }

@@ -64,7 +64,11 @@ impl Expansion {
     fn sum(&self, other: &Self, factor: f64) -> Self {
         let (a, b) = (&self.components, &other.components);
         if a.is_empty() || b.is_empty() {
-            let components = a.iter().copied().chain(b.iter().map(|c| c * factor)).collect();
+            let components = a
+                .iter()
+                .copied()
+                .chain(b.iter().map(|c| c * factor))
+                .collect();
             return Expansion { components };
         }
         let mut components = Vec::with_capacity(a.len() + b.len());
@@ -136,11 +140,16 @@ impl Mul for Expansion {
     /// Multiplies one operand by each component of the other. The products are summed as a balanced
     /// tree, so that no partial sum is merged more than logarithmically often.
     fn mul(self, other: Self) -> Self {
-        let (long, short) =
-            if self.components.len() >= other.components.len() { (&self, &other) } else { (&other, &self) };
+        let (long, short) = if self.components.len() >= other.components.len() {
+            (&self, &other)
+        } else {
+            (&other, &self)
+        };
         fn tree(long: &Expansion, factors: &[f64]) -> Expansion {
             match factors {
-                [] => Expansion { components: Vec::new() },
+                [] => Expansion {
+                    components: Vec::new(),
+                },
                 [one] => long.scaled(*one),
                 many => {
                     let (left, right) = many.split_at(many.len() / 2);

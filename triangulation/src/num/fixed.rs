@@ -35,15 +35,28 @@ const WHOLE: f64 = (1u64 << f64::MANTISSA_DIGITS) as f64;
 /// Returns the largest error of a rounding to a whole number of at most this magnitude.
 #[inline(always)]
 fn rounding(magnitude: f64) -> f64 {
-    if magnitude <= WHOLE { 0.0 } else { magnitude / WHOLE }
+    if magnitude <= WHOLE {
+        0.0
+    } else {
+        magnitude / WHOLE
+    }
 }
 
 impl<const BITS: i32> Fixed<BITS> {
     /// Returns `a - b`, exactly.
     #[inline(always)]
     pub fn difference(a: f64, b: f64) -> Self {
-        const { assert!(0 <= BITS && BITS <= 52, "differences have one bit more, and 53 is all there are") };
-        Fixed { value: a - b, magnitude: f64::from_bits((1023 + 1 + BITS as u64) << 52), error: 0.0 }
+        const {
+            assert!(
+                0 <= BITS && BITS <= 52,
+                "differences have one bit more, and 53 is all there are"
+            )
+        };
+        Fixed {
+            value: a - b,
+            magnitude: f64::from_bits((1023 + 1 + BITS as u64) << 52),
+            error: 0.0,
+        }
     }
 
     /// Returns the sign, or `None` if the error may have changed it.
@@ -72,7 +85,11 @@ impl<const BITS: i32> Add for Fixed<BITS> {
     fn add(self, other: Self) -> Self {
         let magnitude = self.magnitude + other.magnitude;
         let error = self.error + other.error + rounding(magnitude);
-        Fixed { value: self.value + other.value, magnitude, error }
+        Fixed {
+            value: self.value + other.value,
+            magnitude,
+            error,
+        }
     }
 }
 
@@ -81,7 +98,10 @@ impl<const BITS: i32> Sub for Fixed<BITS> {
 
     #[inline(always)]
     fn sub(self, other: Self) -> Self {
-        self + Fixed { value: -other.value, ..other }
+        self + Fixed {
+            value: -other.value,
+            ..other
+        }
     }
 }
 
@@ -91,8 +111,13 @@ impl<const BITS: i32> Mul for Fixed<BITS> {
     #[inline(always)]
     fn mul(self, other: Self) -> Self {
         let magnitude = self.magnitude * other.magnitude;
-        let inherited = self.magnitude * other.error + other.magnitude * self.error + self.error * other.error;
-        Fixed { value: self.value * other.value, magnitude, error: inherited + rounding(magnitude) }
+        let inherited =
+            self.magnitude * other.error + other.magnitude * self.error + self.error * other.error;
+        Fixed {
+            value: self.value * other.value,
+            magnitude,
+            error: inherited + rounding(magnitude),
+        }
     }
 }
 
@@ -106,25 +131,46 @@ mod tests {
     fn errors_are_within_the_bound() {
         let mut state = 1u64;
         let mut coordinate = |bits: i32| {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
             let below = (state >> (63 - bits)) as f64;
             2f64.powi(bits)
-                - if state.count_ones().is_multiple_of(2) { below } else { (below / 2f64.powi(bits - 3)).floor() }
+                - if state.count_ones().is_multiple_of(2) {
+                    below
+                } else {
+                    (below / 2f64.powi(bits - 3)).floor()
+                }
         };
         fn polynomial<T: crate::num::Number>(of: impl Fn(f64, f64) -> T, c: [f64; 8]) -> [T; 3] {
-            let [p, q, r, s] = [of(c[0], c[1]), of(c[2], c[3]), of(c[4], c[5]), of(c[6], c[7])];
+            let [p, q, r, s] = [
+                of(c[0], c[1]),
+                of(c[2], c[3]),
+                of(c[4], c[5]),
+                of(c[6], c[7]),
+            ];
             let two = p.clone() * q.clone() - r.clone() * s.clone();
             let three = two.clone() * r + p.clone() * q.clone() * s;
-            [two.clone(), three.clone(), three * p - two.clone() * (two + q.clone() * q)]
+            [
+                two.clone(),
+                three.clone(),
+                three * p - two.clone() * (two + q.clone() * q),
+            ]
         }
         fn check<const BITS: i32>(c: [f64; 8]) -> usize {
-            let (fixed, exact) = (polynomial(Fixed::<BITS>::difference, c), polynomial(Dyadic::difference, c));
+            let (fixed, exact) = (
+                polynomial(Fixed::<BITS>::difference, c),
+                polynomial(Dyadic::difference, c),
+            );
             fixed
                 .into_iter()
                 .zip(exact)
                 .filter(|(fixed, exact)| {
                     let error = (Dyadic::from(fixed.value) - exact.clone()).estimate().abs();
-                    assert!(error <= fixed.error && fixed.value.abs() <= fixed.magnitude, "{fixed:?} {c:?}: {error:e}");
+                    assert!(
+                        error <= fixed.error && fixed.value.abs() <= fixed.magnitude,
+                        "{fixed:?} {c:?}: {error:e}"
+                    );
                     assert!(fixed.sign().is_none_or(|sign| sign == exact.sign()));
                     error > 0.0
                 })

@@ -42,7 +42,9 @@ impl From<i64> for Integer {
     #[inline]
     fn from(x: i64) -> Self {
         let sign = (x >> 63) as u64;
-        Integer { limbs: [x as u64, sign, sign, sign] }
+        Integer {
+            limbs: [x as u64, sign, sign, sign],
+        }
     }
 }
 
@@ -93,7 +95,18 @@ mod tests {
     /// As long as 128 bits suffice, they are the reference; beyond, the laws of arithmetic are.
     #[test]
     fn arithmetic_is_that_of_whole_numbers() {
-        let numbers = [0, 1, -1, 3, -7, 1 << 31, -(1 << 40), i64::MAX, i64::MIN, 0x1234_5678_9ABC_DEF0];
+        let numbers = [
+            0,
+            1,
+            -1,
+            3,
+            -7,
+            1 << 31,
+            -(1 << 40),
+            i64::MAX,
+            i64::MIN,
+            0x1234_5678_9ABC_DEF0,
+        ];
         for a in numbers {
             for b in numbers {
                 let [x, y] = [a, b].map(Integer::from);
@@ -102,7 +115,11 @@ mod tests {
                 assert_eq!((x - y).sign(), Sign::of(&(wide_a - wide_b)), "{a} - {b}");
                 assert_eq!((x * y).sign(), Sign::of(&(wide_a * wide_b)), "{a} {b}");
                 assert_eq!((x + y) * (x - y), x * x - y * y, "{a} {b}");
-                assert_eq!(((x * y) * y - (x * y) * y + Integer::from(1)).sign(), Sign::Positive, "{a} {b}");
+                assert_eq!(
+                    ((x * y) * y - (x * y) * y + Integer::from(1)).sign(),
+                    Sign::Positive,
+                    "{a} {b}"
+                );
                 for c in numbers {
                     let z = Integer::from(c);
                     // Products of three have up to 189 bits.
@@ -115,6 +132,10 @@ mod tests {
         let big = Integer::from(1 << 62);
         let bigger = big * big * big * big;
         assert_eq!(bigger.limbs, [0, 0, 0, 1 << 56]);
-        assert_eq!((bigger - bigger * big).sign(), Sign::Positive, "it wraps around");
+        assert_eq!(
+            (bigger - bigger * big).sign(),
+            Sign::Positive,
+            "it wraps around"
+        );
     }
 }

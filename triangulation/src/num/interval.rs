@@ -44,7 +44,10 @@ impl Interval {
     /// Returns the interval of a rounded value and its error.
     #[inline(always)]
     fn around(rounded: (f64, f64)) -> Self {
-        Interval { low: down(rounded), high: up(rounded) }
+        Interval {
+            low: down(rounded),
+            high: up(rounded),
+        }
     }
 
     #[inline(always)]
@@ -56,7 +59,11 @@ impl Interval {
 /// Returns a value rounded down, given the rounded value and its error.
 #[inline(always)]
 fn down((value, error): (f64, f64)) -> f64 {
-    if error < 0.0 { value.next_down() } else { value }
+    if error < 0.0 {
+        value.next_down()
+    } else {
+        value
+    }
 }
 
 /// Returns a value rounded up, given the rounded value and its error.
@@ -70,7 +77,10 @@ impl Add for Interval {
 
     #[inline]
     fn add(self, other: Self) -> Self {
-        Interval { low: down(two_sum(self.low, other.low)), high: up(two_sum(self.high, other.high)) }
+        Interval {
+            low: down(two_sum(self.low, other.low)),
+            high: up(two_sum(self.high, other.high)),
+        }
     }
 }
 
@@ -79,7 +89,10 @@ impl Sub for Interval {
 
     #[inline]
     fn sub(self, other: Self) -> Self {
-        Interval { low: down(two_sum(self.low, -other.high)), high: up(two_sum(self.high, -other.low)) }
+        Interval {
+            low: down(two_sum(self.low, -other.high)),
+            high: up(two_sum(self.high, -other.low)),
+        }
     }
 }
 
@@ -94,10 +107,21 @@ impl Mul for Interval {
         // Rounding is monotone: the smallest of the rounded products is the smallest product,
         // rounded. The bounds move outward even if they are exact; a zero may come from an
         // underflow.
-        let products = [self.low * other.low, self.low * other.high, self.high * other.low, self.high * other.high];
+        let products = [
+            self.low * other.low,
+            self.low * other.high,
+            self.high * other.low,
+            self.high * other.high,
+        ];
         Interval {
-            low: products.into_iter().fold(f64::INFINITY, f64::min).next_down(),
-            high: products.into_iter().fold(f64::NEG_INFINITY, f64::max).next_up(),
+            low: products
+                .into_iter()
+                .fold(f64::INFINITY, f64::min)
+                .next_down(),
+            high: products
+                .into_iter()
+                .fold(f64::NEG_INFINITY, f64::max)
+                .next_up(),
         }
     }
 }
@@ -118,7 +142,9 @@ mod tests {
     fn the_truth_is_within_and_the_bounds_are_near() {
         let mut state = 1u64;
         let mut random = || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
             (state >> 11) as f64 / (1u64 << 53) as f64 - 0.5
         };
         let mut exact = 0;
@@ -126,12 +152,16 @@ mod tests {
             let coarse = |x: f64| if round % 2 == 0 { (x * 8.0).round() } else { x };
             let numbers = [(); 6].map(|()| coarse(random()));
             fn polynomial<T: crate::num::Number>([a, b, c, d, e, f]: [T; 6]) -> T {
-                (a.clone() * b.clone() - c.clone() * d.clone()) * (e.clone() - a * d) + (b * f.clone() - e) * (c * f)
+                (a.clone() * b.clone() - c.clone() * d.clone()) * (e.clone() - a * d)
+                    + (b * f.clone() - e) * (c * f)
             }
             let interval = polynomial(numbers.map(|x| Interval::difference(x, 0.1 * numbers[0])));
             let truth = polynomial(numbers.map(|x| Dyadic::difference(x, 0.1 * numbers[0])));
             assert!(contains(interval, &truth), "{interval:?}");
-            assert!(interval.high - interval.low < 100.0 * f64::EPSILON * (1.0 + interval.high.abs()) * 512.0);
+            assert!(
+                interval.high - interval.low
+                    < 100.0 * f64::EPSILON * (1.0 + interval.high.abs()) * 512.0
+            );
             exact += usize::from(interval.is_exact());
             assert!(interval.sign().is_none_or(|sign| sign == truth.sign()));
         }
@@ -144,7 +174,11 @@ mod tests {
         let zero = number(3.0) * number(5.0) - number(15.0);
         assert_eq!(zero.sign(), Some(Sign::Zero));
         let third = number(1.0 / 3.0);
-        assert_eq!((third * third - third * third).sign(), None, "a rounding is not forgotten");
+        assert_eq!(
+            (third * third - third * third).sign(),
+            None,
+            "a rounding is not forgotten"
+        );
         let wide = number(1.0) + number(1e-30);
         assert_eq!((wide.low, wide.high), (1.0, 1.0f64.next_up()));
         assert_eq!((wide - number(1.0)).sign(), None);

@@ -15,7 +15,11 @@ pub fn lowest_bit(x: f64) -> Option<i32> {
     let bits = x.to_bits();
     let biased = ((bits >> 52) & 0x7ff) as i32;
     let fraction = bits & ((1 << 52) - 1);
-    let (mantissa, exponent) = if biased == 0 { (fraction, -1074) } else { (fraction | 1 << 52, biased - 1075) };
+    let (mantissa, exponent) = if biased == 0 {
+        (fraction, -1074)
+    } else {
+        (fraction | 1 << 52, biased - 1075)
+    };
     Some(exponent + mantissa.trailing_zeros() as i32)
 }
 
@@ -27,7 +31,12 @@ pub fn inverse_unit<A>(axes: impl Iterator<Item = A> + Clone, bits: i32) -> Opti
 where
     A: Iterator<Item = f64> + Clone,
 {
-    let lowest = axes.clone().flatten().filter_map(lowest_bit).min().unwrap_or(0);
+    let lowest = axes
+        .clone()
+        .flatten()
+        .filter_map(lowest_bit)
+        .min()
+        .unwrap_or(0);
     if !(-1000..=1000).contains(&lowest) {
         return None;
     }
@@ -46,7 +55,9 @@ where
     // of at least 2^bits is never rounded to less. (2^53 + 1 is rounded *to* 2^53.)
     let limit = power_of_two(bits);
     axes.all(|axis| {
-        let (min, max) = axis.fold((f64::INFINITY, f64::NEG_INFINITY), |(min, max), x| (min.min(x), max.max(x)));
+        let (min, max) = axis.fold((f64::INFINITY, f64::NEG_INFINITY), |(min, max), x| {
+            (min.min(x), max.max(x))
+        });
         (max - min) * inverse_unit < limit
     })
 }

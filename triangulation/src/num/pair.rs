@@ -36,7 +36,10 @@ impl Pair {
 #[inline(always)]
 fn quick_two_sum(a: f64, b: f64) -> Pair {
     let high = a + b;
-    Pair { high, low: b - (high - a) }
+    Pair {
+        high,
+        low: b - (high - a),
+    }
 }
 
 impl Add for Pair {
@@ -56,7 +59,10 @@ impl Sub for Pair {
 
     #[inline(always)]
     fn sub(self, other: Self) -> Self {
-        self + Pair { high: -other.high, low: -other.low }
+        self + Pair {
+            high: -other.high,
+            low: -other.low,
+        }
     }
 }
 
@@ -95,7 +101,9 @@ mod tests {
     fn errors_are_within_the_bound() {
         let mut state = 1u64;
         let mut unit = || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
             (state >> 11) as f64 / (1u64 << 53) as f64 - 0.4
         };
         for _ in 0..20_000 {
@@ -104,14 +112,20 @@ mod tests {
             let q = Pair::difference(unit() * scale, unit() * 1e-12);
             let near = |found: Pair, truth: Dyadic| {
                 let error = (exact(found) - truth).estimate().abs();
-                assert!(error <= Pair::ERROR * found.high.abs(), "{p:?} {q:?}: {error:e}");
+                assert!(
+                    error <= Pair::ERROR * found.high.abs(),
+                    "{p:?} {q:?}: {error:e}"
+                );
             };
             near(p + q, exact(p) + exact(q));
             near(p - q, exact(p) - exact(q));
             near(p * q, exact(p) * exact(q));
             // q (p / q) is p, up to the error of the quotient.
             let error = (exact(p / q) * exact(q) - exact(p)).estimate().abs();
-            assert!(error <= Pair::ERROR * p.high.abs(), "{p:?} {q:?}: {error:e}");
+            assert!(
+                error <= Pair::ERROR * p.high.abs(),
+                "{p:?} {q:?}: {error:e}"
+            );
         }
     }
 }

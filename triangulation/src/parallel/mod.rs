@@ -23,16 +23,30 @@ const STACK: usize = 8 << 20;
 /// the system refuses another.
 pub(crate) fn on_new_stack<T: Send>(work: &mut (dyn FnMut() -> T + Send)) -> T {
     let work = Mutex::new(Some(work));
-    let run = || work.lock().unwrap_or_else(PoisonError::into_inner).take().map(|work| work());
+    let run = || {
+        work.lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .take()
+            .map(|work| work())
+    };
     let done = thread::scope(|scope| {
-        let started = thread::Builder::new().stack_size(STACK).spawn_scoped(scope, run);
-        started.ok().and_then(|thread| thread.join().unwrap_or_else(|panic| resume_unwind(panic)))
+        let started = thread::Builder::new()
+            .stack_size(STACK)
+            .spawn_scoped(scope, run);
+        started
+            .ok()
+            .and_then(|thread| thread.join().unwrap_or_else(|panic| resume_unwind(panic)))
     });
-    done.or_else(run).expect("the work is there until it is run")
+    done.or_else(run)
+        .expect("the work is there until it is run")
 }
 
 /// Runs a test's work on a number of threads, or on one where there are no others.
 #[cfg(all(test, feature = "parallel"))]
 pub(crate) fn on_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
-    rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads").install(work)
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build()
+        .expect("threads")
+        .install(work)
 }

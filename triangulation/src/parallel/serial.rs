@@ -39,11 +39,17 @@ impl<I: Iterator> Serial<I> {
         Serial(self.0.enumerate())
     }
 
-    pub(crate) fn zip<J: Iterator>(self, other: Serial<J>) -> Serial<impl Iterator<Item = (I::Item, J::Item)>> {
+    pub(crate) fn zip<J: Iterator>(
+        self,
+        other: Serial<J>,
+    ) -> Serial<impl Iterator<Item = (I::Item, J::Item)>> {
         Serial(self.0.zip(other.0))
     }
 
-    pub(crate) fn filter(self, is_wanted: impl Fn(&I::Item) -> bool) -> Serial<impl Iterator<Item = I::Item>> {
+    pub(crate) fn filter(
+        self,
+        is_wanted: impl Fn(&I::Item) -> bool,
+    ) -> Serial<impl Iterator<Item = I::Item>> {
         Serial(self.0.filter(is_wanted))
     }
 
@@ -91,7 +97,11 @@ impl<I: Iterator> Serial<I> {
 
 impl<T, I: Iterator<Item = Option<T>>> Serial<I> {
     /// Ends at the first `None`.
-    pub(crate) fn try_reduce(mut self, identity: impl FnOnce() -> T, join: impl Fn(T, T) -> Option<T>) -> Option<T> {
+    pub(crate) fn try_reduce(
+        mut self,
+        identity: impl FnOnce() -> T,
+        join: impl Fn(T, T) -> Option<T>,
+    ) -> Option<T> {
         self.0.try_fold(identity(), |sum, item| join(sum, item?))
     }
 }

@@ -41,7 +41,10 @@ impl<const D: usize> HalfSpace<D> {
     /// Returns the points of less power to the origin than to `p`, where the weight of the origin
     /// is larger `by` this much.
     pub(super) fn of_less_power(p: [f64; D], by: f64) -> Self {
-        HalfSpace { normal: p, offset: (dot(p, p) + by) / 2.0 }
+        HalfSpace {
+            normal: p,
+            offset: (dot(p, p) + by) / 2.0,
+        }
     }
 
     /// Returns how far a point lies beyond the border, times the length of the normal.
@@ -101,7 +104,10 @@ impl<const D: usize> HalfSpace<D> {
 /// Returns the point of a segment on the border of a half space, given how far a point within and
 /// one beyond it lie beyond the border. The direction is fixed, so that it is one point for all
 /// polygons with this side.
-fn between<const D: usize>((inside, below): ([f64; D], f64), (beyond, above): ([f64; D], f64)) -> [f64; D] {
+fn between<const D: usize>(
+    (inside, below): ([f64; D], f64),
+    (beyond, above): ([f64; D], f64),
+) -> [f64; D] {
     if below == 0.0 {
         return inside;
     }

@@ -53,7 +53,8 @@ pub use dual::VoronoiEdge;
 pub use nearest::{nearest, nearest_first, within};
 pub use plane::{Mark, Passage, VoronoiCell, along, faces_from};
 pub use space::{
-    AlphaShape, AlphaShapes, AlphaState, Boundary, ConvexHull, VoronoiFacet, VoronoiSolid, along_in_space,
+    AlphaShape, AlphaShapes, AlphaState, Boundary, ConvexHull, VoronoiFacet, VoronoiSolid,
+    along_in_space,
 };
 pub use within_box::{within_box, within_rectangle};
 pub use zone::{ConflictZone, conflict_zone};
@@ -66,13 +67,19 @@ use crate::tds::VertexId;
 use crate::triangulation::Triangulation;
 
 /// Returns the coordinates of a point: two in the plane, three in space.
-fn site_of<G: Coordinates<N>, const N: usize, const D: usize>(geometry: &G, p: &G::Point) -> [f64; D] {
+fn site_of<G: Coordinates<N>, const N: usize, const D: usize>(
+    geometry: &G,
+    p: &G::Point,
+) -> [f64; D] {
     let coordinates = geometry.coordinates(p);
     std::array::from_fn(|k| coordinates.as_ref()[k])
 }
 
 /// Returns the coordinates of a finite vertex in the plane.
-fn site<T: Embedded<3, Geometry: Coordinates<3>>>(t: &T, vertex: VertexId) -> Result<[f64; 2], T::Error> {
+fn site<T: Embedded<3, Geometry: Coordinates<3>>>(
+    t: &T,
+    vertex: VertexId,
+) -> Result<[f64; 2], T::Error> {
     Ok(site_of(t.geometry(), t.point(vertex)?.borrow()))
 }
 

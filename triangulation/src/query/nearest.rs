@@ -32,18 +32,26 @@ struct VertexByDistance<'t, T: Embedded<N>, const N: usize> {
 impl<T: Embedded<N, Geometry: Metric<N>>, const N: usize> VertexByDistance<'_, T, N> {
     /// Returns true if the vertex is no further from the point than `rim` is.
     fn is_within(&self, rim: &PointOf<T, N>) -> bool {
-        self.t.geometry().compare_distance(&self.q, self.point.borrow(), rim).is_le()
+        self.t
+            .geometry()
+            .compare_distance(&self.q, self.point.borrow(), rim)
+            .is_le()
     }
 }
 
 impl<T: Embedded<N, Geometry: Metric<N>>, const N: usize> Ord for VertexByDistance<'_, T, N> {
     fn cmp(&self, other: &Self) -> Ordering {
-        let (geometry, ours, theirs) = (self.t.geometry(), self.point.borrow(), other.point.borrow());
-        geometry.compare_distance(&self.q, theirs, ours).then_with(|| geometry.compare(theirs, ours))
+        let (geometry, ours, theirs) =
+            (self.t.geometry(), self.point.borrow(), other.point.borrow());
+        geometry
+            .compare_distance(&self.q, theirs, ours)
+            .then_with(|| geometry.compare(theirs, ours))
     }
 }
 
-impl<T: Embedded<N, Geometry: Metric<N>>, const N: usize> PartialOrd for VertexByDistance<'_, T, N> {
+impl<T: Embedded<N, Geometry: Metric<N>>, const N: usize> PartialOrd
+    for VertexByDistance<'_, T, N>
+{
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
     }
@@ -65,17 +73,31 @@ struct NearestFirst<'t, T: Embedded<N, Geometry: Metric<N>>, const N: usize> {
     next: BinaryHeap<VertexByDistance<'t, T, N>>,
 }
 
-impl<'t, T: Embedded<N, Geometry: Metric<N>, Complex: Neighbors<N>>, const N: usize> NearestFirst<'t, T, N> {
+impl<'t, T: Embedded<N, Geometry: Metric<N>, Complex: Neighbors<N>>, const N: usize>
+    NearestFirst<'t, T, N>
+{
     /// Starts at the location of the point.
     fn new(t: &'t T, q: &PointOf<T, N>, location: Location) -> Result<Self, T::Error> {
-        let mut nearest = NearestFirst { t, q: *q, found: FxHashSet::default(), next: BinaryHeap::new() };
-        all_nearest(t, q, location)?.into_iter().try_for_each(|vertex| nearest.find(vertex))?;
+        let mut nearest = NearestFirst {
+            t,
+            q: *q,
+            found: FxHashSet::default(),
+            next: BinaryHeap::new(),
+        };
+        all_nearest(t, q, location)?
+            .into_iter()
+            .try_for_each(|vertex| nearest.find(vertex))?;
         Ok(nearest)
     }
 
     fn find(&mut self, vertex: VertexId) -> Result<(), T::Error> {
         if self.found.insert(vertex) {
-            self.next.push(VertexByDistance { t: self.t, q: self.q, vertex, point: self.t.point(vertex)? });
+            self.next.push(VertexByDistance {
+                t: self.t,
+                q: self.q,
+                vertex,
+                point: self.t.point(vertex)?,
+            });
         }
         Ok(())
     }
@@ -89,7 +111,8 @@ impl<'t, T: Embedded<N, Geometry: Metric<N>, Complex: Neighbors<N>>, const N: us
     fn next(&mut self) -> Option<Self::Item> {
         let nearest = self.next.pop()?;
         let around = finite_neighbors(self.t, nearest.vertex);
-        let all_found = around.and_then(|mut around| around.try_for_each(|vertex| self.find(vertex?)));
+        let all_found =
+            around.and_then(|mut around| around.try_for_each(|vertex| self.find(vertex?)));
         Some(match all_found {
             Ok(()) => Ok(nearest),
             Err(error) => {
@@ -129,7 +152,8 @@ pub fn nearest<T: Embedded<N, Geometry: Metric<N>, Complex: Neighbors<N>>, const
     let mut first: Option<(VertexId, T::PointRef<'_>)> = None;
     for vertex in all_nearest(t, q, location)? {
         let point = t.point(vertex)?;
-        if first.is_none_or(|(_, best)| t.geometry().compare(point.borrow(), best.borrow()).is_lt()) {
+        if first.is_none_or(|(_, best)| t.geometry().compare(point.borrow(), best.borrow()).is_lt())
+        {
             first = Some((vertex, point));
         }
     }
@@ -144,7 +168,11 @@ pub fn nearest<T: Embedded<N, Geometry: Metric<N>, Complex: Neighbors<N>>, const
 ///
 /// # Complexity
 /// That of [`nearest`], and `O(d log k)` for the `k`-th vertex, of degree `d`.
-pub fn nearest_first<'t, T: Embedded<N, Geometry: Metric<N>, Complex: Neighbors<N>>, const N: usize>(
+pub fn nearest_first<
+    't,
+    T: Embedded<N, Geometry: Metric<N>, Complex: Neighbors<N>>,
+    const N: usize,
+>(
     t: &'t T,
     q: &PointOf<T, N>,
     near: Option<CellId>,
@@ -168,13 +196,21 @@ pub fn within<'t, T: Embedded<N, Geometry: Metric<N>, Complex: Neighbors<N>>, co
     rim: &PointOf<T, N>,
     near: Option<CellId>,
 ) -> Result<impl Iterator<Item = Result<VertexId, T::Error>> + use<'t, T, N>, T::Error> {
-    let location = if t.geometry().admits(rim) { locate(t, center, near)? } else { Location::Nowhere };
+    let location = if t.geometry().admits(rim) {
+        locate(t, center, near)?
+    } else {
+        Location::Nowhere
+    };
     let nearest = NearestFirst::new(t, center, location)?;
     let rim = *rim;
     let is_within = move |candidate: &Result<VertexByDistance<'t, T, N>, T::Error>| {
-        candidate.as_ref().map_or(true, |candidate| candidate.is_within(&rim))
+        candidate
+            .as_ref()
+            .map_or(true, |candidate| candidate.is_within(&rim))
     };
-    Ok(nearest.take_while(is_within).map(|candidate| Ok(candidate?.vertex)))
+    Ok(nearest
+        .take_while(is_within)
+        .map(|candidate| Ok(candidate?.vertex)))
 }
 
 /// Returns the first of the vertices that none of the others is nearer than.
@@ -186,7 +222,11 @@ fn nearest_of<T: Embedded<N, Geometry: Metric<N>>, const N: usize>(
     let mut nearest: Option<(VertexId, T::PointRef<'_>)> = None;
     for &vertex in vertices {
         let point = t.point(vertex)?;
-        if nearest.is_none_or(|(_, best)| t.geometry().compare_distance(q, point.borrow(), best.borrow()).is_lt()) {
+        if nearest.is_none_or(|(_, best)| {
+            t.geometry()
+                .compare_distance(q, point.borrow(), best.borrow())
+                .is_lt()
+        }) {
             nearest = Some((vertex, point));
         }
     }
@@ -221,7 +261,10 @@ fn all_nearest<T: Embedded<N, Geometry: Metric<N>, Complex: Neighbors<N>>, const
         next += 1;
         for v in finite_neighbors(t, vertex)? {
             let v = v?;
-            match t.geometry().compare_distance(q, t.point(v)?.borrow(), point.borrow()) {
+            match t
+                .geometry()
+                .compare_distance(q, t.point(v)?.borrow(), point.borrow())
+            {
                 Ordering::Less => {
                     nearest = vec![v];
                     found.clear();

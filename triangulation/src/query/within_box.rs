@@ -24,12 +24,24 @@ struct Bounds<const N: usize> {
 impl<const N: usize> Bounds<N> {
     fn new([p, q]: [[f64; 3]; 2]) -> Self {
         // NaN compares with nothing, and nothing lies on either side of it.
-        let ends = [0, 1, 2].map(|k| if p[k] <= q[k] { (p[k], q[k]) } else { (q[k], p[k]) });
-        Bounds { low: ends.map(|(low, _)| low), high: ends.map(|(_, high)| high) }
+        let ends = [0, 1, 2].map(|k| {
+            if p[k] <= q[k] {
+                (p[k], q[k])
+            } else {
+                (q[k], p[k])
+            }
+        });
+        Bounds {
+            low: ends.map(|(low, _)| low),
+            high: ends.map(|(_, high)| high),
+        }
     }
 
     fn are_finite(self) -> bool {
-        [self.low, self.high].as_flattened().iter().all(|x| x.is_finite())
+        [self.low, self.high]
+            .as_flattened()
+            .iter()
+            .all(|x| x.is_finite())
     }
 
     fn hold(self, p: [f64; 3]) -> bool {
@@ -37,14 +49,22 @@ impl<const N: usize> Bounds<N> {
     }
 
     fn corners(self) -> impl Iterator<Item = [f64; 3]> {
-        (0..1 << (N - 1))
-            .map(move |corner| [0, 1, 2].map(|k| if corner >> k & 1 == 0 { self.low[k] } else { self.high[k] }))
+        (0..1 << (N - 1)).map(move |corner| {
+            [0, 1, 2].map(|k| {
+                if corner >> k & 1 == 0 {
+                    self.low[k]
+                } else {
+                    self.high[k]
+                }
+            })
+        })
     }
 
     /// Returns true if the box meets the bounding box of a cell, as it does if it meets the cell.
     fn meet(self, cell: [[f64; 3]; N]) -> bool {
         (0..N - 1).all(|k| {
-            let [low, high] = [f64::min, f64::max].map(|least| cell.iter().map(|p| p[k]).fold(cell[0][k], least));
+            let [low, high] =
+                [f64::min, f64::max].map(|least| cell.iter().map(|p| p[k]).fold(cell[0][k], least));
             low <= self.high[k] && self.low[k] <= high
         })
     }
@@ -153,7 +173,11 @@ fn within<const N: usize, T: Embedded<N, Geometry: Coordinates<N>>>(
     let location = locate(t, corners[0], near)?;
     let bounds = Bounds::<N>::new(corners.map(|corner| position(t.geometry(), corner)));
     let mut vertices = Vec::new();
-    let start = if complex.width() < N || !bounds.are_finite() { None } else { location.cell_in(complex)? };
+    let start = if complex.width() < N || !bounds.are_finite() {
+        None
+    } else {
+        location.cell_in(complex)?
+    };
     let Some(start) = start else {
         for vertex in vertices_of(complex) {
             let vertex = vertex?;

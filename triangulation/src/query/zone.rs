@@ -99,7 +99,9 @@ pub(super) fn zone_at<T: Embedded<N>, const N: usize>(
         // Only a point with a weight may be hidden; one outside of the hull is not.
         Location::Cell { cell, .. } if !in_conflict(t, cell, q)? => Ok(None),
         Location::Cell { cell, facets } => zone_from(t, q, cell, facets, passes).map(Some),
-        Location::OutsideHull { cell } => zone_from(t, q, cell, Facets::default(), passes).map(Some),
+        Location::OutsideHull { cell } => {
+            zone_from(t, q, cell, Facets::default(), passes).map(Some)
+        }
     }
 }
 
@@ -119,7 +121,10 @@ fn zone_from<T: Embedded<N>, const N: usize>(
     };
     let width = complex.width();
     let mut taken = FxHashSet::from_iter([start]);
-    let mut zone = ConflictZone { cells: vec![start], border: Vec::new() };
+    let mut zone = ConflictZone {
+        cells: vec![start],
+        border: Vec::new(),
+    };
     // Depth first, over the facets of each cell counter-clockwise from where it was entered: in the
     // plane the border comes in order, as in `tds::Zone`, which does this with memory of its own.
     let mut facets: Vec<(CellId, usize)> = (0..width).rev().map(|i| (start, i)).collect();
@@ -132,7 +137,11 @@ fn zone_from<T: Embedded<N>, const N: usize>(
             taken.insert(beyond);
             zone.cells.push(beyond);
             let entry = complex.index_of_neighbor(beyond, cell)?;
-            facets.extend((1..width).rev().map(|turn| (beyond, (entry + turn) % width)));
+            facets.extend(
+                (1..width)
+                    .rev()
+                    .map(|turn| (beyond, (entry + turn) % width)),
+            );
         } else {
             zone.border.push((cell, i));
         }
@@ -187,7 +196,10 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Regular<G, N, V, C> {
         let location = self.locate(q, near);
         let Ok(zone) = match location {
             Location::Vertex(vertex) => {
-                let is_heavier = self.geometry().side_of_sphere_in_flat(&[self.point(vertex)], q) == Sign::Positive;
+                let is_heavier = self
+                    .geometry()
+                    .side_of_sphere_in_flat(&[self.point(vertex)], q)
+                    == Sign::Positive;
                 let start = self.tds().cell_of(vertex).filter(|_| is_heavier)?;
                 zone_from(&**self, q, start, Facets::default(), |_, _| Ok(true)).map(Some)
             }

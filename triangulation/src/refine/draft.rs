@@ -104,7 +104,8 @@ impl<G: Crossing, V: Default> Draft<G, V> {
         };
         // Of four points in circles one test is enough.
         let is_symmetric = matches!(self.encroachment, Encroachment::Delaunay);
-        self.t.is_constrained(cell, i) && (self.is_apex_near(cell, i) || !is_symmetric && is_far_apex_near())
+        self.t.is_constrained(cell, i)
+            && (self.is_apex_near(cell, i) || !is_symmetric && is_far_apex_near())
     }
 
     /// Like [`is_encroached`](Self::is_encroached), but tests the vertex of this cell only: if the
@@ -124,7 +125,10 @@ impl<G: Crossing, V: Default> Draft<G, V> {
             let beside = tds.neighbor(cell, i);
             return !tds.is_infinite(beside) && {
                 let corners = tds.corners(beside).map(|v| self.t.point(v));
-                self.t.geometry().side_of_sphere(corners, self.t.point(apex)) == Sign::Positive
+                self.t
+                    .geometry()
+                    .side_of_sphere(corners, self.t.point(apex))
+                    == Sign::Positive
             };
         }
         self.encroaches(tds.edge_ends(cell, i), self.t.plan_of(apex))
@@ -175,7 +179,11 @@ impl<G: Crossing, V: Default> Draft<G, V> {
         region: impl Fn(usize) -> u32,
     ) -> VertexId {
         let vertex = self.t.inner.add_vertex(p, V::default());
-        let star = self.t.inner.tds.star(&mut zone, vertex, |mask, i| mask.only(i));
+        let star = self
+            .t
+            .inner
+            .tds
+            .star(&mut zone, vertex, |mask, i| mask.only(i));
         self.t.inner.last = star.last().copied();
         self.regions.resize(self.t.inner.tds.cell_slots(), OUTSIDE);
         for (k, &cell) in star.iter().enumerate() {

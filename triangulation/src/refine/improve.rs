@@ -43,9 +43,21 @@ impl<'a, G: Crossing, V: Default> Refiner<'a, G, V> {
         let angle = quality.angle().to_radians();
         let reach = REACH / 2.0 / (angle / 2.0).tan();
         // The rounded cosine of a sliver may be larger than one.
-        let cosine = if angle > 0.0 { angle.cos().powi(2) } else { f64::INFINITY };
+        let cosine = if angle > 0.0 {
+            angle.cos().powi(2)
+        } else {
+            f64::INFINITY
+        };
         let bounds_areas = quality.bounds_areas();
-        Refiner { draft, quality, queue: Queue::default(), left: Vec::new(), cosine, reach, bounds_areas }
+        Refiner {
+            draft,
+            quality,
+            queue: Queue::default(),
+            left: Vec::new(),
+            cosine,
+            reach,
+            bounds_areas,
+        }
     }
 
     pub(super) fn run(&mut self) {
@@ -58,11 +70,18 @@ impl<'a, G: Crossing, V: Default> Refiner<'a, G, V> {
             && let Some(bad) = self.queue.pop()
         {
             tried += 1;
-            if tried % LOOK_EVERY == 0 && self.quality.cancel.is_some_and(|cancel| cancel.load(Ordering::Relaxed)) {
+            if tried % LOOK_EVERY == 0
+                && self
+                    .quality
+                    .cancel
+                    .is_some_and(|cancel| cancel.load(Ordering::Relaxed))
+            {
                 self.draft.budget = 0;
                 break;
             }
-            let Some(shape) = self.still_bad(&bad) else { continue };
+            let Some(shape) = self.still_bad(&bad) else {
+                continue;
+            };
             match self.draft.add_in(bad.cell, shape.off_center(self.reach)) {
                 Attempt::Added => {}
                 Attempt::Encroaches if self.draft.split_encroached() => self.queue.push(bad),
@@ -76,7 +95,13 @@ impl<'a, G: Crossing, V: Default> Refiner<'a, G, V> {
     }
 
     fn shape(&self, cell: CellId) -> Shape {
-        Shape::of(self.draft.t.tds().corners(cell).map(|v| self.draft.t.plan_of(v)))
+        Shape::of(
+            self.draft
+                .t
+                .tds()
+                .corners(cell)
+                .map(|v| self.draft.t.plan_of(v)),
+        )
     }
 
     /// Queues a cell if it is to be destroyed.
@@ -98,7 +123,11 @@ impl<'a, G: Crossing, V: Default> Refiner<'a, G, V> {
 
     /// Records a cell that does not satisfy the bounds.
     fn note(&mut self, cell: CellId, shape: &Shape) {
-        let bad = BadTriangle { cell, corners: *self.draft.t.tds().corners(cell), shortest: shape.shortest() };
+        let bad = BadTriangle {
+            cell,
+            corners: *self.draft.t.tds().corners(cell),
+            shortest: shape.shortest(),
+        };
         if self.is_too_large(cell, shape) || self.why_thin(cell, shape).is_none() {
             self.queue.push(bad);
         } else {
@@ -110,7 +139,11 @@ impl<'a, G: Crossing, V: Default> Refiner<'a, G, V> {
     /// bounds. Vertices are removed, so that both its number and those of its corners may have been
     /// reused.
     fn still_bad(&self, bad: &BadTriangle) -> Option<Shape> {
-        if *self.draft.t.tds().corners(bad.cell) == bad.corners { self.bad(bad.cell) } else { None }
+        if *self.draft.t.tds().corners(bad.cell) == bad.corners {
+            self.bad(bad.cell)
+        } else {
+            None
+        }
     }
 
     #[inline]
@@ -121,10 +154,15 @@ impl<'a, G: Crossing, V: Default> Refiner<'a, G, V> {
     fn exceeds_bounds(&self, cell: CellId, shape: &Shape) -> bool {
         let quality = self.quality;
         let region = (self.draft.regions[cell.index()] as usize).checked_sub(1);
-        let of_region = region.and_then(|k| quality.regions.get(k)).map_or(f64::INFINITY, |region| region.max_area);
+        let of_region = region
+            .and_then(|k| quality.regions.get(k))
+            .map_or(f64::INFINITY, |region| region.max_area);
         let bound = quality.max_area.min(of_region);
         let area = shape.area();
-        area > bound || quality.area_at.is_some_and(|area_at| area > area_at(shape.center()))
+        area > bound
+            || quality
+                .area_at
+                .is_some_and(|area_at| area > area_at(shape.center()))
     }
 
     fn is_too_thin(&self, shape: &Shape) -> bool {
@@ -138,9 +176,14 @@ impl<'a, G: Crossing, V: Default> Refiner<'a, G, V> {
         if self.spans_small_angle(ends) {
             return Some(Shortfall::SmallAngle);
         }
-        let largest =
-            ends.map(|v| self.draft.t.plan_of(v).map(f64::abs)).as_flattened().iter().copied().fold(0.0, f64::max);
-        (shape.shortest().sqrt() < SHORTEST_IN_UNITS * f64::EPSILON * largest).then_some(Shortfall::Coordinates)
+        let largest = ends
+            .map(|v| self.draft.t.plan_of(v).map(f64::abs))
+            .as_flattened()
+            .iter()
+            .copied()
+            .fold(0.0, f64::max);
+        (shape.shortest().sqrt() < SHORTEST_IN_UNITS * f64::EPSILON * largest)
+            .then_some(Shortfall::Coordinates)
     }
 
     /// Returns true if an edge spans a small angle between two constraints, from one to the other,
@@ -155,7 +198,8 @@ impl<'a, G: Crossing, V: Default> Refiner<'a, G, V> {
         let apex = ab.into_iter().find(|v| cd.contains(v));
         ab != cd
             && apex.is_some_and(|apex| {
-                let [to_a, to_b] = [a, b].map(|v| length(minus(self.draft.t.plan_of(v), self.draft.t.plan_of(apex))));
+                let [to_a, to_b] = [a, b]
+                    .map(|v| length(minus(self.draft.t.plan_of(v), self.draft.t.plan_of(apex))));
                 (to_a - to_b).abs() < SAME_CIRCLE * to_a
             })
     }
@@ -165,14 +209,25 @@ impl<'a, G: Crossing, V: Default> Refiner<'a, G, V> {
     pub(super) fn shortfall(&mut self) -> Vec<(CellId, Shortfall)> {
         let mut bad = std::mem::take(&mut self.left);
         bad.extend(std::iter::from_fn(|| self.queue.pop()));
-        let mut cells: Vec<CellId> =
-            bad.iter().filter(|bad| self.still_bad(bad).is_some()).map(|bad| bad.cell).collect();
+        let mut cells: Vec<CellId> = bad
+            .iter()
+            .filter(|bad| self.still_bad(bad).is_some())
+            .map(|bad| bad.cell)
+            .collect();
         cells.sort_unstable();
         cells.dedup();
-        let rest = if self.draft.budget == 0 { Shortfall::Limit } else { Shortfall::Coordinates };
+        let rest = if self.draft.budget == 0 {
+            Shortfall::Limit
+        } else {
+            Shortfall::Coordinates
+        };
         let why = |cell: CellId| {
             let shape = self.shape(cell);
-            let reason = if self.is_too_thin(&shape) { self.why_thin(cell, &shape) } else { None };
+            let reason = if self.is_too_thin(&shape) {
+                self.why_thin(cell, &shape)
+            } else {
+                None
+            };
             (cell, reason.unwrap_or(rest))
         };
         cells.into_iter().map(why).collect()

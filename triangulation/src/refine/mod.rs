@@ -76,13 +76,28 @@ impl<G: Crossing, V: Default> Refined<G, V> {
     fn of(mut draft: Draft<G, V>, shortfall: Vec<(CellId, Shortfall)>) -> Self {
         // Edges of the hull are constraints here that belong to no line.
         draft.t.lines.drop_stray_splits();
-        let added = draft.t.tds().vertices().filter(|&v| draft.origin(v) != VertexOrigin::Given).collect();
-        Refined { t: draft.t, regions: draft.regions, added, shortfall }
+        let added = draft
+            .t
+            .tds()
+            .vertices()
+            .filter(|&v| draft.origin(v) != VertexOrigin::Given)
+            .collect();
+        Refined {
+            t: draft.t,
+            regions: draft.regions,
+            added,
+            shortfall,
+        }
     }
 
     /// Returns a triangulation without triangles as it is: there is nothing to refine.
     fn unchanged(t: ConstrainedDelaunay<G, V>) -> Self {
-        Refined { t, regions: Vec::new(), added: Vec::new(), shortfall: Vec::new() }
+        Refined {
+            t,
+            regions: Vec::new(),
+            added: Vec::new(),
+            shortfall: Vec::new(),
+        }
     }
 
     /// Returns the vertices that were added, in order of their numbers.
@@ -92,7 +107,9 @@ impl<G: Crossing, V: Default> Refined<G, V> {
 
     /// Returns true if a cell is in the domain that was to be refined.
     pub fn is_inside(&self, cell: CellId) -> bool {
-        self.regions.get(cell.index()).is_some_and(|&region| region != OUTSIDE)
+        self.regions
+            .get(cell.index())
+            .is_some_and(|&region| region != OUTSIDE)
             && self.tds().is_used(cell)
             && !self.tds().is_infinite(cell)
     }
@@ -104,7 +121,11 @@ impl<G: Crossing, V: Default> Refined<G, V> {
 
     /// Returns the region that a cell is in, as an index into [`Quality::regions`].
     pub fn region(&self, cell: CellId) -> Option<usize> {
-        if self.is_inside(cell) { (self.regions[cell.index()] as usize).checked_sub(1) } else { None }
+        if self.is_inside(cell) {
+            (self.regions[cell.index()] as usize).checked_sub(1)
+        } else {
+            None
+        }
     }
 
     /// Returns the triangles that do not satisfy the bounds, or have an edge that does not conform,
@@ -134,9 +155,19 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
         };
         let mut draft = Draft::new(self, regions, encroachment, MAX_SPLITS);
         draft.split_encroached();
-        let why = if draft.budget == 0 { Shortfall::Limit } else { Shortfall::Coordinates };
+        let why = if draft.budget == 0 {
+            Shortfall::Limit
+        } else {
+            Shortfall::Coordinates
+        };
         let does_not_conform = |&cell: &CellId| (0..3).any(|i| draft.is_encroached(cell, i));
-        let shortfall = draft.t.tds().cells().filter(does_not_conform).map(|cell| (cell, why)).collect();
+        let shortfall = draft
+            .t
+            .tds()
+            .cells()
+            .filter(does_not_conform)
+            .map(|cell| (cell, why))
+            .collect();
         Refined::of(draft, shortfall)
     }
 
@@ -169,8 +200,16 @@ impl<G: Crossing, V: Default> ConstrainedDelaunay<G, V> {
         let regions = regions::regions_of(&mut self, &quality.domain, &quality.regions);
         // Even if only areas are bounded, nothing may come within a rounding of a constraint: the
         // constraint could not be split then.
-        let angle = if quality.bounds_areas() { quality.angle().max(1.0) } else { quality.angle() };
-        let lens = if angle > 0.0 { (2.0 * angle.to_radians()).cos() } else { f64::INFINITY };
+        let angle = if quality.bounds_areas() {
+            quality.angle().max(1.0)
+        } else {
+            quality.angle()
+        };
+        let lens = if angle > 0.0 {
+            (2.0 * angle.to_radians()).cos()
+        } else {
+            f64::INFINITY
+        };
         let draft = Draft::new(self, regions, Encroachment::Lens(lens), quality.max_added);
         let mut refiner = Refiner::new(draft, quality);
         refiner.run();

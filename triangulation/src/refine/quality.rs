@@ -99,7 +99,15 @@ impl Default for Quality<'_> {
 
 impl fmt::Debug for Quality<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Quality { min_angle, max_area, regions, domain, max_added, area_at, cancel } = self;
+        let Quality {
+            min_angle,
+            max_area,
+            regions,
+            domain,
+            max_added,
+            area_at,
+            cancel,
+        } = self;
         f.debug_struct("Quality")
             .field("min_angle", min_angle)
             .field("max_area", max_area)
@@ -115,11 +123,19 @@ impl fmt::Debug for Quality<'_> {
 impl Quality<'_> {
     /// Returns the smallest angle in degrees, clamped to the useful range.
     pub(super) fn angle(&self) -> f64 {
-        if self.min_angle.is_nan() { 0.0 } else { self.min_angle.clamp(0.0, 60.0) }
+        if self.min_angle.is_nan() {
+            0.0
+        } else {
+            self.min_angle.clamp(0.0, 60.0)
+        }
     }
 
     pub(super) fn bounds_areas(&self) -> bool {
-        let mut bounds = self.regions.iter().map(|region| region.max_area).chain([self.max_area]);
+        let mut bounds = self
+            .regions
+            .iter()
+            .map(|region| region.max_area)
+            .chain([self.max_area]);
         self.area_at.is_some() || bounds.any(|bound| bound < f64::INFINITY)
     }
 }

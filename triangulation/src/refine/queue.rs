@@ -44,7 +44,14 @@ pub(super) struct Queue {
 
 impl Default for Queue {
     fn default() -> Self {
-        Queue { entries: Vec::new(), free: NONE, tops: Vec::new(), stacks: [0; WORDS], scales: [0; WORDS], words: 0 }
+        Queue {
+            entries: Vec::new(),
+            free: NONE,
+            tops: Vec::new(),
+            stacks: [0; WORDS],
+            scales: [0; WORDS],
+            words: 0,
+        }
     }
 }
 
@@ -101,11 +108,18 @@ mod tests {
         let (mut queue, mut list) = (Queue::default(), Vec::new());
         let mut state = 1u64;
         for step in 0..20_000 {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
             let random = state >> 33;
             if random % 5 < 3 - step as u64 / 10_000 {
-                let shortest = [1e-300, 0.9, 1.0, 1.4, 1.5, 2.0, 1e300, f64::INFINITY, 0.0][random as usize / 5 % 9];
-                queue.push(BadTriangle { cell: CellId::new(step), corners: [VertexId::INFINITE; 3], shortest });
+                let shortest = [1e-300, 0.9, 1.0, 1.4, 1.5, 2.0, 1e300, f64::INFINITY, 0.0]
+                    [random as usize / 5 % 9];
+                queue.push(BadTriangle {
+                    cell: CellId::new(step),
+                    corners: [VertexId::INFINITE; 3],
+                    shortest,
+                });
                 list.push((shortest.to_bits() >> 51, step));
             } else {
                 let least = list.iter().map(|&(scale, _)| scale).min();

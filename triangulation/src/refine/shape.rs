@@ -23,7 +23,11 @@ const ORDINARY: Range<f64> = 1e-140..1e140;
 #[inline]
 pub(super) fn length(v: [f64; 2]) -> f64 {
     let square = dot(v, v);
-    if ORDINARY.contains(&square) { square.sqrt() } else { v[0].hypot(v[1]) }
+    if ORDINARY.contains(&square) {
+        square.sqrt()
+    } else {
+        v[0].hypot(v[1])
+    }
 }
 
 /// Returns true if the angle between two vectors is obtuse and its cosine at most the negative of
@@ -78,7 +82,10 @@ impl Shape {
             let edge = minus(corners[(k + 1) % 3], corners[k]);
             dot(edge, edge)
         };
-        Shape { corners, squares: [square(0), square(1), square(2)] }
+        Shape {
+            corners,
+            squares: [square(0), square(1), square(2)],
+        }
     }
 
     /// Returns the squared length of the shortest edge.
@@ -91,7 +98,13 @@ impl Shape {
     /// Returns the corner at which the shortest edge begins.
     #[inline]
     pub(super) fn first(&self) -> usize {
-        let shorter = |j: usize, k: usize| if self.squares[k] < self.squares[j] { k } else { j };
+        let shorter = |j: usize, k: usize| {
+            if self.squares[k] < self.squares[j] {
+                k
+            } else {
+                j
+            }
+        };
         shorter(shorter(0, 1), 2)
     }
 
@@ -139,11 +152,23 @@ impl Shape {
         let (uv, vu) = (u[0] * v[1], u[1] * v[0]);
         // In slivers nothing is left of the difference.
         let is_sliver = (uv - vu).abs() < 1e-6 * (uv.abs() + vu.abs());
-        let doubled = 2.0 * if is_sliver { twice_area(p, q, r) } else { uv - vu };
+        let doubled = 2.0
+            * if is_sliver {
+                twice_area(p, q, r)
+            } else {
+                uv - vu
+            };
         let (uu, vv) = (dot(u, u), dot(v, v));
-        let center = [(v[1] * uu - u[1] * vv) / doubled, (u[0] * vv - v[0] * uu) / doubled];
+        let center = [
+            (v[1] * uu - u[1] * vv) / doubled,
+            (u[0] * vv - v[0] * uu) / doubled,
+        ];
         let off = [0.5 * u[0] - reach * u[1], 0.5 * u[1] + reach * u[0]];
-        let offset = if dot(off, off) < dot(center, center) { off } else { center };
+        let offset = if dot(off, off) < dot(center, center) {
+            off
+        } else {
+            center
+        };
         [0, 1].map(|axis| unsigned_zero(p[axis] + offset[axis]))
     }
 }
@@ -155,11 +180,16 @@ mod tests {
     #[test]
     fn lenses_are_of_any_size() {
         for scale in [1e-300, 1e-170, 1e-3, 1.0, 1e170, 1e300] {
-            let [u, v] = [[-1.0, -0.1], [1.0, -0.1]].map(|arrow: [f64; 2]| arrow.map(|x| x * scale));
+            let [u, v] =
+                [[-1.0, -0.1], [1.0, -0.1]].map(|arrow: [f64; 2]| arrow.map(|x| x * scale));
             // Seen under nearly 169 degrees.
             assert!(is_in_lens(u, v, 0.98) && !is_in_lens(u, v, 0.99), "{scale}");
-            let [u, v] = [[-1.0, -1.1], [1.0, -1.1]].map(|arrow: [f64; 2]| arrow.map(|x| x * scale));
-            assert!(!is_in_lens(u, v, 0.0) && !is_in_lens(u, v, -0.5), "{scale}: the angle is acute");
+            let [u, v] =
+                [[-1.0, -1.1], [1.0, -1.1]].map(|arrow: [f64; 2]| arrow.map(|x| x * scale));
+            assert!(
+                !is_in_lens(u, v, 0.0) && !is_in_lens(u, v, -0.5),
+                "{scale}: the angle is acute"
+            );
         }
         assert!(!is_in_lens([0.0; 2], [1.0, 0.0], 0.5));
     }
@@ -167,11 +197,22 @@ mod tests {
     #[test]
     fn a_triangle_begins_at_its_shortest_edge() {
         let shape = Shape::of([[0.0, 0.0], [4.0, 0.0], [4.0, 3.0]]);
-        assert_eq!((shape.first(), shape.shortest(), shape.area()), (1, 9.0, 6.0));
+        assert_eq!(
+            (shape.first(), shape.shortest(), shape.area()),
+            (1, 9.0, 6.0)
+        );
         assert!((shape.cosine() - 16.0 / 25.0).abs() < 1e-15);
         let tiny = Shape::of([[0.0, 0.0], [4e-100, 0.0], [4e-100, 3e-100]]);
         assert!((tiny.cosine() - 16.0 / 25.0).abs() < 1e-15);
-        assert_eq!(shape.off_center(1e9), [2.0, 1.5], "a right angle's circle has its center in the longest edge");
-        assert_eq!(shape.off_center(0.5), [2.5, 1.5], "half an edge away from the middle of the shortest");
+        assert_eq!(
+            shape.off_center(1e9),
+            [2.0, 1.5],
+            "a right angle's circle has its center in the longest edge"
+        );
+        assert_eq!(
+            shape.off_center(0.5),
+            [2.5, 1.5],
+            "half an edge away from the middle of the shortest"
+        );
     }
 }

@@ -35,12 +35,19 @@ pub(super) struct Shells {
 impl Shells {
     /// Returns the shells of a triangulation in which nothing has been split.
     pub(super) fn new(vertex_slots: usize) -> Self {
-        Shells { is_known: vec![false; vertex_slots], ..Shells::default() }
+        Shells {
+            is_known: vec![false; vertex_slots],
+            ..Shells::default()
+        }
     }
 
     /// Finds the clusters at both ends of a constraint that is about to be split for the first
     /// time.
-    pub(super) fn learn<G: Crossing, V: Default>(&mut self, t: &ConstrainedDelaunay<G, V>, constraint: [VertexId; 2]) {
+    pub(super) fn learn<G: Crossing, V: Default>(
+        &mut self,
+        t: &ConstrainedDelaunay<G, V>,
+        constraint: [VertexId; 2],
+    ) {
         for apex in constraint {
             if !std::mem::replace(&mut self.is_known[apex.index()], true) {
                 let ends: Vec<VertexId> = t.constrained_around(apex).collect();
@@ -50,12 +57,18 @@ impl Shells {
     }
 
     /// Adds the clusters of a vertex, given the other ends of its constraints counter-clockwise.
-    fn add<G: Crossing, V: Default>(&mut self, t: &ConstrainedDelaunay<G, V>, apex: VertexId, ends: &[VertexId]) {
+    fn add<G: Crossing, V: Default>(
+        &mut self,
+        t: &ConstrainedDelaunay<G, V>,
+        apex: VertexId,
+        ends: &[VertexId],
+    ) {
         let count = ends.len();
         if count < 2 {
             return;
         }
-        let is_narrow = |k: usize| is_below_60_degrees(t, ends[k % count], apex, ends[(k + 1) % count]);
+        let is_narrow =
+            |k: usize| is_below_60_degrees(t, ends[k % count], apex, ends[(k + 1) % count]);
         // Begin behind a gap, if there is one.
         let first = (0..count).find(|&k| !is_narrow(k)).map_or(0, |k| k + 1);
         let mut k = first;
@@ -66,11 +79,14 @@ impl Shells {
             }
             if last > k {
                 let cluster = (k..=last).map(|k| ends[k % count]);
-                let vectors = cluster.clone().map(|end| minus(t.plan_of(end), t.plan_of(apex)));
+                let vectors = cluster
+                    .clone()
+                    .map(|end| minus(t.plan_of(end), t.plan_of(apex)));
                 let radius = vectors.map(length).fold(f64::INFINITY, f64::min);
                 let number = self.radius.len() as u32;
                 self.radius.push(radius);
-                self.cluster.extend(cluster.map(|end| ([apex, end], number)));
+                self.cluster
+                    .extend(cluster.map(|end| ([apex, end], number)));
             }
             k = last + 1;
         }
@@ -84,17 +100,26 @@ impl Shells {
             [p, q] if q == end => p,
             _ => return None,
         };
-        self.cluster.get(&[end, other]).map(|&cluster| cluster as usize)
+        self.cluster
+            .get(&[end, other])
+            .map(|&cluster| cluster as usize)
     }
 
     /// Returns true if a constraint meets another one at a small angle at one of its ends.
     pub(super) fn is_in_cluster(&self, constraint: [VertexId; 2]) -> bool {
-        constraint.into_iter().any(|end| self.cluster_at(end, constraint).is_some())
+        constraint
+            .into_iter()
+            .any(|end| self.cluster_at(end, constraint).is_some())
     }
 
     /// Returns where to split a sub-constraint from `a` to `b`, as a fraction between 1/3 and 2/3
     /// of its length.
-    pub(super) fn fraction(&mut self, [a, b]: [VertexId; 2], constraint: [VertexId; 2], length: f64) -> f64 {
+    pub(super) fn fraction(
+        &mut self,
+        [a, b]: [VertexId; 2],
+        constraint: [VertexId; 2],
+        length: f64,
+    ) -> f64 {
         let clusters = [a, b].map(|end| self.cluster_at(end, constraint));
         let fraction = match clusters {
             [Some(at_a), None] => nearest_to_middle(self.radius[at_a], length),
@@ -149,10 +174,18 @@ mod tests {
 
     #[test]
     fn circles_are_a_power_of_two_apart() {
-        for (radius, length, at) in
-            [(1.0, 2.0, 1.0), (1.0, 5.0, 2.0), (1.0, 7.0, 4.0), (8.0, 3.0, 2.0), (3.0, 3.0, 1.5)]
-        {
-            assert_eq!(nearest_to_middle(radius, length), at / length, "{radius} on {length}");
+        for (radius, length, at) in [
+            (1.0, 2.0, 1.0),
+            (1.0, 5.0, 2.0),
+            (1.0, 7.0, 4.0),
+            (8.0, 3.0, 2.0),
+            (3.0, 3.0, 1.5),
+        ] {
+            assert_eq!(
+                nearest_to_middle(radius, length),
+                at / length,
+                "{radius} on {length}"
+            );
         }
     }
 }

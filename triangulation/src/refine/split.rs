@@ -17,7 +17,11 @@ impl<G: Crossing, V: Default> Draft<G, V> {
         while self.budget > 0
             && let Some(ends) = self.encroached.pop_front()
         {
-            let edge = self.t.tds().edge(ends[0], ends[1]).filter(|&(cell, i)| self.t.is_constrained(cell, i));
+            let edge = self
+                .t
+                .tds()
+                .edge(ends[0], ends[1])
+                .filter(|&(cell, i)| self.t.is_constrained(cell, i));
             if edge.is_some_and(|edge| self.split(edge, ends)) {
                 self.budget -= 1;
             }
@@ -44,10 +48,16 @@ impl<G: Crossing, V: Default> Draft<G, V> {
 
         // Phase 1: the new point.
         let [from, to] = [a, b].map(|v| self.t.plan_of(v));
-        let fraction = self.shells.fraction([a, b], constraint, length(minus(to, from)));
-        let site = [0, 1].map(|axis| unsigned_zero(from[axis] * (1.0 - fraction) + to[axis] * fraction));
+        let fraction = self
+            .shells
+            .fraction([a, b], constraint, length(minus(to, from)));
+        let site =
+            [0, 1].map(|axis| unsigned_zero(from[axis] * (1.0 - fraction) + to[axis] * fraction));
         let site = self.t.geometry().on_step(site);
-        let p = self.t.geometry().meet(site, &[[self.t.point(a), self.t.point(b)]]);
+        let p = self
+            .t
+            .geometry()
+            .meet(site, &[[self.t.point(a), self.t.point(b)]]);
         if self.t.inner.admit(&p).is_err() {
             return false;
         }
@@ -59,7 +69,10 @@ impl<G: Crossing, V: Default> Draft<G, V> {
         let sides = [cell, beside].map(|side| self.regions[side.index()]);
         self.t.inner.set_constrained(edge, false);
         let mut zone = std::mem::take(&mut self.t.inner.zone);
-        if let Some(start) = [cell, beside].into_iter().find(|&side| self.t.inner.in_conflict(side, &p)) {
+        if let Some(start) = [cell, beside]
+            .into_iter()
+            .find(|&side| self.t.inner.in_conflict(side, &p))
+        {
             self.grow(&mut zone, start, &p, |_, _| false);
         }
         let Some([after_a, after_b]) = self.rim(&zone, &p, [a, b]) else {
@@ -69,20 +82,30 @@ impl<G: Crossing, V: Default> Draft<G, V> {
             return false;
         };
         // The border is counter-clockwise: from `a` to `b` it is on the right.
-        let is_right =
-            |k| if after_a < after_b { (after_a..after_b).contains(&k) } else { !(after_b..after_a).contains(&k) };
-        let vertex = self.star(zone, p, VertexOrigin::OnConstraint(constraint), |k| sides[usize::from(is_right(k))]);
+        let is_right = |k| {
+            if after_a < after_b {
+                (after_a..after_b).contains(&k)
+            } else {
+                !(after_b..after_a).contains(&k)
+            }
+        };
+        let vertex = self.star(zone, p, VertexOrigin::OnConstraint(constraint), |k| {
+            sides[usize::from(is_right(k))]
+        });
         self.t.lines.split_edge(a, b, vertex);
         for k in 0..self.t.inner.zone.star.len() {
             let cell = self.t.inner.zone.star[k];
-            let Some(i) = self.t.tds().index_of(cell, vertex) else { continue };
+            let Some(i) = self.t.tds().index_of(cell, vertex) else {
+                continue;
+            };
             if self.is_encroached_by_apex(cell, i) {
                 self.encroached.push_back(self.t.tds().edge_ends(cell, i));
             }
             if k == after_a || k == after_b {
                 self.t.inner.set_constrained((cell, cw(i)), true);
                 if self.is_encroached(cell, cw(i)) {
-                    self.encroached.push_back(self.t.tds().edge_ends(cell, cw(i)));
+                    self.encroached
+                        .push_back(self.t.tds().edge_ends(cell, cw(i)));
                 }
             }
         }
@@ -105,7 +128,9 @@ impl<G: Crossing, V: Default> Draft<G, V> {
                 }
             }
         }
-        let [Some(first), Some(second)] = at else { return None };
+        let [Some(first), Some(second)] = at else {
+            return None;
+        };
         Some([first, second])
     }
 
@@ -134,7 +159,11 @@ impl<G: Crossing, V: Default> Draft<G, V> {
             if self.t.lines.remove_free(&mut self.t.inner, apex).is_none() {
                 return edge;
             }
-            self.fresh.extend(around.into_iter().filter(|&cell| self.t.tds().is_used(cell)));
+            self.fresh.extend(
+                around
+                    .into_iter()
+                    .filter(|&cell| self.t.tds().is_used(cell)),
+            );
             edge = self.beyond(outside);
         }
     }

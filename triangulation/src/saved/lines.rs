@@ -51,7 +51,9 @@ fn number(v: &VertexId) -> u32 {
 }
 
 impl<P, V, C: Copy + Default> SavedWithLines<ReadTriangulation<P, V, ConstrainedEdges<C>>> {
-    fn restore<G: Crossing<Point = P> + Default>(self) -> Result<ConstrainedDelaunay<G, V, C>, Damage> {
+    fn restore<G: Crossing<Point = P> + Default>(
+        self,
+    ) -> Result<ConstrainedDelaunay<G, V, C>, Damage> {
         let inner = self.triangulation.restore::<3, G>()?;
         inner.has_no_hidden_points()?;
         inner.constrains_edges_only()?;
@@ -67,17 +69,35 @@ impl<P, V, C: Copy + Default> SavedWithLines<ReadTriangulation<P, V, Constrained
             vertices.ok_or(Damage::Shape("a line names a vertex that does not exist"))
         };
         fn all<const K: usize>(vertices: Vec<VertexId>) -> Result<[VertexId; K], Damage> {
-            vertices.try_into().map_err(|_| Damage::Shape("a line names too few vertices"))
+            vertices
+                .try_into()
+                .map_err(|_| Damage::Shape("a line names too few vertices"))
         }
         let in_order = |numbers: &[u32]| match numbers.is_sorted_by(|a, b| a < b) {
             true => vertices(numbers),
             false => Err(Damage::Shape("numbers of vertices are not in order")),
         };
         let parts = SavedTables {
-            given: self.lines.iter().map(|line| line.as_deref().map(vertices).transpose()).collect::<Result<_, _>>()?,
-            bent: self.bent.iter().map(|chain| vertices(chain)).collect::<Result<_, _>>()?,
-            splits: self.splits.iter().map(|split| all(vertices(split)?)).collect::<Result<_, _>>()?,
-            waiting: self.waiting.iter().map(|ends| all(vertices(ends)?)).collect::<Result<_, _>>()?,
+            given: self
+                .lines
+                .iter()
+                .map(|line| line.as_deref().map(vertices).transpose())
+                .collect::<Result<_, _>>()?,
+            bent: self
+                .bent
+                .iter()
+                .map(|chain| vertices(chain))
+                .collect::<Result<_, _>>()?,
+            splits: self
+                .splits
+                .iter()
+                .map(|split| all(vertices(split)?))
+                .collect::<Result<_, _>>()?,
+            waiting: self
+                .waiting
+                .iter()
+                .map(|ends| all(vertices(ends)?))
+                .collect::<Result<_, _>>()?,
             added: in_order(&self.added)?,
             owned: in_order(&self.owned)?,
             rounding: self.rounding,
@@ -97,10 +117,22 @@ impl<G: Crossing<Point: Serialize>, V: Serialize, C: Serialize + Copy + Default>
         let parts = self.lines.saved_tables();
         let saved = SavedWithLines {
             triangulation: self.save(),
-            lines: parts.given.iter().map(|line| line.as_deref().map(numbers)).collect(),
+            lines: parts
+                .given
+                .iter()
+                .map(|line| line.as_deref().map(numbers))
+                .collect(),
             bent: parts.bent.iter().map(|chain| numbers(chain)).collect(),
-            splits: parts.splits.iter().map(|split| split.each_ref().map(number)).collect(),
-            waiting: parts.waiting.iter().map(|ends| ends.each_ref().map(number)).collect(),
+            splits: parts
+                .splits
+                .iter()
+                .map(|split| split.each_ref().map(number))
+                .collect(),
+            waiting: parts
+                .waiting
+                .iter()
+                .map(|ends| ends.each_ref().map(number))
+                .collect(),
             added: numbers(&parts.added),
             owned: numbers(&parts.owned),
             rounding: parts.rounding,
@@ -117,7 +149,10 @@ where
     C: Deserialize<'de> + Copy + Default,
 {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let saved = SavedWithLines::<ReadTriangulation<G::Point, V, ConstrainedEdges<C>>>::deserialize(deserializer)?;
+        let saved =
+            SavedWithLines::<ReadTriangulation<G::Point, V, ConstrainedEdges<C>>>::deserialize(
+                deserializer,
+            )?;
         saved.restore().map_err(D::Error::custom)
     }
 }

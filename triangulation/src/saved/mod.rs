@@ -57,7 +57,9 @@ impl fmt::Display for Damage {
 }
 
 fn first(flaws: Vec<Flaw>) -> Result<(), Damage> {
-    flaws.first().map_or(Ok(()), |&flaw| Err(Damage::Flaw(flaw)))
+    flaws
+        .first()
+        .map_or(Ok(()), |&flaw| Err(Damage::Flaw(flaw)))
 }
 
 type ReadTriangulation<P, V, C> = SavedTriangulation<Vec<P>, Vec<V>, Vec<C>>;
@@ -65,11 +67,22 @@ type ReadTriangulation<P, V, C> = SavedTriangulation<Vec<P>, Vec<V>, Vec<C>>;
 impl<P, V, C: Copy + Default> ReadTriangulation<P, V, C> {
     /// Returns the triangulation, or what is wrong with the data. Does not check the law, nor that
     /// every point that is in no cell is hidden.
-    fn restore<const N: usize, G: Geometry<N, Point = P> + Default>(self) -> Result<Triangulation<G, N, V, C>, Damage> {
-        let SavedTriangulation { dimension, points, vertex_data, removed, cells, cell_data } = self;
+    fn restore<const N: usize, G: Geometry<N, Point = P> + Default>(
+        self,
+    ) -> Result<Triangulation<G, N, V, C>, Damage> {
+        let SavedTriangulation {
+            dimension,
+            points,
+            vertex_data,
+            removed,
+            cells,
+            cell_data,
+        } = self;
         let geometry = G::default();
         if !(-1..N as i32).contains(&dimension) {
-            return Err(Damage::Shape("the dimension is below -1, or above that of the plane or space"));
+            return Err(Damage::Shape(
+                "the dimension is below -1, or above that of the plane or space",
+            ));
         }
         if points.len() > MAX_VERTICES {
             return Err(Damage::Point(InputError::TooMany));
@@ -81,19 +94,39 @@ impl<P, V, C: Copy + Default> ReadTriangulation<P, V, C> {
             return Err(Damage::Shape("there are not as many payloads as points"));
         }
         let is_complete = cells.len() == cell_data.len() * (dimension + 1) as usize;
-        if !is_complete || cell_data.len() >= CellId::LIMIT || dimension == -1 && !cell_data.is_empty() {
+        if !is_complete
+            || cell_data.len() >= CellId::LIMIT
+            || dimension == -1 && !cell_data.is_empty()
+        {
             return Err(Damage::Shape("the number of cells does not fit"));
         }
         let vertex = |number: u32| match (number as usize) < points.len() {
             true => Ok(VertexId::new(number as usize)),
             false => Err(Damage::Shape("a number is not that of a vertex")),
         };
-        let cells = cells.into_iter().map(|number| number.map_or(Ok(VertexId::INFINITE), vertex));
+        let cells = cells
+            .into_iter()
+            .map(|number| number.map_or(Ok(VertexId::INFINITE), vertex));
         let cells = cells.collect::<Result<Vec<_>, _>>()?;
-        let free = removed.into_iter().map(vertex).collect::<Result<Vec<_>, _>>()?;
-        let parts = Parts { dimension, cells, cell_data, vertex_data, free };
+        let free = removed
+            .into_iter()
+            .map(vertex)
+            .collect::<Result<Vec<_>, _>>()?;
+        let parts = Parts {
+            dimension,
+            cells,
+            cell_data,
+            vertex_data,
+            free,
+        };
         let tds = Tds::from_parts(parts).map_err(|error| Damage::Flaw(Flaw::Structure(error)))?;
-        let restored = Triangulation { geometry, tds, points, zone: Zone::default(), last: None };
+        let restored = Triangulation {
+            geometry,
+            tds,
+            points,
+            zone: Zone::default(),
+            last: None,
+        };
         first(restored.flaws(Level::Orientation, |_, _| false))?;
         Ok(restored)
     }
@@ -106,9 +139,22 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
             dimension: self.dimension(),
             points: &self.points,
             vertex_data: self.tds.payloads(),
-            removed: self.tds.free_vertices().iter().map(|v| v.index() as u32).collect(),
-            cells: self.tds.cells().flat_map(|cell| self.tds.cell_vertices(cell).iter().map(number)).collect(),
-            cell_data: self.tds.cells().map(|cell| *self.tds.cell_data(cell)).collect(),
+            removed: self
+                .tds
+                .free_vertices()
+                .iter()
+                .map(|v| v.index() as u32)
+                .collect(),
+            cells: self
+                .tds
+                .cells()
+                .flat_map(|cell| self.tds.cell_vertices(cell).iter().map(number))
+                .collect(),
+            cell_data: self
+                .tds
+                .cells()
+                .map(|cell| *self.tds.cell_data(cell))
+                .collect(),
         }
     }
 
@@ -123,9 +169,15 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
 impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, ConstrainedEdges<C>> {
     fn constrains_edges_only(&self) -> Result<(), Damage> {
         let is_edge = |cell, i: usize| {
-            i < 3 && self.dimension() == 2 && !self.tds.edge_ends(cell, i).contains(&VertexId::INFINITE)
+            i < 3
+                && self.dimension() == 2
+                && !self.tds.edge_ends(cell, i).contains(&VertexId::INFINITE)
         };
-        match self.tds.cells().any(|cell| (0..8).any(|i| self.is_constrained(cell, i) && !is_edge(cell, i))) {
+        match self
+            .tds
+            .cells()
+            .any(|cell| (0..8).any(|i| self.is_constrained(cell, i) && !is_edge(cell, i)))
+        {
             true => Err(Damage::Shape("an edge that does not exist is constrained")),
             false => Ok(()),
         }
@@ -163,7 +215,9 @@ where
     C: Deserialize<'de> + Copy + Default,
 {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        read(deserializer, |inner| inner.has_no_hidden_points().map(|()| Basic { inner }))
+        read(deserializer, |inner| {
+            inner.has_no_hidden_points().map(|()| Basic { inner })
+        })
     }
 }
 
@@ -214,14 +268,18 @@ where
             let seen = inner.vertex_count();
             let t = Regular::with_hidden(inner);
             if t.vertex_count() != seen {
-                return Err(Damage::Shape("a vertex is in no cell, and nothing hides it"));
+                return Err(Damage::Shape(
+                    "a vertex is in no cell, and nothing hides it",
+                ));
             }
             first(t.check(Level::Law)).map(|()| t)
         })
     }
 }
 
-impl<G: Geometry<3, Point: Serialize>, V: Serialize, C: Serialize + Copy + Default> Serialize for Constrained<G, V, C> {
+impl<G: Geometry<3, Point: Serialize>, V: Serialize, C: Serialize + Copy + Default> Serialize
+    for Constrained<G, V, C>
+{
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         self.save().serialize(serializer)
     }
@@ -237,7 +295,10 @@ where
         read(deserializer, |inner| {
             inner.has_no_hidden_points()?;
             inner.constrains_edges_only()?;
-            let t = Constrained { inner, buffers: TraceBuffers::default() };
+            let t = Constrained {
+                inner,
+                buffers: TraceBuffers::default(),
+            };
             first(t.check(Level::Law)).map(|()| t)
         })
     }

@@ -49,7 +49,12 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         if vertex_data.len() >= VertexId::LIMIT || cells.len() >= CellId::LIMIT {
             return Err(TdsError::TooMany);
         }
-        let mut tds = Self::unlinked(N as i32 - 1, vec![C::default(); cells.len()], vertex_data, cells.as_flattened())?;
+        let mut tds = Self::unlinked(
+            N as i32 - 1,
+            vec![C::default(); cells.len()],
+            vertex_data,
+            cells.as_flattened(),
+        )?;
         tds.link_by_facets()?;
         let faults = [tds.check_links(), tds.check_manifold()];
         faults.into_iter().flatten().next().map_or(Ok(tds), Err)
@@ -64,14 +69,22 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         vertices_of_cells: &[VertexId],
     ) -> Result<Self, TdsError> {
         let width = (dimension + 1) as usize;
-        let mut tds =
-            Tds { dimension, cell_data, vertex_cell: vec![CellId::NONE; vertex_data.len()], vertex_data, ..Tds::new() };
+        let mut tds = Tds {
+            dimension,
+            cell_data,
+            vertex_cell: vec![CellId::NONE; vertex_data.len()],
+            vertex_data,
+            ..Tds::new()
+        };
         tds.links = vec![Links::UNUSED; tds.cell_data.len()];
         for (k, vertices) in vertices_of_cells.chunks_exact(width.max(1)).enumerate() {
             for (i, &vertex) in vertices.iter().enumerate() {
                 let exists = vertex == VertexId::INFINITE || vertex.index() < tds.vertex_cell.len();
                 if !exists || vertices[..i].contains(&vertex) {
-                    return Err(TdsError::Vertex { cell: CellId::new(k), vertex });
+                    return Err(TdsError::Vertex {
+                        cell: CellId::new(k),
+                        vertex,
+                    });
                 }
                 tds.set_cell_of(vertex, CellId::new(k));
             }
@@ -102,6 +115,8 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
             }
         }
         let alone = open.into_values().flatten().min().filter(|_| waiting > 0);
-        alone.map_or(Ok(()), |(cell, facet)| Err(TdsError::OneCell { cell, facet }))
+        alone.map_or(Ok(()), |(cell, facet)| {
+            Err(TdsError::OneCell { cell, facet })
+        })
     }
 }

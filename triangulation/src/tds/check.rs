@@ -46,10 +46,16 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         }
         let mut detached = self.detached;
         let holes: HashSet<VertexId> = self.unused_vertices.iter().copied().collect();
-        for vertex in (0..self.vertex_slots()).map(VertexId::new).chain([VertexId::INFINITE]) {
+        for vertex in (0..self.vertex_slots())
+            .map(VertexId::new)
+            .chain([VertexId::INFINITE])
+        {
             match self.cell_of(vertex) {
                 Some(cell) => {
-                    if !self.is_used(cell) || !self.cell_vertices(cell).contains(&vertex) || holes.contains(&vertex) {
+                    if !self.is_used(cell)
+                        || !self.cell_vertices(cell).contains(&vertex)
+                        || holes.contains(&vertex)
+                    {
                         faults.push(TdsError::CellOfVertex(vertex));
                     }
                 }
@@ -73,13 +79,21 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         let width = self.cell_vertices(cell).len();
         let j = (0..width).find(|&j| {
             self.neighbor(beside, j) == cell
-                && (0..width)
-                    .filter(|&k| k != j)
-                    .all(|k| self.index_of(cell, self.vertex(beside, k)).is_some_and(|at| at != i))
+                && (0..width).filter(|&k| k != j).all(|k| {
+                    self.index_of(cell, self.vertex(beside, k))
+                        .is_some_and(|at| at != i)
+                })
         })?;
         // The index in this cell of each vertex of the neighbor; its opposite one stands for ours.
-        let index = |k| if k == j || k >= width { None } else { self.index_of(cell, self.vertex(beside, k)) };
-        let mut indices: [usize; N] = std::array::from_fn(|k| index(k).unwrap_or(if k == j { i } else { k }));
+        let index = |k| {
+            if k == j || k >= width {
+                None
+            } else {
+                self.index_of(cell, self.vertex(beside, k))
+            }
+        };
+        let mut indices: [usize; N] =
+            std::array::from_fn(|k| index(k).unwrap_or(if k == j { i } else { k }));
         let mut swaps = 0;
         for k in 0..width {
             while indices[k] != k {
@@ -106,7 +120,13 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         }
         let mut faults = Vec::new();
         let mut degree = vec![0u32; self.vertex_slots() + 1];
-        let slot = |v: VertexId| if v == VertexId::INFINITE { self.vertex_slots() } else { v.index() };
+        let slot = |v: VertexId| {
+            if v == VertexId::INFINITE {
+                self.vertex_slots()
+            } else {
+                v.index()
+            }
+        };
         for cell in self.cells() {
             for &vertex in self.cell_vertices(cell) {
                 degree[slot(vertex)] += 1;
@@ -119,7 +139,8 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         for (round, vertex) in (1..).zip(self.vertices().chain([VertexId::INFINITE])) {
             star.clear();
             star.extend(self.cell_of(vertex));
-            star.iter().for_each(|cell| cell_rounds[cell.index()] = round);
+            star.iter()
+                .for_each(|cell| cell_rounds[cell.index()] = round);
             let mut next = 0;
             while let Some(&cell) = star.get(next) {
                 next += 1;
@@ -137,7 +158,9 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
                 // a sphere if it has the Euler characteristic of one: that of others is smaller,
                 // also if vertices of the surface coincide.
                 let corners = star.iter().flat_map(|&cell| self.cell_vertices(cell));
-                let new = |v: &&VertexId| std::mem::replace(&mut vertex_rounds[slot(**v)], round) != round;
+                let new = |v: &&VertexId| {
+                    std::mem::replace(&mut vertex_rounds[slot(**v)], round) != round
+                };
                 let in_star = corners.filter(new).count();
                 is_sphere &= 2 * (in_star - 1) == star.len() + 4;
             }
@@ -173,7 +196,11 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
                 stack.extend(self.cell_neighbors(cell));
             }
         }
-        faults.extend(self.cells().find(|cell| !reached[cell.index()]).map(TdsError::NotConnected));
+        faults.extend(
+            self.cells()
+                .find(|cell| !reached[cell.index()])
+                .map(TdsError::NotConnected),
+        );
         let euler = self.euler_characteristic();
         if euler != 1 + sign(self.dimension() as usize) {
             faults.push(TdsError::Euler(euler));
@@ -197,13 +224,22 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
             vertices.sort_unstable();
             for subset in 1u32..(1 << width) - 1 {
                 if subset.count_ones() > 1 {
-                    let face: Vec<_> = (0..width).filter(|&k| subset >> k & 1 == 1).map(|k| vertices[k]).collect();
+                    let face: Vec<_> = (0..width)
+                        .filter(|&k| subset >> k & 1 == 1)
+                        .map(|k| vertices[k])
+                        .collect();
                     faces[face.len() - 1].insert(face);
                 }
             }
         }
-        let middle: i64 = faces.iter().enumerate().skip(1).map(|(k, set)| sign(k) * set.len() as i64).sum();
-        let vertices = self.vertex_count() + usize::from(self.cell_of(VertexId::INFINITE).is_some());
+        let middle: i64 = faces
+            .iter()
+            .enumerate()
+            .skip(1)
+            .map(|(k, set)| sign(k) * set.len() as i64)
+            .sum();
+        let vertices =
+            self.vertex_count() + usize::from(self.cell_of(VertexId::INFINITE).is_some());
         match width {
             0 | 1 => vertices as i64,
             _ => vertices as i64 + middle + sign(width - 1) * self.cell_count() as i64,

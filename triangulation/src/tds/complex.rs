@@ -149,7 +149,10 @@ pub trait Complex<const N: usize> {
             return Ok(cell);
         };
         let inner = self.neighbor(cell, infinite)?;
-        self.ensure(inner, || self.is_infinite(inner).is_ok_and(|is_infinite| !is_infinite))?;
+        self.ensure(inner, || {
+            self.is_infinite(inner)
+                .is_ok_and(|is_infinite| !is_infinite)
+        })?;
         Ok(inner)
     }
 }
@@ -159,7 +162,12 @@ pub(crate) fn vertices_of<const N: usize, T: Complex<N>>(
     complex: &T,
 ) -> impl Iterator<Item = Result<VertexId, T::Error>> {
     let numbers = (0..complex.vertex_slots()).map(VertexId::new);
-    numbers.filter_map(|vertex| complex.cell_of(vertex).map(|cell| cell.map(|_| vertex)).transpose())
+    numbers.filter_map(|vertex| {
+        complex
+            .cell_of(vertex)
+            .map(|cell| cell.map(|_| vertex))
+            .transpose()
+    })
 }
 
 impl<const N: usize, V, C: Copy + Default> Complex<N> for Tds<N, V, C> {

@@ -24,6 +24,9 @@ impl<I: Iterator> Iterator for Counted<I> {
 impl<I: Iterator> ExactSizeIterator for Counted<I> {}
 
 /// Returns an iterator with a known number of items.
-pub(super) fn counted<I: Iterator>(items: I, left: usize) -> impl ExactSizeIterator<Item = I::Item> {
+pub(super) fn counted<I: Iterator>(
+    items: I,
+    left: usize,
+) -> impl ExactSizeIterator<Item = I::Item> {
     Counted { items, left }
 }

@@ -117,11 +117,19 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         let mut stack: Vec<CellId> = cells.first().copied().into_iter().collect();
         while let Some(cell) = stack.pop() {
             let beside = self.links[cell.index()].neighbors;
-            stack.extend(beside.into_iter().filter(|&c| hole.contains(&c) && reached.insert(c)));
+            stack.extend(
+                beside
+                    .into_iter()
+                    .filter(|&c| hole.contains(&c) && reached.insert(c)),
+            );
         }
         let border = self.border(cells);
-        let facets = border.iter().map(|&(cell, i)| self.facet(cell, i)).collect::<Vec<_>>();
-        let vertices: FxHashSet<VertexId> = cells.iter().flat_map(|&cell| *self.corners(cell)).collect();
+        let facets = border
+            .iter()
+            .map(|&(cell, i)| self.facet(cell, i))
+            .collect::<Vec<_>>();
+        let vertices: FxHashSet<VertexId> =
+            cells.iter().flat_map(|&cell| *self.corners(cell)).collect();
         // Euler's relation for a disc.
         let is_disc = || vertices.len() * 2 == cells.len() + border.len() + 2;
         if reached.len() != cells.len() || !is_sphere(&facets) || N == 3 && !is_disc() {
@@ -153,7 +161,10 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
     pub fn flip(&mut self, cell: CellId, i: usize) -> Result<Vec<CellId>, EditError> {
         let beside = self.across(cell, i)?;
         let far = self.vertex(beside, self.index_of_neighbor(beside, cell));
-        let inner: Vec<VertexId> = (0..N).filter(|&k| k != i).map(|k| self.vertex(cell, k)).collect();
+        let inner: Vec<VertexId> = (0..N)
+            .filter(|&k| k != i)
+            .map(|k| self.vertex(cell, k))
+            .collect();
         self.exchange(&inner, &[(cell, far), (beside, self.vertex(cell, i))])
     }
 
@@ -232,13 +243,23 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         let [star, other] = [self.star_of(from)?, self.star_of(into)?];
         let common = self.faces_without(&vanishing, &[from, into]);
         let of_into = self.faces_without(&other, &[into]);
-        if self.faces_without(&star, &[from]).iter().any(|face| of_into.contains(face) && !common.contains(face)) {
+        if self
+            .faces_without(&star, &[from])
+            .iter()
+            .any(|face| of_into.contains(face) && !common.contains(face))
+        {
             return Err(EditError::Links([from, into]));
         }
-        let mut changed: Vec<CellId> = star.into_iter().filter(|cell| !vanishing.contains(cell)).collect();
+        let mut changed: Vec<CellId> = star
+            .into_iter()
+            .filter(|cell| !vanishing.contains(cell))
+            .collect();
         for cell in &changed {
             let corners = &mut self.links[cell.index()].vertices;
-            corners.iter_mut().filter(|v| **v == from).for_each(|v| *v = into);
+            corners
+                .iter_mut()
+                .filter(|v| **v == from)
+                .for_each(|v| *v = into);
         }
         for &cell in &vanishing {
             // The facets without `from` and without `into` become one; these are the cells beyond
@@ -251,9 +272,13 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
             self.link(a, i, b, j);
             changed.push(a);
         }
-        vanishing.into_iter().for_each(|cell| self.remove_cell(cell));
+        vanishing
+            .into_iter()
+            .for_each(|cell| self.remove_cell(cell));
         self.drop_vertex(from);
-        changed.into_iter().for_each(|cell| self.set_corners(cell, *self.corners(cell)));
+        changed
+            .into_iter()
+            .for_each(|cell| self.set_corners(cell, *self.corners(cell)));
         Ok(())
     }
 
@@ -261,13 +286,21 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         if self.dimension + 1 != N as i32 {
             return Err(EditError::NotFull);
         }
-        if self.is_used(cell) { Ok(()) } else { Err(EditError::Cell(cell)) }
+        if self.is_used(cell) {
+            Ok(())
+        } else {
+            Err(EditError::Cell(cell))
+        }
     }
 
     /// Returns the cell across a facet.
     fn across(&self, cell: CellId, i: usize) -> Result<CellId, EditError> {
         self.ensure_cell(cell)?;
-        if i < N { Ok(self.neighbor(cell, i)) } else { Err(EditError::Facet { cell, facet: i }) }
+        if i < N {
+            Ok(self.neighbor(cell, i))
+        } else {
+            Err(EditError::Facet { cell, facet: i })
+        }
     }
 
     /// Returns the cells with a vertex.
@@ -280,7 +313,11 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
             let links = self.links[star[next].index()];
             next += 1;
             let beside = links.vertices.into_iter().zip(links.neighbors);
-            star.extend(beside.filter(|&(v, cell)| v != vertex && reached.insert(cell)).map(|(_, cell)| cell));
+            star.extend(
+                beside
+                    .filter(|&(v, cell)| v != vertex && reached.insert(cell))
+                    .map(|(_, cell)| cell),
+            );
         }
         Ok(star)
     }
@@ -289,7 +326,11 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
     fn star_of_edge(&self, [a, b]: [VertexId; 2]) -> Result<Vec<CellId>, EditError> {
         let mut star = self.star_of(a)?;
         star.retain(|&cell| a != b && self.corners(cell).contains(&b));
-        if star.is_empty() { Err(EditError::Edge([a, b])) } else { Ok(star) }
+        if star.is_empty() {
+            Err(EditError::Edge([a, b]))
+        } else {
+            Ok(star)
+        }
     }
 
     /// Returns all faces of some cells that have none of these vertices.
@@ -300,7 +341,13 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
                 let chosen = |k: usize| subset >> k & 1 == 1;
                 let corners = self.corners(cell);
                 if !(0..N).any(|k| chosen(k) && vertices.contains(&corners[k])) {
-                    let mut face = std::array::from_fn(|k| if chosen(k) { corners[k] } else { VertexId::NONE });
+                    let mut face = std::array::from_fn(|k| {
+                        if chosen(k) {
+                            corners[k]
+                        } else {
+                            VertexId::NONE
+                        }
+                    });
                     face.sort_unstable();
                     faces.insert(face);
                 }
@@ -312,8 +359,12 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
     /// Returns the facets of some cells that they do not share with each other.
     fn border(&self, cells: &[CellId]) -> Vec<(CellId, usize)> {
         let hole: FxHashSet<CellId> = cells.iter().copied().collect();
-        let facets = cells.iter().flat_map(|&cell| (0..N).map(move |i| (cell, i)));
-        facets.filter(|&(cell, i)| !hole.contains(&self.neighbor(cell, i))).collect()
+        let facets = cells
+            .iter()
+            .flat_map(|&cell| (0..N).map(move |i| (cell, i)));
+        facets
+            .filter(|&(cell, i)| !hole.contains(&self.neighbor(cell, i)))
+            .collect()
     }
 
     fn facet(&self, cell: CellId, i: usize) -> Face<N> {
@@ -323,8 +374,13 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
     /// Returns an error unless this many new cells, and one vertex, can be numbered.
     fn ensure_numbers(&self, cells: usize) -> Result<(), EditError> {
         let new_slots = cells.saturating_sub(self.unused.len());
-        let has_vertex = !self.unused_vertices.is_empty() || self.vertex_cell.len() < VertexId::LIMIT;
-        if has_vertex && self.links.len() + new_slots <= CellId::LIMIT { Ok(()) } else { Err(EditError::TooMany) }
+        let has_vertex =
+            !self.unused_vertices.is_empty() || self.vertex_cell.len() < VertexId::LIMIT;
+        if has_vertex && self.links.len() + new_slots <= CellId::LIMIT {
+            Ok(())
+        } else {
+            Err(EditError::TooMany)
+        }
     }
 
     /// Replaces cells that form a ball by the star of a new vertex, and returns the vertex.
@@ -333,7 +389,8 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         self.ensure_numbers(border.len())?;
         let apex = self.add_vertex(data);
         // The vertices in the hole that no cell will have.
-        let mut inner: FxHashSet<VertexId> = cells.iter().flat_map(|&cell| *self.corners(cell)).collect();
+        let mut inner: FxHashSet<VertexId> =
+            cells.iter().flat_map(|&cell| *self.corners(cell)).collect();
         // New cells share a facet for each ridge of the border; the first of the two waits here.
         let mut waiting: FxHashMap<Face<N>, (CellId, usize)> = FxHashMap::default();
         let new_cells: Vec<(Links<N>, C, usize)> = border
@@ -344,7 +401,11 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
                 for vertex in &links.vertices {
                     inner.remove(vertex);
                 }
-                (links, self.cell_data[cell.index()], self.index_of_neighbor(links.neighbors[i], cell))
+                (
+                    links,
+                    self.cell_data[cell.index()],
+                    self.index_of_neighbor(links.neighbors[i], cell),
+                )
             })
             .collect();
         cells.iter().for_each(|&cell| self.remove_cell(cell));
@@ -356,20 +417,38 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
                     self.link(new, ridge, other, k);
                 }
             }
-            links.vertices.iter().for_each(|&v| self.set_cell_of(v, new));
+            links
+                .vertices
+                .iter()
+                .for_each(|&v| self.set_cell_of(v, new));
         }
-        inner.into_iter().for_each(|vertex| self.drop_vertex(vertex));
+        inner
+            .into_iter()
+            .for_each(|vertex| self.drop_vertex(vertex));
         Ok(apex)
     }
 
     /// Flips the face of these vertices, given its star, and returns the new cells.
-    fn exchange_star(&mut self, inner: &[VertexId], star: Vec<CellId>) -> Result<Vec<CellId>, EditError> {
+    fn exchange_star(
+        &mut self,
+        inner: &[VertexId],
+        star: Vec<CellId>,
+    ) -> Result<Vec<CellId>, EditError> {
         if star.len() != N + 1 - inner.len() {
             return Err(EditError::Star { cells: star.len() });
         }
-        let around: FxHashSet<VertexId> = star.iter().flat_map(|&cell| *self.corners(cell)).collect();
-        let missing = |cell: CellId| around.iter().copied().find(|v| !self.corners(cell).contains(v));
-        let star: Vec<_> = star.iter().filter_map(|&cell| Some((cell, missing(cell)?))).collect();
+        let around: FxHashSet<VertexId> =
+            star.iter().flat_map(|&cell| *self.corners(cell)).collect();
+        let missing = |cell: CellId| {
+            around
+                .iter()
+                .copied()
+                .find(|v| !self.corners(cell).contains(v))
+        };
+        let star: Vec<_> = star
+            .iter()
+            .filter_map(|&cell| Some((cell, missing(cell)?)))
+            .collect();
         self.exchange(inner, &star)
     }
 
@@ -381,10 +460,17 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
     ///
     /// The new cell without `a` has the facets of the old ones that lay opposite `a`, and shares a
     /// facet with each of the other new ones.
-    fn exchange(&mut self, inner: &[VertexId], star: &[(CellId, VertexId)]) -> Result<Vec<CellId>, EditError> {
+    fn exchange(
+        &mut self,
+        inner: &[VertexId],
+        star: &[(CellId, VertexId)],
+    ) -> Result<Vec<CellId>, EditError> {
         let outer: Vec<VertexId> = star.iter().map(|&(_, missing)| missing).collect();
         let around = self.star_of(outer[0])?;
-        if around.iter().any(|&cell| outer.iter().all(|v| self.corners(cell).contains(v))) {
+        if around
+            .iter()
+            .any(|&cell| outer.iter().all(|v| self.corners(cell).contains(v)))
+        {
             return Err(EditError::Exists);
         }
         self.ensure_numbers(inner.len())?;
@@ -394,7 +480,9 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         // facet in them.
         let beyond = |tds: &Self, a: VertexId| -> Vec<(CellId, usize)> {
             let facet = |cell| tds.neighbor(cell, tds.index_of(cell, a).unwrap_or(0));
-            star.iter().map(|&(cell, _)| (facet(cell), tds.index_of_neighbor(facet(cell), cell))).collect()
+            star.iter()
+                .map(|&(cell, _)| (facet(cell), tds.index_of_neighbor(facet(cell), cell)))
+                .collect()
         };
         let outside: Vec<_> = inner.iter().map(|&a| beyond(self, a)).collect();
         star.iter().for_each(|&(cell, _)| self.remove_cell(cell));
@@ -434,21 +522,34 @@ fn is_sphere<const N: usize>(facets: &[Face<N>]) -> bool {
     let mut on: FxHashMap<Face<N>, Vec<usize>> = FxHashMap::default();
     let ridges = |facet: &Face<N>| {
         let facet = *facet;
-        (0..N).filter(move |&k| facet[k] != VertexId::NONE).map(move |k| face_without(facet, k))
+        (0..N)
+            .filter(move |&k| facet[k] != VertexId::NONE)
+            .map(move |k| face_without(facet, k))
     };
     for (k, facet) in facets.iter().enumerate() {
         ridges(facet).for_each(|ridge| on.entry(ridge).or_default().push(k));
     }
     let distinct: FxHashSet<&Face<N>> = facets.iter().collect();
-    if facets.is_empty() || distinct.len() != facets.len() || on.values().any(|sides| sides.len() != 2) {
+    if facets.is_empty()
+        || distinct.len() != facets.len()
+        || on.values().any(|sides| sides.len() != 2)
+    {
         return false;
     }
     let (mut reached, mut stack) = (FxHashSet::from_iter([0]), vec![0]);
     while let Some(k) = stack.pop() {
-        stack.extend(ridges(&facets[k]).flat_map(|ridge| &on[&ridge]).filter(|&&k| reached.insert(k)));
+        stack.extend(
+            ridges(&facets[k])
+                .flat_map(|ridge| &on[&ridge])
+                .filter(|&&k| reached.insert(k)),
+        );
     }
-    let vertices: FxHashSet<VertexId> =
-        facets.as_flattened().iter().copied().filter(|&v| v != VertexId::NONE).collect();
+    let vertices: FxHashSet<VertexId> = facets
+        .as_flattened()
+        .iter()
+        .copied()
+        .filter(|&v| v != VertexId::NONE)
+        .collect();
     // A surface has three edges for two triangles.
     reached.len() == facets.len() && (N != 4 || 2 * vertices.len() == facets.len() + 4)
 }

@@ -75,24 +75,47 @@ impl fmt::Display for TdsError {
         match self {
             TdsError::TooMany => write!(f, "more than 2^32 - 3 vertices or cells"),
             TdsError::Vertex { cell, vertex } => {
-                write!(f, "cell {cell:?} names vertex {vertex:?}, which does not exist, or names it twice")
+                write!(
+                    f,
+                    "cell {cell:?} names vertex {vertex:?}, which does not exist, or names it twice"
+                )
             }
             TdsError::Neighbor { cell, facet } => {
-                write!(f, "neighbor {facet} of cell {cell:?} does not exist, or has the same vertices")
+                write!(
+                    f,
+                    "neighbor {facet} of cell {cell:?} does not exist, or has the same vertices"
+                )
             }
-            TdsError::OneCell { cell, facet } => write!(f, "facet {facet} of cell {cell:?} is in no other cell"),
-            TdsError::ThreeCells { cell, facet } => write!(f, "facet {facet} of cell {cell:?} is in two other cells"),
+            TdsError::OneCell { cell, facet } => {
+                write!(f, "facet {facet} of cell {cell:?} is in no other cell")
+            }
+            TdsError::ThreeCells { cell, facet } => {
+                write!(f, "facet {facet} of cell {cell:?} is in two other cells")
+            }
             TdsError::NotMutual { cell, facet } => {
-                write!(f, "neighbor {facet} of cell {cell:?} does not share that facet")
+                write!(
+                    f,
+                    "neighbor {facet} of cell {cell:?} does not share that facet"
+                )
             }
             TdsError::NotOriented { cell, facet } => {
-                write!(f, "cell {cell:?} and its neighbor {facet} are not oriented alike")
+                write!(
+                    f,
+                    "cell {cell:?} and its neighbor {facet} are not oriented alike"
+                )
             }
-            TdsError::CellOfVertex(vertex) => write!(f, "the cell of vertex {vertex:?} does not have it"),
+            TdsError::CellOfVertex(vertex) => {
+                write!(f, "the cell of vertex {vertex:?} does not have it")
+            }
             TdsError::Isolated(vertex) => write!(f, "vertex {vertex:?} is in no cell"),
-            TdsError::Link(vertex) => write!(f, "the link of vertex {vertex:?} is not a circle or sphere"),
+            TdsError::Link(vertex) => {
+                write!(f, "the link of vertex {vertex:?} is not a circle or sphere")
+            }
             TdsError::NotConnected(cell) => write!(f, "cell {cell:?} is in a component of its own"),
-            TdsError::Euler(euler) => write!(f, "the Euler characteristic is {euler}, not that of a sphere"),
+            TdsError::Euler(euler) => write!(
+                f,
+                "the Euler characteristic is {euler}, not that of a sphere"
+            ),
         }
     }
 }
@@ -142,12 +165,22 @@ impl fmt::Display for EditError {
             EditError::Cell(cell) => write!(f, "there is no cell {cell:?}"),
             EditError::Facet { cell, facet } => write!(f, "cell {cell:?} has no facet {facet}"),
             EditError::Vertex(vertex) => write!(f, "there is no vertex {vertex:?}"),
-            EditError::Edge([a, b]) => write!(f, "there is no edge between vertices {a:?} and {b:?}"),
-            EditError::Star { cells } => write!(f, "{cells} cells have the face, more than a flip takes"),
+            EditError::Edge([a, b]) => {
+                write!(f, "there is no edge between vertices {a:?} and {b:?}")
+            }
+            EditError::Star { cells } => {
+                write!(f, "{cells} cells have the face, more than a flip takes")
+            }
             EditError::Exists => write!(f, "the face that the flip would create exists already"),
-            EditError::Hole => write!(f, "the cells do not form a hole that the star of a vertex can fill"),
+            EditError::Hole => write!(
+                f,
+                "the cells do not form a hole that the star of a vertex can fill"
+            ),
             EditError::Links([a, b]) => {
-                write!(f, "the links of vertices {a:?} and {b:?} have more in common than the link of their edge")
+                write!(
+                    f,
+                    "the links of vertices {a:?} and {b:?} have more in common than the link of their edge"
+                )
             }
         }
     }

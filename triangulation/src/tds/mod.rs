@@ -88,7 +88,10 @@ impl<const N: usize> Links<N> {
 
     /// Returns the links of a cell without neighbors.
     const fn alone(vertices: [VertexId; N]) -> Self {
-        Links { vertices, neighbors: [CellId::NONE; N] }
+        Links {
+            vertices,
+            neighbors: [CellId::NONE; N],
+        }
     }
 }
 
@@ -135,7 +138,11 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
 
     /// Returns a full-dimensional complex, given its cells and a cell of each vertex. Vertices are
     /// numbered from 0, and all numbers are used.
-    pub(crate) fn from_links(links: Vec<Links<N>>, vertex_cell: Vec<CellId>, infinite_cell: CellId) -> Self
+    pub(crate) fn from_links(
+        links: Vec<Links<N>>,
+        vertex_cell: Vec<CellId>,
+        infinite_cell: CellId,
+    ) -> Self
     where
         V: Default,
     {
@@ -146,7 +153,10 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
             cell_data: vec![C::default(); links.len()],
             links,
             unused: Vec::new(),
-            detached: vertex_cell.iter().filter(|cell| **cell == CellId::NONE).count(),
+            detached: vertex_cell
+                .iter()
+                .filter(|cell| **cell == CellId::NONE)
+                .count(),
             vertex_cell,
             vertex_data,
             unused_vertices: Vec::new(),
@@ -172,13 +182,19 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
 
     /// Returns the same complex with new cell payloads: calls `data` for each cell, in order of
     /// their numbers. Linear time.
-    pub fn with_cell_data<D: Copy + Default>(self, mut data: impl FnMut(CellId) -> D) -> Tds<N, V, D> {
+    pub fn with_cell_data<D: Copy + Default>(
+        self,
+        mut data: impl FnMut(CellId) -> D,
+    ) -> Tds<N, V, D> {
         self.map_cell_data(|cell, _| data(cell))
     }
 
     /// Returns the same complex with new cell payloads: calls `data` with each cell and its old
     /// payload, in order of the cells' numbers.
-    pub(crate) fn map_cell_data<D: Copy + Default>(self, mut data: impl FnMut(CellId, &C) -> D) -> Tds<N, V, D> {
+    pub(crate) fn map_cell_data<D: Copy + Default>(
+        self,
+        mut data: impl FnMut(CellId, &C) -> D,
+    ) -> Tds<N, V, D> {
         let mut cell_data = vec![D::default(); self.links.len()];
         for cell in self.cells() {
             cell_data[cell.index()] = data(cell, self.cell_data(cell));
@@ -238,39 +254,55 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
 
     /// The finite vertices, in order of their numbers.
     pub fn vertices(&self) -> impl ExactSizeIterator<Item = VertexId> + '_ {
-        let vertices = (0..self.vertex_cell.len()).map(VertexId::new).filter(|&v| self.is_vertex(v));
+        let vertices = (0..self.vertex_cell.len())
+            .map(VertexId::new)
+            .filter(|&v| self.is_vertex(v));
         counted::counted(vertices, self.vertex_count())
     }
 
     /// The finite vertices with their payloads, mutable, in order of their numbers.
     pub fn vertex_data_iter_mut(&mut self) -> impl Iterator<Item = (VertexId, &mut V)> {
-        let slots = self.vertex_cell.iter().zip(&mut self.vertex_data).enumerate();
-        slots.filter(|(_, (cell, _))| **cell != CellId::NONE).map(|(i, (_, data))| (VertexId::new(i), data))
+        let slots = self
+            .vertex_cell
+            .iter()
+            .zip(&mut self.vertex_data)
+            .enumerate();
+        slots
+            .filter(|(_, (cell, _))| **cell != CellId::NONE)
+            .map(|(i, (_, data))| (VertexId::new(i), data))
     }
 
     /// All cells with their payloads, mutable, the infinite ones included, in order of their
     /// numbers.
     pub fn cell_data_iter_mut(&mut self) -> impl Iterator<Item = (CellId, &mut C)> {
         let slots = self.links.iter().zip(&mut self.cell_data).enumerate();
-        slots.filter(|(_, (links, _))| links.vertices[0] != VertexId::NONE).map(|(i, (_, data))| (CellId::new(i), data))
+        slots
+            .filter(|(_, (links, _))| links.vertices[0] != VertexId::NONE)
+            .map(|(i, (_, data))| (CellId::new(i), data))
     }
 
     /// Returns true if this is the number of a finite vertex. Accepts any number.
     #[inline]
     pub fn is_vertex(&self, vertex: VertexId) -> bool {
-        self.vertex_cell.get(vertex.index()).is_some_and(|&cell| cell != CellId::NONE)
+        self.vertex_cell
+            .get(vertex.index())
+            .is_some_and(|&cell| cell != CellId::NONE)
     }
 
     /// All cells, the infinite ones included, in order of their numbers.
     pub fn cells(&self) -> impl ExactSizeIterator<Item = CellId> + '_ {
-        let cells = (0..self.links.len()).map(CellId::new).filter(|&c| self.is_used(c));
+        let cells = (0..self.links.len())
+            .map(CellId::new)
+            .filter(|&c| self.is_used(c));
         counted::counted(cells, self.cell_count())
     }
 
     /// Returns true if this is the number of a cell. Accepts any number.
     #[inline]
     pub fn is_used(&self, cell: CellId) -> bool {
-        self.links.get(cell.index()).is_some_and(|links| links.vertices[0] != VertexId::NONE)
+        self.links
+            .get(cell.index())
+            .is_some_and(|links| links.vertices[0] != VertexId::NONE)
     }
 
     /// The vertices of a cell: `dimension + 1` of them.
@@ -323,15 +355,20 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
     /// Returns true if the infinite vertex is a corner of the cell.
     #[inline(always)]
     pub fn is_infinite(&self, cell: CellId) -> bool {
-        self.links[cell.index()].vertices.contains(&VertexId::INFINITE)
+        self.links[cell.index()]
+            .vertices
+            .contains(&VertexId::INFINITE)
     }
 
     /// Returns a cell that has this vertex; `None` for the infinite vertex of an empty complex, and
     /// for an unused number.
     #[inline]
     pub fn cell_of(&self, vertex: VertexId) -> Option<CellId> {
-        let cell =
-            if vertex == VertexId::INFINITE { self.infinite_cell } else { *self.vertex_cell.get(vertex.index())? };
+        let cell = if vertex == VertexId::INFINITE {
+            self.infinite_cell
+        } else {
+            *self.vertex_cell.get(vertex.index())?
+        };
         (cell != CellId::NONE).then_some(cell)
     }
 
@@ -434,7 +471,9 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
 /// `PERF:` without branches, which would be unpredictable.
 #[inline(always)]
 fn first_of<T: PartialEq, const N: usize>(list: &[T; N], item: T) -> usize {
-    (0..N).rev().fold(N, |found, i| if list[i] == item { i } else { found })
+    (0..N)
+        .rev()
+        .fold(N, |found, i| if list[i] == item { i } else { found })
 }
 
 /// Returns the vertices of a face but the one at index `i`, in order of their numbers: a key that

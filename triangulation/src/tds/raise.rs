@@ -10,7 +10,10 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
     ///
     /// Linear in the number of cells; happens at most `N` times.
     pub(crate) fn raise_dimension(&mut self, apex: VertexId) {
-        assert!(self.dimension + 1 < N as i32, "the complex is full-dimensional");
+        assert!(
+            self.dimension + 1 < N as i32,
+            "the complex is full-dimensional"
+        );
         let old = std::mem::take(&mut self.links);
         self.cell_data.clear();
         self.unused.clear();
@@ -24,7 +27,9 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         if self.dimension == 1 {
             // The two points of a sphere of dimension 0 are opposite, but one vertex has no
             // orientation to show it.
-            (0..old.len()).filter(|&c| !is_finite(&old[c])).for_each(|c| self.mirror(CellId::new(c)));
+            (0..old.len())
+                .filter(|&c| !is_finite(&old[c]))
+                .for_each(|c| self.mirror(CellId::new(c)));
         }
         // The two halves of the suspension are mirror images.
         for above in to_infinity.into_iter().filter(|&c| c != CellId::NONE) {
@@ -89,14 +94,22 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
                 for i in 0..slot {
                     let beside = links.neighbors[i];
                     let is_joined = is_finite(&old[beside.index()]);
-                    self.links[above.index()].neighbors[i] =
-                        if is_joined { to_infinity[beside.index()] } else { beside };
+                    self.links[above.index()].neighbors[i] = if is_joined {
+                        to_infinity[beside.index()]
+                    } else {
+                        beside
+                    };
                 }
             } else {
                 // The facet without the apex is that of the neighboring finite cell, joined to
                 // infinity.
-                let at_infinity = links.vertices.iter().position(|&v| v == VertexId::INFINITE).unwrap_or(0);
-                self.links[index].neighbors[slot] = to_infinity[links.neighbors[at_infinity].index()];
+                let at_infinity = links
+                    .vertices
+                    .iter()
+                    .position(|&v| v == VertexId::INFINITE)
+                    .unwrap_or(0);
+                self.links[index].neighbors[slot] =
+                    to_infinity[links.neighbors[at_infinity].index()];
             }
         }
     }

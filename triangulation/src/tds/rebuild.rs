@@ -35,7 +35,9 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
     pub(crate) fn detached_vertices(&self) -> Vec<VertexId> {
         let free: FxHashSet<VertexId> = self.unused_vertices.iter().copied().collect();
         let numbers = (0..self.vertex_slots()).map(VertexId::new);
-        numbers.filter(|v| !self.is_vertex(*v) && !free.contains(v)).collect()
+        numbers
+            .filter(|v| !self.is_vertex(*v) && !free.contains(v))
+            .collect()
     }
 
     /// Returns the complex of these parts, with sound [links](Tds::check_links).
@@ -50,7 +52,13 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
     /// # Complexity
     /// Linear.
     pub(crate) fn from_parts(parts: Parts<V, C>) -> Result<Self, TdsError> {
-        let Parts { dimension, cells, cell_data, vertex_data, free } = parts;
+        let Parts {
+            dimension,
+            cells,
+            cell_data,
+            vertex_data,
+            free,
+        } = parts;
         let mut tds = Self::unlinked(dimension, cell_data, vertex_data, &cells)?;
         tds.link_by_facets()?;
         let mut named = FxHashSet::default();

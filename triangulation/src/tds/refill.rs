@@ -21,14 +21,20 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
     /// default payloads. Returns false, and changes nothing, if they have a different border.
     ///
     /// Expected time linear in the number of cells.
-    pub(crate) fn replace_star(&mut self, star: &[(CellId, usize)], cells: &[[VertexId; N]]) -> bool {
+    pub(crate) fn replace_star(
+        &mut self,
+        star: &[(CellId, usize)],
+        cells: &[[VertexId; N]],
+    ) -> bool {
         let mut open = OpenFacets::default();
         for &(cell, i) in star {
             let beyond = self.neighbor(cell, i);
             let side = FacetSide::Outside(beyond, self.index_of_neighbor(beyond, cell));
             open.insert(face_without(self.links[cell.index()].vertices, i), side);
         }
-        let Some(pairs) = self.paired(open, cells) else { return false };
+        let Some(pairs) = self.paired(open, cells) else {
+            return false;
+        };
         for &(cell, _) in star {
             self.remove_cell(cell);
         }
@@ -52,7 +58,11 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
 
     /// Returns the two sides of each facet of new cells, given the facets of which the outer side
     /// is known; `None` if a facet does not have two sides.
-    fn paired(&self, mut open: OpenFacets<N>, cells: &[[VertexId; N]]) -> Option<Vec<[FacetSide; 2]>> {
+    fn paired(
+        &self,
+        mut open: OpenFacets<N>,
+        cells: &[[VertexId; N]],
+    ) -> Option<Vec<[FacetSide; 2]>> {
         let width = (self.dimension + 1) as usize;
         let mut pairs = Vec::with_capacity(width * cells.len());
         for (at, &vertices) in cells.iter().enumerate() {
@@ -73,7 +83,9 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         let mut new = Vec::with_capacity(cells.len());
         for &vertices in cells {
             let cell = self.add_cell(Links::alone(vertices), C::default());
-            vertices[..width].iter().for_each(|&vertex| self.set_cell_of(vertex, cell));
+            vertices[..width]
+                .iter()
+                .for_each(|&vertex| self.set_cell_of(vertex, cell));
             new.push(cell);
         }
         for sides in pairs {

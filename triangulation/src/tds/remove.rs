@@ -50,7 +50,9 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
     /// Replaces the two cells at a vertex by one, in a complex of dimension 1 that has at least two
     /// other vertices.
     pub(crate) fn skip(&mut self, vertex: VertexId) {
-        let Some(cell) = self.cell_of(vertex) else { return };
+        let Some(cell) = self.cell_of(vertex) else {
+            return;
+        };
         let (before, after) = match self.index_of(cell, vertex) {
             Some(1) => (cell, self.neighbor(cell, 0)),
             _ => (self.neighbor(cell, 1), cell),

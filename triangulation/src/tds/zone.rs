@@ -36,16 +36,26 @@ impl Zone {
     }
 
     /// Returns the finite vertices that are on no facet of the border: no cell will have them.
-    pub(crate) fn inner_vertices<const N: usize, V, C: Copy + Default>(&self, tds: &Tds<N, V, C>) -> Vec<VertexId> {
+    pub(crate) fn inner_vertices<const N: usize, V, C: Copy + Default>(
+        &self,
+        tds: &Tds<N, V, C>,
+    ) -> Vec<VertexId> {
         if tds.dimension() == 2 && self.border.len() == self.cells.len() + 2 {
             return Vec::new(); // by Euler's relation
         }
         let on_facet = |&(cell, i): &(CellId, u8)| {
             let vertices = tds.cell_vertices(cell).iter().enumerate();
-            vertices.filter(move |&(k, _)| k != i as usize).map(|(_, &vertex)| vertex)
+            vertices
+                .filter(move |&(k, _)| k != i as usize)
+                .map(|(_, &vertex)| vertex)
         };
         let outer: FxHashSet<VertexId> = self.border.iter().flat_map(on_facet).collect();
-        let mut inner: Vec<VertexId> = self.cells.iter().flat_map(|&cell| tds.cell_vertices(cell)).copied().collect();
+        let mut inner: Vec<VertexId> = self
+            .cells
+            .iter()
+            .flat_map(|&cell| tds.cell_vertices(cell))
+            .copied()
+            .collect();
         inner.retain(|vertex| *vertex != VertexId::INFINITE && !outer.contains(vertex));
         inner.sort_unstable();
         inner.dedup();
@@ -84,7 +94,8 @@ impl Zone {
     ) {
         debug_assert!(self.cells.is_empty() && self.border.is_empty());
         if self.marked.len() < tds.cell_slots() {
-            self.marked.resize(tds.cell_slots().max(self.marked.capacity()), false);
+            self.marked
+                .resize(tds.cell_slots().max(self.marked.capacity()), false);
         }
         let width = tds.dimension() as u8 + 1;
         self.add(start);
@@ -99,7 +110,16 @@ impl Zone {
             } else if takes(cell, i as usize, beyond) {
                 self.add(beyond);
                 let entry = tds.index_of_neighbor(beyond, cell) as u8;
-                let turned = |turn| (beyond, if entry + turn < width { entry + turn } else { entry + turn - width });
+                let turned = |turn| {
+                    (
+                        beyond,
+                        if entry + turn < width {
+                            entry + turn
+                        } else {
+                            entry + turn - width
+                        },
+                    )
+                };
                 self.open.extend((2..width).rev().map(turned));
                 Some(turned(1))
             } else {
@@ -112,7 +132,8 @@ impl Zone {
         // border has to be filtered.
         if width != 3 || self.border.len() != self.cells.len() + 2 {
             let marked = &self.marked;
-            self.border.retain(|&(cell, i)| !marked[tds.neighbor(cell, i as usize).index()]);
+            self.border
+                .retain(|&(cell, i)| !marked[tds.neighbor(cell, i as usize).index()]);
         }
     }
 }
@@ -163,12 +184,22 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
     /// `PERF:` without turning through the zone, insertion one by one takes 8 % fewer instructions
     /// (10 000 uniform points, callgrind of `bench_editing`).
     fn link_around(&mut self, zone: &Zone, apex: VertexId) {
-        let around = zone.border.iter().zip(&zone.star).map(|(&(_, i), &new)| (new, i as usize));
-        let Some((mut before, mut i)) = around.clone().next_back() else { return };
+        let around = zone
+            .border
+            .iter()
+            .zip(&zone.star)
+            .map(|(&(_, i), &new)| (new, i as usize));
+        let Some((mut before, mut i)) = around.clone().next_back() else {
+            return;
+        };
         self.set_cell_of(apex, before);
         for (new, k) in around {
             let start = self.links[new.index()].vertices[ccw(k)];
-            debug_assert_eq!(start, self.links[before.index()].vertices[cw(i)], "the border comes in order");
+            debug_assert_eq!(
+                start,
+                self.links[before.index()].vertices[cw(i)],
+                "the border comes in order"
+            );
             self.set_cell_of(start, new);
             self.link(before, ccw(i), new, cw(k));
             (before, i) = (new, k);
@@ -184,7 +215,8 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
             self.links[old.index()].neighbors[i as usize] = new;
         }
         if zone.marked.len() < self.links.len() {
-            zone.marked.resize(self.links.len().max(zone.marked.capacity()), false);
+            zone.marked
+                .resize(self.links.len().max(zone.marked.capacity()), false);
         }
         for (&(old, i), &new) in zone.border.iter().zip(&zone.star) {
             let i = i as usize;
@@ -213,7 +245,9 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         }
         for &new in &zone.star {
             let vertices = self.links[new.index()].vertices;
-            vertices[..width].iter().for_each(|&vertex| self.set_cell_of(vertex, new));
+            vertices[..width]
+                .iter()
+                .for_each(|&vertex| self.set_cell_of(vertex, new));
         }
     }
 }

@@ -27,13 +27,20 @@ fn surfaces() -> Vec<((usize, Vec<Cell>), i64)> {
 
 /// Closed 3-manifolds.
 fn spaces() -> Vec<(usize, Vec<Cell>)> {
-    vec![shapes::simplex(5), shapes::suspension(shapes::octahedron()), shapes::three_torus(3)]
+    vec![
+        shapes::simplex(5),
+        shapes::suspension(shapes::octahedron()),
+        shapes::three_torus(3),
+    ]
 }
 
 #[test]
 fn closed_manifolds_of_any_genus_are_taken() {
     for ((vertices, cells), expected) in surfaces() {
-        assert!(is_sound(vertices, &cells) && euler(&cells) == expected, "the judge");
+        assert!(
+            is_sound(vertices, &cells) && euler(&cells) == expected,
+            "the judge"
+        );
         let tds = build::<3>(vertices, &cells).unwrap();
         assert_eq!(tds.euler_characteristic(), expected);
         assert_eq!(cells_of(&tds), cells);
@@ -41,7 +48,10 @@ fn closed_manifolds_of_any_genus_are_taken() {
         assert!(tds.vertices().all(|v| *tds.vertex_data(v) == v.index()));
     }
     for (vertices, cells) in spaces() {
-        assert!(is_sound(vertices, &cells) && euler(&cells) == 0, "the judge");
+        assert!(
+            is_sound(vertices, &cells) && euler(&cells) == 0,
+            "the judge"
+        );
         let tds = build::<4>(vertices, &cells).unwrap();
         assert_eq!(tds.euler_characteristic(), 0);
         assert_eq!(cells_of(&tds), cells);
@@ -51,46 +61,107 @@ fn closed_manifolds_of_any_genus_are_taken() {
 #[test]
 fn payloads_of_cells_follow_their_numbers() {
     let (vertices, cells) = shapes::torus(4, 4);
-    let tds = build::<3>(vertices, &cells).unwrap().with_cell_data(|cell| cell.index() * 10);
-    assert!(tds.cells().all(|cell| *tds.cell_data(cell) == cell.index() * 10));
+    let tds = build::<3>(vertices, &cells)
+        .unwrap()
+        .with_cell_data(|cell| cell.index() * 10);
+    assert!(
+        tds.cells()
+            .all(|cell| *tds.cell_data(cell) == cell.index() * 10)
+    );
 }
 
 #[test]
 fn a_fault_is_named() {
     let cell = CellId::new;
     let (_, tetrahedron) = shapes::simplex(4);
-    assert_eq!(build::<3>(4, &tetrahedron[..3]).err(), Some(TdsError::OneCell { cell: cell(0), facet: 2 }));
-    assert_eq!(build::<3>(5, &tetrahedron).err(), Some(TdsError::Isolated(VertexId::new(4))));
-    let fourth = TdsError::Vertex { cell: cell(0), vertex: VertexId::new(3) };
+    assert_eq!(
+        build::<3>(4, &tetrahedron[..3]).err(),
+        Some(TdsError::OneCell {
+            cell: cell(0),
+            facet: 2
+        })
+    );
+    assert_eq!(
+        build::<3>(5, &tetrahedron).err(),
+        Some(TdsError::Isolated(VertexId::new(4)))
+    );
+    let fourth = TdsError::Vertex {
+        cell: cell(0),
+        vertex: VertexId::new(3),
+    };
     assert_eq!(build::<3>(3, &tetrahedron).err(), Some(fourth));
     let twice = [vec![0, 1, 1], vec![0, 1, 2]];
     let vertex = VertexId::new(1);
-    assert_eq!(build::<3>(3, &twice).err(), Some(TdsError::Vertex { cell: cell(0), vertex }));
+    assert_eq!(
+        build::<3>(3, &twice).err(),
+        Some(TdsError::Vertex {
+            cell: cell(0),
+            vertex
+        })
+    );
     let three: Vec<Cell> = tetrahedron.iter().cloned().chain([vec![0, 1, 4]]).collect();
-    assert_eq!(build::<3>(5, &three).err(), Some(TdsError::ThreeCells { cell: cell(4), facet: 2 }));
+    assert_eq!(
+        build::<3>(5, &three).err(),
+        Some(TdsError::ThreeCells {
+            cell: cell(4),
+            facet: 2
+        })
+    );
     let mut turned = tetrahedron.clone();
     turned[0].swap(0, 1);
-    assert_eq!(build::<3>(4, &turned).err(), Some(TdsError::NotOriented { cell: cell(0), facet: 0 }));
+    assert_eq!(
+        build::<3>(4, &turned).err(),
+        Some(TdsError::NotOriented {
+            cell: cell(0),
+            facet: 0
+        })
+    );
     // Two triangles, back to back.
     let pair = [vec![0, 1, 2], vec![0, 2, 1]];
-    assert_eq!(build::<3>(3, &pair).err(), Some(TdsError::Neighbor { cell: cell(0), facet: 1 }));
+    assert_eq!(
+        build::<3>(3, &pair).err(),
+        Some(TdsError::Neighbor {
+            cell: cell(0),
+            facet: 1
+        })
+    );
     // Two spheres that share a vertex.
     let (m, a) = shapes::octahedron();
     let touching: Vec<Cell> = a
         .iter()
         .cloned()
-        .chain(a.iter().map(|c| c.iter().map(|&v| if v == 0 { 0 } else { v + m - 1 }).collect()))
+        .chain(a.iter().map(|c| {
+            c.iter()
+                .map(|&v| if v == 0 { 0 } else { v + m - 1 })
+                .collect()
+        }))
         .collect();
     assert!(!is_manifold(&touching));
-    assert_eq!(build::<3>(2 * m - 1, &touching).err(), Some(TdsError::Link(VertexId::new(0))));
+    assert_eq!(
+        build::<3>(2 * m - 1, &touching).err(),
+        Some(TdsError::Link(VertexId::new(0)))
+    );
     // Tetrahedra around a vertex whose link is a torus.
     let (vertices, cells) = shapes::suspension(shapes::torus(3, 3));
     assert!(!is_manifold(&cells) && is_oriented(&cells));
-    assert_eq!(build::<4>(vertices, &cells).err(), Some(TdsError::Link(VertexId::new(9))));
+    assert_eq!(
+        build::<4>(vertices, &cells).err(),
+        Some(TdsError::Link(VertexId::new(9)))
+    );
     let (vertices, cells) = shapes::klein_bottle(4, 5);
     assert!(is_manifold(&cells) && !is_oriented(&cells) && euler(&cells) == 0);
-    assert!(matches!(build::<3>(vertices, &cells).err(), Some(TdsError::NotOriented { .. })));
-    for error in [fourth, TdsError::OneCell { cell: cell(0), facet: 1 }, TdsError::Link(VertexId::INFINITE)] {
+    assert!(matches!(
+        build::<3>(vertices, &cells).err(),
+        Some(TdsError::NotOriented { .. })
+    ));
+    for error in [
+        fourth,
+        TdsError::OneCell {
+            cell: cell(0),
+            facet: 1,
+        },
+        TdsError::Link(VertexId::INFINITE),
+    ] {
         assert!(!error.to_string().is_empty());
     }
 }
@@ -106,17 +177,32 @@ fn no_cells_are_a_complex() {
 fn only_spheres_pass_the_check_of_the_kinds() {
     let close = |(vertices, cells): (usize, Vec<Cell>)| {
         let last = VertexId::new(vertices - 1);
-        let infinite = |v: usize| if VertexId::new(v) == last { VertexId::INFINITE } else { VertexId::new(v) };
-        let cells: Vec<[VertexId; 3]> = cells.iter().map(|c| std::array::from_fn(|k| infinite(c[k]))).collect();
+        let infinite = |v: usize| {
+            if VertexId::new(v) == last {
+                VertexId::INFINITE
+            } else {
+                VertexId::new(v)
+            }
+        };
+        let cells: Vec<[VertexId; 3]> = cells
+            .iter()
+            .map(|c| std::array::from_fn(|k| infinite(c[k])))
+            .collect();
         Tds::<3>::from_cells(vec![(); vertices - 1], &cells).unwrap()
     };
     assert_eq!(close(shapes::octahedron()).check_sphere(), []);
-    assert_eq!(close(shapes::torus(3, 3)).check_sphere(), [TdsError::Euler(0)]);
+    assert_eq!(
+        close(shapes::torus(3, 3)).check_sphere(),
+        [TdsError::Euler(0)]
+    );
     let two = close(shapes::both(shapes::octahedron(), shapes::torus(3, 3)));
     assert_eq!(two.check_sphere(), [TdsError::NotConnected(CellId::new(8))]);
     let (vertices, cells) = shapes::octahedron();
     let finite = build::<3>(vertices, &cells).unwrap();
-    assert_eq!(finite.check_sphere(), [TdsError::Isolated(VertexId::INFINITE)]);
+    assert_eq!(
+        finite.check_sphere(),
+        [TdsError::Isolated(VertexId::INFINITE)]
+    );
 }
 
 /// Damages a list of cells somewhere.
@@ -131,7 +217,11 @@ fn damage(random: &mut Random, vertices: usize, cells: &mut Vec<Cell>) {
         4 => {
             // One vertex is replaced by another one everywhere.
             let [from, to] = [(); 2].map(|()| random.index(vertices));
-            cells.iter_mut().flatten().filter(|v| **v == from).for_each(|v| *v = to);
+            cells
+                .iter_mut()
+                .flatten()
+                .filter(|v| **v == from)
+                .for_each(|v| *v = to);
         }
         _ => cells[k][i] = random.index(vertices + 1),
     }
@@ -142,7 +232,11 @@ fn damage_is_refused_exactly_where_the_judge_refuses_it() {
     let mut random = Random(17);
     let (mut taken, mut refused) = (0, 0);
     let mut compare = |vertices: usize, cells: &[Cell], width: usize| {
-        let result = if width == 3 { build::<3>(vertices, cells).err() } else { build::<4>(vertices, cells).err() };
+        let result = if width == 3 {
+            build::<3>(vertices, cells).err()
+        } else {
+            build::<4>(vertices, cells).err()
+        };
         let is_sound = is_sound(vertices, cells);
         assert_eq!(result.is_none(), is_sound, "{result:?}: {cells:?}");
         *(if is_sound { &mut taken } else { &mut refused }) += 1;

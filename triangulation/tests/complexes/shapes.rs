@@ -34,7 +34,9 @@ pub(crate) fn simplex(vertices: usize) -> (usize, Vec<Cell>) {
 /// Joins cells to two more vertices.
 pub(crate) fn suspension((vertices, cells): (usize, Vec<Cell>)) -> (usize, Vec<Cell>) {
     let above = cells.iter().map(|cell| [&cell[..], &[vertices]].concat());
-    let below = cells.iter().map(|cell| [&[cell[1], cell[0]], &cell[2..], &[vertices + 1]].concat());
+    let below = cells
+        .iter()
+        .map(|cell| [&[cell[1], cell[0]], &cell[2..], &[vertices + 1]].concat());
     let cells = above.chain(below).collect();
     (vertices + 2, cells)
 }
@@ -48,7 +50,8 @@ fn glued(width: usize, height: usize, glue: impl Fn(usize, usize) -> usize) -> (
     let mut cells = Vec::new();
     for y in 0..height {
         for x in 0..width {
-            let [a, b, c, d] = [(x, y), (x + 1, y), (x + 1, y + 1), (x, y + 1)].map(|(x, y)| glue(x, y));
+            let [a, b, c, d] =
+                [(x, y), (x + 1, y), (x + 1, y + 1), (x, y + 1)].map(|(x, y)| glue(x, y));
             cells.extend([vec![a, b, c], vec![a, c, d]]);
         }
     }
@@ -68,13 +71,20 @@ pub(crate) fn klein_bottle(width: usize, height: usize) -> (usize, Vec<Cell>) {
 }
 
 /// Removes the first cell of both shapes and identifies its vertices.
-pub(crate) fn connected_sum((m, a): (usize, Vec<Cell>), (_, b): (usize, Vec<Cell>)) -> (usize, Vec<Cell>) {
+pub(crate) fn connected_sum(
+    (m, a): (usize, Vec<Cell>),
+    (_, b): (usize, Vec<Cell>),
+) -> (usize, Vec<Cell>) {
     let (left, right) = (a[0].clone(), b[0].clone());
     // The second is seen from behind: its vertices 1 and 2 are exchanged in the match.
-    let turned = [left[1], left[0]].into_iter().chain(left[2..].iter().copied());
+    let turned = [left[1], left[0]]
+        .into_iter()
+        .chain(left[2..].iter().copied());
     let matched: BTreeMap<usize, usize> = right.iter().copied().zip(turned).collect();
     let map = |v: usize| matched.get(&v).copied().unwrap_or(m + v);
-    let rest = b[1..].iter().map(|cell| cell.iter().map(|&v| map(v)).collect());
+    let rest = b[1..]
+        .iter()
+        .map(|cell| cell.iter().map(|&v| map(v)).collect());
     renumbered(&a[1..].iter().cloned().chain(rest).collect::<Vec<_>>())
 }
 
@@ -105,6 +115,8 @@ pub(crate) fn three_torus(side: usize) -> (usize, Vec<Cell>) {
 
 /// Returns the disjoint union of two shapes.
 pub(crate) fn both((m, a): (usize, Vec<Cell>), (n, b): (usize, Vec<Cell>)) -> (usize, Vec<Cell>) {
-    let moved = b.into_iter().map(|cell| cell.into_iter().map(|v| v + m).collect());
+    let moved = b
+        .into_iter()
+        .map(|cell| cell.into_iter().map(|v| v + m).collect());
     (m + n, a.into_iter().chain(moved).collect())
 }

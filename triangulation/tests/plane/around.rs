@@ -14,7 +14,16 @@ use testkit::random::Random;
 fn random(random: &mut Random, round: usize) -> Free {
     let side = 1 + random.below(5);
     let points: Vec<[f64; 2]> = (0..random.below(20))
-        .map(|_| [random.below(side) as f64, if round.is_multiple_of(3) { 2.0 } else { random.below(side) as f64 }])
+        .map(|_| {
+            [
+                random.below(side) as f64,
+                if round.is_multiple_of(3) {
+                    2.0
+                } else {
+                    random.below(side) as f64
+                },
+            ]
+        })
         .collect();
     let mut t = build(&points);
     for v in t.tds().vertices().collect::<Vec<_>>() {
@@ -56,11 +65,19 @@ fn edges_come_once_and_in_order() {
         let edges: Vec<_> = tds.edges().collect();
         assert_eq!(tds.edges().len(), edges.len());
         assert!(edges.is_sorted());
-        let ends: BTreeSet<_> = edges.iter().map(|&(cell, i)| sorted(tds.edge_ends(cell, i))).collect();
+        let ends: BTreeSet<_> = edges
+            .iter()
+            .map(|&(cell, i)| sorted(tds.edge_ends(cell, i)))
+            .collect();
         assert_eq!(ends.len(), edges.len());
         assert_eq!(ends, naive_edges(tds));
         let finite = tds.finite_edges().count();
-        assert_eq!(finite, ends.iter().filter(|ends| ends[1] != VertexId::INFINITE).count());
+        assert_eq!(
+            finite,
+            ends.iter()
+                .filter(|ends| ends[1] != VertexId::INFINITE)
+                .count()
+        );
         if tds.dimension() > 0 {
             assert_eq!(finite + tds.degree(VertexId::INFINITE), edges.len());
         }
@@ -78,23 +95,44 @@ fn around_a_vertex_in_both_directions() {
         let edges = naive_edges(tds);
         for v in with_infinite(tds) {
             let around: Vec<VertexId> = tds.vertices_around(v).collect();
-            let expected: BTreeSet<VertexId> =
-                edges.iter().filter_map(|&[a, b]| if a == v { Some(b) } else { (b == v).then_some(a) }).collect();
-            assert_eq!((tds.degree(v), around.len()), (expected.len(), expected.len()));
+            let expected: BTreeSet<VertexId> = edges
+                .iter()
+                .filter_map(|&[a, b]| {
+                    if a == v {
+                        Some(b)
+                    } else {
+                        (b == v).then_some(a)
+                    }
+                })
+                .collect();
+            assert_eq!(
+                (tds.degree(v), around.len()),
+                (expected.len(), expected.len())
+            );
             assert_eq!(around.iter().copied().collect::<BTreeSet<_>>(), expected);
             for u in with_infinite(tds) {
                 assert_eq!(tds.has_edge(v, u), expected.contains(&u), "{v:?} {u:?}");
             }
-            let ends: Vec<[VertexId; 2]> = tds.edges_around(v).map(|(cell, i)| tds.edge_ends(cell, i)).collect();
+            let ends: Vec<[VertexId; 2]> = tds
+                .edges_around(v)
+                .map(|(cell, i)| tds.edge_ends(cell, i))
+                .collect();
             if tds.dimension() == 2 {
                 assert!(ends.iter().copied().eq(around.iter().map(|&u| [v, u])));
                 // Consecutive ones: a face lies between.
                 for (k, cell) in tds.around(v).enumerate() {
-                    assert_eq!(tds.face([around[k], v, around[(k + 1) % around.len()]]), Some(cell));
+                    assert_eq!(
+                        tds.face([around[k], v, around[(k + 1) % around.len()]]),
+                        Some(cell)
+                    );
                 }
             } else {
                 assert_eq!(tds.around(v).count(), 0);
-                assert!(ends.iter().map(|&ends| sorted(ends)).eq(around.iter().map(|&u| sorted([u, v]))));
+                assert!(
+                    ends.iter()
+                        .map(|&ends| sorted(ends))
+                        .eq(around.iter().map(|&u| sorted([u, v])))
+                );
             }
             let reversed = |mut items: Vec<VertexId>| {
                 items.reverse();
@@ -116,11 +154,27 @@ fn around_a_vertex_in_both_directions() {
 
 #[test]
 fn around_is_counter_clockwise() {
-    let t = build(&[[0.0, 0.0], [2.0, 1.0], [-1.0, 2.0], [-2.0, -1.0], [1.0, -2.0]]);
-    let center = t.tds().vertices().find(|&v| *t.point(v) == [0.0, 0.0]).unwrap();
-    let around: Vec<[f64; 2]> = t.tds().vertices_around(center).map(|v| *t.point(v)).collect();
+    let t = build(&[
+        [0.0, 0.0],
+        [2.0, 1.0],
+        [-1.0, 2.0],
+        [-2.0, -1.0],
+        [1.0, -2.0],
+    ]);
+    let center = t
+        .tds()
+        .vertices()
+        .find(|&v| *t.point(v) == [0.0, 0.0])
+        .unwrap();
+    let around: Vec<[f64; 2]> = t
+        .tds()
+        .vertices_around(center)
+        .map(|v| *t.point(v))
+        .collect();
     for k in 0..4 {
-        let turn = t.geometry().orientation([&[0.0, 0.0], &around[k], &around[(k + 1) % 4]]);
+        let turn = t
+            .geometry()
+            .orientation([&[0.0, 0.0], &around[k], &around[(k + 1) % 4]]);
         assert_eq!(turn, Sign::Positive, "{around:?}");
     }
 }
@@ -132,7 +186,9 @@ fn the_hull_is_a_ring_of_all_vertices_on_it() {
         let t = random(&mut dice, round);
         let (tds, g) = (t.tds(), t.geometry());
         let hull: Vec<VertexId> = tds.hull().collect();
-        let turn = |a: VertexId, b: VertexId, c: VertexId| g.orientation([t.point(a), t.point(b), t.point(c)]);
+        let turn = |a: VertexId, b: VertexId, c: VertexId| {
+            g.orientation([t.point(a), t.point(b), t.point(c)])
+        };
         let mut extremes: Vec<VertexId> = tds.vertices().collect();
         match t.dimension() {
             -1 => assert_eq!(hull, []),
@@ -148,9 +204,13 @@ fn the_hull_is_a_ring_of_all_vertices_on_it() {
                     for v in tds.vertices().filter(|&v| v != a && v != b) {
                         // Everything lies to the left of the side; what is on its line does not lie
                         // between its ends.
-                        let between = g.side_of_sphere_in_flat(&[t.point(a), t.point(b)], t.point(v));
+                        let between =
+                            g.side_of_sphere_in_flat(&[t.point(a), t.point(b)], t.point(v));
                         let side = turn(a, b, v);
-                        assert!(side == Sign::Positive || side == Sign::Zero && between == Sign::Negative);
+                        assert!(
+                            side == Sign::Positive
+                                || side == Sign::Zero && between == Sign::Negative
+                        );
                     }
                 }
             }
@@ -176,7 +236,11 @@ fn faces_and_edges_by_their_vertices() {
                 for &c in &all {
                     let mut corners = [a, b, c];
                     corners.sort();
-                    assert_eq!(tds.is_face([a, b, c]), faces.contains(&corners), "{a:?} {b:?} {c:?}");
+                    assert_eq!(
+                        tds.is_face([a, b, c]),
+                        faces.contains(&corners),
+                        "{a:?} {b:?} {c:?}"
+                    );
                 }
             }
         }
@@ -195,12 +259,27 @@ fn lattice_points_of_a_circle() {
         }
     }
     let t = build(&points);
-    assert_eq!((points.len(), t.tds().hull().count(), t.finite_cells().count()), (60, 60, 58));
+    assert_eq!(
+        (
+            points.len(),
+            t.tds().hull().count(),
+            t.finite_cells().count()
+        ),
+        (60, 60, 58)
+    );
     assert_eq!(t.tds().finite_edges().count(), 60 + 57);
 }
 
 #[test]
 fn five_collinear_points() {
     let t = build(&[[0.0, 0.0], [1.0, 1.0], [4.0, 4.0], [2.0, 2.0], [3.0, 3.0]]);
-    assert_eq!((t.dimension(), t.vertex_count(), t.tds().edges().len(), t.tds().finite_edges().count()), (1, 5, 6, 4));
+    assert_eq!(
+        (
+            t.dimension(),
+            t.vertex_count(),
+            t.tds().edges().len(),
+            t.tds().finite_edges().count()
+        ),
+        (1, 5, 6, 4)
+    );
 }

@@ -17,9 +17,15 @@ pub(crate) fn judge(corners: [[f64; 3]; 3], center: [f64; 2]) {
     }
     let lift = |[x, y]: &[RBig; 2], p: &[RBig; 3]| x * x + y * y - &p[2] + &a[2];
     let [lu, lv] = [lift(&u, &b), lift(&v, &c)];
-    let expected = [(&lu * &v[1] - &lv * &u[1]) / &area, (&lv * &u[0] - &lu * &v[0]) / &area];
+    let expected = [
+        (&lu * &v[1] - &lv * &u[1]) / &area,
+        (&lv * &u[0] - &lu * &v[0]) / &area,
+    ];
     let center = center.map(exact);
     let squared = |p: [RBig; 2]| &p[0] * &p[0] + &p[1] * &p[1];
     let error = squared([&center[0] - &expected[0], &center[1] - &expected[1]]);
-    assert!(error * exact(2f64.powi(80)) <= squared(expected), "{corners:?}");
+    assert!(
+        error * exact(2f64.powi(80)) <= squared(expected),
+        "{corners:?}"
+    );
 }

@@ -5,8 +5,8 @@ use crate::grid::{Free, Point, build, points, site};
 use breakline_triangulation::geometry::{Plane, Terrain};
 use breakline_triangulation::tds::{CellId, Complex, VertexId};
 use breakline_triangulation::{
-    Compact, CompactError, CompactSection, ConflictZone, Constrained, ConstrainedDelaunay, Delaunay, Law, Level,
-    Location, OnCrossing, Passage, Regular, Triangulation,
+    Compact, CompactError, CompactSection, ConflictZone, Constrained, ConstrainedDelaunay,
+    Delaunay, Law, Level, Location, OnCrossing, Passage, Regular, Triangulation,
 };
 use testkit::random::Random;
 
@@ -41,8 +41,13 @@ impl<V, C: Copy + Default> Dense<'_, V, C> {
 
     fn location(&self, location: Location) -> Location {
         match location {
-            Location::Cell { cell, facets } => Location::Cell { cell: self.cell(cell), facets },
-            Location::OutsideHull { cell } => Location::OutsideHull { cell: self.cell(cell) },
+            Location::Cell { cell, facets } => Location::Cell {
+                cell: self.cell(cell),
+                facets,
+            },
+            Location::OutsideHull { cell } => Location::OutsideHull {
+                cell: self.cell(cell),
+            },
             other => other,
         }
     }
@@ -58,7 +63,11 @@ impl<V, C: Copy + Default> Dense<'_, V, C> {
     fn zone(&self, zone: Option<ConflictZone>) -> Option<ConflictZone> {
         zone.map(|zone| ConflictZone {
             cells: zone.cells.into_iter().map(|cell| self.cell(cell)).collect(),
-            border: zone.border.into_iter().map(|(cell, i)| (self.cell(cell), i)).collect(),
+            border: zone
+                .border
+                .into_iter()
+                .map(|(cell, i)| (self.cell(cell), i))
+                .collect(),
         })
     }
 
@@ -70,12 +79,25 @@ impl<V, C: Copy + Default> Dense<'_, V, C> {
 }
 
 /// Queries that every kind answers.
-fn judge_lawless<V, C: Copy + Default>(t: &Triangulation<Plane, 3, V, C>, compact: &Opened<'_>, [p, q]: [Point; 2]) {
+fn judge_lawless<V, C: Copy + Default>(
+    t: &Triangulation<Plane, 3, V, C>,
+    compact: &Opened<'_>,
+    [p, q]: [Point; 2],
+) {
     let dense = Dense(t);
     let [near, near_there] = dense.near();
-    assert_eq!(compact.locate(&p, near_there), Ok(dense.location(t.locate(&p, near))));
-    assert_eq!(compact.within_rectangle([&p, &q]), Ok(t.within_rectangle([&p, &q])));
-    let met: Vec<Passage> = t.along([&p, &q], near).map(|passage| dense.passage(passage)).collect();
+    assert_eq!(
+        compact.locate(&p, near_there),
+        Ok(dense.location(t.locate(&p, near)))
+    );
+    assert_eq!(
+        compact.within_rectangle([&p, &q]),
+        Ok(t.within_rectangle([&p, &q]))
+    );
+    let met: Vec<Passage> = t
+        .along([&p, &q], near)
+        .map(|passage| dense.passage(passage))
+        .collect();
     assert_eq!(all(compact.along([&p, &q], near_there)), Ok(met));
 }
 
@@ -84,8 +106,14 @@ fn judge(t: &Free, compact: &Opened<'_>, [p, q]: [Point; 2]) {
     let dense = Dense(t);
     let [near, near_there] = dense.near();
     assert_eq!(compact.nearest(&p, near_there), Ok(t.nearest(&p, near)));
-    assert_eq!(compact.conflict_zone(&p, near_there), Ok(dense.zone(t.conflict_zone(&p, near))));
-    assert_eq!(all(compact.within(&p, &q)), Ok(t.within(&p, &q).collect::<Vec<VertexId>>()));
+    assert_eq!(
+        compact.conflict_zone(&p, near_there),
+        Ok(dense.zone(t.conflict_zone(&p, near)))
+    );
+    assert_eq!(
+        all(compact.within(&p, &q)),
+        Ok(t.within(&p, &q).collect::<Vec<VertexId>>())
+    );
 }
 
 #[test]
@@ -96,25 +124,46 @@ fn answers_are_those_of_the_triangulation_that_was_written() {
         let t = build(&points(&mut dice, round));
         let bytes = bytes(&t);
         let compact = open(&bytes).unwrap();
-        assert_eq!((compact.dimension(), compact.vertex_count()), (t.dimension(), t.vertex_count()));
+        assert_eq!(
+            (compact.dimension(), compact.vertex_count()),
+            (t.dimension(), t.vertex_count())
+        );
         dimensions[(t.dimension() + 1) as usize] += 1;
         assert_eq!(compact.check(Level::Law), Ok(()));
         let [p, q] = [site(&mut dice), site(&mut dice)];
         judge(&t, &compact, [p, q]);
-        assert_eq!(all(compact.nearest_first(&p, None)), Ok(t.nearest_first(&p, None).collect()));
+        assert_eq!(
+            all(compact.nearest_first(&p, None)),
+            Ok(t.nearest_first(&p, None).collect())
+        );
         let vertices: Vec<VertexId> = t.tds().vertices().chain([VertexId::INFINITE]).collect();
         for &vertex in &vertices {
             let [b, c] = [dice.pick(&vertices), dice.pick(&vertices)];
-            let edge = t.tds().edge(vertex, b).map(|(cell, i)| (Dense(&t).cell(cell), i));
+            let edge = t
+                .tds()
+                .edge(vertex, b)
+                .map(|(cell, i)| (Dense(&t).cell(cell), i));
             assert_eq!(compact.edge(vertex, b), Ok(edge));
-            assert_eq!(compact.face([vertex, b, c]), Ok(t.tds().face([vertex, b, c]).map(|cell| Dense(&t).cell(cell))));
+            assert_eq!(
+                compact.face([vertex, b, c]),
+                Ok(t.tds()
+                    .face([vertex, b, c])
+                    .map(|cell| Dense(&t).cell(cell)))
+            );
             let around: Vec<VertexId> = t.tds().vertices_around(vertex).collect();
             assert_eq!(all(compact.vertices_around(vertex)), Ok(around));
-            let faces = t.faces_from(vertex).map(|cell| Dense(&t).cell(cell)).collect();
+            let faces = t
+                .faces_from(vertex)
+                .map(|cell| Dense(&t).cell(cell))
+                .collect();
             let exists = vertex != VertexId::INFINITE;
             assert_eq!(
                 all(compact.faces_from(vertex)),
-                if exists { Ok(faces) } else { Err(CompactError::Vertex(vertex)) }
+                if exists {
+                    Ok(faces)
+                } else {
+                    Err(CompactError::Vertex(vertex))
+                }
             );
         }
     }
@@ -132,7 +181,11 @@ fn many_points() {
     for _ in 0..500 {
         let p = [dice.unit(), dice.unit()].map(|x| 1.2 * x - 0.1);
         judge(&t, &compact, [p, p.map(|x| x + 0.1 * dice.unit())]);
-        assert_eq!(compact.locate(&p, None), Ok(t.locate(&p, None)), "the long way");
+        assert_eq!(
+            compact.locate(&p, None),
+            Ok(t.locate(&p, None)),
+            "the long way"
+        );
     }
 }
 
@@ -143,22 +196,41 @@ fn constraints_are_there() {
     for round in 0..1000 {
         let mut points = points(&mut dice, round);
         points.push([1.0, 1.0]);
-        let lines: Vec<Vec<u32>> = (0..4).map(|_| vec![dice.index(points.len()) as u32; 2]).collect();
-        let lines: Vec<Vec<u32>> = lines.iter().map(|l| vec![l[0], dice.index(points.len()) as u32]).collect();
-        let t = Lined::from_lines(Plane::default(), &points, &lines, OnCrossing::Split).unwrap().0;
+        let lines: Vec<Vec<u32>> = (0..4)
+            .map(|_| vec![dice.index(points.len()) as u32; 2])
+            .collect();
+        let lines: Vec<Vec<u32>> = lines
+            .iter()
+            .map(|l| vec![l[0], dice.index(points.len()) as u32])
+            .collect();
+        let t = Lined::from_lines(Plane::default(), &points, &lines, OnCrossing::Split)
+            .unwrap()
+            .0;
         let mut bytes = Vec::new();
         t.write_compact(&mut bytes).unwrap();
         let compact = open(&bytes).unwrap();
-        assert_eq!((compact.law(), compact.check(Level::Law)), (Law::ConstrainedDelaunay, Ok(())));
+        assert_eq!(
+            (compact.law(), compact.check(Level::Law)),
+            (Law::ConstrainedDelaunay, Ok(()))
+        );
         let [p, q] = [site(&mut dice), site(&mut dice)];
         judge_lawless(&t, &compact, [p, q]);
         let dense = Dense(&t);
         let [near, near_there] = dense.near();
-        assert_eq!(compact.conflict_zone(&p, near_there), Ok(dense.zone(t.conflict_zone(&p, near))));
-        assert_eq!(compact.nearest(&p, None), Err(CompactError::Unanswerable(Law::ConstrainedDelaunay)));
+        assert_eq!(
+            compact.conflict_zone(&p, near_there),
+            Ok(dense.zone(t.conflict_zone(&p, near)))
+        );
+        assert_eq!(
+            compact.nearest(&p, None),
+            Err(CompactError::Unanswerable(Law::ConstrainedDelaunay))
+        );
         for cell in t.tds().cells().filter(|_| t.dimension() == 2) {
             for i in 0..3 {
-                assert_eq!(compact.is_constrained(dense.cell(cell), i), Ok(t.is_constrained(cell, i)));
+                assert_eq!(
+                    compact.is_constrained(dense.cell(cell), i),
+                    Ok(t.is_constrained(cell, i))
+                );
                 constrained += usize::from(t.is_constrained(cell, i));
             }
         }
@@ -175,7 +247,10 @@ fn all_kinds_and_geometries() {
     constrained.constrain(v[0], v[2]).unwrap();
     constrained.write_compact(&mut bytes).unwrap();
     let compact = open(&bytes).unwrap();
-    assert_eq!((compact.law(), compact.check(Level::Law)), (Law::Constrained, Ok(())));
+    assert_eq!(
+        (compact.law(), compact.check(Level::Law)),
+        (Law::Constrained, Ok(()))
+    );
     let is_constrained = |cell: CellId, i| compact.is_constrained(cell, i).unwrap();
     assert_eq!(
         (0..6)
@@ -185,12 +260,18 @@ fn all_kinds_and_geometries() {
             .count(),
         2
     );
-    assert_eq!(compact.conflict_zone(&[1.0, 1.0], None), Err(CompactError::Unanswerable(Law::Constrained)));
+    assert_eq!(
+        compact.conflict_zone(&[1.0, 1.0], None),
+        Err(CompactError::Unanswerable(Law::Constrained))
+    );
 
     // A hidden vertex is not written.
-    let mut regular: Regular<breakline_triangulation::geometry::Weighted, 3> = Regular::new(Default::default());
+    let mut regular: Regular<breakline_triangulation::geometry::Weighted, 3> =
+        Regular::new(Default::default());
     for (k, [x, y]) in square.into_iter().chain([[2.0, 2.0]]).enumerate() {
-        regular.insert([x, y, if k == 4 { -100.0 } else { 0.0 }]).unwrap();
+        regular
+            .insert([x, y, if k == 4 { -100.0 } else { 0.0 }])
+            .unwrap();
     }
     bytes.clear();
     regular.write_compact(&mut bytes).unwrap();
@@ -207,7 +288,13 @@ fn all_kinds_and_geometries() {
     let (t, v) = Delaunay::from_points(terrain, &heights).unwrap();
     bytes.clear();
     t.write_compact(&mut bytes).unwrap();
-    assert_eq!(open(&bytes).err(), Some(CompactError::Coordinates { expected: 2, found: 3 }));
+    assert_eq!(
+        open(&bytes).err(),
+        Some(CompactError::Coordinates {
+            expected: 2,
+            found: 3
+        })
+    );
     let owned = Compact::open(terrain, bytes).unwrap();
     assert_eq!(owned.point(v[2]), Ok([5.0, 3.0, 15.0]));
     assert_eq!(owned.nearest(&[5.0, 2.0, 0.0], None), Ok(Some(v[2])));
@@ -227,7 +314,8 @@ fn gaps_close() {
         let bytes = bytes(&t);
         let compact = open(&bytes).unwrap();
         assert_eq!(compact.check(Level::Law), Ok(()));
-        let points = (0..compact.vertex_count()).map(|index| compact.point(VertexId::new(index)).unwrap());
+        let points =
+            (0..compact.vertex_count()).map(|index| compact.point(VertexId::new(index)).unwrap());
         assert!(points.eq(t.tds().vertices().map(|v| *t.point(v))));
     }
 }
@@ -249,7 +337,10 @@ fn the_format() {
     let number = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap());
     let infinite_cell = number(40) as usize;
     assert!((0..3).any(|slot| number(112 + 24 * infinite_cell + 4 * slot) == u32::MAX));
-    assert_eq!(f64::from_le_bytes(bytes[48..56].try_into().unwrap()), t.point(VertexId::new(0))[0]);
+    assert_eq!(
+        f64::from_le_bytes(bytes[48..56].try_into().unwrap()),
+        t.point(VertexId::new(0))[0]
+    );
     for vertex in 0..3 {
         let cell = number(96 + 4 * vertex) as usize;
         assert!((0..3).any(|slot| number(112 + 24 * cell + 4 * slot) == vertex as u32));
@@ -261,10 +352,17 @@ type Section = ([u8; 8], Vec<u8>);
 
 /// A triangulation with some sections, of all lengths up to a multiple of 8 and beyond.
 fn with_sections(t: &Free) -> (Vec<u8>, Vec<Section>) {
-    let sections: Vec<Section> = (0..11u8).map(|n| ([b'a' + n % 9; 8], vec![n; usize::from(n)])).collect();
+    let sections: Vec<Section> = (0..11u8)
+        .map(|n| ([b'a' + n % 9; 8], vec![n; usize::from(n)]))
+        .collect();
     let mut bytes = bytes(t);
     for (tag, contents) in &sections {
-        CompactSection { tag: *tag, contents }.write(&mut bytes).unwrap();
+        CompactSection {
+            tag: *tag,
+            contents,
+        }
+        .write(&mut bytes)
+        .unwrap();
     }
     (bytes, sections)
 }
@@ -275,10 +373,17 @@ fn sections_are_found_and_the_triangulation_does_not_change() {
         let (whole, sections) = with_sections(&t);
         let compact = open(&whole).unwrap();
         assert_eq!(compact.check(Level::Law), Ok(()));
-        let listed: Vec<Section> = compact.sections().map(|s| (s.tag, s.contents.to_vec())).collect();
+        let listed: Vec<Section> = compact
+            .sections()
+            .map(|s| (s.tag, s.contents.to_vec()))
+            .collect();
         assert_eq!(listed, sections);
         assert_eq!(compact.section([b'c'; 8]), Some(&[2, 2][..]));
-        assert_eq!(compact.section([b'a'; 8]), Some(&[][..]), "the first of two");
+        assert_eq!(
+            compact.section([b'a'; 8]),
+            Some(&[][..]),
+            "the first of two"
+        );
         assert_eq!(compact.section([b'j'; 8]), None);
         for (tag, _) in &sections {
             let range = compact.section_range(*tag).unwrap();
@@ -305,16 +410,31 @@ fn incomplete_sections_are_not_opened() {
         // A whole section less is not noticed: the program that needs it looks for it.
         assert_eq!(opened.is_ok(), ends.contains(&length), "{length} bytes");
         if let Err(error) = opened {
-            let CompactError::Length { expected, found } = error else { panic!("{error}") };
-            assert!(found == length as u64 && expected > found && expected <= whole.len() as u64, "{error}");
+            let CompactError::Length { expected, found } = error else {
+                panic!("{error}")
+            };
+            assert!(
+                found == length as u64 && expected > found && expected <= whole.len() as u64,
+                "{error}"
+            );
         }
     }
     // A length near the end of all numbers.
-    for length in [u64::MAX, u64::MAX - 7, u64::MAX - 16, u64::MAX - 40, 1 << 63, 1] {
+    for length in [
+        u64::MAX,
+        u64::MAX - 7,
+        u64::MAX - 16,
+        u64::MAX - 40,
+        1 << 63,
+        1,
+    ] {
         let mut bytes = bytes(&t);
         bytes.extend([b'x'; 8]);
         bytes.extend(length.to_le_bytes());
-        assert!(matches!(open(&bytes), Err(CompactError::Length { .. })), "{length}");
+        assert!(
+            matches!(open(&bytes), Err(CompactError::Length { .. })),
+            "{length}"
+        );
     }
 }
 
@@ -325,7 +445,12 @@ fn other_versions_are_refused_by_their_number() {
         bytes[8..12].copy_from_slice(&version.to_le_bytes());
         let error = open(&bytes).unwrap_err();
         assert_eq!(error, CompactError::Version(version));
-        assert!(error.to_string().contains(&format!("version {version}; the known version is 2")), "{error}");
+        assert!(
+            error
+                .to_string()
+                .contains(&format!("version {version}; the known version is 2")),
+            "{error}"
+        );
     }
 }
 
@@ -351,24 +476,47 @@ fn ask_everything(compact: &Opened<'_>, sites: &[Point]) -> bool {
         note(all(compact.along([p, q], near)).is_err());
         note(compact.conflict_zone(p, near).is_err());
     }
-    for vertex in (0..compact.vertex_slots() + 2).map(VertexId::new).chain([VertexId::INFINITE]) {
+    for vertex in (0..compact.vertex_slots() + 2)
+        .map(VertexId::new)
+        .chain([VertexId::INFINITE])
+    {
         note(all(compact.vertices_around(vertex)).is_err());
         note(all(compact.faces_from(vertex)).is_err());
         note(compact.edge(vertex, VertexId::new(0)).is_err());
-        note(compact.face([vertex, VertexId::INFINITE, VertexId::new(0)]).is_err());
+        note(
+            compact
+                .face([vertex, VertexId::INFINITE, VertexId::new(0)])
+                .is_err(),
+        );
     }
     is_damaged
 }
 
 /// Small ones of each dimension, with ties.
 fn samples() -> Vec<Free> {
-    let grid: Vec<Point> = (0..9).map(|k| [f64::from(k % 3), f64::from(k / 3)]).collect();
-    [&grid[..], &grid[..3], &grid[..2], &grid[..1], &[], &[[0.0, 0.0], [4.0, 0.0], [1.0, 3.0], [7.0, 5.0]]]
-        .map(build)
-        .into()
+    let grid: Vec<Point> = (0..9)
+        .map(|k| [f64::from(k % 3), f64::from(k / 3)])
+        .collect();
+    [
+        &grid[..],
+        &grid[..3],
+        &grid[..2],
+        &grid[..1],
+        &[],
+        &[[0.0, 0.0], [4.0, 0.0], [1.0, 3.0], [7.0, 5.0]],
+    ]
+    .map(build)
+    .into()
 }
 
-const SITES: [Point; 6] = [[0.5, 0.5], [1.0, 1.0], [-1.0, -1.0], [0.25, 1.0], [1.5, 1.25], [9.0, 1.0]];
+const SITES: [Point; 6] = [
+    [0.5, 0.5],
+    [1.0, 1.0],
+    [-1.0, -1.0],
+    [0.25, 1.0],
+    [1.5, 1.25],
+    [9.0, 1.0],
+];
 
 #[test]
 fn no_truncation_is_opened() {
@@ -388,14 +536,22 @@ fn every_damaged_byte_is_an_error_or_an_answer() {
         let sound = bytes(&t);
         let cells = sound.len() - 24 * t.tds().cell_count();
         for at in 0..sound.len() {
-            for value in (0..8).map(|bit| sound[at] ^ 1 << bit).chain([0, 1, 2, 0x7F, 0x80, 0xFE, 0xFF]) {
+            for value in (0..8)
+                .map(|bit| sound[at] ^ 1 << bit)
+                .chain([0, 1, 2, 0x7F, 0x80, 0xFE, 0xFF])
+            {
                 let mut damaged = sound.clone();
                 damaged[at] = value;
-                let Ok(compact) = open(&damaged) else { continue };
+                let Ok(compact) = open(&damaged) else {
+                    continue;
+                };
                 let is_damaged = ask_everything(&compact, &SITES);
                 // Unused slots below dimension 2 have no meaning.
                 if at >= cells && value != sound[at] && t.dimension() == 2 {
-                    assert!(compact.check(Level::Manifold).is_err(), "byte {at} as {value}");
+                    assert!(
+                        compact.check(Level::Manifold).is_err(),
+                        "byte {at} as {value}"
+                    );
                     assert!(is_damaged);
                 }
             }
@@ -417,7 +573,11 @@ fn wrong_links() {
         for _ in 0..1 + dice.below(12) {
             let slot = dice.index(6);
             let number = dice.index(if slot < 3 { vertices } else { cells }.max(1)) as u32;
-            let number = if slot < 3 && dice.below(5) == 0 { u32::MAX } else { number };
+            let number = if slot < 3 && dice.below(5) == 0 {
+                u32::MAX
+            } else {
+                number
+            };
             if cells > 0 {
                 let at = start + 24 * dice.index(cells) + 4 * slot;
                 bytes[at..at + 4].copy_from_slice(&number.to_le_bytes());

@@ -34,7 +34,12 @@ fn centers_are_right_however_flat_the_triangle() {
         if round % 2 == 0 {
             // On a line, except for some last bits.
             let along = dice.unit() * 3.0 - 1.0;
-            corners[2] = [0, 1].map(|k| ulps(corners[0][k] + along * (corners[1][k] - corners[0][k]), dice.around(3)));
+            corners[2] = [0, 1].map(|k| {
+                ulps(
+                    corners[0][k] + along * (corners[1][k] - corners[0][k]),
+                    dice.around(3),
+                )
+            });
         }
         if round % 5 == 0 {
             corners = corners.map(|p| p.map(|x| x * 2f64.powi(150)));
@@ -51,7 +56,13 @@ fn window(dice: &mut Random) -> Vec<Point> {
     let [w, h] = [0, 1].map(|_| 1.0 + dice.below(9) as f64);
     match dice.below(3) {
         0 => vec![[x, y], [x + w, y], [x, y + h]],
-        1 => vec![[x, y], [x + w, y], [x + w + 1.0, y + 0.5], [x + w, y + h], [x + 0.1, y + h]],
+        1 => vec![
+            [x, y],
+            [x + w, y],
+            [x + w + 1.0, y + 0.5],
+            [x + w, y + h],
+            [x + 0.1, y + h],
+        ],
         _ => vec![[x, y], [x + w, y], [x + w, y + h], [x, y + h]],
     }
 }
@@ -74,11 +85,20 @@ fn cells_tile_and_are_cut_by_all_bisectors() {
             assert!((cell.area - area(&cell.corners)).abs() < 1e-9 * whole);
             assert!(cell.area >= 0.0);
             let others = t.tds().vertices().filter(|&u| u != v);
-            let naive = others
-                .fold(window.clone(), |left, u| part(&left, |x| squared(x, *t.point(v)) - squared(x, *t.point(u))));
-            assert!((cell.area - area(&naive)).abs() < 1e-9 * whole, "{:?} {window:?}", t.points());
+            let naive = others.fold(window.clone(), |left, u| {
+                part(&left, |x| squared(x, *t.point(v)) - squared(x, *t.point(u)))
+            });
+            assert!(
+                (cell.area - area(&naive)).abs() < 1e-9 * whole,
+                "{:?} {window:?}",
+                t.points()
+            );
         }
-        assert!((sum - whole).abs() < 1e-9 * whole, "{:?} {window:?}", t.points());
+        assert!(
+            (sum - whole).abs() < 1e-9 * whole,
+            "{:?} {window:?}",
+            t.points()
+        );
     }
 }
 
@@ -96,16 +116,26 @@ fn edges_are_nearest_to_both_ends() {
             };
             let along = |p: Point, d: Point, s: f64| [p[0] + s * d[0], p[1] + s * d[1]];
             let (kind, sites) = match edge {
-                VoronoiEdge::Segment([p, q]) => (0, [0.0, 0.3, 1.0].map(|s| along(p, [q[0] - p[0], q[1] - p[1]], s))),
-                VoronoiEdge::Ray { from, direction } => (1, [0.0, 0.7, 9.0].map(|s| along(from, direction, s))),
-                VoronoiEdge::Line { through, direction } => (2, [-7.0, 0.0, 9.0].map(|s| along(through, direction, s))),
+                VoronoiEdge::Segment([p, q]) => (
+                    0,
+                    [0.0, 0.3, 1.0].map(|s| along(p, [q[0] - p[0], q[1] - p[1]], s)),
+                ),
+                VoronoiEdge::Ray { from, direction } => {
+                    (1, [0.0, 0.7, 9.0].map(|s| along(from, direction, s)))
+                }
+                VoronoiEdge::Line { through, direction } => {
+                    (2, [-7.0, 0.0, 9.0].map(|s| along(through, direction, s)))
+                }
             };
             kinds[kind] += 1;
             for p in sites {
                 let far = |v: VertexId| (t.point(v)[0] - p[0]).hypot(t.point(v)[1] - p[1]);
                 let [a, b] = ends.map(far);
                 assert!((a - b).abs() < 1e-8 * (1.0 + a), "{edge:?}");
-                assert!(t.tds().vertices().all(|v| far(v) > a - 1e-8 * (1.0 + a)), "{edge:?}");
+                assert!(
+                    t.tds().vertices().all(|v| far(v) > a - 1e-8 * (1.0 + a)),
+                    "{edge:?}"
+                );
             }
             assert_eq!(kind == 2, t.dimension() == 1);
         }
@@ -116,10 +146,18 @@ fn edges_are_nearest_to_both_ends() {
 #[test]
 fn infinite_faces_have_no_center() {
     let t = build(&[[0.0, 0.0], [2.0, 0.0], [0.0, 2.0]]);
-    let centers: Vec<_> = t.tds().cells().filter_map(|cell| t.circumcenter(cell)).collect();
+    let centers: Vec<_> = t
+        .tds()
+        .cells()
+        .filter_map(|cell| t.circumcenter(cell))
+        .collect();
     assert_eq!(centers, [[1.0, 1.0]]);
     let line = build(&[[0.0, 0.0], [2.0, 0.0]]);
-    assert!(line.tds().cells().all(|cell| line.circumcenter(cell).is_none()));
+    assert!(
+        line.tds()
+            .cells()
+            .all(|cell| line.circumcenter(cell).is_none())
+    );
 }
 
 #[test]
@@ -129,14 +167,21 @@ fn magnitudes_without_room_do_no_harm() {
     for v in vertices {
         t.voronoi_cell(v, &[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]);
     }
-    assert_eq!(t.tds().edges().filter_map(|(cell, i)| t.voronoi_edge(cell, i)).count(), t.tds().finite_edges().count());
+    assert_eq!(
+        t.tds()
+            .edges()
+            .filter_map(|(cell, i)| t.voronoi_edge(cell, i))
+            .count(),
+        t.tds().finite_edges().count()
+    );
 }
 
 /// Numbers of no vertex have no cell.
 #[test]
 fn no_vertex_no_cell() {
     let square = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]];
-    let (mut t, v): (Free, _) = Delaunay::from_points(Plane::default(), &[square[0], square[2], [0.0, 3.0]]).unwrap();
+    let (mut t, v): (Free, _) =
+        Delaunay::from_points(Plane::default(), &[square[0], square[2], [0.0, 3.0]]).unwrap();
     let _ = t.remove(v[2]);
     for gone in [v[2], VertexId::INFINITE, VertexId::new(99)] {
         assert!(t.voronoi_cell(gone, &square).corners.is_empty());

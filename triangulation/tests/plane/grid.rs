@@ -19,9 +19,13 @@ pub(crate) fn grid_point(dice: &mut Random, side: u64) -> Point {
 pub(crate) fn points(dice: &mut Random, round: usize) -> Vec<Point> {
     let side = 1 + dice.below(5);
     let count = dice.below(20);
-    let mut points: Vec<Point> = (0..count).map(|_| grid_point(dice, side).map(|x| 2.0 * x)).collect();
+    let mut points: Vec<Point> = (0..count)
+        .map(|_| grid_point(dice, side).map(|x| 2.0 * x))
+        .collect();
     if round.is_multiple_of(4) {
-        points.iter_mut().for_each(|p| p[1] = if round.is_multiple_of(8) { p[0] } else { 4.0 });
+        points
+            .iter_mut()
+            .for_each(|p| p[1] = if round.is_multiple_of(8) { p[0] } else { 4.0 });
     }
     points
 }

@@ -4,8 +4,12 @@
 use std::collections::BTreeSet;
 
 use crate::chosen::{Chosen, plane, weighted};
-use breakline_triangulation::kernel::{Adaptive, Exact, Expansions, Fast, Fixed, Interval, Kernel, Lattice, Wide};
-use breakline_triangulation::{ConstrainedDelaunay, Delaunay, Level, OnCrossing, Regular, Triangulation};
+use breakline_triangulation::kernel::{
+    Adaptive, Exact, Expansions, Fast, Fixed, Interval, Kernel, Lattice, Wide,
+};
+use breakline_triangulation::{
+    ConstrainedDelaunay, Delaunay, Level, OnCrossing, Regular, Triangulation,
+};
 use testkit::random::Random;
 
 type Cells = BTreeSet<Vec<Vec<i64>>>;
@@ -27,7 +31,9 @@ struct Case {
 
 fn case(random: &mut Random) -> Case {
     let (count, side) = (3 + random.index(20), random.pick(&[2, 3, 6, 1 << 22]));
-    let points: Vec<[f64; 3]> = (0..count).map(|_| [(); 3].map(|()| random.around(side) as f64)).collect();
+    let points: Vec<[f64; 3]> = (0..count)
+        .map(|_| [(); 3].map(|()| random.around(side) as f64))
+        .collect();
     let mut lines: Vec<[u32; 2]> = Vec::new();
     for _ in 0..random.index(6) {
         lines.push([(); 2].map(|()| random.index(count) as u32));
@@ -49,8 +55,14 @@ fn build<K: Kernel>(Case { points, lines }: &Case) -> [Cells; 3] {
         one_by_one.insert(p).unwrap();
     }
     let rule = OnCrossing::Reject;
-    let (constrained, _) = ConstrainedDelaunay::<_>::from_lines(plane::<K>(), &plan, lines, rule).unwrap();
-    assert_eq!(constrained.check(Level::Law), [], "{:?} {plan:?} {lines:?}", K::default());
+    let (constrained, _) =
+        ConstrainedDelaunay::<_>::from_lines(plane::<K>(), &plan, lines, rule).unwrap();
+    assert_eq!(
+        constrained.check(Level::Law),
+        [],
+        "{:?} {plan:?} {lines:?}",
+        K::default()
+    );
     [cells(&in_bulk), cells(&one_by_one), cells(&constrained)]
 }
 
@@ -69,7 +81,12 @@ fn one_answer() {
             build::<Lattice>(&case),
             build::<Wide>(&case),
         ];
-        assert!(found.iter().all(|found| *found == expected), "{:?} {:?}", case.points, case.lines);
+        assert!(
+            found.iter().all(|found| *found == expected),
+            "{:?} {:?}",
+            case.points,
+            case.lines
+        );
         // Without a guarantee, and right where nothing is rounded.
         if case.points.as_flattened().iter().all(|x| x.abs() < 100.0) {
             assert_eq!(build::<Fast>(&case), expected);
@@ -118,18 +135,28 @@ fn one_regular_triangulation() {
 fn crossings() {
     fn check<K: Kernel>(Case { points, .. }: &Case) -> usize {
         let plan: Vec<[f64; 2]> = points.iter().map(|&[x, y, _]| [x, y]).collect();
-        let lines: Vec<[u32; 2]> = (0..points.len() as u32 / 2).map(|i| [2 * i, 2 * i + 1]).collect();
+        let lines: Vec<[u32; 2]> = (0..points.len() as u32 / 2)
+            .map(|i| [2 * i, 2 * i + 1])
+            .collect();
         let rule = OnCrossing::Split;
-        let (t, _) = ConstrainedDelaunay::<_>::from_lines(plane::<K>(), &plan, &lines, rule).unwrap();
+        let (t, _) =
+            ConstrainedDelaunay::<_>::from_lines(plane::<K>(), &plan, &lines, rule).unwrap();
         assert_eq!(t.check(Level::Law), [], "{:?} {points:?}", K::default());
-        assert!(t.points().iter().all(|[x, y]| K::RANGE.admits(*x) && K::RANGE.admits(*y)));
+        assert!(
+            t.points()
+                .iter()
+                .all(|[x, y]| K::RANGE.admits(*x) && K::RANGE.admits(*y))
+        );
         t.crossings().len()
     }
     let mut random = Random(2);
     let mut count = 0;
     for _ in 0..300 {
         let case = case(&mut random);
-        count += check::<Exact>(&case) + check::<Interval>(&case) + check::<Fixed>(&case) + check::<Lattice>(&case);
+        count += check::<Exact>(&case)
+            + check::<Interval>(&case)
+            + check::<Fixed>(&case)
+            + check::<Lattice>(&case);
     }
     assert!(count > 1000, "{count}");
 }

@@ -7,8 +7,8 @@ use breakline_triangulation::geometry::{Plane, Space, Weighted};
 use breakline_triangulation::kernel::Adaptive;
 use breakline_triangulation::tds::{CellId, Tds, VertexId};
 use breakline_triangulation::{
-    Basic, Constrained, ConstrainedDelaunay, ConstrainedEdges, ConstraintError, Delaunay, Inserted, Level, MoveError,
-    PointError, Regular, RemovalError, Triangulation,
+    Basic, Constrained, ConstrainedDelaunay, ConstrainedEdges, ConstraintError, Delaunay, Inserted,
+    Level, MoveError, PointError, Regular, RemovalError, Triangulation,
 };
 use testkit::random::Random;
 
@@ -23,7 +23,11 @@ fn fills_the_hull<V, C: Copy + Default>(t: &Triangulation<Plane, 3, V, C>) {
     let points: Vec<Point> = t.tds().vertices().map(|v| *t.point(v)).collect();
     let (delaunay, _) = Delaunay::from_points(Plane::<Adaptive>::default(), &points).unwrap();
     assert_eq!(t.dimension(), delaunay.dimension(), "{points:?}");
-    assert_eq!(t.finite_cells().count(), delaunay.finite_cells().count(), "{points:?}");
+    assert_eq!(
+        t.finite_cells().count(),
+        delaunay.finite_cells().count(),
+        "{points:?}"
+    );
 }
 
 #[test]
@@ -82,7 +86,8 @@ fn payloads_are_inherited() {
         t.insert(p).unwrap();
     }
     let colored: Vec<_> = t.finite_cells().collect();
-    let shape = |t: &Triangulation<Plane, 3, (), u8>, cell| t.tds().corners(cell).map(|v| *t.point(v));
+    let shape =
+        |t: &Triangulation<Plane, 3, (), u8>, cell| t.tds().corners(cell).map(|v| *t.point(v));
     let parents: Vec<[Point; 3]> = colored.iter().map(|&cell| shape(&t, cell)).collect();
     for (&cell, color) in colored.iter().zip(1..) {
         *t.cell_data_mut(cell) = color;
@@ -94,18 +99,26 @@ fn payloads_are_inherited() {
         let corners = shape(&t, cell);
         let middle = [0, 1].map(|k| corners.iter().map(|p| p[k]).sum::<f64>() / 3.0);
         let parent = parents[usize::from(*t.tds().cell_data(cell)) - 1];
-        let turn = |a: Point, b: Point| (b[0] - a[0]) * (middle[1] - a[1]) - (b[1] - a[1]) * (middle[0] - a[0]);
+        let turn = |a: Point, b: Point| {
+            (b[0] - a[0]) * (middle[1] - a[1]) - (b[1] - a[1]) * (middle[0] - a[0])
+        };
         assert!((0..3).all(|k| turn(parent[k], parent[(k + 1) % 3]) > 0.0));
     }
 }
 
 fn cross(a: Point, b: Point, c: Point, d: Point) -> bool {
-    let turn = |a: Point, b: Point, c: Point| (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+    let turn = |a: Point, b: Point, c: Point| {
+        (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+    };
     turn(a, b, c) * turn(a, b, d) < 0.0 && turn(c, d, a) * turn(c, d, b) < 0.0
 }
 
 /// Returns the vertices on the segment from one vertex to another, both included, in order.
-fn path(t: &Triangulation<Plane, 3, (), ConstrainedEdges>, a: VertexId, b: VertexId) -> Vec<VertexId> {
+fn path(
+    t: &Triangulation<Plane, 3, (), ConstrainedEdges>,
+    a: VertexId,
+    b: VertexId,
+) -> Vec<VertexId> {
     let (p, q) = (*t.point(a), *t.point(b));
     if a == b {
         return vec![a];
@@ -116,7 +129,11 @@ fn path(t: &Triangulation<Plane, 3, (), ConstrainedEdges>, a: VertexId, b: Verte
         let (dot, length) = (u[0] * w[0] + u[1] * w[1], u[0] * u[0] + u[1] * u[1]);
         (u[0] * w[1] == u[1] * w[0] && (0.0..=length).contains(&dot)).then_some(dot as i64)
     };
-    let mut path: Vec<(i64, VertexId)> = t.tds().vertices().filter_map(|v| Some((along(v)?, v))).collect();
+    let mut path: Vec<(i64, VertexId)> = t
+        .tds()
+        .vertices()
+        .filter_map(|v| Some((along(v)?, v)))
+        .collect();
     path.sort_unstable();
     path.into_iter().map(|(_, v)| v).collect()
 }
@@ -156,8 +173,11 @@ fn constraints_hold() {
                 assert!(!t.release(ends[0], ends[1]));
             } else {
                 let (a, b) = (random.pick(&vertices), random.pick(&vertices));
-                let crossed = |&[c, d]: &[VertexId; 2]| cross(*t.point(a), *t.point(b), *t.point(c), *t.point(d));
-                let blocks: BTreeSet<[VertexId; 2]> = constraints.iter().copied().filter(crossed).collect();
+                let crossed = |&[c, d]: &[VertexId; 2]| {
+                    cross(*t.point(a), *t.point(b), *t.point(c), *t.point(d))
+                };
+                let blocks: BTreeSet<[VertexId; 2]> =
+                    constraints.iter().copied().filter(crossed).collect();
                 match t.constrain(a, b) {
                     Ok(()) => {
                         assert_eq!(blocks.len(), 0);
@@ -168,12 +188,20 @@ fn constraints_hold() {
                     Err(ConstraintError::Crosses(ends)) => {
                         assert!(blocks.contains(&ends), "{ends:?} not in {blocks:?}")
                     }
-                    Err(error) => assert_eq!((error, t.dimension() < 2), (ConstraintError::NoTriangles, true)),
+                    Err(error) => assert_eq!(
+                        (error, t.dimension() < 2),
+                        (ConstraintError::NoTriangles, true)
+                    ),
                 }
             }
             assert_eq!(t.check(Level::Law), []);
             fills_the_hull(&t);
-            assert_eq!(t.constrained_edges().collect::<BTreeSet<_>>(), constraints, "{:?}", t.points());
+            assert_eq!(
+                t.constrained_edges().collect::<BTreeSet<_>>(),
+                constraints,
+                "{:?}",
+                t.points()
+            );
         }
     }
 }
@@ -182,7 +210,9 @@ fn constraints_hold() {
 #[test]
 fn a_grid_of_twenty() {
     let mut random = Random(35);
-    let mut points: Vec<Point> = (0..400).map(|k| [f64::from(k % 20), f64::from(k / 20)]).collect();
+    let mut points: Vec<Point> = (0..400)
+        .map(|k| [f64::from(k % 20), f64::from(k / 20)])
+        .collect();
     random.shuffle(&mut points);
     let mut basic: Basic<Plane, 3> = Basic::new(Plane::default());
     let mut delaunay: Delaunay<Plane, 3> = Delaunay::new(Plane::default());
@@ -192,12 +222,24 @@ fn a_grid_of_twenty() {
         delaunay.insert(p).unwrap();
         regular.insert([p[0], p[1], 3.0]).unwrap();
     }
-    let counts =
-        |t: &Tds<3>| (t.vertex_count(), t.cells().filter(|&cell| !t.is_infinite(cell)).count(), t.hull().count());
+    let counts = |t: &Tds<3>| {
+        (
+            t.vertex_count(),
+            t.cells().filter(|&cell| !t.is_infinite(cell)).count(),
+            t.hull().count(),
+        )
+    };
     for tds in [basic.tds(), delaunay.tds(), regular.tds()] {
         assert_eq!(counts(tds), (400, 722, 76));
     }
-    assert_eq!((basic.check(Level::Law), delaunay.check(Level::Law), regular.check(Level::Law)), Default::default());
+    assert_eq!(
+        (
+            basic.check(Level::Law),
+            delaunay.check(Level::Law),
+            regular.check(Level::Law)
+        ),
+        Default::default()
+    );
 }
 
 /// Constraints need no law: with weighted points, too, any triangulation fills the hole of a
@@ -227,8 +269,14 @@ fn what_is_not_there_is_answered() {
     }
     let (there, absent) = (VertexId::new(0), VertexId::new(9));
     assert!(!t.release(absent, there) && !t.release(there, absent) && t.remove(absent).is_err());
-    assert_eq!(t.constrain(there, absent), Err(ConstraintError::NoVertex(absent)));
-    assert_eq!(ConstraintError::NoTriangles.to_string(), "there are no triangles to hold a constraint");
+    assert_eq!(
+        t.constrain(there, absent),
+        Err(ConstraintError::NoVertex(absent))
+    );
+    assert_eq!(
+        ConstraintError::NoTriangles.to_string(),
+        "there are no triangles to hold a constraint"
+    );
 }
 
 /// Inserts, inserts again at the same site, moves, and moves onto another site, with the same
@@ -238,16 +286,38 @@ macro_rules! judge_insertions {
         let (mut t, at) = ($new, $at);
         let sites = [[0.0, 0.0], [9.0, 0.0], [0.0, 9.0], [9.0, 9.0], [4.0, 3.0]].map(at);
         for (k, p) in sites.into_iter().enumerate() {
-            assert_eq!(t.insert_with(p, k).map(|inserted| inserted.is_new()), Ok(true));
+            assert_eq!(
+                t.insert_with(p, k).map(|inserted| inserted.is_new()),
+                Ok(true)
+            );
         }
         let there = t.insert_with(sites[4], 70).unwrap();
-        assert_eq!((there.is_new(), there.unused, *t.tds().vertex_data(there.vertex)), (false, Some(70), 4));
+        assert_eq!(
+            (
+                there.is_new(),
+                there.unused,
+                *t.tds().vertex_data(there.vertex)
+            ),
+            (false, Some(70), 4)
+        );
         let near = t.tds().cell_of(there.vertex);
-        assert_eq!(t.insert_near(sites[4], 71, near), Ok(Inserted { vertex: there.vertex, unused: Some(71) }));
-        assert_eq!(t.insert_near(at([f64::NAN, 0.0]), 72, near), Err(PointError::Coordinate));
+        assert_eq!(
+            t.insert_near(sites[4], 71, near),
+            Ok(Inserted {
+                vertex: there.vertex,
+                unused: Some(71)
+            })
+        );
+        assert_eq!(
+            t.insert_near(at([f64::NAN, 0.0]), 72, near),
+            Err(PointError::Coordinate)
+        );
 
         assert_eq!(t.move_to(there.vertex, at([5.0, 6.0])), Ok(there.vertex));
-        assert_eq!((*t.point(there.vertex), *t.tds().vertex_data(there.vertex)), (at([5.0, 6.0]), 4));
+        assert_eq!(
+            (*t.point(there.vertex), *t.tds().vertex_data(there.vertex)),
+            (at([5.0, 6.0]), 4)
+        );
         assert_eq!(t.check(Level::Law), []);
         let corner = t.insert_with(sites[3], 73).unwrap().vertex;
         assert_eq!(t.move_to(there.vertex, sites[3]), Ok(corner));
@@ -262,24 +332,40 @@ macro_rules! judge_insertions {
 fn insertion_gives_back_a_payload_that_it_does_not_use() {
     let plane = |p: [f64; 2]| p;
     judge_insertions!(Basic::<Plane, 3, usize>::new(Plane::default()), plane);
-    judge_insertions!(Delaunay::<Plane, 3, usize>::with_capacity(Plane::default(), 9), plane);
-    judge_insertions!(Regular::<Weighted, 3, usize>::new(Weighted::default()), |[x, y]: [f64; 2]| [x, y, 2.0]);
+    judge_insertions!(
+        Delaunay::<Plane, 3, usize>::with_capacity(Plane::default(), 9),
+        plane
+    );
+    judge_insertions!(
+        Regular::<Weighted, 3, usize>::new(Weighted::default()),
+        |[x, y]: [f64; 2]| [x, y, 2.0]
+    );
     judge_insertions!(Constrained::<Plane, usize>::new(Plane::default()), plane);
-    judge_insertions!(ConstrainedDelaunay::<Plane, usize>::new(Plane::default()), plane);
+    judge_insertions!(
+        ConstrainedDelaunay::<Plane, usize>::new(Plane::default()),
+        plane
+    );
 }
 
 /// A vertex that moves onto a constraint splits it; a vertex that was on a constraint stays.
 #[test]
 fn a_vertex_moves_onto_a_constraint() {
     let points = [[0.0, 0.0], [8.0, 0.0], [4.0, 6.0], [4.0, -6.0], [6.0, 2.0]];
-    let (mut t, v) = Constrained::<Plane>::from_points_with(Plane::default(), &points, |k| k).unwrap();
+    let (mut t, v) =
+        Constrained::<Plane>::from_points_with(Plane::default(), &points, |k| k).unwrap();
     t.constrain(v[0], v[1]).unwrap();
     assert_eq!(t.move_to(v[4], [2.0, 0.0]), Ok(v[4]));
     let halves = [[v[0], v[4]], [v[4], v[1]]].map(|[a, b]| [a.min(b), a.max(b)]);
-    assert_eq!(t.constrained_edges().collect::<BTreeSet<_>>(), BTreeSet::from(halves));
+    assert_eq!(
+        t.constrained_edges().collect::<BTreeSet<_>>(),
+        BTreeSet::from(halves)
+    );
     assert_eq!(t.check(Level::Law), []);
     let held = Err(MoveError::Vertex(RemovalError::Constraint));
-    assert_eq!((t.move_to(v[4], [6.0, 2.0]), t.move_to(v[0], [-1.0, 0.0])), (held, held));
+    assert_eq!(
+        (t.move_to(v[4], [6.0, 2.0]), t.move_to(v[0], [-1.0, 0.0])),
+        (held, held)
+    );
     assert!((0..5).all(|k| *t.tds().vertex_data(v[k]) == k));
 }
 
@@ -288,15 +374,22 @@ fn a_vertex_moves_onto_a_constraint() {
 fn errors_do_not_repeat_their_source() {
     let error = MoveError::from(RemovalError::Constraint);
     let source = std::error::Error::source(&error).unwrap().to_string();
-    assert_eq!(error.to_string(), "the vertex cannot be moved from where it is");
+    assert_eq!(
+        error.to_string(),
+        "the vertex cannot be moved from where it is"
+    );
     assert_eq!(source, "a constraint needs the vertex");
-    assert_eq!(PointError::TooMany.to_string(), "more than 2147483646 points");
+    assert_eq!(
+        PointError::TooMany.to_string(),
+        "more than 2147483646 points"
+    );
 }
 
 /// The points of cells and edges, also for numbers of nothing.
 #[test]
 fn cells_and_edges_have_points() {
-    let (t, v) = Delaunay::from_points(Plane::new(), &[[0.0, 0.0], [4.0, 0.0], [0.0, 4.0]]).unwrap();
+    let (t, v) =
+        Delaunay::from_points(Plane::new(), &[[0.0, 0.0], [4.0, 0.0], [0.0, 4.0]]).unwrap();
     for cell in (0..9).map(CellId::new) {
         let is_finite = t.tds().is_used(cell) && !t.tds().is_infinite(cell);
         assert_eq!(t.cell_points(cell).is_some(), is_finite);
@@ -308,14 +401,28 @@ fn cells_and_edges_have_points() {
             assert_eq!(points, t.tds().edge_ends(cell, i).map(|v| t.point(v)));
         }
     }
-    let edges = t.tds().cells().flat_map(|cell| (0..3).map(move |i| (cell, i)));
-    assert_eq!(edges.filter(|&(cell, i)| t.edge_points(cell, i).is_some()).count(), 6);
+    let edges = t
+        .tds()
+        .cells()
+        .flat_map(|cell| (0..3).map(move |i| (cell, i)));
+    assert_eq!(
+        edges
+            .filter(|&(cell, i)| t.edge_points(cell, i).is_some())
+            .count(),
+        6
+    );
     assert_eq!(t.locate(&[0.0, 0.0], None).vertex(), Some(v[0]));
     let on_edge = t.locate(&[2.0, 0.0], None);
-    let ends: Vec<_> =
-        on_edge.facets().map(|(cell, i)| t.edge_points(cell, i).map(|ends| ends.map(|p| p[1]))).collect();
+    let ends: Vec<_> = on_edge
+        .facets()
+        .map(|(cell, i)| t.edge_points(cell, i).map(|ends| ends.map(|p| p[1])))
+        .collect();
     assert_eq!((ends, on_edge.vertex()), (vec![Some([0.0, 0.0])], None));
     let mut line = Basic::<Plane, 3>::new(Plane::new());
     line.insert_all(&[[0.0, 0.0], [1.0, 0.0]]).unwrap();
-    assert!(line.tds().cells().all(|cell| line.cell_points(cell).is_none() && line.edge_points(cell, 0).is_none()));
+    assert!(
+        line.tds()
+            .cells()
+            .all(|cell| line.cell_points(cell).is_none() && line.edge_points(cell, 0).is_none())
+    );
 }

@@ -10,7 +10,8 @@ use breakline_triangulation::kernel::{Adaptive, Lattice, Wide};
 use breakline_triangulation::num::Sign;
 use breakline_triangulation::tds::{CellId, Tds, VertexId};
 use breakline_triangulation::{
-    Basic, Buckets, Delaunay, Hierarchy, JumpAndWalk, Level, Locate, Location, Near, StraightLine, Triangulation,
+    Basic, Buckets, Delaunay, Hierarchy, JumpAndWalk, Level, Locate, Location, Near, StraightLine,
+    Triangulation,
 };
 use testkit::random::Random;
 
@@ -31,11 +32,18 @@ fn judge_cells<const N: usize>(tds: &Tds<N>, location: Location, around: &BTreeS
     let Ok(mut cells) = location.cells(tds);
     cells.sort_unstable();
     let has_all = |cell: &CellId| around.iter().all(|v| tds.cell_vertices(*cell).contains(v));
-    assert!(cells.into_iter().eq(tds.cells().filter(has_all)), "{location:?}");
+    assert!(
+        cells.into_iter().eq(tds.cells().filter(has_all)),
+        "{location:?}"
+    );
 }
 
 /// Returns the position, and asserts that it is correct.
-fn position<G: Geometry<3, Point = Point>>(t: &Triangulation<G, 3>, location: Location, q: Point) -> Position {
+fn position<G: Geometry<3, Point = Point>>(
+    t: &Triangulation<G, 3>,
+    location: Location,
+    q: Point,
+) -> Position {
     let tds: &Tds<3> = t.tds();
     let plane = Plane::<breakline_triangulation::kernel::Exact>::default();
     match location {
@@ -46,11 +54,19 @@ fn position<G: Geometry<3, Point = Point>>(t: &Triangulation<G, 3>, location: Lo
         }
         Location::Cell { cell, facets } => {
             let corners = tds.cell_vertices(cell);
-            let spanned = corners.iter().enumerate().filter(|(i, _)| !facets.contains(*i)).map(|(_, &v)| v);
+            let spanned = corners
+                .iter()
+                .enumerate()
+                .filter(|(i, _)| !facets.contains(*i))
+                .map(|(_, &v)| v);
             for i in (0..3).filter(|_| t.dimension() == 2) {
                 let mut simplex = [0, 1, 2].map(|k| t.point(corners[k]));
                 simplex[i] = &q;
-                let expected = if facets.contains(i) { Sign::Zero } else { Sign::Positive };
+                let expected = if facets.contains(i) {
+                    Sign::Zero
+                } else {
+                    Sign::Positive
+                };
                 assert_eq!(plane.orientation(simplex), expected);
             }
             let spanned: BTreeSet<VertexId> = spanned.collect();
@@ -61,7 +77,11 @@ fn position<G: Geometry<3, Point = Point>>(t: &Triangulation<G, 3>, location: Lo
             let infinite = tds.index_of(cell, VertexId::INFINITE).unwrap();
             if t.dimension() == 2 {
                 let [a, b] = tds.edge_ends(cell, infinite).map(|v| t.point(v));
-                assert_eq!(plane.orientation([a, b, &q]), Sign::Positive, "in sight of the hull edge");
+                assert_eq!(
+                    plane.orientation([a, b, &q]),
+                    Sign::Positive,
+                    "in sight of the hull edge"
+                );
             }
             Position::Outside
         }
@@ -71,9 +91,19 @@ fn position<G: Geometry<3, Point = Point>>(t: &Triangulation<G, 3>, location: Lo
 }
 
 /// Asserts that every strategy agrees with the default one.
-fn same_by_all(t: &Free, hierarchy: &Hierarchy<Plane, 3>, buckets: &Buckets, start: Option<VertexId>, q: Point) {
+fn same_by_all(
+    t: &Free,
+    hierarchy: &Hierarchy<Plane, 3>,
+    buckets: &Buckets,
+    start: Option<VertexId>,
+    q: Point,
+) {
     let expected = position(t, t.locate(&q, None), q);
-    let near = Near(start.filter(|&v| t.tds().is_vertex(v)).and_then(|v| t.tds().cell_of(v)));
+    let near = Near(
+        start
+            .filter(|&v| t.tds().is_vertex(v))
+            .and_then(|v| t.tds().cell_of(v)),
+    );
     let found = [
         near.locate(t, &q),
         JumpAndWalk.locate(t, &q),
@@ -83,7 +113,12 @@ fn same_by_all(t: &Free, hierarchy: &Hierarchy<Plane, 3>, buckets: &Buckets, sta
         buckets.locate(t, &q),
     ];
     for (k, location) in found.into_iter().enumerate() {
-        assert_eq!(position(t, location, q), expected, "strategy {k}, {q:?} in {:?}", t.points());
+        assert_eq!(
+            position(t, location, q),
+            expected,
+            "strategy {k}, {q:?} in {:?}",
+            t.points()
+        );
     }
 }
 
@@ -96,7 +131,10 @@ fn tiny_grids_that_grow_and_shrink() {
     let mut random = Random(11);
     for round in 0..300 {
         let side = 1 + random.below(6);
-        let (mut t, mut hierarchy) = (Free::new(Plane::default()), Hierarchy::new(Plane::default()));
+        let (mut t, mut hierarchy) = (
+            Free::new(Plane::default()),
+            Hierarchy::new(Plane::default()),
+        );
         let mut buckets = Buckets::over([[0.0; 2], [side as f64; 2]], 1 + round % 9);
         for _ in 0..60 {
             let p = tiny(&mut random, side);
@@ -106,12 +144,17 @@ fn tiny_grids_that_grow_and_shrink() {
             } else if let Location::Vertex(vertex) = t.locate(&p, None) {
                 // Half of the time the hierarchy is not notified.
                 let is_reported = random.below(2) == 0;
-                let removed = if is_reported { t.remove_by(&mut hierarchy, vertex) } else { t.remove(vertex) };
+                let removed = if is_reported {
+                    t.remove_by(&mut hierarchy, vertex)
+                } else {
+                    t.remove(vertex)
+                };
                 assert_eq!(removed, Ok(p));
             }
             for _ in 0..4 {
                 let q = tiny(&mut random, 2 * side + 1).map(|x| x - 0.5 * side as f64);
-                let start = (t.tds().vertex_slots() > 0).then(|| VertexId::new(random.index(t.tds().vertex_slots())));
+                let start = (t.tds().vertex_slots() > 0)
+                    .then(|| VertexId::new(random.index(t.tds().vertex_slots())));
                 same_by_all(&t, &hierarchy, &buckets, start, q);
             }
         }
@@ -125,7 +168,13 @@ fn cells_at_points_in_space() {
     let mut random = Random(9);
     let mut seen = [0; 5];
     for _ in 0..60 {
-        let mut draw = || [random.below(3) as f64, random.below(3) as f64, random.below(3) as f64];
+        let mut draw = || {
+            [
+                random.below(3) as f64,
+                random.below(3) as f64,
+                random.below(3) as f64,
+            ]
+        };
         let points: Vec<[f64; 3]> = (0..12).map(|_| draw()).collect();
         let (t, _) = Delaunay::from_points(Space::new(), &points).unwrap();
         for q in (0..20).map(|_| draw().map(|x| x * 0.75)) {
@@ -134,7 +183,10 @@ fn cells_at_points_in_space() {
                 Location::Vertex(vertex) => [vertex].into(),
                 Location::Cell { cell, facets } => {
                     let corners = t.tds().cell_vertices(cell).iter().enumerate();
-                    corners.filter(|(i, _)| !facets.contains(*i)).map(|(_, &v)| v).collect()
+                    corners
+                        .filter(|(i, _)| !facets.contains(*i))
+                        .map(|(_, &v)| v)
+                        .collect()
                 }
                 _ => {
                     assert_eq!(location.cells(t.tds()), Ok(Vec::new()));
@@ -142,7 +194,10 @@ fn cells_at_points_in_space() {
                 }
             };
             judge_cells(t.tds(), location, &around);
-            assert_eq!(location.facets().count() + around.len(), if location.vertex().is_some() { 1 } else { 4 });
+            assert_eq!(
+                location.facets().count() + around.len(),
+                if location.vertex().is_some() { 1 } else { 4 }
+            );
             seen[around.len()] += 1;
         }
     }
@@ -153,20 +208,32 @@ fn cells_at_points_in_space() {
 fn thousands_of_points() {
     let mut random = Random(12);
     let sets: [Vec<Point>; 3] = [
-        (0..20_000).map(|_| [random.unit(), random.unit()]).collect(),
-        (0..20_000).map(|_| random.unit() - 0.5).map(|x| [x, x * x]).collect(),
-        (0..20_000).map(|i| [f64::from(i % 200), f64::from(i / 200)]).collect(),
+        (0..20_000)
+            .map(|_| [random.unit(), random.unit()])
+            .collect(),
+        (0..20_000)
+            .map(|_| random.unit() - 0.5)
+            .map(|x| [x, x * x])
+            .collect(),
+        (0..20_000)
+            .map(|i| [f64::from(i % 200), f64::from(i / 200)])
+            .collect(),
     ];
     for points in sets {
         let (t, _) = Free::from_points(Plane::default(), &points).unwrap();
         let (hierarchy, buckets) = (Hierarchy::of(Plane::default(), &t), Buckets::of(&t));
-        let mut one_by_one = (Free::new(Plane::default()), Hierarchy::new(Plane::default()));
+        let mut one_by_one = (
+            Free::new(Plane::default()),
+            Hierarchy::new(Plane::default()),
+        );
         for &p in &points {
             one_by_one.0.insert_by(&mut one_by_one.1, p, ()).unwrap();
         }
         assert_eq!(one_by_one.0.check(Level::Law), []);
         for _ in 0..2000 {
-            let q = random.pick(&points).map(|x| x + (random.below(3) as f64 - 1.0) * 0.5);
+            let q = random
+                .pick(&points)
+                .map(|x| x + (random.below(3) as f64 - 1.0) * 0.5);
             let start = VertexId::new(random.index(points.len()));
             same_by_all(&t, &hierarchy, &buckets, Some(start), q);
             same_by_all(&one_by_one.0, &one_by_one.1, &buckets, Some(start), q);
@@ -178,7 +245,10 @@ fn thousands_of_points() {
 #[test]
 fn numbers_used_again() {
     let mut random = Random(13);
-    let (mut t, mut hierarchy) = (Free::new(Plane::default()), Hierarchy::<Plane, 3>::new(Plane::default()));
+    let (mut t, mut hierarchy) = (
+        Free::new(Plane::default()),
+        Hierarchy::<Plane, 3>::new(Plane::default()),
+    );
     for _ in 0..5 {
         let mut vertices: Vec<VertexId> = (0..3000)
             .map(|_| [random.unit(), random.unit()])
@@ -204,7 +274,11 @@ fn buckets_of_any_size() {
         for p in points {
             t.insert_by(&mut buckets, p, ()).unwrap();
         }
-        assert!(points.iter().all(|p| matches!(buckets.locate(&t, p), Location::Vertex(_))));
+        assert!(
+            points
+                .iter()
+                .all(|p| matches!(buckets.locate(&t, p), Location::Vertex(_)))
+        );
     }
 }
 
@@ -272,10 +346,18 @@ fn walks_along_curves_are_cut_short() {
     let other = std::cell::RefCell::new(Random(32));
     let spread = asked_one_by_one(|x| [x, other.borrow_mut().unit()]);
     let parabola = asked_one_by_one(|x| [x - 0.5, (x - 0.5).powi(2)]);
-    let spiral = asked_one_by_one(|x| [x.sqrt() * (40.0 * x.sqrt()).cos(), x.sqrt() * (40.0 * x.sqrt()).sin()]);
+    let spiral = asked_one_by_one(|x| {
+        [
+            x.sqrt() * (40.0 * x.sqrt()).cos(),
+            x.sqrt() * (40.0 * x.sqrt()).sin(),
+        ]
+    });
     assert!(spread < 300, "{spread} questions a point in a square");
     for curved in [parabola, spiral] {
-        assert!(curved < 3 * spread, "{curved} questions a point on a curve, {spread} in a square");
+        assert!(
+            curved < 3 * spread,
+            "{curved} questions a point on a curve, {spread} in a square"
+        );
     }
 }
 
@@ -285,7 +367,10 @@ fn walks_along_curves_are_cut_short() {
 fn walks_from_a_curve_look_for_an_exit() {
     const COUNT: usize = 20_000;
     let mut random = Random(36);
-    let (mut t, mut hierarchy) = (Delaunay::<_, 3>::new(RoughSides(&rightly)), Hierarchy::new(RoughSides(&rightly)));
+    let (mut t, mut hierarchy) = (
+        Delaunay::<_, 3>::new(RoughSides(&rightly)),
+        Hierarchy::new(RoughSides(&rightly)),
+    );
     for _ in 0..COUNT {
         let x = random.unit() - 0.5;
         t.insert_by(&mut hierarchy, [x, x * x], ()).unwrap();
@@ -295,7 +380,10 @@ fn walks_from_a_curve_look_for_an_exit() {
         hierarchy.locate(&t, &[0, 1].map(|_| 2e6 * (random.unit() - 0.5)));
     }
     let asked = ASKED.get() / 1000;
-    assert!(asked < 200, "{asked} questions for a position far outside of {COUNT} points");
+    assert!(
+        asked < 200,
+        "{asked} questions for a position far outside of {COUNT} points"
+    );
 }
 
 /// Whatever rounded numbers say, the answer is the same: with the Delaunay law, and without any.
@@ -303,12 +391,23 @@ fn same_for_any_rough_sides(sides: Sides<'_>) {
     let mut random = Random(33);
     for round in 0..40 {
         let side = 2 + round % 12;
-        let (mut t, mut rough) = (Free::new(Plane::default()), Delaunay::<_, 3>::new(RoughSides(sides)));
-        let (mut lazy, mut lazy_rough) = (Basic::<Plane, 3>::new(Plane::default()), Basic::new(RoughSides(sides)));
+        let (mut t, mut rough) = (
+            Free::new(Plane::default()),
+            Delaunay::<_, 3>::new(RoughSides(sides)),
+        );
+        let (mut lazy, mut lazy_rough) = (
+            Basic::<Plane, 3>::new(Plane::default()),
+            Basic::new(RoughSides(sides)),
+        );
         let mut hierarchy = Hierarchy::new(RoughSides(sides));
         for _ in 0..side * side {
             let p = tiny(&mut random, side);
-            assert_eq!(rough.insert_by(&mut hierarchy, p, ()).map(|inserted| inserted.vertex), t.insert(p));
+            assert_eq!(
+                rough
+                    .insert_by(&mut hierarchy, p, ())
+                    .map(|inserted| inserted.vertex),
+                t.insert(p)
+            );
             assert_eq!(lazy_rough.insert(p), lazy.insert(p));
         }
         assert_eq!(rough.check(Level::Law), []);
@@ -317,7 +416,12 @@ fn same_for_any_rough_sides(sides: Sides<'_>) {
             let expected = position(&t, t.locate(&q, None), q);
             let start = random.pick(&rough.tds().cells().collect::<Vec<_>>());
             for location in [rough.locate(&q, Some(start)), hierarchy.locate(&rough, &q)] {
-                assert_eq!(position(&rough, location, q), expected, "{q:?} in {:?}", t.points());
+                assert_eq!(
+                    position(&rough, location, q),
+                    expected,
+                    "{q:?} in {:?}",
+                    t.points()
+                );
             }
             let start = random.pick(&lazy_rough.tds().cells().collect::<Vec<_>>());
             position(&lazy_rough, lazy_rough.locate(&q, Some(start)), q);
@@ -343,7 +447,10 @@ fn rounded_numbers_change_no_answer() {
 }
 
 /// Small whole numbers are not rounded: the signs of the sides are those of the orientations.
-fn sides_are_right<G: Geometry<N>, const N: usize>(geometry: &G, mut point: impl FnMut() -> G::Point) {
+fn sides_are_right<G: Geometry<N>, const N: usize>(
+    geometry: &G,
+    mut point: impl FnMut() -> G::Point,
+) {
     for _ in 0..2000 {
         let simplex: [G::Point; N] = std::array::from_fn(|_| point());
         let q = point();
@@ -351,7 +458,11 @@ fn sides_are_right<G: Geometry<N>, const N: usize>(geometry: &G, mut point: impl
         for (i, side) in sides.into_iter().enumerate() {
             let mut moved = simplex.each_ref();
             moved[i] = &q;
-            assert_eq!(Sign::of(&side), geometry.orientation(moved), "{i} of {simplex:?}, {q:?}");
+            assert_eq!(
+                Sign::of(&side),
+                geometry.orientation(moved),
+                "{i} of {simplex:?}, {q:?}"
+            );
         }
     }
 }
@@ -361,9 +472,19 @@ fn rounded_sides_are_those_of_each_geometry() {
     let random = std::cell::RefCell::new(Random(35));
     let whole = || random.borrow_mut().below(7) as f64;
     sides_are_right(&Plane::<Adaptive>::default(), || [whole(), whole()]);
-    sides_are_right(&Terrain::<Adaptive>::default(), || [whole(), whole(), whole()]);
-    sides_are_right(&Weighted::<Adaptive>::default(), || [whole(), whole(), whole()]);
-    sides_are_right(&Steps::<Lattice>::default(), || [whole() as i32, whole() as i32, whole() as i32]);
-    sides_are_right(&Mapped::new(|p: &[f64; 2]| [p[1], -p[0]]), || [whole(), whole()]);
-    sides_are_right(&Space::<Adaptive>::default(), || [whole(), whole(), whole()]);
+    sides_are_right(&Terrain::<Adaptive>::default(), || {
+        [whole(), whole(), whole()]
+    });
+    sides_are_right(&Weighted::<Adaptive>::default(), || {
+        [whole(), whole(), whole()]
+    });
+    sides_are_right(&Steps::<Lattice>::default(), || {
+        [whole() as i32, whole() as i32, whole() as i32]
+    });
+    sides_are_right(&Mapped::new(|p: &[f64; 2]| [p[1], -p[0]]), || {
+        [whole(), whole()]
+    });
+    sides_are_right(&Space::<Adaptive>::default(), || {
+        [whole(), whole(), whole()]
+    });
 }

@@ -44,15 +44,30 @@ where
     let expected = triangles(&plane, &positions(&vertices));
     let (bulk, vertices) = Delaunay::from_points(geometry.clone(), points).unwrap();
     assert_eq!(bulk.check(Level::Law), [], "{points:?}");
-    assert_eq!(triangles(&bulk, &positions(&vertices)), expected, "{points:?}");
+    assert_eq!(
+        triangles(&bulk, &positions(&vertices)),
+        expected,
+        "{points:?}"
+    );
     let mut one_by_one = Delaunay::<G, 3>::new(geometry);
-    let vertices: Vec<_> = points.iter().map(|&p| one_by_one.insert(p).unwrap()).collect();
+    let vertices: Vec<_> = points
+        .iter()
+        .map(|&p| one_by_one.insert(p).unwrap())
+        .collect();
     for three in points.windows(3) {
         let [q, a, b] = [0, 1, 2].map(|i| &three[i]);
         let expected = Plane::<Exact>::default().compare_distance(&site(q), &site(a), &site(b));
-        assert_eq!(one_by_one.geometry().compare_distance(q, a, b), expected, "{three:?}");
+        assert_eq!(
+            one_by_one.geometry().compare_distance(q, a, b),
+            expected,
+            "{three:?}"
+        );
     }
-    assert_eq!(triangles(&one_by_one, &positions(&vertices)), expected, "{points:?}");
+    assert_eq!(
+        triangles(&one_by_one, &positions(&vertices)),
+        expected,
+        "{points:?}"
+    );
     expected.len()
 }
 
@@ -77,9 +92,18 @@ fn triangles_are_those_of_the_sites() {
         let [upright, scaled]: [Site; 2] = [|p| [p[0], p[2]], |p| [0.3 * p[0], 0.1 * p[1]]];
         count += same(Mapped::new(upright), &points, upright);
         count += same(Mapped::new(scaled), &points, scaled);
-        count += same(Mapped::new(|p: &[f64; 3]| [p[1], p[2]]).with_kernel::<Fixed>(), &points, |p| [p[1], p[2]]);
-        let samples: Vec<Sample> =
-            points.iter().map(|p| Sample { at: (0.7 * p[0] as f32, 0.7 * p[1] as f32), name: 'a' }).collect();
+        count += same(
+            Mapped::new(|p: &[f64; 3]| [p[1], p[2]]).with_kernel::<Fixed>(),
+            &points,
+            |p| [p[1], p[2]],
+        );
+        let samples: Vec<Sample> = points
+            .iter()
+            .map(|p| Sample {
+                at: (0.7 * p[0] as f32, 0.7 * p[1] as f32),
+                name: 'a',
+            })
+            .collect();
         let at = |s: &Sample| [s.at.0.into(), s.at.1.into()];
         count += same(Mapped::new(at), &samples, at);
     }
@@ -102,7 +126,10 @@ fn planes_by_their_normals() {
         let length = direction.iter().map(|x| x * x).sum::<f64>().sqrt();
         let site = |p: [f64; 3]| seen(&p);
         assert!(site(direction).iter().all(|x| x.abs() < 1e-14 * length));
-        let (p, q) = ([(); 3].map(|()| random.unit()), [(); 3].map(|()| random.unit()));
+        let (p, q) = (
+            [(); 3].map(|()| random.unit()),
+            [(); 3].map(|()| random.unit()),
+        );
         // The area that two vectors span, seen from there, is a determinant.
         let volume: f64 = (0..3)
             .map(|i| {
@@ -111,24 +138,41 @@ fn planes_by_their_normals() {
             })
             .sum();
         let ([px, py], [qx, qy]) = (site(p), site(q));
-        assert!((px * qy - py * qx - volume / length).abs() < 1e-14, "{normal:?}");
+        assert!(
+            (px * qy - py * qx - volume / length).abs() < 1e-14,
+            "{normal:?}"
+        );
         let along: f64 = p.iter().zip(direction).map(|(p, d)| p * d / length).sum();
         let squared: f64 = p.iter().map(|x| x * x).sum();
-        assert!((px * px + py * py + along * along - squared).abs() < 1e-14, "{normal:?}");
-        let points: Vec<[f64; 3]> = (0..12).map(|_| [(); 3].map(|()| random.around(3) as f64)).collect();
+        assert!(
+            (px * px + py * py + along * along - squared).abs() < 1e-14,
+            "{normal:?}"
+        );
+        let points: Vec<[f64; 3]> = (0..12)
+            .map(|_| [(); 3].map(|()| random.around(3) as f64))
+            .collect();
         same(Mapped::new(seen), &points, seen);
     }
     let on = |normal| seen_along(normal).unwrap()(&[0.1, 0.2, 0.3]);
     assert_eq!(on([0.0, 0.0, 5.0]), [0.1, 0.2]);
     assert_eq!(on([0.0, 0.0, -1.0]), [0.1, -0.2]);
     assert_eq!(on([2.0, 0.0, 0.0]), [-0.3, 0.2]);
-    assert!(seen_along([f64::NAN, 0.0, 1.0]).is_none() && seen_along([f64::INFINITY, 0.0, 1.0]).is_none());
+    assert!(
+        seen_along([f64::NAN, 0.0, 1.0]).is_none()
+            && seen_along([f64::INFINITY, 0.0, 1.0]).is_none()
+    );
 }
 
 #[test]
 fn sites_that_no_kernel_admits_are_refused() {
     let mut t = Delaunay::<_, 3>::new(Mapped::new(|p: &[f64; 2]| p.map(|x| 1.0 / x)));
-    assert!(t.insert([1.0, 0.0]).is_err() && t.insert([1e-300, 1.0]).is_err() && t.insert([1.0, 2.0]).is_ok());
-    let mut t = Delaunay::<_, 3>::new(Mapped::new(|p: &[f64; 2]| p.map(|x| x / 2.0)).with_kernel::<Fixed>());
+    assert!(
+        t.insert([1.0, 0.0]).is_err()
+            && t.insert([1e-300, 1.0]).is_err()
+            && t.insert([1.0, 2.0]).is_ok()
+    );
+    let mut t = Delaunay::<_, 3>::new(
+        Mapped::new(|p: &[f64; 2]| p.map(|x| x / 2.0)).with_kernel::<Fixed>(),
+    );
     assert!(t.insert([1.0, 0.0]).is_err() && t.insert([2.0, -4.0]).is_ok());
 }

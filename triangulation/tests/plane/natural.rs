@@ -31,11 +31,19 @@ fn site(dice: &mut Random, round: usize) -> Point {
 }
 
 fn mean(t: &Free, weights: &Weights) -> Point {
-    [0, 1].map(|k| weights.iter().map(|&(v, weight)| weight * t.point(v)[k]).sum())
+    [0, 1].map(|k| {
+        weights
+            .iter()
+            .map(|&(v, weight)| weight * t.point(v)[k])
+            .sum()
+    })
 }
 
 fn is_within(t: &Free, q: &Point) -> bool {
-    matches!(t.locate(q, None), Location::Vertex(_) | Location::Cell { .. })
+    matches!(
+        t.locate(q, None),
+        Location::Vertex(_) | Location::Cell { .. }
+    )
 }
 
 fn both(t: &Free, q: &Point) -> [Option<Weights>; 2] {
@@ -49,13 +57,22 @@ fn weights_are_positive_sum_to_one_and_reproduce_the_site() {
     for round in 0..6000 {
         let (t, q) = (build(&points(&mut dice, round)), site(&mut dice, round));
         for weights in both(&t, &q) {
-            assert_eq!(weights.is_some(), is_within(&t, &q), "{:?} {q:?}", t.points());
+            assert_eq!(
+                weights.is_some(),
+                is_within(&t, &q),
+                "{:?} {q:?}",
+                t.points()
+            );
             let Some(weights) = weights else { continue };
             answers += 1;
             assert!(weights.iter().all(|&(_, weight)| weight >= 0.0));
             assert!((weights.iter().map(|&(_, weight)| weight).sum::<f64>() - 1.0).abs() < 1e-14);
             let [x, y] = mean(&t, &weights);
-            assert!((x - q[0]).hypot(y - q[1]) < 1e-11, "{:?} {q:?} {x} {y}", t.points());
+            assert!(
+                (x - q[0]).hypot(y - q[1]) < 1e-11,
+                "{:?} {q:?} {x} {y}",
+                t.points()
+            );
             let mut vertices: Vec<VertexId> = weights.iter().map(|&(v, _)| v).collect();
             vertices.sort();
             vertices.dedup();
@@ -79,30 +96,56 @@ fn sibsons_weights_are_what_cells_lose() {
             continue;
         }
         let cell = after.voronoi_cell(new, &window);
-        if cell.corners.iter().any(|p| p[0].abs() > 100.0 || p[1].abs() > 100.0) {
+        if cell
+            .corners
+            .iter()
+            .any(|p| p[0].abs() > 100.0 || p[1].abs() > 100.0)
+        {
             continue; // on the hull or close to it: the judge gets imprecise
         }
         judged += 1;
         let mut lost: BTreeMap<VertexId, f64> = BTreeMap::new();
         for v in t.tds().vertices() {
-            lost.insert(v, (t.voronoi_cell(v, &window).area - after.voronoi_cell(v, &window).area) / cell.area);
+            lost.insert(
+                v,
+                (t.voronoi_cell(v, &window).area - after.voronoi_cell(v, &window).area) / cell.area,
+            );
         }
         for (v, weight) in t.sibson(&q, None).unwrap() {
             let lost = lost.remove(&v).unwrap();
-            assert!((weight - lost).abs() < 1e-6, "{:?} {q:?} {v:?} {weight} {lost}", t.points());
+            assert!(
+                (weight - lost).abs() < 1e-6,
+                "{:?} {q:?} {v:?} {weight} {lost}",
+                t.points()
+            );
         }
-        assert!(lost.values().all(|lost| lost.abs() < 1e-6), "{:?} {q:?} {lost:?}", t.points());
+        assert!(
+            lost.values().all(|lost| lost.abs() < 1e-6),
+            "{:?} {q:?} {lost:?}",
+            t.points()
+        );
     }
     assert!(judged > 500, "{judged}");
 }
 
 #[test]
 fn vertices_edges_of_the_hull_and_outside() {
-    let points = [[0.0, 0.0], [4.0, 0.0], [8.0, 0.0], [8.0, 8.0], [0.0, 8.0], [3.0, 3.0]];
+    let points = [
+        [0.0, 0.0],
+        [4.0, 0.0],
+        [8.0, 0.0],
+        [8.0, 8.0],
+        [0.0, 8.0],
+        [3.0, 3.0],
+    ];
     let t = build(&points);
     let at = |p: Point| t.tds().vertices().find(|&v| *t.point(v) == p).unwrap();
     for p in points {
-        assert!(both(&t, &p).into_iter().all(|weights| weights == Some(vec![(at(p), 1.0)])));
+        assert!(
+            both(&t, &p)
+                .into_iter()
+                .all(|weights| weights == Some(vec![(at(p), 1.0)]))
+        );
     }
     for weights in both(&t, &[5.0, 0.0]) {
         let mut weights = weights.unwrap();
@@ -120,7 +163,10 @@ fn vertices_edges_of_the_hull_and_outside() {
         assert_eq!(both(&line, &outside), [None, None]);
     }
     let one = build(&[[1.0, 1.0]]);
-    assert_eq!(both(&one, &[1.0, 1.0]).map(|weights| weights.unwrap()[0].1), [1.0, 1.0]);
+    assert_eq!(
+        both(&one, &[1.0, 1.0]).map(|weights| weights.unwrap()[0].1),
+        [1.0, 1.0]
+    );
     assert_eq!(both(&one, &[1.0, 2.0]), [None, None]);
     assert_eq!(both(&build(&[]), &[1.0, 2.0]), [None, None]);
 }
@@ -131,12 +177,18 @@ fn vertices_edges_of_the_hull_and_outside() {
 fn weights_are_continuous_at_vertices_and_the_hull() {
     let mut dice = Random(3);
     for _ in 0..300 {
-        let points: Vec<Point> = (0..12).map(|_| [0, 1].map(|_| dice.below(6) as f64)).collect();
+        let points: Vec<Point> = (0..12)
+            .map(|_| [0, 1].map(|_| dice.below(6) as f64))
+            .collect();
         let t = build(&points);
         for v in t.tds().vertices().filter(|_| t.dimension() == 2) {
             let q = [0, 1].map(|k| t.point(v)[k] + (dice.unit() - 0.5) * 1e-7);
             for weights in both(&t, &q).into_iter().flatten() {
-                let near: f64 = weights.iter().filter(|(u, _)| *u == v).map(|&(_, weight)| weight).sum();
+                let near: f64 = weights
+                    .iter()
+                    .filter(|(u, _)| *u == v)
+                    .map(|&(_, weight)| weight)
+                    .sum();
                 assert!(near > 1.0 - 1e-5, "{points:?} {q:?} {near}");
             }
         }
@@ -149,11 +201,21 @@ fn weights_are_continuous_at_vertices_and_the_hull() {
             for inwards in [1e-12, 1e-9, 1e-7] {
                 let q = [0, 1].map(|k| on[k] + inwards * (3.0 - on[k]));
                 for (weights, limit) in both(&t, &q).into_iter().zip(both(&t, &on)) {
-                    let (Some(weights), Some(limit)) = (weights, limit) else { continue };
-                    let weight =
-                        |weights: &Weights, v| weights.iter().filter(|(u, _)| *u == v).map(|&(_, w)| w).sum::<f64>();
+                    let (Some(weights), Some(limit)) = (weights, limit) else {
+                        continue;
+                    };
+                    let weight = |weights: &Weights, v| {
+                        weights
+                            .iter()
+                            .filter(|(u, _)| *u == v)
+                            .map(|&(_, w)| w)
+                            .sum::<f64>()
+                    };
                     for v in t.tds().vertices() {
-                        assert!((weight(&weights, v) - weight(&limit, v)).abs() < 1e-3, "{points:?} {q:?}");
+                        assert!(
+                            (weight(&weights, v) - weight(&limit, v)).abs() < 1e-3,
+                            "{points:?} {q:?}"
+                        );
                     }
                 }
             }
@@ -168,8 +230,16 @@ fn beyond_squares_there_are_none() {
         let square = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]].map(|p| p.map(|x| x * scale));
         let (t, _) = Delaunay::from_points(Plane::<Wide>::default(), &square).unwrap();
         let q = [scale, 2.0 * scale];
-        for weights in [t.sibson(&q, None), t.laplace(&q, None)].into_iter().flatten() {
-            assert!(weights.iter().all(|(_, weight)| (0.0..=1.0).contains(weight)), "{weights:?}");
+        for weights in [t.sibson(&q, None), t.laplace(&q, None)]
+            .into_iter()
+            .flatten()
+        {
+            assert!(
+                weights
+                    .iter()
+                    .all(|(_, weight)| (0.0..=1.0).contains(weight)),
+                "{weights:?}"
+            );
         }
     }
 }

@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use breakline_triangulation::geometry::{Geometry, Plane, Space, Weighted};
 use breakline_triangulation::tds::{CellId, VertexId};
 use breakline_triangulation::{
-    Basic, Constrained, ConstrainedDelaunay, ConstrainedEdges, Delaunay, Level, OnCrossing, Regular, Triangulation,
+    Basic, Constrained, ConstrainedDelaunay, ConstrainedEdges, Delaunay, Level, OnCrossing,
+    Regular, Triangulation,
 };
 use testkit::random::Random;
 
@@ -16,7 +17,9 @@ fn seen<G: Geometry<N>, const N: usize, V>(t: &Triangulation<G, N, V, u32>) -> S
     seen_as(t, |cell| *t.tds().cell_data(cell))
 }
 
-fn seen_between_constraints<G: Geometry<3>, V>(t: &Triangulation<G, 3, V, ConstrainedEdges<u32>>) -> Seen {
+fn seen_between_constraints<G: Geometry<3>, V>(
+    t: &Triangulation<G, 3, V, ConstrainedEdges<u32>>,
+) -> Seen {
     seen_as(t, |cell| *t.cell_data(cell))
 }
 
@@ -38,12 +41,23 @@ fn seen_as<G: Geometry<N>, const N: usize, V, C: Copy + Default>(
 fn judge_insertion((dimension, before): &Seen, (now, after): &Seen, vertex: VertexId) {
     for (cell, &data) in after {
         let facet: Vec<VertexId> = cell.iter().copied().filter(|&v| v != vertex).collect();
-        let is_donor = |other: &Vec<VertexId>| !after.contains_key(other) && facet.iter().all(|v| other.contains(v));
-        let donors = || before.iter().filter(|(other, _)| is_donor(other)).map(|(_, &data)| data);
+        let is_donor = |other: &Vec<VertexId>| {
+            !after.contains_key(other) && facet.iter().all(|v| other.contains(v))
+        };
+        let donors = || {
+            before
+                .iter()
+                .filter(|(other, _)| is_donor(other))
+                .map(|(_, &data)| data)
+        };
         match before.get(cell) {
             _ if dimension != now => assert_eq!(data, 0),
             Some(&old) => assert_eq!(data, old),
-            None => assert_eq!(donors().collect::<Vec<_>>(), [data], "{cell:?} {before:?} {after:?}"),
+            None => assert_eq!(
+                donors().collect::<Vec<_>>(),
+                [data],
+                "{cell:?} {before:?} {after:?}"
+            ),
         }
     }
 }
@@ -91,10 +105,15 @@ fn delaunay_cells_inherit_what_they_replace() {
 /// Vertices with many neighbors are removed by another algorithm.
 #[test]
 fn delaunay_cells_around_a_hub() {
-    let rim = (0..40).map(|k| f64::from(k) * 0.157).map(|turn| [turn.cos(), turn.sin()]);
+    let rim = (0..40)
+        .map(|k| f64::from(k) * 0.157)
+        .map(|turn| [turn.cos(), turn.sin()]);
     let points: Vec<[f64; 2]> = rim.chain([[0.0, 0.0]]).collect();
-    let (t, vertices) =
-        Delaunay::from_points(Plane::<breakline_triangulation::kernel::Adaptive>::default(), &points).unwrap();
+    let (t, vertices) = Delaunay::from_points(
+        Plane::<breakline_triangulation::kernel::Adaptive>::default(),
+        &points,
+    )
+    .unwrap();
     let mut t = t.with_cell_data(another);
     let before = seen(&t);
     assert!(t.tds().around(vertices[40]).count() > 20);
@@ -161,7 +180,9 @@ fn cells_without_a_law_inherit_what_they_replace() {
                 judge_removal(&before, &seen(&t));
                 flips += usize::from(has_flipped);
             } else {
-                let vertex = t.insert([dice.below(5) as f64, dice.below(5) as f64]).unwrap();
+                let vertex = t
+                    .insert([dice.below(5) as f64, dice.below(5) as f64])
+                    .unwrap();
                 judge_insertion(&before, &seen(&t), vertex);
             }
             assert_eq!(t.check(Level::Orientation), []);
@@ -187,7 +208,9 @@ fn constrained_cells_inherit_what_they_replace() {
                     judge_removal(&before, &seen_between_constraints(&t));
                 }
                 1 | 2 if vertices.len() > 2 => {
-                    let is_new = t.constrain(dice.pick(&vertices), dice.pick(&vertices)).is_ok();
+                    let is_new = t
+                        .constrain(dice.pick(&vertices), dice.pick(&vertices))
+                        .is_ok();
                     judge_removal(&before, &seen_between_constraints(&t));
                     constraints += usize::from(is_new);
                 }
@@ -197,7 +220,9 @@ fn constrained_cells_inherit_what_they_replace() {
                     assert_eq!(seen_between_constraints(&t), before);
                 }
                 _ => {
-                    let vertex = t.insert([dice.below(5) as f64, dice.below(5) as f64]).unwrap();
+                    let vertex = t
+                        .insert([dice.below(5) as f64, dice.below(5) as f64])
+                        .unwrap();
                     judge_insertion(&before, &seen_between_constraints(&t), vertex);
                     vertices.push(vertex);
                 }
@@ -231,13 +256,17 @@ fn cells_between_lines_keep_their_payloads() {
                     if dice.below(3) == 0 {
                         let _ = t.remove(vertex);
                     } else {
-                        t.insert_lines(&[[*t.point(vertex), [dice.below(5) as f64, 4.0]]]).unwrap();
+                        t.insert_lines(&[[*t.point(vertex), [dice.below(5) as f64, 4.0]]])
+                            .unwrap();
                     }
                 }
             }
             let after = seen_between_constraints(&t);
             for (cell, &data) in &after.1 {
-                assert!(data == 0 || before.1.values().any(|&old| old == data), "{cell:?} {data}");
+                assert!(
+                    data == 0 || before.1.values().any(|&old| old == data),
+                    "{cell:?} {data}"
+                );
             }
             assert_eq!(t.check(Level::Law), []);
         }
@@ -250,14 +279,26 @@ fn areas_between_constraints_are_marked() {
     let square = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]];
     let lines = [vec![0, 2], vec![0, 1, 2, 3, 0]];
     let geometry: Plane = Plane::default();
-    let (t, vertices) = ConstrainedDelaunay::<_, ()>::from_lines(geometry, &square, &lines, OnCrossing::Split).unwrap();
-    let sides: Vec<bool> = t.tds().cells().map(|cell| t.tds().corners(cell).contains(&vertices[1])).collect();
+    let (t, vertices) =
+        ConstrainedDelaunay::<_, ()>::from_lines(geometry, &square, &lines, OnCrossing::Split)
+            .unwrap();
+    let sides: Vec<bool> = t
+        .tds()
+        .cells()
+        .map(|cell| t.tds().corners(cell).contains(&vertices[1]))
+        .collect();
     let mut t = t.with_cell_data(|cell| if sides[cell.index()] { 'A' } else { 'B' });
     assert!(t.cell_data(t.tds().cells().next().unwrap()) != &char::default());
     let inside = t.insert([3.0, 1.0]).unwrap();
     assert!(t.tds().around(inside).all(|cell| *t.cell_data(cell) == 'A'));
     let cell = t.tds().around(inside).next().unwrap();
     *t.cell_data_mut(cell) = 'C';
-    assert_eq!(t.tds().cells().filter(|&cell| *t.cell_data(cell) == 'C').count(), 1);
+    assert_eq!(
+        t.tds()
+            .cells()
+            .filter(|&cell| *t.cell_data(cell) == 'C')
+            .count(),
+        1
+    );
     assert_eq!(t.constrained_edges().count(), 5);
 }

@@ -16,11 +16,17 @@ fn build(dice: &mut Random, round: usize) -> Weights {
     let (side, weights) = (1 + dice.below(6), 1 + dice.below(9));
     let site = |dice: &mut Random| match round % 3 {
         0 => [dice.unit() * 5.0, dice.unit() * 5.0, dice.unit() * 4.0],
-        1 => [dice.below(side) as f64, dice.below(side) as f64, dice.below(weights) as f64],
+        1 => [
+            dice.below(side) as f64,
+            dice.below(side) as f64,
+            dice.below(weights) as f64,
+        ],
         _ => [dice.below(side) as f64, 2.0, dice.below(weights) as f64], // on one line
     };
     let points: Vec<Point> = (0..1 + dice.below(20)).map(|_| site(dice)).collect();
-    Regular::from_points(Weighted::<Adaptive>::default(), &points).unwrap().0
+    Regular::from_points(Weighted::<Adaptive>::default(), &points)
+        .unwrap()
+        .0
 }
 
 fn power(p: &Point, x: [f64; 2]) -> f64 {
@@ -38,13 +44,21 @@ fn cells_tile_and_are_cut_by_all_bisectors() {
         for v in t.tds().vertices() {
             let cell = t.power_cell(v, &window);
             let others = t.tds().vertices().filter(|&u| u != v);
-            let naive =
-                others.fold(window.to_vec(), |left, u| part(&left, |x| power(t.point(v), x) - power(t.point(u), x)));
-            assert!((cell.area - area(&naive)).abs() < 1e-9 * whole, "{:?}", t.points());
+            let naive = others.fold(window.to_vec(), |left, u| {
+                part(&left, |x| power(t.point(v), x) - power(t.point(u), x))
+            });
+            assert!(
+                (cell.area - area(&naive)).abs() < 1e-9 * whole,
+                "{:?}",
+                t.points()
+            );
             sum += cell.area;
         }
         assert!((sum - whole).abs() < 1e-9 * whole, "{:?}", t.points());
-        assert!(t.hidden().all(|v| t.power_cell(v, &window).corners.is_empty()));
+        assert!(
+            t.hidden()
+                .all(|v| t.power_cell(v, &window).corners.is_empty())
+        );
     }
 }
 
@@ -55,13 +69,28 @@ fn the_nearest_by_power() {
         let t = build(&mut dice, 1 + round % 2);
         for _ in 0..20 {
             // Halves: all sums below are exact.
-            let q = [dice.below(14) as f64 / 2.0 - 1.0, dice.below(14) as f64 / 2.0 - 1.0];
+            let q = [
+                dice.below(14) as f64 / 2.0 - 1.0,
+                dice.below(14) as f64 / 2.0 - 1.0,
+            ];
             let far = |v: &VertexId| power(t.point(*v), q);
             let order = |a: &VertexId, b: &VertexId| t.geometry().compare(t.point(*a), t.point(*b));
-            let seen = t.tds().vertices().min_by(|a, b| far(a).total_cmp(&far(b)).then(order(a, b)));
-            assert_eq!(t.nearest(&[q[0], q[1], 77.0]), seen, "{q:?} {:?}", t.points());
+            let seen = t
+                .tds()
+                .vertices()
+                .min_by(|a, b| far(a).total_cmp(&far(b)).then(order(a, b)));
+            assert_eq!(
+                t.nearest(&[q[0], q[1], 77.0]),
+                seen,
+                "{q:?} {:?}",
+                t.points()
+            );
             let least = far(&seen.unwrap());
-            assert!(t.hidden().all(|v| far(&v) >= least), "{q:?} {:?}", t.points());
+            assert!(
+                t.hidden().all(|v| far(&v) >= least),
+                "{q:?} {:?}",
+                t.points()
+            );
         }
     }
 }
@@ -71,12 +100,22 @@ fn centers_are_right_however_flat_the_triangle() {
     let mut dice = Random(3);
     for round in 0..3000 {
         let weight = |dice: &mut Random| dice.around(9) as f64 * [1.0, 1e-9, 1e9][round % 3];
-        let mut corners = [0; 3].map(|_| [dice.unit() * 100.0 + 5e5, dice.unit() * 100.0 + 4e6, weight(&mut dice)]);
+        let mut corners = [0; 3].map(|_| {
+            [
+                dice.unit() * 100.0 + 5e5,
+                dice.unit() * 100.0 + 4e6,
+                weight(&mut dice),
+            ]
+        });
         if round % 2 == 0 {
             // On a line, except for some last bits.
             let along = dice.unit() * 3.0 - 1.0;
             let at = |k: usize| corners[0][k] + along * (corners[1][k] - corners[0][k]);
-            corners[2] = [ulps(at(0), dice.around(3)), ulps(at(1), dice.around(3)), corners[2][2]];
+            corners[2] = [
+                ulps(at(0), dice.around(3)),
+                ulps(at(1), dice.around(3)),
+                corners[2][2],
+            ];
         }
         if round % 5 == 0 {
             corners = corners.map(|p| p.map(|x| x * 2f64.powi(150)));
@@ -84,7 +123,10 @@ fn centers_are_right_however_flat_the_triangle() {
         center::judge(corners, power_center(corners));
     }
     // The site is the first corner.
-    assert_eq!(power_center([[1.0, 1.0, 0.0], [3.0, 1.0, 4.0], [1.0, 4.0, 9.0]]), [0.0, 0.0]);
+    assert_eq!(
+        power_center([[1.0, 1.0, 0.0], [3.0, 1.0, 4.0], [1.0, 4.0, 9.0]]),
+        [0.0, 0.0]
+    );
 }
 
 #[test]
@@ -101,8 +143,18 @@ fn centers_have_the_least_power_with_their_corners() {
             };
             let size = 1e-9 * (1.0 + center[0].powi(2) + center[1].powi(2));
             let least = power(t.point(corners[0]), center);
-            assert!(corners.iter().all(|&v| (power(t.point(v), center) - least).abs() < size), "{:?}", t.points());
-            assert!(t.points().iter().all(|p| power(p, center) > least - size), "{:?}", t.points());
+            assert!(
+                corners
+                    .iter()
+                    .all(|&v| (power(t.point(v), center) - least).abs() < size),
+                "{:?}",
+                t.points()
+            );
+            assert!(
+                t.points().iter().all(|p| power(p, center) > least - size),
+                "{:?}",
+                t.points()
+            );
             weighted += usize::from(t.circumcenter(cell) != Some(center));
         }
     }
@@ -115,7 +167,9 @@ fn ends(edge: VoronoiEdge) -> [[f64; 2]; 2] {
     match edge {
         VoronoiEdge::Segment(ends) => ends,
         VoronoiEdge::Ray { from, direction } => [from, along(from, direction, 1e3)],
-        VoronoiEdge::Line { through, direction } => [-1e3, 1e3].map(|s| along(through, direction, s)),
+        VoronoiEdge::Line { through, direction } => {
+            [-1e3, 1e3].map(|s| along(through, direction, s))
+        }
     }
 }
 
@@ -151,10 +205,18 @@ fn edges_bound_the_cells() {
             for [p, q] in sides.clone() {
                 let middle = [0, 1].map(|k| (p[k] + q[k]) / 2.0);
                 let is_on = |edge: &[[f64; 2]; 2]| distance_to_segment(middle, *edge) < 1e-7;
-                assert!(!is_within(middle) || edges.iter().any(is_on), "{:?}", t.points());
+                assert!(
+                    !is_within(middle) || edges.iter().any(is_on),
+                    "{:?}",
+                    t.points()
+                );
             }
             // ... and every end of an edge lies on a side.
-            for &end in edges.iter().flatten().filter(|&&end| is_within(end) && cell.len() > 2) {
+            for &end in edges
+                .iter()
+                .flatten()
+                .filter(|&&end| is_within(end) && cell.len() > 2)
+            {
                 let is_on = |side: [[f64; 2]; 2]| distance_to_segment(end, side) < 1e-7;
                 assert!(sides.clone().any(is_on), "{end:?} {:?}", t.points());
             }

@@ -25,9 +25,13 @@ fn constrained(dice: &mut Random, points: &[Point]) -> Lined {
     let lines: Vec<Vec<u32>> = if points.is_empty() {
         Vec::new()
     } else {
-        (0..dice.below(5)).map(|_| vec![index(dice), index(dice)]).collect()
+        (0..dice.below(5))
+            .map(|_| vec![index(dice), index(dice)])
+            .collect()
     };
-    Lined::from_lines(Plane::default(), points, &lines, OnCrossing::Split).unwrap().0
+    Lined::from_lines(Plane::default(), points, &lines, OnCrossing::Split)
+        .unwrap()
+        .0
 }
 
 /// Returns the expected conflict zone, given the triangulation with the point inserted.
@@ -36,9 +40,18 @@ fn judge_zone<V, C: Copy + Default>(
     after: &Triangulation<Plane, 3, V, C>,
     zone: &breakline_triangulation::ConflictZone,
 ) {
-    let destroyed: BTreeSet<_> = by_vertices(before).difference(&by_vertices(after)).cloned().collect();
+    let destroyed: BTreeSet<_> = by_vertices(before)
+        .difference(&by_vertices(after))
+        .cloned()
+        .collect();
     assert_eq!(zone.cells.len(), destroyed.len());
-    assert_eq!(zone.cells.iter().map(|&cell| vertices(before, cell)).collect::<BTreeSet<_>>(), destroyed);
+    assert_eq!(
+        zone.cells
+            .iter()
+            .map(|&cell| vertices(before, cell))
+            .collect::<BTreeSet<_>>(),
+        destroyed
+    );
     let tds = before.tds();
     for &(cell, i) in &zone.border {
         assert!(zone.cells.contains(&cell) && !zone.cells.contains(&tds.neighbor(cell, i)));
@@ -64,11 +77,20 @@ fn conflict_zones_are_what_insertion_destroys() {
         after.insert(q).unwrap();
         match t.conflict_zone(&q, None) {
             Some(zone) => {
-                let marks = [Mark::Cells(&zone.cells), Mark::Edges(&zone.border), Mark::Line(&[q])];
-                let _picture = OnFailure { name: "conflict_zone", svg: || t.svg(&marks) };
+                let marks = [
+                    Mark::Cells(&zone.cells),
+                    Mark::Edges(&zone.border),
+                    Mark::Line(&[q]),
+                ];
+                let _picture = OnFailure {
+                    name: "conflict_zone",
+                    svg: || t.svg(&marks),
+                };
                 judge_zone(&t, &after, &zone);
             }
-            None => assert!(after.vertex_count() == t.vertex_count() || after.dimension() > t.dimension()),
+            None => assert!(
+                after.vertex_count() == t.vertex_count() || after.dimension() > t.dimension()
+            ),
         }
     }
 }
@@ -87,7 +109,9 @@ fn constraints_bound_conflict_zones() {
         after.insert(q).unwrap();
         match t.conflict_zone(&q, None) {
             Some(zone) => judge_zone(&t, &after, &zone),
-            None => assert!(after.vertex_count() == t.vertex_count() || after.dimension() > t.dimension()),
+            None => assert!(
+                after.vertex_count() == t.vertex_count() || after.dimension() > t.dimension()
+            ),
         }
     }
 }
@@ -104,7 +128,11 @@ fn nearest_vertices_in_order() {
         let (q, rim) = (site(&mut dice), site(&mut dice));
         let mut expected: Vec<VertexId> = t.tds().vertices().collect();
         let far = |v: VertexId| squared(*t.point(v), q);
-        expected.sort_by(|&u, &v| far(u).total_cmp(&far(v)).then_with(|| plane().compare(t.point(u), t.point(v))));
+        expected.sort_by(|&u, &v| {
+            far(u)
+                .total_cmp(&far(v))
+                .then_with(|| plane().compare(t.point(u), t.point(v)))
+        });
         let near = t.tds().cells().next();
         assert_eq!(t.nearest(&q, near), expected.first().copied());
         assert!(t.nearest_first(&q, near).eq(expected.iter().copied()));
@@ -122,9 +150,17 @@ fn metrics_agree() {
         let expected = squared(q, a).total_cmp(&squared(q, b));
         assert_eq!(plane().compare_distance(&q, &a, &b), expected);
         let [q, a, b] = sites.map(|[x, y]| [x, y, dice.unit()]);
-        assert_eq!(Terrain::<breakline_triangulation::kernel::Exact>::default().compare_distance(&q, &a, &b), expected);
+        assert_eq!(
+            Terrain::<breakline_triangulation::kernel::Exact>::default()
+                .compare_distance(&q, &a, &b),
+            expected
+        );
         let [q, a, b] = sites.map(|[x, y]| [x as i32, y as i32, dice.below(9) as i32]);
-        assert_eq!(Steps::<breakline_triangulation::kernel::Lattice>::default().compare_distance(&q, &a, &b), expected);
+        assert_eq!(
+            Steps::<breakline_triangulation::kernel::Lattice>::default()
+                .compare_distance(&q, &a, &b),
+            expected
+        );
     }
 }
 
@@ -142,7 +178,11 @@ fn rectangles() {
             })
         };
         let expected: Vec<VertexId> = t.tds().vertices().filter(is_within).collect();
-        assert_eq!(t.within_rectangle(corners.each_ref()), expected, "{points:?} {corners:?}");
+        assert_eq!(
+            t.within_rectangle(corners.each_ref()),
+            expected,
+            "{points:?} {corners:?}"
+        );
     }
 }
 
@@ -152,8 +192,12 @@ fn meets(part: &[Point], [a, b]: [Point; 2]) -> bool {
     let turn = |p: &Point, q: &Point, r: &Point| plane().orientation([p, q, r]);
     let holds = |p: &Point| match part {
         [v] => v == p,
-        [u, v] => turn(u, v, p) == Sign::Zero && plane().side_of_sphere_in_flat(&[u, v], p) == Sign::Positive,
-        _ => (0..3).all(|i| turn(&part[i], &part[(i + 1) % 3], p) == turn(&part[0], &part[1], &part[2])),
+        [u, v] => {
+            turn(u, v, p) == Sign::Zero
+                && plane().side_of_sphere_in_flat(&[u, v], p) == Sign::Positive
+        }
+        _ => (0..3)
+            .all(|i| turn(&part[i], &part[(i + 1) % 3], p) == turn(&part[0], &part[1], &part[2])),
     };
     if holds(&a) || holds(&b) {
         return true;
@@ -167,9 +211,17 @@ fn meets(part: &[Point], [a, b]: [Point; 2]) -> bool {
         [u, v] => {
             let crosses = |a, b, c, d| turn(a, b, c) * turn(a, b, d) == Sign::Negative;
             let is_along = turn(u, v, &a) == Sign::Zero && turn(u, v, &b) == Sign::Zero;
-            let sorted = |p: Point, q: Point| if plane().compare(&p, &q).is_lt() { [p, q] } else { [q, p] };
+            let sorted = |p: Point, q: Point| {
+                if plane().compare(&p, &q).is_lt() {
+                    [p, q]
+                } else {
+                    [q, p]
+                }
+            };
             let [s, t] = [sorted(a, b), sorted(*u, *v)];
-            let overlaps = is_along && plane().compare(&s[0], &t[1]).is_lt() && plane().compare(&t[0], &s[1]).is_lt();
+            let overlaps = is_along
+                && plane().compare(&s[0], &t[1]).is_lt()
+                && plane().compare(&t[0], &s[1]).is_lt();
             crosses(&a, &b, u, v) && crosses(u, v, &a, &b) || overlaps
         }
         // Ends outside: it goes through two of the six parts of the border, which are not on one
@@ -177,8 +229,14 @@ fn meets(part: &[Point], [a, b]: [Point; 2]) -> bool {
         [u, v, w] => {
             let sides = [[u, v], [v, w], [w, u]];
             let on = |s: &[&Point; 2], p: &Point| turn(s[0], s[1], p) == Sign::Zero;
-            let corners: Vec<&Point> = [u, v, w].into_iter().filter(|p| meets(&[**p], [a, b])).collect();
-            let edges: Vec<&[&Point; 2]> = sides.iter().filter(|s| meets(&[*s[0], *s[1]], [a, b])).collect();
+            let corners: Vec<&Point> = [u, v, w]
+                .into_iter()
+                .filter(|p| meets(&[**p], [a, b]))
+                .collect();
+            let edges: Vec<&[&Point; 2]> = sides
+                .iter()
+                .filter(|s| meets(&[*s[0], *s[1]], [a, b]))
+                .collect();
             let apart = corners.iter().any(|p| edges.iter().any(|s| !on(s, p)));
             edges.len() == 2 || apart
         }
@@ -187,7 +245,10 @@ fn meets(part: &[Point], [a, b]: [Point; 2]) -> bool {
 }
 
 /// Returns the corners of a face, edge or vertex, sorted.
-fn part<V, C: Copy + Default>(t: &Triangulation<Plane, 3, V, C>, passage: Passage) -> Vec<VertexId> {
+fn part<V, C: Copy + Default>(
+    t: &Triangulation<Plane, 3, V, C>,
+    passage: Passage,
+) -> Vec<VertexId> {
     let mut corners = match passage {
         Passage::Face(cell) => t.tds().corners(cell).to_vec(),
         Passage::Edge(cell, i) => t.tds().edge_ends(cell, i).to_vec(),
@@ -205,34 +266,65 @@ fn segments_meet_what_they_meet_in_order() {
     for round in 0..6000 {
         // Every other time, most are nearly on lines: the judge is exact.
         let scale = if round % 2 == 0 { 1.0 } else { 0.37 };
-        let points: Vec<Point> = points(&mut dice, round).into_iter().map(|p| p.map(|x| x * scale)).collect();
+        let points: Vec<Point> = points(&mut dice, round)
+            .into_iter()
+            .map(|p| p.map(|x| x * scale))
+            .collect();
         let t = constrained(&mut dice, &points);
         let [a, b] = [0; 2].map(|_| site(&mut dice).map(|x| x * scale));
-        let _picture = OnFailure { name: "along", svg: || t.svg(&[Mark::Line(&[a, b]), Mark::Line(&[a])]) };
+        let _picture = OnFailure {
+            name: "along",
+            svg: || t.svg(&[Mark::Line(&[a, b]), Mark::Line(&[a])]),
+        };
         let met: Vec<Passage> = t.along([&a, &b], None).collect();
         let returned: Vec<Vec<VertexId>> = met.iter().map(|&passage| part(&t, passage)).collect();
         let mut parts: BTreeSet<Vec<VertexId>> = BTreeSet::new();
         if t.dimension() == 2 {
             parts.extend(t.tds().vertices().map(|v| vec![v]));
-            parts.extend(t.tds().finite_edges().map(|(cell, i)| part(&t, Passage::Edge(cell, i))));
+            parts.extend(
+                t.tds()
+                    .finite_edges()
+                    .map(|(cell, i)| part(&t, Passage::Edge(cell, i))),
+            );
             parts.extend(t.finite_cells().map(|cell| part(&t, Passage::Face(cell))));
         }
-        parts.retain(|part| meets(&part.iter().map(|&v| *t.point(v)).collect::<Vec<_>>(), [a, b]));
-        assert_eq!(returned.iter().cloned().collect::<BTreeSet<_>>(), parts, "{points:?} {a:?} {b:?}");
+        parts.retain(|part| {
+            meets(
+                &part.iter().map(|&v| *t.point(v)).collect::<Vec<_>>(),
+                [a, b],
+            )
+        });
+        assert_eq!(
+            returned.iter().cloned().collect::<BTreeSet<_>>(),
+            parts,
+            "{points:?} {a:?} {b:?}"
+        );
         assert_eq!(returned.len(), parts.len(), "nothing twice");
         // Each lies on the border of the one before, or vice versa: together with the set that is
         // met, this leaves one order and its reverse.
         for pair in returned.windows(2) {
             let [p, q] = [&pair[0], &pair[1]];
-            assert!(p.iter().all(|v| q.contains(v)) || q.iter().all(|v| p.contains(v)), "{returned:?}");
+            assert!(
+                p.iter().all(|v| q.contains(v)) || q.iter().all(|v| p.contains(v)),
+                "{returned:?}"
+            );
         }
         if let [first, .., last] = &returned[..] {
-            let first_from_a = meets(&first.iter().map(|&v| *t.point(v)).collect::<Vec<_>>(), [a, a]);
-            let last_from_a = meets(&last.iter().map(|&v| *t.point(v)).collect::<Vec<_>>(), [a, a]);
+            let first_from_a = meets(
+                &first.iter().map(|&v| *t.point(v)).collect::<Vec<_>>(),
+                [a, a],
+            );
+            let last_from_a = meets(
+                &last.iter().map(|&v| *t.point(v)).collect::<Vec<_>>(),
+                [a, a],
+            );
             assert!(first_from_a || !last_from_a);
         }
         // In the opposite direction: the same in reverse order.
-        let mut back: Vec<Vec<VertexId>> = t.along([&b, &a], None).map(|passage| part(&t, passage)).collect();
+        let mut back: Vec<Vec<VertexId>> = t
+            .along([&b, &a], None)
+            .map(|passage| part(&t, passage))
+            .collect();
         back.reverse();
         assert_eq!(back, returned, "{points:?} {a:?} {b:?}");
         for passage in met {
@@ -296,7 +388,9 @@ fn collinear_edges_of_the_hull() {
 /// A walk across a grid of squares, each with a diagonal: through vertices only, or past them.
 #[test]
 fn walks_across_a_grid() {
-    let points: Vec<Point> = (0..400).map(|k| [f64::from(k % 20), f64::from(k / 20)]).collect();
+    let points: Vec<Point> = (0..400)
+        .map(|k| [f64::from(k % 20), f64::from(k / 20)])
+        .collect();
     let t = build(&points);
     let count = |a, b| {
         let met: Vec<Passage> = t.along([&a, &b], None).collect();
@@ -321,14 +415,23 @@ fn pictures_show_what_is_there_in_every_dimension() {
     let mut dice = Random(7);
     for round in 0..500 {
         let t = build(&points(&mut dice, round));
-        let (cells, edges): (Vec<CellId>, Vec<_>) = (t.tds().cells().collect(), t.tds().edges().collect());
-        let svg = t.svg(&[Mark::Cells(&cells), Mark::Edges(&edges), Mark::Polygon(&[]), Mark::Line(&[[1.0, 2.0]])]);
+        let (cells, edges): (Vec<CellId>, Vec<_>) =
+            (t.tds().cells().collect(), t.tds().edges().collect());
+        let svg = t.svg(&[
+            Mark::Cells(&cells),
+            Mark::Edges(&edges),
+            Mark::Polygon(&[]),
+            Mark::Line(&[[1.0, 2.0]]),
+        ]);
         let count = |what: &str| svg.matches(what).count();
         let finite = t.tds().finite_edges().count();
         assert_eq!(count("<line"), 2 * finite);
         assert_eq!(count("class=\"edge\""), finite);
         assert_eq!(count("class=\"cell\""), t.finite_cells().count());
-        assert_eq!((count("<text"), count("<circle")), (t.vertex_count(), t.vertex_count() + 1));
+        assert_eq!(
+            (count("<text"), count("<circle")),
+            (t.vertex_count(), t.vertex_count() + 1)
+        );
         assert!(!svg.contains("NaN") && !svg.contains("inf"), "{svg}");
     }
 }

@@ -44,7 +44,8 @@ impl Geometry<3> for Grid {
 
     fn side_of_sphere(&self, [a, b, c]: [&Point; 3], q: &Point) -> Sign {
         let (a, b, c, q) = (*a, *b, *c, *q);
-        let value = turn([q, b, c]) * lift(a) + turn([a, q, c]) * lift(b) + turn([a, b, q]) * lift(c);
+        let value =
+            turn([q, b, c]) * lift(a) + turn([a, q, c]) * lift(b) + turn([a, b, q]) * lift(c);
         (value - turn([a, b, c]) * lift(q)).cmp(&0).into()
     }
 
@@ -69,11 +70,20 @@ fn lower_hull(points: &BTreeSet<Point>) -> BTreeSet<[Point; 3]> {
     // step of the lift.
     let sites: Vec<Point> = {
         let sorted: Vec<Point> = points.iter().copied().collect();
-        let heaviest = |k: &usize| sorted.get(k + 1).is_none_or(|next| next[..2] != sorted[*k][..2]);
-        (0..sorted.len()).filter(heaviest).map(|k| sorted[k]).collect()
+        let heaviest = |k: &usize| {
+            sorted
+                .get(k + 1)
+                .is_none_or(|next| next[..2] != sorted[*k][..2])
+        };
+        (0..sorted.len())
+            .filter(heaviest)
+            .map(|k| sorted[k])
+            .collect()
     };
     let lifts: Vec<IBig> = (sites.iter().zip(0..))
-        .map(|(&p, rank)| (IBig::from(lift(p)) << (16 * sites.len() + 16)) + (IBig::ONE << (16 * rank)))
+        .map(|(&p, rank)| {
+            (IBig::from(lift(p)) << (16 * sites.len() + 16)) + (IBig::ONE << (16 * rank))
+        })
         .collect();
     let mut faces = BTreeSet::new();
     for i in 0..sites.len() {
@@ -82,7 +92,9 @@ fn lower_hull(points: &BTreeSet<Point>) -> BTreeSet<[Point; 3]> {
                 let area = turn([i, j, k].map(|at| sites[at]));
                 let above = |q: usize| {
                     let at = |corners: [usize; 3]| IBig::from(turn(corners.map(|at| sites[at])));
-                    let plane = at([q, j, k]) * &lifts[i] + at([i, q, k]) * &lifts[j] + at([i, j, q]) * &lifts[k];
+                    let plane = at([q, j, k]) * &lifts[i]
+                        + at([i, q, k]) * &lifts[j]
+                        + at([i, j, q]) * &lifts[k];
                     (plane - IBig::from(area) * &lifts[q]) * IBig::from(area.signum()) < IBig::ZERO
                 };
                 if area != 0 && (0..sites.len()).all(|q| [i, j, k].contains(&q) || above(q)) {
@@ -105,8 +117,17 @@ fn cells(t: &Regular<Grid, 3>) -> BTreeSet<[Point; 3]> {
 
 fn is_lower_hull(t: &Regular<Grid, 3>, points: &BTreeSet<Point>) {
     assert_eq!(t.check(Level::Law), [], "{points:?}");
-    assert_eq!(t.vertex_count() + t.hidden().len(), points.len(), "{points:?}");
-    let there: BTreeSet<Point> = t.tds().vertices().chain(t.hidden()).map(|v| *t.point(v)).collect();
+    assert_eq!(
+        t.vertex_count() + t.hidden().len(),
+        points.len(),
+        "{points:?}"
+    );
+    let there: BTreeSet<Point> = t
+        .tds()
+        .vertices()
+        .chain(t.hidden())
+        .map(|v| *t.point(v))
+        .collect();
     assert_eq!(there, *points);
     let expected = lower_hull(points);
     if t.dimension() == 2 {
@@ -125,17 +146,35 @@ fn the_weighted_plane_is_the_same() {
     for _ in 0..2000 {
         let (side, weights) = (1 + random.below(6), 1 + random.below(20));
         let points: Vec<Point> = (0..1 + random.index(20))
-            .map(|_| [random.below(side), random.below(side), random.below(weights)].map(|x| x as i64))
+            .map(|_| {
+                [
+                    random.below(side),
+                    random.below(side),
+                    random.below(weights),
+                ]
+                .map(|x| x as i64)
+            })
             .collect();
         let mut expected: Regular<Grid, 3> = Regular::new(Grid);
         points.iter().for_each(|&p| _ = expected.insert(p).unwrap());
-        let doubles: Vec<[f64; 3]> = points.iter().map(|p| [p[0] as f64, p[1] as f64, p[2] as f64]).collect();
-        let (t, vertices) = Regular::<_, 3>::from_points(Weighted::<Adaptive>::default(), &doubles).unwrap();
+        let doubles: Vec<[f64; 3]> = points
+            .iter()
+            .map(|p| [p[0] as f64, p[1] as f64, p[2] as f64])
+            .collect();
+        let (t, vertices) =
+            Regular::<_, 3>::from_points(Weighted::<Adaptive>::default(), &doubles).unwrap();
         assert_eq!(t.check(Level::Law), []);
         assert!(vertices.iter().zip(&doubles).all(|(&v, p)| t.point(v) == p));
         let whole = |v: VertexId| t.point(v).map(|x| x as i64);
         let seen: BTreeSet<Point> = t.tds().vertices().map(whole).collect();
-        assert_eq!(seen, expected.tds().vertices().map(|v| *expected.point(v)).collect());
+        assert_eq!(
+            seen,
+            expected
+                .tds()
+                .vertices()
+                .map(|v| *expected.point(v))
+                .collect()
+        );
         assert_eq!(
             t.hidden().map(whole).collect::<BTreeSet<_>>(),
             expected.hidden().map(|v| *expected.point(v)).collect()
@@ -146,7 +185,10 @@ fn the_weighted_plane_is_the_same() {
                 corners.sort_unstable();
                 corners
             };
-            assert_eq!(t.finite_cells().map(corners).collect::<BTreeSet<_>>(), cells(&expected));
+            assert_eq!(
+                t.finite_cells().map(corners).collect::<BTreeSet<_>>(),
+                cells(&expected)
+            );
         }
     }
 }
@@ -159,7 +201,12 @@ fn points_come_and_go() {
         let mut t: Regular<Grid, 3> = Regular::new(Grid);
         let mut points = BTreeSet::new();
         for _ in 0..30 {
-            let p = [random.below(side), random.below(side), random.below(weights)].map(|x| x as i64);
+            let p = [
+                random.below(side),
+                random.below(side),
+                random.below(weights),
+            ]
+            .map(|x| x as i64);
             if points.len() < 10 && random.below(5) > 1 {
                 let is_new = points.insert(p);
                 let slots = t.tds().vertex_slots();
@@ -199,8 +246,16 @@ fn hiding_on_vertex_edge_and_face() {
             // On the corner by weight; on the edge below 4 - 4 = 0 by power; in the face likewise
             // below its power.
             let power = lift([site[0], site[1], 0]) - 4 * (site[0] + site[1]);
-            let is_seen = if site == [0, 0] { weight > 0 } else { power - weight <= 0 };
-            assert_eq!(!t.is_hidden(vertex), is_seen || site == [0, 0] && weight == 0, "{p:?}");
+            let is_seen = if site == [0, 0] {
+                weight > 0
+            } else {
+                power - weight <= 0
+            };
+            assert_eq!(
+                !t.is_hidden(vertex),
+                is_seen || site == [0, 0] && weight == 0,
+                "{p:?}"
+            );
             let expected = if site == [0, 0] || !is_seen {
                 1
             } else if site == [2, 0] {
@@ -219,9 +274,12 @@ fn hiding_on_vertex_edge_and_face() {
 /// again.
 #[test]
 fn one_site_on_another() {
-    for others in
-        [vec![], vec![[3, 0, 0]], vec![[3, 0, 0], [-3, 0, 0]], vec![[3, 0, 0], [-3, 0, 0], [0, 3, 0], [0, -3, 0]]]
-    {
+    for others in [
+        vec![],
+        vec![[3, 0, 0]],
+        vec![[3, 0, 0], [-3, 0, 0]],
+        vec![[3, 0, 0], [-3, 0, 0], [0, 3, 0], [0, -3, 0]],
+    ] {
         let mut t: Regular<Grid, 3> = Regular::new(Grid);
         for &p in &others {
             t.insert(p).unwrap();
@@ -248,6 +306,15 @@ fn a_check_finds_points_that_ought_to_be_hidden() {
         regular.insert(p).unwrap();
         delaunay.insert(p).unwrap();
     }
-    assert_eq!((regular.check(Level::Law), delaunay.check(Level::Orientation)), (vec![], vec![]));
-    assert!(matches!(delaunay.check(Level::Law)[..], [Flaw::NotDelaunay(..), Flaw::NotDelaunay(..)]));
+    assert_eq!(
+        (
+            regular.check(Level::Law),
+            delaunay.check(Level::Orientation)
+        ),
+        (vec![], vec![])
+    );
+    assert!(matches!(
+        delaunay.check(Level::Law)[..],
+        [Flaw::NotDelaunay(..), Flaw::NotDelaunay(..)]
+    ));
 }

@@ -25,7 +25,11 @@ fn fresh(points: &[Point]) -> Free {
 fn same_as_fresh(t: &Free, left: &[Point]) {
     assert_eq!(t.check(Level::Law), [], "{left:?}");
     let expected = fresh(left);
-    assert_eq!((t.dimension(), t.vertex_count()), (expected.dimension(), expected.vertex_count()), "{left:?}");
+    assert_eq!(
+        (t.dimension(), t.vertex_count()),
+        (expected.dimension(), expected.vertex_count()),
+        "{left:?}"
+    );
     assert_eq!(t.tds().vertices().count(), t.vertex_count());
     assert_eq!(cells(t), cells(&expected), "{left:?}");
 }
@@ -43,7 +47,10 @@ fn empties_and_fills(points: &[Point], order: &[usize]) {
         assert!(!t.tds().is_vertex(vertices[at]));
         same_as_fresh(&t, &left);
     }
-    assert_eq!((t.dimension(), t.vertex_count(), t.tds().cell_count()), (-1, 0, 0));
+    assert_eq!(
+        (t.dimension(), t.vertex_count(), t.tds().cell_count()),
+        (-1, 0, 0)
+    );
     for &at in order {
         t.insert(points[at]).unwrap();
         left.push(points[at]);
@@ -55,10 +62,13 @@ fn empties_and_fills(points: &[Point], order: &[usize]) {
 #[test]
 fn every_vertex_of_every_subset_of_a_tiny_grid() {
     for subset in 1u32..1 << 9 {
-        let points: Vec<Point> =
-            (0..9).filter(|k| subset >> k & 1 == 1).map(|k| [f64::from(k % 3), f64::from(k / 3)]).collect();
+        let points: Vec<Point> = (0..9)
+            .filter(|k| subset >> k & 1 == 1)
+            .map(|k| [f64::from(k % 3), f64::from(k / 3)])
+            .collect();
         for at in 0..points.len() {
-            let (mut t, vertices): (Free, _) = Delaunay::from_points(Plane::default(), &points).unwrap();
+            let (mut t, vertices): (Free, _) =
+                Delaunay::from_points(Plane::default(), &points).unwrap();
             assert_eq!(t.remove(vertices[at]), Ok(points[at]));
             let mut left = points.clone();
             left.remove(at);
@@ -80,7 +90,11 @@ fn a_tiny_grid_in_all_orders() {
             let mut next = t.clone();
             let [x, y] = next.remove(v).unwrap();
             let rest = subset & !(1 << (x as usize + 3 * y as usize));
-            assert!(cells(&next) == expected[rest], "{subset:b} without {:?}", [x, y]);
+            assert!(
+                cells(&next) == expected[rest],
+                "{subset:b} without {:?}",
+                [x, y]
+            );
             // Links and orientation follow from those of larger sets, which are fewer.
             if rest.count_ones() > 4 {
                 assert_eq!(next.check(Level::Law), []);
@@ -90,9 +104,14 @@ fn a_tiny_grid_in_all_orders() {
         states
     }
     let grid = |subset: usize| -> Vec<Point> {
-        (0..9).filter(|k| subset >> k & 1 == 1).map(|k| [(k % 3) as f64, (k / 3) as f64]).collect()
+        (0..9)
+            .filter(|k| subset >> k & 1 == 1)
+            .map(|k| [(k % 3) as f64, (k / 3) as f64])
+            .collect()
     };
-    let expected: Vec<_> = (0..1 << 9).map(|subset| cells(&fresh(&grid(subset)))).collect();
+    let expected: Vec<_> = (0..1 << 9)
+        .map(|subset| cells(&fresh(&grid(subset))))
+        .collect();
     // 9! / k! paths for each k: 986 410 in all.
     assert_eq!(descend(&fresh(&grid(511)), &expected, 511), 986_410);
 }
@@ -103,8 +122,9 @@ fn grids_down_to_nothing_and_up_again() {
     for _ in 0..1500 {
         let side = 1 + random.below(6);
         let scale = random.pick(&[1.0, 0.37, 1e-3]);
-        let points: Vec<Point> =
-            (0..1 + random.below(24)).map(|_| [(); 2].map(|()| random.below(side) as f64 * scale)).collect();
+        let points: Vec<Point> = (0..1 + random.below(24))
+            .map(|_| [(); 2].map(|()| random.below(side) as f64 * scale))
+            .collect();
         let mut order: Vec<usize> = (0..points.len()).collect();
         random.shuffle(&mut order);
         empties_and_fills_once_each(&points, &order);
@@ -132,7 +152,10 @@ fn scattered_points() {
         let points: Vec<Point> = (0..count)
             .map(|_| match round % 3 {
                 0 => [random.unit(), random.unit()],
-                1 => [500_000.0 + random.unit(), 4_649_000.0 + 1e-7 * random.unit()],
+                1 => [
+                    500_000.0 + random.unit(),
+                    4_649_000.0 + 1e-7 * random.unit(),
+                ],
                 _ => [ulps(1.0, random.around(3)), ulps(2.0, random.around(3))],
             })
             .collect();
@@ -167,12 +190,16 @@ fn fans() {
     };
     let chords: Vec<Point> = (0..628).map(circle).collect();
     let line: Vec<Point> = (0..500).map(|k| [f64::from(k), 0.0]).collect();
-    let parabola: Vec<Point> = (-250..250).map(|k| [f64::from(k), f64::from(k * k) / 512.0]).collect();
+    let parabola: Vec<Point> = (-250..250)
+        .map(|k| [f64::from(k), f64::from(k * k) / 512.0])
+        .collect();
     let cap: Vec<Point> = parabola.iter().map(|&[x, y]| [x, -y]).collect();
     let lattice_circle: Vec<Point> = (-325..=325)
         .flat_map(|x: i32| {
             let y = f64::from(325 * 325 - x * x).sqrt();
-            [[f64::from(x), y], [f64::from(x), -y]].into_iter().filter(move |_| y.fract() == 0.0)
+            [[f64::from(x), y], [f64::from(x), -y]]
+                .into_iter()
+                .filter(move |_| y.fract() == 0.0)
         })
         .collect();
     let cases = [
@@ -201,7 +228,14 @@ fn what_is_not_there_cannot_be_removed() {
     assert_eq!(t.remove(VertexId::new(3)), Err(RemovalError::NoVertex));
     assert!(t.remove(v).is_ok());
     assert_eq!(t.remove(v), Err(RemovalError::NoVertex));
-    assert_eq!((t.vertex_count(), t.tds().vertex_slots(), t.tds().vertices().count()), (2, 3, 2));
+    assert_eq!(
+        (
+            t.vertex_count(),
+            t.tds().vertex_slots(),
+            t.tds().vertices().count()
+        ),
+        (2, 3, 2)
+    );
 }
 
 /// Vertices that move: each state is that of their current sites, and numbers and payloads move
@@ -213,9 +247,14 @@ fn vertices_move() {
         let side = 1 + random.below(5);
         let mut site = || [0, 1].map(|_| random.below(side) as f64);
         let points: Vec<Point> = (0..9).map(|_| site()).collect();
-        let (mut t, vertices) = Delaunay::from_points_with(Plane::<Adaptive>::default(), &points, |i| i).unwrap();
-        let mut sites: BTreeMap<VertexId, Point> = vertices.iter().map(|&v| (v, *t.point(v))).collect();
-        let mut payloads: BTreeMap<VertexId, usize> = vertices.iter().map(|&v| (v, *t.tds().vertex_data(v))).collect();
+        let (mut t, vertices) =
+            Delaunay::from_points_with(Plane::<Adaptive>::default(), &points, |i| i).unwrap();
+        let mut sites: BTreeMap<VertexId, Point> =
+            vertices.iter().map(|&v| (v, *t.point(v))).collect();
+        let mut payloads: BTreeMap<VertexId, usize> = vertices
+            .iter()
+            .map(|&v| (v, *t.tds().vertex_data(v)))
+            .collect();
         for &v in &vertices {
             let first = points.iter().position(|p| p == t.point(v));
             assert_eq!(first, Some(payloads[&v]));
@@ -235,12 +274,30 @@ fn vertices_move() {
                 assert_eq!(moved, Err(MoveError::Vertex(RemovalError::NoVertex)));
             }
             assert_eq!(t.check(Level::Law), []);
-            assert_eq!(t.tds().vertices().map(|v| (v, *t.point(v))).collect::<BTreeMap<_, _>>(), sites);
-            assert_eq!(t.tds().vertices().map(|v| (v, *t.tds().vertex_data(v))).collect::<BTreeMap<_, _>>(), payloads);
+            assert_eq!(
+                t.tds()
+                    .vertices()
+                    .map(|v| (v, *t.point(v)))
+                    .collect::<BTreeMap<_, _>>(),
+                sites
+            );
+            assert_eq!(
+                t.tds()
+                    .vertices()
+                    .map(|v| (v, *t.tds().vertex_data(v)))
+                    .collect::<BTreeMap<_, _>>(),
+                payloads
+            );
             let left: Vec<Point> = sites.values().copied().collect();
             let key = |p: Point| p.map(f64::to_bits);
-            assert_eq!(testkit::cells::cells(&t, key), testkit::cells::cells(&fresh(&left), key));
+            assert_eq!(
+                testkit::cells::cells(&t, key),
+                testkit::cells::cells(&fresh(&left), key)
+            );
         }
-        assert_eq!(t.move_to(vertices[0], [f64::NAN, 0.0]), Err(MoveError::Point(PointError::Coordinate)));
+        assert_eq!(
+            t.move_to(vertices[0], [f64::NAN, 0.0]),
+            Err(MoveError::Point(PointError::Coordinate))
+        );
     }
 }

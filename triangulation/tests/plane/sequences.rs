@@ -11,13 +11,20 @@ use std::collections::BTreeSet;
 
 use crate::chosen::{Chosen, plane, weighted};
 use breakline_triangulation::geometry::Coordinates;
-use breakline_triangulation::kernel::{Adaptive, Exact, Expansions, Fixed, Interval, Lattice, Wide};
+use breakline_triangulation::kernel::{
+    Adaptive, Exact, Expansions, Fixed, Interval, Lattice, Wide,
+};
 use breakline_triangulation::tds::VertexId;
-use breakline_triangulation::{ConstrainedDelaunay, Delaunay, Level, LineId, Regular, RemovalError, Triangulation};
+use breakline_triangulation::{
+    ConstrainedDelaunay, Delaunay, Level, LineId, Regular, RemovalError, Triangulation,
+};
 use testkit::random::Random;
 
 fn sequences() -> u64 {
-    std::env::var("BREAKLINE_SEQUENCES").ok().and_then(|n| n.parse().ok()).unwrap_or(150)
+    std::env::var("BREAKLINE_SEQUENCES")
+        .ok()
+        .and_then(|n| n.parse().ok())
+        .unwrap_or(150)
 }
 
 /// Once with each arithmetic.
@@ -38,7 +45,11 @@ where
 {
     // Crossings included.
     let whole = |c: G::Coordinates| [0, 1].map(|k| (c.as_ref()[k] * 1e6) as i64);
-    let seen = t.tds().vertices().map(|v| whole(t.geometry().coordinates(t.point(v)))).collect();
+    let seen = t
+        .tds()
+        .vertices()
+        .map(|v| whole(t.geometry().coordinates(t.point(v))))
+        .collect();
     (t.dimension(), testkit::cells::cells(t, whole), seen)
 }
 
@@ -91,7 +102,11 @@ fn regular(random: &mut Random, geometry: Chosen<3>) {
     let points: Vec<[f64; 3]> = points.into_iter().map(|(p, _)| p).collect();
     let (fresh, _) = Regular::<_, 3>::from_points(geometry, &points).unwrap();
     assert_eq!(shape(&t), shape(&fresh), "{points:?}");
-    let hidden = |t: &Regular<Chosen<3>, 3>| t.hidden().map(|v| t.point(v).map(|x| x as i64)).collect::<BTreeSet<_>>();
+    let hidden = |t: &Regular<Chosen<3>, 3>| {
+        t.hidden()
+            .map(|v| t.point(v).map(|x| x as i64))
+            .collect::<BTreeSet<_>>()
+    };
     assert_eq!(hidden(&t), hidden(&fresh), "{points:?}");
 }
 
@@ -112,7 +127,9 @@ fn constrained(random: &mut Random, geometry: Chosen<2>) {
                 points.insert(key(p));
             }
             2 | 3 => {
-                let line: Vec<[f64; 2]> = (0..2 + random.index(2)).map(|_| tiny(random, side)).collect();
+                let line: Vec<[f64; 2]> = (0..2 + random.index(2))
+                    .map(|_| tiny(random, side))
+                    .collect();
                 history.push(format!("line {line:?}"));
                 let ids = t.insert_lines(&[&line]).unwrap();
                 lines.push((line, ids[0]));
@@ -124,11 +141,16 @@ fn constrained(random: &mut Random, geometry: Chosen<2>) {
             }
             _ => {
                 let vertices: Vec<VertexId> = t.tds().vertices().collect();
-                let Some(&vertex) = vertices.get(random.index(vertices.len().max(1))) else { continue };
+                let Some(&vertex) = vertices.get(random.index(vertices.len().max(1))) else {
+                    continue;
+                };
                 let p = *t.point(vertex);
                 history.push(format!("no point {p:?}"));
-                let users: BTreeSet<LineId> =
-                    lines.iter().filter(|(line, _)| line.contains(&p)).map(|&(_, id)| id).collect();
+                let users: BTreeSet<LineId> = lines
+                    .iter()
+                    .filter(|(line, _)| line.contains(&p))
+                    .map(|&(_, id)| id)
+                    .collect();
                 if random.below(3) == 0 && !t.is_added(vertex) {
                     let (gone, with) = t.remove_with_lines(vertex).unwrap();
                     assert_eq!((gone, with.into_iter().collect()), (p, users.clone()));
@@ -150,7 +172,9 @@ fn constrained(random: &mut Random, geometry: Chosen<2>) {
     }
     assert_eq!(t.check(Level::Law), [], "{history:#?}");
     let mut fresh: ConstrainedDelaunay<Chosen<2>> = ConstrainedDelaunay::new(geometry);
-    points.iter().for_each(|p| _ = fresh.insert(p.map(f64::from_bits)).unwrap());
+    points
+        .iter()
+        .for_each(|p| _ = fresh.insert(p.map(f64::from_bits)).unwrap());
     let rest: Vec<&Vec<[f64; 2]>> = lines.iter().map(|(line, _)| line).collect();
     fresh.insert_lines(&rest).unwrap();
     assert_eq!(shape(&t), shape(&fresh), "{history:#?}");

@@ -1,7 +1,9 @@
 //! Predicates of weighted points, in the plane and in space, against exact rational numbers.
 
 use breakline_triangulation::geometry::{Geometry, Plane, Space, Weighted, WeightedSpace};
-use breakline_triangulation::kernel::{ComparePower, PowerInPlane, PowerOnLine, PowerTest2, PowerTest3, RANGE};
+use breakline_triangulation::kernel::{
+    ComparePower, PowerInPlane, PowerOnLine, PowerTest2, PowerTest3, RANGE,
+};
 use breakline_triangulation::num::Sign;
 use dashu_ratio::RBig;
 use testkit::random::{Random, ulps};
@@ -50,7 +52,9 @@ impl Question<4, 5> for PowerTest3 {
 /// which they differ.
 impl<const D: usize> Question<D, 3> for PowerOnLine<D> {
     fn of(points: [[f64; D]; 3]) -> Self {
-        let along = (0..D - 1).find(|&axis| points[0][axis] != points[1][axis]).unwrap_or(0);
+        let along = (0..D - 1)
+            .find(|&axis| points[0][axis] != points[1][axis])
+            .unwrap_or(0);
         PowerOnLine { points, along }
     }
 
@@ -72,7 +76,13 @@ impl<const D: usize> Question<D, 3> for ComparePower<D> {
         let [q, a, b] = points.map(|p| p.map(rational));
         let weight = D - 1;
         let power = |p: &[RBig; D]| {
-            let moved: [RBig; D] = std::array::from_fn(|k| if k == weight { p[k].clone() } else { &p[k] - &q[k] });
+            let moved: [RBig; D] = std::array::from_fn(|k| {
+                if k == weight {
+                    p[k].clone()
+                } else {
+                    &p[k] - &q[k]
+                }
+            });
             lift(&moved)
         };
         power(&a).cmp(&power(&b)).into()
@@ -114,7 +124,11 @@ fn weighted_points() {
             [x, y, weight(&mut random)]
         }));
         // Along a line that is vertical, or is not.
-        let direction = if round % 3 == 0 { [0, 1] } else { [1 + random.below(2) as i64, random.around(3)] };
+        let direction = if round % 3 == 0 {
+            [0, 1]
+        } else {
+            [1 + random.below(2) as i64, random.around(3)]
+        };
         let mut steps = [(); 3].map(|()| random.around(side));
         (steps[0], steps[1]) = (steps[0].min(steps[1]), steps[0].max(steps[1]) + 1);
         line.ask::<PowerOnLine<3>, 3, 3>(steps.map(|step| {
@@ -122,7 +136,12 @@ fn weighted_points() {
             [x, y, weight(&mut random)]
         }));
     }
-    assert!(tallies.iter().all(|tally| tally.ties > 300 && tally.fixed > 1000), "{tallies:?}");
+    assert!(
+        tallies
+            .iter()
+            .all(|tally| tally.ties > 300 && tally.fixed > 1000),
+        "{tallies:?}"
+    );
 }
 
 /// Small grids in space, and planes and lines of such grids.
@@ -146,22 +165,35 @@ fn weighted_points_in_space() {
         let [space, plane, line, power, distance] = &mut tallies;
         space.ask::<PowerTest3, 4, 5>([(); 5].map(|()| any()));
         power.ask::<ComparePower<4>, 4, 3>([(); 3].map(|()| any()));
-        distance.ask::<CompareDistance<3>, 3, 3>([(); 3].map(|()| any()).map(|[x, y, z, _]| [x, y, z]));
+        distance
+            .ask::<CompareDistance<3>, 3, 3>([(); 3].map(|()| any()).map(|[x, y, z, _]| [x, y, z]));
 
         let [u, v] = [(); 2].map(|()| [(); 3].map(|()| random.around(2)));
         let steps = [(); 4].map(|()| [(); 2].map(|()| random.around(side)));
-        let in_plane = steps.map(|[s, t]| weighted(&mut random, std::array::from_fn(|k| s * u[k] + t * v[k])));
+        let in_plane =
+            steps.map(|[s, t]| weighted(&mut random, std::array::from_fn(|k| s * u[k] + t * v[k])));
         ask_in_plane(plane, in_plane, steps.map(|st| st.map(|x| x as f64)));
 
         // Along a line that differs on all axes, or on the last ones only.
-        let mut direction = [1 + random.below(2) as i64, random.around(2), random.around(2)];
+        let mut direction = [
+            1 + random.below(2) as i64,
+            random.around(2),
+            random.around(2),
+        ];
         direction.rotate_right(round % 3);
         direction[..round % 3].fill(0);
         let mut steps = [(); 3].map(|()| random.around(side));
         (steps[0], steps[1]) = (steps[0].min(steps[1]), steps[0].max(steps[1]) + 1);
-        line.ask::<PowerOnLine<4>, 4, 3>(steps.map(|step| weighted(&mut random, direction.map(|x| step * x))));
+        line.ask::<PowerOnLine<4>, 4, 3>(
+            steps.map(|step| weighted(&mut random, direction.map(|x| step * x))),
+        );
     }
-    assert!(tallies.iter().all(|tally| tally.ties > 100 && tally.fixed > 300), "{tallies:?}");
+    assert!(
+        tallies
+            .iter()
+            .all(|tally| tally.ties > 100 && tally.fixed > 300),
+        "{tallies:?}"
+    );
 }
 
 /// Lifts on a common plane, or a rounding above or below it.
@@ -194,7 +226,9 @@ fn weights_in_space_a_rounding_off() {
         tally.ask::<PowerTest3, 4, 5>([(); 5].map(|()| {
             let [x, y, z] = [(); 3].map(|()| offset + size * random.unit());
             let from_offset = [x, y, z].map(|x| x - offset);
-            let weight: f64 = (0..3).map(|k| from_offset[k] * from_offset[k] - slope[k] * from_offset[k]).sum();
+            let weight: f64 = (0..3)
+                .map(|k| from_offset[k] * from_offset[k] - slope[k] * from_offset[k])
+                .sum();
             [x, y, z, ulps(weight, random.around(1))]
         }));
     }
@@ -206,29 +240,63 @@ fn weights_in_space_a_rounding_off() {
 fn weights_of_every_size() {
     let (min, max) = (RANGE.min, RANGE.max);
     let step = min * f64::EPSILON;
-    let within = [0.0, step, 3.0 * step, min, min.next_up(), 2.0 * min, 1.0, max.next_down(), max];
-    let finite = [0.0, 5e-324, 1e-310, f64::MIN_POSITIVE, 1e-160, 1.0, 3.0, 1e150, 1e300, f64::MAX];
+    let within = [
+        0.0,
+        step,
+        3.0 * step,
+        min,
+        min.next_up(),
+        2.0 * min,
+        1.0,
+        max.next_down(),
+        max,
+    ];
+    let finite = [
+        0.0,
+        5e-324,
+        1e-310,
+        f64::MIN_POSITIVE,
+        1e-160,
+        1.0,
+        3.0,
+        1e150,
+        1e300,
+        f64::MAX,
+    ];
     let mut random = Random(22);
     let mut tallies: [Tally; 2] = Default::default();
     for round in 0..1500 {
-        let pool = if round % 3 == 0 { &finite[..] } else { &within[..] };
+        let pool = if round % 3 == 0 {
+            &finite[..]
+        } else {
+            &within[..]
+        };
         let mut any = || random.pick(pool) * random.pick(&[-1.0, 1.0]);
         let [plane, line] = &mut tallies;
         plane.ask::<PowerTest2, 3, 4>([(); 4].map(|()| [(); 3].map(|()| any())));
         // On the diagonal, and vertical.
         let [a, b, x] = [any(), any(), any()];
         for upright in [false, true] {
-            line.ask::<PowerOnLine<3>, 3, 3>(
-                [a.min(b), a.max(b), any()].map(|t| if upright { [x, t, any()] } else { [t, t, any()] }),
-            );
+            line.ask::<PowerOnLine<3>, 3, 3>([a.min(b), a.max(b), any()].map(|t| {
+                if upright {
+                    [x, t, any()]
+                } else {
+                    [t, t, any()]
+                }
+            }));
         }
         let mut any_within = || {
             let exponent = random.around(180) + 20;
-            (random.unit() + 1.0) * 2f64.powi(exponent as i32).clamp(min, max / 2.0) * random.pick(&[-1.0, 1.0])
+            (random.unit() + 1.0)
+                * 2f64.powi(exponent as i32).clamp(min, max / 2.0)
+                * random.pick(&[-1.0, 1.0])
         };
         plane.ask::<PowerTest2, 3, 4>([(); 4].map(|()| [(); 3].map(|()| any_within())));
     }
-    assert!(tallies.iter().all(|tally| tally.by_interval > 100), "{tallies:?}");
+    assert!(
+        tallies.iter().all(|tally| tally.by_interval > 100),
+        "{tallies:?}"
+    );
 }
 
 /// Like [`weights_of_every_size`], in space, with the whole range of exponents in each predicate.
@@ -236,12 +304,37 @@ fn weights_of_every_size() {
 fn weights_in_space_of_every_size() {
     let (min, max) = (RANGE.min, RANGE.max);
     let step = min * f64::EPSILON;
-    let within = [0.0, step, 3.0 * step, min, min.next_up(), 2.0 * min, 1.0, max.next_down(), max];
-    let finite = [0.0, 5e-324, 1e-310, f64::MIN_POSITIVE, 1e-160, 1.0, 3.0, 1e150, 1e300, f64::MAX];
+    let within = [
+        0.0,
+        step,
+        3.0 * step,
+        min,
+        min.next_up(),
+        2.0 * min,
+        1.0,
+        max.next_down(),
+        max,
+    ];
+    let finite = [
+        0.0,
+        5e-324,
+        1e-310,
+        f64::MIN_POSITIVE,
+        1e-160,
+        1.0,
+        3.0,
+        1e150,
+        1e300,
+        f64::MAX,
+    ];
     let mut random = Random(26);
     let mut tallies: [Tally; 4] = Default::default();
     for round in 0..400 {
-        let pool = if round % 3 == 0 { &finite[..] } else { &within[..] };
+        let pool = if round % 3 == 0 {
+            &finite[..]
+        } else {
+            &within[..]
+        };
         let mut any = || random.pick(pool) * random.pick(&[-1.0, 1.0]);
         let [space, plane, line, power] = &mut tallies;
         space.ask::<PowerTest3, 4, 5>([(); 5].map(|()| [(); 4].map(|()| any())));
@@ -259,17 +352,26 @@ fn weights_in_space_of_every_size() {
         // On a diagonal, and along the last axis.
         let (a, b) = (any(), any());
         for upright in [false, true] {
-            line.ask::<PowerOnLine<4>, 4, 3>(
-                [a.min(b), a.max(b), any()].map(|t| if upright { [level, level, t, any()] } else { [t, t, t, any()] }),
-            );
+            line.ask::<PowerOnLine<4>, 4, 3>([a.min(b), a.max(b), any()].map(|t| {
+                if upright {
+                    [level, level, t, any()]
+                } else {
+                    [t, t, t, any()]
+                }
+            }));
         }
         let mut any_within = || {
             let exponent = random.around(180) + 20;
-            (random.unit() + 1.0) * 2f64.powi(exponent as i32).clamp(min, max / 2.0) * random.pick(&[-1.0, 1.0])
+            (random.unit() + 1.0)
+                * 2f64.powi(exponent as i32).clamp(min, max / 2.0)
+                * random.pick(&[-1.0, 1.0])
         };
         space.ask::<PowerTest3, 4, 5>([(); 5].map(|()| [(); 4].map(|()| any_within())));
     }
-    assert!(tallies.iter().all(|tally| tally.by_interval > 100), "{tallies:?}");
+    assert!(
+        tallies.iter().all(|tally| tally.by_interval > 100),
+        "{tallies:?}"
+    );
 }
 
 /// Without weights the power test is the in-circle test, and on a line it is betweenness.
@@ -282,20 +384,50 @@ fn equal_weights_do_not_count() {
         let points = [(); 4].map(|()| [(); 2].map(|()| random.around(3) as f64));
         let heavy = points.map(|[x, y]| [x, y, weight]);
         let ([a, b, c, d], [p, q, r, s]) = (points.each_ref(), heavy.each_ref());
-        assert_eq!(weighted.side_of_sphere([p, q, r], s), plane.side_of_sphere([a, b, c], d), "{points:?}");
+        assert_eq!(
+            weighted.side_of_sphere([p, q, r], s),
+            plane.side_of_sphere([a, b, c], d),
+            "{points:?}"
+        );
         if plane.orientation([a, b, c]) == Sign::Zero {
             let between = plane.side_of_sphere_in_flat(&[a, b], c);
-            assert!(a == b || weighted.side_of_sphere_in_flat(&[p, q], r) == between, "{points:?}");
+            assert!(
+                a == b || weighted.side_of_sphere_in_flat(&[p, q], r) == between,
+                "{points:?}"
+            );
         }
     }
     let [low, middle, high] = [[0.0, 0.0, 0.0], [1.0, 1.0, -3.0], [4.0, 4.0, 0.0]];
-    assert_eq!(weighted.side_of_sphere_in_flat(&[&high, &low], &middle), Sign::Positive);
-    assert_eq!(weighted.side_of_sphere_in_flat(&[&low, &high], &[1.0, 1.0, -6.0]), Sign::Zero);
-    assert_eq!(weighted.side_of_sphere_in_flat(&[&low, &high], &[1.0, 1.0, -7.0]), Sign::Negative);
-    assert_eq!(weighted.side_of_sphere_in_flat(&[&low, &high], &[-1.0, -1.0, 11.0]), Sign::Positive);
-    assert_eq!(weighted.side_of_sphere_in_flat(&[&low], &[0.0, 0.0, 1.0]), Sign::Positive, "on one site");
-    assert_eq!(weighted.side_of_sphere_in_flat(&[&low], &[0.0, 0.0, -1.0]), Sign::Negative, "on one site");
-    assert!(weighted.compare_weights(&low, &middle).is_gt() && weighted.compare(&low, &[0.0, 0.0, 9.0]).is_eq());
+    assert_eq!(
+        weighted.side_of_sphere_in_flat(&[&high, &low], &middle),
+        Sign::Positive
+    );
+    assert_eq!(
+        weighted.side_of_sphere_in_flat(&[&low, &high], &[1.0, 1.0, -6.0]),
+        Sign::Zero
+    );
+    assert_eq!(
+        weighted.side_of_sphere_in_flat(&[&low, &high], &[1.0, 1.0, -7.0]),
+        Sign::Negative
+    );
+    assert_eq!(
+        weighted.side_of_sphere_in_flat(&[&low, &high], &[-1.0, -1.0, 11.0]),
+        Sign::Positive
+    );
+    assert_eq!(
+        weighted.side_of_sphere_in_flat(&[&low], &[0.0, 0.0, 1.0]),
+        Sign::Positive,
+        "on one site"
+    );
+    assert_eq!(
+        weighted.side_of_sphere_in_flat(&[&low], &[0.0, 0.0, -1.0]),
+        Sign::Negative,
+        "on one site"
+    );
+    assert!(
+        weighted.compare_weights(&low, &middle).is_gt()
+            && weighted.compare(&low, &[0.0, 0.0, 9.0]).is_eq()
+    );
     assert!(!weighted.admits(&[0.0, 0.0, f64::NAN]) && !weighted.admits(&[0.0, 0.0, 1e300]));
 }
 
@@ -311,24 +443,61 @@ fn equal_weights_do_not_count_in_space() {
         let points = [(); 5].map(|()| sizes.map(|size| random.around(size) as f64));
         let heavy = points.map(|[x, y, z]| [x, y, z, weight]);
         let ([a, b, c, d, e], [p, q, r, s, t]) = (points.each_ref(), heavy.each_ref());
-        assert_eq!(weighted.orientation([p, q, r, s]), space.orientation([a, b, c, d]), "{points:?}");
-        assert_eq!(weighted.side_of_sphere([p, q, r, s], t), space.side_of_sphere([a, b, c, d], e), "{points:?}");
+        assert_eq!(
+            weighted.orientation([p, q, r, s]),
+            space.orientation([a, b, c, d]),
+            "{points:?}"
+        );
+        assert_eq!(
+            weighted.side_of_sphere([p, q, r, s], t),
+            space.side_of_sphere([a, b, c, d], e),
+            "{points:?}"
+        );
         let turn = space.orientation_in_flat(&[a, b, c]);
         assert_eq!(weighted.orientation_in_flat(&[p, q, r]), turn, "{points:?}");
         if turn == Sign::Zero {
             let between = space.side_of_sphere_in_flat(&[a, b], c);
-            assert!(a == b || weighted.side_of_sphere_in_flat(&[p, q], r) == between, "{points:?}");
+            assert!(
+                a == b || weighted.side_of_sphere_in_flat(&[p, q], r) == between,
+                "{points:?}"
+            );
         } else if space.orientation([a, b, c, d]) == Sign::Zero {
             let inside = space.side_of_sphere_in_flat(&[a, b, c], d);
-            assert_eq!(weighted.side_of_sphere_in_flat(&[p, q, r], s), inside, "{points:?}");
+            assert_eq!(
+                weighted.side_of_sphere_in_flat(&[p, q, r], s),
+                inside,
+                "{points:?}"
+            );
         }
     }
     let [low, middle, high] = [[0.0; 4], [1.0, 1.0, 1.0, -6.0], [3.0, 3.0, 3.0, 0.0]];
-    assert_eq!(weighted.side_of_sphere_in_flat(&[&high, &low], &middle), Sign::Zero);
-    assert_eq!(weighted.side_of_sphere_in_flat(&[&low, &high], &[1.0, 1.0, 1.0, -5.0]), Sign::Positive);
-    assert_eq!(weighted.side_of_sphere_in_flat(&[&low, &high], &[1.0, 1.0, 1.0, -7.0]), Sign::Negative);
-    assert_eq!(weighted.side_of_sphere_in_flat(&[&low], &[0.0, 0.0, 0.0, 1.0]), Sign::Positive, "on one site");
-    assert_eq!(weighted.side_of_sphere_in_flat(&[&low], &[0.0, 0.0, 0.0, -1.0]), Sign::Negative, "on one site");
-    assert!(weighted.compare_weights(&low, &middle).is_gt() && weighted.compare(&low, &[0.0, 0.0, 0.0, 9.0]).is_eq());
-    assert!(!weighted.admits(&[0.0, 0.0, 0.0, f64::NAN]) && !weighted.admits(&[0.0, 0.0, 0.0, 1e300]));
+    assert_eq!(
+        weighted.side_of_sphere_in_flat(&[&high, &low], &middle),
+        Sign::Zero
+    );
+    assert_eq!(
+        weighted.side_of_sphere_in_flat(&[&low, &high], &[1.0, 1.0, 1.0, -5.0]),
+        Sign::Positive
+    );
+    assert_eq!(
+        weighted.side_of_sphere_in_flat(&[&low, &high], &[1.0, 1.0, 1.0, -7.0]),
+        Sign::Negative
+    );
+    assert_eq!(
+        weighted.side_of_sphere_in_flat(&[&low], &[0.0, 0.0, 0.0, 1.0]),
+        Sign::Positive,
+        "on one site"
+    );
+    assert_eq!(
+        weighted.side_of_sphere_in_flat(&[&low], &[0.0, 0.0, 0.0, -1.0]),
+        Sign::Negative,
+        "on one site"
+    );
+    assert!(
+        weighted.compare_weights(&low, &middle).is_gt()
+            && weighted.compare(&low, &[0.0, 0.0, 0.0, 9.0]).is_eq()
+    );
+    assert!(
+        !weighted.admits(&[0.0, 0.0, 0.0, f64::NAN]) && !weighted.admits(&[0.0, 0.0, 0.0, 1e300])
+    );
 }

@@ -7,7 +7,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use breakline_triangulation::geometry::{Plane, Weighted};
 use breakline_triangulation::tds::VertexId;
-use breakline_triangulation::{Basic, Constrained, ConstrainedDelaunay, Delaunay, Level, OnCrossing, Regular};
+use breakline_triangulation::{
+    Basic, Constrained, ConstrainedDelaunay, Delaunay, Level, OnCrossing, Regular,
+};
 use proptest::prelude::*;
 use serde_json::Value;
 use testkit::cells::{by_vertices, vertices};
@@ -24,7 +26,10 @@ enum Edit {
 
 fn edits() -> impl Strategy<Value = Vec<Edit>> {
     let insert = ([0i8..5, 0i8..5], 0i8..6).prop_map(|(site, weight)| Edit::Insert(site, weight));
-    prop::collection::vec(prop_oneof![3 => insert, 1 => (0u8..12).prop_map(Edit::Remove)], 0..24)
+    prop::collection::vec(
+        prop_oneof![3 => insert, 1 => (0u8..12).prop_map(Edit::Remove)],
+        0..24,
+    )
 }
 
 fn site([x, y]: [i8; 2]) -> [f64; 2] {
@@ -40,7 +45,12 @@ fn goes_on_as_before<T: serde::Serialize + serde::de::DeserializeOwned, E: Copy>
     edit: impl Fn(&mut T, usize, E),
     same: impl Fn(&T, &T) -> Result<(), TestCaseError>,
 ) -> Result<(), TestCaseError> {
-    let edit_all = |t: &mut T, edits: &[E]| edits.iter().enumerate().for_each(|(k, &what)| edit(t, k, what));
+    let edit_all = |t: &mut T, edits: &[E]| {
+        edits
+            .iter()
+            .enumerate()
+            .for_each(|(k, &what)| edit(t, k, what))
+    };
     edit_all(&mut t, before);
     let mut read = through(&t);
     for edits in [&[], after] {
@@ -142,7 +152,11 @@ fn damaged(value: &Value) -> Vec<Value> {
         }
         Value::Bool(is_so) => all.push(Value::Bool(!is_so)),
         _ => {
-            all.extend((0..12).chain([255, i64::from(u32::MAX), -1]).map(Value::from));
+            all.extend(
+                (0..12)
+                    .chain([255, i64::from(u32::MAX), -1])
+                    .map(Value::from),
+            );
             all.push(Value::Null);
         }
     }
@@ -151,7 +165,10 @@ fn damaged(value: &Value) -> Vec<Value> {
 
 /// Reads everything that is damaged in one entry; whatever is accepted must be sound, and survive
 /// edits.
-fn read_damaged<T: serde::Serialize + serde::de::DeserializeOwned>(t: &T, is_sound: impl Fn(T) -> bool) {
+fn read_damaged<T: serde::Serialize + serde::de::DeserializeOwned>(
+    t: &T,
+    is_sound: impl Fn(T) -> bool,
+) {
     let saved = serde_json::to_value(t).unwrap();
     let mut errors = 0;
     for value in damaged(&saved) {
@@ -170,7 +187,16 @@ const SITES: [&[[f64; 2]]; 7] = [
     &[[0.0, 0.0], [2.0, 2.0], [1.0, 1.0]],
     &[[0.0, 0.0], [2.0, 2.0], [1.0, 1.0], [3.0, 3.0]],
     &[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]],
-    &[[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [0.0, 1.0], [1.0, 1.0], [2.0, 1.0], [0.0, 2.0], [2.0, 2.0]],
+    &[
+        [0.0, 0.0],
+        [1.0, 0.0],
+        [2.0, 0.0],
+        [0.0, 1.0],
+        [1.0, 1.0],
+        [2.0, 1.0],
+        [0.0, 2.0],
+        [2.0, 2.0],
+    ],
 ];
 
 #[test]
@@ -208,13 +234,20 @@ fn damage_to_regular_and_constrained_kinds_is_an_error() {
         let mut regular: Regular<Weighted, 3> = Regular::new(Weighted::default());
         let mut constrained: Constrained<Plane> = Constrained::new(Plane::default());
         for (k, &[x, y]) in sites.iter().enumerate() {
-            regular.insert([x, y, if k % 3 == 1 { -4.0 } else { 0.0 }]).unwrap();
+            regular
+                .insert([x, y, if k % 3 == 1 { -4.0 } else { 0.0 }])
+                .unwrap();
             constrained.insert([x, y]).unwrap();
         }
-        let _ = constrained.constrain(VertexId::new(0), VertexId::new(sites.len().saturating_sub(1)));
+        let _ = constrained.constrain(
+            VertexId::new(0),
+            VertexId::new(sites.len().saturating_sub(1)),
+        );
         read_damaged(&regular, |mut t| {
-            let (fresh, _) = Regular::<Weighted, 3>::from_points(Weighted::default(), t.points()).unwrap();
-            let is_sound = t.check(Level::Law).is_empty() && t.vertex_count() == fresh.vertex_count();
+            let (fresh, _) =
+                Regular::<Weighted, 3>::from_points(Weighted::default(), t.points()).unwrap();
+            let is_sound =
+                t.check(Level::Law).is_empty() && t.vertex_count() == fresh.vertex_count();
             t.insert([0.25, 1.0, 0.5]).unwrap();
             let _ = t.remove(VertexId::new(0));
             is_sound && t.check(Level::Law).is_empty()
@@ -240,13 +273,19 @@ fn a_constraint_to_infinity_is_an_error() {
     let vertices = saved["cells"].as_array().unwrap().clone();
     for (k, cell) in vertices.chunks(3).enumerate() {
         let is_end = |vertex: &Value| vertex.is_null() || *vertex == 0;
-        if cell.iter().filter(|&vertex| is_end(vertex)).count() == 2 && cell.contains(&Value::Null) {
+        if cell.iter().filter(|&vertex| is_end(vertex)).count() == 2 && cell.contains(&Value::Null)
+        {
             let opposite = cell.iter().position(|vertex| !is_end(vertex)).unwrap();
             saved["cell_data"][k][0] = Value::from(1 << opposite);
         }
     }
-    let error = serde_json::from_value::<Constrained<Plane>>(saved).unwrap_err().to_string();
-    assert_eq!(error, "damaged triangulation: an edge that does not exist is constrained");
+    let error = serde_json::from_value::<Constrained<Plane>>(saved)
+        .unwrap_err()
+        .to_string();
+    assert_eq!(
+        error,
+        "damaged triangulation: an edge that does not exist is constrained"
+    );
 }
 
 #[test]
@@ -256,16 +295,27 @@ fn payloads_of_cells_are_saved() {
     let mut t: Delaunay<Plane, 3, (), u32> = t.with_cell_data(|cell| 7 * cell.index() as u32);
     let _ = t.remove(of_points[0]);
     let seen = |t: &Delaunay<Plane, 3, (), u32>| -> BTreeMap<_, _> {
-        t.tds().cells().map(|cell| (vertices(t, cell), *t.tds().cell_data(cell))).collect()
+        t.tds()
+            .cells()
+            .map(|cell| (vertices(t, cell), *t.tds().cell_data(cell)))
+            .collect()
     };
     assert_eq!(seen(&t), seen(&through(&t)));
 
     let lines = [[0, 3], [1, 4]];
-    let (t, _) =
-        ConstrainedDelaunay::<_, ()>::from_lines(Plane::default(), &points, &lines, OnCrossing::Split).unwrap();
+    let (t, _) = ConstrainedDelaunay::<_, ()>::from_lines(
+        Plane::default(),
+        &points,
+        &lines,
+        OnCrossing::Split,
+    )
+    .unwrap();
     let t: ConstrainedDelaunay<Plane, (), u32> = t.with_cell_data(|cell| cell.index() as u32 + 1);
     let seen = |t: &ConstrainedDelaunay<Plane, (), u32>| -> BTreeMap<_, _> {
-        t.tds().cells().map(|cell| (vertices(t, cell), *t.cell_data(cell))).collect()
+        t.tds()
+            .cells()
+            .map(|cell| (vertices(t, cell), *t.cell_data(cell)))
+            .collect()
     };
     let read = through(&t);
     assert_eq!(seen(&t), seen(&read));

@@ -18,9 +18,13 @@ enum Edit {
 /// Points on a tiny grid, the first ones in a plane.
 fn edits() -> impl Strategy<Value = Vec<Edit>> {
     let site = |depth: i8| [0i8..3, 0i8..3, 0..depth];
-    let insert = |depth| (site(depth), 0i8..5).prop_map(|(site, weight)| Edit::Insert(site, weight));
+    let insert =
+        |depth| (site(depth), 0i8..5).prop_map(|(site, weight)| Edit::Insert(site, weight));
     let edits = |depth| prop_oneof![3 => insert(depth), 1 => (0u8..9).prop_map(Edit::Remove)];
-    (prop::collection::vec(edits(1), 0..8), prop::collection::vec(edits(3), 0..10))
+    (
+        prop::collection::vec(edits(1), 0..8),
+        prop::collection::vec(edits(3), 0..10),
+    )
         .prop_map(|(flat, full)| [flat, full].concat())
 }
 
@@ -29,7 +33,9 @@ fn site(p: [i8; 3]) -> [f64; 3] {
 }
 
 /// All cells, by the numbers of their vertices.
-fn cells<G: Geometry<4>, V, C: Copy + Default>(t: &Triangulation<G, 4, V, C>) -> BTreeSet<Vec<VertexId>> {
+fn cells<G: Geometry<4>, V, C: Copy + Default>(
+    t: &Triangulation<G, 4, V, C>,
+) -> BTreeSet<Vec<VertexId>> {
     let sorted = |cell| {
         let mut vertices = t.tds().cell_vertices(cell).to_vec();
         vertices.sort_unstable();
@@ -79,9 +85,27 @@ const SITES: [&[[f64; 3]]; 8] = [
     &[[0.0, 0.0, 0.0], [1.0, 1.0, 1.0]],
     &[[0.0, 0.0, 0.0], [2.0, 2.0, 2.0], [1.0, 1.0, 1.0]],
     &[[0.0, 0.0, 1.0], [1.0, 0.0, 1.0], [0.0, 1.0, 1.0]],
-    &[[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0], [2.0, 2.0, 0.0], [1.0, 0.0, 0.0]],
-    &[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
-    &[[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0], [2.0, 2.0, 0.0], [0.0, 0.0, 2.0], [2.0, 2.0, 2.0]],
+    &[
+        [0.0, 0.0, 0.0],
+        [2.0, 0.0, 0.0],
+        [0.0, 2.0, 0.0],
+        [2.0, 2.0, 0.0],
+        [1.0, 0.0, 0.0],
+    ],
+    &[
+        [0.0, 0.0, 0.0],
+        [1.0, 0.0, 0.0],
+        [0.0, 1.0, 0.0],
+        [0.0, 0.0, 1.0],
+    ],
+    &[
+        [0.0, 0.0, 0.0],
+        [2.0, 0.0, 0.0],
+        [0.0, 2.0, 0.0],
+        [2.0, 2.0, 0.0],
+        [0.0, 0.0, 2.0],
+        [2.0, 2.0, 2.0],
+    ],
 ];
 
 #[test]
@@ -116,11 +140,15 @@ fn damage_to_the_regular_kind_is_an_error() {
     for sites in SITES {
         let mut regular: Regular<WeightedSpace, 4> = Regular::new(WeightedSpace::default());
         for (k, &[x, y, z]) in sites.iter().enumerate() {
-            regular.insert([x, y, z, if k % 3 == 1 { -4.0 } else { 0.0 }]).unwrap();
+            regular
+                .insert([x, y, z, if k % 3 == 1 { -4.0 } else { 0.0 }])
+                .unwrap();
         }
         read_damaged(&regular, |mut t| {
-            let (fresh, _) = Regular::<_, 4>::from_points(WeightedSpace::new(), t.points()).unwrap();
-            let is_sound = t.check(Level::Law).is_empty() && t.vertex_count() == fresh.vertex_count();
+            let (fresh, _) =
+                Regular::<_, 4>::from_points(WeightedSpace::new(), t.points()).unwrap();
+            let is_sound =
+                t.check(Level::Law).is_empty() && t.vertex_count() == fresh.vertex_count();
             t.insert([0.25, 1.0, 0.5, 0.5]).unwrap();
             let _ = t.remove(VertexId::new(0));
             is_sound && t.check(Level::Law).is_empty()
@@ -134,8 +162,13 @@ fn dimensions_do_not_mix() {
     let (t, _) = Delaunay::from_points(Space::new(), SITES[6]).unwrap();
     let mut saved = serde_json::to_value(&t).unwrap();
     saved["dimension"] = 4.into();
-    let error = serde_json::from_value::<Delaunay<Space, 4>>(saved).unwrap_err().to_string();
-    assert_eq!(error, "damaged triangulation: the dimension is below -1, or above that of the plane or space");
+    let error = serde_json::from_value::<Delaunay<Space, 4>>(saved)
+        .unwrap_err()
+        .to_string();
+    assert_eq!(
+        error,
+        "damaged triangulation: the dimension is below -1, or above that of the plane or space"
+    );
 }
 
 /// Points of a plane that are moved out of it, or turned around in it, are found by the checker.
@@ -146,13 +179,18 @@ fn coplanar_points_are_checked() {
     let damaged = |vertex: VertexId, at: [f64; 3]| {
         let mut saved = serde_json::to_value(&t).unwrap();
         saved["points"][vertex.index()] = serde_json::json!(at);
-        serde_json::from_value::<Delaunay<Space, 4>>(saved).unwrap_err().to_string()
+        serde_json::from_value::<Delaunay<Space, 4>>(saved)
+            .unwrap_err()
+            .to_string()
     };
     assert!(damaged(v[4], [1.0, 0.0, 1.0]).contains("is outside of the flat of all others"));
     assert!(damaged(v[4], [1.0, 9.0, 0.0]).contains("is flat or turned around"));
     assert!(damaged(v[4], [1.0, 0.5, 0.0]).contains("the hull turns inwards"));
     assert_eq!(
         Flaw::NotInFlat(v[4]).to_string(),
-        format!("vertex {} is outside of the flat of all others", v[4].index())
+        format!(
+            "vertex {} is outside of the flat of all others",
+            v[4].index()
+        )
     );
 }

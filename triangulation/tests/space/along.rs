@@ -8,7 +8,9 @@ use breakline_triangulation::geometry::{Geometry, Space, WeightedSpace};
 use breakline_triangulation::kernel::Wide;
 use breakline_triangulation::num::Sign;
 use breakline_triangulation::tds::VertexId;
-use breakline_triangulation::{Basic, Delaunay, Locate, Regular, SpacePassage, StraightLine, Triangulation};
+use breakline_triangulation::{
+    Basic, Delaunay, Locate, Regular, SpacePassage, StraightLine, Triangulation,
+};
 use testkit::random::Random;
 
 use crate::TINY;
@@ -49,7 +51,9 @@ fn stay(simplex: &[Whole], [a, b]: [Whole; 2]) -> Option<[Fraction; 2]> {
     let shifted = |by: Whole| [0, 1, 2].map(|k| origin[k] + by[k]);
     let mut full = None;
     for mask in 0..8 {
-        let added = (0..3).filter(|k| mask >> k & 1 == 1).map(|k| shifted(axes[k]));
+        let added = (0..3)
+            .filter(|k| mask >> k & 1 == 1)
+            .map(|k| shifted(axes[k]));
         let corners: Vec<Whole> = simplex.iter().copied().chain(added).collect();
         if let Ok(corners) = <[Whole; 4]>::try_from(corners)
             && volume(corners) != 0
@@ -123,15 +127,31 @@ fn spanned<G: Geometry<4>, V, C: Copy + Default>(
 }
 
 /// All finite vertices, edges, triangles and tetrahedra.
-fn simplices<G: Geometry<4>, V, C: Copy + Default>(t: &Triangulation<G, 4, V, C>) -> Vec<Vec<VertexId>> {
+fn simplices<G: Geometry<4>, V, C: Copy + Default>(
+    t: &Triangulation<G, 4, V, C>,
+) -> Vec<Vec<VertexId>> {
     let mut all: Vec<Vec<VertexId>> = t.tds().vertices().map(|v| vec![v]).collect();
-    all.extend(t.tds().finite_edges().map(|edge| spanned(t, SpacePassage::Edge(edge)).0));
+    all.extend(
+        t.tds()
+            .finite_edges()
+            .map(|edge| spanned(t, SpacePassage::Edge(edge)).0),
+    );
     match t.dimension() {
         3 => {
-            all.extend(t.tds().finite_facets().map(|(cell, i)| spanned(t, SpacePassage::Facet(cell, i)).0));
-            all.extend(t.finite_cells().map(|cell| spanned(t, SpacePassage::Cell(cell)).0));
+            all.extend(
+                t.tds()
+                    .finite_facets()
+                    .map(|(cell, i)| spanned(t, SpacePassage::Facet(cell, i)).0),
+            );
+            all.extend(
+                t.finite_cells()
+                    .map(|cell| spanned(t, SpacePassage::Cell(cell)).0),
+            );
         }
-        2 => all.extend(t.finite_cells().map(|cell| spanned(t, SpacePassage::Facet(cell, 3)).0)),
+        2 => all.extend(
+            t.finite_cells()
+                .map(|cell| spanned(t, SpacePassage::Facet(cell, 3)).0),
+        ),
         _ => {}
     }
     all
@@ -149,18 +169,28 @@ fn judge<G: Geometry<4>, V, C: Copy + Default>(
     for segment @ [a, b] in segments {
         let ends = [whole(a), whole(b)];
         let stay_of = |vertices: &Vec<VertexId>| {
-            stay(&vertices.iter().map(|v| sites[v.index()]).collect::<Vec<_>>(), ends)
-                .map(|stay| (stay, vertices.clone()))
+            stay(
+                &vertices
+                    .iter()
+                    .map(|v| sites[v.index()])
+                    .collect::<Vec<_>>(),
+                ends,
+            )
+            .map(|stay| (stay, vertices.clone()))
         };
         let mut expected: Vec<_> = all.iter().filter_map(stay_of).collect();
-        let middle = |[from, to]: [Fraction; 2]| Fraction(from.0 * to.1 + to.0 * from.1, from.1 * to.1);
+        let middle =
+            |[from, to]: [Fraction; 2]| Fraction(from.0 * to.1 + to.0 * from.1, from.1 * to.1);
         expected.sort_by(|(s, _), (t, _)| middle(*s).order(middle(*t)));
         let is_long = |[from, to]: [Fraction; 2]| from.order(to).is_lt() && ends[0] != ends[1];
-        let expected: Vec<(Vec<VertexId>, bool)> =
-            expected.into_iter().map(|(stay, vertices)| (vertices, is_long(stay))).collect();
+        let expected: Vec<(Vec<VertexId>, bool)> = expected
+            .into_iter()
+            .map(|(stay, vertices)| (vertices, is_long(stay)))
+            .collect();
         let near = t.tds().cells().nth(segments.len() % 3);
         let met: Vec<SpacePassage> = t.along(segment.each_ref(), near).collect();
-        let mut found: Vec<(Vec<VertexId>, bool)> = met.iter().map(|&passage| spanned(t, passage)).collect();
+        let mut found: Vec<(Vec<VertexId>, bool)> =
+            met.iter().map(|&passage| spanned(t, passage)).collect();
         if let ([(vertices, is_long)], true) = (&mut found[..], ends[0] == ends[1]) {
             *is_long &= vertices.len() < 4;
         }
@@ -176,7 +206,10 @@ fn judge<G: Geometry<4>, V, C: Copy + Default>(
                             replaced[i] = p;
                             t.geometry().orientation(replaced)
                         };
-                        assert!(side(a) != Sign::Negative && side(b) != Sign::Positive, "out of the cell");
+                        assert!(
+                            side(a) != Sign::Negative && side(b) != Sign::Positive,
+                            "out of the cell"
+                        );
                     }
                     1
                 }
@@ -195,7 +228,14 @@ fn judge<G: Geometry<4>, V, C: Copy + Default>(
 
 /// A site in half steps, in a grid, a slanted plane, or on a slanted line.
 fn site(random: &mut Random, round: usize, steps: i64) -> [i64; 3] {
-    let sizes = [[2, 2, 2], [3, 3, 3], [4, 2, 1], [4, 3, 0], [3, 0, 0], [1, 1, 1]][round % 6];
+    let sizes = [
+        [2, 2, 2],
+        [3, 3, 3],
+        [4, 2, 1],
+        [4, 3, 0],
+        [3, 0, 0],
+        [1, 1, 1],
+    ][round % 6];
     let [x, y, z] = sizes.map(|size| {
         let margin = i64::from(steps == 1);
         random.below(((size + 2 * margin) * (2 / steps) + 1) as u64) as i64 * steps - 2 * margin
@@ -217,7 +257,9 @@ fn segments_meet_what_they_meet_in_order() {
         let point = |site: [i64; 3]| site.map(|x| x as f64 * 0.5 * scale);
         let whole = |p: &[f64; 3]| p.map(|x| (x / scale * 2.0) as i128);
         let count = if round % 11 == 0 { 1 } else { random.index(16) };
-        let points: Vec<[f64; 3]> = (0..count).map(|_| point(site(&mut random, round, 2))).collect();
+        let points: Vec<[f64; 3]> = (0..count)
+            .map(|_| point(site(&mut random, round, 2)))
+            .collect();
         // Where the points are flat, most segments are in their plane or on their line.
         let segments: Vec<[[f64; 3]; 2]> = (0..12)
             .map(|k| {
@@ -245,8 +287,22 @@ fn segments_meet_what_they_meet_in_order() {
     }
     // Tetrahedra in dimension 3 only; a facet is crossed from dimension 2 on.
     for (dimension, kinds) in kinds.iter().enumerate() {
-        let possible = [dimension > 2, dimension > 1, dimension > 1, dimension > 0, dimension > 0, true];
-        assert!((0..6).all(|k| if possible[k] { kinds[k] > 5 } else { kinds[k] == 0 }), "{dimension}: {kinds:?}");
+        let possible = [
+            dimension > 2,
+            dimension > 1,
+            dimension > 1,
+            dimension > 0,
+            dimension > 0,
+            true,
+        ];
+        assert!(
+            (0..6).all(|k| if possible[k] {
+                kinds[k] > 5
+            } else {
+                kinds[k] == 0
+            }),
+            "{dimension}: {kinds:?}"
+        );
     }
 }
 
@@ -254,12 +310,18 @@ fn segments_meet_what_they_meet_in_order() {
 fn in_a_regular_triangulation() {
     let mut random = Random(62);
     for round in 0..100 {
-        let weighted = |[x, y, z]: [i64; 3], weight: u64| [x as f64, y as f64, z as f64, weight as f64];
+        let weighted =
+            |[x, y, z]: [i64; 3], weight: u64| [x as f64, y as f64, z as f64, weight as f64];
         let mut draw = |steps| weighted(site(&mut random, round, steps), random.below(4));
         let points: Vec<[f64; 4]> = (0..14).map(|_| draw(2)).collect();
         let (t, _) = Regular::<_, 4>::from_points(<WeightedSpace>::new(), &points).unwrap();
         let segments: Vec<[[f64; 4]; 2]> = (0..6).map(|_| [draw(1), draw(1)]).collect();
-        judge(&t, |p| [p[0], p[1], p[2]].map(|x| x as i128), &segments, &mut [0; 6]);
+        judge(
+            &t,
+            |p| [p[0], p[1], p[2]].map(|x| x as i128),
+            &segments,
+            &mut [0; 6],
+        );
     }
 }
 
@@ -282,11 +344,21 @@ fn counts(t: &Delaunay<Space, 4>, a: [f64; 3], b: [f64; 3]) -> [usize; 6] {
 /// The queries of CGAL's test of its simplex traverser that do not depend on ties.
 #[test]
 fn two_tetrahedra_in_a_box() {
-    let inner = [[-2.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 1.0, -1.0], [0.0, -1.0, -1.0], [0.0, 0.0, 1.0]];
+    let inner = [
+        [-2.0, 0.0, 0.0],
+        [2.0, 0.0, 0.0],
+        [0.0, 1.0, -1.0],
+        [0.0, -1.0, -1.0],
+        [0.0, 0.0, 1.0],
+    ];
     let corners = (0..8).map(|k| [k & 1, k >> 1 & 1, k >> 2].map(|side| f64::from(20 * side - 10)));
     let points: Vec<[f64; 3]> = inner.into_iter().chain(corners).collect();
     let (t, v) = Delaunay::from_points(Space::new(), &points).unwrap();
-    assert!([0, 1].iter().all(|&k| t.tds().cell_with(&[v[k], v[2], v[3], v[4]]).is_some()));
+    assert!(
+        [0, 1]
+            .iter()
+            .all(|&k| t.tds().cell_with(&[v[k], v[2], v[3], v[4]]).is_some())
+    );
     let on_axis = |a: f64, b: f64| counts(&t, [a, 0.0, 0.0], [b, 0.0, 0.0]);
     assert_eq!(on_axis(-1.0, 1.0), [0, 0, 0, 1, 0, 2]);
     assert_eq!(on_axis(-1.0, 2.0), [1, 0, 0, 1, 0, 2]);
@@ -300,7 +372,9 @@ fn two_tetrahedra_in_a_box() {
 /// Through vertices, edges and facets of a 5 x 5 x 5 grid, whatever the diagonals are.
 #[test]
 fn walks_across_a_lattice() {
-    let points: Vec<[f64; 3]> = (0..125).map(|k| [k / 25, k / 5 % 5, k % 5].map(f64::from)).collect();
+    let points: Vec<[f64; 3]> = (0..125)
+        .map(|k| [k / 25, k / 5 % 5, k % 5].map(f64::from))
+        .collect();
     let (t, _) = Delaunay::from_points(Space::new(), &points).unwrap();
     for axis in 0..3 {
         let turned = |[x, y, z]: [f64; 3]| {
@@ -315,15 +389,32 @@ fn walks_across_a_lattice() {
             there
         };
         assert_eq!(across(2.0, 2.0), [5, 0, 4, 0, 0, 0]);
-        assert_eq!(across(0.0, 4.0), [5, 0, 4, 0, 0, 0], "along an edge of the hull");
+        assert_eq!(
+            across(0.0, 4.0),
+            [5, 0, 4, 0, 0, 0],
+            "along an edge of the hull"
+        );
         // The square in each plane has a diagonal.
         assert_eq!(across(2.0, 2.5), [0, 9, 0, 0, 8, 0]);
-        assert_eq!(across(4.0, 0.25), [0, 9, 0, 0, 8, 0], "in a face of the hull");
+        assert_eq!(
+            across(4.0, 0.25),
+            [0, 9, 0, 0, 8, 0],
+            "in a face of the hull"
+        );
         let [vertices, edges, along, facets, within, cells] = across(2.25, 2.625);
-        assert_eq!([vertices, edges, along, within, facets], [0, 0, 0, 0, cells + 1]);
-        assert!((12..=24).contains(&cells), "three to six cells in a cube: {cells}");
+        assert_eq!(
+            [vertices, edges, along, within, facets],
+            [0, 0, 0, 0, cells + 1]
+        );
+        assert!(
+            (12..=24).contains(&cells),
+            "three to six cells in a cube: {cells}"
+        );
         assert_eq!(across(4.25, 2.0), [0; 6]);
-        assert_eq!(counts(&t, turned([-1.0, 2.0, 2.0]), turned([2.0, 2.0, 2.0])), [3, 0, 2, 0, 0, 0]);
+        assert_eq!(
+            counts(&t, turned([-1.0, 2.0, 2.0]), turned([2.0, 2.0, 2.0])),
+            [3, 0, 2, 0, 0, 0]
+        );
     }
     // Through five vertices, and at least one passage between two of them.
     let [vertices, _, along, _, within, cells] = counts(&t, [-1.0; 3], [5.0; 3]);
@@ -344,7 +435,10 @@ fn nothing_is_met_by_what_is_not_a_segment() {
     assert_eq!(t.along([&origin, &[1.0; 3]], None).count(), 0);
     for p in [[0.0; 3], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 2.0]] {
         t.insert(p).unwrap();
-        assert_eq!(t.along([&origin, &nan], None).count() + t.along([&nan, &origin], None).count(), 0);
+        assert_eq!(
+            t.along([&origin, &nan], None).count() + t.along([&nan, &origin], None).count(),
+            0
+        );
         assert_eq!(t.along([&[f64::INFINITY; 3], &nan], None).count(), 0);
         assert_eq!(t.along([&origin, &origin], None).count(), 1);
     }
@@ -358,7 +452,9 @@ thread_local!(static SEED: Cell<Option<u64>> = const { Cell::new(None) });
 
 /// Returns the sign, or any other every fourth time while there is a seed.
 fn erring(sign: Sign) -> Sign {
-    let Some(mut random) = SEED.get().map(Random) else { return sign };
+    let Some(mut random) = SEED.get().map(Random) else {
+        return sign;
+    };
     let any = random.pick(&[Sign::Negative, Sign::Zero, Sign::Positive]);
     let drawn = random.pick(&[sign, sign, sign, any]);
     SEED.set(Some(random.0));
@@ -402,7 +498,8 @@ fn walks_end_with_wrong_signs() {
         SEED.set(None);
         let mut t = Delaunay::<_, 4>::new(Erring::default());
         for _ in 0..30 {
-            t.insert(site(&mut random, round, 2).map(|x| x as f64)).unwrap();
+            t.insert(site(&mut random, round, 2).map(|x| x as f64))
+                .unwrap();
         }
         SEED.set(Some(round as u64));
         for _ in 0..20 {

@@ -4,8 +4,8 @@
 use breakline_triangulation::geometry::{Plane, Space, Terrain, WeightedSpace};
 use breakline_triangulation::tds::{CellId, VertexId};
 use breakline_triangulation::{
-    Compact, CompactError, CompactSection, ConflictZone, Delaunay, Delaunay3, Law, Level, Location, Regular,
-    SpacePassage,
+    Compact, CompactError, CompactSection, ConflictZone, Delaunay, Delaunay3, Law, Level, Location,
+    Regular, SpacePassage,
 };
 use testkit::random::Random;
 
@@ -41,8 +41,16 @@ fn all<T>(
 fn points(random: &mut Random, round: usize) -> Vec<Point> {
     let sides = [[3, 3, 3], [4, 4, 1], [5, 1, 1], [0, 0, 0], [2, 2, 2]][round % 5];
     let count = random.index([3, 6, 20][round % 3]);
-    let at = |random: &mut Random, side| if side == 0 { random.unit() * 3.0 } else { random.below(side) as f64 };
-    (0..count).map(|_| sides.map(|side| at(random, side))).collect()
+    let at = |random: &mut Random, side| {
+        if side == 0 {
+            random.unit() * 3.0
+        } else {
+            random.below(side) as f64
+        }
+    };
+    (0..count)
+        .map(|_| sides.map(|side| at(random, side)))
+        .collect()
 }
 
 fn site(random: &mut Random) -> Point {
@@ -57,15 +65,26 @@ fn answers_are_those_of_the_triangulation_that_was_written() {
         let t = build(&points(&mut random, round));
         let bytes = bytes(&t);
         let compact = open(&bytes).unwrap();
-        assert_eq!((compact.dimension(), compact.vertex_count()), (t.dimension(), t.vertex_count()));
+        assert_eq!(
+            (compact.dimension(), compact.vertex_count()),
+            (t.dimension(), t.vertex_count())
+        );
         assert_eq!(compact.cell_count(), t.tds().cell_count());
         dimensions[(t.dimension() + 1) as usize] += 1;
-        assert_eq!((compact.law(), compact.check(Level::Law)), (Law::Delaunay, Ok(())), "{:?}", t.points());
+        assert_eq!(
+            (compact.law(), compact.check(Level::Law)),
+            (Law::Delaunay, Ok(())),
+            "{:?}",
+            t.points()
+        );
         // Cells are numbered as in the file: without gaps.
         let used: Vec<CellId> = t.tds().cells().collect();
         let dense = |cell| CellId::new(used.binary_search(&cell).unwrap());
         let location = |location| match location {
-            Location::Cell { cell, facets } => Location::Cell { cell: dense(cell), facets },
+            Location::Cell { cell, facets } => Location::Cell {
+                cell: dense(cell),
+                facets,
+            },
             Location::OutsideHull { cell } => Location::OutsideHull { cell: dense(cell) },
             other => other,
         };
@@ -79,31 +98,60 @@ fn answers_are_those_of_the_triangulation_that_was_written() {
         let near = used.first().copied();
         let near_there = near.map(dense);
         let [p, q] = [site(&mut random), site(&mut random)];
-        assert_eq!(compact.locate(&p, near_there), Ok(location(t.locate(&p, near))));
+        assert_eq!(
+            compact.locate(&p, near_there),
+            Ok(location(t.locate(&p, near)))
+        );
         assert_eq!(compact.within_box([&p, &q]), Ok(t.within_box([&p, &q])));
         let met: Vec<SpacePassage> = t.along([&p, &q], near).map(passage).collect();
         assert_eq!(all(compact.along([&p, &q], near_there)), Ok(met));
         assert_eq!(compact.nearest(&p, near_there), Ok(t.nearest(&p, near)));
-        assert_eq!(all(compact.nearest_first(&p, None)), Ok(t.nearest_first(&p, None).collect()));
-        assert_eq!(all(compact.within(&p, &q)), Ok(t.within(&p, &q).collect::<Vec<VertexId>>()));
+        assert_eq!(
+            all(compact.nearest_first(&p, None)),
+            Ok(t.nearest_first(&p, None).collect())
+        );
+        assert_eq!(
+            all(compact.within(&p, &q)),
+            Ok(t.within(&p, &q).collect::<Vec<VertexId>>())
+        );
         let zone = t.conflict_zone(&p, near).map(|zone| ConflictZone {
             cells: zone.cells.into_iter().map(dense).collect(),
-            border: zone.border.into_iter().map(|(cell, i)| (dense(cell), i)).collect(),
+            border: zone
+                .border
+                .into_iter()
+                .map(|(cell, i)| (dense(cell), i))
+                .collect(),
         });
         assert_eq!(compact.conflict_zone(&p, near_there), Ok(zone));
         let vertices: Vec<VertexId> = t.tds().vertices().chain([VertexId::INFINITE]).collect();
         for &vertex in vertices.iter().filter(|_| t.dimension() >= 0) {
             assert_eq!(
                 compact.cells_around(vertex),
-                Ok(t.tds().cells_around(vertex).into_iter().map(|(cell, i)| (dense(cell), i)).collect())
+                Ok(t.tds()
+                    .cells_around(vertex)
+                    .into_iter()
+                    .map(|(cell, i)| (dense(cell), i))
+                    .collect())
             );
-            assert_eq!(compact.vertices_around(vertex), Ok(t.tds().vertices_around(vertex)));
+            assert_eq!(
+                compact.vertices_around(vertex),
+                Ok(t.tds().vertices_around(vertex))
+            );
             let some = [vertex, random.pick(&vertices), random.pick(&vertices)];
-            assert_eq!(compact.cell_with(&some), Ok(t.tds().cell_with(&some).map(dense)));
+            assert_eq!(
+                compact.cell_with(&some),
+                Ok(t.tds().cell_with(&some).map(dense))
+            );
         }
         for (cell, i, j) in t.tds().edges().take(5) {
-            let around = t.tds().cells_around_edge((cell, i, j)).map(|(cell, i, j)| (dense(cell), i, j));
-            assert_eq!(all(compact.cells_around_edge((dense(cell), i, j))), Ok(around.collect()));
+            let around = t
+                .tds()
+                .cells_around_edge((cell, i, j))
+                .map(|(cell, i, j)| (dense(cell), i, j));
+            assert_eq!(
+                all(compact.cells_around_edge((dense(cell), i, j))),
+                Ok(around.collect())
+            );
         }
         let mut again = Vec::new();
         compact.write_compact(&mut again).unwrap();
@@ -126,15 +174,29 @@ fn gaps_close_and_hidden_points_are_left_out() {
         let bytes = bytes(&t);
         let compact = open(&bytes).unwrap();
         assert_eq!(compact.check(Level::Law), Ok(()));
-        let points = (0..compact.vertex_count()).map(|index| compact.point(VertexId::new(index)).unwrap());
+        let points =
+            (0..compact.vertex_count()).map(|index| compact.point(VertexId::new(index)).unwrap());
         assert!(points.eq(t.tds().vertices().map(|v| *t.point(v))));
     }
-    let corners = [[0.0; 4], [4.0, 0.0, 0.0, 0.0], [0.0, 4.0, 0.0, 0.0], [0.0, 0.0, 4.0, 0.0], [1.0, 1.0, 1.0, -99.0]];
+    let corners = [
+        [0.0; 4],
+        [4.0, 0.0, 0.0, 0.0],
+        [0.0, 4.0, 0.0, 0.0],
+        [0.0, 0.0, 4.0, 0.0],
+        [1.0, 1.0, 1.0, -99.0],
+    ];
     let (t, _) = Regular::from_points(WeightedSpace::new(), &corners).unwrap();
     let mut bytes = Vec::new();
     t.write_compact(&mut bytes).unwrap();
     let compact = Compact::<WeightedSpace, _, 4>::open(WeightedSpace::new(), bytes).unwrap();
-    assert_eq!((compact.law(), compact.vertex_count(), compact.check(Level::Orientation)), (Law::None, 4, Ok(())));
+    assert_eq!(
+        (
+            compact.law(),
+            compact.vertex_count(),
+            compact.check(Level::Orientation)
+        ),
+        (Law::None, 4, Ok(()))
+    );
 }
 
 /// A terrain has three coordinates, too: the file says which of both it is.
@@ -145,17 +207,37 @@ fn the_plane_is_not_space() {
     let mut plane = Vec::new();
     terrain.write_compact(&mut plane).unwrap();
     let space = bytes(&build(&heights));
-    assert_eq!(open(&plane).err(), Some(CompactError::Space { expected: 4, found: 3 }));
+    assert_eq!(
+        open(&plane).err(),
+        Some(CompactError::Space {
+            expected: 4,
+            found: 3
+        })
+    );
     let other = Compact::open(Terrain::new(), &space[..]).err();
-    assert_eq!(other, Some(CompactError::Space { expected: 3, found: 4 }));
-    assert_eq!(other.unwrap().to_string(), "a triangulation of space; one of the plane is expected");
+    assert_eq!(
+        other,
+        Some(CompactError::Space {
+            expected: 3,
+            found: 4
+        })
+    );
+    assert_eq!(
+        other.unwrap().to_string(),
+        "a triangulation of space; one of the plane is expected"
+    );
     assert!(Compact::open(Plane::new(), &space[..]).is_err());
 }
 
 /// Compares the bytes with the page on formats.
 #[test]
 fn the_format() {
-    let t = build(&[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
+    let t = build(&[
+        [0.0, 0.0, 0.0],
+        [1.0, 0.0, 0.0],
+        [0.0, 1.0, 0.0],
+        [0.0, 0.0, 1.0],
+    ]);
     let mut bytes = bytes(&t);
     assert_eq!(bytes.len(), HEADER + 4 * 24 + 16 + 5 * CELL);
     let mut expected = b"brkTIN\n\x1a".to_vec();
@@ -166,7 +248,12 @@ fn the_format() {
     expected.extend(5u64.to_le_bytes());
     assert_eq!(bytes[..40], expected);
     assert_eq!(bytes[44..48], [1, 0, 0, 0]);
-    CompactSection { tag: *b"note    ", contents: b"x" }.write(&mut bytes).unwrap();
+    CompactSection {
+        tag: *b"note    ",
+        contents: b"x",
+    }
+    .write(&mut bytes)
+    .unwrap();
     assert_eq!(open(&bytes).unwrap().section(*b"note    "), Some(&b"x"[..]));
 }
 
@@ -191,7 +278,11 @@ fn ask_everything(compact: &Opened<'_>) -> bool {
     for vertex in (0..8).map(VertexId::new).chain([VertexId::INFINITE]) {
         note(compact.cells_around(vertex).is_err());
         note(compact.vertices_around(vertex).is_err());
-        note(compact.cell_with(&[vertex, VertexId::new(1), VertexId::new(2)]).is_err());
+        note(
+            compact
+                .cell_with(&[vertex, VertexId::new(1), VertexId::new(2)])
+                .is_err(),
+        );
     }
     for cell in (0..6).map(CellId::new) {
         note(all(compact.cells_around_edge((cell, 0, 3))).is_err());
@@ -200,9 +291,22 @@ fn ask_everything(compact: &Opened<'_>) -> bool {
 }
 
 fn samples() -> Vec<Delaunay3> {
-    let corners = [[0.0; 3], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0], [2.0, 2.0, 0.0], [0.0, 0.0, 2.0], [2.0, 2.0, 2.0]];
+    let corners = [
+        [0.0; 3],
+        [2.0, 0.0, 0.0],
+        [0.0, 2.0, 0.0],
+        [2.0, 2.0, 0.0],
+        [0.0, 0.0, 2.0],
+        [2.0, 2.0, 2.0],
+    ];
     let line: Vec<Point> = (0..4).map(|k| [f64::from(k); 3]).collect();
-    vec![build(&[]), build(&corners[..1]), build(&line), build(&corners[..4]), build(&corners)]
+    vec![
+        build(&[]),
+        build(&corners[..1]),
+        build(&line),
+        build(&corners[..4]),
+        build(&corners),
+    ]
 }
 
 #[test]
@@ -211,14 +315,22 @@ fn every_damaged_byte_is_an_error_or_an_answer() {
         let sound = bytes(&t);
         let cells = sound.len() - CELL * t.tds().cell_count();
         for at in 0..sound.len() {
-            for value in (0..8).map(|bit| sound[at] ^ 1 << bit).chain([0, 1, 2, 0x7F, 0xFE, 0xFF]) {
+            for value in (0..8)
+                .map(|bit| sound[at] ^ 1 << bit)
+                .chain([0, 1, 2, 0x7F, 0xFE, 0xFF])
+            {
                 let mut damaged = sound.clone();
                 damaged[at] = value;
-                let Ok(compact) = open(&damaged) else { continue };
+                let Ok(compact) = open(&damaged) else {
+                    continue;
+                };
                 let is_damaged = ask_everything(&compact);
                 // Unused slots below dimension 3 have no meaning.
                 if at >= cells && value != sound[at] && t.dimension() == 3 {
-                    assert!(compact.check(Level::Manifold).is_err(), "byte {at} as {value}");
+                    assert!(
+                        compact.check(Level::Manifold).is_err(),
+                        "byte {at} as {value}"
+                    );
                     assert!(is_damaged);
                 }
             }
@@ -243,7 +355,11 @@ fn wrong_links() {
         for _ in 0..1 + random.below(12) {
             let slot = random.index(8);
             let number = random.index(if slot < 4 { vertices } else { cells }.max(1)) as u32;
-            let number = if slot < 4 && random.below(5) == 0 { u32::MAX } else { number };
+            let number = if slot < 4 && random.below(5) == 0 {
+                u32::MAX
+            } else {
+                number
+            };
             if cells > 0 {
                 let at = start + CELL * random.index(cells) + 4 * slot;
                 bytes[at..at + 4].copy_from_slice(&number.to_le_bytes());
@@ -257,7 +373,14 @@ fn wrong_links() {
 /// Points that are moved are found by the levels that need points.
 #[test]
 fn moved_points() {
-    let t = build(&[[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [0.0, 0.0, 4.0], [1.0, 1.0, 1.0], [9.0; 3]]);
+    let t = build(&[
+        [0.0, 0.0, 0.0],
+        [4.0, 0.0, 0.0],
+        [0.0, 4.0, 0.0],
+        [0.0, 0.0, 4.0],
+        [1.0, 1.0, 1.0],
+        [9.0; 3],
+    ]);
     let sound = bytes(&t);
     let moved = |t: &Delaunay3, vertex: VertexId, to: Point| {
         let mut damaged = bytes(t);
@@ -265,14 +388,31 @@ fn moved_points() {
             let at = HEADER + 24 * vertex.index() + 8 * k;
             damaged[at..at + 8].copy_from_slice(&x.to_le_bytes());
         }
-        [Level::Manifold, Level::Orientation, Level::Law].map(|level| open(&damaged).unwrap().check(level).is_ok())
+        [Level::Manifold, Level::Orientation, Level::Law]
+            .map(|level| open(&damaged).unwrap().check(level).is_ok())
     };
-    let vertex = t.tds().vertices().find(|&v| *t.point(v) == [1.0; 3]).unwrap();
+    let vertex = t
+        .tds()
+        .vertices()
+        .find(|&v| *t.point(v) == [1.0; 3])
+        .unwrap();
     assert!(open(&sound).unwrap().check(Level::Law).is_ok());
     assert_eq!(moved(&t, vertex, [-1.0, 1.0, 1.0]), [true, false, false]);
-    let far = t.tds().vertices().find(|&v| *t.point(v) == [9.0; 3]).unwrap();
+    let far = t
+        .tds()
+        .vertices()
+        .find(|&v| *t.point(v) == [9.0; 3])
+        .unwrap();
     assert_eq!(moved(&t, far, [20.0; 3]), [true, true, false]);
 
-    let flat = build(&[[0.0, 0.0, 1.0], [4.0, 0.0, 1.0], [0.0, 4.0, 1.0], [4.0, 4.0, 1.0]]);
-    assert_eq!(moved(&flat, VertexId::new(2), [0.0, 4.0, 2.0]), [true, false, false]);
+    let flat = build(&[
+        [0.0, 0.0, 1.0],
+        [4.0, 0.0, 1.0],
+        [0.0, 4.0, 1.0],
+        [4.0, 4.0, 1.0],
+    ]);
+    assert_eq!(
+        moved(&flat, VertexId::new(2), [0.0, 4.0, 2.0]),
+        [true, false, false]
+    );
 }

@@ -32,7 +32,8 @@ fn is_empty(simplex: &[Whole], points: &[Whole]) -> bool {
             rest = [0, 1, 2].map(|k| &rest[k] - &share * &other[k]);
         }
         // 2 p . center = |p|^2 - (w_p - w_a), without leaving what is right for the others.
-        let missing = (dot(&full, &full) - RBig::from(p[3] - a[3])) / RBig::from(2) - dot(&full, &center);
+        let missing =
+            (dot(&full, &full) - RBig::from(p[3] - a[3])) / RBig::from(2) - dot(&full, &center);
         let step = missing / dot(&rest, &rest);
         center = [0, 1, 2].map(|k| &center[k] + &step * &rest[k]);
         basis.push(rest);
@@ -60,8 +61,16 @@ fn judge(tds: &Tds<4>, tests: &Tests, whole: impl Fn(VertexId) -> Whole) -> [usi
     let mut counts = [0, 0];
     let mut compare = |simplex: &[VertexId], found: bool| {
         let is_finite = !simplex.contains(&VertexId::INFINITE);
-        let corners: Vec<Whole> = simplex.iter().filter(|_| is_finite).map(|&v| whole(v)).collect();
-        assert_eq!(found, is_finite && is_empty(&corners, &all), "{corners:?} {all:?}");
+        let corners: Vec<Whole> = simplex
+            .iter()
+            .filter(|_| is_finite)
+            .map(|&v| whole(v))
+            .collect();
+        assert_eq!(
+            found,
+            is_finite && is_empty(&corners, &all),
+            "{corners:?} {all:?}"
+        );
         if is_finite {
             counts[usize::from(found)] += 1;
         }
@@ -71,14 +80,19 @@ fn judge(tds: &Tds<4>, tests: &Tests, whole: impl Fn(VertexId) -> Whole) -> [usi
         simplex.remove(i);
         compare(&simplex, (tests.facet)((cell, i)));
         let beyond = tds.neighbor(cell, i);
-        assert_eq!((tests.facet)((cell, i)), (tests.facet)((beyond, tds.index_of_neighbor(beyond, cell))));
+        assert_eq!(
+            (tests.facet)((cell, i)),
+            (tests.facet)((beyond, tds.index_of_neighbor(beyond, cell)))
+        );
     }
     for (cell, i, j) in tds.edges() {
         compare(&tds.edge_ends((cell, i, j)), (tests.edge)((cell, i, j)));
         assert_eq!((tests.edge)((cell, i, j)), (tests.edge)((cell, j, i)));
     }
     for cell in tds.cells() {
-        assert!(!(tests.facet)((cell, 4)) && !(tests.edge)((cell, 0, 4)) && !(tests.edge)((cell, 1, 1)));
+        assert!(
+            !(tests.facet)((cell, 4)) && !(tests.edge)((cell, 0, 4)) && !(tests.edge)((cell, 1, 1))
+        );
     }
     counts
 }
@@ -91,10 +105,14 @@ fn of_delaunay() {
     let mut counts = [0, 0];
     for round in 0..100 {
         let sizes = SIZES[round % 5];
-        let points: Vec<[f64; 3]> =
-            (0..random.index(14)).map(|_| sizes.map(|size| random.below(size) as f64)).collect();
+        let points: Vec<[f64; 3]> = (0..random.index(14))
+            .map(|_| sizes.map(|size| random.below(size) as f64))
+            .collect();
         let (t, _) = Delaunay::from_points(Space::new(), &points).unwrap();
-        let tests = Tests { facet: &|facet| t.is_gabriel_facet(facet), edge: &|edge| t.is_gabriel_edge(edge) };
+        let tests = Tests {
+            facet: &|facet| t.is_gabriel_facet(facet),
+            edge: &|edge| t.is_gabriel_edge(edge),
+        };
         let found = judge(t.tds(), &tests, |v| {
             let [x, y, z] = t.point(v).map(|x| x as i64);
             [x, y, z, 0]
@@ -116,7 +134,10 @@ fn of_regular() {
         };
         let points: Vec<[f64; 4]> = (0..random.index(14)).map(|_| point(&mut random)).collect();
         let (t, _) = Regular::from_points(WeightedSpace::new(), &points).unwrap();
-        let tests = Tests { facet: &|facet| t.is_gabriel_facet(facet), edge: &|edge| t.is_gabriel_edge(edge) };
+        let tests = Tests {
+            facet: &|facet| t.is_gabriel_facet(facet),
+            edge: &|edge| t.is_gabriel_edge(edge),
+        };
         let found = judge(t.tds(), &tests, |v| t.point(v).map(|x| x as i64));
         counts = [0, 1].map(|k| counts[k] + found[k]);
     }
@@ -128,14 +149,29 @@ fn of_regular() {
 fn at_the_ends_of_floating_point() {
     for scale in [1.0, 1e300, 1e-310] {
         let at = |p: [f64; 3]| p.map(|x| x * scale);
-        for (top, is_gabriel) in [(2.0, true), (2.0f64.next_down(), scale < 1e-300), (2.0f64.next_up(), true)] {
-            let corners = [[0.0, 2.0, 0.0], [4.0, 2.0, 0.0], [2.0, 2.0, top], [2.0, 9.0, 0.5]].map(at);
-            let (t, v) = Delaunay::<Space<Wide>, 4>::from_points(Space::default(), &corners).unwrap();
+        for (top, is_gabriel) in [
+            (2.0, true),
+            (2.0f64.next_down(), scale < 1e-300),
+            (2.0f64.next_up(), true),
+        ] {
+            let corners = [
+                [0.0, 2.0, 0.0],
+                [4.0, 2.0, 0.0],
+                [2.0, 2.0, top],
+                [2.0, 9.0, 0.5],
+            ]
+            .map(at);
+            let (t, v) =
+                Delaunay::<Space<Wide>, 4>::from_points(Space::default(), &corners).unwrap();
             let edge = t.tds().finite_edges().find(|&edge| {
                 let ends = t.tds().edge_ends(edge);
                 ends.contains(&v[0]) && ends.contains(&v[1])
             });
-            assert_eq!(edge.map(|edge| t.is_gabriel_edge(edge)), Some(is_gabriel), "{scale} {top}");
+            assert_eq!(
+                edge.map(|edge| t.is_gabriel_edge(edge)),
+                Some(is_gabriel),
+                "{scale} {top}"
+            );
         }
     }
 }

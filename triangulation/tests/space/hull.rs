@@ -24,13 +24,19 @@ fn judge(t: &Delaunay<Space, 4>) {
         ConvexHull::Point(vertex) => assert!(t.dimension() == 0 && all == [vertex]),
         ConvexHull::Segment([first, last]) => {
             assert_eq!(t.dimension(), 1);
-            assert!(all.iter().all(|&v| whole(first) <= whole(v) && whole(v) <= whole(last)));
+            assert!(
+                all.iter()
+                    .all(|&v| whole(first) <= whole(v) && whole(v) <= whole(last))
+            );
         }
         ConvexHull::Polygon(rim) => {
             assert_eq!(t.dimension(), 2);
             assert_eq!(rim.iter().collect::<BTreeSet<_>>().len(), rim.len());
         }
-        ConvexHull::Polyhedron { vertices, triangles } => {
+        ConvexHull::Polyhedron {
+            vertices,
+            triangles,
+        } => {
             assert_eq!(t.dimension(), 3);
             assert_eq!(triangles.len(), 2 * vertices.len() - 4);
             assert!(triangles.is_sorted() && vertices.is_sorted());
@@ -39,12 +45,25 @@ fn judge(t: &Delaunay<Space, 4>) {
             let mut edges = BTreeSet::new();
             let mut six_times = 0;
             for &[a, b, c] in &triangles {
-                assert!(all.iter().all(|&v| volume([a, b, c, v].map(&whole)) <= 0), "convex, outwards");
-                assert!([[a, b], [b, c], [c, a]].into_iter().all(|edge| edges.insert(edge)), "oriented");
+                assert!(
+                    all.iter().all(|&v| volume([a, b, c, v].map(&whole)) <= 0),
+                    "convex, outwards"
+                );
+                assert!(
+                    [[a, b], [b, c], [c, a]]
+                        .into_iter()
+                        .all(|edge| edges.insert(edge)),
+                    "oriented"
+                );
                 six_times -= volume([whole(a), whole(b), whole(c), [0; 3]]);
             }
-            assert!(edges.iter().all(|&[a, b]| edges.contains(&[b, a])), "closed");
-            let cells = t.finite_cells().map(|cell| volume(t.tds().corners(cell).map(&whole)));
+            assert!(
+                edges.iter().all(|&[a, b]| edges.contains(&[b, a])),
+                "closed"
+            );
+            let cells = t
+                .finite_cells()
+                .map(|cell| volume(t.tds().corners(cell).map(&whole)));
             assert_eq!(six_times, cells.sum::<i64>());
         }
     }
@@ -55,9 +74,17 @@ fn of_points_on_small_grids() {
     let mut random = Random(61);
     let mut dimensions = [0; 5];
     for round in 0..1500 {
-        let sizes = [[3, 3, 3], [5, 5, 5], [5, 5, 1], [6, 1, 1], [2, 2, 2], [90, 90, 90]][round % 6];
-        let points: Vec<[f64; 3]> =
-            (0..random.index(30)).map(|_| sizes.map(|size| random.below(size) as f64)).collect();
+        let sizes = [
+            [3, 3, 3],
+            [5, 5, 5],
+            [5, 5, 1],
+            [6, 1, 1],
+            [2, 2, 2],
+            [90, 90, 90],
+        ][round % 6];
+        let points: Vec<[f64; 3]> = (0..random.index(30))
+            .map(|_| sizes.map(|size| random.below(size) as f64))
+            .collect();
         let (t, _) = Delaunay::from_points(Space::new(), &points).unwrap();
         dimensions[(t.dimension() + 1) as usize] += 1;
         judge(&t);
@@ -71,19 +98,27 @@ fn of_coplanar_points() {
     let mut random = Random(62);
     for _ in 0..500 {
         let side = 2 + random.below(6);
-        let points: Vec<[f64; 2]> =
-            (0..random.index(25)).map(|_| [random.below(side) as f64, random.below(side) as f64]).collect();
+        let points: Vec<[f64; 2]> = (0..random.index(25))
+            .map(|_| [random.below(side) as f64, random.below(side) as f64])
+            .collect();
         let (plane, _) = Delaunay::from_points(Plane::new(), &points).unwrap();
         if plane.dimension() < 2 {
             continue;
         }
         let in_space: Vec<[f64; 3]> = points.iter().map(|&[x, y]| [x, y, x + 2.0 * y]).collect();
         let (t, _) = Delaunay::from_points(Space::new(), &in_space).unwrap();
-        let ConvexHull::Polygon(rim) = t.convex_hull() else { panic!("coplanar") };
-        let mut rim: Vec<[f64; 2]> = rim.iter().map(|&v| [t.point(v)[0], t.point(v)[1]]).collect();
+        let ConvexHull::Polygon(rim) = t.convex_hull() else {
+            panic!("coplanar")
+        };
+        let mut rim: Vec<[f64; 2]> = rim
+            .iter()
+            .map(|&v| [t.point(v)[0], t.point(v)[1]])
+            .collect();
         let mut expected: Vec<[f64; 2]> = plane.tds().hull().map(|v| *plane.point(v)).collect();
         for ring in [&mut rim, &mut expected] {
-            let first = (0..ring.len()).min_by(|&i, &j| ring[i].partial_cmp(&ring[j]).unwrap()).unwrap();
+            let first = (0..ring.len())
+                .min_by(|&i, &j| ring[i].partial_cmp(&ring[j]).unwrap())
+                .unwrap();
             ring.rotate_left(first);
         }
         assert_eq!(rim, expected);
@@ -101,6 +136,12 @@ fn of_weighted_points() {
         [x, y, 0.0, -50.0]
     }));
     let (t, _) = Regular::from_points(WeightedSpace::new(), &points).unwrap();
-    let ConvexHull::Polyhedron { vertices, triangles } = t.convex_hull() else { panic!("a cube") };
+    let ConvexHull::Polyhedron {
+        vertices,
+        triangles,
+    } = t.convex_hull()
+    else {
+        panic!("a cube")
+    };
     assert_eq!((vertices.len(), triangles.len()), (8, 12));
 }

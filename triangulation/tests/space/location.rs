@@ -10,8 +10,8 @@ use breakline_triangulation::kernel::{Exact, Wide};
 use breakline_triangulation::num::Sign;
 use breakline_triangulation::tds::VertexId;
 use breakline_triangulation::{
-    Basic, Buckets, Delaunay, JumpAndWalk, Level, Locate, Location, Near, Regular, SpacePassage, StraightLine,
-    Triangulation,
+    Basic, Buckets, Delaunay, JumpAndWalk, Level, Locate, Location, Near, Regular, SpacePassage,
+    StraightLine, Triangulation,
 };
 use testkit::random::Random;
 
@@ -44,18 +44,36 @@ fn position<G: Geometry<4, Point = Point>, C: Copy + Default>(
             for i in (0..4).filter(|_| t.dimension() == 3) {
                 let mut simplex = t.cell_points(cell).unwrap();
                 simplex[i] = &q;
-                let expected = if facets.contains(i) { Sign::Zero } else { Sign::Positive };
+                let expected = if facets.contains(i) {
+                    Sign::Zero
+                } else {
+                    Sign::Positive
+                };
                 assert_eq!(exact.orientation(simplex), expected);
             }
             let corners = t.tds().cell_vertices(cell).iter().enumerate();
-            Position::On(corners.filter(|(i, _)| !facets.contains(*i)).map(|(_, &v)| v).collect())
+            Position::On(
+                corners
+                    .filter(|(i, _)| !facets.contains(*i))
+                    .map(|(_, &v)| v)
+                    .collect(),
+            )
         }
         Location::OutsideHull { cell } => {
             let infinite = t.tds().index_of(cell, VertexId::INFINITE).unwrap();
             if t.dimension() == 3 {
-                let simplex: [&Point; 4] =
-                    std::array::from_fn(|i| if i == infinite { &q } else { t.point(t.tds().vertex(cell, i)) });
-                assert_eq!(exact.orientation(simplex), Sign::Positive, "in sight of the facet of the hull");
+                let simplex: [&Point; 4] = std::array::from_fn(|i| {
+                    if i == infinite {
+                        &q
+                    } else {
+                        t.point(t.tds().vertex(cell, i))
+                    }
+                });
+                assert_eq!(
+                    exact.orientation(simplex),
+                    Sign::Positive,
+                    "in sight of the facet of the hull"
+                );
             }
             Position::Outside
         }
@@ -72,7 +90,11 @@ fn same_by_all<C: Copy + Default>(
     q: Point,
 ) -> Position {
     let expected = position(t, t.locate(&q, None), q);
-    let near = Near(start.filter(|&v| t.tds().is_vertex(v)).and_then(|v| t.tds().cell_of(v)));
+    let near = Near(
+        start
+            .filter(|&v| t.tds().is_vertex(v))
+            .and_then(|v| t.tds().cell_of(v)),
+    );
     let found = [
         near.locate(t, &q),
         JumpAndWalk.locate(t, &q),
@@ -82,7 +104,12 @@ fn same_by_all<C: Copy + Default>(
         Buckets::of(t).locate(t, &q),
     ];
     for (k, location) in found.into_iter().enumerate() {
-        assert_eq!(position(t, location, q), expected, "strategy {k}, {q:?} in {:?}", t.points());
+        assert_eq!(
+            position(t, location, q),
+            expected,
+            "strategy {k}, {q:?} in {:?}",
+            t.points()
+        );
     }
     expected
 }
@@ -96,7 +123,10 @@ fn small_grids_that_grow_and_shrink() {
         let scale = [1.0, TINY, 2f64.powi(1010)][round % 3];
         let mut t = Delaunay::<Space<Wide>, 4>::new(Space::default());
         let mut basic = Basic::<Space<Wide>, 4>::new(Space::default());
-        let mut buckets = Buckets::over([[0.0; 3], sizes.map(|size| size as f64 * scale)], 1 + round % 9);
+        let mut buckets = Buckets::over(
+            [[0.0; 3], sizes.map(|size| size as f64 * scale)],
+            1 + round % 9,
+        );
         for _ in 0..40 {
             let p = sizes.map(|size| random.below(size) as f64 * scale);
             if random.below(5) > 0 {
@@ -108,7 +138,8 @@ fn small_grids_that_grow_and_shrink() {
             }
             for _ in 0..3 {
                 let q = sizes.map(|size| (random.below(4 * size) as f64 * 0.25 - 0.5) * scale);
-                let start = (t.tds().vertex_slots() > 0).then(|| VertexId::new(random.index(t.tds().vertex_slots())));
+                let start = (t.tds().vertex_slots() > 0)
+                    .then(|| VertexId::new(random.index(t.tds().vertex_slots())));
                 match same_by_all(&t, &buckets, start, q) {
                     Position::On(corners) => seen[corners.len() - 1] += 1,
                     Position::Outside => seen[4] += 1,
@@ -197,7 +228,9 @@ impl breakline_triangulation::geometry::Coordinates<4> for Counting {
 fn thousands_of_points() {
     let mut random = Random(53);
     let uniform: Vec<Point> = (0..20_000).map(|_| [0; 3].map(|_| random.unit())).collect();
-    let lattice: Vec<Point> = (0..8000).map(|k| [k / 400, k / 20 % 20, k % 20].map(f64::from)).collect();
+    let lattice: Vec<Point> = (0..8000)
+        .map(|k| [k / 400, k / 20 % 20, k % 20].map(f64::from))
+        .collect();
     for (points, most) in [(uniform, [60, 60]), (lattice, [120, 20])] {
         let (t, v) = Delaunay::<_, 4>::from_points(Counting::default(), &points).unwrap();
         let buckets = Buckets::of(&t);
@@ -209,7 +242,9 @@ fn thousands_of_points() {
             let start = random.pick(&v);
             let expected = position(&t, t.locate(&q, None), q);
             let met = t.along([t.point(start), &q], None);
-            cells += met.filter(|passage| matches!(passage, SpacePassage::Cell(_))).count();
+            cells += met
+                .filter(|passage| matches!(passage, SpacePassage::Cell(_)))
+                .count();
             ASKED.set(0);
             let straight = StraightLine(Some(start)).locate(&t, &q);
             asked[0] += ASKED.replace(0);
@@ -218,7 +253,11 @@ fn thousands_of_points() {
             assert_eq!(position(&t, straight, q), expected);
             assert_eq!(position(&t, bucket, q), expected);
         }
-        assert!((4 * cells..4 * cells + 300 * most[0]).contains(&asked[0]), "{} for {cells} cells", asked[0]);
+        assert!(
+            (4 * cells..4 * cells + 300 * most[0]).contains(&asked[0]),
+            "{} for {cells} cells",
+            asked[0]
+        );
         assert!(asked[1] < 300 * most[1], "{} from buckets", asked[1]);
     }
 }
@@ -230,13 +269,17 @@ fn buckets_of_any_size() {
     for size in (0..216).map(|k| [k % 6, k / 6 % 6, k / 36].map(|i| lengths[i])) {
         let mut buckets = Buckets::over([[0.0; 3], size], 1 << 10);
         let mut t: Delaunay<Space<Wide>, 4> = Delaunay::new(Space::default());
-        let points = (0..8).map(|k| [0, 1, 2].map(|axis| if k >> axis & 1 == 1 { size[axis] } else { 0.0 }));
+        let points =
+            (0..8).map(|k| [0, 1, 2].map(|axis| if k >> axis & 1 == 1 { size[axis] } else { 0.0 }));
         for p in points.clone() {
             t.insert_by(&mut buckets, p, ()).unwrap();
         }
         for p in points {
             assert!(matches!(buckets.locate(&t, &p), Location::Vertex(_)));
-            assert!(matches!(StraightLine(None).locate(&t, &p), Location::Vertex(_)));
+            assert!(matches!(
+                StraightLine(None).locate(&t, &p),
+                Location::Vertex(_)
+            ));
         }
     }
 }

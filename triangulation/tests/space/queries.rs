@@ -16,7 +16,10 @@ fn on_grid(random: &mut Random, sizes: [u64; 3]) -> Point {
 
 /// Whole squared distances of points on the grid, times four.
 fn distance(p: &Point, q: &Point) -> i64 {
-    (0..3).map(|k| ((p[k] - q[k]) * 2.0) as i64).map(|d| d * d).sum()
+    (0..3)
+        .map(|k| ((p[k] - q[k]) * 2.0) as i64)
+        .map(|d| d * d)
+        .sum()
 }
 
 /// Compares with the location that a walk from anywhere finds: cells may differ on a border only.
@@ -41,7 +44,9 @@ fn nearest_vertices_are_those_of_a_search_through_all() {
     let mut random = Random(41);
     for round in 0..200 {
         let sizes = [[5, 5, 5], [9, 9, 1], [9, 1, 1], [3, 4, 6]][round % 4];
-        let points: Vec<Point> = (0..random.index(40)).map(|_| on_grid(&mut random, sizes)).collect();
+        let points: Vec<Point> = (0..random.index(40))
+            .map(|_| on_grid(&mut random, sizes))
+            .collect();
         let (mut t, _) = Delaunay::from_points(Space::new(), &points).unwrap();
         let vertices: Vec<VertexId> = t.tds().vertices().collect();
         for &vertex in vertices.iter().filter(|v| v.index() % 3 == 2) {
@@ -55,11 +60,23 @@ fn nearest_vertices_are_those_of_a_search_through_all() {
             };
             let mut expected: Vec<VertexId> = t.tds().vertices().collect();
             expected.sort_by(order);
-            assert_eq!(t.nearest(&q, None), expected.first().copied(), "{points:?} {q:?}");
-            assert_eq!(t.nearest_first(&q, None).collect::<Vec<_>>(), expected, "{points:?} {q:?}");
+            assert_eq!(
+                t.nearest(&q, None),
+                expected.first().copied(),
+                "{points:?} {q:?}"
+            );
+            assert_eq!(
+                t.nearest_first(&q, None).collect::<Vec<_>>(),
+                expected,
+                "{points:?} {q:?}"
+            );
             let rim = on_grid(&mut random, [6, 6, 6]);
             expected.retain(|&v| distance(t.point(v), &q) <= distance(&rim, &q));
-            assert_eq!(t.within(&q, &rim).collect::<Vec<_>>(), expected, "{points:?} {q:?} {rim:?}");
+            assert_eq!(
+                t.within(&q, &rim).collect::<Vec<_>>(),
+                expected,
+                "{points:?} {q:?} {rim:?}"
+            );
         }
     }
 }
@@ -79,7 +96,9 @@ fn the_least_power_is_found_by_a_search_through_all() {
             let q = [x, y, z, 0.0];
             let order = |&a: &VertexId, &b: &VertexId| {
                 let (a, b) = (t.point(a), t.point(b));
-                t.geometry().compare_distance(&q, a, b).then_with(|| t.geometry().compare(a, b))
+                t.geometry()
+                    .compare_distance(&q, a, b)
+                    .then_with(|| t.geometry().compare(a, b))
             };
             let power = |v: VertexId| {
                 let &[px, py, pz, w] = t.point(v);
@@ -105,7 +124,8 @@ fn all_strategies_find_the_same_location() {
                 let vertices: Vec<VertexId> = t.tds().vertices().collect();
                 t.remove_by(&mut hierarchy, random.pick(&vertices)).unwrap();
             } else {
-                t.insert_by(&mut hierarchy, on_grid(&mut random, sizes), ()).unwrap();
+                t.insert_by(&mut hierarchy, on_grid(&mut random, sizes), ())
+                    .unwrap();
             }
         }
         assert_eq!(t.check(breakline_triangulation::Level::Law), []);

@@ -6,7 +6,9 @@
 use std::collections::BTreeSet;
 
 use breakline_triangulation::geometry::{Space, Weighted, WeightedSpace};
-use breakline_triangulation::kernel::{Adaptive, Exact, Expansions, Interval, Kernel, Lattice, Wide};
+use breakline_triangulation::kernel::{
+    Adaptive, Exact, Expansions, Interval, Kernel, Lattice, Wide,
+};
 use breakline_triangulation::tds::VertexId;
 use breakline_triangulation::{Delaunay, Level, Regular, RemovalError};
 use dashu_int::IBig;
@@ -22,7 +24,8 @@ fn lift([x, y, z, w]: Point) -> i64 {
 /// Six times the volume of a tetrahedron: positive if it is right-handed.
 fn volume([a, b, c, d]: [Point; 4]) -> i64 {
     let [u, v, w] = [b, c, d].map(|p| [0, 1, 2].map(|axis| p[axis] - a[axis]));
-    u[0] * (v[1] * w[2] - v[2] * w[1]) - u[1] * (v[0] * w[2] - v[2] * w[0]) + u[2] * (v[0] * w[1] - v[1] * w[0])
+    u[0] * (v[1] * w[2] - v[2] * w[1]) - u[1] * (v[0] * w[2] - v[2] * w[0])
+        + u[2] * (v[0] * w[1] - v[1] * w[0])
 }
 
 /// Returns the cells of the lower hull of the lifted points. Ties are broken by raising the lifts
@@ -30,10 +33,19 @@ fn volume([a, b, c, d]: [Point; 4]) -> i64 {
 fn lower_hull(points: &BTreeSet<Point>) -> BTreeSet<[Point; 4]> {
     // In order of site and weight, the heaviest of a site last.
     let sorted: Vec<Point> = points.iter().copied().collect();
-    let heaviest = |k: &usize| sorted.get(k + 1).is_none_or(|next| next[..3] != sorted[*k][..3]);
-    let sites: Vec<Point> = (0..sorted.len()).filter(heaviest).map(|k| sorted[k]).collect();
+    let heaviest = |k: &usize| {
+        sorted
+            .get(k + 1)
+            .is_none_or(|next| next[..3] != sorted[*k][..3])
+    };
+    let sites: Vec<Point> = (0..sorted.len())
+        .filter(heaviest)
+        .map(|k| sorted[k])
+        .collect();
     let lifts: Vec<IBig> = (sites.iter().zip(0..))
-        .map(|(&p, rank)| (IBig::from(lift(p)) << (24 * sites.len() + 24)) + (IBig::ONE << (24 * rank)))
+        .map(|(&p, rank)| {
+            (IBig::from(lift(p)) << (24 * sites.len() + 24)) + (IBig::ONE << (24 * rank))
+        })
         .collect();
     let mut cells = BTreeSet::new();
     for i in 0..sites.len() {
@@ -43,15 +55,23 @@ fn lower_hull(points: &BTreeSet<Point>) -> BTreeSet<[Point; 4]> {
                     let at = |corners: [usize; 4]| volume(corners.map(|at| sites[at]));
                     let size = at([i, j, k, l]);
                     let is_above = |q: usize| {
-                        let parts = [at([q, j, k, l]), at([i, q, k, l]), at([i, j, q, l]), at([i, j, k, q])];
+                        let parts = [
+                            at([q, j, k, l]),
+                            at([i, q, k, l]),
+                            at([i, j, q, l]),
+                            at([i, j, k, q]),
+                        ];
                         let hyperplane: IBig = parts
                             .into_iter()
                             .zip([i, j, k, l])
                             .map(|(part, corner)| IBig::from(part) * &lifts[corner])
                             .sum();
-                        (hyperplane - IBig::from(size) * &lifts[q]) * IBig::from(size.signum()) < IBig::ZERO
+                        (hyperplane - IBig::from(size) * &lifts[q]) * IBig::from(size.signum())
+                            < IBig::ZERO
                     };
-                    if size != 0 && (0..sites.len()).all(|q| [i, j, k, l].contains(&q) || is_above(q)) {
+                    if size != 0
+                        && (0..sites.len()).all(|q| [i, j, k, l].contains(&q) || is_above(q))
+                    {
                         cells.insert([i, j, k, l].map(|at| sites[at]));
                     }
                 }
@@ -69,7 +89,12 @@ fn whole<K: Kernel>(t: &Weights<K>, vertex: VertexId) -> Point {
 
 fn sorted_cells<K: Kernel>(t: &Weights<K>) -> BTreeSet<Vec<Point>> {
     let corners = |cell| {
-        let mut corners: Vec<Point> = t.tds().cell_vertices(cell).iter().map(|&v| whole(t, v)).collect();
+        let mut corners: Vec<Point> = t
+            .tds()
+            .cell_vertices(cell)
+            .iter()
+            .map(|&v| whole(t, v))
+            .collect();
         corners.sort_unstable();
         corners
     };
@@ -78,12 +103,22 @@ fn sorted_cells<K: Kernel>(t: &Weights<K>) -> BTreeSet<Vec<Point>> {
 
 fn judge<K: Kernel>(t: &Weights<K>, points: &BTreeSet<Point>) {
     assert_eq!(t.check(Level::Law), [], "{points:?}");
-    let there: BTreeSet<Point> = t.tds().vertices().chain(t.hidden()).map(|v| whole(t, v)).collect();
+    let there: BTreeSet<Point> = t
+        .tds()
+        .vertices()
+        .chain(t.hidden())
+        .map(|v| whole(t, v))
+        .collect();
     assert_eq!(there, *points);
-    assert_eq!(t.vertex_count() + t.hidden().len(), points.len(), "{points:?}");
+    assert_eq!(
+        t.vertex_count() + t.hidden().len(),
+        points.len(),
+        "{points:?}"
+    );
     let expected = lower_hull(points);
     if t.dimension() == 3 {
-        let expected: BTreeSet<Vec<Point>> = expected.into_iter().map(|cell| cell.to_vec()).collect();
+        let expected: BTreeSet<Vec<Point>> =
+            expected.into_iter().map(|cell| cell.to_vec()).collect();
         assert_eq!(sorted_cells(t), expected, "{points:?}");
         let seen: BTreeSet<Point> = t.tds().vertices().map(|v| whole(t, v)).collect();
         assert_eq!(seen, expected.into_iter().flatten().collect(), "{points:?}");
@@ -91,13 +126,19 @@ fn judge<K: Kernel>(t: &Weights<K>, points: &BTreeSet<Point>) {
         assert_eq!(expected.len(), 0, "{points:?}");
         // In a plane and on a line: one result, whatever the order.
         let mut anew: Weights<K> = Regular::new(WeightedSpace::default());
-        points.iter().rev().for_each(|p| _ = anew.insert(p.map(|x| x as f64)).unwrap());
+        points
+            .iter()
+            .rev()
+            .for_each(|p| _ = anew.insert(p.map(|x| x as f64)).unwrap());
         assert_eq!(sorted_cells(t), sorted_cells(&anew), "{points:?}");
     }
 }
 
 fn rounds(least: usize) -> usize {
-    std::env::var("BREAKLINE_HULLS").ok().and_then(|n| n.parse().ok()).unwrap_or(least)
+    std::env::var("BREAKLINE_HULLS")
+        .ok()
+        .and_then(|n| n.parse().ok())
+        .unwrap_or(least)
 }
 
 /// Points on a grid, often flat, of few weights.
@@ -146,7 +187,10 @@ fn sequence<K: Kernel>(random: &mut Random) {
         there.remove(&whole(&t, vertex));
         t.remove(vertex).unwrap();
     }
-    assert_eq!((t.dimension(), t.tds().cell_count(), there.len()), (-1, 0, 0));
+    assert_eq!(
+        (t.dimension(), t.tds().cell_count(), there.len()),
+        (-1, 0, 0)
+    );
 }
 
 #[test]
@@ -170,13 +214,24 @@ fn the_delaunay_triangulation_is_the_lower_hull() {
     let mut random = Random(35);
     for _ in 0..rounds(300) {
         let sizes = random.pick(&[[2, 2, 2], [3, 3, 3], [3, 2, 2], [6, 6, 6]]);
-        let sites: Vec<[f64; 3]> = (0..random.index(11)).map(|_| sizes.map(|size| random.below(size) as f64)).collect();
+        let sites: Vec<[f64; 3]> = (0..random.index(11))
+            .map(|_| sizes.map(|size| random.below(size) as f64))
+            .collect();
         let (bulk, _) = Delaunay::<Space, 4>::from_points(Space::new(), &sites).unwrap();
         let mut one_by_one = Delaunay::<Space, 4>::new(Space::new());
-        sites.iter().for_each(|&p| _ = one_by_one.insert(p).unwrap());
-        let expected = lower_hull(&sites.iter().map(|p| [p[0], p[1], p[2], 0.0].map(|x| x as i64)).collect());
-        let expected: BTreeSet<Vec<[i64; 3]>> =
-            expected.into_iter().map(|cell| cell.map(|[x, y, z, _]| [x, y, z]).to_vec()).collect();
+        sites
+            .iter()
+            .for_each(|&p| _ = one_by_one.insert(p).unwrap());
+        let expected = lower_hull(
+            &sites
+                .iter()
+                .map(|p| [p[0], p[1], p[2], 0.0].map(|x| x as i64))
+                .collect(),
+        );
+        let expected: BTreeSet<Vec<[i64; 3]>> = expected
+            .into_iter()
+            .map(|cell| cell.map(|[x, y, z, _]| [x, y, z]).to_vec())
+            .collect();
         for t in [bulk, one_by_one] {
             let found = testkit::cells::cells(&t, |p| p.map(|x| x as i64));
             assert_eq!(t.dimension() == 3, !expected.is_empty(), "{sites:?}");
@@ -191,8 +246,9 @@ fn equal_weights_change_nothing() {
     let mut random = Random(32);
     for round in 0..200 {
         let side = [2, 3, 5][round % 3];
-        let sites: Vec<[f64; 3]> =
-            (0..1 + random.index(30)).map(|_| [0; 3].map(|_| random.below(side) as f64)).collect();
+        let sites: Vec<[f64; 3]> = (0..1 + random.index(30))
+            .map(|_| [0; 3].map(|_| random.below(side) as f64))
+            .collect();
         let weight = random.below(9) as f64 - 4.0;
         let weighted: Vec<[f64; 4]> = sites.iter().map(|&[x, y, z]| [x, y, z, weight]).collect();
         let (regular, _) = Regular::from_points(WeightedSpace::new(), &weighted).unwrap();
@@ -200,14 +256,19 @@ fn equal_weights_change_nothing() {
         let mut cells: Vec<Vec<[i64; 3]>> = Vec::new();
         for cell in delaunay.finite_cells() {
             let vertices = delaunay.tds().cell_vertices(cell);
-            let mut corners: Vec<[i64; 3]> = vertices.iter().map(|&v| delaunay.point(v).map(|x| x as i64)).collect();
+            let mut corners: Vec<[i64; 3]> = vertices
+                .iter()
+                .map(|&v| delaunay.point(v).map(|x| x as i64))
+                .collect();
             corners.sort_unstable();
             cells.push(corners);
         }
         let expected: BTreeSet<Vec<[i64; 3]>> = cells.into_iter().collect();
         let found = sorted_cells(&regular);
-        let found: BTreeSet<Vec<[i64; 3]>> =
-            found.into_iter().map(|cell| cell.into_iter().map(|[x, y, z, _]| [x, y, z]).collect()).collect();
+        let found: BTreeSet<Vec<[i64; 3]>> = found
+            .into_iter()
+            .map(|cell| cell.into_iter().map(|[x, y, z, _]| [x, y, z]).collect())
+            .collect();
         assert_eq!(found, expected, "{sites:?}");
         assert_eq!(regular.hidden().len(), 0);
     }
@@ -220,7 +281,14 @@ fn a_plane_in_space_is_the_plane() {
     for _ in 0..400 {
         let (side, weights) = (1 + random.below(5), 1 + random.below(12));
         let points: Vec<[f64; 3]> = (0..random.index(20))
-            .map(|_| [random.below(side), random.below(side), random.below(weights)].map(|x| x as f64))
+            .map(|_| {
+                [
+                    random.below(side),
+                    random.below(side),
+                    random.below(weights),
+                ]
+                .map(|x| x as f64)
+            })
             .collect();
         let in_space: Vec<[f64; 4]> = points.iter().map(|&[x, y, w]| [x, y, 7.0, w]).collect();
         let (flat, _) = Regular::from_points(Weighted::new(), &points).unwrap();
@@ -233,7 +301,13 @@ fn a_plane_in_space_is_the_plane() {
                 [x, y, w]
             })
             .collect();
-        assert_eq!(hidden, flat.hidden().map(|v| flat.point(v).map(|x| x as i64)).collect(), "{points:?}");
+        assert_eq!(
+            hidden,
+            flat.hidden()
+                .map(|v| flat.point(v).map(|x| x as i64))
+                .collect(),
+            "{points:?}"
+        );
         let sorted = |mut corners: Vec<[i64; 3]>| {
             corners.sort_unstable();
             corners

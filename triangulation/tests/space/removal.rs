@@ -15,7 +15,8 @@ type Cells = BTreeSet<Vec<Option<[u64; 3]>>>;
 
 /// The cells by their points: what does not depend on numbers.
 fn cells<K: Kernel>(t: &Delaunay<Space<K>, 4>) -> Cells {
-    let bits = |&v: &VertexId| (v != VertexId::INFINITE).then(|| t.point(v).map(|x| (x + 0.0).to_bits()));
+    let bits =
+        |&v: &VertexId| (v != VertexId::INFINITE).then(|| t.point(v).map(|x| (x + 0.0).to_bits()));
     let corners = |cell| {
         let mut corners: Vec<_> = t.tds().cell_vertices(cell).iter().map(bits).collect();
         corners.sort_unstable();
@@ -35,7 +36,10 @@ fn judge<K: Kernel>(t: &Delaunay<Space<K>, 4>) {
 
 /// How many sequences to try, unless the environment asks for more.
 fn rounds(least: usize) -> usize {
-    std::env::var("BREAKLINE_REMOVALS").ok().and_then(|n| n.parse().ok()).unwrap_or(least)
+    std::env::var("BREAKLINE_REMOVALS")
+        .ok()
+        .and_then(|n| n.parse().ok())
+        .unwrap_or(least)
 }
 
 fn sequence<K: Kernel>(random: &mut Random, point: impl Fn(&mut Random) -> Point) {
@@ -53,7 +57,10 @@ fn sequence<K: Kernel>(random: &mut Random, point: impl Fn(&mut Random) -> Point
         if random.below(3) == 0 {
             let is_taken = vertices.iter().any(|&v| v != vertex && *t.point(v) == p);
             let moved = t.move_to(vertex, p).unwrap();
-            assert_eq!((*t.point(moved), moved == vertex, t.tds().is_vertex(vertex)), (p, !is_taken, !is_taken));
+            assert_eq!(
+                (*t.point(moved), moved == vertex, t.tds().is_vertex(vertex)),
+                (p, !is_taken, !is_taken)
+            );
         } else {
             assert_eq!(t.remove(vertex), Ok(old));
             assert!(t.remove(vertex).is_err());
@@ -75,7 +82,14 @@ fn on_grid(sizes: [u64; 3]) -> impl Fn(&mut Random) -> Point {
 fn on_small_grids() {
     let mut random = Random(1);
     for round in 0..rounds(400) {
-        let sizes = [[2, 2, 2], [3, 3, 1], [3, 2, 2], [4, 1, 1], [3, 3, 3], [5, 5, 2]][round % 6];
+        let sizes = [
+            [2, 2, 2],
+            [3, 3, 1],
+            [3, 2, 2],
+            [4, 1, 1],
+            [3, 3, 3],
+            [5, 5, 2],
+        ][round % 6];
         match round % 5 {
             0 => sequence::<Exact>(&mut random, on_grid(sizes)),
             1 => sequence::<Interval>(&mut random, on_grid(sizes)),
@@ -96,7 +110,9 @@ fn of_random_points() {
 /// The sequence that CGAL's tests have: a lattice, emptied vertex by vertex.
 #[test]
 fn a_lattice_is_emptied() {
-    let points: Vec<Point> = (0..125).map(|k| [k / 25, k / 5 % 5, k % 5].map(f64::from)).collect();
+    let points: Vec<Point> = (0..125)
+        .map(|k| [k / 25, k / 5 % 5, k % 5].map(f64::from))
+        .collect();
     let mut t = Delaunay::<Space, 4>::new(Space::new());
     for &p in &points {
         t.insert(p).unwrap();
@@ -112,7 +128,12 @@ fn a_lattice_is_emptied() {
 #[test]
 fn without_the_law() {
     let mut t = Delaunay::<WeightedSpace, 4>::new(WeightedSpace::new());
-    let corners = [[0.0, 0.0, 0.0, 0.0], [4.0, 0.0, 0.0, 0.0], [0.0, 4.0, 0.0, 0.0], [0.0, 0.0, 4.0, 0.0]];
+    let corners = [
+        [0.0, 0.0, 0.0, 0.0],
+        [4.0, 0.0, 0.0, 0.0],
+        [0.0, 4.0, 0.0, 0.0],
+        [0.0, 0.0, 4.0, 0.0],
+    ];
     let first = t.insert(corners[0]).unwrap();
     corners[1..].iter().for_each(|&p| _ = t.insert(p).unwrap());
     t.insert([1.0, 1.0, 1.0, -99.0]).unwrap();

@@ -7,7 +7,9 @@ use std::cmp::Ordering;
 use std::collections::BTreeSet;
 
 use breakline_triangulation::geometry::{Coordinates, Geometry, Space, WeightedSpace};
-use breakline_triangulation::kernel::{Adaptive, Exact, Expansions, Fixed, Interval, Kernel, Lattice, Wide};
+use breakline_triangulation::kernel::{
+    Adaptive, Exact, Expansions, Fixed, Interval, Kernel, Lattice, Wide,
+};
 use breakline_triangulation::num::Sign;
 use breakline_triangulation::tds::VertexId;
 use breakline_triangulation::{Delaunay, Level, Regular, Triangulation};
@@ -85,7 +87,10 @@ impl<const D: usize> Coordinates<4> for Chosen<D> {
 }
 
 fn sequences() -> usize {
-    std::env::var("BREAKLINE_SEQUENCES").ok().and_then(|n| n.parse().ok()).unwrap_or(300)
+    std::env::var("BREAKLINE_SEQUENCES")
+        .ok()
+        .and_then(|n| n.parse().ok())
+        .unwrap_or(300)
 }
 
 /// The dimension, the finite cells as sorted points, and the visible points.
@@ -98,10 +103,21 @@ fn shape<const D: usize>(t: &Triangulation<Chosen<D>, 4>) -> Shape<D> {
         corners.sort_unstable();
         corners
     };
-    (t.dimension(), t.finite_cells().map(cell).collect(), t.tds().vertices().map(|v| point(&v)).collect())
+    (
+        t.dimension(),
+        t.finite_cells().map(cell).collect(),
+        t.tds().vertices().map(|v| point(&v)).collect(),
+    )
 }
 
-const SIZES: [[u64; 3]; 6] = [[2, 2, 2], [3, 3, 3], [4, 4, 1], [3, 2, 2], [6, 1, 1], [5, 5, 5]];
+const SIZES: [[u64; 3]; 6] = [
+    [2, 2, 2],
+    [3, 3, 3],
+    [4, 4, 1],
+    [3, 2, 2],
+    [6, 1, 1],
+    [5, 5, 5],
+];
 
 fn site(random: &mut Random, sizes: [u64; 3]) -> [f64; 3] {
     sizes.map(|size| random.below(size) as f64)
@@ -109,7 +125,11 @@ fn site(random: &mut Random, sizes: [u64; 3]) -> [f64; 3] {
 
 fn delaunay(random: &mut Random, geometry: Chosen<3>) {
     // Ties everywhere, or hardly any.
-    let sizes = if random.below(4) == 0 { [1 << 20; 3] } else { random.pick(&SIZES) };
+    let sizes = if random.below(4) == 0 {
+        [1 << 20; 3]
+    } else {
+        random.pick(&SIZES)
+    };
     let mut t: Delaunay<Chosen<3>, 4> = Delaunay::new(geometry);
     let mut points: Vec<([f64; 3], VertexId)> = Vec::new();
     for _ in 0..5 + random.index(20) {
@@ -131,7 +151,11 @@ fn delaunay(random: &mut Random, geometry: Chosen<3>) {
 }
 
 fn regular(random: &mut Random, geometry: Chosen<4>) {
-    let sizes = if random.below(4) == 0 { [1 << 10; 3] } else { random.pick(&SIZES) };
+    let sizes = if random.below(4) == 0 {
+        [1 << 10; 3]
+    } else {
+        random.pick(&SIZES)
+    };
     let weights = 1 + random.below(12);
     let mut t: Regular<Chosen<4>, 4> = Regular::new(geometry);
     let mut points: Vec<([f64; 4], VertexId)> = Vec::new();
@@ -152,7 +176,11 @@ fn regular(random: &mut Random, geometry: Chosen<4>) {
     let points: Vec<[f64; 4]> = points.into_iter().map(|(p, _)| p).collect();
     let (fresh, _) = Regular::from_points(geometry, &points).unwrap();
     assert_eq!(shape(&t), shape(&fresh), "{points:?}");
-    let hidden = |t: &Regular<Chosen<4>, 4>| t.hidden().map(|v| t.point(v).map(|x| x as i64)).collect::<BTreeSet<_>>();
+    let hidden = |t: &Regular<Chosen<4>, 4>| {
+        t.hidden()
+            .map(|v| t.point(v).map(|x| x as i64))
+            .collect::<BTreeSet<_>>()
+    };
     assert_eq!(hidden(&t), hidden(&fresh), "{points:?}");
 }
 

@@ -13,15 +13,26 @@ use testkit::random::Random;
 
 use crate::TINY;
 
-fn judge<G: Coordinates<4>, V, C: Copy + Default>(t: &Triangulation<G, 4, V, C>, corners: [&G::Point; 2]) {
-    let site = |p: &G::Point| -> [f64; 3] { t.geometry().coordinates(p).as_ref().try_into().unwrap() };
+fn judge<G: Coordinates<4>, V, C: Copy + Default>(
+    t: &Triangulation<G, 4, V, C>,
+    corners: [&G::Point; 2],
+) {
+    let site =
+        |p: &G::Point| -> [f64; 3] { t.geometry().coordinates(p).as_ref().try_into().unwrap() };
     let [p, q] = corners.map(site);
     let is_within = |v: &VertexId| {
         let at = site(t.point(*v));
-        (0..3).all(|k| p[k].min(q[k]) <= at[k] && at[k] <= p[k].max(q[k]) && !p[k].is_nan() && !q[k].is_nan())
+        (0..3).all(|k| {
+            p[k].min(q[k]) <= at[k] && at[k] <= p[k].max(q[k]) && !p[k].is_nan() && !q[k].is_nan()
+        })
     };
     let expected: Vec<VertexId> = t.tds().vertices().filter(is_within).collect();
-    assert_eq!(t.within_box(corners), expected, "{corners:?} {:?}", t.points());
+    assert_eq!(
+        t.within_box(corners),
+        expected,
+        "{corners:?} {:?}",
+        t.points()
+    );
 }
 
 #[test]
@@ -33,7 +44,9 @@ fn boxes() {
         let count = random.index(40);
         let mut draw = |margin: u64| {
             sizes.map(|size| {
-                (random.below((size + 2 * margin) * (1 + margin)) as f64 / (1 + margin) as f64 - margin as f64) * scale
+                (random.below((size + 2 * margin) * (1 + margin)) as f64 / (1 + margin) as f64
+                    - margin as f64)
+                    * scale
             })
         };
         let points: Vec<[f64; 3]> = (0..count).map(|_| draw(0)).collect();
@@ -41,10 +54,14 @@ fn boxes() {
         let space = Space::<Wide>::default();
         if round % 4 == 0 {
             let (t, _) = Basic::<_, 4>::from_points(space, &points).unwrap();
-            boxes.iter().for_each(|corners| judge(&t, corners.each_ref()));
+            boxes
+                .iter()
+                .for_each(|corners| judge(&t, corners.each_ref()));
         } else {
             let (t, _) = Delaunay::<_, 4>::from_points(space, &points).unwrap();
-            boxes.iter().for_each(|corners| judge(&t, corners.each_ref()));
+            boxes
+                .iter()
+                .for_each(|corners| judge(&t, corners.each_ref()));
         }
     }
 }
@@ -64,7 +81,9 @@ fn of_a_regular_triangulation() {
 
 #[test]
 fn boxes_without_end_and_without_meaning() {
-    let points: Vec<[f64; 3]> = (0..27).map(|k| [k % 3, k / 3 % 3, k / 9].map(f64::from)).collect();
+    let points: Vec<[f64; 3]> = (0..27)
+        .map(|k| [k % 3, k / 3 % 3, k / 9].map(f64::from))
+        .collect();
     let (t, _) = Delaunay::from_points(Space::new(), &points).unwrap();
     let (far, nan) = (f64::INFINITY, f64::NAN);
     for [p, q] in [
@@ -139,7 +158,11 @@ fn the_rest_is_not_looked_at() {
         LOOKED.set(0);
         let found = t.within_box(corners.each_ref());
         let looked = LOOKED.get();
-        assert!(looked < 5000 + 500 * found.len(), "{looked} coordinates for {} vertices", found.len());
+        assert!(
+            looked < 5000 + 500 * found.len(),
+            "{looked} coordinates for {} vertices",
+            found.len()
+        );
         judge(&t, corners.each_ref());
     }
 }

@@ -22,12 +22,23 @@ fn facet<G: Geometry<4>>(t: &Triangulation<G, 4>, (cell, i): (CellId, usize)) ->
 }
 
 /// Compares the zone with the cells that the insertion has destroyed.
-fn judge<G: Geometry<4>>(before: &Triangulation<G, 4>, after: &Triangulation<G, 4>, zone: &ConflictZone) {
-    let all =
-        |t: &Triangulation<G, 4>| -> BTreeSet<Vec<VertexId>> { t.tds().cells().map(|cell| corners(t, cell)).collect() };
+fn judge<G: Geometry<4>>(
+    before: &Triangulation<G, 4>,
+    after: &Triangulation<G, 4>,
+    zone: &ConflictZone,
+) {
+    let all = |t: &Triangulation<G, 4>| -> BTreeSet<Vec<VertexId>> {
+        t.tds().cells().map(|cell| corners(t, cell)).collect()
+    };
     let destroyed: BTreeSet<_> = all(before).difference(&all(after)).cloned().collect();
     assert_eq!(zone.cells.len(), destroyed.len());
-    assert_eq!(zone.cells.iter().map(|&cell| corners(before, cell)).collect::<BTreeSet<_>>(), destroyed);
+    assert_eq!(
+        zone.cells
+            .iter()
+            .map(|&cell| corners(before, cell))
+            .collect::<BTreeSet<_>>(),
+        destroyed
+    );
 
     let tds = before.tds();
     let width = before.dimension() as usize + 1;
@@ -38,11 +49,18 @@ fn judge<G: Geometry<4>>(before: &Triangulation<G, 4>, after: &Triangulation<G, 
     for &(cell, i) in &internal {
         assert!(zone.cells.contains(&cell) && zone.cells.contains(&tds.neighbor(cell, i)));
     }
-    assert_eq!(width * zone.cells.len(), zone.border.len() + 2 * internal.len());
+    assert_eq!(
+        width * zone.cells.len(),
+        zone.border.len() + 2 * internal.len()
+    );
     let facets: BTreeSet<_> = internal.iter().map(|&side| facet(before, side)).collect();
     assert!(width < 4 || facets.len() == internal.len());
 
-    let border: Vec<Vec<VertexId>> = zone.border.iter().map(|&side| facet(before, side)).collect();
+    let border: Vec<Vec<VertexId>> = zone
+        .border
+        .iter()
+        .map(|&side| facet(before, side))
+        .collect();
     let vertices: BTreeSet<VertexId> = border.iter().flatten().copied().collect();
     match before.dimension() {
         3 => assert_eq!(border.len(), 2 * vertices.len() - 4),
@@ -60,7 +78,10 @@ fn judge<G: Geometry<4>>(before: &Triangulation<G, 4>, after: &Triangulation<G, 
             *ridges.entry(ridge).or_default() += 1;
         }
     }
-    assert!(ridges.values().all(|&count| count == 2), "the border is closed");
+    assert!(
+        ridges.values().all(|&count| count == 2),
+        "the border is closed"
+    );
 }
 
 fn site(random: &mut Random, sizes: [u64; 3]) -> [f64; 3] {
@@ -75,7 +96,9 @@ fn of_delaunay() {
     let mut full = 0;
     for round in 0..1500 {
         let sizes = SIZES[round % 5];
-        let points: Vec<[f64; 3]> = (0..random.index(30)).map(|_| site(&mut random, sizes)).collect();
+        let points: Vec<[f64; 3]> = (0..random.index(30))
+            .map(|_| site(&mut random, sizes))
+            .collect();
         let (t, _) = Delaunay::from_points(Space::new(), &points).unwrap();
         let q = site(&mut random, if round % 3 == 0 { [6, 6, 6] } else { sizes });
         let mut after = t.clone();
@@ -85,7 +108,9 @@ fn of_delaunay() {
                 full += usize::from(t.dimension() == 3);
                 judge(&t, &after, &zone);
             }
-            None => assert!(after.vertex_count() == t.vertex_count() || after.dimension() > t.dimension()),
+            None => assert!(
+                after.vertex_count() == t.vertex_count() || after.dimension() > t.dimension()
+            ),
         }
     }
     assert!(full > 300, "{full}");
@@ -101,7 +126,9 @@ fn of_regular() {
             let [x, y, z] = site(random, sizes);
             [x, y, z, random.below(weights) as f64]
         };
-        let points: Vec<[f64; 4]> = (0..random.index(30)).map(|_| point(&mut random, sizes)).collect();
+        let points: Vec<[f64; 4]> = (0..random.index(30))
+            .map(|_| point(&mut random, sizes))
+            .collect();
         let (t, _) = Regular::from_points(WeightedSpace::new(), &points).unwrap();
         let q = point(&mut random, if round % 3 == 0 { [6, 6, 6] } else { sizes });
         let mut after = t.clone();
@@ -113,7 +140,9 @@ fn of_regular() {
                 judge(&t, &after, &zone);
             }
             None => assert!(
-                after.is_hidden(vertex) || t.tds().is_vertex(vertex) || after.dimension() > t.dimension(),
+                after.is_hidden(vertex)
+                    || t.tds().is_vertex(vertex)
+                    || after.dimension() > t.dimension(),
                 "{points:?} {q:?}"
             ),
         }
@@ -123,10 +152,14 @@ fn of_regular() {
 
 #[test]
 fn of_points_far_out_and_of_none() {
-    let (t, _) = Delaunay::from_points(Space::new(), &[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]).unwrap();
+    let (t, _) =
+        Delaunay::from_points(Space::new(), &[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]).unwrap();
     assert_eq!(t.conflict_zone(&[0.0, 0.0, 1.0], None), None);
     assert_eq!(t.conflict_zone(&[f64::NAN; 3], None), None);
     assert_eq!(t.conflict_zone(&[1e300, 0.0, 0.0], None), None);
     assert!(t.conflict_zone(&[1e50, 1e50, 0.0], None).is_some());
-    assert_eq!(Delaunay::<Space, 4>::new(Space::new()).conflict_zone(&[0.0; 3], None), None);
+    assert_eq!(
+        Delaunay::<Space, 4>::new(Space::new()).conflict_zone(&[0.0; 3], None),
+        None
+    );
 }

@@ -49,7 +49,12 @@ pub(crate) struct LineArgs {
     pub(crate) wall_bottom: Option<Number>,
 
     /// How far the lower edge of walls is below the upper one, or the attribute that says it
-    #[arg(long, requires = "walls", value_name = "HEIGHT|FIELD", allow_negative_numbers = true)]
+    #[arg(
+        long,
+        requires = "walls",
+        value_name = "HEIGHT|FIELD",
+        allow_negative_numbers = true
+    )]
     pub(crate) wall_drop: Option<Number>,
 
     /// Distance in plan between the edges of walls [default: 0.01 metres]
@@ -79,7 +84,12 @@ pub(crate) struct LineArgs {
     ///
     /// The lowest or the mean height of the shore, a number, or the attribute that has the height
     /// of each lake. With a number or an attribute, the shore needs no heights.
-    #[arg(long, requires = "flat", value_name = "lowest|mean|HEIGHT|FIELD", allow_negative_numbers = true)]
+    #[arg(
+        long,
+        requires = "flat",
+        value_name = "lowest|mean|HEIGHT|FIELD",
+        allow_negative_numbers = true
+    )]
     pub(crate) flat_height: Option<FlatHeightArg>,
 
     /// Largest difference of heights of a level shore [default: 0.01 metres]
@@ -108,7 +118,12 @@ pub(crate) struct LineArgs {
     pub(crate) rivers: Vec<PathBuf>,
 
     /// Width of rivers, or the attribute that has it: their lines run along the middle
-    #[arg(long, requires = "rivers", value_name = "LENGTH|FIELD", allow_negative_numbers = true)]
+    #[arg(
+        long,
+        requires = "rivers",
+        value_name = "LENGTH|FIELD",
+        allow_negative_numbers = true
+    )]
     pub(crate) river_width: Option<Number>,
 
     /// Largest distance between vertices of breaklines and soft lines: more are added
@@ -140,7 +155,9 @@ impl FromStr for Number {
     fn from_str(text: &str) -> Result<Self, String> {
         match text.parse::<f64>() {
             Ok(_) => finite(text).map(|number| Number(PerRecord::Number(number))),
-            Err(_) if text.trim().is_empty() => Err("expected a number or the name of an attribute".to_owned()),
+            Err(_) if text.trim().is_empty() => {
+                Err("expected a number or the name of an attribute".to_owned())
+            }
             Err(_) => Ok(Number(PerRecord::Field(text.to_owned()))),
         }
     }
@@ -188,11 +205,17 @@ mod tests {
     #[test]
     fn a_number_or_an_attribute() {
         assert_eq!("-1.5".parse(), Ok(Number(PerRecord::Number(-1.5))));
-        assert_eq!("WSPIEGEL".parse(), Ok(Number(PerRecord::Field("WSPIEGEL".to_owned()))));
+        assert_eq!(
+            "WSPIEGEL".parse(),
+            Ok(Number(PerRecord::Field("WSPIEGEL".to_owned())))
+        );
         for wrong in ["", " ", "nan", "inf"] {
             assert!(wrong.parse::<Number>().is_err(), "{wrong}");
         }
         assert_eq!("mean".parse(), Ok(FlatHeightArg(FlatRule::Mean)));
-        assert_eq!("2".parse(), Ok(FlatHeightArg(FlatRule::Given(PerRecord::Number(2.0)))));
+        assert_eq!(
+            "2".parse(),
+            Ok(FlatHeightArg(FlatRule::Given(PerRecord::Number(2.0))))
+        );
     }
 }

@@ -27,8 +27,8 @@ pub(crate) use switches::expand_switches;
 pub(crate) use systems::SystemArgs;
 pub(crate) use tiles::TileArgs;
 pub(crate) use verbs::{
-    CheckArgs, ContourArgs, DemArgs, DemoArgs, DescribeArgs, FrameArgs, HillshadeArgs, InfoArgs, OutputArgs,
-    PointsArgs, TinArgs, TriangulateArgs,
+    CheckArgs, ContourArgs, DemArgs, DemoArgs, DescribeArgs, FrameArgs, HillshadeArgs, InfoArgs,
+    OutputArgs, PointsArgs, TinArgs, TriangulateArgs,
 };
 
 /// Lidar and breaklines to TIN, DEM, contours and mesh
@@ -58,7 +58,10 @@ Examples:
 
 /// Returns the end of the long help: the tables of formats and of exit codes, then examples.
 fn examples() -> String {
-    let exits: String = Exit::ALL.iter().map(|(exit, meaning)| format!("  {}  {meaning}\n", *exit as u8)).collect();
+    let exits: String = Exit::ALL
+        .iter()
+        .map(|(exit, meaning)| format!("  {}  {meaning}\n", *exit as u8))
+        .collect();
     format!("{}\nExit codes:\n{exits}{EXAMPLES}", formats::help())
 }
 

@@ -15,17 +15,26 @@ impl FromStr for Corners {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let parts: Vec<&str> =
-            if text.contains(',') { text.split(',').collect() } else { text.split_whitespace().collect() };
+        let parts: Vec<&str> = if text.contains(',') {
+            text.split(',').collect()
+        } else {
+            text.split_whitespace().collect()
+        };
         let values: Vec<f64> = parts
             .into_iter()
             .map(|part| finite(part).map_err(|e| format!("{e}; expected xmin,ymin,xmax,ymax")))
             .collect::<Result<_, _>>()?;
         let &[x0, y0, x1, y1] = values.as_slice() else {
-            return Err(format!("expected four numbers xmin,ymin,xmax,ymax, found {}", values.len()));
+            return Err(format!(
+                "expected four numbers xmin,ymin,xmax,ymax, found {}",
+                values.len()
+            ));
         };
         if x0 < x1 && y0 < y1 {
-            Ok(Corners { min: [x0, y0], max: [x1, y1] })
+            Ok(Corners {
+                min: [x0, y0],
+                max: [x1, y1],
+            })
         } else {
             Err("expected xmin < xmax and ymin < ymax".to_owned())
         }
@@ -35,7 +44,10 @@ impl FromStr for Corners {
 impl Corners {
     /// Returns the box of this rectangle, unbounded in z.
     pub(crate) fn bounds(self) -> Bounds {
-        Bounds { min: [self.min[0], self.min[1], f64::NEG_INFINITY], max: [self.max[0], self.max[1], f64::INFINITY] }
+        Bounds {
+            min: [self.min[0], self.min[1], f64::NEG_INFINITY],
+            max: [self.max[0], self.max[1], f64::INFINITY],
+        }
     }
 }
 
@@ -57,7 +69,9 @@ impl FromStr for EdgeLength {
         if text.eq_ignore_ascii_case("auto") {
             return Ok(EdgeLength::Auto);
         }
-        positive(text).map(EdgeLength::Length).map_err(|e| format!("{e}; expected a length, `auto` or `none`"))
+        positive(text)
+            .map(EdgeLength::Length)
+            .map_err(|e| format!("{e}; expected a length, `auto` or `none`"))
     }
 }
 
@@ -73,7 +87,9 @@ pub(crate) fn finite(text: &str) -> Result<f64, String> {
 pub(super) fn smallest_angle(text: &str) -> Result<f64, String> {
     match positive(text)? {
         value if value < 60.0 => Ok(value),
-        value => Err(format!("{value} degrees: no triangle has three angles above 60")),
+        value => Err(format!(
+            "{value} degrees: no triangle has three angles above 60"
+        )),
     }
 }
 
@@ -97,7 +113,9 @@ pub(super) fn not_negative(text: &str) -> Result<f64, String> {
 pub(super) fn altitude(text: &str) -> Result<f64, String> {
     match finite(text)? {
         value if (0.0..=90.0).contains(&value) => Ok(value),
-        value => Err(format!("{value} is not between 0 (the horizon) and 90 (overhead)")),
+        value => Err(format!(
+            "{value} is not between 0 (the horizon) and 90 (overhead)"
+        )),
     }
 }
 
@@ -107,9 +125,31 @@ mod tests {
 
     #[test]
     fn corners_are_four_numbers_in_order() {
-        assert_eq!("-1, 2,3,4.5".parse(), Ok(Corners { min: [-1.0, 2.0], max: [3.0, 4.5] }));
-        assert_eq!(" 1  2 3.5\t4".parse(), Ok(Corners { min: [1.0, 2.0], max: [3.5, 4.0] }));
-        for wrong in ["", "1,2,3", "1,,2,3,4", "1,2,3,4,5", "3,2,1,4", "1,2,1,4", "1,2,inf,4", "1,2,nan,4", "a,b,c,d"] {
+        assert_eq!(
+            "-1, 2,3,4.5".parse(),
+            Ok(Corners {
+                min: [-1.0, 2.0],
+                max: [3.0, 4.5]
+            })
+        );
+        assert_eq!(
+            " 1  2 3.5\t4".parse(),
+            Ok(Corners {
+                min: [1.0, 2.0],
+                max: [3.5, 4.0]
+            })
+        );
+        for wrong in [
+            "",
+            "1,2,3",
+            "1,,2,3,4",
+            "1,2,3,4,5",
+            "3,2,1,4",
+            "1,2,1,4",
+            "1,2,inf,4",
+            "1,2,nan,4",
+            "a,b,c,d",
+        ] {
             assert!(wrong.parse::<Corners>().is_err(), "{wrong}");
         }
     }

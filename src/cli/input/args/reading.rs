@@ -38,7 +38,15 @@ pub(crate) struct ReadArgs {
 impl ReadArgs {
     /// Returns the options for readers of points.
     pub(crate) fn options(&self) -> Options {
-        let cut = if self.partial { OnDamage::Accept } else { OnDamage::Refuse };
-        Options { columns: self.columns.or(self.parse), cut, ..Options::default() }
+        let cut = if self.partial {
+            OnDamage::Accept
+        } else {
+            OnDamage::Refuse
+        };
+        Options {
+            columns: self.columns.or(self.parse),
+            cut,
+            ..Options::default()
+        }
     }
 }

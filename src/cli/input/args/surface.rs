@@ -54,7 +54,12 @@ pub(crate) struct SurfaceArgs {
     /// proven to be the same as in the TIN of all data. Then the surface is cut. The summary shows
     /// the final buffer. The values are in the units of the coordinate system of the result,
     /// separated by commas or blanks.
-    #[arg(long, value_name = "XMIN,YMIN,XMAX,YMAX", allow_hyphen_values = true, help_heading = "Surface")]
+    #[arg(
+        long,
+        value_name = "XMIN,YMIN,XMAX,YMAX",
+        allow_hyphen_values = true,
+        help_heading = "Surface"
+    )]
     pub(crate) bounds: Option<Corners>,
 
     /// Longest edge at the rim, `auto`, or `none` [default: 100 metres]
@@ -64,7 +69,12 @@ pub(crate) struct SurfaceArgs {
     /// units of the coordinate system (100 metres are 328.08 feet); without one, 100 units. `auto`
     /// is 100 times the mean distance between points, from the number of all points and the extents
     /// of all files; the summary shows it.
-    #[arg(long, value_name = "LENGTH|auto|none", allow_negative_numbers = true, help_heading = "Surface")]
+    #[arg(
+        long,
+        value_name = "LENGTH|auto|none",
+        allow_negative_numbers = true,
+        help_heading = "Surface"
+    )]
     pub(crate) max_edge: Option<EdgeLength>,
 
     /// Longest edge anywhere: triangles with longer ones leave a hole
@@ -87,13 +97,25 @@ pub(crate) struct SurfaceArgs {
     /// Which height is used where points have the same position
     ///
     /// `first` and `last` depend on the order of the input; the others do not.
-    #[arg(long, value_enum, value_name = "RULE", default_value_t, help_heading = "Surface")]
+    #[arg(
+        long,
+        value_enum,
+        value_name = "RULE",
+        default_value_t,
+        help_heading = "Surface"
+    )]
     pub(crate) duplicates: DuplicatesArg,
 
     /// What to do where breaklines cross between their vertices
     ///
     /// `split` adds a common vertex; `reject` is an error that names both lines and the position.
-    #[arg(long, value_enum, value_name = "split|reject", default_value_t, help_heading = "Surface")]
+    #[arg(
+        long,
+        value_enum,
+        value_name = "split|reject",
+        default_value_t,
+        help_heading = "Surface"
+    )]
     pub(crate) on_crossing: OnCrossingArg,
 
     /// Which height is used where breaklines cross between their vertices
@@ -103,7 +125,13 @@ pub(crate) struct SurfaceArgs {
     /// `error` refuses heights that differ by more than `--crossing-tolerance`. Where a line meets
     /// a vertex of another, that vertex keeps its height (vertices at the same position follow
     /// `--duplicates`); different heights are still reported.
-    #[arg(long, value_enum, value_name = "RULE", default_value_t, help_heading = "Surface")]
+    #[arg(
+        long,
+        value_enum,
+        value_name = "RULE",
+        default_value_t,
+        help_heading = "Surface"
+    )]
     pub(crate) crossing_z: CrossingZArg,
 
     /// Largest allowed difference of heights where breaklines meet [default: 0.01 metres]

@@ -62,11 +62,16 @@ fn options_of(mut rest: &str) -> Option<Vec<String>> {
 
 /// Splits off the number at the start of a text, including its exponent if any, from what follows.
 fn split_number(text: &str) -> (&str, &str) {
-    let digits = |text: &str| text.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(text.len());
+    let digits = |text: &str| {
+        text.find(|c: char| !c.is_ascii_digit() && c != '.')
+            .unwrap_or(text.len())
+    };
     let mut end = digits(text);
     if let Some(exponent) = text[end..].strip_prefix(['e', 'E']).filter(|_| end > 0) {
         let power = exponent.strip_prefix(['-', '+']).unwrap_or(exponent);
-        let length = power.find(|c: char| !c.is_ascii_digit()).unwrap_or(power.len());
+        let length = power
+            .find(|c: char| !c.is_ascii_digit())
+            .unwrap_or(power.len());
         if length > 0 {
             end = text.len() - power.len() + length;
         }
@@ -82,22 +87,45 @@ mod tests {
     fn words_of_switches_are_told_from_others() {
         let expand = |text: &str| {
             let words = expand_switches(text.split(' ').map(OsString::from))?;
-            Ok::<_, Error>(words.iter().map(|word| word.to_str().unwrap()).collect::<Vec<_>>().join(" "))
+            Ok::<_, Error>(
+                words
+                    .iter()
+                    .map(|word| word.to_str().unwrap())
+                    .collect::<Vec<_>>()
+                    .join(" "),
+            )
         };
         for (typed, meant) in [
             ("-pq30a0.5 x.poly", "--min-angle=30 --max-area=0.5 x.poly"),
-            ("-q x.poly -c -a", "--min-angle=20 x.poly --convex --region-areas"),
+            (
+                "-q x.poly -c -a",
+                "--min-angle=20 x.poly --convex --region-areas",
+            ),
             ("-p x.poly -o a.ele", "x.poly -o a.ele"),
-            ("-pq30S500 x.poly -S", "--min-angle=30 --max-added=500 x.poly --max-added=0"),
-            ("-a1e-7 -pa.5E+3q30 -a2e3", "--max-area=1e-7 --max-area=.5E+3 --min-angle=30 --max-area=2e3"),
-            ("-v -oa.ele --convex -q1. -QV", "-v -oa.ele --convex --min-angle=1. --quiet --verbose"),
+            (
+                "-pq30S500 x.poly -S",
+                "--min-angle=30 --max-added=500 x.poly --max-added=0",
+            ),
+            (
+                "-a1e-7 -pa.5E+3q30 -a2e3",
+                "--max-area=1e-7 --max-area=.5E+3 --min-angle=30 --max-area=2e3",
+            ),
+            (
+                "-v -oa.ele --convex -q1. -QV",
+                "-v -oa.ele --convex --min-angle=1. --quiet --verbose",
+            ),
             ("- --max-area -3 -- -e", "- --max-area -3 -- -e"),
         ] {
             assert_eq!(expand(typed).unwrap(), meant);
         }
         for wrong in ["-s9", "-a1e", "-pe", "-tr", "-D"] {
             let error = expand(wrong).unwrap_err();
-            assert!(error.to_string().starts_with(&format!("`{wrong}`: of Triangle's switches")), "{error}");
+            assert!(
+                error
+                    .to_string()
+                    .starts_with(&format!("`{wrong}`: of Triangle's switches")),
+                "{error}"
+            );
         }
     }
 }

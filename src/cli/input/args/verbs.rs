@@ -110,7 +110,12 @@ pub(crate) struct PointsArgs {
     pub(crate) class: Vec<u8>,
 
     /// Return numbers to write, such as `1,2` [default: all]
-    #[arg(long = "return", value_name = "N,..", value_delimiter = ',', help_heading = "Selection")]
+    #[arg(
+        long = "return",
+        value_name = "N,..",
+        value_delimiter = ',',
+        help_heading = "Selection"
+    )]
     pub(crate) returns: Vec<u8>,
 
     /// Leave out points that are flagged as withheld
@@ -118,7 +123,12 @@ pub(crate) struct PointsArgs {
     pub(crate) drop_withheld: bool,
 
     /// Clip to a rectangle, including its border
-    #[arg(long, value_name = "XMIN,YMIN,XMAX,YMAX", allow_hyphen_values = true, help_heading = "Selection")]
+    #[arg(
+        long,
+        value_name = "XMIN,YMIN,XMAX,YMAX",
+        allow_hyphen_values = true,
+        help_heading = "Selection"
+    )]
     pub(crate) bounds: Option<Corners>,
 
     /// Clip to polygons, including their borders (repeatable)
@@ -224,7 +234,13 @@ pub(crate) struct TriangulateArgs {
     pub(crate) convex: bool,
 
     /// What to do where two segments cross between their ends
-    #[arg(long, value_enum, value_name = "RULE", default_value_t, help_heading = "Triangulation")]
+    #[arg(
+        long,
+        value_enum,
+        value_name = "RULE",
+        default_value_t,
+        help_heading = "Triangulation"
+    )]
     pub(crate) on_crossing: OnCrossingArg,
 
     /// Add vertices until no angle is smaller (also `-q[DEGREES]`: 20)
@@ -253,7 +269,13 @@ pub(crate) struct TriangulateArgs {
     pub(crate) max_added: Option<usize>,
 
     /// The arithmetic that decides on which side of a line a point lies
-    #[arg(long, value_enum, value_name = "KERNEL", default_value_t, help_heading = "Triangulation")]
+    #[arg(
+        long,
+        value_enum,
+        value_name = "KERNEL",
+        default_value_t,
+        help_heading = "Triangulation"
+    )]
     pub(crate) kernel: KernelArg,
 }
 
@@ -262,26 +284,40 @@ impl TriangulateArgs {
     pub(crate) fn option_of_the_plane(&self) -> Option<&'static str> {
         let given = [
             (self.convex, "--convex"),
-            (self.on_crossing != OnCrossingArg::default(), "--on-crossing"),
+            (
+                self.on_crossing != OnCrossingArg::default(),
+                "--on-crossing",
+            ),
             (self.min_angle.is_some(), "--min-angle"),
             (self.max_area.is_some(), "--max-area"),
             (self.region_areas, "--region-areas"),
             (self.max_added.is_some(), "--max-added"),
         ];
-        given.into_iter().find(|(is_given, _)| *is_given).map(|(_, name)| name)
+        given
+            .into_iter()
+            .find(|(is_given, _)| *is_given)
+            .map(|(_, name)| name)
     }
 
     /// Returns the first option given that is only for space.
     pub(crate) fn option_of_space(&self) -> Option<&'static str> {
-        let given = [(self.weighted, "--weighted"), (self.alpha.is_some(), "--alpha")];
-        given.into_iter().find(|(is_given, _)| *is_given).map(|(_, name)| name)
+        let given = [
+            (self.weighted, "--weighted"),
+            (self.alpha.is_some(), "--alpha"),
+        ];
+        given
+            .into_iter()
+            .find(|(is_given, _)| *is_given)
+            .map(|(_, name)| name)
     }
 }
 
 fn alpha(text: &str) -> Result<Alpha, String> {
     match text {
         "auto" => Ok(Alpha::OneSolid),
-        _ => positive(text).map(Alpha::Given).map_err(|error| format!("{error}, or `auto`")),
+        _ => positive(text)
+            .map(Alpha::Given)
+            .map_err(|error| format!("{error}, or `auto`")),
     }
 }
 
@@ -333,7 +369,13 @@ pub(crate) struct DemArgs {
     /// `linear` has kinks at all edges; `natural` is smooth except at vertices and breaklines, and
     /// stays between the heights of its neighbors; `smooth` has kinks at breaklines only, and may
     /// overshoot.
-    #[arg(long, value_enum, value_name = "METHOD", default_value_t, help_heading = "Raster")]
+    #[arg(
+        long,
+        value_enum,
+        value_name = "METHOD",
+        default_value_t,
+        help_heading = "Raster"
+    )]
     pub(crate) method: MethodArg,
 
     #[command(flatten)]
@@ -438,7 +480,13 @@ pub(crate) struct HillshadeArgs {
     /// `linear` has kinks at all edges; `natural` is smooth except at vertices and breaklines, and
     /// stays between the heights of its neighbors; `smooth` has kinks at breaklines only, and may
     /// overshoot. For a TIN; a DEM has its heights.
-    #[arg(long, value_enum, value_name = "METHOD", default_value_t, help_heading = "Raster")]
+    #[arg(
+        long,
+        value_enum,
+        value_name = "METHOD",
+        default_value_t,
+        help_heading = "Raster"
+    )]
     pub(crate) method: MethodArg,
 
     /// Direction that the light comes from, in degrees clockwise from north

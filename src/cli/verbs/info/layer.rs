@@ -6,13 +6,25 @@ use crate::data::ShapeKind;
 use crate::run::LayerFacts;
 
 pub(super) fn sheet(facts: &LayerFacts) -> Sheet {
-    let LayerFacts { records, kinds, vertices, without_height, .. } = facts;
+    let LayerFacts {
+        records,
+        kinds,
+        vertices,
+        without_height,
+        ..
+    } = facts;
     let mut sheet = Sheet::with_warnings(facts.warnings.clone());
     sheet.silent("kind", "layer");
     sheet.plain("format", facts.format.as_str());
     sheet.row("count", counted(*records as u64, "record"), *records);
-    let words: Vec<String> = kinds.iter().map(|(kind, count)| format!("{}: {count}", name(*kind))).collect();
-    let object: Map<_, _> = kinds.iter().map(|(kind, count)| (name(*kind).to_owned(), json!(count))).collect();
+    let words: Vec<String> = kinds
+        .iter()
+        .map(|(kind, count)| format!("{}: {count}", name(*kind)))
+        .collect();
+    let object: Map<_, _> = kinds
+        .iter()
+        .map(|(kind, count)| (name(*kind).to_owned(), json!(count)))
+        .collect();
     sheet.row("shapes", words.join(", "), object);
     sheet.plain("parts", facts.parts);
     sheet.plain("vertices", *vertices);
@@ -24,7 +36,11 @@ pub(super) fn sheet(facts: &LayerFacts) -> Sheet {
     };
     sheet.row("heights", text, vertices - without_height);
     sheet.crs(facts.crs.as_ref());
-    let fields = if facts.fields.is_empty() { "none".to_owned() } else { facts.fields.join(", ") };
+    let fields = if facts.fields.is_empty() {
+        "none".to_owned()
+    } else {
+        facts.fields.join(", ")
+    };
     sheet.row("fields", fields, facts.fields.clone());
     sheet
 }

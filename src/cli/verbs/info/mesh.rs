@@ -10,10 +10,15 @@ use crate::run::units::neat;
 
 pub(super) fn sheet(path: &Path, facts: &MeshFacts) -> Sheet {
     let MeshFacts { surface, crs, flaw } = facts;
-    let no_surface = flaw.map(|flaw| format!("this is not a surface: {flaw}; `breakline check` lists all flaws"));
+    let no_surface = flaw
+        .map(|flaw| format!("this is not a surface: {flaw}; `breakline check` lists all flaws"));
     let mut sheet = Sheet::with_warnings(no_surface.into_iter().map(Into::into).collect());
     sheet.silent("kind", "mesh");
-    let extension = path.extension().unwrap_or_default().to_string_lossy().to_ascii_uppercase();
+    let extension = path
+        .extension()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .to_ascii_uppercase();
     let format = match extension.as_str() {
         "TIN" => extension,
         "TINS" => "TIN in parts".to_owned(),
@@ -24,8 +29,16 @@ pub(super) fn sheet(path: &Path, facts: &MeshFacts) -> Sheet {
     sheet.plain("triangles", surface.triangles);
     let breaklines = surface.edges.of(EdgeKind::Breakline);
     sheet.row("breaklines", format!("{breaklines} edges"), breaklines);
-    for (kind, count) in surface.edges.kinds().filter(|(kind, _)| *kind != EdgeKind::Breakline) {
-        sheet.row(kind.noun().replace(' ', "_"), format!("{count} edges"), count);
+    for (kind, count) in surface
+        .edges
+        .kinds()
+        .filter(|(kind, _)| *kind != EdgeKind::Breakline)
+    {
+        sheet.row(
+            kind.noun().replace(' ', "_"),
+            format!("{count} edges"),
+            count,
+        );
     }
     sheet.bounds(surface.extent);
     sheet.crs(crs.as_ref());

@@ -39,7 +39,9 @@ pub(crate) fn run(args: &InfoArgs, console: &Console) -> Result<Exit> {
                 continue;
             }
         };
-        sheet.warnings.iter().for_each(|text| console.warning(format_args!("{name}: {}", text.render(&names::name))));
+        sheet.warnings.iter().for_each(|text| {
+            console.warning(format_args!("{name}: {}", text.render(&names::name)))
+        });
         if args.json {
             objects.push(sheet.to_json(&name));
         } else {
@@ -48,7 +50,10 @@ pub(crate) fn run(args: &InfoArgs, console: &Console) -> Result<Exit> {
         }
     }
     if args.json {
-        print(&escape::json(&format!("{:#}\n", serde_json::Value::Array(objects))))?;
+        print(&escape::json(&format!(
+            "{:#}\n",
+            serde_json::Value::Array(objects)
+        )))?;
     }
     Ok(exit)
 }
@@ -66,7 +71,11 @@ fn drop_parts(files: &mut Vec<PathBuf>, console: &Console) {
     let mut parts: HashSet<String> = HashSet::new();
     for path in files.iter() {
         let extensions = formats::of_name(path).map_or(&[][..], |format| format.parts);
-        parts.extend(extensions.iter().map(|extension| lower(&path.with_extension(extension))));
+        parts.extend(
+            extensions
+                .iter()
+                .map(|extension| lower(&path.with_extension(extension))),
+        );
     }
     files.retain(|path| {
         let is_part = parts.contains(&lower(path));

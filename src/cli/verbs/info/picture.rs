@@ -9,9 +9,17 @@ pub(super) fn sheet(picture: &Picture) -> Sheet {
     let mut sheet = Sheet::default();
     sheet.silent("kind", "picture");
     sheet.plain("format", picture.format.as_str());
-    sheet.row("size", format!("{width} x {height} cells"), json!([width, height]));
+    sheet.row(
+        "size",
+        format!("{width} x {height} cells"),
+        json!([width, height]),
+    );
     if let Some(transform) = picture.transform {
-        let frame = Frame { width: width as usize, height: height as usize, transform };
+        let frame = Frame {
+            width: width as usize,
+            height: height as usize,
+            transform,
+        };
         sheet.row("cell", super::raster::cell(&frame), json!(transform));
         sheet.bounds(frame.extent());
     }

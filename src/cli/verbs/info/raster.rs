@@ -13,7 +13,11 @@ pub(super) fn sheet(facts: &RasterFacts) -> Sheet {
     if let Some(sample) = &facts.sample {
         sheet.plain("sample", sample.as_str());
     }
-    sheet.row("size", format!("{} x {} cells", frame.width, frame.height), json!([frame.width, frame.height]));
+    sheet.row(
+        "size",
+        format!("{} x {} cells", frame.width, frame.height),
+        json!([frame.width, frame.height]),
+    );
     sheet.row("cell", cell(&frame), json!(frame.transform));
     sheet.bounds(frame.extent());
     sheet.crs(facts.crs.as_ref());
@@ -28,7 +32,11 @@ pub(super) fn sheet(facts: &RasterFacts) -> Sheet {
         sheet.plain("offset", facts.offset);
     }
     let cells = frame.width as u64 * frame.height as u64;
-    sheet.row("valid", format!("{} of {cells} cells", facts.valid), facts.valid);
+    sheet.row(
+        "valid",
+        format!("{} of {cells} cells", facts.valid),
+        facts.valid,
+    );
     if let Some([low, high]) = facts.range {
         sheet.plain("min", low);
         sheet.plain("max", high);
@@ -39,11 +47,24 @@ pub(super) fn sheet(facts: &RasterFacts) -> Sheet {
 pub(super) fn cell(frame: &Frame) -> String {
     let t = frame.transform;
     if frame.is_north_up() {
-        format!("{} x {}, first corner at {} {}", neat(t[1]), neat(-t[5]), neat(t[0]), neat(t[3]))
+        format!(
+            "{} x {}, first corner at {} {}",
+            neat(t[1]),
+            neat(-t[5]),
+            neat(t[0]),
+            neat(t[3])
+        )
     } else if t[2] == 0.0 && t[4] == 0.0 {
         let size = format!("{} x {}", neat(t[1]), neat(-t[5]));
-        format!("{size} (south up or mirrored), first corner at {} {}", neat(t[0]), neat(t[3]))
+        format!(
+            "{size} (south up or mirrored), first corner at {} {}",
+            neat(t[0]),
+            neat(t[3])
+        )
     } else {
-        format!("rotated, transform {}", t.map(|value| value.to_string()).join(" "))
+        format!(
+            "rotated, transform {}",
+            t.map(|value| value.to_string()).join(" ")
+        )
     }
 }

@@ -27,12 +27,24 @@ struct Row {
 impl Sheet {
     /// A sheet with warnings and no facts yet.
     pub(super) fn with_warnings(warnings: Vec<Wording>) -> Self {
-        Sheet { rows: Vec::new(), warnings }
+        Sheet {
+            rows: Vec::new(),
+            warnings,
+        }
     }
 
     /// Adds a fact with a text and a value.
-    pub(super) fn row(&mut self, key: impl Into<Cow<'static, str>>, text: impl Into<String>, value: impl Into<Value>) {
-        self.rows.push(Row { key: key.into(), text: Some(text.into()), value: value.into() });
+    pub(super) fn row(
+        &mut self,
+        key: impl Into<Cow<'static, str>>,
+        text: impl Into<String>,
+        value: impl Into<Value>,
+    ) {
+        self.rows.push(Row {
+            key: key.into(),
+            text: Some(text.into()),
+            value: value.into(),
+        });
     }
 
     /// Adds a fact whose text is its value.
@@ -40,15 +52,26 @@ impl Sheet {
         let value = value.into();
         let text = match &value {
             Value::String(text) => text.clone(),
-            Value::Number(number) => number.as_f64().filter(|_| number.is_f64()).map_or(number.to_string(), neat),
+            Value::Number(number) => number
+                .as_f64()
+                .filter(|_| number.is_f64())
+                .map_or(number.to_string(), neat),
             other => other.to_string(),
         };
-        self.rows.push(Row { key: key.into(), text: Some(text), value });
+        self.rows.push(Row {
+            key: key.into(),
+            text: Some(text),
+            value,
+        });
     }
 
     /// Adds a fact that appears only in JSON.
     pub(super) fn silent(&mut self, key: &'static str, value: impl Into<Value>) {
-        self.rows.push(Row { key: key.into(), text: None, value: value.into() });
+        self.rows.push(Row {
+            key: key.into(),
+            text: None,
+            value: value.into(),
+        });
     }
 
     /// Adds the extent, or that there is none.
@@ -56,18 +79,26 @@ impl Sheet {
         if bounds.is_empty() {
             return self.row("bounds", "none", Value::Null);
         }
-        let axis = |i: usize, name: &str| format!("{name} {} .. {}", neat(bounds.min[i]), neat(bounds.max[i]));
+        let axis = |i: usize, name: &str| {
+            format!("{name} {} .. {}", neat(bounds.min[i]), neat(bounds.max[i]))
+        };
         let mut text = format!("{}, {}", axis(0, "x"), axis(1, "y"));
         // Without any height the box is empty in z.
         if bounds.min[2] <= bounds.max[2] {
             text += &format!(", {}", axis(2, "z"));
         }
-        self.row("bounds", text, json!({ "min": finite(bounds.min), "max": finite(bounds.max) }));
+        self.row(
+            "bounds",
+            text,
+            json!({ "min": finite(bounds.min), "max": finite(bounds.max) }),
+        );
     }
 
     /// Adds the coordinate system, or that there is none.
     pub(super) fn crs(&mut self, crs: Option<&Crs>) {
-        let Some(crs) = crs else { return self.row("crs", "not stated", Value::Null) };
+        let Some(crs) = crs else {
+            return self.row("crs", "not stated", Value::Null);
+        };
         let kind = match crs.kind {
             CrsKind::Projected => "projected",
             CrsKind::Geographic => "geographic",
@@ -92,7 +123,12 @@ impl Sheet {
         for row in &self.rows {
             if let Some(words) = &row.text {
                 // Writing to a string cannot fail.
-                let _ = writeln!(text, "  {:<10} {}", row.key.replace('_', " "), escape::line(words));
+                let _ = writeln!(
+                    text,
+                    "  {:<10} {}",
+                    row.key.replace('_', " "),
+                    escape::line(words)
+                );
             }
         }
         text
@@ -105,7 +141,11 @@ impl Sheet {
         for row in &self.rows {
             object.insert(row.key.to_string(), row.value.clone());
         }
-        let warnings: Vec<String> = self.warnings.iter().map(|text| text.render(&names::name)).collect();
+        let warnings: Vec<String> = self
+            .warnings
+            .iter()
+            .map(|text| text.render(&names::name))
+            .collect();
         object.insert("warnings".to_owned(), json!(warnings));
         Value::Object(object)
     }

@@ -75,14 +75,21 @@ impl Output {
                     let (file, temporary) = temporary_for(&path, mark)?;
                     (file, Sink::Renamed(temporary, path))
                 }
-                (TargetKind::Stream, Writing::AnyOrder) => {
-                    (tempfile::tempfile()?, Sink::Copied(target::open_stream(target)?))
+                (TargetKind::Stream, Writing::AnyOrder) => (
+                    tempfile::tempfile()?,
+                    Sink::Copied(target::open_stream(target)?),
+                ),
+                (TargetKind::Stream, Writing::InOrder) => {
+                    (target::open_stream(target)?, Sink::Stream)
                 }
-                (TargetKind::Stream, Writing::InOrder) => (target::open_stream(target)?, Sink::Stream),
             })
         };
         let (file, sink) = open().map_err(|e| e.in_file(target))?;
-        Ok(Output { file: BufWriter::with_capacity(1 << 18, file), target: target.to_path_buf(), sink })
+        Ok(Output {
+            file: BufWriter::with_capacity(1 << 18, file),
+            target: target.to_path_buf(),
+            sink,
+        })
     }
 
     /// Returns the file with all bytes that were written, from its beginning; `None` if they go to
@@ -157,7 +164,10 @@ pub fn require_absent(target: &Path) -> Result<()> {
         return Ok(());
     }
     let exists = io::Error::new(io::ErrorKind::AlreadyExists, "the file exists");
-    Err(Error::from(exists).in_file(target).cure(wording!["give it another name, or add ", Setting::Overwrite.on()]))
+    Err(Error::from(exists).in_file(target).cure(wording![
+        "give it another name, or add ",
+        Setting::Overwrite.on()
+    ]))
 }
 
 /// Returns an empty file without a name on the disk of a target; for a pipe or a device, in the
@@ -176,7 +186,10 @@ pub(super) fn scratch_for(target: &Path) -> Result<File> {
 /// If one cannot be removed.
 pub fn remove_abandoned(target: &Path, mark: &str) -> Result<()> {
     match TargetKind::of(target)? {
-        TargetKind::File(path) => Ok(temporary::remove_all(target::folder_of(&path), &temporary::prefix(Some(mark)))?),
+        TargetKind::File(path) => Ok(temporary::remove_all(
+            target::folder_of(&path),
+            &temporary::prefix(Some(mark)),
+        )?),
         TargetKind::Stream => Ok(()),
     }
 }

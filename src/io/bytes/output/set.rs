@@ -45,7 +45,11 @@ struct Staged {
 impl OutputSet {
     /// Returns a destination at `path` within this set, for a writer.
     pub fn at<'a>(&'a self, path: &'a Path) -> Destination<'a> {
-        Destination { path, extension: None, set: Some(self) }
+        Destination {
+            path,
+            extension: None,
+            set: Some(self),
+        }
     }
 
     /// Puts a mark into the names of the temporary files that are created from now on, so that
@@ -61,11 +65,18 @@ impl OutputSet {
     /// # Errors
     /// Those of the function, and if a file cannot be read.
     pub fn read_back(&self, read: &mut dyn FnMut(&Path, &mut File) -> Result<()>) -> Result<()> {
-        let Staged { companions, outputs, .. } = &mut *self.staged.borrow_mut();
+        let Staged {
+            companions,
+            outputs,
+            ..
+        } = &mut *self.staged.borrow_mut();
         for output in companions.iter_mut().chain(outputs) {
             let target = output.target().to_path_buf();
-            let file = output.read_back().map_err(|e| Error::from(e).in_file(&target))?;
-            file.map_or(Ok(()), |file| read(&target, file)).map_err(|e| e.in_file(&target))?;
+            let file = output
+                .read_back()
+                .map_err(|e| Error::from(e).in_file(&target))?;
+            file.map_or(Ok(()), |file| read(&target, file))
+                .map_err(|e| e.in_file(&target))?;
         }
         Ok(())
     }
@@ -82,7 +93,11 @@ impl OutputSet {
     /// If the last bytes cannot be written or a rename fails. All previous files are then restored;
     /// bytes that went to a pipe or a device are gone.
     pub fn commit(self) -> Result<Vec<PathBuf>> {
-        let Staged { companions, outputs, stale } = self.staged.into_inner();
+        let Staged {
+            companions,
+            outputs,
+            stale,
+        } = self.staged.into_inner();
         let companion_count = companions.len();
         let all = companions.into_iter().chain(outputs);
         let flushed: Vec<Flushed> = all.map(Output::flush_to_disk).collect::<Result<_>>()?;
@@ -93,14 +108,18 @@ impl OutputSet {
             Ok(()) => {
                 moves.iter().for_each(Move::forget);
                 drop(renames);
-                let mut targets: Vec<PathBuf> = flushed.into_iter().map(|file| file.target).collect();
+                let mut targets: Vec<PathBuf> =
+                    flushed.into_iter().map(|file| file.target).collect();
                 targets.rotate_left(companion_count);
                 Ok(targets)
             }
-            Err(error) => Err(moves.iter().rev().fold(error, |error, done| match done.undo() {
-                Ok(()) => error,
-                Err(kept) => error.cure(kept),
-            })),
+            Err(error) => Err(moves
+                .iter()
+                .rev()
+                .fold(error, |error, done| match done.undo() {
+                    Ok(()) => error,
+                    Err(kept) => error.cure(kept),
+                })),
         }
     }
 }
@@ -116,7 +135,11 @@ pub struct Destination<'a> {
 
 impl<'a, P: AsRef<Path> + ?Sized> From<&'a P> for Destination<'a> {
     fn from(path: &'a P) -> Self {
-        Destination { path: path.as_ref(), extension: None, set: None }
+        Destination {
+            path: path.as_ref(),
+            extension: None,
+            set: None,
+        }
     }
 }
 
@@ -130,7 +153,10 @@ impl<'a> Destination<'a> {
     /// format.
     #[must_use]
     pub fn in_format(self, extension: &'a str) -> Self {
-        Destination { extension: Some(extension), ..self }
+        Destination {
+            extension: Some(extension),
+            ..self
+        }
     }
 
     /// Opens the output, as [`Output::create`] does.
@@ -190,7 +216,10 @@ impl<'a> Destination<'a> {
     /// Those of the writer and of [`OutputSet::commit`].
     pub(crate) fn put_whole<T>(self, write: impl FnOnce(Destination) -> Result<T>) -> Result<T> {
         let own = OutputSet::default();
-        let written = write(Destination { set: Some(self.set.unwrap_or(&own)), ..self })?;
+        let written = write(Destination {
+            set: Some(self.set.unwrap_or(&own)),
+            ..self
+        })?;
         own.commit()?;
         Ok(written)
     }
@@ -247,8 +276,13 @@ impl Move<'_> {
             let _ = std::fs::remove_file(self.target);
             return Ok(());
         };
-        std::fs::rename(before, self.target)
-            .map_err(|_| format!("{} was not restored: it is kept as {}", self.target.display(), before.display()))?;
+        std::fs::rename(before, self.target).map_err(|_| {
+            format!(
+                "{} was not restored: it is kept as {}",
+                self.target.display(),
+                before.display()
+            )
+        })?;
         // A rename between two names of one file does nothing.
         self.forget();
         Ok(())
@@ -261,7 +295,11 @@ fn replace_all<'a>(
     moves: &mut Vec<Move<'a>>,
     renames: &mut Renames,
 ) -> Result<()> {
-    let files = || flushed.iter().filter_map(|file| Some((file, file.renamed.as_ref()?)));
+    let files = || {
+        flushed
+            .iter()
+            .filter_map(|file| Some((file, file.renamed.as_ref()?)))
+    };
     // One hidden name per file, derived from those of the set's own files.
     if let Some((_, (first, _))) = files().next() {
         for (i, path) in stale.iter().enumerate() {
@@ -270,7 +308,10 @@ fn replace_all<'a>(
             }
             let before = beside(path, &first.other_backup(i));
             match std::fs::rename(path, &before) {
-                Ok(()) => moves.push(Move { target: path, before: Some(before) }),
+                Ok(()) => moves.push(Move {
+                    target: path,
+                    before: Some(before),
+                }),
                 Err(error) if error.kind() == ErrorKind::NotFound => {}
                 Err(error) => return Err(Error::from(error).in_file(path)),
             }
@@ -280,7 +321,10 @@ fn replace_all<'a>(
         let before = set_aside(temporary, path).map_err(|e| e.in_file(&file.target))?;
         let renamed = renames.rename(temporary, path);
         if renamed.is_ok() || before.is_some() {
-            moves.push(Move { target: path, before });
+            moves.push(Move {
+                target: path,
+                before,
+            });
         }
         renamed.map_err(|e| Error::from(e).in_file(&file.target))?;
     }
@@ -334,7 +378,12 @@ mod tests {
         let mut all: Vec<_> = std::fs::read_dir(folder)
             .unwrap()
             .map(|entry| entry.unwrap())
-            .map(|entry| (entry.file_name().into_string().unwrap(), text(&entry.path())))
+            .map(|entry| {
+                (
+                    entry.file_name().into_string().unwrap(),
+                    text(&entry.path()),
+                )
+            })
             .collect();
         all.sort();
         all
@@ -349,9 +398,14 @@ mod tests {
         let set = OutputSet::default();
         staged(&set, &a, "new");
         let output = Output::create(&b).unwrap();
-        set.at(&b).put_all([], output, [c, folder.path().join("nothing")]).unwrap();
+        set.at(&b)
+            .put_all([], output, [c, folder.path().join("nothing")])
+            .unwrap();
         set.commit().unwrap();
-        assert_eq!(listed(folder.path()), [("a", "new"), ("b", "")].map(|(n, t)| (n.to_owned(), t.to_owned())));
+        assert_eq!(
+            listed(folder.path()),
+            [("a", "new"), ("b", "")].map(|(n, t)| (n.to_owned(), t.to_owned()))
+        );
     }
 
     #[test]
@@ -368,8 +422,14 @@ mod tests {
         // Appears after the check.
         std::fs::create_dir(&c).unwrap();
         let error = set.commit().unwrap_err();
-        assert!(error.to_string().ends_with("c: there is a folder with this name"), "{error}");
-        let expected = [("a", "old"), ("c", "/"), ("s", "kept")].map(|(n, t)| (n.to_owned(), t.to_owned()));
+        assert!(
+            error
+                .to_string()
+                .ends_with("c: there is a folder with this name"),
+            "{error}"
+        );
+        let expected =
+            [("a", "old"), ("c", "/"), ("s", "kept")].map(|(n, t)| (n.to_owned(), t.to_owned()));
         assert_eq!(listed(folder.path()), expected);
     }
 

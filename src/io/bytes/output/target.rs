@@ -25,9 +25,13 @@ impl TargetKind {
                 return Ok(TargetKind::Stream);
             }
             match std::fs::symlink_metadata(&path) {
-                Err(error) if error.kind() == ErrorKind::NotFound => return Ok(TargetKind::File(path)),
+                Err(error) if error.kind() == ErrorKind::NotFound => {
+                    return Ok(TargetKind::File(path));
+                }
                 Err(error) => return Err(error.into()),
-                Ok(data) if data.is_symlink() => path = path.with_file_name("").join(std::fs::read_link(&path)?),
+                Ok(data) if data.is_symlink() => {
+                    path = path.with_file_name("").join(std::fs::read_link(&path)?)
+                }
                 Ok(data) if data.is_dir() => return Err(folder_error()),
                 Ok(data) if data.is_file() => return Ok(TargetKind::File(path)),
                 Ok(_) => return Ok(TargetKind::Stream),
@@ -39,16 +43,23 @@ impl TargetKind {
 
 /// Returns the folder that a file is in.
 pub(super) fn folder_of(path: &Path) -> &Path {
-    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
+    path.parent()
+        .filter(|folder| !folder.as_os_str().is_empty())
+        .unwrap_or(Path::new("."))
 }
 
 /// Returns the number in `/proc/self/fd/1` and the like. `/dev/stdout` links to such a path,
 /// whatever that links to.
 fn open_file(path: &Path) -> Option<u32> {
     let is_listed = path.parent().is_some_and(|folder| {
-        folder == Path::new("/dev/fd") || folder.starts_with("/proc") && folder.file_name().is_some_and(|n| n == "fd")
+        folder == Path::new("/dev/fd")
+            || folder.starts_with("/proc") && folder.file_name().is_some_and(|n| n == "fd")
     });
-    path.file_name().filter(|_| is_listed)?.to_str()?.parse().ok()
+    path.file_name()
+        .filter(|_| is_listed)?
+        .to_str()?
+        .parse()
+        .ok()
 }
 
 /// Opens a pipe or a device for writing. For the standard output, the program's own descriptor is
@@ -79,8 +90,13 @@ pub(super) fn replaceable(path: &Path) -> Result<Option<Metadata>> {
         return Err(folder_error());
     }
     if old.permissions().readonly() {
-        let error = std::io::Error::new(ErrorKind::PermissionDenied, "the file is read-only, and is not replaced");
-        return Err(Error::from(error).cure("give it another name, or allow writing with chmod u+w"));
+        let error = std::io::Error::new(
+            ErrorKind::PermissionDenied,
+            "the file is read-only, and is not replaced",
+        );
+        return Err(
+            Error::from(error).cure("give it another name, or allow writing with chmod u+w")
+        );
     }
     // Asks the system, because permissions depend on more than the mode.
     File::options().write(true).open(path)?;

@@ -139,8 +139,13 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let prefix = prefix(Some("mark"));
         let (_, temporary) = Temporary::create(&folder.path().join("a.shp"), &prefix).unwrap();
-        let kept = [temporary.backup(), temporary.other_backup(0), temporary.other_backup(1)];
-        kept.iter().for_each(|path| std::fs::write(path, "old").unwrap());
+        let kept = [
+            temporary.backup(),
+            temporary.other_backup(0),
+            temporary.other_backup(1),
+        ];
+        kept.iter()
+            .for_each(|path| std::fs::write(path, "old").unwrap());
         remove_all(folder.path(), &prefix).unwrap();
         assert!(kept.iter().all(|path| path.exists()) && !temporary.path.exists());
         assert!(kept[0] != kept[1] && kept[1] != kept[2]);

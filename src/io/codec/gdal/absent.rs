@@ -40,9 +40,15 @@ pub fn open_raster(path: impl AsRef<Path>) -> Result<Raster> {
 }
 
 fn missing(what: &str, path: &Path) -> Error {
-    Error::unsupported(format!("not a {what} format that this build reads; it is without GDAL"))
-        .in_file(path)
-        .cure(wording!["build with ", Feature::Gdal, " (needs libgdal-dev and pkg-config)"])
+    Error::unsupported(format!(
+        "not a {what} format that this build reads; it is without GDAL"
+    ))
+    .in_file(path)
+    .cure(wording![
+        "build with ",
+        Feature::Gdal,
+        " (needs libgdal-dev and pkg-config)"
+    ])
 }
 
 impl Raster {

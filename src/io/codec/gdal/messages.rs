@@ -38,14 +38,23 @@ pub(super) fn listen() {
 
 /// Returns the first error captured since [`listen`].
 pub(super) fn failure(path: &Path) -> Option<Error> {
-    let text = CAUGHT.with_borrow(|caught| caught.iter().find(|message| message.0).map(|message| message.1.clone()))?;
+    let text = CAUGHT.with_borrow(|caught| {
+        caught
+            .iter()
+            .find(|message| message.0)
+            .map(|message| message.1.clone())
+    })?;
     Some(Error::format(format!("GDAL: {text}")).in_file(path))
 }
 
 /// Returns the warnings captured since [`listen`].
 pub(super) fn warnings() -> Vec<Wording> {
     CAUGHT.with_borrow(|caught| {
-        caught.iter().filter(|message| !message.0).map(|message| format!("GDAL: {}", message.1).into()).collect()
+        caught
+            .iter()
+            .filter(|message| !message.0)
+            .map(|message| format!("GDAL: {}", message.1).into())
+            .collect()
     })
 }
 
@@ -67,7 +76,8 @@ pub(super) fn cannot_open(path: &Path, what: &str, returned: GdalError) -> Error
         Some(error) => error,
         None => match returned {
             GdalError::NullPointer { .. } => {
-                Error::unsupported(format!("not a {what} format that GDAL reads here")).in_file(path)
+                Error::unsupported(format!("not a {what} format that GDAL reads here"))
+                    .in_file(path)
             }
             other => Error::caused_by(Kind::Format, other).in_file(path),
         },

@@ -42,8 +42,12 @@ pub struct Raster {
 pub fn open_raster(path: impl AsRef<Path>) -> Result<Raster> {
     let path = path.as_ref();
     messages::listen();
-    let options = DatasetOptions { open_flags: GdalOpenFlags::GDAL_OF_RASTER, ..DatasetOptions::default() };
-    let dataset = Dataset::open_ex(path, options).map_err(|error| messages::cannot_open(path, "raster", error))?;
+    let options = DatasetOptions {
+        open_flags: GdalOpenFlags::GDAL_OF_RASTER,
+        ..DatasetOptions::default()
+    };
+    let dataset = Dataset::open_ex(path, options)
+        .map_err(|error| messages::cannot_open(path, "raster", error))?;
     let in_file = |error| messages::error(path, error);
     if dataset.raster_count() == 0 {
         return Err(Error::format("a raster without bands")
@@ -70,7 +74,9 @@ pub fn open_raster(path: impl AsRef<Path>) -> Result<Raster> {
     let crs = match wkt.is_empty() {
         true => None,
         false => Crs::from_wkt(&wkt)
-            .map_err(|error| warnings.push(format!("the coordinate system is not understood: {error}").into()))
+            .map_err(|error| {
+                warnings.push(format!("the coordinate system is not understood: {error}").into())
+            })
             .ok(),
     };
     let bands = dataset.raster_count();
@@ -81,7 +87,11 @@ pub fn open_raster(path: impl AsRef<Path>) -> Result<Raster> {
             dataset.driver().short_name(),
             if bands == 1 { "band" } else { "bands" }
         ),
-        frame: Frame { width, height, transform },
+        frame: Frame {
+            width,
+            height,
+            transform,
+        },
         crs,
         nodata,
         is_single: kind == GdalDataType::Float32,
@@ -119,17 +129,31 @@ impl Raster {
     /// # Errors
     /// If the window is not within the raster, is larger than 2^31 cells, or GDAL fails to read it.
     pub fn read_window(&self, window: Window) -> Result<Vec<f64>> {
-        let Window { column, row, width, height } = window;
-        let within =
-            |start: usize, length: usize, end: usize| start.checked_add(length).is_some_and(|last| last <= end);
+        let Window {
+            column,
+            row,
+            width,
+            height,
+        } = window;
+        let within = |start: usize, length: usize, end: usize| {
+            start.checked_add(length).is_some_and(|last| last <= end)
+        };
         if !within(column, width, self.frame.width) || !within(row, height, self.frame.height) {
             let Frame { width, height, .. } = self.frame;
-            return Err(Error::usage(format!("{window:?} is not within {width} x {height} cells")).in_file(&self.path));
+            return Err(
+                Error::usage(format!("{window:?} is not within {width} x {height} cells"))
+                    .in_file(&self.path),
+            );
         }
-        let cells = width.checked_mul(height).filter(|&cells| cells <= MAX_CELLS).ok_or_else(|| {
-            let message = format!("a window of {width} x {height} cells, at most {MAX_CELLS} are read at once");
-            Error::limit(message).in_file(&self.path)
-        })?;
+        let cells = width
+            .checked_mul(height)
+            .filter(|&cells| cells <= MAX_CELLS)
+            .ok_or_else(|| {
+                let message = format!(
+                    "a window of {width} x {height} cells, at most {MAX_CELLS} are read at once"
+                );
+                Error::limit(message).in_file(&self.path)
+            })?;
         let mut values = self.buffer(cells)?;
         if cells == 0 {
             return Ok(values);
@@ -140,17 +164,27 @@ impl Raster {
         let in_file = |error| messages::error(&self.path, error);
         let (start, size) = ((column as isize, row as isize), (width, height));
         let band = dataset.rasterband(1).map_err(in_file)?;
-        band.read_into_slice(start, size, size, &mut values, None).map_err(in_file)?;
+        band.read_into_slice(start, size, size, &mut values, None)
+            .map_err(in_file)?;
         let mask: Option<Vec<u8>> = match self.has_mask {
             true => {
                 let mask = band.open_mask_band().map_err(in_file)?;
-                Some(mask.read_as(start, size, size, None).map_err(in_file)?.data().to_vec())
+                Some(
+                    mask.read_as(start, size, size, None)
+                        .map_err(in_file)?
+                        .data()
+                        .to_vec(),
+                )
             }
             false => None,
         };
         for (i, value) in values.iter_mut().enumerate() {
             let is_hidden = mask.as_ref().is_some_and(|mask| mask[i] == 0);
-            *value = if is_hidden || self.is_nodata(*value) { f64::NAN } else { *value * self.scale + self.offset };
+            *value = if is_hidden || self.is_nodata(*value) {
+                f64::NAN
+            } else {
+                *value * self.scale + self.offset
+            };
         }
         Ok(values)
     }
@@ -173,10 +207,19 @@ impl Raster {
         let rows = (CELLS_AT_ONCE / width.max(1)).max(1);
         for row in (0..height).step_by(rows) {
             let height = rows.min(height - row);
-            values.extend(self.read_window(Window { column: 0, row, width, height })?);
+            values.extend(self.read_window(Window {
+                column: 0,
+                row,
+                width,
+                height,
+            })?);
             watch((width * height) as u64)?;
         }
-        Ok(Grid { frame: self.frame, crs: self.crs.clone(), values })
+        Ok(Grid {
+            frame: self.frame,
+            crs: self.crs.clone(),
+            values,
+        })
     }
 
     fn is_nodata(&self, value: f64) -> bool {
@@ -190,7 +233,9 @@ impl Raster {
     fn buffer(&self, cells: usize) -> Result<Vec<f64>> {
         let mut buffer = Vec::new();
         buffer.try_reserve_exact(cells).map_err(|_| {
-            Error::limit(format!("no memory for {cells} cells")).in_file(&self.path).cure("read a part of the raster")
+            Error::limit(format!("no memory for {cells} cells"))
+                .in_file(&self.path)
+                .cure("read a part of the raster")
         })?;
         Ok(buffer)
     }
@@ -211,7 +256,9 @@ impl BlockSource for Raster {
 
     fn fill(&self, window: Window, out: &mut [f32]) -> Result<()> {
         let values = self.read_window(window)?;
-        out.iter_mut().zip(values).for_each(|(out, value)| *out = value as f32);
+        out.iter_mut()
+            .zip(values)
+            .for_each(|(out, value)| *out = value as f32);
         Ok(())
     }
 }

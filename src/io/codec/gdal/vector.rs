@@ -2,7 +2,8 @@ use std::path::Path;
 
 use gdal::spatial_ref::{AxisMappingStrategy, SpatialRef};
 use gdal::vector::{
-    Feature, FieldValue, Geometry, LayerAccess, geometry_type_flatten, geometry_type_has_z, geometry_type_to_name,
+    Feature, FieldValue, Geometry, LayerAccess, geometry_type_flatten, geometry_type_has_z,
+    geometry_type_to_name,
 };
 use gdal::{Dataset, DatasetOptions, GdalOpenFlags};
 use gdal_sys::OGRwkbGeometryType as Type;
@@ -28,7 +29,14 @@ const MAX_DEPTH: usize = 16;
 /// If GDAL cannot open the file, the file has no such layer, or reading fails; if the file has
 /// several layers and none is named.
 pub fn read_layer(path: &Path, layer: Option<&str>) -> Result<Layer> {
-    read_layer_with(path, &Options { layer, ..Options::default() }, &unwatched)
+    read_layer_with(
+        path,
+        &Options {
+            layer,
+            ..Options::default()
+        },
+        &unwatched,
+    )
 }
 
 /// Like [`read_layer`], but with heights from an attribute and the numbers of others, and watched.
@@ -40,14 +48,28 @@ pub fn read_layer(path: &Path, layer: Option<&str>) -> Result<Layer> {
 pub fn read_layer_with(path: &Path, options: &Options, watch: Watch) -> Result<Layer> {
     messages::listen();
     let columns = options.columns;
-    let open = DatasetOptions { open_flags: GdalOpenFlags::GDAL_OF_VECTOR, ..DatasetOptions::default() };
-    let dataset = Dataset::open_ex(path, open).map_err(|error| messages::cannot_open(path, "vector", error))?;
-    let (layer_name, height_field) = choose(&dataset, options).map_err(|error| error.in_file(path))?;
-    let mut source = dataset.layer_by_name(&layer_name).map_err(|error| messages::error(path, error))?;
+    let open = DatasetOptions {
+        open_flags: GdalOpenFlags::GDAL_OF_VECTOR,
+        ..DatasetOptions::default()
+    };
+    let dataset = Dataset::open_ex(path, open)
+        .map_err(|error| messages::cannot_open(path, "vector", error))?;
+    let (layer_name, height_field) =
+        choose(&dataset, options).map_err(|error| error.in_file(path))?;
+    let mut source = dataset
+        .layer_by_name(&layer_name)
+        .map_err(|error| messages::error(path, error))?;
     let names: Vec<String> = source.defn().fields().map(|field| field.name()).collect();
-    let fields = Fields::of(&names, height_field.as_deref(), columns).map_err(|error| error.in_file(path))?;
+    let fields = Fields::of(&names, height_field.as_deref(), columns)
+        .map_err(|error| error.in_file(path))?;
     let mut layer = Layer {
-        columns: columns.iter().map(|&name| Column { name: name.to_owned(), ..Column::default() }).collect(),
+        columns: columns
+            .iter()
+            .map(|&name| Column {
+                name: name.to_owned(),
+                ..Column::default()
+            })
+            .collect(),
         format: format!(
             "GDAL {} {}",
             dataset.driver().short_name(),
@@ -69,16 +91,23 @@ pub fn read_layer_with(path: &Path, options: &Options, watch: Watch) -> Result<L
         without_height += usize::from(lacks_height);
         add_values(path, &feature, record, &fields.columns, &mut layer)?;
         if is_swapped {
-            layer.shapes[first..].iter_mut().for_each(|shape| each_vertex(shape, |vertex| vertex.swap(0, 1)));
+            layer.shapes[first..]
+                .iter_mut()
+                .for_each(|shape| each_vertex(shape, |vertex| vertex.swap(0, 1)));
         }
     }
     // The iterator ends at an error as it does at the end of the file.
     if let Some(error) = messages::failure(path) {
-        return Err(error.at(format!("layer {layer_name}, after {} records", layer.shapes.len())));
+        return Err(error.at(format!(
+            "layer {layer_name}, after {} records",
+            layer.shapes.len()
+        )));
     }
     layer.warnings.extend(messages::warnings());
     if without_height > 0 {
-        layer.warnings.push(format!("{without_height} records without a number in the field of the heights").into());
+        layer.warnings.push(
+            format!("{without_height} records without a number in the field of the heights").into(),
+        );
     }
     Ok(layer)
 }
@@ -96,36 +125,64 @@ impl Fields {
     /// If a field does not exist.
     fn of(names: &[String], height: Option<&str>, columns: &[&str]) -> Result<Self> {
         let find = |wanted: &str| {
-            position(names, wanted).ok_or_else(|| no_such_field(wanted, names.iter().map(String::as_str)))
+            position(names, wanted)
+                .ok_or_else(|| no_such_field(wanted, names.iter().map(String::as_str)))
         };
         let height = height.map(find).transpose()?;
-        Ok(Fields { height, columns: columns.iter().map(|name| find(name)).collect::<Result<_>>()? })
+        Ok(Fields {
+            height,
+            columns: columns
+                .iter()
+                .map(|name| find(name))
+                .collect::<Result<_>>()?,
+        })
     }
 }
 
 /// Adds the shapes of a record, at the height in a field if one is given. Returns true if that is
 /// not a number.
-fn add_shapes(path: &Path, feature: &Feature, field: Option<usize>, into: &mut Vec<Shape>) -> Result<bool> {
+fn add_shapes(
+    path: &Path,
+    feature: &Feature,
+    field: Option<usize>,
+    into: &mut Vec<Shape>,
+) -> Result<bool> {
     let first = into.len();
     match feature.geometry() {
-        Some(geometry) if !is_absent(geometry) => shapes(geometry, 0, into).map_err(|error| error.in_file(path))?,
+        Some(geometry) if !is_absent(geometry) => {
+            shapes(geometry, 0, into).map_err(|error| error.in_file(path))?
+        }
         _ => into.push(Shape::Null),
     }
     let Some(field) = field else { return Ok(false) };
-    let value = feature.field(field).map_err(|error| messages::error(path, error))?;
+    let value = feature
+        .field(field)
+        .map_err(|error| messages::error(path, error))?;
     let height = value.map_or(Ok(f64::NAN), number).unwrap_or(f64::NAN);
-    into[first..].iter_mut().for_each(|shape| each_vertex(shape, |vertex| vertex[2] = height));
+    into[first..]
+        .iter_mut()
+        .for_each(|shape| each_vertex(shape, |vertex| vertex[2] = height));
     Ok(height.is_nan())
 }
 
 /// Adds the numbers of a record to the columns, once for each of its shapes.
-fn add_values(path: &Path, feature: &Feature, record: usize, fields: &[usize], layer: &mut Layer) -> Result<()> {
+fn add_values(
+    path: &Path,
+    feature: &Feature,
+    record: usize,
+    fields: &[usize],
+    layer: &mut Layer,
+) -> Result<()> {
     let shapes = layer.shapes.len();
     for (column, &field) in layer.columns.iter_mut().zip(fields) {
-        let value = feature.field(field).map_err(|error| messages::error(path, error))?;
-        let value = value
-            .map_or(Ok(f64::NAN), number)
-            .map_err(|text| not_a_number(&column.name, &text).at(format!("record {record}")).in_file(path))?;
+        let value = feature
+            .field(field)
+            .map_err(|error| messages::error(path, error))?;
+        let value = value.map_or(Ok(f64::NAN), number).map_err(|text| {
+            not_a_number(&column.name, &text)
+                .at(format!("record {record}"))
+                .in_file(path)
+        })?;
         column.values.resize(shapes, value);
     }
     Ok(())
@@ -135,7 +192,12 @@ fn add_values(path: &Path, feature: &Feature, record: usize, fields: &[usize], l
 fn choose(dataset: &Dataset, options: &Options) -> Result<(String, Option<String>)> {
     let layers: Vec<String> = dataset.layers().map(|layer| layer.name()).collect();
     let field = options.height_field.map(str::to_owned);
-    let list = || format!("name one after a colon, as FILE:LAYER: {}", layers.join(", "));
+    let list = || {
+        format!(
+            "name one after a colon, as FILE:LAYER: {}",
+            layers.join(", ")
+        )
+    };
     let Some(wanted) = options.layer else {
         return match layers.as_slice() {
             [] => Err(Error::format("there is no layer in it")),
@@ -148,18 +210,30 @@ fn choose(dataset: &Dataset, options: &Options) -> Result<(String, Option<String
         return Ok((layer, field));
     }
     // The name of a layer may contain colons.
-    let whole = field.as_ref().map_or_else(|| wanted.to_owned(), |field| format!("{wanted}:{field}"));
+    let whole = field
+        .as_ref()
+        .map_or_else(|| wanted.to_owned(), |field| format!("{wanted}:{field}"));
     if let Some(layer) = find(&whole) {
         return Ok((layer, None));
     }
-    let mut parts = whole.match_indices(':').map(|(at, _)| (&whole[..at], &whole[at + 1..]));
+    let mut parts = whole
+        .match_indices(':')
+        .map(|(at, _)| (&whole[..at], &whole[at + 1..]));
     if let Some((layer, field)) = parts.find_map(|(layer, field)| Some((find(layer)?, field))) {
         return Ok((layer, Some(field.to_owned())));
     }
     let is_field = layers.len() == 1
-        && dataset.layers().any(|layer| layer.defn().fields().any(|field| field.name().eq_ignore_ascii_case(wanted)));
+        && dataset.layers().any(|layer| {
+            layer
+                .defn()
+                .fields()
+                .any(|field| field.name().eq_ignore_ascii_case(wanted))
+        });
     let cure = match is_field {
-        true => format!("{}; for heights of the attribute, write FILE::{wanted}", list()),
+        true => format!(
+            "{}; for heights of the attribute, write FILE::{wanted}",
+            list()
+        ),
         false => list(),
     };
     Err(Error::usage(format!("there is no layer \"{wanted}\"")).cure(cure))
@@ -168,19 +242,31 @@ fn choose(dataset: &Dataset, options: &Options) -> Result<(String, Option<String
 /// Returns the position of a name: as written, else in any case.
 fn position(names: &[String], wanted: &str) -> Option<usize> {
     let exact = names.iter().position(|name| name == wanted);
-    exact.or_else(|| names.iter().position(|name| name.eq_ignore_ascii_case(wanted)))
+    exact.or_else(|| {
+        names
+            .iter()
+            .position(|name| name.eq_ignore_ascii_case(wanted))
+    })
 }
 
 /// Sets the coordinate system of a layer.
 fn read_crs(reference: &SpatialRef, layer: &mut Layer) {
     let (stated, read) = match reference.to_wkt() {
-        Ok(wkt) => (wkt.clone(), Crs::from_wkt(&wkt).map_err(|error| error.to_string())),
-        Err(error) => ("a system that GDAL cannot write as WKT".to_owned(), Err(error.to_string())),
+        Ok(wkt) => (
+            wkt.clone(),
+            Crs::from_wkt(&wkt).map_err(|error| error.to_string()),
+        ),
+        Err(error) => (
+            "a system that GDAL cannot write as WKT".to_owned(),
+            Err(error.to_string()),
+        ),
     };
     match read {
         Ok(crs) => layer.crs = crs.unless_undefined(),
         Err(reason) => {
-            layer.warnings.push(format!("the coordinate system is not understood: {reason}").into());
+            layer
+                .warnings
+                .push(format!("the coordinate system is not understood: {reason}").into());
             layer.unread_crs = Some(stated);
         }
     }
@@ -188,9 +274,15 @@ fn read_crs(reference: &SpatialRef, layer: &mut Layer) {
 
 /// Returns true if the first coordinate is a latitude or northing in the axis order of the data.
 fn is_north_first(reference: &SpatialRef) -> bool {
-    let target = if reference.is_geographic() { "GEOGCS" } else { "PROJCS" };
+    let target = if reference.is_geographic() {
+        "GEOGCS"
+    } else {
+        "PROJCS"
+    };
     reference.axis_mapping_strategy() == AxisMappingStrategy::AuthorityCompliant
-        && reference.axis_orientation(target, 0).is_ok_and(|axis| axis == gdal_sys::OGRAxisOrientation::OAO_North)
+        && reference
+            .axis_orientation(target, 0)
+            .is_ok_and(|axis| axis == gdal_sys::OGRAxisOrientation::OAO_North)
 }
 
 /// Returns the number in a field or in its text, NaN if it is empty or not finite. If the field
@@ -219,7 +311,9 @@ fn each_vertex(shape: &mut Shape, change: impl FnMut(&mut [f64; 3])) {
 /// Adds the shape of a geometry, or several for a collection.
 fn shapes(geometry: &Geometry, depth: usize, into: &mut Vec<Shape>) -> Result<()> {
     if depth > MAX_DEPTH {
-        return Err(Error::limit(format!("geometry collections nested more than {MAX_DEPTH} deep")));
+        return Err(Error::limit(format!(
+            "geometry collections nested more than {MAX_DEPTH} deep"
+        )));
     }
     let members = || (0..geometry.geometry_count()).map(|i| geometry.get_geometry(i));
     let kind = geometry_type_flatten(geometry.geometry_type());
@@ -230,7 +324,9 @@ fn shapes(geometry: &Geometry, depth: usize, into: &mut Vec<Shape>) -> Result<()
         Type::wkbMultiLineString => Shape::Lines(members().map(|part| vertices(&part)).collect()),
         Type::wkbPolygon | Type::wkbTriangle => Shape::Polygon(rings(geometry)),
         Type::wkbMultiPolygon => Shape::Polygon(members().flat_map(|part| rings(&part)).collect()),
-        Type::wkbTIN | Type::wkbPolyhedralSurface => surface(members().map(|part| parts(&part)).collect()),
+        Type::wkbTIN | Type::wkbPolyhedralSurface => {
+            surface(members().map(|part| parts(&part)).collect())
+        }
         Type::wkbGeometryCollection => {
             for part in members() {
                 shapes(&part, depth + 1, into)?;
@@ -245,7 +341,12 @@ fn shapes(geometry: &Geometry, depth: usize, into: &mut Vec<Shape>) -> Result<()
             return with_polylines(geometry, |straight| shapes(straight, depth + 1, into));
         }
         Type::wkbNone => Shape::Null,
-        _ => return Err(Error::unsupported(format!("geometry of the type {}", geometry_type_to_name(kind)))),
+        _ => {
+            return Err(Error::unsupported(format!(
+                "geometry of the type {}",
+                geometry_type_to_name(kind)
+            )));
+        }
     });
     Ok(())
 }
@@ -265,9 +366,14 @@ fn with_polylines(geometry: &Geometry, show: impl FnOnce(&Geometry) -> Result<()
     // with heights (observed in 3.6).
     // SAFETY: the pointer is that of a live geometry, which GDAL does not keep; a null pointer for
     // the options and an angle of 0 mean the defaults.
-    let straight = unsafe { gdal_sys::OGR_G_GetLinearGeometry(geometry.c_geometry(), 0.0, std::ptr::null_mut()) };
+    let straight = unsafe {
+        gdal_sys::OGR_G_GetLinearGeometry(geometry.c_geometry(), 0.0, std::ptr::null_mut())
+    };
     if straight.is_null() {
-        return Err(Error::unsupported(format!("arcs of the type {}", geometry.geometry_name())));
+        return Err(Error::unsupported(format!(
+            "arcs of the type {}",
+            geometry.geometry_name()
+        )));
     }
     let result = {
         // SAFETY: the wrapper does not own its geometry, and is dropped before the geometry, below.
@@ -289,12 +395,18 @@ fn vertices(geometry: &Geometry) -> Vec<[f64; 3]> {
     if !geometry.is_empty() {
         geometry.get_points(&mut points);
     }
-    points.into_iter().map(|(x, y, z)| [x, y, if has_z { z } else { f64::NAN }]).collect()
+    points
+        .into_iter()
+        .map(|(x, y, z)| [x, y, if has_z { z } else { f64::NAN }])
+        .collect()
 }
 
 /// Returns the rings of one polygon as stored.
 fn parts(polygon: &Geometry) -> Vec<Vec<[f64; 3]>> {
-    (0..polygon.geometry_count()).map(|i| vertices(&polygon.get_geometry(i))).filter(|ring| !ring.is_empty()).collect()
+    (0..polygon.geometry_count())
+        .map(|i| vertices(&polygon.get_geometry(i)))
+        .filter(|ring| !ring.is_empty())
+        .collect()
 }
 
 /// Returns the rings of one polygon, the outer one clockwise and the others counter-clockwise, as
@@ -313,13 +425,20 @@ fn rings(polygon: &Geometry) -> Vec<Vec<[f64; 3]>> {
 /// Returns twice the signed area, positive if counter-clockwise; relative to the first vertex, for
 /// precision.
 fn area(ring: &[[f64; 3]]) -> f64 {
-    let Some(&[x0, y0, _]) = ring.first() else { return 0.0 };
-    ring.windows(2).map(|pair| (pair[0][0] - x0) * (pair[1][1] - y0) - (pair[1][0] - x0) * (pair[0][1] - y0)).sum()
+    let Some(&[x0, y0, _]) = ring.first() else {
+        return 0.0;
+    };
+    ring.windows(2)
+        .map(|pair| (pair[0][0] - x0) * (pair[1][1] - y0) - (pair[1][0] - x0) * (pair[0][1] - y0))
+        .sum()
 }
 
 /// Returns faces if all are triangles, else a polygon with the rings of all.
 fn surface(faces: Vec<Vec<Vec<[f64; 3]>>>) -> Shape {
-    if faces.iter().all(|face| matches!(face.as_slice(), [ring] if ring.len() == 4)) {
+    if faces
+        .iter()
+        .all(|face| matches!(face.as_slice(), [ring] if ring.len() == 4))
+    {
         return Shape::Faces(faces);
     }
     Shape::Polygon(faces.into_iter().flatten().collect())

@@ -36,7 +36,14 @@ use crate::io::options::layer::Options;
 /// Linear. The file and all its values are in memory while it is read, which is many times the size
 /// of the shapes.
 pub fn read_layer(path: &Path, z_field: Option<&str>) -> Result<Layer> {
-    read_layer_with(path, &Options { height_field: z_field, ..Options::default() }, &unwatched)
+    read_layer_with(
+        path,
+        &Options {
+            height_field: z_field,
+            ..Options::default()
+        },
+        &unwatched,
+    )
 }
 
 /// Like [`read_layer`], but with the numbers of properties, and watched. Nothing is counted.
@@ -54,7 +61,8 @@ pub fn read_layer_with(path: &Path, options: &Options, watch: Watch) -> Result<L
 pub(super) fn parse(bytes: &[u8], stem: &str, options: &Options, watch: Watch) -> Result<Layer> {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let value = watched_value::of(bytes, watch)?.map_err(|e| {
-        Error::format(format!("not JSON: {e}")).cure("GeoJSON that is cut short cannot be read in part")
+        Error::format(format!("not JSON: {e}"))
+            .cure("GeoJSON that is cut short cannot be read in part")
     })?;
     let Value::Object(root) = value else {
         return Err(Error::format("not GeoJSON: no object with a type"));
@@ -71,7 +79,9 @@ pub(super) fn parse(bytes: &[u8], stem: &str, options: &Options, watch: Watch) -
                 if i % watched_value::VALUES_AT_ONCE == 0 {
                     watch(0)?;
                 }
-                reader.feature(feature, z_field).map_err(|e| e.at(format!("feature {}", i + 1)))?;
+                reader
+                    .feature(feature, z_field)
+                    .map_err(|e| e.at(format!("feature {}", i + 1)))?;
             }
         }
         "Feature" => reader.feature_object(&root, z_field)?,
@@ -92,7 +102,10 @@ pub(super) fn parse(bytes: &[u8], stem: &str, options: &Options, watch: Watch) -
 pub fn read_lines_with(path: &Path, options: &Options, watch: Watch) -> Result<Layer> {
     let bytes = bytes_of(path, watch)?;
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-    options.check_layer(&[&stem]).and_then(|()| parse_lines(&bytes, options, watch)).map_err(|e| e.in_file(path))
+    options
+        .check_layer(&[&stem])
+        .and_then(|()| parse_lines(&bytes, options, watch))
+        .map_err(|e| e.in_file(path))
 }
 
 pub(super) fn parse_lines(bytes: &[u8], options: &Options, watch: Watch) -> Result<Layer> {
@@ -110,7 +123,9 @@ pub(super) fn parse_lines(bytes: &[u8], options: &Options, watch: Watch) -> Resu
         }
         let text = text.trim_ascii();
         if !text.is_empty() {
-            reader.record(text, options.height_field).map_err(|e| e.at(format!("{noun} {number}")))?;
+            reader
+                .record(text, options.height_field)
+                .map_err(|e| e.at(format!("{noun} {number}")))?;
         }
     }
     reader.finish(&Map::new(), options.height_field)
@@ -133,10 +148,21 @@ struct GeoJsonReader {
 
 impl GeoJsonReader {
     fn new(format: &str, options: &Options) -> Self {
-        let columns = options.columns.iter().map(|&name| Column { name: name.to_owned(), ..Column::default() });
-        let layer = Layer { format: format.to_owned(), columns: columns.collect(), ..Layer::default() };
+        let columns = options.columns.iter().map(|&name| Column {
+            name: name.to_owned(),
+            ..Column::default()
+        });
+        let layer = Layer {
+            format: format.to_owned(),
+            columns: columns.collect(),
+            ..Layer::default()
+        };
         let found_columns = options.columns.iter().map(|_| Default::default()).collect();
-        GeoJsonReader { layer, found_columns, ..GeoJsonReader::default() }
+        GeoJsonReader {
+            layer,
+            found_columns,
+            ..GeoJsonReader::default()
+        }
     }
 
     /// Adds the feature or geometry in a record of GeoJSON lines. A geometry alone has no
@@ -151,8 +177,10 @@ impl GeoJsonReader {
         };
         match kind(&object)? {
             "Feature" => self.feature_object(&object, z_field),
-            "FeatureCollection" => Err(Error::format("a FeatureCollection, where each line is one feature")
-                .cure("give it the extension geojson")),
+            "FeatureCollection" => Err(Error::format(
+                "a FeatureCollection, where each line is one feature",
+            )
+            .cure("give it the extension geojson")),
             _ => {
                 self.geometry(&object, z_field.map(|_| f64::NAN))?;
                 self.add_to_columns(&Map::new())
@@ -162,7 +190,9 @@ impl GeoJsonReader {
 
     fn feature(&mut self, feature: &Value, z_field: Option<&str>) -> Result<()> {
         match feature {
-            Value::Object(object) if kind(object)? == "Feature" => self.feature_object(object, z_field),
+            Value::Object(object) if kind(object)? == "Feature" => {
+                self.feature_object(object, z_field)
+            }
             _ => Err(Error::format("not a Feature")),
         }
     }
@@ -178,7 +208,9 @@ impl GeoJsonReader {
                 self.fields.insert(name.clone());
             }
         }
-        let height = z_field.map(|name| self.height(properties, name)).transpose()?;
+        let height = z_field
+            .map(|name| self.height(properties, name))
+            .transpose()?;
         match feature.get("geometry") {
             Some(Value::Object(geometry)) => self.geometry(geometry, height)?,
             Some(Value::Null) => self.layer.shapes.push(Shape::Null),
@@ -192,11 +224,14 @@ impl GeoJsonReader {
     }
 
     fn height(&mut self, properties: &Object, name: &str) -> Result<f64> {
-        let Some(value) = property(properties, name) else { return Ok(f64::NAN) };
+        let Some(value) = property(properties, name) else {
+            return Ok(f64::NAN);
+        };
         self.found += 1;
         match number(value) {
             Ok(height) => {
-                add_mark(&mut self.height_mark, value, height).map_err(|e| e.within(format!("property {name}")))?;
+                add_mark(&mut self.height_mark, value, height)
+                    .map_err(|e| e.within(format!("property {name}")))?;
                 Ok(height)
             }
             Err(text) => {
@@ -210,12 +245,14 @@ impl GeoJsonReader {
     /// Adds the properties of a feature to the columns, once for each of its shapes.
     fn add_to_columns(&mut self, properties: &Object) -> Result<()> {
         let shapes = self.layer.shapes.len();
-        for (column, (is_there, mark)) in self.layer.columns.iter_mut().zip(&mut self.found_columns) {
+        for (column, (is_there, mark)) in self.layer.columns.iter_mut().zip(&mut self.found_columns)
+        {
             let mut found = f64::NAN;
             if let Some(value) = property(properties, &column.name) {
                 *is_there = true;
                 found = number(value).map_err(|text| not_a_number(&column.name, &text))?;
-                add_mark(mark, value, found).map_err(|e| e.within(format!("property {}", column.name)))?;
+                add_mark(mark, value, found)
+                    .map_err(|e| e.within(format!("property {}", column.name)))?;
             }
             column.values.resize(shapes, found);
         }
@@ -228,7 +265,9 @@ impl GeoJsonReader {
         if kind == "GeometryCollection" {
             for member in array(geometry, "geometries")? {
                 let Value::Object(member) = member else {
-                    return Err(Error::format("a member of a GeometryCollection is not an object"));
+                    return Err(Error::format(
+                        "a member of a GeometryCollection is not an object",
+                    ));
                 };
                 self.geometry(member, height)?;
             }
@@ -244,15 +283,31 @@ impl GeoJsonReader {
 
     fn finish(self, root: &Object, z_field: Option<&str>) -> Result<Layer> {
         let GeoJsonReader {
-            mut layer, fields, found, not_numbers, first_text, found_columns, without_geometry, ..
+            mut layer,
+            fields,
+            found,
+            not_numbers,
+            first_text,
+            found_columns,
+            without_geometry,
+            ..
         } = self;
         if without_geometry > 0 {
-            layer.warnings.push(format!("features without a member geometry: {without_geometry}").into());
+            layer
+                .warnings
+                .push(format!("features without a member geometry: {without_geometry}").into());
         }
-        if let Some((column, _)) = layer.columns.iter().zip(found_columns).find(|(_, (is_there, _))| !is_there)
+        if let Some((column, _)) = layer
+            .columns
+            .iter()
+            .zip(found_columns)
+            .find(|(_, (is_there, _))| !is_there)
             && !layer.shapes.is_empty()
         {
-            return Err(no_such_field(&column.name, fields.iter().map(String::as_str)));
+            return Err(no_such_field(
+                &column.name,
+                fields.iter().map(String::as_str),
+            ));
         }
         if let Some(name) = z_field {
             if found == 0 && !layer.shapes.is_empty() {
@@ -276,7 +331,12 @@ impl GeoJsonReader {
 
 /// Returns the property with this name: as written, else in any case.
 fn property<'a>(properties: &'a Object, name: &str) -> Option<&'a Value> {
-    let in_any_case = || properties.iter().find(|(key, _)| key.eq_ignore_ascii_case(name)).map(|(_, value)| value);
+    let in_any_case = || {
+        properties
+            .iter()
+            .find(|(key, _)| key.eq_ignore_ascii_case(name))
+            .map(|(_, value)| value)
+    };
     properties.get(name).or_else(in_any_case)
 }
 
@@ -294,7 +354,9 @@ fn number(value: &Value) -> std::result::Result<f64, String> {
 /// Adds the decimal mark of a number in a text; a number of JSON always has a point.
 fn add_mark(mark: &mut DecimalMark, value: &Value, number: f64) -> Result<()> {
     match value {
-        Value::String(text) if !number.is_nan() => mark.add(text.trim().as_bytes(), || format!("\"{text}\"")),
+        Value::String(text) if !number.is_nan() => {
+            mark.add(text.trim().as_bytes(), || format!("\"{text}\""))
+        }
         _ => Ok(()),
     }
 }
@@ -309,16 +371,32 @@ fn add_system(layer: &mut Layer, stated: Option<&Value>) {
             Ok(crs) => Some(crs),
             Err(e) => {
                 layer.warnings.push(format!("crs not used: {e}").into());
-                layer.unread_crs = Some(crs["properties"]["name"].as_str().map_or(crs.to_string(), str::to_owned));
+                layer.unread_crs = Some(
+                    crs["properties"]["name"]
+                        .as_str()
+                        .map_or(crs.to_string(), str::to_owned),
+                );
                 None
             }
         },
-        None if layer.shapes.iter().flat_map(Shape::vertices).all(may_be_degrees) => {
-            Crs::from_epsg(WGS_84).map_err(|e| layer.warnings.push(format!("crs not used: {e}").into())).ok()
+        None if layer
+            .shapes
+            .iter()
+            .flat_map(Shape::vertices)
+            .all(may_be_degrees) =>
+        {
+            Crs::from_epsg(WGS_84)
+                .map_err(|e| layer.warnings.push(format!("crs not used: {e}").into()))
+                .ok()
         }
         None => {
             let text = "no crs member, and its coordinates are not longitude and latitude";
-            layer.warnings.push(wording![text, " (state their system with ", Setting::Crs, ")"]);
+            layer.warnings.push(wording![
+                text,
+                " (state their system with ",
+                Setting::Crs,
+                ")"
+            ]);
             None
         }
     };

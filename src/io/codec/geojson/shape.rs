@@ -10,7 +10,10 @@ pub(super) type Object = Map<String, Value>;
 
 /// Returns the type that an object states.
 pub(super) fn kind(object: &Object) -> Result<&str> {
-    object.get("type").and_then(Value::as_str).ok_or_else(|| Error::format("not GeoJSON: an object without a type"))
+    object
+        .get("type")
+        .and_then(Value::as_str)
+        .ok_or_else(|| Error::format("not GeoJSON: an object without a type"))
 }
 
 /// Returns the array in a member of an object.
@@ -46,22 +49,35 @@ pub(super) fn shape_of(geometry: &Object, kind: &str) -> Result<Shape> {
 }
 
 fn list(value: &Value) -> Result<&[Value]> {
-    value.as_array().map(Vec::as_slice).ok_or_else(|| Error::format(format!("{value} instead of an array")))
+    value
+        .as_array()
+        .map(Vec::as_slice)
+        .ok_or_else(|| Error::format(format!("{value} instead of an array")))
 }
 
 fn vertex(position: &[Value]) -> Result<[f64; 3]> {
-    let number = |value: &Value| value.as_f64().ok_or_else(|| Error::format(format!("coordinate {value}")));
+    let number = |value: &Value| {
+        value
+            .as_f64()
+            .ok_or_else(|| Error::format(format!("coordinate {value}")))
+    };
     match position {
         [x, y] => Ok([number(x)?, number(y)?, f64::NAN]),
         // A null height is not allowed, but occurs in files.
         [x, y, Value::Null, ..] => Ok([number(x)?, number(y)?, f64::NAN]),
         [x, y, z, ..] => Ok([number(x)?, number(y)?, number(z)?]),
-        _ => Err(Error::format(format!("a position of {} numbers", position.len()))),
+        _ => Err(Error::format(format!(
+            "a position of {} numbers",
+            position.len()
+        ))),
     }
 }
 
 fn line(positions: &[Value]) -> Result<Vec<[f64; 3]>> {
-    positions.iter().map(|position| vertex(list(position)?)).collect()
+    positions
+        .iter()
+        .map(|position| vertex(list(position)?))
+        .collect()
 }
 
 fn lines(parts: &[Value]) -> Result<Vec<Vec<[f64; 3]>>> {
@@ -89,5 +105,7 @@ fn rings(parts: &[Value]) -> Result<Vec<Vec<[f64; 3]>>> {
 pub(super) fn twice_area(ring: &[[f64; 3]]) -> f64 {
     let Some(o) = ring.first() else { return 0.0 };
     // Relative to the first vertex, so that small rings keep their precision at large coordinates.
-    ring.windows(2).map(|w| (w[0][0] - o[0]) * (w[1][1] - o[1]) - (w[1][0] - o[0]) * (w[0][1] - o[1])).sum()
+    ring.windows(2)
+        .map(|w| (w[0][0] - o[0]) * (w[1][1] - o[1]) - (w[1][0] - o[0]) * (w[0][1] - o[1]))
+        .sum()
 }

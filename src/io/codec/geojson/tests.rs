@@ -13,22 +13,51 @@ fn read(text: &str) -> Result<Layer> {
 }
 
 fn read_heights(text: &str, field: &str) -> Result<Layer> {
-    parse(text.as_bytes(), "a", &Options { height_field: Some(field), ..Options::default() }, &unwatched)
+    parse(
+        text.as_bytes(),
+        "a",
+        &Options {
+            height_field: Some(field),
+            ..Options::default()
+        },
+        &unwatched,
+    )
 }
 
 #[test]
 fn the_layer_has_the_name_of_the_file_or_that_within() {
     let text = r#"{"type":"FeatureCollection","name":"roads","features":[]}"#;
-    let read = |layer| parse(text.as_bytes(), "a", &Options { layer: Some(layer), ..Options::default() }, &unwatched);
+    let read = |layer| {
+        parse(
+            text.as_bytes(),
+            "a",
+            &Options {
+                layer: Some(layer),
+                ..Options::default()
+            },
+            &unwatched,
+        )
+    };
     assert!(read("a").is_ok() && read("Roads").is_ok());
     let error = read("rivers").unwrap_err();
     assert_eq!(error.to_string(), "there is no layer \"rivers\"");
     let cure = error.cure_text().unwrap();
-    assert_eq!(*cure, "its only layer is \"roads\" or \"a\": name that, or write FILE::FIELD");
+    assert_eq!(
+        *cure,
+        "its only layer is \"roads\" or \"a\": name that, or write FILE::FIELD"
+    );
 }
 
 fn read_columns(text: &str, columns: &[&str]) -> Result<Layer> {
-    parse(text.as_bytes(), "a", &Options { columns, ..Options::default() }, &unwatched)
+    parse(
+        text.as_bytes(),
+        "a",
+        &Options {
+            columns,
+            ..Options::default()
+        },
+        &unwatched,
+    )
 }
 
 fn features(list: &[&str]) -> String {
@@ -39,7 +68,10 @@ fn features(list: &[&str]) -> String {
             format!(r#"{{"type":"Feature","properties":{{"Z":{i}.5,"name":"n"}},"geometry":{geometry}}}"#)
         })
         .collect();
-    format!(r#"{{"type":"FeatureCollection","features":[{}]}}"#, list.join(","))
+    format!(
+        r#"{{"type":"FeatureCollection","features":[{}]}}"#,
+        list.join(",")
+    )
 }
 
 const LINE: &str = r#"{"type":"LineString","coordinates":[[0,0,1],[2,2,2]]}"#;
@@ -76,13 +108,23 @@ fn every_geometry() {
 
 #[test]
 fn rings_get_the_order_of_shapefiles() {
-    let [ccw, cw] = ["[[0,0,0],[9,0,0],[9,9,0],[0,0,0]]", "[[1,1,0],[9,9,0],[9,1,0]]"];
+    let [ccw, cw] = [
+        "[[0,0,0],[9,0,0],[9,9,0],[0,0,0]]",
+        "[[1,1,0],[9,9,0],[9,1,0]]",
+    ];
     for [outer, inner] in [[ccw, cw], [cw, ccw], [ccw, ccw], [cw, cw]] {
-        let text = format!(r#"{{"type":"MultiPolygon","coordinates":[[{outer},{inner}],[{outer}]]}}"#);
-        let Shape::Polygon(rings) = read(&text).unwrap().shapes.remove(0) else { panic!() };
+        let text =
+            format!(r#"{{"type":"MultiPolygon","coordinates":[[{outer},{inner}],[{outer}]]}}"#);
+        let Shape::Polygon(rings) = read(&text).unwrap().shapes.remove(0) else {
+            panic!()
+        };
         let signs: Vec<bool> = rings.iter().map(|ring| twice_area(ring) < 0.0).collect();
         assert_eq!(signs, [true, false, true]);
-        assert!(rings.iter().all(|ring| ring.len() == 4 && ring[0] == ring[3]));
+        assert!(
+            rings
+                .iter()
+                .all(|ring| ring.len() == 4 && ring[0] == ring[3])
+        );
     }
 }
 
@@ -90,18 +132,36 @@ fn rings_get_the_order_of_shapefiles() {
 fn heights_from_a_property() {
     let text = features(&[LINE, "null", LINE]).replace("2.5", "\"12,5\"");
     let layer = read_heights(&text, "z").unwrap();
-    let heights: Vec<f64> = layer.shapes.iter().flat_map(Shape::vertices).map(|v| v[2]).collect();
+    let heights: Vec<f64> = layer
+        .shapes
+        .iter()
+        .flat_map(Shape::vertices)
+        .map(|v| v[2])
+        .collect();
     assert_eq!(heights, [0.5, 0.5, 12.5, 12.5]);
     let error = read_heights(&text, "ELEV").unwrap_err();
     assert_eq!(
-        (error.to_string().as_str(), error.cure_text().map(|cure| cure.plain())),
-        ("there is no field ELEV", Some("name one of Z, name".to_owned()))
+        (
+            error.to_string().as_str(),
+            error.cure_text().map(|cure| cure.plain())
+        ),
+        (
+            "there is no field ELEV",
+            Some("name one of Z, name".to_owned())
+        )
     );
     let error = read_heights(&text, "name").unwrap_err();
-    assert_eq!(error.to_string(), "property name holds no numbers; the first value is n");
+    assert_eq!(
+        error.to_string(),
+        "property name holds no numbers; the first value is n"
+    );
     let text = features(&[LINE, LINE]).replace("1.5", "\"high\"");
     let layer = read_heights(&text, "Z").unwrap();
-    assert!(layer.warnings[0].plain().contains("no number in 1 features (the first: high)"));
+    assert!(
+        layer.warnings[0]
+            .plain()
+            .contains("no number in 1 features (the first: high)")
+    );
     let text = features(&[LINE, LINE]).replace("1.5", "null");
     let layer = read_heights(&text, "Z").unwrap();
     assert!(layer.shapes[1].vertices().all(|v| v[2].is_nan()));
@@ -110,18 +170,34 @@ fn heights_from_a_property() {
 #[test]
 fn columns_have_a_number_for_each_shape() {
     let both = format!(r#"{{"type":"GeometryCollection","geometries":[{LINE},{LINE}]}}"#);
-    let text = features(&[&both, "null", LINE, LINE]).replace("2.5", "null").replace(r#""Z":3.5"#, r#""z":"3,5""#);
+    let text = features(&[&both, "null", LINE, LINE])
+        .replace("2.5", "null")
+        .replace(r#""Z":3.5"#, r#""z":"3,5""#);
     let layer = read_columns(&text, &["z"]).unwrap();
     assert_eq!((layer.shapes.len(), layer.columns.len()), (5, 1));
     let values = &layer.column("Z").unwrap().values;
-    assert_eq!((&values[..3], values[3].is_nan(), values[4]), (&[0.5, 0.5, 1.5][..], true, 3.5));
+    assert_eq!(
+        (&values[..3], values[3].is_nan(), values[4]),
+        (&[0.5, 0.5, 1.5][..], true, 3.5)
+    );
     let error = read_columns(&text, &["Z", "WIDTH"]).unwrap_err();
     assert_eq!(error.to_string(), "there is no field WIDTH");
     assert_eq!(*error.cure_text().unwrap(), "name one of Z, name, z");
     let error = read_columns(&text.replace("1.5", "true"), &["Z"]).unwrap_err();
-    assert_eq!(error.to_string(), "feature 2: field Z: expected a number, found 'true'");
-    assert!(read_columns(LINE, &["Z"]).unwrap_err().to_string().contains("no field Z"));
-    assert_eq!(read_columns(&features(&[]), &["Z"]).unwrap().columns[0].values, [0.0; 0]);
+    assert_eq!(
+        error.to_string(),
+        "feature 2: field Z: expected a number, found 'true'"
+    );
+    assert!(
+        read_columns(LINE, &["Z"])
+            .unwrap_err()
+            .to_string()
+            .contains("no field Z")
+    );
+    assert_eq!(
+        read_columns(&features(&[]), &["Z"]).unwrap().columns[0].values,
+        [0.0; 0]
+    );
 }
 
 #[test]
@@ -130,12 +206,27 @@ fn errors_name_the_position() {
         ("", "not JSON: EOF while parsing a value at line 1 column 0"),
         ("[]", "not GeoJSON: no object with a type"),
         ("{}", "not GeoJSON: an object without a type"),
-        (r#"{"type":"Topology"}"#, "type Topology is not a GeoJSON type"),
+        (
+            r#"{"type":"Topology"}"#,
+            "type Topology is not a GeoJSON type",
+        ),
         (r#"{"type":"FeatureCollection"}"#, "no array features"),
-        (&features(&[LINE, r#"{"type":"Point","coordinates":[1]}"#]), "feature 2: a position of 1 numbers"),
-        (&features(&[r#"{"type":"Point","coordinates":[1,"a"]}"#]), "feature 1: coordinate \"a\""),
-        (&features(&[r#"{"type":"LineString","coordinates":[1,2]}"#]), "feature 1: 1 instead of an array"),
-        (&features(&["7"]), "feature 1: its geometry is not an object"),
+        (
+            &features(&[LINE, r#"{"type":"Point","coordinates":[1]}"#]),
+            "feature 2: a position of 1 numbers",
+        ),
+        (
+            &features(&[r#"{"type":"Point","coordinates":[1,"a"]}"#]),
+            "feature 1: coordinate \"a\"",
+        ),
+        (
+            &features(&[r#"{"type":"LineString","coordinates":[1,2]}"#]),
+            "feature 1: 1 instead of an array",
+        ),
+        (
+            &features(&["7"]),
+            "feature 1: its geometry is not an object",
+        ),
     ] {
         assert_eq!(read(text).unwrap_err().to_string(), message);
     }
@@ -147,7 +238,12 @@ fn errors_name_the_position() {
 #[test]
 fn systems_that_are_not_stated() {
     let far = read(r#"{"type":"Point","coordinates":[500000,2]}"#).unwrap();
-    assert!(far.crs.is_none() && far.warnings[0].plain().contains("not longitude and latitude"));
+    assert!(
+        far.crs.is_none()
+            && far.warnings[0]
+                .plain()
+                .contains("not longitude and latitude")
+    );
     let unknown = read(r#"{"type":"Point","coordinates":[1,2],"crs":null}"#).unwrap();
     assert!(unknown.crs.is_none() && unknown.warnings.is_empty());
     let linked = read(r#"{"type":"Point","coordinates":[1,2],"crs":{"type":"link"}}"#).unwrap();
@@ -159,37 +255,70 @@ fn systems_that_are_not_stated() {
 fn systems_that_are_stated() {
     let system = |name: &str| {
         let crs = format!(r#"{{"type":"name","properties":{{"name":"{name}"}}}}"#);
-        read(&format!(r#"{{"type":"Point","coordinates":[500000,2],"crs":{crs}}}"#)).unwrap()
+        read(&format!(
+            r#"{{"type":"Point","coordinates":[500000,2],"crs":{crs}}}"#
+        ))
+        .unwrap()
     };
     for (name, codes) in [
         ("urn:ogc:def:crs:EPSG::32633", (Some(32633), None)),
         ("EPSG:32633", (Some(32633), None)),
-        ("urn:ogc:def:crs,crs:EPSG::32633,crs:EPSG::5783", (Some(32633), Some(5783))),
+        (
+            "urn:ogc:def:crs,crs:EPSG::32633,crs:EPSG::5783",
+            (Some(32633), Some(5783)),
+        ),
         ("urn:ogc:def:crs:OGC:1.3:CRS84", (Some(4326), None)),
     ] {
-        let Layer { crs, unread_crs, warnings, .. } = system(name);
+        let Layer {
+            crs,
+            unread_crs,
+            warnings,
+            ..
+        } = system(name);
         let crs = crs.unwrap_or_else(|| panic!("{name}: {warnings:?}"));
         assert_eq!((crs.epsg, crs.vertical_epsg), codes, "{name}");
         assert!(unread_crs.is_none() && warnings.is_empty());
     }
     let unknown = system("urn:ogc:def:crs:IGNF::LAMB93");
-    assert_eq!((unknown.crs, unknown.unread_crs.as_deref()), (None, Some("urn:ogc:def:crs:IGNF::LAMB93")));
-    assert!(unknown.warnings[0].plain().contains("the codes of IGNF are not known"), "{:?}", unknown.warnings);
+    assert_eq!(
+        (unknown.crs, unknown.unread_crs.as_deref()),
+        (None, Some("urn:ogc:def:crs:IGNF::LAMB93"))
+    );
+    assert!(
+        unknown.warnings[0]
+            .plain()
+            .contains("the codes of IGNF are not known"),
+        "{:?}",
+        unknown.warnings
+    );
 }
 
 #[test]
 fn texts_with_different_decimal_marks_are_refused() {
     let feature = |z: &str| {
-        format!(r#"{{"type":"Feature","geometry":{{"type":"Point","coordinates":[1,2]}},"properties":{{"z":"{z}"}}}}"#)
+        format!(
+            r#"{{"type":"Feature","geometry":{{"type":"Point","coordinates":[1,2]}},"properties":{{"z":"{z}"}}}}"#
+        )
     };
     let collection = |z: &[&str]| {
         let list: Vec<String> = z.iter().map(|z| feature(z)).collect();
-        format!(r#"{{"type":"FeatureCollection","features":[{}]}}"#, list.join(","))
+        format!(
+            r#"{{"type":"FeatureCollection","features":[{}]}}"#,
+            list.join(",")
+        )
     };
-    for read in [read_heights as fn(&str, &str) -> Result<Layer>, |text, name| read_columns(text, &[name])] {
+    for read in [
+        read_heights as fn(&str, &str) -> Result<Layer>,
+        |text, name| read_columns(text, &[name]),
+    ] {
         assert!(read(&collection(&["1,5", "500,000", "", "7"]), "z").is_ok());
-        let error = read(&collection(&["500,000", "3.5"]), "z").unwrap_err().to_string();
-        assert!(error.starts_with("feature 2: ") || error.contains("property z"), "{error}");
+        let error = read(&collection(&["500,000", "3.5"]), "z")
+            .unwrap_err()
+            .to_string();
+        assert!(
+            error.starts_with("feature 2: ") || error.contains("property z"),
+            "{error}"
+        );
         assert!(error.contains("3.5 has a point and 500,000"), "{error}");
     }
 }
@@ -197,9 +326,18 @@ fn texts_with_different_decimal_marks_are_refused() {
 #[test]
 fn contours_come_back() {
     let lines = vec![
-        ContourLine { level: 0.1 + 0.2, points: vec![[1e-9, -0.1], [500_000.123_456_789, 5e6]] },
-        ContourLine { level: -0.0, points: vec![[0., 0.]] },
-        ContourLine { level: -0.0, points: vec![[0., 0.], [1., 0.], [1., 1.], [0., 0.]] },
+        ContourLine {
+            level: 0.1 + 0.2,
+            points: vec![[1e-9, -0.1], [500_000.123_456_789, 5e6]],
+        },
+        ContourLine {
+            level: -0.0,
+            points: vec![[0., 0.]],
+        },
+        ContourLine {
+            level: -0.0,
+            points: vec![[0., 0.], [1., 0.], [1., 1.], [0., 0.]],
+        },
     ];
     let mut bytes = Vec::new();
     let summary = write(&mut bytes, &mut lines.clone().into_iter(), None).unwrap();
@@ -207,13 +345,25 @@ fn contours_come_back() {
     let layer = read_heights(std::str::from_utf8(&bytes).unwrap(), "ELEV").unwrap();
     assert_eq!(layer.fields, ["ELEV", "ID"]);
     for (shape, line) in layer.shapes.iter().zip([&lines[0], &lines[2]]) {
-        let vertices: Vec<[f64; 3]> = line.points.iter().map(|p| [p[0], p[1], line.level]).collect();
+        let vertices: Vec<[f64; 3]> = line
+            .points
+            .iter()
+            .map(|p| [p[0], p[1], line.level])
+            .collect();
         assert_eq!(*shape, Shape::Lines(vec![vertices]));
     }
-    assert_eq!(read(std::str::from_utf8(&bytes).unwrap()).unwrap().shapes, layer.shapes);
+    assert_eq!(
+        read(std::str::from_utf8(&bytes).unwrap()).unwrap().shapes,
+        layer.shapes
+    );
     let mut bytes = Vec::new();
     write(&mut bytes, &mut std::iter::empty(), None).unwrap();
-    assert!(read(std::str::from_utf8(&bytes).unwrap()).unwrap().shapes.is_empty());
+    assert!(
+        read(std::str::from_utf8(&bytes).unwrap())
+            .unwrap()
+            .shapes
+            .is_empty()
+    );
 }
 
 #[test]
@@ -226,25 +376,52 @@ fn lines_are_read_one_by_one() {
         format!("\u{feff}\n\x1e{spread}\n\x1e{feature}\x1e\x1e{LINE}"),
     ] {
         let layer = read(&text).unwrap();
-        assert_eq!((layer.format.as_str(), layer.shapes.len()), ("GeoJSON lines", 3));
+        assert_eq!(
+            (layer.format.as_str(), layer.shapes.len()),
+            ("GeoJSON lines", 3)
+        );
         assert!(layer.crs.is_some() && layer.shapes.iter().all(|shape| *shape == layer.shapes[0]));
     }
     // A geometry alone has no properties, also not those of the feature behind it.
-    let options = Options { columns: &["Z"], height_field: Some("z"), ..Options::default() };
-    let layer = parse_lines(format!("{LINE}\n{feature}").as_bytes(), &options, &unwatched).unwrap();
+    let options = Options {
+        columns: &["Z"],
+        height_field: Some("z"),
+        ..Options::default()
+    };
+    let layer = parse_lines(
+        format!("{LINE}\n{feature}").as_bytes(),
+        &options,
+        &unwatched,
+    )
+    .unwrap();
     assert!(layer.columns[0].values[0].is_nan() && layer.columns[0].values[1] == 1.0);
     assert!(layer.shapes[0].vertices().all(|v| v[2].is_nan()));
-    let with_z = Options { height_field: Some("z"), ..Options::default() };
+    let with_z = Options {
+        height_field: Some("z"),
+        ..Options::default()
+    };
     let layer = parse_lines(feature.as_bytes(), &with_z, &unwatched).unwrap();
     assert!(layer.shapes[0].vertices().all(|v| v[2] == 1.0));
     for (second, message) in [
-        ("{", "line 2: not JSON: EOF while parsing an object at line 1 column 1"),
+        (
+            "{",
+            "line 2: not JSON: EOF while parsing an object at line 1 column 1",
+        ),
         ("7", "line 2: not an object"),
         ("{}", "line 2: not GeoJSON: an object without a type"),
-        (r#"{"type":"Point","coordinates":[1]}"#, "line 2: a position of 1 numbers"),
-        (&features(&[LINE]).replace('\n', ""), "line 2: a FeatureCollection, where each line is one feature"),
+        (
+            r#"{"type":"Point","coordinates":[1]}"#,
+            "line 2: a position of 1 numbers",
+        ),
+        (
+            &features(&[LINE]).replace('\n', ""),
+            "line 2: a FeatureCollection, where each line is one feature",
+        ),
     ] {
-        assert_eq!(read(&format!("{LINE}\n{second}")).unwrap_err().to_string(), message);
+        assert_eq!(
+            read(&format!("{LINE}\n{second}")).unwrap_err().to_string(),
+            message
+        );
     }
     let error = read(&format!("\x1e{LINE}\n\x1e7")).unwrap_err();
     assert_eq!(error.to_string(), "record 2: not an object");
@@ -255,22 +432,52 @@ fn lines_are_read_one_by_one() {
 fn contours_come_back_from_lines() {
     let folder = tempfile::tempdir().unwrap();
     let target = folder.path().join("a.geojsonl");
-    let line = |level| ContourLine { level, points: vec![[0.5, 1.0], [2.0, 3.0]] };
-    let short = ContourLine { level: 1.0, points: vec![[0.0, 0.0]] };
+    let line = |level| ContourLine {
+        level,
+        points: vec![[0.5, 1.0], [2.0, 3.0]],
+    };
+    let short = ContourLine {
+        level: 1.0,
+        points: vec![[0.0, 0.0]],
+    };
     let mut lines = vec![line(1.0), short, line(2.5)].into_iter();
     let summary = write_contour_lines(&target, &mut lines, None).unwrap();
-    assert_eq!((summary.lines, summary.vertices, summary.warnings.len()), (2, 4, 1));
+    assert_eq!(
+        (summary.lines, summary.vertices, summary.warnings.len()),
+        (2, 4, 1)
+    );
     let text = std::fs::read_to_string(&target).unwrap();
     assert_eq!(text.lines().count(), 2);
-    assert!(text.lines().all(|line| line.starts_with(r#"{"type":"Feature""#) && line.ends_with("]}}")));
-    let with_level = Options { height_field: Some("ELEV"), ..Options::default() };
+    assert!(
+        text.lines()
+            .all(|line| line.starts_with(r#"{"type":"Feature""#) && line.ends_with("]}}"))
+    );
+    let with_level = Options {
+        height_field: Some("ELEV"),
+        ..Options::default()
+    };
     let layer = read_lines_with(&target, &with_level, &unwatched).unwrap();
     let expected = [1.0, 2.5].map(|z| Shape::Lines(vec![vec![[0.5, 1.0, z], [2.0, 3.0, z]]]));
     assert_eq!(layer.shapes, expected);
     let sequence = target.with_extension("geojsons");
     write_contour_lines(&sequence, &mut vec![line(1.0), line(2.5)].into_iter(), None).unwrap();
-    assert!(std::fs::read_to_string(&sequence).unwrap().lines().all(|line| line.starts_with("\x1e{")));
-    assert_eq!(read_lines_with(&sequence, &with_level, &unwatched).unwrap().shapes, layer.shapes);
+    assert!(
+        std::fs::read_to_string(&sequence)
+            .unwrap()
+            .lines()
+            .all(|line| line.starts_with("\x1e{"))
+    );
+    assert_eq!(
+        read_lines_with(&sequence, &with_level, &unwatched)
+            .unwrap()
+            .shapes,
+        layer.shapes
+    );
     let degrees = Crs::from_epsg(WGS_84).unwrap();
-    assert!(write_contour_lines(&target, &mut std::iter::empty(), Some(&degrees)).unwrap().warnings.is_empty());
+    assert!(
+        write_contour_lines(&target, &mut std::iter::empty(), Some(&degrees))
+            .unwrap()
+            .warnings
+            .is_empty()
+    );
 }

@@ -44,7 +44,10 @@ pub fn write_contour_lines<'a>(
     crs: Option<&Crs>,
 ) -> Result<ContourSummary> {
     let target = target.into();
-    let is_sequence = target.format_path().extension().is_some_and(|known| known.eq_ignore_ascii_case("geojsons"));
+    let is_sequence = target
+        .format_path()
+        .extension()
+        .is_some_and(|known| known.eq_ignore_ascii_case("geojsons"));
     put_contours(target, |out| {
         let mut summary = ContourSummary::default();
         if crs.is_none_or(|crs| !is_default(crs)) {
@@ -86,12 +89,20 @@ pub(super) fn write(
 ) -> std::io::Result<ContourSummary> {
     let mut summary = ContourSummary::default();
     out.write_all(b"{\"type\":\"FeatureCollection\",")?;
-    match crs.filter(|crs| !is_default(crs)).map(|crs| (crs, crs.epsg)) {
+    match crs
+        .filter(|crs| !is_default(crs))
+        .map(|crs| (crs, crs.epsg))
+    {
         Some((_, Some(code))) => {
             let name = format!("urn:ogc:def:crs:EPSG::{code}");
-            write!(out, "\"crs\":{{\"type\":\"name\",\"properties\":{{\"name\":\"{name}\"}}}},")?;
+            write!(
+                out,
+                "\"crs\":{{\"type\":\"name\",\"properties\":{{\"name\":\"{name}\"}}}},"
+            )?;
         }
-        Some((crs, None)) => summary.warnings.push(format!("GeoJSON cannot name a system without a code: {crs}")),
+        Some((crs, None)) => summary.warnings.push(format!(
+            "GeoJSON cannot name a system without a code: {crs}"
+        )),
         None => {}
     }
     out.write_all(b"\"features\":[")?;
@@ -108,7 +119,10 @@ pub(super) fn write(
 fn write_feature(out: &mut impl Write, line: &ContourLine, number: usize) -> std::io::Result<()> {
     let level = unsigned_zero(line.level);
     // `800.0` and not `800`, so that readers infer a field of real numbers.
-    write!(out, "{{\"type\":\"Feature\",\"properties\":{{\"ID\":{number},\"ELEV\":{level:?}}},")?;
+    write!(
+        out,
+        "{{\"type\":\"Feature\",\"properties\":{{\"ID\":{number},\"ELEV\":{level:?}}},"
+    )?;
     out.write_all(b"\"geometry\":{\"type\":\"LineString\",\"coordinates\":[")?;
     for (i, [x, y]) in line.points.iter().enumerate() {
         let comma = if i == 0 { "" } else { "," };

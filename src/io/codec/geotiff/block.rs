@@ -35,8 +35,15 @@ pub(super) fn values(
     part: Window,
     take: &mut dyn FnMut(Window, Vec<f64>),
 ) -> Result<()> {
-    let Stored::At { offset, length } = span.stored else { return Ok(()) };
-    let in_block = |e: Error| e.at(format!("block {} (rows from {})", span.block, span.first_row));
+    let Stored::At { offset, length } = span.stored else {
+        return Ok(());
+    };
+    let in_block = |e: Error| {
+        e.at(format!(
+            "block {} (rows from {})",
+            span.block, span.first_row
+        ))
+    };
     let mut file = header(layout, span, layout.compression, length);
     bytes.append(offset, length, &mut file).map_err(in_block)?;
     if layout.compression == tags::COMPRESSION_JPEG {
@@ -54,7 +61,11 @@ pub(super) fn values(
         let decoded = decode(file)?;
         let rows = (BAND_CELLS / part.width.max(1)).max(1);
         for row in (part.row..part.row + part.height).step_by(rows) {
-            let band = Window { row, height: rows.min(part.row + part.height - row), ..part };
+            let band = Window {
+                row,
+                height: rows.min(part.row + part.height - row),
+                ..part
+            };
             take(band, pick(&decoded, layout, nodata, span, band));
         }
         Ok(())
@@ -78,14 +89,20 @@ fn in_compression(error: Error, compression: u16) -> Error {
 fn decompressed(data: &[u8], layout: &BandLayout, span: &Span) -> Result<Vec<u8>> {
     use std::io::Read;
 
-    let row_bits = span.width as u64 * u64::from(layout.interleaved) * u64::from(layout.sample.bits);
+    let row_bits =
+        span.width as u64 * u64::from(layout.interleaved) * u64::from(layout.sample.bits);
     let length = row_bits.div_ceil(8) * span.rows as u64;
     let mut file = header(layout, span, tags::COMPRESSION_NONE, length);
     let damaged = |e| Error::caused_by(Kind::Format, e);
     let decoder = zstd::Decoder::with_buffer(data).map_err(damaged)?;
-    let read = decoder.take(length).read_to_end(&mut file).map_err(damaged)?;
+    let read = decoder
+        .take(length)
+        .read_to_end(&mut file)
+        .map_err(damaged)?;
     if (read as u64) < length {
-        return Err(Error::format(format!("{read} bytes where {length} were expected")));
+        return Err(Error::format(format!(
+            "{read} bytes where {length} were expected"
+        )));
     }
     Ok(file)
 }
@@ -97,7 +114,11 @@ fn header(layout: &BandLayout, span: &Span, compression: u16, length: u64) -> Ve
         super::SampleKind::Signed => 2,
         super::SampleKind::Float => 3,
     };
-    let tables = layout.jpeg_tables.as_deref().filter(|_| layout.compression == tags::COMPRESSION_JPEG).unwrap_or(&[]);
+    let tables = layout
+        .jpeg_tables
+        .as_deref()
+        .filter(|_| layout.compression == tags::COMPRESSION_JPEG)
+        .unwrap_or(&[]);
     let (short, long, undefined) = (3, 4, 7);
     let count = if tables.is_empty() { 11 } else { 12 };
     let tables_at = 8 + 2 + 12 * count + 4;
@@ -105,12 +126,22 @@ fn header(layout: &BandLayout, span: &Span, compression: u16, length: u64) -> Ve
     let mut entries = vec![
         (tags::IMAGE_WIDTH, long, 1, span.width as u32),
         (tags::IMAGE_LENGTH, long, 1, span.rows as u32),
-        (tags::BITS_PER_SAMPLE, short, 1, u32::from(layout.sample.bits)),
+        (
+            tags::BITS_PER_SAMPLE,
+            short,
+            1,
+            u32::from(layout.sample.bits),
+        ),
         (tags::COMPRESSION, short, 1, u32::from(compression)),
         // BlackIsZero: samples are decoded as they are stored.
         (tags::PHOTOMETRIC, short, 1, 1),
         (tags::STRIP_OFFSETS, long, 1, data_at),
-        (tags::SAMPLES_PER_PIXEL, short, 1, u32::from(layout.interleaved)),
+        (
+            tags::SAMPLES_PER_PIXEL,
+            short,
+            1,
+            u32::from(layout.interleaved),
+        ),
         (tags::ROWS_PER_STRIP, long, 1, span.rows as u32),
         (tags::STRIP_BYTE_COUNTS, long, 1, length as u32),
         (tags::PREDICTOR, short, 1, u32::from(layout.predictor)),
@@ -121,7 +152,11 @@ fn header(layout: &BandLayout, span: &Span, compression: u16, length: u64) -> Ve
     }
     let mut out = Vec::with_capacity(data_at as usize + length as usize);
     let order = layout.order;
-    out.extend_from_slice(if order == ByteOrder::Little { b"II" } else { b"MM" });
+    out.extend_from_slice(if order == ByteOrder::Little {
+        b"II"
+    } else {
+        b"MM"
+    });
     put16(&mut out, order, 42);
     put32(&mut out, order, 8);
     put16(&mut out, order, count as u16);
@@ -142,11 +177,19 @@ fn header(layout: &BandLayout, span: &Span, compression: u16, length: u64) -> Ve
 }
 
 fn put16(out: &mut Vec<u8>, order: ByteOrder, value: u16) {
-    out.extend_from_slice(&if order == ByteOrder::Little { value.to_le_bytes() } else { value.to_be_bytes() });
+    out.extend_from_slice(&if order == ByteOrder::Little {
+        value.to_le_bytes()
+    } else {
+        value.to_be_bytes()
+    });
 }
 
 fn put32(out: &mut Vec<u8>, order: ByteOrder, value: u32) {
-    out.extend_from_slice(&if order == ByteOrder::Little { value.to_le_bytes() } else { value.to_be_bytes() });
+    out.extend_from_slice(&if order == ByteOrder::Little {
+        value.to_le_bytes()
+    } else {
+        value.to_be_bytes()
+    });
 }
 
 /// Returns an error unless the size that a JPEG states, which its decoder trusts, is that of the
@@ -180,7 +223,9 @@ fn decode(file: Vec<u8>) -> Result<DecodingResult> {
     let mut limits = Limits::default();
     limits.decoding_buffer_size = super::MAX_BLOCK_BYTES as usize;
     limits.intermediate_buffer_size = usize::MAX;
-    let mut decoder = Decoder::new(Cursor::new(file)).map_err(from_tiff)?.with_limits(limits);
+    let mut decoder = Decoder::new(Cursor::new(file))
+        .map_err(from_tiff)?
+        .with_limits(limits);
     decoder.read_chunk(0).map_err(from_tiff)
 }
 
@@ -195,13 +240,26 @@ fn from_tiff(error: TiffError) -> Error {
 }
 
 /// Returns band 1 of a part of a decoded span.
-fn pick(decoded: &DecodingResult, layout: &BandLayout, nodata: &Nodata, span: &Span, part: Window) -> Vec<f64> {
+fn pick(
+    decoded: &DecodingResult,
+    layout: &BandLayout,
+    nodata: &Nodata,
+    span: &Span,
+    part: Window,
+) -> Vec<f64> {
     if layout.sample.bits < 8 {
-        let DecodingResult::U8(packed) = decoded else { return vec![f64::NAN; part.width * part.height] };
+        let DecodingResult::U8(packed) = decoded else {
+            return vec![f64::NAN; part.width * part.height];
+        };
         return pick_bits(packed, layout, nodata, span, part);
     }
     let step = usize::from(layout.interleaved);
-    let all = Picker { step, row_length: span.width * step, span, part };
+    let all = Picker {
+        step,
+        row_length: span.width * step,
+        span,
+        part,
+    };
     match decoded {
         DecodingResult::U8(v) => all.pick(v, f64::from, is(nodata.integer())),
         DecodingResult::U16(v) => all.pick(v, f64::from, is(nodata.integer())),
@@ -211,7 +269,9 @@ fn pick(decoded: &DecodingResult, layout: &BandLayout, nodata: &Nodata, span: &S
         DecodingResult::I16(v) => all.pick(v, f64::from, is(nodata.integer())),
         DecodingResult::I32(v) => all.pick(v, f64::from, is(nodata.integer())),
         DecodingResult::I64(v) => all.pick(v, |x| x as f64, is(nodata.integer())),
-        DecodingResult::F16(v) => all.pick(v, |x| finite(x.to_f64()), |x| nodata.is_half(x.to_f64())),
+        DecodingResult::F16(v) => {
+            all.pick(v, |x| finite(x.to_f64()), |x| nodata.is_half(x.to_f64()))
+        }
         DecodingResult::F32(v) => all.pick(v, |x| finite(f64::from(x)), is(nodata.single())),
         DecodingResult::F64(v) => all.pick(v, finite, is(nodata.value)),
     }
@@ -234,13 +294,32 @@ struct Picker<'a> {
 }
 
 impl Picker<'_> {
-    fn pick<T: Copy>(&self, samples: &[T], value: impl Fn(T) -> f64, is_nodata: impl Fn(T) -> bool) -> Vec<f64> {
-        let Picker { step, row_length, span, part } = *self;
+    fn pick<T: Copy>(
+        &self,
+        samples: &[T],
+        value: impl Fn(T) -> f64,
+        is_nodata: impl Fn(T) -> bool,
+    ) -> Vec<f64> {
+        let Picker {
+            step,
+            row_length,
+            span,
+            part,
+        } = *self;
         let mut out = Vec::with_capacity(part.width * part.height);
         for row in part.row..part.row + part.height {
-            let start = (row - span.first_row) * row_length + (part.column - span.first_column) * step;
-            let cells = samples[start..start + (part.width - 1) * step + 1].iter().step_by(step);
-            out.extend(cells.map(|&sample| if is_nodata(sample) { f64::NAN } else { value(sample) }));
+            let start =
+                (row - span.first_row) * row_length + (part.column - span.first_column) * step;
+            let cells = samples[start..start + (part.width - 1) * step + 1]
+                .iter()
+                .step_by(step);
+            out.extend(cells.map(|&sample| {
+                if is_nodata(sample) {
+                    f64::NAN
+                } else {
+                    value(sample)
+                }
+            }));
         }
         out
     }
@@ -248,7 +327,13 @@ impl Picker<'_> {
 
 /// Returns samples of 1, 2 or 4 bits: the first of a byte is in its highest bits, and each row
 /// starts a new byte.
-fn pick_bits(packed: &[u8], layout: &BandLayout, nodata: &Nodata, span: &Span, part: Window) -> Vec<f64> {
+fn pick_bits(
+    packed: &[u8],
+    layout: &BandLayout,
+    nodata: &Nodata,
+    span: &Span,
+    part: Window,
+) -> Vec<f64> {
     let bits = usize::from(layout.sample.bits);
     let row_bytes = (span.width * bits).div_ceil(8);
     let mask = (1u16 << bits) as u8 - 1;
@@ -256,10 +341,15 @@ fn pick_bits(packed: &[u8], layout: &BandLayout, nodata: &Nodata, span: &Span, p
     let mut out = Vec::with_capacity(part.width * part.height);
     for row in part.row..part.row + part.height {
         let line = &packed[(row - span.first_row) * row_bytes..][..row_bytes];
-        for column in part.column - span.first_column..part.column - span.first_column + part.width {
+        for column in part.column - span.first_column..part.column - span.first_column + part.width
+        {
             let at = column * bits;
             let sample = line[at / 8] >> (8 - bits - at % 8) & mask;
-            out.push(if nodata == Some(sample) { f64::NAN } else { f64::from(sample) });
+            out.push(if nodata == Some(sample) {
+                f64::NAN
+            } else {
+                f64::from(sample)
+            });
         }
     }
     out

@@ -56,9 +56,10 @@ impl Values {
             Values::Text(text) => text.bytes().chain([0]).collect(),
             Values::Short(values) => values.iter().flat_map(|v| v.to_le_bytes()).collect(),
             Values::Long(values) => values.iter().flat_map(|v| v.to_le_bytes()).collect(),
-            Values::Offset(values) if offsets == Offsets::Bits32 => {
-                values.iter().flat_map(|&v| (v as u32).to_le_bytes()).collect()
-            }
+            Values::Offset(values) if offsets == Offsets::Bits32 => values
+                .iter()
+                .flat_map(|&v| (v as u32).to_le_bytes())
+                .collect(),
             Values::Offset(values) => values.iter().flat_map(|v| v.to_le_bytes()).collect(),
             Values::Double(values) => values.iter().flat_map(|v| v.to_le_bytes()).collect(),
         }
@@ -80,7 +81,9 @@ pub(super) fn header(offsets: Offsets, images: &[Vec<(u16, Values)>]) -> Vec<u8>
     out.extend_from_slice(b"II");
     match offsets {
         Offsets::Bits32 => out.extend_from_slice(&42u16.to_le_bytes()),
-        Offsets::Bits64 => [43u16, 8, 0].iter().for_each(|field| out.extend_from_slice(&field.to_le_bytes())),
+        Offsets::Bits64 => [43u16, 8, 0]
+            .iter()
+            .for_each(|field| out.extend_from_slice(&field.to_le_bytes())),
     }
     let first = (out.len() + offsets.width() + LAYOUT.len()).next_multiple_of(8);
     offsets.put(&mut out, first);
@@ -134,11 +137,22 @@ pub(super) fn placement(frame: &Frame) -> Vec<(u16, Values)> {
     let t = frame.transform;
     if frame.is_north_up() {
         return vec![
-            (tags::MODEL_PIXEL_SCALE, Values::Double(vec![t[1], -t[5], 0.0])),
-            (tags::MODEL_TIEPOINT, Values::Double(vec![0.0, 0.0, 0.0, t[0], t[3], 0.0])),
+            (
+                tags::MODEL_PIXEL_SCALE,
+                Values::Double(vec![t[1], -t[5], 0.0]),
+            ),
+            (
+                tags::MODEL_TIEPOINT,
+                Values::Double(vec![0.0, 0.0, 0.0, t[0], t[3], 0.0]),
+            ),
         ];
     }
-    let rows = [[t[1], t[2], 0.0, t[0]], [t[4], t[5], 0.0, t[3]], [0.0; 4], [0.0, 0.0, 0.0, 1.0]];
+    let rows = [
+        [t[1], t[2], 0.0, t[0]],
+        [t[4], t[5], 0.0, t[3]],
+        [0.0; 4],
+        [0.0, 0.0, 0.0, 1.0],
+    ];
     vec![(tags::MODEL_TRANSFORMATION, Values::Double(rows.concat()))]
 }
 

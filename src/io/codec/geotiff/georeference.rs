@@ -18,7 +18,9 @@ impl ModelTags {
     /// Returns the transform, and warnings for the user.
     pub(super) fn transform(&self) -> (Option<[f64; 6]>, Vec<Wording>) {
         let mut warnings = Vec::new();
-        let transform = self.exact(&mut warnings).map(|t| if self.is_point { shifted_by_half(t) } else { t });
+        let transform = self
+            .exact(&mut warnings)
+            .map(|t| if self.is_point { shifted_by_half(t) } else { t });
         match transform {
             Some(t) if !t.iter().all(|v| v.is_finite()) || t[1] * t[5] - t[2] * t[4] == 0.0 => {
                 warnings.push(format!("the georeferencing is not usable: transform {t:?}").into());
@@ -29,7 +31,10 @@ impl ModelTags {
     }
 
     fn exact(&self, warnings: &mut Vec<Wording>) -> Option<[f64; 6]> {
-        let scale = self.pixel_scale.as_deref().filter(|scale| scale.len() >= 2 && scale[0] != 0.0 && scale[1] != 0.0);
+        let scale = self
+            .pixel_scale
+            .as_deref()
+            .filter(|scale| scale.len() >= 2 && scale[0] != 0.0 && scale[1] != 0.0);
         let tiepoints = self.tiepoints.as_deref().unwrap_or(&[]);
         if let (Some(scale), Some(tie)) = (scale, tiepoints.get(..6)) {
             if scale[1] < 0.0 {
@@ -42,7 +47,14 @@ impl ModelTags {
                 );
             }
             let (x_step, y_step) = (scale[0], -scale[1].abs());
-            return Some([tie[3] - tie[0] * x_step, x_step, 0.0, tie[4] - tie[1] * y_step, 0.0, y_step]);
+            return Some([
+                tie[3] - tie[0] * x_step,
+                x_step,
+                0.0,
+                tie[4] - tie[1] * y_step,
+                0.0,
+                y_step,
+            ]);
         }
         if let Some(m) = self.transformation.as_deref().filter(|m| m.len() >= 8) {
             return Some([m[3], m[0], m[1], m[7], m[4], m[5]]);
@@ -63,7 +75,14 @@ impl ModelTags {
 }
 
 fn shifted_by_half(t: [f64; 6]) -> [f64; 6] {
-    [t[0] - (t[1] + t[2]) / 2.0, t[1], t[2], t[3] - (t[4] + t[5]) / 2.0, t[4], t[5]]
+    [
+        t[0] - (t[1] + t[2]) / 2.0,
+        t[1],
+        t[2],
+        t[3] - (t[4] + t[5]) / 2.0,
+        t[4],
+        t[5],
+    ]
 }
 
 /// Returns the affine transform through all tiepoints, by least squares about their mean; `None` if
@@ -90,10 +109,21 @@ fn fit(tiepoints: &[f64]) -> Option<[f64; 6]> {
     if points.len() < 3 || determinant <= 1e-12 * cc * rr {
         return None;
     }
-    let solve = |cv: f64, rv: f64| [(cv * rr - rv * cr) / determinant, (rv * cc - cv * cr) / determinant];
+    let solve = |cv: f64, rv: f64| {
+        [
+            (cv * rr - rv * cr) / determinant,
+            (rv * cc - cv * cr) / determinant,
+        ]
+    };
     let ([x_column, x_row], [y_column, y_row]) = (solve(cx, rx), solve(cy, ry));
-    let transform =
-        [x - x_column * column - x_row * row, x_column, x_row, y - y_column * column - y_row * row, y_column, y_row];
+    let transform = [
+        x - x_column * column - x_row * row,
+        x_column,
+        x_row,
+        y - y_column * column - y_row * row,
+        y_column,
+        y_row,
+    ];
     let cell = x_column.hypot(y_column).min(x_row.hypot(y_row));
     let is_met = points.iter().all(|p| {
         let dx = transform[0] + p[0] * x_column + p[1] * x_row - p[3];
@@ -108,7 +138,16 @@ mod tests {
     use super::*;
 
     fn tiepoints(t: [f64; 6], positions: &[[f64; 2]]) -> Vec<f64> {
-        let tie = |[c, r]: [f64; 2]| [c, r, 0.0, t[0] + c * t[1] + r * t[2], t[3] + c * t[4] + r * t[5], 0.0];
+        let tie = |[c, r]: [f64; 2]| {
+            [
+                c,
+                r,
+                0.0,
+                t[0] + c * t[1] + r * t[2],
+                t[3] + c * t[4] + r * t[5],
+                0.0,
+            ]
+        };
         positions.iter().flat_map(|&p| tie(p)).collect()
     }
 
@@ -133,15 +172,21 @@ mod tests {
             is_point: true,
             ..ModelTags::default()
         };
-        assert_eq!(transform(tags), Some([1841001.75, 1.5, -5.0, 1144003.25, -5.0, -1.5]));
+        assert_eq!(
+            transform(tags),
+            Some([1841001.75, 1.5, -5.0, 1144003.25, -5.0, -1.5])
+        );
     }
 
     #[test]
     fn tiepoints_on_one_affine_transform_give_it() {
         let wanted = [4302000.0, 30.0, 4.0, 2811000.0, -2.0, -31.0];
         let positions = [[0.0, 0.0], [507.0, 3.0], [11.0, 190.0], [300.0, 170.0]];
-        let found =
-            transform(ModelTags { tiepoints: Some(tiepoints(wanted, &positions)), ..ModelTags::default() }).unwrap();
+        let found = transform(ModelTags {
+            tiepoints: Some(tiepoints(wanted, &positions)),
+            ..ModelTags::default()
+        })
+        .unwrap();
         for (found, wanted) in found.iter().zip(wanted) {
             assert!((found - wanted).abs() < 1e-6, "{found} is not {wanted}");
         }
@@ -149,22 +194,38 @@ mod tests {
 
     #[test]
     fn tiepoints_off_any_affine_transform_are_named_and_give_none() {
-        let mut bent = tiepoints([0.0, 1.0, 0.0, 0.0, 0.0, -1.0], &[[0.0, 0.0], [9.0, 0.0], [0.0, 9.0], [9.0, 9.0]]);
+        let mut bent = tiepoints(
+            [0.0, 1.0, 0.0, 0.0, 0.0, -1.0],
+            &[[0.0, 0.0], [9.0, 0.0], [0.0, 9.0], [9.0, 9.0]],
+        );
         bent[3] += 0.5;
         let two = tiepoints([0.0, 1.0, 0.0, 0.0, 0.0, -1.0], &[[0.0, 0.0], [1.0, 1.0]]);
-        let in_line = tiepoints([0.0, 1.0, 0.0, 0.0, 0.0, -1.0], &[[0.0, 0.0], [1.0, 1.0], [5.0, 5.0]]);
+        let in_line = tiepoints(
+            [0.0, 1.0, 0.0, 0.0, 0.0, -1.0],
+            &[[0.0, 0.0], [1.0, 1.0], [5.0, 5.0]],
+        );
         for tiepoints in [bent, two, in_line] {
-            let (transform, warnings) = ModelTags { tiepoints: Some(tiepoints), ..ModelTags::default() }.transform();
+            let (transform, warnings) = ModelTags {
+                tiepoints: Some(tiepoints),
+                ..ModelTags::default()
+            }
+            .transform();
             assert_eq!(transform, None);
-            assert!(warnings[0].plain().contains("ground control points"), "{warnings:?}");
+            assert!(
+                warnings[0].plain().contains("ground control points"),
+                "{warnings:?}"
+            );
         }
     }
 
     #[test]
     fn a_transform_that_is_flat_or_not_finite_is_refused() {
         for m in [[0.0; 8], [f64::NAN; 8]] {
-            let (transform, warnings) =
-                ModelTags { transformation: Some(m.to_vec()), ..ModelTags::default() }.transform();
+            let (transform, warnings) = ModelTags {
+                transformation: Some(m.to_vec()),
+                ..ModelTags::default()
+            }
+            .transform();
             assert!(transform.is_none() && warnings.len() == 1);
         }
     }

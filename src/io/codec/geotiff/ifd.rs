@@ -49,7 +49,10 @@ impl Bytes {
         if metadata.is_dir() {
             return Err(Error::usage("is a folder, not a raster file"));
         }
-        Ok(Bytes { file: Mutex::new(file), len: metadata.len() })
+        Ok(Bytes {
+            file: Mutex::new(file),
+            len: metadata.len(),
+        })
     }
 
     pub(super) fn len(&self) -> u64 {
@@ -58,7 +61,9 @@ impl Bytes {
 
     /// Returns true if `length` bytes at `offset` are within the file.
     pub(super) fn holds(&self, offset: u64, length: u64) -> bool {
-        offset.checked_add(length).is_some_and(|end| end <= self.len)
+        offset
+            .checked_add(length)
+            .is_some_and(|end| end <= self.len)
     }
 
     /// Appends `length` bytes from `offset` to `out`.
@@ -119,16 +124,29 @@ impl Directory {
         let order = match head.get(..2) {
             Some(b"II") => ByteOrder::Little,
             Some(b"MM") => ByteOrder::Big,
-            _ => return Err(Error::format("does not begin like a TIFF file (II or MM)").at("byte 0")),
+            _ => {
+                return Err(Error::format("does not begin like a TIFF file (II or MM)").at("byte 0"));
+            }
         };
         let field = |range: std::ops::Range<usize>| {
-            head.get(range).map(|b| order.unsigned(b)).ok_or_else(|| Error::format("the TIFF header is cut short"))
+            head.get(range)
+                .map(|b| order.unsigned(b))
+                .ok_or_else(|| Error::format("the TIFF header is cut short"))
         };
         let (is_big, offset) = match field(2..4)? {
             42 => (false, field(4..8)?),
             43 if field(4..6)? == 8 => (true, field(8..16)?),
-            43 => return Err(Error::unsupported(format!("BigTIFF with offsets of {} bytes", field(4..6)?))),
-            other => return Err(Error::format(format!("TIFF version {other}, expected 42 or 43 (BigTIFF)"))),
+            43 => {
+                return Err(Error::unsupported(format!(
+                    "BigTIFF with offsets of {} bytes",
+                    field(4..6)?
+                )));
+            }
+            other => {
+                return Err(Error::format(format!(
+                    "TIFF version {other}, expected 42 or 43 (BigTIFF)"
+                )));
+            }
         };
         Self::read(bytes, order, is_big, offset)
     }
@@ -151,7 +169,8 @@ impl Directory {
             Ok((count, bytes.read(offset + count_size, length)?))
         };
         let (count, table) = whole().map_err(|e| {
-            Error::format(format!("the image directory is cut short: {e}")).at(format!("byte {offset}"))
+            Error::format(format!("the image directory is cut short: {e}"))
+                .at(format!("byte {offset}"))
         })?;
         let mut entries = BTreeMap::new();
         for (i, raw) in table.chunks_exact(entry_size as usize).enumerate() {
@@ -159,7 +178,9 @@ impl Directory {
             let kind = order.unsigned(&raw[2..4]) as u16;
             let value_at = entry_size as usize - offset_size;
             let values = order.unsigned(&raw[4..value_at]);
-            let Some(length) = size_of(kind).map(|size| size.saturating_mul(values)) else { continue };
+            let Some(length) = size_of(kind).map(|size| size.saturating_mul(values)) else {
+                continue;
+            };
             let offset = if length <= offset_size as u64 {
                 offset + count_size + i as u64 * entry_size + value_at as u64
             } else {
@@ -167,11 +188,20 @@ impl Directory {
             };
             // If a tag occurs twice, the first counts, as in libtiff.
             if let MapEntry::Vacant(free) = entries.entry(tag) {
-                free.insert(Entry { kind, count: values, offset });
+                free.insert(Entry {
+                    kind,
+                    count: values,
+                    offset,
+                });
             }
         }
         let next = bytes.read(offset + count_size + count * entry_size, offset_size as u64);
-        Ok(Directory { order, is_big, entries, next: next.map_or(0, |raw| order.unsigned(&raw)) })
+        Ok(Directory {
+            order,
+            is_big,
+            entries,
+            next: next.map_or(0, |raw| order.unsigned(&raw)),
+        })
     }
 
     pub(super) fn has(&self, tag: u16) -> bool {
@@ -179,7 +209,9 @@ impl Directory {
     }
 
     fn raw(&self, bytes: &Bytes, tag: u16) -> Result<Option<(Entry, Vec<u8>)>> {
-        let Some(&entry) = self.entries.get(&tag) else { return Ok(None) };
+        let Some(&entry) = self.entries.get(&tag) else {
+            return Ok(None);
+        };
         let length = size_of(entry.kind).unwrap_or(1).saturating_mul(entry.count);
         let raw = bytes.read(entry.offset, length).map_err(|_| {
             Error::format(format!(
@@ -195,31 +227,51 @@ impl Directory {
 
     /// Returns the values of a tag of one of the unsigned types.
     pub(super) fn unsigned(&self, bytes: &Bytes, tag: u16) -> Result<Option<Vec<u64>>> {
-        let Some((entry, raw)) = self.raw(bytes, tag)? else { return Ok(None) };
+        let Some((entry, raw)) = self.raw(bytes, tag)? else {
+            return Ok(None);
+        };
         match entry.kind {
             1 | 3 | 4 | 7 | 13 | 16 | 18 => {
                 let size = size_of(entry.kind).unwrap_or(1) as usize;
-                Ok(Some(raw.chunks_exact(size).map(|b| self.order.unsigned(b)).collect()))
+                Ok(Some(
+                    raw.chunks_exact(size)
+                        .map(|b| self.order.unsigned(b))
+                        .collect(),
+                ))
             }
-            other => {
-                Err(Error::format(format!("field type {other}, expected an unsigned number")).at(tags::tag_name(tag)))
-            }
+            other => Err(
+                Error::format(format!("field type {other}, expected an unsigned number"))
+                    .at(tags::tag_name(tag)),
+            ),
         }
     }
 
     /// Returns the first value of a tag of one of the unsigned types.
     pub(super) fn number(&self, bytes: &Bytes, tag: u16) -> Result<Option<u64>> {
-        Ok(self.unsigned(bytes, tag)?.and_then(|values| values.first().copied()))
+        Ok(self
+            .unsigned(bytes, tag)?
+            .and_then(|values| values.first().copied()))
     }
 
     /// Returns the values of a tag of type DOUBLE or FLOAT.
     pub(super) fn floats(&self, bytes: &Bytes, tag: u16) -> Result<Option<Vec<f64>>> {
-        let Some((entry, raw)) = self.raw(bytes, tag)? else { return Ok(None) };
+        let Some((entry, raw)) = self.raw(bytes, tag)? else {
+            return Ok(None);
+        };
         let values = match entry.kind {
-            12 => raw.chunks_exact(8).map(|b| f64::from_bits(self.order.unsigned(b))).collect(),
-            11 => raw.chunks_exact(4).map(|b| f64::from(f32::from_bits(self.order.unsigned(b) as u32))).collect(),
+            12 => raw
+                .chunks_exact(8)
+                .map(|b| f64::from_bits(self.order.unsigned(b)))
+                .collect(),
+            11 => raw
+                .chunks_exact(4)
+                .map(|b| f64::from(f32::from_bits(self.order.unsigned(b) as u32)))
+                .collect(),
             other => {
-                return Err(Error::format(format!("field type {other}, expected DOUBLE")).at(tags::tag_name(tag)));
+                return Err(
+                    Error::format(format!("field type {other}, expected DOUBLE"))
+                        .at(tags::tag_name(tag)),
+                );
             }
         };
         Ok(Some(values))

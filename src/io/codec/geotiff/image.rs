@@ -45,7 +45,9 @@ impl Tiling {
     pub(super) fn new(frame: Frame) -> Result<Self> {
         let Frame { width, height, .. } = frame;
         if width == 0 || height == 0 {
-            return Err(Error::usage(format!("a raster of {width} x {height} cells has no cells")));
+            return Err(Error::usage(format!(
+                "a raster of {width} x {height} cells has no cells"
+            )));
         }
         let across = width.div_ceil(SIDE);
         let count = across.saturating_mul(height.div_ceil(SIDE));
@@ -55,13 +57,25 @@ impl Tiling {
             ))
             .cure("choose a coarser resolution or a smaller part"));
         }
-        Ok(Tiling { frame, across, count })
+        Ok(Tiling {
+            frame,
+            across,
+            count,
+        })
     }
 
     fn window(&self, tile: usize) -> Window {
         let (column, row) = (tile % self.across * SIDE, tile / self.across * SIDE);
-        let (width, height) = (SIDE.min(self.frame.width - column), SIDE.min(self.frame.height - row));
-        Window { column, row, width, height }
+        let (width, height) = (
+            SIDE.min(self.frame.width - column),
+            SIDE.min(self.frame.height - row),
+        );
+        Window {
+            column,
+            row,
+            width,
+            height,
+        }
     }
 
     /// Returns the most bytes that the tiles can take. DEFLATE adds at most 5 bytes to 16 kB of
@@ -101,10 +115,19 @@ impl Image {
             starts: vec![0; tiling.count],
             lengths: vec![0; tiling.count],
             tiles: 0..0,
-            summary: RasterSummary { min: f64::INFINITY, max: f64::NEG_INFINITY, valid: 0 },
+            summary: RasterSummary {
+                min: f64::INFINITY,
+                max: f64::NEG_INFINITY,
+                valid: 0,
+            },
         };
         // Overviews are computed from the tiles: these are read as those of any other file.
-        let head = |image: &Image| directory::header(Offsets::Bits64, &[image.tags(source, cells, image.tiles.start)]);
+        let head = |image: &Image| {
+            directory::header(
+                Offsets::Bits64,
+                &[image.tags(source, cells, image.tiles.start)],
+            )
+        };
         let first = head(&image).len() as u64;
         image.tiles = first..first;
         let mut out = BufWriter::with_capacity(1 << 18, image.file.try_clone()?);
@@ -117,7 +140,10 @@ impl Image {
                 watch(window.width as u64 * window.height as u64)?;
                 Ok(tile)
             };
-            range.into_par_iter().map_init(TileBuffers::default, pack).collect()
+            range
+                .into_par_iter()
+                .map_init(TileBuffers::default, pack)
+                .collect()
         };
         // One batch is computed while the previous one is written; 16 tiles per core keep all cores
         // busy.
@@ -127,7 +153,8 @@ impl Image {
         while !ready.is_empty() {
             let packed = done + ready.len();
             let next = packed..tiling.count.min(packed + batch);
-            let (written, computed) = rayon::join(|| image.append(done, &ready, &mut out), || pack(next));
+            let (written, computed) =
+                rayon::join(|| image.append(done, &ready, &mut out), || pack(next));
             written?;
             done = packed;
             ready = computed?;
@@ -180,8 +207,19 @@ impl Image {
     }
 
     /// Returns the tags of the image in a file that has its tiles from byte `first`.
-    pub(super) fn tags(&self, source: &dyn BlockSource, cells: CellFormat, first: u64) -> Vec<(u16, Values)> {
-        let moved = |&start: &u64| if start == 0 { 0 } else { start - self.tiles.start + first };
+    pub(super) fn tags(
+        &self,
+        source: &dyn BlockSource,
+        cells: CellFormat,
+        first: u64,
+    ) -> Vec<(u16, Values)> {
+        let moved = |&start: &u64| {
+            if start == 0 {
+                0
+            } else {
+                start - self.tiles.start + first
+            }
+        };
         let long = |value: usize| Values::Long(vec![value as u32]);
         let (predictor, sample_format, nodata) = match cells {
             CellFormat::Heights => (3, 3, format!("{NO_HEIGHT}")),
@@ -199,18 +237,28 @@ impl Image {
             (tags::PREDICTOR, short(predictor)),
             (tags::TILE_WIDTH, short(SIDE as u16)),
             (tags::TILE_LENGTH, short(SIDE as u16)),
-            (tags::TILE_OFFSETS, Values::Offset(self.starts.iter().map(moved).collect())),
+            (
+                tags::TILE_OFFSETS,
+                Values::Offset(self.starts.iter().map(moved).collect()),
+            ),
             (tags::TILE_BYTE_COUNTS, Values::Long(self.lengths.clone())),
             (tags::SAMPLE_FORMAT, short(sample_format)),
         ];
         all.extend(directory::placement(&self.tiling.frame));
-        all.extend(directory::geo_keys(source.crs().map(GeoKeys::from_crs).unwrap_or_default()));
+        all.extend(directory::geo_keys(
+            source.crs().map(GeoKeys::from_crs).unwrap_or_default(),
+        ));
         all.push((tags::GDAL_NODATA, Values::Text(nodata)));
         all
     }
 
     /// Like [`tags`](Self::tags), for an overview: what the whole image states is not repeated.
-    pub(super) fn overview_tags(&self, source: &dyn BlockSource, cells: CellFormat, first: u64) -> Vec<(u16, Values)> {
+    pub(super) fn overview_tags(
+        &self,
+        source: &dyn BlockSource,
+        cells: CellFormat,
+        first: u64,
+    ) -> Vec<(u16, Values)> {
         let mut all = self.tags(source, cells, first);
         all.retain(|(tag, _)| *tag <= tags::SAMPLE_FORMAT || *tag == tags::GDAL_NODATA);
         // A reduced image.

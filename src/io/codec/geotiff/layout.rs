@@ -113,15 +113,24 @@ fn required(value: Option<u64>, tag: u16) -> Result<u64> {
 
 /// Returns the number of bands.
 fn band_count(bytes: &Bytes, directory: &Directory) -> Result<u16> {
-    let bands = directory.number(bytes, tags::SAMPLES_PER_PIXEL)?.unwrap_or(1);
-    u16::try_from(bands).ok().filter(|&bands| bands > 0).ok_or_else(|| {
-        Error::format(format!("{bands}, expected 1 to 65535")).at(tags::tag_name(tags::SAMPLES_PER_PIXEL))
-    })
+    let bands = directory
+        .number(bytes, tags::SAMPLES_PER_PIXEL)?
+        .unwrap_or(1);
+    u16::try_from(bands)
+        .ok()
+        .filter(|&bands| bands > 0)
+        .ok_or_else(|| {
+            Error::format(format!("{bands}, expected 1 to 65535"))
+                .at(tags::tag_name(tags::SAMPLES_PER_PIXEL))
+        })
 }
 
 /// Returns the number of samples of a cell that are stored together.
 fn interleaved(bytes: &Bytes, directory: &Directory, bands: u16) -> Result<u16> {
-    match directory.number(bytes, tags::PLANAR_CONFIGURATION)?.unwrap_or(1) {
+    match directory
+        .number(bytes, tags::PLANAR_CONFIGURATION)?
+        .unwrap_or(1)
+    {
         1 => Ok(bands),
         2 => Ok(1),
         other => {
@@ -146,7 +155,12 @@ fn rows_per_strip(bytes: &Bytes, directory: &Directory, height: u64) -> Result<u
 }
 
 /// Returns the values of a tag that has one for each block, if the file has it.
-fn of_each_block(bytes: &Bytes, directory: &Directory, tag: u16, blocks: u64) -> Result<Option<Vec<u64>>> {
+fn of_each_block(
+    bytes: &Bytes,
+    directory: &Directory,
+    tag: u16,
+    blocks: u64,
+) -> Result<Option<Vec<u64>>> {
     match directory.unsigned(bytes, tag)? {
         Some(values) if (values.len() as u64) < blocks => {
             let message = format!("{} values for {blocks} blocks", values.len());
@@ -192,7 +206,9 @@ impl BandLayout {
         let across = width.div_ceil(block_width);
         let blocks = across.saturating_mul(height.div_ceil(block_height));
         if blocks > MAX_BLOCKS {
-            return Err(cure(Error::limit(format!("{blocks} blocks exceed the limit of {MAX_BLOCKS} blocks"))));
+            return Err(cure(Error::limit(format!(
+                "{blocks} blocks exceed the limit of {MAX_BLOCKS} blocks"
+            ))));
         }
         let (offsets_tag, counts_tag) = if is_tiled {
             (tags::TILE_OFFSETS, tags::TILE_BYTE_COUNTS)
@@ -241,10 +257,22 @@ impl BandLayout {
                 if directory.number(bytes, tags::PHOTOMETRIC)? == Some(6) {
                     return Err(unsupported("compression JPEG with YCbCr colors".into()));
                 }
-                if self.sample != (SampleType { kind: SampleKind::Unsigned, bits: 8 }) {
-                    return Err(unsupported(format!("compression JPEG of {} samples", self.sample)));
+                if self.sample
+                    != (SampleType {
+                        kind: SampleKind::Unsigned,
+                        bits: 8,
+                    })
+                {
+                    return Err(unsupported(format!(
+                        "compression JPEG of {} samples",
+                        self.sample
+                    )));
                 }
-                if self.jpeg_tables.as_ref().is_some_and(|tables| tables.len() < 4) {
+                if self
+                    .jpeg_tables
+                    .as_ref()
+                    .is_some_and(|tables| tables.len() < 4)
+                {
                     return Err(Error::format("is too short").at(tags::tag_name(tags::JPEG_TABLES)));
                 }
             }
@@ -260,13 +288,21 @@ impl BandLayout {
             return Err(unsupported(format!("{bits}-bit samples ({})", self.sample)));
         }
         if bits < 8 && self.interleaved > 1 {
-            return Err(unsupported(format!("{bits}-bit samples in {} interleaved bands", self.bands)));
+            return Err(unsupported(format!(
+                "{bits}-bit samples in {} interleaved bands",
+                self.bands
+            )));
         }
         match self.predictor {
             1 => {}
             2 if bits >= 8 => {}
             3 if kind == SampleKind::Float => {}
-            2 | 3 => return Err(unsupported(format!("predictor {} for {} samples", self.predictor, self.sample))),
+            2 | 3 => {
+                return Err(unsupported(format!(
+                    "predictor {} for {} samples",
+                    self.predictor, self.sample
+                )));
+            }
             other => return Err(unsupported(format!("predictor {other}"))),
         }
         match directory.number(bytes, tags::FILL_ORDER)? {
@@ -277,7 +313,8 @@ impl BandLayout {
 
     /// Returns the bytes of a row of a block.
     fn row_bytes(&self) -> u64 {
-        (self.block[0] as u64 * u64::from(self.interleaved) * u64::from(self.sample.bits)).div_ceil(8)
+        (self.block[0] as u64 * u64::from(self.interleaved) * u64::from(self.sample.bits))
+            .div_ceil(8)
     }
 
     /// Returns the largest number of bytes that a decoded span can have.
@@ -324,12 +361,22 @@ impl BandLayout {
         let skipped = row_in_block / self.span_height * self.span_height;
         let first_row = block_row * block_height + skipped;
         // Some writers leave out the rows of a tile below the raster.
-        let rows = self.span_height.min(block_height - skipped).min(self.height - first_row);
+        let rows = self
+            .span_height
+            .min(block_height - skipped)
+            .min(self.height - first_row);
         let block = block_row * self.across + across;
         let stored = self
             .stored(block, skipped as u64, rows as u64, bytes)
             .map_err(|e| e.at(format!("block {block} (rows from {first_row})")))?;
-        Ok(Span { block, first_column: across * block_width, first_row, width: block_width, rows, stored })
+        Ok(Span {
+            block,
+            first_column: across * block_width,
+            first_row,
+            width: block_width,
+            rows,
+            stored,
+        })
     }
 
     fn stored(&self, block: usize, skipped: u64, rows: u64, bytes: &Bytes) -> Result<Stored> {
@@ -343,11 +390,17 @@ impl BandLayout {
             let before = self.row_bytes() * skipped;
             if stated.is_some_and(|stated| stated != 0 && stated < before + raw) {
                 let stated = stated.unwrap_or(0);
-                return Err(Error::format(format!("{stated} bytes, where {} are needed", before + raw)));
+                return Err(Error::format(format!(
+                    "{stated} bytes, where {} are needed",
+                    before + raw
+                )));
             }
             (offset.saturating_add(before), raw)
         } else {
-            (offset, stated.unwrap_or_else(|| bytes.len().saturating_sub(offset).min(2 * raw + 1024)))
+            (
+                offset,
+                stated.unwrap_or_else(|| bytes.len().saturating_sub(offset).min(2 * raw + 1024)),
+            )
         };
         if !bytes.holds(start, length) {
             return Err(Error::format(format!(
@@ -357,9 +410,14 @@ impl BandLayout {
         }
         if raw > length.saturating_mul(max_bytes_from_one(self.compression)) {
             let name = tags::compression_name(self.compression);
-            return Err(Error::format(format!("{length} bytes of {name} cannot give {raw} bytes")));
+            return Err(Error::format(format!(
+                "{length} bytes of {name} cannot give {raw} bytes"
+            )));
         }
-        Ok(Stored::At { offset: start, length: length.min(4 * raw + (1 << 20)) })
+        Ok(Stored::At {
+            offset: start,
+            length: length.min(4 * raw + (1 << 20)),
+        })
     }
 }
 
@@ -383,7 +441,9 @@ fn max_bytes_from_one(compression: u16) -> u64 {
 /// Returns the common type of all samples.
 fn sample_type(bytes: &Bytes, directory: &Directory) -> Result<SampleType> {
     let all_equal = |tag, default| -> Result<u64> {
-        let values = directory.unsigned(bytes, tag)?.filter(|values| !values.is_empty());
+        let values = directory
+            .unsigned(bytes, tag)?
+            .filter(|values| !values.is_empty());
         let values = values.unwrap_or_else(|| vec![default]);
         match values.iter().find(|&&value| value != values[0]) {
             None => Ok(values[0]),
@@ -400,7 +460,11 @@ fn sample_type(bytes: &Bytes, directory: &Directory) -> Result<SampleType> {
         1 | 4 => SampleKind::Unsigned,
         2 => SampleKind::Signed,
         3 => SampleKind::Float,
-        5 => return Err(unsupported(format!("complex integer samples of {bits} bits"))),
+        5 => {
+            return Err(unsupported(format!(
+                "complex integer samples of {bits} bits"
+            )));
+        }
         6 => return Err(unsupported(format!("complex float samples of {bits} bits"))),
         other => return Err(unsupported(format!("sample format {other}"))),
     };

@@ -21,8 +21,14 @@ impl Nodata {
             lower => lower.parse::<f64>().ok()?,
         };
         let is_whole = value.fract() == 0.0 && value.abs() < 1e30;
-        let whole = text.parse::<i128>().ok().or_else(|| is_whole.then_some(value as i128));
-        Some(Nodata { value: Some(value), whole })
+        let whole = text
+            .parse::<i128>()
+            .ok()
+            .or_else(|| is_whole.then_some(value as i128));
+        Some(Nodata {
+            value: Some(value),
+            whole,
+        })
     }
 
     /// Returns the value of cells whose block was left out of the file: NaN, or 0 if the file has
@@ -55,11 +61,15 @@ impl Nodata {
 
     /// Returns true if no sample of this type can equal the value.
     pub(super) fn is_out_of_range(&self, sample: SampleType) -> bool {
-        let Some(value) = self.value else { return false };
+        let Some(value) = self.value else {
+            return false;
+        };
         let bits = i32::from(sample.bits);
         match sample.kind {
             SampleKind::Float => value.is_finite() && bits <= 32 && !(value as f32).is_finite(),
-            SampleKind::Unsigned => !(value.fract() == 0.0 && 0.0 <= value && value < 2f64.powi(bits)),
+            SampleKind::Unsigned => {
+                !(value.fract() == 0.0 && 0.0 <= value && value < 2f64.powi(bits))
+            }
             SampleKind::Signed => {
                 let end = 2f64.powi(bits - 1);
                 !(value.fract() == 0.0 && -end <= value && value < end)
@@ -73,12 +83,20 @@ impl Nodata {
 pub(super) fn scale_and_offset(metadata: &str) -> (Option<f64>, Option<f64>) {
     let (mut scale, mut offset) = (None, None);
     for item in metadata.split("<Item").skip(1) {
-        let Some((head, rest)) = item.split_once('>') else { continue };
-        let Some((text, _)) = rest.split_once("</Item") else { continue };
+        let Some((head, rest)) = item.split_once('>') else {
+            continue;
+        };
+        let Some((text, _)) = rest.split_once("</Item") else {
+            continue;
+        };
         if attribute(head, "sample").unwrap_or("0") != "0" {
             continue;
         }
-        let value = text.trim().parse::<f64>().ok().filter(|value| value.is_finite());
+        let value = text
+            .trim()
+            .parse::<f64>()
+            .ok()
+            .filter(|value| value.is_finite());
         match attribute(head, "role") {
             Some("scale") => scale = value,
             Some("offset") => offset = value,
@@ -97,22 +115,53 @@ fn attribute<'a>(head: &'a str, name: &str) -> Option<&'a str> {
 mod tests {
     use super::*;
 
-    const BYTE: SampleType = SampleType { kind: SampleKind::Unsigned, bits: 8 };
-    const SHORT: SampleType = SampleType { kind: SampleKind::Signed, bits: 16 };
-    const SINGLE: SampleType = SampleType { kind: SampleKind::Float, bits: 32 };
+    const BYTE: SampleType = SampleType {
+        kind: SampleKind::Unsigned,
+        bits: 8,
+    };
+    const SHORT: SampleType = SampleType {
+        kind: SampleKind::Signed,
+        bits: 16,
+    };
+    const SINGLE: SampleType = SampleType {
+        kind: SampleKind::Float,
+        bits: 32,
+    };
 
     #[test]
     fn texts_of_every_kind_are_read() {
-        assert_eq!(Nodata::parse("-9999").unwrap().integer::<i16>(), Some(-9999));
+        assert_eq!(
+            Nodata::parse("-9999").unwrap().integer::<i16>(),
+            Some(-9999)
+        );
         assert_eq!(Nodata::parse(" 0.0 \0").unwrap().integer::<u8>(), Some(0));
-        assert_eq!(Nodata::parse("-3.4028230607370965e+38").unwrap().single(), Some(-3.402_823e38));
-        assert_eq!(Nodata::parse("-3.40282346639e+38").unwrap().single(), Some(f32::MIN));
+        assert_eq!(
+            Nodata::parse("-3.4028230607370965e+38").unwrap().single(),
+            Some(-3.402_823e38)
+        );
+        assert_eq!(
+            Nodata::parse("-3.40282346639e+38").unwrap().single(),
+            Some(f32::MIN)
+        );
         assert!(Nodata::parse("nan").unwrap().value.unwrap().is_nan());
         assert!(Nodata::parse("NaN ").unwrap().single().unwrap().is_nan());
-        assert_eq!(Nodata::parse("-inf").unwrap().value, Some(f64::NEG_INFINITY));
+        assert_eq!(
+            Nodata::parse("-inf").unwrap().value,
+            Some(f64::NEG_INFINITY)
+        );
         assert_eq!(Nodata::parse("inf").unwrap().integer::<u64>(), None);
-        assert_eq!(Nodata::parse("18446744073709551615").unwrap().integer::<u64>(), Some(u64::MAX));
-        assert_eq!(Nodata::parse("-9223372036854775807").unwrap().integer::<i64>(), Some(i64::MIN + 1));
+        assert_eq!(
+            Nodata::parse("18446744073709551615")
+                .unwrap()
+                .integer::<u64>(),
+            Some(u64::MAX)
+        );
+        assert_eq!(
+            Nodata::parse("-9223372036854775807")
+                .unwrap()
+                .integer::<i64>(),
+            Some(i64::MIN + 1)
+        );
         assert_eq!(Nodata::parse("none"), None);
         assert_eq!(Nodata::parse(""), None);
     }
@@ -121,9 +170,17 @@ mod tests {
     fn values_that_a_type_cannot_hold_match_nothing() {
         let below = Nodata::parse("-9999").unwrap();
         assert_eq!(below.integer::<u8>(), None);
-        assert!(below.is_out_of_range(BYTE) && !below.is_out_of_range(SHORT) && !below.is_out_of_range(SINGLE));
+        assert!(
+            below.is_out_of_range(BYTE)
+                && !below.is_out_of_range(SHORT)
+                && !below.is_out_of_range(SINGLE)
+        );
         assert!(Nodata::parse("0.5").unwrap().is_out_of_range(SHORT));
-        assert!(Nodata::parse("-1.7976931348623157e308").unwrap().is_out_of_range(SINGLE));
+        assert!(
+            Nodata::parse("-1.7976931348623157e308")
+                .unwrap()
+                .is_out_of_range(SINGLE)
+        );
         assert!(!Nodata::parse("-inf").unwrap().is_out_of_range(SINGLE));
         assert!(Nodata::parse("nan").unwrap().is_out_of_range(BYTE));
     }
@@ -145,7 +202,10 @@ mod tests {
             <Item name="DESCRIPTION" sample="0" role="description">scale</Item>
         </GDALMetadata>"#;
         assert_eq!(scale_and_offset(text), (Some(0.0001), Some(1000.0)));
-        assert_eq!(scale_and_offset("<Item role=\"scale\">x</Item>"), (None, None));
+        assert_eq!(
+            scale_and_offset("<Item role=\"scale\">x</Item>"),
+            (None, None)
+        );
         assert_eq!(scale_and_offset("<Item role=\"scale\""), (None, None));
     }
 }

@@ -64,13 +64,22 @@ impl GeoTiffInfo {
     /// Returns a description such as "GeoTIFF, float32, 1 band, DEFLATE, predictor 3, tiles of 256
     /// x 256".
     pub fn description(&self) -> String {
-        let mut text = String::from(if self.is_big_tiff { "BigTIFF" } else { "GeoTIFF" });
+        let mut text = String::from(if self.is_big_tiff {
+            "BigTIFF"
+        } else {
+            "GeoTIFF"
+        });
         if self.byte_order == ByteOrder::Big {
             text += " (big-endian)";
         }
-        let (bands, blocks) =
-            (if self.bands == 1 { "band" } else { "bands" }, if self.is_tiled { "tiles" } else { "strips" });
-        text += &format!(", {}, {} {bands}, compression {}", self.sample, self.bands, self.compression);
+        let (bands, blocks) = (
+            if self.bands == 1 { "band" } else { "bands" },
+            if self.is_tiled { "tiles" } else { "strips" },
+        );
+        text += &format!(
+            ", {}, {} {bands}, compression {}",
+            self.sample, self.bands, self.compression
+        );
         if self.predictor != 1 {
             text += &format!(", predictor {}", self.predictor);
         }
@@ -106,12 +115,16 @@ pub struct GeoTiffReader {
 /// message names.
 pub fn open(path: impl AsRef<Path>) -> Result<GeoTiffReader> {
     let path = path.as_ref();
-    Bytes::open(path).and_then(|bytes| read_header(bytes, path)).map_err(|e| with_file(e, path))
+    Bytes::open(path)
+        .and_then(|bytes| read_header(bytes, path))
+        .map_err(|e| with_file(e, path))
 }
 
 /// Reads the header of a file that has no name; `path` is for messages.
 pub(super) fn of_file(file: File, path: &Path) -> Result<GeoTiffReader> {
-    Bytes::of_file(file).and_then(|bytes| read_header(bytes, path)).map_err(|e| with_file(e, path))
+    Bytes::of_file(file)
+        .and_then(|bytes| read_header(bytes, path))
+        .map_err(|e| with_file(e, path))
 }
 
 /// Adds the file to an error and, if the file is damaged, the cure.
@@ -128,14 +141,23 @@ fn read_header(bytes: Bytes, path: &Path) -> Result<GeoTiffReader> {
     let directory = Directory::first(&bytes)?;
     let layout = BandLayout::read(&bytes, &directory)?;
     let mut warnings = Vec::new();
-    let Described { nodata, metadata, model, crs, unread_crs } = Described::read(&bytes, &directory, &mut warnings);
+    let Described {
+        nodata,
+        metadata,
+        model,
+        crs,
+        unread_crs,
+    } = Described::read(&bytes, &directory, &mut warnings);
     let nodata = nodata_of(nodata.as_deref(), layout.sample, &mut warnings);
     let (scale, offset) = metadata.as_deref().map_or((None, None), scale_and_offset);
     let transform = transform_of(&model, path, &mut warnings)?;
     let missing = layout.missing_blocks();
     if missing > 0 && nodata.value.is_none() {
         let all = layout.block_count();
-        warnings.push(format!("{missing} of {all} blocks are not in the file: their cells are 0, as in GDAL").into());
+        warnings.push(
+            format!("{missing} of {all} blocks are not in the file: their cells are 0, as in GDAL")
+                .into(),
+        );
     }
     let overviews = further_images(&bytes, &directory, &mut warnings);
     let info = GeoTiffInfo {
@@ -159,7 +181,13 @@ fn read_header(bytes: Bytes, path: &Path) -> Result<GeoTiffReader> {
         overviews,
         warnings,
     };
-    Ok(GeoTiffReader { path: path.to_path_buf(), bytes, layout, nodata, info })
+    Ok(GeoTiffReader {
+        path: path.to_path_buf(),
+        bytes,
+        layout,
+        nodata,
+        info,
+    })
 }
 
 /// What the tags state that only describe the raster: a damaged one leads to a warning and is left
@@ -194,7 +222,13 @@ impl Described {
                 (None, Some(format!("{keys:?}")))
             }
         };
-        Described { nodata, metadata, model, crs, unread_crs }
+        Described {
+            nodata,
+            metadata,
+            model,
+            crs,
+            unread_crs,
+        }
     }
 }
 
@@ -211,7 +245,8 @@ fn nodata_of(text: Option<&str>, sample: SampleType, warnings: &mut Vec<Wording>
     let nodata = match text.map(|text| (text, Nodata::parse(text))) {
         Some((_, Some(nodata))) => nodata,
         Some((text, None)) if !text.trim().is_empty() => {
-            warnings.push(format!("the nodata value {text:?} is not a number and is ignored").into());
+            warnings
+                .push(format!("the nodata value {text:?} is not a number and is ignored").into());
             Nodata::default()
         }
         _ => Nodata::default(),
@@ -225,7 +260,11 @@ fn nodata_of(text: Option<&str>, sample: SampleType, warnings: &mut Vec<Wording>
 
 /// Returns the transform that the tags state, else that of a world file next to the raster; warns
 /// if there is neither.
-fn transform_of(model: &ModelTags, path: &Path, warnings: &mut Vec<Wording>) -> Result<Option<[f64; 6]>> {
+fn transform_of(
+    model: &ModelTags,
+    path: &Path,
+    warnings: &mut Vec<Wording>,
+) -> Result<Option<[f64; 6]>> {
     let (mut transform, warning) = model.transform();
     warnings.extend(warning);
     if transform.is_none()
@@ -245,15 +284,22 @@ fn geo_keys(bytes: &Bytes, directory: &Directory) -> Result<GeoKeys> {
     };
     Ok(GeoKeys {
         directory: values.iter().map(|&value| value as u16).collect(),
-        doubles: directory.floats(bytes, tags::GEO_DOUBLE_PARAMS)?.unwrap_or_default(),
-        ascii: directory.text(bytes, tags::GEO_ASCII_PARAMS)?.unwrap_or_default(),
+        doubles: directory
+            .floats(bytes, tags::GEO_DOUBLE_PARAMS)?
+            .unwrap_or_default(),
+        ascii: directory
+            .text(bytes, tags::GEO_ASCII_PARAMS)?
+            .unwrap_or_default(),
     })
 }
 
 /// Returns PixelIsArea (1) or PixelIsPoint (2), if the keys state it.
 fn raster_type(keys: &GeoKeys) -> Option<u16> {
     let entries = keys.directory.get(4..)?.chunks_exact(4);
-    entries.filter(|key| key[0] == tags::RASTER_TYPE_KEY && key[1] == 0).map(|key| key[3]).next()
+    entries
+        .filter(|key| key[0] == tags::RASTER_TYPE_KEY && key[1] == 0)
+        .map(|key| key[3])
+        .next()
 }
 
 /// Returns the sizes of the overviews. A mask leads to a warning, since it is not applied.
@@ -265,7 +311,9 @@ fn further_images(bytes: &Bytes, first: &Directory, warnings: &mut Vec<Wording>)
     let mut offset = first.next_offset();
     while let Some(directory) = next {
         let Ok(directory) = directory else {
-            warnings.push(format!("a further image at byte {offset} cannot be read and is ignored").into());
+            warnings.push(
+                format!("a further image at byte {offset} cannot be read and is ignored").into(),
+            );
             break;
         };
         if !seen.insert(offset) || seen.len() > MAX_IMAGES {
@@ -307,7 +355,8 @@ impl GeoTiffReader {
     /// # Errors
     /// As [`read_window`](Self::read_window).
     pub fn read_stored(&self, window: Window) -> Result<Vec<f64>> {
-        self.stored(window, &unwatched).map_err(|e| with_file(e, &self.path))
+        self.stored(window, &unwatched)
+            .map_err(|e| with_file(e, &self.path))
     }
 
     /// Reads the whole raster.
@@ -325,9 +374,15 @@ impl GeoTiffReader {
     /// Those of [`read_grid`](Self::read_grid), and that of the watch.
     pub fn read_grid_with(&self, watch: Watch) -> Result<Grid> {
         let frame = self.frame();
-        let mut values = self.stored(frame.window(), watch).map_err(|e| with_file(e, &self.path))?;
+        let mut values = self
+            .stored(frame.window(), watch)
+            .map_err(|e| with_file(e, &self.path))?;
         self.scale(&mut values);
-        Ok(Grid { frame, crs: self.info.crs.clone(), values })
+        Ok(Grid {
+            frame,
+            crs: self.info.crs.clone(),
+            values,
+        })
     }
 
     /// Reads all values once, in bounded memory, and returns their number and range.
@@ -356,8 +411,15 @@ impl GeoTiffReader {
         let mut found = Extremes::default();
         for row in (0..height).step_by(rows) {
             for column in (0..width).step_by(columns) {
-                let window = Window { column, row, width: columns.min(width - column), height: rows.min(height - row) };
-                let values = self.stored(window, watch).map_err(|e| with_file(e, &self.path))?;
+                let window = Window {
+                    column,
+                    row,
+                    width: columns.min(width - column),
+                    height: rows.min(height - row),
+                };
+                let values = self
+                    .stored(window, watch)
+                    .map_err(|e| with_file(e, &self.path))?;
                 for value in values.into_iter().filter(|value| !value.is_nan()) {
                     found.valid += 1;
                     let [min, max] = found.stored_range.get_or_insert([value; 2]);
@@ -383,8 +445,15 @@ impl GeoTiffReader {
     }
 
     fn stored(&self, window: Window, watch: Watch) -> Result<Vec<f64>> {
-        let Window { column, row, width, height } = window;
-        let fits = |start: usize, length: usize, end| start.checked_add(length).is_some_and(|stop| stop <= end);
+        let Window {
+            column,
+            row,
+            width,
+            height,
+        } = window;
+        let fits = |start: usize, length: usize, end| {
+            start.checked_add(length).is_some_and(|stop| stop <= end)
+        };
         if !fits(column, width, self.info.width) || !fits(row, height, self.info.height) {
             return Err(Error::usage(format!(
                 "{width} x {height} cells from column {column}, row {row} exceed the raster of {} x {}",
@@ -404,7 +473,8 @@ impl GeoTiffReader {
         // The position of every block is checked before memory for its values is allocated.
         let spans = self.spans(window)?;
         let mut out = Vec::new();
-        out.try_reserve_exact(cells).map_err(|_| Error::limit(format!("no memory for {width} x {height} cells")))?;
+        out.try_reserve_exact(cells)
+            .map_err(|_| Error::limit(format!("no memory for {width} x {height} cells")))?;
         out.resize(cells, self.nodata.of_missing_blocks());
         let mut copy = |part: Window, values: Vec<f64>| {
             for (line, source) in values.chunks_exact(part.width).enumerate() {
@@ -413,15 +483,28 @@ impl GeoTiffReader {
             }
         };
         let values = |span: &Span, take: &mut dyn FnMut(Window, Vec<f64>)| {
-            block::values(&self.layout, &self.nodata, &self.bytes, span, overlap(span, window), take)
+            block::values(
+                &self.layout,
+                &self.nodata,
+                &self.bytes,
+                span,
+                overlap(span, window),
+                take,
+            )
         };
         /// Limit for the bytes of values that wait to be copied.
         const MAX_WAITING_BYTES: u64 = 1 << 27;
-        let span_bytes = self.layout.span_bytes().max(8 * self.layout.span_cells()).max(1);
+        let span_bytes = self
+            .layout
+            .span_bytes()
+            .max(8 * self.layout.span_cells())
+            .max(1);
         let batch = (MAX_WAITING_BYTES / span_bytes).min(4 * rayon::current_num_threads() as u64);
         if batch < 2 {
             // Only one of such huge blocks is decoded at a time, and its values are copied at once.
-            spans.iter().try_for_each(|span| values(span, &mut copy).and_then(|()| watch(span.cells())))?;
+            spans
+                .iter()
+                .try_for_each(|span| values(span, &mut copy).and_then(|()| watch(span.cells())))?;
             return Ok(out);
         }
         for batch in spans.chunks(batch as usize) {
@@ -430,7 +513,10 @@ impl GeoTiffReader {
                 values(span, &mut |part, values| bands.push((part, values))).map(|()| bands)
             };
             let decoded: Vec<_> = batch.par_iter().map(decode).collect::<Result<_>>()?;
-            decoded.into_iter().flatten().for_each(|(part, values)| copy(part, values));
+            decoded
+                .into_iter()
+                .flatten()
+                .for_each(|(part, values)| copy(part, values));
             watch(batch.iter().map(Span::cells).sum())?;
         }
         Ok(out)
@@ -439,7 +525,8 @@ impl GeoTiffReader {
     /// Returns the stored spans that a window touches.
     fn spans(&self, window: Window) -> Result<Vec<Span>> {
         let block_width = self.layout.block[0];
-        let columns = window.column / block_width..(window.column + window.width).div_ceil(block_width);
+        let columns =
+            window.column / block_width..(window.column + window.width).div_ceil(block_width);
         debug_assert!(columns.end <= self.layout.across());
         let mut spans = Vec::new();
         let mut row = window.row;
@@ -464,14 +551,26 @@ fn overlap(span: &Span, window: Window) -> Window {
     let row = span.first_row.max(window.row);
     let width = (span.first_column + span.width).min(window.column + window.width) - column;
     let height = (span.first_row + span.rows).min(window.row + window.height) - row;
-    Window { column, row, width, height }
+    Window {
+        column,
+        row,
+        width,
+        height,
+    }
 }
 
 impl BlockSource for GeoTiffReader {
     /// Returns the frame; without georeferencing, the coordinates are those of cell corners.
     fn frame(&self) -> Frame {
-        let transform = self.info.transform.unwrap_or([0.0, 1.0, 0.0, 0.0, 0.0, 1.0]);
-        Frame { width: self.info.width, height: self.info.height, transform }
+        let transform = self
+            .info
+            .transform
+            .unwrap_or([0.0, 1.0, 0.0, 0.0, 0.0, 1.0]);
+        Frame {
+            width: self.info.width,
+            height: self.info.height,
+            transform,
+        }
     }
 
     fn crs(&self) -> Option<&Crs> {

@@ -36,11 +36,21 @@ pub(super) struct TileBuffers {
 
 impl TileBuffers {
     /// Requests the cells of a tile that are in the raster from the source, and encodes them.
-    pub(super) fn pack(&mut self, source: &dyn BlockSource, window: Window, format: CellFormat) -> Result<Tile> {
+    pub(super) fn pack(
+        &mut self,
+        source: &dyn BlockSource,
+        window: Window,
+        format: CellFormat,
+    ) -> Result<Tile> {
         self.cells.clear();
         self.cells.resize(window.width * window.height, f32::NAN);
         source.fill(window, &mut self.cells)?;
-        let mut tile = Tile { bytes: Vec::new(), valid: 0, min: f32::INFINITY, max: f32::NEG_INFINITY };
+        let mut tile = Tile {
+            bytes: Vec::new(),
+            valid: 0,
+            min: f32::INFINITY,
+            max: f32::NEG_INFINITY,
+        };
         for cell in &mut self.cells {
             *cell = format.written(*cell);
             if !cell.is_nan() {
@@ -51,7 +61,10 @@ impl TileBuffers {
         }
         if tile.valid > 0 {
             self.predict(window, format);
-            let mut encoder = ZlibEncoder::new(Vec::with_capacity(self.packed.len() / 2), Compression::new(EFFORT));
+            let mut encoder = ZlibEncoder::new(
+                Vec::with_capacity(self.packed.len() / 2),
+                Compression::new(EFFORT),
+            );
             encoder.write_all(&self.packed)?;
             tile.bytes = encoder.finish()?;
         }

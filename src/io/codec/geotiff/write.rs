@@ -28,13 +28,18 @@ impl Default for WriteOptions<'_> {
 /// Options for these contents, unwatched.
 impl From<CellFormat> for WriteOptions<'_> {
     fn from(cells: CellFormat) -> Self {
-        WriteOptions { cells, watch: &unwatched }
+        WriteOptions {
+            cells,
+            watch: &unwatched,
+        }
     }
 }
 
 impl std::fmt::Debug for WriteOptions<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("WriteOptions").field("cells", &self.cells).finish_non_exhaustive()
+        f.debug_struct("WriteOptions")
+            .field("cells", &self.cells)
+            .finish_non_exhaustive()
     }
 }
 
@@ -65,7 +70,14 @@ pub fn write<'a>(
     options: WriteOptions<'_>,
 ) -> Result<RasterSummary> {
     let target = target.into();
-    let write = || write_levels(&target, source, options, offsets_for(source.frame(), options.cells)?);
+    let write = || {
+        write_levels(
+            &target,
+            source,
+            options,
+            offsets_for(source.frame(), options.cells)?,
+        )
+    };
     let path = target.path().to_path_buf();
     let (summary, output) = write().map_err(|e| e.in_file(&path))?;
     // Overviews and statistics of a previous raster would be attributed to this one.
@@ -92,17 +104,34 @@ pub fn cells_written(frame: Frame) -> u64 {
 
 /// Returns the frame of a raster, and frames with the sizes of its overviews.
 fn levels(frame: Frame) -> impl Iterator<Item = Frame> {
-    std::iter::successors(Some(frame), |&Frame { width, height, transform }| {
-        let is_large = width.max(height) > LARGEST_WITHOUT;
-        is_large.then(|| Frame { width: width.div_ceil(2), height: height.div_ceil(2), transform })
-    })
+    std::iter::successors(
+        Some(frame),
+        |&Frame {
+             width,
+             height,
+             transform,
+         }| {
+            let is_large = width.max(height) > LARGEST_WITHOUT;
+            is_large.then(|| Frame {
+                width: width.div_ceil(2),
+                height: height.div_ceil(2),
+                transform,
+            })
+        },
+    )
 }
 
 /// Returns 32-bit offsets if they are certain to suffice for a raster and its overviews.
 fn offsets_for(frame: Frame, cells: CellFormat) -> Result<Offsets> {
-    let most: u64 = levels(frame).map(|frame| Ok(Tiling::new(frame)?.most_bytes(cells))).sum::<Result<_>>()?;
+    let most: u64 = levels(frame)
+        .map(|frame| Ok(Tiling::new(frame)?.most_bytes(cells)))
+        .sum::<Result<_>>()?;
     // If the tiles do not exceed 4 GiB, 2 MB is ample for the header.
-    Ok(if most + (1 << 21) < 1 << 32 { Offsets::Bits32 } else { Offsets::Bits64 })
+    Ok(if most + (1 << 21) < 1 << 32 {
+        Offsets::Bits32
+    } else {
+        Offsets::Bits64
+    })
 }
 
 /// Packs the raster and its overviews, and joins them: headers first, then the tiles of the
@@ -125,14 +154,24 @@ fn write_levels(
         let mut at = first + images.iter().map(Image::byte_count).sum::<u64>();
         let tags_of = |(level, image): (usize, &Image)| {
             at -= image.byte_count();
-            if level == 0 { image.tags(source, cells, at) } else { image.overview_tags(source, cells, at) }
+            if level == 0 {
+                image.tags(source, cells, at)
+            } else {
+                image.overview_tags(source, cells, at)
+            }
         };
-        directory::header(offsets, &images.iter().enumerate().map(tags_of).collect::<Vec<_>>())
+        directory::header(
+            offsets,
+            &images.iter().enumerate().map(tags_of).collect::<Vec<_>>(),
+        )
     };
     let head = header(header(0).len() as u64);
     output.write_all(&head)?;
     let mut summary = images[0].summary;
-    images.iter_mut().rev().try_for_each(|image| image.copy_to(&mut output, watch))?;
+    images
+        .iter_mut()
+        .rev()
+        .try_for_each(|image| image.copy_to(&mut output, watch))?;
     if summary.valid == 0 {
         (summary.min, summary.max) = (f64::NAN, f64::NAN);
     }
@@ -158,10 +197,17 @@ mod tests {
 
         fn fill(&self, window: Window, out: &mut [f32]) -> Result<()> {
             for (i, cell) in out.iter_mut().enumerate() {
-                let (column, row) = (window.column + i % window.width, window.row + i / window.width);
+                let (column, row) = (
+                    window.column + i % window.width,
+                    window.row + i / window.width,
+                );
                 // Every seventh cell, and all of the second column of tiles, have no value.
                 let is_hole = (column + row) % 7 == 0 || (SIDE..2 * SIDE).contains(&column);
-                *cell = if is_hole { f32::NAN } else { column as f32 * 0.25 - row as f32 };
+                *cell = if is_hole {
+                    f32::NAN
+                } else {
+                    column as f32 * 0.25 - row as f32
+                };
             }
             Ok(())
         }
@@ -184,11 +230,21 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let target = folder.path().join("slope.tif");
         let frame = Frame::north_up(1000.0, 2000.0, 0.5, 1200, 700);
-        let written = write_levels(&(&target).into(), &Slope(frame), WriteOptions::default(), offsets).unwrap();
+        let written = write_levels(
+            &(&target).into(),
+            &Slope(frame),
+            WriteOptions::default(),
+            offsets,
+        )
+        .unwrap();
         written.1.commit().unwrap();
         let reader = crate::io::codec::geotiff::open(&target).unwrap();
         assert_eq!(reader.info().overviews, [[600, 350], [300, 175]]);
-        (reader.read_grid().unwrap(), reader.info().is_big_tiff, overviews(&target, 2))
+        (
+            reader.read_grid().unwrap(),
+            reader.info().is_big_tiff,
+            overviews(&target, 2),
+        )
     }
 
     #[test]
@@ -198,17 +254,27 @@ mod tests {
         let (big, is_big, big_overviews) = written(Offsets::Bits64);
         assert!(is_big);
         assert_eq!(small.frame, big.frame);
-        assert!(small.values.iter().map(|v| v.to_bits()).eq(big.values.iter().map(|v| v.to_bits())));
+        assert!(
+            small
+                .values
+                .iter()
+                .map(|v| v.to_bits())
+                .eq(big.values.iter().map(|v| v.to_bits()))
+        );
         assert_eq!(small_overviews, big_overviews);
         // Columns 2 and 3 of rows 0 and 1, all of which have a value; the hole is a hole.
-        assert_eq!((small_overviews[0][1], small_overviews[0][130]), (0.125, -9999.0));
+        assert_eq!(
+            (small_overviews[0][1], small_overviews[0][130]),
+            (0.125, -9999.0)
+        );
         assert_eq!(small.value(1, 0), 0.25);
         assert!(small.value(300, 5).is_nan() && small.value(7, 0).is_nan());
     }
 
     #[test]
     fn offsets_are_wide_when_the_file_may_pass_four_gibibytes() {
-        let offsets = |side, cells| offsets_for(Frame::north_up(0.0, 0.0, 1.0, side, side), cells).unwrap();
+        let offsets =
+            |side, cells| offsets_for(Frame::north_up(0.0, 0.0, 1.0, side, side), cells).unwrap();
         assert_eq!(offsets(28_000, CellFormat::Heights), Offsets::Bits32);
         assert_eq!(offsets(29_000, CellFormat::Heights), Offsets::Bits64);
         assert_eq!(offsets(55_000, CellFormat::Shades), Offsets::Bits32);
@@ -219,11 +285,15 @@ mod tests {
     fn overviews_halve_down_to_512() {
         let sizes = |width, height| -> Vec<[usize; 2]> {
             let all = levels(Frame::north_up(0.0, 0.0, 1.0, width, height));
-            all.map(|Frame { width, height, .. }| [width, height]).collect()
+            all.map(|Frame { width, height, .. }| [width, height])
+                .collect()
         };
         assert_eq!(sizes(512, 1), [[512, 1]]);
         assert_eq!(sizes(513, 2), [[513, 2], [257, 1]]);
         assert_eq!(sizes(1, 2500), [[1, 2500], [1, 1250], [1, 625], [1, 313]]);
-        assert_eq!(cells_written(Frame::north_up(0.0, 0.0, 1.0, 600, 300)), 600 * 300 + 300 * 150);
+        assert_eq!(
+            cells_written(Frame::north_up(0.0, 0.0, 1.0, 600, 300)),
+            600 * 300 + 300 * 150
+        );
     }
 }

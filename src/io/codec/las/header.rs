@@ -11,7 +11,8 @@ pub(super) const RECORD_LENGTHS: [u16; 11] = [20, 28, 26, 34, 57, 63, 30, 36, 38
 const COMPRESSED: u8 = 0x80;
 const COMPRESSED_OLD: u8 = 0x40;
 
-const DAMAGED: &str = "the header was never finished, or it is damaged: get the file again from its producer";
+const DAMAGED: &str =
+    "the header was never finished, or it is damaged: get the file again from its producer";
 
 /// The bit of the global encoding for a coordinate system in WKT.
 const WKT_BIT: u16 = 1 << 4;
@@ -81,7 +82,11 @@ pub(super) struct FileLayout {
 impl Header {
     /// Checks the first bytes of a file of `file_length` bytes and returns the header. Oddities
     /// that do not prevent reading are added to `warnings`.
-    pub(super) fn check(bytes: &[u8], file_length: u64, warnings: &mut Vec<Wording>) -> Result<Self> {
+    pub(super) fn check(
+        bytes: &[u8],
+        file_length: u64,
+        warnings: &mut Vec<Wording>,
+    ) -> Result<Self> {
         check_signature(bytes)?;
         if bytes.len() < MIN_HEADER {
             return Err(Error::format(format!(
@@ -127,7 +132,9 @@ impl Header {
 
     /// Returns true if the file is a cloud optimized point cloud.
     pub fn is_copc(&self) -> bool {
-        self.records.iter().any(|record| record.user_id == "copc" && record.record_id == 1)
+        self.records
+            .iter()
+            .any(|record| record.user_id == "copc" && record.record_id == 1)
     }
 
     /// Returns a description such as "LAS 1.4, point format 6, LAZ".
@@ -138,13 +145,18 @@ impl Header {
             (true, true) => ", COPC",
         };
         let (major, minor) = self.version;
-        format!("LAS {major}.{minor}, point format {}{packing}", self.point_format)
+        format!(
+            "LAS {major}.{minor}, point format {}{packing}",
+            self.point_format
+        )
     }
 }
 
 fn check_signature(bytes: &[u8]) -> Result<()> {
     if bytes.is_empty() {
-        return Err(Error::format("the file is empty").at("byte 0").cure("copy or download it again"));
+        return Err(Error::format("the file is empty")
+            .at("byte 0")
+            .cure("copy or download it again"));
     }
     let found = &bytes[..bytes.len().min(4)];
     if found != b"LASF" {
@@ -161,9 +173,11 @@ fn check_signature(bytes: &[u8]) -> Result<()> {
 fn check_version(raw: &RawHeader, available: usize) -> Result<()> {
     let (major, minor) = raw.version;
     if major != 1 || minor > 5 {
-        return Err(Error::unsupported(format!("LAS version {major}.{minor}; supported are 1.0 to 1.5"))
-            .at("byte 24")
-            .cure("save it as LAS 1.4"));
+        return Err(Error::unsupported(format!(
+            "LAS version {major}.{minor}; supported are 1.0 to 1.5"
+        ))
+        .at("byte 24")
+        .cure("save it as LAS 1.4"));
     }
     let least = if minor >= 4 { MAX_HEADER } else { MIN_HEADER };
     if usize::from(raw.header_size) < least || available < least {
@@ -188,9 +202,11 @@ fn check_format(raw: &RawHeader) -> Result<u8> {
     }
     let format = raw.format & !COMPRESSED;
     let Some(&least) = RECORD_LENGTHS.get(usize::from(format)) else {
-        return Err(Error::unsupported(format!("point format {format}; supported are 0 to 10"))
-            .at("byte 104")
-            .cure("save it with one of them"));
+        return Err(
+            Error::unsupported(format!("point format {format}; supported are 0 to 10"))
+                .at("byte 104")
+                .cure("save it with one of them"),
+        );
     };
     if raw.record_length < least {
         return Err(Error::format(format!(
@@ -207,14 +223,18 @@ fn check_lattice(raw: &RawHeader) -> Result<()> {
     for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
         let (scale, offset) = (raw.scale[axis], raw.offset[axis]);
         if !scale.is_finite() || scale == 0.0 {
-            return Err(Error::format(format!("{name} scale is {scale}, expected a finite number other than 0"))
-                .at(format!("byte {}", 131 + 8 * axis))
-                .cure(DAMAGED));
+            return Err(Error::format(format!(
+                "{name} scale is {scale}, expected a finite number other than 0"
+            ))
+            .at(format!("byte {}", 131 + 8 * axis))
+            .cure(DAMAGED));
         }
         if !offset.is_finite() {
-            return Err(Error::format(format!("{name} offset is {offset}, expected a finite number"))
-                .at(format!("byte {}", 155 + 8 * axis))
-                .cure(DAMAGED));
+            return Err(Error::format(format!(
+                "{name} offset is {offset}, expected a finite number"
+            ))
+            .at(format!("byte {}", 155 + 8 * axis))
+            .cure(DAMAGED));
         }
         let farthest = scale.abs() * f64::from(1_u32 << 31) + offset.abs();
         if !farthest.is_finite() {
@@ -249,13 +269,24 @@ fn lay_out(raw: &RawHeader, file_length: u64) -> Result<FileLayout> {
         4.. => (raw.evlr_start, u64::from(raw.evlr_count)),
         _ => (0, 0),
     };
-    let waveform_start = if raw.version.1 >= 3 { raw.waveform_start } else { 0 };
+    let waveform_start = if raw.version.1 >= 3 {
+        raw.waveform_start
+    } else {
+        0
+    };
     let points_end = [(evlr_count > 0).then_some(evlr_start), Some(waveform_start)]
         .into_iter()
         .flatten()
         .filter(|&end| end > points_start)
         .fold(file_length, u64::min);
-    Ok(FileLayout { vlr_start, vlr_count: raw.vlr_count.into(), points_start, points_end, evlr_start, evlr_count })
+    Ok(FileLayout {
+        vlr_start,
+        vlr_count: raw.vlr_count.into(),
+        points_start,
+        points_end,
+        evlr_start,
+        evlr_count,
+    })
 }
 
 /// Returns the number of points. LAS 1.4 has two counts: one of 64 bits, and one of 32 bits for old
@@ -267,18 +298,29 @@ fn count_points(raw: &RawHeader, warnings: &mut Vec<Wording>) -> u64 {
     }
     if legacy > 0 && legacy != raw.count {
         warnings.push(
-            format!("the header states {} points, and {legacy} for old readers; the first is taken", raw.count).into(),
+            format!(
+                "the header states {} points, and {legacy} for old readers; the first is taken",
+                raw.count
+            )
+            .into(),
         );
     }
     raw.count
 }
 
 fn check_bounds(raw: &RawHeader, count: u64, warnings: &mut Vec<Wording>) -> Option<Bounds> {
-    let bounds = Bounds { min: raw.min, max: raw.max };
-    let is_box =
-        (0..3).all(|axis| raw.min[axis].is_finite() && raw.max[axis].is_finite() && raw.min[axis] <= raw.max[axis]);
+    let bounds = Bounds {
+        min: raw.min,
+        max: raw.max,
+    };
+    let is_box = (0..3).all(|axis| {
+        raw.min[axis].is_finite() && raw.max[axis].is_finite() && raw.min[axis] <= raw.max[axis]
+    });
     if !is_box && count > 0 {
-        warnings.push("the extent in the header is not a box (a minimum exceeds its maximum) and is ignored".into());
+        warnings.push(
+            "the extent in the header is not a box (a minimum exceeds its maximum) and is ignored"
+                .into(),
+        );
     }
     is_box.then_some(bounds)
 }

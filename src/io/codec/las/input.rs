@@ -27,7 +27,11 @@ impl Input {
         let file = File::open(path).map_err(named)?;
         let about = file.metadata().map_err(named)?;
         if about.is_file() {
-            return Ok(Input { file, length: about.len(), name: path.to_path_buf() });
+            return Ok(Input {
+                file,
+                length: about.len(),
+                name: path.to_path_buf(),
+            });
         }
         Self::spool(file, path)
     }
@@ -37,7 +41,11 @@ impl Input {
         let named = |error: io::Error| Error::from(error).in_file(name);
         let mut file = tempfile::tempfile().map_err(named)?;
         let length = io::copy(&mut source, &mut file).map_err(named)?;
-        Ok(Input { file, length, name: name.to_path_buf() })
+        Ok(Input {
+            file,
+            length,
+            name: name.to_path_buf(),
+        })
     }
 
     /// Reads up to `count` bytes from `start` on; fewer at the end of the file.

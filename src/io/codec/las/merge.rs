@@ -10,7 +10,10 @@ const SOFTWARE: &str = concat!("breakline ", env!("CARGO_PKG_VERSION"));
 
 /// Returns the bytes of a record of a point format, without extra bytes.
 pub(super) fn usual_length(point_format: u8) -> u16 {
-    RECORD_LENGTHS.get(usize::from(point_format)).copied().unwrap_or(0)
+    RECORD_LENGTHS
+        .get(usize::from(point_format))
+        .copied()
+        .unwrap_or(0)
 }
 
 /// What to do with coordinates that are not on the lattice of the output.
@@ -27,7 +30,10 @@ pub enum Rounding {
 /// Returns a field of characters, padded with zeros.
 pub(super) fn padded<const N: usize>(text: &str) -> [u8; N] {
     let mut field = [0; N];
-    field.iter_mut().zip(text.bytes()).for_each(|(slot, byte)| *slot = byte);
+    field
+        .iter_mut()
+        .zip(text.bytes())
+        .for_each(|(slot, byte)| *slot = byte);
     field
 }
 
@@ -46,7 +52,11 @@ impl LatticeStep {
     /// # Errors
     /// If the points do not lie on a lattice, or on one that is not part of the other and rounding
     /// is refused.
-    pub(super) fn between(from: Option<Lattice>, into: &Lattice, rounding: Rounding) -> Result<Self> {
+    pub(super) fn between(
+        from: Option<Lattice>,
+        into: &Lattice,
+        rounding: Rounding,
+    ) -> Result<Self> {
         let from = from.ok_or_else(not_las)?;
         if from == *into {
             return Ok(LatticeStep::Same);
@@ -65,7 +75,9 @@ impl LatticeStep {
     pub(super) fn apply(&self, steps: [i32; 3], into: &Lattice) -> Result<[i32; 3]> {
         match self {
             LatticeStep::Same => Ok(steps),
-            LatticeStep::Exact(embedding) => embedding.steps(steps).ok_or_else(|| far(steps.map(f64::from))),
+            LatticeStep::Exact(embedding) => embedding
+                .steps(steps)
+                .ok_or_else(|| far(steps.map(f64::from))),
             LatticeStep::Rounded(from) => {
                 let point = from.point(steps);
                 into.nearest(point).ok_or_else(|| far(point))
@@ -79,9 +91,13 @@ impl LatticeStep {
 /// # Errors
 /// If a source has no head, has waveforms, or is incompatible with the first.
 pub(super) fn heads(sources: &[&PointInfo], rounding: Rounding) -> Result<(LasHead, Lattice)> {
-    let all = sources.iter().map(|info| info.head.as_ref().zip(info.lattice).ok_or_else(not_las));
+    let all = sources
+        .iter()
+        .map(|info| info.head.as_ref().zip(info.lattice).ok_or_else(not_las));
     let all: Vec<(&LasHead, Lattice)> = all.collect::<Result<_>>()?;
-    let [(first, _), others @ ..] = all.as_slice() else { return Err(Error::usage("no source of points")) };
+    let [(first, _), others @ ..] = all.as_slice() else {
+        return Err(Error::usage("no source of points"));
+    };
     for (head, _) in &all {
         check(head)?;
     }
@@ -97,7 +113,11 @@ pub(super) fn heads(sources: &[&PointInfo], rounding: Rounding) -> Result<(LasHe
     header[6] &= !0b110;
     let heads = || others.iter().map(|(head, _)| *head);
     let date = |head: &LasHead| (u16_at(&head.header, 92), u16_at(&head.header, 90));
-    let latest = heads().map(date).chain([date(first)]).max().unwrap_or_default();
+    let latest = heads()
+        .map(date)
+        .chain([date(first)])
+        .max()
+        .unwrap_or_default();
     header[90..92].copy_from_slice(&latest.1.to_le_bytes());
     header[92..94].copy_from_slice(&latest.0.to_le_bytes());
     for (start, end) in [(4, 6), (8, 24)] {
@@ -145,11 +165,17 @@ fn check(head: &LasHead) -> Result<()> {
 /// Returns an error if the points of two files cannot share a file.
 fn agree(first: &LasHead, other: &LasHead) -> Result<()> {
     let differ = |what: &str, one: String, two: String| {
-        Err(Error::usage(format!("the points of the inputs have different {what}: {one} and {two}"))
-            .cure("write the files one by one, or convert them first: no lossy conversion is made"))
+        Err(Error::usage(format!(
+            "the points of the inputs have different {what}: {one} and {two}"
+        ))
+        .cure("write the files one by one, or convert them first: no lossy conversion is made"))
     };
     if first.point_format != other.point_format {
-        return differ("point formats", first.point_format.to_string(), other.point_format.to_string());
+        return differ(
+            "point formats",
+            first.point_format.to_string(),
+            other.point_format.to_string(),
+        );
     }
     if first.record_length != other.record_length {
         let [one, two] = [first, other].map(|head| format!("{} bytes", head.record_length));
@@ -157,16 +183,34 @@ fn agree(first: &LasHead, other: &LasHead) -> Result<()> {
     }
     let extra = |head: &LasHead| {
         let is_it = |record: &&Vec<u8>| {
-            record.get(2..18).map(until_zero).as_deref() == Some("LASF_Spec") && u16_at(record, 18) == 4
+            record.get(2..18).map(until_zero).as_deref() == Some("LASF_Spec")
+                && u16_at(record, 18) == 4
         };
-        head.records.iter().find(is_it).map(|record| record.get(54..).unwrap_or_default().to_vec())
+        head.records
+            .iter()
+            .find(is_it)
+            .map(|record| record.get(54..).unwrap_or_default().to_vec())
     };
     if extra(first) != extra(other) {
-        return differ("extra bytes", "one description".to_owned(), "another".to_owned());
+        return differ(
+            "extra bytes",
+            "one description".to_owned(),
+            "another".to_owned(),
+        );
     }
-    let time = |head: &LasHead| if head.header[6] & 1 == 0 { "of the week" } else { "adjusted standard" };
+    let time = |head: &LasHead| {
+        if head.header[6] & 1 == 0 {
+            "of the week"
+        } else {
+            "adjusted standard"
+        }
+    };
     if time(first) != time(other) {
-        return differ("kinds of GPS time", time(first).to_owned(), time(other).to_owned());
+        return differ(
+            "kinds of GPS time",
+            time(first).to_owned(),
+            time(other).to_owned(),
+        );
     }
     Ok(())
 }
@@ -174,13 +218,22 @@ fn agree(first: &LasHead, other: &LasHead) -> Result<()> {
 /// Returns the first lattice that contains the points of all sources. If there is none and rounding
 /// is allowed, returns the lattice of the first source.
 fn lattice(all: &[(&LasHead, Lattice)], rounding: Rounding) -> Result<Lattice> {
-    let has_all = |into: &Lattice| all.iter().all(|(_, from)| from == into || from.embed(into).is_some());
+    let has_all = |into: &Lattice| {
+        all.iter()
+            .all(|(_, from)| from == into || from.embed(into).is_some())
+    };
     let first = all[0].1;
-    match (all.iter().map(|(_, lattice)| *lattice).find(has_all), rounding) {
+    match (
+        all.iter().map(|(_, lattice)| *lattice).find(has_all),
+        rounding,
+    ) {
         (Some(lattice), _) => Ok(lattice),
         (None, Rounding::Nearest) => Ok(first),
         (None, Rounding::Refuse) => {
-            let other = all.iter().map(|(_, lattice)| *lattice).find(|other| other.embed(&first).is_none());
+            let other = all
+                .iter()
+                .map(|(_, lattice)| *lattice)
+                .find(|other| other.embed(&first).is_none());
             Err(apart(&other.unwrap_or(first), &first))
         }
     }
@@ -189,8 +242,10 @@ fn lattice(all: &[(&LasHead, Lattice)], rounding: Rounding) -> Result<Lattice> {
 /// Returns the error for a point that a lattice does not reach.
 #[cold]
 pub(super) fn far([x, y, z]: [f64; 3]) -> Error {
-    Error::limit(format!("the point at {x} {y} {z} cannot be stored with the scale and offset of the output"))
-        .cure("write the files one by one")
+    Error::limit(format!(
+        "the point at {x} {y} {z} cannot be stored with the scale and offset of the output"
+    ))
+    .cure("write the files one by one")
 }
 
 #[cold]
@@ -202,13 +257,17 @@ fn not_las() -> Error {
 #[cold]
 fn versions(first: &LasHead, newest: &LasHead) -> Error {
     let [first, newest] = [first, newest].map(|head| head.header[25]);
-    Error::usage(format!("the first input is LAS 1.{first}, another one is LAS 1.{newest}"))
-        .cure("name a file of the newest version first: the output has its header")
+    Error::usage(format!(
+        "the first input is LAS 1.{first}, another one is LAS 1.{newest}"
+    ))
+    .cure("name a file of the newest version first: the output has its header")
 }
 
 #[cold]
 fn apart(from: &Lattice, into: &Lattice) -> Error {
-    let step = (0..3).map(|k| into.scale[k].abs() / 2.0).fold(0.0, f64::max);
+    let step = (0..3)
+        .map(|k| into.scale[k].abs() / 2.0)
+        .fold(0.0, f64::max);
     Error::usage(format!(
         "coordinates in steps of {:?} from {:?} are not all steps of {:?} from {:?}",
         from.scale, from.offset, into.scale, into.offset

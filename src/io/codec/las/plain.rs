@@ -52,7 +52,11 @@ impl Plain {
                 "the header states {} points, but the file holds {room}{torn}: it was cut, or its header is wrong",
                 header.count
             );
-            cut.refuse_or_warn(text, &format!("byte {}", header.layout.points_end), warnings)?;
+            cut.refuse_or_warn(
+                text,
+                &format!("byte {}", header.layout.points_end),
+                warnings,
+            )?;
         } else if header.count == 0 && room > 0 {
             warnings.push(
                 format!(
@@ -73,7 +77,15 @@ impl Plain {
         }
         input.file.seek(SeekFrom::Start(start))?;
         let most = (BATCH_BYTES / layout.stride).clamp(1, BATCH_POINTS) as u64;
-        Ok(Plain { input, layout, left: room.min(header.count), passed_over: 0, most, cut, buffer: Vec::new() })
+        Ok(Plain {
+            input,
+            layout,
+            left: room.min(header.count),
+            passed_over: 0,
+            most,
+            cut,
+            buffer: Vec::new(),
+        })
     }
 
     pub(super) fn thin(&mut self, spacing: u64) -> bool {
@@ -82,22 +94,32 @@ impl Plain {
         true
     }
 
-    pub(super) fn read(&mut self, batch: &mut PointBatch, warnings: &mut Vec<Wording>) -> Result<()> {
+    pub(super) fn read(
+        &mut self,
+        batch: &mut PointBatch,
+        warnings: &mut Vec<Wording>,
+    ) -> Result<()> {
         let stride = self.layout.stride;
         let count = self.left.min(self.most) as usize;
         self.buffer.clear();
-        (&self.input.file).take((count * stride) as u64).read_to_end(&mut self.buffer)?;
+        (&self.input.file)
+            .take((count * stride) as u64)
+            .read_to_end(&mut self.buffer)?;
         let whole = self.buffer.len() / stride;
         self.layout.append(&self.buffer[..whole * stride], batch);
         self.left -= whole as u64;
         if whole < count {
             let missing = std::mem::take(&mut self.left);
-            let text = format!("the file became shorter while it was read: {missing} points are missing");
-            self.cut.refuse_or_warn(text, &format!("byte {}", self.input.length), warnings)?;
+            let text =
+                format!("the file became shorter while it was read: {missing} points are missing");
+            self.cut
+                .refuse_or_warn(text, &format!("byte {}", self.input.length), warnings)?;
         }
         let passed_over = self.left.min(self.passed_over);
         if passed_over > 0 {
-            self.input.file.seek_relative((passed_over * stride as u64) as i64)?;
+            self.input
+                .file
+                .seek_relative((passed_over * stride as u64) as i64)?;
             self.left -= passed_over;
         }
         Ok(())

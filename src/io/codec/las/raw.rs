@@ -103,7 +103,11 @@ impl RawRecordHeader {
 }
 
 fn at<const N: usize>(bytes: &[u8], start: usize) -> [u8; N] {
-    bytes.get(start..).and_then(|rest| rest.first_chunk()).copied().unwrap_or([0; N])
+    bytes
+        .get(start..)
+        .and_then(|rest| rest.first_chunk())
+        .copied()
+        .unwrap_or([0; N])
 }
 
 fn u8_at(bytes: &[u8], start: usize) -> u8 {
@@ -134,6 +138,9 @@ fn text_at(bytes: &[u8], start: usize, length: usize) -> String {
 
 /// Returns the characters before the first zero byte.
 pub(super) fn until_zero(bytes: &[u8]) -> std::borrow::Cow<'_, str> {
-    let end = bytes.iter().position(|&byte| byte == 0).unwrap_or(bytes.len());
+    let end = bytes
+        .iter()
+        .position(|&byte| byte == 0)
+        .unwrap_or(bytes.len());
     String::from_utf8_lossy(&bytes[..end])
 }

@@ -49,7 +49,13 @@ impl LasReader {
         let points = match header.is_compressed {
             false => Points::Plain(Plain::new(input, &header, options, &mut warnings)?),
             true => {
-                let laz = Laz::new(input, &header, payloads.laszip.as_deref(), options, &mut warnings)?;
+                let laz = Laz::new(
+                    input,
+                    &header,
+                    payloads.laszip.as_deref(),
+                    options,
+                    &mut warnings,
+                )?;
                 Points::Compressed(Box::new(laz))
             }
         };
@@ -61,11 +67,20 @@ impl LasReader {
             crs,
             unread_crs,
             has_classes: true,
-            lattice: Some(Lattice { scale: header.scale, offset: header.offset }),
+            lattice: Some(Lattice {
+                scale: header.scale,
+                offset: header.offset,
+            }),
             head,
             warnings,
         };
-        Ok(LasReader { name, header, info, points, warnings: Vec::new() })
+        Ok(LasReader {
+            name,
+            header,
+            info,
+            points,
+            warnings: Vec::new(),
+        })
     }
 
     /// Returns the header of the file.
@@ -139,7 +154,8 @@ pub fn stated(path: impl AsRef<Path>) -> Result<PointInfo> {
         let bytes = input.bytes(0, MAX_HEADER)?;
         let mut header = Header::check(&bytes, input.length, &mut warnings)?;
         let payloads = records::read(&input, &mut header, &mut warnings).ok();
-        let system = payloads.map(|payloads| reference::choose(&payloads, header.says_wkt, &mut warnings));
+        let system =
+            payloads.map(|payloads| reference::choose(&payloads, header.says_wkt, &mut warnings));
         let (crs, unread_crs) = system.unwrap_or_default();
         Ok(PointInfo {
             format: header.format(),

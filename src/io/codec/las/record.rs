@@ -33,7 +33,11 @@ impl RecordLayout {
         RecordLayout {
             stride: header.record_length.into(),
             detail,
-            kind: if header.point_format < 6 { RecordKind::Legacy } else { RecordKind::Extended },
+            kind: if header.point_format < 6 {
+                RecordKind::Legacy
+            } else {
+                RecordKind::Extended
+            },
             scale: header.scale,
             offset: header.offset,
         }
@@ -53,22 +57,33 @@ impl RecordLayout {
         let records = || records.chunks_exact(self.stride);
         let axis = |i: usize| {
             let (scale, offset) = (self.scale[i], self.offset[i]);
-            records().map(move |record| f64::from(u32_at(record, 4 * i).cast_signed()) * scale + offset)
+            records()
+                .map(move |record| f64::from(u32_at(record, 4 * i).cast_signed()) * scale + offset)
         };
         batch.x.extend(axis(0));
         batch.y.extend(axis(1));
         batch.z.extend(axis(2));
         match self.kind {
             RecordKind::Legacy => {
-                batch.class.extend(records().map(|record| record[15] & 0x1f));
+                batch
+                    .class
+                    .extend(records().map(|record| record[15] & 0x1f));
                 // Synthetic, key point, withheld: the order of PointFlags.
-                batch.flags.extend(records().map(|record| PointFlags(record[15] >> 5)));
-                batch.return_number.extend(records().map(|record| record[14] & 0x07));
+                batch
+                    .flags
+                    .extend(records().map(|record| PointFlags(record[15] >> 5)));
+                batch
+                    .return_number
+                    .extend(records().map(|record| record[14] & 0x07));
             }
             RecordKind::Extended => {
                 batch.class.extend(records().map(|record| record[16]));
-                batch.flags.extend(records().map(|record| PointFlags(record[15] & 0x0f)));
-                batch.return_number.extend(records().map(|record| record[14] & 0x0f));
+                batch
+                    .flags
+                    .extend(records().map(|record| PointFlags(record[15] & 0x0f)));
+                batch
+                    .return_number
+                    .extend(records().map(|record| record[14] & 0x0f));
             }
         }
     }
@@ -106,7 +121,10 @@ mod tests {
 
     #[test]
     fn coordinates_are_put_into_records() {
-        let lattice = Lattice { scale: [0.01, 0.01, 0.5], offset: [100.0, -200.0, 0.0] };
+        let lattice = Lattice {
+            scale: [0.01, 0.01, 0.5],
+            offset: [100.0, -200.0, 0.0],
+        };
         let mut batch = PointBatch {
             x: vec![101.004, 99.0],
             y: vec![-200.0, -199.996],
@@ -117,11 +135,27 @@ mod tests {
         put_coordinates(&mut batch, &lattice).unwrap();
         let steps = |at: usize| u32_at(&batch.records, at).cast_signed();
         assert_eq!([0, 4, 8, 14, 18, 22].map(steps), [100, 0, 2, -100, 0, -14]);
-        assert_eq!((&batch.records[12..14], &batch.records[26..]), (&[9, 9][..], &[8, 8][..]));
-        assert_eq!((batch.x, batch.y, batch.z), (vec![101.0, 99.0], vec![-200.0; 2], vec![1.0, -7.0]));
+        assert_eq!(
+            (&batch.records[12..14], &batch.records[26..]),
+            (&[9, 9][..], &[8, 8][..])
+        );
+        assert_eq!(
+            (batch.x, batch.y, batch.z),
+            (vec![101.0, 99.0], vec![-200.0; 2], vec![1.0, -7.0])
+        );
 
-        for (x, records) in [(1e9, vec![0; 14]), (f64::NAN, vec![0; 14]), (1.0, Vec::new())] {
-            let mut batch = PointBatch { x: vec![x], y: vec![0.0], z: vec![0.0], records, ..PointBatch::default() };
+        for (x, records) in [
+            (1e9, vec![0; 14]),
+            (f64::NAN, vec![0; 14]),
+            (1.0, Vec::new()),
+        ] {
+            let mut batch = PointBatch {
+                x: vec![x],
+                y: vec![0.0],
+                z: vec![0.0],
+                records,
+                ..PointBatch::default()
+            };
             assert!(put_coordinates(&mut batch, &lattice).is_err(), "{x}");
         }
         put_coordinates(&mut PointBatch::default(), &lattice).unwrap();

@@ -43,18 +43,38 @@ impl Payloads {
 }
 
 /// Reads both kinds of records, as far as they exist: the counts in the header are not trusted.
-pub(super) fn read(input: &Input, header: &mut Header, warnings: &mut Vec<Wording>) -> Result<Payloads> {
-    let FileLayout { vlr_start, vlr_count, points_start, evlr_start, evlr_count, .. } = header.layout;
+pub(super) fn read(
+    input: &Input,
+    header: &mut Header,
+    warnings: &mut Vec<Wording>,
+) -> Result<Payloads> {
+    let FileLayout {
+        vlr_start,
+        vlr_count,
+        points_start,
+        evlr_start,
+        evlr_count,
+        ..
+    } = header.layout;
     let mut payloads = Payloads::default();
-    let short = Records { name: "variable length", start: vlr_start, end: points_start, count: vlr_count };
+    let short = Records {
+        name: "variable length",
+        start: vlr_start,
+        end: points_start,
+        count: vlr_count,
+    };
     short.read(input, header, &mut payloads, warnings, |source| {
         let mut bytes = [0; VLR_HEADER];
         source.read_exact(&mut bytes)?;
         Ok((RawRecordHeader::parse(&bytes), VLR_HEADER))
     })?;
     if evlr_count > 0 {
-        let long =
-            Records { name: "extended variable length", start: evlr_start, end: input.length, count: evlr_count };
+        let long = Records {
+            name: "extended variable length",
+            start: evlr_start,
+            end: input.length,
+            count: evlr_count,
+        };
         long.read(input, header, &mut payloads, warnings, |source| {
             let mut bytes = [0; EVLR_HEADER];
             source.read_exact(&mut bytes)?;
@@ -81,13 +101,20 @@ impl Records {
         warnings: &mut Vec<Wording>,
         next: impl Fn(&mut BufReader<&'a std::fs::File>) -> std::io::Result<(RawRecordHeader, usize)>,
     ) -> Result<()> {
-        let Records { name, start, end, count } = *self;
+        let Records {
+            name,
+            start,
+            end,
+            count,
+        } = *self;
         let mut source = BufReader::new(&input.file);
         source.seek(SeekFrom::Start(start))?;
         let mut position = start;
         let mut found = 0;
         while found < count.min(MAX_RECORDS) {
-            let Ok((record, size)) = next(&mut source) else { break };
+            let Ok((record, size)) = next(&mut source) else {
+                break;
+            };
             let payload = position.saturating_add(size as u64);
             if payload > end {
                 break;
@@ -106,7 +133,9 @@ impl Records {
                 );
                 return Ok(());
             }
-            let wanted = payloads.slot(&record).filter(|_| record.length <= MAX_PAYLOAD_BYTES);
+            let wanted = payloads
+                .slot(&record)
+                .filter(|_| record.length <= MAX_PAYLOAD_BYTES);
             if let Some(slot) = wanted {
                 let mut bytes = vec![0; record.length as usize];
                 source.read_exact(&mut bytes)?;
@@ -117,11 +146,23 @@ impl Records {
             }
             position = payload + record.length;
             found += 1;
-            let RawRecordHeader { user_id, record_id, length, description } = record;
-            header.records.push(RecordInfo { user_id, record_id, length, description });
+            let RawRecordHeader {
+                user_id,
+                record_id,
+                length,
+                description,
+            } = record;
+            header.records.push(RecordInfo {
+                user_id,
+                record_id,
+                length,
+                description,
+            });
         }
         if found < count {
-            warnings.push(format!("the header states {count} {name} records; {found} were found").into());
+            warnings.push(
+                format!("the header states {count} {name} records; {found} were found").into(),
+            );
         }
         Ok(())
     }

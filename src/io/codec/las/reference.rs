@@ -20,8 +20,14 @@ pub(super) fn choose(
     says_wkt: bool,
     warnings: &mut Vec<Wording>,
 ) -> (Option<Crs>, Option<String>) {
-    let wkt = payloads.wkt.as_deref().and_then(|bytes| from_wkt(bytes, warnings));
-    let keys = payloads.geo_directory.as_deref().and_then(|directory| from_keys(directory, payloads, warnings));
+    let wkt = payloads
+        .wkt
+        .as_deref()
+        .and_then(|bytes| from_wkt(bytes, warnings));
+    let keys = payloads
+        .geo_directory
+        .as_deref()
+        .and_then(|directory| from_keys(directory, payloads, warnings));
     let (wkt, keys) = match (wkt, keys) {
         (Some(Ok(wkt)), Some(Ok(keys))) => (wkt, keys),
         (Some(Ok(crs)), _) | (_, Some(Ok(crs))) => return (Some(crs), None),
@@ -29,8 +35,16 @@ pub(super) fn choose(
     };
     let (wkt, keys) = (&wkt, &keys);
     let (taken, other, reason) = match says_wkt {
-        true => ((wkt, "WKT"), (keys, "GeoTIFF keys"), "the header's WKT bit is set"),
-        false => ((keys, "GeoTIFF keys"), (wkt, "WKT"), "the header's WKT bit is not set"),
+        true => (
+            (wkt, "WKT"),
+            (keys, "GeoTIFF keys"),
+            "the header's WKT bit is set",
+        ),
+        false => (
+            (keys, "GeoTIFF keys"),
+            (wkt, "WKT"),
+            "the header's WKT bit is not set",
+        ),
     };
     if !wkt.is_same(keys) {
         warnings.push(
@@ -54,7 +68,10 @@ fn from_wkt(bytes: &[u8], warnings: &mut Vec<Wording>) -> Option<Stated> {
     match Crs::from_wkt(text) {
         Ok(crs) => Some(Ok(crs)),
         Err(error) => {
-            warnings.push(format!("the coordinate system in WKT is not understood and is ignored: {error}").into());
+            warnings.push(
+                format!("the coordinate system in WKT is not understood and is ignored: {error}")
+                    .into(),
+            );
             Some(Err(text.to_owned()))
         }
     }
@@ -65,9 +82,21 @@ fn from_keys(directory: &[u8], payloads: &Payloads, warnings: &mut Vec<Wording>)
     let ascii = payloads.geo_ascii.as_deref().unwrap_or_default();
     let keys = GeoKeys {
         directory: words(directory),
-        doubles: doubles.chunks_exact(8).map(|bytes| f64_at(bytes, 0)).collect(),
+        doubles: doubles
+            .chunks_exact(8)
+            .map(|bytes| f64_at(bytes, 0))
+            .collect(),
         // Keys refer to positions in bytes, so every byte becomes one character.
-        ascii: ascii.iter().map(|&byte| if byte.is_ascii() { char::from(byte) } else { '?' }).collect(),
+        ascii: ascii
+            .iter()
+            .map(|&byte| {
+                if byte.is_ascii() {
+                    char::from(byte)
+                } else {
+                    '?'
+                }
+            })
+            .collect(),
     };
     match keys.crs() {
         Ok(crs) => crs.map(Ok),

@@ -21,43 +21,77 @@ const WKT_BIT: u8 = 1 << 4;
 /// If the system needs WKT, and the version of LAS is below 1.4.
 pub fn state_system(head: &mut LasHead, crs: &Crs) -> Result<()> {
     let is_system = |record: &Vec<u8>| {
-        record.get(2..18).map(until_zero).as_deref() == Some(USER) && RECORDS.contains(&u16_at(record, 18))
+        record.get(2..18).map(until_zero).as_deref() == Some(USER)
+            && RECORDS.contains(&u16_at(record, 18))
     };
     head.records.retain(|record| !is_system(record));
     head.late_records.retain(|record| !is_system(record));
-    let keys = (head.point_format < 6).then(|| GeoKeys::from_crs(crs)).filter(|keys| states(keys, crs));
+    let keys = (head.point_format < 6)
+        .then(|| GeoKeys::from_crs(crs))
+        .filter(|keys| states(keys, crs));
     let version = head.header.get(25).copied().unwrap_or_default();
     let payloads = match &keys {
         Some(keys) => of_keys(keys),
-        None if version >= 4 => vec![(2112, "OGC coordinate system WKT", [crs.to_wkt().as_bytes(), &[0]].concat())],
+        None if version >= 4 => vec![(
+            2112,
+            "OGC coordinate system WKT",
+            [crs.to_wkt().as_bytes(), &[0]].concat(),
+        )],
         None => {
-            return Err(Error::unsupported(format!("{crs} cannot be stated in LAS 1.{version}, which has no WKT"))
-                .cure("convert the file to LAS 1.4 first, or write text"));
+            return Err(Error::unsupported(format!(
+                "{crs} cannot be stated in LAS 1.{version}, which has no WKT"
+            ))
+            .cure("convert the file to LAS 1.4 first, or write text"));
         }
     };
     if let Some(encoding) = head.header.get_mut(6) {
-        *encoding = if keys.is_some() { *encoding & !WKT_BIT } else { *encoding | WKT_BIT };
+        *encoding = if keys.is_some() {
+            *encoding & !WKT_BIT
+        } else {
+            *encoding | WKT_BIT
+        };
     }
     for (id, description, payload) in payloads {
-        let length = u16::try_from(payload.len())
-            .map_err(|_| Error::limit(format!("the definition of {crs} has more than {} bytes", u16::MAX)))?;
-        head.records.push([record_header(USER, id, length, description), payload].concat());
+        let length = u16::try_from(payload.len()).map_err(|_| {
+            Error::limit(format!(
+                "the definition of {crs} has more than {} bytes",
+                u16::MAX
+            ))
+        })?;
+        head.records
+            .push([record_header(USER, id, length, description), payload].concat());
     }
     Ok(())
 }
 
 /// Returns true if a reader of the keys gets this system.
 fn states(keys: &GeoKeys, crs: &Crs) -> bool {
-    keys.crs().is_ok_and(|read| read.is_some_and(|read| read.is_same(crs)))
+    keys.crs()
+        .is_ok_and(|read| read.is_some_and(|read| read.is_same(crs)))
 }
 
 /// Returns the records of keys: id, description, content.
 fn of_keys(keys: &GeoKeys) -> Vec<(u16, &'static str, Vec<u8>)> {
-    let directory = keys.directory.iter().flat_map(|word| word.to_le_bytes()).collect();
-    let doubles: Vec<u8> = keys.doubles.iter().flat_map(|number| number.to_le_bytes()).collect();
+    let directory = keys
+        .directory
+        .iter()
+        .flat_map(|word| word.to_le_bytes())
+        .collect();
+    let doubles: Vec<u8> = keys
+        .doubles
+        .iter()
+        .flat_map(|number| number.to_le_bytes())
+        .collect();
     let ascii = keys.ascii.as_bytes().to_vec();
-    let optional = [(34736, "GeoTiff GeoDoubleParamsTag", doubles), (34737, "GeoTiff GeoAsciiParamsTag", ascii)];
+    let optional = [
+        (34736, "GeoTiff GeoDoubleParamsTag", doubles),
+        (34737, "GeoTiff GeoAsciiParamsTag", ascii),
+    ];
     let mut records = vec![(34735, "GeoTiff GeoKeyDirectoryTag", directory)];
-    records.extend(optional.into_iter().filter(|(_, _, payload)| !payload.is_empty()));
+    records.extend(
+        optional
+            .into_iter()
+            .filter(|(_, _, payload)| !payload.is_empty()),
+    );
     records
 }

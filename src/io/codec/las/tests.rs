@@ -33,7 +33,11 @@ fn lattice(i: usize) -> [i32; 3] {
 
 /// Classes, flags and returns that take all values of the point format.
 fn attributes(i: usize, is_extended: bool) -> (u8, u8, u8) {
-    let (classes, flags, returns) = if is_extended { (256, 16, 15) } else { (32, 8, 5) };
+    let (classes, flags, returns) = if is_extended {
+        (256, 16, 15)
+    } else {
+        (32, 8, 5)
+    };
     let class = match i % classes {
         // The crate does not write the class for overlap.
         12 => 13,
@@ -55,14 +59,25 @@ struct Spec {
 impl Spec {
     fn new(version: (u8, u8), format: u8) -> Self {
         let (records, late_records) = Default::default();
-        Spec { version, format, extra_bytes: 0, is_compressed: false, points: 1000, records, late_records }
+        Spec {
+            version,
+            format,
+            extra_bytes: 0,
+            is_compressed: false,
+            points: 1000,
+            records,
+            late_records,
+        }
     }
 
     fn write(self) -> Vec<u8> {
         let mut format = Format::new(self.format).unwrap();
         format.is_compressed = self.is_compressed;
         format.extra_bytes = self.extra_bytes;
-        let [x, y, z] = [0, 1, 2].map(|i| Transform { scale: SCALE[i], offset: OFFSET[i] });
+        let [x, y, z] = [0, 1, 2].map(|i| Transform {
+            scale: SCALE[i],
+            offset: OFFSET[i],
+        });
         let mut builder = Builder::from(self.version);
         builder.version = Version::new(self.version.0, self.version.1);
         builder.point_format = format;
@@ -70,7 +85,8 @@ impl Spec {
         builder.generating_software = "tests".into();
         builder.vlrs.extend(self.records);
         builder.evlrs.extend(self.late_records);
-        let mut writer = Writer::new(Cursor::new(Vec::new()), builder.into_header().unwrap()).unwrap();
+        let mut writer =
+            Writer::new(Cursor::new(Vec::new()), builder.into_header().unwrap()).unwrap();
         for i in 0..self.points {
             let [x, y, z] = coordinates(i);
             let (class, flags, return_number) = attributes(i, format.is_extended);
@@ -85,7 +101,11 @@ impl Spec {
                 is_key_point: flags & PointFlags::KEY_POINT != 0,
                 is_withheld: flags & PointFlags::WITHHELD != 0,
                 is_overlap: flags & PointFlags::OVERLAP != 0,
-                scanner_channel: if format.is_extended { (i / 11 % 4) as u8 } else { 0 },
+                scanner_channel: if format.is_extended {
+                    (i / 11 % 4) as u8
+                } else {
+                    0
+                },
                 intensity: i as u16,
                 user_data: i as u8,
                 gps_time: format.has_gps_time.then_some(i as f64 * 0.5),
@@ -113,7 +133,12 @@ fn read(bytes: &[u8]) -> Result<(LasReader, PointBatch)> {
 /// Checks that a file that was cut is refused, then reads what is there.
 fn read_cut(bytes: &[u8]) -> (LasReader, PointBatch) {
     let error = read(bytes).unwrap_err();
-    assert!(error.to_string().starts_with(&format!("test: byte {}: the ", bytes.len())), "{error}");
+    assert!(
+        error
+            .to_string()
+            .starts_with(&format!("test: byte {}: the ", bytes.len())),
+        "{error}"
+    );
     assert!(error.cure_text().unwrap().plain().contains("partial"));
     read_with(bytes, OnDamage::Accept).unwrap()
 }
@@ -150,15 +175,29 @@ fn every_version_and_point_format() {
     for (version, format) in kinds() {
         for is_compressed in [false, true] {
             for extra_bytes in [0, 3] {
-                let bytes = Spec { is_compressed, extra_bytes, ..Spec::new(version, format) }.write();
+                let bytes = Spec {
+                    is_compressed,
+                    extra_bytes,
+                    ..Spec::new(version, format)
+                }
+                .write();
                 let (reader, all) = read(&bytes).unwrap();
                 let packing = if is_compressed { ", LAZ" } else { "" };
                 let name = format!("LAS 1.{}, point format {format}{packing}", version.1);
                 assert_eq!(reader.info().format, name);
                 assert_eq!(reader.info().count, Some(1000));
-                assert_eq!(reader.info().lattice, Some(Lattice { scale: SCALE, offset: OFFSET }));
+                assert_eq!(
+                    reader.info().lattice,
+                    Some(Lattice {
+                        scale: SCALE,
+                        offset: OFFSET
+                    })
+                );
                 assert_eq!(reader.header().software, "tests");
-                assert!(reader.info().warnings.is_empty() && reader.warnings().is_empty(), "{name}");
+                assert!(
+                    reader.info().warnings.is_empty() && reader.warnings().is_empty(),
+                    "{name}"
+                );
                 check_points(&all, 1000, format >= 6);
             }
         }
@@ -179,7 +218,12 @@ fn version_5_is_read_as_4() {
 fn many_chunks_come_in_order() {
     for format in [1, 6] {
         for points in [50_000, 420_001] {
-            let bytes = Spec { is_compressed: true, points, ..Spec::new((1, 4), format) }.write();
+            let bytes = Spec {
+                is_compressed: true,
+                points,
+                ..Spec::new((1, 4), format)
+            }
+            .write();
             check_points(&read(&bytes).unwrap().1, points, format >= 6);
         }
     }
@@ -188,7 +232,12 @@ fn many_chunks_come_in_order() {
 #[test]
 fn thinned_sources_have_parts_all_over() {
     for (format, is_compressed) in [(1, false), (1, true), (6, true)] {
-        let bytes = Spec { is_compressed, points: 420_001, ..Spec::new((1, 4), format) }.write();
+        let bytes = Spec {
+            is_compressed,
+            points: 420_001,
+            ..Spec::new((1, 4), format)
+        }
+        .write();
         for (spacing, firsts) in [
             (100_000, &[0, 100_000, 200_000, 300_000, 400_000][..]),
             (150_000, &[0, 150_000, 300_000]),
@@ -205,8 +254,13 @@ fn thinned_sources_have_parts_all_over() {
                 }
                 found.extend(batch.x.iter().copied());
             }
-            let parts = firsts.iter().flat_map(|&first| first..(first + 50_000).min(420_001));
-            assert!(found.into_iter().eq(parts.map(|i| coordinates(i)[0])), "{format} {spacing}");
+            let parts = firsts
+                .iter()
+                .flat_map(|&first| first..(first + 50_000).min(420_001));
+            assert!(
+                found.into_iter().eq(parts.map(|i| coordinates(i)[0])),
+                "{format} {spacing}"
+            );
         }
         let mut reader = from_stream(&bytes[..], "test").unwrap();
         assert!(reader.thin(0) && reader.warnings().is_empty());
@@ -218,9 +272,17 @@ fn thinned_sources_have_parts_all_over() {
 
 #[test]
 fn one_thread_gives_what_many_give() {
-    let bytes = Spec { is_compressed: true, points: 120_000, ..Spec::new((1, 4), 7) }.write();
+    let bytes = Spec {
+        is_compressed: true,
+        points: 120_000,
+        ..Spec::new((1, 4), 7)
+    }
+    .write();
     for threads in [1, 3] {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap();
         check_points(&pool.install(|| read(&bytes).unwrap().1), 120_000, true);
     }
 }
@@ -233,8 +295,16 @@ fn table_of(bytes: &[u8]) -> (usize, usize) {
 
 #[test]
 fn without_a_chunk_table_points_are_found_all_the_same() {
-    for (format, word) in [(3, "one after the other"), (8, "found by their own headers")] {
-        let whole = Spec { is_compressed: true, points: 120_000, ..Spec::new((1, 4), format) }.write();
+    for (format, word) in [
+        (3, "one after the other"),
+        (8, "found by their own headers"),
+    ] {
+        let whole = Spec {
+            is_compressed: true,
+            points: 120_000,
+            ..Spec::new((1, 4), format)
+        }
+        .write();
         let (pointer, table) = table_of(&whole);
         let mut lost = whole.clone();
         lost[pointer..pointer + 8].fill(0xff);
@@ -245,29 +315,62 @@ fn without_a_chunk_table_points_are_found_all_the_same() {
         for bytes in [lost, garbage, shifted, whole[..table].to_vec()] {
             let (reader, all) = read(&bytes).unwrap();
             check_points(&all, 120_000, format >= 6);
-            assert!(reader.info().warnings.iter().any(|w| w.plain().contains(word)), "{:?}", reader.info().warnings);
+            assert!(
+                reader
+                    .info()
+                    .warnings
+                    .iter()
+                    .any(|w| w.plain().contains(word)),
+                "{:?}",
+                reader.info().warnings
+            );
         }
     }
 }
 
 #[test]
 fn a_cut_laz_file_gives_the_points_before_the_cut() {
-    let whole = Spec { is_compressed: true, points: 120_000, ..Spec::new((1, 4), 3) }.write();
+    let whole = Spec {
+        is_compressed: true,
+        points: 120_000,
+        ..Spec::new((1, 4), 3)
+    }
+    .write();
     let (reader, all) = read_cut(&whole[..whole.len() / 2]);
     assert!((40_000..80_000).contains(&all.len()), "{}", all.len());
     check_points(&all, all.len(), false);
-    assert!(reader.warnings()[0].plain().contains("of 120000 are read"), "{:?}", reader.warnings());
+    assert!(
+        reader.warnings()[0].plain().contains("of 120000 are read"),
+        "{:?}",
+        reader.warnings()
+    );
 
-    let whole = Spec { is_compressed: true, points: 120_000, ..Spec::new((1, 4), 8) }.write();
+    let whole = Spec {
+        is_compressed: true,
+        points: 120_000,
+        ..Spec::new((1, 4), 8)
+    }
+    .write();
     let (reader, all) = read_cut(&whole[..whole.len() / 2]);
     check_points(&all, 50_000, true);
-    assert!(reader.info().warnings.iter().any(|w| w.plain().contains("holds 50000 in whole chunks")));
+    assert!(
+        reader
+            .info()
+            .warnings
+            .iter()
+            .any(|w| w.plain().contains("holds 50000 in whole chunks"))
+    );
 }
 
 #[test]
 fn a_damaged_chunk_is_an_error_and_those_before_it_are_good() {
     for format in [3, 8] {
-        let mut bytes = Spec { is_compressed: true, points: 120_000, ..Spec::new((1, 4), format) }.write();
+        let mut bytes = Spec {
+            is_compressed: true,
+            points: 120_000,
+            ..Spec::new((1, 4), format)
+        }
+        .write();
         let (start, table) = table_of(&bytes);
         // In the last of three chunks; in the sizes of its layers or its first difference.
         let chunks = super::laz::chunks_of(&bytes);
@@ -284,8 +387,16 @@ fn a_damaged_chunk_is_an_error_and_those_before_it_are_good() {
             }
         };
         assert_eq!(good, 100_000);
-        assert!(error.to_string().starts_with("test: chunk 3 at byte "), "{error}");
-        assert!(error.to_string().contains("(points 100000 to 119999): the compressed points are damaged"), "{error}");
+        assert!(
+            error.to_string().starts_with("test: chunk 3 at byte "),
+            "{error}"
+        );
+        assert!(
+            error
+                .to_string()
+                .contains("(points 100000 to 119999): the compressed points are damaged"),
+            "{error}"
+        );
         reader.read(&mut batch).unwrap();
         assert!(batch.is_empty());
     }
@@ -293,56 +404,103 @@ fn a_damaged_chunk_is_an_error_and_those_before_it_are_good() {
 
 #[test]
 fn a_cut_las_file_gives_its_whole_records() {
-    let whole = Spec { points: 300_000, ..Spec::new((1, 2), 0) }.write();
+    let whole = Spec {
+        points: 300_000,
+        ..Spec::new((1, 2), 0)
+    }
+    .write();
     let (reader, all) = read_cut(&whole[..whole.len() - 25]);
     check_points(&all, 299_998, false);
     let warning = &reader.info().warnings[0];
     let warning = warning.plain();
-    assert!(warning.contains("states 300000 points, but the file holds 299998 and 15 bytes of another"), "{warning}");
+    assert!(
+        warning.contains("states 300000 points, but the file holds 299998 and 15 bytes of another"),
+        "{warning}"
+    );
 }
 
 #[test]
 fn more_points_than_bytes_can_hold_are_refused_at_once() {
     for (minor, format) in [(2, 3), (4, 3), (4, 6)] {
-        let mut bytes = Spec { is_compressed: true, ..Spec::new((1, minor), format) }.write();
+        let mut bytes = Spec {
+            is_compressed: true,
+            ..Spec::new((1, minor), format)
+        }
+        .write();
         let (count, room) = if minor == 4 { (247, 8) } else { (107, 4) };
         let stated = u64::from(u32::MAX) + u64::from(minor == 4);
         bytes[count..count + room].copy_from_slice(&stated.to_le_bytes()[..room]);
         for cut in [OnDamage::Refuse, OnDamage::Accept] {
             let error = read_with(&bytes, cut).unwrap_err();
             assert_eq!(error.kind(), Kind::Limit, "{error}");
-            assert!(error.to_string().contains(&format!("{stated} points in ")), "{error}");
+            assert!(
+                error.to_string().contains(&format!("{stated} points in ")),
+                "{error}"
+            );
         }
     }
 }
 
 #[test]
 fn records_after_the_points_are_not_points() {
-    let late = Vlr { user_id: "tests".into(), record_id: 7, description: "late".into(), data: vec![1; 999] };
-    let mut bytes = Spec { late_records: vec![late], ..Spec::new((1, 4), 6) }.write();
+    let late = Vlr {
+        user_id: "tests".into(),
+        record_id: 7,
+        description: "late".into(),
+        data: vec![1; 999],
+    };
+    let mut bytes = Spec {
+        late_records: vec![late],
+        ..Spec::new((1, 4), 6)
+    }
+    .write();
     let (reader, _) = read(&bytes).unwrap();
     let record = reader.header().records.last().unwrap();
-    assert_eq!((record.user_id.as_str(), record.record_id, record.length), ("tests", 7, 999));
+    assert_eq!(
+        (record.user_id.as_str(), record.record_id, record.length),
+        ("tests", 7, 999)
+    );
     // A count of records that would reach into the points.
     bytes[247..255].copy_from_slice(&1010_u64.to_le_bytes());
     bytes[107..111].fill(0);
     let error = read(&bytes).unwrap_err();
-    assert!(error.to_string().contains("states 1010 points, but the file holds 1000"), "{error}");
+    assert!(
+        error
+            .to_string()
+            .contains("states 1010 points, but the file holds 1000"),
+        "{error}"
+    );
     let (reader, all) = read_with(&bytes, OnDamage::Accept).unwrap();
     check_points(&all, 1000, true);
-    assert!(reader.info().warnings[0].plain().contains("states 1010 points, but the file holds 1000"));
+    assert!(
+        reader.info().warnings[0]
+            .plain()
+            .contains("states 1010 points, but the file holds 1000")
+    );
 }
 
 #[test]
 fn a_record_longer_than_its_space_is_a_warning() {
-    let record = Vlr { user_id: "tests".into(), record_id: 7, description: "".into(), data: vec![1; 9] };
-    let mut bytes = Spec { records: vec![record], ..Spec::new((1, 2), 1) }.write();
+    let record = Vlr {
+        user_id: "tests".into(),
+        record_id: 7,
+        description: "".into(),
+        data: vec![1; 9],
+    };
+    let mut bytes = Spec {
+        records: vec![record],
+        ..Spec::new((1, 2), 1)
+    }
+    .write();
     bytes[227 + 20..227 + 22].copy_from_slice(&10_u16.to_le_bytes());
     let (reader, all) = read(&bytes).unwrap();
     check_points(&all, 1000, false);
     let warning = &reader.info().warnings[0];
     let warning = warning.plain();
-    assert!(warning.contains("record 1 (tests, 7) states 10 bytes, but 9 are left"), "{warning}");
+    assert!(
+        warning.contains("record 1 (tests, 7) states 10 bytes, but 9 are left"),
+        "{warning}"
+    );
 }
 
 #[test]
@@ -351,19 +509,36 @@ fn counts_that_disagree_are_reported() {
     bytes[107..111].copy_from_slice(&999_u32.to_le_bytes());
     let (reader, all) = read(&bytes).unwrap();
     assert_eq!(all.len(), 1000);
-    assert!(reader.info().warnings[0].plain().contains("states 1000 points, and 999 for old readers"));
+    assert!(
+        reader.info().warnings[0]
+            .plain()
+            .contains("states 1000 points, and 999 for old readers")
+    );
 }
 
 fn projection(record_id: u16, data: Vec<u8>) -> Vlr {
-    Vlr { user_id: "LASF_Projection".into(), record_id, description: "".into(), data }
+    Vlr {
+        user_id: "LASF_Projection".into(),
+        record_id,
+        description: "".into(),
+        data,
+    }
 }
 
 /// The records for one system as WKT and another as GeoTIFF keys.
 fn two_systems(wkt: u32, keys: u32) -> Vec<Vlr> {
     let crs = |code| Crs::from_epsg(code).unwrap();
     let keys = GeoKeys::from_crs(&crs(keys));
-    let directory = keys.directory.iter().flat_map(|word| word.to_le_bytes()).collect();
-    let doubles = keys.doubles.iter().flat_map(|number| number.to_le_bytes()).collect();
+    let directory = keys
+        .directory
+        .iter()
+        .flat_map(|word| word.to_le_bytes())
+        .collect();
+    let doubles = keys
+        .doubles
+        .iter()
+        .flat_map(|number| number.to_le_bytes())
+        .collect();
     vec![
         projection(34735, directory),
         projection(34736, doubles),
@@ -374,16 +549,33 @@ fn two_systems(wkt: u32, keys: u32) -> Vec<Vlr> {
 
 #[test]
 fn of_two_coordinate_systems_the_header_takes_one() {
-    for (wkt, keys, is_set, taken) in
-        [(25832, 25832, true, 25832), (25832, 25833, true, 25832), (25832, 25833, false, 25833)]
-    {
-        let mut bytes = Spec { records: two_systems(wkt, keys), ..Spec::new((1, 4), 1) }.write();
-        bytes[6] = if is_set { bytes[6] | 16 } else { bytes[6] & !16 };
+    for (wkt, keys, is_set, taken) in [
+        (25832, 25832, true, 25832),
+        (25832, 25833, true, 25832),
+        (25832, 25833, false, 25833),
+    ] {
+        let mut bytes = Spec {
+            records: two_systems(wkt, keys),
+            ..Spec::new((1, 4), 1)
+        }
+        .write();
+        bytes[6] = if is_set {
+            bytes[6] | 16
+        } else {
+            bytes[6] & !16
+        };
         let (reader, _) = read(&bytes).unwrap();
         assert_eq!(reader.info().crs.as_ref().unwrap().epsg, Some(taken));
-        let warned = reader.info().warnings.iter().map(Wording::plain).any(|warning| {
-            warning.contains("two coordinate systems") && warning.contains("25832") && warning.contains("25833")
-        });
+        let warned = reader
+            .info()
+            .warnings
+            .iter()
+            .map(Wording::plain)
+            .any(|warning| {
+                warning.contains("two coordinate systems")
+                    && warning.contains("25832")
+                    && warning.contains("25833")
+            });
         assert_eq!(warned, wkt != keys, "{:?}", reader.info().warnings);
     }
     // Records of one kind count whatever the bit says; WKT after the points does too.
@@ -392,23 +584,46 @@ fn of_two_coordinate_systems_the_header_takes_one() {
         (Vec::new(), two_systems(25832, 25832).split_off(3)),
         (two_systems(25832, 25832).drain(..3).collect(), Vec::new()),
     ] {
-        let mut bytes = Spec { records, late_records, ..Spec::new((1, 4), 1) }.write();
+        let mut bytes = Spec {
+            records,
+            late_records,
+            ..Spec::new((1, 4), 1)
+        }
+        .write();
         for bit in [0, 16] {
             bytes[6] = bytes[6] & !16 | bit;
             let (reader, _) = read(&bytes).unwrap();
             assert_eq!(reader.info().crs.as_ref().unwrap().epsg, Some(25832));
-            assert!(reader.info().warnings.is_empty(), "{:?}", reader.info().warnings);
+            assert!(
+                reader.info().warnings.is_empty(),
+                "{:?}",
+                reader.info().warnings
+            );
         }
     }
 }
 
 #[test]
 fn text_that_is_not_wkt_is_a_warning() {
-    for (text, word) in [(&b"nonsense[\0"[..], "not understood"), (b" \0", "is empty"), (b"", "is empty")] {
-        let (reader, all) =
-            read(&Spec { records: vec![projection(2112, text.to_vec())], ..Spec::new((1, 4), 6) }.write()).unwrap();
+    for (text, word) in [
+        (&b"nonsense[\0"[..], "not understood"),
+        (b" \0", "is empty"),
+        (b"", "is empty"),
+    ] {
+        let (reader, all) = read(
+            &Spec {
+                records: vec![projection(2112, text.to_vec())],
+                ..Spec::new((1, 4), 6)
+            }
+            .write(),
+        )
+        .unwrap();
         assert_eq!(all.len(), 1000);
         assert_eq!(reader.info().crs, None);
-        assert!(reader.info().warnings[0].plain().contains(word), "{:?}", reader.info().warnings);
+        assert!(
+            reader.info().warnings[0].plain().contains(word),
+            "{:?}",
+            reader.info().warnings
+        );
     }
 }

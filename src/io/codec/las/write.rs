@@ -55,7 +55,10 @@ enum Body {
 
 impl std::fmt::Debug for LasWriter<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("LasWriter").field("target", &self.target).field("count", &self.count).finish_non_exhaustive()
+        f.debug_struct("LasWriter")
+            .field("target", &self.target)
+            .field("count", &self.count)
+            .finish_non_exhaustive()
     }
 }
 
@@ -100,7 +103,12 @@ pub fn create<'a>(
     if let Some(items) = &items {
         let mut payload = Vec::new();
         items.write_to(&mut payload)?;
-        records.extend(record_header(LazVlr::USER_ID, LazVlr::RECORD_ID, payload.len() as u16, LazVlr::DESCRIPTION));
+        records.extend(record_header(
+            LazVlr::USER_ID,
+            LazVlr::RECORD_ID,
+            payload.len() as u16,
+            LazVlr::DESCRIPTION,
+        ));
         records.extend(payload);
         record_count += 1;
     }
@@ -115,7 +123,9 @@ pub fn create<'a>(
     write(&mut output).map_err(|e| Error::from(e).in_file(target.path()))?;
     let body = match items {
         None => Body::Plain(output),
-        Some(items) => Body::Compressed(Box::new(ParLasZipCompressor::new(output, items).map_err(failed)?)),
+        Some(items) => Body::Compressed(Box::new(
+            ParLasZipCompressor::new(output, items).map_err(failed)?,
+        )),
     };
     Ok(LasWriter {
         target,
@@ -185,7 +195,11 @@ impl LasWriter<'_> {
             self.low[axis] = self.low[axis].min(steps);
             self.high[axis] = self.high[axis].max(steps);
         }
-        let bits = if self.head.point_format < 6 { 0x07 } else { 0x0f };
+        let bits = if self.head.point_format < 6 {
+            0x07
+        } else {
+            0x0f
+        };
         self.returns[usize::from(record[14] & bits)] += 1;
         self.count += 1;
         Ok(())
@@ -209,17 +223,33 @@ impl LasWriter<'_> {
         put(100, &self.record_count.to_le_bytes());
         // From 1.4 on, the 32-bit fields serve old readers; they are zero for formats that these do
         // not know.
-        let old = u32::try_from(self.count).ok().filter(|_| minor < 4 || self.head.point_format < 6);
+        let old = u32::try_from(self.count)
+            .ok()
+            .filter(|_| minor < 4 || self.head.point_format < 6);
         if minor < 4 && old.is_none() {
-            return Err(Error::limit(format!("{} points; LAS 1.{minor} supports up to {}", self.count, u32::MAX))
-                .in_file(self.target.path())
-                .cure("write several files"));
+            return Err(Error::limit(format!(
+                "{} points; LAS 1.{minor} supports up to {}",
+                self.count,
+                u32::MAX
+            ))
+            .in_file(self.target.path())
+            .cure("write several files"));
         }
         put(107, &old.unwrap_or(0).to_le_bytes());
         for (slot, count) in self.returns[1..6].iter().enumerate() {
-            put(111 + 4 * slot, &(if old.is_some() { *count as u32 } else { 0 }).to_le_bytes());
+            put(
+                111 + 4 * slot,
+                &(if old.is_some() { *count as u32 } else { 0 }).to_le_bytes(),
+            );
         }
-        let bounds = if self.count > 0 { self.bounds() } else { Bounds { min: [0.0; 3], max: [0.0; 3] } };
+        let bounds = if self.count > 0 {
+            self.bounds()
+        } else {
+            Bounds {
+                min: [0.0; 3],
+                max: [0.0; 3],
+            }
+        };
         for axis in 0..3 {
             put(131 + 8 * axis, &self.lattice.scale[axis].to_le_bytes());
             put(155 + 8 * axis, &self.lattice.offset[axis].to_le_bytes());
@@ -251,37 +281,52 @@ impl PointSink for LasWriter<'_> {
     fn write(&mut self, batch: &PointBatch) -> Result<()> {
         let stride = usize::from(self.head.record_length);
         if batch.records.len() != batch.len() * stride {
-            return Err(Error::usage(format!("the points lack their records of {stride} bytes")));
+            return Err(Error::usage(format!(
+                "the points lack their records of {stride} bytes"
+            )));
         }
         for record in batch.records.chunks_exact(stride) {
             let at = self.waiting.len();
             self.waiting.extend_from_slice(record);
             self.take(at)?;
         }
-        if self.waiting.len() >= self.batch { self.flush() } else { Ok(()) }
+        if self.waiting.len() >= self.batch {
+            self.flush()
+        } else {
+            Ok(())
+        }
     }
 
     fn finish(mut self: Box<Self>) -> Result<PointSummary> {
         self.flush()?;
         let end = |mut output: Output| -> Result<(Output, u64)> {
             let late_start = output.seek(SeekFrom::End(0))?;
-            self.head.late_records.iter().try_for_each(|record| output.write_all(record))?;
+            self.head
+                .late_records
+                .iter()
+                .try_for_each(|record| output.write_all(record))?;
             output.seek(SeekFrom::Start(0))?;
             Ok((output, late_start))
         };
         let (mut output, late_start) = match std::mem::replace(&mut self.body, Body::Done) {
             Body::Plain(output) => end(output),
             Body::Compressed(mut compressor) => {
-                let done =
-                    contain(|| compressor.done()).ok_or_else(|| Error::format("compressing the points failed"))?;
-                done.map_err(failed).and_then(|()| end(compressor.into_inner()))
+                let done = contain(|| compressor.done())
+                    .ok_or_else(|| Error::format("compressing the points failed"))?;
+                done.map_err(failed)
+                    .and_then(|()| end(compressor.into_inner()))
             }
             Body::Done => Err(Error::usage("the points have already been written")),
         }
         .map_err(|e| e.in_file(self.target.path()))?;
         let header = self.header(late_start)?;
-        output.write_all(&header).map_err(|e| Error::from(e).in_file(self.target.path()))?;
+        output
+            .write_all(&header)
+            .map_err(|e| Error::from(e).in_file(self.target.path()))?;
         self.target.put(output)?;
-        Ok(PointSummary { count: self.count, bounds: self.bounds() })
+        Ok(PointSummary {
+            count: self.count,
+            bounds: self.bounds(),
+        })
     }
 }

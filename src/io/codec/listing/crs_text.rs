@@ -22,7 +22,10 @@ pub(crate) fn comments(crs: Option<&Crs>) -> Vec<String> {
     match text.len() {
         0 => Vec::new(),
         length if length < WHOLE => vec![format!("crs: {text}")],
-        _ => parts(&text).iter().map(|part| format!("crs {part}")).collect(),
+        _ => parts(&text)
+            .iter()
+            .map(|part| format!("crs {part}"))
+            .collect(),
     }
 }
 
@@ -52,7 +55,9 @@ fn parts(text: &str) -> Vec<String> {
 /// Returns what a comment states of the coordinate system, in whole or in part; `None` for other
 /// comments.
 pub(crate) fn crs_comment(comment: &str) -> Option<&str> {
-    comment.strip_prefix("crs:").or_else(|| comment.strip_prefix("crs "))
+    comment
+        .strip_prefix("crs:")
+        .or_else(|| comment.strip_prefix("crs "))
 }
 
 /// Parses the joined statements of all comments; `None` if there are none.
@@ -61,7 +66,9 @@ pub(crate) fn parse(joined: &str) -> Result<Option<Crs>> {
         return Ok(None);
     }
     let cure = "correct or remove the comment lines that begin with 'crs'";
-    Crs::from_user(joined).map(Some).map_err(|e: Error| e.at("coordinate system in the comments").cure(cure))
+    Crs::from_user(joined)
+        .map(Some)
+        .map_err(|e: Error| e.at("coordinate system in the comments").cure(cure))
 }
 
 #[cfg(test)]
@@ -70,22 +77,48 @@ mod tests {
     use crate::crs::{CrsKind, Unit};
 
     fn local(name: &str) -> Crs {
-        let wkt = Some(format!("LOCAL_CS[\"{name} x\",\r\n    UNIT[\"metre\",1]]\n"));
-        let unit = Unit { name: "metre".into(), factor: 1.0 };
+        let wkt = Some(format!(
+            "LOCAL_CS[\"{name} x\",\r\n    UNIT[\"metre\",1]]\n"
+        ));
+        let unit = Unit {
+            name: "metre".into(),
+            factor: 1.0,
+        };
         let name = "x".into();
-        Crs { name, epsg: None, vertical_epsg: None, kind: CrsKind::Local, unit, vertical_unit: None, wkt }
+        Crs {
+            name,
+            epsg: None,
+            vertical_epsg: None,
+            kind: CrsKind::Local,
+            unit,
+            vertical_unit: None,
+            wkt,
+        }
     }
 
     #[test]
     fn long_texts_become_short_lines() {
         let text = |name: &str| format!("LOCAL_CS[\"{name} x\",UNIT[\"metre\",1]]");
         let whole = "é".repeat(480);
-        assert_eq!(comments(Some(&local(&whole))), [format!("crs: {}", text(&whole))]);
+        assert_eq!(
+            comments(Some(&local(&whole))),
+            [format!("crs: {}", text(&whole))]
+        );
         let long = "é".repeat(490);
         let lines = comments(Some(&local(&long)));
         assert_eq!(lines.len(), 6);
-        assert!(lines.iter().all(|line| line.len() <= PART + 4 && !line.contains(['\r', '\n'])));
-        assert_eq!(lines.iter().map(|line| crs_comment(line).unwrap()).collect::<String>(), text(&long));
+        assert!(
+            lines
+                .iter()
+                .all(|line| line.len() <= PART + 4 && !line.contains(['\r', '\n']))
+        );
+        assert_eq!(
+            lines
+                .iter()
+                .map(|line| crs_comment(line).unwrap())
+                .collect::<String>(),
+            text(&long)
+        );
         assert!(comments(None).is_empty());
     }
 
@@ -93,13 +126,21 @@ mod tests {
     fn a_code_stands_for_what_it_says_in_full() {
         for text in ["EPSG:25832", "EPSG:4326", "EPSG:2994"] {
             let crs = Crs::from_user(text).unwrap();
-            let [line] = &comments(Some(&crs))[..] else { panic!("{text}") };
-            assert_eq!(parse(crs_comment(line).unwrap()).unwrap().as_ref(), Some(&crs));
+            let [line] = &comments(Some(&crs))[..] else {
+                panic!("{text}")
+            };
+            assert_eq!(
+                parse(crs_comment(line).unwrap()).unwrap().as_ref(),
+                Some(&crs)
+            );
         }
         let with_heights = Crs::from_user("EPSG:25832+7837").unwrap();
         assert!(comments(Some(&with_heights))[0].starts_with("crs: COMPD_CS["));
         let mut crs = Crs::from_epsg(25832).unwrap();
-        crs.vertical_unit = Some(Unit { name: "metre".into(), factor: 1.0 });
+        crs.vertical_unit = Some(Unit {
+            name: "metre".into(),
+            factor: 1.0,
+        });
         assert!(comments(Some(&crs))[0].starts_with("crs: PROJCS["));
     }
 }

@@ -46,7 +46,13 @@ impl<'a> Listing<'a> {
             *number = vertex_count;
             vertex_count += 1;
         }
-        Listing { surface, number, vertex_count: vertex_count as usize, face_count, constrained_edges: lines.total() }
+        Listing {
+            surface,
+            number,
+            vertex_count: vertex_count as usize,
+            face_count,
+            constrained_edges: lines.total(),
+        }
     }
 
     pub(crate) fn vertices(&self) -> impl Iterator<Item = [f64; 3]> + '_ {
@@ -56,7 +62,8 @@ impl<'a> Listing<'a> {
 
     /// Returns the vertex numbers of each face, counter-clockwise.
     pub(crate) fn faces(&self) -> impl Iterator<Item = [u32; 3]> + '_ {
-        self.corners().map(|corners| corners.map(|v| self.number[v as usize]))
+        self.corners()
+            .map(|corners| corners.map(|v| self.number[v as usize]))
     }
 
     /// Returns each face with the kinds of the edges opposite its corners, and true if it is a
@@ -71,16 +78,23 @@ impl<'a> Listing<'a> {
     /// Returns all edges, each with its kind: once, with the face of the smaller number.
     pub(crate) fn edges(&self) -> impl Iterator<Item = ([u32; 2], EdgeKind)> + '_ {
         data::faces(self.surface).flat_map(move |face| {
-            let is_first =
-                move |i: &usize| self.surface.neighbor(face.number, *i).is_none_or(|other| face.number < other);
-            let ends = move |i: usize| [1, 2].map(|k| self.number[face.corners[(i + k) % 3] as usize]);
-            (0..3).filter(is_first).map(move |i| (ends(i), face.edges[i]))
+            let is_first = move |i: &usize| {
+                self.surface
+                    .neighbor(face.number, *i)
+                    .is_none_or(|other| face.number < other)
+            };
+            let ends =
+                move |i: usize| [1, 2].map(|k| self.number[face.corners[(i + k) % 3] as usize]);
+            (0..3)
+                .filter(is_first)
+                .map(move |i| (ends(i), face.edges[i]))
         })
     }
 
     /// Returns the coordinates of each face's corners, counter-clockwise.
     pub(crate) fn triangles(&self) -> impl Iterator<Item = [[f64; 3]; 3]> + '_ {
-        self.corners().map(|corners| corners.map(|v| self.surface.position(v)))
+        self.corners()
+            .map(|corners| corners.map(|v| self.surface.position(v)))
     }
 
     fn corners(&self) -> impl Iterator<Item = [u32; 3]> + '_ {
@@ -95,17 +109,43 @@ mod tests {
 
     #[test]
     fn unused_vertices_go() {
-        let p = [[9.0, 9.0, 9.0], [0.0, -1.0, 5.0], [-2.0, 0.0, 1.0], [0.0, 1.0, 2.0], [3.0, 0.0, 4.0]];
+        let p = [
+            [9.0, 9.0, 9.0],
+            [0.0, -1.0, 5.0],
+            [-2.0, 0.0, 1.0],
+            [0.0, 1.0, 2.0],
+            [3.0, 0.0, 4.0],
+        ];
         let mesh = Mesh::new(p.to_vec(), vec![[1, 3, 2], [1, 4, 3]], &[[3, 1]], None).unwrap();
         let listing = Listing::new(&mesh);
         assert!(listing.vertices().eq(p[1..].iter().copied()));
         assert!(listing.faces().eq([[0, 2, 1], [0, 3, 2]]));
-        assert!(listing.triangles().eq([[p[1], p[3], p[2]], [p[1], p[4], p[3]]]));
-        assert_eq!((listing.vertex_count, listing.face_count, listing.constrained_edges), (4, 2, 1));
+        assert!(
+            listing
+                .triangles()
+                .eq([[p[1], p[3], p[2]], [p[1], p[4], p[3]]])
+        );
+        assert_eq!(
+            (
+                listing.vertex_count,
+                listing.face_count,
+                listing.constrained_edges
+            ),
+            (4, 2, 1)
+        );
         let kinds: Vec<_> = listing.lined_faces().map(|(_, kinds, _)| kinds).collect();
         let [rim, line] = [EdgeKind::Rim, EdgeKind::Breakline];
         assert_eq!(kinds, [[rim, rim, line], [rim, line, rim]]);
         let edges: Vec<_> = listing.edges().collect();
-        assert_eq!(edges, [([2, 1], rim), ([1, 0], rim), ([0, 2], line), ([3, 2], rim), ([0, 3], rim)]);
+        assert_eq!(
+            edges,
+            [
+                ([2, 1], rim),
+                ([1, 0], rim),
+                ([0, 2], line),
+                ([3, 2], rim),
+                ([0, 3], rim)
+            ]
+        );
     }
 }

@@ -12,7 +12,11 @@ pub(super) struct Body<'a> {
 
 impl<'a> Body<'a> {
     pub(super) fn new(bytes: &'a [u8], encoding: Encoding, watch: Watch<'a>) -> Self {
-        Body { rest: bytes, encoding, meter: Meter::new(watch, bytes.len()) }
+        Body {
+            rest: bytes,
+            encoding,
+            meter: Meter::new(watch, bytes.len()),
+        }
     }
 
     /// Returns an error if a count exceeds what the remaining bytes can contain, so that it may be
@@ -21,10 +25,17 @@ impl<'a> Body<'a> {
         let least: usize = match self.encoding {
             // A digit and a separator each, except for the last.
             Encoding::Ascii => 2 * element.properties.len(),
-            _ => element.properties.iter().map(|p| p.length.unwrap_or(p.kind).size()).sum(),
+            _ => element
+                .properties
+                .iter()
+                .map(|p| p.length.unwrap_or(p.kind).size())
+                .sum(),
         };
         let left = self.rest.len() + usize::from(self.encoding == Encoding::Ascii);
-        if least.checked_mul(element.count).is_none_or(|needed| needed > left) {
+        if least
+            .checked_mul(element.count)
+            .is_none_or(|needed| needed > left)
+        {
             let Element { name, count, .. } = element;
             return Err(Error::format(format!(
                 "the header states {count} of '{name}', but there is room for {} in the {} bytes left",
@@ -34,7 +45,10 @@ impl<'a> Body<'a> {
             .cure("the file is cut off, or its header is wrong"));
         }
         if least == 0 && element.count > 0 {
-            return Err(Error::format(format!("the element '{}' has no properties", element.name)));
+            return Err(Error::format(format!(
+                "the element '{}' has no properties",
+                element.name
+            )));
         }
         Ok(())
     }
@@ -72,8 +86,10 @@ impl<'a> Body<'a> {
     pub(super) fn end(&self) -> Result<()> {
         match self.rest.trim_ascii_start().len() {
             0 => Ok(()),
-            left => Err(Error::format(format!("{left} bytes follow the last element that the header states"))
-                .cure("a count in the header is wrong: write the file again")),
+            left => Err(Error::format(format!(
+                "{left} bytes follow the last element that the header states"
+            ))
+            .cure("a count in the header is wrong: write the file again")),
         }
     }
 
@@ -82,12 +98,19 @@ impl<'a> Body<'a> {
         if length < 0.0 || length.fract() != 0.0 {
             return Err(Error::format(format!("a list of {length} values")));
         }
-        let least = if self.encoding == Encoding::Ascii { 1.0 } else { kind.size() as f64 };
+        let least = if self.encoding == Encoding::Ascii {
+            1.0
+        } else {
+            kind.size() as f64
+        };
         // Also refuses infinite lengths and NaN.
         if length * least <= self.rest.len() as f64 {
             return Ok(length as usize);
         }
-        Err(Error::format(format!("a list of {length} values, with {} bytes left", self.rest.len())))
+        Err(Error::format(format!(
+            "a list of {length} values, with {} bytes left",
+            self.rest.len()
+        )))
     }
 
     fn value(&mut self, kind: Scalar) -> Result<f64> {
@@ -119,20 +142,27 @@ impl<'a> Body<'a> {
 
     fn word(&mut self) -> Result<f64> {
         let word = self.rest.trim_ascii_start();
-        let end = word.iter().position(u8::is_ascii_whitespace).unwrap_or(word.len());
+        let end = word
+            .iter()
+            .position(u8::is_ascii_whitespace)
+            .unwrap_or(word.len());
         let (word, rest) = word.split_at(end);
         self.rest = rest;
         if word.is_empty() {
             return Err(cut_off());
         }
-        std::str::from_utf8(word).ok().and_then(|word| word.parse().ok()).ok_or_else(|| {
-            let word: String = String::from_utf8_lossy(word).chars().take(40).collect();
-            Error::format(format!("'{word}' is not a number"))
-        })
+        std::str::from_utf8(word)
+            .ok()
+            .and_then(|word| word.parse().ok())
+            .ok_or_else(|| {
+                let word: String = String::from_utf8_lossy(word).chars().take(40).collect();
+                Error::format(format!("'{word}' is not a number"))
+            })
     }
 }
 
 #[cold]
 fn cut_off() -> Error {
-    Error::format("the file ends before its last value").cure("the file is cut off, or its header is wrong")
+    Error::format("the file ends before its last value")
+        .cure("the file is cut off, or its header is wrong")
 }

@@ -33,7 +33,11 @@ impl Scalar {
             "uint" | "uint32" => Scalar::U32,
             "float" | "float32" => Scalar::F32,
             "double" | "float64" => Scalar::F64,
-            _ => return Err(Error::format(format!("'{name}' is not a type of a property"))),
+            _ => {
+                return Err(Error::format(format!(
+                    "'{name}' is not a type of a property"
+                )));
+            }
         })
     }
 
@@ -87,7 +91,11 @@ impl Header {
         for number in 1.. {
             let at_line = |e: Error| e.at(format!("line {number}"));
             let (line, length) = line(&bytes[at..]).ok_or_else(|| {
-                let message = if number == 1 { "the file does not begin with 'ply'" } else { "the header has no end" };
+                let message = if number == 1 {
+                    "the file does not begin with 'ply'"
+                } else {
+                    "the header has no end"
+                };
                 Error::format(message)
             })?;
             at += length;
@@ -101,14 +109,20 @@ impl Header {
             match words[..] {
                 ["format", name, "1.0"] => encoding = Some(named_encoding(name).map_err(at_line)?),
                 ["element", name, count] => {
-                    let count =
-                        count.parse().map_err(|_| at_line(Error::format(format!("'{count}' is not a count"))))?;
-                    elements.push(Element { name: name.into(), count, properties: Vec::new() });
+                    let count = count
+                        .parse()
+                        .map_err(|_| at_line(Error::format(format!("'{count}' is not a count"))))?;
+                    elements.push(Element {
+                        name: name.into(),
+                        count,
+                        properties: Vec::new(),
+                    });
                 }
                 ["property", ..] => {
                     let property = property(&words).map_err(at_line)?;
                     let element = elements.last_mut();
-                    let element = element.ok_or_else(|| at_line(Error::format("a property before any element")))?;
+                    let element = element
+                        .ok_or_else(|| at_line(Error::format("a property before any element")))?;
                     element.properties.push(property);
                 }
                 ["comment" | "obj_info", ..] => {
@@ -119,12 +133,19 @@ impl Header {
                 ["end_header"] => break,
                 _ => {
                     let line: String = line.chars().take(80).collect();
-                    return Err(at_line(Error::format(format!("'{line}' is not a line of a PLY 1.0 header"))));
+                    return Err(at_line(Error::format(format!(
+                        "'{line}' is not a line of a PLY 1.0 header"
+                    ))));
                 }
             }
         }
         let encoding = encoding.ok_or_else(|| Error::format("the header has no 'format' line"))?;
-        Ok(Header { encoding, elements, crs, length: at })
+        Ok(Header {
+            encoding,
+            elements,
+            crs,
+            length: at,
+        })
     }
 }
 
@@ -134,7 +155,10 @@ fn line(bytes: &[u8]) -> Option<(String, usize)> {
     const MAX_BYTES: usize = 1 << 16;
     let length = bytes.iter().take(MAX_BYTES).position(|&b| b == b'\n')?;
     let line = String::from_utf8_lossy(&bytes[..length]);
-    Some((line.strip_suffix('\r').unwrap_or(&line).to_owned(), length + 1))
+    Some((
+        line.strip_suffix('\r').unwrap_or(&line).to_owned(),
+        length + 1,
+    ))
 }
 
 fn named_encoding(name: &str) -> Result<Encoding> {
@@ -150,9 +174,20 @@ fn property(words: &[&str]) -> Result<Property> {
     match *words {
         [_, "list", length, kind, name] => {
             let length = Scalar::named(length)?;
-            Ok(Property { name: name.into(), kind: Scalar::named(kind)?, length: Some(length) })
+            Ok(Property {
+                name: name.into(),
+                kind: Scalar::named(kind)?,
+                length: Some(length),
+            })
         }
-        [_, kind, name] => Ok(Property { name: name.into(), kind: Scalar::named(kind)?, length: None }),
-        _ => Err(Error::format(format!("'{}' does not describe a property", words.join(" ")))),
+        [_, kind, name] => Ok(Property {
+            name: name.into(),
+            kind: Scalar::named(kind)?,
+            length: None,
+        }),
+        _ => Err(Error::format(format!(
+            "'{}' does not describe a property",
+            words.join(" ")
+        ))),
     }
 }

@@ -29,18 +29,34 @@ const FRAGMENT: &str = "piece";
 pub(crate) fn write(target: Destination, mesh: &Listing, crs: Option<&Crs>) -> Result<()> {
     let vertex_count = mesh.vertex_count;
     if i32::try_from(vertex_count).is_err() {
-        return Err(Error::limit(format!("{vertex_count} vertices; a PLY file with int numbers has {}", i32::MAX)));
+        return Err(Error::limit(format!(
+            "{vertex_count} vertices; a PLY file with int numbers has {}",
+            i32::MAX
+        )));
     }
     let mut output = target.create()?;
-    write!(output, "ply\nformat binary_little_endian 1.0\ncomment breakline\n")?;
+    write!(
+        output,
+        "ply\nformat binary_little_endian 1.0\ncomment breakline\n"
+    )?;
     for line in crs_text::comments(crs) {
         writeln!(output, "comment {line}")?;
     }
-    write!(output, "element vertex {vertex_count}\nproperty double x\nproperty double y\nproperty double z\n")?;
-    write!(output, "element face {}\nproperty list uchar int vertex_indices\n", mesh.face_count)?;
+    write!(
+        output,
+        "element vertex {vertex_count}\nproperty double x\nproperty double y\nproperty double z\n"
+    )?;
+    write!(
+        output,
+        "element face {}\nproperty list uchar int vertex_indices\n",
+        mesh.face_count
+    )?;
     let has_lines = mesh.constrained_edges > 0;
     if has_lines {
-        EDGES.iter().chain([&FRAGMENT]).try_for_each(|name| writeln!(output, "property uchar {name}"))?;
+        EDGES
+            .iter()
+            .chain([&FRAGMENT])
+            .try_for_each(|name| writeln!(output, "property uchar {name}"))?;
     }
     output.write_all(b"end_header\n")?;
     mesh.vertices().try_for_each(|p| {
@@ -58,13 +74,15 @@ pub(crate) fn write(target: Destination, mesh: &Listing, crs: Option<&Crs>) -> R
         row
     };
     if has_lines {
-        mesh.lined_faces().try_for_each(|(face, [b, c, a], is_fragment)| {
-            let [a, b, c] = [a, b, c].map(EdgeKind::number);
-            output.write_all(&corners(face))?;
-            output.write_all(&[a, b, c, u8::from(is_fragment)])
-        })?;
+        mesh.lined_faces()
+            .try_for_each(|(face, [b, c, a], is_fragment)| {
+                let [a, b, c] = [a, b, c].map(EdgeKind::number);
+                output.write_all(&corners(face))?;
+                output.write_all(&[a, b, c, u8::from(is_fragment)])
+            })?;
     } else {
-        mesh.faces().try_for_each(|face| output.write_all(&corners(face)))?;
+        mesh.faces()
+            .try_for_each(|face| output.write_all(&corners(face)))?;
     }
     target.put(output)
 }
@@ -73,9 +91,17 @@ pub(crate) fn write(target: Destination, mesh: &Listing, crs: Option<&Crs>) -> R
 /// any order and with any types.
 pub(crate) fn read(bytes: &[u8], watch: Watch) -> Result<Triangles> {
     let header = Header::read(bytes)?;
-    let has = |name: &str| header.elements.iter().any(|e| e.name == name && e.count > 0);
+    let has = |name: &str| {
+        header
+            .elements
+            .iter()
+            .any(|e| e.name == name && e.count > 0)
+    };
     if !has("face") && has("tristrips") {
-        return Err(Error::unsupported("the faces are triangle strips ('tristrips')").cure("save them as triangles"));
+        return Err(
+            Error::unsupported("the faces are triangle strips ('tristrips')")
+                .cure("save them as triangles"),
+        );
     }
     let mut body = Body::new(&bytes[header.length..], header.encoding, watch);
     let mut vertices = Vec::new();
@@ -90,13 +116,24 @@ pub(crate) fn read(bytes: &[u8], watch: Watch) -> Result<Triangles> {
             _ => body.rows(element, |_, _| Ok(()))?,
         }
     }
-    let open = if header.encoding == Encoding::Ascii { open_line(bytes) } else { None };
+    let open = if header.encoding == Encoding::Ascii {
+        open_line(bytes)
+    } else {
+        None
+    };
     let crs = crs_text::parse(&header.crs)?;
     let mut lines = std::mem::take(&mut polygons.lines);
     lines.extend(listed.into_iter().map(|edge| (edge, EdgeKind::Breakline)));
     let sides = polygons.take_sides();
     let warnings = open.into_iter().collect();
-    let mut triangles = Triangles { vertices, lines, sides, crs, warnings, ..Triangles::default() };
+    let mut triangles = Triangles {
+        vertices,
+        lines,
+        sides,
+        crs,
+        warnings,
+        ..Triangles::default()
+    };
     triangles.faces.reserve_exact(polygons.ends.len());
     let mut start = 0;
     let mut fragments = polygons.fragments.into_iter().peekable();
@@ -109,7 +146,9 @@ pub(crate) fn read(bytes: &[u8], watch: Watch) -> Result<Triangles> {
         polygon::add_polygon(&triangles.vertices, corners, &mut triangles.faces)
             .map_err(|e| e.at(format!("face {i}")))?;
         if fragments.next_if_eq(&i).is_some() {
-            triangles.fragments.extend(first..triangles.faces.len() as u32);
+            triangles
+                .fragments
+                .extend(first..triangles.faces.len() as u32);
         }
         start = end;
     }
@@ -119,7 +158,11 @@ pub(crate) fn read(bytes: &[u8], watch: Watch) -> Result<Triangles> {
 }
 
 fn read_vertices(body: &mut Body, element: &Element) -> Result<Vec<[f64; 3]>> {
-    let axes = [scalar(element, "x")?, scalar(element, "y")?, scalar(element, "z")?];
+    let axes = [
+        scalar(element, "x")?,
+        scalar(element, "y")?,
+        scalar(element, "z")?,
+    ];
     let mut vertices = Vec::with_capacity(element.count);
     body.rows(element, |_, row| {
         vertices.push(axes.map(|i| row[i][0]));
@@ -159,8 +202,12 @@ impl Polygons {
 
 fn read_faces(body: &mut Body, element: &Element) -> Result<Polygons> {
     let names = ["vertex_indices", "vertex_index"];
-    let list = element.properties.iter().position(|p| names.contains(&p.name.as_str()) && p.length.is_some());
-    let list = list.ok_or_else(|| Error::format("the faces have no list 'vertex_indices'").at("header"))?;
+    let list = element
+        .properties
+        .iter()
+        .position(|p| names.contains(&p.name.as_str()) && p.length.is_some());
+    let list =
+        list.ok_or_else(|| Error::format("the faces have no list 'vertex_indices'").at("header"))?;
     let lines = line_properties(element);
     let mut polygons = Polygons::default();
     polygons.corners.reserve_exact(element.count);
@@ -172,7 +219,9 @@ fn read_faces(body: &mut Body, element: &Element) -> Result<Polygons> {
         }
         polygons.ends.push(polygons.corners.len());
         let corners = &polygons.corners[first..];
-        let Some((properties, fragment)) = lines else { return Ok(()) };
+        let Some((properties, fragment)) = lines else {
+            return Ok(());
+        };
         let mut kinds = [EdgeKind::Plain; 3];
         for (i, property) in properties.into_iter().enumerate() {
             let kind = edge_kind(EDGES[i], row[property][0])?;
@@ -209,15 +258,24 @@ fn line_properties(element: &Element) -> Option<([usize; 3], usize)> {
 }
 
 fn edge_kind(name: &str, number: f64) -> Result<EdgeKind> {
-    let kind = EdgeKind::ALL.into_iter().find(|kind| f64::from(kind.number()) == number);
-    kind.ok_or_else(|| Error::format(format!("{name} is {number}, expected the number of a kind of edges, 0 to 8")))
+    let kind = EdgeKind::ALL
+        .into_iter()
+        .find(|kind| f64::from(kind.number()) == number);
+    kind.ok_or_else(|| {
+        Error::format(format!(
+            "{name} is {number}, expected the number of a kind of edges, 0 to 8"
+        ))
+    })
 }
 
 fn read_edges(body: &mut Body, element: &Element) -> Result<Vec<[u32; 2]>> {
     let ends = [scalar(element, "vertex1")?, scalar(element, "vertex2")?];
     let mut edges = Vec::with_capacity(element.count);
     body.rows(element, |_, row| {
-        edges.push([vertex_number(row[ends[0]][0])?, vertex_number(row[ends[1]][0])?]);
+        edges.push([
+            vertex_number(row[ends[0]][0])?,
+            vertex_number(row[ends[1]][0])?,
+        ]);
         Ok(())
     })?;
     Ok(edges)
@@ -226,16 +284,20 @@ fn read_edges(body: &mut Body, element: &Element) -> Result<Vec<[u32; 2]>> {
 /// Returns the position of a property with a single value among the properties of its element.
 fn scalar(element: &Element, name: &str) -> Result<usize> {
     let is_it = |p: &Property| p.name == name && p.length.is_none();
-    element
-        .properties
-        .iter()
-        .position(is_it)
-        .ok_or_else(|| Error::format(format!("the element '{}' has no property '{name}'", element.name)).at("header"))
+    element.properties.iter().position(is_it).ok_or_else(|| {
+        Error::format(format!(
+            "the element '{}' has no property '{name}'",
+            element.name
+        ))
+        .at("header")
+    })
 }
 
 fn vertex_number(number: f64) -> Result<u32> {
     if number >= 0.0 && number < f64::from(u32::MAX) && number.fract() == 0.0 {
         return Ok(number as u32);
     }
-    Err(Error::format(format!("{number} is not the number of a vertex")))
+    Err(Error::format(format!(
+        "{number} is not the number of a vertex"
+    )))
 }

@@ -24,5 +24,7 @@ pub fn describe(path: &Path) -> Result<Picture> {
 }
 
 fn missing(path: &Path) -> Error {
-    Error::unsupported("PNG, which this build does not have").in_file(path).cure("build with the feature `png`")
+    Error::unsupported("PNG, which this build does not have")
+        .in_file(path)
+        .cure("build with the feature `png`")
 }

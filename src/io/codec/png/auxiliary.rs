@@ -7,7 +7,12 @@ use crate::crs::Crs;
 use crate::error::{Error, Result};
 
 /// Characters and their escapes in XML; `&` is replaced first when writing, last when reading.
-const ESCAPES: [(&str, &str); 4] = [("&", "&amp;"), ("<", "&lt;"), (">", "&gt;"), ("\"", "&quot;")];
+const ESCAPES: [(&str, &str); 4] = [
+    ("&", "&amp;"),
+    ("<", "&lt;"),
+    (">", "&gt;"),
+    ("\"", "&quot;"),
+];
 
 /// Limit for the bytes of the file; a larger one contains statistics, which are not used.
 const MAX_BYTES: u64 = 1 << 20;
@@ -21,7 +26,11 @@ pub(crate) fn path_of(picture: &Path) -> PathBuf {
 
 /// Returns the text of an auxiliary file that states the coordinate system, with x before y.
 pub(crate) fn text(crs: &Crs) -> String {
-    let wkt = ESCAPES.iter().fold(crs.to_wkt(), |text, (character, escape)| text.replace(character, escape));
+    let wkt = ESCAPES
+        .iter()
+        .fold(crs.to_wkt(), |text, (character, escape)| {
+            text.replace(character, escape)
+        });
     format!("<PAMDataset>\n  <SRS dataAxisToSRSAxisMapping=\"1,2\">{wkt}</SRS>\n</PAMDataset>\n")
 }
 
@@ -29,16 +38,27 @@ pub(crate) fn text(crs: &Crs) -> String {
 /// does not exist or states none.
 pub(crate) fn read_beside(picture: &Path) -> Result<Option<Crs>> {
     let path = path_of(picture);
-    if !path.metadata().is_ok_and(|metadata| metadata.is_file() && metadata.len() < MAX_BYTES) {
+    if !path
+        .metadata()
+        .is_ok_and(|metadata| metadata.is_file() && metadata.len() < MAX_BYTES)
+    {
         return Ok(None);
     }
     let read = || {
         let text = std::fs::read_to_string(&path)?;
-        let Some((_, element)) = text.split_once("<SRS") else { return Ok(None) };
-        let wkt = element.split_once('>').and_then(|(_, rest)| rest.split_once("</SRS>"));
+        let Some((_, element)) = text.split_once("<SRS") else {
+            return Ok(None);
+        };
+        let wkt = element
+            .split_once('>')
+            .and_then(|(_, rest)| rest.split_once("</SRS>"));
         let (wkt, _) = wkt.ok_or_else(|| Error::format("the element SRS has no end"))?;
-        let wkt =
-            ESCAPES.iter().rev().fold(wkt.to_owned(), |text, (character, escape)| text.replace(escape, character));
+        let wkt = ESCAPES
+            .iter()
+            .rev()
+            .fold(wkt.to_owned(), |text, (character, escape)| {
+                text.replace(escape, character)
+            });
         Crs::from_user(&wkt).map(Some)
     };
     read().map_err(|e: Error| e.in_file(&path))

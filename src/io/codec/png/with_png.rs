@@ -35,9 +35,17 @@ pub fn write_gray<'a>(target: impl Into<Destination<'a>>, source: &dyn BlockSour
 fn write(target: Destination, source: &dyn BlockSource) -> Result<()> {
     let frame = source.frame();
     let Frame { width, height, .. } = frame;
-    let side = |cells: usize| i32::try_from(cells).ok().filter(|&cells| cells > 0).map(i32::unsigned_abs);
+    let side = |cells: usize| {
+        i32::try_from(cells)
+            .ok()
+            .filter(|&cells| cells > 0)
+            .map(i32::unsigned_abs)
+    };
     let (Some(columns), Some(rows)) = (side(width), side(height)) else {
-        return Err(Error::usage(format!("a picture of {width} x {height} cells, expected 1 to {} a side", i32::MAX)));
+        return Err(Error::usage(format!(
+            "a picture of {width} x {height} cells, expected 1 to {} a side",
+            i32::MAX
+        )));
     };
     let mut out = target.create()?;
     let mut encoder = Encoder::new(&mut out, columns, rows);
@@ -59,7 +67,9 @@ fn write(target: Destination, source: &dyn BlockSource) -> Result<()> {
     let mut beside = target.create_beside(&world_file_of(target.path()))?;
     beside.write_all(world_file::text(&frame).as_bytes())?;
     let auxiliary = auxiliary::path_of(target.path());
-    let Some(crs) = source.crs() else { return target.put_all([beside], out, [auxiliary]) };
+    let Some(crs) = source.crs() else {
+        return target.put_all([beside], out, [auxiliary]);
+    };
     let mut system = target.create_beside(&auxiliary)?;
     system.write_all(auxiliary::text(crs).as_bytes())?;
     target.put_all([beside, system], out, [])
@@ -79,12 +89,18 @@ fn band(source: &dyn BlockSource, frame: Frame, row: usize) -> Result<Vec<u8>> {
         return Ok(Vec::new());
     }
     let block = |column: usize| {
-        let window = Window { column, row, width: BLOCK.min(frame.width - column), height };
+        let window = Window {
+            column,
+            row,
+            width: BLOCK.min(frame.width - column),
+            height,
+        };
         let mut cells = vec![f32::NAN; window.width * height];
         source.fill(window, &mut cells).map(|()| (window, cells))
     };
     let columns: Vec<usize> = (0..frame.width).step_by(BLOCK).collect();
-    let blocks: Vec<(Window, Vec<f32>)> = columns.into_par_iter().map(block).collect::<Result<_>>()?;
+    let blocks: Vec<(Window, Vec<f32>)> =
+        columns.into_par_iter().map(block).collect::<Result<_>>()?;
     let mut out = vec![0; 2 * frame.width * height];
     for (window, cells) in blocks {
         for (line, cells) in cells.chunks_exact(window.width).enumerate() {
@@ -122,7 +138,12 @@ pub fn describe(path: &Path) -> Result<Picture> {
     };
     let (size, format) = read().map_err(|e: Error| e.in_file(path))?;
     let transform = world_file::read_beside(path).transpose()?;
-    Ok(Picture { size, format, transform, crs: auxiliary::read_beside(path)? })
+    Ok(Picture {
+        size,
+        format,
+        transform,
+        crs: auxiliary::read_beside(path)?,
+    })
 }
 
 fn from_png_decoding(error: ::png::DecodingError) -> Error {

@@ -27,13 +27,21 @@ impl Index {
     }
 
     fn parse(bytes: &[u8]) -> Result<Self> {
-        let word = |at: usize| bytes.get(at..at + 4).and_then(|b| b.try_into().ok()).map(u32::from_be_bytes);
+        let word = |at: usize| {
+            bytes
+                .get(at..at + 4)
+                .and_then(|b| b.try_into().ok())
+                .map(u32::from_be_bytes)
+        };
         if word(0) != Some(FILE_CODE) || bytes.len() < FIRST_ENTRY {
             return Err(Error::format("it does not begin like an index"));
         }
         let stated = u64::from(word(24).unwrap_or_default()) * 2;
         if stated != bytes.len() as u64 {
-            return Err(Error::format(format!("its header states {stated} bytes, the file has {}", bytes.len())));
+            return Err(Error::format(format!(
+                "its header states {stated} bytes, the file has {}",
+                bytes.len()
+            )));
         }
         let entries: Vec<_> = bytes[FIRST_ENTRY..]
             .as_chunks::<8>()
@@ -56,7 +64,9 @@ impl Index {
 
     /// Returns the first listed record after `offset`.
     pub(super) fn next_after(&self, offset: u64) -> Option<(u64, u64)> {
-        self.sorted.get(self.sorted.partition_point(|entry| entry.0 <= offset)).copied()
+        self.sorted
+            .get(self.sorted.partition_point(|entry| entry.0 <= offset))
+            .copied()
     }
 
     /// Returns for every record found (by increasing offset) its position in the index; `None` if
@@ -75,7 +85,10 @@ impl Index {
                 Ok(_) => return Err(Error::format(format!("two entries point to byte {offset}"))),
                 Err(_) if end.is_some_and(|end| offset >= end) => {}
                 Err(_) => {
-                    return Err(Error::format(format!("entry {} points to byte {offset}, not a record", row + 1)));
+                    return Err(Error::format(format!(
+                        "entry {} points to byte {offset}, not a record",
+                        row + 1
+                    )));
                 }
             }
         }
@@ -102,7 +115,10 @@ mod tests {
     fn order_of_the_rows() {
         let index = Index::parse(&index(&[(200, 20), (100, 92)])).unwrap();
         assert_eq!(index.rows(&[100, 200], None).unwrap(), [Some(1), Some(0)]);
-        assert_eq!(index.rows(&[100, 150, 200], None).unwrap(), [Some(1), None, Some(0)]);
+        assert_eq!(
+            index.rows(&[100, 150, 200], None).unwrap(),
+            [Some(1), None, Some(0)]
+        );
         assert_eq!(index.next_after(100), Some((200, 20)));
         assert_eq!(index.next_after(200), None);
         // If a .shp is cut, entries after the cut are excused, but no others.
@@ -118,6 +134,11 @@ mod tests {
         for cut in 0..good.len() {
             assert!(Index::parse(&good[..cut]).is_err(), "cut at {cut}");
         }
-        assert!(Index::parse(&index(&[(100, 20), (100, 20)])).unwrap().rows(&[100, 128], None).is_err());
+        assert!(
+            Index::parse(&index(&[(100, 20), (100, 20)]))
+                .unwrap()
+                .rows(&[100, 128], None)
+                .is_err()
+        );
     }
 }

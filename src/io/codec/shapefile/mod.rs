@@ -81,7 +81,14 @@ const MAX_PRJ: u64 = 1 << 20;
 /// # Complexity
 /// Linear. Memory is needed for the shapes and one record.
 pub fn read_layer(path: &Path, z_field: Option<&str>) -> Result<Layer> {
-    read_layer_with(path, &Options { height_field: z_field, ..Options::default() }, &unwatched)
+    read_layer_with(
+        path,
+        &Options {
+            height_field: z_field,
+            ..Options::default()
+        },
+        &unwatched,
+    )
 }
 
 /// Like [`read_layer`], but with the numbers of attributes, and watched: the bytes of the `.shp`
@@ -104,17 +111,36 @@ fn read(path: &Path, options: &Options, watch: Watch) -> Result<Layer> {
     let mut warnings = Vec::new();
 
     let index = read_index(path, &mut warnings);
-    let mut file = Shp { file, size, stated: header_type.stated, code: header_type.code };
-    let Walk { records, types, damage, end, trailing, mut odd } = walk::walk(&mut file, index.as_ref(), watch)?;
+    let mut file = Shp {
+        file,
+        size,
+        stated: header_type.stated,
+        code: header_type.code,
+    };
+    let Walk {
+        records,
+        types,
+        damage,
+        end,
+        trailing,
+        mut odd,
+    } = walk::walk(&mut file, index.as_ref(), watch)?;
     require_a_record(&records, &damage)?;
     let rows = index.as_ref().map(|index| {
         let starts: Vec<u64> = records.iter().map(|record| record.offset).collect();
         index.rows(&starts, end)
     });
     if file.stated > size {
-        let text = format!("its header states {} bytes, the file has {size}", file.stated);
+        let text = format!(
+            "its header states {} bytes, the file has {size}",
+            file.stated
+        );
         // An index of exactly these records shows that the header is wrong, and no record missing.
-        let cut = if matches!(rows, Some(Ok(_))) && end.is_none() { OnDamage::Accept } else { options.cut };
+        let cut = if matches!(rows, Some(Ok(_))) && end.is_none() {
+            OnDamage::Accept
+        } else {
+            options.cut
+        };
         cut.refuse_or_warn(text, &format!("byte {size}"), &mut warnings)?;
     }
     damage.refuse_or_warn(options.cut, &mut warnings)?;
@@ -126,14 +152,26 @@ fn read(path: &Path, options: &Options, watch: Watch) -> Result<Layer> {
     }
     warn_of_oddities(&mut warnings, &odd);
 
-    let rows = rows.and_then(|rows| rows.map_err(|e| warnings.push(format!(".shx not used: {e}").into())).ok());
+    let rows = rows.and_then(|rows| {
+        rows.map_err(|e| warnings.push(format!(".shx not used: {e}").into()))
+            .ok()
+    });
     let mut layer = Layer {
-        format: format!("shapefile {}", type_name(header_type.code).unwrap_or("of unknown type")),
+        format: format!(
+            "shapefile {}",
+            type_name(header_type.code).unwrap_or("of unknown type")
+        ),
         ..Layer::default()
     };
     read_prj(path, &mut layer, &mut warnings)?;
     watch(0)?;
-    let attributes = read_table(path, options, records.len(), &mut layer.fields, &mut warnings)?;
+    let attributes = read_table(
+        path,
+        options,
+        records.len(),
+        &mut layer.fields,
+        &mut warnings,
+    )?;
     let mut origins = Vec::new();
     layer.shapes = join(records, rows, &attributes, &mut origins, &mut warnings);
     for (&name, numbers) in options.columns.iter().zip(&attributes.columns) {
@@ -157,9 +195,10 @@ fn read_index(path: &Path, warnings: &mut Vec<Wording>) -> Option<Index> {
 /// Returns an error if all records are damaged.
 fn require_a_record(records: &[Record], damage: &Damage) -> Result<()> {
     match damage.reported.first() {
-        Some(first) if records.iter().all(|record| record.shape.is_none()) => {
-            Err(Error::format(wording!["no record can be read: ", first.clone()]).cure("ask for the file again"))
-        }
+        Some(first) if records.iter().all(|record| record.shape.is_none()) => Err(Error::format(
+            wording!["no record can be read: ", first.clone()],
+        )
+        .cure("ask for the file again")),
         _ => Ok(()),
     }
 }
@@ -174,8 +213,11 @@ struct Header {
 
 fn read_header(file: &mut impl Read, size: u64) -> Result<Header> {
     let mut bytes = [0; HEADER as usize];
-    file.read_exact(&mut bytes)
-        .map_err(|_| Error::format(format!("{size} bytes, the header of a shapefile has {HEADER}")))?;
+    file.read_exact(&mut bytes).map_err(|_| {
+        Error::format(format!(
+            "{size} bytes, the header of a shapefile has {HEADER}"
+        ))
+    })?;
     let word = |at: usize| [bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]];
     if u32::from_be_bytes(word(0)) != FILE_CODE {
         return Err(Error::format(format!(
@@ -183,7 +225,10 @@ fn read_header(file: &mut impl Read, size: u64) -> Result<Header> {
             u32::from_be_bytes(word(0))
         )));
     }
-    Ok(Header { code: i32::from_le_bytes(word(32)), stated: u64::from(u32::from_be_bytes(word(24))) * 2 })
+    Ok(Header {
+        code: i32::from_le_bytes(word(32)),
+        stated: u64::from(u32::from_be_bytes(word(24))) * 2,
+    })
 }
 
 /// Returns the file next to `path` with this extension, in lower, upper or mixed case.
@@ -201,7 +246,11 @@ fn sibling(path: &Path, extension: &str) -> Option<PathBuf> {
     let mut found: Vec<PathBuf> = std::fs::read_dir(folder)
         .ok()?
         .filter_map(|entry| Some(entry.ok()?.path()))
-        .filter(|path| path.file_name().and_then(OsStr::to_str).is_some_and(|name| name.eq_ignore_ascii_case(&wanted)))
+        .filter(|path| {
+            path.file_name()
+                .and_then(OsStr::to_str)
+                .is_some_and(|name| name.eq_ignore_ascii_case(&wanted))
+        })
         .collect();
     found.sort();
     found.into_iter().next()
@@ -209,9 +258,14 @@ fn sibling(path: &Path, extension: &str) -> Option<PathBuf> {
 
 /// Sets the coordinate system of a layer to that of the `.prj`.
 fn read_prj(path: &Path, layer: &mut Layer, warnings: &mut Vec<Wording>) -> Result<()> {
-    let Some(path) = sibling(path, "prj") else { return Ok(()) };
+    let Some(path) = sibling(path, "prj") else {
+        return Ok(());
+    };
     let mut bytes = Vec::new();
-    File::open(&path)?.take(MAX_PRJ).read_to_end(&mut bytes).map_err(|e| Error::from(e).in_file(&path))?;
+    File::open(&path)?
+        .take(MAX_PRJ)
+        .read_to_end(&mut bytes)
+        .map_err(|e| Error::from(e).in_file(&path))?;
     let text = String::from_utf8_lossy(&bytes);
     let text = text.trim_start_matches('\u{feff}').trim();
     if text.is_empty() {
@@ -247,7 +301,9 @@ fn read_table(
     let Some(dbf) = sibling(path, "dbf") else {
         return match first_wanted {
             None => Ok(Attributes::default()),
-            Some(name) => Err(Error::usage(format!("there is no .dbf next to it with the field {name}"))),
+            Some(name) => Err(Error::usage(format!(
+                "there is no .dbf next to it with the field {name}"
+            ))),
         };
     };
     let code_page = sibling(path, "cpg").and_then(|path| std::fs::read_to_string(path).ok());
@@ -259,19 +315,43 @@ fn read_table(
         }
         Err(e) => return Err(e.in_file(dbf)),
     };
-    *fields = table.fields.iter().map(|field| field.name.clone()).collect();
-    let wanted = options.height_field.iter().chain(options.columns).map(|name| table.find(name));
+    *fields = table
+        .fields
+        .iter()
+        .map(|field| field.name.clone())
+        .collect();
+    let wanted = options
+        .height_field
+        .iter()
+        .chain(options.columns)
+        .map(|name| table.find(name));
     let wanted: Vec<Field> = wanted.collect::<Result<_>>().map_err(|e| e.in_file(&dbf))?;
     let room = table.room()?;
-    let rows = table.rows(&wanted, records.saturating_add(1)).map_err(|e| e.in_file(&dbf))?;
+    let rows = table
+        .rows(&wanted, records.saturating_add(1))
+        .map_err(|e| e.in_file(&dbf))?;
     if table.stated > room {
-        warnings.push(format!(".dbf: its header states {} rows, it has {room}", table.stated).into());
+        warnings.push(
+            format!(
+                ".dbf: its header states {} rows, it has {room}",
+                table.stated
+            )
+            .into(),
+        );
     }
     // One row more than there are records was requested, to detect surplus rows.
     match rows.deleted.len() {
-        there if there < records => warnings.push(format!(".dbf: {there} rows for {records} records").into()),
+        there if there < records => {
+            warnings.push(format!(".dbf: {there} rows for {records} records").into())
+        }
         there if there > records => {
-            warnings.push(format!(".dbf: {} rows for {records} records", table.stated.max(there as u64)).into());
+            warnings.push(
+                format!(
+                    ".dbf: {} rows for {records} records",
+                    table.stated.max(there as u64)
+                )
+                .into(),
+            );
         }
         _ => {}
     }
@@ -280,7 +360,11 @@ fn read_table(
     if let (Some(numbers), Some(field)) = (&height, wanted.first()) {
         warn_of_texts(&field.name, numbers, warnings).map_err(|e| e.in_file(dbf))?;
     }
-    Ok(Attributes { deleted: rows.deleted, height, columns })
+    Ok(Attributes {
+        deleted: rows.deleted,
+        height,
+        columns,
+    })
 }
 
 /// Warns of texts in a field of heights that are no numbers.
@@ -288,9 +372,13 @@ fn read_table(
 /// # Errors
 /// If there is no number at all.
 fn warn_of_texts(field: &str, heights: &Numbers, warnings: &mut Vec<Wording>) -> Result<()> {
-    let Some((_, text)) = heights.texts.first() else { return Ok(()) };
+    let Some((_, text)) = heights.texts.first() else {
+        return Ok(());
+    };
     if heights.values.iter().all(|value| value.is_nan()) {
-        return Err(Error::usage(format!("field {field} holds no numbers; the first text is '{text}'")));
+        return Err(Error::usage(format!(
+            "field {field} holds no numbers; the first text is '{text}'"
+        )));
     }
     let count = heights.texts.len();
     warnings.push(
@@ -314,7 +402,10 @@ fn column(name: &str, numbers: &Numbers, origins: &[RecordAndRow]) -> Result<Att
         },
         None => Ok(f64::NAN),
     };
-    Ok(Attribute { name: name.to_owned(), values: origins.iter().map(value).collect::<Result<_>>()? })
+    Ok(Attribute {
+        name: name.to_owned(),
+        values: origins.iter().map(value).collect::<Result<_>>()?,
+    })
 }
 
 /// Assigns a row to each record: drops damaged, stale and deleted ones, and sets heights. If
@@ -329,7 +420,12 @@ fn join(
     // If the index leaves out a record but lists another with the same number, an editor appended
     // the new one and left the old one in the file.
     let listed: HashSet<i32> = match &rows {
-        Some(rows) => records.iter().zip(rows).filter(|(_, row)| row.is_some()).filter_map(|(r, _)| r.number).collect(),
+        Some(rows) => records
+            .iter()
+            .zip(rows)
+            .filter(|(_, row)| row.is_some())
+            .filter_map(|(r, _)| r.number)
+            .collect(),
         None => HashSet::new(),
     };
     let (mut stale, mut deleted) = (0, 0);
@@ -347,9 +443,18 @@ fn join(
             deleted += 1;
             continue;
         }
-        let Some(mut shape) = record.shape else { continue };
-        if let Some(height) = attributes.height.as_ref().filter(|height| !height.values.is_empty()) {
-            let z = row.and_then(|row| height.values.get(row)).copied().unwrap_or(f64::NAN);
+        let Some(mut shape) = record.shape else {
+            continue;
+        };
+        if let Some(height) = attributes
+            .height
+            .as_ref()
+            .filter(|height| !height.values.is_empty())
+        {
+            let z = row
+                .and_then(|row| height.values.get(row))
+                .copied()
+                .unwrap_or(f64::NAN);
             shape.set_height(z);
         }
         if !attributes.columns.is_empty() {
@@ -358,11 +463,16 @@ fn join(
         shapes.push(shape);
     }
     if stale > 0 {
-        warnings
-            .push(format!("{stale} records are older copies of others (the .shx does not list them); left out").into());
+        warnings.push(
+            format!(
+                "{stale} records are older copies of others (the .shx does not list them); left out"
+            )
+            .into(),
+        );
     }
     if deleted > 0 {
-        warnings.push(format!("{deleted} records are marked as deleted in the .dbf; left out").into());
+        warnings
+            .push(format!("{deleted} records are marked as deleted in the .dbf; left out").into());
     }
     shapes
 }
@@ -372,8 +482,18 @@ fn warn_of_types(warnings: &mut Vec<Wording>, header: i32, types: &BTreeMap<i32,
         return;
     }
     let name = |code: i32| type_name(code).map_or_else(|| format!("type {code}"), str::to_owned);
-    let list: Vec<String> = types.iter().map(|(&code, count)| format!("{count} {}", name(code))).collect();
-    warnings.push(format!("the header states {}, the records are {}", name(header), list.join(", ")).into());
+    let list: Vec<String> = types
+        .iter()
+        .map(|(&code, count)| format!("{count} {}", name(code)))
+        .collect();
+    warnings.push(
+        format!(
+            "the header states {}, the records are {}",
+            name(header),
+            list.join(", ")
+        )
+        .into(),
+    );
 }
 
 fn warn_of_oddities(warnings: &mut Vec<Wording>, odd: &record::Oddities) {
@@ -381,9 +501,18 @@ fn warn_of_oddities(warnings: &mut Vec<Wording>, odd: &record::Oddities) {
         (odd.unclosed, "rings did not end where they began; closed"),
         (odd.empty_parts, "parts without points; left out"),
         (odd.loose, "points belong to no part; left out"),
-        (odd.no_height, "points have no height (not a number, or \"no data\")"),
-        (odd.unknown_parts, "parts of multipatches are of an unknown type; left out"),
-        (odd.full_nulls, "records are of the type null, but have coordinates; these are left out"),
+        (
+            odd.no_height,
+            "points have no height (not a number, or \"no data\")",
+        ),
+        (
+            odd.unknown_parts,
+            "parts of multipatches are of an unknown type; left out",
+        ),
+        (
+            odd.full_nulls,
+            "records are of the type null, but have coordinates; these are left out",
+        ),
     ] {
         if count > 0 {
             warnings.push(format!("{count} {what}").into());

@@ -52,7 +52,11 @@ pub(super) enum Flaw {
     Damaged(String),
     /// A plan coordinate is not finite. The record is well formed, so the value was wrong before it
     /// was written, and other values may be wrong as well.
-    NotFinite { vertex: usize, axis: char, value: f64 },
+    NotFinite {
+        vertex: usize,
+        axis: char,
+        value: f64,
+    },
 }
 
 /// Oddities that do not prevent reading, counted over a file.
@@ -105,12 +109,20 @@ pub(super) fn parse(content: &[u8], odd: &mut Oddities) -> Result<Parsed, Flaw> 
         }
         31 => {
             let (parts, kinds) = read_parts(&mut bytes, code, &mut found)?;
-            let Patch { faces, unclosed, unknown } = patch::assemble(parts, &kinds);
+            let Patch {
+                faces,
+                unclosed,
+                unknown,
+            } = patch::assemble(parts, &kinds);
             found.unclosed += unclosed;
             found.unknown_parts += unknown;
             Shape::Faces(faces)
         }
-        other => return Err(Flaw::Damaged(format!("shape type {other} is not one of the format's"))),
+        other => {
+            return Err(Flaw::Damaged(format!(
+                "shape type {other} is not one of the format's"
+            )));
+        }
     };
     *odd = found;
     Ok(Parsed { code, shape })
@@ -120,7 +132,11 @@ fn read_point(bytes: &mut Bytes<'_>, code: i32, odd: &mut Oddities) -> Result<Ve
     // A point has no box and no count, and z directly follows y: as in `read_vertices`, but without
     // the ranges.
     let xy = bytes.take(16, "the point")?;
-    let z = if has_z(code) { Some(bytes.take(8, "the height")?) } else { None };
+    let z = if has_z(code) {
+        Some(bytes.take(8, "the height")?)
+    } else {
+        None
+    };
     bytes.require_end(1, 8)?;
     gather(xy, z, odd)
 }
@@ -132,10 +148,11 @@ fn read_parts(bytes: &mut Bytes<'_>, code: i32, odd: &mut Oddities) -> Result<Pa
     bytes.take(32, "box")?;
     let part_count = bytes.count("parts")?;
     let vertex_count = bytes.count("points")?;
-    let starts: Vec<usize> = ints(bytes.take(4 * part_count, &format!("{part_count} part indices"))?)
-        // A negative index is out of range like any other.
-        .map(|start| usize::try_from(start).unwrap_or(usize::MAX))
-        .collect();
+    let starts: Vec<usize> =
+        ints(bytes.take(4 * part_count, &format!("{part_count} part indices"))?)
+            // A negative index is out of range like any other.
+            .map(|start| usize::try_from(start).unwrap_or(usize::MAX))
+            .collect();
     let kinds: Vec<i32> = match code {
         31 => ints(bytes.take(4 * part_count, &format!("{part_count} part types"))?).collect(),
         _ => Vec::new(),
@@ -144,11 +161,17 @@ fn read_parts(bytes: &mut Bytes<'_>, code: i32, odd: &mut Oddities) -> Result<Pa
 
     let mut parts = Vec::with_capacity(part_count);
     let mut kept = Vec::with_capacity(kinds.len());
-    odd.loose += starts.first().map_or(vertices.len(), |&first| first.min(vertices.len()));
+    odd.loose += starts
+        .first()
+        .map_or(vertices.len(), |&first| first.min(vertices.len()));
     for (i, &start) in starts.iter().enumerate() {
         let end = starts.get(i + 1).copied().unwrap_or(vertices.len());
         let part = vertices.get(start..end).ok_or_else(|| {
-            Flaw::Damaged(format!("part {} holds points {start} to {end} of {}", i + 1, vertices.len()))
+            Flaw::Damaged(format!(
+                "part {} holds points {start} to {end} of {}",
+                i + 1,
+                vertices.len()
+            ))
         })?;
         if part.is_empty() {
             odd.empty_parts += 1;
@@ -162,7 +185,12 @@ fn read_parts(bytes: &mut Bytes<'_>, code: i32, odd: &mut Oddities) -> Result<Pa
 
 /// Reads `count` vertices: all x and y, then (Z types) the range of z and every z. Measures may
 /// follow; they are not kept.
-fn read_vertices(bytes: &mut Bytes<'_>, count: usize, code: i32, odd: &mut Oddities) -> Result<Vec<[f64; 3]>, Flaw> {
+fn read_vertices(
+    bytes: &mut Bytes<'_>,
+    count: usize,
+    code: i32,
+    odd: &mut Oddities,
+) -> Result<Vec<[f64; 3]>, Flaw> {
     let xy = bytes.take(16 * count, &format!("{count} points"))?;
     let z = match has_z(code) {
         true => {
@@ -183,7 +211,11 @@ fn gather(xy: &[u8], z: Option<&[u8]>, odd: &mut Oddities) -> Result<Vec<[f64; 3
     while let (Some(x), Some(y)) = (plan.next(), plan.next()) {
         for (axis, value) in [('x', x), ('y', y)] {
             if !value.is_finite() {
-                return Err(Flaw::NotFinite { vertex: vertices.len() + 1, axis, value });
+                return Err(Flaw::NotFinite {
+                    vertex: vertices.len() + 1,
+                    axis,
+                    value,
+                });
             }
         }
         let z = match &mut heights {
@@ -211,11 +243,19 @@ fn close(ring: &mut Vec<[f64; 3]>, odd: &mut Oddities) {
 }
 
 fn doubles(bytes: &[u8]) -> impl Iterator<Item = f64> + '_ {
-    bytes.as_chunks::<8>().0.iter().map(|b| f64::from_le_bytes(*b))
+    bytes
+        .as_chunks::<8>()
+        .0
+        .iter()
+        .map(|b| f64::from_le_bytes(*b))
 }
 
 fn ints(bytes: &[u8]) -> impl Iterator<Item = i32> + '_ {
-    bytes.as_chunks::<4>().0.iter().map(|b| i32::from_le_bytes(*b))
+    bytes
+        .as_chunks::<4>()
+        .0
+        .iter()
+        .map(|b| i32::from_le_bytes(*b))
 }
 
 /// The bytes that have not been read yet.
@@ -228,7 +268,10 @@ impl<'a> Bytes<'a> {
                 self.0 = rest;
                 Ok(taken)
             }
-            None => Err(Flaw::Damaged(format!("{what} take {count} bytes, the record has {} left", self.0.len()))),
+            None => Err(Flaw::Damaged(format!(
+                "{what} take {count} bytes, the record has {} left",
+                self.0.len()
+            ))),
         }
     }
 
@@ -239,7 +282,9 @@ impl<'a> Bytes<'a> {
         const POSITION: usize = 16;
         match self.0.len() {
             left if left < POSITION || left == measures => Ok(()),
-            left => Err(Flaw::Damaged(format!("{left} bytes are left after its points, which are stated as {count}"))),
+            left => Err(Flaw::Damaged(format!(
+                "{left} bytes are left after its points, which are stated as {count}"
+            ))),
         }
     }
 
@@ -255,7 +300,12 @@ impl<'a> Bytes<'a> {
         usize::try_from(count)
             .ok()
             .filter(|&count| count <= self.0.len())
-            .ok_or_else(|| Flaw::Damaged(format!("{count} {what}, the record has {} bytes left", self.0.len())))
+            .ok_or_else(|| {
+                Flaw::Damaged(format!(
+                    "{count} {what}, the record has {} bytes left",
+                    self.0.len()
+                ))
+            })
     }
 }
 
@@ -266,19 +316,28 @@ mod tests {
     fn content(code: i32, parts: &[i32], xy: &[[f64; 2]], tail: &[f64]) -> Vec<u8> {
         let mut bytes = code.to_le_bytes().to_vec();
         bytes.extend([0; 32]);
-        let parts = if [8, 18, 28].contains(&code) { &[] } else { parts };
+        let parts = if [8, 18, 28].contains(&code) {
+            &[]
+        } else {
+            parts
+        };
         if ![8, 18, 28].contains(&code) {
             bytes.extend((parts.len() as i32).to_le_bytes());
         }
         bytes.extend((xy.len() as i32).to_le_bytes());
         parts.iter().for_each(|p| bytes.extend(p.to_le_bytes()));
-        xy.iter().flatten().chain(tail).for_each(|v| bytes.extend(v.to_le_bytes()));
+        xy.iter()
+            .flatten()
+            .chain(tail)
+            .for_each(|v| bytes.extend(v.to_le_bytes()));
         bytes
     }
 
     fn read(bytes: &[u8]) -> (Result<Shape, String>, Oddities) {
         let mut odd = Oddities::default();
-        let shape = parse(bytes, &mut odd).map(|p| p.shape).map_err(|flaw| format!("{flaw:?}"));
+        let shape = parse(bytes, &mut odd)
+            .map(|p| p.shape)
+            .map_err(|flaw| format!("{flaw:?}"));
         (shape, odd)
     }
 
@@ -287,7 +346,10 @@ mod tests {
     #[test]
     fn lines_with_and_without_heights() {
         let (shape, odd) = read(&content(13, &[0, 2], &SQUARE, &[0., 9., 1., 2., 3., 4.]));
-        let lines = vec![vec![[0., 0., 1.], [0., 1., 2.]], vec![[1., 1., 3.], [1., 0., 4.]]];
+        let lines = vec![
+            vec![[0., 0., 1.], [0., 1., 2.]],
+            vec![[1., 1., 3.], [1., 0., 4.]],
+        ];
         assert_eq!(shape.unwrap(), Shape::Lines(lines));
         assert_eq!(odd, Oddities::default());
         // Measures after them change nothing, and flat types have no heights.
@@ -300,7 +362,12 @@ mod tests {
 
     #[test]
     fn no_data_is_not_a_height() {
-        let (shape, odd) = read(&content(18, &[], &SQUARE, &[0., 0., -1e40, f64::NAN, f64::INFINITY, 7.]));
+        let (shape, odd) = read(&content(
+            18,
+            &[],
+            &SQUARE,
+            &[0., 0., -1e40, f64::NAN, f64::INFINITY, 7.],
+        ));
         let heights: Vec<bool> = shape.unwrap().vertices().map(|v| v[2].is_nan()).collect();
         assert_eq!(heights, [true, true, true, false]);
         assert_eq!(odd.no_height, 3);
@@ -311,13 +378,19 @@ mod tests {
         let (shape, odd) = read(&content(5, &[0], &SQUARE, &[]));
         let shape = shape.unwrap();
         assert_eq!(shape.vertices().count(), 5);
-        assert_eq!(shape.vertices().next().unwrap()[..2], shape.vertices().last().unwrap()[..2]);
+        assert_eq!(
+            shape.vertices().next().unwrap()[..2],
+            shape.vertices().last().unwrap()[..2]
+        );
         assert_eq!(odd.unclosed, 1);
     }
 
     #[test]
     fn nothing_and_little() {
-        assert_eq!(read(&content(3, &[], &[], &[])).0.unwrap(), Shape::Lines(vec![]));
+        assert_eq!(
+            read(&content(3, &[], &[], &[])).0.unwrap(),
+            Shape::Lines(vec![])
+        );
         let (shape, odd) = read(&content(3, &[], &SQUARE, &[]));
         assert_eq!((shape.unwrap(), odd.loose), (Shape::Lines(vec![]), 4));
         let (shape, odd) = read(&content(3, &[0, 2, 2], &SQUARE, &[]));
@@ -337,7 +410,11 @@ mod tests {
                 }
                 31 => content(code, &[0, 0], &SQUARE[..3], &[0., 0., 1., 2., 3.]),
                 _ => {
-                    let z: &[f64] = if has_z(code) { &[0., 0., 1., 2., 3., 4.] } else { &[] };
+                    let z: &[f64] = if has_z(code) {
+                        &[0., 0., 1., 2., 3., 4.]
+                    } else {
+                        &[]
+                    };
                     content(code, &[0], &SQUARE, z)
                 }
             };

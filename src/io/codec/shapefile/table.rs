@@ -63,7 +63,10 @@ pub(super) struct Numbers {
 impl Numbers {
     /// Returns the text in a row, if it is not a number.
     pub(super) fn text(&self, row: usize) -> Option<&str> {
-        let at = self.texts.binary_search_by_key(&row, |&(row, _)| row).ok()?;
+        let at = self
+            .texts
+            .binary_search_by_key(&row, |&(row, _)| row)
+            .ok()?;
         Some(&self.texts.get(at)?.1)
     }
 }
@@ -76,7 +79,8 @@ impl Table {
     pub(super) fn open(path: &Path, code_page: Option<&str>) -> Result<Self> {
         let mut file = BufReader::new(File::open(path)?);
         let mut head = [0; 32];
-        file.read_exact(&mut head).map_err(|_| Error::format("shorter than the 32 bytes of a header"))?;
+        file.read_exact(&mut head)
+            .map_err(|_| Error::format("shorter than the 32 bytes of a header"))?;
         let stated = u32::from_le_bytes([head[4], head[5], head[6], head[7]]);
         let header = usize::from(u16::from_le_bytes([head[8], head[9]]));
         let row = usize::from(u16::from_le_bytes([head[10], head[11]]));
@@ -84,12 +88,20 @@ impl Table {
             return Err(Error::unsupported("a table of dBase level 7"));
         }
         if header < 32 || row == 0 {
-            return Err(Error::format(format!("header of {header} bytes and rows of {row}")));
+            return Err(Error::format(format!(
+                "header of {header} bytes and rows of {row}"
+            )));
         }
         let mut list = vec![0; header - 32];
-        file.read_exact(&mut list).map_err(|_| Error::format(format!("shorter than its header of {header} bytes")))?;
+        file.read_exact(&mut list)
+            .map_err(|_| Error::format(format!("shorter than its header of {header} bytes")))?;
         let fields = fields(&list, row, code_page)?;
-        Ok(Table { file, fields, row, stated: u64::from(stated) })
+        Ok(Table {
+            file,
+            fields,
+            row,
+            stated: u64::from(stated),
+        })
     }
 
     /// Returns the field with this name: as written, else in any case.
@@ -101,10 +113,21 @@ impl Table {
             .fields
             .iter()
             .find(|field| field.name == name)
-            .or_else(|| self.fields.iter().find(|field| field.name.eq_ignore_ascii_case(name)))
-            .ok_or_else(|| crate::io::bytes::field::no_such_field(name, self.fields.iter().map(|f| f.name.as_str())))?;
+            .or_else(|| {
+                self.fields
+                    .iter()
+                    .find(|field| field.name.eq_ignore_ascii_case(name))
+            })
+            .ok_or_else(|| {
+                crate::io::bytes::field::no_such_field(
+                    name,
+                    self.fields.iter().map(|f| f.name.as_str()),
+                )
+            })?;
         match (field.kind, field.width) {
-            (b'N' | b'F' | b'C', _) | (b'I' | b'+', 4) | (b'B' | b'O' | b'Y', 8) => Ok(field.clone()),
+            (b'N' | b'F' | b'C', _) | (b'I' | b'+', 4) | (b'B' | b'O' | b'Y', 8) => {
+                Ok(field.clone())
+            }
             (kind, width) => Err(Error::usage(format!(
                 "field {} holds no numbers (its type is '{}', {width} bytes)",
                 field.name,
@@ -122,7 +145,11 @@ impl Table {
         let mut rows = Rows::default();
         rows.numbers.resize_with(fields.len(), Numbers::default);
         let mut marks: Vec<DecimalMark> = fields.iter().map(|_| DecimalMark::default()).collect();
-        let needed = fields.iter().map(|field| field.at + field.width).min().unwrap_or(1);
+        let needed = fields
+            .iter()
+            .map(|field| field.at + field.width)
+            .min()
+            .unwrap_or(1);
         let mut row = vec![0; self.row];
         while rows.deleted.len() < limit {
             let got = fill(&mut self.file, &mut row)?;
@@ -133,7 +160,9 @@ impl Table {
             }
             rows.deleted.push(row[0] == DELETED);
             for ((field, numbers), mark) in fields.iter().zip(&mut rows.numbers).zip(&mut marks) {
-                let cell = row[..got].get(field.at..field.at + field.width).unwrap_or_default();
+                let cell = row[..got]
+                    .get(field.at..field.at + field.width)
+                    .unwrap_or_default();
                 let location = || format!("row {}", numbers.values.len() + 1);
                 let value = match number(field.kind, cell) {
                     Ok(value) => {
@@ -166,17 +195,33 @@ impl Table {
 /// Returns the fields of the descriptors in `list`, which ends at its terminator or, in sloppy
 /// files, without one.
 fn fields(list: &[u8], row: usize, code_page: Option<&str>) -> Result<Vec<Field>> {
-    let descriptors: Vec<&[u8; 32]> =
-        list.as_chunks::<32>().0.iter().take_while(|bytes| bytes[0] != END_OF_FIELDS && bytes[0] != 0).collect();
+    let descriptors: Vec<&[u8; 32]> = list
+        .as_chunks::<32>()
+        .0
+        .iter()
+        .take_while(|bytes| bytes[0] != END_OF_FIELDS && bytes[0] != 0)
+        .collect();
     let plain = |bytes: &[u8; 32]| usize::from(bytes[16]);
     // For long texts, Clipper stores the high byte of the width where numbers have their decimals.
-    let long = |bytes: &[u8; 32]| plain(bytes) + if bytes[11] == b'C' { usize::from(bytes[17]) << 8 } else { 0 };
-    let sum = |width: &dyn Fn(&[u8; 32]) -> usize| 1 + descriptors.iter().map(|bytes| width(bytes)).sum::<usize>();
+    let long = |bytes: &[u8; 32]| {
+        plain(bytes)
+            + if bytes[11] == b'C' {
+                usize::from(bytes[17]) << 8
+            } else {
+                0
+            }
+    };
+    let sum = |width: &dyn Fn(&[u8; 32]) -> usize| {
+        1 + descriptors.iter().map(|bytes| width(bytes)).sum::<usize>()
+    };
     let width: &dyn Fn(&[u8; 32]) -> usize = match row {
         _ if sum(&plain) == row => &plain,
         _ if sum(&long) == row => &long,
         _ => {
-            return Err(Error::format(format!("its fields take {} bytes of a row, its rows have {row}", sum(&plain))));
+            return Err(Error::format(format!(
+                "its fields take {} bytes of a row, its rows have {row}",
+                sum(&plain)
+            )));
         }
     };
     let mut at = 1;
@@ -184,7 +229,12 @@ fn fields(list: &[u8], row: usize, code_page: Option<&str>) -> Result<Vec<Field>
         .iter()
         .map(|bytes| {
             let name = bytes[..11].split(|&b| b == 0).next().unwrap_or_default();
-            let field = Field { name: decode(name, code_page), kind: bytes[11], at, width: width(bytes) };
+            let field = Field {
+                name: decode(name, code_page),
+                kind: bytes[11],
+                at,
+                width: width(bytes),
+            };
             at += field.width;
             field
         })
@@ -194,8 +244,12 @@ fn fields(list: &[u8], row: usize, code_page: Option<&str>) -> Result<Vec<Field>
 /// Decodes text in the encoding of the `.cpg` file; without one, as UTF-8 if valid, else as
 /// Windows-1252.
 fn decode(bytes: &[u8], code_page: Option<&str>) -> String {
-    let utf8 =
-        code_page.is_some_and(|page| matches!(page.trim().to_ascii_uppercase().as_str(), "UTF-8" | "UTF8" | "65001"));
+    let utf8 = code_page.is_some_and(|page| {
+        matches!(
+            page.trim().to_ascii_uppercase().as_str(),
+            "UTF-8" | "UTF8" | "65001"
+        )
+    });
     let text = match std::str::from_utf8(bytes) {
         Ok(text) => text.to_owned(),
         Err(_) if utf8 => String::from_utf8_lossy(bytes).into_owned(),
@@ -208,7 +262,10 @@ fn windows_1252(byte: u8) -> char {
     // 0x80 to 0x9F; the five unused codes are decoded as in Latin-1.
     const HIGH: &str = "€\u{81}‚ƒ„…†‡ˆ‰Š‹Œ\u{8d}Ž\u{8f}\u{90}‘’“”•–—˜™š›œ\u{9d}žŸ";
     match byte {
-        0x80..=0x9F => HIGH.chars().nth(usize::from(byte) - 0x80).unwrap_or(char::from(byte)),
+        0x80..=0x9F => HIGH
+            .chars()
+            .nth(usize::from(byte) - 0x80)
+            .unwrap_or(char::from(byte)),
         _ => char::from(byte),
     }
 }
@@ -249,7 +306,12 @@ mod tests {
 
     use super::*;
 
-    fn table(fields: &[(&str, u8, u8)], terminator: &[u8], rows: &[&str], stated: u32) -> tempfile::NamedTempFile {
+    fn table(
+        fields: &[(&str, u8, u8)],
+        terminator: &[u8],
+        rows: &[&str],
+        stated: u32,
+    ) -> tempfile::NamedTempFile {
         let row: usize = 1 + fields.iter().map(|f| usize::from(f.2)).sum::<usize>();
         let mut bytes = vec![3, 70, 1, 1];
         bytes.extend(stated.to_le_bytes());
@@ -284,11 +346,19 @@ mod tests {
 
     #[test]
     fn numbers_in_all_dresses() {
-        let lines = ["   12.5   ab", " -3,25  1e2 ", " ******     ", "*1      no  ", "        7\0\0\0"];
+        let lines = [
+            "   12.5   ab",
+            " -3,25  1e2 ",
+            " ******     ",
+            "*1      no  ",
+            "        7\0\0\0",
+        ];
         let file = table(&[("ELEV", b'N', 7), ("TEXT", b'C', 4)], b"\r", &lines, 5);
         let found = rows(&file, &["elev", "Text"]);
         assert_eq!(found.deleted, [false, false, false, true, false]);
-        let [heights, texts] = &found.numbers[..] else { panic!("{found:?}") };
+        let [heights, texts] = &found.numbers[..] else {
+            panic!("{found:?}")
+        };
         assert_eq!(heights.values[..2], [12.5, -3.25]);
         assert!(heights.values[2].is_nan() && heights.values[4].is_nan());
         assert_eq!(texts.texts, [(0, "ab".to_owned()), (3, "no".to_owned())]);
@@ -298,23 +368,43 @@ mod tests {
 
     #[test]
     fn texts_with_different_decimal_marks_are_refused() {
-        let file = table(&[("TEXT", b'C', 7)], b"\r", &[" 500,000", "        ", " 3.5    "], 3);
+        let file = table(
+            &[("TEXT", b'C', 7)],
+            b"\r",
+            &[" 500,000", "        ", " 3.5    "],
+            3,
+        );
         let mut opened = Table::open(file.path(), None).unwrap();
         let field = opened.find("TEXT").unwrap();
         let error = opened.rows(&[field], 100).unwrap_err().to_string();
-        assert!(error.starts_with("field TEXT, row 3: 3.5 has a point and 500,000, in row 1, has a comma"), "{error}");
+        assert!(
+            error.starts_with(
+                "field TEXT, row 3: 3.5 has a point and 500,000, in row 1, has a comma"
+            ),
+            "{error}"
+        );
     }
 
     #[test]
     fn sloppy_headers_and_counts() {
         for terminator in [&b"\r"[..], b"\n", b"", b"\r\0"] {
             for stated in [0, 2, 99] {
-                let file = table(&[("Z", b'N', 3)], terminator, &["   1", "   2", "\u{1a}"], stated);
+                let file = table(
+                    &[("Z", b'N', 3)],
+                    terminator,
+                    &["   1", "   2", "\u{1a}"],
+                    stated,
+                );
                 assert_eq!(values(&file, "z"), [1.0, 2.0], "{terminator:?} {stated}");
             }
         }
         // The last row is cut, after the field and within it.
-        let file = table(&[("Z", b'N', 2), ("T", b'C', 3)], b"\r", &[" 10abc", " 20a"], 2);
+        let file = table(
+            &[("Z", b'N', 2), ("T", b'C', 3)],
+            b"\r",
+            &[" 10abc", " 20a"],
+            2,
+        );
         assert_eq!((values(&file, "Z").len(), values(&file, "T").len()), (2, 1));
         let both = rows(&file, &["T", "Z"]);
         assert_eq!(both.numbers[1].values, [10.0, 20.0]);
@@ -345,7 +435,10 @@ mod tests {
         let error = table.find("ELEV").unwrap_err();
         assert_eq!(error.to_string(), "there is no field ELEV");
         assert_eq!(*error.cure_text().unwrap(), "name one of Z, DAY");
-        assert_eq!(table.find("day").unwrap_err().to_string(), "field DAY holds no numbers (its type is 'D', 8 bytes)");
+        assert_eq!(
+            table.find("day").unwrap_err().to_string(),
+            "field DAY holds no numbers (its type is 'D', 8 bytes)"
+        );
     }
 
     #[test]

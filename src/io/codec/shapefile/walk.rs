@@ -77,10 +77,15 @@ impl Damage {
         if let (OnDamage::Refuse, [first, others @ ..]) = (cut, &reported[..]) {
             let text = match others.len() + more {
                 0 => first.clone(),
-                count => wording![first.clone(), format!("; and {count} more parts cannot be read")],
+                count => wording![
+                    first.clone(),
+                    format!("; and {count} more parts cannot be read")
+                ],
             };
-            return Err(Error::format(text)
-                .cure(wording!["copy or download the file again, or use what is there with ", Setting::Partial.on()]));
+            return Err(Error::format(text).cure(wording![
+                "copy or download the file again, or use what is there with ",
+                Setting::Partial.on()
+            ]));
         }
         warnings.extend(reported);
         if more > 0 {
@@ -100,7 +105,12 @@ impl Damage {
 /// # Errors
 /// If reading fails, or a coordinate is not a number; that of the watch.
 pub(super) fn walk(shp: &mut Shp, index: Option<&Index>, watch: Watch) -> Result<Walk> {
-    let Shp { file, size, stated, code } = shp;
+    let Shp {
+        file,
+        size,
+        stated,
+        code,
+    } = shp;
     let size = *size;
     let mut walk = Walk::default();
     let mut meter = Meter::new(watch, size as usize);
@@ -128,8 +138,13 @@ pub(super) fn walk(shp: &mut Shp, index: Option<&Index>, watch: Watch) -> Result
                     walk.end = Some(at);
                     break;
                 };
-                let lost = |offset| Record { offset, number: None, shape: None };
-                walk.records.extend([at].into_iter().chain(skipped).map(lost));
+                let lost = |offset| Record {
+                    offset,
+                    number: None,
+                    shape: None,
+                };
+                walk.records
+                    .extend([at].into_iter().chain(skipped).map(lost));
                 at = next;
                 continue;
             }
@@ -148,13 +163,23 @@ pub(super) fn walk(shp: &mut Shp, index: Option<&Index>, watch: Watch) -> Result
                 walk.damage.add(&location(), &why);
                 None
             }
-            Err(Flaw::NotFinite { vertex, axis, value }) => {
-                return Err(Error::format(format!("{axis} of vertex {vertex} is {value}"))
-                    .at(location())
-                    .cure("repair or remove the record, then try again"));
+            Err(Flaw::NotFinite {
+                vertex,
+                axis,
+                value,
+            }) => {
+                return Err(
+                    Error::format(format!("{axis} of vertex {vertex} is {value}"))
+                        .at(location())
+                        .cure("repair or remove the record, then try again"),
+                );
             }
         };
-        walk.records.push(Record { offset: at, number: Some(id), shape });
+        walk.records.push(Record {
+            offset: at,
+            number: Some(id),
+            shape,
+        });
         at += 8 + length;
     }
     Ok(walk)
@@ -170,9 +195,10 @@ fn header(file: &mut impl Read, left: u64) -> Result<std::result::Result<(i32, u
     let [a, b, c, d, e, f, g, h] = bytes;
     let length = 2 * i64::from(i32::from_be_bytes([e, f, g, h]));
     Ok(match u64::try_from(length) {
-        Ok(length) if length > left - 8 => {
-            Err(format!("content of {length} bytes extends beyond the end of the file, which has {} more", left - 8))
-        }
+        Ok(length) if length > left - 8 => Err(format!(
+            "content of {length} bytes extends beyond the end of the file, which has {} more",
+            left - 8
+        )),
         Ok(length) if length >= 4 => Ok((i32::from_be_bytes([a, b, c, d]), length)),
         _ => Err(format!("content of {length} bytes")),
     })
@@ -180,10 +206,18 @@ fn header(file: &mut impl Read, left: u64) -> Result<std::result::Result<(i32, u
 
 /// Seeks to the next record that the index lists and that exists. Returns the offsets of the listed
 /// records before it that do not exist, and its own offset.
-fn resync(file: &mut BufReader<File>, size: u64, from: u64, index: Option<&Index>) -> Result<Option<(Vec<u64>, u64)>> {
+fn resync(
+    file: &mut BufReader<File>,
+    size: u64,
+    from: u64,
+    index: Option<&Index>,
+) -> Result<Option<(Vec<u64>, u64)>> {
     let mut skipped = Vec::new();
     let mut at = from;
-    while let Some((offset, length)) = index.and_then(|index| index.next_after(at)).filter(|next| next.0 < size) {
+    while let Some((offset, length)) = index
+        .and_then(|index| index.next_after(at))
+        .filter(|next| next.0 < size)
+    {
         file.seek(SeekFrom::Start(offset))?;
         if header(file, size - offset)?.is_ok_and(|found| found.1 == length) {
             file.seek(SeekFrom::Start(offset))?;

@@ -55,7 +55,10 @@ pub fn write_contours<'a>(
     crs: Option<&Crs>,
 ) -> Result<ContourSummary> {
     let target = target.into();
-    let fields = [field("ID", ID_WIDTH, 0)?, field("ELEV", NUMBER_WIDTH, NUMBER_DECIMALS)?];
+    let fields = [
+        field("ID", ID_WIDTH, 0)?,
+        field("ELEV", NUMBER_WIDTH, NUMBER_DECIMALS)?,
+    ];
     let mut set = FileSet::create(target, 13, &fields)?;
     let mut summary = ContourSummary::default();
     let mut record = Vec::new();
@@ -85,7 +88,11 @@ pub fn write_contours<'a>(
 /// # Errors
 /// If the layer mixes kinds or contains triangles, a column's length or name does not fit, a file
 /// cannot be written or would be larger than 2 GiB.
-pub fn write_layer<'a>(target: impl Into<Destination<'a>>, layer: &Layer, columns: &[Column<'_>]) -> Result<()> {
+pub fn write_layer<'a>(
+    target: impl Into<Destination<'a>>,
+    layer: &Layer,
+    columns: &[Column<'_>],
+) -> Result<()> {
     let target = target.into();
     let code = type_code(&layer.shapes).map_err(|e| e.in_file(target.path()))?;
     for column in columns {
@@ -100,7 +107,10 @@ pub fn write_layer<'a>(target: impl Into<Destination<'a>>, layer: &Layer, column
     }
     let fields = match columns {
         [] => vec![field("ID", ID_WIDTH, 0)?],
-        _ => columns.iter().map(|c| field(c.name, NUMBER_WIDTH, NUMBER_DECIMALS)).collect::<Result<_>>()?,
+        _ => columns
+            .iter()
+            .map(|c| field(c.name, NUMBER_WIDTH, NUMBER_DECIMALS))
+            .collect::<Result<_>>()?,
     };
     let mut set = FileSet::create(target, code, &fields)?;
     let mut record = Vec::new();
@@ -109,7 +119,10 @@ pub fn write_layer<'a>(target: impl Into<Destination<'a>>, layer: &Layer, column
         content(&mut record, code, shape);
         let cells: Vec<String> = match columns {
             [] => vec![id(i + 1)],
-            _ => columns.iter().map(|column| real(column.values[i])).collect(),
+            _ => columns
+                .iter()
+                .map(|column| real(column.values[i]))
+                .collect(),
         };
         set.write(&record, shape.vertices().copied(), &cells)?;
     }
@@ -127,22 +140,38 @@ pub fn check_size(vertices: u64) -> Result<()> {
         return Ok(());
     }
     let size = bytes as f64 / 1e9;
-    Err(Error::limit(format!("{vertices} vertices take {size:.1} GB; a shapefile holds 2 GB")).cure(TOO_LARGE))
+    Err(Error::limit(format!(
+        "{vertices} vertices take {size:.1} GB; a shapefile holds 2 GB"
+    ))
+    .cure(TOO_LARGE))
 }
 
 fn type_code(shapes: &[Shape]) -> Result<i32> {
-    let mut kinds: Vec<ShapeKind> = shapes.iter().map(Shape::kind).filter(|&kind| kind != ShapeKind::Null).collect();
+    let mut kinds: Vec<ShapeKind> = shapes
+        .iter()
+        .map(Shape::kind)
+        .filter(|&kind| kind != ShapeKind::Null)
+        .collect();
     kinds.sort_unstable();
     kinds.dedup();
     let flat = match kinds[..] {
         [] => return Ok(0),
-        [ShapeKind::Points] if shapes.iter().all(|s| matches!(s, Shape::Null) || s.vertices().count() == 1) => 1,
+        [ShapeKind::Points]
+            if shapes
+                .iter()
+                .all(|s| matches!(s, Shape::Null) || s.vertices().count() == 1) =>
+        {
+            1
+        }
         [ShapeKind::Points] => 8,
         [ShapeKind::Lines] => 3,
         [ShapeKind::Polygon] => 5,
         _ => return Err(Error::unsupported(format!("a shapefile of {kinds:?}"))),
     };
-    let heights = shapes.iter().flat_map(Shape::vertices).any(|v| !v[2].is_nan());
+    let heights = shapes
+        .iter()
+        .flat_map(Shape::vertices)
+        .any(|v| !v[2].is_nan());
     Ok(if heights { flat + 10 } else { flat })
 }
 
@@ -163,14 +192,21 @@ fn content(out: &mut Vec<u8>, code: i32, shape: &Shape) {
             int(out, code);
             for p in points {
                 let dimensions = if code > 10 { 3 } else { 2 };
-                p[..dimensions].iter().for_each(|&v| double(out, if v.is_nan() { NO_HEIGHT } else { v }));
+                p[..dimensions]
+                    .iter()
+                    .for_each(|&v| double(out, if v.is_nan() { NO_HEIGHT } else { v }));
             }
         }
         Shape::Null | Shape::Faces(_) => int(out, 0),
     }
 }
 
-fn poly(out: &mut Vec<u8>, code: i32, lengths: &[usize], points: impl Iterator<Item = [f64; 3]> + Clone) {
+fn poly(
+    out: &mut Vec<u8>,
+    code: i32,
+    lengths: &[usize],
+    points: impl Iterator<Item = [f64; 3]> + Clone,
+) {
     int(out, code);
     put_box(out, points.clone());
     int(out, lengths.len() as i32);
@@ -247,7 +283,9 @@ fn real(value: f64) -> String {
 /// Returns a field descriptor of the `.dbf`.
 fn field(name: &str, width: u8, decimals: u8) -> Result<[u8; 32]> {
     if name.is_empty() || name.len() > 10 || !name.is_ascii() {
-        return Err(Error::usage(format!("field name '{name}': expected 1 to 10 ASCII characters")));
+        return Err(Error::usage(format!(
+            "field name '{name}': expected 1 to 10 ASCII characters"
+        )));
     }
     let mut bytes = [0; 32];
     bytes[..name.len()].copy_from_slice(name.as_bytes());
@@ -288,11 +326,17 @@ impl FileSet {
             scratch: Vec::new(),
         };
         // Placeholders for the headers, which are known at the end.
-        set.shp.write_all(&[0; HEADER as usize]).map_err(|e| failed(e, target))?;
-        set.shx.write_all(&[0; HEADER as usize]).map_err(|e| failed(e, set.shx.target()))?;
+        set.shp
+            .write_all(&[0; HEADER as usize])
+            .map_err(|e| failed(e, target))?;
+        set.shx
+            .write_all(&[0; HEADER as usize])
+            .map_err(|e| failed(e, set.shx.target()))?;
         let header = set.dbf_header();
         set.dbf_bytes = header.len() as u64;
-        set.dbf.write_all(&header).map_err(|e| failed(e, set.dbf.target()))?;
+        set.dbf
+            .write_all(&header)
+            .map_err(|e| failed(e, set.dbf.target()))?;
         Ok(set)
     }
 
@@ -308,9 +352,12 @@ impl FileSet {
         let dbf_bytes = self.dbf_bytes + row as u64;
         for (bytes, output) in [(shp_bytes, &self.shp), (dbf_bytes, &self.dbf)] {
             if bytes > MAX_BYTES {
-                return Err(Error::limit(format!("record {} would make it larger than 2 GiB", self.records + 1))
-                    .in_file(output.target())
-                    .cure(TOO_LARGE));
+                return Err(Error::limit(format!(
+                    "record {} would make it larger than 2 GiB",
+                    self.records + 1
+                ))
+                .in_file(output.target())
+                .cure(TOO_LARGE));
             }
         }
         self.records += 1;
@@ -321,17 +368,25 @@ impl FileSet {
         self.scratch.extend(self.records.to_be_bytes());
         self.scratch.extend(words(content.len() as u64));
         self.scratch.extend(content);
-        self.shp.write_all(&self.scratch).map_err(|e| failed(e, self.shp.target()))?;
+        self.shp
+            .write_all(&self.scratch)
+            .map_err(|e| failed(e, self.shp.target()))?;
 
         self.scratch.clear();
         self.scratch.extend(words(self.shp_bytes));
         self.scratch.extend(words(content.len() as u64));
-        self.shx.write_all(&self.scratch).map_err(|e| failed(e, self.shx.target()))?;
+        self.shx
+            .write_all(&self.scratch)
+            .map_err(|e| failed(e, self.shx.target()))?;
 
         self.scratch.clear();
         self.scratch.push(b' ');
-        cells.iter().for_each(|cell| self.scratch.extend_from_slice(cell.as_ref().as_bytes()));
-        self.dbf.write_all(&self.scratch).map_err(|e| failed(e, self.dbf.target()))?;
+        cells
+            .iter()
+            .for_each(|cell| self.scratch.extend_from_slice(cell.as_ref().as_bytes()));
+        self.dbf
+            .write_all(&self.scratch)
+            .map_err(|e| failed(e, self.dbf.target()))?;
         (self.shp_bytes, self.dbf_bytes) = (shp_bytes, dbf_bytes);
         Ok(())
     }
@@ -341,21 +396,31 @@ impl FileSet {
     fn finish(mut self, destination: Destination, crs: Option<&Crs>) -> Result<()> {
         let target = destination.path();
         let prj = crs.map(Crs::to_prj).filter(|text| !text.is_empty());
-        let prj = prj.map(|text| text_file(destination, "prj", &text)).transpose()?;
+        let prj = prj
+            .map(|text| text_file(destination, "prj", &text))
+            .transpose()?;
         let cpg = text_file(destination, "cpg", "UTF-8")?;
 
         let shp_header = self.header(self.shp_bytes);
         rewrite(&mut self.shp, &shp_header)?;
         let shx_header = self.header(HEADER + 8 * u64::from(self.records));
         rewrite(&mut self.shx, &shx_header)?;
-        self.dbf.write_all(&[0x1A]).map_err(|e| failed(e, self.dbf.target()))?;
+        self.dbf
+            .write_all(&[0x1A])
+            .map_err(|e| failed(e, self.dbf.target()))?;
         let dbf_header = self.dbf_header();
         rewrite(&mut self.dbf, &dbf_header)?;
 
         // Spatial indexes of the old shapes, and their coordinate system if the new ones have none.
-        let stale = ["qix", "sbn", "sbx"].into_iter().chain(prj.is_none().then_some("prj"));
+        let stale = ["qix", "sbn", "sbx"]
+            .into_iter()
+            .chain(prj.is_none().then_some("prj"));
         let stale = stale.map(|extension| target.with_extension(extension));
-        destination.put_all(prj.into_iter().chain([cpg, self.dbf, self.shx]), self.shp, stale)
+        destination.put_all(
+            prj.into_iter().chain([cpg, self.dbf, self.shx]),
+            self.shp,
+            stale,
+        )
     }
 
     /// Returns the header of a `.shp` or `.shx` of this many bytes.
@@ -376,7 +441,11 @@ impl FileSet {
     }
 
     fn dbf_header(&self) -> Vec<u8> {
-        let row: usize = 1 + self.fields.iter().map(|field| usize::from(field[16])).sum::<usize>();
+        let row: usize = 1 + self
+            .fields
+            .iter()
+            .map(|field| usize::from(field[16]))
+            .sum::<usize>();
         let length = 32 + 32 * self.fields.len() + 1;
         // Version 3, no memo; 1970-01-01.
         let mut out = vec![3, 70, 1, 1];
@@ -401,7 +470,9 @@ fn rewrite(output: &mut Output, header: &[u8]) -> Result<()> {
 fn text_file(destination: Destination, extension: &str, text: &str) -> Result<Output> {
     let path = destination.path().with_extension(extension);
     let mut output = destination.create_beside(&path)?;
-    output.write_all(text.as_bytes()).map_err(|e| failed(e, &path))?;
+    output
+        .write_all(text.as_bytes())
+        .map_err(|e| failed(e, &path))?;
     Ok(output)
 }
 
@@ -415,14 +486,27 @@ mod tests {
     use crate::io::codec::shapefile::read_layer;
 
     fn layer(shapes: Vec<Shape>) -> Layer {
-        Layer { shapes, ..Layer::default() }
+        Layer {
+            shapes,
+            ..Layer::default()
+        }
     }
 
     #[test]
     fn numbers_read_back_and_fit() {
-        for value in
-            [0.0, 12.3, -0.1, 678.3, 1e-300, -1.234_567_890_123_456_7e-308, 1e22, 1e23, f64::MAX, f64::MIN, 1.0 / 3.0]
-        {
+        for value in [
+            0.0,
+            12.3,
+            -0.1,
+            678.3,
+            1e-300,
+            -1.234_567_890_123_456_7e-308,
+            1e22,
+            1e23,
+            f64::MAX,
+            f64::MIN,
+            1.0 / 3.0,
+        ] {
             let text = real(value);
             assert_eq!((text.len(), text.trim().parse()), (24, Ok(value)), "{text}");
         }
@@ -436,14 +520,34 @@ mod tests {
         let target = folder.path().join("x.shp");
         let [a, b, c] = [[0., 0., 1.], [0., 5., 2.5], [5., 5., -3.]];
         for (shapes, format) in [
-            (vec![Shape::Points(vec![a]), Shape::Null, Shape::Points(vec![b])], "PointZ"),
-            (vec![Shape::Points(vec![a, b]), Shape::Points(vec![])], "MultiPointZ"),
-            (vec![Shape::Lines(vec![vec![a, b], vec![c, a, b]]), Shape::Lines(vec![vec![b, c]])], "PolyLineZ"),
+            (
+                vec![Shape::Points(vec![a]), Shape::Null, Shape::Points(vec![b])],
+                "PointZ",
+            ),
+            (
+                vec![Shape::Points(vec![a, b]), Shape::Points(vec![])],
+                "MultiPointZ",
+            ),
+            (
+                vec![
+                    Shape::Lines(vec![vec![a, b], vec![c, a, b]]),
+                    Shape::Lines(vec![vec![b, c]]),
+                ],
+                "PolyLineZ",
+            ),
             (vec![Shape::Polygon(vec![vec![a, b, c, a]])], "PolygonZ"),
             (vec![], "Null"),
         ] {
             let values: Vec<f64> = (0..shapes.len()).map(|i| 0.1 * i as f64).collect();
-            write_layer(&target, &layer(shapes.clone()), &[Column { name: "V", values: &values }]).unwrap();
+            write_layer(
+                &target,
+                &layer(shapes.clone()),
+                &[Column {
+                    name: "V",
+                    values: &values,
+                }],
+            )
+            .unwrap();
             let back = read_layer(&target, None).unwrap();
             assert_eq!(back.shapes, shapes);
             assert_eq!(back.format, format!("shapefile {format}"));
@@ -456,15 +560,30 @@ mod tests {
             }
         }
         // A missing height among others stays missing.
-        write_layer(&target, &layer(vec![Shape::Lines(vec![vec![a, [1., 1., f64::NAN]]])]), &[]).unwrap();
+        write_layer(
+            &target,
+            &layer(vec![Shape::Lines(vec![vec![a, [1., 1., f64::NAN]]])]),
+            &[],
+        )
+        .unwrap();
         let back = read_layer(&target, None).unwrap();
         let heights: Vec<f64> = back.shapes[0].vertices().map(|v| v[2]).collect();
         assert!(heights[0] == 1.0 && heights[1].is_nan());
         assert_eq!(back.fields, ["ID"]);
         // If all heights are missing, none is invented.
-        write_layer(&target, &layer(vec![Shape::Lines(vec![vec![[0., 0., f64::NAN], [1., 1., f64::NAN]]])]), &[])
-            .unwrap();
-        assert_eq!(read_layer(&target, None).unwrap().format, "shapefile PolyLine");
+        write_layer(
+            &target,
+            &layer(vec![Shape::Lines(vec![vec![
+                [0., 0., f64::NAN],
+                [1., 1., f64::NAN],
+            ]])]),
+            &[],
+        )
+        .unwrap();
+        assert_eq!(
+            read_layer(&target, None).unwrap().format,
+            "shapefile PolyLine"
+        );
     }
 
     #[test]
@@ -473,8 +592,28 @@ mod tests {
         let target = folder.path().join("x.shp");
         let mixed = layer(vec![Shape::Points(vec![[0.; 3]]), Shape::Lines(vec![])]);
         assert!(write_layer(&target, &mixed, &[]).is_err());
-        assert!(write_layer(&target, &layer(vec![Shape::Null]), &[Column { name: "A", values: &[] }]).is_err());
-        assert!(write_layer(&target, &layer(vec![]), &[Column { name: "ELEVENCHARS", values: &[] }]).is_err());
+        assert!(
+            write_layer(
+                &target,
+                &layer(vec![Shape::Null]),
+                &[Column {
+                    name: "A",
+                    values: &[]
+                }]
+            )
+            .is_err()
+        );
+        assert!(
+            write_layer(
+                &target,
+                &layer(vec![]),
+                &[Column {
+                    name: "ELEVENCHARS",
+                    values: &[]
+                }]
+            )
+            .is_err()
+        );
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
     }
 
@@ -482,14 +621,27 @@ mod tests {
     fn limits_are_checked_before_the_bytes_are_written() {
         let folder = tempfile::tempdir().unwrap();
         let target = folder.path().join("x.shp");
-        let mut set = FileSet::create((&target).into(), 13, &[field("ID", ID_WIDTH, 0).unwrap()]).unwrap();
+        let mut set =
+            FileSet::create((&target).into(), 13, &[field("ID", ID_WIDTH, 0).unwrap()]).unwrap();
         set.shp_bytes = MAX_BYTES - 100;
         assert!(set.write(&[0; 40], std::iter::empty(), &[id(1)]).is_ok());
-        let error = set.write(&[0; 60], std::iter::empty(), &[id(2)]).unwrap_err();
+        let error = set
+            .write(&[0; 60], std::iter::empty(), &[id(2)])
+            .unwrap_err();
         assert_eq!(error.kind(), crate::error::Kind::Limit);
-        assert!(error.to_string().ends_with("x.shp: record 2 would make it larger than 2 GiB"), "{error}");
+        assert!(
+            error
+                .to_string()
+                .ends_with("x.shp: record 2 would make it larger than 2 GiB"),
+            "{error}"
+        );
         set.dbf_bytes = MAX_BYTES;
-        assert!(set.write(&[0; 4], std::iter::empty(), &[id(2)]).unwrap_err().to_string().contains("x.dbf"));
+        assert!(
+            set.write(&[0; 4], std::iter::empty(), &[id(2)])
+                .unwrap_err()
+                .to_string()
+                .contains("x.dbf")
+        );
         drop(set);
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
     }
@@ -501,8 +653,10 @@ mod tests {
             std::fs::write(folder.path().join(name), "old").unwrap();
         }
         write_layer(&folder.path().join("x.shp"), &layer(vec![]), &[]).unwrap();
-        let mut names: Vec<_> =
-            std::fs::read_dir(folder.path()).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+        let mut names: Vec<_> = std::fs::read_dir(folder.path())
+            .unwrap()
+            .map(|e| e.unwrap().file_name().into_string().unwrap())
+            .collect();
         names.sort();
         assert_eq!(names, ["x.cpg", "x.dbf", "x.shp", "x.shx", "y.prj"]);
     }

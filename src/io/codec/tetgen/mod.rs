@@ -37,7 +37,9 @@ pub use tetrahedralized::Tetrahedralized;
 /// # Errors
 /// If the file cannot be read or does not begin with the number of vertices.
 pub fn dimension(path: &Path) -> Result<u32> {
-    read_rows(path, &unwatched, &mut Vec::new(), |mut rows| node::dimension(&mut rows))
+    read_rows(path, &unwatched, &mut Vec::new(), |mut rows| {
+        node::dimension(&mut rows)
+    })
 }
 
 /// Reads a `.node` file of dimension 3; returns it with warnings.
@@ -59,7 +61,10 @@ pub fn read_weights(path: &Path, count: usize, watch: Watch) -> Result<(Vec<f64>
     let weights = read_rows(path, watch, &mut warnings, |mut rows| {
         let mut weights = Vec::new();
         for i in 0..count {
-            weights.push(rows.expect(|| format!("weight {} of {count}", i + 1), "WEIGHT")?.finite("weight")?);
+            weights.push(
+                rows.expect(|| format!("weight {} of {count}", i + 1), "WEIGHT")?
+                    .finite("weight")?,
+            );
         }
         rows.end("the last weight")?;
         Ok(weights)
@@ -74,29 +79,53 @@ pub fn read_weights(path: &Path, count: usize, watch: Watch) -> Result<(Vec<f64>
 /// If a file is damaged; the error names the file and the line.
 pub fn read(path: &Path, watch: Watch) -> Result<(Tetrahedralized, Vec<Wording>)> {
     let (nodes, mut warnings) = read_nodes(&path.with_extension("node"), watch)?;
-    let numbering = Numbering { first: nodes.first_number, count: nodes.points.len() };
+    let numbering = Numbering {
+        first: nodes.first_number,
+        count: nodes.points.len(),
+    };
     let tetrahedra = read_rows(path, watch, &mut warnings, |mut rows| {
         let (mut header, count) = counted(&mut rows, "tetrahedra", "TETRAHEDRA 4 ATTRIBUTES")?;
         let corner_count: usize = header.within_or("number of vertices of a tetrahedron", 4)?;
         if corner_count != 4 && corner_count != 10 {
-            return Err(header.wrong(format!("a tetrahedron has {corner_count} vertices, expected 4 or 10")));
+            return Err(header.wrong(format!(
+                "a tetrahedron has {corner_count} vertices, expected 4 or 10"
+            )));
         }
-        let tetrahedra = listed(&mut rows, count, "tetrahedron", "NUMBER VERTEX VERTEX VERTEX VERTEX", |row, _| {
-            let mut corners = [0; 4];
-            for corner in &mut corners {
-                *corner = numbering.vertex(row, "corner")?;
-            }
-            Ok(corners)
-        })?;
+        let tetrahedra = listed(
+            &mut rows,
+            count,
+            "tetrahedron",
+            "NUMBER VERTEX VERTEX VERTEX VERTEX",
+            |row, _| {
+                let mut corners = [0; 4];
+                for corner in &mut corners {
+                    *corner = numbering.vertex(row, "corner")?;
+                }
+                Ok(corners)
+            },
+        )?;
         rows.end("the last tetrahedron")?;
         Ok(tetrahedra)
     })?;
     let beside = path.with_extension("neigh");
     let neighbors = match beside.exists() {
-        true => read_neighbors(&beside, nodes.first_number, tetrahedra.len(), watch, &mut warnings)?,
+        true => read_neighbors(
+            &beside,
+            nodes.first_number,
+            tetrahedra.len(),
+            watch,
+            &mut warnings,
+        )?,
         false => Vec::new(),
     };
-    Ok((Tetrahedralized { nodes, tetrahedra, neighbors }, warnings))
+    Ok((
+        Tetrahedralized {
+            nodes,
+            tetrahedra,
+            neighbors,
+        },
+        warnings,
+    ))
 }
 
 fn read_neighbors(
@@ -110,7 +139,9 @@ fn read_neighbors(
     read_rows(path, watch, warnings, |mut rows| {
         let (header, stated) = counted(&mut rows, "tetrahedra", "TETRAHEDRA 4")?;
         if stated != count {
-            return Err(header.wrong(format!("there are {stated} tetrahedra, but the .ele file has {count}")));
+            return Err(header.wrong(format!(
+                "there are {stated} tetrahedra, but the .ele file has {count}"
+            )));
         }
         let pattern = "NUMBER NEIGHBOR NEIGHBOR NEIGHBOR NEIGHBOR, -1 for none";
         let neighbors = listed(&mut rows, count, "tetrahedron", pattern, |row, _| {
@@ -133,7 +164,9 @@ pub fn write(targets: &[Destination], triangulated: &Tetrahedralized) -> Result<
     for target in targets {
         let mut output = target.create()?;
         let written = match extension(&target.format_path()).as_str() {
-            "node" => node::write(&mut output, &triangulated.nodes).and_then(|()| sign(&mut output)),
+            "node" => {
+                node::write(&mut output, &triangulated.nodes).and_then(|()| sign(&mut output))
+            }
             "ele" => write_tetrahedra(&mut output, triangulated).and_then(|()| sign(&mut output)),
             "face" => write_hull(&mut output, triangulated).and_then(|()| sign(&mut output)),
             "edge" => write_edges(&mut output, triangulated).and_then(|()| sign(&mut output)),
@@ -141,9 +174,11 @@ pub fn write(targets: &[Destination], triangulated: &Tetrahedralized) -> Result<
             "mesh" => medit::write(&mut output, triangulated),
             "vtu" => vtu::write(&mut output, triangulated),
             _ => {
-                return Err(Error::usage("the file's extension is not that of a triangulation in space")
-                    .in_file(target.path())
-                    .cure("use .node, .ele, .face, .edge, .neigh, .mesh or .vtu"));
+                return Err(Error::usage(
+                    "the file's extension is not that of a triangulation in space",
+                )
+                .in_file(target.path())
+                .cure("use .node, .ele, .face, .edge, .neigh, .mesh or .vtu"));
             }
         };
         written.map_err(|e| Error::from(e).in_file(target.path()))?;
@@ -191,7 +226,8 @@ fn write_neighbors(out: &mut impl Write, triangulated: &Tetrahedralized) -> io::
     let first = triangulated.nodes.first_number;
     writeln!(out, "{}  4", triangulated.neighbors.len())?;
     for (number, around) in (first as usize..).zip(&triangulated.neighbors) {
-        let [a, b, c, d] = around.map(|beside| beside.map_or(-1, |beside| i64::from(beside) + i64::from(first)));
+        let [a, b, c, d] =
+            around.map(|beside| beside.map_or(-1, |beside| i64::from(beside) + i64::from(first)));
         writeln!(out, "{number:5}    {a}  {b}  {c}  {d}")?;
     }
     Ok(())

@@ -33,14 +33,23 @@ impl Tetrahedralized {
     /// O(m log m) for m tetrahedra.
     pub fn edges(&self) -> Vec<([u32; 2], bool)> {
         let sorted = |a: u32, b: u32| [a.min(b), a.max(b)];
-        let mut of_hull: Vec<[u32; 2]> =
-            self.hull().flat_map(|[a, b, c]| [sorted(a, b), sorted(b, c), sorted(c, a)]).collect();
+        let mut of_hull: Vec<[u32; 2]> = self
+            .hull()
+            .flat_map(|[a, b, c]| [sorted(a, b), sorted(b, c), sorted(c, a)])
+            .collect();
         of_hull.sort_unstable();
         of_hull.dedup();
         let pairs = |&[a, b, c, d]: &[u32; 4]| [[a, b], [a, c], [a, d], [b, c], [b, d], [c, d]];
-        let mut all: Vec<[u32; 2]> = self.tetrahedra.iter().flat_map(pairs).map(|[a, b]| sorted(a, b)).collect();
+        let mut all: Vec<[u32; 2]> = self
+            .tetrahedra
+            .iter()
+            .flat_map(pairs)
+            .map(|[a, b]| sorted(a, b))
+            .collect();
         all.sort_unstable();
         all.dedup();
-        all.into_iter().map(|edge| (edge, of_hull.binary_search(&edge).is_ok())).collect()
+        all.into_iter()
+            .map(|edge| (edge, of_hull.binary_search(&edge).is_ok()))
+            .collect()
     }
 }

@@ -36,23 +36,39 @@ impl Point {
 
 impl ColumnLayout {
     /// The layout without a header.
-    pub(super) const FIRST: Self =
-        ColumnLayout { separator: Separator::Blanks, columns: Columns { x: 1, y: 2, z: 3, class: None } };
+    pub(super) const FIRST: Self = ColumnLayout {
+        separator: Separator::Blanks,
+        columns: Columns {
+            x: 1,
+            y: 2,
+            z: 3,
+            class: None,
+        },
+    };
 
     /// Returns the layout of a header line, by the names of the columns.
     ///
     /// # Errors
     /// Says which column is missing, or which two have the same name.
-    pub(super) fn named(header: &[u8], separator: Separator) -> std::result::Result<Self, NameFlaw> {
+    pub(super) fn named(
+        header: &[u8],
+        separator: Separator,
+    ) -> std::result::Result<Self, NameFlaw> {
         let names: Vec<String> = separator.fields(header).map(bare_name).collect();
         let find = |known: &[&str]| known.iter().find_map(|known| numbers(&names, known));
         let need = |axis: &str, known: &[&str]| {
             find(known).ok_or_else(|| {
-                let error =
-                    Error::format(format!("no column for {axis} in the header {}", quote(header))).cure(wording![
-                        format!("call it one of {}, or name the columns with ", known.join(", ")),
-                        Setting::Columns
-                    ]);
+                let error = Error::format(format!(
+                    "no column for {axis} in the header {}",
+                    quote(header)
+                ))
+                .cure(wording![
+                    format!(
+                        "call it one of {}, or name the columns with ",
+                        known.join(", ")
+                    ),
+                    Setting::Columns
+                ]);
                 NameFlaw::Missing(error)
             })
         };
@@ -60,8 +76,17 @@ impl ColumnLayout {
             [number] => Ok(number),
             _ => Err(NameFlaw::Repeated(repeated(&numbers, &names, header))),
         };
-        let (x, y, z) = (need("x", X_NAMES)?, need("y", Y_NAMES)?, need("z", Z_NAMES)?);
-        let columns = Columns { x: one(x)?, y: one(y)?, z: one(z)?, class: find(CLASS_NAMES).map(one).transpose()? };
+        let (x, y, z) = (
+            need("x", X_NAMES)?,
+            need("y", Y_NAMES)?,
+            need("z", Z_NAMES)?,
+        );
+        let columns = Columns {
+            x: one(x)?,
+            y: one(y)?,
+            z: one(z)?,
+            class: find(CLASS_NAMES).map(one).transpose()?,
+        };
         Ok(ColumnLayout { separator, columns })
     }
 
@@ -73,7 +98,11 @@ impl ColumnLayout {
         let mut count = 0;
         for (number, field) in (1..=last).zip(self.separator.fields(line)) {
             count = number;
-            for (slot, _) in found.iter_mut().zip(wanted).filter(|(_, column)| *column == Some(number)) {
+            for (slot, _) in found
+                .iter_mut()
+                .zip(wanted)
+                .filter(|(_, column)| *column == Some(number))
+            {
                 *slot = field;
             }
         }
@@ -96,15 +125,27 @@ impl ColumnLayout {
 
     fn coordinate(&self, axis: &str, field: &[u8], line: &[u8]) -> Result<f64> {
         self.separator.number(field).ok_or_else(|| {
-            Error::format(format!("{axis} is {}, expected a finite number: {}", quote(field), quote(line))).cure(CURE)
+            Error::format(format!(
+                "{axis} is {}, expected a finite number: {}",
+                quote(field),
+                quote(line)
+            ))
+            .cure(CURE)
         })
     }
 
     fn class_code(&self, field: &[u8], line: &[u8]) -> Result<u8> {
-        let code = self.separator.number(field).filter(|code| code.fract() == 0.0 && (0.0..=255.0).contains(code));
+        let code = self
+            .separator
+            .number(field)
+            .filter(|code| code.fract() == 0.0 && (0.0..=255.0).contains(code));
         code.map(|code| code as u8).ok_or_else(|| {
-            Error::format(format!("class is {}, expected a whole number from 0 to 255: {}", quote(field), quote(line)))
-                .cure(CURE)
+            Error::format(format!(
+                "class is {}, expected a whole number from 0 to 255: {}",
+                quote(field),
+                quote(line)
+            ))
+            .cure(CURE)
         })
     }
 }
@@ -128,16 +169,27 @@ impl From<NameFlaw> for Error {
 
 /// Returns the numbers of the columns with a name, from 1; `None` if there are none.
 fn numbers(names: &[String], wanted: &str) -> Option<Vec<usize>> {
-    let found: Vec<usize> = (1..).zip(names).filter(|(_, name)| *name == wanted).map(|(number, _)| number).collect();
+    let found: Vec<usize> = (1..)
+        .zip(names)
+        .filter(|(_, name)| *name == wanted)
+        .map(|(number, _)| number)
+        .collect();
     (!found.is_empty()).then_some(found)
 }
 
 #[cold]
 fn repeated(numbers: &[usize], names: &[String], header: &[u8]) -> Error {
-    let name = numbers.first().and_then(|first| names.get(first - 1)).map_or("", String::as_str);
+    let name = numbers
+        .first()
+        .and_then(|first| names.get(first - 1))
+        .map_or("", String::as_str);
     let list: Vec<String> = numbers.iter().map(usize::to_string).collect();
     let list = list.join(" and ");
-    Error::format(format!("columns {list} are both called \"{name}\" in the header {}", quote(header))).cure(wording![
+    Error::format(format!(
+        "columns {list} are both called \"{name}\" in the header {}",
+        quote(header)
+    ))
+    .cure(wording![
         "rename one of them, or say which columns to take: ",
         Setting::Columns.text("1,2,3"),
         " names those of x, y and z"
@@ -157,5 +209,8 @@ pub(super) fn quote(text: &[u8]) -> String {
     let text = text.trim_ascii();
     let shown = &text[..text.len().min(MAX_SHOWN)];
     let dots = if text.len() > MAX_SHOWN { "..." } else { "" };
-    format!("\"{}{dots}\"", String::from_utf8_lossy(shown).escape_debug())
+    format!(
+        "\"{}{dots}\"",
+        String::from_utf8_lossy(shown).escape_debug()
+    )
 }

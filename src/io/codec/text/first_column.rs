@@ -42,7 +42,12 @@ impl FirstColumn {
     pub(super) fn start(separator: Separator, line: &[u8]) -> Option<Self> {
         let [last, x, y] = first_of_four(separator, line)?;
         let has_fraction = x.fract() != 0.0 || y.fract() != 0.0;
-        (last.fract() == 0.0).then_some(FirstColumn { last, lines: 1, is_counted: true, has_fraction })
+        (last.fract() == 0.0).then_some(FirstColumn {
+            last,
+            lines: 1,
+            is_counted: true,
+            has_fraction,
+        })
     }
 
     /// Returns what is known after one more point; `None` if its first column cannot be a number of
@@ -70,7 +75,9 @@ impl FirstColumn {
 
 /// Returns the first three numbers, if the first four fields are all numbers.
 fn first_of_four(separator: Separator, line: &[u8]) -> Option<[f64; 3]> {
-    let mut numbers = separator.fields(line).map_while(|field| separator.number(field));
+    let mut numbers = separator
+        .fields(line)
+        .map_while(|field| separator.number(field));
     let first = [numbers.next()?, numbers.next()?, numbers.next()?];
     numbers.next().map(|_| first)
 }

@@ -24,8 +24,14 @@ impl Start {
     /// # Errors
     /// If a line is neither a header nor a point.
     pub(super) fn read(lines: &mut Lines, columns: Option<Columns>) -> Result<Self> {
-        let asked = columns.map(|columns| ColumnLayout { columns, ..ColumnLayout::FIRST });
-        let mut head = Head { asked, ..Head::default() };
+        let asked = columns.map(|columns| ColumnLayout {
+            columns,
+            ..ColumnLayout::FIRST
+        });
+        let mut head = Head {
+            asked,
+            ..Head::default()
+        };
         while lines.next()? {
             match Line::new(&lines.line) {
                 Line::Blank => {}
@@ -60,7 +66,8 @@ impl Head {
     fn add_comment(&mut self, text: &[u8]) {
         let names = text.rsplit(|&byte| byte == b':').next().unwrap_or(text);
         if let Some(separator) = Separator::guess(names)
-            && let layout @ (Ok(_) | Err(NameFlaw::Repeated(_))) = ColumnLayout::named(names, separator)
+            && let layout @ (Ok(_) | Err(NameFlaw::Repeated(_))) =
+                ColumnLayout::named(names, separator)
         {
             self.commented = Some((layout, separator.fields(names).count()));
         }
@@ -69,15 +76,23 @@ impl Head {
     /// Adds a line that is the count of points or a header. Returns the separator if it is a point.
     fn add_line(&mut self, line: &[u8]) -> Result<Option<Separator>> {
         if self.count.is_none() && is_count(line) {
-            self.count = std::str::from_utf8(line).ok().and_then(|text| text.trim().parse().ok());
+            self.count = std::str::from_utf8(line)
+                .ok()
+                .and_then(|text| text.trim().parse().ok());
             return Ok(None);
         }
         let separator = Separator::guess(line).ok_or_else(|| not_a_point(line))?;
         if separator.has_two_uses(line) {
-            return Err(Error::format(format!("{}: commas separate numbers and stand before decimals", quote(line)))
-                .cure("separate the numbers by semicolons, or write decimal points"));
+            return Err(Error::format(format!(
+                "{}: commas separate numbers and stand before decimals",
+                quote(line)
+            ))
+            .cure("separate the numbers by semicolons, or write decimal points"));
         }
-        if separator.fields(line).any(|field| separator.number(field).is_some()) {
+        if separator
+            .fields(line)
+            .any(|field| separator.number(field).is_some())
+        {
             return Ok(Some(separator));
         }
         // The points may have another separator than the names.
@@ -92,7 +107,13 @@ impl Head {
 
     /// Returns what follows from all lines before a point, and from its own.
     fn with_point(self, separator: Separator, line: &[u8], number: u64) -> Result<Start> {
-        let Head { asked, named, commented, is_header_passed, count } = self;
+        let Head {
+            asked,
+            named,
+            commented,
+            is_header_passed,
+            count,
+        } = self;
         // A comment with more words than a line has fields is prose.
         let commented = commented.filter(|(_, names)| *names <= separator.fields(line).count());
         let has_header = is_header_passed || named.is_some() || commented.is_some();
@@ -103,7 +124,10 @@ impl Head {
         let mut mark = DecimalMark::default();
         separator.add_marks(&mut mark, line, number)?;
         let known = asked.or(named);
-        let layout = ColumnLayout { separator, ..known.unwrap_or(ColumnLayout::FIRST) };
+        let layout = ColumnLayout {
+            separator,
+            ..known.unwrap_or(ColumnLayout::FIRST)
+        };
         let first = layout.point(line).map_err(|error| match known {
             Some(_) => error,
             None => error.cure(wording![
@@ -112,13 +136,26 @@ impl Head {
                 ", or put a header before it that names them: x y z"
             ]),
         })?;
-        let first_column = if known.is_none() { FirstColumn::start(separator, line) } else { None };
-        Ok(Start { layout, has_header, count, first: Some(first), first_column, mark })
+        let first_column = if known.is_none() {
+            FirstColumn::start(separator, line)
+        } else {
+            None
+        };
+        Ok(Start {
+            layout,
+            has_header,
+            count,
+            first: Some(first),
+            first_column,
+            mark,
+        })
     }
 
     /// Returns what follows from the lines of a file that ends before the first point.
     fn without_points(self) -> Start {
-        let named = self.named.or(self.commented.and_then(|(layout, _)| layout.ok()));
+        let named = self
+            .named
+            .or(self.commented.and_then(|(layout, _)| layout.ok()));
         Start {
             layout: self.asked.or(named).unwrap_or(ColumnLayout::FIRST),
             has_header: self.is_header_passed || named.is_some(),
@@ -138,7 +175,11 @@ fn is_count(line: &[u8]) -> bool {
 
 fn not_a_point(line: &[u8]) -> Error {
     let error = Error::format(format!("{} is neither a point nor a header", quote(line)));
-    if line.trim_ascii_start().to_ascii_lowercase().starts_with(b"ncols") {
+    if line
+        .trim_ascii_start()
+        .to_ascii_lowercase()
+        .starts_with(b"ncols")
+    {
         return error.cure("an ESRI ASCII grid is a raster, not a list of points");
     }
     error.cure("expected x, y and z separated by semicolons, tabs, commas or blanks, or a header line that names them")

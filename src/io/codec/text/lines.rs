@@ -54,8 +54,11 @@ impl Lines {
             if bytes.is_empty() {
                 break;
             }
-            let end = bytes.iter().position(|&byte| byte == b'\n' || byte == b'\r');
-            self.line.extend_from_slice(&bytes[..end.unwrap_or(bytes.len())]);
+            let end = bytes
+                .iter()
+                .position(|&byte| byte == b'\n' || byte == b'\r');
+            self.line
+                .extend_from_slice(&bytes[..end.unwrap_or(bytes.len())]);
             is_ended = end.is_some();
             self.is_after_return = end.is_some_and(|end| bytes[end] == b'\r');
             let read = end.map_or(bytes.len(), |end| end + 1);
@@ -83,7 +86,9 @@ impl Lines {
 
     /// Adds the file and the line to an error.
     pub(super) fn locate(&self, error: Error) -> Error {
-        error.at(format!("line {}", self.number)).in_file(&self.name)
+        error
+            .at(format!("line {}", self.number))
+            .in_file(&self.name)
     }
 }
 

@@ -77,7 +77,10 @@ pub struct TextReader {
 
 impl std::fmt::Debug for TextReader {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("TextReader").field("info", &self.info).field("read", &self.read).finish_non_exhaustive()
+        f.debug_struct("TextReader")
+            .field("info", &self.info)
+            .field("read", &self.read)
+            .finish_non_exhaustive()
     }
 }
 
@@ -99,12 +102,23 @@ pub fn open(path: impl AsRef<Path>, options: Options) -> Result<TextReader> {
 ///
 /// # Errors
 /// As [`open`].
-pub fn from_stream(stream: impl Read + Send + 'static, name: impl AsRef<Path>, options: Options) -> Result<TextReader> {
+pub fn from_stream(
+    stream: impl Read + Send + 'static,
+    name: impl AsRef<Path>,
+    options: Options,
+) -> Result<TextReader> {
     let mut lines = Lines::new(stream, name.as_ref());
     let start = Start::read(&mut lines, options.columns).map_err(|error| lines.locate(error))?;
-    let header = if start.has_header { ", with header" } else { "" };
+    let header = if start.has_header {
+        ", with header"
+    } else {
+        ""
+    };
     let info = PointInfo {
-        format: format!("text, separated by {}{header}", start.layout.separator.name()),
+        format: format!(
+            "text, separated by {}{header}",
+            start.layout.separator.name()
+        ),
         count: start.count,
         columns: Some(start.layout.columns),
         has_classes: start.layout.columns.class.is_some(),
@@ -172,8 +186,10 @@ impl TextReader {
             if let Line::Data(line) = Line::new(&self.lines.line) {
                 let separator = self.layout.separator;
                 separator.add_marks(&mut self.mark, line, self.lines.number)?;
-                self.first_column =
-                    self.first_column.take().and_then(|first_column| first_column.next(separator, line));
+                self.first_column = self
+                    .first_column
+                    .take()
+                    .and_then(|first_column| first_column.next(separator, line));
                 return self.layout.point(line).map(Some);
             }
         }
@@ -185,10 +201,17 @@ impl TextReader {
         if self.lines.is_open {
             self.warnings.push(OPEN_LINE.into());
         }
-        let Some(stated) = self.info.count.filter(|&stated| stated != total) else { return Ok(()) };
+        let Some(stated) = self.info.count.filter(|&stated| stated != total) else {
+            return Ok(());
+        };
         let text = format!("the first line states {stated} points, but there are {total}");
         // More points than stated are not a file that was cut.
-        let cut = if total < stated { self.cut } else { OnDamage::Accept };
-        cut.refuse_or_warn(text, "the end", &mut self.warnings).map_err(|e| e.in_file(&self.lines.name))
+        let cut = if total < stated {
+            self.cut
+        } else {
+            OnDamage::Accept
+        };
+        cut.refuse_or_warn(text, "the end", &mut self.warnings)
+            .map_err(|e| e.in_file(&self.lines.name))
     }
 }

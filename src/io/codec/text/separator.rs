@@ -17,21 +17,37 @@ impl Separator {
     /// fields.
     pub(super) fn guess(line: &[u8]) -> Option<Self> {
         let all = [Self::Semicolon, Self::Tab, Self::Comma, Self::Blanks];
-        let has_numbers =
-            |separator: &Self| separator.fields(line).filter_map(|field| separator.number(field)).take(3).count() == 3;
+        let has_numbers = |separator: &Self| {
+            separator
+                .fields(line)
+                .filter_map(|field| separator.number(field))
+                .take(3)
+                .count()
+                == 3
+        };
         let has_fields = |separator: &Self| separator.fields(line).take(3).count() == 3;
-        all.into_iter().find(has_numbers).or_else(|| all.into_iter().find(has_fields))
+        all.into_iter()
+            .find(has_numbers)
+            .or_else(|| all.into_iter().find(has_fields))
     }
 
     /// Returns true if commas do two things in a line of numbers: they separate them, and stand
     /// before their decimals, as in `1,5, 2,5, 3,5`.
     pub(super) fn has_two_uses(self, line: &[u8]) -> bool {
-        let words = line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
+        let words = line
+            .split(u8::is_ascii_whitespace)
+            .filter(|word| !word.is_empty());
         let is_decimal = |word: &[u8]| {
             let number = word.strip_suffix(b",").unwrap_or(word);
             number.contains(&b',') && Self::Blanks.number(number).is_some()
         };
-        self == Self::Comma && words.map(is_decimal).take(3).filter(|is_decimal| *is_decimal).count() == 3
+        self == Self::Comma
+            && words
+                .map(is_decimal)
+                .take(3)
+                .filter(|is_decimal| *is_decimal)
+                .count()
+                == 3
     }
 
     pub(super) fn name(self) -> &'static str {
@@ -49,7 +65,9 @@ impl Separator {
         if self == Self::Comma || !mark.concerns(line) {
             return Ok(());
         }
-        let mut numbers = self.fields(line).filter(|field| self.number(field).is_some());
+        let mut numbers = self
+            .fields(line)
+            .filter(|field| self.number(field).is_some());
         numbers.try_for_each(|text| mark.add(text, || format!("line {number}")))
     }
 
@@ -64,7 +82,11 @@ impl Separator {
 
     /// Returns the fields of a line, without quotes and surrounding blanks.
     pub(super) fn fields(self, line: &[u8]) -> impl Iterator<Item = &[u8]> {
-        let mut rest = Some(if self == Self::Blanks { line.trim_ascii() } else { line });
+        let mut rest = Some(if self == Self::Blanks {
+            line.trim_ascii()
+        } else {
+            line
+        });
         std::iter::from_fn(move || {
             let line = rest?;
             let length = self.field_length(line);
@@ -73,7 +95,13 @@ impl Separator {
                 rest = rest.map(|rest| rest.trim_ascii_start());
             }
             let field = line[..length].trim_ascii();
-            Some(field.strip_prefix(b"\"").and_then(|field| field.strip_suffix(b"\"")).unwrap_or(field).trim_ascii())
+            Some(
+                field
+                    .strip_prefix(b"\"")
+                    .and_then(|field| field.strip_suffix(b"\""))
+                    .unwrap_or(field)
+                    .trim_ascii(),
+            )
         })
     }
 
@@ -92,7 +120,9 @@ impl Separator {
     pub(super) fn number(self, field: &[u8]) -> Option<f64> {
         let text = std::str::from_utf8(field).ok()?;
         let value: f64 = match self {
-            Self::Semicolon | Self::Tab | Self::Blanks if field.contains(&b',') && !field.contains(&b'.') => {
+            Self::Semicolon | Self::Tab | Self::Blanks
+                if field.contains(&b',') && !field.contains(&b'.') =>
+            {
                 text.replacen(',', ".", 1).parse().ok()?
             }
             _ => text.parse().ok()?,

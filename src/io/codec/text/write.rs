@@ -25,9 +25,15 @@ pub struct TextWriter<'a> {
 ///
 /// # Errors
 /// If the target cannot be written.
-pub fn create<'a>(target: impl Into<Destination<'a>>, sources: &[&PointInfo]) -> Result<TextWriter<'a>> {
+pub fn create<'a>(
+    target: impl Into<Destination<'a>>,
+    sources: &[&PointInfo],
+) -> Result<TextWriter<'a>> {
     let target = target.into();
-    let is_table = target.format_path().extension().is_some_and(|e| e.eq_ignore_ascii_case("csv"));
+    let is_table = target
+        .format_path()
+        .extension()
+        .is_some_and(|e| e.eq_ignore_ascii_case("csv"));
     let has_classes = is_table && sources.iter().all(|info| info.has_classes);
     let mut output = target.create()?;
     let header = match (is_table, has_classes) {
@@ -35,9 +41,18 @@ pub fn create<'a>(target: impl Into<Destination<'a>>, sources: &[&PointInfo]) ->
         (true, false) => "x,y,z\n",
         (true, true) => "x,y,z,class\n",
     };
-    output.write_all(header.as_bytes()).map_err(|e| Error::from(e).in_file(target.path()))?;
+    output
+        .write_all(header.as_bytes())
+        .map_err(|e| Error::from(e).in_file(target.path()))?;
     let separator = if is_table { ',' } else { ' ' };
-    Ok(TextWriter { target, output, separator, has_classes, line: Vec::new(), summary: PointSummary::default() })
+    Ok(TextWriter {
+        target,
+        output,
+        separator,
+        has_classes,
+        line: Vec::new(),
+        summary: PointSummary::default(),
+    })
 }
 
 impl PointSink for TextWriter<'_> {
@@ -46,7 +61,12 @@ impl PointSink for TextWriter<'_> {
     }
 
     fn write(&mut self, batch: &PointBatch) -> Result<()> {
-        let TextWriter { output, separator, line, .. } = self;
+        let TextWriter {
+            output,
+            separator,
+            line,
+            ..
+        } = self;
         let mut write = || -> std::io::Result<()> {
             for i in 0..batch.len() {
                 line.clear();
@@ -57,7 +77,9 @@ impl PointSink for TextWriter<'_> {
                 }
                 line.push(b'\n');
                 output.write_all(line)?;
-                self.summary.bounds.add([batch.x[i], batch.y[i], batch.z[i]]);
+                self.summary
+                    .bounds
+                    .add([batch.x[i], batch.y[i], batch.z[i]]);
             }
             Ok(())
         };

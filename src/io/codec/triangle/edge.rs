@@ -31,7 +31,10 @@ fn read(mut rows: Rows, numbering: Numbering) -> Result<Vec<[u32; 2]>> {
     let (mut header, count) = counted(&mut rows, "edges", COUNTS)?;
     let marker_count: usize = header.within_or("number of boundary markers", 0)?;
     let edges = listed(&mut rows, count, "edge", EDGE, |row, _| {
-        let ends = [numbering.vertex(row, "first end")?, numbering.vertex(row, "second end")?];
+        let ends = [
+            numbering.vertex(row, "first end")?,
+            numbering.vertex(row, "second end")?,
+        ];
         let is_marked = marker(row, marker_count)? != 0;
         Ok(is_marked.then_some(ends))
     })?;

@@ -23,10 +23,18 @@ const COUNTS: &str = "TRIANGLES 3 ATTRIBUTES";
 const TRIANGLE: &str = "NUMBER VERTEX VERTEX VERTEX ATTRIBUTES";
 
 pub(super) fn read_file(path: &Path, watch: Watch) -> Result<Triangles> {
-    let LineGraph { nodes, mut warnings, .. } = node::read_beside(path, watch)?;
-    let numbering = Numbering { first: nodes.first_number, count: nodes.points.len() };
+    let LineGraph {
+        nodes,
+        mut warnings,
+        ..
+    } = node::read_beside(path, watch)?;
+    let numbering = Numbering {
+        first: nodes.first_number,
+        count: nodes.points.len(),
+    };
     let faces = read_rows(path, watch, &mut warnings, |rows| read(rows, numbering))?;
-    let beside = |extension: &str| Some(path.with_extension(extension)).filter(|path| path.exists());
+    let beside =
+        |extension: &str| Some(path.with_extension(extension)).filter(|path| path.exists());
     let segments = match beside("poly") {
         Some(path) => poly::read_segments_alone(&path, numbering, watch, &mut warnings)?,
         None => None,
@@ -38,20 +46,38 @@ pub(super) fn read_file(path: &Path, watch: Watch) -> Result<Triangles> {
         (None, Some(path)) => edge::read_marked(&path, numbering, watch, &mut warnings)?,
         (None, None) => Vec::new(),
     };
-    let lines = edges.into_iter().map(|edge| (edge, EdgeKind::Breakline)).collect();
+    let lines = edges
+        .into_iter()
+        .map(|edge| (edge, EdgeKind::Breakline))
+        .collect();
     let neighbors = match beside("neigh") {
-        Some(path) => Some(neigh::read_file(&path, numbering.first, faces.len(), watch, &mut warnings)?),
+        Some(path) => Some(neigh::read_file(
+            &path,
+            numbering.first,
+            faces.len(),
+            watch,
+            &mut warnings,
+        )?),
         None => None,
     };
     let vertices = nodes.points.into_iter().map(|[x, y]| [x, y, 0.0]).collect();
-    Ok(Triangles { vertices, faces, lines, neighbors, warnings, ..Triangles::default() })
+    Ok(Triangles {
+        vertices,
+        faces,
+        lines,
+        neighbors,
+        warnings,
+        ..Triangles::default()
+    })
 }
 
 fn read(mut rows: Rows, numbering: Numbering) -> Result<Vec<[u32; 3]>> {
     let (mut header, count) = counted(&mut rows, "triangles", COUNTS)?;
     let corner_count: usize = header.within_or("number of vertices of a triangle", 3)?;
     if corner_count != 3 && corner_count != 6 {
-        return Err(header.wrong(format!("a triangle has {corner_count} vertices, expected 3 or 6")));
+        return Err(header.wrong(format!(
+            "a triangle has {corner_count} vertices, expected 3 or 6"
+        )));
     }
     let attribute_count: usize = header.within_or("number of attributes", 0)?;
     let faces = listed(&mut rows, count, "triangle", TRIANGLE, |row, _| {
@@ -74,7 +100,11 @@ fn read(mut rows: Rows, numbering: Numbering) -> Result<Vec<[u32; 3]>> {
 pub(super) fn write(out: &mut impl Write, triangulated: &Triangulated) -> io::Result<()> {
     let first = triangulated.nodes.first_number;
     let attribute_count = usize::from(!triangulated.attributes.is_empty());
-    writeln!(out, "{}  3  {attribute_count}", triangulated.triangles.len())?;
+    writeln!(
+        out,
+        "{}  3  {attribute_count}",
+        triangulated.triangles.len()
+    )?;
     for (i, corners) in triangulated.triangles.iter().enumerate() {
         let [a, b, c] = corners.map(|v| v + first);
         write!(out, "{:4}    {a}  {b}  {c}", i + first as usize)?;

@@ -8,7 +8,10 @@ use crate::io::bytes::watch::{Watch, bytes_of};
 use crate::io::options::cut::open_line;
 
 pub(crate) fn extension(path: &Path) -> String {
-    path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase()
+    path.extension()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .to_ascii_lowercase()
 }
 
 /// Runs `read` on the lines of a file and returns its result; errors name the file. Adds a warning
@@ -20,12 +23,17 @@ pub(crate) fn read_rows<T>(
     read: impl FnOnce(Rows) -> Result<T>,
 ) -> Result<T> {
     let bytes = bytes_of(path, watch)?;
-    warnings.extend(open_line(&bytes).map(|text| wording![format!(".{}: ", extension(path)), text]));
+    warnings
+        .extend(open_line(&bytes).map(|text| wording![format!(".{}: ", extension(path)), text]));
     read(Rows::new(&bytes, watch)).map_err(|e| e.in_file(path))
 }
 
 /// Returns the line that begins a list, and its count.
-pub(crate) fn counted<'a>(rows: &mut Rows<'a>, items: &str, pattern: &'static str) -> Result<(Row<'a>, usize)> {
+pub(crate) fn counted<'a>(
+    rows: &mut Rows<'a>,
+    items: &str,
+    pattern: &'static str,
+) -> Result<(Row<'a>, usize)> {
     let what = format!("number of {items}");
     let mut header = rows.expect(|| format!("the {what}"), pattern)?;
     let count = header.within(&what)?;
@@ -58,7 +66,10 @@ pub(super) fn room(count: usize, rows: &Rows) -> usize {
 
 pub(super) fn site<const D: usize>(row: &mut Row) -> Result<[f64; D]> {
     let mut site = [0.0; D];
-    for (coordinate, what) in site.iter_mut().zip(["x coordinate", "y coordinate", "z coordinate"]) {
+    for (coordinate, what) in site
+        .iter_mut()
+        .zip(["x coordinate", "y coordinate", "z coordinate"])
+    {
         *coordinate = row.finite(what)?;
     }
     Ok(site)
@@ -66,7 +77,11 @@ pub(super) fn site<const D: usize>(row: &mut Row) -> Result<[f64; D]> {
 
 /// Reads the boundary marker; 0 if the list has none.
 pub(super) fn marker(row: &mut Row, marker_count: usize) -> Result<i32> {
-    if marker_count > 0 { row.within("boundary marker") } else { Ok(0) }
+    if marker_count > 0 {
+        row.within("boundary marker")
+    } else {
+        Ok(0)
+    }
 }
 
 /// The numbering of vertices.
@@ -83,7 +98,11 @@ impl Numbering {
         self.index(number).ok_or_else(|| {
             let there = match self.count {
                 0 => "there are no vertices".to_owned(),
-                _ => format!("the vertices are numbered {} to {}", self.first, self.last()),
+                _ => format!(
+                    "the vertices are numbered {} to {}",
+                    self.first,
+                    self.last()
+                ),
             };
             row.wrong(format!("the {what} is vertex {number}, but {there}"))
         })
@@ -98,7 +117,9 @@ impl Numbering {
         }
         self.index(number).map(Some).ok_or_else(|| {
             let [first, last] = [i64::from(self.first), self.last()];
-            row.wrong(format!("the neighbor is {what} {number}, but they are numbered {first} to {last}"))
+            row.wrong(format!(
+                "the neighbor is {what} {number}, but they are numbered {first} to {last}"
+            ))
         })
     }
 
@@ -130,8 +151,9 @@ impl Surplus {
 
     pub(super) fn warning(&self) -> Option<Wording> {
         let (first, lines) = (self.first_line?, self.lines);
-        let text =
-            format!("line {first}: there are more values than announced; they are not read ({lines} such lines)");
+        let text = format!(
+            "line {first}: there are more values than announced; they are not read ({lines} such lines)"
+        );
         Some(text.into())
     }
 }

@@ -24,13 +24,17 @@ pub(super) fn read_file(
     watch: Watch,
     warnings: &mut Vec<Wording>,
 ) -> Result<Vec<[Option<u32>; 3]>> {
-    read_rows(path, watch, warnings, |rows| read(rows, first, triangle_count))
+    read_rows(path, watch, warnings, |rows| {
+        read(rows, first, triangle_count)
+    })
 }
 
 fn read(mut rows: Rows, first: u32, triangle_count: usize) -> Result<Vec<[Option<u32>; 3]>> {
     let (header, count) = counted(&mut rows, "triangles", COUNTS)?;
     if count != triangle_count {
-        return Err(header.wrong(format!("there are {count} triangles, but the .ele file has {triangle_count}")));
+        return Err(header.wrong(format!(
+            "there are {count} triangles, but the .ele file has {triangle_count}"
+        )));
     }
     let numbering = Numbering { first, count };
     let neighbors = listed(&mut rows, count, "triangle", NEIGHBORS, |row, _| {
@@ -48,7 +52,8 @@ pub(super) fn write(out: &mut impl Write, triangulated: &Triangulated) -> io::Re
     let first = triangulated.nodes.first_number;
     writeln!(out, "{}  3", triangulated.neighbors.len())?;
     for (number, around) in (first as usize..).zip(&triangulated.neighbors) {
-        let [a, b, c] = around.map(|beside| beside.map_or(-1, |beside| i64::from(beside) + i64::from(first)));
+        let [a, b, c] =
+            around.map(|beside| beside.map_or(-1, |beside| i64::from(beside) + i64::from(first)));
         writeln!(out, "{number:4}    {a}  {b}  {c}")?;
     }
     Ok(())

@@ -18,8 +18,10 @@ use crate::io::bytes::decimal::Decimal;
 use crate::io::bytes::rows::Rows;
 
 const COUNTS: &str = "VERTICES DIMENSION ATTRIBUTES MARKERS";
-const VERTEX: &str = "NUMBER X Y ATTRIBUTES MARKER, the last two as many as the first line announces";
-const VERTEX_OF_SPACE: &str = "NUMBER X Y Z ATTRIBUTES MARKER, the last two as many as the first line announces";
+const VERTEX: &str =
+    "NUMBER X Y ATTRIBUTES MARKER, the last two as many as the first line announces";
+const VERTEX_OF_SPACE: &str =
+    "NUMBER X Y Z ATTRIBUTES MARKER, the last two as many as the first line announces";
 
 /// The vertices of a file, or of part of one.
 pub(crate) struct Listed<const D: usize = 2> {
@@ -30,16 +32,27 @@ pub(crate) struct Listed<const D: usize = 2> {
 
 /// Returns the dimension that the first line states.
 pub(crate) fn dimension(rows: &mut Rows) -> Result<u32> {
-    counted(rows, "vertices", COUNTS)?.0.within_or("dimension", 2)
+    counted(rows, "vertices", COUNTS)?
+        .0
+        .within_or("dimension", 2)
 }
 
 pub(super) fn read_file(path: &Path, watch: Watch) -> Result<LineGraph> {
     let (Listed { nodes, lines, .. }, warnings) = read_alone(path, watch)?;
-    Ok(LineGraph { nodes, node_file: path.to_path_buf(), node_lines: lines, warnings, ..Default::default() })
+    Ok(LineGraph {
+        nodes,
+        node_file: path.to_path_buf(),
+        node_lines: lines,
+        warnings,
+        ..Default::default()
+    })
 }
 
 /// Reads a file that contains vertices and nothing else; returns them with warnings.
-pub(crate) fn read_alone<const D: usize>(path: &Path, watch: Watch) -> Result<(Listed<D>, Vec<Wording>)> {
+pub(crate) fn read_alone<const D: usize>(
+    path: &Path,
+    watch: Watch,
+) -> Result<(Listed<D>, Vec<Wording>)> {
     let mut warnings = Vec::new();
     let listed = read_rows(path, watch, &mut warnings, |mut rows| {
         let vertices: Listed<D> = read(&mut rows)?;
@@ -68,10 +81,15 @@ pub(super) fn read<const D: usize>(rows: &mut Rows) -> Result<Listed<D>> {
     let attribute_count: usize = header.within_or("number of attributes", 0)?;
     let marker_count: usize = header.within_or("number of boundary markers", 0)?;
     if marker_count > 1 {
-        return Err(header.wrong(format!("the number of boundary markers is {marker_count}, expected 0 or 1")));
+        return Err(header.wrong(format!(
+            "the number of boundary markers is {marker_count}, expected 0 or 1"
+        )));
     }
     let room = room(count, rows);
-    let mut nodes = Nodes { attribute_count, ..Nodes::<D>::default() };
+    let mut nodes = Nodes {
+        attribute_count,
+        ..Nodes::<D>::default()
+    };
     nodes.points.reserve_exact(room);
     nodes.markers.reserve_exact(room);
     let mut surplus = Surplus::default();
@@ -81,11 +99,17 @@ pub(super) fn read<const D: usize>(rows: &mut Rows) -> Result<Listed<D>> {
             nodes.first_number = u32::try_from(number)
                 .ok()
                 .filter(|&first| first <= 1)
-                .ok_or_else(|| row.wrong(format!("the first vertex has the number {number}, expected 0 or 1")))?;
+                .ok_or_else(|| {
+                    row.wrong(format!(
+                        "the first vertex has the number {number}, expected 0 or 1"
+                    ))
+                })?;
         }
         let expected = nodes.points.len() as i64 + i64::from(nodes.first_number);
         if number != expected {
-            return Err(row.wrong(format!("vertex number {number} is out of sequence, expected {expected}")));
+            return Err(row.wrong(format!(
+                "vertex number {number} is out of sequence, expected {expected}"
+            )));
         }
         nodes.points.push(site(row)?);
         for _ in 0..attribute_count {
@@ -95,15 +119,29 @@ pub(super) fn read<const D: usize>(rows: &mut Rows) -> Result<Listed<D>> {
         surplus.look(row);
         Ok(row.line)
     })?;
-    Ok(Listed { nodes, lines, surplus })
+    Ok(Listed {
+        nodes,
+        lines,
+        surplus,
+    })
 }
 
 pub(crate) fn write<const D: usize>(out: &mut impl Write, nodes: &Nodes<D>) -> io::Result<()> {
-    writeln!(out, "{}  {D}  {}  1", nodes.points.len(), nodes.attribute_count)?;
+    writeln!(
+        out,
+        "{}  {D}  {}  1",
+        nodes.points.len(),
+        nodes.attribute_count
+    )?;
     for (i, (point, marker)) in nodes.points.iter().zip(&nodes.markers).enumerate() {
         write!(out, "{:4}  ", i + nodes.first_number as usize)?;
-        point.iter().try_for_each(|&coordinate| write!(out, "  {}", Decimal(coordinate)))?;
-        nodes.attributes_of(i).iter().try_for_each(|&value| write!(out, "  {}", Decimal(value)))?;
+        point
+            .iter()
+            .try_for_each(|&coordinate| write!(out, "  {}", Decimal(coordinate)))?;
+        nodes
+            .attributes_of(i)
+            .iter()
+            .try_for_each(|&value| write!(out, "  {}", Decimal(value)))?;
         writeln!(out, "    {marker}")?;
     }
     Ok(())

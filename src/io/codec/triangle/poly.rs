@@ -28,16 +28,31 @@ pub(super) fn read_file(path: &Path, watch: Watch) -> Result<LineGraph> {
     let bytes = bytes_of(path, watch)?;
     let mut rows = Rows::new(&bytes, watch);
     let here = |e: Error| e.in_file(path);
-    let Listed { nodes, lines, mut surplus } = node::read(&mut rows).map_err(here)?;
+    let Listed {
+        nodes,
+        lines,
+        mut surplus,
+    } = node::read(&mut rows).map_err(here)?;
     let mut graph = if nodes.points.is_empty() {
         let mut graph = node::read_beside(path, watch)?;
         let file = graph.node_file.display().to_string();
-        graph.warnings.iter_mut().for_each(|text| *text = wording![format!("{file}: "), text.clone()]);
+        graph
+            .warnings
+            .iter_mut()
+            .for_each(|text| *text = wording![format!("{file}: "), text.clone()]);
         graph
     } else {
-        LineGraph { nodes, node_file: path.to_path_buf(), node_lines: lines, ..Default::default() }
+        LineGraph {
+            nodes,
+            node_file: path.to_path_buf(),
+            node_lines: lines,
+            ..Default::default()
+        }
     };
-    let numbering = Numbering { first: graph.nodes.first_number, count: graph.nodes.points.len() };
+    let numbering = Numbering {
+        first: graph.nodes.first_number,
+        count: graph.nodes.points.len(),
+    };
     graph.segments = read_segments(&mut rows, numbering, &mut surplus).map_err(here)?;
     graph.holes = read_holes(&mut rows, &mut surplus).map_err(here)?;
     graph.regions = read_regions(&mut rows, &mut surplus).map_err(here)?;
@@ -62,20 +77,33 @@ pub(super) fn read_segments_alone(
     })
 }
 
-fn read_segments(rows: &mut Rows, numbering: Numbering, surplus: &mut Surplus) -> Result<Vec<Segment>> {
+fn read_segments(
+    rows: &mut Rows,
+    numbering: Numbering,
+    surplus: &mut Surplus,
+) -> Result<Vec<Segment>> {
     let (mut header, count) = counted(rows, "segments", SEGMENTS)?;
     let marker_count: usize = header.within_or("number of boundary markers", 0)?;
     if marker_count > 1 || header.has_more() {
         // A vertex that the list before does not count leads here.
-        return Err(
-            header.wrong("this is not a line that counts segments: expected two numbers, the second 0 or 1".into())
-        );
+        return Err(header.wrong(
+            "this is not a line that counts segments: expected two numbers, the second 0 or 1"
+                .into(),
+        ));
     }
     listed(rows, count, "segment", SEGMENT, |row, number| {
-        let ends = [numbering.vertex(row, "first end")?, numbering.vertex(row, "second end")?];
+        let ends = [
+            numbering.vertex(row, "first end")?,
+            numbering.vertex(row, "second end")?,
+        ];
         let marker = marker(row, marker_count)?;
         surplus.look(row);
-        Ok(Segment { ends, marker, number, line: row.line })
+        Ok(Segment {
+            ends,
+            marker,
+            number,
+            line: row.line,
+        })
     })
 }
 
@@ -83,13 +111,18 @@ fn read_segments(rows: &mut Rows, numbering: Numbering, surplus: &mut Surplus) -
 fn count_alone(mut header: Row, items: &str) -> Result<usize> {
     let count = header.within(&format!("number of {items}"))?;
     if header.has_more() {
-        return Err(header.wrong(format!("this is not a line that counts {items}: expected one number")));
+        return Err(header.wrong(format!(
+            "this is not a line that counts {items}: expected one number"
+        )));
     }
     Ok(count)
 }
 
 fn read_holes(rows: &mut Rows, surplus: &mut Surplus) -> Result<Vec<Hole>> {
-    let header = rows.expect(|| "the number of holes".to_owned(), "HOLES, 0 if there are none")?;
+    let header = rows.expect(
+        || "the number of holes".to_owned(),
+        "HOLES, 0 if there are none",
+    )?;
     let count = count_alone(header, "holes")?;
     listed(rows, count, "hole", "NUMBER X Y", |row, _| {
         let at = site(row)?;
@@ -99,15 +132,32 @@ fn read_holes(rows: &mut Rows, surplus: &mut Surplus) -> Result<Vec<Hole>> {
 }
 
 fn read_regions(rows: &mut Rows, surplus: &mut Surplus) -> Result<Vec<Region>> {
-    let Some(header) = rows.next("REGIONS") else { return Ok(Vec::new()) };
+    let Some(header) = rows.next("REGIONS") else {
+        return Ok(Vec::new());
+    };
     let count = count_alone(header, "regions")?;
-    listed(rows, count, "region", "NUMBER X Y ATTRIBUTE AREA", |row, _| {
-        let at = site(row)?;
-        let attribute = row.finite("attribute")?;
-        let area = if row.has_more() { row.finite("largest area")? } else { attribute };
-        surplus.look(row);
-        Ok(Region { at, attribute, max_area: Some(area).filter(|&area| area > 0.0), line: row.line })
-    })
+    listed(
+        rows,
+        count,
+        "region",
+        "NUMBER X Y ATTRIBUTE AREA",
+        |row, _| {
+            let at = site(row)?;
+            let attribute = row.finite("attribute")?;
+            let area = if row.has_more() {
+                row.finite("largest area")?
+            } else {
+                attribute
+            };
+            surplus.look(row);
+            Ok(Region {
+                at,
+                attribute,
+                max_area: Some(area).filter(|&area| area > 0.0),
+                line: row.line,
+            })
+        },
+    )
 }
 
 pub(super) fn write(out: &mut impl Write, triangulated: &Triangulated) -> io::Result<()> {
@@ -130,7 +180,11 @@ pub(super) fn write(out: &mut impl Write, triangulated: &Triangulated) -> io::Re
     for (number, region) in (first as usize..).zip(&triangulated.regions) {
         let ([x, y], attribute) = (region.at.map(Decimal), Decimal(region.attribute));
         // A negative area means no limit, as in Triangle.
-        writeln!(out, "{number:4}    {x}  {y}  {attribute}  {}", Decimal(region.max_area.unwrap_or(-1.0)))?;
+        writeln!(
+            out,
+            "{number:4}    {x}  {y}  {attribute}  {}",
+            Decimal(region.max_area.unwrap_or(-1.0))
+        )?;
     }
     Ok(())
 }

@@ -16,16 +16,24 @@ use crate::terrain::contour::parts::{ContourCollector, ContourParts, join_level}
 ///
 /// # Complexity
 /// n log n for n triangles that meet a level. Memory is needed for the contours and some parts.
-pub(crate) fn contours(parts: &TinParts, levels: &Levels, context: &Context) -> Result<Vec<ContourLine>> {
+pub(crate) fn contours(
+    parts: &TinParts,
+    levels: &Levels,
+    context: &Context,
+) -> Result<Vec<ContourLine>> {
     let of_part = |number: usize| -> Result<ContourParts> {
         context.check()?;
         let part = parts.part(number)?;
         let mut collector = ContourCollector::new(levels);
-        part.tile_triangles().for_each(|triangle| collector.add(&triangle));
+        part.tile_triangles()
+            .for_each(|triangle| collector.add(&triangle));
         part.ensure_intact()?;
         collector.finish()
     };
-    let of_parts = (0..parts.index().parts.len()).into_par_iter().map(of_part).collect::<Result<_>>()?;
+    let of_parts = (0..parts.index().parts.len())
+        .into_par_iter()
+        .map(of_part)
+        .collect::<Result<_>>()?;
     let merged = ContourParts::merged(of_parts)?;
     let [low, high] = merged.heights();
     levels.within(low, high)?;

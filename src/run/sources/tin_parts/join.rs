@@ -54,7 +54,9 @@ impl TinParts {
                     .in_file(self.folder.join(&stated.file))
                     .cure("copy the index together with its folder, or write the surface again"));
             }
-            let SurfaceFacts { triangles, extent, .. } = part.facts();
+            let SurfaceFacts {
+                triangles, extent, ..
+            } = part.facts();
             if (*triangles as u64, *extent) != (stated.triangles, stated.extent) {
                 return Err(Error::format(format!(
                     "the counts or the extent of {} are not those of its file",
@@ -65,9 +67,11 @@ impl TinParts {
             }
         }
         if SurfaceFacts::of(self.joined()?) != self.index.facts {
-            return Err(Error::format("the counts or the extent are not those of the parts")
-                .in_file(&self.path)
-                .cure(wording!["write the surface again with ", Command::Tin]));
+            return Err(
+                Error::format("the counts or the extent are not those of the parts")
+                    .in_file(&self.path)
+                    .cure(wording!["write the surface again with ", Command::Tin]),
+            );
         }
         Ok(())
     }
@@ -75,7 +79,10 @@ impl TinParts {
 
 /// Joins the parts: vertices that stand for the same point are one.
 fn joined(parts: &TinParts) -> Result<JoinedTin> {
-    let mut joining = Joining { shared: shared_vertices(parts)?, ..Joining::default() };
+    let mut joining = Joining {
+        shared: shared_vertices(parts)?,
+        ..Joining::default()
+    };
     for number in 0..parts.index().parts.len() {
         joining.add(&parts.part(number)?)?;
     }
@@ -86,9 +93,16 @@ fn joined(parts: &TinParts) -> Result<JoinedTin> {
 /// those of one.
 fn shared_vertices(parts: &TinParts) -> Result<FxHashMap<[u32; 2], u32>> {
     let mut shared = FxHashMap::default();
-    for (number, _) in parts.index().parts.iter().enumerate().filter(|(_, part)| part.tile.is_none()) {
+    for (number, _) in parts
+        .index()
+        .parts
+        .iter()
+        .enumerate()
+        .filter(|(_, part)| part.tile.is_none())
+    {
         let part = parts.part(number)?;
-        let vertices = (0..part.vertex_count() as u32).filter_map(|vertex| part.tile_vertex(vertex));
+        let vertices =
+            (0..part.vertex_count() as u32).filter_map(|vertex| part.tile_vertex(vertex));
         shared.extend(vertices.map(|TileVertex { tile, number, .. }| ([tile, number], UNUSED)));
         part.ensure_intact()?;
     }
@@ -135,26 +149,51 @@ impl Joining {
     fn add(&mut self, part: &CompactTin<Mapped>) -> Result<()> {
         let mut number_of = vec![UNUSED; part.vertex_count()];
         for face in 0..part.face_count() as u32 {
-            let Some(corners) = part.face(face) else { continue };
+            let Some(corners) = part.face(face) else {
+                continue;
+            };
             let of_face = corners.map(|vertex| self.number(part, vertex, &mut number_of));
             let kinds = [0, 1, 2].map(|i| part.edge_kind(face, i));
-            let faces = if part.is_fragment(face) { &mut self.fragments } else { &mut self.whole };
+            let faces = if part.is_fragment(face) {
+                &mut self.fragments
+            } else {
+                &mut self.whole
+            };
             faces.push(of_face, kinds);
             let is_listed = |i: &usize| part.neighbor(face, *i).is_none_or(|other| face < other);
-            self.lines.extend((0..3).filter(is_listed).filter_map(|i| line(of_face, i, kinds[i])));
+            self.lines.extend(
+                (0..3)
+                    .filter(is_listed)
+                    .filter_map(|i| line(of_face, i, kinds[i])),
+            );
         }
-        for BaseFace { number, corners, edges, .. } in part.faces_under_whole() {
+        for BaseFace {
+            number,
+            corners,
+            edges,
+            ..
+        } in part.faces_under_whole()
+        {
             let of_face = corners.map(|vertex| self.number(part, vertex, &mut number_of));
             if part.face(number).is_none() {
                 self.left_out.push(of_face);
             }
-            self.lines_under.extend((0..3).filter_map(|i| line(of_face, i, edges[i])));
+            self.lines_under
+                .extend((0..3).filter_map(|i| line(of_face, i, edges[i])));
         }
         part.ensure_intact()?;
-        let faces = self.whole.corners.len().max(self.fragments.corners.len()).max(self.left_out.len());
+        let faces = self
+            .whole
+            .corners
+            .len()
+            .max(self.fragments.corners.len())
+            .max(self.left_out.len());
         if self.vertices.len() >= UNUSED as usize || faces >= UNUSED as usize {
-            return Err(Error::limit("the parts have more triangles than one mesh can number")
-                .cure("make the raster or the contours of the parts as they are, with linear heights"));
+            return Err(
+                Error::limit("the parts have more triangles than one mesh can number").cure(
+                    "make the raster or the contours of the parts as they are, with linear heights",
+                ),
+            );
         }
         Ok(())
     }
@@ -166,7 +205,15 @@ impl Joining {
             return *number;
         }
         // What is damaged is an error after the part.
-        let Some(TileVertex { tile, number: own, position, .. }) = part.tile_vertex(vertex) else { return 0 };
+        let Some(TileVertex {
+            tile,
+            number: own,
+            position,
+            ..
+        }) = part.tile_vertex(vertex)
+        else {
+            return 0;
+        };
         let next = self.vertices.len() as u32;
         *number = match self.shared.get_mut(&[tile, own]) {
             Some(number) if *number != UNUSED => *number,
@@ -183,27 +230,55 @@ impl Joining {
     }
 
     fn finish(self, crs: Option<Crs>) -> Result<JoinedTin> {
-        let Joining { vertices, mut whole, mut fragments, lines, mut left_out, lines_under, .. } = self;
+        let Joining {
+            vertices,
+            mut whole,
+            mut fragments,
+            lines,
+            mut left_out,
+            lines_under,
+            ..
+        } = self;
         let count = whole.corners.len() as u32;
         let under = match (fragments.corners.is_empty(), left_out.is_empty()) {
             (true, true) => None,
             _ => {
                 left_out.splice(0..0, whole.corners.iter().copied());
                 let (vertices, faces) = (vertices.clone(), left_out);
-                Some(Mesh::of(Triangles { vertices, faces, lines: lines_under, ..Triangles::default() })?)
+                Some(Mesh::of(Triangles {
+                    vertices,
+                    faces,
+                    lines: lines_under,
+                    ..Triangles::default()
+                })?)
             }
         };
         let numbers = (count..).take(fragments.corners.len()).collect();
         whole.append(&mut fragments);
-        let Faces { corners: faces, sides } = whole;
+        let Faces {
+            corners: faces,
+            sides,
+        } = whole;
         let sides = Some(sides);
-        let faces =
-            Mesh::of(Triangles { vertices, faces, lines, fragments: numbers, sides, crs, ..Triangles::default() })?;
-        Ok(JoinedTin { faces, under, whole: count })
+        let faces = Mesh::of(Triangles {
+            vertices,
+            faces,
+            lines,
+            fragments: numbers,
+            sides,
+            crs,
+            ..Triangles::default()
+        })?;
+        Ok(JoinedTin {
+            faces,
+            under,
+            whole: count,
+        })
     }
 }
 
 /// Returns the edge opposite corner `i` of a face, if it is on a line.
 fn line(face: [u32; 3], i: usize, kind: EdgeKind) -> Option<Line> {
-    kind.is_constrained().then_some(([face[(i + 1) % 3], face[(i + 2) % 3]], kind))
+    kind.is_constrained()
+        .then_some(([face[(i + 1) % 3], face[(i + 2) % 3]], kind))
 }

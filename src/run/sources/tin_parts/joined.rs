@@ -56,11 +56,14 @@ impl Surface for JoinedTin {
     }
 
     fn neighbor(&self, face: u32, i: usize) -> Option<u32> {
-        self.faces.neighbor(self.listed(face)?, i).map(|listed| self.number(listed))
+        self.faces
+            .neighbor(self.listed(face)?, i)
+            .map(|listed| self.number(listed))
     }
 
     fn edge_kind(&self, face: u32, i: usize) -> EdgeKind {
-        self.listed(face).map_or(EdgeKind::Rim, |listed| self.faces.edge_kind(listed, i))
+        self.listed(face)
+            .map_or(EdgeKind::Rim, |listed| self.faces.edge_kind(listed, i))
     }
 
     fn is_fragment(&self, face: u32) -> bool {
@@ -72,10 +75,15 @@ impl Surface for JoinedTin {
     }
 
     fn base_count(&self) -> usize {
-        self.under.as_ref().map_or(self.whole as usize, Surface::face_count)
+        self.under
+            .as_ref()
+            .map_or(self.whole as usize, Surface::face_count)
     }
 
     fn base_faces_in(&self, numbers: Range<u32>, faces: &mut Vec<BaseFace>) {
-        self.under.as_ref().unwrap_or(&self.faces).base_faces_in(numbers, faces);
+        self.under
+            .as_ref()
+            .unwrap_or(&self.faces)
+            .base_faces_in(numbers, faces);
     }
 }

@@ -36,9 +36,14 @@ pub struct TinParts {
 /// Returns the folder of the parts of a surface; `None` unless a file is the index of one.
 pub(crate) fn parts_folder(path: &Path) -> Option<PathBuf> {
     // By its name first: other inputs may be many, and far away.
-    let format = crate::io::formats::of_name(path).filter(|format| format.extensions.contains(&"tins"));
-    let text = format.and_then(|_| crate::io::mesh::read_tin_index(path))?.ok()?;
-    TinIndex::from_text(&text).ok().map(|index| path.with_file_name(index.folder))
+    let format =
+        crate::io::formats::of_name(path).filter(|format| format.extensions.contains(&"tins"));
+    let text = format
+        .and_then(|_| crate::io::mesh::read_tin_index(path))?
+        .ok()?;
+    TinIndex::from_text(&text)
+        .ok()
+        .map(|index| path.with_file_name(index.folder))
 }
 
 impl TinParts {
@@ -47,36 +52,59 @@ impl TinParts {
     /// # Errors
     /// If the index is damaged, or a part is missing or has another length.
     pub(crate) fn open(path: &Path, text: &[u8]) -> Result<Self> {
-        let index = TinIndex::from_text(text)
-            .map_err(|e| e.in_file(path).cure(wording!["write the surface again with ", Command::Tin]))?;
+        let index = TinIndex::from_text(text).map_err(|e| {
+            e.in_file(path)
+                .cure(wording!["write the surface again with ", Command::Tin])
+        })?;
         let wrong = |what: &str| {
             Error::format(format!("{what} of the parts are not those of the surface"))
                 .in_file(path)
                 .cure(wording!["write the surface again with ", Command::Tin])
         };
-        if index.parts.iter().fold(0_u64, |sum, part| sum.saturating_add(part.triangles))
+        if index
+            .parts
+            .iter()
+            .fold(0_u64, |sum, part| sum.saturating_add(part.triangles))
             != index.facts.triangles as u64
         {
             return Err(wrong("the counts"));
         }
         let mut extent = Bounds::default();
-        index.parts.iter().for_each(|part| extent.merge(&part.extent));
+        index
+            .parts
+            .iter()
+            .for_each(|part| extent.merge(&part.extent));
         if extent != index.facts.extent {
             return Err(wrong("the extents"));
         }
         let folder = path.with_file_name(&index.folder);
         for part in &index.parts {
             let file = folder.join(&part.file);
-            let length = std::fs::metadata(&file).map_err(|e| missing(e, path, &file))?.len();
+            let length = std::fs::metadata(&file)
+                .map_err(|e| missing(e, path, &file))?
+                .len();
             if length != part.bytes {
-                return Err(Error::format(format!("{length} bytes, but the index states {}", part.bytes))
-                    .in_file(file)
-                    .cure("copy the index together with its folder, or write the surface again"));
+                return Err(Error::format(format!(
+                    "{length} bytes, but the index states {}",
+                    part.bytes
+                ))
+                .in_file(file)
+                .cure("copy the index together with its folder, or write the surface again"));
             }
         }
-        let files: Vec<PathBuf> = index.parts.iter().map(|part| folder.join(&part.file)).collect();
+        let files: Vec<PathBuf> = index
+            .parts
+            .iter()
+            .map(|part| folder.join(&part.file))
+            .collect();
         let open = Box::new(move |part: usize| open_file(&files[part]));
-        Ok(TinParts { path: path.to_path_buf(), folder, index, joined: OnceLock::new(), open })
+        Ok(TinParts {
+            path: path.to_path_buf(),
+            folder,
+            index,
+            joined: OnceLock::new(),
+            open,
+        })
     }
 
     /// Returns what is true of the whole.
@@ -117,22 +145,36 @@ impl TinParts {
     /// Returns a raster of linear heights.
     pub(crate) fn dem(&self, frame: Frame) -> Result<Box<dyn BlockSource + '_>> {
         let extents: Vec<Bounds> = self.index.parts.iter().map(|part| part.extent).collect();
-        Ok(Box::new(DemOfParts::new(frame, self.index.crs.clone(), &extents, &*self.open)?))
+        Ok(Box::new(DemOfParts::new(
+            frame,
+            self.index.crs.clone(),
+            &extents,
+            &*self.open,
+        )?))
     }
 }
 
 impl std::fmt::Debug for TinParts {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("TinParts").field("path", &self.path).field("index", &self.index).finish_non_exhaustive()
+        f.debug_struct("TinParts")
+            .field("path", &self.path)
+            .field("index", &self.index)
+            .finish_non_exhaustive()
     }
 }
 
 fn open_file(file: &Path) -> Result<CompactTin<Mapped>> {
     let tin = CompactTin::open(mapped::open(file)?, file)?;
-    if tin.is_part() { Ok(tin) } else { Err(Error::format("the TIN is not part of a larger one").in_file(file)) }
+    if tin.is_part() {
+        Ok(tin)
+    } else {
+        Err(Error::format("the TIN is not part of a larger one").in_file(file))
+    }
 }
 
 #[cold]
 fn missing(error: std::io::Error, index: &Path, part: &Path) -> Error {
-    Error::from(error).in_file(part).cure(format!("{} needs its folder next to it", index.display()))
+    Error::from(error)
+        .in_file(part)
+        .cure(format!("{} needs its folder next to it", index.display()))
 }

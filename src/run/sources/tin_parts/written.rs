@@ -20,8 +20,16 @@ pub struct WrittenParts {
 impl WrittenParts {
     /// The parts that an index names. `folder` is theirs, unless it was there before; `superseded`
     /// are the folder and the files of the surface that they replace.
-    pub(crate) fn new(index: TinIndex, folder: Option<PathBuf>, superseded: Option<(PathBuf, Vec<PathBuf>)>) -> Self {
-        WrittenParts { index, folder, superseded }
+    pub(crate) fn new(
+        index: TinIndex,
+        folder: Option<PathBuf>,
+        superseded: Option<(PathBuf, Vec<PathBuf>)>,
+    ) -> Self {
+        WrittenParts {
+            index,
+            folder,
+            superseded,
+        }
     }
 
     /// Keeps the parts, once the index has appeared, and removes those of the surface that this one
@@ -31,7 +39,9 @@ impl WrittenParts {
     /// If they cannot be removed.
     pub fn keep(&mut self) -> Result<()> {
         self.folder = None;
-        let Some((folder, files)) = self.superseded.take() else { return Ok(()) };
+        let Some((folder, files)) = self.superseded.take() else {
+            return Ok(());
+        };
         for file in files.iter().filter(|file| file.exists()) {
             std::fs::remove_file(file).map_err(|e| Error::from(e).in_file(file))?;
         }

@@ -53,7 +53,10 @@ impl<'a> StoredParts<'a> {
     /// # Errors
     /// If the bytes are not those that [`ContourParts::write`] wrote.
     pub fn new(bytes: &'a [u8]) -> Result<Self> {
-        Ok(StoredParts { table: PartsTable::read(bytes).ok_or_else(damaged)?, bytes })
+        Ok(StoredParts {
+            table: PartsTable::read(bytes).ok_or_else(damaged)?,
+            bytes,
+        })
     }
 
     /// Returns the lowest and the highest height of the triangles; without triangles, infinity and
@@ -73,7 +76,9 @@ impl<'a> StoredParts<'a> {
     /// If the bytes are damaged.
     pub fn level(&self, level: f64) -> Result<Option<LevelParts>> {
         let levels = &self.table.levels;
-        let Ok(at) = levels.binary_search_by(|(own, _)| own.total_cmp(&level)) else { return Ok(None) };
+        let Ok(at) = levels.binary_search_by(|(own, _)| own.total_cmp(&level)) else {
+            return Ok(None);
+        };
         let range = &levels[at].1;
         LevelParts::read(level, &self.bytes[range.start as usize..range.end as usize]).map(Some)
     }
@@ -105,8 +110,14 @@ impl ContourParts {
     /// If the bytes are not those that [`write`](Self::write) wrote.
     pub fn read(bytes: &[u8]) -> Result<Self> {
         let stored = StoredParts::new(bytes)?;
-        let levels: Result<_> = stored.levels().filter_map(|level| stored.level(level).transpose()).collect();
-        Ok(ContourParts { heights: stored.heights(), levels: levels? })
+        let levels: Result<_> = stored
+            .levels()
+            .filter_map(|level| stored.level(level).transpose())
+            .collect();
+        Ok(ContourParts {
+            heights: stored.heights(),
+            levels: levels?,
+        })
     }
 }
 
@@ -116,7 +127,9 @@ impl LevelParts {
     /// # Errors
     /// If the bytes are damaged.
     pub fn read(level: f64, bytes: &[u8]) -> Result<Self> {
-        PartsReader(bytes).level_parts(level).ok_or_else(|| damaged().at(format!("level {level}")))
+        PartsReader(bytes)
+            .level_parts(level)
+            .ok_or_else(|| damaged().at(format!("level {level}")))
     }
 
     /// Writes the parts of the level, which [`read`](Self::read) reads; `out` should have a buffer.
@@ -136,7 +149,9 @@ impl LevelParts {
         }
         write_count(out, self.sides.len())?;
         for side in &self.sides {
-            side.vertices.iter().try_for_each(|&vertex| write_vertex(out, vertex))?;
+            side.vertices
+                .iter()
+                .try_for_each(|&vertex| write_vertex(out, vertex))?;
             side.at.iter().try_for_each(|&at| write_point(out, at))?;
             out.write_all(&[u8::from(side.is_high)])?;
         }
@@ -163,7 +178,9 @@ fn write_count(out: &mut impl Write, count: usize) -> std::io::Result<()> {
 }
 
 fn write_point(out: &mut impl Write, point: [f64; 2]) -> std::io::Result<()> {
-    point.iter().try_for_each(|x| out.write_all(&x.to_le_bytes()))
+    point
+        .iter()
+        .try_for_each(|x| out.write_all(&x.to_le_bytes()))
 }
 
 fn write_points(out: &mut impl Write, points: &[[f64; 2]]) -> std::io::Result<()> {
@@ -172,14 +189,17 @@ fn write_points(out: &mut impl Write, points: &[[f64; 2]]) -> std::io::Result<()
 }
 
 fn write_vertex(out: &mut impl Write, vertex: [u32; 2]) -> std::io::Result<()> {
-    vertex.iter().try_for_each(|number| out.write_all(&number.to_le_bytes()))
+    vertex
+        .iter()
+        .try_for_each(|number| out.write_all(&number.to_le_bytes()))
 }
 
 fn write_end(out: &mut impl Write, end: &LineEnd) -> std::io::Result<()> {
     match *end {
         LineEnd::Edge(edge) => {
             out.write_all(&[0])?;
-            edge.iter().try_for_each(|&vertex| write_vertex(out, vertex))
+            edge.iter()
+                .try_for_each(|&vertex| write_vertex(out, vertex))
         }
         LineEnd::Vertex { vertex, toward } => {
             out.write_all(&[1])?;
@@ -214,18 +234,31 @@ impl<'a> PartsReader<'a> {
             levels.push((level, start..end));
         }
         let is_ascending = levels.windows(2).all(|pair| pair[0].0 < pair[1].0);
-        let is_within = levels.iter().all(|(level, _)| heights[0] <= *level && *level <= heights[1]);
+        let is_within = levels
+            .iter()
+            .all(|(level, _)| heights[0] <= *level && *level <= heights[1]);
         let is_range = heights.iter().all(|height| height.is_finite()) || heights == NO_HEIGHTS;
-        (end == length && is_ascending && is_within && is_range).then_some(PartsTable { heights, levels })
+        (end == length && is_ascending && is_within && is_range)
+            .then_some(PartsTable { heights, levels })
     }
 
     fn level_parts(mut self, level: f64) -> Option<LevelParts> {
         let touches_vertices = self.boolean()?;
         // Of each item, the least number of bytes.
-        let closed = self.many(40, |reader| reader.points().filter(|points| points.first() == points.last()))?;
+        let closed = self.many(40, |reader| {
+            reader
+                .points()
+                .filter(|points| points.first() == points.last())
+        })?;
         let open = self.many(74, Self::open_line)?;
         let sides = self.many(49, Self::side)?;
-        self.0.is_empty().then_some(LevelParts { level, touches_vertices, closed, open, sides })
+        self.0.is_empty().then_some(LevelParts {
+            level,
+            touches_vertices,
+            closed,
+            open,
+            sides,
+        })
     }
 
     fn open_line(&mut self) -> Option<OpenLine> {
@@ -241,8 +274,13 @@ impl<'a> PartsReader<'a> {
 
     fn end(&mut self) -> Option<LineEnd> {
         match self.boolean()? {
-            false => Some([self.vertex()?, self.vertex()?]).filter(|[a, b]| a < b).map(LineEnd::Edge),
-            true => Some(LineEnd::Vertex { vertex: self.vertex()?, toward: self.point()? }),
+            false => Some([self.vertex()?, self.vertex()?])
+                .filter(|[a, b]| a < b)
+                .map(LineEnd::Edge),
+            true => Some(LineEnd::Vertex {
+                vertex: self.vertex()?,
+                toward: self.point()?,
+            }),
         }
     }
 
@@ -250,7 +288,12 @@ impl<'a> PartsReader<'a> {
         let vertices = [self.vertex()?, self.vertex()?];
         let at = [self.point()?, self.point()?];
         let is_edge = vertices[0] != vertices[1] && at[0] != at[1];
-        Some(LevelSide { vertices, at, is_high: self.boolean()? }).filter(|_| is_edge)
+        Some(LevelSide {
+            vertices,
+            at,
+            is_high: self.boolean()?,
+        })
+        .filter(|_| is_edge)
     }
 
     /// The points of a line: at least two.
@@ -263,11 +306,18 @@ impl<'a> PartsReader<'a> {
     }
 
     fn vertex(&mut self) -> Option<[u32; 2]> {
-        Some([u32::from_le_bytes(self.array()?), u32::from_le_bytes(self.array()?)])
+        Some([
+            u32::from_le_bytes(self.array()?),
+            u32::from_le_bytes(self.array()?),
+        ])
     }
 
     /// A count, and as many items.
-    fn many<T>(&mut self, least_size: usize, mut one: impl FnMut(&mut Self) -> Option<T>) -> Option<Vec<T>> {
+    fn many<T>(
+        &mut self,
+        least_size: usize,
+        mut one: impl FnMut(&mut Self) -> Option<T>,
+    ) -> Option<Vec<T>> {
         let count = self.count(least_size)?;
         let mut items = Vec::with_capacity(count);
         for _ in 0..count {

@@ -64,14 +64,26 @@ impl ContourCollector {
     fn try_add(&mut self, triangle: &TileTriangle) -> Result<()> {
         let [a, b, c] = triangle.corners.map(|corner| corner.position[2]);
         let (low, high) = (a.min(b).min(c), a.max(b).max(c));
-        if let Some(corner) = triangle.corners.iter().find(|corner| corner.position.iter().any(|x| !x.is_finite())) {
-            return Err(Error::format(format!("{:?} is not a finite point", corner.position)));
+        if let Some(corner) = triangle
+            .corners
+            .iter()
+            .find(|corner| corner.position.iter().any(|x| !x.is_finite()))
+        {
+            return Err(Error::format(format!(
+                "{:?} is not a finite point",
+                corner.position
+            )));
         }
         self.heights = find::joined(self.heights, [low, high]);
         if low < self.range[0] || high > self.range[1] {
             self.widen_index()?;
         }
-        if self.index.levels().get(self.index.first_from(low)).is_some_and(|&level| level <= high) {
+        if self
+            .index
+            .levels()
+            .get(self.index.first_from(low))
+            .is_some_and(|&level| level <= high)
+        {
             self.patch.push(triangle);
             if self.patch.face_count() >= self.patch_size {
                 self.make_parts()?;
@@ -86,12 +98,17 @@ impl ContourCollector {
         let ([low, high], [from, to]) = (self.heights, self.range);
         let widened = |share: f64| {
             let more = share * (high - low);
-            [if low < from { low - more } else { from }, if high > to { high + more } else { to }]
+            [
+                if low < from { low - more } else { from },
+                if high > to { high + more } else { to },
+            ]
         };
-        let found = [1.0, 1.0 / 16.0, 1.0 / 256.0].into_iter().find_map(|share| {
-            let range = widened(share);
-            Some((range, self.levels.within(range[0], range[1]).ok()?))
-        });
+        let found = [1.0, 1.0 / 16.0, 1.0 / 256.0]
+            .into_iter()
+            .find_map(|share| {
+                let range = widened(share);
+                Some((range, self.levels.within(range[0], range[1]).ok()?))
+            });
         let (range, levels) = match found {
             Some(found) => found,
             None => (self.heights, self.levels.within(low, high)?),
@@ -111,11 +128,14 @@ impl ContourCollector {
         let counts = find::counts_of(&found, band.clone());
         let arcs = LevelArcs::new(found, band.start, &counts);
         let mut parts =
-            trace::each_level(mesh, &self.index, band.clone(), &arcs, |level, traces| patch.parts(level, traces));
+            trace::each_level(mesh, &self.index, band.clone(), &arcs, |level, traces| {
+                patch.parts(level, traces)
+            });
         for (level, side) in patch.level_sides(&self.index) {
             parts[level - band.start].sides.push(side);
         }
-        self.parts.extend(parts.into_iter().filter(|parts| !parts.is_empty()));
+        self.parts
+            .extend(parts.into_iter().filter(|parts| !parts.is_empty()));
         Ok(())
     }
 
@@ -129,6 +149,9 @@ impl ContourCollector {
             return Err(error);
         }
         self.make_parts()?;
-        Ok(ContourParts { heights: self.heights, levels: join::merge_levels(self.parts)? })
+        Ok(ContourParts {
+            heights: self.heights,
+            levels: join::merge_levels(self.parts)?,
+        })
     }
 }

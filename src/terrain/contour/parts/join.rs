@@ -21,7 +21,10 @@ impl ContourParts {
             heights = find::joined(heights, part.heights);
             levels.extend(part.levels);
         }
-        Ok(ContourParts { heights, levels: merge_levels(levels)? })
+        Ok(ContourParts {
+            heights,
+            levels: merge_levels(levels)?,
+        })
     }
 }
 
@@ -38,12 +41,27 @@ impl ContourParts {
 /// `n log n` for `n` parts, and for the lines. Memory: that of the parts, and 250 bytes per open
 /// one; where rounding shows, 250 bytes per arc, as in `contours`.
 pub fn join_level(level: f64, parts: Vec<LevelParts>) -> Result<Vec<ContourLine>> {
-    let LevelParts { touches_vertices, closed, open, .. } = gathered(level, parts)?;
+    let LevelParts {
+        touches_vertices,
+        closed,
+        open,
+        ..
+    } = gathered(level, parts)?;
     let mut next = vec![None; open.len()];
     follow_edges(level, &open, &mut next)?;
     follow_vertices(level, &open, &mut next)?;
-    let mut joined: Vec<Joined> = closed.into_iter().map(|points| Joined { points, closed: true }).collect();
-    chain(open.into_iter().map(|line| line.points).collect(), &next, |line, _| joined.push(line));
+    let mut joined: Vec<Joined> = closed
+        .into_iter()
+        .map(|points| Joined {
+            points,
+            closed: true,
+        })
+        .collect();
+    chain(
+        open.into_iter().map(|line| line.points).collect(),
+        &next,
+        |line, _| joined.push(line),
+    );
     Ok(finish_level(level, joined, touches_vertices))
 }
 
@@ -52,29 +70,61 @@ pub(super) fn merge_levels(mut parts: Vec<LevelParts>) -> Result<Vec<LevelParts>
     parts.sort_by(|a, b| a.level.total_cmp(&b.level));
     let mut groups: Vec<Vec<LevelParts>> = Vec::new();
     for part in parts {
-        match groups.last_mut().filter(|group| group[0].level == part.level) {
+        match groups
+            .last_mut()
+            .filter(|group| group[0].level == part.level)
+        {
             Some(group) => group.push(part),
             None => groups.push(vec![part]),
         }
     }
     // The first error is returned, whatever the threads do.
-    let merged: Vec<Result<LevelParts>> = groups.into_par_iter().map(|group| merged(group[0].level, group)).collect();
+    let merged: Vec<Result<LevelParts>> = groups
+        .into_par_iter()
+        .map(|group| merged(group[0].level, group))
+        .collect();
     merged.into_iter().collect()
 }
 
 /// Merges the parts of a level. Lines that end at a vertex stay open: other parts may have arcs
 /// there.
 fn merged(level: f64, parts: Vec<LevelParts>) -> Result<LevelParts> {
-    let LevelParts { touches_vertices, mut closed, open, sides, .. } = gathered(level, parts)?;
+    let LevelParts {
+        touches_vertices,
+        mut closed,
+        open,
+        sides,
+        ..
+    } = gathered(level, parts)?;
     let mut next = vec![None; open.len()];
     follow_edges(level, &open, &mut next)?;
-    let (points, ends): (Vec<_>, Vec<_>) = open.into_iter().map(|line| (line.points, line.ends)).unzip();
+    let (points, ends): (Vec<_>, Vec<_>) = open
+        .into_iter()
+        .map(|line| (line.points, line.ends))
+        .unzip();
     let mut open = Vec::new();
-    chain(points, &next, |Joined { points, closed: is_closed }, [first, last]| match is_closed {
-        true => closed.push(points),
-        false => open.push(OpenLine { points, ends: [ends[first][0], ends[last][1]] }),
-    });
-    Ok(LevelParts { level, touches_vertices, closed, open, sides })
+    chain(
+        points,
+        &next,
+        |Joined {
+             points,
+             closed: is_closed,
+         },
+         [first, last]| match is_closed {
+            true => closed.push(points),
+            false => open.push(OpenLine {
+                points,
+                ends: [ends[first][0], ends[last][1]],
+            }),
+        },
+    );
+    Ok(LevelParts {
+        level,
+        touches_vertices,
+        closed,
+        open,
+        sides,
+    })
 }
 
 /// Returns all parts of a level in one, with the arcs along edges whose two sides are among them.
@@ -90,9 +140,12 @@ fn gathered(level: f64, parts: Vec<LevelParts>) -> Result<LevelParts> {
         all.sides.extend(part.sides);
     }
     if !is_level {
-        return Err(Error::usage(format!("parts of several levels are joined, expected level {level} only")));
+        return Err(Error::usage(format!(
+            "parts of several levels are joined, expected level {level} only"
+        )));
     }
-    all.sides.sort_unstable_by_key(|side| (sorted(side), side.vertices));
+    all.sides
+        .sort_unstable_by_key(|side| (sorted(side), side.vertices));
     let mut unmatched = Vec::new();
     for sides in all.sides.chunk_by(|a, b| sorted(a) == sorted(b)) {
         match *sides {
@@ -126,8 +179,20 @@ impl LevelSide {
             _ => return None,
         };
         let ([to, from], [q, p]) = (high.vertices, high.at);
-        let ends = [LineEnd::Vertex { vertex: from, toward: q }, LineEnd::Vertex { vertex: to, toward: p }];
-        Some(OpenLine { points: vec![p, q], ends })
+        let ends = [
+            LineEnd::Vertex {
+                vertex: from,
+                toward: q,
+            },
+            LineEnd::Vertex {
+                vertex: to,
+                toward: p,
+            },
+        ];
+        Some(OpenLine {
+            points: vec![p, q],
+            ends,
+        })
     }
 }
 
@@ -150,13 +215,36 @@ fn follow_vertices(level: f64, open: &[OpenLine], next: &mut [Option<usize>]) ->
 }
 
 /// The ends of lines for which `key_of` returns the key of a node, and the direction from it.
-fn ends_at<K>(open: &[OpenLine], key_of: impl Fn(LineEnd, [f64; 2]) -> Option<(K, [f64; 2])>) -> Vec<(K, End)> {
+fn ends_at<K>(
+    open: &[OpenLine],
+    key_of: impl Fn(LineEnd, [f64; 2]) -> Option<(K, [f64; 2])>,
+) -> Vec<(K, End)> {
     let mut ends = Vec::new();
-    for (line, OpenLine { points, ends: [start, end] }) in open.iter().enumerate() {
+    for (
+        line,
+        OpenLine {
+            points,
+            ends: [start, end],
+        },
+    ) in open.iter().enumerate()
+    {
         let (first, last) = (points[0], points[points.len() - 1]);
-        for (end, center, direction) in [(*start, first, Direction::Forward), (*end, last, Direction::Backward)] {
+        for (end, center, direction) in [
+            (*start, first, Direction::Forward),
+            (*end, last, Direction::Backward),
+        ] {
             let found = key_of(end, center);
-            ends.extend(found.map(|(key, toward)| (key, End { center, toward, direction, line })));
+            ends.extend(found.map(|(key, toward)| {
+                (
+                    key,
+                    End {
+                        center,
+                        toward,
+                        direction,
+                        line,
+                    },
+                )
+            }));
         }
     }
     ends
@@ -171,12 +259,17 @@ fn follow<K: Ord>(
 ) -> Result<()> {
     let by_direction = |a: &End, b: &End| {
         let by_toward = a.toward.partial_cmp(&b.toward).unwrap_or(Ordering::Equal);
-        by_toward.then_with(|| (a.direction == Direction::Forward).cmp(&(b.direction == Direction::Forward)))
+        by_toward.then_with(|| {
+            (a.direction == Direction::Forward).cmp(&(b.direction == Direction::Forward))
+        })
     };
     ends.sort_unstable_by(|(a, end), (b, other)| a.cmp(b).then_with(|| by_direction(end, other)));
     for node in ends.chunk_by(|a, b| a.0 == b.0) {
         let group: Vec<End> = node.iter().map(|(_, end)| *end).collect();
-        if group.windows(2).any(|pair| pair[0].center != pair[1].center || is_same(&pair[0], &pair[1])) {
+        if group
+            .windows(2)
+            .any(|pair| pair[0].center != pair[1].center || is_same(&pair[0], &pair[1]))
+        {
             return Err(contradiction(level, group[0].center));
         }
         pair(group, next);
@@ -186,6 +279,8 @@ fn follow<K: Ord>(
 
 #[cold]
 fn contradiction(level: f64, at: [f64; 2]) -> Error {
-    Error::format(format!("the parts of level {level} contradict each other at {at:?}"))
-        .cure("give the parts of each task once, and all of one triangulation")
+    Error::format(format!(
+        "the parts of level {level} contradict each other at {at:?}"
+    ))
+    .cure("give the parts of each task once, and all of one triangulation")
 }

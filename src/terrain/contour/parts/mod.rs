@@ -117,7 +117,13 @@ pub struct LevelParts {
 
 impl LevelParts {
     fn new(level: f64) -> Self {
-        LevelParts { level, touches_vertices: false, closed: Vec::new(), open: Vec::new(), sides: Vec::new() }
+        LevelParts {
+            level,
+            touches_vertices: false,
+            closed: Vec::new(),
+            open: Vec::new(),
+            sides: Vec::new(),
+        }
     }
 
     /// Returns the level.
@@ -127,7 +133,10 @@ impl LevelParts {
 
     /// Returns the number of edges of its lines.
     pub fn edge_count(&self) -> usize {
-        let lines = self.closed.iter().chain(self.open.iter().map(|line| &line.points));
+        let lines = self
+            .closed
+            .iter()
+            .chain(self.open.iter().map(|line| &line.points));
         lines.map(|points| points.len() - 1).sum()
     }
 

@@ -29,14 +29,26 @@ pub(super) struct LinkedPatch {
 
 impl Patch {
     pub(super) fn push(&mut self, triangle: &TileTriangle) {
-        let Patch { number_of, vertices, keys, faces } = self;
-        faces.push(triangle.corners.map(|TileVertex { tile, number, position, .. }| {
-            *number_of.entry([tile, number]).or_insert_with(|| {
-                vertices.push(position);
-                keys.push([tile, number]);
-                vertices.len() as u32 - 1
-            })
-        }));
+        let Patch {
+            number_of,
+            vertices,
+            keys,
+            faces,
+        } = self;
+        faces.push(triangle.corners.map(
+            |TileVertex {
+                 tile,
+                 number,
+                 position,
+                 ..
+             }| {
+                *number_of.entry([tile, number]).or_insert_with(|| {
+                    vertices.push(position);
+                    keys.push([tile, number]);
+                    vertices.len() as u32 - 1
+                })
+            },
+        ));
     }
 
     pub(super) fn face_count(&self) -> usize {
@@ -48,12 +60,23 @@ impl Patch {
     /// # Errors
     /// If two of them are on the same side of an edge.
     pub(super) fn linked(self) -> Result<LinkedPatch> {
-        let Patch { vertices, keys, faces, .. } = self;
-        let (mesh, flaws) = Mesh::link(Triangles { vertices, faces, ..Triangles::default() })?;
+        let Patch {
+            vertices,
+            keys,
+            faces,
+            ..
+        } = self;
+        let (mesh, flaws) = Mesh::link(Triangles {
+            vertices,
+            faces,
+            ..Triangles::default()
+        })?;
         if let Some(&LinkFlaw::Folded { edge, .. }) = flaws.first() {
             let [a, b] = edge.map(|end| mesh.position(end));
-            return Err(Error::usage(format!("two triangles are on the same side of the edge from {a:?} to {b:?}"))
-                .cure("give each triangle of the whole to one collector, once"));
+            return Err(Error::usage(format!(
+                "two triangles are on the same side of the edge from {a:?} to {b:?}"
+            ))
+            .cure("give each triangle of the whole to one collector, once"));
         }
         Ok(LinkedPatch { mesh, keys })
     }
@@ -61,13 +84,26 @@ impl Patch {
 
 impl LinkedPatch {
     /// The parts that the lines of a level are.
-    pub(super) fn parts(&self, level: f64, Traces { traces, touches_vertices }: Traces) -> LevelParts {
-        let mut parts = LevelParts { touches_vertices, ..LevelParts::new(level) };
+    pub(super) fn parts(
+        &self,
+        level: f64,
+        Traces {
+            traces,
+            touches_vertices,
+        }: Traces,
+    ) -> LevelParts {
+        let mut parts = LevelParts {
+            touches_vertices,
+            ..LevelParts::new(level)
+        };
         for trace in traces {
             match trace {
                 Trace::Closed(points) => parts.closed.push(points),
                 Trace::Open { points, ends } => {
-                    parts.open.push(OpenLine { points, ends: ends.map(|end| self.line_end(end)) });
+                    parts.open.push(OpenLine {
+                        points,
+                        ends: ends.map(|end| self.line_end(end)),
+                    });
                 }
             }
         }
@@ -80,21 +116,28 @@ impl LinkedPatch {
                 let [a, b] = ends.map(|end| self.keys[end as usize]);
                 LineEnd::Edge([a.min(b), a.max(b)])
             }
-            LooseEnd::Vertex { vertex, toward } => {
-                LineEnd::Vertex { vertex: self.keys[vertex as usize], toward: self.plan(toward) }
-            }
+            LooseEnd::Vertex { vertex, toward } => LineEnd::Vertex {
+                vertex: self.keys[vertex as usize],
+                toward: self.plan(toward),
+            },
         }
     }
 
     /// The sides of edges on levels that have no face on the other side, each with the index of its
     /// level.
-    pub(super) fn level_sides(&self, index: &LevelIndex) -> impl Iterator<Item = (usize, LevelSide)> {
+    pub(super) fn level_sides(
+        &self,
+        index: &LevelIndex,
+    ) -> impl Iterator<Item = (usize, LevelSide)> {
         let sides = data::corners(&self.mesh).flat_map(move |(face, corners)| {
             let is_open = move |i: &usize| self.mesh.neighbor(face, *i).is_none();
-            (0..3).filter(is_open).map(move |i| [0, 1, 2].map(|k| corners[(i + k) % 3]))
+            (0..3)
+                .filter(is_open)
+                .map(move |i| [0, 1, 2].map(|k| corners[(i + k) % 3]))
         });
         sides.filter_map(|[third, a, b]| {
-            let [third_height, height, other_height] = [third, a, b].map(|v| self.mesh.position(v)[2]);
+            let [third_height, height, other_height] =
+                [third, a, b].map(|v| self.mesh.position(v)[2]);
             let level = index.first_from(height);
             let is_on_level = height == other_height && index.levels().get(level) == Some(&height);
             let side = || LevelSide {

@@ -44,19 +44,31 @@ impl Meetings {
     pub(super) fn find(waters: &[Water]) -> Self {
         let mut all: Vec<Part> = Vec::new();
         for (water, Water { level, .. }) in waters.iter().enumerate() {
-            let WaterLevel::River(river) = level else { continue };
+            let WaterLevel::River(river) = level else {
+                continue;
+            };
             for stretch in 0..river.stretch_count() {
-                all.extend(river.triangles(stretch).into_iter().map(|corners| Part { water, stretch, corners }));
+                all.extend(river.triangles(stretch).into_iter().map(|corners| Part {
+                    water,
+                    stretch,
+                    corners,
+                }));
             }
         }
         let parts = Boxes::new(all.clone());
         let corners = || all.iter().flat_map(|part| part.corners);
-        let touching = Touching { rounding: rounding_of(corners()), tolerance: tolerance_of(corners()) };
-        // Where a river goes on, it falls from the height of the one before to its own.
-        let goes_on = |rivers: [usize; 2], at: [f64; 2]| match rivers.map(|number| &waters[number].level) {
-            [WaterLevel::River(river), WaterLevel::River(other)] => river.goes_on_at(other, at, touching.rounding),
-            _ => false,
+        let touching = Touching {
+            rounding: rounding_of(corners()),
+            tolerance: tolerance_of(corners()),
         };
+        // Where a river goes on, it falls from the height of the one before to its own.
+        let goes_on =
+            |rivers: [usize; 2], at: [f64; 2]| match rivers.map(|number| &waters[number].level) {
+                [WaterLevel::River(river), WaterLevel::River(other)] => {
+                    river.goes_on_at(other, at, touching.rounding)
+                }
+                _ => false,
+            };
         let (mut pairs, mut stretches) = (BTreeSet::new(), BTreeSet::new());
         for part in &all {
             parts.find_in(part.extent().grown(touching.rounding), |other| {
@@ -73,10 +85,19 @@ impl Meetings {
             });
         }
         for (water, Water { level, .. }) in waters.iter().enumerate() {
-            let WaterLevel::Flat(lake) = level else { continue };
-            for side in lake.rings.iter().flat_map(|ring| ring.windows(2)).map(|pair| [pair[0], pair[1]]) {
+            let WaterLevel::Flat(lake) = level else {
+                continue;
+            };
+            for side in lake
+                .rings
+                .iter()
+                .flat_map(|ring| ring.windows(2))
+                .map(|pair| [pair[0], pair[1]])
+            {
                 parts.find_in(Extent::of(side).grown(touching.rounding), |part| {
-                    if passes(side, &part.corners) || touching.differences(&side, &part.corners).next().is_some() {
+                    if passes(side, &part.corners)
+                        || touching.differences(&side, &part.corners).next().is_some()
+                    {
                         pairs.insert([water, part.water]);
                         stretches.insert([part.water, part.stretch]);
                     }
@@ -85,7 +106,12 @@ impl Meetings {
             }
         }
         let taking_part = pairs.iter().flatten().copied().collect();
-        Meetings { pairs, stretches, taking_part, parts }
+        Meetings {
+            pairs,
+            stretches,
+            taking_part,
+            parts,
+        }
     }
 
     pub(super) fn is_empty(&self) -> bool {
@@ -112,7 +138,10 @@ impl Meetings {
 
     /// The rivers that may go on outside of a water.
     pub(super) fn outside_of(&self, water: usize) -> Vec<usize> {
-        self.pairs.range([water, 0]..[water + 1, 0]).map(|[_, outer]| *outer).collect()
+        self.pairs
+            .range([water, 0]..[water + 1, 0])
+            .map(|[_, outer]| *outer)
+            .collect()
     }
 
     /// The boxes around the stretches that take part, and a distance around them.
@@ -120,7 +149,9 @@ impl Meetings {
         let mut zones = Vec::new();
         for &[water, stretch] in &self.stretches {
             if let WaterLevel::River(river) = &waters[water].level {
-                zones.push(Zone(Extent::of(river.triangles(stretch).concat()).grown(distance)));
+                zones.push(Zone(
+                    Extent::of(river.triangles(stretch).concat()).grown(distance),
+                ));
             }
         }
         Boxes::new(zones)
@@ -137,18 +168,31 @@ struct Touching {
 impl Touching {
     /// The corners of two convex polygons that lie on the border of the other one, but for
     /// rounding, and have another height there. Between corners heights are linear.
-    fn differences<'a>(self, p: &'a [[f64; 3]], q: &'a [[f64; 3]]) -> impl Iterator<Item = [f64; 2]> + 'a {
-        [(p, q), (q, p)].into_iter().flat_map(move |(corners, other)| {
-            corners.iter().filter(move |corner| self.differs(**corner, other)).map(|&[x, y, _]| [x, y])
-        })
+    fn differences<'a>(
+        self,
+        p: &'a [[f64; 3]],
+        q: &'a [[f64; 3]],
+    ) -> impl Iterator<Item = [f64; 2]> + 'a {
+        [(p, q), (q, p)]
+            .into_iter()
+            .flat_map(move |(corners, other)| {
+                corners
+                    .iter()
+                    .filter(move |corner| self.differs(**corner, other))
+                    .map(|&[x, y, _]| [x, y])
+            })
     }
 
     fn differs(self, [x, y, z]: [f64; 3], polygon: &[[f64; 3]]) -> bool {
-        polygon.iter().zip(polygon.iter().cycle().skip(1)).map(|(from, to)| [*from, *to]).any(|side| {
-            let plan = side.map(|[x, y, _]| [x, y]);
-            squared_distance(plan, [x, y]) <= self.rounding.powi(2)
-                && (z - height_near(side, [x, y])).abs() > self.tolerance
-        })
+        polygon
+            .iter()
+            .zip(polygon.iter().cycle().skip(1))
+            .map(|(from, to)| [*from, *to])
+            .any(|side| {
+                let plan = side.map(|[x, y, _]| [x, y]);
+                squared_distance(plan, [x, y]) <= self.rounding.powi(2)
+                    && (z - height_near(side, [x, y])).abs() > self.tolerance
+            })
     }
 }
 
@@ -171,9 +215,11 @@ fn passes([u, v]: [[f64; 3]; 2], triangle: &[[f64; 3]; 3]) -> bool {
 /// Returns true if all points lie beyond one side of a triangle, or on it.
 fn is_apart(triangle: &[[f64; 3]; 3], turn: Sign, points: &[[f64; 3]]) -> bool {
     let [a, b, c] = *triangle;
-    [[a, b], [b, c], [c, a]]
-        .iter()
-        .any(|[from, to]| points.iter().all(|point| turn * orientation([*from, *to, *point]) != Sign::Positive))
+    [[a, b], [b, c], [c, a]].iter().any(|[from, to]| {
+        points
+            .iter()
+            .all(|point| turn * orientation([*from, *to, *point]) != Sign::Positive)
+    })
 }
 
 #[cfg(test)]
@@ -194,7 +240,11 @@ mod tests {
         ] {
             let q = at(q);
             let turned = [q[2], q[1], q[0]];
-            assert_eq!([overlap(&p, &q), overlap(&turned, &p)], [is_overlap; 2], "{q:?}");
+            assert_eq!(
+                [overlap(&p, &q), overlap(&turned, &p)],
+                [is_overlap; 2],
+                "{q:?}"
+            );
         }
         for ([u, v], is_through) in [
             ([[-1.0, 1.0], [9.0, 1.0]], true),

@@ -68,20 +68,33 @@ pub(crate) fn mark(
     if meetings.is_empty() {
         return Marks::default();
     }
-    let is_needed = |number: usize| meetings.takes_part(number) || matches!(waters[number].level, WaterLevel::Flat(_));
-    let bodies: Vec<Option<Body>> =
-        (0..waters.len()).map(|number| is_needed(number).then(|| Body::new(&waters[number]))).collect();
+    let is_needed = |number: usize| {
+        meetings.takes_part(number) || matches!(waters[number].level, WaterLevel::Flat(_))
+    };
+    let bodies: Vec<Option<Body>> = (0..waters.len())
+        .map(|number| is_needed(number).then(|| Body::new(&waters[number])))
+        .collect();
     let mut strands: Vec<Strand> = Vec::new();
     for (number, water) in waters.iter().enumerate() {
         if meetings.takes_part(number) {
             let lines = water.lines.clone();
-            strands.extend(lines.map(|of| Strand::given(number, of, line(of), water.rim.contains(&of))));
+            strands.extend(
+                lines.map(|of| Strand::given(number, of, line(of), water.rim.contains(&of))),
+            );
         }
     }
     let vertices = || strands.iter().flat_map(|strand| &strand.points).copied();
     let (tolerance, rounding) = (tolerance_of(vertices()), rounding_of(vertices()));
     let sight = Sight::new(waters, bounds);
-    let scene = Scene { waters, bodies, meetings, sight, tolerance, rounding, width };
+    let scene = Scene {
+        waters,
+        bodies,
+        meetings,
+        sight,
+        tolerance,
+        rounding,
+        width,
+    };
     shared::add(&scene, &mut strands);
     strands.iter_mut().for_each(|strand| strand.insert(&scene));
     strands.extend(scene.diagonals());
@@ -90,12 +103,18 @@ pub(crate) fn mark(
     crease::add(&scene, &mut strands);
     strands.iter_mut().for_each(|strand| strand.insert(&scene));
     let pairs = scene.meetings.pairs.iter().copied().collect();
-    let mut marks = Marks { overlaps, pairs, ..Marks::default() };
+    let mut marks = Marks {
+        overlaps,
+        pairs,
+        ..Marks::default()
+    };
     for strand in strands {
         match strand.line {
             Some(of) if strand.is_changed => marks.replaced.push((of, strand.points)),
             Some(_) => {}
-            None => marks.added.push((waters[strand.water].lines.start, strand.points)),
+            None => marks
+                .added
+                .push((waters[strand.water].lines.start, strand.points)),
         }
     }
     marks

@@ -25,7 +25,11 @@ const STRAIGHT: f64 = 1e-4;
 ///
 /// # Complexity
 /// Linear.
-pub(super) fn beside(ring: &[[f64; 2]], distance: f64, is_wanted: impl Fn([[f64; 2]; 2]) -> bool) -> Vec<Beside> {
+pub(super) fn beside(
+    ring: &[[f64; 2]],
+    distance: f64,
+    is_wanted: impl Fn([[f64; 2]; 2]) -> bool,
+) -> Vec<Beside> {
     let mut ring = ring.to_vec();
     ring.dedup();
     while ring.len() > 1 && ring.first() == ring.last() {
@@ -43,16 +47,23 @@ pub(super) fn beside(ring: &[[f64; 2]], distance: f64, is_wanted: impl Fn([[f64;
         }
         for by in [distance, -distance] {
             let normal = normal([from, to]);
-            let [start, end] = [[before, from, to], [from, to, after]].map(|corner| Corner::new(corner, by));
+            let [start, end] =
+                [[before, from, to], [from, to, after]].map(|corner| Corner::new(corner, by));
             let ends = [start.point(from, normal, by), end.point(to, normal, by)];
-            found.push(Beside { ends, side: [from, to] });
+            found.push(Beside {
+                ends,
+                side: [from, to],
+            });
             if let Corner::Round { angle } = end {
                 let parts = (angle.abs() / ARC).ceil().max(1.0);
                 let at = |k: f64| beyond(to, turned(normal, angle * k / parts), by);
                 let last = beyond(to, self::normal([to, after]), by);
                 let inner = (1..parts as usize).map(|k| at(k as f64));
                 let arc: Vec<[f64; 2]> = [ends[1]].into_iter().chain(inner).chain([last]).collect();
-                found.extend(arc.windows(2).map(|pair| Beside { ends: [pair[0], pair[1]], side: [to; 2] }));
+                found.extend(arc.windows(2).map(|pair| Beside {
+                    ends: [pair[0], pair[1]],
+                    side: [to; 2],
+                }));
             }
         }
     }
@@ -77,17 +88,26 @@ impl Corner {
         let cosine = first[0] * second[0] + first[1] * second[1];
         let angle = sine.atan2(cosine).abs();
         let turn = orientation([before, at, after].map(|[x, y]| [x, y, 0.0]));
-        let is_inside = turn == if by > 0.0 { Sign::Positive } else { Sign::Negative };
+        let is_inside = turn
+            == if by > 0.0 {
+                Sign::Positive
+            } else {
+                Sign::Negative
+            };
         // Along each side, the miter is that far from the corner.
         let reach = by.abs() * (angle / 2.0).tan();
-        let is_long = [[before, at], [at, after]].iter().all(|[p, q]| reach <= (q[0] - p[0]).hypot(q[1] - p[1]) / 2.0);
+        let is_long = [[before, at], [at, after]]
+            .iter()
+            .all(|[p, q]| reach <= (q[0] - p[0]).hypot(q[1] - p[1]) / 2.0);
         if angle <= STRAIGHT || is_inside && is_long {
             let scale = by / (1.0 + cosine);
             Corner::Miter([0, 1].map(|axis| at[axis] + scale * (first[axis] + second[axis])))
         } else if is_inside {
             Corner::Open
         } else {
-            Corner::Round { angle: -by.signum() * angle }
+            Corner::Round {
+                angle: -by.signum() * angle,
+            }
         }
     }
 
@@ -119,11 +139,23 @@ mod tests {
     fn lines_around_a_corner_keep_their_distance() {
         for degrees in (-180..180).step_by(15) {
             let angle = f64::from(degrees).to_radians();
-            let ring = [[-9.0, 0.0], [0.0, 0.0], [9.0 * angle.cos(), 9.0 * angle.sin()], [-20.0, -30.0]];
+            let ring = [
+                [-9.0, 0.0],
+                [0.0, 0.0],
+                [9.0 * angle.cos(), 9.0 * angle.sin()],
+                [-20.0, -30.0],
+            ];
             let sides = [[ring[0], ring[1]], [ring[1], ring[2]]];
             let lines = beside(&ring, 0.5, |[p, q]| sides.contains(&[p, q]));
-            for p in lines.iter().flat_map(|line| line.ends).filter(|p| p[0].hypot(p[1]) < 4.0) {
-                let near = sides.map(|side| squared_distance(side, p).sqrt()).into_iter().fold(9.0, f64::min);
+            for p in lines
+                .iter()
+                .flat_map(|line| line.ends)
+                .filter(|p| p[0].hypot(p[1]) < 4.0)
+            {
+                let near = sides
+                    .map(|side| squared_distance(side, p).sqrt())
+                    .into_iter()
+                    .fold(9.0, f64::min);
                 assert!((near - 0.5).abs() < 1e-9, "{degrees}: {p:?} is {near} away");
             }
         }

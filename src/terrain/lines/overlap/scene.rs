@@ -36,11 +36,15 @@ pub(super) struct Scene<'a> {
 impl Scene<'_> {
     /// The heights of a water, on its border and next to it as well.
     pub(super) fn height(&self, water: usize, q: [f64; 2]) -> f64 {
-        self.bodies[water].as_ref().map_or(f64::NAN, |body| body.height(q))
+        self.bodies[water]
+            .as_ref()
+            .map_or(f64::NAN, |body| body.height(q))
     }
 
     pub(super) fn contains(&self, water: usize, q: [f64; 2]) -> bool {
-        self.bodies[water].as_ref().is_some_and(|body| body.contains(q))
+        self.bodies[water]
+            .as_ref()
+            .is_some_and(|body| body.contains(q))
     }
 
     /// Returns true if a step at the border of a water is in the surface at a position: within the
@@ -60,7 +64,10 @@ pub(super) enum Body {
 impl Body {
     pub(super) fn new(water: &Water) -> Self {
         match &water.level {
-            WaterLevel::Flat(lake) => Body::Lake { height: lake.height, inside: Inside::new(&[water.level.rings()]) },
+            WaterLevel::Flat(lake) => Body::Lake {
+                height: lake.height,
+                inside: Inside::new(&[water.level.rings()]),
+            },
             WaterLevel::River(river) => Body::River(RiverWater::new(river)),
         }
     }

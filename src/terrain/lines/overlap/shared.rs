@@ -17,7 +17,10 @@ pub(super) fn add(scene: &Scene, strands: &mut [Strand]) {
                 let ends = side.ends.map(|[x, y, _]| [x, y]);
                 let is_pair = |pair| scene.meetings.pairs.contains(&pair);
                 let is_met = is_pair([own.water, side.water]) || is_pair([side.water, own.water]);
-                if is_met && !ends.contains(&[x, y]) && squared_distance(ends, [x, y]) <= scene.rounding.powi(2) {
+                if is_met
+                    && !ends.contains(&[x, y])
+                    && squared_distance(ends, [x, y]) <= scene.rounding.powi(2)
+                {
                     strands[side.strand].want(side.segment, [x, y]);
                 }
                 None::<()>

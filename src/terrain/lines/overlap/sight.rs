@@ -42,24 +42,44 @@ impl Sight {
         for (water, Water { level, .. }) in waters.iter().enumerate() {
             if matches!(level, WaterLevel::Flat(_)) {
                 let rings = level.rings();
-                lakes.push(Lake { water, extent: Extent::of_plan(rings.iter().flatten().copied()) });
-                shores.extend(rings.iter().flat_map(|ring| ring.windows(2)).map(|pair| ShoreSide([pair[0], pair[1]])));
+                lakes.push(Lake {
+                    water,
+                    extent: Extent::of_plan(rings.iter().flatten().copied()),
+                });
+                shores.extend(
+                    rings
+                        .iter()
+                        .flat_map(|ring| ring.windows(2))
+                        .map(|pair| ShoreSide([pair[0], pair[1]])),
+                );
             }
         }
-        Sight { bounds, lakes: Boxes::new(lakes), shores: Boxes::new(shores) }
+        Sight {
+            bounds,
+            lakes: Boxes::new(lakes),
+            shores: Boxes::new(shores),
+        }
     }
 
     /// The parts of a segment, from 0 to 1, at which it may pass a shore or the border of the
     /// bounds.
     pub(super) fn parts_of(&self, segment: [[f64; 2]; 2]) -> Vec<f64> {
         let mut parts = Vec::new();
-        self.shores.find_in(Extent::of_plan(segment), |ShoreSide(ends)| {
-            parts.push(part_before(segment, *ends));
-            None::<()>
-        });
-        if let Some(Bounds { min: [x0, y0, _], max: [x1, y1, _] }) = self.bounds {
+        self.shores
+            .find_in(Extent::of_plan(segment), |ShoreSide(ends)| {
+                parts.push(part_before(segment, *ends));
+                None::<()>
+            });
+        if let Some(Bounds {
+            min: [x0, y0, _],
+            max: [x1, y1, _],
+        }) = self.bounds
+        {
             let corners = [[x0, y0], [x1, y0], [x1, y1], [x0, y1]];
-            parts.extend([[0, 1], [1, 2], [2, 3], [3, 0]].map(|side| part_before(segment, side.map(|k| corners[k]))));
+            parts.extend(
+                [[0, 1], [1, 2], [2, 3], [3, 0]]
+                    .map(|side| part_before(segment, side.map(|k| corners[k]))),
+            );
         }
         parts.retain(|part| *part > 0.0 && *part < 1.0);
         parts

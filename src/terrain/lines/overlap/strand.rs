@@ -24,18 +24,36 @@ pub(super) struct Strand {
 impl Strand {
     /// A line that was given, with its number.
     pub(super) fn given(water: usize, line: usize, points: Vec<[f64; 3]>, is_border: bool) -> Self {
-        Strand { water, line: Some(line), is_border, points, is_changed: false, wanted: Vec::new() }
+        Strand {
+            water,
+            line: Some(line),
+            is_border,
+            points,
+            is_changed: false,
+            wanted: Vec::new(),
+        }
     }
 
     /// A new line.
     pub(super) fn new(water: usize, ends: [[f64; 3]; 2]) -> Self {
         let points = ends.to_vec();
-        Strand { water, line: None, is_border: false, points, is_changed: false, wanted: Vec::new() }
+        Strand {
+            water,
+            line: None,
+            is_border: false,
+            points,
+            is_changed: false,
+            wanted: Vec::new(),
+        }
     }
 
     /// The segments, with their numbers.
     pub(super) fn segments(&self) -> impl Iterator<Item = (usize, [[f64; 3]; 2])> + '_ {
-        self.points.windows(2).map(|pair| [pair[0], pair[1]]).enumerate().filter(|(_, [a, b])| a[..2] != b[..2])
+        self.points
+            .windows(2)
+            .map(|pair| [pair[0], pair[1]])
+            .enumerate()
+            .filter(|(_, [a, b])| a[..2] != b[..2])
     }
 
     /// Asks for a vertex on a segment.
@@ -49,12 +67,21 @@ impl Strand {
             return;
         }
         let part = |(segment, at): &(usize, [f64; 2])| {
-            nearest_part([0, 1].map(|end| [self.points[segment + end][0], self.points[segment + end][1]]), *at)
+            nearest_part(
+                [0, 1].map(|end| [self.points[segment + end][0], self.points[segment + end][1]]),
+                *at,
+            )
         };
-        let mut wanted: Vec<(usize, f64, [f64; 2])> =
-            self.wanted.iter().map(|wanted| (wanted.0, part(wanted), wanted.1)).collect();
+        let mut wanted: Vec<(usize, f64, [f64; 2])> = self
+            .wanted
+            .iter()
+            .map(|wanted| (wanted.0, part(wanted), wanted.1))
+            .collect();
         wanted.sort_by(|p, q| {
-            (p.0.cmp(&q.0)).then(p.1.total_cmp(&q.1)).then(p.2[0].total_cmp(&q.2[0])).then(p.2[1].total_cmp(&q.2[1]))
+            (p.0.cmp(&q.0))
+                .then(p.1.total_cmp(&q.1))
+                .then(p.2[0].total_cmp(&q.2[0]))
+                .then(p.2[1].total_cmp(&q.2[1]))
         });
         self.wanted.clear();
         let mut points: Vec<[f64; 3]> = Vec::with_capacity(self.points.len() + wanted.len());
@@ -64,7 +91,10 @@ impl Strand {
             let next = self.points.get(segment + 1);
             let first = points.len();
             while let Some((_, _, at)) = wanted.next_if(|wanted| wanted.0 == segment) {
-                let is_there = [Some(&point), next].into_iter().flatten().any(|p| p[..2] == at)
+                let is_there = [Some(&point), next]
+                    .into_iter()
+                    .flatten()
+                    .any(|p| p[..2] == at)
                     || points[first..].last().is_some_and(|p| p[..2] == at);
                 if !is_there {
                     points.push([at[0], at[1], scene.height(self.water, at)]);
@@ -82,7 +112,12 @@ impl Scene<'_> {
         let mut diagonals = Vec::new();
         for &[water, stretch] in &self.meetings.stretches {
             if let WaterLevel::River(river) = &self.waters[water].level {
-                diagonals.extend(river.diagonals(stretch).into_iter().map(|ends| Strand::new(water, ends)));
+                diagonals.extend(
+                    river
+                        .diagonals(stretch)
+                        .into_iter()
+                        .map(|ends| Strand::new(water, ends)),
+                );
             }
         }
         diagonals

@@ -17,6 +17,8 @@ impl Boxed for Zone {
 const ROUNDING: f64 = 64.0;
 
 pub(super) fn tolerance_of(vertices: impl Iterator<Item = [f64; 3]>) -> f64 {
-    let largest = vertices.flatten().fold(0.0_f64, |most, c| most.max(c.abs()));
+    let largest = vertices
+        .flatten()
+        .fold(0.0_f64, |most, c| most.max(c.abs()));
     ROUNDING * (largest.next_up() - largest)
 }

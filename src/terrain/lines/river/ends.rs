@@ -9,7 +9,11 @@ use crate::terrain::nearest::squared_distance;
 impl River {
     /// The number of the first (0) or the last (1) stretch.
     pub(super) fn stretch_of_end(&self, end: usize) -> usize {
-        if end == 0 { 0 } else { self.stretch_count() - 1 }
+        if end == 0 {
+            0
+        } else {
+            self.stretch_count() - 1
+        }
     }
 
     /// The number of the first (0) or the last (1) station.
@@ -28,15 +32,27 @@ impl River {
         let [a, b, c, d] = self.corners(stretch);
         let inner = |is_there: bool, end: usize| if is_there { self.along_bank(end) } else { &[] };
         let first = inner(stretch == 0, 0).iter().copied();
-        let last = inner(stretch + 1 == self.stretch_count(), 1).iter().rev().copied();
-        [a].into_iter().chain(first).chain([b, d]).chain(last).chain([c]).collect()
+        let last = inner(stretch + 1 == self.stretch_count(), 1)
+            .iter()
+            .rev()
+            .copied();
+        [a].into_iter()
+            .chain(first)
+            .chain([b, d])
+            .chain(last)
+            .chain([c])
+            .collect()
     }
 
     /// Divides the first and the last stretch into triangles, if ends follow banks.
     pub(super) fn divide_ends(&mut self) {
         self.end_triangles = [0, 1].map(|end| {
             let outline = self.outline(self.stretch_of_end(end));
-            if outline.len() > 4 { divided(&outline) } else { None }
+            if outline.len() > 4 {
+                divided(&outline)
+            } else {
+                None
+            }
         });
     }
 
@@ -58,7 +74,8 @@ impl River {
     pub(crate) fn goes_on_at(&self, other: &River, q: [f64; 2], distance: f64) -> bool {
         let mouths = [[0, 1], [1, 0], [1, 1]].into_iter();
         let mut common = mouths.filter(|[own, end]| key(self.ends[*own]) == key(other.ends[*end]));
-        let is_on = |line: [[f64; 3]; 2]| squared_distance(line.map(flat), q) <= distance * distance;
+        let is_on =
+            |line: [[f64; 3]; 2]| squared_distance(line.map(flat), q) <= distance * distance;
         common.any(|[own, end]| is_on(self.end_line(own)) || is_on(other.end_line(end)))
     }
 
@@ -73,7 +90,11 @@ impl River {
     /// there: station, and the side on which it meets the one before.
     pub(super) fn met_at_end(&self, end: usize) -> impl Iterator<Item = [usize; 2]> + '_ {
         let beside = move |[station, _]: &[usize; 2]| {
-            let next = if end == 0 { station + 1 } else { station.checked_sub(1)? };
+            let next = if end == 0 {
+                station + 1
+            } else {
+                station.checked_sub(1)?
+            };
             Some([next, self.meeting_side(*station, next)?])
         };
         std::iter::successors(Some([self.station_of_end(end), 0]), beside).skip(1)
@@ -82,14 +103,18 @@ impl River {
     /// Lets the first (0) or the last (1) level line follow the bank of another river, from left to
     /// right, with its heights. Level lines that meet it get the height of the vertex.
     pub(super) fn set_end_line(&mut self, end: usize, line: Vec<[f64; 3]>) {
-        let [left, inner @ .., right] = line.as_slice() else { return };
+        let [left, inner @ .., right] = line.as_slice() else {
+            return;
+        };
         let mut before = self.station_of_end(end);
         self.stations[before] = [*left, *right];
         let is_along = !inner.is_empty() || left[2] != right[2];
         self.along_banks[end] = is_along.then(|| inner.to_vec());
         for [station, side] in self.met_at_end(end).collect::<Vec<_>>() {
             let level = self.stations[before][side][2];
-            self.stations[station].iter_mut().for_each(|corner| corner[2] = level);
+            self.stations[station]
+                .iter_mut()
+                .for_each(|corner| corner[2] = level);
             before = station;
         }
     }

@@ -103,7 +103,12 @@ impl River {
     pub fn between(left: &[[f64; 3]], right: &[[f64; 3]]) -> Result<Self> {
         let left = clean(left)?;
         let mut right = clean(right)?;
-        let [a, b, c, d] = [left[0], left[left.len() - 1], right[0], right[right.len() - 1]];
+        let [a, b, c, d] = [
+            left[0],
+            left[left.len() - 1],
+            right[0],
+            right[right.len() - 1],
+        ];
         if distance(a, d) + distance(b, c) < distance(a, c) + distance(b, d) {
             right.reverse();
         }
@@ -122,16 +127,27 @@ impl River {
     /// width is not above zero.
     pub fn along(middle: &[[f64; 3]], width: f64) -> Result<Self> {
         if !(width > 0.0 && width.is_finite()) {
-            return Err(Error::format(format!("a river of width {width}, expected a width above zero"))
-                .cure(wording!["fill the attribute of ", Setting::RiverWidth, ", or give a number"]));
+            return Err(Error::format(format!(
+                "a river of width {width}, expected a width above zero"
+            ))
+            .cure(wording![
+                "fill the attribute of ",
+                Setting::RiverWidth,
+                ", or give a number"
+            ]));
         }
         let middle = clean(middle)?;
         let sites: Vec<[f64; 2]> = middle.iter().copied().map(flat).collect();
-        let [left, right] = [width / 2.0, -width / 2.0].map(|distance| unfolded(&offset(&sites, distance), &sites));
+        let [left, right] =
+            [width / 2.0, -width / 2.0].map(|distance| unfolded(&offset(&sites, distance), &sites));
         let at = |([l, r], p): ([[f64; 2]; 2], &[f64; 3])| [[l[0], l[1], p[2]], [r[0], r[1], p[2]]];
         let opposite = left.into_iter().zip(right).map(|(l, r)| [l, r]);
         let ends = [sites[0], sites[sites.len() - 1]];
-        Ok(Self::leveled(opposite.zip(&middle).map(at).collect(), sites, ends))
+        Ok(Self::leveled(
+            opposite.zip(&middle).map(at).collect(),
+            sites,
+            ends,
+        ))
     }
 
     /// Returns how far the heights of the banks were from those of water.
@@ -142,8 +158,16 @@ impl River {
     /// Gives each station the lower height of its ends, but no more than upstream.
     fn leveled(stations: Vec<[[f64; 3]; 2]>, middles: Vec<[f64; 2]>, ends: [[f64; 2]; 2]) -> Self {
         let lower = |[left, right]: &[[f64; 3]; 2]| left[2].min(right[2]);
-        let (along_banks, end_triangles, heights) = ([None, None], [None, None], RiverHeights::default());
-        let mut river = River { stations, middles, ends, along_banks, end_triangles, heights };
+        let (along_banks, end_triangles, heights) =
+            ([None, None], [None, None], RiverHeights::default());
+        let mut river = River {
+            stations,
+            middles,
+            ends,
+            along_banks,
+            end_triangles,
+            heights,
+        };
         if let (Some(first), Some(last)) = (river.stations.first(), river.stations.last())
             && lower(first) < lower(last)
         {
@@ -157,7 +181,10 @@ impl River {
                 river.heights.add_rise(water - level, at);
             }
             if difference > river.heights.largest_difference {
-                (river.heights.largest_difference, river.heights.difference_at) = (difference, at);
+                (
+                    river.heights.largest_difference,
+                    river.heights.difference_at,
+                ) = (difference, at);
             }
             level = level.min(water);
             ends.iter_mut().for_each(|end| end[2] = level);
@@ -171,7 +198,9 @@ impl River {
         for k in (1..self.stations.len()).rev() {
             if self.meeting_side(k - 1, k).is_some() {
                 let level = self.stations[k][0][2];
-                self.stations[k - 1].iter_mut().for_each(|end| end[2] = level);
+                self.stations[k - 1]
+                    .iter_mut()
+                    .for_each(|end| end[2] = level);
             }
         }
     }
@@ -205,10 +234,17 @@ impl River {
         }
         let keys = |[p, q]: [[f64; 3]; 2]| [key(flat(p)), key(flat(q))];
         let around = outline.iter().zip(outline.iter().cycle().skip(1));
-        let mut drawn: BTreeSet<[Key; 2]> =
-            around.flat_map(|(from, to)| [[*from, *to], [*to, *from]]).map(keys).collect();
-        let edges = self.triangles(stretch).into_iter().flat_map(|[a, b, c]| [[a, b], [b, c], [c, a]]);
-        edges.filter(|&[p, q]| drawn.insert(keys([p, q])) && drawn.insert(keys([q, p]))).collect()
+        let mut drawn: BTreeSet<[Key; 2]> = around
+            .flat_map(|(from, to)| [[*from, *to], [*to, *from]])
+            .map(keys)
+            .collect();
+        let edges = self
+            .triangles(stretch)
+            .into_iter()
+            .flat_map(|[a, b, c]| [[a, b], [b, c], [c, a]]);
+        edges
+            .filter(|&[p, q]| drawn.insert(keys([p, q])) && drawn.insert(keys([q, p])))
+            .collect()
     }
 
     /// Exchanges upstream and downstream.
@@ -218,7 +254,10 @@ impl River {
         self.middles.reverse();
         self.ends.reverse();
         self.along_banks.reverse();
-        self.along_banks.iter_mut().flatten().for_each(|line| line.reverse());
+        self.along_banks
+            .iter_mut()
+            .flatten()
+            .for_each(|line| line.reverse());
         self.end_triangles.reverse();
     }
 
@@ -254,11 +293,18 @@ impl River {
             let is_free = || {
                 !before.is_some_and(|before| cross(line, &before))
                     && !self.stations.last().is_some_and(|last| cross(line, last))
-                    && sides.find_in(BankSegment(*line).extent(), crosses).is_none()
+                    && sides
+                        .find_in(BankSegment(*line).extent(), crosses)
+                        .is_none()
             };
             if is_end || is_free() {
                 let [left, right] = *line;
-                lines.push(std::iter::once(left).chain(self.inner(number)).chain([right]).collect());
+                lines.push(
+                    std::iter::once(left)
+                        .chain(self.inner(number))
+                        .chain([right])
+                        .collect(),
+                );
                 before = Some(*line);
             }
         }
@@ -267,10 +313,17 @@ impl River {
 
     /// The vertices of a level line between its ends, from left to right.
     fn inner(&self, number: usize) -> Vec<[f64; 3]> {
-        let end = [0, self.stations.len() - 1].iter().position(|end| *end == number);
+        let end = [0, self.stations.len() - 1]
+            .iter()
+            .position(|end| *end == number);
         match end.and_then(|end| self.along_banks[end].clone()) {
             Some(along) => along,
-            None => self.middles.get(number).map(|&[x, y]| [x, y, self.stations[number][0][2]]).into_iter().collect(),
+            None => self
+                .middles
+                .get(number)
+                .map(|&[x, y]| [x, y, self.stations[number][0][2]])
+                .into_iter()
+                .collect(),
         }
     }
 
@@ -292,16 +345,25 @@ impl River {
 
     fn ring_with_heights(&self) -> Vec<[f64; 3]> {
         let [left, right] = self.banks();
-        let [first, last] = [0, self.stations.len() - 1].map(|number| self.inner(number).into_iter());
-        left.into_iter().chain(last).chain(right.into_iter().rev()).chain(first.rev()).collect()
+        let [first, last] =
+            [0, self.stations.len() - 1].map(|number| self.inner(number).into_iter());
+        left.into_iter()
+            .chain(last)
+            .chain(right.into_iter().rev())
+            .chain(first.rev())
+            .collect()
     }
 }
 
 /// The vertices of a bank without repetitions.
 fn clean(bank: &[[f64; 3]]) -> Result<Vec<[f64; 3]>> {
     if let Some([x, y, z]) = bank.iter().find(|p| !p[2].is_finite()) {
-        return Err(Error::format(format!("the vertex at {x} {y} has the height {z}"))
-            .cure(wording!["name the attribute with the heights: ", Setting::Rivers.text("FILE:FIELD")]));
+        return Err(
+            Error::format(format!("the vertex at {x} {y} has the height {z}")).cure(wording![
+                "name the attribute with the heights: ",
+                Setting::Rivers.text("FILE:FIELD")
+            ]),
+        );
     }
     let mut clean = bank.to_vec();
     clean.dedup_by(|p, q| flat(*p) == flat(*q));
@@ -325,7 +387,12 @@ mod tests {
         for [l, r] in &river.stations {
             assert_eq!(l[2], r[2]);
         }
-        assert!(river.stations.windows(2).all(|pair| pair[0][0][2] >= pair[1][0][2]));
+        assert!(
+            river
+                .stations
+                .windows(2)
+                .all(|pair| pair[0][0][2] >= pair[1][0][2])
+        );
         assert_eq!(river.stations[0][0], [0.0, 2.0, 5.0]);
         assert_eq!(river.stations[2], [[10.0, 2.0, 4.0], [10.0, 0.0, 4.0]]);
         assert_eq!(river.level_lines().len(), 3);
@@ -336,11 +403,26 @@ mod tests {
 
     #[test]
     fn water_that_would_rise_stays_level_and_is_reported() {
-        let middle = [[0.0, 0.0, 5.0], [10.0, 0.0, 3.0], [20.0, 0.0, 3.5], [30.0, 0.0, 2.0]];
+        let middle = [
+            [0.0, 0.0, 5.0],
+            [10.0, 0.0, 3.0],
+            [20.0, 0.0, 3.5],
+            [30.0, 0.0, 2.0],
+        ];
         let river = River::along(&middle, 4.0).unwrap();
-        assert_eq!(river.stations.iter().map(|ends| ends[0][2]).collect::<Vec<_>>(), [5.0, 3.0, 3.0, 2.0]);
+        assert_eq!(
+            river
+                .stations
+                .iter()
+                .map(|ends| ends[0][2])
+                .collect::<Vec<_>>(),
+            [5.0, 3.0, 3.0, 2.0]
+        );
         let heights = river.heights();
-        assert_eq!((heights.rising, heights.largest_rise, heights.rise_at), (1, 0.5, [20.0, 0.0]));
+        assert_eq!(
+            (heights.rising, heights.largest_rise, heights.rise_at),
+            (1, 0.5, [20.0, 0.0])
+        );
         assert_eq!(river.stations[1], [[10.0, 2.0, 3.0], [10.0, -2.0, 3.0]]);
         assert_eq!(RiverWater::new(&river).height([15.0, 0.5]), 3.0);
         assert_eq!(RiverWater::new(&river).height([5.0, -1.0]), 4.0);
@@ -353,7 +435,8 @@ mod tests {
     /// Beside a bank, the height is that of the bank there, and not that of a level line.
     #[test]
     fn a_position_beside_the_water_has_the_nearest_height() {
-        let river = River::along(&[[0.0, 0.0, 5.0], [10.0, 0.0, 3.0], [20.0, 0.0, 3.0]], 4.0).unwrap();
+        let river =
+            River::along(&[[0.0, 0.0, 5.0], [10.0, 0.0, 3.0], [20.0, 0.0, 3.0]], 4.0).unwrap();
         let water = RiverWater::new(&river);
         for (q, expected) in [
             ([2.5, 2.0_f64.next_up()], 4.5),
@@ -374,7 +457,9 @@ mod tests {
     fn stations_advance_on_both_banks() {
         let mut state = 7_u64;
         let mut next = |n: u64| {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
             ((state >> 33) % n) as f64
         };
         for round in 0..500 {
@@ -392,22 +477,34 @@ mod tests {
             let river = River::between(&left, &right).unwrap();
             for side in 0..2 {
                 let sites: Vec<f64> = river.banks()[side].iter().map(|p| p[0]).collect();
-                assert!(sites.windows(2).all(|pair| pair[0] != pair[1]), "round {round}");
+                assert!(
+                    sites.windows(2).all(|pair| pair[0] != pair[1]),
+                    "round {round}"
+                );
                 let is_sorted = sites.is_sorted() || sites.iter().rev().is_sorted();
                 assert!(is_sorted, "round {round}: {sites:?}");
             }
             for p in left.iter().chain(&right) {
                 let is_there = |ends: &[[f64; 3]; 2]| ends.iter().any(|end| end[..2] == p[..2]);
-                assert!(river.stations.iter().any(is_there), "round {round}: {p:?} of {left:?} {right:?}");
+                assert!(
+                    river.stations.iter().any(is_there),
+                    "round {round}: {p:?} of {left:?} {right:?}"
+                );
             }
-            assert!(river.stations.windows(2).all(|pair| pair[0][0][2] >= pair[1][0][2]));
+            assert!(
+                river
+                    .stations
+                    .windows(2)
+                    .all(|pair| pair[0][0][2] >= pair[1][0][2])
+            );
         }
     }
 
     #[test]
     fn water_does_not_rise_from_one_river_to_the_next() {
-        let reach =
-            |xs: [f64; 2], zs: [f64; 2]| River::along(&[[xs[0], 0.0, zs[0]], [xs[1], 0.0, zs[1]]], 2.0).unwrap();
+        let reach = |xs: [f64; 2], zs: [f64; 2]| {
+            River::along(&[[xs[0], 0.0, zs[0]], [xs[1], 0.0, zs[1]]], 2.0).unwrap()
+        };
         // Out of order; the level one is drawn upstream.
         let mut rivers = [
             reach([20.0, 30.0], [4.5, 3.0]),
@@ -418,7 +515,13 @@ mod tests {
         let lowered = River::join(&mut rivers, 0.01);
         let levels = rivers.each_ref().map(River::levels);
         assert_eq!(levels, [[4.0, 3.0], [4.0, 4.0], [5.0, 4.0], [9.0, 8.0]]);
-        assert_eq!(lowered.iter().map(|lowering| [lowering.river, lowering.to]).collect::<Vec<_>>(), [[0, 1], [1, 2]]);
+        assert_eq!(
+            lowered
+                .iter()
+                .map(|lowering| [lowering.river, lowering.to])
+                .collect::<Vec<_>>(),
+            [[0, 1], [1, 2]]
+        );
         assert_eq!((lowered[0].by, lowered[0].from), (0.5, [20.0, 0.0]));
         // A level one that need not be lowered is turned, too, and what follows is lowered to it;
         // in any order.
@@ -441,15 +544,27 @@ mod tests {
         };
         let (rivers, lowered, expected) = joined([0, 1, 2, 3, 4]);
         let levels: Vec<[f64; 2]> = rivers.iter().map(River::levels).collect();
-        assert_eq!(levels, [[5.0, 3.9], [3.9, 3.9], [3.9, 3.0], [3.0, 2.0], [2.0, 2.0]]);
+        assert_eq!(
+            levels,
+            [[5.0, 3.9], [3.9, 3.9], [3.9, 3.0], [3.0, 2.0], [2.0, 2.0]]
+        );
         assert!(lowered[0].river == 2 && lowered[0].to == 1 && (lowered[0].by - 0.6).abs() < 1e-12);
-        for order in [[4, 3, 2, 1, 0], [2, 0, 4, 1, 3], [1, 4, 0, 3, 2], [3, 2, 1, 0, 4]] {
+        for order in [
+            [4, 3, 2, 1, 0],
+            [2, 0, 4, 1, 3],
+            [1, 4, 0, 3, 2],
+            [3, 2, 1, 0, 4],
+        ] {
             assert_eq!(joined(order).2, expected, "{order:?}");
         }
         // A ring of rivers, each of which begins above the end of the one before.
         let corners = [[0.0, 0.0], [9.0, 0.0], [9.0, 9.0], [0.0, 0.0]];
         let side = |pair: &[[f64; 2]]| {
-            River::along(&[[pair[0][0], pair[0][1], 5.0], [pair[1][0], pair[1][1], 4.0]], 1.0).unwrap()
+            River::along(
+                &[[pair[0][0], pair[0][1], 5.0], [pair[1][0], pair[1][1], 4.0]],
+                1.0,
+            )
+            .unwrap()
         };
         let mut ring: Vec<River> = corners.windows(2).map(side).collect();
         River::join(&mut ring, 0.01);
@@ -458,14 +573,31 @@ mod tests {
 
     #[test]
     fn a_tight_bend_is_water_all_around_and_level() {
-        let bend = [[0.0, 0.0, 9.0], [9.0, 0.0, 8.0], [9.7, 0.3, 7.0], [10.0, 1.0, 6.0], [10.0, 10.0, 5.0]];
+        let bend = [
+            [0.0, 0.0, 9.0],
+            [9.0, 0.0, 8.0],
+            [9.7, 0.3, 7.0],
+            [10.0, 1.0, 6.0],
+            [10.0, 10.0, 5.0],
+        ];
         let river = River::along(&bend, 6.0).unwrap();
         assert_eq!(river.overlap(), None);
         let [left, right] = river.banks();
         assert_eq!((left.len(), right.len()), (3, 5));
-        assert!((left[1][0] - 7.0).hypot(left[1][1] - 3.0) < 1e-9, "{left:?}");
-        assert_eq!(river.stations.iter().map(|ends| ends[0][2]).collect::<Vec<_>>(), [9.0, 6.0, 6.0, 6.0, 5.0]);
-        let hairpin = River::along(&[[0.0, 0.0, 2.0], [9.0, 0.0, 1.0], [0.0, 1.0, 0.0]], 4.0).unwrap();
+        assert!(
+            (left[1][0] - 7.0).hypot(left[1][1] - 3.0) < 1e-9,
+            "{left:?}"
+        );
+        assert_eq!(
+            river
+                .stations
+                .iter()
+                .map(|ends| ends[0][2])
+                .collect::<Vec<_>>(),
+            [9.0, 6.0, 6.0, 6.0, 5.0]
+        );
+        let hairpin =
+            River::along(&[[0.0, 0.0, 2.0], [9.0, 0.0, 1.0], [0.0, 1.0, 0.0]], 4.0).unwrap();
         assert!(hairpin.overlap().is_some());
     }
 
@@ -473,17 +605,33 @@ mod tests {
     /// also where a bank becomes one point, and its ends bend.
     #[test]
     fn the_ring_is_the_border_of_the_water() {
-        let zigzag = [[0.3, 0.2, 2.0], [0.65, 0.65, 2.0], [-0.1, 0.4, 2.0], [0.1, 0.3, 2.0]];
+        let zigzag = [
+            [0.3, 0.2, 2.0],
+            [0.65, 0.65, 2.0],
+            [-0.1, 0.4, 2.0],
+            [0.1, 0.3, 2.0],
+        ];
         let river = River::along(&zigzag, 1.0).unwrap();
         assert_eq!(river.banks()[0].len(), 1);
         let ring = river.ring();
         let has = |a: [f64; 2], b: [f64; 2]| {
             let sides = ring.iter().zip(ring.iter().cycle().skip(1));
-            a == b || sides.into_iter().any(|(&p, &q)| [p, q] == [a, b] || [q, p] == [a, b])
+            a == b
+                || sides
+                    .into_iter()
+                    .any(|(&p, &q)| [p, q] == [a, b] || [q, p] == [a, b])
         };
         let lines = river.level_lines();
-        for line in river.banks().iter().chain([&lines[0], &lines[lines.len() - 1]]) {
-            assert!(line.windows(2).all(|ends| has(flat(ends[0]), flat(ends[1]))), "{line:?} {ring:?}");
+        for line in river
+            .banks()
+            .iter()
+            .chain([&lines[0], &lines[lines.len() - 1]])
+        {
+            assert!(
+                line.windows(2)
+                    .all(|ends| has(flat(ends[0]), flat(ends[1]))),
+                "{line:?} {ring:?}"
+            );
         }
         // Beside the straight line from bank to bank.
         assert!(Inside::new(&[vec![ring]]).contains([0.4, 0.2]));

@@ -54,17 +54,27 @@ impl River {
     pub fn join(rivers: &mut [River], reach: f64) -> Vec<RiverLowering> {
         let mut at: Meeting = FxHashMap::default();
         for (number, river) in rivers.iter().enumerate() {
-            river.ends.iter().for_each(|end| at.entry(key(*end)).or_default().push(number));
+            river
+                .ends
+                .iter()
+                .for_each(|end| at.entry(key(*end)).or_default().push(number));
         }
         turn_level_ones(rivers, &at, reach);
         let ends: Vec<[Key; 2]> = rivers.iter().map(|river| river.ends.map(key)).collect();
-        let mut joints =
-            confluence::join_banks(rivers, reach, &|branch, end, main| ends[main].contains(&ends[branch][end]));
+        let mut joints = confluence::join_banks(rivers, reach, &|branch, end, main| {
+            ends[main].contains(&ends[branch][end])
+        });
         for (river, [_, mouth]) in ends.iter().enumerate() {
-            let following = at.get(mouth).into_iter().flatten().filter(|next| ends[**next][0] == *mouth);
+            let following = at
+                .get(mouth)
+                .into_iter()
+                .flatten()
+                .filter(|next| ends[**next][0] == *mouth);
             for &next in following {
                 let levels = [0, 1].map(|corner| joints.height_of_end(rivers, [river, 1], corner));
-                joints.bounds.extend(levels.map(|station| [station, [next, 0]]));
+                joints
+                    .bounds
+                    .extend(levels.map(|station| [station, [next, 0]]));
             }
         }
         let lowered = lower(rivers, &joints.equal, &joints.bounds);
@@ -79,7 +89,9 @@ impl River {
 
     /// The first of the stations whose level lines meet the last one.
     fn first_at_mouth(&self) -> usize {
-        self.met_at_end(1).last().map_or(self.stations.len() - 1, |[station, _]| station)
+        self.met_at_end(1)
+            .last()
+            .map_or(self.stations.len() - 1, |[station, _]| station)
     }
 
     /// Lowers what is above a level, from a station on to another one, and the level lines that
@@ -89,7 +101,10 @@ impl River {
         while first > 0 && self.meeting_side(first - 1, first).is_some() {
             first -= 1;
         }
-        self.stations[first..end].iter_mut().flatten().for_each(|corner| corner[2] = corner[2].min(level));
+        self.stations[first..end]
+            .iter_mut()
+            .flatten()
+            .for_each(|corner| corner[2] = corner[2].min(level));
         first
     }
 }
@@ -130,21 +145,30 @@ struct Bound {
 ///
 /// # Complexity
 /// O(n log n) for n stations.
-fn lower(rivers: &mut [River], equal: &[LevelStations], bounds: &[[StationId; 2]]) -> Vec<RiverLowering> {
+fn lower(
+    rivers: &mut [River],
+    equal: &[LevelStations],
+    bounds: &[[StationId; 2]],
+) -> Vec<RiverLowering> {
     let mut bound: BTreeMap<StationId, Bound> = BTreeMap::new();
     for (group, LevelStations { stations, .. }) in equal.iter().enumerate() {
-        stations.iter().for_each(|station| bound.entry(*station).or_default().groups.push(group));
+        stations
+            .iter()
+            .for_each(|station| bound.entry(*station).or_default().groups.push(group));
     }
     for [from, to] in bounds {
         bound.entry(*from).or_default().below.push(*to);
     }
-    let level = |rivers: &[River], [river, station]: StationId| rivers[river].stations[station][0][2];
+    let level =
+        |rivers: &[River], [river, station]: StationId| rivers[river].stations[station][0][2];
     let mouths: Vec<usize> = rivers.iter().map(River::first_at_mouth).collect();
     // From here on, a river is low enough.
     let mut done: Vec<usize> = rivers.iter().map(|river| river.stations.len()).collect();
     let mut is_done = vec![false; equal.len()];
     let mut lowered: BTreeMap<usize, RiverLowering> = BTreeMap::new();
-    let own = bound.keys().map(|&station| Reverse((Height(level(rivers, station)), station, station[0])));
+    let own = bound
+        .keys()
+        .map(|&station| Reverse((Height(level(rivers, station)), station, station[0])));
     let mut next: BinaryHeap<Reverse<(Height, StationId, usize)>> = own.collect();
     let mut targets: Vec<(StationId, usize)> = Vec::new();
     while let Some(Reverse((Height(height), [river, station], to))) = next.pop() {
@@ -157,20 +181,35 @@ fn lower(rivers: &mut [River], equal: &[LevelStations], bounds: &[[StationId; 2]
         done[river] = first;
         let most = lowered.get(&river).map_or(0.0, |lowering| lowering.by);
         if by > most && first < mouths[river] {
-            let from = if first == 0 { rivers[river].ends[0] } else { middle(&rivers[river].stations[first]) };
-            lowered.insert(river, RiverLowering { river, to, by, from });
+            let from = if first == 0 {
+                rivers[river].ends[0]
+            } else {
+                middle(&rivers[river].stations[first])
+            };
+            lowered.insert(
+                river,
+                RiverLowering {
+                    river,
+                    to,
+                    by,
+                    from,
+                },
+            );
         }
         for (_, Bound { groups, below }) in bound.range([river, first]..[river, end]) {
             for &group in groups {
                 if !std::mem::replace(&mut is_done[group], true) {
                     let LevelStations { stations, end } = &equal[group];
-                    let cause = |target: StationId| end.filter(|end| *end != target[0]).unwrap_or(river);
+                    let cause =
+                        |target: StationId| end.filter(|end| *end != target[0]).unwrap_or(river);
                     targets.extend(stations.iter().map(|target| (*target, cause(*target))));
                 }
             }
             targets.extend(below.iter().map(|target| (*target, river)));
         }
-        let higher = targets.drain(..).filter(|(target, _)| level(rivers, *target) > height);
+        let higher = targets
+            .drain(..)
+            .filter(|(target, _)| level(rivers, *target) > height);
         next.extend(higher.map(|(target, to)| Reverse((Height(height), target, to))));
     }
     lowered.into_values().collect()
@@ -182,14 +221,17 @@ fn lower(rivers: &mut [River], equal: &[LevelStations], bounds: &[[StationId; 2]
 fn turn_level_ones(rivers: &mut [River], at: &Meeting, reach: f64) {
     let is_level = |river: &River| river.levels()[0] == river.levels()[1];
     let mut is_known: Vec<bool> = rivers.iter().map(|river| !is_level(river)).collect();
-    let sloping: Vec<usize> = (0..rivers.len()).filter(|&number| is_known[number]).collect();
+    let sloping: Vec<usize> = (0..rivers.len())
+        .filter(|&number| is_known[number])
+        .collect();
     turn_reached(rivers, at, sloping, &mut is_known);
     if is_known.iter().all(|is_known| *is_known) {
         return;
     }
     let ends: Vec<[Key; 2]> = rivers.iter().map(|river| river.ends.map(key)).collect();
-    let banks =
-        confluence::heights_at_banks(rivers, reach, &|branch, end, main| ends[main].contains(&ends[branch][end]));
+    let banks = confluence::heights_at_banks(rivers, reach, &|branch, end, main| {
+        ends[main].contains(&ends[branch][end])
+    });
     let mut votes: Vec<[usize; 2]> = vec![[0, 0]; rivers.len()];
     for (number, end, height) in banks {
         let level = rivers[number].levels()[0];
@@ -212,12 +254,24 @@ fn turn_level_ones(rivers: &mut [River], at: &Meeting, reach: f64) {
 }
 
 /// Turns rivers without slope that begin where others end, and those where they end, and so on.
-fn turn_reached(rivers: &mut [River], at: &Meeting, mut arriving: Vec<usize>, is_known: &mut [bool]) {
+fn turn_reached(
+    rivers: &mut [River],
+    at: &Meeting,
+    mut arriving: Vec<usize>,
+    is_known: &mut [bool],
+) {
     while !arriving.is_empty() {
-        let mouths: Vec<Key> = arriving.iter().map(|&number| key(rivers[number].ends[1])).collect();
+        let mouths: Vec<Key> = arriving
+            .iter()
+            .map(|&number| key(rivers[number].ends[1]))
+            .collect();
         let mut reached: Vec<(usize, Key)> = Vec::new();
         for mouth in mouths {
-            let here = at.get(&mouth).into_iter().flatten().filter(|next| !is_known[**next]);
+            let here = at
+                .get(&mouth)
+                .into_iter()
+                .flatten()
+                .filter(|next| !is_known[**next]);
             reached.extend(here.map(|&next| (next, mouth)));
         }
         reached.sort_unstable();
@@ -226,7 +280,10 @@ fn turn_reached(rivers: &mut [River], at: &Meeting, mut arriving: Vec<usize>, is
         for same in reached.chunk_by(|p, q| p.0 == q.0) {
             let next = same[0].0;
             // One that is reached at both ends stays as it is drawn.
-            if same.iter().all(|(_, mouth)| key(rivers[next].ends[0]) != *mouth) {
+            if same
+                .iter()
+                .all(|(_, mouth)| key(rivers[next].ends[0]) != *mouth)
+            {
                 rivers[next].reverse();
             }
             is_known[next] = true;

@@ -10,7 +10,11 @@ pub(super) fn meeting_of(mut ring: Vec<[f64; 3]>) -> Option<[f64; 2]> {
     ring.extend(ring.first().copied());
     let all = sides(&ring);
     let boxes = Boxes::new(all.clone());
-    all.iter().find_map(|side| boxes.find_in(side.extent(), |other| cross(&side.0, &other.0).then(|| middle(&side.0))))
+    all.iter().find_map(|side| {
+        boxes.find_in(side.extent(), |other| {
+            cross(&side.0, &other.0).then(|| middle(&side.0))
+        })
+    })
 }
 
 /// A segment of a bank.
@@ -24,12 +28,18 @@ impl Boxed for BankSegment {
 }
 
 pub(super) fn sides(line: &[[f64; 3]]) -> Vec<BankSegment> {
-    line.windows(2).map(|pair| BankSegment([pair[0], pair[1]])).collect()
+    line.windows(2)
+        .map(|pair| BankSegment([pair[0], pair[1]]))
+        .collect()
 }
 
 /// The point at a part of a segment, from 0 to 1.
 pub(super) fn side_between([from, to]: [[f64; 2]; 2], part: f64) -> [f64; 2] {
-    if part == 1.0 { to } else { [0, 1].map(|axis| from[axis] + part * (to[axis] - from[axis])) }
+    if part == 1.0 {
+        to
+    } else {
+        [0, 1].map(|axis| from[axis] + part * (to[axis] - from[axis]))
+    }
 }
 
 /// Returns true if two segments share a point other than a common end.
@@ -40,8 +50,13 @@ pub(crate) fn cross([a, b]: &[[f64; 3]; 2], [c, d]: &[[f64; 3]; 2]) -> bool {
     }
     let same = |p: &[f64; 3], q: &[f64; 3]| flat(*p) == flat(*q);
     let (ab, cd) = ([a, b], [c, d]);
-    let shared = ab.iter().flat_map(|p| cd.iter().map(move |q| same(p, q))).filter(|is_same| *is_same).count();
-    let sides = [[a, b, c], [a, b, d], [c, d, a], [c, d, b]].map(|[p, q, r]| orientation([*p, *q, *r]));
+    let shared = ab
+        .iter()
+        .flat_map(|p| cd.iter().map(move |q| same(p, q)))
+        .filter(|is_same| *is_same)
+        .count();
+    let sides =
+        [[a, b, c], [a, b, d], [c, d, a], [c, d, b]].map(|[p, q, r]| orientation([*p, *q, *r]));
     if shared > 0 {
         return false;
     }
@@ -55,5 +70,7 @@ pub(crate) fn contains(corners: [[f64; 3]; 3], [x, y]: [f64; 2]) -> bool {
     let q = [x, y, 0.0];
     let turn = orientation(corners);
     turn != Sign::Zero
-        && [[a, b], [b, c], [c, a]].iter().all(|[p, r]| turn * orientation([*p, *r, q]) != Sign::Negative)
+        && [[a, b], [b, c], [c, a]]
+            .iter()
+            .all(|[p, r]| turn * orientation([*p, *r, q]) != Sign::Negative)
 }

@@ -39,25 +39,53 @@ impl Boxed for Part {
 /// O(n log n) for n vertices, if few segments are about as near to a vertex as the nearest.
 pub(super) fn stations(left: &[[f64; 3]], right: &[[f64; 3]]) -> Vec<[[f64; 3]; 2]> {
     let [left, right] = [left, right].map(Bank::new);
-    let vertices = |bank: &Bank| bank.line.iter().copied().zip(bank.fractions.clone()).collect::<Vec<_>>();
-    let mut pairs: Vec<[f64; 2]> = vertices(&left).into_iter().map(|(p, u)| [u, right.nearest(flat(p))]).collect();
-    pairs.extend(vertices(&right).into_iter().map(|(p, v)| [left.nearest(flat(p)), v]));
-    pairs.sort_by(|p, q| (p[0] + p[1]).total_cmp(&(q[0] + q[1])).then(p[0].total_cmp(&q[0])));
-    let [u, v] = [0, 1].map(|bank| ascending(&pairs.iter().map(|pair| pair[bank]).collect::<Vec<f64>>()));
-    let even = |(u, v): (&f64, &f64)| [u, v].map(|position| (1.0 - EVEN) * position + EVEN * (u + v) / 2.0);
+    let vertices = |bank: &Bank| {
+        bank.line
+            .iter()
+            .copied()
+            .zip(bank.fractions.clone())
+            .collect::<Vec<_>>()
+    };
+    let mut pairs: Vec<[f64; 2]> = vertices(&left)
+        .into_iter()
+        .map(|(p, u)| [u, right.nearest(flat(p))])
+        .collect();
+    pairs.extend(
+        vertices(&right)
+            .into_iter()
+            .map(|(p, v)| [left.nearest(flat(p)), v]),
+    );
+    pairs.sort_by(|p, q| {
+        (p[0] + p[1])
+            .total_cmp(&(q[0] + q[1]))
+            .then(p[0].total_cmp(&q[0]))
+    });
+    let [u, v] =
+        [0, 1].map(|bank| ascending(&pairs.iter().map(|pair| pair[bank]).collect::<Vec<f64>>()));
+    let even = |(u, v): (&f64, &f64)| {
+        [u, v].map(|position| (1.0 - EVEN) * position + EVEN * (u + v) / 2.0)
+    };
     let mut map: Vec<[f64; 2]> = u.iter().zip(&v).map(even).collect();
     // The ends of the banks belong together, and to nothing else.
-    map.retain(|pair| pair.iter().all(|position| (TIE..=1.0 - TIE).contains(position)));
+    map.retain(|pair| {
+        pair.iter()
+            .all(|position| (TIE..=1.0 - TIE).contains(position))
+    });
     map.insert(0, [0.0, 0.0]);
     map.dedup_by(|p, q| p[0] - q[0] < TIE || p[1] - q[1] < TIE);
     map.push([1.0, 1.0]);
     let across = |from: usize, position: f64| {
-        let next = map.partition_point(|pair| pair[from] <= position).clamp(1, map.len() - 1);
+        let next = map
+            .partition_point(|pair| pair[from] <= position)
+            .clamp(1, map.len() - 1);
         let [low, high] = [map[next - 1], map[next]];
         let part = (position - low[from]) / (high[from] - low[from]);
         (low[1 - from] + part * (high[1 - from] - low[1 - from])).clamp(0.0, 1.0)
     };
-    let mut found: Vec<[f64; 2]> = left.inner().map(|u| [u, right.at_vertex(across(0, u))]).collect();
+    let mut found: Vec<[f64; 2]> = left
+        .inner()
+        .map(|u| [u, right.at_vertex(across(0, u))])
+        .collect();
     found.extend(right.inner().map(|v| [left.at_vertex(across(1, v)), v]));
     found.sort_by(|p, q| p[0].total_cmp(&q[0]).then(p[1].total_cmp(&q[1])));
     found.dedup();
@@ -77,9 +105,16 @@ impl<'a> Bank<'a> {
         });
         let lengths: Vec<f64> = std::iter::once(0.0).chain(lengths).collect();
         let whole = lengths[lengths.len() - 1];
-        let parts = line.windows(2).enumerate().map(|(k, pair)| Part(k, [flat(pair[0]), flat(pair[1])]));
+        let parts = line
+            .windows(2)
+            .enumerate()
+            .map(|(k, pair)| Part(k, [flat(pair[0]), flat(pair[1])]));
         let segments = Boxes::new(parts.collect());
-        Bank { line, fractions: lengths.into_iter().map(|length| length / whole).collect(), segments }
+        Bank {
+            line,
+            fractions: lengths.into_iter().map(|length| length / whole).collect(),
+            segments,
+        }
     }
 
     /// The positions of the vertices between the ends.
@@ -103,10 +138,14 @@ impl<'a> Bank<'a> {
 
     /// The point at a position.
     fn point(&self, position: f64) -> [f64; 3] {
-        let k = self.fractions.partition_point(|fraction| *fraction <= position).saturating_sub(1);
+        let k = self
+            .fractions
+            .partition_point(|fraction| *fraction <= position)
+            .saturating_sub(1);
         match self.line.get(k + 1) {
             Some(next) if position > self.fractions[k] => {
-                let part = (position - self.fractions[k]) / (self.fractions[k + 1] - self.fractions[k]);
+                let part =
+                    (position - self.fractions[k]) / (self.fractions[k + 1] - self.fractions[k]);
                 [0, 1, 2].map(|axis| self.line[k][axis] + part * (next[axis] - self.line[k][axis]))
             }
             _ => self.line[k],
@@ -115,8 +154,14 @@ impl<'a> Bank<'a> {
 
     /// The position itself, or that of a vertex which is almost there.
     fn at_vertex(&self, position: f64) -> f64 {
-        let next = self.fractions.partition_point(|fraction| *fraction < position - TIE);
-        self.fractions.get(next).copied().filter(|fraction| *fraction <= position + TIE).unwrap_or(position)
+        let next = self
+            .fractions
+            .partition_point(|fraction| *fraction < position - TIE);
+        self.fractions
+            .get(next)
+            .copied()
+            .filter(|fraction| *fraction <= position + TIE)
+            .unwrap_or(position)
     }
 }
 
@@ -134,5 +179,8 @@ fn ascending(numbers: &[f64]) -> Vec<f64> {
         }
         blocks.push(block);
     }
-    blocks.into_iter().flat_map(|(mean, count)| std::iter::repeat_n(mean, count)).collect()
+    blocks
+        .into_iter()
+        .flat_map(|(mean, count)| std::iter::repeat_n(mean, count))
+        .collect()
 }

@@ -32,7 +32,12 @@ impl RiverWater {
     /// # Complexity
     /// O(n log n) for n level lines.
     pub(crate) fn new(river: &River) -> Self {
-        RiverWater(Boxes::new((0..river.stretch_count()).flat_map(|k| river.triangles(k)).map(Part).collect()))
+        RiverWater(Boxes::new(
+            (0..river.stretch_count())
+                .flat_map(|k| river.triangles(k))
+                .map(Part)
+                .collect(),
+        ))
     }
 
     /// The height of the water at a position, the lowest if the river overlaps itself there;
@@ -42,7 +47,8 @@ impl RiverWater {
     /// # Complexity
     /// O(log n) for n level lines, if few of them are close.
     pub(crate) fn height(&self, q: [f64; 2]) -> f64 {
-        self.height_within(q).unwrap_or_else(|| self.nearest_height(q))
+        self.height_within(q)
+            .unwrap_or_else(|| self.nearest_height(q))
     }
 
     /// The height of the water at a position, the lowest if the river overlaps itself there; `None`
@@ -88,10 +94,14 @@ impl RiverWater {
     /// count if they are no farther from it than a distance.
     pub(crate) fn parts_of(&self, segment: [[f64; 2]; 2], distance: f64) -> Vec<f64> {
         let mut parts = Vec::new();
-        self.0.find_in(Extent::of_plan(segment).grown(distance), |part| {
-            parts.extend(part.sides().map(|side| part_before(segment, side.map(flat))));
-            None::<()>
-        });
+        self.0
+            .find_in(Extent::of_plan(segment).grown(distance), |part| {
+                parts.extend(
+                    part.sides()
+                        .map(|side| part_before(segment, side.map(flat))),
+                );
+                None::<()>
+            });
         parts.retain(|part| *part > 0.0 && *part < 1.0);
         parts
     }

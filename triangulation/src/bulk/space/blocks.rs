@@ -22,7 +22,11 @@ const MOST_OPEN: f64 = 0.1;
 
 /// Returns the number of times that so many points are halved.
 pub(super) fn levels(count: usize) -> u32 {
-    if count < FEWEST { 0 } else { (count / MANY).max(2).ilog2().min(MOST_LEVELS) }
+    if count < FEWEST {
+        0
+    } else {
+        (count / MANY).max(2).ilog2().min(MOST_LEVELS)
+    }
 }
 
 /// A box, unbounded where nothing cuts it off, in the frame of all points.
@@ -34,7 +38,10 @@ pub(super) struct Block {
 }
 
 impl Block {
-    const SPACE: Self = Block { low: [f32::NEG_INFINITY; 3], high: [f32::INFINITY; 3] };
+    const SPACE: Self = Block {
+        low: [f32::NEG_INFINITY; 3],
+        high: [f32::INFINITY; 3],
+    };
 
     /// Returns true if no point outside of the block can be in conflict with a cell of this sphere.
     pub(super) fn contains(&self, sphere: Sphere) -> bool {
@@ -65,7 +72,10 @@ impl Blocks {
     /// Returns blocks by the medians of a sample of points. `None` if too many of its points are in
     /// one plane.
     pub(super) fn of(sample: &mut [[f64; 3]], levels: u32, frame: Frame) -> Option<Self> {
-        let mut blocks = Blocks { cuts: Vec::new(), blocks: vec![Block::SPACE] };
+        let mut blocks = Blocks {
+            cuts: Vec::new(),
+            blocks: vec![Block::SPACE],
+        };
         let mut parts = vec![sample];
         for _ in 0..levels {
             let halves = parts.into_iter().map(halved).collect::<Option<Vec<_>>>()?;
@@ -89,7 +99,11 @@ impl Blocks {
     ///
     /// A layer of points at the cuts has open cells. In a volume its share of the points decreases
     /// with the root of the density; where it does not, it is large.
-    pub(super) fn are_worth_it(&self, count: usize, sample: impl Iterator<Item = ([u32; 4], Sphere)>) -> bool {
+    pub(super) fn are_worth_it(
+        &self,
+        count: usize,
+        sample: impl Iterator<Item = ([u32; 4], Sphere)>,
+    ) -> bool {
         let mut is_open = HashMap::new();
         for (vertices, sphere) in sample {
             let opens = !self.blocks.iter().any(|block| block.contains(sphere));
@@ -122,7 +136,9 @@ fn halved(sites: &mut [[f64; 3]]) -> Option<(BlockCut, [&mut [[f64; 3]]; 2])> {
     let length = |axis: usize| {
         let (min, max) = sites
             .iter()
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(min, max), site| (site[axis].min(min), site[axis].max(max)));
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(min, max), site| {
+                (site[axis].min(min), site[axis].max(max))
+            });
         max - min
     };
     let lengths = [0, 1, 2].map(length);
@@ -131,7 +147,9 @@ fn halved(sites: &mut [[f64; 3]]) -> Option<(BlockCut, [&mut [[f64; 3]]; 2])> {
     if half == 0 {
         return None;
     }
-    let at = sites.select_nth_unstable_by(half, |p, q| p[axis].total_cmp(&q[axis])).1[axis];
+    let at = sites
+        .select_nth_unstable_by(half, |p, q| p[axis].total_cmp(&q[axis]))
+        .1[axis];
     sites.sort_unstable_by_key(|site| site[axis] >= at);
     let (below, above) = sites.split_at_mut(sites.partition_point(|site| site[axis] < at));
     (below.len() > above.len() / 2).then_some((BlockCut { axis, at }, [below, above]))

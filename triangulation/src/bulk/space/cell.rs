@@ -11,7 +11,10 @@ pub(super) struct Cell {
 
 impl Cell {
     /// A cell that is not in use.
-    pub(super) const UNUSED: Self = Cell { neighbors: [DUMMY; 4], vertices: [u32::MAX; 4] };
+    pub(super) const UNUSED: Self = Cell {
+        neighbors: [DUMMY; 4],
+        vertices: [u32::MAX; 4],
+    };
 
     pub(super) fn is_used(&self) -> bool {
         self.vertices[0] != u32::MAX

@@ -14,7 +14,10 @@ use super::part::{Built, Facet, Part, Seam, facet};
 
 /// Returns the ranks of the vertices of open cells.
 pub(super) fn residual(parts: &[Part]) -> Vec<u32> {
-    let mut ranks: Vec<u32> = parts.iter().flat_map(|part| part.open.iter().copied()).collect();
+    let mut ranks: Vec<u32> = parts
+        .iter()
+        .flat_map(|part| part.open.iter().copied())
+        .collect();
     ranks.sort_unstable();
     ranks
 }
@@ -28,11 +31,18 @@ pub(super) fn covered(parts: &[Part], cells: &[Cell], ranks: &[u32]) -> Option<V
     let mut is_covered = vec![false; cells.len()];
     let mut covered = Vec::new();
     for (number, cell) in (0u32..).zip(cells).filter(|(_, cell)| cell.is_used()) {
-        let vertices = cell.vertices.map(|vertex| ranks.get(vertex as usize).copied().unwrap_or(u32::MAX));
+        let vertices = cell
+            .vertices
+            .map(|vertex| ranks.get(vertex as usize).copied().unwrap_or(u32::MAX));
         // Each facet once.
-        for (face, beyond) in (0..4).zip(cell.neighbors).filter(|&(_, beyond)| beyond >> 2 > number) {
+        for (face, beyond) in (0..4)
+            .zip(cell.neighbors)
+            .filter(|&(_, beyond)| beyond >> 2 > number)
+        {
             let (sorted, is_odd) = facet(vertices, face);
-            let Some(seam) = seams.find(sorted) else { continue };
+            let Some(seam) = seams.find(sorted) else {
+                continue;
+            };
             of_cells[number as usize] |= 1 << face;
             of_cells[(beyond >> 2) as usize] |= 1 << (beyond & 3);
             let on_the_side_of_the_part = if seam == is_odd { number } else { beyond >> 2 };
@@ -46,10 +56,19 @@ pub(super) fn covered(parts: &[Part], cells: &[Cell], ranks: &[u32]) -> Option<V
         done += 1;
         let cell = &cells[number as usize];
         // Parts that stay are finite.
-        if cell.vertices.iter().any(|&vertex| vertex as usize >= ranks.len()) {
+        if cell
+            .vertices
+            .iter()
+            .any(|&vertex| vertex as usize >= ranks.len())
+        {
             return None;
         }
-        for (face, neighbor) in cell.neighbors.map(|neighbor| neighbor >> 2).into_iter().enumerate() {
+        for (face, neighbor) in cell
+            .neighbors
+            .map(|neighbor| neighbor >> 2)
+            .into_iter()
+            .enumerate()
+        {
             if of_cells[number as usize] >> face & 1 == 0 && !is_covered[neighbor as usize] {
                 is_covered[neighbor as usize] = true;
                 covered.push(neighbor);
@@ -69,16 +88,30 @@ pub(super) fn joined(count: usize, parts: Vec<Part>) -> Option<Built> {
     let mut links = Vec::new();
     for part in parts {
         let first = links.len();
-        let numbered = |cell: CellId| if cell == CellId::NONE { cell } else { CellId::new(first + cell.index()) };
-        part.cells_of_vertices().for_each(|(rank, cell)| of_vertices[rank] = numbered(cell));
+        let numbered = |cell: CellId| {
+            if cell == CellId::NONE {
+                cell
+            } else {
+                CellId::new(first + cell.index())
+            }
+        };
+        part.cells_of_vertices()
+            .for_each(|(rank, cell)| of_vertices[rank] = numbered(cell));
         if part.of_infinite != CellId::NONE {
             of_infinite = numbered(part.of_infinite);
         }
-        seams.extend(part.seams.iter().map(|seam| (seam.facet, numbered(seam.cell), seam.face)));
+        seams.extend(
+            part.seams
+                .iter()
+                .map(|seam| (seam.facet, numbered(seam.cell), seam.face)),
+        );
         if first == 0 {
             links = part.links;
         } else {
-            let moved = |cell: Links<4>| Links { neighbors: cell.neighbors.map(numbered), ..cell };
+            let moved = |cell: Links<4>| Links {
+                neighbors: cell.neighbors.map(numbered),
+                ..cell
+            };
             links.par_extend(part.links.into_par_iter().map(moved));
         }
     }
@@ -89,14 +122,20 @@ pub(super) fn joined(count: usize, parts: Vec<Part>) -> Option<Built> {
 
     seams.par_sort_unstable();
     for pair in seams.chunks(2) {
-        let &[((facet, false), a, i), ((other, true), b, j)] = pair else { return None };
+        let &[((facet, false), a, i), ((other, true), b, j)] = pair else {
+            return None;
+        };
         if facet != other {
             return None;
         }
         links[a.index()].neighbors[i] = b;
         links[b.index()].neighbors[j] = a;
     }
-    Some(Built { links, of_vertices, of_infinite })
+    Some(Built {
+        links,
+        of_vertices,
+        of_infinite,
+    })
 }
 
 /// The seams of parts, by their vertices: an open hash table.
@@ -151,8 +190,8 @@ impl<'a> Seams<'a> {
 }
 
 fn hash(facet: [u32; 3]) -> u64 {
-    let mixed = facet
-        .into_iter()
-        .fold(0u64, |bits, vertex| (bits.rotate_left(29) ^ u64::from(vertex)).wrapping_mul(0x9E37_79B9_7F4A_7C15));
+    let mixed = facet.into_iter().fold(0u64, |bits, vertex| {
+        (bits.rotate_left(29) ^ u64::from(vertex)).wrapping_mul(0x9E37_79B9_7F4A_7C15)
+    });
     mixed ^ mixed >> 32
 }

@@ -30,10 +30,16 @@ impl Extent {
             }
         }
         let [x, y, z] = [0, 1, 2].map(|axis| max[axis] - min[axis]);
-        let frame =
-            Frame { middle: [0, 1, 2].map(|axis| 0.5 * min[axis] + 0.5 * max[axis]), scale: 2.0 / x.max(y).max(z) };
+        let frame = Frame {
+            middle: [0, 1, 2].map(|axis| 0.5 * min[axis] + 0.5 * max[axis]),
+            scale: 2.0 / x.max(y).max(z),
+        };
         // Each of the six terms has eight roundings (Higham 2002, lemma 3.1).
-        Extent { frame, flatness: 6.0 * 9e-16 * x * y * z, weights: [min[3], max[3]] }
+        Extent {
+            frame,
+            flatness: 6.0 * 9e-16 * x * y * z,
+            weights: [min[3], max[3]],
+        }
     }
 }
 
@@ -124,22 +130,44 @@ fn four<T>(list: &mut [T], from: usize) -> Option<&mut [T; 4]> {
 impl<'a> Mesh<'a> {
     /// Returns the mesh of a positive cell and the infinite cells around it. Vertex `i` is the
     /// point of rank `ranks[i]`. Ranks ascend, so that vertices close in space are close in memory.
-    pub(super) fn new(source: Source<'a>, extent: Extent, ranks: &'a [u32], first: [u32; 4]) -> Self {
+    pub(super) fn new(
+        source: Source<'a>,
+        extent: Extent,
+        ranks: &'a [u32],
+        first: [u32; 4],
+    ) -> Self {
         let count = ranks.len();
         let mut corners: Vec<Corner> = Vec::with_capacity(count + 1);
-        corners.extend(ranks.iter().map(|&rank| Corner { site: source.position(rank), tag: 0 }));
-        corners.push(Corner { site: [f64::NAN; 3], tag: 0 });
-        let weights = Weights::new(extent.weights, ranks.iter().map(|&rank| (source.site)(rank)[3]));
+        corners.extend(ranks.iter().map(|&rank| Corner {
+            site: source.position(rank),
+            tag: 0,
+        }));
+        corners.push(Corner {
+            site: [f64::NAN; 3],
+            tag: 0,
+        });
+        let weights = Weights::new(
+            extent.weights,
+            ranks.iter().map(|&rank| (source.site)(rank)[3]),
+        );
 
         let room = 7 * count + count / 4 + 64;
         let (mut cells, mut spheres) = (Vec::with_capacity(room), Vec::with_capacity(room));
         let infinite = count as u32;
-        let alone = |vertices| Cell { neighbors: [0; 4], vertices };
+        let alone = |vertices| Cell {
+            neighbors: [0; 4],
+            vertices,
+        };
         cells.extend([Cell::UNUSED, alone(first)]);
         cells.extend(FACETS.map(|[i, j, k]| alone([first[j], first[i], first[k], infinite])));
         spheres.resize(cells.len(), UNKNOWN);
         let mut mesh = Mesh {
-            predicates: Predicates { source, ranks, flatness: extent.flatness, may_hide: weights.may_hide() },
+            predicates: Predicates {
+                source,
+                ranks,
+                flatness: extent.flatness,
+                may_hide: weights.may_hide(),
+            },
             corners,
             weights,
             cells,
@@ -157,9 +185,14 @@ impl<'a> Mesh<'a> {
 
     /// Links the first five cells: any two of them share a facet.
     fn link_first(&mut self) {
-        for (a, b) in (1..6).flat_map(|a| (1..6).map(move |b| (a, b))).filter(|(a, b)| a != b) {
+        for (a, b) in (1..6)
+            .flat_map(|a| (1..6).map(move |b| (a, b)))
+            .filter(|(a, b)| a != b)
+        {
             let (of_a, of_b) = (self.cells[a].vertices, self.cells[b].vertices);
-            let lacks = |vertices: [u32; 4], others: [u32; 4]| vertices.iter().position(|v| !others.contains(v));
+            let lacks = |vertices: [u32; 4], others: [u32; 4]| {
+                vertices.iter().position(|v| !others.contains(v))
+            };
             if let (Some(i), Some(j)) = (lacks(of_a, of_b), lacks(of_b, of_a)) {
                 self.cells[a].neighbors[i] = 4 * b as u32 + j as u32;
             }
@@ -182,12 +215,21 @@ impl<'a> Mesh<'a> {
         let is_infinite = |cell: &Cell| cell.vertices.contains(&infinite);
         let mut is_open = vec![false; self.cells.len()];
         // One infinite cell: from there the flood finds the others.
-        let mut open: Vec<u32> = self.cells.iter().position(is_infinite).map(|cell| cell as u32).into_iter().collect();
+        let mut open: Vec<u32> = self
+            .cells
+            .iter()
+            .position(is_infinite)
+            .map(|cell| cell as u32)
+            .into_iter()
+            .collect();
         open.iter().for_each(|&cell| is_open[cell as usize] = true);
         let mut done = 0;
         while let Some(&cell) = open.get(done) {
             done += 1;
-            for neighbor in self.cells[cell as usize].neighbors.map(|neighbor| neighbor >> 2) {
+            for neighbor in self.cells[cell as usize]
+                .neighbors
+                .map(|neighbor| neighbor >> 2)
+            {
                 if !is_open[neighbor as usize] && !block.contains(self.spheres[neighbor as usize]) {
                     is_open[neighbor as usize] = true;
                     open.push(neighbor);
@@ -200,7 +242,11 @@ impl<'a> Mesh<'a> {
     /// Returns the finite cells, each with its sphere.
     pub(super) fn spheres(&self) -> impl Iterator<Item = ([u32; 4], Sphere)> {
         let infinite = self.corners.len() as u32 - 1;
-        let cells = self.cells.iter().zip(&self.spheres).map(|(cell, &sphere)| (cell.vertices, sphere));
+        let cells = self
+            .cells
+            .iter()
+            .zip(&self.spheres)
+            .map(|(cell, &sphere)| (cell.vertices, sphere));
         cells.filter(move |(vertices, _)| vertices.iter().all(|&vertex| vertex < infinite))
     }
 
@@ -216,7 +262,9 @@ impl<'a> Mesh<'a> {
         let origin = self.frame.of(site);
         let lack = self.weights.lack(vertex) * self.frame.scale * self.frame.scale;
         let q = sphere::query(origin, lack);
-        let Some(first) = self.locate(vertex, q)? else { return Ok(()) };
+        let Some(first) = self.locate(vertex, q)? else {
+            return Ok(());
+        };
         let (zone, facets) = self.grow(first, vertex, q);
         self.assign_cells(zone, facets)?;
         let is_small = facets <= 2 * FEW - 4;
@@ -227,7 +275,11 @@ impl<'a> Mesh<'a> {
         }
         self.aim(vertex, numbered);
         self.wrap(facets, origin, lack);
-        let is_linked = if is_small { self.link(facets) } else { self.link_many(facets) };
+        let is_linked = if is_small {
+            self.link(facets)
+        } else {
+            self.link_many(facets)
+        };
         if !is_linked {
             return Err(Failure::Inexact);
         }
@@ -240,11 +292,23 @@ impl<'a> Mesh<'a> {
     /// vertex is hidden.
     #[inline(always)]
     fn locate(&mut self, vertex: u32, q: Query) -> Result<Option<u32>, Failure> {
-        let Mesh { predicates, corners, cells, spheres, last, random, .. } = self;
+        let Mesh {
+            predicates,
+            corners,
+            cells,
+            spheres,
+            last,
+            random,
+            ..
+        } = self;
         let (cells, spheres) = (&cells[..], &spheres[..cells.len()]);
         let infinite = corners.len() as u32 - 1;
         let mut cell = *last;
-        if let Some(i) = cells[cell as usize].vertices.iter().position(|&v| v == infinite) {
+        if let Some(i) = cells[cell as usize]
+            .vertices
+            .iter()
+            .position(|&v| v == infinite)
+        {
             cell = cells[cell as usize].neighbors[i] >> 2;
         }
         let mut from = DUMMY;
@@ -254,7 +318,10 @@ impl<'a> Mesh<'a> {
             if sphere::is_inside(spheres[cell as usize], q) {
                 return Ok(Some(cell));
             }
-            let Cell { neighbors, vertices } = cells[cell as usize];
+            let Cell {
+                neighbors,
+                vertices,
+            } = cells[cell as usize];
             if vertices.contains(&infinite) {
                 return Ok(Some(cell));
             }
@@ -263,13 +330,15 @@ impl<'a> Mesh<'a> {
             for i in (start..start + 4).map(|i| i & 3) {
                 let next = neighbors[i] >> 2;
                 if next != from
-                    && predicates.orientation(corners, FACETS[i].map(|k| vertices[k]), vertex) == Sign::Negative
+                    && predicates.orientation(corners, FACETS[i].map(|k| vertices[k]), vertex)
+                        == Sign::Negative
                 {
                     (from, cell) = (cell, next);
                     continue 'walk;
                 }
             }
-            let is_hidden = predicates.may_hide && !predicates.conflict(corners, cells[cell as usize], vertex);
+            let is_hidden =
+                predicates.may_hide && !predicates.conflict(corners, cells[cell as usize], vertex);
             return Ok((!is_hidden).then_some(cell));
         }
         Err(Failure::Inexact)
@@ -286,7 +355,14 @@ impl<'a> Mesh<'a> {
     /// is known late and reads that follow wait for it; a table of the ends took another 4 % then.
     #[inline(always)]
     fn grow(&mut self, first: u32, vertex: u32, q: Query) -> (usize, usize) {
-        let Mesh { predicates, corners, cells, spheres, buffers, .. } = self;
+        let Mesh {
+            predicates,
+            corners,
+            cells,
+            spheres,
+            buffers,
+            ..
+        } = self;
         let (corners, cells) = (&corners[..], &cells[..]);
         let spheres = &mut spheres[..cells.len()];
         let (mut zone, mut facets, mut done) = (1, 0, 0);
@@ -296,13 +372,25 @@ impl<'a> Mesh<'a> {
             let (list, boundary) = (&mut buffers.cells[..], &mut buffers.facets[..]);
             while done < zone {
                 let cell = list[done];
-                let (Some(slots), Some(rows)) = (four(list, zone), four(boundary, facets)) else { break };
+                let (Some(slots), Some(rows)) = (four(list, zone), four(boundary, facets)) else {
+                    break;
+                };
                 done += 1;
-                let Cell { neighbors: n, vertices: v } = cells[cell as usize];
+                let Cell {
+                    neighbors: n,
+                    vertices: v,
+                } = cells[cell as usize];
                 let beyond = n.map(|neighbor| neighbor >> 2);
-                beyond.iter().for_each(|&cell| prefetch(&cells[cell as usize]));
+                beyond
+                    .iter()
+                    .for_each(|&cell| prefetch(&cells[cell as usize]));
                 let [a, b, c, d] = beyond;
-                let around = [spheres[a as usize], spheres[b as usize], spheres[c as usize], spheres[d as usize]];
+                let around = [
+                    spheres[a as usize],
+                    spheres[b as usize],
+                    spheres[c as usize],
+                    spheres[d as usize],
+                ];
                 let sides = sphere::sides(around, q);
                 let new = !sides.marked & 15;
                 let mut taken = sides.inside & sides.sure & new;
@@ -350,7 +438,13 @@ impl<'a> Mesh<'a> {
     /// If there would be too many cells.
     #[inline(always)]
     fn assign_cells(&mut self, mut zone: usize, facets: usize) -> Result<(), Failure> {
-        let Mesh { cells, spheres, unused, buffers, .. } = self;
+        let Mesh {
+            cells,
+            spheres,
+            unused,
+            buffers,
+            ..
+        } = self;
         if buffers.cells.len() < facets + 4 {
             buffers.cells.resize(2 * facets + 4, 0);
         }
@@ -376,7 +470,13 @@ impl<'a> Mesh<'a> {
     /// each other. With `is_small`, the table of faces is filled. Returns the number of vertices.
     #[inline(always)]
     fn number(&mut self, vertex: u32, facets: usize, is_small: bool) -> usize {
-        let Mesh { corners, cells, buffers, base, .. } = self;
+        let Mesh {
+            corners,
+            cells,
+            buffers,
+            base,
+            ..
+        } = self;
         if buffers.numbers.len() < facets + 4 {
             buffers.numbers.resize(2 * facets + 4, [0; 3]);
             buffers.vertices.resize(6 * facets + 1, 0);
@@ -385,8 +485,16 @@ impl<'a> Mesh<'a> {
             *base = 1;
             corners.iter_mut().for_each(|corner| corner.tag = 0);
         }
-        let InsertionBuffers { cells: star, facets: boundary, numbers, vertices, faces, .. } = buffers;
-        let (star, boundary, numbers) = (&star[..facets], &boundary[..facets], &mut numbers[..facets]);
+        let InsertionBuffers {
+            cells: star,
+            facets: boundary,
+            numbers,
+            vertices,
+            faces,
+            ..
+        } = buffers;
+        let (star, boundary, numbers) =
+            (&star[..facets], &boundary[..facets], &mut numbers[..facets]);
         let (corners, cells, vertices) = (&mut corners[..], &mut cells[..], &mut vertices[..]);
         let (first, mut count) = (*base, 0);
         for ((&cell, &facet), numbers) in star.iter().zip(boundary).zip(numbers) {
@@ -420,7 +528,9 @@ impl<'a> Mesh<'a> {
     #[inline(always)]
     fn aim(&mut self, vertex: u32, count: usize) {
         let (site, weight) = (self.corners[vertex as usize].site, self.weights.of(vertex));
-        let InsertionBuffers { arrows, vertices, .. } = &mut self.buffers;
+        let InsertionBuffers {
+            arrows, vertices, ..
+        } = &mut self.buffers;
         if arrows.len() < count {
             arrows.resize(2 * count, [0.0; 4]);
         }
@@ -440,19 +550,48 @@ impl<'a> Mesh<'a> {
     /// time. Four spheres at once in `f64` need more registers than there are.
     #[inline(always)]
     fn wrap(&mut self, facets: usize, origin: [f64; 3], lack: f64) {
-        let Mesh { buffers, spheres, frame, weights, .. } = self;
-        let origin = Origin { at: origin, lack, range: weights.range() };
+        let Mesh {
+            buffers,
+            spheres,
+            frame,
+            weights,
+            ..
+        } = self;
+        let origin = Origin {
+            at: origin,
+            lack,
+            range: weights.range(),
+        };
         // The last four may be fewer: the rest repeats the last one, for the dummy.
         let padded = facets.next_multiple_of(4);
         let last = buffers.numbers[facets - 1];
         buffers.numbers[facets..][..3].copy_from_slice(&[last; 3]);
         buffers.cells[facets..][..3].copy_from_slice(&[DUMMY; 3]);
-        let InsertionBuffers { cells, numbers, arrows, .. } = &*buffers;
-        let (cells, numbers) = (cells[..padded].as_chunks::<4>().0, numbers[..padded].as_chunks::<4>().0);
+        let InsertionBuffers {
+            cells,
+            numbers,
+            arrows,
+            ..
+        } = &*buffers;
+        let (cells, numbers) = (
+            cells[..padded].as_chunks::<4>().0,
+            numbers[..padded].as_chunks::<4>().0,
+        );
         let (arrows, spheres) = (&arrows[..], &mut spheres[..]);
         for (&cells, numbers) in cells.iter().zip(numbers) {
-            let ends = |[a, b, c]: [u32; 3]| [&arrows[a as usize], &arrows[b as usize], &arrows[c as usize]];
-            let corners = [ends(numbers[0]), ends(numbers[1]), ends(numbers[2]), ends(numbers[3])];
+            let ends = |[a, b, c]: [u32; 3]| {
+                [
+                    &arrows[a as usize],
+                    &arrows[b as usize],
+                    &arrows[c as usize],
+                ]
+            };
+            let corners = [
+                ends(numbers[0]),
+                ends(numbers[1]),
+                ends(numbers[2]),
+                ends(numbers[3]),
+            ];
             let rows = sphere::through(corners, origin, frame.scale);
             for (cell, row) in cells.into_iter().zip(rows) {
                 spheres[cell as usize] = row;
@@ -470,7 +609,11 @@ impl<'a> Mesh<'a> {
     #[inline(always)]
     fn link(&mut self, facets: usize) -> bool {
         let Mesh { buffers, cells, .. } = self;
-        let (star, numbers, faces) = (&buffers.cells[..facets], &buffers.numbers[..facets], &*buffers.faces);
+        let (star, numbers, faces) = (
+            &buffers.cells[..facets],
+            &buffers.numbers[..facets],
+            &*buffers.faces,
+        );
         let cells = &mut cells[..];
         let (mut written, mut read) = (0u32, 0u32);
         for (&cell, &number) in star.iter().zip(numbers) {
@@ -480,7 +623,10 @@ impl<'a> Mesh<'a> {
             neighbors[1] = faces[(a * FEW + c) & LAST];
             neighbors[2] = faces[(b * FEW + a) & LAST];
             written = written.wrapping_add(cell.wrapping_mul(12).wrapping_add(3));
-            read = read.wrapping_add(neighbors[0]).wrapping_add(neighbors[1]).wrapping_add(neighbors[2]);
+            read = read
+                .wrapping_add(neighbors[0])
+                .wrapping_add(neighbors[1])
+                .wrapping_add(neighbors[2]);
         }
         written == read
     }
@@ -491,7 +637,18 @@ impl<'a> Mesh<'a> {
     fn link_many(&mut self, facets: usize) -> bool {
         const NONE: u64 = u64::MAX;
         const LINKED: u32 = u32::MAX;
-        let Mesh { buffers: InsertionBuffers { cells: star, numbers, edges, faces_of_edges, .. }, cells, .. } = self;
+        let Mesh {
+            buffers:
+                InsertionBuffers {
+                    cells: star,
+                    numbers,
+                    edges,
+                    faces_of_edges,
+                    ..
+                },
+            cells,
+            ..
+        } = self;
         let slots = (3 * facets).next_power_of_two();
         let shift = 64 - slots.trailing_zeros();
         if edges.len() < slots {

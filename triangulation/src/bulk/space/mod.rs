@@ -75,7 +75,9 @@ pub(super) fn build<G: Coordinates<N>, const N: usize>(
 fn triangulate(source: Source, grain: Grain) -> Option<Built> {
     let extent = Extent::of(source);
     let divided = divided(source, extent, grain);
-    divided.and_then(|blocks| by_blocks(source, extent, &blocks, grain)).or_else(|| whole(source, extent, grain))
+    divided
+        .and_then(|blocks| by_blocks(source, extent, &blocks, grain))
+        .or_else(|| whole(source, extent, grain))
 }
 
 /// Triangulates all points as one block.
@@ -96,7 +98,9 @@ fn divided(source: Source, extent: Extent, grain: Grain) -> Option<Blocks> {
     let mut sites: Vec<[f64; 3]> = ranks.iter().map(|&rank| source.position(rank)).collect();
     let blocks = Blocks::of(&mut sites, levels, extent.frame)?;
     let mesh = meshed(source, extent, &ranks, grain)?;
-    blocks.are_worth_it(source.count, mesh.spheres()).then_some(blocks)
+    blocks
+        .are_worth_it(source.count, mesh.spheres())
+        .then_some(blocks)
 }
 
 /// Triangulates blocks, each on its own, and merges them. `None` also if the points of a block are
@@ -121,7 +125,13 @@ fn by_blocks(source: Source, extent: Extent, blocks: &Blocks, grain: Grain) -> O
 
 /// Triangulates the points of a block, and leaves out the cells that other points may be in
 /// conflict with.
-fn by_block<'a>(source: Source<'a>, extent: Extent, ranks: &'a [u32], block: &Block, grain: Grain) -> Option<Part<'a>> {
+fn by_block<'a>(
+    source: Source<'a>,
+    extent: Extent,
+    ranks: &'a [u32],
+    block: &Block,
+    grain: Grain,
+) -> Option<Part<'a>> {
     let mesh = meshed(source, extent, ranks, grain)?;
     let open = mesh.open_cells(block);
     let (cells, unused) = mesh.into_cells();
@@ -130,7 +140,12 @@ fn by_block<'a>(source: Source<'a>, extent: Extent, ranks: &'a [u32], block: &Bl
 
 /// Returns the mesh of points, given by ascending ranks. Vertex `i` is the point of rank
 /// `ranks[i]`.
-fn meshed<'a>(source: Source<'a>, extent: Extent, ranks: &'a [u32], grain: Grain) -> Option<Mesh<'a>> {
+fn meshed<'a>(
+    source: Source<'a>,
+    extent: Extent,
+    ranks: &'a [u32],
+    grain: Grain,
+) -> Option<Mesh<'a>> {
     let mut order = order::rounds(ranks);
     let first = first_cell(source, ranks, &mut order)?;
     let mut mesh = Mesh::new(source, extent, ranks, first);
@@ -149,9 +164,15 @@ fn first_cell(source: Source, ranks: &[u32], order: &mut [u32]) -> Option<[u32; 
     let turn = |order: &[u32], i: usize| (source.turn)([order[0], order[1], order[i]].map(rank));
     let third = (2..order.len()).find(|&i| turn(order, i) != Sign::Zero)?;
     order.swap(2, third);
-    let side = |order: &[u32], i: usize| (source.orientation)([order[0], order[1], order[2], order[i]].map(rank));
+    let side = |order: &[u32], i: usize| {
+        (source.orientation)([order[0], order[1], order[2], order[i]].map(rank))
+    };
     let fourth = (3..order.len()).find(|&i| side(order, i) != Sign::Zero)?;
     order.swap(3, fourth);
     let [a, b, c, d] = *order.first_chunk()?;
-    Some(if side(order, 3) == Sign::Positive { [a, b, c, d] } else { [b, a, c, d] })
+    Some(if side(order, 3) == Sign::Positive {
+        [a, b, c, d]
+    } else {
+        [b, a, c, d]
+    })
 }

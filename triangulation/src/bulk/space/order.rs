@@ -16,7 +16,9 @@ const SAMPLE: usize = 2000;
 
 /// Returns the indices of points, given by ascending ranks, in the order of insertion.
 pub(super) fn rounds(ranks: &[u32]) -> Vec<u32> {
-    let last = (0..).find(|round| ranks.len() >> (RATIO * round) <= FEW).unwrap_or(0);
+    let last = (0..)
+        .find(|round| ranks.len() >> (RATIO * round) <= FEW)
+        .unwrap_or(0);
     let round = |rank: u32| (last - (mixed(rank).trailing_zeros() / RATIO).min(last)) as usize;
     let mut starts = vec![0; last as usize + 2];
     ranks.iter().for_each(|&rank| starts[round(rank) + 1] += 1);
@@ -30,19 +32,27 @@ pub(super) fn rounds(ranks: &[u32]) -> Vec<u32> {
         order[*next] = index;
         *next += 1;
     }
-    starts.windows(2).skip(1).step_by(2).for_each(|ends| order[ends[0]..ends[1]].reverse());
+    starts
+        .windows(2)
+        .skip(1)
+        .step_by(2)
+        .for_each(|ends| order[ends[0]..ends[1]].reverse());
     order
 }
 
 /// Returns some of the numbers `0..count`, ascending.
 pub(super) fn sample(count: usize) -> Vec<u32> {
     let one_in = (count / SAMPLE).max(1) as u64;
-    (0..count as u32).filter(|&rank| mixed(rank).is_multiple_of(one_in)).collect()
+    (0..count as u32)
+        .filter(|&rank| mixed(rank).is_multiple_of(one_in))
+        .collect()
 }
 
 /// Returns bits that depend on all bits of a number (Steele, Lea and Flood 2014).
 fn mixed(rank: u32) -> u64 {
-    let mut bits = u64::from(rank).wrapping_add(1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+    let mut bits = u64::from(rank)
+        .wrapping_add(1)
+        .wrapping_mul(0x9E37_79B9_7F4A_7C15);
     bits = (bits ^ (bits >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
     bits = (bits ^ (bits >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
     bits ^ (bits >> 31)

@@ -33,7 +33,10 @@ pub(super) fn facet(vertices: [u32; 4], face: usize) -> Facet {
     let [a, b, c] = FACETS[face].map(|k| vertices[k]);
     // PERF: without branches.
     let (least, greatest) = (a.min(b).min(c), a.max(b).max(c));
-    ([least, a ^ b ^ c ^ least ^ greatest, greatest], (a > b) ^ (b > c) ^ (a > c))
+    (
+        [least, a ^ b ^ c ^ least ^ greatest, greatest],
+        (a > b) ^ (b > c) ^ (a > c),
+    )
 }
 
 /// The cells of a mesh that stay.
@@ -53,10 +56,17 @@ pub(super) struct Part<'a> {
 
 impl<'a> Part<'a> {
     /// Leaves cells out, and closes the gaps that they and unused ones leave in the numbers.
-    pub(super) fn of(mut cells: Vec<Cell>, mut gaps: Vec<u32>, left_out: &[u32], ranks: &'a [u32]) -> Self {
+    pub(super) fn of(
+        mut cells: Vec<Cell>,
+        mut gaps: Vec<u32>,
+        left_out: &[u32],
+        ranks: &'a [u32],
+    ) -> Self {
         let mut is_open = vec![false; if left_out.is_empty() { 0 } else { ranks.len() }];
         for &cell in left_out {
-            for vertex in std::mem::replace(&mut cells[cell as usize].vertices, Cell::UNUSED.vertices) {
+            for vertex in
+                std::mem::replace(&mut cells[cell as usize].vertices, Cell::UNUSED.vertices)
+            {
                 if let Some(is_open) = is_open.get_mut(vertex as usize) {
                     *is_open = true;
                 }
@@ -82,12 +92,16 @@ impl<'a> Part<'a> {
             }
             for face in (0..4).filter(|&face| cell.neighbors[face] == ELSEWHERE) {
                 let vertices = cell.vertices.map(|vertex| rank(vertex).unwrap_or(u32::MAX));
-                seams.push(Seam { facet: facet(vertices, face), cell: CellId::new(number), face });
+                seams.push(Seam {
+                    facet: facet(vertices, face),
+                    cell: CellId::new(number),
+                    face,
+                });
             }
             Links {
-                vertices: cell
-                    .vertices
-                    .map(|v| rank(v).map_or(VertexId::INFINITE, |rank| VertexId::new(rank as usize))),
+                vertices: cell.vertices.map(|v| {
+                    rank(v).map_or(VertexId::INFINITE, |rank| VertexId::new(rank as usize))
+                }),
                 neighbors: cell.neighbors.map(|face| match face {
                     ELSEWHERE => CellId::NONE,
                     face => CellId::new((face >> 2) as usize),
@@ -97,13 +111,28 @@ impl<'a> Part<'a> {
         // In place.
         let links = cells.into_iter().enumerate().map(links).collect();
         let of_infinite = of_vertices.pop().unwrap_or(CellId::NONE);
-        let open = ranks.iter().zip(is_open).filter_map(|(&rank, is_open)| is_open.then_some(rank)).collect();
-        Part { links, ranks, of_vertices, of_infinite, seams, open }
+        let open = ranks
+            .iter()
+            .zip(is_open)
+            .filter_map(|(&rank, is_open)| is_open.then_some(rank))
+            .collect();
+        Part {
+            links,
+            ranks,
+            of_vertices,
+            of_infinite,
+            seams,
+            open,
+        }
     }
 
     /// Returns the cell of each vertex that has one: its rank, and the number of the cell.
     pub(super) fn cells_of_vertices(&self) -> impl Iterator<Item = (usize, CellId)> {
-        let cells = self.ranks.iter().map(|&rank| rank as usize).zip(self.of_vertices.iter().copied());
+        let cells = self
+            .ranks
+            .iter()
+            .map(|&rank| rank as usize)
+            .zip(self.of_vertices.iter().copied());
         cells.filter(|&(_, cell)| cell != CellId::NONE)
     }
 }

@@ -27,7 +27,8 @@ impl Predicates<'_> {
     #[inline(always)]
     pub(super) fn orientation(&self, corners: &[Corner], facet: [u32; 3], vertex: u32) -> Sign {
         let vertices = [facet[0], facet[1], facet[2], vertex];
-        let determinant = Orientation3(vertices.map(|v| corners[v as usize].site)).value(|x, y| x - y);
+        let determinant =
+            Orientation3(vertices.map(|v| corners[v as usize].site)).value(|x, y| x - y);
         if determinant > self.flatness {
             Sign::Positive
         } else if determinant < -self.flatness {
@@ -66,7 +67,9 @@ impl Predicates<'_> {
             if let Some(is_inside) = is_surely_inside(sites) {
                 return is_inside;
             }
-            if let Some(sign @ (Sign::Positive | Sign::Negative)) = ErrorBound::try_sign(&InSphere(sites)) {
+            if let Some(sign @ (Sign::Positive | Sign::Negative)) =
+                ErrorBound::try_sign(&InSphere(sites))
+            {
                 return sign == Sign::Positive;
             }
         }
@@ -87,7 +90,10 @@ pub(super) fn is_surely_inside(sites: [[f64; 3]; 5]) -> Option<bool> {
     let largest = |axis: usize| {
         let distance = |p: [f64; 3]| (p[axis] - e[axis]).abs();
         let larger = |x: f64, y: f64| if x > y { x } else { y };
-        larger(larger(distance(a), distance(b)), larger(distance(c), distance(d)))
+        larger(
+            larger(distance(a), distance(b)),
+            larger(distance(c), distance(d)),
+        )
     };
     let (x, y, z) = (largest(0), largest(1), largest(2));
     let bound = 4.4e-14 * (x * y * z) * (x * x + y * y + z * z);

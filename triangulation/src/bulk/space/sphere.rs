@@ -167,7 +167,11 @@ pub(super) struct SphereTests {
 #[inline(always)]
 pub(super) fn sides(spheres: [Sphere; 4], q: Query) -> SphereTests {
     let [x, y, z, squared_radius] = f32x4::transpose(spheres.map(f32x4::new));
-    let (x, y, z) = (x - f32x4::splat(q[0]), y - f32x4::splat(q[1]), z - f32x4::splat(q[2]));
+    let (x, y, z) = (
+        x - f32x4::splat(q[0]),
+        y - f32x4::splat(q[1]),
+        z - f32x4::splat(q[2]),
+    );
     let power = x * x + y * y + z * z + f32x4::splat(q[3]) - squared_radius;
     let exponent = i32x4::splat(127) - (bits(squared_radius) & i32x4::splat(TOLERANCE));
     let tolerance = squared_radius * of_bits(exponent << 23);
@@ -202,7 +206,10 @@ pub(super) struct Origin {
 #[inline(always)]
 pub(super) fn through(arrows: [[&Arrow; 3]; 4], origin: Origin, scale: f64) -> [Sphere; 4] {
     let [a, b, c, d] = arrows;
-    let (first, second) = (centers([a, b], origin, scale), centers([c, d], origin, scale));
+    let (first, second) = (
+        centers([a, b], origin, scale),
+        centers([c, d], origin, scale),
+    );
     let pair = |i: usize| rounded(first[i], second[i]);
     let (x, y, z, squared_radius, error) = (pair(0), pair(1), pair(2), pair(3), pair(4));
 
@@ -216,7 +223,8 @@ pub(super) fn through(arrows: [[&Arrow; 3]; 4], origin: Origin, scale: f64) -> [
         & bound.simd_lt(f32x4::splat(1.0))
         & squared_radius.simd_lt(f32x4::splat(LARGEST))
         & squared_radius.simd_gt(f32x4::splat(1.0 / LARGEST));
-    let coded = bits(squared_radius) & i32x4::splat(!TOLERANCE) | tolerance & i32x4::splat(TOLERANCE);
+    let coded =
+        bits(squared_radius) & i32x4::splat(!TOLERANCE) | tolerance & i32x4::splat(TOLERANCE);
     let squared_radius = is_known.bitselect(of_bits(coded), f32x4::splat(f32::NAN));
     f32x4::transpose([x, y, z, squared_radius]).map(f32x4::to_array)
 }
@@ -244,10 +252,20 @@ fn centers(arrows: [[&Arrow; 3]; 2], origin: Origin, scale: f64) -> [f64x2; 5] {
     let range = f64x2::splat(origin.range);
     let longest = a[3].fast_max(b[3]).fast_max(c[3]) + range;
     let ratio = (longest + range) * inverse;
-    [x, y, z, squared_radius, ratio * ratio * longest * f64x2::splat(CENTER)]
+    [
+        x,
+        y,
+        z,
+        squared_radius,
+        ratio * ratio * longest * f64x2::splat(CENTER),
+    ]
 }
 
 #[inline(always)]
 fn cross(p: [f64x2; 4], q: [f64x2; 4]) -> [f64x2; 3] {
-    [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]]
+    [
+        p[1] * q[2] - p[2] * q[1],
+        p[2] * q[0] - p[0] * q[2],
+        p[0] * q[1] - p[1] * q[0],
+    ]
 }

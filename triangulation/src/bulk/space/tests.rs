@@ -20,7 +20,10 @@ use super::source::with_source;
 use super::sphere::{self, Frame, Origin};
 use super::{build, by_blocks, predicates, whole};
 
-const FRAME: Frame = Frame { middle: [0.0; 3], scale: 1.0 };
+const FRAME: Frame = Frame {
+    middle: [0.0; 3],
+    scale: 1.0,
+};
 
 /// Returns a number whose magnitude is spread over `2^-exponents..1`, of either sign.
 fn spread(random: &mut Random, exponents: usize) -> f64 {
@@ -34,7 +37,10 @@ fn sides_of(points: [[f64; 3]; 4], q: [f64; 3]) -> (Sign, Option<Sign>) {
     let exact = Adaptive::sign(&InSphere([points[0], points[1], points[2], points[3], q]));
     let [points, [q, ..]] = [points, [q; 4]].map(|points| points.map(|[x, y, z]| [x, y, z, 0.0]));
     let (exact_by_power, sure) = powers_of(points, q, 0.0, 0.0);
-    assert_eq!(exact_by_power, exact * Adaptive::sign(&Orientation3(points.map(site))));
+    assert_eq!(
+        exact_by_power,
+        exact * Adaptive::sign(&Orientation3(points.map(site)))
+    );
     (exact_by_power, sure)
 }
 
@@ -44,20 +50,34 @@ fn site([x, y, z, _]: [f64; 4]) -> [f64; 3] {
 
 /// Returns the exact side, and the sure side if there is one, of `q` and the sphere orthogonal to
 /// four points with weights between `greatest` and `greatest - range`.
-fn powers_of(points: [[f64; 4]; 4], q: [f64; 4], greatest: f64, range: f64) -> (Sign, Option<Sign>) {
+fn powers_of(
+    points: [[f64; 4]; 4],
+    q: [f64; 4],
+    greatest: f64,
+    range: f64,
+) -> (Sign, Option<Sign>) {
     let [a, b, c, d] = points;
     let arrows = [a, b, c].map(|p| {
         let [x, y, z, square] = sphere::arrow(site(d), site(p));
         [x, y, z, square - (p[3] - d[3])]
     });
     let lack = |p: [f64; 4]| (greatest - p[3]) * FRAME.scale * FRAME.scale;
-    let origin = Origin { at: FRAME.of(site(d)), lack: lack(d), range };
+    let origin = Origin {
+        at: FRAME.of(site(d)),
+        lack: lack(d),
+        range,
+    };
     let row = sphere::through([arrows.each_ref(); 4], origin, FRAME.scale)[0];
     let query = sphere::query(FRAME.of(site(q)), lack(q));
     let sides = sphere::sides([row; 4], query);
     assert_eq!(sides.marked, 0);
-    let exact = Adaptive::sign(&PowerTest3([a, b, c, d, q])) * Adaptive::sign(&Orientation3(points.map(site)));
-    let sure = (sides.sure & 1 == 1).then_some(if sides.inside & 1 == 1 { Sign::Positive } else { Sign::Negative });
+    let exact = Adaptive::sign(&PowerTest3([a, b, c, d, q]))
+        * Adaptive::sign(&Orientation3(points.map(site)));
+    let sure = (sides.sure & 1 == 1).then_some(if sides.inside & 1 == 1 {
+        Sign::Positive
+    } else {
+        Sign::Negative
+    });
     assert_eq!(sphere::is_inside(row, query), sure == Some(Sign::Positive));
     (exact, sure)
 }
@@ -81,7 +101,8 @@ fn what_is_sure_is_right() {
         let points = [0; 4].map(|_| on_sphere(flat));
         let at = on_sphere(1.0);
         let off = spread(&mut random, 30);
-        let q = [0, 1, 2].map(|axis| (center[axis] + (at[axis] - center[axis]) * (1.0 + off)).clamp(-1.0, 1.0));
+        let q = [0, 1, 2]
+            .map(|axis| (center[axis] + (at[axis] - center[axis]) * (1.0 + off)).clamp(-1.0, 1.0));
         let (exact, decided) = sides_of(points, q);
         if let Some(decided) = decided {
             assert_eq!(decided, exact, "{points:?} {q:?}");
@@ -89,7 +110,10 @@ fn what_is_sure_is_right() {
             sure_inside += usize::from(decided == Sign::Positive);
         }
     }
-    assert!(sure > rounds / 4 && sure_inside > rounds / 20, "{sure} and {sure_inside} of {rounds}: hardly a test");
+    assert!(
+        sure > rounds / 4 && sure_inside > rounds / 20,
+        "{sure} and {sure_inside} of {rounds}: hardly a test"
+    );
 }
 
 /// Weights that differ by as much as the squared distances do, or by far more or less; positions of
@@ -99,24 +123,48 @@ fn what_is_sure_of_weights_is_right() {
     let mut random = Random(5);
     let (mut sure, mut sure_inside, rounds) = (0, 0, 200_000);
     for _ in 0..rounds {
-        let (size, flat, range) =
-            (spread(&mut random, 12).abs(), spread(&mut random, 20).abs(), spread(&mut random, 30).abs());
+        let (size, flat, range) = (
+            spread(&mut random, 12).abs(),
+            spread(&mut random, 20).abs(),
+            spread(&mut random, 30).abs(),
+        );
         let middle = [0; 3].map(|_| (1.0 - size) * (2.0 * random.unit() - 1.0));
-        let greatest = if random.below(2) == 0 { 0.0 } else { spread(&mut random, 6) };
+        let greatest = if random.below(2) == 0 {
+            0.0
+        } else {
+            spread(&mut random, 6)
+        };
         let lowest = if random.below(4) == 0 { 1e-3 } else { 1.0 };
         let mut point = |flat: f64| {
             let [x, y, z] = [1.0, 1.0, flat].map(|most| size * most * (2.0 * random.unit() - 1.0));
-            [middle[0] + x, middle[1] + y, middle[2] + z, greatest - range * lowest * random.unit()]
+            [
+                middle[0] + x,
+                middle[1] + y,
+                middle[2] + z,
+                greatest - range * lowest * random.unit(),
+            ]
         };
         let points = [0; 4].map(|_| point(flat));
         let mut q = point(1.0);
         // Moves the weight of q toward the sphere, as far as floating point can.
-        let power = |w: f64| PowerTest3([points[0], points[1], points[2], points[3], [q[0], q[1], q[2], w]]);
+        let power = |w: f64| {
+            PowerTest3([
+                points[0],
+                points[1],
+                points[2],
+                points[3],
+                [q[0], q[1], q[2], w],
+            ])
+        };
         let (mut low, mut high) = (greatest - range, greatest);
         let sign = Adaptive::sign(&power(low));
         for _ in 0..random.below(40) {
             let mid = 0.5 * (low + high);
-            if Adaptive::sign(&power(mid)) == sign { low = mid } else { high = mid }
+            if Adaptive::sign(&power(mid)) == sign {
+                low = mid
+            } else {
+                high = mid
+            }
         }
         q[3] = if random.below(2) == 0 { low } else { high };
         let (exact, decided) = powers_of(points, q, greatest, range);
@@ -126,7 +174,10 @@ fn what_is_sure_of_weights_is_right() {
             sure_inside += usize::from(decided == Sign::Positive);
         }
     }
-    assert!(sure > rounds / 8 && sure_inside > rounds / 50, "{sure} and {sure_inside} of {rounds}: hardly a test");
+    assert!(
+        sure > rounds / 8 && sure_inside > rounds / 50,
+        "{sure} and {sure_inside} of {rounds}: hardly a test"
+    );
 }
 
 #[test]
@@ -138,12 +189,17 @@ fn one_evaluation_is_never_wrong() {
         let off = 0.5f64.powi(round % 56);
         let sites = [0; 5].map(|_| {
             let [x, y, z] = [0; 3].map(|_| random.around(1000) as f64 / 1000.0 + 1e-4);
-            let length = (x * x + y * y + z * z).sqrt() * (1.0 + off * random.around(1000) as f64 / 1000.0);
+            let length =
+                (x * x + y * y + z * z).sqrt() * (1.0 + off * random.around(1000) as f64 / 1000.0);
             [x / length, y / length, z / length]
         });
         if let Some(is_inside) = predicates::is_surely_inside(sites) {
             sure += 1;
-            assert_eq!(is_inside, Adaptive::sign(&InSphere(sites)) == Sign::Positive, "{sites:?}");
+            assert_eq!(
+                is_inside,
+                Adaptive::sign(&InSphere(sites)) == Sign::Positive,
+                "{sites:?}"
+            );
         }
     }
     assert!((10_000..20_000).contains(&sure), "{sure}");
@@ -154,7 +210,15 @@ fn nothing_is_sure_of_a_flat_cell_or_an_infinite_one() {
     let (a, b, c, d) = ([0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.5, 0.25, 0.0]);
     assert_eq!(sides_of([a, b, c, d], [0.1, 0.2, 0.3]).1, None);
     let arrows = [a, b, [f64::NAN; 3]].map(|p| sphere::arrow(d, p));
-    let row = sphere::through([arrows.each_ref(); 4], Origin { at: d, lack: 0.0, range: 0.0 }, 1.0)[0];
+    let row = sphere::through(
+        [arrows.each_ref(); 4],
+        Origin {
+            at: d,
+            lack: 0.0,
+            range: 0.0,
+        },
+        1.0,
+    )[0];
     assert!(row[3].is_nan() && !sphere::is_marked(row));
 }
 
@@ -164,8 +228,15 @@ fn an_order_has_each_rank_once() {
         let ranks: Vec<u32> = (0..count as u32).collect();
         let mut order = rounds(&ranks);
         // All rounds but the last have a sixteenth of the points, from all over the curve.
-        let sampled = order.iter().take(count / 16).filter(|&&rank| (rank as usize) < count / 2).count();
-        assert!(count < 100_000 || sampled.abs_diff(count / 32) < count / 400, "{sampled}");
+        let sampled = order
+            .iter()
+            .take(count / 16)
+            .filter(|&&rank| (rank as usize) < count / 2)
+            .count();
+        assert!(
+            count < 100_000 || sampled.abs_diff(count / 32) < count / 400,
+            "{sampled}"
+        );
         order.sort_unstable();
         assert!(order.into_iter().eq(0..count as u32));
     }
@@ -210,7 +281,12 @@ impl Coordinates<4> for Contradictory {
     }
 
     fn exact_site(&self, [x, y, z]: &[f64; 3]) -> Option<[f64; 4]> {
-        Some([x + 0.3 * (7.0 * y).sin(), y - 0.4 * (5.0 * z + x).cos(), z * x, 0.0])
+        Some([
+            x + 0.3 * (7.0 * y).sin(),
+            y - 0.4 * (5.0 * z + x).cos(),
+            z * x,
+            0.0,
+        ])
     }
 }
 
@@ -221,9 +297,14 @@ fn contradictions_end_construction_and_nothing_else() {
     for round in 0..rounds {
         let count = 5 + random.index(if round % 8 == 0 { 300 } else { 40 });
         let side = if round % 2 == 0 { 4 } else { 1 << 20 };
-        let points: Vec<[f64; 3]> = (0..count).map(|_| [0; 3].map(|_| random.below(side) as f64 * 0.1)).collect();
+        let points: Vec<[f64; 3]> = (0..count)
+            .map(|_| [0; 3].map(|_| random.below(side) as f64 * 0.1))
+            .collect();
         let grain = Grain::default();
-        let results = [build(&Contradictory, &points, grain), build(&Space::<Fast>::default(), &points, grain)];
+        let results = [
+            build(&Contradictory, &points, grain),
+            build(&Space::<Fast>::default(), &points, grain),
+        ];
         for (built, result) in built.iter_mut().zip(results) {
             *built += usize::from(result.is_some());
         }
@@ -237,7 +318,11 @@ fn sorted_cells(built: &Built) -> Vec<[VertexId; 4]> {
     for (number, cell) in built.links.iter().enumerate() {
         for (i, neighbor) in cell.neighbors.iter().enumerate() {
             let beyond = &built.links[neighbor.index()];
-            let back = beyond.neighbors.iter().position(|n| n.index() == number).expect("mutual");
+            let back = beyond
+                .neighbors
+                .iter()
+                .position(|n| n.index() == number)
+                .expect("mutual");
             let facets = [(cell, i), (beyond, back)].map(|(cell, i)| {
                 let mut facet = cell.vertices.to_vec();
                 facet.remove(i);
@@ -250,7 +335,10 @@ fn sorted_cells(built: &Built) -> Vec<[VertexId; 4]> {
     for (vertex, cell) in built.of_vertices.iter().enumerate() {
         let vertex = VertexId::new(vertex);
         let has = |cell: &crate::tds::Links<4>| cell.vertices.contains(&vertex);
-        assert_eq!(built.links.get(cell.index()).is_some_and(has), built.links.iter().any(has));
+        assert_eq!(
+            built.links.get(cell.index()).is_some_and(has),
+            built.links.iter().any(has)
+        );
     }
     let mut cells: Vec<_> = built.links.iter().map(|cell| cell.vertices).collect();
     cells.iter_mut().for_each(|cell| cell.sort_unstable());
@@ -262,7 +350,9 @@ fn sorted_cells(built: &Built) -> Vec<[VertexId; 4]> {
 fn judge_blocks<G: Coordinates<4>>(geometry: &G, points: &[G::Point], levels: u32) -> Option<()> {
     with_source(geometry, points, |source| {
         let extent = Extent::of(source);
-        let mut sites: Vec<[f64; 3]> = (0..source.count as u32).map(|rank| source.position(rank)).collect();
+        let mut sites: Vec<[f64; 3]> = (0..source.count as u32)
+            .map(|rank| source.position(rank))
+            .collect();
         let blocks = Blocks::of(&mut sites, levels, extent.frame)?;
         let built = by_blocks(source, extent, &blocks, Grain::default())?;
         let whole = whole(source, extent, Grain::default()).expect("blocks span the space");
@@ -282,9 +372,17 @@ fn blocks_have_the_cells_of_the_whole() {
             .map(|_| match round % 5 {
                 // Ties are the rule.
                 0 => [0; 3].map(|_| random.below(6) as f64),
-                1 => [random.below(4) as f64, random.below(30) as f64, random.below(30) as f64],
+                1 => [
+                    random.below(4) as f64,
+                    random.below(30) as f64,
+                    random.below(30) as f64,
+                ],
                 // On two sides of a gap, and thin.
-                2 => [random.below(2) as f64 * 9.0 + random.unit(), random.unit(), random.unit() * 1e-3],
+                2 => [
+                    random.below(2) as f64 * 9.0 + random.unit(),
+                    random.unit(),
+                    random.unit() * 1e-3,
+                ],
                 3 => [0; 3].map(|_| spread(&mut random, 40)),
                 _ => [0; 3].map(|_| random.unit()),
             })
@@ -292,9 +390,16 @@ fn blocks_have_the_cells_of_the_whole() {
         points.sort_unstable_by(|p, q| p.partial_cmp(q).expect("numbers"));
         points.dedup();
         let range = [0.0, 1e-3, 0.1, 4.0][round / 5 % 4];
-        let weighted: Vec<[f64; 4]> = points.iter().map(|&[x, y, z]| [x, y, z, range * random.unit()]).collect();
-        built += judge_blocks(&Space::<Adaptive>::new(), &points, levels).into_iter().count();
-        built += judge_blocks(&WeightedSpace::<Adaptive>::default(), &weighted, levels).into_iter().count();
+        let weighted: Vec<[f64; 4]> = points
+            .iter()
+            .map(|&[x, y, z]| [x, y, z, range * random.unit()])
+            .collect();
+        built += judge_blocks(&Space::<Adaptive>::new(), &points, levels)
+            .into_iter()
+            .count();
+        built += judge_blocks(&WeightedSpace::<Adaptive>::default(), &weighted, levels)
+            .into_iter()
+            .count();
     }
     assert!(built > rounds, "{built} of {}: hardly a test", 2 * rounds);
 }

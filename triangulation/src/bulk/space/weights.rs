@@ -16,9 +16,17 @@ impl Weights {
     /// these, perhaps.
     pub(super) fn new([least, greatest]: [f64; 2], weights: impl Iterator<Item = f64>) -> Self {
         if least == greatest {
-            return Weights { each: Vec::new(), greatest: 0.0, range: 0.0 };
+            return Weights {
+                each: Vec::new(),
+                greatest: 0.0,
+                range: 0.0,
+            };
         }
-        Weights { each: weights.collect(), greatest, range: greatest - least }
+        Weights {
+            each: weights.collect(),
+            greatest,
+            range: greatest - least,
+        }
     }
 
     /// Returns true if vertices may be hidden.
@@ -40,6 +48,8 @@ impl Weights {
     /// Returns how much a finite vertex lacks of the greatest weight.
     #[inline(always)]
     pub(super) fn lack(&self, vertex: u32) -> f64 {
-        self.each.get(vertex as usize).map_or(0.0, |weight| self.greatest - weight)
+        self.each
+            .get(vertex as usize)
+            .map_or(0.0, |weight| self.greatest - weight)
     }
 }

@@ -32,7 +32,8 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
                 let others = self.corners(beside)?;
                 // Once around from the vertex opposite the facet: in mirrored order on the other
                 // side.
-                let is_shared = (1..width).all(|k| corners[(i + k) % width] == others[(j + width - k) % width]);
+                let is_shared =
+                    (1..width).all(|k| corners[(i + k) % width] == others[(j + width - k) % width]);
                 let is_turned = width != 2 || i != j;
                 self.ensure(cell, || beside != cell && is_shared && is_turned)?;
             }

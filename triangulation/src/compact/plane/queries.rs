@@ -16,7 +16,8 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
         &self,
         ends: [&[f64; D]; 2],
         near: Option<CellId>,
-    ) -> Result<impl Iterator<Item = Result<Passage, CompactError>> + use<'_, G, B, D>, CompactError> {
+    ) -> Result<impl Iterator<Item = Result<Passage, CompactError>> + use<'_, G, B, D>, CompactError>
+    {
         query::along(self, ends, near)
     }
 
@@ -60,7 +61,8 @@ impl<G: Geometry<3, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
     pub fn vertices_around(
         &self,
         vertex: VertexId,
-    ) -> Result<impl DoubleEndedIterator<Item = Result<VertexId, CompactError>> + '_, CompactError> {
+    ) -> Result<impl DoubleEndedIterator<Item = Result<VertexId, CompactError>> + '_, CompactError>
+    {
         plane::vertices_around(self, vertex)
     }
 

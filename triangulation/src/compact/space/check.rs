@@ -14,9 +14,9 @@ impl From<TdsError> for CompactError {
             | TdsError::ThreeCells { cell, .. }
             | TdsError::NotMutual { cell, .. }
             | TdsError::NotOriented { cell, .. } => CompactError::Cell(cell),
-            TdsError::CellOfVertex(vertex) | TdsError::Isolated(vertex) | TdsError::Link(vertex) => {
-                CompactError::Vertex(vertex)
-            }
+            TdsError::CellOfVertex(vertex)
+            | TdsError::Isolated(vertex)
+            | TdsError::Link(vertex) => CompactError::Vertex(vertex),
             _ => CompactError::Header("the cells are not connected"),
         }
     }

@@ -17,7 +17,10 @@ impl<G: Geometry<4, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
         &self,
         ends: [&[f64; D]; 2],
         near: Option<CellId>,
-    ) -> Result<impl Iterator<Item = Result<SpacePassage, CompactError>> + use<'_, G, B, D>, CompactError> {
+    ) -> Result<
+        impl Iterator<Item = Result<SpacePassage, CompactError>> + use<'_, G, B, D>,
+        CompactError,
+    > {
         query::along_in_space(self, ends, near)
     }
 
@@ -59,7 +62,8 @@ impl<G: Geometry<4, Point = [f64; D]>, B: AsRef<[u8]>, const D: usize> Compact<G
     pub fn cells_around_edge(
         &self,
         edge: Edge,
-    ) -> Result<impl DoubleEndedIterator<Item = Result<Edge, CompactError>> + '_, CompactError> {
+    ) -> Result<impl DoubleEndedIterator<Item = Result<Edge, CompactError>> + '_, CompactError>
+    {
         space::cells_around_edge(self, edge)
     }
 

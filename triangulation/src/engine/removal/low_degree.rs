@@ -48,7 +48,9 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
         if self.dimension() < 2 {
             return false;
         }
-        let Some(ring) = self.low_ring(vertex) else { return false };
+        let Some(ring) = self.low_ring(vertex) else {
+            return false;
+        };
         let (inner, superfluous) = ring.faces[..ring.degree].split_at(ring.degree - 2);
         for &face in superfluous {
             self.tds.remove_cell(face);
@@ -63,7 +65,8 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
             open -= 1;
             let (first, last, beyond) = chains[open];
             let apex = self.third_corner(&ring.points, first, last);
-            self.tds.set_corners(face, [first, apex, last].map(|k| ring.corners[k]));
+            self.tds
+                .set_corners(face, [first, apex, last].map(|k| ring.corners[k]));
             self.renew_edges(edges, face, [(1, beyond)]);
             for (first, last, side) in [(first, apex, (face, 2)), (apex, last, (face, 0))] {
                 if first + 1 < last {
@@ -133,8 +136,12 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
         let (mut left, mut right) = (first, first);
         let (mut left_end, mut right_end) = (1, MOST);
         loop {
-            let next = self.tds.neighbor(left, ccw(self.tds.index_of(left, vertex)?));
-            let previous = self.tds.neighbor(right, cw(self.tds.index_of(right, vertex)?));
+            let next = self
+                .tds
+                .neighbor(left, ccw(self.tds.index_of(left, vertex)?));
+            let previous = self
+                .tds
+                .neighbor(right, cw(self.tds.index_of(right, vertex)?));
             if next == right {
                 break;
             }

@@ -40,6 +40,10 @@ impl<G: Geometry<4>, V, C: Copy + Default> Removal for Triangulation<G, 4, V, C>
     }
 
     fn star(&self, vertex: VertexId) -> Vec<CellId> {
-        self.tds.cells_around(vertex).into_iter().map(|(cell, _)| cell).collect()
+        self.tds
+            .cells_around(vertex)
+            .into_iter()
+            .map(|(cell, _)| cell)
+            .collect()
     }
 }

@@ -112,7 +112,10 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
         }
         line.sort_unstable_by(|&p, &q| self.geometry.compare(self.point(p), self.point(q)));
         line.dedup();
-        let turn = |w: &[VertexId]| self.geometry.orientation([w[0], w[1], w[2]].map(|v| self.point(v)));
+        let turn = |w: &[VertexId]| {
+            self.geometry
+                .orientation([w[0], w[1], w[2]].map(|v| self.point(v)))
+        };
         (is_on_hull && line.windows(3).all(|w| turn(w) == Sign::Zero)).then_some(line)
     }
 
@@ -138,7 +141,9 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
         // The rest is a triangle, or a chain of hull edges, each of which gets a triangle with the
         // infinite vertex.
         let apex = ring.corners.iter().position(|&v| v == VertexId::INFINITE);
-        let apex = apex.or((0..ring.corners.len()).find(|&k| !ring.is_cut(k))).unwrap_or(0);
+        let apex = apex
+            .or((0..ring.corners.len()).find(|&k| !ring.is_cut(k)))
+            .unwrap_or(0);
         while ring.length > 2 {
             let k = ring.next[apex];
             self.cut(edges, &mut ring, k, &cells);
@@ -163,7 +168,8 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
             let i = self.tds.index_of(cell, vertex).unwrap_or(0);
             let beyond = self.tds.neighbor(cell, i);
             ring.corners.push(self.tds.vertex(cell, ccw(i)));
-            ring.beyond.push((beyond, self.tds.index_of_neighbor(beyond, cell)));
+            ring.beyond
+                .push((beyond, self.tds.index_of_neighbor(beyond, cell)));
         }
         ring
     }
@@ -182,7 +188,8 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
     fn cut(&mut self, edges: impl Edges<C>, ring: &mut HoleRing, k: usize, cells: &[CellId]) {
         let cell = cells[ring.corners.len() - ring.length];
         let [p, _, n] = ring.triple(k);
-        self.tds.set_corners(cell, [p, k, n].map(|k| ring.corners[k]));
+        self.tds
+            .set_corners(cell, [p, k, n].map(|k| ring.corners[k]));
         self.renew_edges(edges, cell, [(0, ring.beyond[k]), (2, ring.beyond[p])]);
         ring.cut(k, cell, 1);
     }

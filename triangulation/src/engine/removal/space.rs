@@ -45,7 +45,11 @@ impl<G: Geometry<4>, V, C: Copy + Default> Triangulation<G, 4, V, C> {
     }
 
     /// Returns the cells that fill the hole; `None` if the dimension changes.
-    fn cells_without(&self, vertex: VertexId, star: &[(CellId, usize)]) -> Option<Vec<[VertexId; 4]>> {
+    fn cells_without(
+        &self,
+        vertex: VertexId,
+        star: &[(CellId, usize)],
+    ) -> Option<Vec<[VertexId; 4]>> {
         let mut neighbors = self.tds.vertices_around(vertex);
         neighbors.retain(|&v| v != VertexId::INFINITE);
         let mut local = self.local(&neighbors, |t, beyond, p| t.in_conflict(beyond, p));
@@ -53,12 +57,19 @@ impl<G: Geometry<4>, V, C: Copy + Default> Triangulation<G, 4, V, C> {
             let p = self.point(vertex);
             let location = local.locate(p, None);
             let zone = local.collect(location, |t, _, _, beyond| t.in_conflict(beyond, p))?;
-            return Some(zone.cells().iter().map(|&cell| corners(&local, cell)).collect());
+            return Some(
+                zone.cells()
+                    .iter()
+                    .map(|&cell| corners(&local, cell))
+                    .collect(),
+            );
         }
         if neighbors.len() + 1 == self.vertex_count() {
             return None;
         }
-        let finite = star.iter().filter(|&&(cell, _)| !self.tds.is_infinite(cell));
+        let finite = star
+            .iter()
+            .filter(|&&(cell, _)| !self.tds.is_infinite(cell));
         let to_infinity = finite.map(|&(cell, i)| {
             let mut corners = *self.tds.corners(cell);
             corners[i] = VertexId::INFINITE;
@@ -74,15 +85,22 @@ impl<G: Geometry<4>, V, C: Copy + Default> Triangulation<G, 4, V, C> {
         let mut dimension = self.dimension();
         let mut cells: Vec<[VertexId; 4]> = Vec::new();
         for by_law in [true, false] {
-            let local = self.local(
-                &others,
-                |t, beyond, p| {
-                    if by_law { t.in_conflict(beyond, p) } else { t.is_split_by(beyond, p) }
-                },
-            );
-            if local.vertex_count() == others.len() && local.tds.vertices().all(|v| has_cell(&local, v)) {
+            let local = self.local(&others, |t, beyond, p| {
+                if by_law {
+                    t.in_conflict(beyond, p)
+                } else {
+                    t.is_split_by(beyond, p)
+                }
+            });
+            if local.vertex_count() == others.len()
+                && local.tds.vertices().all(|v| has_cell(&local, v))
+            {
                 dimension = local.dimension();
-                cells = local.tds.cells().map(|cell| corners(&local, cell)).collect();
+                cells = local
+                    .tds
+                    .cells()
+                    .map(|cell| corners(&local, cell))
+                    .collect();
                 break;
             }
         }
@@ -91,12 +109,22 @@ impl<G: Geometry<4>, V, C: Copy + Default> Triangulation<G, 4, V, C> {
     }
 
     /// Returns the triangulation of some vertices. `takes` decides which cells a point replaces.
-    fn local(&self, vertices: &[VertexId], takes: impl Fn(&Local<G>, CellId, &G::Point) -> bool) -> Local<'_, G> {
+    fn local(
+        &self,
+        vertices: &[VertexId],
+        takes: impl Fn(&Local<G>, CellId, &G::Point) -> bool,
+    ) -> Local<'_, G> {
         let mut local = Triangulation::new(&self.geometry);
         for &vertex in vertices {
             let p = self.point(vertex);
             let location = local.locate(p, None);
-            local.insert_at(*p, location, vertex, |t, _, _, beyond| takes(t, beyond, p), |(), _| ());
+            local.insert_at(
+                *p,
+                location,
+                vertex,
+                |t, _, _, beyond| takes(t, beyond, p),
+                |(), _| (),
+            );
         }
         local
     }
@@ -105,14 +133,21 @@ impl<G: Geometry<4>, V, C: Copy + Default> Triangulation<G, 4, V, C> {
 /// Returns true if a vertex is in the cell that is stored for it, so that no insertion of another
 /// one has removed it from the complex.
 fn has_cell<G: Geometry<4>>(local: &Local<G>, vertex: VertexId) -> bool {
-    local.tds.cell_of(vertex).is_some_and(|cell| local.tds.is_used(cell) && local.tds.index_of(cell, vertex).is_some())
+    local
+        .tds
+        .cell_of(vertex)
+        .is_some_and(|cell| local.tds.is_used(cell) && local.tds.index_of(cell, vertex).is_some())
 }
 
 /// Returns the vertices of a cell of a small triangulation, by their numbers in the large one.
 fn corners<G: Geometry<4>>(local: &Local<G>, cell: CellId) -> [VertexId; 4] {
     let mut corners = [VertexId::NONE; 4];
     for (corner, &v) in corners.iter_mut().zip(local.tds.cell_vertices(cell)) {
-        *corner = if v == VertexId::INFINITE { v } else { *local.tds.vertex_data(v) };
+        *corner = if v == VertexId::INFINITE {
+            v
+        } else {
+            *local.tds.vertex_data(v)
+        };
     }
     corners
 }

@@ -107,7 +107,12 @@ pub(super) struct Edit<'a, G: Crossing, V, C> {
 
 impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
     pub(super) fn on(t: &'a mut Mesh<G, V, C>, lines: &'a mut Lines) -> Result<Self, NotLocal> {
-        let rounder = if t.dimension() == 2 { lines.measured(t)?.rounder } else { None }.ok_or(NotLocal)?;
+        let rounder = if t.dimension() == 2 {
+            lines.measured(t)?.rounder
+        } else {
+            None
+        }
+        .ok_or(NotLocal)?;
         Ok(Edit {
             t,
             lines,
@@ -131,7 +136,11 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
     pub(super) fn add_segment(mut self, segment: Ends) -> Result<(), NotLocal> {
         self.added = Some(segment);
         for end in segment {
-            if !self.lines_at(end).into_iter().any(|other| other.contains(&end) || self.has_site(other, end)) {
+            if !self
+                .lines_at(end)
+                .into_iter()
+                .any(|other| other.contains(&end) || self.has_site(other, end))
+            {
                 self.make_hot(end);
             }
         }
@@ -142,7 +151,11 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
         for (other, cell) in self.segments_on_each(edges) {
             let ends_of_other = self.ends(other);
             self.beside_added.push((other, ends_of_other));
-            crossed.extend(self.rounder.crossing(ends, ends_of_other).map(|center| (other, center, cell)));
+            crossed.extend(
+                self.rounder
+                    .crossing(ends, ends_of_other)
+                    .map(|center| (other, center, cell)),
+            );
         }
         if crossed.is_empty() {
             self.bend_if_attracted(segment);
@@ -151,7 +164,8 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
             for &(other, center, cell) in &crossed {
                 self.add_site(center, [segment, other], cell)?;
             }
-            self.steps.extend(crossed.iter().map(|&(other, ..)| PendingStep::Bend(other)));
+            self.steps
+                .extend(crossed.iter().map(|&(other, ..)| PendingStep::Bend(other)));
             self.steps.push(PendingStep::Bend(segment));
         }
         self.apply_rules()?;
@@ -174,7 +188,10 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
         } else {
             let at = position(self.t, vertex);
             let around = self.around(vertex);
-            if around.into_iter().any(|segment| self.is_bent(segment) && lies_on(self.ends(segment), at)) {
+            if around
+                .into_iter()
+                .any(|segment| self.is_bent(segment) && lies_on(self.ends(segment), at))
+            {
                 self.make_hot(vertex);
             }
         }
@@ -219,7 +236,10 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
             copy.extend_from_slice(sites);
             Some(copy)
         };
-        self.chains.entry(segment).or_insert_with(in_table).get_or_insert_default()
+        self.chains
+            .entry(segment)
+            .or_insert_with(in_table)
+            .get_or_insert_default()
     }
 
     fn make_hot(&mut self, site: VertexId) {
@@ -229,15 +249,27 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
 
     /// Makes the rounded crossing of two segments a hot site.
     /// The walk to it starts at a cell nearby.
-    fn add_site(&mut self, center: [f64; 2], segments: [Ends; 2], near: CellId) -> Result<(), NotLocal> {
+    fn add_site(
+        &mut self,
+        center: [f64; 2],
+        segments: [Ends; 2],
+        near: CellId,
+    ) -> Result<(), NotLocal> {
         let ends = segments.map(|ends| ends.map(|v| *self.t.point(v)));
-        let p = self.t.geometry.meet(center, &ends.each_ref().map(|ends| ends.each_ref()));
+        let p = self
+            .t
+            .geometry
+            .meet(center, &ends.each_ref().map(|ends| ends.each_ref()));
         self.t.admit(&p).map_err(|_| NotLocal)?;
         let count = self.t.vertex_count();
         let location = self.t.locate(&p, Some(near));
         let site = match self.constraint_beside(segments[1], center, &p, location) {
             Some((cell, i)) => self.bend_edge(segments[1], p, cell, i),
-            None => self.lines.insert_at(self.t, p, V::default(), location).vertex,
+            None => {
+                self.lines
+                    .insert_at(self.t, p, V::default(), location)
+                    .vertex
+            }
         };
         if self.t.vertex_count() > count {
             self.lines.added.insert(site);
@@ -260,10 +292,21 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
         p: &G::Point,
         location: Location,
     ) -> Option<(CellId, usize)> {
-        let Location::Cell { cell, facets } = location else { return None };
-        let sites = self.lines.chains.bent.get(&segment).map_or(&[][..], |sites| sites);
+        let Location::Cell { cell, facets } = location else {
+            return None;
+        };
+        let sites = self
+            .lines
+            .chains
+            .bent
+            .get(&segment)
+            .map_or(&[][..], |sites| sites);
         let next = self.position_along(segment, sites, at);
-        let from = if next == 0 { segment[0] } else { sites[next - 1] };
+        let from = if next == 0 {
+            segment[0]
+        } else {
+            sites[next - 1]
+        };
         let part = undirected(from, *sites.get(next).unwrap_or(&segment[1]));
         let is_part = |&i: &usize| {
             let [a, b] = self.t.tds.edge_ends(cell, i);
@@ -290,7 +333,11 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
 
     /// Schedules a segment to be bent if it meets the pixel of an active site.
     fn bend_if_attracted(&mut self, segment: Ends) {
-        if self.attractors(segment).into_iter().any(|v| self.is_hot(v) && self.is_active(v)) {
+        if self
+            .attractors(segment)
+            .into_iter()
+            .any(|v| self.is_hot(v) && self.is_active(v))
+        {
             self.steps.push(PendingStep::Bend(segment));
         }
     }
@@ -300,7 +347,10 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
         while let Some(step) = self.steps.pop() {
             match step {
                 PendingStep::Attract(site) => {
-                    if self.is_given(site) && self.rounder.is_even() && !self.rounder.holds(position(self.t, site)) {
+                    if self.is_given(site)
+                        && self.rounder.is_even()
+                        && !self.rounder.holds(position(self.t, site))
+                    {
                         return Err(NotLocal); // the grid becomes another one
                     }
                     for segment in self.around(site) {
@@ -364,14 +414,24 @@ impl<'a, G: Crossing, V: Default, C: Copy + Default> Edit<'a, G, V, C> {
             for segment in self.lines_at(site) {
                 if self.is_bent(segment) && known.insert(segment) && !self.crosses_any(segment) {
                     loose.push(segment);
-                    open.extend(self.sites(segment).into_iter().filter(|&site| seen.insert(site)));
+                    open.extend(
+                        self.sites(segment)
+                            .into_iter()
+                            .filter(|&site| seen.insert(site)),
+                    );
                 }
             }
         }
-        self.chains.extend(loose.iter().map(|&segment| (segment, None)));
+        self.chains
+            .extend(loose.iter().map(|&segment| (segment, None)));
         for site in order {
-            let bent: Vec<Ends> = self.lines_at(site).into_iter().filter(|&s| self.is_bent(s)).collect();
-            let is_hot = self.is_end(site) || self.is_crossing(site, &bent) || self.is_on_one(site, &bent);
+            let bent: Vec<Ends> = self
+                .lines_at(site)
+                .into_iter()
+                .filter(|&s| self.is_bent(s))
+                .collect();
+            let is_hot =
+                self.is_end(site) || self.is_crossing(site, &bent) || self.is_on_one(site, &bent);
             self.hot.insert(site, is_hot);
             for segment in bent.into_iter().filter(|_| !is_hot) {
                 if self.has_site(segment, site) {

@@ -30,7 +30,9 @@ pub(crate) fn prefetch<T>(wanted: &T) {
 pub(crate) fn facets(v: [u32; 4], n: [u32; 4]) -> [[u32; 4]; 4] {
     #[cfg(all(feature = "simd", target_feature = "sse"))]
     {
-        use safe_arch::{m128, shuffle_abi_f32_all_m128 as shuffle, unpack_high_m128, unpack_low_m128};
+        use safe_arch::{
+            m128, shuffle_abi_f32_all_m128 as shuffle, unpack_high_m128, unpack_low_m128,
+        };
         let [v, n] = [v, n].map(|row| m128::from_array(row.map(f32::from_bits)));
         // v2 n2 v3 n3; v3 v3 n0 n1.
         let high = unpack_high_m128(v, n);
@@ -44,7 +46,12 @@ pub(crate) fn facets(v: [u32; 4], n: [u32; 4]) -> [[u32; 4]; 4] {
         rows.map(|row| row.to_array().map(f32::to_bits))
     }
     #[cfg(not(all(feature = "simd", target_feature = "sse")))]
-    [[v[2], v[1], v[3], n[0]], [v[0], v[2], v[3], n[1]], [v[1], v[0], v[3], n[2]], [v[0], v[1], v[2], n[3]]]
+    [
+        [v[2], v[1], v[3], n[0]],
+        [v[0], v[2], v[3], n[1]],
+        [v[1], v[0], v[3], n[2]],
+        [v[0], v[1], v[2], n[3]],
+    ]
 }
 
 /// Returns a row with another last number.
@@ -58,7 +65,9 @@ pub(crate) fn with_last(row: [u32; 4], last: u32) -> [u32; 4] {
         let [row, last] = [row, [last; 4]].map(|row| m128::from_array(row.map(f32::from_bits)));
         // The third, and the last.
         let end = shuffle::<0b00_00_10_10>(row, last);
-        shuffle::<0b10_00_01_00>(row, end).to_array().map(f32::to_bits)
+        shuffle::<0b10_00_01_00>(row, end)
+            .to_array()
+            .map(f32::to_bits)
     }
     #[cfg(not(all(feature = "simd", target_feature = "sse")))]
     [row[0], row[1], row[2], last]
@@ -93,7 +102,8 @@ mod tests {
             use $module as lanes;
             let [a, b, c, d] = lanes::f32x4::transpose($rows.map(lanes::f32x4::new));
             let less = a.simd_lt(b);
-            let [e, f, g, _] = $rows.map(|row: [f32; 4]| lanes::f64x2::new([f64::from(row[0]), f64::from(row[1])]));
+            let [e, f, g, _] = $rows
+                .map(|row: [f32; 4]| lanes::f64x2::new([f64::from(row[0]), f64::from(row[1])]));
             let i = lanes::i32x4::new($rows[0].map(|x| x.to_bits() as i32));
             let floats: [lanes::f32x4; 5] = [
                 a + b * c - d,
@@ -102,7 +112,11 @@ mod tests {
                 less.bitselect(c, d),
                 (a.simd_gt(d) & less).bitselect(a, b),
             ];
-            let doubles: [lanes::f64x2; 3] = [e + f * g - e / f, e.fast_max(f), lanes::f64x2::splat(0.1) * g];
+            let doubles: [lanes::f64x2; 3] = [
+                e + f * g - e / f,
+                e.fast_max(f),
+                lanes::f64x2::splat(0.1) * g,
+            ];
             let low: lanes::i32x4 = i & lanes::i32x4::splat(31);
             let up: lanes::i32x4 = lanes::i32x4::splat(7) << 23;
             let down: lanes::i32x4 = (i - lanes::i32x4::splat(126)) >> 3;
@@ -119,22 +133,35 @@ mod tests {
 
     #[test]
     fn facets_have_their_vertices_and_neighbors() {
-        let facets = [[2, 1, 3, 4], [0, 2, 3, 5], [1, 0, 3, u32::MAX], [0, 1, 2, 7]];
+        let facets = [
+            [2, 1, 3, 4],
+            [0, 2, 3, 5],
+            [1, 0, 3, u32::MAX],
+            [0, 1, 2, 7],
+        ];
         assert_eq!(super::facets([0, 1, 2, 3], [4, 5, u32::MAX, 7]), facets);
     }
 
     #[test]
     fn only_the_last_number_changes() {
-        assert_eq!(super::with_last([1, u32::MAX, 3, 4], 5), [1, u32::MAX, 3, 5]);
+        assert_eq!(
+            super::with_last([1, u32::MAX, 3, 4], 5),
+            [1, u32::MAX, 3, 5]
+        );
     }
 
     #[test]
     fn the_plain_twin_computes_the_same() {
         let mut random = testkit::random::Random(1);
         for _ in 0..10_000 {
-            let mut number = || (random.around(1000) as f32) * 2f32.powi(random.around(20) as i32) + 0.5;
+            let mut number =
+                || (random.around(1000) as f32) * 2f32.powi(random.around(20) as i32) + 0.5;
             let rows = [0; 4].map(|_| [0; 4].map(|_| number()));
-            assert_eq!(results!(plain, rows), results!(crate::num::lanes, rows), "{rows:?}");
+            assert_eq!(
+                results!(plain, rows),
+                results!(crate::num::lanes, rows),
+                "{rows:?}"
+            );
         }
     }
 }

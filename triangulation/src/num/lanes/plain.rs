@@ -126,13 +126,21 @@ impl f32x4 {
     /// The highest bit of each lane.
     #[inline(always)]
     pub(crate) fn to_bitmask(self) -> u32 {
-        (0..4).map(|lane| self.0[lane].to_bits() >> 31 << lane).sum()
+        (0..4)
+            .map(|lane| self.0[lane].to_bits() >> 31 << lane)
+            .sum()
     }
 
     /// The first number where a lane of this mask is set, the second where it is not.
     #[inline(always)]
     pub(crate) fn bitselect(self, if_one: Self, if_zero: Self) -> Self {
-        let select = |lane: usize| if self.0[lane].to_bits() == 0 { if_zero.0[lane] } else { if_one.0[lane] };
+        let select = |lane: usize| {
+            if self.0[lane].to_bits() == 0 {
+                if_zero.0[lane]
+            } else {
+                if_one.0[lane]
+            }
+        };
         Lanes([0, 1, 2, 3].map(select))
     }
 }

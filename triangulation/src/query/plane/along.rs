@@ -77,7 +77,11 @@ pub fn along<'t, T: Embedded<3>>(
     [a, b]: [&PointOf<T, 3>; 2],
     near: Option<CellId>,
 ) -> Result<impl Iterator<Item = Result<Passage, T::Error>> + use<'t, T>, T::Error> {
-    let location = if t.complex().dimension() == 2 { locate(t, a, near)? } else { Location::OutsideAffineHull };
+    let location = if t.complex().dimension() == 2 {
+        locate(t, a, near)?
+    } else {
+        Location::OutsideAffineHull
+    };
     Ok(Along::new(t, [a, b], location))
 }
 
@@ -95,8 +99,17 @@ impl<'t, T: Embedded<3>> Along<'t, T> {
     /// Starts at the location of the segment's first point.
     fn new(t: &'t T, [a, b]: [&PointOf<T, 3>; 2], location: Location) -> Self {
         let segment = Segment { t, a: *a, b: *b };
-        let next = if t.geometry().admits(b) { segment.first(location) } else { Ok(None) };
-        Along { segment, next, faces: 0, vertex: None }
+        let next = if t.geometry().admits(b) {
+            segment.first(location)
+        } else {
+            Ok(None)
+        };
+        Along {
+            segment,
+            next,
+            faces: 0,
+            vertex: None,
+        }
     }
 
     fn after(&mut self, passage: Passage) -> Result<Option<Passage>, T::Error> {
@@ -107,8 +120,14 @@ impl<'t, T: Embedded<3>> Along<'t, T> {
                 complex.ensure(cell, || self.faces <= complex.cell_slots())?;
             }
             Passage::Vertex(vertex) => {
-                if let (Some(last), Some(cell)) = (self.vertex.replace(vertex), complex.cell_of(vertex)?) {
-                    complex.ensure(cell, || self.segment.order_of(last, vertex).is_ok_and(Ordering::is_gt))?;
+                if let (Some(last), Some(cell)) =
+                    (self.vertex.replace(vertex), complex.cell_of(vertex)?)
+                {
+                    complex.ensure(cell, || {
+                        self.segment
+                            .order_of(last, vertex)
+                            .is_ok_and(Ordering::is_gt)
+                    })?;
                 }
             }
             Passage::Edge(..) | Passage::Along(_) => {}
@@ -139,12 +158,19 @@ struct Segment<'t, T: Embedded<3>> {
 impl<T: Embedded<3>> Segment<'_, T> {
     /// Returns the side of the line that a vertex lies on: positive on the left.
     fn side(&self, vertex: VertexId) -> Result<Sign, T::Error> {
-        Ok(self.t.geometry().orientation([&self.a, &self.b, self.t.point(vertex)?.borrow()]))
+        Ok(self
+            .t
+            .geometry()
+            .orientation([&self.a, &self.b, self.t.point(vertex)?.borrow()]))
     }
 
     /// Returns the side of an edge that a point lies on.
     fn beside(&self, [from, to]: [VertexId; 2], p: &PointOf<T, 3>) -> Result<Sign, T::Error> {
-        Ok(self.t.geometry().orientation([self.t.point(from)?.borrow(), self.t.point(to)?.borrow(), p]))
+        Ok(self.t.geometry().orientation([
+            self.t.point(from)?.borrow(),
+            self.t.point(to)?.borrow(),
+            p,
+        ]))
     }
 
     /// Returns the side of an edge that the segment ends on.
@@ -156,7 +182,11 @@ impl<T: Embedded<3>> Segment<'_, T> {
     fn order(&self, p: &PointOf<T, 3>, q: &PointOf<T, 3>) -> Ordering {
         let g = self.t.geometry();
         let order = g.compare(q, p);
-        if g.compare(&self.b, &self.a).is_lt() { order.reverse() } else { order }
+        if g.compare(&self.b, &self.a).is_lt() {
+            order.reverse()
+        } else {
+            order
+        }
     }
 
     /// Like [`order`](Self::order), for vertices.
@@ -171,7 +201,10 @@ impl<T: Embedded<3>> Segment<'_, T> {
 
     /// Returns a vertex on the line as what is met next, if the segment goes that far.
     fn up_to(&self, vertex: VertexId) -> Result<Option<Passage>, T::Error> {
-        Ok(self.order_to_end(vertex)?.is_ge().then_some(Passage::Vertex(vertex)))
+        Ok(self
+            .order_to_end(vertex)?
+            .is_ge()
+            .then_some(Passage::Vertex(vertex)))
     }
 
     fn first(&self, location: Location) -> Result<Option<Passage>, T::Error> {
@@ -179,12 +212,16 @@ impl<T: Embedded<3>> Segment<'_, T> {
         Ok(match location {
             Location::Vertex(vertex) => Some(Passage::Vertex(vertex)),
             Location::Cell { cell, facets } => {
-                let Some(i) = facets.iter().next() else { return Ok(Some(Passage::Face(cell))) };
+                let Some(i) = facets.iter().next() else {
+                    return Ok(Some(Passage::Face(cell)));
+                };
                 let ends @ [from, to] = plane::edge_ends(complex, cell, i)?;
                 let beyond = complex.neighbor(cell, i)?;
                 Some(match self.end_side(ends)? {
                     Sign::Negative => Passage::Edge(cell, i),
-                    Sign::Positive => Passage::Edge(beyond, complex.index_of_neighbor(beyond, cell)?),
+                    Sign::Positive => {
+                        Passage::Edge(beyond, complex.index_of_neighbor(beyond, cell)?)
+                    }
                     Sign::Zero if self.order(&self.a, &self.b).is_eq() => Passage::Edge(cell, i),
                     Sign::Zero if self.order_of(from, to)?.is_gt() => Passage::Along([from, to]),
                     Sign::Zero => Passage::Along([to, from]),
@@ -244,14 +281,19 @@ impl<T: Embedded<3>> Segment<'_, T> {
         let complex = self.t.complex();
         let corners @ [u, v, w] = complex.corners(cell)?;
         let sides = [self.side(u)?, self.side(v)?, self.side(w)?];
-        let Some(last) = (0..3).find(|&i| sides[i] == Sign::Negative && sides[ccw(i)] != Sign::Negative) else {
+        let Some(last) =
+            (0..3).find(|&i| sides[i] == Sign::Negative && sides[ccw(i)] != Sign::Negative)
+        else {
             return Ok(None);
         };
         if sides[ccw(last)] == Sign::Zero {
             return self.up_to(corners[ccw(last)]);
         }
         let i = cw(last);
-        Ok((self.end_side(plane::edge_ends(complex, cell, i)?)? != Sign::Positive).then_some(Passage::Edge(cell, i)))
+        Ok(
+            (self.end_side(plane::edge_ends(complex, cell, i)?)? != Sign::Positive)
+                .then_some(Passage::Edge(cell, i)),
+        )
     }
 
     fn after_vertex(&self, vertex: VertexId) -> Result<Option<Passage>, T::Error> {
@@ -270,7 +312,9 @@ impl<T: Embedded<3>> Segment<'_, T> {
                 Sign::Zero if self.order_of(vertex, right)?.is_gt() => {
                     return Ok(Some(Passage::Along([vertex, right])));
                 }
-                Sign::Negative if left != VertexId::INFINITE && self.side(left)? == Sign::Positive => {
+                Sign::Negative
+                    if left != VertexId::INFINITE && self.side(left)? == Sign::Positive =>
+                {
                     return Ok(Some(Passage::Face(cell)));
                 }
                 _ => {}

@@ -17,7 +17,8 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
     /// early.
     pub fn edges_crossed(&self, a: &G::Point, b: &G::Point) -> Vec<[VertexId; 2]> {
         let mut crossed = Vec::new();
-        let is_segment = [a, b].into_iter().all(|p| self.geometry.admits(p)) && self.geometry.compare(a, b).is_ne();
+        let is_segment = [a, b].into_iter().all(|p| self.geometry.admits(p))
+            && self.geometry.compare(a, b).is_ne();
         if self.dimension() < 2 || !is_segment {
             return crossed;
         }
@@ -39,7 +40,10 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
                 }
             }
             // Through a vertex the segment may continue in any of its cells.
-            for &vertex in corners.iter().filter(|&&v| v != VertexId::INFINITE && self.is_between(a, b, v)) {
+            for &vertex in corners
+                .iter()
+                .filter(|&&v| v != VertexId::INFINITE && self.is_between(a, b, v))
+            {
                 open.extend(self.tds.around(vertex).filter(|&cell| seen.insert(cell)));
             }
         }
@@ -52,13 +56,18 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
     /// point outside.
     fn cells_at(&self, a: &G::Point) -> Vec<CellId> {
         let Ok(cells) = self.locate(a, None).cells(&self.tds);
-        if cells.is_empty() { self.tds.around(VertexId::INFINITE).collect() } else { cells }
+        if cells.is_empty() {
+            self.tds.around(VertexId::INFINITE).collect()
+        } else {
+            cells
+        }
     }
 
     fn crosses(&self, a: &G::Point, b: &G::Point, [c, d]: [VertexId; 2]) -> bool {
         let (c, d) = (self.point(c), self.point(d));
         let turn = |p, q, r| self.geometry.orientation([p, q, r]);
-        turn(a, b, c) * turn(a, b, d) == Sign::Negative && turn(c, d, a) * turn(c, d, b) == Sign::Negative
+        turn(a, b, c) * turn(a, b, d) == Sign::Negative
+            && turn(c, d, a) * turn(c, d, b) == Sign::Negative
     }
 
     fn is_between(&self, a: &G::Point, b: &G::Point, v: VertexId) -> bool {

@@ -25,7 +25,11 @@ pub struct VoronoiCell {
 /// Returns twice the area of a polygon, positive if it is counter-clockwise.
 pub(super) fn twice_area(polygon: &[[f64; 2]]) -> f64 {
     let next = polygon.iter().cycle().skip(1);
-    polygon.iter().zip(next).map(|(p, q)| p[0] * q[1] - p[1] * q[0]).sum()
+    polygon
+        .iter()
+        .zip(next)
+        .map(|(p, q)| p[0] * q[1] - p[1] * q[0])
+        .sum()
 }
 
 /// Returns the cell of a site: the part of a convex polygon in half planes that are given relative
@@ -36,12 +40,23 @@ pub(super) fn cell_of(
     within: &[[f64; 2]],
 ) -> VoronoiCell {
     let is_polygon = within.as_flattened().iter().all(|x| x.is_finite());
-    let polygon = within.iter().filter(|_| is_polygon).map(|&p| minus(p, site)).collect();
-    let cell: Vec<[f64; 2]> = half_planes.fold(polygon, |polygon, half_plane| half_plane.clip(polygon));
+    let polygon = within
+        .iter()
+        .filter(|_| is_polygon)
+        .map(|&p| minus(p, site))
+        .collect();
+    let cell: Vec<[f64; 2]> =
+        half_planes.fold(polygon, |polygon, half_plane| half_plane.clip(polygon));
     if cell.len() < 3 {
-        return VoronoiCell { corners: Vec::new(), area: 0.0 };
+        return VoronoiCell {
+            corners: Vec::new(),
+            area: 0.0,
+        };
     }
-    VoronoiCell { area: twice_area(&cell) / 2.0, corners: cell.into_iter().map(|p| plus(p, site)).collect() }
+    VoronoiCell {
+        area: twice_area(&cell) / 2.0,
+        corners: cell.into_iter().map(|p| plus(p, site)).collect(),
+    }
 }
 
 impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
@@ -84,13 +99,22 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
         let [a, b] = ends.map(|v| self.site(v));
         let [dx, dy] = minus(b, a);
         if self.dimension() == 1 {
-            return Some(VoronoiEdge::Line { through: between(ends), direction: [-dy, dx] });
+            return Some(VoronoiEdge::Line {
+                through: between(ends),
+                direction: [-dy, dx],
+            });
         }
         Some(match [cell, self.tds().neighbor(cell, i)].map(center) {
             [Some(from), Some(to)] => VoronoiEdge::Segment([from, to]),
             // The face lies to the left of `a b`, or to its right.
-            [Some(from), None] => VoronoiEdge::Ray { from, direction: [dy, -dx] },
-            [None, from] => VoronoiEdge::Ray { from: from?, direction: [-dy, dx] },
+            [Some(from), None] => VoronoiEdge::Ray {
+                from,
+                direction: [dy, -dx],
+            },
+            [None, from] => VoronoiEdge::Ray {
+                from: from?,
+                direction: [-dy, dx],
+            },
         })
     }
 }
@@ -133,10 +157,20 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
     /// ```
     pub fn voronoi_cell(&self, vertex: VertexId, within: &[[f64; 2]]) -> VoronoiCell {
         if !self.tds().is_vertex(vertex) {
-            return VoronoiCell { corners: Vec::new(), area: 0.0 };
+            return VoronoiCell {
+                corners: Vec::new(),
+                area: 0.0,
+            };
         }
         let site = self.site(vertex);
-        let neighbors = self.tds().vertices_around(vertex).filter(|&v| v != VertexId::INFINITE);
-        cell_of(site, neighbors.map(|v| HalfSpace::nearer_than(minus(self.site(v), site))), within)
+        let neighbors = self
+            .tds()
+            .vertices_around(vertex)
+            .filter(|&v| v != VertexId::INFINITE);
+        cell_of(
+            site,
+            neighbors.map(|v| HalfSpace::nearer_than(minus(self.site(v), site))),
+            within,
+        )
     }
 }

@@ -79,7 +79,14 @@ impl<'t, T: Embedded<3, Geometry: Coordinates<3>>> Faces<'t, T> {
     /// Starts with the faces around a vertex.
     fn new(t: &'t T, start: VertexId) -> Result<Self, T::Error> {
         let roots = Some(Star::new(t.complex(), start, 2)?);
-        Ok(Faces { t, start, site: site(t, start)?, roots, at: None, steps: 0 })
+        Ok(Faces {
+            t,
+            start,
+            site: site(t, start)?,
+            roots,
+            at: None,
+            steps: 0,
+        })
     }
 
     /// Returns the index of the edge through which a face is entered; `None` for the faces around
@@ -91,8 +98,10 @@ impl<'t, T: Embedded<3, Geometry: Coordinates<3>>> Faces<'t, T> {
             return Ok(None);
         }
         let corners = [site(self.t, a)?, site(self.t, b)?, site(self.t, c)?];
-        let is_seen =
-            |&i: &usize| Wide::sign(&Orientation2([corners[ccw(i)], corners[cw(i)], self.site])) == Sign::Negative;
+        let is_seen = |&i: &usize| {
+            Wide::sign(&Orientation2([corners[ccw(i)], corners[cw(i)], self.site]))
+                == Sign::Negative
+        };
         let mut seen = (0..3).filter(is_seen);
         let (first, second) = (seen.next(), seen.next());
         // Otherwise the face is flat or clockwise, or contains the start.
@@ -102,7 +111,9 @@ impl<'t, T: Embedded<3, Geometry: Coordinates<3>>> Faces<'t, T> {
         };
         // The edge opposite `i` runs from the common corner to corner `j`.
         let common = 3 - i - j;
-        let falls_on = |to: usize| Wide::sign(&DotProduct([self.site, corners[common], corners[to]])) == Sign::Positive;
+        let falls_on = |to: usize| {
+            Wide::sign(&DotProduct([self.site, corners[common], corners[to]])) == Sign::Positive
+        };
         Ok(Some(if falls_on(j) {
             i
         } else if falls_on(i) {
@@ -175,7 +186,11 @@ impl<'t, T: Embedded<3, Geometry: Coordinates<3>>> Faces<'t, T> {
             Some(cell) => self.after(cell)?,
             None => None,
         };
-        if next.is_some() { Ok(next) } else { self.root() }
+        if next.is_some() {
+            Ok(next)
+        } else {
+            self.root()
+        }
     }
 }
 

@@ -65,7 +65,10 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
             // Relative to the point, which all of them surround.
             let center = |&cell: &CellId| {
                 let corners = self.tds().corners(cell).map(|v| self.site(v));
-                (cell, plus(minus(corners[0], at), kernel::circumcenter(corners)))
+                (
+                    cell,
+                    plus(minus(corners[0], at), kernel::circumcenter(corners)),
+                )
             };
             let old: FxHashMap<CellId, [f64; 2]> = zone.cells.iter().map(center).collect();
             let mut lost = Vec::new();
@@ -98,7 +101,8 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
         self.coordinates(q, near, |zone, at, new| {
             let weight = |k: usize, vertex: VertexId| {
                 let length = |[x, y]: [f64; 2]| x.hypot(y);
-                length(minus(new[(k + 1) % new.len()], new[k])) / length(minus(self.site(vertex), at))
+                length(minus(new[(k + 1) % new.len()], new[k]))
+                    / length(minus(self.site(vertex), at))
             };
             self.around(zone, weight)
         })
@@ -106,9 +110,18 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
 
     /// Returns the weights on the border of a zone; `weight` gets the position there and the vertex
     /// that the edge ends at.
-    fn around(&self, zone: &ConflictZone, mut weight: impl FnMut(usize, VertexId) -> f64) -> VertexWeights {
-        let ends = zone.border.iter().map(|&(cell, i)| self.tds().edge_ends(cell, i)[1]);
-        ends.enumerate().map(|(k, vertex)| (vertex, weight(k, vertex).max(0.0))).collect()
+    fn around(
+        &self,
+        zone: &ConflictZone,
+        mut weight: impl FnMut(usize, VertexId) -> f64,
+    ) -> VertexWeights {
+        let ends = zone
+            .border
+            .iter()
+            .map(|&(cell, i)| self.tds().edge_ends(cell, i)[1]);
+        ends.enumerate()
+            .map(|(k, vertex)| (vertex, weight(k, vertex).max(0.0)))
+            .collect()
     }
 
     /// Returns weights that sum up to 1, from those that `inside` returns for a point within the
@@ -124,14 +137,21 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
         let location = self.locate(q, near);
         let mut weights = match location {
             Location::Vertex(vertex) => return Some(vec![(vertex, 1.0)]),
-            Location::OutsideHull { .. } | Location::OutsideAffineHull | Location::Nowhere => return None,
-            Location::Cell { cell, .. } if self.dimension() == 1 => self.between(self.tds().edge_ends(cell, 2), at),
+            Location::OutsideHull { .. } | Location::OutsideAffineHull | Location::Nowhere => {
+                return None;
+            }
+            Location::Cell { cell, .. } if self.dimension() == 1 => {
+                self.between(self.tds().edge_ends(cell, 2), at)
+            }
             Location::Cell { cell, facets } => {
-                let on_hull = facets.iter().find(|&i| self.tds().is_infinite(self.tds().neighbor(cell, i)));
+                let on_hull = facets
+                    .iter()
+                    .find(|&i| self.tds().is_infinite(self.tds().neighbor(cell, i)));
                 if let Some(i) = on_hull {
                     self.between(self.tds().edge_ends(cell, i), at)
                 } else {
-                    let Ok(zone) = crate::query::zone::zone_at(&self.inner, q, location, |_, _| Ok(true));
+                    let Ok(zone) =
+                        crate::query::zone::zone_at(&self.inner, q, location, |_, _| Ok(true));
                     let zone = zone?;
                     let center = |&(cell, i): &(CellId, usize)| {
                         let [a, b] = self.tds().edge_ends(cell, i).map(|v| self.site(v));
@@ -153,7 +173,9 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Delaunay<G, 3, V, C> {
 
     /// Interpolates linearly between two vertices.
     fn between(&self, ends: [VertexId; 2], at: [f64; 2]) -> VertexWeights {
-        let [a, b] = ends.map(|v| minus(self.site(v), at)).map(|[x, y]| x.hypot(y));
+        let [a, b] = ends
+            .map(|v| minus(self.site(v), at))
+            .map(|[x, y]| x.hypot(y));
         vec![(ends[0], b), (ends[1], a)]
     }
 }

@@ -97,14 +97,20 @@ impl<K: Kernel, V, C: Copy + Default> Regular<Weighted<K>, 3, V, C> {
     /// ```
     pub fn power_cell(&self, vertex: VertexId, within: &[[f64; 2]]) -> VoronoiCell {
         if !self.tds().is_vertex(vertex) {
-            return VoronoiCell { corners: Vec::new(), area: 0.0 };
+            return VoronoiCell {
+                corners: Vec::new(),
+                area: 0.0,
+            };
         }
         let [x, y, weight] = *self.point(vertex);
         let half_plane = |v: VertexId| {
             let [u, w, other] = *self.point(v);
             HalfSpace::of_less_power(minus([u, w], [x, y]), weight - other)
         };
-        let neighbors = self.tds().vertices_around(vertex).filter(|&v| v != VertexId::INFINITE);
+        let neighbors = self
+            .tds()
+            .vertices_around(vertex)
+            .filter(|&v| v != VertexId::INFINITE);
         cell_of([x, y], neighbors.map(half_plane), within)
     }
 }

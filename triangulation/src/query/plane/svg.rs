@@ -43,10 +43,19 @@ struct PictureFrame {
 impl PictureFrame {
     fn around(sites: impl Iterator<Item = [f64; 2]>) -> Self {
         let none = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-        let (low, high) =
-            sites.fold(none, |(low, high), p| ([0, 1].map(|k| p[k].min(low[k])), [0, 1].map(|k| p[k].max(high[k]))));
-        let half = (0..2).map(|k| high[k] / 2.0 - low[k] / 2.0).fold(0.0, f64::max);
-        PictureFrame { low, half: if half > 0.0 { half } else { 1.0 } }
+        let (low, high) = sites.fold(none, |(low, high), p| {
+            (
+                [0, 1].map(|k| p[k].min(low[k])),
+                [0, 1].map(|k| p[k].max(high[k])),
+            )
+        });
+        let half = (0..2)
+            .map(|k| high[k] / 2.0 - low[k] / 2.0)
+            .fold(0.0, f64::max);
+        PictureFrame {
+            low,
+            half: if half > 0.0 { half } else { 1.0 },
+        }
     }
 
     fn pixel(&self, p: [f64; 2]) -> [f64; 2] {
@@ -56,13 +65,19 @@ impl PictureFrame {
 
     /// Returns points as SVG lists them.
     fn list(&self, sites: impl Iterator<Item = [f64; 2]>) -> String {
-        sites.map(|p| self.pixel(p)).map(|[x, y]| format!("{x:.2},{y:.2} ")).collect()
+        sites
+            .map(|p| self.pixel(p))
+            .map(|[x, y]| format!("{x:.2},{y:.2} "))
+            .collect()
     }
 }
 
 /// Returns the points that can be drawn: those with finite coordinates.
 fn finite<'a>(sites: impl IntoIterator<Item = &'a [f64; 2]>) -> impl Iterator<Item = [f64; 2]> {
-    sites.into_iter().copied().filter(|p| p.iter().all(|x| x.is_finite()))
+    sites
+        .into_iter()
+        .copied()
+        .filter(|p| p.iter().all(|x| x.is_finite()))
 }
 
 impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
@@ -94,27 +109,45 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
             Mark::Polygon(sites) | Mark::Line(sites) => *sites,
             Mark::Cells(_) | Mark::Edges(_) => &[],
         });
-        let frame = PictureFrame::around(self.tds.vertices().map(|v| self.site(v)).chain(finite(drawn)));
+        let frame = PictureFrame::around(
+            self.tds
+                .vertices()
+                .map(|v| self.site(v))
+                .chain(finite(drawn)),
+        );
         let side = SIZE + 2.0 * MARGIN;
-        writeln!(svg, r#"<svg xmlns="http://www.w3.org/2000/svg" class="tri" viewBox="0 0 {side} {side}">"#)?;
+        writeln!(
+            svg,
+            r#"<svg xmlns="http://www.w3.org/2000/svg" class="tri" viewBox="0 0 {side} {side}">"#
+        )?;
         writeln!(svg, "<style>{STYLE}</style>")?;
         for mark in marks {
             match *mark {
                 Mark::Cells(cells) => {
-                    let is_finite = |cell: CellId| self.tds.is_used(cell) && !self.tds.is_infinite(cell);
+                    let is_finite =
+                        |cell: CellId| self.tds.is_used(cell) && !self.tds.is_infinite(cell);
                     for &cell in cells.iter().filter(|&&cell| is_finite(cell)) {
                         let corners = self.tds.cell_vertices(cell).iter().map(|&v| self.site(v));
-                        writeln!(svg, r#"<polygon class="cell" points="{}"/>"#, frame.list(corners))?;
+                        writeln!(
+                            svg,
+                            r#"<polygon class="cell" points="{}"/>"#,
+                            frame.list(corners)
+                        )?;
                     }
                 }
-                Mark::Edges(edges) => self.draw_edges(svg, &frame, "edge", edges.iter().copied())?,
+                Mark::Edges(edges) => {
+                    self.draw_edges(svg, &frame, "edge", edges.iter().copied())?
+                }
                 Mark::Polygon(sites) => {
                     let corners = frame.list(finite(sites));
                     writeln!(svg, r#"<polygon class="polygon" points="{corners}"/>"#)?;
                 }
                 Mark::Line(dot @ &[_]) => {
                     for [x, y] in finite(dot).map(|p| frame.pixel(p)) {
-                        writeln!(svg, r#"<circle class="dot" cx="{x:.2}" cy="{y:.2}" r="7"/>"#)?;
+                        writeln!(
+                            svg,
+                            r#"<circle class="dot" cx="{x:.2}" cy="{y:.2}" r="7"/>"#
+                        )?;
                     }
                 }
                 Mark::Line(sites) => {
@@ -128,7 +161,13 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
             let [x, y] = frame.pixel(self.site(v));
             writeln!(svg, r#"<circle cx="{x:.2}" cy="{y:.2}" r="3"/>"#)?;
             if self.vertex_count() <= MOST_NUMBERED {
-                writeln!(svg, r#"<text x="{:.2}" y="{:.2}">{}</text>"#, x + 5.0, y - 5.0, v.index())?;
+                writeln!(
+                    svg,
+                    r#"<text x="{:.2}" y="{:.2}">{}</text>"#,
+                    x + 5.0,
+                    y - 5.0,
+                    v.index()
+                )?;
             }
         }
         writeln!(svg, "</svg>")
@@ -143,7 +182,10 @@ impl<G: Coordinates<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
     ) -> fmt::Result {
         for ends in edges.filter_map(|(cell, i)| self.finite_edge(cell, i)) {
             let [[x1, y1], [x2, y2]] = ends.map(|v| frame.pixel(self.site(v)));
-            writeln!(svg, r#"<line class="{class}" x1="{x1:.2}" y1="{y1:.2}" x2="{x2:.2}" y2="{y2:.2}"/>"#)?;
+            writeln!(
+                svg,
+                r#"<line class="{class}" x1="{x1:.2}" y1="{y1:.2}" x2="{x2:.2}" y2="{y2:.2}"/>"#
+            )?;
         }
         Ok(())
     }

@@ -66,7 +66,11 @@ pub fn along_in_space<'t, T: Embedded<4>>(
 ) -> Result<impl Iterator<Item = Result<SpacePassage, T::Error>> + use<'t, T>, T::Error> {
     let complex = t.complex();
     let mut line = LineWalk::new(t, [a, b]);
-    let location = if t.geometry().admits(b) { locate(t, a, near)? } else { Location::Nowhere };
+    let location = if t.geometry().admits(b) {
+        locate(t, a, near)?
+    } else {
+        Location::Nowhere
+    };
     let stays = match location.cell_in(complex)? {
         Some(_) if t.geometry().compare(a, b).is_eq() => false,
         Some(cell) if complex.width() < 4 => !leaves_flat(t, complex.inner(cell)?, b)?,
@@ -78,16 +82,27 @@ pub fn along_in_space<'t, T: Embedded<4>>(
         Location::Vertex(vertex) if stays => next = Some(SpacePassage::Vertex(vertex)),
         Location::Cell { cell, facets } if stays => {
             let width = complex.width();
-            next = line.first_from(cell, std::array::from_fn(|i| i < width && !facets.contains(i)))?;
+            next = line.first_from(
+                cell,
+                std::array::from_fn(|i| i < width && !facets.contains(i)),
+            )?;
         }
         Location::OutsideHull { cell } if stays => next = line.first_from_outside(cell)?,
         Location::OutsideAffineHull => {
             let end = locate(t, b, near)?;
-            point = if end == Location::OutsideAffineHull { through_flat(t, [a, b])? } else { point_at(t, end)? };
+            point = if end == Location::OutsideAffineHull {
+                through_flat(t, [a, b])?
+            } else {
+                point_at(t, end)?
+            };
         }
         _ => point = point_at(t, location)?,
     }
-    let walk = Along { left: line.most(), line, next: Ok(next) };
+    let walk = Along {
+        left: line.most(),
+        line,
+        next: Ok(next),
+    };
     Ok(point.map(Ok).into_iter().chain(walk))
 }
 
@@ -97,29 +112,44 @@ fn point_at<T: Embedded<4>>(t: &T, location: Location) -> Result<Option<SpacePas
         Location::Vertex(vertex) => Ok(Some(SpacePassage::Vertex(vertex))),
         Location::Cell { cell, facets } => {
             let width = t.complex().width();
-            at_point(t.complex(), cell, std::array::from_fn(|i| i < width && !facets.contains(i)))
+            at_point(
+                t.complex(),
+                cell,
+                std::array::from_fn(|i| i < width && !facets.contains(i)),
+            )
         }
         Location::OutsideHull { .. } | Location::OutsideAffineHull | Location::Nowhere => Ok(None),
     }
 }
 
 /// Returns what a segment meets whose ends lie outside of the line or plane of all points.
-fn through_flat<T: Embedded<4>>(t: &T, [a, b]: [&PointOf<T, 4>; 2]) -> Result<Option<SpacePassage>, T::Error> {
+fn through_flat<T: Embedded<4>>(
+    t: &T,
+    [a, b]: [&PointOf<T, 4>; 2],
+) -> Result<Option<SpacePassage>, T::Error> {
     let (complex, geometry) = (t.complex(), t.geometry());
     let width = complex.width();
     if width == 1 {
-        let Some(vertex) = vertices_of(complex).next().transpose()? else { return Ok(None) };
+        let Some(vertex) = vertices_of(complex).next().transpose()? else {
+            return Ok(None);
+        };
         let point = t.point(vertex)?;
         let is_on_line = geometry.orientation_in_flat(&[a, b, point.borrow()]) == Sign::Zero;
         let is_between = geometry.compare(a, point.borrow()) == geometry.compare(point.borrow(), b);
         return Ok((is_on_line && is_between).then_some(SpacePassage::Vertex(vertex)));
     }
-    let cells = (0..complex.cell_slots()).map(CellId::new).filter(|&cell| complex.is_used(cell));
+    let cells = (0..complex.cell_slots())
+        .map(CellId::new)
+        .filter(|&cell| complex.is_used(cell));
     for cell in cells {
         if complex.is_infinite(cell)? {
             continue;
         }
-        let span = if width == 2 { across_edge(t, [a, b], cell)? } else { across_triangle(t, [a, b], cell)? };
+        let span = if width == 2 {
+            across_edge(t, [a, b], cell)?
+        } else {
+            across_triangle(t, [a, b], cell)?
+        };
         if let Some(span) = span {
             return at_point(complex, cell, span);
         }
@@ -136,11 +166,14 @@ fn across_edge<T: Embedded<4>>(
 ) -> Result<Option<[bool; 4]>, T::Error> {
     let [u, v, ..] = t.complex().corners(cell)?;
     let line = LineWalk::new(t, [a, b]);
-    let is_apart =
-        line.side(u, v)? == Sign::Zero && line.beside([u, v], a)? * line.beside([u, v], b)? == Sign::Negative;
+    let is_apart = line.side(u, v)? == Sign::Zero
+        && line.beside([u, v], a)? * line.beside([u, v], b)? == Sign::Negative;
     let sides = [line.side_in_plane(u)?, line.side_in_plane(v)?];
     let is_crossed = is_apart && sides[0] * sides[1] != Sign::Positive && sides[0] != sides[1];
-    Ok(is_crossed.then_some(span_of([0, 1], [sides[1] != Sign::Zero, sides[0] != Sign::Zero])))
+    Ok(is_crossed.then_some(span_of(
+        [0, 1],
+        [sides[1] != Sign::Zero, sides[0] != Sign::Zero],
+    )))
 }
 
 /// Returns which corners of a cell of dimension 2 span the point where a segment crosses it, if it
@@ -152,7 +185,10 @@ fn across_triangle<T: Embedded<4>>(
 ) -> Result<Option<[bool; 4]>, T::Error> {
     let [u, v, w, _] = t.complex().corners(cell)?;
     let [p, q, r] = [t.point(u)?, t.point(v)?, t.point(w)?];
-    let above = |x| t.geometry().orientation([p.borrow(), q.borrow(), r.borrow(), x]);
+    let above = |x| {
+        t.geometry()
+            .orientation([p.borrow(), q.borrow(), r.borrow(), x])
+    };
     // From the side of a tetrahedron over the triangle, the line leaves that.
     let ends = match [above(a), above(b)] {
         [Sign::Positive, Sign::Negative] => [a, b],
@@ -179,7 +215,11 @@ impl<T: Embedded<4>> Iterator for Along<'_, T> {
         let passage = std::mem::replace(&mut self.next, Ok(None)).transpose()?;
         if let Ok(passage) = passage {
             self.left = self.left.saturating_sub(1);
-            self.next = if self.left > 0 { self.line.after(passage) } else { Ok(None) };
+            self.next = if self.left > 0 {
+                self.line.after(passage)
+            } else {
+                Ok(None)
+            };
         }
         Some(passage)
     }

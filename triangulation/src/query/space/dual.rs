@@ -30,7 +30,10 @@ pub struct VoronoiSolid {
 }
 
 impl VoronoiSolid {
-    pub(super) const EMPTY: Self = VoronoiSolid { facets: Vec::new(), volume: 0.0 };
+    pub(super) const EMPTY: Self = VoronoiSolid {
+        facets: Vec::new(),
+        volume: 0.0,
+    };
 }
 
 /// A convex polygon between the cells of two vertices, or where a cell meets the side of a box.
@@ -60,7 +63,12 @@ impl Polyhedron {
     /// where that plane is the one of another facet up to rounding: neither is lost, or counted
     /// twice.
     fn cut(&mut self, half_space: &HalfSpace<3>, beyond: VertexId) {
-        let corners = || self.facets.iter().flat_map(|facet| &facet.corners).map(|&p| half_space.excess(p));
+        let corners = || {
+            self.facets
+                .iter()
+                .flat_map(|facet| &facet.corners)
+                .map(|&p| half_space.excess(p))
+        };
         if corners().all(|excess| excess <= 0.0) {
             return;
         }
@@ -75,9 +83,13 @@ impl Polyhedron {
                     sides.push([to, from]);
                 }
             };
-            facet.corners = half_space.clip_with_sides(std::mem::take(&mut facet.corners), new_side);
+            facet.corners =
+                half_space.clip_with_sides(std::mem::take(&mut facet.corners), new_side);
         }
-        let new = polygons(sides).into_iter().map(|corners| VoronoiFacet { beyond: Some(beyond), corners });
+        let new = polygons(sides).into_iter().map(|corners| VoronoiFacet {
+            beyond: Some(beyond),
+            corners,
+        });
         self.facets.extend(new);
         // What has no area has its sides in both directions: the surface remains closed without it.
         self.facets.retain(|facet| facet.corners.len() > 2);
@@ -85,12 +97,19 @@ impl Polyhedron {
 
     /// Returns the volume: that of the pyramids over the facets, from one of the corners.
     fn volume(&self) -> f64 {
-        let Some(&apex) = self.facets.first().and_then(|facet| facet.corners.first()) else { return 0.0 };
+        let Some(&apex) = self.facets.first().and_then(|facet| facet.corners.first()) else {
+            return 0.0;
+        };
         let six_volumes = |facet: &VoronoiFacet| -> f64 {
             let mut corners = facet.corners.iter().map(|&p| minus(p, apex));
-            let Some(first) = corners.next() else { return 0.0 };
+            let Some(first) = corners.next() else {
+                return 0.0;
+            };
             let others: Vec<[f64; 3]> = corners.collect();
-            others.windows(2).map(|pair| dot(first, cross(pair[0], pair[1]))).sum()
+            others
+                .windows(2)
+                .map(|pair| dot(first, cross(pair[0], pair[1])))
+                .sum()
         };
         (self.facets.iter().map(six_volumes).sum::<f64>() / 6.0).max(0.0)
     }
@@ -112,8 +131,13 @@ fn polygons(mut sides: Vec<[[f64; 3]; 2]>) -> Vec<Vec<[f64; 3]>> {
 }
 
 /// Returns the part of a polygon in all half spaces.
-fn clipped(polygon: Vec<[f64; 3]>, half_spaces: impl IntoIterator<Item = HalfSpace<3>>) -> Vec<[f64; 3]> {
-    half_spaces.into_iter().fold(polygon, |polygon, half_space| half_space.clip(polygon))
+fn clipped(
+    polygon: Vec<[f64; 3]>,
+    half_spaces: impl IntoIterator<Item = HalfSpace<3>>,
+) -> Vec<[f64; 3]> {
+    half_spaces
+        .into_iter()
+        .fold(polygon, |polygon, half_space| half_space.clip(polygon))
 }
 
 /// A box with sides along the axes: the lowest and the highest corner.
@@ -127,25 +151,39 @@ impl Box3 {
     fn new([p, q]: [[f64; 3]; 2], site: [f64; 3]) -> Option<Self> {
         let corner = |of: fn(f64, f64) -> f64| minus([0, 1, 2].map(|k| of(p[k], q[k])), site);
         let corners = [corner(f64::min), corner(f64::max)];
-        let is_finite = [p, q].iter().chain(&corners).flatten().all(|x| x.is_finite());
+        let is_finite = [p, q]
+            .iter()
+            .chain(&corners)
+            .flatten()
+            .all(|x| x.is_finite());
         is_finite.then_some(Box3 { corners })
     }
 
     /// The half spaces whose common part is the box.
     fn half_spaces(self) -> impl Iterator<Item = HalfSpace<3>> {
-        [-1.0, 1.0].into_iter().zip(self.corners).flat_map(|(sign, corner)| {
-            [0, 1, 2].map(|axis| {
-                let mut normal = [0.0; 3];
-                normal[axis] = sign;
-                HalfSpace { normal, offset: sign * corner[axis] }
+        [-1.0, 1.0]
+            .into_iter()
+            .zip(self.corners)
+            .flat_map(|(sign, corner)| {
+                [0, 1, 2].map(|axis| {
+                    let mut normal = [0.0; 3];
+                    normal[axis] = sign;
+                    HalfSpace {
+                        normal,
+                        offset: sign * corner[axis],
+                    }
+                })
             })
-        })
     }
 
     /// The sides, counter-clockwise as seen from outside.
     fn sides(self) -> impl Iterator<Item = Vec<[f64; 3]>> {
         let side = move |axis: usize, end: usize| {
-            let around = if end == 0 { [[0, 0], [0, 1], [1, 1], [1, 0]] } else { [[0, 0], [1, 0], [1, 1], [0, 1]] };
+            let around = if end == 0 {
+                [[0, 0], [0, 1], [1, 1], [1, 0]]
+            } else {
+                [[0, 0], [1, 0], [1, 1], [0, 1]]
+            };
             let corner = |[along, across]: [usize; 2]| {
                 let mut corner = self.corners[end];
                 for (turn, which) in [(1, along), (2, across)] {
@@ -178,12 +216,19 @@ impl Box3 {
             p.map(|x| x / length)
         };
         let normal = plane.normal.map(|x| x / square.sqrt());
-        let least = (0..3).min_by(|&i, &j| normal[i].abs().total_cmp(&normal[j].abs())).unwrap_or(0);
+        let least = (0..3)
+            .min_by(|&i, &j| normal[i].abs().total_cmp(&normal[j].abs()))
+            .unwrap_or(0);
         let mut axis = [0.0; 3];
         axis[least] = 1.0;
         let along = unit(cross(normal, axis));
         let across = cross(normal, along);
-        let corner = |[s, t]: [f64; 2]| plus(foot, [0, 1, 2].map(|k| width * (s * along[k] + t * across[k])));
+        let corner = |[s, t]: [f64; 2]| {
+            plus(
+                foot,
+                [0, 1, 2].map(|k| width * (s * along[k] + t * across[k])),
+            )
+        };
         let square = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(corner);
         square.to_vec()
     }
@@ -208,13 +253,21 @@ impl<G: Geometry<4>, V, C: Copy + Default, W: Fn(&G::Point) -> [f64; 4]> Diagram
             return None;
         }
         let corners = tds.corners(cell).map(|vertex| self.point(vertex));
-        Some(plus(site(corners[0]), kernel::power_center_in_space(corners)))
+        Some(plus(
+            site(corners[0]),
+            kernel::power_center_in_space(corners),
+        ))
     }
 
     /// Returns the dual of a facet; see [`Delaunay::voronoi_edge`].
     pub(super) fn edge(&self, (cell, i): (CellId, usize)) -> Option<VoronoiEdge<3>> {
         let tds = self.t.tds();
-        let is_facet = tds.is_used(cell) && if self.t.dimension() == 3 { i < 4 } else { i == 3 };
+        let is_facet = tds.is_used(cell)
+            && if self.t.dimension() == 3 {
+                i < 4
+            } else {
+                i == 3
+            };
         if self.t.dimension() < 2 || !is_facet {
             return None;
         }
@@ -226,13 +279,21 @@ impl<G: Geometry<4>, V, C: Copy + Default, W: Fn(&G::Point) -> [f64; 4]> Diagram
         let [a, b, c] = corners.map(site);
         let direction = kernel::normal_of_facet([a, b, c]);
         if self.t.dimension() == 2 {
-            return Some(VoronoiEdge::Line { through: plus(a, kernel::power_center_of_facet(corners)), direction });
+            return Some(VoronoiEdge::Line {
+                through: plus(a, kernel::power_center_of_facet(corners)),
+                direction,
+            });
         }
-        Some(match [cell, tds.neighbor(cell, i)].map(|cell| self.center(cell)) {
-            [Some(from), Some(to)] => VoronoiEdge::Segment([from, to]),
-            [Some(from), None] => VoronoiEdge::Ray { from, direction },
-            [None, from] => VoronoiEdge::Ray { from: from?, direction: direction.map(|x| -x) },
-        })
+        Some(
+            match [cell, tds.neighbor(cell, i)].map(|cell| self.center(cell)) {
+                [Some(from), Some(to)] => VoronoiEdge::Segment([from, to]),
+                [Some(from), None] => VoronoiEdge::Ray { from, direction },
+                [None, from] => VoronoiEdge::Ray {
+                    from: from?,
+                    direction: direction.map(|x| -x),
+                },
+            },
+        )
     }
 
     /// Returns the points of no more power to one point, the origin, than to a vertex.
@@ -246,13 +307,26 @@ impl<G: Geometry<4>, V, C: Copy + Default, W: Fn(&G::Point) -> [f64; 4]> Diagram
     fn facet(&self, edge: Edge, within: Box3) -> Vec<[f64; 3]> {
         let [start, end] = self.t.tds().edge_ends(edge);
         let of = self.point(start);
-        let around = self.t.tds().vertices_around_edge(edge).filter(|&vertex| vertex != VertexId::INFINITE);
+        let around = self
+            .t
+            .tds()
+            .vertices_around_edge(edge)
+            .filter(|&vertex| vertex != VertexId::INFINITE);
         let square = within.square_around_section(&self.half_space(of, end));
-        clipped(square, around.map(|vertex| self.half_space(of, vertex)).chain(within.half_spaces()))
+        clipped(
+            square,
+            around
+                .map(|vertex| self.half_space(of, vertex))
+                .chain(within.half_spaces()),
+        )
     }
 
     /// Returns the dual of an edge; see [`Delaunay::voronoi_facet`].
-    pub(super) fn facet_within(&self, (cell, i, j): Edge, within: [[f64; 3]; 2]) -> Option<VoronoiFacet> {
+    pub(super) fn facet_within(
+        &self,
+        (cell, i, j): Edge,
+        within: [[f64; 3]; 2],
+    ) -> Option<VoronoiFacet> {
         let tds = self.t.tds();
         if !tds.is_used(cell) || i == j || i.max(j) >= tds.cell_vertices(cell).len() {
             return None;
@@ -262,8 +336,12 @@ impl<G: Geometry<4>, V, C: Copy + Default, W: Fn(&G::Point) -> [f64; 4]> Diagram
             return None;
         }
         let at = site(self.point(start));
-        let corners = Box3::new(within, at).map_or_else(Vec::new, |within| self.facet((cell, i, j), within));
-        Some(VoronoiFacet { beyond: Some(end), corners: corners.into_iter().map(|p| plus(p, at)).collect() })
+        let corners =
+            Box3::new(within, at).map_or_else(Vec::new, |within| self.facet((cell, i, j), within));
+        Some(VoronoiFacet {
+            beyond: Some(end),
+            corners: corners.into_iter().map(|p| plus(p, at)).collect(),
+        })
     }
 
     /// Returns the dual of a vertex, in a box; see [`Delaunay::voronoi_cell`].
@@ -273,16 +351,30 @@ impl<G: Geometry<4>, V, C: Copy + Default, W: Fn(&G::Point) -> [f64; 4]> Diagram
             return VoronoiSolid::EMPTY;
         }
         let of = self.point(vertex);
-        let Some(within) = Box3::new(within, site(of)) else { return VoronoiSolid::EMPTY };
-        let sides = within.sides().map(|corners| VoronoiFacet { beyond: None, corners });
-        let mut polyhedron = Polyhedron { facets: sides.collect() };
-        for other in tds.vertices_around(vertex).into_iter().filter(|&other| other != VertexId::INFINITE) {
+        let Some(within) = Box3::new(within, site(of)) else {
+            return VoronoiSolid::EMPTY;
+        };
+        let sides = within.sides().map(|corners| VoronoiFacet {
+            beyond: None,
+            corners,
+        });
+        let mut polyhedron = Polyhedron {
+            facets: sides.collect(),
+        };
+        for other in tds
+            .vertices_around(vertex)
+            .into_iter()
+            .filter(|&other| other != VertexId::INFINITE)
+        {
             polyhedron.cut(&self.half_space(of, other), other);
         }
         let volume = polyhedron.volume();
         let mut facets = polyhedron.facets;
         for facet in &mut facets {
-            facet.corners.iter_mut().for_each(|p| *p = plus(*p, site(of)));
+            facet
+                .corners
+                .iter_mut()
+                .for_each(|p| *p = plus(*p, site(of)));
         }
         facets.sort_by_key(|facet| (facet.beyond.is_none(), facet.beyond));
         VoronoiSolid { facets, volume }

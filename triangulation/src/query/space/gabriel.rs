@@ -22,7 +22,8 @@ fn is_empty<G: Geometry<4>, V, C: Copy + Default>(
     let point = |vertex: VertexId| weighted(t.point(vertex));
     let corners: Vec<[f64; 4]> = simplex.iter().map(|&vertex| point(vertex)).collect();
     around.all(|vertex| {
-        vertex == VertexId::INFINITE || side_of_smallest_sphere(&corners, point(vertex)) != Sign::Positive
+        vertex == VertexId::INFINITE
+            || side_of_smallest_sphere(&corners, point(vertex)) != Sign::Positive
     })
 }
 
@@ -37,7 +38,10 @@ fn is_gabriel_facet<G: Geometry<4>, V, C: Copy + Default>(
     }
     let beyond = tds.neighbor(cell, i);
     let mut simplex = tds.cell_vertices(cell).to_vec();
-    let opposite = [simplex.remove(i), tds.vertex(beyond, tds.index_of_neighbor(beyond, cell))];
+    let opposite = [
+        simplex.remove(i),
+        tds.vertex(beyond, tds.index_of_neighbor(beyond, cell)),
+    ];
     is_empty(t, &simplex, opposite.into_iter(), weighted)
 }
 
@@ -53,7 +57,12 @@ fn is_gabriel_edge<G: Geometry<4>, V, C: Copy + Default>(
     match t.dimension() {
         2 | 3 => {
             let edge = (cell, i, j);
-            is_empty(t, &tds.edge_ends(edge), tds.vertices_around_edge(edge), weighted)
+            is_empty(
+                t,
+                &tds.edge_ends(edge),
+                tds.vertices_around_edge(edge),
+                weighted,
+            )
         }
         _ => !tds.is_infinite(cell), // on a line, nothing is between the ends
     }

@@ -56,13 +56,18 @@ impl<G: Geometry<4>, V, C: Copy + Default> Triangulation<G, 4, V, C> {
             2 => ConvexHull::Polygon(self.rim()),
             1 => {
                 let mut ends: Vec<VertexId> = tds.vertices_around(VertexId::INFINITE);
-                ends.sort_unstable_by(|&a, &b| self.geometry().compare(self.point(a), self.point(b)));
+                ends.sort_unstable_by(|&a, &b| {
+                    self.geometry().compare(self.point(a), self.point(b))
+                });
                 match ends[..] {
                     [first, last] => ConvexHull::Segment([first, last]),
                     _ => ConvexHull::Empty, // not in a valid structure
                 }
             }
-            _ => tds.vertices().next().map_or(ConvexHull::Empty, ConvexHull::Point),
+            _ => tds
+                .vertices()
+                .next()
+                .map_or(ConvexHull::Empty, ConvexHull::Point),
         }
     }
 
@@ -70,7 +75,8 @@ impl<G: Geometry<4>, V, C: Copy + Default> Triangulation<G, 4, V, C> {
         let tds = self.tds();
         let triangle = |(outside, i): (_, usize)| {
             let cell = tds.neighbor(outside, i);
-            let mut triangle = OUTWARD[tds.index_of_neighbor(cell, outside)].map(|k| tds.vertex(cell, k));
+            let mut triangle =
+                OUTWARD[tds.index_of_neighbor(cell, outside)].map(|k| tds.vertex(cell, k));
             let smallest = (0..3).min_by_key(|&k| triangle[k]).unwrap_or(0);
             triangle.rotate_left(smallest);
             triangle
@@ -80,18 +86,25 @@ impl<G: Geometry<4>, V, C: Copy + Default> Triangulation<G, 4, V, C> {
         let mut vertices = triangles.as_flattened().to_vec();
         vertices.sort_unstable();
         vertices.dedup();
-        ConvexHull::Polyhedron { vertices, triangles }
+        ConvexHull::Polyhedron {
+            vertices,
+            triangles,
+        }
     }
 
     /// The vertices around a triangulation of dimension 2.
     fn rim(&self) -> Vec<VertexId> {
         let tds = self.tds();
         let mut rim = Vec::new();
-        let Some(start) = tds.cell_of(VertexId::INFINITE) else { return rim };
+        let Some(start) = tds.cell_of(VertexId::INFINITE) else {
+            return rim;
+        };
         let mut cell = start;
         // No more steps than cells, whatever the links are.
         for _ in 0..tds.cell_count() {
-            let Some(i) = tds.index_of(cell, VertexId::INFINITE) else { break };
+            let Some(i) = tds.index_of(cell, VertexId::INFINITE) else {
+                break;
+            };
             rim.push(tds.vertex(cell, cw(i)));
             cell = tds.neighbor(cell, cw(i));
             if cell == start {

@@ -46,7 +46,13 @@ struct NewCell<'t, G: Coordinates<4>, V, C> {
 
 impl<'t, G: Coordinates<4>, V, C: Copy + Default> NewCell<'t, G, V, C> {
     fn new(t: &'t Delaunay<G, 4, V, C>, zone: &'t ConflictZone, at: [f64; 3]) -> Self {
-        let mut cell = NewCell { t, zone, at, corners: FxHashMap::default(), ridges: FxHashMap::default() };
+        let mut cell = NewCell {
+            t,
+            zone,
+            at,
+            corners: FxHashMap::default(),
+            ridges: FxHashMap::default(),
+        };
         for &facet in &zone.border {
             let (inside, i) = facet;
             let corners = OUTWARD[i].map(|k| t.tds().vertex(inside, k));
@@ -86,7 +92,13 @@ impl<'t, G: Coordinates<4>, V, C: Copy + Default> NewCell<'t, G, V, C> {
         let tds = self.t.tds();
         let center = |&cell: &CellId| {
             let corners = tds.corners(cell).map(|vertex| self.t.site(vertex));
-            (cell, plus(minus(corners[0], self.at), kernel::circumcenter_in_space(corners)))
+            (
+                cell,
+                plus(
+                    minus(corners[0], self.at),
+                    kernel::circumcenter_in_space(corners),
+                ),
+            )
         };
         let old: FxHashMap<CellId, [f64; 3]> = self.zone.cells.iter().map(center).collect();
         let mut parts = self.facets();
@@ -100,7 +112,11 @@ impl<'t, G: Coordinates<4>, V, C: Copy + Default> NewCell<'t, G, V, C> {
         for (&cell, &here) in &old {
             for (i, j) in [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)] {
                 // One direction in all cells around the edge.
-                let (i, j) = if tds.vertex(cell, i) < tds.vertex(cell, j) { (i, j) } else { (j, i) };
+                let (i, j) = if tds.vertex(cell, i) < tds.vertex(cell, j) {
+                    (i, j)
+                } else {
+                    (j, i)
+                };
                 let ends = [i, j].map(|k| tds.vertex(cell, k));
                 let [next, last] = beside(i, j);
                 match self.corners.get(&(cell, next)) {
@@ -123,7 +139,8 @@ impl<'t, G: Coordinates<4>, V, C: Copy + Default> NewCell<'t, G, V, C> {
 /// the sum is a function of the parts alone.
 fn summed(mut parts: VertexWeights) -> VertexWeights {
     parts.sort_unstable_by(|(v, part), (w, other)| v.cmp(w).then(part.total_cmp(other)));
-    let of_one = |parts: &[(VertexId, f64)]| (parts[0].0, parts.iter().map(|&(_, part)| part).sum());
+    let of_one =
+        |parts: &[(VertexId, f64)]| (parts[0].0, parts.iter().map(|&(_, part)| part).sum());
     parts.chunk_by(|p, q| p.0 == q.0).map(of_one).collect()
 }
 
@@ -191,19 +208,28 @@ impl<G: Coordinates<4>, V, C: Copy + Default> Delaunay<G, 4, V, C> {
         let location = self.locate(q, near);
         let (cell, facets) = match location {
             Location::Vertex(vertex) => return Some(vec![(vertex, 1.0)]),
-            Location::OutsideHull { .. } | Location::OutsideAffineHull | Location::Nowhere => return None,
+            Location::OutsideHull { .. } | Location::OutsideAffineHull | Location::Nowhere => {
+                return None;
+            }
             Location::Cell { cell, facets } => (cell, facets),
         };
         let Ok(zone) = crate::query::zone::zone_at(&self.inner, q, location, |_, _| Ok(true));
         let zone = zone?;
-        let mut weights = if self.dimension() < 3 || zone.cells.iter().any(|&cell| self.tds().is_infinite(cell)) {
+        let mut weights = if self.dimension() < 3
+            || zone.cells.iter().any(|&cell| self.tds().is_infinite(cell))
+        {
             let corners = self.tds().cell_vertices(cell).iter().enumerate();
-            let on: Vec<VertexId> = corners.filter(|&(i, _)| !facets.contains(i)).map(|(_, &vertex)| vertex).collect();
+            let on: Vec<VertexId> = corners
+                .filter(|&(i, _)| !facets.contains(i))
+                .map(|(_, &vertex)| vertex)
+                .collect();
             self.barycentric(&on, at)?
         } else {
             inside(&NewCell::new(self, &zone, at))
         };
-        weights.iter_mut().for_each(|(_, weight)| *weight = weight.max(0.0));
+        weights
+            .iter_mut()
+            .for_each(|(_, weight)| *weight = weight.max(0.0));
         let sum: f64 = weights.iter().map(|&(_, weight)| weight).sum();
         // Products that overflow or underflow.
         if !(sum > 0.0 && sum.is_finite()) {

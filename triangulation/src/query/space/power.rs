@@ -66,6 +66,9 @@ impl<K: Kernel, V, C: Copy + Default> Regular<WeightedSpace<K>, 4, V, C> {
     }
 
     fn diagram(&self) -> Diagram<'_, WeightedSpace<K>, V, C, impl Fn(&[f64; 4]) -> [f64; 4]> {
-        Diagram { t: self, weighted: |point: &[f64; 4]| *point }
+        Diagram {
+            t: self,
+            weighted: |point: &[f64; 4]| *point,
+        }
     }
 }

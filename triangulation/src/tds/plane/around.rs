@@ -37,8 +37,13 @@ impl<V, C: Copy + Default> Tds<3, V, C> {
             1 => (2..3, self.cell_count()),
             _ => (0..0, 0),
         };
-        let sides = self.cells().flat_map(move |cell| indices.clone().map(move |i| (cell, i)));
-        counted(sides.filter(|&(cell, i)| self.dimension == 1 || cell < self.neighbor(cell, i)), count)
+        let sides = self
+            .cells()
+            .flat_map(move |cell| indices.clone().map(move |i| (cell, i)));
+        counted(
+            sides.filter(|&(cell, i)| self.dimension == 1 || cell < self.neighbor(cell, i)),
+            count,
+        )
     }
 
     /// The edges without the infinite vertex, each once, in the order of [`edges`](Self::edges).
@@ -46,11 +51,15 @@ impl<V, C: Copy + Default> Tds<3, V, C> {
     /// They are fewer than all edges by the [`degree`](Self::degree) of the infinite vertex. The
     /// cell may be an infinite one.
     pub fn finite_edges(&self) -> impl Iterator<Item = (CellId, usize)> + '_ {
-        self.edges().filter(|&(cell, i)| !self.edge_ends(cell, i).contains(&VertexId::INFINITE))
+        self.edges()
+            .filter(|&(cell, i)| !self.edge_ends(cell, i).contains(&VertexId::INFINITE))
     }
 
     /// The finite and infinite faces around a vertex, counter-clockwise. Empty below dimension 2.
-    pub fn around(&self, vertex: VertexId) -> impl DoubleEndedIterator<Item = CellId> + FusedIterator + '_ {
+    pub fn around(
+        &self,
+        vertex: VertexId,
+    ) -> impl DoubleEndedIterator<Item = CellId> + FusedIterator + '_ {
         self.corners_around(vertex).map(|(cell, _)| cell)
     }
 
@@ -69,14 +78,20 @@ impl<V, C: Copy + Default> Tds<3, V, C> {
     ///
     /// Edges to the infinite vertex are included. On a line, edges are given as in
     /// [`edges`](Self::edges).
-    pub fn edges_around(&self, vertex: VertexId) -> impl DoubleEndedIterator<Item = (CellId, usize)> + '_ {
+    pub fn edges_around(
+        &self,
+        vertex: VertexId,
+    ) -> impl DoubleEndedIterator<Item = (CellId, usize)> + '_ {
         let Ok(edges) = plane::edges_around(self, vertex);
         edges.map(|Ok(edge)| edge)
     }
 
     /// The vertices that a vertex is joined to by an edge, counter-clockwise, the infinite one
     /// included.
-    pub fn vertices_around(&self, vertex: VertexId) -> impl DoubleEndedIterator<Item = VertexId> + '_ {
+    pub fn vertices_around(
+        &self,
+        vertex: VertexId,
+    ) -> impl DoubleEndedIterator<Item = VertexId> + '_ {
         let Ok(vertices) = plane::vertices_around(self, vertex);
         vertices.map(|Ok(v)| v)
     }
@@ -90,9 +105,14 @@ impl<V, C: Copy + Default> Tds<3, V, C> {
     /// The vertices on the convex hull, counter-clockwise, including those in the interior of its
     /// sides. For collinear points these are both ends.
     pub fn hull(&self) -> impl DoubleEndedIterator<Item = VertexId> + '_ {
-        let only = if self.dimension == 0 { self.vertices().next() } else { None };
+        let only = if self.dimension == 0 {
+            self.vertices().next()
+        } else {
+            None
+        };
         // The infinite vertex sees the plane from behind.
-        only.into_iter().chain(self.vertices_around(VertexId::INFINITE).rev())
+        only.into_iter()
+            .chain(self.vertices_around(VertexId::INFINITE).rev())
     }
 
     /// Returns the cell to the left of the directed edge `a b` and the index of the edge in it

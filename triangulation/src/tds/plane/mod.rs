@@ -29,7 +29,11 @@ use super::{CellId, Complex, VertexId, ccw, cw, vertices_of};
 /// # Errors
 /// If the triangle does not exist.
 #[inline(always)]
-pub fn edge_ends<T: Complex<3>>(complex: &T, cell: CellId, i: usize) -> Result<[VertexId; 2], T::Error> {
+pub fn edge_ends<T: Complex<3>>(
+    complex: &T,
+    cell: CellId,
+    i: usize,
+) -> Result<[VertexId; 2], T::Error> {
     let corners = complex.corners(cell)?;
     Ok([corners[ccw(i)], corners[cw(i)]])
 }
@@ -51,9 +55,19 @@ pub(crate) struct Star<'a, T> {
 impl<'a, T: Complex<3>> Star<'a, T> {
     /// Returns the star of a vertex; empty if the dimension is below `lowest`, which is 1 or 2.
     pub(crate) fn new(complex: &'a T, vertex: VertexId, lowest: i32) -> Result<Self, T::Error> {
-        let start = if complex.dimension() >= lowest { complex.cell_of(vertex)? } else { None };
+        let start = if complex.dimension() >= lowest {
+            complex.cell_of(vertex)?
+        } else {
+            None
+        };
         let at = start.unwrap_or(CellId::NONE);
-        Ok(Star { complex, vertex, front: at, end: at, is_over: start.is_none() })
+        Ok(Star {
+            complex,
+            vertex,
+            front: at,
+            end: at,
+            is_over: start.is_none(),
+        })
     }
 
     /// Returns the index of the vertex in a cell.
@@ -76,8 +90,12 @@ impl<'a, T: Complex<3>> Star<'a, T> {
         let complex = self.complex;
         let beside = complex.neighbor(cell, turned(complex, i, turn))?;
         complex.ensure(beside, || {
-            let Ok(Some(j)) = complex.index_of(beside, self.vertex) else { return false };
-            complex.neighbor(beside, turned(complex, j, back)).is_ok_and(|c| c == cell)
+            let Ok(Some(j)) = complex.index_of(beside, self.vertex) else {
+                return false;
+            };
+            complex
+                .neighbor(beside, turned(complex, j, back))
+                .is_ok_and(|c| c == cell)
         })?;
         Ok(beside)
     }
@@ -118,7 +136,11 @@ impl<T: Complex<3>> FusedIterator for Star<'_, T> {}
 /// the only other index.
 #[inline(always)]
 fn turned<T: Complex<3>>(complex: &T, i: usize, turn: impl Fn(usize) -> usize) -> usize {
-    if complex.dimension() == 1 { 1 - i.min(1) } else { turn(i) }
+    if complex.dimension() == 1 {
+        1 - i.min(1)
+    } else {
+        turn(i)
+    }
 }
 
 /// Returns the vertices that a vertex is joined to by an edge, counter-clockwise, the infinite one
@@ -158,7 +180,9 @@ pub fn edges_around<T: Complex<3>>(
 }
 
 /// Returns the finite vertices, in order of their numbers.
-pub fn vertices<T: Complex<3>>(complex: &T) -> impl Iterator<Item = Result<VertexId, T::Error>> + '_ {
+pub fn vertices<T: Complex<3>>(
+    complex: &T,
+) -> impl Iterator<Item = Result<VertexId, T::Error>> + '_ {
     vertices_of::<3, T>(complex)
 }
 
@@ -170,7 +194,11 @@ pub fn vertices<T: Complex<3>>(complex: &T) -> impl Iterator<Item = Result<Verte
 ///
 /// # Complexity
 /// Time proportional to the degree of `a`; where that is high, to the smaller of both degrees.
-pub fn edge<T: Complex<3>>(complex: &T, a: VertexId, b: VertexId) -> Result<Option<(CellId, usize)>, T::Error> {
+pub fn edge<T: Complex<3>>(
+    complex: &T,
+    a: VertexId,
+    b: VertexId,
+) -> Result<Option<(CellId, usize)>, T::Error> {
     let mut around_a = Star::new(complex, a, 2)?;
     let is_edge = |(cell, i)| Ok((complex.vertex(cell, ccw(i))? == b).then_some((cell, cw(i))));
     for cell in around_a.by_ref().take(HIGH_DEGREE) {
@@ -196,7 +224,11 @@ const HIGH_DEGREE: usize = 64;
 
 /// Returns true if the degree of `a` is high, and higher than that of `b`. Time proportional to the
 /// smaller degree.
-pub(crate) fn is_busier<T: Complex<3>>(complex: &T, a: VertexId, b: VertexId) -> Result<bool, T::Error> {
+pub(crate) fn is_busier<T: Complex<3>>(
+    complex: &T,
+    a: VertexId,
+    b: VertexId,
+) -> Result<bool, T::Error> {
     let mut around_a = Star::new(complex, a, 2)?;
     if around_a.by_ref().take(HIGH_DEGREE).count() < HIGH_DEGREE {
         return Ok(false);
@@ -218,7 +250,10 @@ pub(crate) fn is_busier<T: Complex<3>>(complex: &T, a: VertexId, b: VertexId) ->
 ///
 /// # Complexity
 /// Linear in the degree of the first vertex.
-pub fn face<T: Complex<3>>(complex: &T, [a, b, c]: [VertexId; 3]) -> Result<Option<CellId>, T::Error> {
+pub fn face<T: Complex<3>>(
+    complex: &T,
+    [a, b, c]: [VertexId; 3],
+) -> Result<Option<CellId>, T::Error> {
     for cell in Star::new(complex, a, 2)? {
         let (cell, _) = cell?;
         let corners = complex.corners(cell)?;

@@ -26,15 +26,24 @@ impl<V, C: Copy + Default> Tds<4, V, C> {
     /// All facets, each once, as a cell and the index of the vertex opposite: of the two cells that
     /// have a facet, the one with the smaller number. In order of these pairs.
     pub fn facets(&self) -> impl Iterator<Item = (CellId, usize)> + '_ {
-        let width = if self.dimension < 1 { 0 } else { self.dimension as usize + 1 };
-        let sides = self.cells().flat_map(move |cell| (0..width).map(move |i| (cell, i)));
+        let width = if self.dimension < 1 {
+            0
+        } else {
+            self.dimension as usize + 1
+        };
+        let sides = self
+            .cells()
+            .flat_map(move |cell| (0..width).map(move |i| (cell, i)));
         sides.filter(|&(cell, i)| cell < self.neighbor(cell, i))
     }
 
     /// The facets without the infinite vertex, each once. The cell may be an infinite one.
     pub fn finite_facets(&self) -> impl Iterator<Item = (CellId, usize)> + '_ {
         self.facets().filter(|&(cell, i)| {
-            self.cell_vertices(cell).iter().enumerate().all(|(k, &vertex)| k == i || vertex != VertexId::INFINITE)
+            self.cell_vertices(cell)
+                .iter()
+                .enumerate()
+                .all(|(k, &vertex)| k == i || vertex != VertexId::INFINITE)
         })
     }
 
@@ -51,9 +60,18 @@ impl<V, C: Copy + Default> Tds<4, V, C> {
             1 => &[(0, 1)],
             _ => &[],
         };
-        let edges = self.cells().flat_map(move |cell| pairs.iter().map(move |&(i, j)| (cell, i, j)));
+        let edges = self
+            .cells()
+            .flat_map(move |cell| pairs.iter().map(move |&(i, j)| (cell, i, j)));
         // For each cell a bit for each of its edges that was returned from another cell.
-        let mut returned = vec![0u16; if self.dimension == 3 { self.cell_slots() } else { 0 }];
+        let mut returned = vec![
+            0u16;
+            if self.dimension == 3 {
+                self.cell_slots()
+            } else {
+                0
+            }
+        ];
         let bit_of = |i: usize, j: usize| 1u16 << (4 * i.min(j) + i.max(j));
         edges.filter(move |&(cell, i, j)| match self.dimension {
             3 if returned[cell.index()] & bit_of(i, j) != 0 => false,
@@ -71,13 +89,17 @@ impl<V, C: Copy + Default> Tds<4, V, C> {
     /// The edges without the infinite vertex, each once, in the order of [`edges`](Self::edges).
     /// The cell may be an infinite one.
     pub fn finite_edges(&self) -> impl Iterator<Item = Edge> + '_ {
-        self.edges().filter(|&edge| !self.edge_ends(edge).contains(&VertexId::INFINITE))
+        self.edges()
+            .filter(|&edge| !self.edge_ends(edge).contains(&VertexId::INFINITE))
     }
 
     /// The cells around an edge, the infinite ones included, counter-clockwise seen from its end,
     /// each with the indices of the edge in it. The given cell is the first. Empty below dimension
     /// 3.
-    pub fn cells_around_edge(&self, edge: Edge) -> impl DoubleEndedIterator<Item = Edge> + FusedIterator + '_ {
+    pub fn cells_around_edge(
+        &self,
+        edge: Edge,
+    ) -> impl DoubleEndedIterator<Item = Edge> + FusedIterator + '_ {
         let Ok(cells) = space::cells_around_edge(self, edge);
         cells.map(|Ok(edge)| edge)
     }
@@ -88,7 +110,8 @@ impl<V, C: Copy + Default> Tds<4, V, C> {
         &self,
         edge: Edge,
     ) -> impl DoubleEndedIterator<Item = (CellId, usize)> + FusedIterator + '_ {
-        self.cells_around_edge(edge).map(|(cell, i, j)| (cell, space::beside(i, j)[0]))
+        self.cells_around_edge(edge)
+            .map(|(cell, i, j)| (cell, space::beside(i, j)[0]))
     }
 
     /// The vertices that form a facet with an edge, the infinite one included: the link of the
@@ -99,9 +122,14 @@ impl<V, C: Copy + Default> Tds<4, V, C> {
         let sides = (self.dimension == 2 && i != j).then(|| {
             let side = 3 - i - j;
             let beyond = self.neighbor(cell, side);
-            [self.vertex(cell, side), self.vertex(beyond, self.index_of_neighbor(beyond, cell))]
+            [
+                self.vertex(cell, side),
+                self.vertex(beyond, self.index_of_neighbor(beyond, cell)),
+            ]
         });
-        let ring = self.cells_around_edge(edge).map(|(cell, i, j)| self.vertex(cell, space::beside(i, j)[0]));
+        let ring = self
+            .cells_around_edge(edge)
+            .map(|(cell, i, j)| self.vertex(cell, space::beside(i, j)[0]));
         ring.chain(sides.into_iter().flatten())
     }
 
@@ -138,7 +166,11 @@ impl<V, C: Copy + Default> Tds<4, V, C> {
     /// The facets of the convex hull, each as the infinite cell beyond it and the index of the
     /// infinite vertex. Empty below dimension 3.
     pub fn hull_facets(&self) -> impl Iterator<Item = (CellId, usize)> + '_ {
-        let star = if self.dimension < 3 { Vec::new() } else { self.cells_around(VertexId::INFINITE) };
+        let star = if self.dimension < 3 {
+            Vec::new()
+        } else {
+            self.cells_around(VertexId::INFINITE)
+        };
         star.into_iter()
     }
 }

@@ -86,8 +86,12 @@ impl<T: Complex<4>> CellsAroundEdge<'_, T> {
         let (_, i, j) = self.edge_in(cell)?;
         let next = self.complex.neighbor(cell, beside(i, j)[forth])?;
         self.complex.ensure(next, || {
-            let Ok((_, i, j)) = self.edge_in(next) else { return false };
-            self.complex.neighbor(next, beside(i, j)[1 - forth]).is_ok_and(|back| back == cell)
+            let Ok((_, i, j)) = self.edge_in(next) else {
+                return false;
+            };
+            self.complex
+                .neighbor(next, beside(i, j)[1 - forth])
+                .is_ok_and(|back| back == cell)
         })?;
         Ok(next)
     }
@@ -134,7 +138,10 @@ impl<T: Complex<4>> FusedIterator for CellsAroundEdge<'_, T> {}
 /// # Panics
 /// If an index is 4 or more.
 #[inline]
-pub fn edge_ends<T: Complex<4>>(complex: &T, (cell, i, j): Edge) -> Result<[VertexId; 2], T::Error> {
+pub fn edge_ends<T: Complex<4>>(
+    complex: &T,
+    (cell, i, j): Edge,
+) -> Result<[VertexId; 2], T::Error> {
     let corners = complex.corners(cell)?;
     Ok([corners[i], corners[j]])
 }
@@ -154,10 +161,17 @@ pub fn edge_ends<T: Complex<4>>(complex: &T, (cell, i, j): Edge) -> Result<[Vert
 pub fn cells_around_edge<T: Complex<4>>(
     complex: &T,
     edge: Edge,
-) -> Result<impl DoubleEndedIterator<Item = Result<Edge, T::Error>> + FusedIterator + '_, T::Error> {
+) -> Result<impl DoubleEndedIterator<Item = Result<Edge, T::Error>> + FusedIterator + '_, T::Error>
+{
     let ends = edge_ends(complex, edge)?;
     let is_edge = complex.dimension() == 3 && edge.1 != edge.2;
-    Ok(CellsAroundEdge { complex, ends, front: edge.0, end: edge.0, is_over: !is_edge })
+    Ok(CellsAroundEdge {
+        complex,
+        ends,
+        front: edge.0,
+        end: edge.0,
+        is_over: !is_edge,
+    })
 }
 
 /// Returns the cells that have a vertex, the infinite ones included, each with the index of the
@@ -171,7 +185,10 @@ pub fn cells_around_edge<T: Complex<4>>(
 ///
 /// # Complexity
 /// Linear in the number of these cells.
-pub fn cells_around<T: Complex<4>>(complex: &T, vertex: VertexId) -> Result<Vec<(CellId, usize)>, T::Error> {
+pub fn cells_around<T: Complex<4>>(
+    complex: &T,
+    vertex: VertexId,
+) -> Result<Vec<(CellId, usize)>, T::Error> {
     let mut star = StarSearch::new(complex, vertex)?;
     while star.grow()? {}
     Ok(star.cells)
@@ -230,7 +247,11 @@ impl<'t, T: Complex<4>> StarSearch<'t, T> {
         if let Some(first) = complex.cell_of(vertex)? {
             star.add(first)?;
             let corners = complex.corners(first)?;
-            star.ends.extend(corners[..complex.width().min(4)].iter().filter(|&&v| v != vertex));
+            star.ends.extend(
+                corners[..complex.width().min(4)]
+                    .iter()
+                    .filter(|&&v| v != vertex),
+            );
         }
         Ok(star)
     }
@@ -256,12 +277,16 @@ impl<'t, T: Complex<4>> StarSearch<'t, T> {
     /// Adds the neighbors of the first cell whose neighbors have not been added. Returns false if
     /// there is no such cell.
     fn grow(&mut self) -> Result<bool, T::Error> {
-        let Some(&(cell, index)) = self.cells.get(self.done) else { return Ok(false) };
+        let Some(&(cell, index)) = self.cells.get(self.done) else {
+            return Ok(false);
+        };
         self.done += 1;
         let width = self.complex.width().min(4);
         for i in (0..width).filter(|&i| i != index) {
             let beyond = self.complex.neighbor(cell, i)?;
-            self.complex.ensure(beyond, || self.complex.index_of_neighbor(beyond, cell).is_ok())?;
+            self.complex.ensure(beyond, || {
+                self.complex.index_of_neighbor(beyond, cell).is_ok()
+            })?;
             if self.add(beyond)? {
                 let opposite = self.complex.index_of_neighbor(beyond, cell)?;
                 self.ends.push(self.complex.corners(beyond)?[opposite]);
@@ -280,14 +305,21 @@ impl<'t, T: Complex<4>> StarSearch<'t, T> {
 /// # Complexity
 /// O(k log k) for the k cells around the vertex. To stop early, use
 /// [`neighbors_of`](super::Neighbors::neighbors_of), which may return a vertex more than once.
-pub fn vertices_around<T: Complex<4>>(complex: &T, vertex: VertexId) -> Result<Vec<VertexId>, T::Error> {
+pub fn vertices_around<T: Complex<4>>(
+    complex: &T,
+    vertex: VertexId,
+) -> Result<Vec<VertexId>, T::Error> {
     let mut vertices = Vec::new();
     if complex.dimension() < 1 {
         return Ok(vertices);
     }
     for (cell, index) in cells_around(complex, vertex)? {
         let corners = complex.corners(cell)?;
-        vertices.extend((0..complex.width().min(4)).filter(|&i| i != index).map(|i| corners[i]));
+        vertices.extend(
+            (0..complex.width().min(4))
+                .filter(|&i| i != index)
+                .map(|i| corners[i]),
+        );
     }
     vertices.sort_unstable();
     vertices.dedup();
@@ -302,9 +334,14 @@ pub fn vertices_around<T: Complex<4>>(complex: &T, vertex: VertexId) -> Result<V
 ///
 /// # Complexity
 /// Linear in the number of cells around the first vertex.
-pub fn cell_with<T: Complex<4>>(complex: &T, vertices: &[VertexId]) -> Result<Option<CellId>, T::Error> {
+pub fn cell_with<T: Complex<4>>(
+    complex: &T,
+    vertices: &[VertexId],
+) -> Result<Option<CellId>, T::Error> {
     let is_new = |(at, vertex): (usize, &VertexId)| !vertices[..at].contains(vertex);
-    let [first, others @ ..] = vertices else { return Ok(None) };
+    let [first, others @ ..] = vertices else {
+        return Ok(None);
+    };
     if others.is_empty() || !vertices.iter().enumerate().all(is_new) {
         return Ok(None);
     }

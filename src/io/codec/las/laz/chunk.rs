@@ -3,7 +3,9 @@
 use std::io::{Cursor, ErrorKind};
 
 use laz::DecompressionSelection;
-use laz::record::{LayeredPointRecordDecompressor, RecordDecompressor, SequentialPointRecordDecompressor};
+use laz::record::{
+    LayeredPointRecordDecompressor, RecordDecompressor, SequentialPointRecordDecompressor,
+};
 
 use super::compression::{Compression, Order, POINT14, POINT14_LAYERS};
 use super::table::layer_sizes;
@@ -47,11 +49,16 @@ fn decode_pointwise(
     batch: &mut PointBatch,
 ) -> Result<(), String> {
     let mut decoder = SequentialPointRecordDecompressor::new(bytes);
-    decoder.set_fields_from(&compression.items).map_err(|error| error.to_string())?;
+    decoder
+        .set_fields_from(&compression.items)
+        .map_err(|error| error.to_string())?;
     decode_records(&mut decoder, points, layout, batch)?;
     match decoder.get().len() {
         0 => Ok(()),
-        rest => Err(format!("{rest} of {} bytes are left after its last point", bytes.len())),
+        rest => Err(format!(
+            "{rest} of {} bytes are left after its last point",
+            bytes.len()
+        )),
     }
 }
 
@@ -68,7 +75,10 @@ fn decode_layered(
     let stride = compression.stride;
     let head = stride + 4 + 4 * layers;
     let (Some(first), Some(sizes)) = (bytes.get(..POINT14), bytes.get(stride + 4..head)) else {
-        return Err(format!("its {} bytes are fewer than its head of {head}", bytes.len()));
+        return Err(format!(
+            "its {} bytes are fewer than its head of {head}",
+            bytes.len()
+        ));
     };
     let stated = u32_at(bytes, stride);
     if u64::from(stated) < points {
@@ -76,11 +86,16 @@ fn decode_layered(
     }
     let total = head as u64 + layer_sizes(sizes).sum::<u64>();
     if total != bytes.len() as u64 {
-        return Err(format!("its layers take {total} bytes together, but it has {}", bytes.len()));
+        return Err(format!(
+            "its layers take {total} bytes together, but it has {}",
+            bytes.len()
+        ));
     }
     if layout.detail == Detail::Records {
         let mut decoder = LayeredPointRecordDecompressor::new(Cursor::new(bytes));
-        decoder.set_fields_from(&compression.items).map_err(|error| error.to_string())?;
+        decoder
+            .set_fields_from(&compression.items)
+            .map_err(|error| error.to_string())?;
         return decode_records(&mut decoder, points, layout, batch);
     }
     let used: u64 = layer_sizes(sizes).take(LAYERS_USED).sum();
@@ -92,8 +107,15 @@ fn decode_layered(
     reduced.extend_from_slice(&bytes[head..head + used as usize]);
 
     let mut decoder = LayeredPointRecordDecompressor::new(Cursor::new(reduced));
-    decoder.set_fields_from(&compression.items[..1].to_vec()).map_err(|error| error.to_string())?;
-    decoder.set_selection(DecompressionSelection::base().decompress_z().decompress_classification().decompress_flags());
+    decoder
+        .set_fields_from(&compression.items[..1].to_vec())
+        .map_err(|error| error.to_string())?;
+    decoder.set_selection(
+        DecompressionSelection::base()
+            .decompress_z()
+            .decompress_classification()
+            .decompress_flags(),
+    );
     decode_records(&mut decoder, points, layout.with_stride(POINT14), batch)
 }
 
@@ -109,10 +131,14 @@ fn decode_records<R>(
         let count = left.min(BLOCK as u64) as usize;
         let records = &mut block[..count * layout.stride];
         for (i, record) in records.chunks_exact_mut(layout.stride).enumerate() {
-            decoder.decompress_next(record).map_err(|error| match error.kind() {
-                ErrorKind::UnexpectedEof => format!("it ends within point {}", points - left + i as u64),
-                _ => error.to_string(),
-            })?;
+            decoder
+                .decompress_next(record)
+                .map_err(|error| match error.kind() {
+                    ErrorKind::UnexpectedEof => {
+                        format!("it ends within point {}", points - left + i as u64)
+                    }
+                    _ => error.to_string(),
+                })?;
         }
         layout.append(records, batch);
         left -= count as u64;

@@ -1,6 +1,8 @@
 //! How the points are compressed: the `laszip encoded` record, checked.
 
-use laz::record::{LayeredPointRecordDecompressor, RecordDecompressor, SequentialPointRecordDecompressor};
+use laz::record::{
+    LayeredPointRecordDecompressor, RecordDecompressor, SequentialPointRecordDecompressor,
+};
 use laz::{LasZipError, LazItem, LazItemType, LazVlr};
 
 use crate::error::{Error, Result};
@@ -47,11 +49,17 @@ pub(super) enum ChunkSize {
 impl Compression {
     pub(super) fn check(payload: Option<&[u8]>, header: &Header) -> Result<Self> {
         let payload = payload.ok_or_else(|| {
-            Error::format("the points are marked as compressed, but the record \"laszip encoded\" is missing")
-                .at("byte 104")
-                .cure("copy or download the file again")
+            Error::format(
+                "the points are marked as compressed, but the record \"laszip encoded\" is missing",
+            )
+            .at("byte 104")
+            .cure("copy or download the file again")
         })?;
-        let in_record = |error: Error| error.at("record \"laszip encoded\"").cure("copy or download the file again");
+        let in_record = |error: Error| {
+            error
+                .at("record \"laszip encoded\"")
+                .cure("copy or download the file again")
+        };
         Self::parse(payload, header).map_err(in_record)
     }
 
@@ -61,7 +69,10 @@ impl Compression {
         for item in &items {
             let (size, found) = (size_of(item.item_type()), item.size());
             if size != found {
-                return Err(Error::format(format!("field {:?} of {found} bytes, expected {size}", item.item_type())));
+                return Err(Error::format(format!(
+                    "field {:?} of {found} bytes, expected {size}",
+                    item.item_type()
+                )));
             }
         }
         let stride: usize = items.iter().map(|item| usize::from(item.size())).sum();
@@ -71,7 +82,11 @@ impl Compression {
                 header.record_length
             )));
         }
-        let expected = if header.point_format < 6 { LazItemType::Point10 } else { LazItemType::Point14 };
+        let expected = if header.point_format < 6 {
+            LazItemType::Point10
+        } else {
+            LazItemType::Point14
+        };
         let Some(first) = items.first().filter(|item| item.item_type() == expected) else {
             return Err(Error::format(format!(
                 "no field {expected:?} at its beginning, which point format {} needs",
@@ -81,12 +96,16 @@ impl Compression {
 
         let (compressor, chunk_size) = (u16_at(payload, 0), u32_at(payload, 12));
         let (order, check) = match (first.version(), compressor) {
-            (1 | 2, 1 | 2) => {
-                (Order::Pointwise, SequentialPointRecordDecompressor::new(&[][..]).set_fields_from(&items))
-            }
+            (1 | 2, 1 | 2) => (
+                Order::Pointwise,
+                SequentialPointRecordDecompressor::new(&[][..]).set_fields_from(&items),
+            ),
             (3 | 4, 3) => {
                 let mut decoder = LayeredPointRecordDecompressor::new(std::io::Cursor::new([]));
-                (Order::Layered(items.iter().map(layers_of).sum()), decoder.set_fields_from(&items))
+                (
+                    Order::Layered(items.iter().map(layers_of).sum()),
+                    decoder.set_fields_from(&items),
+                )
             }
             (version, _) => {
                 return Err(Error::unsupported(format!(
@@ -101,7 +120,12 @@ impl Compression {
             (_, 0 | u32::MAX) => ChunkSize::Variable,
             (_, size) => ChunkSize::Fixed(size.into()),
         };
-        Ok(Compression { items, stride, order, chunks })
+        Ok(Compression {
+            items,
+            stride,
+            order,
+            chunks,
+        })
     }
 }
 
@@ -131,7 +155,9 @@ fn explain(error: LasZipError) -> Error {
         LasZipError::UnsupportedLazItemVersion(kind, version) => {
             Error::unsupported(format!("version {version} of the compressor of {kind:?}"))
         }
-        LasZipError::UnknownCompressorType(kind) => Error::unsupported(format!("compressor {kind}")),
+        LasZipError::UnknownCompressorType(kind) => {
+            Error::unsupported(format!("compressor {kind}"))
+        }
         LasZipError::IoError(_) => Error::format("the record ends early"),
         other => Error::unsupported(other.to_string()),
     }

@@ -63,18 +63,26 @@ impl Laz {
         check_count(header)?;
         let is_streamed = match compression.chunks {
             ChunkSize::Whole => true,
-            ChunkSize::Fixed(size) => compression.order == Order::Pointwise && size > MAX_CHUNK_POINTS,
+            ChunkSize::Fixed(size) => {
+                compression.order == Order::Pointwise && size > MAX_CHUNK_POINTS
+            }
             ChunkSize::Variable => false,
         };
         if is_streamed {
-            return Ok(Laz::Stream(Stream::new(input, compression, header, options)?));
+            return Ok(Laz::Stream(Stream::new(
+                input,
+                compression,
+                header,
+                options,
+            )?));
         }
         let chunks = match table::read(&mut input, &compression, header) {
             Ok(chunks) => chunks,
             _ if header.count == 0 => Vec::new(),
             Err(reason) if matches!(compression.order, Order::Layered(_)) => {
                 let chunks = table::walk(&mut input, &compression, header)?;
-                warnings.push(format!("{reason}; the chunks are found by their own headers").into());
+                warnings
+                    .push(format!("{reason}; the chunks are found by their own headers").into());
                 chunks
             }
             Err(reason) if compression.chunks == ChunkSize::Variable => {
@@ -85,8 +93,14 @@ impl Laz {
                 .cure("copy or download the file again"));
             }
             Err(reason) => {
-                warnings.push(format!("{reason}; the points are decoded one after the other").into());
-                return Ok(Laz::Stream(Stream::new(input, compression, header, options)?));
+                warnings
+                    .push(format!("{reason}; the points are decoded one after the other").into());
+                return Ok(Laz::Stream(Stream::new(
+                    input,
+                    compression,
+                    header,
+                    options,
+                )?));
             }
         };
         let found = chunks.last().map_or(0, |chunk| chunk.first + chunk.points);
@@ -96,7 +110,9 @@ impl Laz {
                  is wrong",
                 header.count
             );
-            options.cut.refuse_or_warn(text, &format!("byte {}", input.length), warnings)?;
+            options
+                .cut
+                .refuse_or_warn(text, &format!("byte {}", input.length), warnings)?;
         }
         if let Some(chunk) = chunks.iter().find(|chunk| chunk.points > MAX_CHUNK_POINTS) {
             return Err(Error::limit(format!(
@@ -126,7 +142,11 @@ impl Laz {
         }
     }
 
-    pub(super) fn read(&mut self, batch: &mut PointBatch, warnings: &mut Vec<Wording>) -> Result<()> {
+    pub(super) fn read(
+        &mut self,
+        batch: &mut PointBatch,
+        warnings: &mut Vec<Wording>,
+    ) -> Result<()> {
         match self {
             Laz::Chunks(chunks) => chunks.read(batch),
             Laz::Stream(stream) => stream.read(batch, warnings),
@@ -201,7 +221,8 @@ impl Chunks {
         let mut points = 0;
         while let Some(&chunk) = self.waiting.front() {
             points += chunk.points;
-            let is_full = group.len() == CHUNKS_PER_THREAD * threads || points > POINTS_PER_THREAD * threads as u64;
+            let is_full = group.len() == CHUNKS_PER_THREAD * threads
+                || points > POINTS_PER_THREAD * threads as u64;
             if is_full && !group.is_empty() {
                 break;
             }
@@ -222,9 +243,18 @@ fn thin_out(chunks: &mut VecDeque<Chunk>, spacing: u64) {
 }
 
 fn damaged(chunk: &Chunk, reason: &str) -> Error {
-    let Chunk { number, start, first, points, .. } = *chunk;
+    let Chunk {
+        number,
+        start,
+        first,
+        points,
+        ..
+    } = *chunk;
     Error::format(format!("the compressed points are damaged: {reason}"))
-        .at(format!("chunk {number} at byte {start} (points {first} to {})", first + points - 1))
+        .at(format!(
+            "chunk {number} at byte {start} (points {first} to {})",
+            first + points - 1
+        ))
         .cure("copy or download the file again")
 }
 
@@ -237,7 +267,10 @@ pub(super) fn chunks_of(bytes: &[u8]) -> Vec<u64> {
     let compression = Compression::check(payloads.laszip.as_deref(), &header).unwrap();
     let chunks = table::read(&mut input, &compression, &header).unwrap();
     if matches!(compression.order, Order::Layered(_)) {
-        assert_eq!(table::walk(&mut input, &compression, &header).unwrap(), chunks);
+        assert_eq!(
+            table::walk(&mut input, &compression, &header).unwrap(),
+            chunks
+        );
     }
     chunks.iter().map(|chunk| chunk.start).collect()
 }
@@ -249,17 +282,27 @@ mod tests {
     #[test]
     fn small_chunks_are_as_likely_as_large_ones() {
         let sizes = (0..4_000).map(|i| if i < 40 { 50_000 } else { 1_000 });
-        let chunks = (1..).zip(sizes).map(|(number, points)| Chunk { number, start: 0, bytes: 1, first: 0, points });
+        let chunks = (1..).zip(sizes).map(|(number, points)| Chunk {
+            number,
+            start: 0,
+            bytes: 1,
+            first: 0,
+            points,
+        });
         let all: VecDeque<Chunk> = chunks.collect();
         for spacing in [0, 1, 3_000, 15_000, 60_000, u64::MAX] {
             let mut kept = all.clone();
             thin_out(&mut kept, spacing);
             let share = |size: u64| {
-                let count =
-                    |chunks: &VecDeque<Chunk>| chunks.iter().filter(|chunk| chunk.points == size).count() as f64;
+                let count = |chunks: &VecDeque<Chunk>| {
+                    chunks.iter().filter(|chunk| chunk.points == size).count() as f64
+                };
                 count(&kept) / count(&all)
             };
-            assert!(!kept.is_empty() && (share(50_000) - share(1_000)).abs() < 0.026, "{spacing}");
+            assert!(
+                !kept.is_empty() && (share(50_000) - share(1_000)).abs() < 0.026,
+                "{spacing}"
+            );
             assert!(spacing > 1 || kept.len() == all.len());
         }
     }

@@ -37,7 +37,10 @@ pub(crate) struct Stream {
 
 impl std::fmt::Debug for Stream {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Stream").field("done", &self.done).field("total", &self.total).finish_non_exhaustive()
+        f.debug_struct("Stream")
+            .field("done", &self.done)
+            .field("total", &self.total)
+            .finish_non_exhaustive()
     }
 }
 
@@ -49,7 +52,12 @@ enum Stop {
 }
 
 impl Stream {
-    pub(super) fn new(input: Input, compression: Compression, header: &Header, options: ReadOptions) -> Result<Self> {
+    pub(super) fn new(
+        input: Input,
+        compression: Compression,
+        header: &Header,
+        options: ReadOptions,
+    ) -> Result<Self> {
         let length = input.length;
         let start = header.layout.points_start;
         let (start, chunk_size) = match compression.chunks {
@@ -59,8 +67,11 @@ impl Stream {
         };
         let mut file = input.file;
         file.seek(SeekFrom::Start(start))?;
-        let mut decoder = SequentialPointRecordDecompressor::new(BufReader::with_capacity(1 << 16, file));
-        decoder.set_fields_from(&compression.items).map_err(|error| Error::format(error.to_string()))?;
+        let mut decoder =
+            SequentialPointRecordDecompressor::new(BufReader::with_capacity(1 << 16, file));
+        decoder
+            .set_fields_from(&compression.items)
+            .map_err(|error| Error::format(error.to_string()))?;
         let layout = RecordLayout::new(header, options.detail);
         let block = vec![0; BLOCK * layout.stride];
         Ok(Stream {
@@ -77,21 +88,30 @@ impl Stream {
         })
     }
 
-    pub(super) fn read(&mut self, batch: &mut PointBatch, warnings: &mut Vec<Wording>) -> Result<()> {
+    pub(super) fn read(
+        &mut self,
+        batch: &mut PointBatch,
+        warnings: &mut Vec<Wording>,
+    ) -> Result<()> {
         for _ in 0..BATCH {
             let count = (self.total - self.done).min(BLOCK as u64) as usize;
             let mut whole = 0;
             let result = contain(|| self.decode_block(count, &mut whole));
             if result.is_some() {
-                self.layout.append(&self.block[..whole * self.layout.stride], batch);
+                self.layout
+                    .append(&self.block[..whole * self.layout.stride], batch);
                 self.done += whole as u64;
             }
             match result {
                 Some(Ok(())) => {}
                 Some(Err(Stop::End)) => {
                     let total = std::mem::replace(&mut self.total, self.done);
-                    let text = format!("the file ends within its compressed points: {} of {total} are read", self.done);
-                    self.cut.refuse_or_warn(text, &format!("byte {}", self.length), warnings)?;
+                    let text = format!(
+                        "the file ends within its compressed points: {} of {total} are read",
+                        self.done
+                    );
+                    self.cut
+                        .refuse_or_warn(text, &format!("byte {}", self.length), warnings)?;
                 }
                 Some(Err(Stop::Failed(error))) => {
                     return Err(Error::from(error).at(format!("point {}", self.done)));
@@ -120,10 +140,12 @@ impl Stream {
                 fields.map_err(|error| Stop::Failed(std::io::Error::other(error)))?;
                 self.in_chunk = 0;
             }
-            self.decoder.decompress_next(record).map_err(|error| match error.kind() {
-                ErrorKind::UnexpectedEof => Stop::End,
-                _ => Stop::Failed(error),
-            })?;
+            self.decoder
+                .decompress_next(record)
+                .map_err(|error| match error.kind() {
+                    ErrorKind::UnexpectedEof => Stop::End,
+                    _ => Stop::Failed(error),
+                })?;
             self.in_chunk += 1;
             *whole += 1;
         }

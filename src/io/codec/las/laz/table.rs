@@ -29,20 +29,34 @@ pub(super) struct Chunk {
 ///
 /// # Errors
 /// If the table is missing or damaged; the message says how.
-pub(super) fn read(input: &mut Input, compression: &Compression, header: &Header) -> Result<Vec<Chunk>, String> {
+pub(super) fn read(
+    input: &mut Input,
+    compression: &Compression,
+    header: &Header,
+) -> Result<Vec<Chunk>, String> {
     let points_start = header.layout.points_start;
-    let table = find(input, points_start).ok_or("the position of the chunk table was never written")?;
+    let table =
+        find(input, points_start).ok_or("the position of the chunk table was never written")?;
     let damaged = |what: String| format!("the chunk table at byte {table} {what}");
     if table.saturating_add(8) > input.length {
-        return Err(damaged(format!("lies beyond the end of the file at byte {}", input.length)));
+        return Err(damaged(format!(
+            "lies beyond the end of the file at byte {}",
+            input.length
+        )));
     }
     let mut start = points_start + POINTER;
     let room = table - start;
-    let mut read = |count| input.bytes(table, count).map_err(|error| damaged(error.to_string()));
+    let mut read = |count| {
+        input
+            .bytes(table, count)
+            .map_err(|error| damaged(error.to_string()))
+    };
     let count = u32_at(&read(8)?, 4);
     // Every chunk begins with an uncompressed point.
     if u64::from(count) > room / compression.stride as u64 + 1 {
-        return Err(damaged(format!("lists {count} chunks, more than {room} bytes can hold")));
+        return Err(damaged(format!(
+            "lists {count} chunks, more than {room} bytes can hold"
+        )));
     }
     // An entry consists of two numbers of 32 bits, which the coder makes slightly larger at worst.
     let bytes = read(64 + 16 * count as usize)?;
@@ -55,14 +69,19 @@ pub(super) fn read(input: &mut Input, compression: &Compression, header: &Header
     let mut first = 0;
     for entry in &entries {
         // The crate sign-extends numbers of 32 bits.
-        let (bytes, stated) = (entry.byte_count & 0xffff_ffff, entry.point_count & 0xffff_ffff);
+        let (bytes, stated) = (
+            entry.byte_count & 0xffff_ffff,
+            entry.point_count & 0xffff_ffff,
+        );
         let points = match compression.chunks {
             ChunkSize::Fixed(size) => size.min(header.count - first),
             _ => stated.min(header.count - first),
         };
         let number = chunks.len() + 1;
         if bytes > table - start {
-            return Err(damaged(format!("states {bytes} bytes for chunk {number}, which would overlap the table")));
+            return Err(damaged(format!(
+                "states {bytes} bytes for chunk {number}, which would overlap the table"
+            )));
         }
         if points == 0 {
             break;
@@ -71,9 +90,17 @@ pub(super) fn read(input: &mut Input, compression: &Compression, header: &Header
         let is_last = first + points == header.count;
         let largest = 2 * points * compression.stride as u64 + 4096;
         if bytes < compression.stride as u64 || (bytes > largest && !is_last) {
-            return Err(damaged(format!("states {bytes} bytes for the {points} points of chunk {number}")));
+            return Err(damaged(format!(
+                "states {bytes} bytes for the {points} points of chunk {number}"
+            )));
         }
-        chunks.push(Chunk { number, start, bytes, first, points });
+        chunks.push(Chunk {
+            number,
+            start,
+            bytes,
+            first,
+            points,
+        });
         start += bytes;
         first += points;
     }
@@ -85,7 +112,10 @@ pub(super) fn read(input: &mut Input, compression: &Compression, header: &Header
 fn find(input: &mut Input, points_start: u64) -> Option<u64> {
     let last = input.length.checked_sub(8);
     let mut offset_at = |start| {
-        let bytes = input.bytes(start, 8).ok().filter(|bytes| bytes.len() == 8)?;
+        let bytes = input
+            .bytes(start, 8)
+            .ok()
+            .filter(|bytes| bytes.len() == 8)?;
         let offset = u64_at(&bytes, 0);
         (offset >= points_start + POINTER && offset <= i64::MAX as u64).then_some(offset)
     };
@@ -94,8 +124,14 @@ fn find(input: &mut Input, points_start: u64) -> Option<u64> {
 
 /// Finds layered chunks without a table: each states the number of its points and the sizes of its
 /// layers. Returns the complete chunks.
-pub(super) fn walk(input: &mut Input, compression: &Compression, header: &Header) -> std::io::Result<Vec<Chunk>> {
-    let Order::Layered(layers) = compression.order else { return Ok(Vec::new()) };
+pub(super) fn walk(
+    input: &mut Input,
+    compression: &Compression,
+    header: &Header,
+) -> std::io::Result<Vec<Chunk>> {
+    let Order::Layered(layers) = compression.order else {
+        return Ok(Vec::new());
+    };
     let mut chunks = Vec::new();
     let (mut start, mut first) = (header.layout.points_start + POINTER, 0);
     while first < header.count {
@@ -107,12 +143,19 @@ pub(super) fn walk(input: &mut Input, compression: &Compression, header: &Header
         let points = u64::from(u32_at(&bytes, compression.stride));
         let sizes = layer_sizes(&bytes[compression.stride + 4..]);
         let bytes = head as u64 + sizes.sum::<u64>();
-        let is_sound = points > 0 && !matches!(compression.chunks, ChunkSize::Fixed(most) if points > most);
+        let is_sound =
+            points > 0 && !matches!(compression.chunks, ChunkSize::Fixed(most) if points > most);
         if !is_sound || bytes > header.layout.points_end.saturating_sub(start) {
             break;
         }
         let points = points.min(header.count - first);
-        chunks.push(Chunk { number: chunks.len() + 1, start, bytes, first, points });
+        chunks.push(Chunk {
+            number: chunks.len() + 1,
+            start,
+            bytes,
+            first,
+            points,
+        });
         start += bytes;
         first += points;
     }

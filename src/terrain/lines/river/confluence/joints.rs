@@ -66,12 +66,22 @@ impl Joints {
     pub(super) fn new(rivers: &[River], joints: &[Joint]) -> Self {
         let mut found = Joints::default();
         for joint in joints {
-            found.ends.entry([joint.branch, joint.end]).or_default().joints.push(*joint);
+            found
+                .ends
+                .entry([joint.branch, joint.end])
+                .or_default()
+                .joints
+                .push(*joint);
         }
-        found.ends.values_mut().for_each(|end| end.find_heights(rivers));
+        found
+            .ends
+            .values_mut()
+            .for_each(|end| end.find_heights(rivers));
         found.find_sites(rivers);
-        let at_site =
-            |stations: &BTreeSet<StationId>| LevelStations { stations: Vec::from_iter(stations.clone()), end: None };
+        let at_site = |stations: &BTreeSet<StationId>| LevelStations {
+            stations: Vec::from_iter(stations.clone()),
+            end: None,
+        };
         let mut equal: Vec<LevelStations> = found.at_sites.values().map(at_site).collect();
         let mut bounds = Vec::new();
         for (&[river, number], end) in &found.ends {
@@ -86,16 +96,29 @@ impl Joints {
                     level.extend(stations.iter().copied().map(height));
                 }
             }
-            bounds.extend(ends.iter().map(|station| if number == 0 { [*station, own] } else { [own, *station] }));
+            bounds.extend(ends.iter().map(|station| {
+                if number == 0 {
+                    [*station, own]
+                } else {
+                    [own, *station]
+                }
+            }));
             // A first level line that is lower than the other river becomes as high, and the water
             // falls from there. It cannot if the next level line meets the first.
             if !level.is_empty() && (number == 1 || is_met) {
                 level.push(own);
             }
-            equal.push(LevelStations { stations: level, end: Some(river) });
+            equal.push(LevelStations {
+                stations: level,
+                end: Some(river),
+            });
         }
         equal.retain(|level| level.stations.len() > 1);
-        Joints { equal, bounds, ..found }
+        Joints {
+            equal,
+            bounds,
+            ..found
+        }
     }
 
     /// Finds the stations that have one height, by the vertices that they share.
@@ -107,8 +130,14 @@ impl Joints {
                 for station in joint.stations_along(rivers) {
                     let site = key(joint.site(rivers, station));
                     match joint.end_of_main(rivers, station) {
-                        Some(number) => of_ends.entry(site).or_default().extend([id, [joint.main, number]]),
-                        None => on_banks.entry(site).or_default().extend([[joint.main, station]]),
+                        Some(number) => of_ends
+                            .entry(site)
+                            .or_default()
+                            .extend([id, [joint.main, number]]),
+                        None => on_banks
+                            .entry(site)
+                            .or_default()
+                            .extend([[joint.main, station]]),
                     }
                 }
             }
@@ -120,7 +149,10 @@ impl Joints {
                 continue;
             }
             let all_follow = ends.iter().all(follows);
-            let level = ends.iter().filter(|end| all_follow || !follows(end)).map(|end| self.own_height(rivers, *end));
+            let level = ends
+                .iter()
+                .filter(|end| all_follow || !follows(end))
+                .map(|end| self.own_height(rivers, *end));
             let level: BTreeSet<StationId> = level.collect();
             on_banks.insert(site, level);
         }
@@ -135,16 +167,30 @@ impl Joints {
 
     /// The station that has the height of a corner, left (0) or right (1), of the first (0) or the
     /// last (1) level line of a river.
-    pub(crate) fn height_of_end(&self, rivers: &[River], end: [usize; 2], corner: usize) -> StationId {
+    pub(crate) fn height_of_end(
+        &self,
+        rivers: &[River],
+        end: [usize; 2],
+        corner: usize,
+    ) -> StationId {
         let [river, station] = own_station(rivers, end);
         let site = key(flat(rivers[river].stations[station][corner]));
-        let shared = self.at_sites.get(&site).filter(|_| self.ends.contains_key(&end)).and_then(BTreeSet::first);
-        shared.copied().unwrap_or_else(|| self.own_height(rivers, end))
+        let shared = self
+            .at_sites
+            .get(&site)
+            .filter(|_| self.ends.contains_key(&end))
+            .and_then(BTreeSet::first);
+        shared
+            .copied()
+            .unwrap_or_else(|| self.own_height(rivers, end))
     }
 
     /// The station that has the height of a station of another river which an end joins there.
     fn height_at(&self, rivers: &[River], joint: &Joint, station: usize) -> StationId {
-        let shared = self.at_sites.get(&key(joint.site(rivers, station))).and_then(BTreeSet::first);
+        let shared = self
+            .at_sites
+            .get(&key(joint.site(rivers, station)))
+            .and_then(BTreeSet::first);
         shared.copied().unwrap_or([joint.main, station])
     }
 
@@ -156,12 +202,19 @@ impl Joints {
         for (&[river, number], end) in &self.ends {
             let line = match (&end.along, end.members.first()) {
                 (Some((joint, stations)), _) => {
-                    let height = |&station| at(joint.site(rivers, station), self.height_at(rivers, joint, station));
+                    let height = |&station| {
+                        at(
+                            joint.site(rivers, station),
+                            self.height_at(rivers, joint, station),
+                        )
+                    };
                     stations.iter().map(height).collect()
                 }
                 (None, Some(member)) => {
                     let of = &rivers[river];
-                    of.stations[of.station_of_end(number)].map(|corner| at(flat(corner), *member)).to_vec()
+                    of.stations[of.station_of_end(number)]
+                        .map(|corner| at(flat(corner), *member))
+                        .to_vec()
                 }
                 (None, None) => continue,
             };
@@ -187,17 +240,33 @@ fn own_station(rivers: &[River], [river, end]: [usize; 2]) -> StationId {
 impl End {
     /// Chooses the bank to follow, whatever the order of rivers: the one with most vertices.
     fn find_heights(&mut self, rivers: &[River]) {
-        let both = self.joints.iter().filter(|joint| joint.stations.iter().all(Option::is_some));
+        let both = self
+            .joints
+            .iter()
+            .filter(|joint| joint.stations.iter().all(Option::is_some));
         let along = both.map(|joint| (*joint, joint.stations_along(rivers)));
         let sites = |(joint, stations): &(Joint, Vec<usize>)| -> Vec<[f64; 2]> {
-            stations.iter().map(|station| joint.site(rivers, *station)).collect()
+            stations
+                .iter()
+                .map(|station| joint.site(rivers, *station))
+                .collect()
         };
         self.along = along.max_by(|p, q| {
-            let pairs = sites(p).into_iter().zip(sites(q)).map(|(p, q)| by_site(p, q));
-            p.1.len().cmp(&q.1.len()).then_with(|| pairs.fold(Ordering::Equal, Ordering::then))
+            let pairs = sites(p)
+                .into_iter()
+                .zip(sites(q))
+                .map(|(p, q)| by_site(p, q));
+            p.1.len()
+                .cmp(&q.1.len())
+                .then_with(|| pairs.fold(Ordering::Equal, Ordering::then))
         });
         if self.along.is_none() {
-            let inner = |joint: &Joint| joint.inner(rivers).map(|station| [joint.main, station]).collect::<Vec<_>>();
+            let inner = |joint: &Joint| {
+                joint
+                    .inner(rivers)
+                    .map(|station| [joint.main, station])
+                    .collect::<Vec<_>>()
+            };
             self.members = self.joints.iter().flat_map(inner).collect();
         }
     }
@@ -206,7 +275,10 @@ impl End {
 impl Joint {
     /// The stations of the other river at the corners of the end, if that river goes on there.
     fn inner<'a>(&'a self, rivers: &'a [River]) -> impl Iterator<Item = usize> + 'a {
-        self.stations.into_iter().flatten().filter(|station| self.end_of_main(rivers, *station).is_none())
+        self.stations
+            .into_iter()
+            .flatten()
+            .filter(|station| self.end_of_main(rivers, *station).is_none())
     }
 
     /// The position of a station of the other river on its bank.
@@ -223,12 +295,24 @@ impl Joint {
     /// The stations of the other river that the end follows, from left to right; where the way
     /// along the bank is too long, and where only one corner is on it, just those at corners.
     fn stations_along(&self, rivers: &[River]) -> Vec<usize> {
-        let [Some(left), Some(right)] = self.stations else { return self.stations.into_iter().flatten().collect() };
-        let mut along: Vec<usize> =
-            if left <= right { (left..=right).collect() } else { (right..=left).rev().collect() };
+        let [Some(left), Some(right)] = self.stations else {
+            return self.stations.into_iter().flatten().collect();
+        };
+        let mut along: Vec<usize> = if left <= right {
+            (left..=right).collect()
+        } else {
+            (right..=left).rev().collect()
+        };
         along.dedup_by_key(|station| key(self.site(rivers, *station)));
-        let line: Vec<[f64; 3]> = along.iter().map(|station| rivers[self.main].stations[*station][self.side]).collect();
-        if is_detour(&line) { vec![left, right] } else { along }
+        let line: Vec<[f64; 3]> = along
+            .iter()
+            .map(|station| rivers[self.main].stations[*station][self.side])
+            .collect();
+        if is_detour(&line) {
+            vec![left, right]
+        } else {
+            along
+        }
     }
 }
 

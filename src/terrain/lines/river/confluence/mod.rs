@@ -58,10 +58,20 @@ struct Touch {
 ///
 /// # Complexity
 /// O(n log n) for n level lines, each time that vertices were added at which other ends are.
-pub(super) fn join_banks(rivers: &mut [River], reach: f64, continues: &dyn Fn(usize, usize, usize) -> bool) -> Joints {
+pub(super) fn join_banks(
+    rivers: &mut [River],
+    reach: f64,
+    continues: &dyn Fn(usize, usize, usize) -> bool,
+) -> Joints {
     let touches = loop {
         let mut touches = touches(rivers, reach, continues);
-        touches.retain(|touch| touch.spots.iter().flatten().any(|spot| !is_beside(rivers, touch, spot)));
+        touches.retain(|touch| {
+            touch
+                .spots
+                .iter()
+                .flatten()
+                .any(|spot| !is_beside(rivers, touch, spot))
+        });
         if !insert_vertices(rivers, &touches) {
             break touches;
         }
@@ -74,9 +84,21 @@ pub(super) fn join_banks(rivers: &mut [River], reach: f64, continues: &dyn Fn(us
         }
     }
     let joint = |touch: &Touch| {
-        let Touch { branch, end, main, side, spots } = *touch;
+        let Touch {
+            branch,
+            end,
+            main,
+            side,
+            spots,
+        } = *touch;
         let station = |spot: Spot| stations.get(&(main, side, key(spot.at))).copied();
-        Joint { branch, end, main, side, stations: spots.map(|spot| spot.and_then(station)) }
+        Joint {
+            branch,
+            end,
+            main,
+            side,
+            stations: spots.map(|spot| spot.and_then(station)),
+        }
     };
     Joints::new(rivers, &touches.iter().map(joint).collect::<Vec<Joint>>())
 }
@@ -86,12 +108,18 @@ fn insert_vertices(rivers: &mut [River], touches: &[Touch]) -> bool {
     let mut wanted: BTreeMap<usize, Vec<(usize, Spot)>> = BTreeMap::new();
     for touch in touches {
         for spot in touch.spots.iter().flatten().filter(|spot| !spot.is_vertex) {
-            wanted.entry(touch.main).or_default().push((touch.side, *spot));
+            wanted
+                .entry(touch.main)
+                .or_default()
+                .push((touch.side, *spot));
         }
     }
     for (river, spots) in &mut wanted {
         spots.sort_by(|(side, p), (other, q)| {
-            (p.stretch.cmp(&q.stretch)).then(p.part.total_cmp(&q.part)).then(side.cmp(other)).then(by_site(p.at, q.at))
+            (p.stretch.cmp(&q.stretch))
+                .then(p.part.total_cmp(&q.part))
+                .then(side.cmp(other))
+                .then(by_site(p.at, q.at))
         });
         spots.dedup_by(|p, q| p.0 == q.0 && p.1.at == q.1.at);
         rivers[*river].insert_stations(spots);
@@ -105,7 +133,12 @@ fn is_beside(rivers: &[River], touch: &Touch, spot: &Spot) -> bool {
     let stations = &rivers[touch.main].stations;
     let is_corner = |station: usize| flat(stations[station][touch.side]) == spot.at;
     let [is_first, is_last] = [is_corner(0), is_corner(stations.len() - 1)];
-    spot.is_vertex && if touch.end == 0 { is_first && !is_last } else { is_last && !is_first }
+    spot.is_vertex
+        && if touch.end == 0 {
+            is_first && !is_last
+        } else {
+            is_last && !is_first
+        }
 }
 
 /// The heights at which level rivers that touch others could begin or end there: river, end, and
@@ -117,27 +150,47 @@ pub(super) fn heights_at_banks(
 ) -> Vec<(usize, usize, f64)> {
     let height = |touch: &Touch| {
         let spots = touch.spots.iter().flatten();
-        let lowest =
-            spots.map(|spot| rivers[touch.main].level_at(spot.stretch, spot.part)).fold(f64::INFINITY, f64::min);
+        let lowest = spots
+            .map(|spot| rivers[touch.main].level_at(spot.stretch, spot.part))
+            .fold(f64::INFINITY, f64::min);
         (touch.branch, touch.end, lowest)
     };
     let touches = touches(rivers, reach, continues).into_iter();
-    touches.filter(|touch| !continues(touch.branch, touch.end, touch.main)).map(|touch| height(&touch)).collect()
+    touches
+        .filter(|touch| !continues(touch.branch, touch.end, touch.main))
+        .map(|touch| height(&touch))
+        .collect()
 }
 
-fn touches(rivers: &[River], reach: f64, continues: &dyn Fn(usize, usize, usize) -> bool) -> Vec<Touch> {
+fn touches(
+    rivers: &[River],
+    reach: f64,
+    continues: &dyn Fn(usize, usize, usize) -> bool,
+) -> Vec<Touch> {
     let mut sides = Vec::new();
     for (river, of) in rivers.iter().enumerate() {
         for (stretch, pair) in of.stations.windows(2).enumerate() {
-            let side =
-                |side: usize| BankSide { river, side, stretch, ends: [flat(pair[0][side]), flat(pair[1][side])] };
-            sides.extend([side(0), side(1)].into_iter().filter(|side| side.ends[0] != side.ends[1]));
+            let side = |side: usize| BankSide {
+                river,
+                side,
+                stretch,
+                ends: [flat(pair[0][side]), flat(pair[1][side])],
+            };
+            sides.extend(
+                [side(0), side(1)]
+                    .into_iter()
+                    .filter(|side| side.ends[0] != side.ends[1]),
+            );
         }
     }
     let sides = Boxes::new(sides);
     let mut touches = Vec::new();
     for (branch, river) in rivers.iter().enumerate() {
-        for (end, line) in [river.stations.first(), river.stations.last()].into_iter().flatten().enumerate() {
+        for (end, line) in [river.stations.first(), river.stations.last()]
+            .into_iter()
+            .flatten()
+            .enumerate()
+        {
             let mut found: BTreeMap<[usize; 2], [Option<Spot>; 2]> = BTreeMap::new();
             for (corner, at) in line.iter().enumerate() {
                 for (bank, spot) in spots(&sides, flat(*at), reach) {
@@ -150,8 +203,18 @@ fn touches(rivers: &[River], reach: f64, continues: &dyn Fn(usize, usize, usize)
                 let is_along = spots.iter().all(Option::is_some) && !continues(branch, end, main);
                 if is_along || spots.iter().flatten().any(|spot| spot.is_vertex) {
                     // Without a vertex there, one of two ends is not on the bank.
-                    let spots = if is_along { spots } else { spots.map(vertex_only) };
-                    touches.push(Touch { branch, end, main, side, spots });
+                    let spots = if is_along {
+                        spots
+                    } else {
+                        spots.map(vertex_only)
+                    };
+                    touches.push(Touch {
+                        branch,
+                        end,
+                        main,
+                        side,
+                        spots,
+                    });
                 }
             }
         }
@@ -170,8 +233,20 @@ fn spots(sides: &Boxes<BankSide>, q: [f64; 2], reach: f64) -> BTreeMap<[usize; 2
         let (squared, part) = (squared_distance(side.ends, q), nearest_part(side.ends, q));
         let vertex = side.ends.iter().position(|end| *end == q);
         let spot = match vertex {
-            Some(end) => Spot { squared, stretch: side.stretch + end, part: 0.0, at: q, is_vertex: true },
-            None => Spot { squared, stretch: side.stretch, part, at: q, is_vertex: false },
+            Some(end) => Spot {
+                squared,
+                stretch: side.stretch + end,
+                part: 0.0,
+                at: q,
+                is_vertex: true,
+            },
+            None => Spot {
+                squared,
+                stretch: side.stretch,
+                part,
+                at: q,
+                is_vertex: false,
+            },
         };
         if squared <= reach * reach {
             let found = nearest.entry([side.river, side.side]).or_insert(spot);
@@ -188,7 +263,11 @@ impl River {
     /// The height of the water within a stretch.
     fn level_at(&self, stretch: usize, part: f64) -> f64 {
         let level = |k: usize| self.stations.get(k).map_or(f64::NAN, |ends| ends[0][2]);
-        if part == 0.0 { level(stretch) } else { level(stretch) + part * (level(stretch + 1) - level(stretch)) }
+        if part == 0.0 {
+            level(stretch)
+        } else {
+            level(stretch) + part * (level(stretch + 1) - level(stretch))
+        }
     }
 
     /// Inserts level lines from positions on banks, sorted downstream, to the opposite points.
@@ -199,14 +278,24 @@ impl River {
         for (stretch, &station) in self.stations.iter().enumerate() {
             stations.push(station);
             middles.extend(self.middles.get(stretch).copied());
-            while let Some((side, Spot { part, at, .. })) = spots.next_if(|(_, spot)| spot.stretch == stretch) {
-                let Some(&next) = self.stations.get(stretch + 1) else { continue };
+            while let Some((side, Spot { part, at, .. })) =
+                spots.next_if(|(_, spot)| spot.stretch == stretch)
+            {
+                let Some(&next) = self.stations.get(stretch + 1) else {
+                    continue;
+                };
                 let level = self.level_at(stretch, *part);
                 let between = |k: usize| side_between([flat(station[k]), flat(next[k])], *part);
                 let opposite = between(1 - side);
-                let ends = if *side == 0 { [*at, opposite] } else { [opposite, *at] };
+                let ends = if *side == 0 {
+                    [*at, opposite]
+                } else {
+                    [opposite, *at]
+                };
                 stations.push(ends.map(|[x, y]| [x, y, level]));
-                if let (Some(&from), Some(&to)) = (self.middles.get(stretch), self.middles.get(stretch + 1)) {
+                if let (Some(&from), Some(&to)) =
+                    (self.middles.get(stretch), self.middles.get(stretch + 1))
+                {
                     middles.push(side_between([from, to], *part));
                 }
             }

@@ -37,7 +37,12 @@ impl<V, C: Copy + Default> AlphaShape<'_, V, C> {
     /// # Panics
     /// If the cell does not exist or an index is 4 or more.
     pub fn classify_edge(&self, edge: Edge) -> AlphaState {
-        self.classify(self.shapes.tds.cells_around_edge(edge).map(|(cell, ..)| cell))
+        self.classify(
+            self.shapes
+                .tds
+                .cells_around_edge(edge)
+                .map(|(cell, ..)| cell),
+        )
     }
 
     /// Returns the part of the solid that a vertex is; a hidden one is
@@ -46,7 +51,13 @@ impl<V, C: Copy + Default> AlphaShape<'_, V, C> {
     /// # Panics
     /// If the vertex does not exist.
     pub fn classify_vertex(&self, vertex: VertexId) -> AlphaState {
-        self.classify(self.shapes.tds.cells_around(vertex).into_iter().map(|(cell, _)| cell))
+        self.classify(
+            self.shapes
+                .tds
+                .cells_around(vertex)
+                .into_iter()
+                .map(|(cell, _)| cell),
+        )
     }
 
     /// Returns the part of the solid that a simplex is, from the cells that have it.
@@ -54,7 +65,11 @@ impl<V, C: Copy + Default> AlphaShape<'_, V, C> {
         let (mut any, mut all) = (false, true);
         for cell in cells {
             // In dimension 2 a triangle has no fourth neighbor.
-            let is_contained = self.shapes.levels.get(cell.index()).is_some_and(|&level| level < self.level);
+            let is_contained = self
+                .shapes
+                .levels
+                .get(cell.index())
+                .is_some_and(|&level| level < self.level);
             any |= is_contained;
             all &= is_contained;
         }

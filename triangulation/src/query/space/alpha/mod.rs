@@ -117,7 +117,8 @@ struct CellRadius {
 
 impl CellRadius {
     fn exact(&self, corners: impl Fn(CellId) -> [[f64; 4]; 4]) -> &SquaredRadius {
-        self.exact.get_or_init(|| Box::new(SquaredRadius::of(corners(self.cell))))
+        self.exact
+            .get_or_init(|| Box::new(SquaredRadius::of(corners(self.cell))))
     }
 
     fn compare(&self, other: &Self, corners: impl Fn(CellId) -> [[f64; 4]; 4]) -> Ordering {
@@ -152,26 +153,44 @@ impl<'t, V, C: Copy + Default> AlphaShapes<'t, V, C> {
             let [site @ .., _] = weighted(t.point(vertex));
             sites[vertex.index()] = site;
         }
-        let mut shapes =
-            AlphaShapes { tds, sites, alphas: Vec::new(), levels: vec![NEVER; tds.cell_slots()], cells: Vec::new() };
+        let mut shapes = AlphaShapes {
+            tds,
+            sites,
+            alphas: Vec::new(),
+            levels: vec![NEVER; tds.cell_slots()],
+            cells: Vec::new(),
+        };
         if tds.dimension() < 3 {
             return shapes;
         }
         let corners = |cell: CellId| tds.corners(cell).map(|vertex| weighted(t.point(vertex)));
         let candidate = |cell: CellId| {
             let (low, high) = squared_radius_bounds(corners(cell));
-            CellRadius { cell, low, high, exact: OnceCell::new() }
+            CellRadius {
+                cell,
+                low,
+                high,
+                exact: OnceCell::new(),
+            }
         };
-        let mut candidates: Vec<CellRadius> =
-            tds.cells().filter(|&cell| !tds.is_infinite(cell)).map(candidate).collect();
+        let mut candidates: Vec<CellRadius> = tds
+            .cells()
+            .filter(|&cell| !tds.is_infinite(cell))
+            .map(candidate)
+            .collect();
         candidates.sort_unstable_by(|a, b| a.compare(b, corners).then(a.cell.cmp(&b.cell)));
         let mut last = f64::NEG_INFINITY;
         for equal in candidates.chunk_by(|a, b| a.compare(b, corners).is_eq()) {
-            equal.iter().for_each(|candidate| shapes.levels[candidate.cell.index()] = shapes.alphas.len() as u32);
+            equal.iter().for_each(|candidate| {
+                shapes.levels[candidate.cell.index()] = shapes.alphas.len() as u32
+            });
             last = equal[0].value(corners).max(last);
             shapes.alphas.push(last);
         }
-        shapes.cells = candidates.into_iter().map(|candidate| candidate.cell).collect();
+        shapes.cells = candidates
+            .into_iter()
+            .map(|candidate| candidate.cell)
+            .collect();
         shapes
     }
 
@@ -185,7 +204,11 @@ impl<'t, V, C: Copy + Default> AlphaShapes<'t, V, C> {
     ///
     /// The number is compared with the rounded ones of [`alphas`](Self::alphas). O(log m).
     pub fn at(&self, alpha: f64) -> AlphaShape<'_, V, C> {
-        AlphaShape { shapes: self, level: self.alphas.partition_point(|&at| at <= alpha) as u32, alpha }
+        AlphaShape {
+            shapes: self,
+            level: self.alphas.partition_point(|&at| at <= alpha) as u32,
+            alpha,
+        }
     }
 
     /// Returns the smallest shape that contains all vertices, as corners at least, and has no more
@@ -205,7 +228,11 @@ impl<'t, V, C: Copy + Default> AlphaShapes<'t, V, C> {
             }
             let level = self.level(same[0]);
             if level >= solid && count <= components {
-                return Some(AlphaShape { shapes: self, level: level + 1, alpha: self.alphas[level as usize] });
+                return Some(AlphaShape {
+                    shapes: self,
+                    level: level + 1,
+                    alpha: self.alphas[level as usize],
+                });
             }
         }
         None
@@ -254,21 +281,29 @@ impl<'s, V, C: Copy + Default> AlphaShape<'s, V, C> {
     /// Iterates over the cells of the solid, by ascending squared radius.
     pub fn cells(&self) -> impl Iterator<Item = CellId> + 's {
         let (shapes, level) = (self.shapes, self.level);
-        let count = shapes.cells.partition_point(|&cell| shapes.level(cell) < level);
+        let count = shapes
+            .cells
+            .partition_point(|&cell| shapes.level(cell) < level);
         shapes.cells[..count].iter().copied()
     }
 
     /// Returns the number of parts that are connected through facets. O(m) for m cells.
     pub fn components(&self) -> usize {
         let mut forest = Forest::new(self.shapes.levels.len());
-        self.cells().fold(0, |count, cell| count + 1 - self.shapes.join(&mut forest, cell))
+        self.cells().fold(0, |count, cell| {
+            count + 1 - self.shapes.join(&mut forest, cell)
+        })
     }
 
     /// Returns the volume of the solid: the sum of those of its cells, each with an error of a few
     /// roundings of its largest product. O(m) for m cells.
     pub fn volume(&self) -> f64 {
         let six_times = |cell: CellId| {
-            let corners = self.shapes.tds.corners(cell).map(|vertex| self.shapes.sites[vertex.index()]);
+            let corners = self
+                .shapes
+                .tds
+                .corners(cell)
+                .map(|vertex| self.shapes.sites[vertex.index()]);
             Orientation3(corners).value(|x, y| x - y).abs()
         };
         self.cells().map(six_times).sum::<f64>() / 6.0
@@ -288,7 +323,11 @@ impl<'s, V, C: Copy + Default> AlphaShape<'s, V, C> {
             }
         }
         let (singular_edges, singular_vertices) = singular(&triangles);
-        Boundary { triangles, singular_edges, singular_vertices }
+        Boundary {
+            triangles,
+            singular_edges,
+            singular_vertices,
+        }
     }
 }
 
@@ -300,15 +339,25 @@ fn singular(triangles: &[[VertexId; 3]]) -> (Vec<[VertexId; 2]>, Vec<VertexId>) 
     let mut of_edges: FxHashMap<[VertexId; 2], (usize, [usize; 2])> = FxHashMap::default();
     for (number, triangle) in triangles.iter().enumerate() {
         for (i, j) in [(0, 1), (1, 2), (2, 0)] {
-            let (i, j) = if triangle[i] < triangle[j] { (i, j) } else { (j, i) };
+            let (i, j) = if triangle[i] < triangle[j] {
+                (i, j)
+            } else {
+                (j, i)
+            };
             let nodes = [3 * number + i, 3 * number + j];
-            let (count, first) = of_edges.entry([triangle[i], triangle[j]]).or_insert((0, nodes));
+            let (count, first) = of_edges
+                .entry([triangle[i], triangle[j]])
+                .or_insert((0, nodes));
             *count += 1;
             forest.join(nodes[0], first[0]);
             forest.join(nodes[1], first[1]);
         }
     }
-    let mut edges: Vec<_> = of_edges.iter().filter(|(_, (count, _))| *count > 2).map(|(&edge, _)| edge).collect();
+    let mut edges: Vec<_> = of_edges
+        .iter()
+        .filter(|(_, (count, _))| *count > 2)
+        .map(|(&edge, _)| edge)
+        .collect();
     edges.sort_unstable();
     let mut of_vertices: FxHashMap<VertexId, usize> = FxHashMap::default();
     let mut vertices = Vec::new();
