@@ -125,7 +125,9 @@ impl Directory {
             Some(b"II") => ByteOrder::Little,
             Some(b"MM") => ByteOrder::Big,
             _ => {
-                return Err(Error::format("does not begin like a TIFF file (II or MM)").at("byte 0"));
+                return Err(
+                    Error::format("does not begin like a TIFF file (II or MM)").at("byte 0")
+                );
             }
         };
         let field = |range: std::ops::Range<usize>| {
