@@ -1,15 +1,14 @@
 //! Surfaces to files, in one piece or in tiles, and the jobs that tiles are done by.
 
-use std::borrow::Cow;
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use breakline::Error;
 use breakline::run::{
-    self, BadFiles, ContourOptions, DemOptions, Division, Execution, Existing, HillshadeOptions,
-    JobCommand, JobReport, LightOptions, Look, Origin, Source, StoredJob, Summary, SurfaceOptions,
-    SurfaceRequest, Targets, TileOptions, Verb, WriteReport, WriteRequest, Written, WrittenOf,
+    self, BadFiles, ContourOptions, DemOptions, Division, Execution, Existing, FoundJob,
+    HillshadeOptions, JobCommand, JobReport, LightOptions, Look, Origin, Source, StoredJob,
+    Summary, SurfaceOptions, SurfaceRequest, Targets, TileOptions, Verb, WriteReport, WriteRequest,
+    Written, WrittenOf,
 };
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
@@ -297,31 +296,23 @@ pub(crate) fn job_folder(output: PathBuf) -> Option<OsString> {
 /// The job in a folder.
 #[pyclass(frozen, module = "breakline._breakline")]
 pub(crate) struct Job {
-    folder: PathBuf,
-    /// The job that was there when this was opened; `None` if it is not known what it was planned
-    /// for.
-    stored: Option<StoredJob>,
+    /// Without what it was planned for: a job of which that is not known can be removed.
+    found: FoundJob,
+    /// The first output, if it is known: also when the job is removed.
+    output: Option<PathBuf>,
 }
 
 impl Job {
-    fn find(folder: &Path) -> Result<Self> {
-        let folder = std::path::absolute(folder).map_err(Error::from)?;
-        let stored = match StoredJob::find(&folder) {
-            Ok(Some(stored)) => Some(stored),
-            // The error says so.
-            Ok(None) => Some(StoredJob::read(&folder)?),
-            // It can be removed nevertheless.
-            Err(_) => None,
-        };
-        Ok(Job { folder, stored })
-    }
-
-    fn stored(&self) -> Result<Cow<'_, StoredJob>> {
-        match &self.stored {
-            Some(stored) => Ok(Cow::Borrowed(stored)),
-            None => Ok(Cow::Owned(StoredJob::read(&self.folder)?)),
+    fn of(stored: &StoredJob) -> Self {
+        Job {
+            found: stored.found().clone(),
+            output: first_output(stored),
         }
     }
+}
+
+fn first_output(stored: &StoredJob) -> Option<PathBuf> {
+    stored.command.targets.files.first().cloned()
 }
 
 #[pymethods]
@@ -344,37 +335,42 @@ impl Job {
                 }
                 None => run::plan_job(&command, &folder, context)?,
             };
-            Ok(Job {
-                folder: stored.folder().to_path_buf(),
-                stored: Some(stored),
-            })
+            Ok(Job::of(&stored))
         })
     }
 
     /// Opens the job in a folder.
     #[staticmethod]
     fn open(py: Python<'_>, folder: PathBuf) -> PyResult<Self> {
-        work::short(py, || Job::find(&folder))
+        work::short(py, || -> Result<_> {
+            let found = FoundJob::read(&folder)?;
+            // A job whose command is damaged can be removed: what else is asked for is an error.
+            let output = found.stored().ok().as_ref().and_then(first_output);
+            Ok(Job { found, output })
+        })
     }
 
     /// The folder.
     #[getter]
     fn folder(&self) -> &Path {
-        &self.folder
+        self.found.folder()
     }
 
     /// The first output.
     #[getter]
     fn output(&self, py: Python<'_>) -> PyResult<Option<PathBuf>> {
-        work::short(py, || -> Result<_> {
-            Ok(self.stored()?.command.targets.files.first().cloned())
-        })
+        match &self.output {
+            Some(output) => Ok(Some(output.clone())),
+            None => work::short(py, || -> Result<_> {
+                Ok(first_output(&self.found.stored()?))
+            }),
+        }
     }
 
     /// Returns the tasks, each as a dictionary.
     fn tasks<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
         let tasks = work::run_alone(py, &Call::BRIEF, |context| -> Result<_> {
-            let stored = self.stored()?;
+            let stored = self.found.stored()?;
             let output = stored
                 .command
                 .targets
@@ -405,7 +401,17 @@ impl Job {
     /// Reads the files of the tasks, and removes those that are damaged.
     fn verify(&self, py: Python<'_>, call: Call) -> PyResult<()> {
         work::run_alone(py, &call, |context| -> Result<_> {
-            Ok(self.stored()?.job()?.remove_damaged(context).map(drop)?)
+            let job = self.found.stored()?.job()?;
+            Ok(job.remove_damaged(context).map(drop)?)
+        })
+    }
+
+    /// Checks that the files of points which these tasks read, and all files of lines, are as they
+    /// were read or planned with.
+    fn check_inputs(&self, py: Python<'_>, tasks: Vec<usize>) -> PyResult<()> {
+        work::run_alone(py, &Call::BRIEF, |context| -> Result<_> {
+            let job = self.found.stored()?.job()?;
+            Ok(job.check_inputs_of(tasks, context)?)
         })
     }
 
@@ -417,7 +423,7 @@ impl Job {
         call: Call,
     ) -> PyResult<Option<Bound<'py, PyDict>>> {
         let report = work::run_alone(py, &call, |context| -> Result<_> {
-            let stored = self.stored()?;
+            let stored = self.found.stored()?;
             Ok(run::run_task(
                 &stored.job()?,
                 number,
@@ -436,9 +442,9 @@ impl Job {
         call: Call,
     ) -> PyResult<Bound<'py, PyDict>> {
         let report = work::run_alone(py, &call, |context| -> Result<_> {
-            let mut stored = self.stored()?;
+            let mut stored = self.found.stored()?;
             if let Some(overwrite) = overwrite {
-                stored.to_mut().command.targets.existing = Existing::of(overwrite);
+                stored.command.targets.existing = Existing::of(overwrite);
             }
             Ok(run::run_job(&stored, context)?)
         })?;
@@ -449,18 +455,14 @@ impl Job {
     #[getter]
     fn has_holes(&self, py: Python<'_>) -> PyResult<bool> {
         work::run_alone(py, &Call::BRIEF, |context| -> Result<_> {
-            Ok(self.stored()?.job()?.has_holes(context)?)
+            Ok(self.found.stored()?.job()?.has_holes(context)?)
         })
     }
 
     /// Removes the files that the job has written, except the output.
     fn clean(&self, py: Python<'_>) -> PyResult<()> {
         work::run_alone(py, &Call::BRIEF, |context| -> Result<_> {
-            match &self.stored {
-                Some(stored) => stored.remove(context)?,
-                None => run::remove_job(&self.folder, context)?,
-            }
-            Ok(())
+            Ok(self.found.remove(context)?)
         })
     }
 }

@@ -320,6 +320,32 @@ def test_tasks_take_what_workers_have(client, tmp_path):
     assert len(plan["files"]) == 1
     (limit,) = {worker["memory_limit"] for worker in client.scheduler_info()["workers"].values()}
     assert plan["task_memory"] == limit // 2
+    # What the caller says counts, as the error of a task that kills its workers promises.
+    said = {"client": client, "tiles": "2x1", "memory": "64MB", "threads": 2}
+    breakline.dask.dem(VALLEY, tmp_path / "less.tif", job=tmp_path / "less", **said)
+    plan = json.loads((tmp_path / "less" / "plan.json").read_text().splitlines()[1])
+    assert plan["task_memory"] == 32_000_000
+
+
+def test_a_call_goes_on_with_the_same_files_only(client, tmp_path):
+    points, job, output = tmp_path / "a.laz", tmp_path / "job", tmp_path / "dem.tif"
+    points.write_bytes(VALLEY.read_bytes())
+    options = {"client": client, "tiles": "2x1", "job": job}
+    breakline.dask.dem(points, output, **options)
+    os.utime(points, ns=(0, 0))
+    # A finished job, and one that was interrupted.
+    for _ in range(2):
+        with pytest.raises(breakline.UsageError, match="a.laz: the file has changed since the job") as error:
+            breakline.dask.dem(points, output, **options)
+        with pytest.raises(breakline.UsageError) as own:
+            breakline.Job(job).write()
+        assert str(error.value) == str(own.value)
+        max((job / "tasks").iterdir()).unlink(missing_ok=True)
+    output.unlink()
+    # As the error says.
+    assert f'breakline.Job("{job}").clean()' in error.value.cure
+    breakline.Job(job).clean()
+    assert breakline.dask.dem(points, output, **options).exists()
 
 
 def test_the_smallest_worker_counts():

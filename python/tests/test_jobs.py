@@ -181,6 +181,7 @@ def test_a_finished_job_is_left_as_it_is(whole, tmp_path):
     assert last.done and Path(job.run_task(last.number)) == output
     assert output.stat() == before
     job.clean()
+    assert job.output == output
     with pytest.raises(breakline.OtherJobError):
         job.write()
     assert not folder.exists()
@@ -198,6 +199,51 @@ def test_a_result_with_holes_is_replaced_when_the_files_are_repaired(whole, tmp_
     halves[1].write_bytes(good)
     assert job.write().report["has_holes"] is False
     assert job.output.read_bytes() == whole
+
+
+def test_a_job_that_plans_again_is_that_of_its_handle(whole, tmp_path, halves):
+    good = halves[1].read_bytes()
+    # The header is damaged, so that nothing of the file is in the plan.
+    halves[1].write_bytes(good[:10])
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", breakline.BreaklineWarning)
+        job = breakline.Job.plan("dem", halves, tmp_path / "dem.tif", tiles="2x2", skip_bad=True)
+        assert job.write().report["has_holes"]
+    count = len(job.tasks())
+    halves[1].write_bytes(good)
+    assert job.write().report["has_holes"] is False
+    assert not job.has_holes and len(job.tasks()) == count + 1
+    assert job.write().path.read_bytes() == whole
+    job.clean()
+    assert not job.folder.exists()
+
+
+def test_a_handle_of_an_interrupted_run_is_not_that_of_the_next_job(tmp_path):
+    output, folder = tmp_path / "dem.tif", tmp_path / "dem.tif.job"
+    interrupted(VALLEY, output)
+    old = breakline.Job(folder)
+    with pytest.raises(breakline.UsageError, match="command which goes on itself"):
+        old.write()
+    breakline.Job(folder).clean()
+    new = breakline.Job.plan("dem", VALLEY, output, tiles="2x1")
+    for work in (old.tasks, old.write, old.clean):
+        with pytest.raises(breakline.OtherJobError, match="removed or replaced"):
+            work()
+    assert new.write().path.exists()
+
+
+def test_a_folder_with_a_damaged_plan_is_no_job(tmp_path):
+    folder = tmp_path / "job"
+    breakline.Job.plan("dem", VALLEY, tmp_path / "dem.tif", job=folder, tiles="2x1")
+    (folder / "plan.json").write_text("damaged")
+    with pytest.raises(breakline.FormatError, match="not the plan of a job"):
+        breakline.Job(folder)
+
+
+def test_standard_input_is_not_for_a_job(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(breakline.UsageError, match="tiles are made of files, which can be read again"):
+        breakline.Job.plan("dem", ["-", VALLEY], "dem.tif", skip_bad=True)
 
 
 def test_a_job_is_pickled_by_its_folder(tmp_path):

@@ -86,8 +86,8 @@ pub(crate) use context::units;
 pub use context::units::Quantity;
 pub use context::{Context, Monitor, Progress, Silent, Size, Stage};
 pub use job::{
-    Division, FileState, Job, JobCommand, JobLock, JobReport, JobTask, Look, NotInTiles, StoredJob,
-    TileOptions, needs_tiles, remove_job,
+    Division, FileState, FoundJob, Job, JobCommand, JobLock, JobReport, JobTask, Look, NotInTiles,
+    StoredJob, TileOptions, needs_tiles, remove_job,
 };
 pub use lines::crossings::LineNames;
 pub use lines::notes::LineInput;

@@ -6,7 +6,7 @@ use std::path::Path;
 use breakline::error::{Kind, Result, Setting};
 use breakline::io::formats::Product;
 use breakline::run::{
-    self, BadFiles, Context, DemOptions, Division, Execution, Existing, FrameOptions,
+    self, BadFiles, Context, DemOptions, Division, Execution, Existing, FoundJob, FrameOptions,
     HillshadeOptions, Input, JobCommand, Keeps, LightOptions, Outputs, Source, StoredJob, Summary,
     SurfaceProduct, SurfaceRequest, Targets, TileOptions, Tiles, Verb, WriteReport, WriteRequest,
 };
@@ -126,6 +126,105 @@ fn a_job_that_was_replaced_is_not_taken_for_the_one_before() {
     assert!(other.files[0].exists() && !one.files[0].exists());
     now.remove(&context).unwrap();
     assert_eq!(files_of(folder.path()), ["b.tif"]);
+}
+
+/// The header of a file is damaged when it is planned, and repaired then.
+#[test]
+fn whoever_has_a_job_has_it_after_it_was_planned_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let context = Context::default();
+    let repaired = folder.path().join("b.laz");
+    std::fs::write(&repaired, &bytes(valley())[..10]).unwrap();
+    let surface = SurfaceRequest {
+        source: Source::of_points(&[valley().into(), repaired.clone()]),
+        ..SurfaceRequest::default()
+    };
+    let tiles = TileOptions {
+        bad: BadFiles::Skip,
+        ..tiles()
+    };
+    let command = JobCommand::new(
+        &WriteRequest::new(surface, DemOptions::default()),
+        &Targets::of(folder.path().join("a.tif")),
+        &tiles,
+    );
+    let job = plan(&command.unwrap(), &folder.path().join("j")).unwrap();
+    let copy = job.clone();
+    run::run_job(&job, &context).unwrap();
+    assert!(job.job().unwrap().has_holes(&context).unwrap());
+    std::fs::copy(valley(), &repaired).unwrap();
+    run::run_job(&job, &context).unwrap();
+    for job in [&job, &copy] {
+        assert!(!job.job().unwrap().has_holes(&context).unwrap());
+        let again = run::run_job(job, &context).unwrap();
+        assert!(
+            matches!(
+                again,
+                WriteReport::Kept {
+                    has_holes: false,
+                    ..
+                }
+            ),
+            "{again:?}"
+        );
+    }
+    copy.remove(&context).unwrap();
+    assert_eq!(files_of(folder.path()), ["a.tif", "b.laz"]);
+}
+
+/// A job whose command is not known can be removed, but only that one.
+#[test]
+fn a_job_without_a_command_is_found_and_is_itself_only() {
+    let folder = tempfile::tempdir().unwrap();
+    let context = Context::default();
+    let run = |words: &str| run_in(&folder, &words.split(' ').collect::<Vec<_>>());
+    run(&format!("dem {} -o d.tif --tiles 2x2 --job j", valley())).works(&[]);
+    let before = FoundJob::read(&folder.path().join("j")).unwrap();
+    let error = before.stored().unwrap_err();
+    assert!(error.to_string().contains("goes on itself"), "{error}");
+    before.clone().remove(&context).unwrap();
+    let now = plan(
+        &command(&Targets::of(folder.path().join("a.tif"))),
+        before.folder(),
+    );
+    for error in [before.remove(&context).err(), before.stored().err()] {
+        assert_eq!(error.unwrap().kind(), Kind::OtherJob);
+    }
+    now.unwrap().remove(&context).unwrap();
+}
+
+/// Its name is not taken for that of a file, not even if there is one.
+#[test]
+fn the_standard_input_is_not_for_a_job() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |words: &str| run_in(&folder, &words.split(' ').collect::<Vec<_>>());
+    for _ in 0..2 {
+        for more in ["", &format!("{} --skip-bad ", valley())] {
+            run(&format!("job plan j -- dem - {more}-o d.tif"))
+                .fails(2, &["-: tiles are made of files, which can be read again"]);
+        }
+        std::fs::copy(valley(), folder.path().join("-")).unwrap();
+    }
+    assert_eq!(files_of(folder.path()), ["-"]);
+    // Under another name it is a file.
+    run("job plan j -- dem ./- -o d.tif").works(&[]);
+}
+
+#[test]
+fn the_cure_for_a_file_that_has_changed_names_the_job() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |words: &str| run_in(&folder, &words.split(' ').collect::<Vec<_>>());
+    std::fs::copy(valley(), folder.path().join("a.laz")).unwrap();
+    let words = "dem a.laz -o d.tif --tiles 2x2 --job j";
+    run(words).works(&[]);
+    std::fs::write(folder.path().join("a.laz"), &bytes(valley())[..1000]).unwrap();
+    run(&format!("{words} --resume --overwrite")).fails(
+        2,
+        &[
+            "a.laz: the file has changed since the job was planned",
+            "plan the job again: `breakline job clean j` removes this one",
+        ],
+    );
 }
 
 #[test]

@@ -68,7 +68,8 @@ class Job:
     """A job in a folder: a surface in tiles, whose tasks can be done one by one, by any process that sees the folder.
 
     ``breakline job plan`` makes one, and so does :meth:`plan`. A ``Job`` stands for the job that was in the folder when
-    it was opened: if that is removed, or another one takes its place, the methods raise an :class:`OtherJobError`.
+    it was opened: if that is removed, or another one takes its place, the methods raise an :class:`OtherJobError`. Only
+    :meth:`write` may plan it again, when files that were skipped are repaired; it stands for the new one then.
 
     Parameters
     ----------
@@ -148,6 +149,10 @@ class Job:
         """Read the files of the tasks, and remove those that are damaged: their tasks are then done again."""
         with call(threads, progress) as running:
             self._job.verify(running)
+
+    def _check_inputs(self, tasks: "list[Task]") -> None:
+        """Raise an error if a file that one of the tasks reads has changed; one that was read may be missing."""
+        self._job.check_inputs([task.number for task in tasks])
 
     def run_task(self, number: int, *, threads: Optional[int] = None, progress: Progress = None) -> "Optional[Written]":
         """Do a task, unless it is done. The last one writes the output, and returns it.

@@ -96,9 +96,9 @@ def dem(
     OtherJobError
         If the folder has the job of another call: of other parameters, or of another output.
     BreaklineError
-        If the job cannot be planned, if a task fails, or loses its workers, more often than it is repeated, or if the
-        scheduler is lost. The tasks that wait are canceled then, as they are by Ctrl-C; those that are done are kept,
-        and the same call goes on.
+        If the job cannot be planned, if a file has changed since a task has read it, if a task fails, or loses its
+        workers, more often than it is repeated, or if the scheduler is lost. The tasks that wait are canceled then, as
+        they are by Ctrl-C; those that are done are kept, and the same call goes on.
 
     Warns
     -----
@@ -155,7 +155,9 @@ def _run(
     there = os.path.exists(os.path.join(folder, "plan.json"))
     with contextlib.nullcontext() if there else objects.headers():
         how = {"output": _path(output), "job": folder}
-        planning = {"headers_only": bool(urls), "task_memory": _memory_of_tasks(client)}
+        # What the caller says counts more than what workers have.
+        of_workers = _memory_of_tasks(client) if options.get("memory") is None else None
+        planning = {"headers_only": bool(urls), "task_memory": of_workers}
         begun = Job._begin(verb, paths, options, how, **planning)
     # What is there is verified: a task that is done is not repeated.
     begun.verify()
@@ -164,6 +166,7 @@ def _run(
         read = objects.at.get(task.input)
         if read is not None and task.has_read not in (None, (read.size, read.time)):
             raise usage("the object has changed since the job has read it", read.url, "remove the job, and begin anew")
+    begun._check_inputs([task for task in tasks if task.input not in objects.at])
     # New in each call: a scheduler keeps what failed under its key.
     name = f"{verb}-{uuid.uuid4().hex[:8]}"
     cluster = _Cluster(client, folder, tasks, objects.at, name, retries)

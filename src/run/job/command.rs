@@ -9,10 +9,11 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::Value;
 
 use super::folder::{COMMAND, StoredPlan};
+use super::plan;
 use super::request::{self, Options};
 use super::tile_options::TileOptions;
 use crate::error::{Command, Error, Result, Wording, wording};
-use crate::run::products::surface::SurfaceRequest;
+use crate::run::products::surface::{Source, SurfaceRequest};
 use crate::run::sources::checksum::checksum;
 use crate::run::verbs::targets::Targets;
 use crate::run::verbs::{self, WriteRequest};
@@ -36,7 +37,8 @@ impl JobCommand {
     /// which is not asked for if there are none.
     ///
     /// # Errors
-    /// If a name is empty, or the working folder is not known.
+    /// If a name is empty, or the working folder is not known; if points are in memory, or come
+    /// from the standard input, a pipe or a device.
     pub fn new(request: &WriteRequest, targets: &Targets, tiles: &TileOptions) -> Result<Self> {
         let mut targets = targets.clone();
         whole_names(|visit| targets.each_file(visit))?;
@@ -147,12 +149,16 @@ impl JobCommand {
 /// Returns a request with whole names.
 ///
 /// # Errors
-/// If a name is empty, or the working folder is not known.
+/// If a name is empty, or the working folder is not known; if points cannot be read again.
 pub(super) fn whole(request: &WriteRequest) -> Result<WriteRequest> {
     let WriteRequest {
         mut surface,
         mut verb,
     } = request.clone();
+    // The standard input has no whole name: it would become that of a file.
+    if let Source::Points(points) = &surface.source {
+        plan::require_readable_again(points)?;
+    }
     whole_names(|visit| surface.each_file(visit))?;
     if let Some(file) = verb.also_reads() {
         let mut file = file.clone();

@@ -9,7 +9,7 @@ use super::folder::{remove_unfinished, tasks_in};
 use super::lock::JobLock;
 use super::task_file::{Found, TaskFile};
 use super::{FileState, Job};
-use crate::error::{Error, Kind, Result, Setting, wording};
+use crate::error::{Error, Kind, Result};
 use crate::run::context::Context;
 
 /// The files of other tasks, for a task that reads them.
@@ -39,7 +39,7 @@ impl<'j> Sources<'j> {
                 "the file of a task was made again while another one read it",
             )
             .in_file(self.job.task_file(task).path)
-            .cure(wording!["run the job again with ", Setting::Resume.on()])),
+            .cure("do it again")),
             _ => Ok(file),
         }
     }
@@ -223,7 +223,7 @@ impl Job {
         Ok(whole)
     }
 
-    /// Does one task whose [inputs are checked](Self::check_input_of), unless its file is there,
+    /// Does one task whose [input is checked](Self::check_inputs_of), unless its file is there,
     /// and whole. Needs the files of the tasks before it; those that turn out to be damaged are
     /// removed, so that their tasks count as not done.
     ///

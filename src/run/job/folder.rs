@@ -142,7 +142,7 @@ fn there_is_a_job(folder: &Path) -> Error {
             "go on with it (",
             Setting::Resume.on(),
             "), remove it (",
-            Command::JobClean,
+            Command::JobClean.on(folder.display().to_string()),
             "), or name another folder (",
             Setting::Job,
             ")"

@@ -61,7 +61,7 @@ pub use self::output::JobReport;
 use self::plan::Plan;
 pub use self::planned_file::FileState;
 use self::planned_file::PlannedFile;
-pub use self::stored_job::StoredJob;
+pub use self::stored_job::{FoundJob, StoredJob};
 use self::task_file::TaskName;
 pub use self::tile_options::{Look, TileOptions};
 use super::verbs::{Keeps, Verb, WriteRequest};
@@ -231,13 +231,16 @@ impl Job {
         };
         let path = &self.plan.files[number].path;
         match self.state_of_input(task) {
-            None => match self.plan.require_same_points(number, &self.request) {
+            None => match self
+                .plan
+                .require_same_points(number, &self.request, &self.folder)
+            {
                 Err(error) if self.bad.skips(&error) => Ok(()),
                 // It is tried again, and the job may be planned again.
                 Err(_) if self.skips(task) => Ok(()),
                 other => other,
             },
-            Some(state) if path.exists() => planned_file::require_state(path, state),
+            Some(state) if path.exists() => planned_file::require_state(path, state, &self.folder),
             // What a task has read is not needed any more.
             Some(_) => Ok(()),
         }
@@ -298,24 +301,27 @@ impl Job {
     /// # Errors
     /// If a file has changed otherwise, or the run is canceled.
     pub(super) fn check_inputs(&self, context: &Context) -> Result<()> {
-        for task in 0..self.task_count() {
-            context.check()?;
-            self.check_input(task)?;
-        }
-        self.plan.require_others_unchanged()
+        self.check_inputs_of(0..self.task_count(), context)
     }
 
-    /// Like [`check_inputs`](Self::check_inputs), for a task: of the files of points, only the one
-    /// that it reads is looked at.
+    /// Like [`check_inputs`](Self::check_inputs), for some tasks: of the files of points, only
+    /// those that they read are looked at.
     ///
     /// # Errors
-    /// Also if there is no task with this number; the last one writes the output.
-    pub(super) fn check_input_of(&self, task: usize) -> Result<()> {
-        if task > self.task_count() {
-            return Err(self.no_task(task));
+    /// Also if there is no task with one of these numbers; the last one writes the output.
+    pub fn check_inputs_of(
+        &self,
+        tasks: impl IntoIterator<Item = usize>,
+        context: &Context,
+    ) -> Result<()> {
+        for task in tasks {
+            context.check()?;
+            if task > self.task_count() {
+                return Err(self.no_task(task));
+            }
+            self.check_input(task)?;
         }
-        self.check_input(task)?;
-        self.plan.require_others_unchanged()
+        self.plan.require_others_unchanged(&self.folder)
     }
 
     /// Returns the file of points that a task reads, if it reads one.
@@ -560,7 +566,7 @@ fn other_version(folder: &Path) -> Error {
         .in_file(folder)
         .cure(wording![
             "remove it (",
-            Command::JobClean,
+            Command::JobClean.on(folder.display().to_string()),
             "), or name another folder (",
             Setting::Job,
             ")"

@@ -103,6 +103,11 @@ pub(super) fn require_tiled(request: &TinRequest, systems: &SystemOptions) -> Re
     }
     request.check_bounds()?;
     request.check_layers()?;
+    require_readable_again(request)
+}
+
+/// Returns an error if points are in memory, or come from what can be read only once.
+pub(super) fn require_readable_again(request: &TinRequest) -> Result<()> {
     if let Some(input) = request
         .points
         .iter()
@@ -248,12 +253,18 @@ impl Plan {
 
     /// Returns an error if a file states another coordinate system than the others, which was not
     /// known when the job was planned.
-    pub(super) fn require_system(&self, number: usize, stated: Option<&Crs>) -> Result<()> {
+    pub(super) fn require_system(
+        &self,
+        number: usize,
+        stated: Option<&Crs>,
+        folder: &Path,
+    ) -> Result<()> {
         let is_same = |own: &Crs| self.crs.as_ref().is_some_and(|crs| crs.is_same(own));
         match stated.filter(|own| self.files[number].is_of_any_system && !is_same(own)) {
-            Some(own) => Err(does_not_fit(format!(
-                "the file states {own}, which was not known when the job was planned"
-            ))),
+            Some(own) => Err(does_not_fit(
+                format!("the file states {own}, which was not known when the job was planned"),
+                folder,
+            )),
             None => Ok(()),
         }
     }
@@ -264,21 +275,23 @@ impl Plan {
         &self,
         report: &SelectionReport,
         request: &TinRequest,
+        folder: &Path,
     ) -> Result<()> {
         let all_are_used = request.classes == Classes::GroundOrAll && self.classes.len() > 1;
         if all_are_used && report.by_class.contains_key(&GROUND) {
             return Err(does_not_fit(
                 "there are points of class 2 (ground), but the job was planned without".to_owned(),
+                folder,
             ));
         }
         Ok(())
     }
 
     /// Returns an error if any file but those of points has changed since the plan was made.
-    pub(super) fn require_others_unchanged(&self) -> Result<()> {
+    pub(super) fn require_others_unchanged(&self, folder: &Path) -> Result<()> {
         self.others
             .iter()
-            .try_for_each(|OtherFile { path, state }| require_state(path, *state))
+            .try_for_each(|OtherFile { path, state }| require_state(path, *state, folder))
     }
 
     /// Returns the plan with the names that a request has for its files; `None` if it is not that
@@ -301,7 +314,12 @@ impl Plan {
 
     /// Returns an error if a file is not the one that was planned with. One that was changed
     /// afterwards counts as repaired if it has as many points, and the same extent.
-    pub(super) fn require_same_points(&self, number: usize, request: &TinRequest) -> Result<()> {
+    pub(super) fn require_same_points(
+        &self,
+        number: usize,
+        request: &TinRequest,
+        folder: &Path,
+    ) -> Result<()> {
         let file = &self.files[number];
         if state_of(&file.path)? == file.state {
             return Ok(());
@@ -315,6 +333,7 @@ impl Plan {
             }
             _ => Err(does_not_fit(
                 "the file was replaced by one of another extent or number of points".to_owned(),
+                folder,
             )
             .in_file(&file.path)),
         }
@@ -489,10 +508,10 @@ fn frame_of(
 
 /// Returns the error for a file that was damaged when the job was planned, and does not fit it now.
 #[cold]
-fn does_not_fit(what: String) -> Error {
+fn does_not_fit(what: String, folder: &Path) -> Error {
     Error::usage(what).cure(wording![
         "plan the job again: ",
-        Command::JobClean,
+        Command::JobClean.on(folder.display().to_string()),
         " removes this one"
     ])
 }

@@ -163,8 +163,8 @@ fn measured(
     }
 }
 
-/// Returns an error unless a file is as it was planned with.
-pub(super) fn require_state(path: &Path, planned: FileState) -> Result<()> {
+/// Returns an error unless a file is as it was planned with, or read; the job is in `folder`.
+pub(super) fn require_state(path: &Path, planned: FileState, folder: &Path) -> Result<()> {
     if state_of(path)? == planned {
         return Ok(());
     }
@@ -173,7 +173,7 @@ pub(super) fn require_state(path: &Path, planned: FileState) -> Result<()> {
             .in_file(path)
             .cure(wording![
                 "plan the job again: ",
-                Command::JobClean,
+                Command::JobClean.on(folder.display().to_string()),
                 " removes this one"
             ]),
     )

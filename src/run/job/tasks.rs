@@ -176,7 +176,8 @@ impl Job {
         journal: &Journal,
         take: &mut dyn FnMut(Vec<[f64; 3]>),
     ) -> Result<ReadFacts> {
-        self.plan.require_same_points(number, &self.request)?;
+        self.plan
+            .require_same_points(number, &self.request, &self.folder)?;
         let file = &self.plan.files[number];
         let state = state_of(&file.path)?;
         let mut source = open::points(
@@ -185,7 +186,7 @@ impl Job {
             &journal.context,
         )?;
         self.plan
-            .require_system(number, source.info().crs.as_ref())?;
+            .require_system(number, source.info().crs.as_ref(), &self.folder)?;
         let mut selection = Selection::new(Classes::Only(self.plan.classes.clone()), None);
         let spread = file.spread();
         let mut batch = PointBatch::default();
@@ -193,9 +194,10 @@ impl Job {
         loop {
             source.read(&mut batch)?;
             if batch.is_empty() {
-                require_state(&file.path, state)?;
+                require_state(&file.path, state, &self.folder)?;
                 let report = selection.finish().1;
-                self.plan.require_classes(&report, &self.request)?;
+                self.plan
+                    .require_classes(&report, &self.request, &self.folder)?;
                 journal.add(Notice::PointsRead(file.path.clone(), report.read));
                 journal.add_warnings(&file.path, source.warnings());
                 return Ok(ReadFacts {

@@ -135,7 +135,7 @@ pub fn run_task(
     targets: &Targets,
     context: &Context,
 ) -> Result<Option<WriteReport>> {
-    job.check_input_of(task)?;
+    job.check_inputs_of([task], context)?;
     if task < job.task_count() {
         return job.run_task(task, context).map(|()| None);
     }
@@ -154,7 +154,8 @@ pub fn run_task(
 
 /// Does all that is left of a job, which must be there, and writes the outputs; nothing if they are
 /// there as they were written of the same tasks. Files that were skipped are tried again, and the
-/// outputs replaced.
+/// outputs replaced; if they do not fit the plan, the job is planned again, and `stored` is then
+/// the new one.
 ///
 /// # Errors
 /// If an input has changed, or the job was removed or replaced; and those of [`write()`].
@@ -175,9 +176,13 @@ pub fn run_job(stored: &StoredJob, context: &Context) -> Result<WriteReport> {
         Some(report) => return Ok(report),
         None => {}
     }
-    Prepared::new(request, &targets)?
-        .in_tiles()?
-        .go_on(job, tiles, Folder::Kept, context)
+    Prepared::new(request, &targets)?.in_tiles()?.go_on(
+        job,
+        tiles,
+        Folder::Kept,
+        |job| stored.follow(job),
+        context,
+    )
 }
 
 /// Returns the report of outputs that are there as they were written of the tasks that are done.
@@ -332,18 +337,20 @@ impl<'a> Prepared<'a> {
         match Job::stored(self.request, &self.folder(options)?, options)? {
             Some(job) => {
                 job.check_inputs(context)?;
-                self.go_on(job, options, is_named(options), context)
+                self.go_on(job, options, is_named(options), |_| {}, context)
             }
             None => self.anew(options, context),
         }
     }
 
-    /// Goes on with a job, whose inputs are checked.
+    /// Goes on with a job, whose inputs are checked. If it has to be planned again, `planned_again`
+    /// is called with the job that takes its place.
     fn go_on(
         self,
         mut job: Job,
         options: &TileOptions,
         keep: Folder,
+        planned_again: impl FnOnce(&Job),
         context: &Context,
     ) -> Result<WriteReport> {
         require_room(&job, context)?;
@@ -362,6 +369,7 @@ impl<'a> Prepared<'a> {
                 drop(lock);
                 job = anew;
                 lock = job.create(command.as_ref(), context)?;
+                planned_again(&job);
                 self.outputs.set.mark(job.mark());
             }
             None => self.clear_up(&job, &lock, context)?,
