@@ -82,6 +82,7 @@ pub use context::event::{Event, JobSize};
 pub use context::notice::{
     CrossingNote, LoweredRiver, Notice, Seed, SeedFlaw, Severity, WaterStep,
 };
+#[cfg(feature = "cli")] // what is printed has the units of notices
 pub(crate) use context::units;
 pub use context::units::Quantity;
 pub use context::{Context, Monitor, Progress, Silent, Size, Stage};
@@ -126,6 +127,7 @@ pub use triangulate::{
     Arithmetic, TriangulateOptions, TriangulateProduct, TriangulateReport, triangulate,
     triangulate_graph,
 };
+#[cfg(feature = "cli")] // whether two names are one file
 pub(crate) use verbs::targets;
 pub use verbs::targets::{Existing, Outputs, Target, Targets};
 pub use verbs::{Keeps, Summary, SurfaceOptions, TileUse, Tiles, Verb, WriteRequest};
