@@ -8,7 +8,9 @@ use crate::triangulation::geometry::height_along;
 /// rounded crossings.
 const THINNEST: f64 = 1e-9;
 
-/// The height at `q` of the plane through three points; at a corner exactly its height.
+/// The height at `q` of the plane through three points: exact at the first, rounded elsewhere.
+///
+/// A surface that promises the heights of its vertices looks for a vertex at `q` first.
 pub(super) fn linear([a, b, c]: [[f64; 3]; 3], q: [f64; 2]) -> f64 {
     let cross =
         |p: [f64; 3], r: [f64; 3]| (p[0] - q[0]) * (r[1] - q[1]) - (p[1] - q[1]) * (r[0] - q[0]);

@@ -124,7 +124,8 @@ pub fn plan_job(command: &JobCommand, folder: &Path, context: &Context) -> Resul
 /// Does a task of a job; the last one writes the outputs, unless they are there as it was done
 /// before. Returns what was written, for the last one.
 ///
-/// The plan does not change, and no input is looked at but the one that the task reads.
+/// The plan does not change. Of the points, only the file that the task reads is looked at; layers
+/// of lines and a raster to align to are compared with the plan by every task.
 ///
 /// # Errors
 /// If a task that it needs is not done, if its input cannot be read, or another than planned; for
