@@ -304,11 +304,12 @@ impl Job {
         self.check_inputs_of(0..self.task_count(), context)
     }
 
-    /// Like [`check_inputs`](Self::check_inputs), for some tasks: of the files of points, only
-    /// those that they read are looked at.
+    /// Checks that what some tasks read is as it was when the job was planned: of the files of
+    /// points, only those that they read are looked at.
     ///
     /// # Errors
-    /// Also if there is no task with one of these numbers; the last one writes the output.
+    /// If a file has changed, if there is no task with one of these numbers, or if the run is
+    /// canceled.
     pub fn check_inputs_of(
         &self,
         tasks: impl IntoIterator<Item = usize>,

@@ -8,7 +8,7 @@ use super::scaled::Scaled;
 use super::{Exact, Expansions, Filtered};
 
 /// The default kernel: as fast as floating point where that is certain, exact everywhere within
-/// [`RANGE`].
+/// [`RANGE`](super::RANGE).
 pub type Adaptive = Filtered<ErrorBound, Nearly>;
 
 /// The fallback where points are nearly collinear or cocircular.
@@ -21,7 +21,7 @@ pub type Interval = Filtered<IntervalBound, Nearly>;
 /// The kernel for coordinates that are whole numbers of magnitude up to `2^BITS`.
 ///
 /// The error bound is known before anything is computed, and an orientation in the plane costs no
-/// more than with [`Fast`]. CGAL's `Fixed_precision_nt` has the same 24 bits;
+/// more than with [`Fast`](super::Fast). CGAL's `Fixed_precision_nt` has the same 24 bits;
 /// [`Steps`](crate::geometry::Steps) have 31.
 pub type Fixed<const BITS: i32 = 24> = Filtered<FixedBound<BITS>, NearlyWhole>;
 

@@ -180,7 +180,7 @@ pub(super) fn scratch_for(target: &Path) -> Result<File> {
 }
 
 /// Removes the temporary files that a program left next to an output when it was killed, of sets
-/// with this [mark](OutputSet::mark). No program may be writing such a set.
+/// with this [mark](super::OutputSet::mark). No program may be writing such a set.
 ///
 /// # Errors
 /// If one cannot be removed.

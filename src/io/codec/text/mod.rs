@@ -1,8 +1,9 @@
 //! Points as text: XYZ, CSV and similar formats.
 //!
 //! Each line contains one point. Fields are separated by semicolons, tabs, commas or blanks; the
-//! first point determines by which of them. The columns are those of [`Columns`] if given, else
-//! those that a header line names, else the first three are x, y and z.
+//! first point determines by which of them. The columns are those of
+//! [`Columns`](crate::data::Columns) if given, else those that a header line names, else the first
+//! three are x, y and z.
 //!
 //! If neither names the columns, the first one may be the number of the point. If it counts up by
 //! one from line to line and three numbers follow, reading fails. If it only contains integers, and
