@@ -147,6 +147,11 @@ const LAT2: (Param, &str, &str, u16) = (Lat2, "standard_parallel_2", "Standard_P
 const SCALE: (Param, &str, &str, u16) = (K0, "scale_factor", "Scale_Factor", 3092);
 const EAST: (Param, &str, &str, u16) = (FalseEasting, "false_easting", "False_Easting", 3082);
 const NORTH: (Param, &str, &str, u16) = (FalseNorthing, "false_northing", "False_Northing", 3083);
+/// Esri names the center of azimuthal methods like an origin.
+const AZIMUTHAL_LAT: (Param, &str, &str, u16) =
+    (Lat0, "latitude_of_center", "Latitude_Of_Origin", 3089);
+const AZIMUTHAL_LON: (Param, &str, &str, u16) =
+    (Lon0, "longitude_of_center", "Central_Meridian", 3088);
 const CENTER_LAT: (Param, &str, &str, u16) =
     (Lat0, "latitude_of_center", "Latitude_Of_Center", 3089);
 const CENTER_LON: (Param, &str, &str, u16) =
@@ -214,12 +219,7 @@ pub(crate) const ROWS: &[Row] = &[
         esri: "Lambert_Azimuthal_Equal_Area",
         others: &[],
         geokey: Some(10),
-        params: &[
-            (Lat0, "latitude_of_center", "Latitude_Of_Origin", 3089),
-            (Lon0, "longitude_of_center", "Central_Meridian", 3088),
-            EAST,
-            NORTH,
-        ],
+        params: &[AZIMUTHAL_LAT, AZIMUTHAL_LON, EAST, NORTH],
     },
     Row {
         method: Method::ObliqueStereographic,
@@ -333,12 +333,7 @@ pub(crate) const ROWS: &[Row] = &[
         esri: "Azimuthal_Equidistant",
         others: &["modifiedazimuthalequidistant"],
         geokey: Some(12),
-        params: &[
-            (Lat0, "latitude_of_center", "Latitude_Of_Origin", 3089),
-            (Lon0, "longitude_of_center", "Central_Meridian", 3088),
-            EAST,
-            NORTH,
-        ],
+        params: &[AZIMUTHAL_LAT, AZIMUTHAL_LON, EAST, NORTH],
     },
     Row {
         method: Method::Equirectangular,
