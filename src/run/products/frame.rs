@@ -36,6 +36,16 @@ pub struct FrameOptions {
     pub align_to: Option<PathBuf>,
 }
 
+impl FrameOptions {
+    /// Returns these options with a raster to align to.
+    pub(crate) fn aligned_to(&self, raster: PathBuf) -> Self {
+        FrameOptions {
+            align_to: Some(raster),
+            ..self.clone()
+        }
+    }
+}
+
 /// Chooses the frame of a raster over a surface.
 ///
 /// # Errors

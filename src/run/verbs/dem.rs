@@ -12,7 +12,6 @@ use crate::io::formats::Product;
 use crate::io::geotiff::{COPIES_ON_DISK, RasterSummary};
 use crate::run::context::Context;
 use crate::run::products::cells::{self, CellProduct, DemOptions};
-use crate::run::products::frame::FrameOptions;
 use crate::run::products::surface::SurfaceProduct;
 use crate::terrain::Method;
 
@@ -40,12 +39,8 @@ impl Verb for DemOptions {
     }
 
     fn reading(&self, file: PathBuf) -> Option<Arc<dyn Verb>> {
-        let frame = FrameOptions {
-            align_to: Some(file),
-            ..self.frame.clone()
-        };
         Some(Arc::new(DemOptions {
-            frame,
+            frame: self.frame.aligned_to(file),
             ..self.clone()
         }))
     }

@@ -12,7 +12,6 @@ use crate::io::formats::{Content, FORMATS, Format, Product};
 use crate::io::geotiff::COPIES_ON_DISK;
 use crate::run::context::{Context, Journal};
 use crate::run::products::cells::{self, CellProduct, HillshadeOptions, LightOptions};
-use crate::run::products::frame::FrameOptions;
 use crate::run::products::surface::{self, SurfaceProduct, SurfaceRequest};
 use crate::terrain::Method;
 
@@ -52,12 +51,8 @@ impl Verb for HillshadeOptions {
     }
 
     fn reading(&self, file: PathBuf) -> Option<Arc<dyn Verb>> {
-        let frame = FrameOptions {
-            align_to: Some(file),
-            ..self.frame.clone()
-        };
         Some(Arc::new(HillshadeOptions {
-            frame,
+            frame: self.frame.aligned_to(file),
             ..self.clone()
         }))
     }
