@@ -24,7 +24,7 @@ use crate::work::{self, Call};
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct Asked<'py> {
-    /// What the input is, as [`kind_of`] tells.
+    /// The kind of the input: a result of [`kind_of`].
     kind: String,
     points: Vec<PointInput<'py>>,
     read: ReadArguments,

@@ -47,7 +47,7 @@ fn the_demo_runs_every_verb_and_prints_each_command() {
     );
 }
 
-/// Where `demo` writes if nothing else is said is no file of the repository.
+/// Git ignores the folder that `demo` writes to by default.
 #[test]
 fn a_clone_stays_clean_after_the_demo() {
     let help = run_in(&folder_with(&[]), &["demo", "--help"]);

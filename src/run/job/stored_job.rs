@@ -110,7 +110,7 @@ impl StoredJob {
     /// Finds the job in a folder, which must have one.
     ///
     /// # Errors
-    /// Those of [`find`](Self::find); if there is no job.
+    /// Those of [`find`](Self::find), and if the folder has no job.
     pub fn read(folder: &Path) -> Result<Self> {
         Self::find(folder)?.ok_or_else(|| no_job(folder))
     }

@@ -128,8 +128,8 @@ pub fn plan_job(command: &JobCommand, folder: &Path, context: &Context) -> Resul
 /// of lines and a raster to align to are compared with the plan by every task.
 ///
 /// # Errors
-/// If a task that it needs is not done, if its input cannot be read, or another than planned; for
-/// the last one, those of [`write()`]; and if there is no task with this number.
+/// If no task has this number, if a task that it needs is not done, or if its input cannot be read
+/// or has changed since it was planned. The last task also fails as [`write()`] does.
 pub fn run_task(
     job: &Job,
     task: usize,

@@ -111,7 +111,7 @@ impl TinBuilder {
 /// The heights that some lines were given with, at each of their vertices, by the numbers of the
 /// lines.
 struct GivenHeights {
-    /// The edges of walls; none if there is no water.
+    /// The edges of walls. Empty without water: nothing else changes their heights.
     walls: Vec<(usize, Vec<f64>)>,
     /// The lines around waters.
     rims: Vec<(usize, Vec<f64>)>,

@@ -194,7 +194,7 @@ impl Wall {
     }
 }
 
-/// Returns an error unless the lower edge is nowhere above the upper one, and below it somewhere.
+/// Returns an error if the lower edge is above the upper one anywhere, or as high as it everywhere.
 fn check_heights(vertices: &[([f64; 3], f64)]) -> Result<()> {
     if let Some(([x, y, z], low)) = vertices.iter().find(|(p, low)| *low > p[2]) {
         return Err(Error::format(format!(

@@ -370,7 +370,7 @@ fn read_table(
 /// Warns of texts in a field of heights that are no numbers.
 ///
 /// # Errors
-/// If there is no number at all.
+/// If no record has a number in this field.
 fn warn_of_texts(field: &str, heights: &Numbers, warnings: &mut Vec<Wording>) -> Result<()> {
     let Some((_, text)) = heights.texts.first() else {
         return Ok(());
