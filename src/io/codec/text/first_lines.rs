@@ -116,7 +116,7 @@ impl Head {
         } = self;
         // A comment with more words than a line has fields is prose.
         let commented = commented.filter(|(_, names)| *names <= separator.fields(line).count());
-        let has_header = is_header_passed || named.is_some() || commented.is_some();
+        let has_header = is_header_passed || commented.is_some();
         let named = match commented {
             Some((layout, _)) if named.is_none() && asked.is_none() => Some(layout?),
             _ => named,

@@ -53,8 +53,8 @@ pub use self::write::{TextWriter, create};
 use crate::data::{PointBatch, PointInfo, PointSource};
 use crate::error::{Error, Result, Wording};
 use crate::io::bytes::decimal_mark::DecimalMark;
-use crate::io::fronts::points::Options;
 use crate::io::options::cut::{OPEN_LINE, OnDamage};
+use crate::io::options::points::Options;
 
 /// Points in a batch.
 const BATCH: usize = 1 << 16;
