@@ -38,11 +38,7 @@ impl WaterLevel {
     /// The rings around the water, in plan.
     pub(crate) fn rings(&self) -> Rings {
         match self {
-            WaterLevel::Flat(flat) => flat
-                .rings
-                .iter()
-                .map(|ring| ring.iter().map(|p| [p[0], p[1]]).collect())
-                .collect(),
+            WaterLevel::Flat(flat) => rings_of(flat),
             WaterLevel::River(river) => vec![river.ring()],
         }
     }
@@ -50,6 +46,14 @@ impl WaterLevel {
 
 /// The rings of a polygon, in plan.
 pub(crate) type Rings = Vec<Vec<[f64; 2]>>;
+
+/// The rings of a lake, in plan.
+fn rings_of(flat: &Flat) -> Rings {
+    flat.rings
+        .iter()
+        .map(|ring| ring.iter().map(|p| [p[0], p[1]]).collect())
+        .collect()
+}
 
 /// The points that areas of water and walls replace.
 #[derive(Debug, Clone, Default)]
@@ -66,11 +70,7 @@ const ROUNDING: f64 = 4.0;
 
 impl Replaced {
     pub(crate) fn add_flat(&mut self, flat: &Flat) {
-        let rings: Rings = flat
-            .rings
-            .iter()
-            .map(|ring| ring.iter().map(|p| [p[0], p[1]]).collect())
-            .collect();
+        let rings = rings_of(flat);
         if flat.buffer > 0.0 {
             match self
                 .buffers
@@ -85,8 +85,9 @@ impl Replaced {
     }
 
     pub(crate) fn add_river(&mut self, river: &River) {
-        self.polygons.push(vec![river.ring()]);
-        self.computed.push(vec![river.ring()]);
+        let ring = river.ring();
+        self.polygons.push(vec![ring.clone()]);
+        self.computed.push(vec![ring]);
     }
 
     pub(crate) fn add_wall(&mut self, wall: &Wall) {
