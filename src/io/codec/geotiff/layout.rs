@@ -334,8 +334,9 @@ impl BandLayout {
 
     /// Returns the number of blocks that are not in the file.
     pub(super) fn missing_blocks(&self) -> usize {
-        let blocks = self.across * self.height.div_ceil(self.block[1]);
-        (0..blocks).filter(|&block| self.is_missing(block)).count()
+        (0..self.block_count())
+            .filter(|&block| self.is_missing(block))
+            .count()
     }
 
     /// Returns the number of blocks of a complete file.
@@ -388,8 +389,10 @@ impl BandLayout {
         let raw = self.row_bytes() * rows;
         let (start, length) = if self.compression == tags::COMPRESSION_NONE {
             let before = self.row_bytes() * skipped;
-            if stated.is_some_and(|stated| stated != 0 && stated < before + raw) {
-                let stated = stated.unwrap_or(0);
+            if let Some(stated) = stated
+                && stated != 0
+                && stated < before + raw
+            {
                 return Err(Error::format(format!(
                     "{stated} bytes, where {} are needed",
                     before + raw
