@@ -21,8 +21,9 @@ impl TinBuilder {
     ///
     /// # Errors
     /// If a coordinate is not finite or outside of [`RANGE`](crate::triangulation::kernel::RANGE),
-    /// there are more points than 32-bit numbers can count, the input does not span an area, or
-    /// breaklines cross or differ in height where the rules refuse that.
+    /// there are more points than 32-bit numbers can count, the input does not span an area, lakes
+    /// of different heights overlap or touch, or breaklines cross or differ in height where the
+    /// rules refuse that.
     ///
     /// # Complexity
     /// O(n log n) in practice; about 80 bytes per point in addition to the input.

@@ -61,9 +61,10 @@ pub struct TinBuilder {
     /// The longest edge (in plan, in the units of the data) anywhere: faces with a longer
     /// unconstrained edge are left out, except in water. `None` keeps them.
     pub max_edge_inside: Option<f64>,
-    /// The distance in plan within which heights change where waters of different heights overlap:
-    /// outside of the overlap, a river has its own heights from there on. `None` is 0.01. It is at
-    /// least 1000 units in the last place of the largest coordinate.
+    /// The distance in plan, in the units of the data, within which heights change where waters of
+    /// different heights overlap: outside of the overlap, a river has its own heights from there
+    /// on. `None` is 0.01. At least 1000 units in the last place of the largest coordinate are
+    /// used.
     pub step_width: Option<f64>,
     /// Clips the surface to this box in plan.
     pub bounds: Option<Bounds>,
@@ -264,12 +265,8 @@ impl TinBuilder {
 
     /// Returns the lines of all kinds in plan.
     pub(crate) fn lines_in_plan(&self) -> Vec<Vec<[f64; 2]>> {
-        let starts = std::iter::once(&0).chain(&self.line_ends);
-        let lines = starts
-            .zip(&self.line_ends)
-            .map(|(&start, &end)| &self.line_points[start..end]);
-        lines
-            .map(|line| line.iter().map(|p| [p[0], p[1]]).collect())
+        (0..self.line_count())
+            .map(|number| self.line(number).iter().map(|p| [p[0], p[1]]).collect())
             .collect()
     }
 
