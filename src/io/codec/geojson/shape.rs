@@ -29,13 +29,10 @@ pub(super) fn array<'a>(object: &'a Object, name: &str) -> Result<&'a [Value]> {
 pub(super) fn shape_of(geometry: &Object, kind: &str) -> Result<Shape> {
     let coordinates = || array(geometry, "coordinates");
     Ok(match kind {
-        "Point" => {
-            let position = coordinates()?;
-            match position.is_empty() {
-                true => Shape::Null,
-                false => Shape::Points(vec![vertex(position)?]),
-            }
-        }
+        "Point" => match coordinates()? {
+            [] => Shape::Null,
+            position => Shape::Points(vec![vertex(position)?]),
+        },
         "MultiPoint" => Shape::Points(line(coordinates()?)?),
         "LineString" => Shape::Lines(vec![line(coordinates()?)?]),
         "MultiLineString" => Shape::Lines(lines(coordinates()?)?),
