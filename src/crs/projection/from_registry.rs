@@ -2,7 +2,7 @@
 
 use proj_core::ProjectionMethod;
 
-use super::{Method, Param, Projection, SAME_ANGLE};
+use super::{Method, Param, Projection, SAME_ANGLE, stated_value};
 
 /// Writes a function that maps the methods of the registry to those of the table. Each row has a
 /// method of the registry, the method of the table, and the parameter that each field of the former
@@ -148,11 +148,6 @@ impl Projection {
 
     /// The projection of a method of the table with the stated parameters.
     fn stated(method: Method, stated: &[(Param, f64)]) -> Self {
-        Self::known(method, |param| {
-            stated
-                .iter()
-                .find(|entry| entry.0 == param)
-                .map(|entry| entry.1)
-        })
+        Self::known(method, |param| stated_value(stated, &param))
     }
 }

@@ -25,16 +25,19 @@ const SAME_LENGTH: f64 = 2e-3;
 /// A millimeter in a thousand kilometers.
 const SAME_RATIO: f64 = 1e-9;
 
+/// The value that is stated for a parameter.
+fn stated_value(stated: &[(Param, f64)], wanted: &Param) -> Option<f64> {
+    stated
+        .iter()
+        .find(|(param, _)| param == wanted)
+        .map(|(_, value)| *value)
+}
+
 impl Projection {
     /// The projection with the name of a method in WKT and its parameters.
     pub(super) fn new(name: &str, stated: &[(Param, f64)]) -> Self {
         let name = normalized(name);
-        let get = |param: Param| {
-            stated
-                .iter()
-                .find(|entry| entry.0 == param)
-                .map(|entry| entry.1)
-        };
+        let get = |param: Param| stated_value(stated, &param);
         let method = match name.as_str() {
             "lambertconformalconic" | "lambertconicconformal" => {
                 match (get(Lat1), get(Lat2), get(Lat0)) {
@@ -107,10 +110,7 @@ impl Projection {
                 .zip(values)
                 .find(|((param, ..), _)| param == wanted)
                 .map(|(_, value)| *value),
-            Projection::Other(_, stated) => stated
-                .iter()
-                .find(|entry| entry.0 == *wanted)
-                .map(|entry| entry.1),
+            Projection::Other(_, stated) => stated_value(stated, wanted),
         }
     }
 
