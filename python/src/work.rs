@@ -231,14 +231,9 @@ fn on_pool<T: Send, E: Send + Into<PyErr>>(
     }
     match outcome {
         Some(Ok(Ok(done))) => {
-            watch.finish(py, progress.as_ref())?;
-            notices::warn(
-                py,
-                &watch
-                    .notices
-                    .into_inner()
-                    .unwrap_or_else(PoisonError::into_inner),
-            )?;
+            // The last stage, as it ended.
+            watch.report(py, progress.as_ref())?;
+            notices::warn(py, &locked(&watch.notices))?;
             Ok(done)
         }
         Some(Ok(Err(error))) => Err(error.into()),
@@ -335,10 +330,5 @@ impl Watch {
         let arguments = (stage.title(), done.load(Ordering::Relaxed), total);
         drop(begun);
         progress.call1(py, arguments).map(drop)
-    }
-
-    /// Reports the last stage as it ended.
-    fn finish(&self, py: Python<'_>, progress: Option<&Py<PyAny>>) -> PyResult<()> {
-        self.report(py, progress)
     }
 }

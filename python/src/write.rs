@@ -296,7 +296,7 @@ pub(crate) fn job_folder(output: PathBuf) -> Option<OsString> {
 /// The job in a folder.
 #[pyclass(frozen, module = "breakline._breakline")]
 pub(crate) struct Job {
-    /// Without what it was planned for: a job of which that is not known can be removed.
+    /// Without its command: a job can be removed even if its command cannot be read.
     found: FoundJob,
     /// The first output, if it is known: also when the job is removed.
     output: Option<PathBuf>,
@@ -371,14 +371,8 @@ impl Job {
     fn tasks<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
         let tasks = work::run_alone(py, &Call::BRIEF, |context| -> Result<_> {
             let stored = self.found.stored()?;
-            let output = stored
-                .command
-                .targets
-                .files
-                .first()
-                .map(PathBuf::as_path)
-                .unwrap_or(Path::new(""));
-            Ok(stored.job()?.tasks(output, context)?)
+            let output = first_output(&stored).unwrap_or_default();
+            Ok(stored.job()?.tasks(&output, context)?)
         })?;
         let listed = PyList::empty(py);
         for task in tasks {
