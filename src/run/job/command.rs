@@ -1,7 +1,6 @@
 //! What a job was planned for, kept with it: whoever finds the folder can do its tasks.
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 use serde::de::Error as _;
 use serde::ser::Error as _;
@@ -54,8 +53,8 @@ impl JobCommand {
         })
     }
 
-    /// Reads the command that is kept with a job; `None` if there is none: only the command itself
-    /// goes on with it.
+    /// Reads the command that is kept with a job; `None` if none is kept: then only the call that
+    /// planned the job goes on with it.
     ///
     /// # Errors
     /// If it is damaged, or that of another job.
@@ -163,18 +162,14 @@ pub(super) fn whole(request: &WriteRequest) -> Result<WriteRequest> {
     if let Some(file) = verb.also_reads() {
         let mut file = file.clone();
         whole_names(|visit| visit(&mut file))?;
-        let reading = || {
-            verb.reading(file.clone())
-                .filter(|other| other.also_reads() == Some(&file))
-        };
-        verb = reading().ok_or_else(|| {
+        let other = verb
+            .reading(file.clone())
+            .filter(|other| other.also_reads() == Some(&file));
+        verb = other.ok_or_else(|| {
             Error::unsupported("the verb cannot read this file under its whole name").in_file(&file)
         })?;
     }
-    Ok(WriteRequest {
-        surface,
-        verb: Arc::clone(&verb),
-    })
+    Ok(WriteRequest { surface, verb })
 }
 
 /// Makes names whole that a function visits.

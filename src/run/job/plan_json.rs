@@ -17,13 +17,11 @@ impl Plan {
     /// Returns the plan that a value states, without the names of files; `None` if it does not, or
     /// is that of another version.
     pub(super) fn from_json(value: &Value) -> Option<Self> {
-        let plan = || serde_json::from_value::<Plan>(value.clone()).ok();
-        let plan = if value["version"] == VERSION {
-            plan()
-        } else {
-            None
-        };
-        plan.filter(|plan| plan.divides || plan.files.len() == plan.layout.tile_count())
+        if value["version"] != VERSION {
+            return None;
+        }
+        let plan: Plan = serde_json::from_value(value.clone()).ok()?;
+        (plan.divides || plan.files.len() == plan.layout.tile_count()).then_some(plan)
     }
 }
 

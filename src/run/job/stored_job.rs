@@ -83,8 +83,8 @@ impl StoredJob {
     /// Finds the job in a folder; `None` if the folder has none.
     ///
     /// # Errors
-    /// If its plan or its command is damaged, or it has none: then only the command that planned it
-    /// goes on with it.
+    /// If its plan or its command is damaged; if no command is kept with the job: then only the
+    /// call that planned it goes on with it.
     pub fn find(folder: &Path) -> Result<Option<Self>> {
         let Some(stored) = StoredPlan::read(folder)? else {
             return Ok(None);

@@ -142,7 +142,7 @@ impl TaskNotice {
         TaskNotice(level.unwrap_or_default(), notice.text(), notice.details())
     }
 
-    /// Returns the notice; `None` if its level is none.
+    /// Returns the notice; `None` if there is no such level.
     pub(super) fn notice(&self) -> Option<Notice> {
         let TaskNotice(level, text, details) = self;
         let severity = *SEVERITIES.get(*level)?;
