@@ -24,7 +24,7 @@ pub(crate) struct Shown<'a> {
     console: &'a Console,
     /// What the user types to go on with a job.
     how_to_go_on: String,
-    /// Says so if a signal ends the program.
+    /// Prints how to go on if a signal ends the program.
     words: Mutex<Option<LastWords>>,
 }
 

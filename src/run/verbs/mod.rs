@@ -17,6 +17,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 pub(super) use self::stored::{from_json, to_json};
+use self::targets::{Outputs, Target};
 pub use self::tin::SurfaceOptions;
 use crate::data::BlockSource;
 use crate::error::{Error, Result, Setting};
@@ -30,7 +31,6 @@ use crate::run::products::contour::ContourOptions;
 use crate::run::products::frame::FrameOptions;
 use crate::run::products::surface::{self, SurfaceProduct, SurfaceRequest};
 use crate::run::sources::tin_parts::WrittenParts;
-use crate::run::verbs::targets::{Outputs, Target};
 use crate::terrain::Method;
 
 /// A surface, and what is written of it.

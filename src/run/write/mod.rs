@@ -121,7 +121,7 @@ pub fn plan_job(command: &JobCommand, folder: &Path, context: &Context) -> Resul
     StoredJob::new(command.clone(), &job)
 }
 
-/// Does a task of a job; the last one writes the outputs, unless they are there as it was done
+/// Does a task of a job; the last one writes the outputs, unless they are there because it was done
 /// before. Returns what was written, for the last one.
 ///
 /// The plan does not change. Of the points, only the file that the task reads is looked at; layers
@@ -330,7 +330,7 @@ impl<'a> Prepared<'a> {
         let mut job = self.planned(options, context)?;
         let lock = job.create(None, context)?;
         self.outputs.set.mark(job.mark());
-        self.run(&job, &lock, is_named(options), context)
+        self.run(&job, &lock, Folder::of(options), context)
     }
 
     /// Goes on with the job in the folder, or plans one if there is none.
@@ -338,7 +338,7 @@ impl<'a> Prepared<'a> {
         match Job::stored(self.request, &self.folder(options)?, options)? {
             Some(job) => {
                 job.check_inputs(context)?;
-                self.go_on(job, options, is_named(options), |_| {}, context)
+                self.go_on(job, options, Folder::of(options), |_| {}, context)
             }
             None => self.anew(options, context),
         }
@@ -470,11 +470,13 @@ enum Folder {
     Removed,
 }
 
-fn is_named(options: &TileOptions) -> Folder {
-    if options.folder.is_some() {
-        Folder::Kept
-    } else {
-        Folder::Removed
+impl Folder {
+    fn of(options: &TileOptions) -> Self {
+        if options.folder.is_some() {
+            Folder::Kept
+        } else {
+            Folder::Removed
+        }
     }
 }
 
