@@ -105,8 +105,8 @@ def dem(
     BreaklineWarning
         If files were skipped (``skip_bad=True``), so that the output has holes. The folder of the job is kept then.
     """
-    places = {"job": job, "scratch": scratch, "storage_options": storage_options}
-    return _run("dem", inputs, output, client=client, retries=retries, **places, **options)
+    where = {"job": job, "scratch": scratch, "storage_options": storage_options}
+    return _run("dem", inputs, output, client=client, retries=retries, **where, **options)
 
 
 def hillshade(inputs: "Union[PathLike, Sequence[PathLike]]", output: PathLike, *, client: Any, **options: Any) -> Path:
@@ -189,7 +189,7 @@ def _memory_of_tasks(client: Any) -> "Union[int, None]":
     """Return the bytes that a task may take on all workers that there are; None if they have no limits."""
     try:
         workers = client.scheduler_info(n_workers=-1)["workers"]
-    except TypeError:  # before version 2025.4, which tells of all
+    except TypeError:  # before version 2025.4, which returns all
         workers = client.scheduler_info()["workers"]
     shares = [worker["memory_limit"] / worker["nthreads"] for worker in workers.values() if worker["memory_limit"]]
     return int(min(shares) * _FOR_TASKS) if shares else None
