@@ -8,21 +8,22 @@
 //!
 //! The points (pairs or triples of 64-bit little-endian floating-point numbers) are inserted in the
 //! order of the file. The midpoints of consecutive points are located, and their nearest vertices
-//! found. Then every second point is removed. The last number but one of a line counts cells, or
-//! points that were found.
+//! found. Then every second point is removed. In a regular triangulation of one cell around them,
+//! all points are inserted, too light to be seen, and removed. The last number but one of a line
+//! counts cells, or points that were found.
 
 #![allow(clippy::print_stdout, reason = "what it is for")]
 
 use std::process::ExitCode;
 use std::time::Instant;
 
-use breakline_triangulation::geometry::{Plane, Space};
-use breakline_triangulation::{Delaunay, Hierarchy, Locate, Location};
+use breakline_triangulation::geometry::{Plane, Space, Weighted, WeightedSpace};
+use breakline_triangulation::{Delaunay, Hierarchy, Locate, Location, Regular};
 
 /// A function that measures in a geometry. A generic one would have to repeat what the
 /// triangulations ask of it.
 macro_rules! in_geometry {
-    ($name:ident, $geometry:ty, $dimension:literal, $vertices_of_a_cell:literal) => {
+    ($name:ident, $geometry:ty, $weighted:ty, $dimension:literal, $vertices_of_a_cell:literal) => {
         fn $name(
             stem: &str,
             points: &[[f64; $dimension]],
@@ -70,13 +71,47 @@ macro_rules! in_geometry {
                 t.remove_by(&mut hierarchy, vertex)?;
             }
             timed("remove", start, t.finite_cells().count());
+
+            // All points under one cell around them, too light to be seen.
+            let numbers = || points.iter().flatten().copied();
+            let (low, high) = (
+                numbers().fold(f64::MAX, f64::min),
+                numbers().fold(f64::MIN, f64::max),
+            );
+            let span = high - low + 1.0;
+            let mut corners = [[low - span; $dimension + 1]; $vertices_of_a_cell];
+            (0..$dimension).for_each(|k| corners[k + 1][k] += 4.0 * f64::from($dimension) * span);
+            corners
+                .iter_mut()
+                .for_each(|corner| corner[$dimension] = 0.0);
+            let light = |p: &[f64; $dimension]| {
+                let mut light = [-100.0 * span * span; $dimension + 1];
+                light[..$dimension].copy_from_slice(p);
+                light
+            };
+            let (mut t, _) = Regular::<$weighted, $vertices_of_a_cell>::from_points(
+                <$weighted>::default(),
+                &corners,
+            )?;
+            let start = Instant::now();
+            let hidden = points
+                .iter()
+                .map(|p| t.insert(light(p)))
+                .collect::<Result<Vec<_>, _>>()?;
+            timed("hide", start, t.hidden().len());
+
+            let start = Instant::now();
+            for &vertex in &hidden {
+                t.remove(vertex)?;
+            }
+            timed("remove_hidden", start, t.hidden().len());
             Ok(())
         }
     };
 }
 
-in_geometry!(in_plane, Plane, 2, 3);
-in_geometry!(in_space, Space, 3, 4);
+in_geometry!(in_plane, Plane, Weighted, 2, 3);
+in_geometry!(in_space, Space, WeightedSpace, 3, 4);
 
 fn main() -> ExitCode {
     let path = std::env::args().nth(1).unwrap_or_default();

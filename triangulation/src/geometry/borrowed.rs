@@ -40,6 +40,11 @@ impl<G: Geometry<N>, const N: usize> Geometry<N> for &G {
     }
 
     #[inline]
+    fn point_hash(&self, p: &G::Point) -> Option<u64> {
+        (**self).point_hash(p)
+    }
+
+    #[inline]
     fn orientation_in_flat(&self, simplex: &[&G::Point]) -> Sign {
         (**self).orientation_in_flat(simplex)
     }

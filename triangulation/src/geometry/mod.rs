@@ -51,6 +51,9 @@ pub use weighted_space::WeightedSpace;
 
 use std::cmp::Ordering;
 use std::fmt::Debug;
+use std::hash::Hasher;
+
+use rustc_hash::FxHasher;
 
 use order::lexicographic;
 
@@ -141,6 +144,17 @@ pub trait Geometry<const N: usize> {
     /// as long.
     #[inline(always)]
     fn rough_sides(&self, _: [&Self::Point; N], _: &Self::Point) -> Option<[f64; N]> {
+        None
+    }
+
+    /// Returns a hash of a point: equal for points on one site, if neither has the larger weight
+    /// (see [`side_of_sphere_in_flat`](Self::side_of_sphere_in_flat)). `None`, the default, if there
+    /// is none.
+    ///
+    /// [`Regular`](crate::Regular) finds out by it if a hidden point is given again. Without it, all
+    /// points under a cell are searched.
+    #[inline]
+    fn point_hash(&self, _: &Self::Point) -> Option<u64> {
         None
     }
 
@@ -362,4 +376,13 @@ fn rough_areas([a, b, c]: [[f64; 2]; 3], q: [f64; 2]) -> [f64; 3] {
 #[inline(always)]
 fn manhattan<const D: usize>(p: [f64; D], q: [f64; D]) -> f64 {
     (0..D).map(|axis| (p[axis] - q[axis]).abs()).sum()
+}
+
+/// Returns a hash of coordinates; those that are equal have the same.
+#[inline]
+fn hash<const D: usize>(p: [f64; D]) -> u64 {
+    let mut hasher = FxHasher::default();
+    p.into_iter()
+        .for_each(|x| hasher.write_u64(unsigned_zero(x).to_bits()));
+    hasher.finish()
 }

@@ -1,7 +1,7 @@
 use std::cmp::Ordering;
 use std::marker::PhantomData;
 
-use super::{Coordinates, Geometry, lexicographic, manhattan, plan, rough_areas};
+use super::{Coordinates, Geometry, hash, lexicographic, manhattan, plan, rough_areas};
 use crate::kernel::{Adaptive, Kernel, Orientation2, PowerOnLine, PowerTest2};
 use crate::num::Sign;
 
@@ -59,6 +59,11 @@ impl<K: Kernel> Geometry<3> for Weighted<K> {
     #[inline(always)]
     fn rough_sides(&self, simplex: [&[f64; 3]; 3], q: &[f64; 3]) -> Option<[f64; 3]> {
         Some(rough_areas(simplex.map(plan), plan(q)))
+    }
+
+    #[inline]
+    fn point_hash(&self, p: &[f64; 3]) -> Option<u64> {
+        Some(hash(*p))
     }
 
     #[inline(always)]

@@ -3,7 +3,7 @@ use std::marker::PhantomData;
 
 use super::space::projection;
 use super::weighted::power_on_line;
-use super::{Coordinates, Geometry, Space, lexicographic};
+use super::{Coordinates, Geometry, Space, hash, lexicographic};
 use crate::kernel::{Adaptive, Kernel, PowerInPlane, PowerTest3};
 use crate::num::Sign;
 
@@ -67,6 +67,11 @@ impl<K: Kernel> Geometry<4> for WeightedSpace<K> {
     fn rough_sides(&self, simplex: [&[f64; 4]; 4], q: &[f64; 4]) -> Option<[f64; 4]> {
         self.space()
             .rough_sides(simplex.map(site).each_ref(), &site(q))
+    }
+
+    #[inline]
+    fn point_hash(&self, p: &[f64; 4]) -> Option<u64> {
+        Some(hash(*p))
     }
 
     #[inline(always)]

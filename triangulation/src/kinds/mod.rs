@@ -4,6 +4,7 @@
 pub(crate) mod basic;
 pub(crate) mod constrained;
 pub(crate) mod delaunay;
+mod hidden;
 pub(crate) mod regular;
 
 pub use basic::Basic;

@@ -2,8 +2,6 @@ use std::cmp::Ordering;
 use std::convert::identity;
 use std::ops::Deref;
 
-use rustc_hash::FxHashMap;
-
 use crate::bulk;
 use crate::engine::Inserted;
 use crate::engine::insert::insert_each;
@@ -19,6 +17,8 @@ use crate::locate::{Locate, Location};
 use crate::num::Sign;
 use crate::tds::{CellId, VertexId};
 use crate::triangulation::Triangulation;
+
+use super::hidden::Hidden;
 
 /// A regular triangulation of the plane or of space, also known as weighted Delaunay: the lower
 /// hull of the points lifted to `x^2 + y^2 (+ z^2) - w`, seen from below (Aurenhammer 1987;
@@ -61,57 +61,6 @@ use crate::triangulation::Triangulation;
 pub struct Regular<G: Geometry<N>, const N: usize, V = (), C = ()> {
     inner: Triangulation<G, N, V, C>,
     hidden: Hidden,
-}
-
-/// The points that are in no cell.
-#[derive(Debug, Clone, Default)]
-struct Hidden {
-    /// The cell that hides each point.
-    host: FxHashMap<VertexId, CellId>,
-    /// The points that each cell hides.
-    under: FxHashMap<CellId, Vec<VertexId>>,
-}
-
-impl Hidden {
-    fn put(&mut self, vertex: VertexId, cell: CellId) {
-        self.host.insert(vertex, cell);
-        self.under.entry(cell).or_default().push(vertex);
-    }
-
-    /// Takes one point out; returns false if it was not there.
-    fn take(&mut self, vertex: VertexId) -> bool {
-        let Some(cell) = self.host.remove(&vertex) else {
-            return false;
-        };
-        if let Some(under) = self.under.get_mut(&cell) {
-            under.retain(|&other| other != vertex);
-        }
-        true
-    }
-
-    /// Takes out all points that some cells hide, and returns them.
-    fn take_under(&mut self, cells: impl IntoIterator<Item = CellId>) -> Vec<VertexId> {
-        if self.host.is_empty() {
-            return Vec::new();
-        }
-        let taken: Vec<VertexId> = cells
-            .into_iter()
-            .filter_map(|cell| self.under.remove(&cell))
-            .flatten()
-            .collect();
-        for vertex in &taken {
-            self.host.remove(vertex);
-        }
-        taken
-    }
-
-    /// Takes out all points, and returns them in order.
-    fn take_all(&mut self) -> Vec<VertexId> {
-        self.under.clear();
-        let mut taken: Vec<VertexId> = self.host.drain().map(|(vertex, _)| vertex).collect();
-        taken.sort_unstable();
-        taken
-    }
 }
 
 /// Makes the heaviest of the points on each site its vertex. The others are returned; they get the
@@ -285,7 +234,8 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Regular<G, N, V, C> {
         ///
         /// # Complexity
         /// A [walk](Triangulation::locate) from the last insertion, then linear in the number of
-        /// cells replaced and of points hidden by these.
+        /// cells replaced and of points hidden by these. A hidden point takes constant time if the
+        /// geometry has a [hash](Geometry::point_hash).
         by Locate<G, N>
     }
 
@@ -313,15 +263,21 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Regular<G, N, V, C> {
         // Any of the cells at the location may hide it.
         let Ok(cells) = match location {
             Location::Vertex(vertex) if is_same(&vertex) => return Some(vertex),
-            _ if self.hidden.host.is_empty() => return None,
-            _ => location.cells(self.tds()),
+            _ if self.hidden.is_empty() => return None,
+            _ => match self.inner.geometry.point_hash(p) {
+                Some(hash) => return self.hidden.of_hash(hash).find(is_same),
+                None => location.cells(self.tds()),
+            },
         };
         cells
             .iter()
-            .filter_map(|cell| self.hidden.under.get(cell))
-            .flatten()
+            .flat_map(|&cell| self.hidden.under(cell))
             .copied()
             .find(is_same)
+    }
+
+    fn hash_of(&self, vertex: VertexId) -> Option<u64> {
+        self.inner.geometry.point_hash(self.point(vertex))
     }
 
     /// Compares a point on a vertex's site with the vertex: negative if the vertex would hide it,
@@ -347,7 +303,8 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Regular<G, N, V, C> {
             let infinite = self.tds().index_of(cell, VertexId::INFINITE);
             let cell = infinite.map_or(cell, |i| self.tds().neighbor(cell, i));
             self.inner.tds.detach(vertex);
-            self.hidden.put(vertex, cell);
+            self.hidden.put(vertex, cell, self.hash_of(vertex));
+            self.inner.last = Some(cell);
             return;
         }
         let Some(mut zone) = self
@@ -380,26 +337,30 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Regular<G, N, V, C> {
             self.inner.tds.attach();
             let location = self.inner.locate(self.inner.point(vertex), near);
             self.connect(vertex, location);
-            near = self.hidden.host.get(&vertex).copied();
+            near = self
+                .hidden
+                .host(vertex)
+                .filter(|_| !self.tds().is_vertex(vertex));
+            if near.is_none() {
+                self.hidden.forget(vertex, self.hash_of(vertex));
+            }
         }
     }
 
     /// Returns true if the point with this number is in no cell.
     pub fn is_hidden(&self, vertex: VertexId) -> bool {
-        self.hidden.host.contains_key(&vertex)
+        self.hidden.contains(vertex)
     }
 
     /// The hidden points, in order of their numbers. O(h log h) for h of them; for one point use
     /// [`is_hidden`](Self::is_hidden), for one cell [`hidden_under`](Self::hidden_under).
     pub fn hidden(&self) -> impl ExactSizeIterator<Item = VertexId> + '_ {
-        let mut hidden: Vec<VertexId> = self.hidden.host.keys().copied().collect();
-        hidden.sort_unstable();
-        hidden.into_iter()
+        self.hidden.all().into_iter()
     }
 
     /// The points that a finite cell hides, in no particular order.
     pub fn hidden_under(&self, cell: CellId) -> &[VertexId] {
-        self.hidden.under.get(&cell).map_or(&[], Vec::as_slice)
+        self.hidden.under(cell)
     }
 
     /// Returns the flaws found by a check up to the given level, with exact predicates. If there
@@ -407,6 +368,14 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Regular<G, N, V, C> {
     #[must_use]
     pub fn check(&self, level: Level) -> Vec<Flaw> {
         let mut flaws = self.flaws(level, |_, _| true);
+        if flaws.is_empty() && level == Level::Law {
+            flaws.extend(
+                self.hidden
+                    .flaws(|vertex| self.hash_of(vertex))
+                    .into_iter()
+                    .map(Flaw::Hidden),
+            );
+        }
         if flaws.is_empty() && level == Level::Law {
             flaws.extend(
                 self.hidden()
@@ -419,7 +388,7 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Regular<G, N, V, C> {
 
     fn is_rightly_hidden(&self, vertex: VertexId) -> bool {
         let p = self.point(vertex);
-        let Some(&host) = self.hidden.host.get(&vertex) else {
+        let Some(host) = self.hidden.host(vertex) else {
             return false;
         };
         if !self.tds().is_used(host) || self.tds().is_infinite(host) || self.tds().is_vertex(vertex)
@@ -449,11 +418,13 @@ where
     /// If no point has this number.
     ///
     /// # Complexity
-    /// That of [`Delaunay::remove`](crate::Delaunay::remove), and one insertion for each point that
-    /// the cells around the removed one hide. Below full dimension, or if the dimension decreases,
-    /// one insertion for each hidden point.
+    /// Of a hidden point, O(1) if the geometry has a [hash](Geometry::point_hash). Of a vertex,
+    /// that of [`Delaunay::remove`](crate::Delaunay::remove), and one insertion for each point that
+    /// the cells around it hide. Below full dimension, or if the dimension decreases, one insertion
+    /// for each hidden point.
     pub fn remove(&mut self, vertex: VertexId) -> Result<G::Point, RemovalError> {
-        if self.hidden.take(vertex) {
+        if self.is_hidden(vertex) {
+            self.hidden.remove(vertex, self.hash_of(vertex));
             self.inner.tds.attach();
             self.inner.tds.remove_vertex(vertex);
         } else if self.tds().is_vertex(vertex) {
