@@ -111,6 +111,16 @@ impl Bounded<Pair> {
             roundings: 0,
         }
     }
+
+    /// Returns the double nearest to the true result; `None` if that is not certain, or if it would
+    /// not be after a truncation to 64 bits.
+    pub(crate) fn nearest(self) -> Option<f64> {
+        const TRUNCATION: f64 = 1.0 / (1u64 << 62) as f64;
+        let size = self.value.estimate().abs();
+        let half_a_digit = 0.5 * (size - size.next_down());
+        let from_it = self.value.rest().abs() + self.error() + TRUNCATION * size;
+        (size.is_normal() && from_it < half_a_digit).then_some(self.value.estimate())
+    }
 }
 
 #[expect(private_bounds, reason = "implemented for two types, which are public")]

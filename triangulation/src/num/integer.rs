@@ -25,6 +25,15 @@ impl Integer {
         }
     }
 
+    /// Returns the same number.
+    #[inline]
+    pub(crate) fn of(x: i128) -> Self {
+        let sign = (x >> 127) as u64;
+        Integer {
+            limbs: [x as u64, (x >> 64) as u64, sign, sign],
+        }
+    }
+
     /// Returns the sum with another number, given limb by limb, and a carry.
     #[inline]
     fn plus(self, limb: impl Fn(usize) -> u64, mut carry: bool) -> Self {
@@ -111,6 +120,7 @@ mod tests {
             for b in numbers {
                 let [x, y] = [a, b].map(Integer::from);
                 let [wide_a, wide_b] = [a, b].map(i128::from);
+                assert_eq!(Integer::of(wide_a * wide_b), x * y, "{a} {b}");
                 assert_eq!((x + y).sign(), Sign::of(&(wide_a + wide_b)), "{a} + {b}");
                 assert_eq!((x - y).sign(), Sign::of(&(wide_a - wide_b)), "{a} - {b}");
                 assert_eq!((x * y).sign(), Sign::of(&(wide_a * wide_b)), "{a} {b}");

@@ -64,7 +64,7 @@ where
 
 /// Returns a power of two with an exponent from -1022 to 1023. (`powi` takes ten times as long.)
 #[inline]
-fn power_of_two(exponent: i32) -> f64 {
+pub(crate) fn power_of_two(exponent: i32) -> f64 {
     f64::from_bits(((1023 + exponent) as u64) << 52)
 }
 

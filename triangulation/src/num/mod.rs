@@ -103,6 +103,13 @@ impl Mul for Sign {
     }
 }
 
+impl From<Sign> for std::cmp::Ordering {
+    #[inline]
+    fn from(sign: Sign) -> Self {
+        sign.cmp(&Sign::Zero)
+    }
+}
+
 impl From<std::cmp::Ordering> for Sign {
     #[inline]
     fn from(ordering: std::cmp::Ordering) -> Self {
@@ -123,7 +130,6 @@ impl From<std::cmp::Ordering> for Sign {
 /// # Models
 /// Everything that can be added, subtracted, multiplied and cloned is a `Number`; see the table on
 /// the [module's page](self). This one counts products:
-/// [module's page](self). Here one that counts products:
 ///
 /// ```
 /// use std::ops::{Add, Mul, Sub};

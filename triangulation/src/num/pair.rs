@@ -30,6 +30,12 @@ impl Pair {
     pub fn estimate(self) -> f64 {
         self.high
     }
+
+    /// Returns what the [estimate](Self::estimate) leaves.
+    #[inline(always)]
+    pub(super) fn rest(self) -> f64 {
+        self.low
+    }
 }
 
 /// Returns `a + b` as a pair, if `a` is not smaller in magnitude than `b`.

@@ -15,7 +15,8 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
     /// in exactly two cells, which are oriented alike. So a Klein bottle is refused, however its
     /// cells are given. The link of each vertex is a circle (`N` = 3) or a sphere (`N` = 4). No two
     /// cells have the same vertices. A surface whose border is one circle can be closed by joining
-    /// each of its edges to [`VertexId::INFINITE`], as the kinds of triangulations do.
+    /// each of its edges to [`VertexId::INFINITE`], as the kinds of triangulations do. Of nothing,
+    /// it is the empty complex, of dimension -1.
     ///
     /// ```text
     ///        a---------b       edge b c is in (a, c, b) and in (d, b, c): once from b to c, and once
@@ -48,6 +49,9 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         const { assert!(N == 3 || N == 4, "links are recognized up to dimension 2") };
         if vertex_data.len() >= VertexId::LIMIT || cells.len() >= CellId::LIMIT {
             return Err(TdsError::TooMany);
+        }
+        if vertex_data.is_empty() && cells.is_empty() {
+            return Ok(Self::new());
         }
         let mut tds = Self::unlinked(
             N as i32 - 1,

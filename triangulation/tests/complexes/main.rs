@@ -168,7 +168,14 @@ fn a_fault_is_named() {
 
 #[test]
 fn no_cells_are_a_complex() {
-    assert!(Tds::<3>::from_cells(Vec::new(), &[]).is_ok_and(|tds| tds.cell_count() == 0));
+    assert!(
+        Tds::<3>::from_cells(Vec::new(), &[])
+            .is_ok_and(|tds| (tds.cell_count(), tds.dimension()) == (0, -1))
+    );
+    assert!(
+        Tds::<4>::from_cells(Vec::new(), &[])
+            .is_ok_and(|tds| (tds.cell_count(), tds.dimension()) == (0, -1))
+    );
     assert!(Tds::<4>::from_cells(vec![()], &[]).is_err());
 }
 

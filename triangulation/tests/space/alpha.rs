@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use breakline_triangulation::geometry::{Space, WeightedSpace};
 use breakline_triangulation::tds::{CellId, VertexId};
 use breakline_triangulation::{AlphaShape, AlphaShapes, AlphaState, Delaunay, Regular};
+use dashu_ratio::RBig;
 use testkit::random::Random;
 
 type Whole = [i64; 4];
@@ -341,12 +342,117 @@ fn what_has_no_volume_has_no_shape() {
         let shape = shapes.at(f64::INFINITY);
         assert_eq!(
             (
-                shape.volume(),
+                shape.volume().to_bits(),
                 shape.components(),
                 shape.boundary().triangles.len()
             ),
-            (0.0, 0, 0)
+            (0, 0, 0)
         );
+        assert!(!shape.contains(CellId::new(1000)));
+        assert_eq!(shape.classify_cell(CellId::new(1000)), AlphaState::Exterior);
+    }
+}
+
+/// By the formula of [`squared_radius`], of any doubles.
+fn exact_squared_radius(corners: [[f64; 4]; 4]) -> RBig {
+    let corners = corners.map(|p| p.map(|x| RBig::try_from(x).unwrap()));
+    let d = &corners[3];
+    let rows = [0, 1, 2].map(|i| [0, 1, 2].map(|axis| &corners[i][axis] - &d[axis]));
+    let lift = |i: usize| {
+        rows[i]
+            .iter()
+            .map(|x| x * x)
+            .fold(RBig::ZERO, |sum, x| sum + x)
+            - &corners[i][3]
+            + &d[3]
+    };
+    let right = [0, 1, 2].map(lift);
+    let minor = |[a, b, c]: &[[RBig; 3]; 3]| {
+        &a[0] * (&b[1] * &c[2] - &b[2] * &c[1]) - &a[1] * (&b[0] * &c[2] - &b[2] * &c[0])
+            + &a[2] * (&b[0] * &c[1] - &b[1] * &c[0])
+    };
+    let below = minor(&rows) * RBig::from(2);
+    let squares = [0, 1, 2].map(|axis| {
+        let mut replaced = rows.clone();
+        (0..3).for_each(|i| replaced[i][axis] = right[i].clone());
+        let center = minor(&replaced) / &below;
+        &center * &center
+    });
+    squares
+        .into_iter()
+        .fold(RBig::ZERO, |sum, square| sum + square)
+        - &d[3]
+}
+
+/// Compares the order of all cells with that of exact radii.
+fn judge_order(shapes: &AlphaShapes, corners: impl Fn(CellId) -> [[f64; 4]; 4]) {
+    let radii: Vec<RBig> = shapes
+        .at(f64::INFINITY)
+        .cells()
+        .map(|cell| exact_squared_radius(corners(cell)))
+        .collect();
+    assert!(radii.is_sorted());
+    let different: BTreeSet<RBig> = radii.into_iter().collect();
+    assert_eq!(shapes.alphas().len(), different.len());
+    for (&alpha, radius) in shapes.alphas().iter().zip(&different) {
+        let expected = radius.to_f64().value();
+        assert!(
+            (alpha - expected).abs() <= 1e-12 * expected.abs(),
+            "{alpha} {expected}"
+        );
+    }
+}
+
+/// On decimal grids, far away, of many digits, with weights: cells whose radii are equal, or differ
+/// in the last of many digits.
+#[test]
+fn the_order_of_radii_is_exact() {
+    let mut random = Random(34);
+    for round in 0..60 {
+        let side = [3, 4, 30, 1 << 16, 1 << 40][round % 5];
+        let [scale, origin] = [[1.0, 0.0], [0.1, 0.0], [0.1, 1e5], [0.25, -3.0]][round / 5 % 4];
+        let mut number = || origin + scale * random.below(side) as f64;
+        let sites: Vec<[f64; 3]> = (0..20).map(|_| [number(), number(), number()]).collect();
+        let (t, _) = Delaunay::<Space, 4>::from_points(Space::default(), &sites).unwrap();
+        judge_order(&t.alpha_shapes(), |cell| {
+            t.cell_points(cell)
+                .unwrap()
+                .map(|&[x, y, z]| [x, y, z, 0.0])
+        });
+        let weighted: Vec<[f64; 4]> = sites
+            .iter()
+            .map(|&[x, y, z]| [x, y, z, scale * scale * random.below(3) as f64])
+            .collect();
+        let (t, _) =
+            Regular::<WeightedSpace, 4>::from_points(WeightedSpace::default(), &weighted).unwrap();
+        judge_order(&t.alpha_shapes(), |cell| {
+            t.cell_points(cell).unwrap().map(|p| *p)
+        });
+    }
+}
+
+/// Tetrahedra of six times the volume 1, far below what floating point can tell.
+#[test]
+fn the_radius_of_a_sliver_is_right() {
+    let mut random = Random(35);
+    for _ in 0..50 {
+        let mut vectors = [[1i64, 0, 0], [0, 1, 0], [0, 0, 1]];
+        while vectors.as_flattened().iter().all(|x| x.abs() < 1 << 25) {
+            let [from, to] = random.pick(&[[0, 1], [1, 2], [2, 0], [1, 0], [2, 1], [0, 2]]);
+            (0..3).for_each(|axis| vectors[to][axis] += vectors[from][axis]);
+        }
+        let sites: Vec<[f64; 3]> = vectors
+            .iter()
+            .map(|v| v.map(|x| x as f64))
+            .chain([[0.0; 3]])
+            .collect();
+        let (t, _) = Delaunay::<Space, 4>::from_points(Space::default(), &sites).unwrap();
+        assert_eq!(t.finite_cells().count(), 1);
+        judge_order(&t.alpha_shapes(), |cell| {
+            t.cell_points(cell)
+                .unwrap()
+                .map(|&[x, y, z]| [x, y, z, 0.0])
+        });
     }
 }
 

@@ -9,6 +9,7 @@
 use crate::geometry::Coordinates;
 use crate::kernel;
 use crate::kinds::Delaunay;
+use crate::num::unsigned_zero;
 use crate::query::dual::{HalfSpace, VoronoiEdge, minus, plus};
 use crate::tds::{CellId, VertexId};
 use crate::triangulation::Triangulation;
@@ -54,7 +55,7 @@ pub(super) fn cell_of(
         };
     }
     VoronoiCell {
-        area: twice_area(&cell) / 2.0,
+        area: unsigned_zero(twice_area(&cell) / 2.0),
         corners: cell.into_iter().map(|p| plus(p, site)).collect(),
     }
 }

@@ -13,6 +13,7 @@
 use crate::geometry::{Coordinates, Geometry};
 use crate::kernel;
 use crate::kinds::Delaunay;
+use crate::num::unsigned_zero;
 use crate::query::dual::{HalfSpace, VoronoiEdge, dot, minus, plus};
 use crate::tds::space::{Edge, OUTWARD};
 use crate::tds::{CellId, VertexId};
@@ -111,7 +112,7 @@ impl Polyhedron {
                 .map(|pair| dot(first, cross(pair[0], pair[1])))
                 .sum()
         };
-        (self.facets.iter().map(six_volumes).sum::<f64>() / 6.0).max(0.0)
+        unsigned_zero((self.facets.iter().map(six_volumes).sum::<f64>() / 6.0).max(0.0))
     }
 }
 

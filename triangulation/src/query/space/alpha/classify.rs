@@ -65,11 +65,7 @@ impl<V, C: Copy + Default> AlphaShape<'_, V, C> {
         let (mut any, mut all) = (false, true);
         for cell in cells {
             // In dimension 2 a triangle has no fourth neighbor.
-            let is_contained = self
-                .shapes
-                .levels
-                .get(cell.index())
-                .is_some_and(|&level| level < self.level);
+            let is_contained = self.contains(cell);
             any |= is_contained;
             all &= is_contained;
         }

@@ -4,13 +4,10 @@ mod classify;
 
 pub use classify::AlphaState;
 
-use std::cell::OnceCell;
-use std::cmp::Ordering;
-
 use rustc_hash::FxHashMap;
 
 use crate::geometry::{Geometry, Space, WeightedSpace};
-use crate::kernel::{Kernel, Orientation3, Predicate, SquaredRadius, squared_radius_bounds};
+use crate::kernel::{Kernel, Orientation3, Predicate, RoundedRadius, SquaredRadii, SquaredRadius};
 use crate::kinds::{Delaunay, Regular};
 use crate::tds::space::OUTWARD;
 use crate::tds::{CellId, Tds, VertexId};
@@ -108,38 +105,22 @@ impl<K: Kernel, V, C: Copy + Default> Regular<WeightedSpace<K>, 4, V, C> {
 }
 
 /// A finite cell while cells are sorted.
-struct CellRadius {
+#[derive(Clone, Copy)]
+struct Candidate {
     cell: CellId,
-    low: f64,
-    high: f64,
-    exact: OnceCell<Box<SquaredRadius>>,
+    radius: RoundedRadius,
 }
 
-impl CellRadius {
-    fn exact(&self, corners: impl Fn(CellId) -> [[f64; 4]; 4]) -> &SquaredRadius {
-        self.exact
-            .get_or_init(|| Box::new(SquaredRadius::of(corners(self.cell))))
-    }
-
-    fn compare(&self, other: &Self, corners: impl Fn(CellId) -> [[f64; 4]; 4]) -> Ordering {
-        if self.high < other.low {
-            Ordering::Less
-        } else if other.high < self.low {
-            Ordering::Greater
-        } else {
-            self.exact(&corners).compare(other.exact(&corners))
-        }
-    }
-
-    /// Returns the squared radius, rounded.
-    fn value(&self, corners: impl Fn(CellId) -> [[f64; 4]; 4]) -> f64 {
-        const TOLERANCE: f64 = 1.0 / (1u64 << 44) as f64;
-        if self.high - self.low <= TOLERANCE * self.low.abs() {
-            0.5 * self.low + 0.5 * self.high
-        } else {
-            self.exact(corners).value()
-        }
-    }
+/// Returns how many of the first candidates, which come by the lower bounds of their radii, may
+/// have the same radius, or are linked by others that may.
+fn count_of_alike(candidates: &[Candidate]) -> usize {
+    let mut high = f64::NEG_INFINITY;
+    let is_alike = |(position, candidate): &(usize, &Candidate)| {
+        let is_alike = *position == 0 || candidate.radius.low <= high;
+        high = high.max(candidate.radius.high);
+        is_alike
+    };
+    candidates.iter().enumerate().take_while(is_alike).count()
 }
 
 impl<'t, V, C: Copy + Default> AlphaShapes<'t, V, C> {
@@ -164,34 +145,59 @@ impl<'t, V, C: Copy + Default> AlphaShapes<'t, V, C> {
             return shapes;
         }
         let corners = |cell: CellId| tds.corners(cell).map(|vertex| weighted(t.point(vertex)));
-        let candidate = |cell: CellId| {
-            let (low, high) = squared_radius_bounds(corners(cell));
-            CellRadius {
-                cell,
-                low,
-                high,
-                exact: OnceCell::new(),
-            }
+        let radii = SquaredRadii::among(tds.vertices().map(|vertex| weighted(t.point(vertex))));
+        let candidate = |cell: CellId| Candidate {
+            cell,
+            radius: radii.rounded(corners(cell)),
         };
-        let mut candidates: Vec<CellRadius> = tds
+        let mut candidates: Vec<Candidate> = tds
             .cells()
             .filter(|&cell| !tds.is_infinite(cell))
             .map(candidate)
             .collect();
-        candidates.sort_unstable_by(|a, b| a.compare(b, corners).then(a.cell.cmp(&b.cell)));
-        let mut last = f64::NEG_INFINITY;
-        for equal in candidates.chunk_by(|a, b| a.compare(b, corners).is_eq()) {
-            equal.iter().for_each(|candidate| {
-                shapes.levels[candidate.cell.index()] = shapes.alphas.len() as u32
-            });
-            last = equal[0].value(corners).max(last);
-            shapes.alphas.push(last);
+        candidates.sort_unstable_by(|a, b| {
+            a.radius
+                .low
+                .total_cmp(&b.radius.low)
+                .then(a.cell.cmp(&b.cell))
+        });
+        shapes.cells.reserve_exact(candidates.len());
+        let mut rest = &candidates[..];
+        while let (alike @ [first, ..], others) = rest.split_at(count_of_alike(rest)) {
+            rest = others;
+            if alike.len() == 1 {
+                shapes.push_level(first.radius.value, [first.cell]);
+                continue;
+            }
+            let mut alike: Vec<(SquaredRadius, Candidate)> = alike
+                .iter()
+                .map(|&candidate| (radii.to_compare(corners(candidate.cell)), candidate))
+                .collect();
+            let compare = |(p, a): &(SquaredRadius, Candidate),
+                           (q, b): &(SquaredRadius, Candidate)| {
+                p.compare(q, || corners(a.cell), || corners(b.cell))
+            };
+            alike.sort_unstable_by(|p, q| compare(p, q).then_with(|| p.1.cell.cmp(&q.1.cell)));
+            for equal in alike.chunk_by(|p, q| compare(p, q).is_eq()) {
+                shapes.push_level(
+                    equal[0].1.radius.value,
+                    equal.iter().map(|(_, candidate)| candidate.cell),
+                );
+            }
         }
-        shapes.cells = candidates
-            .into_iter()
-            .map(|candidate| candidate.cell)
-            .collect();
         shapes
+    }
+
+    /// Adds the cells of the next larger squared radius.
+    fn push_level(&mut self, value: f64, cells: impl IntoIterator<Item = CellId>) {
+        let level = self.alphas.len() as u32;
+        for cell in cells {
+            self.levels[cell.index()] = level;
+            self.cells.push(cell);
+        }
+        // Rounded numbers may come out of order.
+        self.alphas
+            .push(self.alphas.last().map_or(value, |last| last.max(value)));
     }
 
     /// Returns the numbers at which the solid grows, ascending; rounded, so that some that differ
@@ -273,9 +279,13 @@ impl<'s, V, C: Copy + Default> AlphaShape<'s, V, C> {
         self.alpha
     }
 
-    /// Returns true if a cell is part of the solid; infinite cells never are.
+    /// Returns true if a cell is part of the solid; infinite cells and numbers without a cell never
+    /// are.
     pub fn contains(&self, cell: CellId) -> bool {
-        self.shapes.level(cell) < self.level
+        self.shapes
+            .levels
+            .get(cell.index())
+            .is_some_and(|&level| level < self.level)
     }
 
     /// Iterates over the cells of the solid, by ascending squared radius.
@@ -306,7 +316,11 @@ impl<'s, V, C: Copy + Default> AlphaShape<'s, V, C> {
                 .map(|vertex| self.shapes.sites[vertex.index()]);
             Orientation3(corners).value(|x, y| x - y).abs()
         };
-        self.cells().map(six_times).sum::<f64>() / 6.0
+        // The sum of nothing would be negative zero.
+        self.cells()
+            .map(six_times)
+            .fold(0.0, |sum, volume| sum + volume)
+            / 6.0
     }
 
     /// Returns the surface, with the edges and vertices where it is not a manifold. O(m) for m
