@@ -98,13 +98,13 @@ macro_rules! in_geometry {
                 .iter()
                 .map(|p| t.insert(light(p)))
                 .collect::<Result<Vec<_>, _>>()?;
-            timed("hide", start, t.hidden().len());
+            timed("hide", start, hidden.len());
 
             let start = Instant::now();
             for &vertex in &hidden {
                 t.remove(vertex)?;
             }
-            timed("remove_hidden", start, t.hidden().len());
+            timed("remove_hidden", start, hidden.len());
             Ok(())
         }
     };

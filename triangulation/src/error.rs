@@ -13,8 +13,12 @@ pub(crate) const MAX_VERTICES: usize = VertexId::LIMIT / 2;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum PointError {
-    /// A coordinate is not finite, or its magnitude is outside of what the arithmetic is proven for
-    /// (see [`Kernel::RANGE`](crate::kernel::Kernel::RANGE)).
+    /// A coordinate is NaN or infinite, as the [geometry](crate::geometry::Geometry::is_finite)
+    /// says.
+    NotFinite,
+    /// The magnitude of a coordinate is outside of what the arithmetic is proven for (see
+    /// [`Kernel::RANGE`](crate::kernel::Kernel::RANGE)). That of the kernel
+    /// [`Wide`](crate::kernel::Wide) is all finite numbers.
     Coordinate,
     /// There are as many vertices as 32-bit numbers can count with their cells: 2^31 - 2.
     TooMany,
@@ -23,8 +27,14 @@ pub enum PointError {
 impl fmt::Display for PointError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            PointError::NotFinite => {
+                f.write_str("the point has a coordinate that is NaN or infinite")
+            }
             PointError::Coordinate => {
-                f.write_str("the point has a coordinate that is not finite or too large or small to compute with")
+                f.write_str(
+                    "the point has a coordinate that is too large or small to compute with",
+                )?;
+                f.write_str("; the kernel `Wide` takes all finite numbers")
             }
             PointError::TooMany => write!(f, "more than {MAX_VERTICES} points"),
         }
@@ -40,7 +50,8 @@ impl Error for PointError {}
 pub enum InputError {
     /// The point at this position has a coordinate that is not finite, or whose magnitude is
     /// outside of what the arithmetic is proven for (see
-    /// [`Kernel::RANGE`](crate::kernel::Kernel::RANGE)).
+    /// [`Kernel::RANGE`](crate::kernel::Kernel::RANGE)). That of the kernel
+    /// [`Wide`](crate::kernel::Wide) is all finite numbers.
     Coordinate(usize),
     /// The point at this position lies before the one before it in
     /// [`spatial_order`](crate::spatial_order), or on the same site, where points have to come in
@@ -73,7 +84,8 @@ impl fmt::Display for InputError {
                 write!(
                     f,
                     "point {index} has a coordinate that is not finite or too large or small to compute with"
-                )
+                )?;
+                f.write_str("; the kernel `Wide` takes all finite numbers")
             }
             InputError::Unsorted(index) => {
                 write!(
@@ -105,7 +117,7 @@ impl PointError {
     /// The error of many points, of which the one at this position cannot be inserted.
     pub(crate) fn at(self, position: usize) -> InputError {
         match self {
-            PointError::Coordinate => InputError::Coordinate(position),
+            PointError::NotFinite | PointError::Coordinate => InputError::Coordinate(position),
             PointError::TooMany => InputError::TooMany,
         }
     }

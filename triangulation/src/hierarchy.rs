@@ -29,7 +29,7 @@ const RATIO: usize = 30;
 ///
 /// The geometry of the samples is one for the same type of points, in which a point is the same
 /// site. It is the geometry of the triangulation itself, except for weighted points: their samples
-/// use a geometry that ignores weights.
+/// use one that ignores weights, [`Unweighted`](crate::geometry::Unweighted).
 ///
 /// The samples are pseudo-random, and the same in every run.
 ///

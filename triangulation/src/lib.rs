@@ -83,11 +83,11 @@
 //!
 //! All queries take `&self`. In space, these exist: construction, insertion, and removal and moves
 //! except of [`Basic`]; payloads; location by all strategies; what a segment meets; vertices in a
-//! box, nearest vertices, conflict zones, stars, rings around edges; hidden points; the convex
-//! hull; Voronoi and power diagrams, natural neighbor coordinates; serde, [`Compact`]; and checks.
-//! Gabriel tests and [alpha shapes](AlphaShapes) are for space only. All else is for the plane
-//! only: constraints, other queries, flips by a kind and pictures. Construction from many points is
-//! by divide and conquer in the plane only.
+//! box, nearest vertices, conflict zones, stars, rings around edges; flips by [`Basic`]; hidden
+//! points; the convex hull; Voronoi and power diagrams, natural neighbor coordinates; serde,
+//! [`Compact`]; and checks. Gabriel tests and [alpha shapes](AlphaShapes) are for space only. All
+//! else is for the plane only: constraints, other queries and pictures. Construction from many
+//! points is by divide and conquer in the plane only.
 //!
 //! By default, a walk starts where the last insertion ended. [`Near`] a cell, [`JumpAndWalk`],
 //! [`Buckets`] and [`Hierarchy`] start elsewhere, and [`StraightLine`] walks differently; all of

@@ -138,7 +138,8 @@ fn refused_points_are_named() {
         Some(InputError::Coordinate(1))
     );
     let mut t = Delaunay::new(Plane::<Adaptive>::default());
-    assert_eq!(t.insert([f64::INFINITY, 0.0]), Err(PointError::Coordinate));
+    assert_eq!(t.insert([f64::INFINITY, 0.0]), Err(PointError::NotFinite));
+    assert!(PointError::Coordinate.to_string().contains("Wide"));
     assert_eq!(t.insert([1e300, 0.0]), Err(PointError::Coordinate));
     let mut t = Delaunay::new(Plane::<Exact>::default());
     for p in [[1e300, 0.0], [1e-310, 1e-310], [-1e300, 5.0], [0.0, -1e300]] {

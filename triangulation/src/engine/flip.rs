@@ -1,6 +1,6 @@
 use crate::geometry::{Geometry, in_sphere};
 use crate::num::Sign;
-use crate::tds::{CellId, Tds, ccw, cw};
+use crate::tds::{CellId, Tds, VertexId, ccw, cw};
 use crate::triangulation::Triangulation;
 
 use super::constrained_edges::ConstrainedEdges;
@@ -161,5 +161,61 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
         let is_constrained = edges.is_constrained(self.tds.cell_data(neighbor), j);
         let data = self.tds.cell_data_mut(cell);
         *data = edges.with_constraint(*data, i, is_constrained);
+    }
+}
+
+impl<G: Geometry<4>, V, C: Copy + Default> Triangulation<G, 4, V, C> {
+    /// Returns true if the facet opposite vertex `i` of a cell is crossed in its interior by the
+    /// line between the vertices on both sides of it: the two tetrahedra then form a convex body
+    /// that three others fill, too.
+    pub fn is_facet_flippable(&self, cell: CellId, i: usize) -> bool {
+        let tds = &self.tds;
+        if self.dimension() < 3 || i > 3 || !tds.is_used(cell) {
+            return false;
+        }
+        let neighbor = tds.neighbor(cell, i);
+        if tds.is_infinite(cell) || tds.is_infinite(neighbor) {
+            return false;
+        }
+        let far = self.point(tds.vertex(neighbor, tds.index_of_neighbor(neighbor, cell)));
+        // Each new cell is the old one with the far vertex in place of a corner of the facet.
+        (0..4).filter(|&k| k != i).all(|k| {
+            let mut corners = self.simplex(cell);
+            corners[k] = far;
+            self.geometry.orientation(corners) == Sign::Positive
+        })
+    }
+
+    /// Returns true if exactly three tetrahedra, all finite, have an edge, and it crosses the
+    /// interior of the triangle between the three other vertices: two tetrahedra fill the same
+    /// body.
+    pub fn is_edge_flippable(&self, ends: [VertexId; 2]) -> bool {
+        let tds = &self.tds;
+        let Some(cell) = tds.cell_with(&ends).filter(|_| self.dimension() == 3) else {
+            return false;
+        };
+        let [Some(i), Some(j)] = ends.map(|end| tds.index_of(cell, end)) else {
+            return false;
+        };
+        let around: Vec<CellId> = tds
+            .cells_around_edge((cell, i, j))
+            .take(4)
+            .map(|(cell, ..)| cell)
+            .collect();
+        if around.len() != 3 || around.iter().any(|&cell| tds.is_infinite(cell)) {
+            return false;
+        }
+        // The vertex that the first cell lacks takes the place of either end.
+        let lacking = tds
+            .corners(around[1])
+            .iter()
+            .find(|&&v| tds.index_of(cell, v).is_none());
+        lacking.is_some_and(|&vertex| {
+            [i, j].into_iter().all(|k| {
+                let mut corners = self.simplex(cell);
+                corners[k] = self.point(vertex);
+                self.geometry.orientation(corners) == Sign::Positive
+            })
+        })
     }
 }

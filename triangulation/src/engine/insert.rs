@@ -32,7 +32,12 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
     /// Returns an error if a point must not be inserted.
     pub(crate) fn admit(&self, p: &G::Point) -> Result<(), PointError> {
         if !self.geometry.admits(p) {
-            return Err(PointError::Coordinate);
+            let is_finite = self.geometry.is_finite(p);
+            return Err(if is_finite {
+                PointError::Coordinate
+            } else {
+                PointError::NotFinite
+            });
         }
         if self.tds.vertex_slots() >= MAX_VERTICES {
             return Err(PointError::TooMany);

@@ -179,7 +179,35 @@ macro_rules! remove_by_method {
     };
 }
 
+/// `remove_all`, for kinds that can remove each vertex.
+macro_rules! remove_all_method {
+    () => {
+        /// Removes many vertices, and returns the point of each. One that is named twice is removed
+        /// once.
+        ///
+        /// # Errors
+        /// If there is no such vertex; nothing has changed then.
+        ///
+        /// # Complexity
+        /// That of each removal.
+        pub fn remove_all(
+            &mut self,
+            vertices: &[$crate::tds::VertexId],
+        ) -> Result<Vec<G::Point>, $crate::error::RemovalError> {
+            if !vertices.iter().all(|&vertex| self.has_point(vertex)) {
+                return Err($crate::error::RemovalError::NoVertex);
+            }
+            for &vertex in vertices {
+                if self.has_point(vertex) {
+                    self.remove(vertex)?;
+                }
+            }
+            Ok(vertices.iter().map(|&vertex| *self.point(vertex)).collect())
+        }
+    };
+}
+
 pub(crate) use {
     construction_methods, from_points_with_method, insert_method, insertion_methods,
-    payload_methods, remove_by_method,
+    payload_methods, remove_all_method, remove_by_method,
 };

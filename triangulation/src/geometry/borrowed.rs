@@ -15,6 +15,11 @@ impl<G: Geometry<N>, const N: usize> Geometry<N> for &G {
     }
 
     #[inline]
+    fn is_finite(&self, p: &G::Point) -> bool {
+        (**self).is_finite(p)
+    }
+
+    #[inline]
     fn compare(&self, p: &G::Point, q: &G::Point) -> Ordering {
         (**self).compare(p, q)
     }

@@ -129,6 +129,11 @@ where
         Plane::<K>::default().admits(&(self.site)(p))
     }
 
+    #[inline]
+    fn is_finite(&self, p: &P) -> bool {
+        (self.site)(p).iter().all(|x| x.is_finite())
+    }
+
     #[inline(always)]
     fn compare(&self, p: &P, q: &P) -> Ordering {
         Plane::<K>::default().compare(&(self.site)(p), &(self.site)(q))

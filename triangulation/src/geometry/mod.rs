@@ -13,6 +13,7 @@
 //! | [`Weighted`] | `[f64; 3]` | in the plane, with weights: x, y, weight |
 //! | [`Space`] | `[f64; 3]` | in space |
 //! | [`WeightedSpace`] | `[f64; 4]` | in space, with weights: x, y, z, weight |
+//! | [`Unweighted`] | `[f64; 3]`, `[f64; 4]` | those of the sites of weighted points |
 //!
 //! Each takes a [`Kernel`](crate::kernel::Kernel) that chooses the arithmetic.
 //!
@@ -36,6 +37,7 @@ mod plane;
 mod space;
 mod steps;
 mod terrain;
+mod unweighted;
 mod weighted;
 mod weighted_space;
 
@@ -46,6 +48,7 @@ pub use plane::{Plane, distance_to_segment};
 pub use space::Space;
 pub use steps::Steps;
 pub use terrain::{Terrain, height_along};
+pub use unweighted::Unweighted;
 pub use weighted::Weighted;
 pub use weighted_space::WeightedSpace;
 
@@ -73,9 +76,9 @@ use crate::num::{Sign, unsigned_zero};
 /// - All answers are those for one and the same set of exact points.
 ///
 /// # Models
-/// [`Plane`], [`Terrain`], [`Steps`], [`Mapped`], [`Weighted`], [`Space`], [`WeightedSpace`]. For
-/// points that have a position in the plane, `Mapped` is a geometry in one line. You can add your
-/// own; this one counts the in-circle tests:
+/// [`Plane`], [`Terrain`], [`Steps`], [`Mapped`], [`Weighted`], [`Space`], [`WeightedSpace`],
+/// [`Unweighted`]. For points that have a position in the plane, `Mapped` is a geometry in one
+/// line. You can add your own; this one counts the in-circle tests:
 ///
 /// ```
 /// use std::cell::Cell;
@@ -114,6 +117,12 @@ pub trait Geometry<const N: usize> {
     /// proven for.
     fn admits(&self, p: &Self::Point) -> bool;
 
+    /// Returns false if a coordinate is NaN or infinite. Asked only of points that are not
+    /// admitted, to say why; the default, true, says nothing of coordinates that are not finite.
+    fn is_finite(&self, _: &Self::Point) -> bool {
+        true
+    }
+
     /// Compares two sites: a total order, lexicographic by coordinates in the models here.
     fn compare(&self, p: &Self::Point, q: &Self::Point) -> Ordering;
 
@@ -148,11 +157,11 @@ pub trait Geometry<const N: usize> {
     }
 
     /// Returns a hash of a point: equal for points on one site, if neither has the larger weight
-    /// (see [`side_of_sphere_in_flat`](Self::side_of_sphere_in_flat)). `None`, the default, if there
-    /// is none.
+    /// (see [`side_of_sphere_in_flat`](Self::side_of_sphere_in_flat)). `None`, the default, if
+    /// there is none.
     ///
-    /// [`Regular`](crate::Regular) finds out by it if a hidden point is given again. Without it, all
-    /// points under a cell are searched.
+    /// [`Regular`](crate::Regular) finds out by it if a hidden point is given again. Without it,
+    /// all points under a cell are searched.
     #[inline]
     fn point_hash(&self, _: &Self::Point) -> Option<u64> {
         None

@@ -25,6 +25,11 @@ impl<K: Kernel> Geometry<3> for Plane<K> {
         p.iter().all(|&x| K::RANGE.admits(x))
     }
 
+    #[inline]
+    fn is_finite(&self, p: &[f64; 2]) -> bool {
+        p.iter().all(|x| x.is_finite())
+    }
+
     #[inline(always)]
     fn compare(&self, p: &[f64; 2], q: &[f64; 2]) -> Ordering {
         lexicographic(*p, *q)

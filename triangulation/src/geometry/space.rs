@@ -36,6 +36,11 @@ impl<K: Kernel> Geometry<4> for Space<K> {
         p.iter().all(|&x| K::RANGE.admits(x))
     }
 
+    #[inline]
+    fn is_finite(&self, p: &[f64; 3]) -> bool {
+        p.iter().all(|x| x.is_finite())
+    }
+
     #[inline(always)]
     fn compare(&self, p: &[f64; 3], q: &[f64; 3]) -> Ordering {
         lexicographic(*p, *q)

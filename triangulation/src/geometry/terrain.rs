@@ -29,6 +29,11 @@ impl<K: Kernel> Geometry<3> for Terrain<K> {
         K::RANGE.admits(p[0]) && K::RANGE.admits(p[1])
     }
 
+    #[inline]
+    fn is_finite(&self, p: &[f64; 3]) -> bool {
+        plan(p).iter().all(|x| x.is_finite())
+    }
+
     #[inline(always)]
     fn compare(&self, p: &[f64; 3], q: &[f64; 3]) -> Ordering {
         lexicographic(plan(p), plan(q))

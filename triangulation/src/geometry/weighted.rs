@@ -46,6 +46,11 @@ impl<K: Kernel> Geometry<3> for Weighted<K> {
         p.iter().all(|&x| K::RANGE.admits(x))
     }
 
+    #[inline]
+    fn is_finite(&self, p: &[f64; 3]) -> bool {
+        p.iter().all(|x| x.is_finite())
+    }
+
     #[inline(always)]
     fn compare(&self, p: &[f64; 3], q: &[f64; 3]) -> Ordering {
         lexicographic(plan(p), plan(q))

@@ -53,6 +53,11 @@ impl<K: Kernel> Geometry<4> for WeightedSpace<K> {
         p.iter().all(|&x| K::RANGE.admits(x))
     }
 
+    #[inline]
+    fn is_finite(&self, p: &[f64; 4]) -> bool {
+        p.iter().all(|x| x.is_finite())
+    }
+
     #[inline(always)]
     fn compare(&self, p: &[f64; 4], q: &[f64; 4]) -> Ordering {
         lexicographic(site(p), site(q))

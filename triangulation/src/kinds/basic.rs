@@ -8,13 +8,13 @@ use crate::engine::flip::NoConstraints;
 use crate::engine::insert::{insert_each, move_vertex};
 use crate::engine::kind_methods::{
     construction_methods, from_points_with_method, insert_method, insertion_methods,
-    payload_methods, remove_by_method,
+    payload_methods, remove_all_method, remove_by_method,
 };
 use crate::error::{InputError, MoveError, RemovalError};
 use crate::flaw::{Flaw, Level};
 use crate::geometry::{Coordinates, Geometry};
 use crate::locate::{Locate, Location};
-use crate::tds::{CellId, VertexId};
+use crate::tds::{CellId, EditError, Tds, VertexId};
 use crate::triangulation::Triangulation;
 
 /// A triangulation of the plane or of space, without a law.
@@ -122,6 +122,10 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Basic<G, N, V, C> {
         by Locate<G, N>
     }
 
+    fn has_point(&self, vertex: VertexId) -> bool {
+        self.tds().is_vertex(vertex)
+    }
+
     fn insert_at(&mut self, p: G::Point, data: V, location: Location) -> Inserted<V> {
         self.inner
             .insert_at(p, location, data, takes(&p), |data, _| *data)
@@ -174,6 +178,8 @@ impl<G: Geometry<3>, V, C: Copy + Default> Basic<G, 3, V, C> {
 
     remove_by_method!(Locate<G, 3>);
 
+    remove_all_method!();
+
     /// Moves a vertex to another point and returns it; it keeps its number and payload. If the site
     /// is taken, the vertex is removed, and the one that is there already is returned.
     ///
@@ -205,6 +211,49 @@ impl<G: Geometry<3>, V, C: Copy + Default> Basic<G, 3, V, C> {
             self.inner.exchange_diagonal(NoConstraints, cell, i);
         }
         is_flippable
+    }
+}
+
+impl<G: Geometry<4>, V, C: Copy + Default> Basic<G, 4, V, C> {
+    /// Replaces the two tetrahedra at the facet opposite vertex `i` of a cell by three around the
+    /// edge between the vertices on both sides. Returns false, and changes nothing, unless the
+    /// facet is [flippable](Triangulation::is_facet_flippable).
+    ///
+    /// ```
+    /// use breakline_triangulation::geometry::Space;
+    /// use breakline_triangulation::{Basic, Level};
+    ///
+    /// let mut t = Basic::new(Space::new());
+    /// let corners = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [1.0, 1.0, 3.0], [1.0, 1.0, -3.0]];
+    /// let v = corners.map(|p| t.insert(p));
+    /// let facet = t.tds().finite_facets().find(|&(cell, i)| t.is_facet_flippable(cell, i));
+    /// let (cell, i) = facet.expect("that between the last two");
+    /// assert!(t.flip(cell, i) && t.finite_cells().count() == 3);
+    /// assert!(t.flip_edge([v[3]?, v[4]?]) && t.finite_cells().count() == 2);
+    /// assert!(t.check(Level::Orientation).is_empty());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn flip(&mut self, cell: CellId, i: usize) -> bool {
+        self.is_facet_flippable(cell, i) && self.adopt(|tds| tds.flip(cell, i))
+    }
+
+    /// Replaces the three tetrahedra around an edge by two on both sides of the triangle between
+    /// the three other vertices: the inverse of [`flip`](Self::flip). Returns false, and changes
+    /// nothing, unless the edge is [flippable](Triangulation::is_edge_flippable).
+    pub fn flip_edge(&mut self, ends: [VertexId; 2]) -> bool {
+        self.is_edge_flippable(ends) && self.adopt(|tds| tds.flip_edge(ends))
+    }
+
+    /// Performs an edit that returns the new cells; returns false if it is refused.
+    fn adopt(
+        &mut self,
+        edit: impl FnOnce(&mut Tds<4, V, C>) -> Result<Vec<CellId>, EditError>,
+    ) -> bool {
+        let new_cells = edit(&mut self.inner.tds);
+        if let Ok(cells) = &new_cells {
+            self.inner.last = cells.first().copied();
+        }
+        new_cells.is_ok()
     }
 }
 

@@ -7,7 +7,7 @@ use crate::engine::Inserted;
 use crate::engine::insert::{insert_each, move_vertex};
 use crate::engine::kind_methods::{
     construction_methods, from_points_with_method, insert_method, insertion_methods,
-    payload_methods, remove_by_method,
+    payload_methods, remove_all_method, remove_by_method,
 };
 use crate::engine::removal::Removal;
 use crate::error::{InputError, MoveError, RemovalError};
@@ -100,8 +100,9 @@ impl<G: Coordinates<N>, const N: usize> Delaunay<G, N> {
     /// In the plane by divide and conquer (Guibas and Stolfi 1985, Dwyer 1987), on all threads: O(n
     /// log n) at worst, linear for points that are spread evenly. Peak memory is 60 bytes for each
     /// point, besides two copies of the points. In space by insertion in rounds (Amenta, Choi and
-    /// Rote 2003), on one thread: linear in practice, quadratic at worst, as is the result. Peak
-    /// memory is about 380 bytes for each point, if they are spread evenly.
+    /// Rote 2003), of many points on all threads in blocks of space, unless they lie along
+    /// surfaces: linear in practice, quadratic at worst, as is the result. Peak memory is about 380
+    /// bytes for each point, if they are spread evenly.
     pub fn from_points(
         geometry: G,
         points: &[G::Point],
@@ -193,6 +194,10 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Delaunay<G, N, V, C> 
         by Locate<G, N>
     }
 
+    fn has_point(&self, vertex: VertexId) -> bool {
+        self.tds().is_vertex(vertex)
+    }
+
     fn insert_at(&mut self, p: G::Point, data: V, location: Location) -> Inserted<V> {
         self.inner
             .insert_at(p, location, data, takes(&p), |data, _| *data)
@@ -249,6 +254,8 @@ where
     }
 
     remove_by_method!(Locate<G, N>);
+
+    remove_all_method!();
 
     /// Moves a vertex to another point and returns it; it keeps its number and payload. If the site
     /// is taken, the vertex is removed, and the one that is there already is returned.

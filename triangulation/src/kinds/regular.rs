@@ -7,7 +7,7 @@ use crate::engine::Inserted;
 use crate::engine::insert::insert_each;
 use crate::engine::kind_methods::{
     construction_methods, from_points_with_method, insert_method, insertion_methods,
-    payload_methods, remove_by_method,
+    payload_methods, remove_all_method, remove_by_method,
 };
 use crate::engine::removal::Removal;
 use crate::error::{InputError, MoveError, RemovalError};
@@ -239,6 +239,10 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Regular<G, N, V, C> {
         by Locate<G, N>
     }
 
+    fn has_point(&self, vertex: VertexId) -> bool {
+        self.tds().is_vertex(vertex) || self.is_hidden(vertex)
+    }
+
     fn insert_at(&mut self, p: G::Point, data: V, location: Location) -> Inserted<V> {
         if let Some(vertex) = self.same(&p, location) {
             return Inserted {
@@ -444,6 +448,8 @@ where
     }
 
     remove_by_method!(Locate<G, N>);
+
+    remove_all_method!();
 
     /// Moves a point, visible or hidden, and returns its vertex, which keeps its number and
     /// payload. If a point with the same weight is on the site, the moved one is removed, and the

@@ -2,6 +2,8 @@ use rustc_hash::FxHashSet;
 
 use crate::embedded::sides::in_conflict;
 use crate::embedded::{Embedded, PointOf};
+use crate::engine::Inserted;
+use crate::error::PointError;
 use crate::geometry::{Crossing, Geometry};
 use crate::kinds::{Delaunay, Regular};
 use crate::lines::ConstrainedDelaunay;
@@ -172,6 +174,39 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Delaunay<G, N, V, C> 
         let Ok(zone) = conflict_zone(&self.inner, q, self.start(near), |_, _| Ok(true));
         zone
     }
+
+    /// Inserts a point whose [conflict zone](Self::conflict_zone) is known, with a payload. The
+    /// search for the point starts in the zone, and ends at once.
+    ///
+    /// The result is that of [`insert_with`](Self::insert_with), also if the zone is that of
+    /// another point, or of a triangulation that has changed since.
+    ///
+    /// # Errors
+    /// See [`insert_with`](Self::insert_with).
+    ///
+    /// # Complexity
+    /// Linear in the size of the zone.
+    ///
+    /// ```
+    /// use breakline_triangulation::{geometry::Plane, Delaunay};
+    ///
+    /// let points = [[0.0, 0.0], [4.0, 0.0], [5.0, 3.0], [1.0, 4.0]];
+    /// let (mut t, _) = Delaunay::from_points(Plane::new(), &points)?;
+    /// let p = [2.0, 2.0];
+    /// let zone = t.conflict_zone(&p, None).expect("it is inside");
+    /// let new_cells = zone.border.len();
+    /// let inserted = t.insert_in_zone(p, (), &zone)?;
+    /// assert_eq!(t.tds().vertices_around(inserted.vertex).count(), new_cells);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn insert_in_zone(
+        &mut self,
+        p: G::Point,
+        data: V,
+        zone: &ConflictZone,
+    ) -> Result<Inserted<V>, PointError> {
+        self.insert_near(p, data, zone.cells.first().copied())
+    }
 }
 
 impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Regular<G, N, V, C> {
@@ -206,6 +241,39 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Regular<G, N, V, C> {
             _ => zone_at(&**self, q, location, |_, _| Ok(true)),
         };
         zone
+    }
+
+    /// Inserts a point whose [conflict zone](Self::conflict_zone) is known, with a payload. The
+    /// search for the point starts in the zone, and ends at once.
+    ///
+    /// The result is that of [`insert_with`](Self::insert_with), also if the zone is that of
+    /// another point, or of a triangulation that has changed since.
+    ///
+    /// # Errors
+    /// See [`insert_with`](Self::insert_with).
+    ///
+    /// # Complexity
+    /// Linear in the size of the zone.
+    ///
+    /// ```
+    /// use breakline_triangulation::{geometry::Weighted, Regular};
+    ///
+    /// let points = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [5.0, 3.0, 0.0], [1.0, 4.0, 0.0]];
+    /// let (mut t, _) = Regular::from_points(Weighted::new(), &points)?;
+    /// let p = [2.0, 2.0, 1.0];
+    /// let zone = t.conflict_zone(&p, None).expect("it is inside");
+    /// let new_cells = zone.border.len();
+    /// let inserted = t.insert_in_zone(p, (), &zone)?;
+    /// assert_eq!(t.tds().vertices_around(inserted.vertex).count(), new_cells);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn insert_in_zone(
+        &mut self,
+        p: G::Point,
+        data: V,
+        zone: &ConflictZone,
+    ) -> Result<Inserted<V>, PointError> {
+        self.insert_near(p, data, zone.cells.first().copied())
     }
 }
 

@@ -34,6 +34,7 @@
 //! | the cells around a vertex or an edge, in space | [`Tds::cells_around`], [`Tds::cells_around_edge`] |
 //! | a cell with two, three or four given vertices, in space | [`Tds::cell_with`] |
 //! | the convex hull | [`Tds::hull`]; in space [`Tds::hull_facets`] |
+//! | data that you keep on edges | [`EdgeMap`] |
 //! | the same for any storage of links | [`Complex`]; [`plane`], [`space`], [`Neighbors`] |
 //!
 //! | to build or edit | use |
@@ -55,6 +56,7 @@ mod build;
 mod check;
 mod complex;
 mod counted;
+mod edge_map;
 mod edit;
 mod error;
 mod id;
@@ -69,6 +71,7 @@ mod zone;
 
 pub use complex::Complex;
 pub(crate) use complex::vertices_of;
+pub use edge_map::EdgeMap;
 pub use error::{EditError, TdsError};
 pub use id::{CellId, CellTag, Id, VertexId, VertexTag};
 pub use neighbors::Neighbors;

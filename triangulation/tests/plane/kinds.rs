@@ -310,7 +310,7 @@ macro_rules! judge_insertions {
         );
         assert_eq!(
             t.insert_near(at([f64::NAN, 0.0]), 72, near),
-            Err(PointError::Coordinate)
+            Err(PointError::NotFinite)
         );
 
         assert_eq!(t.move_to(there.vertex, at([5.0, 6.0])), Ok(there.vertex));

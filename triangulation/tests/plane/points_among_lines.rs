@@ -279,7 +279,7 @@ fn payloads_come_with_points() {
     assert!(t.tds().vertex_data(moved).ends_with('!'));
     assert_eq!(
         t.insert_with([f64::NAN, 0.0], String::new()),
-        Err(PointError::Coordinate)
+        Err(PointError::NotFinite)
     );
     assert_eq!(t.check(Level::Law), []);
 

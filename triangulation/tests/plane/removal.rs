@@ -297,7 +297,7 @@ fn vertices_move() {
         }
         assert_eq!(
             t.move_to(vertices[0], [f64::NAN, 0.0]),
-            Err(MoveError::Point(PointError::Coordinate))
+            Err(MoveError::Point(PointError::NotFinite))
         );
     }
 }

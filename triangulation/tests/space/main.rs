@@ -7,6 +7,7 @@ mod bulk;
 mod bulk_regular;
 mod compact;
 mod dual;
+mod edits;
 mod facts;
 mod gabriel;
 mod hull;
