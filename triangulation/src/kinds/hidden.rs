@@ -11,10 +11,10 @@ use crate::tds::{CellId, VertexId};
 /// their entries, and are then put under other cells, or removed as they become visible.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Hidden {
-    entries: FxHashMap<VertexId, Entry>,
+    entries: Entries,
     under: FxHashMap<CellId, Vec<VertexId>>,
-    /// The hidden point of each hash that was put last.
-    of_hash: FxHashMap<u64, VertexId>,
+    /// The hidden point that was put last, of those with the same key.
+    of_hash: FxHashMap<u32, VertexId>,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -23,22 +23,94 @@ struct Entry {
     cell: CellId,
     /// The position of the point in the list of that cell.
     position: u32,
-    /// The next hidden point of the same hash.
+    /// The next hidden point with the same key.
     next: Option<VertexId>,
+}
+
+/// The entries, by the numbers of their vertices, in pages. A page without entries is a null
+/// pointer: half a byte for each vertex.
+#[derive(Debug, Clone, Default)]
+struct Entries {
+    pages: Vec<Option<Box<Page>>>,
+    len: usize,
+}
+
+/// As many entries as share a pointer. Points that are inserted one after another have consecutive
+/// numbers, so that their entries are next to each other.
+const PAGE: usize = 16;
+
+#[derive(Debug, Clone, Default)]
+struct Page {
+    entries: [Option<Entry>; PAGE],
+    len: usize,
+}
+
+impl Entries {
+    fn get(&self, vertex: VertexId) -> Option<&Entry> {
+        let page = self.pages.get(vertex.index() / PAGE)?.as_ref()?;
+        page.entries[vertex.index() % PAGE].as_ref()
+    }
+
+    fn get_mut(&mut self, vertex: VertexId) -> Option<&mut Entry> {
+        let page = self.pages.get_mut(vertex.index() / PAGE)?.as_mut()?;
+        page.entries[vertex.index() % PAGE].as_mut()
+    }
+
+    /// Adds the entry of a vertex that has none.
+    fn insert(&mut self, vertex: VertexId, entry: Entry) {
+        let number = vertex.index() / PAGE;
+        if number >= self.pages.len() {
+            self.pages.resize_with(number + 1, || None);
+        }
+        let page = self.pages[number].get_or_insert_default();
+        page.entries[vertex.index() % PAGE] = Some(entry);
+        page.len += 1;
+        self.len += 1;
+    }
+
+    fn remove(&mut self, vertex: VertexId) -> Option<Entry> {
+        let slot = self.pages.get_mut(vertex.index() / PAGE)?;
+        let page = slot.as_mut()?;
+        let removed = page.entries[vertex.index() % PAGE].take()?;
+        page.len -= 1;
+        self.len -= 1;
+        if page.len == 0 {
+            *slot = None;
+        }
+        Some(removed)
+    }
+
+    /// Iterates over the vertices that have entries, and these, in order of their numbers.
+    fn iter(&self) -> impl Iterator<Item = (VertexId, &Entry)> {
+        let pages = self.pages.iter().enumerate();
+        let used = pages.filter_map(|(number, page)| Some((number, page.as_ref()?)));
+        used.flat_map(|(number, page)| {
+            let entries = page.entries.iter().enumerate();
+            entries.filter_map(move |(i, entry)| {
+                Some((VertexId::new(number * PAGE + i), entry.as_ref()?))
+            })
+        })
+    }
+}
+
+/// Returns half of a hash, by which points are found: it halves the table that grows with them. Any
+/// bits of the hash may be the ones that differ.
+fn key(hash: u64) -> u32 {
+    (hash.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 32) as u32
 }
 
 impl Hidden {
     pub(super) fn is_empty(&self) -> bool {
-        self.entries.is_empty()
+        self.entries.len == 0
     }
 
     pub(super) fn contains(&self, vertex: VertexId) -> bool {
-        self.entries.contains_key(&vertex)
+        self.entries.get(vertex).is_some()
     }
 
     /// Returns the cell that hides a point.
     pub(super) fn host(&self, vertex: VertexId) -> Option<CellId> {
-        self.entries.get(&vertex).map(|entry| entry.cell)
+        self.entries.get(vertex).map(|entry| entry.cell)
     }
 
     /// Returns the points under a cell.
@@ -48,14 +120,12 @@ impl Hidden {
 
     /// Returns all points, in order of their numbers.
     pub(super) fn all(&self) -> Vec<VertexId> {
-        let mut all: Vec<VertexId> = self.entries.keys().copied().collect();
-        all.sort_unstable();
-        all
+        self.entries.iter().map(|(vertex, _)| vertex).collect()
     }
 
-    /// Iterates over the hidden points of a hash.
+    /// Iterates over the hidden points of a hash, and perhaps a few others.
     pub(super) fn of_hash(&self, hash: u64) -> impl Iterator<Item = VertexId> + '_ {
-        std::iter::successors(self.of_hash.get(&hash).copied(), |vertex| {
+        std::iter::successors(self.of_hash.get(&key(hash)).copied(), |&vertex| {
             self.entries.get(vertex)?.next
         })
     }
@@ -66,16 +136,17 @@ impl Hidden {
         let under = self.under.entry(cell).or_default();
         let position = under.len() as u32;
         under.push(vertex);
-        let of_hash = &mut self.of_hash;
-        let entry = self.entries.entry(vertex).or_insert_with(|| {
-            let next = hash.and_then(|hash| of_hash.insert(hash, vertex));
-            Entry {
-                cell,
-                position,
-                next,
-            }
-        });
-        (entry.cell, entry.position) = (cell, position);
+        if let Some(entry) = self.entries.get_mut(vertex) {
+            (entry.cell, entry.position) = (cell, position);
+            return;
+        }
+        let next = hash.and_then(|hash| self.of_hash.insert(key(hash), vertex));
+        let entry = Entry {
+            cell,
+            position,
+            next,
+        };
+        self.entries.insert(vertex, entry);
     }
 
     /// Removes a point from under its cell, and its entry; returns false if it was not there.
@@ -86,7 +157,7 @@ impl Hidden {
         if let Some(under) = self.under.get_mut(&cell) {
             under.swap_remove(position as usize);
             match under.get(position as usize) {
-                Some(moved) => {
+                Some(&moved) => {
                     if let Some(entry) = self.entries.get_mut(moved) {
                         entry.position = position;
                     }
@@ -104,7 +175,7 @@ impl Hidden {
     }
 
     fn take_entry(&mut self, vertex: VertexId, hash: Option<u64>) -> Option<Entry> {
-        let removed = self.entries.remove(&vertex)?;
+        let removed = self.entries.remove(vertex)?;
         let Some(hash) = hash else {
             return Some(removed);
         };
@@ -114,12 +185,12 @@ impl Hidden {
             .last();
         match (before, removed.next) {
             (Some(before), next) => {
-                if let Some(entry) = self.entries.get_mut(&before) {
+                if let Some(entry) = self.entries.get_mut(before) {
                     entry.next = next;
                 }
             }
-            (None, Some(next)) => _ = self.of_hash.insert(hash, next),
-            (None, None) => _ = self.of_hash.remove(&hash),
+            (None, Some(next)) => _ = self.of_hash.insert(key(hash), next),
+            (None, None) => _ = self.of_hash.remove(&key(hash)),
         }
         Some(removed)
     }
@@ -148,10 +219,10 @@ impl Hidden {
     pub(super) fn flaws(&self, hash: impl Fn(VertexId) -> Option<u64>) -> Vec<VertexId> {
         let mut flaws: Vec<VertexId> = Vec::new();
         for (&cell, under) in &self.under {
-            let agrees = |(position, vertex): &(usize, &VertexId)| {
+            let agrees = |&(position, &vertex): &(usize, &VertexId)| {
                 self.entries
                     .get(vertex)
-                    .is_some_and(|entry| (entry.cell, entry.position as usize) == (cell, *position))
+                    .is_some_and(|entry| (entry.cell, entry.position as usize) == (cell, position))
             };
             flaws.extend(
                 under
@@ -161,7 +232,7 @@ impl Hidden {
                     .map(|(_, &vertex)| vertex),
             );
         }
-        let is_found = |&(&vertex, entry): &(&VertexId, &Entry)| {
+        let is_found = |&(vertex, entry): &(VertexId, &Entry)| {
             self.under(entry.cell).get(entry.position as usize) == Some(&vertex)
                 && hash(vertex).is_none_or(|hash| self.of_hash(hash).any(|other| other == vertex))
         };
@@ -169,7 +240,7 @@ impl Hidden {
             self.entries
                 .iter()
                 .filter(|entry| !is_found(entry))
-                .map(|(&vertex, _)| vertex),
+                .map(|(vertex, _)| vertex),
         );
         flaws.sort_unstable();
         flaws.dedup();
@@ -184,7 +255,11 @@ mod tests {
     use super::*;
 
     fn hash(vertex: VertexId) -> Option<u64> {
-        (vertex.index() % 3 != 2).then_some(vertex.index() as u64 / 8)
+        (vertex.index() % 3 != 2).then_some(bucket(vertex))
+    }
+
+    fn bucket(vertex: VertexId) -> u64 {
+        vertex.index() as u64 / 8
     }
 
     /// Beside a table that is searched.
@@ -234,11 +309,11 @@ mod tests {
             assert_eq!(hidden.flaws(hash), []);
             assert!(hidden.all().iter().eq(expected.keys()));
             assert_eq!(hidden.host(vertex), expected.get(&vertex).copied());
-            let mut of_hash: Vec<VertexId> = hidden.of_hash(vertex.index() as u64 / 8).collect();
+            let mut of_hash: Vec<VertexId> = hidden.of_hash(bucket(vertex)).collect();
             of_hash.sort_unstable();
             let alike = expected
                 .keys()
-                .filter(|&&other| hash(other) == Some(vertex.index() as u64 / 8));
+                .filter(|&&other| hash(other) == Some(bucket(vertex)));
             assert!(of_hash.iter().eq(alike));
         }
         hidden
@@ -246,6 +321,7 @@ mod tests {
             .into_iter()
             .for_each(|vertex| hidden.forget(vertex, hash(vertex)));
         assert!(hidden.is_empty() && hidden.under.is_empty() && hidden.of_hash.is_empty());
+        assert!(hidden.entries.pages.iter().all(Option::is_none));
     }
 
     #[test]
@@ -265,7 +341,7 @@ mod tests {
         assert_eq!(flaws(|hidden| hidden.under.clear()), [a, b, c]);
         assert_eq!(flaws(|hidden| hidden.of_hash.clear()), [a, b, c]);
         assert_eq!(
-            flaws(|hidden| _ = hidden.entries.remove(&VertexId::new(3))),
+            flaws(|hidden| _ = hidden.entries.remove(VertexId::new(3))),
             [a, b, c]
         );
         assert_eq!(

@@ -356,8 +356,9 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Regular<G, N, V, C> {
         self.hidden.contains(vertex)
     }
 
-    /// The hidden points, in order of their numbers. O(h log h) for h of them; for one point use
-    /// [`is_hidden`](Self::is_hidden), for one cell [`hidden_under`](Self::hidden_under).
+    /// The hidden points, in order of their numbers. Linear in their number, and a step for every
+    /// 16 vertices; for one point use [`is_hidden`](Self::is_hidden), for one cell
+    /// [`hidden_under`](Self::hidden_under).
     pub fn hidden(&self) -> impl ExactSizeIterator<Item = VertexId> + '_ {
         self.hidden.all().into_iter()
     }
