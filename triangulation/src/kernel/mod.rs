@@ -45,7 +45,7 @@ pub use formula::{
 };
 pub use pixel_sides::{CornerSide, CrossingSide};
 pub use power::{ComparePower, PowerInPlane, PowerOnLine, PowerTest2, PowerTest3};
-pub(crate) use radius::{RoundedRadius, SquaredRadii, SquaredRadius};
+pub(crate) use radius::{Congruence, RoundedRadius, SquaredRadii, SquaredRadius};
 pub use scaled::Scaled;
 pub(crate) use smallest::side_of_smallest_sphere;
 

@@ -7,7 +7,7 @@ use std::cmp::Ordering;
 
 use super::center::offset_in_space;
 use super::formula::{square, squared_length};
-use crate::num::{Bounded, Dyadic, Integer, Number, Pair, Sign, lattice};
+use crate::num::{Bounded, Dyadic, Integer, Number, Pair, Sign, lattice, unsigned_zero};
 
 /// A quotient `above / below` with a positive `below`.
 #[derive(Debug, Clone, Copy)]
@@ -70,30 +70,48 @@ enum Quick {
     Pair(Quotient<Bounded<Pair>>),
 }
 
+/// The weights and the squared distances of the corners of a cell. Cells that have the same are
+/// congruent, and have the same radius.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub(crate) struct Congruence {
+    weights: [u64; 4],
+    distances: [i128; 6],
+}
+
 /// Computes the squared radii of the cells of a triangulation.
 pub(crate) struct SquaredRadii {
     /// The inverse of a power of two of which all coordinates, and its square of which all weights,
     /// are multiples.
     inverse_unit: Option<f64>,
+    /// That of a power of two of which all coordinates are multiples.
+    inverse_step: Option<f64>,
 }
 
 impl SquaredRadii {
     /// Returns those of cells with corners among these points.
     pub(crate) fn among(points: impl Iterator<Item = [f64; 4]>) -> Self {
-        let lowest = |[x, y, z, weight]: [f64; 4]| {
-            let of_weight = lattice::lowest_bit(weight).map(|bit| bit.div_euclid(2));
-            [x, y, z]
-                .into_iter()
-                .filter_map(lattice::lowest_bit)
-                .chain(of_weight)
-                .min()
+        let smaller = |a: Option<i32>, b: Option<i32>| a.into_iter().chain(b).min();
+        let lowest_bit = |numbers: &[f64]| {
+            let bits = numbers.iter().filter_map(|&x| lattice::lowest_bit(x));
+            bits.min()
         };
-        let lowest = points.filter_map(lowest).min().unwrap_or(0);
+        let (of_sites, of_weights) = points.fold((None, None), |(sites, weights), p| {
+            let (site, weight) = p.split_at(3);
+            (
+                smaller(sites, lowest_bit(site)),
+                smaller(weights, lowest_bit(weight)),
+            )
+        });
         // Its square is a normal number, too.
-        SquaredRadii {
-            inverse_unit: (-500..=500)
+        let inverse = |lowest: Option<i32>| {
+            let lowest = lowest.unwrap_or(0);
+            (-500..=500)
                 .contains(&lowest)
-                .then(|| lattice::power_of_two(-lowest)),
+                .then(|| lattice::power_of_two(-lowest))
+        };
+        SquaredRadii {
+            inverse_unit: inverse(smaller(of_sites, of_weights.map(|bit| bit.div_euclid(2)))),
+            inverse_step: inverse(of_sites),
         }
     }
 
@@ -118,6 +136,41 @@ impl SquaredRadii {
             quick: self.quick(corners),
             exact: OnceCell::new(),
         }
+    }
+
+    /// Returns what a cell has in common with congruent ones; `None` if its size needs more digits
+    /// than `f64` has.
+    ///
+    /// The corners are sorted by their weights and distances. Where these do not distinguish them,
+    /// congruent cells may give different results.
+    pub(crate) fn congruence(&self, corners: [[f64; 4]; 4]) -> Option<Congruence> {
+        const BITS: i32 = 53;
+        let inverse = self.inverse_step?;
+        let axes = [0, 1, 2]
+            .into_iter()
+            .map(|axis| corners.iter().map(move |p| p[axis]));
+        if !lattice::fit(axes, inverse, BITS) {
+            return None;
+        }
+        let distance = |i: usize, j: usize| -> i128 {
+            let along = |axis: usize| {
+                let [a, b] = [i, j].map(|corner| corners[corner][axis]);
+                lattice::difference(a, b, inverse)
+            };
+            (0..3).map(|axis| along(axis) * along(axis)).sum()
+        };
+        let mut sorted = [0, 1, 2, 3].map(|i| {
+            let mut to_others = [0, 1, 2, 3].map(|j| distance(i, j));
+            to_others.sort_unstable();
+            (unsigned_zero(corners[i][3]).to_bits(), to_others, i)
+        });
+        sorted.sort_unstable();
+        let at = sorted.map(|(.., corner)| corner);
+        let pairs = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
+        Some(Congruence {
+            weights: sorted.map(|(weight, ..)| weight),
+            distances: pairs.map(|[i, j]| distance(at[i], at[j])),
+        })
     }
 
     fn quick(&self, corners: [[f64; 4]; 4]) -> Quick {

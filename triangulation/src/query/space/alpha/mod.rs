@@ -7,7 +7,9 @@ pub use classify::AlphaState;
 use rustc_hash::FxHashMap;
 
 use crate::geometry::{Geometry, Space, WeightedSpace};
-use crate::kernel::{Kernel, Orientation3, Predicate, RoundedRadius, SquaredRadii, SquaredRadius};
+use crate::kernel::{
+    Congruence, Kernel, Orientation3, Predicate, RoundedRadius, SquaredRadii, SquaredRadius,
+};
 use crate::kinds::{Delaunay, Regular};
 use crate::tds::space::OUTWARD;
 use crate::tds::{CellId, Tds, VertexId};
@@ -123,6 +125,46 @@ fn count_of_alike(candidates: &[Candidate]) -> usize {
     candidates.iter().enumerate().take_while(is_alike).count()
 }
 
+/// Sorts candidates by their radii, compared without rounding, and then by their cells. Each comes
+/// with a number that ascends with its radius.
+///
+/// Only one of those that are congruent is compared: in a lattice there are few.
+fn ranked(
+    candidates: &[Candidate],
+    radii: &SquaredRadii,
+    corners: impl Fn(CellId) -> [[f64; 4]; 4],
+) -> Vec<(usize, Candidate)> {
+    let mut classes: Vec<(SquaredRadius, CellId)> = Vec::new();
+    let mut class_of: FxHashMap<Congruence, usize> = FxHashMap::default();
+    let mut sorted: Vec<(usize, Candidate)> = Vec::with_capacity(candidates.len());
+    for &candidate in candidates {
+        let corners = corners(candidate.cell);
+        let next = classes.len();
+        let class = radii.congruence(corners).map_or(next, |congruence| {
+            *class_of.entry(congruence).or_insert(next)
+        });
+        if class == next {
+            classes.push((radii.to_compare(corners), candidate.cell));
+        }
+        sorted.push((class, candidate));
+    }
+    let compare = |&p: &usize, &q: &usize| {
+        let ((p, a), (q, b)) = (&classes[p], &classes[q]);
+        p.compare(q, || corners(*a), || corners(*b))
+    };
+    let mut order: Vec<usize> = (0..classes.len()).collect();
+    order.sort_unstable_by(|p, q| compare(p, q).then(p.cmp(q)));
+    let mut rank_of = vec![0; classes.len()];
+    for (rank, equal) in order.chunk_by(|p, q| compare(p, q).is_eq()).enumerate() {
+        equal.iter().for_each(|&class| rank_of[class] = rank);
+    }
+    for (class, _) in &mut sorted {
+        *class = rank_of[*class];
+    }
+    sorted.sort_unstable_by_key(|(rank, candidate)| (*rank, candidate.cell));
+    sorted
+}
+
 impl<'t, V, C: Copy + Default> AlphaShapes<'t, V, C> {
     fn of<G>(t: &'t Triangulation<G, 4, V, C>, weighted: impl Fn(&G::Point) -> [f64; 4]) -> Self
     where
@@ -169,16 +211,7 @@ impl<'t, V, C: Copy + Default> AlphaShapes<'t, V, C> {
                 shapes.push_level(first.radius.value, [first.cell]);
                 continue;
             }
-            let mut alike: Vec<(SquaredRadius, Candidate)> = alike
-                .iter()
-                .map(|&candidate| (radii.to_compare(corners(candidate.cell)), candidate))
-                .collect();
-            let compare = |(p, a): &(SquaredRadius, Candidate),
-                           (q, b): &(SquaredRadius, Candidate)| {
-                p.compare(q, || corners(a.cell), || corners(b.cell))
-            };
-            alike.sort_unstable_by(|p, q| compare(p, q).then_with(|| p.1.cell.cmp(&q.1.cell)));
-            for equal in alike.chunk_by(|p, q| compare(p, q).is_eq()) {
+            for equal in ranked(alike, &radii, corners).chunk_by(|p, q| p.0 == q.0) {
                 shapes.push_level(
                     equal[0].1.radius.value,
                     equal.iter().map(|(_, candidate)| candidate.cell),
