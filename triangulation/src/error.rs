@@ -3,6 +3,7 @@
 use std::error::Error;
 use std::fmt;
 
+use crate::geometry::Geometry;
 use crate::line_id::LineId;
 use crate::tds::VertexId;
 
@@ -48,10 +49,11 @@ impl Error for PointError {}
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum InputError {
-    /// The point at this position has a coordinate that is not finite, or whose magnitude is
-    /// outside of what the arithmetic is proven for (see
-    /// [`Kernel::RANGE`](crate::kernel::Kernel::RANGE)). That of the kernel
-    /// [`Wide`](crate::kernel::Wide) is all finite numbers.
+    /// The point at this position has a coordinate that is NaN or infinite; see
+    /// [`PointError::NotFinite`].
+    NotFinite(usize),
+    /// The magnitude of a coordinate of the point at this position is out of range; see
+    /// [`PointError::Coordinate`].
     Coordinate(usize),
     /// The point at this position lies before the one before it in
     /// [`spatial_order`](crate::spatial_order), or on the same site, where points have to come in
@@ -80,10 +82,13 @@ pub enum InputError {
 impl fmt::Display for InputError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            InputError::NotFinite(index) => {
+                write!(f, "point {index} has a coordinate that is NaN or infinite")
+            }
             InputError::Coordinate(index) => {
                 write!(
                     f,
-                    "point {index} has a coordinate that is not finite or too large or small to compute with"
+                    "point {index} has a coordinate that is too large or small to compute with"
                 )?;
                 f.write_str("; the kernel `Wide` takes all finite numbers")
             }
@@ -114,12 +119,34 @@ impl fmt::Display for InputError {
 impl Error for InputError {}
 
 impl PointError {
+    /// Returns the error of a point that a geometry does not admit; `None` if it does.
+    pub(crate) fn of<G: Geometry<N>, const N: usize>(geometry: &G, p: &G::Point) -> Option<Self> {
+        match (geometry.admits(p), geometry.is_finite(p)) {
+            (true, _) => None,
+            (false, true) => Some(PointError::Coordinate),
+            (false, false) => Some(PointError::NotFinite),
+        }
+    }
+
     /// The error of many points, of which the one at this position cannot be inserted.
     pub(crate) fn at(self, position: usize) -> InputError {
         match self {
-            PointError::NotFinite | PointError::Coordinate => InputError::Coordinate(position),
+            PointError::NotFinite => InputError::NotFinite(position),
+            PointError::Coordinate => InputError::Coordinate(position),
             PointError::TooMany => InputError::TooMany,
         }
+    }
+}
+
+impl InputError {
+    /// Returns the error of the first point that a geometry does not admit; `None` if it admits
+    /// all.
+    pub(crate) fn of_points<G: Geometry<N>, const N: usize>(
+        geometry: &G,
+        points: &[G::Point],
+    ) -> Option<Self> {
+        let mut errors = points.iter().enumerate();
+        errors.find_map(|(position, p)| Some(PointError::of(geometry, p)?.at(position)))
     }
 }
 

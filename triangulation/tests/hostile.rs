@@ -258,7 +258,7 @@ fn judge_refusal(
     line: Option<usize>,
 ) -> Result<String, String> {
     let is_right = match refused {
-        InputError::Coordinate(at) => Some(at) == point,
+        InputError::NotFinite(at) | InputError::Coordinate(at) => Some(at) == point,
         _ => line.is_some(),
     };
     if is_right {

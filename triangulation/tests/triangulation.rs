@@ -132,11 +132,16 @@ fn dimensions_grow_one_by_one() {
 
 #[test]
 fn refused_points_are_named() {
-    let points = [[0.0, 0.0], [1.0, f64::NAN]];
-    assert_eq!(
-        Delaunay::from_points(Plane::<Adaptive>::default(), &points).err(),
-        Some(InputError::Coordinate(1))
-    );
+    for (x, expected) in [
+        (f64::NAN, InputError::NotFinite(1)),
+        (f64::INFINITY, InputError::NotFinite(1)),
+        (1e300, InputError::Coordinate(1)),
+    ] {
+        let refused = Delaunay::from_points(Plane::<Adaptive>::default(), &[[0.0, 0.0], [1.0, x]]);
+        assert_eq!(refused.err(), Some(expected));
+        let mut t = Delaunay::new(Plane::<Adaptive>::default());
+        assert_eq!(t.insert_all(&[[0.0, 0.0], [1.0, x]]), Err(expected));
+    }
     let mut t = Delaunay::new(Plane::<Adaptive>::default());
     assert_eq!(t.insert([f64::INFINITY, 0.0]), Err(PointError::NotFinite));
     assert!(PointError::Coordinate.to_string().contains("Wide"));

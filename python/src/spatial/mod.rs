@@ -397,23 +397,23 @@ fn one_for_each_point(any: &Any, values: usize) -> Result<()> {
 /// Returns the error of points that were refused; it names the first of them.
 #[cold]
 fn refused<const D: usize>(error: &InputError, points: &[[f64; D]]) -> Failure {
-    let InputError::Coordinate(row) = *error else {
-        return Failure(if *error == InputError::Canceled {
-            Error::canceled()
-        } else {
-            Error::limit(error.to_string())
-        });
-    };
-    let point = &points[row];
-    let refused = if point.iter().all(|x| x.is_finite()) {
-        let Range { min, max } = Adaptive::RANGE;
-        let expected = format!("expected coordinates of 0 or between {min:.0e} and {max:.0e}");
-        Error::limit(format!("the point is at {point:?}, {expected}")).cure("scale the coordinates")
-    } else {
-        Error::usage(format!(
-            "the point is at {point:?}: points cannot contain NaN or infinity"
-        ))
-        .cure("leave such points out: points[numpy.isfinite(points).all(axis=1)]")
+    let (row, refused) = match *error {
+        InputError::NotFinite(row) => {
+            let point = &points[row];
+            let refused = Error::usage(format!(
+                "the point is at {point:?}: points cannot contain NaN or infinity"
+            ));
+            let cure = "leave such points out: points[numpy.isfinite(points).all(axis=1)]";
+            (row, refused.cure(cure))
+        }
+        InputError::Coordinate(row) => {
+            let (point, Range { min, max }) = (&points[row], Adaptive::RANGE);
+            let expected = format!("expected coordinates of 0 or between {min:.0e} and {max:.0e}");
+            let refused = Error::limit(format!("the point is at {point:?}, {expected}"));
+            (row, refused.cure("scale the coordinates"))
+        }
+        InputError::Canceled => return Failure(Error::canceled()),
+        error => return Failure(Error::limit(error.to_string())),
     };
     Failure(refused.at(format!("row {row}")))
 }

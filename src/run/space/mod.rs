@@ -524,7 +524,7 @@ fn solid(
 /// Returns an error that names a point by its number in the file.
 #[cold]
 fn explained(error: &InputError, nodes: &Nodes<3>, path: &Path) -> Error {
-    let InputError::Coordinate(i) = *error else {
+    let InputError::NotFinite(i) = *error else {
         return Error::limit(error.to_string()).in_file(path);
     };
     let number = i + nodes.first_number as usize;

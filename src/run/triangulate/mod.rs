@@ -332,22 +332,23 @@ fn unfinished(built: &Built) -> Error {
 /// Returns an error that names vertices or segments by their numbers and lines in the file.
 #[cold]
 fn explained(error: InputError, graph: &LineGraph, path: &Path) -> Error {
+    let at_vertex = |i: usize, expected: &str| {
+        let ([x, y], number) = (graph.nodes.points[i], i + graph.nodes.first_number as usize);
+        let line = graph.node_lines.get(i);
+        Error::limit(format!("vertex {number} is at {x:?} {y:?}, {expected}"))
+            .in_file(&graph.node_file)
+            .at(line.map_or_else(|| format!("vertex {number}"), |line| format!("line {line}")))
+    };
     match error {
+        InputError::NotFinite(i) => at_vertex(i, "expected finite coordinates"),
         InputError::Coordinate(i) => {
-            let ([x, y], Range { min, max }) = (graph.nodes.points[i], Fast::RANGE);
-            let number = i + graph.nodes.first_number as usize;
+            let Range { min, max } = Fast::RANGE;
             let expected = format!("expected coordinates of 0 or between {min:.0e} and {max:.0e}");
-            Error::limit(format!("vertex {number} is at {x:?} {y:?}, {expected}"))
-                .in_file(&graph.node_file)
-                .at(graph
-                    .node_lines
-                    .get(i)
-                    .map_or_else(|| format!("vertex {number}"), |line| format!("line {line}")))
-                .cure(wording![
-                    "leave out ",
-                    Setting::Kernel.text("fast"),
-                    ": the others take any finite coordinate"
-                ])
+            at_vertex(i, &expected).cure(wording![
+                "leave out ",
+                Setting::Kernel.text("fast"),
+                ": the others take any finite coordinate"
+            ])
         }
         InputError::Crossing {
             segments,

@@ -194,7 +194,7 @@ fn reduce<T>(
         .iter()
         .position(|vertex| !vertex.position[2].is_finite())
     {
-        return Err(refused(InputError::Coordinate(at), &input));
+        return Err(refused(InputError::NotFinite(at), &input));
     }
     lines::join_known(tile, &mut input)?;
     let points: Vec<[f64; 3]> = input
@@ -472,7 +472,7 @@ const CONTRADICTION: &str =
 #[cold]
 fn refused(error: InputError, input: &Residual) -> Error {
     match error {
-        InputError::Coordinate(at) => {
+        InputError::NotFinite(at) | InputError::Coordinate(at) => {
             admitted::refused(input.vertices[at].position).at(format!("point {at}"))
         }
         InputError::Crossing { at: [x, y], .. } => Error::format(format!(

@@ -382,8 +382,8 @@ fn survey<G: Coordinates<N>, const N: usize>(
         chunks::reduced(points.len(), grain.points, &look_at, nothing, |p, q| {
             (p.0 & q.0, p.1 & q.1, p.2.and(q.2))
         });
-    if !admitted && let Some(bad) = points.iter().position(|p| !geometry.admits(p)) {
-        return Err(InputError::Coordinate(bad));
+    if !admitted && let Some(error) = InputError::of_points(geometry, points) {
+        return Err(error);
     }
     if points.len() > MAX_VERTICES {
         return Err(InputError::TooMany);

@@ -31,13 +31,8 @@ impl<V> Inserted<V> {
 impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V, C> {
     /// Returns an error if a point must not be inserted.
     pub(crate) fn admit(&self, p: &G::Point) -> Result<(), PointError> {
-        if !self.geometry.admits(p) {
-            let is_finite = self.geometry.is_finite(p);
-            return Err(if is_finite {
-                PointError::Coordinate
-            } else {
-                PointError::NotFinite
-            });
+        if let Some(error) = PointError::of(&self.geometry, p) {
+            return Err(error);
         }
         if self.tds.vertex_slots() >= MAX_VERTICES {
             return Err(PointError::TooMany);
@@ -215,8 +210,8 @@ impl<G: Coordinates<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N
     /// Returns the order in which to insert points, or an error that names the position of the
     /// first one that is refused.
     pub(crate) fn order_of_all(&self, points: &[G::Point]) -> Result<Vec<u32>, InputError> {
-        if let Some(bad) = points.iter().position(|p| !self.geometry.admits(p)) {
-            return Err(InputError::Coordinate(bad));
+        if let Some(error) = InputError::of_points(&self.geometry, points) {
+            return Err(error);
         }
         if self.tds.vertex_slots() + points.len() > MAX_VERTICES {
             return Err(InputError::TooMany);

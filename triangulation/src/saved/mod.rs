@@ -87,8 +87,8 @@ impl<P, V, C: Copy + Default> ReadTriangulation<P, V, C> {
         if points.len() > MAX_VERTICES {
             return Err(Damage::Point(InputError::TooMany));
         }
-        if let Some(bad) = points.iter().position(|p| !geometry.admits(p)) {
-            return Err(Damage::Point(InputError::Coordinate(bad)));
+        if let Some(error) = InputError::of_points(&geometry, &points) {
+            return Err(Damage::Point(error));
         }
         if vertex_data.len() != points.len() {
             return Err(Damage::Shape("there are not as many payloads as points"));
