@@ -122,6 +122,13 @@ impl Axis<'_> {
 }
 
 impl PointColumns<'_> {
+    fn count(&self) -> usize {
+        match &self.axes[0] {
+            Axis::Numbers(numbers) => numbers.as_array().len(),
+            Axis::Steps(steps) => steps.as_array().len(),
+        }
+    }
+
     fn read(&self) -> PyResult<MemoryPoints> {
         let lattice = Lattice {
             scale: self.scale,
@@ -164,6 +171,15 @@ pub(crate) fn point_inputs(inputs: &[PointInput<'_>]) -> PyResult<Vec<Input<Memo
         PointInput::Columns(columns) => Ok(Input::Memory(Arc::new(columns.read()?))),
     };
     inputs.iter().map(read).collect()
+}
+
+/// Returns the number of points in arrays; `None` if there are files.
+pub(crate) fn count(inputs: &[PointInput<'_>]) -> Option<usize> {
+    let count = |input: &PointInput<'_>| match input {
+        PointInput::File(_) => None,
+        PointInput::Columns(columns) => Some(columns.count()),
+    };
+    inputs.iter().map(count).sum()
 }
 
 /// Lines and polygons in arrays: all vertices one after the other, the number of vertices of each
@@ -333,6 +349,21 @@ pub(crate) struct SurfaceArguments<'py> {
 }
 
 impl SurfaceArguments<'_> {
+    /// Returns true if the surface has more than points: lines, areas or a boundary.
+    pub(crate) fn have_lines(&self) -> bool {
+        let layers = [
+            &self.breaklines,
+            &self.boundary,
+            &self.soft_lines,
+            &self.draped_lines,
+            &self.walls,
+            &self.holes,
+            &self.flat,
+            &self.rivers,
+        ];
+        layers.iter().any(|layers| !layers.is_empty())
+    }
+
     /// Returns the request for a TIN of these points.
     pub(crate) fn request(
         &self,

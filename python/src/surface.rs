@@ -3,14 +3,14 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use breakline::data::{ContourLine, EdgeKind, Frame, Grid};
+use breakline::data::{ContourLine, EdgeKind, Frame, Grid, Surface as _};
 use breakline::io::geotiff::CellFormat;
 use breakline::io::{Destination, formats, mapped, mesh};
 use breakline::run::{
-    self, CellProduct, Context, ContourOptions, DemOptions, HillshadeOptions, LightOptions, Model,
-    Source, SurfaceProduct, SurfaceRequest,
+    self, CellProduct, Context, ContourOptions, DemOptions, Heights, HillshadeOptions,
+    LightOptions, Model, Source, SurfaceProduct, SurfaceRequest,
 };
-use breakline::terrain::{CompactTin, Method};
+use breakline::terrain::CompactTin;
 use breakline::{Error, io};
 use numpy::{PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -22,9 +22,6 @@ use crate::requests::{
 };
 use crate::work::{self, Call};
 use crate::{arrays, notices, reports};
-
-/// So many positions are searched on the calling thread: waking others takes longer.
-const FEW: usize = 1 << 8;
 
 /// A raster in Python: its cells by rows, its transform in GDAL's order, and its coordinate system
 /// as WKT.
@@ -38,12 +35,15 @@ type Contours<'py> = (Bound<'py, PyAny>, Bound<'py, PyAny>, Bound<'py, PyAny>);
 #[pyclass(frozen, module = "breakline._breakline")]
 pub(crate) struct Surface {
     product: Arc<SurfaceProduct>,
+    heights: Heights,
 }
 
 impl Surface {
     fn of(product: SurfaceProduct) -> Self {
+        let product = Arc::new(product);
         Surface {
-            product: Arc::new(product),
+            heights: Heights::new(Arc::clone(&product)),
+            product,
         }
     }
 }
@@ -65,9 +65,10 @@ impl Surface {
             source,
             systems: systems.options()?,
         };
+        let count = requests::count(&points).filter(|_| !options.have_lines());
         // The arrays are copied, and may be changed.
         drop((points, options));
-        work::run(py, &call, move |context| -> Result<_> {
+        work::run_on(py, &call, count, move |context| -> Result<_> {
             Ok(run::triangles(&request, context)?)
         })
         .map(Surface::of)
@@ -120,7 +121,7 @@ impl Surface {
     /// Returns the TIN in the bytes of its file.
     fn to_bytes<'py>(&self, py: Python<'py>, call: Call) -> PyResult<Bound<'py, PyBytes>> {
         let product = &self.product;
-        let bytes = work::run(py, &call, |_| -> Result<_> {
+        let bytes = work::run_on(py, &call, self.vertex_count(), |_| -> Result<_> {
             let mut bytes = Vec::new();
             product.triangles()?.write_tin(&mut bytes)?;
             Ok(bytes)
@@ -183,7 +184,7 @@ impl Surface {
         call: Call,
     ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
         let product = &self.product;
-        let (vertices, faces) = work::run(py, &call, |_| -> Result<_> {
+        let (vertices, faces) = work::run_on(py, &call, self.vertex_count(), |_| -> Result<_> {
             let listed = mesh::list(product.triangles()?)?;
             Ok((listed.vertices, signed(listed.faces)?))
         })?;
@@ -200,7 +201,7 @@ impl Surface {
         call: Call,
     ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
         let product = &self.product;
-        let (ends, kinds) = work::run(py, &call, |_| -> Result<_> {
+        let (ends, kinds) = work::run_on(py, &call, self.vertex_count(), |_| -> Result<_> {
             let (ends, kinds): (Vec<[u32; 2]>, Vec<u8>) = mesh::edges(product.triangles()?)?
                 .into_iter()
                 .map(|(ends, kind)| (ends, kind.number()))
@@ -226,15 +227,11 @@ impl Surface {
     ) -> PyResult<Bound<'py, PyAny>> {
         let method = requests::method(method)?;
         let positions = arrays::points::<2>(&positions);
-        let product = &self.product;
-        let find = |context: &Context<'_>| -> Result<_> {
-            Ok(run::elevations(product, &positions, method, context)?)
-        };
-        let heights = if positions.len() <= FEW && method == Method::Linear && self.is_walked() {
-            work::short(py, || find(&Context::default()))?
-        } else {
-            work::run(py, &call, find)?
-        };
+        let heights = &self.heights;
+        let count = heights.is_prepared(method).then_some(positions.len());
+        let heights = work::run_on(py, &call, count, |context| -> Result<_> {
+            Ok(heights.at(&positions, method, context)?)
+        })?;
         Ok(arrays::column(py, heights).into_any())
     }
 
@@ -340,7 +337,7 @@ impl Surface {
     /// Returns the flaws, each with the positions that it concerns.
     fn check(&self, py: Python<'_>, call: Call) -> PyResult<Vec<(String, Vec<[f64; 2]>)>> {
         let product = &self.product;
-        let flaws = work::run(py, &call, |context| -> Result<_> {
+        let flaws = work::run_on(py, &call, self.vertex_count(), |context| -> Result<_> {
             Ok(run::surface_flaws(product, context)?)
         })?;
         Ok(flaws
@@ -359,13 +356,13 @@ impl Surface {
 }
 
 impl Surface {
-    /// Returns true if a height is found by a walk, without threads: those of another pool than
-    /// ours would not exist after a fork.
-    fn is_walked(&self) -> bool {
+    /// The number of vertices; `None` if it takes long to find.
+    fn vertex_count(&self) -> Option<usize> {
         match &self.product.model {
-            Model::Tin(_) => true,
-            Model::Compact(tin) => !tin.has_fragments(),
-            Model::Parts(_) | Model::Mesh(_) | Model::Raster(_) => false,
+            Model::Tin(tin) => Some(tin.vertex_count()),
+            Model::Compact(tin) => Some(tin.vertex_count()),
+            Model::Mesh(mesh) => Some(mesh.vertex_count()),
+            Model::Parts(_) | Model::Raster(_) => None,
         }
     }
 

@@ -79,7 +79,8 @@ pub(crate) fn triangulate_arrays<'py>(
         max_added,
         ..Default::default()
     };
-    let product = work::run(py, &call, |context| -> Result<_> {
+    let count = expected(&graph, &options);
+    let product = work::run_on(py, &call, Some(count), |context| -> Result<_> {
         Ok(triangulate_graph(
             &graph,
             Path::new(NAME),
@@ -91,6 +92,27 @@ pub(crate) fn triangulate_arrays<'py>(
         arrays(py, product.triangulated)?,
         product.report.shortfall.len(),
     ))
+}
+
+/// Returns about how many vertices a mesh may have.
+fn expected(graph: &LineGraph, options: &TriangulateOptions) -> usize {
+    /// For each given vertex, of a mesh with a smallest angle.
+    const OF_ANGLE: usize = 8;
+    let points = &graph.nodes.points;
+    let extent = |axis: usize| {
+        let along = points.iter().map(|p| p[axis]);
+        along.clone().fold(f64::NEG_INFINITY, f64::max) - along.fold(f64::INFINITY, f64::min)
+    };
+    let of_regions = graph.regions.iter().filter_map(|region| region.max_area);
+    let areas = of_regions.chain(options.max_area);
+    let by_area = areas.map(|area| extent(0) * extent(1) / area).sum::<f64>();
+    let given = points.len() + graph.segments.len();
+    // A conversion that saturates.
+    let added = (by_area as usize).saturating_add(match options.min_angle {
+        Some(_) => OF_ANGLE * given,
+        None => 0,
+    });
+    given.saturating_add(added)
 }
 
 impl Graph<'_> {

@@ -1,10 +1,11 @@
-//! Long calls: on threads of our own, without the interpreter's lock, and canceled by Ctrl-C.
+//! Calls without the interpreter's lock: long ones on threads of our own, canceled by Ctrl-C; short
+//! ones on the calling thread.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, sync_channel};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::thread::{Builder, available_parallelism};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
+use std::thread::{Builder, ThreadId, available_parallelism};
 use std::time::Duration;
 
 use breakline::run::{Context, Monitor, Notice, Progress, Size, Stage};
@@ -21,6 +22,10 @@ pub(crate) const POLL: Duration = Duration::from_millis(50);
 /// that progress is reported to. In Python, a tuple of both, which `_call.py` has checked.
 #[derive(FromPyObject)]
 pub(crate) struct Call(Option<usize>, Option<Py<PyAny>>);
+
+/// So many points are worked on by the calling thread: that ends before other threads would wake
+/// up, and before anybody would press Ctrl-C.
+const FEW: usize = 2000;
 
 impl Call {
     /// A call of one thread, whose progress is not reported: for what reads a little.
@@ -152,6 +157,60 @@ pub(crate) fn run<T: Send, E: Send + Into<PyErr>>(
     run_around(py, call, |pool, context| pool.install(|| work(context)))
 }
 
+/// Like [`run`], for work on so many points; `None` if nobody knows.
+pub(crate) fn run_on<T: Send, E: Send + Into<PyErr>>(
+    py: Python<'_>,
+    call: &Call,
+    points: Option<usize>,
+    work: impl FnOnce(&Context<'_>) -> Result<T, E> + Send,
+) -> PyResult<T> {
+    run_around_on(py, call, points, |pool, context| {
+        pool.install(|| work(context))
+    })
+}
+
+/// Like [`run_around`], for work on so many points; `None` if nobody knows.
+pub(crate) fn run_around_on<T: Send, E: Send + Into<PyErr>>(
+    py: Python<'_>,
+    call: &Call,
+    points: Option<usize>,
+    work: impl FnOnce(&ThreadPool, &Context<'_>) -> Result<T, E> + Send,
+) -> PyResult<T> {
+    let are_few = points.is_some_and(|points| points < FEW);
+    match are_few.then(own_pool).flatten() {
+        Some(pool) => here(py, pool, call, work),
+        None => run_around(py, call, work),
+    }
+}
+
+/// Returns the pool whose only thread is the calling one; `None` on all threads but the first that
+/// asks, because such a pool is never freed.
+fn own_pool() -> Option<&'static ThreadPool> {
+    static OWN: OnceLock<(ThreadId, Option<ThreadPool>)> = OnceLock::new();
+    let here = std::thread::current().id();
+    let (thread, pool) = OWN.get_or_init(|| {
+        let pool = ThreadPoolBuilder::new().num_threads(1).use_current_thread();
+        (here, pool.build().ok())
+    });
+    pool.as_ref().filter(|_| *thread == here)
+}
+
+/// Does the work on the calling thread.
+fn here<T: Send, E: Send + Into<PyErr>>(
+    py: Python<'_>,
+    pool: &ThreadPool,
+    call: &Call,
+    work: impl FnOnce(&ThreadPool, &Context<'_>) -> Result<T, E> + Send,
+) -> PyResult<T> {
+    let watch = Watch::default();
+    let context = Context {
+        monitor: &watch,
+        ..Context::default()
+    };
+    let outcome = py.detach(|| catch_unwind(AssertUnwindSafe(|| work(pool, &context))));
+    ended(py, call, &watch, outcome)
+}
+
 /// Like [`run`], for work that takes a lock, and then uses the pool.
 ///
 /// A thread of a pool that waits for another one takes up other calls; were it to hold a lock, and
@@ -184,9 +243,10 @@ pub(crate) fn run_alone<T: Send, E: Send + Into<PyErr>>(
 fn on_pool<T: Send, E: Send + Into<PyErr>>(
     py: Python<'_>,
     pool: &ThreadPool,
-    Call(_, progress): &Call,
+    call: &Call,
     work: impl FnOnce(&ThreadPool, &Context<'_>) -> Result<T, E> + Send,
 ) -> PyResult<T> {
+    let Call(_, progress) = call;
     let watch = Watch::default();
     let cancel = AtomicBool::new(false);
     let mut interruption: Option<PyErr> = None;
@@ -230,15 +290,26 @@ fn on_pool<T: Send, E: Send + Into<PyErr>>(
         return Err(interruption);
     }
     match outcome {
-        Some(Ok(Ok(done))) => {
-            // The last stage, as it ended.
+        Some(outcome) => ended(py, call, &watch, outcome),
+        None => Err(errors::internal(&"the work ended without a result")),
+    }
+}
+
+/// Returns the result of work that has ended, after its last stage and its warnings.
+fn ended<T, E: Into<PyErr>>(
+    py: Python<'_>,
+    Call(_, progress): &Call,
+    watch: &Watch,
+    outcome: std::thread::Result<Result<T, E>>,
+) -> PyResult<T> {
+    match outcome {
+        Ok(Ok(done)) => {
             watch.report(py, progress.as_ref())?;
             notices::warn(py, &locked(&watch.notices))?;
             Ok(done)
         }
-        Some(Ok(Err(error))) => Err(error.into()),
-        Some(Err(panic)) => Err(errors::internal(panic.as_ref())),
-        None => Err(errors::internal(&"the work ended without a result")),
+        Ok(Err(error)) => Err(error.into()),
+        Err(panic) => Err(errors::internal(panic.as_ref())),
     }
 }
 

@@ -10,7 +10,7 @@
 //! | write it as a mesh | | [`write_mesh`] | |
 //! | write what a verb makes of it, in one piece or in tiles | [`WriteRequest`] | [`write()`] | [`WriteReport`] |
 //! | heights at the centers of cells | [`DemOptions`] | [`dem`] | [`CellProduct`] |
-//! | heights at positions | positions | [`elevations`] | a list |
+//! | heights at positions | positions | [`elevations`], [`Heights`] | a list |
 //! | shaded relief | [`HillshadeOptions`] | [`hillshade`] | [`CellProduct`] |
 //! | contours | [`ContourOptions`] | [`contour()`] | [`ContourProduct`] |
 //! | select, clip and merge points | [`PointsRequest`] | [`write_points`], [`read_points`] | [`PointsReport`] |
@@ -97,7 +97,7 @@ pub use products::cells::{
 };
 pub use products::check::{CheckProduct, FlawKind, LocatedFlaw, check, surface_flaws};
 pub use products::contour::{ContourOptions, ContourProduct, contour, write_contours};
-pub use products::elevation::elevations;
+pub use products::elevation::{Heights, elevations};
 pub use products::facts::{
     Facts, LayerFacts, MeshFacts, PlaneFacts, PointFacts, RasterFacts, facts,
 };

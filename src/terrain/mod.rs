@@ -72,6 +72,7 @@ pub(crate) use duplicates::one_per_site;
 pub use grid_surface::GridSurface;
 pub use hillshade::{Hillshade, Light};
 pub use inside::Inside;
+pub(crate) use interpolate::Prepared;
 pub use interpolate::{Interpolant, Method};
 pub use levels::{Levels, MAX_LEVELS};
 pub use lines::{

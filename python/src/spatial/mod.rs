@@ -5,11 +5,10 @@ mod dimensions;
 mod mesh;
 mod queries;
 
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{PoisonError, RwLock, RwLockReadGuard};
 
 use breakline::Error;
-use breakline::run::Context;
 use breakline::triangulation::InputError;
 use breakline::triangulation::geometry::{Plane, Space};
 use breakline::triangulation::kernel::{Adaptive, Kernel, Range};
@@ -20,7 +19,7 @@ use numpy::{
 use pyo3::prelude::*;
 
 use self::mesh::Mesh;
-use self::queries::{FEW, Field};
+use self::queries::Field;
 use crate::arrays::{column, points, table};
 use crate::errors::{Failure, Result};
 use crate::work::{self, Call};
@@ -109,6 +108,8 @@ impl Positions {
 #[pyclass(frozen, module = "breakline._breakline")]
 pub(crate) struct Tessellation {
     any: RwLock<Any>,
+    /// The number of points, without a lock.
+    points: AtomicUsize,
 }
 
 impl Tessellation {
@@ -125,14 +126,15 @@ impl Tessellation {
         call: &Call,
         compute: impl FnOnce(&Any, &AtomicBool) -> T + Send,
     ) -> PyResult<T> {
-        work::run_around(py, call, |pool, context| {
+        let points = Some(self.points.load(Ordering::Relaxed));
+        work::run_around_on(py, call, points, |pool, context| {
             let any = self.read();
             let any: &Any = &any;
             Result::Ok(pool.install(|| compute(any, context.cancel)))
         })
     }
 
-    /// Answers queries: a few on the calling thread, because other threads take longer to answer.
+    /// Answers queries.
     fn answer<T: Send>(
         &self,
         py: Python<'_>,
@@ -141,12 +143,11 @@ impl Tessellation {
         answer: impl FnOnce(&Any, &Positions, &AtomicBool) -> T + Send,
     ) -> PyResult<T> {
         let positions = Positions::of(positions).rounded();
-        if positions.count() <= FEW {
-            return work::short(py, || {
-                Result::Ok(answer(&self.read(), &positions, Context::default().cancel))
-            });
-        }
-        self.compute(py, call, |any, cancel| answer(any, &positions, cancel))
+        work::run_around_on(py, call, Some(positions.count()), |pool, context| {
+            let any = self.read();
+            let any: &Any = &any;
+            Result::Ok(pool.install(|| answer(any, &positions, context.cancel)))
+        })
     }
 }
 
@@ -156,20 +157,26 @@ impl Tessellation {
     #[new]
     fn new(py: Python<'_>, points: PyReadonlyArray2<'_, f64>, call: Call) -> PyResult<Self> {
         let points = Positions::of(&points);
-        let any = work::run(py, &call, |context| points.triangulated(context.cancel))?;
+        let count = points.count();
+        let any = work::run_on(py, &call, Some(count), |context| {
+            points.triangulated(context.cancel)
+        })?;
         Ok(Tessellation {
             any: RwLock::new(any),
+            points: AtomicUsize::new(count),
         })
     }
 
     /// Inserts more points, of shape (n, d).
     fn add(&self, py: Python<'_>, points: PyReadonlyArray2<'_, f64>, call: Call) -> PyResult<()> {
         let mut points = Positions::of(&points);
-        work::run_around(py, &call, |pool, _| {
+        let count = points.count();
+        work::run_around_on(py, &call, Some(count), |pool, _| {
             let mut any = self.any.write().unwrap_or_else(PoisonError::into_inner);
             let (any, points) = (&mut *any, &mut points);
             pool.install(|| {
                 at_positions!(any, points, (mesh, at) => mesh.add(at).map_err(|e| refused(&e, at))?);
+                self.points.fetch_add(count, Ordering::Relaxed);
                 Result::Ok(())
             })
         })

@@ -1,5 +1,7 @@
 //! Heights of a surface at positions.
 
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
 use rayon::prelude::*;
 
 use super::surface::{Model, SurfaceProduct};
@@ -7,7 +9,7 @@ use crate::data::{Bounds, Surface};
 use crate::error::Result;
 use crate::run::context::{Context, Size, Stage};
 use crate::run::sources::tin_parts;
-use crate::terrain::{Interpolant, Method};
+use crate::terrain::{Interpolant, Method, Prepared};
 use crate::triangulation::tds::CellId;
 
 /// Positions that a thread takes at a time.
@@ -26,7 +28,7 @@ const FEW: usize = 1 << 8;
 /// # Complexity
 /// With [`Method::Linear`], O(n log n) for n positions, on all threads, for a TIN that was built or
 /// opened. A mesh is searched by a tree of its faces, and other methods prepare the whole surface
-/// ([`Interpolant::new`]), with each call.
+/// ([`Interpolant::new`]), with each call: for many calls see [`Heights`].
 pub fn elevations(
     product: &SurfaceProduct,
     positions: &[[f64; 2]],
@@ -42,11 +44,22 @@ pub fn elevations(
         work.end()?;
         return Ok(heights);
     }
-    let surface = product.triangles()?;
+    let interpolant = Interpolant::new(product.triangles()?, method)?;
+    heights(product, interpolant, positions, context)
+}
+
+/// Returns the height by a method at each position, see [`elevations`].
+fn heights(
+    product: &SurfaceProduct,
+    interpolant: Interpolant<'_, dyn Surface + '_>,
+    positions: &[[f64; 2]],
+    context: &Context,
+) -> Result<Vec<f64>> {
     context.check()?;
+    let surface = product.triangles()?;
     let finder = Finder {
         product,
-        interpolant: Interpolant::new(surface, method)?,
+        interpolant,
     };
     let work = context.start(Stage::ComputingHeights, Size::Items(positions.len() as u64))?;
     let mut heights = vec![f64::NAN; positions.len()];
@@ -78,6 +91,80 @@ pub fn elevations(
     work.end()?;
     surface.ensure_intact()?;
     Ok(heights)
+}
+
+/// Heights of a surface for many calls: what a method prepares is kept.
+#[derive(Debug)]
+pub struct Heights {
+    product: Arc<SurfaceProduct>,
+    prepared: Mutex<Vec<(Method, Arc<Prepared>)>>,
+}
+
+impl Heights {
+    /// Returns the heights of a surface. Nothing is prepared yet.
+    pub fn new(product: Arc<SurfaceProduct>) -> Self {
+        Heights {
+            product,
+            prepared: Mutex::default(),
+        }
+    }
+
+    /// Returns the surface.
+    pub fn product(&self) -> &SurfaceProduct {
+        &self.product
+    }
+
+    /// Returns true if the next call with this method takes time for its positions only.
+    pub fn is_prepared(&self, method: Method) -> bool {
+        let is_walked = match &self.product.model {
+            Model::Tin(_) => true,
+            Model::Compact(tin) => !tin.has_fragments(),
+            Model::Parts(_) | Model::Mesh(_) | Model::Raster(_) => false,
+        };
+        (method == Method::Linear && is_walked) || self.known(method).is_some()
+    }
+
+    /// Returns the height at each position, like [`elevations`].
+    ///
+    /// # Errors
+    /// Those of [`elevations`].
+    ///
+    /// # Complexity
+    /// That of [`elevations`] for the first call with a method; after that, O(log n) for each
+    /// position of an ordinary surface. 72 bytes are kept for each vertex and method, except for
+    /// linear heights of a TIN.
+    pub fn at(
+        &self,
+        positions: &[[f64; 2]],
+        method: Method,
+        context: &Context,
+    ) -> Result<Vec<f64>> {
+        let product = &self.product;
+        if method == Method::Linear && matches!(product.model, Model::Parts(_)) {
+            return elevations(product, positions, method, context);
+        }
+        context.check()?;
+        let surface = product.triangles()?;
+        let interpolant = match self.known(method) {
+            Some(prepared) => Interpolant::of_prepared(surface, prepared),
+            None => {
+                let interpolant = Interpolant::new(surface, method)?;
+                self.lock().push((method, interpolant.prepared()));
+                interpolant
+            }
+        };
+        heights(product, interpolant, positions, context)
+    }
+
+    fn known(&self, method: Method) -> Option<Arc<Prepared>> {
+        let prepared = self.lock();
+        let known = prepared.iter().find(|(known, _)| *known == method);
+        known.map(|(_, prepared)| Arc::clone(prepared))
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Vec<(Method, Arc<Prepared>)>> {
+        self.prepared.lock().unwrap_or_else(PoisonError::into_inner)
+    }
 }
 
 /// Finds heights of a surface by a method.
@@ -177,6 +264,33 @@ mod tests {
             ..SurfaceRequest::default()
         };
         run::triangles(&request, &Context::default()).unwrap()
+    }
+
+    #[test]
+    fn a_method_is_prepared_once() {
+        let product = Arc::new(hills(None));
+        let positions: Vec<[f64; 2]> = (0..500u32)
+            .map(|i| [f64::from(i * 7 % 110), f64::from(i * 11 % 110)])
+            .collect();
+        let heights = Heights::new(Arc::clone(&product));
+        for method in [Method::Natural, Method::Smooth, Method::Nearest] {
+            assert!(!heights.is_prepared(method));
+            let expected = elevations(&product, &positions, method, &Context::default()).unwrap();
+            for _ in 0..2 {
+                let found = heights.at(&positions, method, &Context::default()).unwrap();
+                assert!(
+                    found
+                        .iter()
+                        .zip(&expected)
+                        .all(|(a, b)| a.to_bits() == b.to_bits())
+                );
+                assert!(heights.is_prepared(method));
+            }
+        }
+        assert!(
+            heights.is_prepared(Method::Linear),
+            "nothing is to be prepared"
+        );
     }
 
     #[test]

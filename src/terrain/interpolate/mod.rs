@@ -26,7 +26,7 @@ mod natural;
 mod smooth;
 mod vertices;
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use super::boxes::{Boxed, Boxes, Extent};
 use super::linear::linear;
@@ -75,6 +75,12 @@ pub enum Method {
 #[derive(Debug)]
 pub struct Interpolant<'a, S: ?Sized> {
     surface: &'a S,
+    prepared: Arc<Prepared>,
+}
+
+/// What a method needs to know of a surface, for any number of interpolants on it.
+#[derive(Debug)]
+pub(crate) struct Prepared {
     rule: Rule,
     /// The faces of the surface, for single positions.
     faces: OnceLock<Boxes<Located>>,
@@ -141,17 +147,30 @@ impl<'a, S: Surface + ?Sized> Interpolant<'a, S> {
             Method::Idw => Rule::Idw(Vertices::new(surface)),
         };
         surface.ensure_intact()?;
-        Ok(Interpolant {
-            surface,
+        let prepared = Prepared {
             rule,
             faces: OnceLock::new(),
             beneath: OnceLock::new(),
+        };
+        Ok(Interpolant {
+            surface,
+            prepared: Arc::new(prepared),
         })
+    }
+
+    /// Returns a method on a surface for which it was prepared.
+    pub(crate) fn of_prepared(surface: &'a S, prepared: Arc<Prepared>) -> Self {
+        Interpolant { surface, prepared }
+    }
+
+    /// Returns what was prepared, to be used again on the same surface.
+    pub(crate) fn prepared(&self) -> Arc<Prepared> {
+        Arc::clone(&self.prepared)
     }
 
     /// Returns the method.
     pub fn method(&self) -> Method {
-        match self.rule {
+        match self.prepared.rule {
             Rule::Linear => Method::Linear,
             Rule::Nearest(_) => Method::Nearest,
             Rule::Natural(_) => Method::Natural,
@@ -173,7 +192,7 @@ impl<'a, S: Surface + ?Sized> Interpolant<'a, S> {
                 .triangle(face)
                 .is_some_and(|triangle| holds(triangle, q))
         };
-        let faces = self.faces.get_or_init(|| {
+        let faces = self.prepared.faces.get_or_init(|| {
             let located = |(number, corners): (u32, [u32; 3])| Located {
                 number,
                 extent: Extent::of(corners.map(|v| self.surface.position(v))),
@@ -187,7 +206,7 @@ impl<'a, S: Surface + ?Sized> Interpolant<'a, S> {
     /// Returns the height at a position in a face of the surface, or next to it by a rounding
     /// error. Returns the same for all faces around the position.
     pub(super) fn height_in(&self, face: u32, q: [f64; 2], scratch: &mut QueryBuffers) -> f64 {
-        let height = match &self.rule {
+        let height = match &self.prepared.rule {
             Rule::Linear => None,
             Rule::Nearest(vertices) => vertices.nearest(q, &mut scratch.search),
             Rule::Idw(vertices) => vertices.inverse_distance(q, &mut scratch.search),
@@ -241,7 +260,7 @@ impl<'a, S: Surface + ?Sized> Interpolant<'a, S> {
 
     /// Returns a triangle at a position that is in a fragment.
     fn triangle_under(&self, base: &Base, q: [f64; 2]) -> Option<u32> {
-        let beneath = self.beneath.get_or_init(|| {
+        let beneath = self.prepared.beneath.get_or_init(|| {
             let is_cut = |number: u32| self.surface.face(number).is_none();
             let faces = faces_under(self.surface).filter(|face| is_cut(face.number));
             let extent = |corners: [u32; 3]| Extent::of(corners.map(|v| base.point(v)));
