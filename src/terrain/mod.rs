@@ -73,7 +73,7 @@ pub use grid_surface::GridSurface;
 pub use hillshade::{Hillshade, Light};
 pub use inside::Inside;
 pub(crate) use interpolate::Prepared;
-pub use interpolate::{Interpolant, Method};
+pub use interpolate::{CubicElement, Interpolant, Method};
 pub use levels::{Levels, MAX_LEVELS};
 pub use lines::{
     Flat, FlatHeight, HighSide, River, RiverHeights, RiverLowering, Wall, WaterOverlap, densified,

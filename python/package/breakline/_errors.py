@@ -6,6 +6,7 @@ import os
 import sys
 import warnings
 from collections.abc import Sequence
+from types import FrameType
 from typing import Any, Optional
 
 
@@ -129,11 +130,12 @@ def usage(
     return error
 
 
-def warn(texts: "Sequence[str]") -> None:
+def warn(texts: "Sequence[str]", kind: "type[BreaklineWarning]" = BreaklineWarning) -> None:
     """Issue warnings that point to the first caller outside of this package."""
     folder = os.path.dirname(__file__)
-    level, frame = 1, sys._getframe()
+    level = 1
+    frame: "Optional[FrameType]" = sys._getframe()
     while frame is not None and frame.f_code.co_filename.startswith(folder):
         level, frame = level + 1, frame.f_back
     for text in texts:
-        warnings.warn(text, BreaklineWarning, stacklevel=level)
+        warnings.warn(text, kind, stacklevel=level)

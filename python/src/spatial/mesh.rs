@@ -234,21 +234,37 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
         at
     }
 
+    /// Returns the vertex of each point that is the first at its site.
+    pub(super) fn first_at_vertices(&self) -> Vec<Option<VertexId>> {
+        let mut vertex_of = vec![None; self.point_count()];
+        for (vertex, &point) in self.point_of.iter().enumerate() {
+            if point != NONE {
+                vertex_of[point as usize] = Some(VertexId::new(vertex));
+            }
+        }
+        vertex_of
+    }
+
+    /// Returns the vertex of each point.
+    pub(super) fn vertices_of_points(&self) -> Vec<VertexId> {
+        let firsts = self.first_at_vertices();
+        let mut vertices: Vec<VertexId> = firsts
+            .into_iter()
+            .map(|vertex| vertex.unwrap_or(VertexId::INFINITE))
+            .collect();
+        for &(point, vertex) in &self.repeated {
+            vertices[point as usize] = vertex;
+        }
+        vertices
+    }
+
     /// Returns the neighbors of all points: those of point `k` are `indices[starts[k]..starts[k +
     /// 1]]`. A point that is not a corner has none.
     pub(super) fn neighbor_points(&self) -> (Vec<i32>, Vec<i32>)
     where
         Tds<N>: Neighbors<N, Error = Infallible>,
     {
-        let mut vertex_of = vec![None; self.point_count()];
-        for (v, &point) in self
-            .point_of
-            .iter()
-            .enumerate()
-            .filter(|&(_, &point)| point != NONE)
-        {
-            vertex_of[point as usize] = Some(VertexId::new(v));
-        }
+        let vertex_of = self.first_at_vertices();
         let around = |vertex: VertexId, all: &mut Vec<i32>| {
             let start = all.len();
             let Ok(neighbors) = self.t.tds().neighbors_of(vertex);

@@ -1,6 +1,7 @@
 //! Drop-ins for `scipy.spatial.Delaunay` and the interpolators over it: what is computed. The
 //! signatures of scipy are in `package/breakline/spatial.py`.
 
+mod cubic;
 mod dimensions;
 mod mesh;
 mod queries;
@@ -18,6 +19,7 @@ use numpy::{
 };
 use pyo3::prelude::*;
 
+use self::cubic::{Gradients, Limits};
 use self::mesh::Mesh;
 use self::queries::Field;
 use crate::arrays::{column, points, table};
@@ -382,6 +384,92 @@ impl Values {
                 })?;
         Ok(column(py, values?))
     }
+}
+
+/// Values at the points of a triangulation of the plane, with gradients.
+#[pyclass(frozen, module = "breakline._breakline")]
+pub(crate) struct CubicValues {
+    values: Py<Values>,
+    gradients: Gradients,
+}
+
+#[pymethods]
+impl CubicValues {
+    /// Estimates gradients for values: until none changes by more than a tolerance, and in at most
+    /// so many rounds.
+    #[new]
+    fn new(
+        py: Python<'_>,
+        values: Py<Values>,
+        tolerance: f64,
+        rounds: usize,
+        call: Call,
+    ) -> PyResult<Self> {
+        let limits = Limits { tolerance, rounds };
+        let of = values.get();
+        let gradients = of.tessellation.get().compute(py, &call, |any, cancel| {
+            one_for_each_point(any, of.count)?;
+            let gradients = plane(any)?.gradients(&of.field, limits, cancel);
+            Result::Ok(gradients)
+        })??;
+        Ok(CubicValues { values, gradients })
+    }
+
+    /// True if gradients changed by no more than the tolerance at the end.
+    #[getter]
+    fn has_converged(&self) -> bool {
+        self.gradients.have_converged
+    }
+
+    /// The gradients at the points: an array of shape (n, k, 2).
+    fn gradients<'py>(&self, py: Python<'py>, call: Call) -> PyResult<Bound<'py, PyArray3<f64>>> {
+        let of = self.values.get();
+        let gradients = of.tessellation.get().compute(py, &call, |any, _| {
+            one_for_each_point(any, of.count)?;
+            Result::Ok(plane(any)?.gradients_at_points(&self.gradients))
+        })??;
+        Ok(gradients.into_pyarray(py))
+    }
+
+    /// Cubic values at positions of shape (q, 2): an array of shape (q * k,).
+    fn at<'py>(
+        &self,
+        py: Python<'py>,
+        positions: PyReadonlyArray2<'py, f64>,
+        call: Call,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let of = self.values.get();
+        let values =
+            of.tessellation
+                .get()
+                .answer(py, &call, &positions, |any, positions, cancel| {
+                    one_for_each_point(any, of.count)?;
+                    let (mesh, Positions::Plane(at)) = (plane(any)?, positions) else {
+                        return Err(not_of_the_plane());
+                    };
+                    let data = (&of.field, &self.gradients);
+                    Result::Ok(mesh.cubic(at, data, &of.outside, of.tolerance, cancel))
+                })?;
+        Ok(column(py, values?))
+    }
+}
+
+/// Returns a triangulation of the plane.
+///
+/// # Errors
+/// If it is one of space.
+fn plane(any: &Any) -> Result<&Mesh<Plane, 3, 2>> {
+    match any {
+        Any::Plane(mesh) => Ok(mesh),
+        Any::Space(_) => Err(not_of_the_plane()),
+    }
+}
+
+#[cold]
+fn not_of_the_plane() -> Failure {
+    Error::usage("this mode of interpolation is available for 2-D data only")
+        .cure("use LinearNDInterpolator or NaturalNeighborInterpolator")
+        .into()
 }
 
 /// Points may have been added since the values were given.

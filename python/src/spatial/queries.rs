@@ -11,8 +11,8 @@ use rayon::prelude::*;
 
 use super::mesh::{CHUNK, Dimension, Mesh, NONE};
 
-/// So many queries are answered one by one, on the calling thread.
-pub(super) const FEW: usize = 64;
+/// So many queries are answered in the order in which they are given.
+const FEW: usize = 64;
 
 /// Queries whose successors lie this many simplices away on average are sorted first.
 const FAR: f64 = 8.0;
@@ -47,7 +47,12 @@ pub(super) struct Field {
 }
 
 impl Field {
-    fn at(&self, vertex: VertexId) -> &[f64] {
+    /// The number of columns.
+    pub(super) fn width(&self) -> usize {
+        self.width
+    }
+
+    pub(super) fn at(&self, vertex: VertexId) -> &[f64] {
         &self.values[vertex.index() * self.width..][..self.width]
     }
 
@@ -69,7 +74,7 @@ impl Field {
 }
 
 /// Where a position is.
-enum Site<const N: usize> {
+pub(super) enum Site<const N: usize> {
     Vertex(VertexId),
     /// In this cell, by these barycentric coordinates, which are not negative and sum up to 1.
     Cell(CellId, [f64; N]),
@@ -107,21 +112,23 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
         tolerance: f64,
         cancel: &AtomicBool,
     ) -> Vec<i32> {
-        self.each(queries, &[NONE], cancel, |q, near, found| {
-            let (cell, near) = match self.t.locate(q, near) {
-                Location::Cell { cell, .. } => (Some(cell), Some(cell)),
-                Location::Vertex(vertex) => {
-                    let cell = self.inside_at(vertex);
-                    (cell, cell)
-                }
-                Location::OutsideHull { cell } => {
-                    let inside = self.inside_of(cell);
-                    (self.within_tolerance(q, inside, tolerance), Some(inside))
-                }
-                Location::OutsideAffineHull | Location::Nowhere => (None, None),
-            };
-            found[0] = cell.map_or(NONE, |cell| self.simplex(cell));
-            near
+        self.each(queries, &[NONE], cancel, || {
+            |q, near, found: &mut [i32]| {
+                let (cell, near) = match self.t.locate(q, near) {
+                    Location::Cell { cell, .. } => (Some(cell), Some(cell)),
+                    Location::Vertex(vertex) => {
+                        let cell = self.inside_at(vertex);
+                        (cell, cell)
+                    }
+                    Location::OutsideHull { cell } => {
+                        let inside = self.inside_of(cell);
+                        (self.within_tolerance(q, inside, tolerance), Some(inside))
+                    }
+                    Location::OutsideAffineHull | Location::Nowhere => (None, None),
+                };
+                found[0] = cell.map_or(NONE, |cell| self.simplex(cell));
+                near
+            }
         })
     }
 
@@ -134,8 +141,8 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
         tolerance: f64,
         cancel: &AtomicBool,
     ) -> Vec<f64> {
-        self.each(queries, outside, cancel, |q, near, mean| {
-            self.linear_at(q, near, field, tolerance, mean)
+        self.each(queries, outside, cancel, || {
+            |q, near, mean: &mut [f64]| self.linear_at(q, near, field, tolerance, mean)
         })
     }
 
@@ -170,24 +177,26 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
         tolerance: f64,
         cancel: &AtomicBool,
     ) -> Vec<f64> {
-        self.each(queries, outside, cancel, |q, near, mean| {
-            let location = self.t.locate(q, near);
-            let near = location.cell(&self.t).or(near);
-            let is_at_rim =
-                matches!(location, Location::Cell { cell, .. } if self.is_at_rim(cell, q));
-            let Some(weights) = (if is_at_rim {
-                None
-            } else {
-                G::sibson(&self.t, q, near)
-            }) else {
-                // On the hull up to a rounding error, where the limit is linear; outside; or where
-                // squares overflow or underflow.
-                return self.linear_at(q, near, field, tolerance, mean);
-            };
-            field.mean(weights.iter().copied(), mean);
-            weights
-                .first()
-                .and_then(|&(vertex, _)| self.t.tds().cell_of(vertex))
+        self.each(queries, outside, cancel, || {
+            |q, near, mean: &mut [f64]| {
+                let location = self.t.locate(q, near);
+                let near = location.cell(&self.t).or(near);
+                let is_at_rim =
+                    matches!(location, Location::Cell { cell, .. } if self.is_at_rim(cell, q));
+                let Some(weights) = (if is_at_rim {
+                    None
+                } else {
+                    G::sibson(&self.t, q, near)
+                }) else {
+                    // On the hull up to a rounding error, where the limit is linear; outside; or
+                    // where squares overflow or underflow.
+                    return self.linear_at(q, near, field, tolerance, mean);
+                };
+                field.mean(weights.iter().copied(), mean);
+                weights
+                    .first()
+                    .and_then(|&(vertex, _)| self.t.tds().cell_of(vertex))
+            }
         })
     }
 
@@ -197,31 +206,37 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
     where
         Tds<N>: Neighbors<N, Error = Infallible>,
     {
-        self.each(queries, &[NONE], cancel, |q, near, nearest| {
-            let vertex = self.t.nearest(q, near)?;
-            nearest[0] = self.point_of[vertex.index()];
-            self.t.tds().cell_of(vertex)
+        self.each(queries, &[NONE], cancel, || {
+            |q, near, nearest: &mut [i32]| {
+                let vertex = self.t.nearest(q, near)?;
+                nearest[0] = self.point_of[vertex.index()];
+                self.t.tds().cell_of(vertex)
+            }
         })
     }
 
     /// Calls `work` for each position with a cell from which to search and the numbers of its
-    /// result, which are those of `blank`; it returns the cell that it found.
+    /// result, which are those of `blank`; it returns the cell that it found. Each task has a
+    /// `work` of its own, which may remember what it has found.
     ///
     /// Results do not depend on the number of threads: tasks are the same for any number of them.
-    fn each<T: Copy + Send + Sync>(
+    pub(super) fn each<T: Copy + Send + Sync, W>(
         &self,
         queries: &[[f64; D]],
         blank: &[T],
         cancel: &AtomicBool,
-        work: impl Fn(&[f64; D], Option<CellId>, &mut [T]) -> Option<CellId> + Sync,
-    ) -> Vec<T> {
+        work: impl Fn() -> W + Sync,
+    ) -> Vec<T>
+    where
+        W: FnMut(&[f64; D], Option<CellId>, &mut [T]) -> Option<CellId>,
+    {
         let mut results = blank.repeat(queries.len());
         let width = blank.len();
         if width == 0 {
             return results;
         }
         let answer = |results: &mut [T], index: &dyn Fn(usize) -> usize| {
-            let mut near = None;
+            let (mut near, mut work) = (None, work());
             for (rank, result) in results.chunks_exact_mut(width).enumerate() {
                 near = work(&queries[index(rank)], near, result).or(near);
             }
@@ -288,7 +303,7 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
     /// That is where it is, except in simplices that are at the hull by rounding: values there are
     /// those of a neighbor, so that they do not depend on which points of a straight side are
     /// rounded inward.
-    fn site(
+    pub(super) fn site(
         &self,
         q: &[f64; D],
         near: Option<CellId>,

@@ -22,6 +22,7 @@
 //! triangles. Nothing is inserted.
 
 mod base;
+mod element;
 mod natural;
 mod smooth;
 mod vertices;
@@ -37,6 +38,8 @@ use base::{Base, Site};
 use natural::{Tour, laplace, sibson};
 use smooth::Patch;
 use vertices::{Search, Vertices};
+
+pub use element::CubicElement;
 
 /// How heights between the vertices of a surface are computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]

@@ -1,18 +1,7 @@
 //! A surface without kinks except at hard edges: the macro-element of Clough and Tocher.
 //!
-//! Each triangle is divided at its centroid into three cubic polynomials, given by heights and
-//! gradients at the corners. Along an edge the height is a cubic polynomial and the slope across it
-//! is linear, both given by the ends alone. So two triangles fit together without a kink.
-//!
-//! ```text
-//!            2                 coefficients of one of the three polynomials, j = 0 and k = 1,
-//!           /|\                by their weights for (j, k, m), m the centroid:
-//!          / | \
-//!         /  m  \              300 --- 210 --- 120 --- 030
-//!        / /   \ \                \ 201 --- 111 --- 021
-//!       0---------1                  \ 102 --- 012
-//!                                        003
-//! ```
+//! Each triangle has one [`CubicElement`]. The slope across an edge in the direction of its normal
+//! is linear along it, so two triangles fit together without a kink.
 //!
 //! # At hard edges
 //!
@@ -28,6 +17,7 @@
 //! the two others, together with its gradient (after Nielson 1979). So no kink arises there.
 
 use super::base::{Base, before, cross, minus, next, square};
+use super::element::{CubicElement, inward};
 
 /// One triangle with its polynomials.
 #[derive(Debug, Clone)]
@@ -37,14 +27,7 @@ pub(super) struct Patch {
     corners: [[f64; 3]; 3],
     /// Twice its area.
     area: f64,
-    /// For each corner: the coefficients next to it, towards the next corner, the one before, and
-    /// the centroid.
-    beside: [[f64; 3]; 3],
-    /// For each corner, the coefficient in the middle of the opposite polynomial.
-    middle: [f64; 3],
-    /// For each corner, the coefficient next to the centroid.
-    inner: [f64; 3],
-    center: f64,
+    element: CubicElement,
     /// For each hard edge, by the opposite corner, what makes it linear.
     hard: [Option<[f64; 2]>; 3],
 }
@@ -60,30 +43,15 @@ impl Patch {
         let corners = order.map(|i| all[i]);
         let gradients = order.map(|i| gradient(base, face, i));
         let vector = |i: usize, j: usize| minus(corners[j], corners[i]);
-        let height = |i: usize| corners[i][2];
         let slope = |i: usize, [x, y]: [f64; 2]| gradients[i][0] * x + gradients[i][1] * y;
-        // From a corner to the centroid.
-        let inward = |i: usize| {
-            let ([ax, ay], [bx, by]) = (vector(i, next(i)), vector(i, before(i)));
-            [(ax + bx) / 3.0, (ay + by) / 3.0]
-        };
-        let beside = [0, 1, 2].map(|i| {
-            [vector(i, next(i)), vector(i, before(i)), inward(i)]
-                .map(|vector| height(i) + slope(i, vector) / 3.0)
-        });
-        // The slope across an edge is linear along it.
-        let middle = [0, 1, 2].map(|i| {
+        let normals = [0, 1, 2].map(|i| {
             let (j, k) = (next(i), before(i));
-            let (edge, to_center) = (vector(j, k), inward(j));
-            let part = (edge[0] * to_center[0] + edge[1] * to_center[1]) / square(edge);
-            let ([jk, _, jm], [_, kj, km]) = (beside[j], beside[k]);
-            let between = |from: f64, to: f64| (1.0 - part) * from + part * to;
-            between(jk, kj) + 0.5 * (jm - between(height(j), jk) + km - between(kj, height(k)))
+            let (edge, to_center) = (vector(j, k), inward(corners, j));
+            (edge[0] * to_center[0] + edge[1] * to_center[1]) / square(edge)
         });
-        let inner = [0, 1, 2].map(|i| (beside[i][2] + middle[next(i)] + middle[before(i)]) / 3.0);
         let hard = [0, 1, 2].map(|i| {
             let (j, k) = (next(i), before(i));
-            let rise = height(k) - height(j);
+            let rise = corners[k][2] - corners[j][2];
             base.face(face)
                 .is_hard(order[i])
                 .then(|| [rise - slope(j, vector(j, k)), slope(k, vector(j, k)) - rise])
@@ -93,10 +61,7 @@ impl Patch {
             face,
             corners,
             area,
-            beside,
-            middle,
-            inner,
-            center: inner.iter().sum::<f64>() / 3.0,
+            element: CubicElement::new(corners, gradients, normals),
             hard,
         }
     }
@@ -111,24 +76,7 @@ impl Patch {
     pub(super) fn height(&self, q: [f64; 2]) -> Option<f64> {
         let to = self.corners.map(|p| minus(p, [q[0], q[1], 0.0]));
         let parts = [0, 1, 2].map(|i| cross(to[next(i)], to[before(i)]) / self.area);
-        // The polynomial over the part of the triangle between the centroid and the farthest edge.
-        let i = (1..3).fold(
-            0,
-            |least, i| if parts[i] < parts[least] { i } else { least },
-        );
-        let (j, k) = (next(i), before(i));
-        let [u, v, w] = [parts[j] - parts[i], parts[k] - parts[i], 3.0 * parts[i]];
-        let ([jk, _, jm], [_, kj, km]) = (self.beside[j], self.beside[k]);
-        let at_edge = self.corners[j][2] * u * u * u
-            + 3.0 * u * v * (jk * u + kj * v)
-            + self.corners[k][2] * v * v * v;
-        let next_to_it = 3.0 * w * (jm * u * u + 2.0 * self.middle[i] * u * v + km * v * v);
-        let next_to_center = 3.0 * w * w * (self.inner[j] * u + self.inner[k] * v);
-        let height = at_edge
-            + next_to_it
-            + next_to_center
-            + self.center * w * w * w
-            + self.correction(parts);
+        let height = self.element.height(parts) + self.correction(parts);
         height.is_finite().then_some(height)
     }
 
