@@ -26,6 +26,7 @@ a :class:`BreaklineWarning`.
 """
 
 from ._breakline import __version__
+from ._columns import Points
 from ._errors import (
     ArgumentTypeError,
     BreaklineError,
@@ -42,7 +43,7 @@ from ._errors import (
     UnsupportedError,
     UsageError,
 )
-from ._points import Points, points, read_points
+from ._points import points, read_points
 from ._results import Contour, Contours, Raster
 from ._tin import EDGE_KINDS, Flaw, Notice, Tin, tin
 from ._verbs import (

@@ -7,9 +7,11 @@ from typing import Any, Optional
 
 import numpy as np
 
+from ._compare import Compared
 
-@dataclass(frozen=True)
-class Points:
+
+@dataclass(frozen=True, eq=False)
+class Points(Compared):
     """Points in columns of equal length.
 
     Attributes

@@ -14,7 +14,7 @@ from ._columns import Points
 from ._errors import ArgumentTypeError, usage, warn
 
 _POINT_KINDS = "an array (n, 3), columns x, y and z, a laspy or PDAL record, a GeoDataFrame of points, or paths"
-_LINE_KINDS = "paths, arrays (n, 3), shapely geometries, or a GeoDataFrame"
+_LINE_KINDS = "paths, arrays (n, 3), geometries, a GeoDataFrame, GeoJSON, or Contours"
 
 PathLike = Union[str, "os.PathLike[str]"]
 
@@ -200,9 +200,10 @@ def _columns(x: Any, y: Any, z: Any, **others: Any) -> "dict[str, Any]":
     lengths = [len(column) for column in columns.values()]
     if len(set(lengths)) > 1:
         raise usage("columns of points differ in length", lengths, "pass columns of equal length")
-    columns = dict(zip(columns, _masked.rows("points", *columns.values())))
+    kept = _masked.kept("points", *columns.values())
+    columns = {name: np.asarray(column) if kept is None else np.asarray(column)[kept] for name, column in columns.items()}
     axes = [columns.pop(axis) for axis in "xyz"]
-    return {**found, "axes": axes, "masked": lengths[0] - len(axes[0]), **columns}
+    return {**found, "axes": axes, "kept": kept, "masked": lengths[0] - len(axes[0]), **columns}
 
 
 def _bytes(values: Any, name: str) -> Any:
@@ -252,10 +253,10 @@ def _of_fields(points: Any, names: "Iterable[str]") -> "dict[str, Any]":
         known.setdefault(name.lower(), []).append(name)
 
     def column(*spellings: str) -> Any:
-        found = next((known[spelling] for spelling in spellings if spelling in known), [None])
+        found = next((known[spelling] for spelling in spellings if spelling in known), [])
         if len(found) > 1:
             raise usage(f"the points have the columns {' and '.join(found)}", None, "leave one of them out")
-        return None if found[0] is None else points[found[0]]
+        return points[found[0]] if found else None
 
     axes = [column(axis) for axis in "xyz"]
     if any(axis is None for axis in axes):
@@ -292,6 +293,12 @@ def _fields(value: Any) -> "tuple[str, ...]":
     return getattr(getattr(value, "dtype", None), "names", None) or ()
 
 
+def _names_of(table: Any) -> "list[str]":
+    """Return the names of the columns of a dictionary, a DataFrame or a pyarrow.Table."""
+    names = table if isinstance(table, dict) else getattr(table, "column_names", None) or table.columns
+    return [str(name) for name in names]
+
+
 def _points_of(value: Any) -> "dict[str, Any]":
     if isinstance(value, Points):
         return _columns(value.x, value.y, value.z, classes=value.classification, flags=value.flags, crs=value.crs)
@@ -302,12 +309,28 @@ def _points_of(value: Any) -> "dict[str, Any]":
     if _fields(value):
         return _of_fields(value, _fields(value))
     if isinstance(value, dict) or hasattr(value, "columns"):
-        return _of_fields(value, [str(name) for name in (value if isinstance(value, dict) else value.columns)])
+        return _of_fields(value, _names_of(value))
     array = _floats(value, "points")
     if array.ndim != 2 or array.shape[1] != 3:
         shape = tuple(array.shape)
         raise usage(f"points have the shape {shape}, expected (n, 3)", None, f"pass {_POINT_KINDS}")
     return _columns(*array.T)
+
+
+def coordinates_and_rows(inputs: "list[Any]") -> "tuple[np.ndarray, np.ndarray]":
+    """Return the coordinates of points in columns, (n, 3), and the row of each, counted over all inputs."""
+    coordinates, rows, before = [], [], 0
+    for columns in inputs:
+        axes = [
+            axis if axis.dtype.kind == "f" else axis * scale + offset
+            for axis, scale, offset in zip(columns["axes"], columns["scale"], columns["offset"])
+        ]
+        coordinates.append(np.column_stack(axes))
+        count = len(axes[0]) + columns["masked"]
+        kept = np.arange(count) if columns["kept"] is None else np.flatnonzero(columns["kept"])
+        rows.append(before + kept)
+        before += count
+    return np.concatenate(coordinates), np.concatenate(rows)
 
 
 def masked_rows(inputs: "Iterable[Any]") -> int:
@@ -373,19 +396,76 @@ class _Shapes:
             raise usage(f"{parameter} takes lines and polygons", geometry.geom_type, "pass points as points")
         self.add(kind, [shapely.get_coordinates(line, include_z=True) for line in lines])
 
-    def add_frame(self, frame: Any, parameter: str) -> None:
+    @classmethod
+    def of_frame(cls, frame: Any, parameter: str) -> "dict[str, Any]":
+        """Return the shapes of a GeoDataFrame, a GeoSeries or an array of geometries."""
+        shapes = cls()
         geometry = getattr(frame, "geometry", frame)
-        for shape in np.asarray(geometry.values):
-            self.add_geometry(shape, parameter)
-        self.crs = crs_text(getattr(frame, "crs", None))
+        for shape in np.asarray(getattr(geometry, "values", geometry)):
+            shapes.add_geometry(shape, parameter)
+        shapes.crs = crs_text(getattr(frame, "crs", None))
         for name in getattr(frame, "columns", ()):
             if getattr(frame[name].dtype, "kind", "") in "fiu" and frame[name].dtype != object:
-                self.columns.append((str(name), np.asarray(frame[name], dtype=float).tolist()))
+                column = np.ma.filled(_masked.as_array(frame[name]).astype(float), np.nan)
+                shapes.columns.append((str(name), column.tolist()))
+        return shapes.as_dict()
+
+    @classmethod
+    def of_contours(cls, contours: Any) -> "dict[str, Any]":
+        """Return contours as lines, each at its height."""
+        shapes = cls()
+        heights = np.repeat(contours.levels, np.diff(contours.offsets))
+        vertices = np.column_stack([contours.coordinates, heights])
+        for start, end in zip(contours.offsets[:-1], contours.offsets[1:]):
+            shapes.add(_LINES, [vertices[start:end]])
+        shapes.crs = contours.crs
+        return shapes.as_dict()
+
+    @classmethod
+    def of_features(cls, collection: "dict[str, Any]", parameter: str) -> "dict[str, Any]":
+        """Return the shapes of a FeatureCollection of GeoJSON, with those properties that are numbers."""
+        shapes = cls()
+        features = list(collection["features"])
+        for feature in features:
+            shapes.add_geometry(_geometry(feature, parameter), parameter)
+        properties = [feature.get("properties") or {} for feature in features]
+        for name in dict.fromkeys(name for values in properties for name in values):
+            column = [values.get(name) for values in properties]
+            if all(value is None or isinstance(value, (int, float)) for value in column):
+                numbers = [np.nan if value is None else float(value) for value in column]
+                shapes.columns.append((str(name), numbers))
+        shapes.crs = ((collection.get("crs") or {}).get("properties") or {}).get("name")
+        return shapes.as_dict()
 
     def as_dict(self) -> "dict[str, Any]":
         vertices = np.concatenate(self.vertices) if self.vertices else np.empty((0, 3))
         names = ("parts", "shapes", "columns", "crs", "masked")
         return {"vertices": np.ascontiguousarray(vertices), **{name: getattr(self, name) for name in names}}
+
+
+def _is_geometries(value: Any) -> bool:
+    """Return True for an array of geometries: of shapely, or a GeometryArray."""
+    dtype = getattr(value, "dtype", None)
+    return (dtype == object and np.ndim(value) == 1) or getattr(dtype, "name", None) == "geometry"
+
+
+def _geojson(value: Any) -> "Optional[dict[str, Any]]":
+    """Return the GeoJSON that a value is or has; None if it has none."""
+    if isinstance(value, dict) and "type" in value:
+        return value
+    found: "Optional[dict[str, Any]]" = getattr(value, "__geo_interface__", None)
+    return found
+
+
+def _geometry(json: "dict[str, Any]", parameter: str) -> Any:
+    """Return the geometry of shapely for a feature or a geometry of GeoJSON; None if it has none."""
+    import shapely.geometry
+
+    geometry = json.get("geometry") if json.get("type") == "Feature" else json
+    try:
+        return None if geometry is None else shapely.geometry.shape(geometry)
+    except (shapely.errors.ShapelyError, AttributeError, KeyError, TypeError, ValueError) as error:
+        raise usage(f"{parameter} has no geometry of GeoJSON: {error}", json, f"pass {_LINE_KINDS}") from None
 
 
 def layers(value: Any, parameter: str, rings: bool = False) -> "list[Any]":
@@ -396,18 +476,18 @@ def layers(value: Any, parameter: str, rings: bool = False) -> "list[Any]":
     for item in [value] if is_one else as_sequence(value):
         if is_path(item):
             found.append(os.fspath(item))
-        elif hasattr(item, "geometry"):
-            shapes = _Shapes()
-            shapes.add_frame(item, parameter)
-            found.append(shapes.as_dict())
+        elif hasattr(item, "geometry") or _is_geometries(item):
+            found.append(_Shapes.of_frame(item, parameter))
         elif hasattr(item, "geom_type"):
             loose.add_geometry(item, parameter)
-        elif hasattr(item, "__geo_interface__"):
-            import shapely.geometry
-
-            loose.add_geometry(shapely.geometry.shape(item.__geo_interface__), parameter)
-        else:
+        elif hasattr(item, "levels") and hasattr(item, "offsets"):
+            found.append(_Shapes.of_contours(item))
+        elif (json := _geojson(item)) is None:
             loose.add_array(item, _POLYGON if rings else _LINES, parameter)
+        elif json["type"] == "FeatureCollection":
+            found.append(_Shapes.of_features(json, parameter))
+        else:
+            loose.add_geometry(_geometry(json, parameter), parameter)
     if loose.shapes:
         found.append(loose.as_dict())
     return found

@@ -10,12 +10,37 @@ from ._errors import usage, warn
 
 
 def as_array(values: Any) -> np.ndarray:
-    """Return an array, without a copy if it is one; a masked one if the values, or items of a list, are masked."""
+    """Return an array, without a copy if it is one; a masked one if the values, or items of a list, are masked.
+
+    So are missing values of columns of pandas, pyarrow and polars.
+    """
     if isinstance(values, np.ma.MaskedArray):
         return values
+    if hasattr(values, "dtype") and hasattr(values.dtype, "na_value"):
+        return _of_pandas(values)
+    if hasattr(values, "null_count"):
+        return _of_arrow(values)
     if isinstance(values, (list, tuple)) and any(isinstance(item, np.ma.MaskedArray) for item in values):
         return np.ma.array(values)
     return np.asarray(values)
+
+
+def _of_pandas(column: Any) -> np.ndarray:
+    """Return a column of one of the types of pandas that know missing values."""
+    dtype = getattr(column.dtype, "numpy_dtype", None)
+    if dtype is None or dtype.kind not in "biuf":
+        return np.asarray(column)
+    absent = np.asarray(column.isna(), bool)
+    values = column.to_numpy(dtype=dtype, na_value=0)
+    return np.ma.masked_array(values, absent) if absent.any() else values
+
+
+def _of_arrow(column: Any) -> np.ndarray:
+    """Return a column of pyarrow or polars."""
+    count = column.null_count() if callable(column.null_count) else column.null_count
+    if not count:
+        return np.asarray(column)
+    return np.ma.masked_array(np.asarray(column.fill_null(0)), np.asarray(column.is_null(), bool))
 
 
 def kept(what: str, *columns: Any) -> Optional[np.ndarray]:

@@ -96,6 +96,13 @@ def read_points(
     Notes
     -----
     Linear in the points; 27 bytes of memory for each.
+
+    Examples
+    --------
+    >>> import breakline
+    >>> ground = breakline.read_points("valley.laz", classes="ground")
+    >>> set(ground.classification.tolist())
+    {2}
     """
     selection = _selection(classes, returns, drop_withheld, bounds, boundary, False)
     with call(threads, progress) as request:
@@ -151,6 +158,11 @@ def points(
         If the output exists and ``overwrite`` is False.
     UsageError
         If no point is left, or files cannot be merged without loss.
+
+    Examples
+    --------
+    >>> import breakline
+    >>> counts = breakline.points("valley.laz", "ground.laz", classes="ground", overwrite=True)
     """
     selection = _selection(classes, returns, drop_withheld, bounds, boundary, round)
     with call(threads, progress) as request:

@@ -10,14 +10,9 @@ import numpy as np
 
 from . import _breakline, _inputs, _masked
 from ._call import Progress, call
-from ._errors import UnsupportedError, usage
-
-
-def missing(package: str, what: str) -> UnsupportedError:
-    """Return the error for a package that is not installed."""
-    error = UnsupportedError(f"{what} needs {package}")
-    error.message, error.cure = f"{what} needs {package}", f"pip install {package}"
-    return error
+from ._compare import Compared, same
+from ._errors import usage
+from ._pictures import SIDE, axes, missing, page
 
 
 class Affine(NamedTuple):
@@ -44,9 +39,9 @@ def _affine(gdal: "tuple[float, ...]") -> Any:
     return Whole(a, b, c, d, e, f)
 
 
-@dataclass(frozen=True)
-class Raster:
-    """A raster of heights or shades.
+@dataclass(frozen=True, eq=False)
+class Raster(Compared):
+    """A raster of heights or shades. It is an array for numpy: ``numpy.nanmax(raster)``.
 
     Attributes
     ----------
@@ -58,11 +53,53 @@ class Raster:
         From column and row to coordinates, at the corners of cells.
     crs : str or None
         The coordinate system, as WKT.
+
+    Examples
+    --------
+    >>> import breakline, numpy
+    >>> tin = breakline.tin([[0, 0, 1], [10, 0, 1], [10, 10, 3], [0, 10, 3]])
+    >>> dem = tin.dem(5)
+    >>> dem.shape, dem.bounds
+    ((2, 2), (0.0, 0.0, 10.0, 10.0))
+    >>> float(numpy.nanmax(dem))
+    2.5
     """
 
     array: np.ndarray
     transform: Any
     crs: Optional[str] = None
+
+    def __array__(self, dtype: Any = None, copy: Optional[bool] = None) -> np.ndarray:
+        plain = np.asarray(np.ma.filled(self.array, self._fill))
+        if copy:
+            return np.array(plain, dtype=dtype)
+        array = np.asarray(plain, dtype=dtype)
+        if copy is False and not np.may_share_memory(array, self.array):
+            raise usage("the raster is no such array without a copy", dtype, "leave copy=False out")
+        return array
+
+    def _repr_html_(self) -> str:
+        rows, columns = self.shape
+        system = "with a coordinate system" if self.crs else "no coordinate system"
+        return page([f"{columns} x {rows} cells of {self.array.dtype}, {system}"], self._thumbnail)
+
+    def _thumbnail(self) -> "Raster":
+        """Return shades of every so many cells."""
+        step = -(-max(self.shape) // SIDE)
+        c, a, b, f, d, e = self._gdal
+        small = Raster(self.array[::step, ::step], _affine((c, a * step, b * step, f, d * step, e * step)), self.crs)
+        return small if self._has_shades else small.hillshade()
+
+    @property
+    def _has_shades(self) -> bool:
+        return self.array.dtype == np.uint8
+
+    @property
+    def _fill(self) -> Any:
+        """What stands for no value; None if nothing does."""
+        if self._has_shades:
+            return np.uint8(0)
+        return self.array.dtype.type(np.nan) if self.array.dtype.kind == "f" else None
 
     @property
     def shape(self) -> "tuple[int, int]":
@@ -83,11 +120,23 @@ class Raster:
         ys = [f + d * i + e * j for i in (0, columns) for j in (0, rows)]
         return min(xs), min(ys), max(xs), max(ys)
 
-    def to_xarray(self, name: str = "elevation") -> Any:
+    def to_xarray(self, name: Optional[str] = None) -> Any:
         """Return an ``xarray.DataArray`` with the centers of cells as coordinates ``x`` and ``y``.
 
         The coordinate system is in ``attrs["crs_wkt"]``, the transform in GDAL's order in ``attrs["GeoTransform"]``, as
-        rioxarray reads them from ``spatial_ref``.
+        rioxarray reads them from ``spatial_ref``; what stands for no value is in ``attrs["_FillValue"]``.
+
+        Parameters
+        ----------
+        name : str, optional
+            The name of the quantity; ``"elevation"`` or ``"hillshade"`` by default.
+
+        Examples
+        --------
+        >>> import breakline
+        >>> dem = breakline.tin([[0, 0, 1], [10, 0, 1], [10, 10, 3], [0, 10, 3]]).dem(5)
+        >>> dem.to_xarray().name, dem.hillshade().to_xarray().attrs["_FillValue"]
+        ('elevation', np.uint8(0))
         """
         try:
             import xarray
@@ -99,14 +148,46 @@ class Raster:
                 "the raster is rotated, and has no coordinates along its axes", None, "use .array and .transform"
             )
         rows, columns = self.array.shape
-        coordinates = {"y": f + e * (np.arange(rows) + 0.5), "x": c + a * (np.arange(columns) + 0.5)}
+        coordinates: "dict[str, Any]" = {"y": f + e * (np.arange(rows) + 0.5), "x": c + a * (np.arange(columns) + 0.5)}
         attributes = {"GeoTransform": " ".join(repr(value) for value in self._gdal)}
         if self.crs:
             attributes["crs_wkt"] = self.crs
         coordinates["spatial_ref"] = ((), 0, attributes)
+        quantity = "hillshade" if self._has_shades else "elevation"
+        fill = {} if self._fill is None else {"_FillValue": self._fill}
         return xarray.DataArray(
-            self.array, coords=coordinates, dims=("y", "x"), name=name, attrs={"grid_mapping": "spatial_ref"}
+            np.asarray(self),
+            coords=coordinates,
+            dims=("y", "x"),
+            name=quantity if name is None else name,
+            attrs={"long_name": quantity, "grid_mapping": "spatial_ref", **fill},
         )
+
+    def plot(self, ax: Any = None, **options: Any) -> Any:
+        """Draw the raster with matplotlib, and return the axes.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Where to draw; new axes by default.
+        **options
+            Those of ``imshow``, such as ``cmap``.
+
+        Examples
+        --------
+        >>> import breakline
+        >>> dem = breakline.tin([[0, 0, 1], [10, 0, 1], [10, 10, 3], [0, 10, 3]]).dem(5)
+        >>> ax = dem.plot(cmap="terrain")
+        """
+        c, a, b, f, d, e = self._gdal
+        if b or d:
+            raise usage("the raster is rotated, and its cells are no picture", None, "use .array and .transform")
+        rows, columns = self.shape
+        ax = axes(ax)
+        cells = np.ma.masked_equal(self.array, 0) if self._has_shades else np.ma.masked_invalid(self.array)
+        extent = (c, c + a * columns, f + e * rows, f)
+        ax.imshow(cells, **{"extent": extent, "cmap": "gray" if self._has_shades else "viridis", **options})
+        return ax
 
     def write(
         self, path: Any, *, overwrite: bool = False, threads: Optional[int] = None, progress: Progress = None
@@ -126,8 +207,14 @@ class Raster:
         ------
         FileKeptError
             If the file exists and ``overwrite`` is False.
+
+        Examples
+        --------
+        >>> import breakline
+        >>> dem = breakline.tin([[0, 0, 1], [10, 0, 1], [10, 10, 3], [0, 10, 3]]).dem(5)
+        >>> dem.write("dem.tif", overwrite=True)
         """
-        shades = self.array.dtype == np.uint8
+        shades = self._has_shades
         cells = self._cells()
         if shades:
             cells[cells == 0] = np.nan
@@ -152,7 +239,15 @@ class Raster:
         threads: Optional[int] = None,
         progress: Progress = None,
     ) -> "Contours":
-        """Draw contours between the centers of cells; see :meth:`breakline.Tin.contours`."""
+        """Draw contours between the centers of cells; see :meth:`breakline.Tin.contours`.
+
+        Examples
+        --------
+        >>> import breakline
+        >>> dem = breakline.tin([[0, 0, 1], [10, 0, 1], [10, 10, 3], [0, 10, 3]]).dem(1)
+        >>> dem.contours(0.5).levels.tolist()
+        [1.5, 2.0, 2.5]
+        """
         return draw(self._surface(), self.crs, interval, base, levels, threads, progress)
 
     def hillshade(
@@ -164,7 +259,15 @@ class Raster:
         threads: Optional[int] = None,
         progress: Progress = None,
     ) -> "Raster":
-        """Shade the heights; see :meth:`breakline.Tin.hillshade`."""
+        """Shade the heights; see :meth:`breakline.Tin.hillshade`.
+
+        Examples
+        --------
+        >>> import breakline
+        >>> dem = breakline.tin([[0, 0, 1], [10, 0, 1], [10, 10, 3], [0, 10, 3]]).dem(1)
+        >>> dem.hillshade(azimuth=180.0).array.dtype
+        dtype('uint8')
+        """
         frame = frame_of(None, None, None)
         with call(threads, progress) as request:
             return of_cells(self._surface().hillshade(frame, "linear", light(azimuth, altitude, z_factor), request))
@@ -200,10 +303,16 @@ class Contour(NamedTuple):
     level: float
     points: np.ndarray
 
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, tuple) and same(tuple(self), tuple(other))
 
-@dataclass(frozen=True)
-class Contours:
-    """Contours of a surface, sorted by height.
+    def __ne__(self, other: object) -> bool:
+        return not self == other
+
+
+@dataclass(frozen=True, eq=False)
+class Contours(Compared):
+    """Contours of a surface, sorted by height. They are lines for :func:`breakline.tin`, too, with their heights.
 
     Iterating yields :class:`Contour`, whose points are views into ``coordinates``.
 
@@ -217,6 +326,13 @@ class Contours:
         The height of each line.
     crs : str or None
         The coordinate system, as WKT.
+
+    Examples
+    --------
+    >>> import breakline
+    >>> contours = breakline.tin([[0, 0, 1], [10, 0, 1], [10, 10, 3], [0, 10, 3]]).contours(0.5)
+    >>> [(line.level, len(line.points)) for line in contours]
+    [(1.5, 3), (2.0, 3), (2.5, 3)]
     """
 
     coordinates: np.ndarray
@@ -248,15 +364,34 @@ class Contours:
         return {"type": "FeatureCollection", "features": features}
 
     def to_shapely(self) -> np.ndarray:
-        """Return an array of ``shapely.LineString``."""
+        """Return an array of ``shapely.LineString``.
+
+        Examples
+        --------
+        >>> import breakline
+        >>> contours = breakline.tin([[0, 0, 1], [10, 0, 1], [10, 10, 3], [0, 10, 3]]).contours(0.5)
+        >>> contours.to_shapely()[0].geom_type
+        'LineString'
+        """
         try:
             import shapely
         except ImportError:
             raise missing("shapely", "to_shapely") from None
-        return shapely.from_ragged_array(shapely.GeometryType.LINESTRING, self.coordinates, (self.offsets,))
+        lines: np.ndarray = shapely.from_ragged_array(
+            shapely.GeometryType.LINESTRING, self.coordinates, (self.offsets,)
+        )
+        return lines
 
     def to_geopandas(self) -> Any:
-        """Return a ``geopandas.GeoDataFrame`` with the columns ``level`` and ``geometry``."""
+        """Return a ``geopandas.GeoDataFrame`` with the columns ``level`` and ``geometry``.
+
+        Examples
+        --------
+        >>> import breakline
+        >>> contours = breakline.tin([[0, 0, 1], [10, 0, 1], [10, 10, 3], [0, 10, 3]]).contours(0.5)
+        >>> contours.to_geopandas().level.tolist()
+        [1.5, 2.0, 2.5]
+        """
         try:
             import geopandas
         except ImportError:
@@ -264,7 +399,15 @@ class Contours:
         return geopandas.GeoDataFrame({"level": self.levels}, geometry=self.to_shapely(), crs=self.crs)
 
     def to_arrow(self) -> Any:
-        """Return a ``pyarrow.Table`` with ``level`` and ``geometry``, a GeoArrow linestring; arrays are not copied."""
+        """Return a ``pyarrow.Table`` with ``level`` and ``geometry``, a GeoArrow linestring; arrays are not copied.
+
+        Examples
+        --------
+        >>> import breakline
+        >>> contours = breakline.tin([[0, 0, 1], [10, 0, 1], [10, 10, 3], [0, 10, 3]]).contours(0.5)
+        >>> contours.to_arrow().column_names
+        ['level', 'geometry']
+        """
         try:
             import pyarrow
         except ImportError:
@@ -284,6 +427,30 @@ class Contours:
         fields = [pyarrow.field("level", pyarrow.float64()), pyarrow.field("geometry", lines.type, metadata=extension)]
         return pyarrow.table([pyarrow.array(self.levels), lines], schema=pyarrow.schema(fields))
 
+    def plot(self, ax: Any = None, **options: Any) -> Any:
+        """Draw the lines with matplotlib, colored by height, and return the axes.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Where to draw; new axes by default.
+        **options
+            Those of ``matplotlib.collections.LineCollection``, such as ``cmap`` or ``linewidths``.
+
+        Examples
+        --------
+        >>> import breakline
+        >>> contours = breakline.tin([[0, 0, 1], [10, 0, 1], [10, 10, 3], [0, 10, 3]]).contours(0.5)
+        >>> ax = contours.plot(cmap="terrain")
+        """
+        ax = axes(ax)
+        from matplotlib.collections import LineCollection
+
+        lines = LineCollection([line.points for line in self], **{"array": self.levels, **options})
+        ax.add_collection(lines)
+        ax.autoscale_view()
+        return ax
+
     def __arrow_c_stream__(self, requested_schema: Any = None) -> Any:
         return self.to_arrow().__arrow_c_stream__(requested_schema)
 
@@ -300,6 +467,12 @@ class Contours:
             Replace files that exist.
         threads, progress
             See :func:`breakline.tin`.
+
+        Examples
+        --------
+        >>> import breakline
+        >>> contours = breakline.tin([[0, 0, 1], [10, 0, 1], [10, 10, 3], [0, 10, 3]]).contours(0.5)
+        >>> contours.write("contours.geojson", overwrite=True)
         """
         with call(threads, progress) as request:
             _breakline.write_contours(
@@ -321,4 +494,5 @@ def draw(surface: Any, crs: Any, interval: Any, base: Any, levels: Any, threads:
         raise usage("interval and levels are given", None, "use one of them")
     interval, base = _inputs.optional_number(interval, "interval"), _inputs.number(base, "base")
     with call(threads, progress) as request:
-        return Contours(*surface.contours(interval, base, levels, request), crs=crs)
+        coordinates, offsets, heights = surface.contours(interval, base, levels, request)
+    return Contours(coordinates, offsets, heights, crs)

@@ -6,6 +6,7 @@ from typing import Any, Optional, TypedDict
 
 from . import _inputs
 from ._errors import usage
+from ._names import CrossingHeight, EdgeLimit, Height, OnCrossing, Side
 
 #: Parameters that take lines or areas, and those of them whose arrays are rings.
 LINES = {"breaklines", "boundary", "soft_lines", "draped_lines", "walls", "holes", "flat", "rivers"}
@@ -56,15 +57,15 @@ class Building(TypedDict, total=False):
     breaklines: Any
     boundary: Any
     bounds: Any
-    max_edge: Any
+    max_edge: EdgeLimit
     max_edge_inside: Optional[float]
     classes: Any
     crs: Any
     to_crs: Any
     force_degrees: bool
-    duplicates: str
-    on_crossing: str
-    crossing_z: str
+    duplicates: Height
+    on_crossing: OnCrossing
+    crossing_z: CrossingHeight
     crossing_tolerance: Optional[float]
     soft_lines: Any
     draped_lines: Any
@@ -72,7 +73,7 @@ class Building(TypedDict, total=False):
     wall_bottom: Any
     wall_drop: Any
     wall_width: Optional[float]
-    wall_high: str
+    wall_high: Side
     holes: Any
     flat: Any
     flat_height: Any

@@ -8,10 +8,13 @@ import numpy as np
 
 from . import _breakline, _inputs
 from ._call import Progress, call
+from ._compare import same
 from ._errors import ArgumentTypeError, usage
 from ._inputs import PathLike
+from ._names import CrossingHeight, EdgeLimit, Height, Method, OnCrossing, Severity, Side
 from ._points import _read, _systems
-from ._results import Contours, Raster, draw, frame_of, light, missing, of_cells
+from ._pictures import SIDE, axes, missing, page
+from ._results import Contours, Raster, draw, frame_of, light, of_cells
 from ._surface import LINES, Building, refuse_building, surface_arguments
 from ._written import HOW, Writing, Written, refuse_how, write
 
@@ -28,11 +31,17 @@ class Flaw(NamedTuple):
     text: str
     at: np.ndarray
 
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, tuple) and same(tuple(self), tuple(other))
+
+    def __ne__(self, other: object) -> bool:
+        return not self == other
+
 
 class Notice(NamedTuple):
     """What was assumed or looks wrong; ``severity`` is ``"detail"``, ``"note"`` or ``"warning"``."""
 
-    severity: str
+    severity: Severity
     text: str
 
 
@@ -45,19 +54,24 @@ class Tin:
 
     __slots__ = ("_surface", "_report", "_masked", "_lists", "_edges", "__weakref__")
 
-    def __init__(self, surface: Any, report: "Optional[dict[str, Any]]" = None, masked: int = 0) -> None:
+    def __init__(self, surface: _breakline.Surface, report: "Optional[dict[str, Any]]" = None, masked: int = 0) -> None:
         if not isinstance(surface, _breakline.Surface):
             raise usage("a Tin is made by breakline.tin", surface, "call breakline.tin(points)", ArgumentTypeError)
         self._surface = surface
         self._report = report
         self._masked = masked
-        self._lists: Any = None
-        self._edges: Any = None
+        self._lists: "Optional[tuple[np.ndarray, np.ndarray]]" = None
+        self._edges: "Optional[tuple[np.ndarray, np.ndarray]]" = None
 
     def __repr__(self) -> str:
         report = self.report
         name = self.crs_name or "no coordinate system"
         return f"<breakline.Tin: {report['vertices']} vertices, {report['triangles']} triangles, {name}>"
+
+    def _repr_html_(self) -> str:
+        xmin, ymin, xmax, ymax = self.bounds
+        resolution = max(xmax - xmin, ymax - ymin) / SIDE
+        return page([repr(self)], lambda: self.hillshade(resolution))
 
     def __reduce__(self) -> Any:
         return _unpickle, (self.to_bytes(), self.report)
@@ -69,6 +83,13 @@ class Tin:
         ------
         UnsupportedError
             If the surface was read from a mesh, and has no triangulation.
+
+        Examples
+        --------
+        >>> import breakline
+        >>> tin = breakline.tin([[0, 0, 1], [10, 0, 1], [10, 10, 3], [0, 10, 3]])
+        >>> tin.to_bytes()[:4]
+        b'brkT'
         """
         with call(None, None) as request:
             return self._surface.to_bytes(request)
@@ -115,7 +136,7 @@ class Tin:
         """The points that water and walls replaced, (n, 3) float64; empty unless ``flat_points=True`` was given."""
         return self._surface.replaced_points()
 
-    def _listed(self) -> Any:
+    def _listed(self) -> "tuple[np.ndarray, np.ndarray]":
         if self._lists is None:
             with call(None, None) as request:
                 self._lists = self._surface.list(request)
@@ -137,7 +158,7 @@ class Tin:
         """
         return self._listed()[1]
 
-    def _edge_lists(self) -> Any:
+    def _edge_lists(self) -> "tuple[np.ndarray, np.ndarray]":
         if self._edges is None:
             with call(None, None) as request:
                 self._edges = self._surface.edges(request)
@@ -154,7 +175,7 @@ class Tin:
         return self._edge_lists()[1]
 
     def elevation(
-        self, xy: Any, *, method: str = "linear", threads: Optional[int] = None, progress: Progress = None
+        self, xy: Any, *, method: Method = "linear", threads: Optional[int] = None, progress: Progress = None
     ) -> Any:
         """Return heights at positions.
 
@@ -174,7 +195,15 @@ class Tin:
 
         Notes
         -----
-        O(n log n) for n positions with ``"linear"``. Other methods first prepare the whole surface, with each call.
+        O(n log n) for n positions with ``"linear"``. The first call with another method prepares the whole surface, and
+        72 bytes are kept for each vertex.
+
+        Examples
+        --------
+        >>> import breakline
+        >>> tin = breakline.tin([[0, 0, 1], [10, 0, 1], [10, 10, 3], [0, 10, 3]])
+        >>> tin.elevation([5, 5], method="smooth")
+        np.float64(2.0)
         """
         positions = _inputs.positions(xy)
         flat = positions.reshape(-1, 2)
@@ -188,7 +217,7 @@ class Tin:
         *,
         extent: Any = None,
         align_to: Any = None,
-        method: str = "linear",
+        method: Method = "linear",
         threads: Optional[int] = None,
         progress: Progress = None,
     ) -> Raster:
@@ -211,6 +240,13 @@ class Tin:
         -------
         Raster
             float32, nan where there is no surface.
+
+        Examples
+        --------
+        >>> import breakline
+        >>> tin = breakline.tin([[0, 0, 1], [10, 0, 1], [10, 10, 3], [0, 10, 3]])
+        >>> tin.dem(5).array.tolist()
+        [[2.5, 2.5], [1.5, 1.5]]
         """
         with call(threads, progress) as request:
             frame = frame_of(resolution, extent, align_to)
@@ -222,7 +258,7 @@ class Tin:
         *,
         extent: Any = None,
         align_to: Any = None,
-        method: str = "linear",
+        method: Method = "linear",
         azimuth: float = 315.0,
         altitude: float = 45.0,
         z_factor: Optional[float] = None,
@@ -246,6 +282,13 @@ class Tin:
         -------
         Raster
             uint8.
+
+        Examples
+        --------
+        >>> import breakline
+        >>> tin = breakline.tin([[0, 0, 1], [10, 0, 1], [10, 10, 3], [0, 10, 3]])
+        >>> tin.hillshade(5, azimuth=180.0).array.min() > 0
+        np.True_
         """
         sun = light(azimuth, altitude, z_factor)
         with call(threads, progress) as request:
@@ -275,6 +318,13 @@ class Tin:
             These heights instead of an interval.
         threads, progress
             See :func:`tin`.
+
+        Examples
+        --------
+        >>> import breakline
+        >>> tin = breakline.tin([[0, 0, 1], [10, 0, 1], [10, 10, 3], [0, 10, 3]])
+        >>> tin.contours(0.5).levels.tolist()
+        [1.5, 2.0, 2.5]
         """
         return draw(self._surface, self.crs, interval, base, levels, threads, progress)
 
@@ -282,6 +332,13 @@ class Tin:
         """Return the flaws of the surface; none proves that it is correct.
 
         Links between triangles, orientation, overlaps, and the Delaunay law between lines, by exact predicates.
+
+        Examples
+        --------
+        >>> import breakline
+        >>> tin = breakline.tin([[0, 0, 1], [10, 0, 1], [10, 10, 3], [0, 10, 3]])
+        >>> tin.check()
+        []
         """
         with call(threads, progress) as request:
             flaws = self._surface.check(request)
@@ -307,17 +364,121 @@ class Tin:
             If the file exists and ``overwrite`` is False.
         UnsupportedError
             If the format cannot hold the surface.
+
+        Examples
+        --------
+        >>> import breakline
+        >>> tin = breakline.tin([[0, 0, 1], [10, 0, 1], [10, 10, 3], [0, 10, 3]])
+        >>> tin.write("surface.ply", overwrite=True)
         """
         with call(threads, progress) as request:
             self._surface.write(_inputs.path(path, "path"), bool(overwrite), request)
 
     def to_matplotlib(self) -> Any:
-        """Return a ``matplotlib.tri.Triangulation`` of the surface in plan; heights are ``vertices[:, 2]``."""
+        """Return a ``matplotlib.tri.Triangulation`` of the surface in plan; heights are ``vertices[:, 2]``.
+
+        Examples
+        --------
+        >>> import breakline
+        >>> tin = breakline.tin([[0, 0, 1], [10, 0, 1], [10, 10, 3], [0, 10, 3]])
+        >>> tin.to_matplotlib().triangles.shape
+        (2, 3)
+        """
         try:
             from matplotlib.tri import Triangulation
         except ImportError:
             raise missing("matplotlib", "to_matplotlib") from None
         return Triangulation(self.vertices[:, 0], self.vertices[:, 1], self.triangles)
+
+    def plot(self, ax: Any = None, **options: Any) -> Any:
+        """Draw the triangles with matplotlib, colored by height, and return the axes.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Where to draw; new axes by default.
+        **options
+            Those of ``tripcolor``, such as ``cmap`` or ``edgecolors``.
+
+        Notes
+        -----
+        For more than some 100 000 triangles, ``tin.hillshade(resolution).plot()`` is faster.
+
+        Examples
+        --------
+        >>> import breakline
+        >>> tin = breakline.tin([[0, 0, 1], [10, 0, 1], [10, 10, 3], [0, 10, 3]])
+        >>> ax = tin.plot(cmap="terrain")
+        """
+        ax = axes(ax)
+        ax.tripcolor(self.to_matplotlib(), self.vertices[:, 2], **{"shading": "gouraud", **options})
+        return ax
+
+    def to_geopandas(self) -> Any:
+        """Return a ``geopandas.GeoDataFrame`` of the triangles, polygons with heights in the order of ``triangles``.
+
+        Examples
+        --------
+        >>> import breakline
+        >>> tin = breakline.tin([[0, 0, 1], [10, 0, 1], [10, 10, 3], [0, 10, 3]])
+        >>> tin.to_geopandas().geometry.area.tolist()
+        [50.0, 50.0]
+        """
+        try:
+            import geopandas
+            import shapely
+        except ImportError:
+            raise missing("geopandas", "to_geopandas") from None
+        return geopandas.GeoDataFrame(geometry=shapely.polygons(self.vertices[self.triangles]), crs=self.crs)
+
+    def point_index(self, points: Any) -> np.ndarray:
+        """Return for each vertex the row of the point that it was made of.
+
+        Parameters
+        ----------
+        points : array_like (n, 3), record or frame
+            The points, as they were given to :func:`tin`; not files. Rows of several are counted on.
+
+        Returns
+        -------
+        ndarray of int64, as many as ``vertices``
+            Rows, from 0; -1 for vertices of lines and crossings, and of points that are not given. Of several points at
+            one position, the first with the height of the vertex, else the first.
+
+        Notes
+        -----
+        O(n log n).
+
+        Examples
+        --------
+        >>> import breakline
+        >>> tin = breakline.tin([[0, 0, 1], [10, 0, 1], [10, 10, 3], [0, 10, 3]])
+        >>> import numpy
+        >>> classes = numpy.array([2, 2, 8, 9])
+        >>> rows = tin.point_index([[0, 0, 1], [10, 0, 1], [10, 10, 3], [0, 10, 3]])
+        >>> classes[rows][tin.vertices[:, 1] == 10].tolist()
+        [9, 8]
+        """
+        inputs = _inputs.points(points)
+        if any(isinstance(item, str) for item in inputs):
+            raise usage("points are files, whose rows are not known", points, "pass read_points(files)")
+        return rows_at(self.vertices, inputs)
+
+
+def rows_at(vertices: np.ndarray, inputs: "list[Any]") -> np.ndarray:
+    """Return for each vertex the row of the point of some inputs at its position; -1 if there is none."""
+    given, rows_of_given = _inputs.coordinates_and_rows(inputs)
+    both = np.concatenate([given, vertices]) + 0.0  # no zero has a sign
+    # Equal positions get equal numbers, and so do equal points.
+    sites = np.unique(both[:, :2], axis=0, return_inverse=True)[1].ravel()
+    whole = np.unique(both, axis=0, return_inverse=True)[1].ravel()
+    rows = np.full(len(vertices), -1)
+    for numbers in (sites, whole):
+        first = np.full(numbers.max() + 1, -1)
+        first[numbers[: len(given)][::-1]] = rows_of_given[::-1]
+        found = first[numbers[len(given) :]]
+        rows = np.where(found >= 0, found, rows)
+    return rows
 
 
 def _unpickle(data: bytes, report: "dict[str, Any]") -> Tin:
@@ -346,15 +507,15 @@ def tin(
     breaklines: Any = None,
     boundary: Any = None,
     bounds: Any = None,
-    max_edge: Any = None,
+    max_edge: EdgeLimit = None,
     max_edge_inside: Optional[float] = None,
     classes: Any = None,
     crs: Any = None,
     to_crs: Any = None,
     force_degrees: bool = False,
-    duplicates: str = "lowest",
-    on_crossing: str = "split",
-    crossing_z: str = "lowest",
+    duplicates: Height = "lowest",
+    on_crossing: OnCrossing = "split",
+    crossing_z: CrossingHeight = "lowest",
     crossing_tolerance: Optional[float] = None,
     soft_lines: Any = None,
     draped_lines: Any = None,
@@ -362,7 +523,7 @@ def tin(
     wall_bottom: Any = None,
     wall_drop: Any = None,
     wall_width: Optional[float] = None,
-    wall_high: str = "left",
+    wall_high: Side = "left",
     holes: Any = None,
     flat: Any = None,
     flat_height: Any = None,
@@ -396,7 +557,7 @@ def tin(
         DataFrame or a dict with x, y, z and Classification); a laspy record, whose integers are taken as they are; a
         GeoDataFrame of points; or files, also by globs. Or one file of a surface (``.tin``, ``.ply``, ...), which is
         then opened. Arrays are copied. Masked rows are left out, and counted in a warning and in the report.
-    breaklines : paths, arrays (k, 3), shapely geometries or GeoDataFrame, or a list of these, optional
+    breaklines : paths, arrays (k, 3), shapely geometries, GeoDataFrame, GeoJSON, Contours, or a list of these, optional
         Lines with heights that the surface must follow. ``"edges.shp:FIELD"`` takes heights from an attribute.
     boundary : as breaklines, optional
         Polygons that the surface is clipped to; arrays (k, 2) or (k, 3) are closed rings.
@@ -489,6 +650,13 @@ def tin(
     Notes
     -----
     O(n log n) for n points; about 100 bytes of memory for each.
+
+    Examples
+    --------
+    >>> import breakline
+    >>> points = [[0, 0, 1], [10, 0, 1], [10, 10, 3], [0, 10, 3]]
+    >>> breakline.tin(points, breaklines=[[[0, 0, 1], [10, 10, 5]]], max_edge="none")
+    <breakline.Tin: 4 vertices, 2 triangles, no coordinate system>
     """
     options = dict(locals())
     how = {name: options.pop(name) for name in HOW}

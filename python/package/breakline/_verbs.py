@@ -14,7 +14,9 @@ import numpy as np
 from . import _breakline, _inputs
 from ._call import Progress, call
 from ._errors import ArgumentTypeError, usage
+from ._compare import Compared
 from ._inputs import PathLike
+from ._names import Kernel, Method, OnCrossing
 from ._points import _read, _systems
 from ._results import Contours, Raster, draw, frame_of, light, of_cells
 from ._surface import FOR_ANY, Building
@@ -25,7 +27,7 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
 
-def _surface(points: Any, surface: "dict[str, Any]", threads: Any, progress: Any) -> Any:
+def _surface(points: Any, surface: "dict[str, Any]", threads: Any, progress: Any) -> _breakline.Surface:
     """Return the surface of the library for a Tin, a raster, or what ``tin`` takes."""
     if isinstance(points, (Tin, Raster)):
         _refuse(surface, "this")
@@ -37,7 +39,8 @@ def _surface(points: Any, surface: "dict[str, Any]", threads: Any, progress: Any
         if opened is not None and opened.kind == "raster":
             _refuse({name: surface[name] for name in surface if name not in FOR_ANY}, os.fspath(points))
             return opened
-    return tin(points, threads=threads, progress=progress, **surface)._surface
+    built: Tin = tin(points, threads=threads, progress=progress, **surface)
+    return built._surface
 
 
 def _refuse(surface: "dict[str, Any]", what: str) -> None:
@@ -67,7 +70,7 @@ def dem(
     resolution: Optional[float] = ...,
     extent: Any = ...,
     align_to: Any = ...,
-    method: str = ...,
+    method: Method = ...,
     output: None = None,
     threads: Optional[int] = ...,
     progress: Progress = ...,
@@ -80,7 +83,7 @@ def dem(
     resolution: Optional[float] = ...,
     extent: Any = ...,
     align_to: Any = ...,
-    method: str = ...,
+    method: Method = ...,
     output: PathLike,
     **writing: Unpack[Writing],
 ) -> Written: ...
@@ -90,7 +93,7 @@ def dem(
     resolution: Optional[float] = None,
     extent: Any = None,
     align_to: Any = None,
-    method: str = "linear",
+    method: Method = "linear",
     output: Any = None,
     overwrite: bool = False,
     memory: Any = None,
@@ -117,6 +120,14 @@ def dem(
         tiles, with the same result.
     **surface
         Parameters of :func:`tin`.
+
+    Examples
+    --------
+    >>> import breakline
+    >>> breakline.dem([[0, 0, 1], [10, 0, 1], [10, 10, 3], [0, 10, 3]], resolution=5).array.tolist()
+    [[2.5, 2.5], [1.5, 1.5]]
+    >>> breakline.dem("valley.laz", resolution=5, output="dem.tif", overwrite=True).path.name
+    'dem.tif'
     """
     written = _written(dem, dict(locals()))
     if written is not None:
@@ -133,7 +144,7 @@ def hillshade(
     resolution: Optional[float] = ...,
     extent: Any = ...,
     align_to: Any = ...,
-    method: str = ...,
+    method: Method = ...,
     azimuth: float = ...,
     altitude: float = ...,
     z_factor: Optional[float] = ...,
@@ -149,7 +160,7 @@ def hillshade(
     resolution: Optional[float] = ...,
     extent: Any = ...,
     align_to: Any = ...,
-    method: str = ...,
+    method: Method = ...,
     azimuth: float = ...,
     altitude: float = ...,
     z_factor: Optional[float] = ...,
@@ -162,7 +173,7 @@ def hillshade(
     resolution: Optional[float] = None,
     extent: Any = None,
     align_to: Any = None,
-    method: str = "linear",
+    method: Method = "linear",
     azimuth: float = 315.0,
     altitude: float = 45.0,
     z_factor: Optional[float] = None,
@@ -192,14 +203,21 @@ def hillshade(
         tiles, with the same result.
     **surface
         Parameters of :func:`tin`.
+
+    Examples
+    --------
+    >>> import breakline
+    >>> breakline.hillshade([[0, 0, 1], [10, 0, 1], [10, 10, 3], [0, 10, 3]], resolution=5).shape
+    (2, 2)
     """
     written = _written(hillshade, dict(locals()))
     if written is not None:
         return written
     found = _surface(points, surface, threads, progress)
-    sun, method = light(azimuth, altitude, z_factor), _inputs.name(method, "method")
+    sun = light(azimuth, altitude, z_factor)
     with call(threads, progress) as request:
-        return of_cells(found.hillshade(frame_of(resolution, extent, align_to), method, sun, request))
+        frame = frame_of(resolution, extent, align_to)
+        return of_cells(found.hillshade(frame, _inputs.name(method, "method"), sun, request))
 
 
 @overload
@@ -254,6 +272,12 @@ def contour(
         tiles, with the same result.
     **surface
         Parameters of :func:`tin`.
+
+    Examples
+    --------
+    >>> import breakline
+    >>> breakline.contour([[0, 0, 1], [10, 0, 1], [10, 10, 3], [0, 10, 3]], interval=0.5).levels.tolist()
+    [1.5, 2.0, 2.5]
     """
     written = _written(contour, dict(locals()))
     if written is not None:
@@ -283,6 +307,12 @@ def check(
         As for :func:`tin`.
     **surface
         Parameters of :func:`tin`.
+
+    Examples
+    --------
+    >>> import breakline
+    >>> breakline.check("valley.laz")
+    []
     """
     for name in HOW:
         if name in surface:
@@ -302,7 +332,8 @@ def check(
     if isinstance(points, Tin):
         _refuse(surface, "this")
         return points.check(threads=threads, progress=progress)
-    return tin(points, threads=threads, progress=progress, **surface).check(threads=threads, progress=progress)
+    built: Tin = tin(points, threads=threads, progress=progress, **surface)
+    return built.check(threads=threads, progress=progress)
 
 
 def info(
@@ -327,13 +358,22 @@ def info(
     dict
         As ``breakline info --json`` prints it; ``kind`` is ``"points"``, ``"layer"``, ``"raster"``, ``"mesh"``,
         ``"picture"`` or ``"plane"``.
+
+    Examples
+    --------
+    >>> import breakline
+    >>> breakline.info("valley.laz")["kind"]
+    'points'
     """
     with call(threads, progress) as request:
-        return json.loads(_breakline.info(_inputs.path(path, "path"), _read(columns, partial), request))
+        found: "dict[str, Any]" = json.loads(
+            _breakline.info(_inputs.path(path, "path"), _read(columns, partial), request)
+        )
+    return found
 
 
-@dataclass(frozen=True)
-class Triangulation:
+@dataclass(frozen=True, eq=False)
+class Triangulation(Compared):
     """A triangulation in the plane, with the counts of how it came to be.
 
     Attributes
@@ -355,8 +395,8 @@ class Triangulation:
     report: "dict[str, int]"
 
 
-@dataclass(frozen=True)
-class SpaceTriangulation:
+@dataclass(frozen=True, eq=False)
+class SpaceTriangulation(Compared):
     """A triangulation in space.
 
     Attributes
@@ -383,12 +423,12 @@ def triangulate(
     weighted: bool = False,
     alpha: Any = None,
     convex: bool = False,
-    on_crossing: str = "split",
+    on_crossing: OnCrossing = "split",
     min_angle: Optional[float] = None,
     max_area: Optional[float] = None,
     region_areas: bool = False,
     max_added: Optional[int] = None,
-    kernel: str = "adaptive",
+    kernel: Kernel = "adaptive",
     overwrite: bool = False,
     threads: Optional[int] = None,
     progress: Progress = None,
@@ -431,6 +471,13 @@ def triangulate(
     Returns
     -------
     Triangulation or SpaceTriangulation
+
+    Examples
+    --------
+    >>> import breakline
+    >>> mesh = breakline.triangulate("square.poly", min_angle=30, max_area=0.1)
+    >>> mesh.triangles.shape[1]
+    3
     """
     file = _inputs.path(path, "path")
     outputs = [_inputs.path(target, "output") for target in _inputs.as_sequence(output)]
@@ -444,10 +491,11 @@ def triangulate(
                 if is_given:
                     raise usage(f"{name} is for the plane only", None, f"leave {name} out")
             alpha = _inputs.number_or_name(alpha, "alpha")
-            kernel = _inputs.name(kernel, "kernel")
-            found = _breakline.triangulate_space(file, bool(weighted), alpha, kernel, outputs, bool(overwrite), request)
-            lists = [found.pop(name) for name in ("vertices", "tetrahedra")]
-            return SpaceTriangulation(*lists, found.pop("solid", None), found)
+            found = _breakline.triangulate_space(
+                file, bool(weighted), alpha, _inputs.name(kernel, "kernel"), outputs, bool(overwrite), request
+            )
+            lists = {name: found.pop(name, None) for name in ("vertices", "tetrahedra", "solid")}
+            return SpaceTriangulation(**lists, report=found)
         if weighted or alpha is not None:
             raise usage(f"{'weighted' if weighted else 'alpha'} is for points in space", None, "add in_space=True")
         options = {
@@ -458,10 +506,18 @@ def triangulate(
             "kernel": _inputs.name(kernel, "kernel"),
         }  # fmt: skip
         found = _breakline.triangulate(file, options, outputs, bool(overwrite), request)
-    lists = [found.pop(name) for name in ("vertices", "vertex_markers", "triangles", "segments")]
-    return Triangulation(*lists, found)
+    lists = {name: found.pop(name) for name in ("vertices", "vertex_markers", "triangles", "segments")}
+    return Triangulation(**lists, report=found)
 
 
 def describe() -> "dict[str, Any]":
-    """Return the description of the command line, as ``breakline describe --json`` prints it."""
-    return json.loads(_breakline.describe())
+    """Return the description of the command line, as ``breakline describe --json`` prints it.
+
+    Examples
+    --------
+    >>> import breakline
+    >>> sorted(breakline.describe())[:2]
+    ['about', 'name']
+    """
+    described: "dict[str, Any]" = json.loads(_breakline.describe())
+    return described

@@ -14,7 +14,8 @@ from . import _breakline, _inputs, _masked
 from ._call import Progress, call
 from ._errors import ArgumentTypeError, usage
 from ._points import _read, _systems
-from ._results import frame_of, light, missing
+from ._pictures import missing
+from ._results import frame_of, light
 from ._surface import DEFAULTS, FOR_ANY, Building, refuse_building, surface_arguments
 
 
@@ -40,6 +41,12 @@ class Written:
         """Return a raster as an ``xarray.DataArray`` whose blocks are read when they are needed.
 
         ``options`` are those of ``rioxarray.open_rasterio``.
+
+        Examples
+        --------
+        >>> import breakline
+        >>> written = breakline.dem("valley.laz", resolution=5, output="dem.tif", overwrite=True)
+        >>> written.to_xarray().rio.nodata  # doctest: +SKIP
         """
         try:
             import rioxarray
@@ -108,6 +115,13 @@ class Job:
         ------
         OtherJobError
             If the folder has the job of another call; the message says what differs.
+
+        Examples
+        --------
+        >>> import breakline
+        >>> job = breakline.Job.plan("dem", "valley.laz", "dem.tif", resolution=5, overwrite=True)
+        >>> job.folder.name
+        'dem.tif.job'
         """
         if "resume" in options:
             raise usage("resume is for a verb; Job.plan opens the job that is there", None, "leave resume out")
@@ -142,11 +156,26 @@ class Job:
         return self._job.has_holes
 
     def tasks(self) -> "list[Task]":
-        """Return all tasks, each after those that it needs; the last one writes the output."""
+        """Return all tasks, each after those that it needs; the last one writes the output.
+
+        Examples
+        --------
+        >>> import breakline
+        >>> job = breakline.Job.plan("dem", "valley.laz", "dem.tif", resolution=5, overwrite=True)
+        >>> [task.stage for task in job.tasks()] == sorted(task.stage for task in job.tasks())
+        True
+        """
         return [Task(**task) for task in self._job.tasks()]
 
     def verify(self, *, threads: Optional[int] = None, progress: Progress = None) -> None:
-        """Read the files of the tasks, and remove those that are damaged: their tasks are then done again."""
+        """Read the files of the tasks, and remove those that are damaged: their tasks are then done again.
+
+        Examples
+        --------
+        >>> import breakline
+        >>> job = breakline.Job.plan("dem", "valley.laz", "dem.tif", resolution=5, overwrite=True)
+        >>> job.verify()
+        """
         with call(threads, progress) as running:
             self._job.verify(running)
 
@@ -161,6 +190,15 @@ class Job:
         ------
         NotYetError
             If a task that it needs is not done.
+
+        Examples
+        --------
+        >>> import breakline
+        >>> job = breakline.Job.plan("dem", "valley.laz", "dem.tif", resolution=5, overwrite=True)
+        >>> for task in job.tasks():
+        ...     written = job.run_task(task.number)
+        >>> written.path.name
+        'dem.tif'
         """
         if isinstance(number, bool) or not hasattr(number, "__index__") or number.__index__() < 0:
             raise usage("number is not that of a task", number, "pass the number of one of Job.tasks()")
@@ -176,13 +214,29 @@ class Job:
         An output that is there as the job has written it stays; if it has holes, the files that were skipped are tried
         again, and it is replaced. Another file is replaced if the job was planned with ``overwrite=True``, or with that
         here.
+
+        Examples
+        --------
+        >>> import breakline
+        >>> job = breakline.Job.plan("dem", "valley.laz", "dem.tif", resolution=5, overwrite=True)
+        >>> job.write().path.name
+        'dem.tif'
         """
         with call(threads, progress) as running:
             report = self._job.write(None if overwrite is None else bool(overwrite), running)
         return Written(self.output, report)
 
     def clean(self) -> None:
-        """Remove the files that the job has written, except the output."""
+        """Remove the files that the job has written, except the output.
+
+        Examples
+        --------
+        >>> import breakline
+        >>> job = breakline.Job.plan("dem", "valley.laz", "dem.tif", resolution=5, overwrite=True)
+        >>> job.clean()
+        >>> job.folder.exists()
+        False
+        """
         self._job.clean()
 
 
@@ -291,13 +345,13 @@ def _product(verb: str, own: "dict[str, Any]") -> "dict[str, Any]":
         return {}
     if verb == "contour":
         (levels,) = _masked.rows("levels", np.atleast_1d(_masked.as_array(own["levels"])).ravel())
-        levels = [_inputs.number(level, "levels") for level in levels]
+        heights = [_inputs.number(level, "levels") for level in levels]
         interval = _inputs.optional_number(own["interval"], "interval")
-        if interval is not None and levels:
+        if interval is not None and heights:
             raise usage("interval and levels are given", None, "use one of them")
-        return {"levels": (interval, _inputs.number(own["base"], "base"), levels)}
+        return {"levels": (interval, _inputs.number(own["base"], "base"), heights)}
     frame = frame_of(own["resolution"], own["extent"], own["align_to"])
-    product = {"frame": frame, "method": _inputs.name(own["method"], "method")}
+    product: "dict[str, Any]" = {"frame": frame, "method": _inputs.name(own["method"], "method")}
     if verb == "hillshade":
         product["light"] = light(own["azimuth"], own["altitude"], own["z_factor"])
     return product

@@ -105,7 +105,7 @@ def dem(
     BreaklineWarning
         If files were skipped (``skip_bad=True``), so that the output has holes. The folder of the job is kept then.
     """
-    where = {"job": job, "scratch": scratch, "storage_options": storage_options}
+    where: "dict[str, Any]" = {"job": job, "scratch": scratch, "storage_options": storage_options}
     return _run("dem", inputs, output, client=client, retries=retries, **where, **options)
 
 
@@ -163,7 +163,7 @@ def _run(
     begun.verify()
     tasks = begun.tasks()
     for task in tasks:
-        read = objects.at.get(task.input)
+        read = objects.at.get(task.input or "")
         if read is not None and task.has_read not in (None, (read.size, read.time)):
             raise usage("the object has changed since the job has read it", read.url, "remove the job, and begin anew")
     begun._check_inputs([task for task in tasks if task.input not in objects.at])
@@ -239,7 +239,7 @@ class _Cluster:
 
         self._client, self._folder, self._name, self._retries = client, folder, name, retries
         self._tasks, self._objects = tasks, objects
-        self._completed = as_completed(loop=client.loop)
+        self._completed: Any = as_completed(loop=client.loop)  # type: ignore[no-untyped-call]
         self._numbers: "dict[Any, int]" = {}
         self._deaths: "Counter[int]" = Counter()
 
@@ -251,7 +251,7 @@ class _Cluster:
         key = f"{title}-{self._name}-{number}-{self._deaths[number]}"
         # The last one runs alone, with the threads of the worker.
         threads = None if number == len(self._tasks) - 1 else 1
-        words = [self._folder, number, threads, self._objects.get(task.input)]
+        words = [self._folder, number, threads, self._objects.get(task.input or "")]
         # Later tasks first: merges come soon after what they merge.
         future = self._client.submit(_task, *words, key=key, priority=number, retries=self._retries, pure=False)
         self._numbers[future] = number

@@ -163,15 +163,16 @@ def triangulate(tri: Mapping[str, Any], opts: str = "", *, threads: int | None =
 
     Examples
     --------
+    >>> from breakline.triangle import triangulate
     >>> square = {"vertices": [[0, 0], [0, 1], [1, 1], [1, 0]]}
     >>> mesh = triangulate(square, "qa0.1")
     >>> len(mesh["triangles"]) >= 10
     True
     """
     switches = _switches(opts)
-    unknown = sorted(set(tri) - _KEYS)
-    if unknown:
-        raise usage(f"unknown keys {', '.join(unknown)}", cure=f"known are {', '.join(sorted(_KEYS))}", kind=UnknownKeyError)
+    if not _KEYS.issuperset(tri):
+        unknown = ", ".join(sorted(set(tri) - _KEYS))
+        raise usage(f"unknown keys {unknown}", cure=f"known are {', '.join(sorted(_KEYS))}", kind=UnknownKeyError)
     graph = _graph(tri, switches)
     if len(graph["vertices"]) < 3:
         raise usage(f"{len(graph['vertices'])} vertices, expected at least three")
@@ -202,12 +203,26 @@ def triangulate(tri: Mapping[str, Any], opts: str = "", *, threads: int | None =
 
 
 def delaunay(pts: ArrayLike) -> NDArray[np.int32]:
-    """Return the triangles of a Delaunay triangulation of points, as an (m, 3) array of int32."""
+    """Return the triangles of a Delaunay triangulation of points, as an (m, 3) array of int32.
+
+    Examples
+    --------
+    >>> from breakline import triangle
+    >>> triangle.delaunay([[0, 0], [4, 0], [0, 4]]).shape
+    (1, 3)
+    """
     return triangulate({"vertices": pts})["triangles"]
 
 
 def convex_hull(pts: ArrayLike) -> NDArray[np.int32]:
-    """Return the edges of the convex hull of points, as a (k, 2) array of int32."""
+    """Return the edges of the convex hull of points, as a (k, 2) array of int32.
+
+    Examples
+    --------
+    >>> from breakline import triangle
+    >>> triangle.convex_hull([[0, 0], [4, 0], [0, 4], [1, 1]]).shape
+    (3, 2)
+    """
     return triangulate({"vertices": pts}, "c")["segments"]
 
 
@@ -219,7 +234,7 @@ def _unsupported(message: str) -> UnsupportedError:
 
 def _switches(opts: str) -> dict[str, Any]:
     """Return the switches that are obeyed, with their numbers or None."""
-    switches = {}
+    switches: dict[str, Any] = {}
     position = 0
     while position < len(opts):
         match = _SWITCH.match(opts, position)
@@ -251,7 +266,7 @@ def _graph(tri: Mapping[str, Any], switches: Mapping[str, Any]) -> dict[str, NDA
     lines = tri if "p" in switches else {}
     vertices = _floats(tri, "vertices", 2)
     count = len(vertices)
-    attributes = _masked.as_array(tri.get("vertex_attributes", np.empty((count, 0)))).astype(np.float64)
+    attributes = _masked.as_array(tri.get("vertex_attributes", np.empty((count, 0)))).astype(np.float64, copy=False)
     if len(attributes) != count:
         raise usage(f"{len(attributes)} vertex_attributes, expected one row for each of {count} vertices")
     markers = _markers(tri, "vertex_markers", count)
@@ -266,7 +281,7 @@ def _graph(tri: Mapping[str, Any], switches: Mapping[str, Any]) -> dict[str, NDA
         "vertices": vertices,
         "vertex_attributes": attributes.reshape(len(vertices), attributes.size // max(len(vertices), 1)),
         "vertex_markers": markers,
-        "segments": segments.astype(np.uint32),
+        "segments": segments.astype(np.uint32, copy=False),
         "segment_markers": segment_markers,
         "holes": _rows({} if "O" in switches else lines, "holes", 2),
         "regions": _rows(lines, "regions", 4),
@@ -275,6 +290,8 @@ def _graph(tri: Mapping[str, Any], switches: Mapping[str, Any]) -> dict[str, NDA
 
 def _segments(lines: Mapping[str, Any], count: int) -> tuple[NDArray[Any], NDArray[np.int32]]:
     """Return the segments between so many vertices, and their markers."""
+    if "segments" not in lines and "segment_markers" not in lines:
+        return np.empty((0, 2), np.uint32), np.empty(0, np.int32)
     segments = _integers(lines, "segments")
     if segments.ndim != 2 or segments.shape[1] != 2:
         raise usage(f"segments of shape {segments.shape}, expected (m, 2)")
@@ -289,6 +306,8 @@ def _segments(lines: Mapping[str, Any], count: int) -> tuple[NDArray[Any], NDArr
 
 def _rows(tri: Mapping[str, Any], key: str, width: int) -> NDArray[np.float64]:
     """Return rows of finite numbers, without those that are masked."""
+    if key not in tri:
+        return np.empty((0, width))
     (rows,) = _masked.rows(key, _floats(tri, key, width))
     return _finite(rows, key)
 
@@ -307,11 +326,14 @@ def _floats(tri: Mapping[str, Any], key: str, width: int) -> NDArray[np.float64]
 
 def _finite(values: NDArray[np.float64], key: str) -> NDArray[np.float64]:
     """Return rows as a plain array; what is masked may be any number, the others are finite."""
-    wrong = ~(np.isfinite(np.asarray(values)) | np.ma.getmaskarray(values)).all(axis=1)
+    plain = np.asarray(values)
+    if np.isfinite(plain).all():
+        return plain
+    wrong = ~(np.isfinite(plain) | np.ma.getmaskarray(values)).all(axis=1)
     if wrong.any():
         row = int(np.nonzero(wrong)[0][0])
-        raise usage(f"row {row} of {key} is {np.asarray(values)[row].tolist()}, expected finite numbers")
-    return np.asarray(values)
+        raise usage(f"row {row} of {key} is {plain[row].tolist()}, expected finite numbers")
+    return plain
 
 
 def _integers(tri: Mapping[str, Any], key: str) -> NDArray[Any]:
@@ -324,6 +346,8 @@ def _integers(tri: Mapping[str, Any], key: str) -> NDArray[Any]:
 
 
 def _markers(tri: Mapping[str, Any], key: str, count: int) -> NDArray[np.int32]:
+    if key not in tri:
+        return np.zeros(count, np.int32)
     values = _masked.as_array(tri.get(key, ()))
     if values.size == 0:
         return np.zeros(count, np.int32)

@@ -1,0 +1,24 @@
+"""Names that parameters take, for type checkers."""
+
+from __future__ import annotations
+
+from typing import Literal, Union
+
+#: How heights between vertices are computed.
+Method = Literal["linear", "nearest", "natural", "laplace", "smooth", "idw"]
+#: Which of several heights is used.
+Height = Literal["lowest", "highest", "mean", "first", "last"]
+#: Which height is used where breaklines cross.
+CrossingHeight = Literal["lowest", "highest", "mean", "first", "last", "error"]
+#: What is done with lines that cross between their vertices.
+OnCrossing = Literal["split", "reject"]
+#: A side of a line.
+Side = Literal["left", "right"]
+#: A longest edge.
+EdgeLimit = Union[float, Literal["auto", "none"], None]
+#: Arithmetic of predicates.
+Kernel = Literal["adaptive", "exact", "fast"]
+#: A verb that writes files.
+Verb = Literal["dem", "hillshade", "contour", "tin"]
+#: How much a notice matters.
+Severity = Literal["detail", "note", "warning"]
