@@ -61,6 +61,17 @@ impl Levels {
         Ok(Levels(Choice::Listed(levels)))
     }
 
+    /// Returns the smallest difference of two levels; infinity if there is one level at most.
+    pub(super) fn smallest_step(&self) -> f64 {
+        match &self.0 {
+            Choice::Every { interval, .. } => *interval,
+            Choice::Listed(levels) => levels
+                .windows(2)
+                .map(|pair| pair[1] - pair[0])
+                .fold(f64::INFINITY, f64::min),
+        }
+    }
+
     /// Returns the levels from `low` to `high`, both included, ascending; none if `low > high`.
     ///
     /// # Errors

@@ -3,6 +3,7 @@
 mod judge;
 mod raster;
 mod real;
+mod several_levels;
 mod surface;
 
 use breakline::data::{ContourLine, Surface};

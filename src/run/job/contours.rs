@@ -12,11 +12,14 @@ use crate::io::contours::{self, ContourSummary};
 use crate::run::context::{Context, Size, Stage};
 use crate::run::products::contour::edge_count;
 use crate::terrain::Levels;
-use crate::terrain::contour::parts::{ContourParts, LevelParts, join_level};
+use crate::terrain::contour::parts::{BendFinder, Bends, ContourParts, LevelParts, join_level};
 
 /// The name of the section that has the heights of the triangles of a task, and where the parts of
 /// each level are.
 const LEVELS: &str = "levels";
+
+/// The name of the section that has the levels whose arcs may bend.
+const MAY_BEND: &str = "may bend";
 
 /// Writes the parts of the contours of a task.
 pub(super) fn write(parts: &ContourParts, writer: &mut TaskWriter) -> Result<()> {
@@ -31,7 +34,12 @@ pub(super) fn write(parts: &ContourParts, writer: &mut TaskWriter) -> Result<()>
         put_block(&mut table, writer.put_block(&bytes)?);
     }
     writer.begin(LEVELS);
-    writer.put(&table)
+    writer.put(&table)?;
+    writer.begin(MAY_BEND);
+    let may_bend = parts.levels().iter().filter(|level| level.may_bend());
+    let mut bytes = Vec::new();
+    may_bend.for_each(|level| put_numbers(&mut bytes, &[level.level()]));
+    writer.put(&bytes)
 }
 
 /// Where the parts of each level are in the file of a task, by ascending levels.
@@ -51,6 +59,16 @@ fn to_table(bytes: &[u8]) -> Option<([f64; 2], LevelTable)> {
         .then_some((heights, table))
 }
 
+/// Returns levels in bytes; `None` if the bytes are not those of numbers.
+fn to_levels(bytes: &[u8]) -> Option<Vec<f64>> {
+    let mut reader = NumberReader::new(bytes);
+    let mut levels = Vec::new();
+    while !reader.is_empty() {
+        levels.push(reader.f64()?);
+    }
+    Some(levels)
+}
+
 /// The bytes of parts that are read at once, unless one level has more. The file of each task is
 /// opened once for them.
 const BAND: u64 = 32 << 20;
@@ -61,6 +79,8 @@ pub(super) struct DrawnContours {
     tasks: Vec<(TaskName, LevelTable)>,
     /// The levels that have parts, ascending, each with the number of their bytes.
     levels: Vec<(f64, u64)>,
+    /// Those whose arcs may bend, ascending.
+    may_bend: Vec<(f64, u64)>,
     /// The number of edges of all lines.
     edges: u64,
 }
@@ -76,7 +96,7 @@ impl DrawnContours {
     /// memory, 32 bytes for each level.
     pub(super) fn open(names: Vec<TaskName>, levels: &Levels) -> Result<Self> {
         let mut tasks = Vec::new();
-        let mut edges = 0;
+        let (mut edges, mut bending) = (0, Vec::new());
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         for name in names {
             let mut file = TaskFile::open_done(&name)?;
@@ -84,6 +104,8 @@ impl DrawnContours {
             let (heights, table) =
                 to_table(&file.section(LEVELS)?).ok_or_else(|| file.damaged())?;
             (low, high) = (low.min(heights[0]), high.max(heights[1]));
+            let bytes = file.section(MAY_BEND)?;
+            bending.extend(to_levels(&bytes).ok_or_else(|| file.damaged())?);
             tasks.push((name, table));
         }
         let mut levels: Vec<(f64, u64)> = levels
@@ -99,7 +121,11 @@ impl DrawnContours {
             }
         }
         levels.retain(|(_, bytes)| *bytes > 0);
+        bending.sort_by(f64::total_cmp);
+        let is_bending = |level: &f64| bending.binary_search_by(|b| b.total_cmp(level)).is_ok();
+        let may_bend = levels.iter().filter(|(level, _)| is_bending(level));
         Ok(DrawnContours {
+            may_bend: may_bend.copied().collect(),
             tasks,
             levels,
             edges,
@@ -114,12 +140,16 @@ impl DrawnContours {
         context: &Context,
     ) -> Result<ContourSummary> {
         contours::check_size(target, self.edges)?;
+        let bends = self.bends(context)?;
         let drawing = context.start(Stage::DrawingContours, Size::Items(self.edges))?;
         // The writer takes lines, so an error has to wait until it ends.
         let failed = RefCell::new(Ok(()));
         let fail = |error: Error| *failed.borrow_mut() = Err(error);
         let read = |band| self.read(band).map_err(fail).unwrap_or_default();
-        let join = |(level, parts)| join_level(level, parts).map_err(fail).unwrap_or_default();
+        let join = |(level, parts)| {
+            let lines = join_level(level, parts, &bends);
+            lines.map_err(fail).unwrap_or_default()
+        };
         let is_wanted =
             |line: &ContourLine| failed.borrow().is_ok() && drawing.add(edge_count(line)).is_ok();
         let mut lines = bands(&self.levels)
@@ -131,6 +161,18 @@ impl DrawnContours {
         failed.into_inner()?;
         drawing.end()?;
         written
+    }
+
+    /// Returns where arcs are bent, lest they cross those of other levels.
+    fn bends(&self, context: &Context) -> Result<Bends> {
+        let mut finder = BendFinder::default();
+        for band in bands(&self.may_bend) {
+            context.check()?;
+            for (level, parts) in self.read(band)? {
+                finder.add(level, parts)?;
+            }
+        }
+        Ok(finder.finish())
     }
 
     /// Returns the parts of each level of a band.

@@ -20,7 +20,7 @@ use crate::error::{Command, Error, Kind, Result, Setting, Wording, wording};
 use crate::run::sources::checksum::{Summed, checksum};
 
 /// The last bytes of a complete file.
-const MAGIC: &[u8; 8] = b"BRKTASK3";
+const MAGIC: &[u8; 8] = b"BRKTASK4";
 
 /// What the last bytes of complete files of all versions begin with.
 const ANY_MAGIC: &[u8] = b"BRKTASK";

@@ -159,6 +159,11 @@ impl<'a, S: Surface + ?Sized> LevelCut<'a, S> {
 }
 
 impl Face {
+    /// Returns true if a corner is above the level and one below.
+    pub(super) fn is_crossed(&self) -> bool {
+        self.side.contains(&Greater) && self.side.contains(&Less)
+    }
+
     /// Returns true if the edge opposite corner `i` lies on the level.
     fn has_level_edge(&self, i: usize) -> bool {
         self.side[(i + 1) % 3] == Equal && self.side[(i + 2) % 3] == Equal

@@ -2,6 +2,7 @@
 
 use super::cut::{ContourArc, LevelCut};
 use super::index::LevelIndex;
+use super::narrow::Narrowness;
 use crate::data::Surface;
 use rayon::prelude::*;
 use std::cell::Cell;
@@ -37,12 +38,57 @@ pub(super) fn joined(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
     [a[0].min(b[0]), a[1].max(b[1])]
 }
 
-/// Returns the number of arcs of each level.
-pub(super) fn count<S: Surface + ?Sized>(surface: &S, index: &LevelIndex) -> Vec<usize> {
+/// What is known of the arcs of all levels before any is drawn.
+pub(super) struct Overview {
+    /// The number of arcs of each level.
+    pub(super) counts: Vec<usize>,
+    /// All arcs, if they are few.
+    pub(super) found: Option<Found>,
+    /// The faces that meet a level and are [narrow](Narrowness).
+    pub(super) narrow: Vec<u32>,
+}
+
+impl Overview {
+    /// Passes over all faces; the arcs are few if there are at most so many.
+    pub(super) fn of<S: Surface + ?Sized>(
+        surface: &S,
+        index: &LevelIndex,
+        narrowness: Narrowness,
+        most: usize,
+    ) -> Self {
+        if let Some((found, narrow)) = few_arcs(surface, index, narrowness, most) {
+            return Overview {
+                counts: counts_of(&found, 0..index.levels().len()),
+                found: Some(found),
+                narrow,
+            };
+        }
+        let (counts, narrow) = count(surface, index, narrowness);
+        Overview {
+            counts,
+            found: None,
+            narrow,
+        }
+    }
+}
+
+/// Returns true if a face is narrow.
+fn is_narrow<S: Surface + ?Sized>(surface: &S, face: u32, narrowness: Narrowness) -> bool {
+    let corners = surface.face(face);
+    corners.is_some_and(|corners| narrowness.includes(corners.map(|v| surface.position(v))))
+}
+
+/// Returns the number of arcs of each level, and the faces that meet a level and are narrow.
+fn count<S: Surface + ?Sized>(
+    surface: &S,
+    index: &LevelIndex,
+    narrowness: Narrowness,
+) -> (Vec<usize>, Vec<u32>) {
     let mut counts = vec![0; index.levels().len()];
+    let mut all_narrow = Vec::new();
     for waiting in stretches(surface).chunks(WAITING) {
         let of_stretch = |numbers: &Range<u32>| {
-            let mut crossed = Vec::new();
+            let (mut crossed, mut narrow) = (Vec::new(), Vec::new());
             faces_at(
                 surface,
                 index,
@@ -58,16 +104,21 @@ pub(super) fn count<S: Surface + ?Sized>(surface: &S, index: &LevelIndex) -> Vec
                         .shore(face)
                         .is_some();
                     crossed.push(across.start..across.end + usize::from(has_shore));
+                    narrow.extend(is_narrow(surface, face, narrowness).then_some(face));
                 },
             );
-            crossed
+            (crossed, narrow)
         };
-        let crossed: Vec<Vec<Range<usize>>> = waiting.par_iter().map(of_stretch).collect();
-        for levels in crossed.into_iter().flatten() {
-            counts[levels].iter_mut().for_each(|count| *count += 1);
+        let of_stretches: Vec<(Vec<Range<usize>>, Vec<u32>)> =
+            waiting.par_iter().map(of_stretch).collect();
+        for (crossed, narrow) in of_stretches {
+            for levels in crossed {
+                counts[levels].iter_mut().for_each(|count| *count += 1);
+            }
+            all_narrow.extend(narrow);
         }
     }
-    counts
+    (counts, all_narrow)
 }
 
 /// The arcs of each stretch, with their levels, in the order of the faces.
@@ -128,44 +179,55 @@ pub(super) fn arcs<S: Surface + ?Sized>(
     band: Range<usize>,
 ) -> Found {
     let of_stretch =
-        |numbers: Range<u32>| arcs_of_stretch(surface, index, band.clone(), numbers, |_| true);
+        |numbers: Range<u32>| arcs_of_stretch(surface, index, band.clone(), numbers, |_, _| true);
     stretches(surface).into_par_iter().map(of_stretch).collect()
 }
 
-/// Returns the arcs of all levels. `None` if there may be more than `most`.
-pub(super) fn few_arcs<S: Surface + ?Sized>(
+/// Returns the arcs of all levels, and the faces that meet a level and are narrow. `None` if there
+/// may be more than `most` arcs.
+fn few_arcs<S: Surface + ?Sized>(
     surface: &S,
     index: &LevelIndex,
+    narrowness: Narrowness,
     most: usize,
-) -> Option<Found> {
+) -> Option<(Found, Vec<u32>)> {
     let total = AtomicUsize::new(0);
     let of_stretch = |numbers: Range<u32>| {
-        let fits = |more: usize| total.fetch_add(more, Relaxed) + more <= most;
-        arcs_of_stretch(surface, index, 0..index.levels().len(), numbers, fits)
+        let mut narrow = Vec::new();
+        let fits = |face: u32, more: usize| {
+            narrow.extend(is_narrow(surface, face, narrowness).then_some(face));
+            total.fetch_add(more, Relaxed) + more <= most
+        };
+        let arcs = arcs_of_stretch(surface, index, 0..index.levels().len(), numbers, fits);
+        (arcs, narrow)
     };
-    let mut found = Vec::new();
+    let (mut found, mut all_narrow) = (Found::new(), Vec::new());
     for some in stretches(surface).chunks(WAITING) {
-        found.par_extend(some.par_iter().cloned().map(of_stretch));
+        let of_stretches: Vec<_> = some.par_iter().cloned().map(of_stretch).collect();
+        for (arcs, narrow) in of_stretches {
+            found.push(arcs);
+            all_narrow.extend(narrow);
+        }
         if total.load(Relaxed) > most {
             return None;
         }
     }
-    Some(found)
+    Some((found, all_narrow))
 }
 
-/// Returns the arcs of a stretch, without those of faces for whose number of arcs, or one more,
-/// `fits` is false.
+/// Returns the arcs of a stretch, without those of faces for which `fits` is false, given the
+/// number of their arcs, or one more.
 fn arcs_of_stretch<S: Surface + ?Sized>(
     surface: &S,
     index: &LevelIndex,
     band: Range<usize>,
     numbers: Range<u32>,
-    fits: impl Fn(usize) -> bool,
+    mut fits: impl FnMut(u32, usize) -> bool,
 ) -> Vec<(usize, ContourArc)> {
     let mut arcs = Vec::new();
     faces_at(surface, index, band, numbers, |face, heights, levels| {
         let Crossed { across, along } = Crossed::of(heights, levels, index);
-        if !fits(across.len() + usize::from(along)) {
+        if !fits(face, across.len() + usize::from(along)) {
             return;
         }
         let highest = across.end;

@@ -1,16 +1,22 @@
 use super::join::{Joined, rejoin};
+use super::narrow::Bends;
 use crate::data::ContourLine;
 use std::cmp::Ordering;
 
 /// Returns the finished lines of a level, sorted. Where rounding shows, the rule is applied to the
-/// rounded arcs: if the crossing of an edge was rounded to one of its ends, or a line
-/// [falls together](falls_together).
+/// rounded arcs: if the crossing of an edge was rounded to one of its ends, an arc is bent, or a
+/// line [falls together](falls_together).
 pub(super) fn finish_level(
     level: f64,
     mut lines: Vec<Joined>,
     touches_vertices: bool,
+    bends: &Bends,
 ) -> Vec<ContourLine> {
-    if touches_vertices || lines.iter().any(falls_together) {
+    let mut is_bent = false;
+    for line in &mut lines {
+        is_bent |= bends.bend(&mut line.points);
+    }
+    if touches_vertices || is_bent || lines.iter().any(falls_together) {
         lines = rejoin(&lines);
     }
     let mut lines: Vec<ContourLine> = lines.into_iter().map(|line| finish(level, line)).collect();

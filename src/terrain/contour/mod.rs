@@ -65,28 +65,39 @@
 //! of an `f64` (0.57 and 57 * 0.01 differ in the last bit), crossings coincide with vertices or
 //! with each other. If this is detected, the rule is applied to the rounded arcs: those without
 //! length are removed, opposite ones that coincide cancel, and the others are joined again by the
-//! turn rule. (Arcs less than such a step apart may still cross by the last bit.)
+//! turn rule.
+//!
+//! # Several levels
+//!
+//! **Arcs of two levels do not cross.** Along an edge, crossings are in the order of their levels,
+//! and arcs of one face are parallel. But in a face that is narrower than some steps of an `f64`,
+//! rounding may turn them. Arcs that end at such faces are compared with each other, and those that
+//! cross are routed through common points, half a step away at most, by snap rounding. There lines
+//! of several levels may touch, or run together. (See `narrow.rs`.)
 //!
 //! # The order
 //!
 //! Lines are sorted by level and then by their points; a closed line starts at its smallest point.
 //! So the result depends on the set of triangles alone: not on numbers, order or threads. The
 //! contours of some of the faces are those of all faces, restricted to the arcs inside these faces
-//! and between two of them.
+//! and between two of them, but for arcs that are routed through common points.
 
 mod cut;
 mod find;
 mod index;
 mod join;
 mod line;
+mod narrow;
 pub mod parts;
 mod trace;
 
 use super::Levels;
 use crate::data::{ContourLine, Surface};
 use crate::error::Result;
-use find::{Found, LevelArcs};
+use find::{Found, LevelArcs, Overview};
 use index::LevelIndex;
+use narrow::{Bends, NarrowArcs, Narrowness};
+use std::ops::Range;
 use trace::Traces;
 
 /// Returns the contours of a surface, sorted by level and then by their points.
@@ -101,7 +112,8 @@ use trace::Traces;
 /// # Complexity
 /// Linear in faces and arcs, except for sorting the lines. Up to two million arcs take two passes
 /// over the faces. More take three, and one more for every two million (or for one level with
-/// more), which are drawn together when the iterator needs them. A face that no level meets costs a
+/// more), which are drawn together when the iterator needs them. Levels that meet a face narrower
+/// than some steps of its coordinates are drawn twice. A face that no level meets costs a
 /// comparison; in a raster, a quarter of one. Memory: 24 bytes per arc and 16 bytes per point, of
 /// those drawn together; 24 bytes per level; one bit per face for each thread. Faces are scanned in
 /// parallel, and levels are drawn in parallel.
@@ -111,19 +123,24 @@ pub fn contours<'a, S: Surface + ?Sized>(
 ) -> Result<Contours<'a, S>> {
     let [low, high] = find::height_range(surface);
     let index = LevelIndex::new(levels.within(low, high)?);
-    let found = find::few_arcs(surface, &index, BAND);
-    let counts = match &found {
-        Some(found) => find::counts_of(found, 0..index.levels().len()),
-        None => find::count(surface, &index),
-    };
-    Ok(Contours {
+    let Overview {
+        counts,
+        found,
+        narrow,
+    } = Overview::of(surface, &index, Narrowness::of(levels), BAND);
+    let mut contours = Contours {
         surface,
         index,
         counts,
         found,
+        bends: Bends::default(),
         next_level: 0,
         ready: Vec::new().into_iter(),
-    })
+    };
+    if !narrow.is_empty() {
+        contours.bends = contours.bends_at(&narrow);
+    }
+    Ok(contours)
 }
 
 /// An iterator over the contours of a surface, returned by [`contours`].
@@ -135,6 +152,7 @@ pub struct Contours<'a, S: ?Sized> {
     counts: Vec<usize>,
     /// All arcs, if they are few, until they are drawn.
     found: Option<Found>,
+    bends: Bends,
     next_level: usize,
     ready: std::vec::IntoIter<ContourLine>,
 }
@@ -161,36 +179,62 @@ impl<S: Surface + ?Sized> Iterator for Contours<'_, S> {
 impl<S: Surface + ?Sized> Contours<'_, S> {
     /// Returns the number of arcs of all lines, which is known before any line is drawn.
     ///
-    /// A line has one vertex per arc, and one more if it is open; the few arcs that rounding
-    /// collapses have none.
+    /// A line has one vertex per arc, and one more if it is open. The few arcs that rounding
+    /// collapses have none; those that are bent, where several levels would cross, have more.
     pub fn arc_count(&self) -> usize {
         self.counts.iter().sum()
     }
 
-    /// Draws the next levels: at least one, and no more than have [`BAND`] arcs together.
+    /// Draws the next levels.
     fn draw_band(&mut self) -> Vec<ContourLine> {
-        let first = self.next_level;
+        let band = self.band_from(self.next_level);
+        self.next_level = band.end;
+        let found = self.found.take();
+        self.draw(band, found).into_iter().flatten().collect()
+    }
+
+    /// Returns the levels that are drawn together: at least one, and no more than have [`BAND`]
+    /// arcs.
+    fn band_from(&self, first: usize) -> Range<usize> {
         let mut sum = 0;
         let fits = |&&count: &&usize| {
             sum += count;
             sum == count || sum <= BAND
         };
-        let band = first..first + self.counts[first..].iter().take_while(fits).count();
-        self.next_level = band.end;
-        let found = self
-            .found
-            .take()
-            .unwrap_or_else(|| find::arcs(self.surface, &self.index, band.clone()));
-        let arcs = LevelArcs::new(found, first, &self.counts[band.clone()]);
+        first..first + self.counts[first..].iter().take_while(fits).count()
+    }
+
+    /// Draws levels, given their arcs if they are known.
+    fn draw(&self, band: Range<usize>, found: Option<Found>) -> Vec<Vec<ContourLine>> {
+        let found = found.unwrap_or_else(|| find::arcs(self.surface, &self.index, band.clone()));
+        let arcs = LevelArcs::new(found, band.start, &self.counts[band.clone()]);
         let draw = |level,
                     Traces {
                         traces,
                         touches_vertices,
                     }| {
-            line::finish_level(level, join::join(self.surface, traces), touches_vertices)
+            let lines = join::join(self.surface, traces);
+            line::finish_level(level, lines, touches_vertices, &self.bends)
         };
-        let drawn: Vec<Vec<ContourLine>> =
-            trace::each_level(self.surface, &self.index, band, &arcs, draw);
-        drawn.into_iter().flatten().collect()
+        trace::each_level(self.surface, &self.index, band, &arcs, draw)
+    }
+
+    /// Returns the bends at narrow faces. The levels that meet them are drawn for that, in bands.
+    fn bends_at(&self, faces: &[u32]) -> Bends {
+        let sites = faces
+            .iter()
+            .flat_map(|&face| narrow::sites_of(self.surface, &self.index, face));
+        let sites = narrow::by_level(sites.collect());
+        let (mut arcs, mut rest) = (NarrowArcs::default(), &sites[..]);
+        while let [(first, _), ..] = rest {
+            let band = self.band_from(*first);
+            let (now, later) = rest.split_at(rest.partition_point(|(level, _)| *level < band.end));
+            let lines = self.draw(band.clone(), None);
+            for (level, sites) in now {
+                arcs.add(&lines[level - band.start], sites);
+            }
+            rest = later;
+        }
+        arcs.bends()
     }
 }

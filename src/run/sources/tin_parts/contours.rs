@@ -7,7 +7,7 @@ use crate::data::{ContourLine, Surface};
 use crate::error::Result;
 use crate::run::context::Context;
 use crate::terrain::Levels;
-use crate::terrain::contour::parts::{ContourCollector, ContourParts, join_level};
+use crate::terrain::contour::parts::{BendFinder, ContourCollector, ContourParts, join_level};
 
 /// Returns all contours, sorted by level and then by their points.
 ///
@@ -37,10 +37,16 @@ pub(crate) fn contours(
     let merged = ContourParts::merged(of_parts)?;
     let [low, high] = merged.heights();
     levels.within(low, high)?;
+    let mut finder = BendFinder::default();
+    for level in merged.levels().iter().filter(|level| level.may_bend()) {
+        context.check()?;
+        finder.add(level.level(), vec![level.clone()])?;
+    }
+    let bends = finder.finish();
     let mut lines = Vec::new();
     for level in merged.levels() {
         context.check()?;
-        lines.append(&mut join_level(level.level(), vec![level.clone()])?);
+        lines.append(&mut join_level(level.level(), vec![level.clone()], &bends)?);
     }
     Ok(lines)
 }

@@ -13,7 +13,7 @@ use crate::error::{Error, Result};
 use std::io::Write;
 use std::ops::Range;
 
-const MAGIC: [u8; 8] = *b"blparts1";
+const MAGIC: [u8; 8] = *b"blparts2";
 
 /// The bytes before the table.
 const HEAD: usize = 8 + 16 + 8;
@@ -155,7 +155,7 @@ impl LevelParts {
             side.at.iter().try_for_each(|&at| write_point(out, at))?;
             out.write_all(&[u8::from(side.is_high)])?;
         }
-        Ok(())
+        write_points(out, &self.narrow)
     }
 }
 
@@ -252,12 +252,14 @@ impl<'a> PartsReader<'a> {
         })?;
         let open = self.many(74, Self::open_line)?;
         let sides = self.many(49, Self::side)?;
+        let narrow = self.many(16, Self::point)?;
         self.0.is_empty().then_some(LevelParts {
             level,
             touches_vertices,
             closed,
             open,
             sides,
+            narrow,
         })
     }
 

@@ -4,6 +4,7 @@ use crate::error::{Error, Result};
 use crate::terrain::Levels;
 use crate::terrain::contour::find::{self, LevelArcs};
 use crate::terrain::contour::index::LevelIndex;
+use crate::terrain::contour::narrow::Narrowness;
 use crate::terrain::contour::trace;
 use crate::terrain::tiles::TileTriangle;
 
@@ -133,6 +134,10 @@ impl ContourCollector {
             });
         for (level, side) in patch.level_sides(&self.index) {
             parts[level - band.start].sides.push(side);
+        }
+        let narrowness = Narrowness::of(&self.levels);
+        for (level, sites) in patch.narrow_sites(&self.index, narrowness) {
+            parts[level - band.start].narrow = sites;
         }
         self.parts
             .extend(parts.into_iter().filter(|parts| !parts.is_empty()));

@@ -5,6 +5,7 @@ use crate::terrain::contour::cut::Direction;
 use crate::terrain::contour::find;
 use crate::terrain::contour::join::{End, Joined, chain, pair};
 use crate::terrain::contour::line::finish_level;
+use crate::terrain::contour::narrow::{Bends, NarrowArcs};
 use rayon::prelude::*;
 use std::cmp::Ordering;
 
@@ -28,6 +29,32 @@ impl ContourParts {
     }
 }
 
+/// Finds where arcs are bent, lest they cross those of other levels.
+#[derive(Default)]
+pub struct BendFinder(NarrowArcs);
+
+impl BendFinder {
+    /// Adds a level, given its parts from all tasks. One whose parts [may not
+    /// bend](LevelParts::may_bend) can be left out.
+    ///
+    /// # Errors
+    /// Those of [`join_level`].
+    pub fn add(&mut self, level: f64, parts: Vec<LevelParts>) -> Result<()> {
+        let narrow = parts.iter().map(|part| &part.narrow[..]);
+        let sites: Vec<[f64; 2]> = narrow.collect::<Vec<_>>().concat();
+        if !sites.is_empty() {
+            let lines = join_level(level, parts, &Bends::default())?;
+            self.0.add(&lines, &sites);
+        }
+        Ok(())
+    }
+
+    /// Returns the bends, when all levels have been added.
+    pub fn finish(self) -> Bends {
+        self.0.bends()
+    }
+}
+
 /// Returns the contours of a level from the parts of all tasks, sorted by their points: those of
 /// [`contours`](crate::terrain::contours) for the whole surface.
 ///
@@ -40,7 +67,7 @@ impl ContourParts {
 /// # Complexity
 /// `n log n` for `n` parts, and for the lines. Memory: that of the parts, and 250 bytes per open
 /// one; where rounding shows, 250 bytes per arc, as in `contours`.
-pub fn join_level(level: f64, parts: Vec<LevelParts>) -> Result<Vec<ContourLine>> {
+pub fn join_level(level: f64, parts: Vec<LevelParts>, bends: &Bends) -> Result<Vec<ContourLine>> {
     let LevelParts {
         touches_vertices,
         closed,
@@ -62,7 +89,7 @@ pub fn join_level(level: f64, parts: Vec<LevelParts>) -> Result<Vec<ContourLine>
         &next,
         |line, _| joined.push(line),
     );
-    Ok(finish_level(level, joined, touches_vertices))
+    Ok(finish_level(level, joined, touches_vertices, bends))
 }
 
 /// Merges parts of the same level; ascending.
@@ -94,6 +121,7 @@ fn merged(level: f64, parts: Vec<LevelParts>) -> Result<LevelParts> {
         mut closed,
         open,
         sides,
+        narrow,
         ..
     } = gathered(level, parts)?;
     let mut next = vec![None; open.len()];
@@ -124,6 +152,7 @@ fn merged(level: f64, parts: Vec<LevelParts>) -> Result<LevelParts> {
         closed,
         open,
         sides,
+        narrow,
     })
 }
 
@@ -138,6 +167,7 @@ fn gathered(level: f64, parts: Vec<LevelParts>) -> Result<LevelParts> {
         all.closed.extend(part.closed);
         all.open.extend(part.open);
         all.sides.extend(part.sides);
+        all.narrow.extend(part.narrow);
     }
     if !is_level {
         return Err(Error::usage(format!(

@@ -7,7 +7,7 @@
 //! the whole surface, bit for bit**, however its triangles are split into tasks.
 //!
 //! ```
-//! use breakline::terrain::contour::parts::{ContourCollector, StoredParts, join_level};
+//! use breakline::terrain::contour::parts::{BendFinder, ContourCollector, StoredParts, join_level};
 //! use breakline::terrain::{Levels, tiles};
 //!
 //! # fn main() -> breakline::Result<()> {
@@ -19,17 +19,21 @@
 //! let mut file = Vec::new();
 //! collector.finish()?.write(&mut file)?;
 //!
-//! // When all tasks are done: one level at a time.
+//! // When all tasks are done: one level at a time, twice.
 //! let tasks = [StoredParts::new(&file)?];
 //! let low = tasks.iter().map(|task| task.heights()[0]).fold(f64::INFINITY, f64::min);
 //! let high = tasks.iter().map(|task| task.heights()[1]).fold(f64::NEG_INFINITY, f64::max);
+//! let parts_of = |level: f64| -> breakline::Result<Vec<_>> {
+//!     tasks.iter().filter_map(|task| task.level(level).transpose()).collect()
+//! };
+//! let mut finder = BendFinder::default();
+//! for level in levels.within(low, high)? {
+//!     finder.add(level, parts_of(level)?)?;
+//! }
+//! let bends = finder.finish();
 //! let mut lines = Vec::new();
 //! for level in levels.within(low, high)? {
-//!     let mut parts = Vec::new();
-//!     for task in &tasks {
-//!         parts.extend(task.level(level)?);
-//!     }
-//!     lines.extend(join_level(level, parts)?);
+//!     lines.extend(join_level(level, parts_of(level)?, &bends)?);
 //! }
 //! assert_eq!(lines.len(), 1);
 //! assert_eq!(lines[0].points, [[2.0, 0.0], [2.0, 2.0]]);
@@ -39,7 +43,7 @@
 //!
 //! # Why the lines are the same
 //!
-//! [`contours`](super::contours) decides three things. Each is the same from parts:
+//! [`contours`](super::contours) decides four things. Each is the same from parts:
 //!
 //! 1. *Which arcs there are.* An arc across a face depends on this face alone. An arc along an edge
 //!    on the level depends on both faces of the edge. A task that has one of them hands on the side
@@ -56,6 +60,9 @@
 //!    rounded to an end of its edge or a line falls together. The first is a property of arcs,
 //!    which tasks report; the second one of whole lines, which `join_level` has. The result then
 //!    depends on the set of arcs alone.
+//! 4. *Where arcs are bent*, lest they cross those of other levels. Whether a face is narrow
+//!    depends on this face and on all levels, not on those within the heights of a task. Tasks hand
+//!    on the sites at narrow faces. A [`BendFinder`] has the arcs at all of them.
 //!
 //! Ends are matched by the numbers of vertices. By coordinates, other lines would result: crossings
 //! of different edges may have the same bits although no line falls together, and `contours` then
@@ -75,9 +82,10 @@ mod patch;
 #[cfg(test)]
 mod tests;
 
+pub use super::narrow::Bends;
 pub use bytes::StoredParts;
 pub use collect::ContourCollector;
-pub use join::join_level;
+pub use join::{BendFinder, join_level};
 
 /// What the triangles of some tasks say about the contours of the whole surface.
 #[derive(Debug, Clone, PartialEq)]
@@ -113,6 +121,8 @@ pub struct LevelParts {
     closed: Vec<Vec<[f64; 2]>>,
     open: Vec<OpenLine>,
     sides: Vec<LevelSide>,
+    /// The sites at faces so narrow that arcs of other levels may cross those of this level.
+    narrow: Vec<[f64; 2]>,
 }
 
 impl LevelParts {
@@ -123,6 +133,7 @@ impl LevelParts {
             closed: Vec::new(),
             open: Vec::new(),
             sides: Vec::new(),
+            narrow: Vec::new(),
         }
     }
 
@@ -140,8 +151,17 @@ impl LevelParts {
         lines.map(|points| points.len() - 1).sum()
     }
 
+    /// Returns true if arcs of other levels may cross those of this level, unless they are bent:
+    /// [`BendFinder`] needs its parts.
+    pub fn may_bend(&self) -> bool {
+        !self.narrow.is_empty()
+    }
+
     fn is_empty(&self) -> bool {
-        self.closed.is_empty() && self.open.is_empty() && self.sides.is_empty()
+        self.closed.is_empty()
+            && self.open.is_empty()
+            && self.sides.is_empty()
+            && self.narrow.is_empty()
     }
 }
 

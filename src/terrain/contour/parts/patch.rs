@@ -4,6 +4,7 @@ use super::{LevelParts, LevelSide, LineEnd, OpenLine, VertexKey};
 use crate::data::{self, LinkFlaw, Mesh, Surface, Triangles};
 use crate::error::{Error, Result};
 use crate::terrain::contour::index::LevelIndex;
+use crate::terrain::contour::narrow::{self, Narrowness};
 use crate::terrain::contour::trace::{LooseEnd, Trace, Traces};
 use crate::terrain::tiles::{TileTriangle, TileVertex};
 use crate::triangulation::num::unsigned_zero;
@@ -108,6 +109,19 @@ impl LinkedPatch {
             }
         }
         parts
+    }
+
+    /// The sites at narrow faces, each with the index of its level.
+    pub(super) fn narrow_sites(
+        &self,
+        index: &LevelIndex,
+        narrowness: Narrowness,
+    ) -> Vec<(usize, Vec<[f64; 2]>)> {
+        let is_narrow =
+            |corners: [u32; 3]| narrowness.includes(corners.map(|v| self.mesh.position(v)));
+        let narrow = data::corners(&self.mesh).filter(|&(_, corners)| is_narrow(corners));
+        let sites = narrow.flat_map(|(face, _)| narrow::sites_of(&self.mesh, index, face));
+        narrow::by_level(sites.collect())
     }
 
     fn line_end(&self, end: LooseEnd) -> LineEnd {

@@ -155,8 +155,8 @@ fn stored(parts: &ContourParts) -> Vec<u8> {
     bytes
 }
 
-/// The contours of the whole from stored parts.
-fn joined(levels: &Levels, files: &[Vec<u8>]) -> Vec<ContourLine> {
+/// The contours of the whole from stored parts, and where they are bent.
+fn joined(levels: &Levels, files: &[Vec<u8>]) -> (Vec<ContourLine>, Bends) {
     let tasks: Vec<StoredParts> = files
         .iter()
         .map(|file| StoredParts::new(file).unwrap())
@@ -169,19 +169,19 @@ fn joined(levels: &Levels, files: &[Vec<u8>]) -> Vec<ContourLine> {
         .iter()
         .map(|task| task.heights()[1])
         .fold(f64::NEG_INFINITY, f64::max);
-    let of_level = |level| {
-        let parts = tasks
-            .iter()
-            .filter_map(|task| task.level(level).unwrap())
-            .collect();
-        join_level(level, parts).unwrap()
+    let parts_of = |level| {
+        let parts = tasks.iter().map(|task| task.level(level).unwrap());
+        parts.flatten().collect::<Vec<_>>()
     };
-    levels
-        .within(low, high)
-        .unwrap()
-        .into_iter()
-        .flat_map(of_level)
-        .collect()
+    let within = levels.within(low, high).unwrap();
+    let mut finder = BendFinder::default();
+    for &level in &within {
+        finder.add(level, parts_of(level)).unwrap();
+    }
+    let bends = finder.finish();
+    let of_level = |level| join_level(level, parts_of(level), &bends).unwrap();
+    let lines = within.into_iter().flat_map(of_level).collect();
+    (lines, bends)
 }
 
 fn bits(lines: &[ContourLine]) -> Vec<(u64, Vec<[u64; 2]>)> {
@@ -211,6 +211,8 @@ struct SeenCases {
     shared_vertices: usize,
     /// Levels to which the rule is applied once more, because a crossing is at a vertex.
     touching: usize,
+    /// Surfaces of which arcs are bent.
+    bent: usize,
     /// Levels of which coordinates would give other lines.
     ambiguous: usize,
 }
@@ -223,7 +225,12 @@ impl SeenCases {
                 points: line.points.clone(),
                 closed: line.is_closed(),
             };
-            let again = finish_level(of_level[0].level, of_level.iter().map(line).collect(), true);
+            let again = finish_level(
+                of_level[0].level,
+                of_level.iter().map(line).collect(),
+                true,
+                &Bends::default(),
+            );
             self.ambiguous += usize::from(bits(&again) != bits(of_level));
         }
         let all: Vec<&LevelParts> = tasks.iter().flat_map(|task| &task.levels).collect();
@@ -299,11 +306,9 @@ fn parts_give_the_contours_of_the_whole() {
             parts.push(ContourParts::merged(some).unwrap());
         }
         let files: Vec<Vec<u8>> = parts.iter().map(stored).collect();
-        assert_eq!(
-            bits(&joined(&levels, &files)),
-            bits(&expected),
-            "round {round}: {points:?}"
-        );
+        let (lines, bends) = joined(&levels, &files);
+        assert_eq!(bits(&lines), bits(&expected), "round {round}: {points:?}");
+        seen.bent += usize::from(bends != Bends::default());
     }
     let often = [
         seen.lines,
@@ -315,6 +320,7 @@ fn parts_give_the_contours_of_the_whole() {
         often.into_iter().all(|count| count > rounds / 4),
         "{seen:?}"
     );
+    assert!(seen.bent > rounds / 30, "{seen:?}");
     // Rare, with a test of its own.
     assert!(seen.ambiguous > 0 || rounds < 300, "{seen:?}");
 }
@@ -362,12 +368,15 @@ fn numbers_of_vertices_decide_and_not_coordinates() {
     assert_eq!(expected.len(), 1);
     assert_eq!(expected[0].points[1], expected[0].points[4]);
     let files = triangles.map(|triangle| stored(&collected(&levels, &[triangle], 1000)));
-    assert_eq!(bits(&joined(&levels, &files)), bits(&expected));
+    assert_eq!(bits(&joined(&levels, &files).0), bits(&expected));
     let line = Joined {
         points: expected[0].points.clone(),
         closed: false,
     };
-    assert_eq!(finish_level(0.5, vec![line], true).len(), 2);
+    assert_eq!(
+        finish_level(0.5, vec![line], true, &Bends::default()).len(),
+        2
+    );
 }
 
 /// Half of all saddles around a vertex on the level, whole and with gaps, each split
@@ -429,7 +438,7 @@ fn wheels_from_parts() {
             stored(&collected(&levels, &own, 1000))
         };
         assert_eq!(
-            bits(&joined(&levels, &[0, 1, 2, 3].map(file))),
+            bits(&joined(&levels, &[0, 1, 2, 3].map(file)).0),
             bits(&expected),
             "{number} {keep:b} {tasks:b}"
         );
@@ -470,7 +479,7 @@ fn damaged_bytes_are_refused_or_read() {
         "parts of contours are damaged"
     );
     let (mut refused, mut contradicted) = (0, 0);
-    for _ in 0..1000 {
+    for _ in 0..2000 {
         let mut damaged = bytes.clone();
         for _ in 0..1 + random.below(3) {
             let at = random.index(damaged.len());
@@ -482,7 +491,9 @@ fn damaged_bytes_are_refused_or_read() {
             continue;
         };
         for parts in &read.levels {
-            contradicted += usize::from(join_level(parts.level, vec![parts.clone()]).is_err());
+            contradicted += usize::from(
+                join_level(parts.level, vec![parts.clone()], &Bends::default()).is_err(),
+            );
         }
         let _ = ContourParts::merged(vec![read]);
     }
@@ -503,8 +514,17 @@ fn what_is_given_twice_is_refused() {
         "{error}"
     );
     let level = parts.levels[0].clone();
-    assert!(join_level(level.level, vec![level.clone(), level.clone()]).is_err());
-    let error = join_level(17.0, vec![level]).unwrap_err().to_string();
+    assert!(
+        join_level(
+            level.level,
+            vec![level.clone(), level.clone()],
+            &Bends::default()
+        )
+        .is_err()
+    );
+    let error = join_level(17.0, vec![level], &Bends::default())
+        .unwrap_err()
+        .to_string();
     assert_eq!(
         error,
         "parts of several levels are joined, expected level 17 only"
@@ -561,7 +581,7 @@ fn levels_are_found_while_heights_rise() {
                 triangles.reverse();
             }
             let file = stored(&collected(&levels, &triangles, 100));
-            assert_eq!(bits(&joined(&levels, &[file])), bits(&expected));
+            assert_eq!(bits(&joined(&levels, &[file]).0), bits(&expected));
         }
     }
 }

@@ -1,0 +1,189 @@
+//! What keeps lines of several levels from crossing where ground is narrower than the steps of an
+//! `f64`.
+//!
+//! On each edge, crossings are in the order of their levels. In a face that is wider than some
+//! steps, the arcs between them are, too. In a narrower one, rounded arcs may cross those of other
+//! levels, of its own and of faces next to it. So all arcs with an end in such a face are
+//! [arranged](crate::triangulation::arrangement), by snap rounding: those that cross are routed
+//! through the same points. Arcs that cross nothing stay.
+
+use std::ops::Range;
+
+use rustc_hash::FxHashMap;
+
+use super::cut::{ContourArc, Direction, LevelCut, Node};
+use super::index::LevelIndex;
+use crate::data::{ContourLine, Surface};
+use crate::terrain::Levels;
+use crate::triangulation::arrangement::Arrangement;
+
+/// Finds the faces that are too narrow for arcs that are rounded.
+#[derive(Clone, Copy)]
+pub(super) struct Narrowness {
+    /// The smallest difference of two levels.
+    step: f64,
+}
+
+impl Narrowness {
+    /// Returns that of faces between these levels.
+    pub(super) fn of(levels: &Levels) -> Self {
+        Narrowness {
+            step: levels.smallest_step(),
+        }
+    }
+
+    /// Returns true if the face, or the ground between two levels in it, may be narrower than some
+    /// steps of its coordinates.
+    #[inline]
+    pub(super) fn includes(self, [a, b, c]: [[f64; 3]; 3]) -> bool {
+        /// More than the errors of two crossings, and of this test.
+        const STEPS: f64 = 32.0;
+        let axis = |axis: usize| [a[axis], b[axis], c[axis]];
+        let range = |[a, b, c]: [f64; 3]| a.max(b).max(c) - a.min(b).min(c);
+        let size = |[a, b, c]: [f64; 3]| a.abs().max(b.abs()).max(c.abs());
+        let twice_area = (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]);
+        let length = range(axis(0)) + range(axis(1));
+        let step = f64::EPSILON * size(axis(0)).max(size(axis(1)));
+        let share = (self.step / range(axis(2))).min(1.0);
+        twice_area.abs() * share < STEPS * step * length
+    }
+}
+
+/// Returns the indices of the levels from the lowest corner of a face to the highest; none if it is
+/// horizontal.
+fn levels_of(corners: [[f64; 3]; 3], index: &LevelIndex) -> Range<usize> {
+    let [a, b, c] = corners.map(|corner| corner[2]);
+    let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+    let first = index.first_from(low);
+    let is_met = |level: &&f64| low < high && **level <= high;
+    first..first + index.levels()[first..].iter().take_while(is_met).count()
+}
+
+/// Returns the ends of the arcs of a narrow face and its corners, for each of its levels.
+pub(super) fn sites_of<S: Surface + ?Sized>(
+    surface: &S,
+    index: &LevelIndex,
+    face: u32,
+) -> Vec<(usize, [f64; 2])> {
+    let mut sites = Vec::new();
+    let Some(corners) = surface.face(face) else {
+        return sites;
+    };
+    for number in levels_of(corners.map(|v| surface.position(v)), index) {
+        let cut = LevelCut {
+            surface,
+            level: index.levels()[number],
+        };
+        let Some(face) = cut.face(face) else { continue };
+        let mut nodes = vec![Node::Corner(0), Node::Corner(1), Node::Corner(2)];
+        if face.is_crossed() {
+            let across = ContourArc::Across(face.id);
+            nodes.extend([Direction::Forward, Direction::Backward].map(|d| face.node(across, d)));
+        }
+        sites.extend(
+            nodes
+                .into_iter()
+                .map(|node| (number, cut.point(&face, node))),
+        );
+    }
+    sites
+}
+
+/// Returns the same sites, each once, grouped by level.
+pub(super) fn by_level(mut sites: Vec<(usize, [f64; 2])>) -> Vec<(usize, Vec<[f64; 2]>)> {
+    sites.sort_unstable_by(|a, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal));
+    sites.dedup();
+    let of_level = |group: &[(usize, [f64; 2])]| {
+        let sites = group.iter().map(|(_, site)| *site).collect();
+        (group[0].0, sites)
+    };
+    sites.chunk_by(|a, b| a.0 == b.0).map(of_level).collect()
+}
+
+/// The two ends of an arc, the smaller one first.
+type Ends = [[f64; 2]; 2];
+
+fn sorted([a, b]: Ends) -> Ends {
+    if a <= b { [a, b] } else { [b, a] }
+}
+
+/// The bits of a site: equal for equal sites, since contours have no negative zeros.
+fn bits(site: [f64; 2]) -> [u64; 2] {
+    site.map(f64::to_bits)
+}
+
+/// The arcs of all levels that end at a narrow face.
+#[derive(Default)]
+pub(super) struct NarrowArcs(Vec<Ends>);
+
+impl NarrowArcs {
+    /// Adds those of the lines of a level, given the sites at its narrow faces.
+    pub(super) fn add(&mut self, lines: &[ContourLine], sites: &[[f64; 2]]) {
+        let sites: FxHashMap<[u64; 2], ()> = sites.iter().map(|&site| (bits(site), ())).collect();
+        let arcs = lines.iter().flat_map(|line| line.points.windows(2));
+        self.0.extend(
+            arcs.map(|ends| sorted([ends[0], ends[1]]))
+                .filter(|ends| ends.iter().any(|&end| sites.contains_key(&bits(end)))),
+        );
+    }
+
+    /// Returns how the arcs that cross are bent.
+    pub(super) fn bends(self) -> Bends {
+        let mut arcs = self.0;
+        arcs.sort_unstable_by(|a, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal));
+        arcs.dedup();
+        let mut sites = arcs.concat();
+        sites.sort_unstable_by(|a, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal));
+        sites.dedup();
+        let numbers: FxHashMap<[u64; 2], u32> =
+            (0..).zip(&sites).map(|(i, &p)| (bits(p), i)).collect();
+        let segments: Vec<[u32; 2]> = arcs
+            .iter()
+            .map(|ends| ends.map(|end| numbers[&bits(end)]))
+            .collect();
+        let site_of = |number: u32| sites[number as usize];
+        let arrangement = Arrangement::new(sites.len(), site_of, &segments, 0.0)
+            .crossing_free(site_of, &segments, 0.0);
+        let position = |number: u32| match (number as usize).checked_sub(sites.len()) {
+            None => site_of(number),
+            Some(added) => arrangement.added()[added],
+        };
+        let bent = (0..).zip(&arcs).filter_map(|(segment, &[a, b])| {
+            let chain = arrangement.chain(segment);
+            let between = chain.iter().map(|&site| position(site)).collect();
+            (!chain.is_empty()).then_some(([bits(a), bits(b)], between))
+        });
+        Bends(bent.collect())
+    }
+}
+
+/// The points between the ends of arcs that are bent, from the smaller end to the larger one.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Bends(FxHashMap<[[u64; 2]; 2], Vec<[f64; 2]>>);
+
+impl Bends {
+    /// Bends arcs of a line; returns false if it has none of them.
+    pub(super) fn bend(&self, points: &mut Vec<[f64; 2]>) -> bool {
+        if self.0.is_empty() {
+            return false;
+        }
+        let mut bent = Vec::with_capacity(points.len());
+        for ends in points.windows(2) {
+            bent.push(ends[0]);
+            let [a, b] = sorted([ends[0], ends[1]]);
+            let between = self
+                .0
+                .get(&[bits(a), bits(b)])
+                .map_or(&[][..], Vec::as_slice);
+            if a == ends[0] {
+                bent.extend(between);
+            } else {
+                bent.extend(between.iter().rev());
+            }
+        }
+        bent.extend(points.last());
+        let is_bent = bent.len() > points.len();
+        *points = bent;
+        is_bent
+    }
+}
