@@ -822,7 +822,7 @@ def _points_of(points: Any) -> NDArray[np.float64]:
     """Return points as a C-contiguous array, without those that are masked."""
     points = _numbers(points)
     if points.ndim != 2:
-        raise usage(f"points of shape {points.shape}, expected (npoints, ndim)")
+        raise usage(f"points of shape {points.shape}, expected two dimensions: (npoints, ndim)")
     if points.shape[1] < 2:
         raise usage(f"points of shape {points.shape}: need at least 2-D data", cure="use numpy.interp")
     if points.shape[1] > 3:
