@@ -6,6 +6,7 @@ import pickle
 import breakline
 import numpy as np
 import pytest
+from breakline.spatial import Delaunay
 from conftest import judge
 
 SQUARE = [[0, 0, 1], [10, 0, 1], [10, 10, 3], [0, 10, 3]]
@@ -167,3 +168,16 @@ def test_types_are_complete():
     project = pathlib.Path(__file__).resolve().parents[1]
     out, err, status = api.run(["--config-file", str(project / "pyproject.toml"), str(project / "package" / "breakline")])
     assert status == 0, out + err
+
+
+def test_rows_are_counted_from_0():
+    points = np.array([[0, 0, 1], [10, 0, 1], [10, np.nan, 3], [0, 10, 3]])
+    for build in (breakline.tin, lambda points: Delaunay(points[:, :2])):
+        with pytest.raises(ValueError) as refused:
+            build(points)
+        assert refused.value.location == "row 2"
+    masked = np.ma.array(points)
+    masked[0] = np.ma.masked
+    with pytest.warns(breakline.BreaklineWarning, match="masked"), pytest.raises(ValueError) as refused:
+        breakline.tin(masked)
+    assert refused.value.location == "row 2", "of the rows that were given"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import glob
 import os
+import re
 from collections.abc import Iterable, Sequence
 from typing import Any, Optional, Union
 
@@ -11,7 +12,7 @@ import numpy as np
 
 from . import _breakline, _masked
 from ._columns import Points
-from ._errors import ArgumentTypeError, usage, warn
+from ._errors import ArgumentTypeError, BreaklineError, usage, warn
 
 _POINT_KINDS = "an array (n, 3), columns x, y and z, a laspy or PDAL record, a GeoDataFrame of points, or paths"
 _LINE_KINDS = "paths, arrays (n, 3), geometries, a GeoDataFrame, GeoJSON, or Contours"
@@ -331,6 +332,15 @@ def coordinates_and_rows(inputs: "list[Any]") -> "tuple[np.ndarray, np.ndarray]"
         rows.append(before + kept)
         before += count
     return np.concatenate(coordinates), np.concatenate(rows)
+
+
+def name_row(error: BreaklineError, inputs: "list[Any]") -> None:
+    """Name the row of an array, from 0, in an error that counts its points from 1."""
+    counted = re.fullmatch(r"point (\d+)", error.location or "")
+    if counted is None or len(inputs) != 1 or not isinstance(inputs[0], dict):
+        return
+    point, kept = int(counted[1]) - 1, inputs[0]["kept"]
+    error.location = f"row {point if kept is None else np.flatnonzero(kept)[point]}"
 
 
 def masked_rows(inputs: "Iterable[Any]") -> int:

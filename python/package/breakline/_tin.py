@@ -9,7 +9,7 @@ import numpy as np
 from . import _breakline, _inputs
 from ._call import Progress, call
 from ._compare import same
-from ._errors import ArgumentTypeError, usage
+from ._errors import ArgumentTypeError, FormatError, usage
 from ._inputs import PathLike
 from ._names import CrossingHeight, EdgeLimit, Height, Method, OnCrossing, Severity, Side
 from ._points import _read, _systems
@@ -676,5 +676,9 @@ def tin(
         arguments = surface_arguments(options)
         lines = [layer for name in LINES for layer in arguments[name]]
         masked = _inputs.masked_rows([*found, *lines])
-        built = _breakline.Surface.build(found, _read(columns, partial), systems, arguments, request)
+        try:
+            built = _breakline.Surface.build(found, _read(columns, partial), systems, arguments, request)
+        except FormatError as error:
+            _inputs.name_row(error, found)
+            raise
         return Tin(built, masked=masked)
