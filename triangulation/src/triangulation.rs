@@ -5,7 +5,7 @@ use std::convert::Infallible;
 use crate::embedded::{Embedded, sides};
 use crate::geometry::Geometry;
 use crate::num::Sign;
-use crate::tds::{CellId, Tds, VertexId, Zone};
+use crate::tds::{CellId, FiniteCells, Tds, VertexId, Zone};
 
 /// Points and cells, for reading: the part that all kinds share.
 ///
@@ -133,8 +133,8 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
 
     /// The cells without the infinite vertex, in order of their numbers. Below full dimension they
     /// have fewer vertices: they are segments, or triangles in space.
-    pub fn finite_cells(&self) -> impl Iterator<Item = CellId> + '_ {
-        self.tds.cells().filter(|&cell| !self.tds.is_infinite(cell))
+    pub fn finite_cells(&self) -> FiniteCells<'_, N, V, C> {
+        self.tds.finite_cells()
     }
 
     /// The points of a finite cell of full dimension.

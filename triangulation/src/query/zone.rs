@@ -286,4 +286,32 @@ impl<G: Crossing, V: Default, C: Copy + Default> ConstrainedDelaunay<G, V, C> {
         let Ok(zone) = conflict_zone(&self.inner, q, self.start(near), passes);
         zone
     }
+
+    /// Like [`Delaunay::insert_in_zone`], but constraints limit the zone.
+    ///
+    /// # Errors
+    /// See [`insert_with`](Self::insert_with).
+    ///
+    /// ```
+    /// use breakline_triangulation::{ConstrainedDelaunay, OnCrossing, geometry::Plane};
+    ///
+    /// let square = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]];
+    /// let diagonal = [[0, 2]];
+    /// let (mut t, _) =
+    ///     ConstrainedDelaunay::from_lines(Plane::new(), &square, &diagonal, OnCrossing::Split)?;
+    /// let p = [3.0, 1.0];
+    /// let zone = t.conflict_zone(&p, None).expect("there is no vertex yet");
+    /// assert_eq!(zone.cells.len(), 1, "the diagonal is the border of the zone");
+    /// t.insert_in_zone(p, (), &zone)?;
+    /// assert_eq!(t.finite_cells().count(), 4);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn insert_in_zone(
+        &mut self,
+        p: G::Point,
+        data: V,
+        zone: &ConflictZone,
+    ) -> Result<Inserted<V>, PointError> {
+        self.insert_near(p, data, zone.cells.first().copied())
+    }
 }

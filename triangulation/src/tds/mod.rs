@@ -61,6 +61,7 @@ mod edit;
 mod error;
 mod id;
 mod neighbors;
+mod numbers;
 pub mod plane;
 mod raise;
 mod rebuild;
@@ -75,6 +76,7 @@ pub use edge_map::EdgeMap;
 pub use error::{EditError, TdsError};
 pub use id::{CellId, CellTag, Id, VertexId, VertexTag};
 pub use neighbors::Neighbors;
+pub use numbers::{Cells, FiniteCells, Vertices};
 pub(crate) use plane::Star;
 pub(crate) use rebuild::Parts;
 pub(crate) use zone::Zone;
@@ -255,14 +257,6 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         self.links.len()
     }
 
-    /// The finite vertices, in order of their numbers.
-    pub fn vertices(&self) -> impl ExactSizeIterator<Item = VertexId> + '_ {
-        let vertices = (0..self.vertex_cell.len())
-            .map(VertexId::new)
-            .filter(|&v| self.is_vertex(v));
-        counted::counted(vertices, self.vertex_count())
-    }
-
     /// The finite vertices with their payloads, mutable, in order of their numbers.
     pub fn vertex_data_iter_mut(&mut self) -> impl Iterator<Item = (VertexId, &mut V)> {
         let slots = self
@@ -290,14 +284,6 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         self.vertex_cell
             .get(vertex.index())
             .is_some_and(|&cell| cell != CellId::NONE)
-    }
-
-    /// All cells, the infinite ones included, in order of their numbers.
-    pub fn cells(&self) -> impl ExactSizeIterator<Item = CellId> + '_ {
-        let cells = (0..self.links.len())
-            .map(CellId::new)
-            .filter(|&c| self.is_used(c));
-        counted::counted(cells, self.cell_count())
     }
 
     /// Returns true if this is the number of a cell. Accepts any number.
