@@ -75,7 +75,10 @@ impl Scene {
         let mut all = Bounds::default();
         self.points.iter().for_each(|&p| all.add(p));
         let mut builder = self.builder(|p| read.holds(p[0], p[1]));
-        builder.window = Some(ReadWindow { read, all });
+        builder.window = Some(ReadWindow {
+            read,
+            all: vec![all],
+        });
         builder.build().ok()
     }
 }

@@ -38,9 +38,6 @@ pub struct SelectionReport {
     pub without_class: u64,
     /// The classes that are used; `None` if all are.
     pub classes: Option<Vec<u8>>,
-    /// The box around all points that are not withheld, including those outside of the window;
-    /// empty without a window.
-    pub extent: Bounds,
 }
 
 /// Selects points for a surface by class and position, and keeps their coordinates.
@@ -67,7 +64,6 @@ pub struct Selection {
     /// For each class.
     by_class: [Tally; 256],
     without_class: Tally,
-    extent: Bounds,
 }
 
 /// The points of one class, inside and outside of the window.
@@ -116,8 +112,26 @@ impl Selection {
             withheld: 0,
             by_class: [Tally::default(); 256],
             without_class: Tally::default(),
-            extent: Bounds::default(),
         }
+    }
+
+    /// Returns the window in which points are kept.
+    pub fn window(&self) -> Option<&Bounds> {
+        self.window.as_ref()
+    }
+
+    /// Returns true if all points are used so far, and a ground point would change that.
+    pub fn waits_for_ground(&self) -> bool {
+        self.classes == Classes::GroundOrAll && !self.has_ground
+    }
+
+    /// Takes into account that there is a ground point among points that are not added, because
+    /// they are outside of the window: points of other classes are dropped.
+    pub fn note_ground(&mut self) {
+        if self.waits_for_ground() {
+            self.drop_spare();
+        }
+        self.has_ground = true;
     }
 
     /// Starts another source: errors count points from here.
@@ -219,17 +233,13 @@ impl Selection {
 
     fn take(&mut self, point: [f64; 3], class: Option<u8>) {
         if class == Some(GROUND) && !self.has_ground {
-            self.has_ground = true;
-            if self.classes == Classes::GroundOrAll {
-                self.drop_spare();
-            }
+            self.note_ground();
         }
         let tally = match class {
             Some(class) => &mut self.by_class[usize::from(class)],
             None => &mut self.without_class,
         };
         if let Some(window) = self.window {
-            self.extent.add(point);
             if !window.holds(point[0], point[1]) {
                 tally.outside += 1;
                 return;
@@ -298,7 +308,6 @@ impl Selection {
             without_class: self.without_class.all(),
             used: self.without_class.inside,
             outside: self.without_class.outside,
-            extent: self.extent,
             classes: match &self.classes {
                 Classes::Only(classes) => Some(classes.clone()),
                 Classes::GroundOrAll if self.has_ground => Some(vec![GROUND]),

@@ -2,9 +2,10 @@
 //!
 //! A triangle of the points that were read is also a triangle of all points if no unread point lies
 //! in its circumdisk, as far as the disk is visible from the triangle past constraints. Unread
-//! points lie outside of the box that was read; so the box around all points is all that has to be
+//! points lie outside of the box that was read; so boxes around all points are all that has to be
 //! known of them. Arithmetic is rounded, and disks are enlarged by more than all rounding errors: a
-//! triangle that is reported as certain is certain.
+//! triangle that is reported as certain is certain. The opposite need not hold: the work is
+//! bounded, and what would take more is reported as not certain.
 
 use crate::data::Bounds;
 use crate::triangulation::ConstrainedDelaunay;
@@ -13,12 +14,12 @@ use crate::triangulation::num::Sign;
 use crate::triangulation::tds::{CellId, VertexId};
 
 /// The boxes, in plan, of the points that were read and of all points.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct ReadWindow {
     /// All points in this box were read, including those on its border.
     pub read: Bounds,
-    /// All points lie in this box, whether read or not.
-    pub all: Bounds,
+    /// Each point lies in one of these boxes, whether read or not: those around its files, say.
+    pub all: Vec<Bounds>,
 }
 
 /// A box in plan: the smallest and the largest corner.
@@ -26,21 +27,52 @@ type Box2 = [[f64; 2]; 2];
 
 impl ReadWindow {
     /// The boxes that may contain unread points. They overlap at the corners.
-    fn unread(&self) -> Vec<Box2> {
-        let ReadWindow { read, all } = self;
-        let mut unread = Vec::new();
-        for axis in 0..2 {
-            let whole = [[all.min[0], all.min[1]], [all.max[0], all.max[1]]];
-            let (mut below, mut above) = (whole, whole);
-            below[1][axis] = read.min[axis].next_down();
-            above[0][axis] = read.max[axis].next_up();
-            unread.extend(
-                [below, above]
-                    .into_iter()
-                    .filter(|[min, max]| min[axis] <= max[axis]),
-            );
+    fn unread(&self) -> Unread {
+        let read = in_plan(&self.read);
+        let mut parts: Vec<Box2> = Vec::new();
+        for all in self.all.iter().filter(|all| !all.is_empty()) {
+            for axis in 0..2 {
+                let (mut below, mut above) = (in_plan(all), in_plan(all));
+                below[1][axis] = below[1][axis].min(read[0][axis].next_down());
+                above[0][axis] = above[0][axis].max(read[1][axis].next_up());
+                parts.extend(
+                    [below, above]
+                        .into_iter()
+                        .filter(|[min, max]| min[axis] <= max[axis]),
+                );
+            }
         }
-        unread
+        Unread { read, parts }
+    }
+}
+
+fn in_plan(Bounds { min, max }: &Bounds) -> Box2 {
+    [[min[0], min[1]], [max[0], max[1]]]
+}
+
+/// Where unread points may be.
+struct Unread {
+    /// Not in here.
+    read: Box2,
+    /// In these only.
+    parts: Vec<Box2>,
+}
+
+impl Unread {
+    /// Returns true if an unread point may lie in a box.
+    fn meets(&self, part: Box2) -> bool {
+        let is_read =
+            (0..2).all(|k| self.read[0][k] <= part[0][k] && part[1][k] <= self.read[1][k]);
+        !is_read
+            && self
+                .parts
+                .iter()
+                .any(|&unread| overlap(part, unread).is_some())
+    }
+
+    /// Returns true if an unread point may lie in a disk.
+    fn meets_disk(&self, disk: &Disk) -> bool {
+        self.meets(disk.bounds()) && self.parts.iter().any(|&unread| disk.meets(unread))
     }
 }
 
@@ -50,8 +82,9 @@ impl ReadWindow {
 /// longer than `max_edge`, and edges of the hull that unread points may change.
 ///
 /// # Complexity
-/// Linear in the number of triangles; for those near the border of what was read, in addition the
-/// number of triangles that their circles meet.
+/// Linear in the number of triangles. Triangles near the border of what was read are counted as
+/// changeable, without a search, once the circles of those before have met as many triangles as
+/// there are.
 pub(super) fn uncertain(
     triangulation: &ConstrainedDelaunay<Terrain>,
     bounds: &Bounds,
@@ -60,18 +93,16 @@ pub(super) fn uncertain(
     cut: &[CellId],
 ) -> usize {
     let unread = window.unread();
-    if unread.is_empty() {
+    if unread.parts.is_empty() {
         return 0;
     }
-    let judge = Judge {
+    let tds = triangulation.tds();
+    let mut judge = Judge {
         triangulation,
         unread,
+        visits_left: tds.cell_slots(),
     };
-    let tds = triangulation.tds();
-    let within: Box2 = [
-        [bounds.min[0], bounds.min[1]],
-        [bounds.max[0], bounds.max[1]],
-    ];
+    let within = in_plan(bounds);
     let mut is_seen = vec![false; tds.cell_slots()];
     let mut ahead: Vec<CellId> = tds
         .cells()
@@ -91,6 +122,7 @@ pub(super) fn uncertain(
             uncertain += usize::from(
                 judge
                     .unread
+                    .parts
                     .iter()
                     .any(|&unread| judge.is_beyond(edge, unread, Sign::Positive)),
             );
@@ -112,7 +144,9 @@ pub(super) fn uncertain(
 
 struct Judge<'a> {
     triangulation: &'a ConstrainedDelaunay<Terrain>,
-    unread: Vec<Box2>,
+    unread: Unread,
+    /// How many more triangles may be looked at for the disks of others.
+    visits_left: usize,
 }
 
 impl Judge<'_> {
@@ -180,28 +214,20 @@ impl Judge<'_> {
                 .fold(0.0, f64::max);
         let around = [min.map(|c| c - width), max.map(|c| c + width)];
         longest.is_some_and(|i| self.triangulation.is_constrained(cell, i))
-            && !self
-                .unread
-                .iter()
-                .any(|&unread| overlap(around, unread).is_some())
+            && !self.unread.meets(around)
     }
 
     /// Returns true if no unread point can lie in the part of the circumdisk that is visible from
-    /// the triangle.
-    fn is_certain(&self, cell: CellId) -> bool {
+    /// the triangle, and this is found with the visits that are left.
+    fn is_certain(&mut self, cell: CellId) -> bool {
         let Some(disk) = Disk::around(self.corners(cell)) else {
             return self.is_hidden(cell);
         };
-        if !self.unread.iter().any(|&unread| disk.meets(unread)) {
+        if !self.unread.meets_disk(&disk) {
             return true;
         }
-        let is_open = |part: Box2| {
-            let in_disk = overlap(part, disk.bounds());
-            in_disk.is_some_and(|part| {
-                self.unread
-                    .iter()
-                    .any(|&unread| overlap(part, unread).is_some())
-            })
+        let is_open = |judge: &Self, part: Box2| {
+            overlap(part, disk.bounds()).is_some_and(|part| judge.unread.meets(part))
         };
         let tds = self.triangulation.tds();
         // The triangles that are visible, each with the neighbor from which it was entered; it is
@@ -211,7 +237,11 @@ impl Judge<'_> {
         let mut seen = rustc_hash::FxHashSet::default();
         let mut here = Some((cell, None));
         while let Some((cell, from)) = here {
-            if tds.is_infinite(cell) || is_open(self.box_of(cell)) {
+            let Some(left) = self.visits_left.checked_sub(1) else {
+                return false;
+            };
+            self.visits_left = left;
+            if tds.is_infinite(cell) || is_open(self, self.box_of(cell)) {
                 return false;
             }
             for i in 0..3 {

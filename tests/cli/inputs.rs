@@ -1,6 +1,6 @@
 //! Inputs that are odd together, and sums that add up.
 
-use super::{SLOPE, fixture, folder_with, geojson, run_in};
+use super::{SLOPE, bytes, fixture, folder_with, geojson, run_in};
 use testkit::lidar::{las, tile};
 
 #[test]
@@ -555,4 +555,100 @@ fn the_layer_and_the_field_of_heights_follow_the_file() {
             ],
         );
     }
+}
+
+#[test]
+fn files_that_state_to_be_far_outside_of_the_bounds_are_not_read() {
+    let folder = folder_with(&[]);
+    let write = |name: &str, corner: [f64; 2], class: u8| {
+        let points = las(&tile(corner, class), Some(25832));
+        std::fs::write(folder.path().join(name), points).unwrap();
+    };
+    write("near.las", [0.0, 0.0], 2);
+    write("far.las", [5000.0, 0.0], 2);
+    write("beyond.las", [9000.0, 4000.0], 2);
+    let left_out = "2 of 3 files are not read: by their headers they lie more than 10 m outside";
+    let window = ["--bounds", "1,1,2,2", "--max-edge", "10"];
+    let tin = |inputs: &[&str], options: &[&str], output: &str| {
+        run_in(
+            &folder,
+            &[&["tin"], inputs, options, &["-o", output]].concat(),
+        )
+    };
+    let all = ["near.las", "far.las", "beyond.las"];
+    let run = tin(&all, &window, "some.ply");
+    run.works(&[left_out, "16 read from 3 files, 16 used"]);
+    // What the whole has within the same bounds.
+    let boundary = geojson(25832, "Polygon", "[[[1,1],[2,1],[2,2],[1,2],[1,1]]]");
+    std::fs::write(folder.path().join("b.geojson"), boundary).unwrap();
+    let cut = ["--boundary", "b.geojson", "--max-edge", "10"];
+    tin(&all, &cut, "whole.ply").works(&["48 read from 3 files"]);
+    assert_eq!(bytes(&folder, "some.ply"), bytes(&folder, "whole.ply"));
+
+    // Ground far away decides that other classes are not used, here too.
+    write("near.las", [0.0, 0.0], 5);
+    tin(&all, &window, "none.ply").fails(
+        1,
+        &["no triangle is left: 12 have edges over 10 m at the rim, 36 are clipped"],
+    );
+    // A header that was not filled in is not trusted, and one without area is not.
+    let mut unfilled = las(&tile([0.0, 0.0], 2), Some(25832));
+    unfilled[179..227].fill(0);
+    std::fs::write(folder.path().join("near.las"), &unfilled).unwrap();
+    tin(&all, &window, "unfilled.ply").works(&[left_out, "16 used"]);
+    assert_eq!(bytes(&folder, "some.ply"), bytes(&folder, "unfilled.ply"));
+
+    let run = run_in(
+        &folder,
+        &[
+            "points",
+            "near.las",
+            "far.las",
+            "beyond.las",
+            "--bounds",
+            "1,1,2,2",
+            "-o",
+            "p.las",
+        ],
+    );
+    run.works(&[
+        "2 of 3 files are not read: by their headers they lie outside of the bounds",
+        "4 points of 16, 12 outside",
+    ]);
+    run_in(
+        &folder,
+        &["points", "far.las", "--bounds", "1,1,2,2", "-o", "q.las"],
+    )
+    .fails(2, &["no point is left: by their headers", "breakline info"]);
+}
+
+#[test]
+fn a_glob_of_layers_may_name_the_attribute_with_the_heights() {
+    let line = |y: f64| geojson(25832, "LineString", &format!("[[0,{y}],[3,{y}]]"));
+    let folder = folder_with(&[
+        ("a.xyz", SLOPE),
+        ("edges-1.geojson", &line(0.5)),
+        ("edges-2.geojson", &line(1.5)),
+    ]);
+    let run = run_in(
+        &folder,
+        &[
+            "tin",
+            "a.xyz",
+            "--breaklines",
+            "edges-*.geojson:Z",
+            "-o",
+            "t.ply",
+        ],
+    );
+    run.works(&["breaklines  2 in"]);
+    let missing = |pattern: &str, said: &str| {
+        run_in(
+            &folder,
+            &["tin", "a.xyz", "--breaklines", pattern, "-o", "u.ply"],
+        )
+        .fails(1, &[said]);
+    };
+    missing("none-*.geojson:Z", "no file matches `none-*.geojson`");
+    missing("none.geojson:Z", "no such file");
 }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use crate::cli::report::console::Console;
 use crate::error::{Error, Result};
-use crate::io::layer::Spec;
+use crate::io::layer::{self, Spec};
 use crate::run::STDIN;
 use crate::run::targets::{file_of, identity};
 
@@ -57,10 +57,30 @@ fn list_of(path: &Path) -> Option<&Path> {
     (!path.exists()).then_some(Path::new(list))
 }
 
-/// Makes sure, before the work starts, that the files that options name exist.
+/// Returns the files of lines and areas that globs and names stand for, in order; names of layers
+/// and attributes may follow, as in `lines/*.shp:HEIGHT`.
 ///
 /// # Errors
-/// If one does not.
+/// If a glob matches nothing, or a file does not exist.
+pub(crate) fn expand_layers(typed: &[PathBuf]) -> Result<Vec<PathBuf>> {
+    let mut found = Vec::new();
+    typed
+        .iter()
+        .try_for_each(|path| match (file_of(path), glob_of(path)) {
+            (None, Some((pattern, names))) => expand_glob(pattern, names, &mut found),
+            (None, None) => Err(no_such_file(path)),
+            (Some(_), _) => {
+                found.push(path.clone());
+                Ok(())
+            }
+        })?;
+    Ok(found)
+}
+
+/// Makes sure, before the work starts, that the file that an option names exists.
+///
+/// # Errors
+/// If it does not.
 pub(crate) fn require<'a>(paths: impl IntoIterator<Item = &'a PathBuf>) -> Result<()> {
     match paths.into_iter().find(|path| file_of(path).is_none()) {
         Some(path) => Err(no_such_file(path)),
@@ -123,13 +143,24 @@ fn expand_one(path: &Path, found: &mut Vec<PathBuf>) -> Result<()> {
         found.push(path.to_path_buf());
         return Ok(());
     }
-    match path.to_str() {
-        Some(pattern) if pattern.contains(['*', '?', '[']) => expand_glob(pattern, found),
-        _ => Err(no_such_file(path)),
+    match glob_of(path) {
+        Some((pattern, names)) => expand_glob(pattern, names, found),
+        None => Err(no_such_file(path)),
     }
 }
 
-fn expand_glob(pattern: &str, found: &mut Vec<PathBuf>) -> Result<()> {
+/// Splits an input that is not a file into a glob and the names that follow it, with their colons;
+/// `None` if it is no glob.
+fn glob_of(path: &Path) -> Option<(&str, &str)> {
+    let text = path.to_str()?;
+    let pattern = layer::file_of(text).to_str()?;
+    pattern
+        .contains(['*', '?', '['])
+        .then(|| (pattern, &text[pattern.len()..]))
+}
+
+/// Adds the files that a glob matches, each followed by these names.
+fn expand_glob(pattern: &str, names: &str, found: &mut Vec<PathBuf>) -> Result<()> {
     let matches = glob::glob(pattern)
         .map_err(|e| Error::usage(format!("`{pattern}` is not a valid glob: {}", e.msg)))?;
     let before = found.len();
@@ -139,7 +170,9 @@ fn expand_glob(pattern: &str, found: &mut Vec<PathBuf>) -> Result<()> {
             Error::from(std::io::Error::from(e)).in_file(path)
         })?;
         if path.is_file() {
-            found.push(path);
+            let mut named = path.into_os_string();
+            named.push(names);
+            found.push(named.into());
         }
     }
     if found.len() == before {

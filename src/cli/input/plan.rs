@@ -41,24 +41,10 @@ impl SurfacePlan {
             degrees,
             ..systems(&args.systems)?
         };
-        let line_files: Vec<PathBuf> = args
-            .lines
-            .files()
-            .iter()
-            .flat_map(|(_, paths)| paths.iter().cloned())
-            .collect();
-        inputs::require(
-            args.breaklines
-                .iter()
-                .chain(&line_files)
-                .chain(&args.boundary),
-        )?;
-        let (breaklines, boundary) = (layers(&args.breaklines), layers(&args.boundary));
-        let lines = line_request(&args.lines);
         let building = TinRequest {
-            breaklines,
-            boundary,
-            lines,
+            breaklines: layers(&args.breaklines)?,
+            boundary: layers(&args.boundary)?,
+            lines: line_request(&args.lines)?,
             ..TinRequest::default()
         };
         building.check_layers()?;
@@ -131,23 +117,26 @@ fn system(option: &str, typed: Option<&str>) -> Result<Option<Crs>> {
 }
 
 /// Returns the lines and areas that the options name.
-fn line_request(args: &LineArgs) -> LineRequest {
+///
+/// # Errors
+/// If a file is missing.
+fn line_request(args: &LineArgs) -> Result<LineRequest> {
     let lower = match (&args.wall_bottom, &args.wall_drop) {
         (Some(height), _) => Some(LowerEdge::Height(height.0.clone())),
         (None, Some(drop)) => Some(LowerEdge::Drop(drop.0.clone())),
         (None, None) => None,
     };
-    LineRequest {
-        soft: layers(&args.soft_lines),
-        draped: layers(&args.draped_lines),
-        walls: layers(&args.walls),
+    Ok(LineRequest {
+        soft: layers(&args.soft_lines)?,
+        draped: layers(&args.draped_lines)?,
+        walls: layers(&args.walls)?,
         wall: WallOptions {
             lower,
             width: args.wall_width,
             high: args.wall_high.into(),
         },
-        holes: layers(&args.holes),
-        flats: layers(&args.flat),
+        holes: layers(&args.holes)?,
+        flats: layers(&args.flat)?,
         flat: FlatOptions {
             height: args
                 .flat_height
@@ -156,14 +145,15 @@ fn line_request(args: &LineArgs) -> LineRequest {
             tolerance: args.flat_tolerance,
             buffer: args.flat_buffer,
         },
-        rivers: layers(&args.rivers),
+        rivers: layers(&args.rivers)?,
         river_width: args.river_width.as_ref().map(|width| width.0.clone()),
         densify: args.densify,
-    }
+    })
 }
 
-fn layers<T>(paths: &[PathBuf]) -> Vec<Input<T>> {
-    paths.iter().cloned().map(Input::File).collect()
+fn layers<T>(typed: &[PathBuf]) -> Result<Vec<Input<T>>> {
+    let files = inputs::expand_layers(typed)?;
+    Ok(files.into_iter().map(Input::File).collect())
 }
 
 fn tin_request(

@@ -13,10 +13,10 @@ use crate::run::{PointsRequest, Withheld, write_points};
 /// Selects, clips and merges points.
 pub(crate) fn run(args: &PointsArgs, console: &Console) -> Result<Exit> {
     let files = inputs::expand(&args.inputs, console)?;
-    inputs::require(&args.boundary)?;
+    let boundary = inputs::expand_layers(&args.boundary)?;
     let all: Vec<_> = files
         .iter()
-        .chain(&args.boundary)
+        .chain(&boundary)
         .cloned()
         .chain(inputs::lists(&args.inputs))
         .collect();
@@ -42,7 +42,7 @@ pub(crate) fn run(args: &PointsArgs, console: &Console) -> Result<Exit> {
             Withheld::Keep
         },
         bounds: args.bounds.map(|corners| corners.bounds()),
-        boundary: args.boundary.clone(),
+        boundary,
         rounding: if args.round {
             Rounding::Nearest
         } else {

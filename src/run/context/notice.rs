@@ -116,6 +116,15 @@ pub enum Notice {
     NoEdgeLimit,
     /// Points are used up to this distance from the bounds; `None` if all points are used.
     BoundsBuffer(Option<Quantity>),
+    /// Files were not read, because they state that all of their points lie outside of the bounds.
+    FilesOutside {
+        /// How many.
+        left_out: usize,
+        /// The number of all files.
+        files: usize,
+        /// The distance from the bounds that they are beyond, if not 0.
+        buffer: Option<Quantity>,
+    },
     /// The triangulation took this time.
     Triangulated(Duration),
     /// This many triangles within the bounds may depend on points further out than this distance.
@@ -325,6 +334,7 @@ impl Notice {
             | Notice::EdgeLimit(_)
             | Notice::NoEdgeLimit
             | Notice::BoundsBuffer(_)
+            | Notice::FilesOutside { .. }
             | Notice::CrossingsRounded { .. }
             | Notice::DefaultResolution(_)
             | Notice::DefaultInterval(_)

@@ -129,6 +129,9 @@ fn text(notice: &Notice) -> Wording {
         Notice::EdgeLimit(length) => edge_limit(length),
         Notice::NoEdgeLimit => no_edge_limit(),
         Notice::BoundsBuffer(buffer) => bounds_buffer(buffer.as_ref()).into(),
+        Notice::FilesOutside { left_out, files, buffer } => {
+            files_outside(*left_out, *files, buffer.as_ref()).into()
+        }
         Notice::Triangulated(time) => format!("triangulated in {:.2} s", time.as_secs_f64()).into(),
         Notice::Uncertain(count, buffer) => uncertain(*count, buffer).into(),
         Notice::CrossingsRounded { unit, on_grid } => rounded(unit, *on_grid).into(),
@@ -293,6 +296,13 @@ fn bounds_buffer(buffer: Option<&Quantity>) -> String {
         Some(buffer) => format!("points up to {buffer} outside of the bounds are used"),
     };
     format!("{how_far}, so that the surface inside is the same as with all points")
+}
+
+fn files_outside(left_out: usize, files: usize, buffer: Option<&Quantity>) -> String {
+    let how_far = buffer.map_or(String::new(), |buffer| format!("more than {buffer} "));
+    format!(
+        "{left_out} of {files} files are not read: by their headers they lie {how_far}outside of the bounds"
+    )
 }
 
 fn uncertain(count: usize, buffer: &Quantity) -> String {

@@ -9,5 +9,6 @@ pub(crate) mod frame;
 pub(crate) mod lattice;
 pub(crate) mod overlaps;
 pub(crate) mod points;
+mod reach;
 pub(crate) mod surface;
 pub(crate) mod tin;

@@ -16,6 +16,7 @@ use crate::run::context::notice::Notice;
 use crate::run::context::{Context, Journal, Size, Stage};
 use crate::run::lines::layers::{self, Layers};
 use crate::run::request::input::{Input, is_read_once};
+use crate::run::sources::file_extent::stated_extent;
 use crate::run::sources::open;
 use crate::run::sources::point_files::{ASK_EVERY, FILES_KEPT_OPEN};
 use crate::run::sources::systems::{self, Stated, SystemOptions, Systems};
@@ -60,8 +61,11 @@ pub enum Withheld {
 /// Counts of the points that were written and of those that were left out.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct PointsReport {
-    /// Points read.
+    /// Points read. Files are not read that state, in the coordinates of the bounds, that all of
+    /// their points lie outside of these.
     pub read: u64,
+    /// The number of files that were not read.
+    pub left_out: usize,
     /// The points written: their number and the box around them.
     pub written: PointSummary,
     /// Points left out because they are withheld.
@@ -177,6 +181,10 @@ fn transfer<'s>(
     {
         let mut source = source.map_or_else(|| open(path), Ok)?;
         sink.next_source(info).map_err(|e| e.in_file(path))?;
+        if is_outside(info, *number, request.bounds.as_ref()) {
+            report.left_out += 1;
+            continue;
+        }
         loop {
             source.read(&mut batch).map_err(|e| e.in_file(path))?;
             if batch.is_empty() {
@@ -195,6 +203,13 @@ fn transfer<'s>(
             work.add(count)?;
         }
         journal.add_warnings(path, source.warnings());
+    }
+    if report.left_out > 0 {
+        journal.add(Notice::FilesOutside {
+            left_out: report.left_out,
+            files: request.files.len(),
+            buffer: None,
+        });
     }
     if report.read == report.withheld + report.other_class + report.other_return + report.outside {
         return Err(nothing_left(&report, &request.files));
@@ -324,6 +339,11 @@ fn select(
     }
 }
 
+/// Returns true if a file that is not reprojected states that it is outside of the bounds.
+fn is_outside(info: &PointInfo, transform: Option<usize>, bounds: Option<&Bounds>) -> bool {
+    transform.is_none() && bounds.is_some_and(|bounds| !stated_extent(info).meets(bounds))
+}
+
 fn is_within(bounds: &Bounds, p: [f64; 2]) -> bool {
     (0..2).all(|k| bounds.min[k] <= p[k] && p[k] <= bounds.max[k])
 }
@@ -383,9 +403,14 @@ fn nothing_left(report: &PointsReport, files: &[PathBuf]) -> Error {
         other_class,
         other_return,
         outside,
+        left_out,
         ..
     } = report;
     let error = match read {
+        0 if *left_out > 0 => Error::usage(
+            "no point is left: by their headers, the files lie outside of the bounds",
+        )
+        .cure(wording![Command::Info, " shows the extent of each file"]),
         0 => Error::format("no points in the input").cure("pass files that contain points"),
         _ => Error::usage(format!(
             "no point is left of {read} read: {withheld} withheld, {other_class} of other classes, {other_return} of \

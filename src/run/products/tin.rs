@@ -5,6 +5,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use super::reach::{Reach, grown};
 use crate::crs::Crs;
 use crate::data::{Bounds, Columns, Layer};
 use crate::error::{Command, Error, Result, Setting, Wording, wording};
@@ -21,7 +22,7 @@ use crate::run::request::lines::{LineRequest, LineRole};
 use crate::run::request::serialized;
 use crate::run::sources::extents;
 use crate::run::sources::open::{self, Content, content};
-use crate::run::sources::point_files::PointFiles;
+use crate::run::sources::point_files::{FilesRead, PointFiles};
 use crate::run::sources::systems::{self, SystemOptions, Systems};
 use crate::run::sources::transforms::Transforms;
 use crate::terrain::{
@@ -338,16 +339,23 @@ pub(crate) fn build(
         journal,
         paths: request.points.iter().map(Input::path).collect(),
     };
-    let mut reach = Reach::new(request, &rim);
+    let is_read_once = request.points.iter().any(Input::is_read_once);
+    let buffer = if is_read_once {
+        f64::INFINITY
+    } else {
+        rim.buffer
+    };
+    let mut reach = Reach::new(request.bounds, buffer, &files.extents(of_points));
     let Built {
         tin,
         points,
+        left_out,
         replaced,
     } = building.surface(&mut files, level_rings, &mut rim, &mut reach)?;
     notes::count_edges(&mut inputs, &tin);
     building.note_lines(&inputs, tin.report());
     rim.note(&units, journal);
-    reach.note(&points, &units, journal);
+    reach.note([left_out, files.len()], &units, journal);
     crossings::note(tin.report(), &names, &units, journal);
     if tin.report().triangles == 0 {
         return Err(no_triangle(tin.report(), &rim, &units));
@@ -386,14 +394,15 @@ struct Building<'a> {
 struct Read {
     points: Vec<[f64; 3]>,
     report: SelectionReport,
-    /// The extents of the files.
-    extents: Vec<Bounds>,
+    files: FilesRead,
 }
 
 /// A TIN, and what was done with its points.
 struct Built {
     tin: Tin,
     points: SelectionReport,
+    /// The number of files that were not read.
+    left_out: usize,
     /// The points that water and walls replaced.
     replaced: Vec<[f64; 3]>,
 }
@@ -415,32 +424,33 @@ impl Building<'_> {
             let Read {
                 points,
                 report,
-                extents,
+                files: read,
             } = self.read(files, reach)?;
             self.compare_lines(&points, rim.buffer);
             memory::require_for_points(points.len())?;
-            rim.find_limit(&report, &extents);
+            rim.find_limit(&read);
             // Once, also if more points are read.
             self.note_level_rings(std::mem::take(&mut level_rings), &points);
-            let (tin, replaced) = self.triangulate(points, &report, rim, reach)?;
+            let (tin, replaced) = self.triangulate(points, &read, rim, reach)?;
             match tin {
                 Ok(tin) if tin.report().uncertain == 0 => {
                     return Ok(Built {
                         tin,
                         points: report,
+                        left_out: read.left_out,
                         replaced,
                     });
                 }
                 Ok(tin) => {
-                    let buffer = self.units.length(reach.buffer);
+                    let buffer = self.units.length(reach.buffer());
                     self.journal
                         .add(Notice::Uncertain(tin.report().uncertain, buffer));
                 }
                 // Too few points are an error only if there are no more to add.
-                Err(_) if reach.may_grow_into(&report) => (),
+                Err(_) if reach.may_grow_into(&read.extents) => (),
                 Err(error) => return Err(self.in_file(error)),
             }
-            reach.grow();
+            reach.grow(&files.extents(self.by_file));
         }
     }
 
@@ -451,21 +461,21 @@ impl Building<'_> {
     fn read(&self, files: &mut PointFiles, reach: &Reach) -> Result<Read> {
         let classes = &self.request.classes;
         let mut selection = Selection::new(classes.clone(), reach.window());
-        let extents = files.read(self.by_file, self.transforms, &mut selection, self.journal)?;
-        extents::compare_files(&self.paths, &extents, self.units, self.journal);
+        let files = files.read(self.by_file, self.transforms, &mut selection, self.journal)?;
+        extents::compare_files(&self.paths, &files.extents, self.units, self.journal);
         let (points, report) = selection.finish();
         self.transforms.warn(self.journal);
         note_classes(&report, classes, self.journal);
         if points.is_empty()
             && !self.layers.has_lines_with_heights()
-            && !reach.may_grow_into(&report)
+            && !reach.may_grow_into(&files.extents)
         {
-            return Err(nothing_left(&report, &self.paths));
+            return Err(nothing_left(&report, files.left_out, &self.paths));
         }
         Ok(Read {
             points,
             report,
-            extents,
+            files,
         })
     }
 
@@ -503,7 +513,7 @@ impl Building<'_> {
     fn triangulate(
         &self,
         points: Vec<[f64; 3]>,
-        report: &SelectionReport,
+        files: &FilesRead,
         rim: &Rim,
         reach: &Reach,
     ) -> Result<(Result<Tin>, Vec<[f64; 3]>)> {
@@ -511,7 +521,7 @@ impl Building<'_> {
         builder.max_edge = rim.max_edge;
         builder.window = reach.window().map(|read| ReadWindow {
             read,
-            all: report.extent,
+            all: files.extents.clone(),
         });
         builder.add_owned_points(points);
         let replaced = builder.take_replaced_points();
@@ -567,14 +577,6 @@ pub(crate) fn default_tolerance(units: &Units) -> f64 {
     units.height_of_metres(DEFAULT_CROSSING_TOLERANCE_METRES)
 }
 
-/// Returns a box enlarged by a length on all sides in plan, and unbounded in z.
-fn grown(Bounds { min, max }: Bounds, by: f64) -> Bounds {
-    Bounds {
-        min: [min[0] - by, min[1] - by, f64::NEG_INFINITY],
-        max: [max[0] + by, max[1] + by, f64::INFINITY],
-    }
-}
-
 /// How many mean distances between points the longest edge at the rim has with
 /// [`EdgeLimit::Auto`]. In real ground points, the largest empty disks inside of an area have radii
 /// of 60 to 80 mean distances: under buildings and over water.
@@ -613,8 +615,8 @@ impl Rim {
     }
 
     /// Finds the mean distance between points, and the limit that follows from it.
-    fn find_limit(&mut self, report: &SelectionReport, extents: &[Bounds]) {
-        self.spacing = mean_distance(report.read, extents.iter().copied());
+    fn find_limit(&mut self, files: &FilesRead) {
+        self.spacing = mean_distance(files.points, files.extents.iter().copied());
         if self.limit == EdgeLimit::Auto {
             self.max_edge = self.spacing.map(|spacing| AUTO_EDGE_SPACINGS * spacing);
         }
@@ -629,53 +631,6 @@ impl Rim {
             .unusual(self.spacing, units)
             .into_iter()
             .for_each(|notice| journal.add(notice));
-    }
-}
-
-/// The buffer outside of the bounds in which points are used, so wide that the surface inside the
-/// bounds is the same as with all points.
-struct Reach {
-    bounds: Option<Bounds>,
-    buffer: f64,
-}
-
-impl Reach {
-    fn new(request: &TinRequest, rim: &Rim) -> Self {
-        let is_read_once = request.points.iter().any(Input::is_read_once);
-        Reach {
-            bounds: request.bounds,
-            buffer: if is_read_once {
-                f64::INFINITY
-            } else {
-                rim.buffer
-            },
-        }
-    }
-
-    /// Returns the box in which points are used.
-    fn window(&self) -> Option<Bounds> {
-        self.bounds.map(|bounds| grown(bounds, self.buffer))
-    }
-
-    /// Returns true if some points were not used and the bounds overlap the extent of all points: a
-    /// wider buffer may then contain more.
-    fn may_grow_into(&self, report: &SelectionReport) -> bool {
-        let all = &report.extent;
-        self.bounds.is_some_and(|bounds| {
-            let is_apart = |k: usize| bounds.min[k] > all.max[k] || bounds.max[k] < all.min[k];
-            report.outside > 0 && !is_apart(0) && !is_apart(1)
-        })
-    }
-
-    fn grow(&mut self) {
-        self.buffer *= 2.0;
-    }
-
-    fn note(&self, report: &SelectionReport, units: &Units, journal: &Journal) {
-        if self.bounds.is_some() {
-            let buffer = Some(units.length(self.buffer)).filter(|_| report.outside > 0);
-            journal.add(Notice::BoundsBuffer(buffer));
-        }
     }
 }
 
@@ -725,7 +680,7 @@ fn no_triangle(report: &TinReport, rim: &Rim, units: &Units) -> Error {
 }
 
 #[cold]
-fn nothing_left(report: &SelectionReport, files: &[&Path]) -> Error {
+fn nothing_left(report: &SelectionReport, left_out: usize, files: &[&Path]) -> Error {
     let SelectionReport {
         read,
         withheld,
@@ -737,15 +692,21 @@ fn nothing_left(report: &SelectionReport, files: &[&Path]) -> Error {
         [file] => error.in_file(file),
         _ => error,
     };
-    if *read == 0 {
+    if *read == 0 && left_out == 0 {
         return named(
             Error::format("no points in the input").cure("pass files that contain points"),
         );
     }
+    let unread = match left_out {
+        0 => String::new(),
+        files => {
+            format!("; {files} files are not read, because by their headers they are further out")
+        }
+    };
     let error = named(Error::format(format!(
-        "no point is left of {read} read: {withheld} withheld, {other_class} of other classes, {outside} outside of the bounds"
+        "no point is left of {read} read: {withheld} withheld, {other_class} of other classes, {outside} outside of the bounds{unread}"
     )));
-    if *outside > 0 {
+    if *outside > 0 || left_out > 0 {
         return error.cure(wording![
             "compare ",
             Setting::Bounds,

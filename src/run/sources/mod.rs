@@ -2,6 +2,7 @@
 
 pub(crate) mod checksum;
 pub(crate) mod extents;
+pub(crate) mod file_extent;
 pub(crate) mod open;
 pub(crate) mod point_files;
 pub mod proj;

@@ -1,5 +1,8 @@
 //! Files of points: opened, then asked for their coordinate systems, then read.
 
+use std::path::Path;
+
+use super::file_extent::{FileExtent, stated_extent};
 use super::open;
 use super::systems::Stated;
 use super::transforms::Transforms;
@@ -8,7 +11,7 @@ use crate::error::{Error, Kind, Result, Setting, wording};
 use crate::io::points::Options;
 use crate::run::context::memory;
 use crate::run::context::notice::Notice;
-use crate::run::context::{Context, Journal, Size, Stage};
+use crate::run::context::{Context, Journal, Size, Stage, Work};
 use crate::run::request::input::{Input, MemoryPoints};
 use crate::terrain::{Classes, Selection};
 
@@ -50,11 +53,28 @@ struct PointFile {
     source: Option<Box<dyn PointSource + Send>>,
     count: Option<u64>,
     bounds: Option<Bounds>,
+    /// What is known of its points, in the coordinates of the file until they are read, and then
+    /// in those of the result.
+    extent: FileExtent,
+    /// True if the points were read.
+    is_read: bool,
     has_classes: bool,
     columns: Option<Columns>,
 }
 
 impl PointFile {
+    /// What is known of the points in the coordinates of the result, to which this transform leads.
+    fn extent(&self, transform: Option<usize>) -> FileExtent {
+        if self.is_read || transform.is_none() {
+            self.extent
+        } else {
+            FileExtent {
+                bounds: None,
+                ..self.extent
+            }
+        }
+    }
+
     /// Returns true if the file has a point of these classes. Reads until one is found.
     fn has_any(&self, options: Options, classes: &Classes, journal: &Journal) -> Result<bool> {
         let path = self.input.path();
@@ -74,6 +94,18 @@ impl PointFile {
     fn reopen(&self, options: Options, context: &Context) -> Result<Box<dyn PointSource + Send>> {
         open::points(&self.input, options, context).map_err(|e| e.in_file(self.input.path()))
     }
+}
+
+/// What reading files of points found.
+pub(crate) struct FilesRead {
+    /// The extent of each file: that of its points, or for a file that was left out, what it
+    /// states.
+    pub(crate) extents: Vec<Bounds>,
+    /// The number of points in all files, used or not.
+    pub(crate) points: u64,
+    /// The number of files that were left out because they state that their points lie outside of
+    /// the window.
+    pub(crate) left_out: usize,
 }
 
 /// The files of points of a run.
@@ -103,6 +135,7 @@ impl PointFiles {
             }
             let stated = Stated::by_points(path, info);
             let (count, bounds, columns) = (info.count, info.bounds, info.columns);
+            let extent = stated_extent(info);
             let keep = inputs.len() <= FILES_KEPT_OPEN || input.is_read_once();
             let has_classes = info.has_classes;
             let (input, source) = (input.clone(), Some(source).filter(|_| keep));
@@ -111,6 +144,8 @@ impl PointFiles {
                 stated,
                 count,
                 bounds,
+                extent,
+                is_read: false,
                 has_classes,
                 columns,
                 source,
@@ -213,16 +248,12 @@ impl PointFiles {
         if let Classes::Only(classes) = classes {
             return Ok(classes.clone());
         }
-        let ground = Classes::Only(vec![GROUND]);
-        for file in self.files.iter().filter(|file| file.has_classes) {
-            match file.has_any(self.options, &ground, journal) {
-                Ok(true) => return Ok(vec![GROUND]),
-                Ok(false) => {}
-                Err(error) if self.bad.skips(&error) => {}
-                Err(error) => return Err(error),
-            }
+        let all: Vec<usize> = (0..self.files.len()).collect();
+        if self.any_has_ground(&all, journal)? {
+            Ok(vec![GROUND])
+        } else {
+            Ok((0..=u8::MAX).collect())
         }
-        Ok((0..=u8::MAX).collect())
     }
 
     /// Returns the columns used of text files, each with the number of files.
@@ -237,70 +268,140 @@ impl PointFiles {
         counts
     }
 
-    /// Reads all files and adds their points, in the coordinate system of the result, to the
-    /// selection. Returns the extents of the files.
+    /// Returns what is known of the points of each file, in the coordinates of the result.
+    pub(crate) fn extents(&self, by_file: &[Option<usize>]) -> Vec<FileExtent> {
+        let files = self.files.iter().zip(by_file);
+        files
+            .map(|(file, transform)| file.extent(*transform))
+            .collect()
+    }
+
+    /// Reads files and adds their points, in the coordinate system of the result, to the selection.
+    /// Files that state that all of their points lie outside of its window are left out.
     pub(crate) fn read(
         &mut self,
         by_file: &[Option<usize>],
         transforms: &Transforms,
         selection: &mut Selection,
         journal: &Journal,
-    ) -> Result<Vec<Bounds>> {
-        let length = self
-            .files
+    ) -> Result<FilesRead> {
+        let extents = self.extents(by_file);
+        let window = selection.window().copied();
+        let is_within = |i: &usize| window.is_none_or(|window| extents[*i].meets(&window));
+        let (within, left_out): (Vec<usize>, Vec<usize>) =
+            (0..self.files.len()).partition(is_within);
+        let length = within
             .iter()
-            .map(|file| file.count)
+            .map(|&i| self.files[i].count)
             .sum::<Option<u64>>();
         if let Some(excess) = length.and_then(memory::excess_of) {
             journal.add(excess);
         }
-        let mut asked = 0;
         let progress = journal.start(
             Stage::ReadingPoints,
             length.map_or(Size::Unknown, Size::Items),
         )?;
-        let mut batch = PointBatch::default();
-        let mut extents = Vec::new();
-        let are_several = self.files.len() > 1;
-        for (file, transform) in self.files.iter_mut().zip(by_file) {
+        let mut reading = Reading {
+            transforms,
+            selection,
+            journal,
+            batch: PointBatch::default(),
+            asked: 0,
+        };
+        for &i in &within {
+            let file = &mut self.files[i];
             let source = file.source.take();
+            let source = source.map_or_else(|| file.reopen(self.options, &journal.context), Ok)?;
             let path = file.input.path();
-            let mut source =
-                source.map_or_else(|| file.reopen(self.options, &journal.context), Ok)?;
-            selection.next_source();
-            let mut count = 0;
-            let mut extent = Bounds::default();
-            loop {
-                source.read(&mut batch).map_err(|e| e.in_file(path))?;
-                if batch.is_empty() {
-                    break;
-                }
-                transforms
-                    .apply_to_batch(*transform, &mut batch)
-                    .map_err(|e| e.in_file(path))?;
-                selection.add(&batch).map_err(|e| e.in_file(path))?;
-                if selection.certain() >= asked + ASK_EVERY {
-                    asked = selection.certain();
-                    memory::require_for_points(asked)?;
-                }
-                count += batch.len() as u64;
-                progress.add(batch.len() as u64)?;
-                (0..batch.len()).for_each(|i| extent.add([batch.x[i], batch.y[i], batch.z[i]]));
-            }
-            extents.push(extent);
-            journal.add(Notice::PointsRead(path.to_path_buf(), count));
-            journal.add_warnings(path, source.warnings());
+            let extent = reading.read(path, source, by_file[i], &progress);
+            file.extent = extent.map_err(|e| e.in_file(path))?;
+            file.is_read = true;
         }
         progress.end()?;
-        if are_several {
+        if selection.waits_for_ground() && self.any_has_ground(&left_out, journal)? {
+            selection.note_ground();
+        }
+        if self.files.len() > 1 {
             let classes = selection.report().classes;
             for i in selection.unused_sources() {
                 journal.add(Notice::NoPointUsed(
-                    self.files[i].stated.path.clone(),
+                    self.files[within[i]].stated.path.clone(),
                     classes.clone(),
                 ));
             }
         }
-        Ok(extents)
+        let extents = self.extents(by_file);
+        Ok(FilesRead {
+            points: extents.iter().filter_map(|extent| extent.points).sum(),
+            extents: extents
+                .into_iter()
+                .map(|extent| extent.bounds.unwrap_or_default())
+                .collect(),
+            left_out: left_out.len(),
+        })
+    }
+
+    /// Returns true if one of these files has a ground point. They are read until one is found.
+    fn any_has_ground(&self, files: &[usize], journal: &Journal) -> Result<bool> {
+        let ground = Classes::Only(vec![GROUND]);
+        let files = files.iter().map(|&i| &self.files[i]);
+        for file in files.filter(|file| file.has_classes) {
+            match file.has_any(self.options, &ground, journal) {
+                Ok(true) => return Ok(true),
+                Ok(false) => {}
+                Err(error) if self.bad.skips(&error) => {}
+                Err(error) => return Err(error),
+            }
+        }
+        Ok(false)
+    }
+}
+
+/// Points of files on their way to a selection.
+struct Reading<'a, 'b> {
+    transforms: &'a Transforms,
+    selection: &'a mut Selection,
+    journal: &'a Journal<'b>,
+    batch: PointBatch,
+    /// The number of points for which memory was asked for.
+    asked: usize,
+}
+
+impl Reading<'_, '_> {
+    /// Reads a file. Returns the number of its points and the box around them.
+    fn read(
+        &mut self,
+        path: &Path,
+        mut source: Box<dyn PointSource + Send>,
+        transform: Option<usize>,
+        progress: &Work,
+    ) -> Result<FileExtent> {
+        let Reading {
+            selection, batch, ..
+        } = self;
+        selection.next_source();
+        let (mut count, mut bounds) = (0, Bounds::default());
+        loop {
+            source.read(batch)?;
+            if batch.is_empty() {
+                break;
+            }
+            self.transforms.apply_to_batch(transform, batch)?;
+            selection.add(batch)?;
+            if selection.certain() >= self.asked + ASK_EVERY {
+                self.asked = selection.certain();
+                memory::require_for_points(self.asked)?;
+            }
+            count += batch.len() as u64;
+            progress.add(batch.len() as u64)?;
+            (0..batch.len()).for_each(|i| bounds.add([batch.x[i], batch.y[i], batch.z[i]]));
+        }
+        self.journal
+            .add(Notice::PointsRead(path.to_path_buf(), count));
+        self.journal.add_warnings(path, source.warnings());
+        Ok(FileExtent {
+            points: Some(count),
+            bounds: Some(bounds),
+        })
     }
 }
