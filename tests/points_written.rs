@@ -6,7 +6,7 @@ use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
 use breakline::crs::Crs;
-use breakline::data::{LasHead, PointBatch, PointSource};
+use breakline::data::{LasHead, PointBatch, PointSource, Return};
 use breakline::io::OnDamage;
 use breakline::io::las::{Detail, ReadOptions, Rounding};
 use breakline::io::{OutputSet, las as ours, points};
@@ -334,7 +334,7 @@ fn points_are_selected() {
     assert!(records == kept(&whole, |i| [2, 4].contains(&(i % 5))));
     assert_eq!((report.written.count, report.other_class), (80, 120));
     let (records, _) = run(PointsRequest {
-        returns: vec![1, 15],
+        returns: vec![Return::Number(1), Return::Number(15)],
         ..all()
     });
     assert!(records == kept(&whole, |i| [1, 15].contains(&(1 + i % 15))));

@@ -79,7 +79,7 @@ pub(crate) fn main(py: Python<'_>, arguments: Vec<std::ffi::OsString>) -> PyResu
 #[pyo3(from_item_all)]
 pub(crate) struct SelectionArguments {
     classes: Option<Vec<u8>>,
-    returns: Option<Vec<u8>>,
+    returns: Option<Vec<String>>,
     drop_withheld: bool,
     bounds: Option<[f64; 4]>,
     boundary: Vec<PathBuf>,
@@ -97,7 +97,7 @@ impl SelectionArguments {
             files,
             read: read.options()?,
             classes: self.classes.unwrap_or_default(),
-            returns: self.returns.unwrap_or_default(),
+            returns: requests::returns_of(self.returns.as_deref())?,
             withheld: if self.drop_withheld {
                 Withheld::Drop
             } else {
@@ -159,6 +159,7 @@ pub(crate) fn read_points<'py>(
         optional(points.flags.into_iter().map(|flags| flags.0).collect()),
     )?;
     found.set_item("return_number", optional(points.return_number))?;
+    found.set_item("number_of_returns", optional(points.return_count))?;
     found.set_item(
         "crs",
         product.report.crs.as_ref().map(breakline::crs::Crs::to_wkt),
@@ -396,12 +397,13 @@ pub(crate) fn is_of_space(py: Python<'_>, file: PathBuf) -> PyResult<bool> {
     work::short(py, || -> Result<_> { Ok(run::is_of_space(&file)) })
 }
 
-/// Returns the class of points with a name, such as "ground".
+/// Returns the classes of points that a word means: a name such as "ground", a number, a range, or
+/// "all".
 #[pyfunction]
-pub(crate) fn class_number(name: &str) -> PyResult<u8> {
+pub(crate) fn class_numbers(name: &str) -> PyResult<Vec<u8>> {
     let unknown = |_| {
         let error = Error::usage(format!("`{name}` is not a class of points"));
-        Failure(error.cure("use a number from 0 to 255, or a name as in LAS 1.4, such as `ground`"))
+        Failure(error.cure("use a number from 0 to 255, a range such as `0-31`, `all`, or a name as in LAS 1.4, such as `ground`"))
     };
     Ok(classes::parse(name).map_err(unknown)?)
 }

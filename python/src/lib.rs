@@ -30,7 +30,7 @@ mod _breakline {
 
     #[pymodule_export]
     use super::files::{
-        check_space, class_number, describe, info, is_of_space, main, read_points, triangulate,
+        check_space, class_numbers, describe, info, is_of_space, main, read_points, triangulate,
         triangulate_space, write_points,
     };
     #[pymodule_export]

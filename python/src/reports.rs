@@ -49,6 +49,7 @@ pub(crate) fn of_building(report: &Bound<'_, PyDict>, built: &BuildReport) -> Py
         ("points_used", points.used),
         ("points_withheld", points.withheld),
         ("points_of_other_classes", points.other_class),
+        ("points_of_other_returns", points.other_return),
         ("points_outside", points.outside),
         ("points_without_class", points.without_class),
     ] {

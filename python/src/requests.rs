@@ -4,7 +4,9 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use breakline::crs::Crs;
-use breakline::data::{Bounds, Column, Lattice, Layer, PointBatch, PointFlags, Shape};
+use breakline::data::{
+    Bounds, Column, Lattice, Layer, PointBatch, PointFlags, Return, Shape, returns,
+};
 use breakline::io::OnDamage;
 use breakline::io::points;
 use breakline::run::{
@@ -101,6 +103,8 @@ pub(crate) struct PointColumns<'py> {
     offset: [f64; 3],
     classes: Option<PyReadonlyArray1<'py, u8>>,
     flags: Option<PyReadonlyArray1<'py, u8>>,
+    return_number: Option<PyReadonlyArray1<'py, u8>>,
+    return_count: Option<PyReadonlyArray1<'py, u8>>,
     crs: Option<String>,
 }
 
@@ -148,6 +152,8 @@ impl PointColumns<'_> {
             z,
             class: bytes(&self.classes),
             flags,
+            return_number: bytes(&self.return_number),
+            return_count: bytes(&self.return_count),
             ..PointBatch::default()
         };
         Ok(MemoryPoints {
@@ -326,6 +332,7 @@ pub(crate) struct SurfaceArguments<'py> {
     max_edge: Option<NumberOrName>,
     max_edge_inside: Option<f64>,
     classes: Option<Vec<u8>>,
+    returns: Option<Vec<String>>,
     duplicates: String,
     on_crossing: String,
     crossing_z: String,
@@ -370,13 +377,12 @@ impl SurfaceArguments<'_> {
         points: &[PointInput<'_>],
         read: &ReadArguments,
     ) -> PyResult<TinRequest> {
+        let returns = returns_of(self.returns.as_deref())?;
         Ok(TinRequest {
             points: point_inputs(points)?,
             read: read.options()?,
-            classes: self
-                .classes
-                .clone()
-                .map_or(Classes::GroundOrAll, Classes::Only),
+            classes: Classes::of(self.classes.as_deref().unwrap_or_default(), &returns),
+            returns,
             breaklines: layers(&self.breaklines)?,
             boundary: layers(&self.boundary)?,
             lines: self.lines()?,
@@ -456,6 +462,26 @@ impl SurfaceArguments<'_> {
             densify: positive("densify", self.densify)?,
         })
     }
+}
+
+/// Returns the returns that words mean: numbers, ranges and names; none, which means all, without
+/// words or if one of them is `all`.
+pub(crate) fn returns_of(words: Option<&[String]>) -> PyResult<Vec<Return>> {
+    let mut found = Vec::new();
+    for word in words.unwrap_or_default() {
+        let meant = returns::parse(word).map_err(|_| {
+            errors::usage(
+                "returns has an unknown value",
+                word,
+                "pass 'first', 'last', 'single', 'all', numbers, or ranges such as '2-15'",
+            )
+        })?;
+        if meant.is_empty() {
+            return Ok(Vec::new());
+        }
+        found.extend(meant);
+    }
+    Ok(found)
 }
 
 /// Returns a number if it is not below zero, and finite.

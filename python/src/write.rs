@@ -257,6 +257,7 @@ fn of_tiles(found: &Bound<'_, PyDict>, report: &JobReport, folder: &Path) -> PyR
         ("points_used", report.used),
         ("points_withheld", report.withheld),
         ("points_of_other_classes", report.other_class),
+        ("points_of_other_returns", report.other_return),
         ("duplicates", report.duplicates),
         ("points_on_breaklines", report.points_on_breaklines),
         ("triangles", report.triangles),

@@ -35,11 +35,26 @@ pub fn name(class: usize) -> &'static str {
     })
 }
 
-/// Parses a class: `2`, `ground`, `low-vegetation`.
+/// Parses classes: `2`, `ground`, `low-vegetation`, a range such as `0-31`, or `all`.
 ///
 /// # Errors
-/// If the text is neither a number up to 255 nor a name; the error says what is expected.
-pub fn parse(text: &str) -> Result<u8, String> {
+/// If the text is neither a number up to 255, nor a name, nor a range; the error says what is
+/// expected.
+pub fn parse(text: &str) -> Result<Vec<u8>, String> {
+    let of_range = || {
+        let (first, last) = text.split_once('-')?;
+        let (first, last) = (first.trim().parse().ok()?, last.trim().parse().ok()?);
+        (first <= last).then(|| (first..=last).collect())
+    };
+    if text.trim().eq_ignore_ascii_case("all") {
+        return Ok((0..=u8::MAX).collect());
+    }
+    one(text).map(|class| vec![class]).or_else(of_range).ok_or_else(|| {
+        format!("`{text}` is not a class: expected 0 to 255, a range such as `0-31`, `all`, or a name such as `ground` or `low-vegetation`")
+    })
+}
+
+fn one(text: &str) -> Option<u8> {
     let plain = text.trim().replace(['-', '_'], " ").to_ascii_lowercase();
     let by_name = || {
         NAMES
@@ -47,9 +62,7 @@ pub fn parse(text: &str) -> Result<u8, String> {
             .position(|name| *name == plain)
             .map(|class| class as u8)
     };
-    plain.parse().ok().or_else(by_name).ok_or_else(|| {
-        format!("`{text}` is not a class: expected 0 to 255, or a name such as `ground` or `low-vegetation`")
-    })
+    plain.parse().ok().or_else(by_name)
 }
 
 #[cfg(test)]
@@ -65,12 +78,28 @@ mod tests {
             ("low_noise", 7),
             ("255", 255),
         ] {
-            assert_eq!(parse(text), Ok(class));
+            assert_eq!(parse(text), Ok(vec![class]));
         }
         assert!(
-            ["256", "-1", "gras", ""]
+            [
+                "256",
+                "-1",
+                "gras",
+                "",
+                "3-2",
+                "0-256",
+                "2-",
+                "ground-water"
+            ]
+            .iter()
+            .all(|text| parse(text).is_err())
+        );
+        assert_eq!(parse("1-3"), Ok(vec![1, 2, 3]));
+        let everything: Vec<u8> = (0..=255).collect();
+        assert!(
+            ["all", "All ", "0-255"]
                 .iter()
-                .all(|text| parse(text).is_err())
+                .all(|text| parse(text).as_ref() == Ok(&everything))
         );
         assert_eq!(
             [name(2), name(40), name(200)],

@@ -1,5 +1,5 @@
 use super::Bounds;
-use crate::error::{Error, Result};
+use crate::error::{Error, Plain, Result};
 
 /// The largest number of columns or rows of a frame, which is that of GDAL.
 pub const MAX_SIDE: usize = i32::MAX as usize;
@@ -389,7 +389,9 @@ fn size(width: f64, height: f64) -> Result<(usize, usize)> {
 #[cold]
 fn too_large(width: f64, height: f64) -> Error {
     Error::limit(format!(
-        "a raster of {width} x {height} cells; a side has at most {MAX_SIDE}"
+        "a raster of {} x {} cells; a side has at most {MAX_SIDE}",
+        Plain(width),
+        Plain(height)
     ))
     .cure("take a coarser resolution or smaller bounds")
 }

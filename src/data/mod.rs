@@ -7,7 +7,7 @@
 //!
 //! | what | record | stream |
 //! |---|---|---|
-//! | points | [`PointBatch`] (columns), [`PointInfo`], [`Columns`], [`Lattice`], [`LasHead`] | [`PointSource`], [`PointSink`] |
+//! | points | [`PointBatch`] (columns), [`Return`], [`PointInfo`], [`Columns`], [`Lattice`], [`LasHead`] | [`PointSource`], [`PointSink`] |
 //! | lines, polygons, points of a vector file | [`Shape`], [`Layer`], [`Column`] | |
 //! | contours | [`ContourLine`] | `Iterator<Item = ContourLine>` |
 //! | rasters | [`Grid`], georeferenced by its [`Frame`] | [`BlockSource`], read by [`Window`] |
@@ -37,6 +37,7 @@ mod las_head;
 mod lattice;
 mod mesh;
 mod points;
+pub mod returns;
 mod shape;
 mod surface;
 mod surface_facts;
@@ -53,6 +54,7 @@ pub use lattice::{Embedding, Lattice};
 pub use mesh::Mesh;
 pub(crate) use mesh::{not_finite, orientation};
 pub use points::{PointBatch, PointFlags, PointInfo, PointSink, PointSource, PointSummary};
+pub use returns::Return;
 pub use shape::{Column, Layer, Shape, ShapeKind};
 pub use surface::{BaseFace, EdgeKind, Face, LineEdges, Surface};
 pub(crate) use surface::{corners, faces, faces_under};

@@ -39,12 +39,20 @@ pub struct PointBatch {
     pub flags: Vec<PointFlags>,
     /// Return numbers, or empty.
     pub return_number: Vec<u8>,
+    /// Numbers of returns of the pulses, or empty.
+    pub return_count: Vec<u8>,
     /// The LAS records of the points, one after the other, all of the same length; empty unless
     /// they were requested from the source.
     pub records: Vec<u8>,
 }
 
 impl PointBatch {
+    /// Returns the number of the return of point `i`, and how many its pulse has, if both are
+    /// known.
+    pub fn return_of(&self, i: usize) -> Option<(u8, u8)> {
+        Some((*self.return_number.get(i)?, *self.return_count.get(i)?))
+    }
+
     /// Returns the number of points.
     pub fn len(&self) -> usize {
         self.x.len()
@@ -63,6 +71,7 @@ impl PointBatch {
         self.class.clear();
         self.flags.clear();
         self.return_number.clear();
+        self.return_count.clear();
         self.records.clear();
     }
 
@@ -86,6 +95,7 @@ impl PointBatch {
         retain(&mut self.class, keep);
         retain(&mut self.flags, keep);
         retain(&mut self.return_number, keep);
+        retain(&mut self.return_count, keep);
     }
 }
 

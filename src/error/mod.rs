@@ -9,6 +9,7 @@
 //! and features of a build as data ([`Setting`], [`Term`]); the command line shows them as options,
 //! Python as parameters.
 
+mod plain;
 mod setting;
 mod stored;
 mod wording;
@@ -16,6 +17,8 @@ mod wording;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
+pub(crate) use plain::MANY_DIGITS;
+pub use plain::Plain;
 pub use setting::{Command, Feature, Setting, Term};
 pub(crate) use wording::wording;
 pub use wording::{Part, Wording};

@@ -1,4 +1,4 @@
-use crate::error::{Error, Result};
+use crate::error::{Error, Plain, Result};
 use crate::triangulation::num::unsigned_zero;
 
 /// The largest number of levels in one run: far more than on any map, but few enough for memory.
@@ -100,14 +100,21 @@ fn every_within(interval: f64, base: f64, low: f64, high: f64) -> Result<Vec<f64
     let steps = last - first;
     if steps > MAX_LEVELS as f64 + 4.0 {
         return Err(Error::limit(format!(
-            "contour interval {interval} gives {} levels between {low} and {high}, at most {MAX_LEVELS} are drawn",
-            (steps - 3.0).max(0.0)
+            "contour interval {} gives {} levels between {} and {}, at most {MAX_LEVELS} are drawn",
+            Plain(interval),
+            Plain((steps - 3.0).max(0.0)),
+            Plain(low),
+            Plain(high)
         ))
         .cure("use a larger interval, or list the levels"));
     }
     if !(first.abs() < EXACT && last.abs() < EXACT) {
         return Err(Error::usage(format!(
-            "contour base {base} is too far from the heights ({low} to {high}) for interval {interval}"
+            "contour base {} is too far from the heights ({} to {}) for interval {}",
+            Plain(base),
+            Plain(low),
+            Plain(high),
+            Plain(interval)
         )));
     }
     let progression = Progression::new(interval, base);

@@ -1,7 +1,7 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use crate::data::{Bounds, PointBatch, PointSource};
+use crate::data::{Bounds, PointBatch, PointSource, Return};
 use crate::error::{Error, Result};
 
 /// The class of ground points in LAS.
@@ -15,6 +15,45 @@ pub enum Classes {
     GroundOrAll,
     /// Only these classes.
     Only(Vec<u8>),
+    /// All classes.
+    All,
+    /// All classes except low and high noise (7 and 18): what surface models are made of.
+    AllButNoise,
+}
+
+impl Classes {
+    /// Returns what a list of classes means, together with the returns that are used. Without a
+    /// list it is ground, if there is any; for a choice of returns, everything but noise, because
+    /// ground is rarely a first return where it matters.
+    pub fn of(listed: &[u8], returns: &[Return]) -> Self {
+        let is_listed = |class: u8| listed.contains(&class);
+        if listed.is_empty() {
+            if returns.is_empty() {
+                Classes::GroundOrAll
+            } else {
+                Classes::AllButNoise
+            }
+        } else if (0..=u8::MAX).all(is_listed) {
+            Classes::All
+        } else {
+            Classes::Only(listed.to_vec())
+        }
+    }
+
+    /// Returns the classes that are used; `None` if that depends on the points.
+    pub fn listed(&self) -> Option<Vec<u8>> {
+        match self {
+            Classes::GroundOrAll => None,
+            Classes::Only(classes) => Some(classes.clone()),
+            Classes::All => Some((0..=u8::MAX).collect()),
+            Classes::AllButNoise => Some((0..=u8::MAX).filter(|&class| !is_noise(class)).collect()),
+        }
+    }
+}
+
+/// Returns true for low and high noise.
+fn is_noise(class: u8) -> bool {
+    matches!(class, 7 | 18)
 }
 
 /// Counts of the points that a [`Selection`] read and kept.
@@ -28,19 +67,25 @@ pub struct SelectionReport {
     pub used: u64,
     /// Points dropped because their file marks them as deleted.
     pub withheld: u64,
+    /// Points dropped because their return is not used.
+    pub other_return: u64,
     /// Points dropped because their class is not used.
     pub other_class: u64,
+    /// These points, by class.
+    pub other_classes: BTreeMap<u8, u64>,
     /// Points of a used class dropped because they lie outside of the window.
     pub outside: u64,
-    /// Points that are not withheld, by class.
+    /// Points that are not withheld and of a return that is used, by class.
     pub by_class: BTreeMap<u8, u64>,
-    /// Points that are not withheld, from formats without classes.
+    /// Such points from formats without classes.
     pub without_class: u64,
-    /// The classes that are used; `None` if all are.
+    /// Points from formats without returns, if only some returns are used.
+    pub without_return: u64,
+    /// The classes that are used; `None` if all are, or all but noise.
     pub classes: Option<Vec<u8>>,
 }
 
-/// Selects points for a surface by class and position, and keeps their coordinates.
+/// Selects points for a surface by class, return and position, and keeps their coordinates.
 ///
 /// Withheld points are dropped; coordinates that are not finite are an error. With
 /// [`Classes::GroundOrAll`], points of other classes are kept until the first ground point is read,
@@ -49,6 +94,8 @@ pub struct SelectionReport {
 #[derive(Debug)]
 pub struct Selection {
     classes: Classes,
+    /// Those that are used; all if empty.
+    returns: Vec<Return>,
     window: Option<Bounds>,
     kept: Vec<[f64; 3]>,
     /// The ranges of `kept` that are dropped when the first ground point is read.
@@ -61,6 +108,8 @@ pub struct Selection {
     /// The classes of the points of each source before the current one.
     sources: Vec<Vec<Option<u8>>>,
     withheld: u64,
+    other_return: u64,
+    without_return: u64,
     /// For each class.
     by_class: [Tally; 256],
     without_class: Tally,
@@ -101,6 +150,7 @@ impl Selection {
     pub fn new(classes: Classes, window: Option<Bounds>) -> Self {
         Selection {
             classes,
+            returns: Vec::new(),
             window,
             kept: Vec::new(),
             spare: Vec::new(),
@@ -110,9 +160,17 @@ impl Selection {
             before_source: None,
             sources: Vec::new(),
             withheld: 0,
+            other_return: 0,
+            without_return: 0,
             by_class: [Tally::default(); 256],
             without_class: Tally::default(),
         }
+    }
+
+    /// Restricts the selection to these returns; all are used if there are none. Points of formats
+    /// without returns are always used.
+    pub fn with_returns(self, returns: Vec<Return>) -> Self {
+        Selection { returns, ..self }
     }
 
     /// Returns the window in which points are kept.
@@ -222,6 +280,17 @@ impl Selection {
                 self.withheld += 1;
                 continue;
             }
+            if !self.returns.is_empty() {
+                match batch.return_of(i) {
+                    None => self.without_return += 1,
+                    Some((number, count)) => {
+                        if !self.returns.iter().any(|wanted| wanted.is(number, count)) {
+                            self.other_return += 1;
+                            continue;
+                        }
+                    }
+                }
+            }
             let p = [batch.x[i], batch.y[i], batch.z[i]];
             if !p.iter().all(|value| value.is_finite()) {
                 return Err(self.not_finite(p));
@@ -239,11 +308,12 @@ impl Selection {
             Some(class) => &mut self.by_class[usize::from(class)],
             None => &mut self.without_class,
         };
-        if let Some(window) = self.window {
-            if !window.holds(point[0], point[1]) {
-                tally.outside += 1;
-                return;
-            }
+        if self
+            .window
+            .is_some_and(|window| !window.holds(point[0], point[1]))
+        {
+            tally.outside += 1;
+            return;
         }
         tally.inside += 1;
         let fate = self.fate(class);
@@ -262,7 +332,9 @@ impl Selection {
 
     fn fate(&self, class: Option<u8>) -> Use {
         match (class, &self.classes) {
-            (None, _) => Use::Yes,
+            (None, _) | (_, Classes::All) => Use::Yes,
+            (Some(class), Classes::AllButNoise) if is_noise(class) => Use::No,
+            (Some(_), Classes::AllButNoise) => Use::Yes,
             (Some(class), Classes::Only(classes)) if classes.contains(&class) => Use::Yes,
             (Some(_), Classes::Only(_)) => Use::No,
             (Some(GROUND), Classes::GroundOrAll) => Use::Yes,
@@ -305,13 +377,15 @@ impl Selection {
         let mut report = SelectionReport {
             read: self.read,
             withheld: self.withheld,
+            other_return: self.other_return,
+            without_return: self.without_return,
             without_class: self.without_class.all(),
             used: self.without_class.inside,
             outside: self.without_class.outside,
             classes: match &self.classes {
                 Classes::Only(classes) => Some(classes.clone()),
                 Classes::GroundOrAll if self.has_ground => Some(vec![GROUND]),
-                Classes::GroundOrAll => None,
+                Classes::GroundOrAll | Classes::All | Classes::AllButNoise => None,
             },
             ..SelectionReport::default()
         };
@@ -322,6 +396,7 @@ impl Selection {
             report.by_class.insert(class, tally.all());
             if self.fate(Some(class)) == Use::No {
                 report.other_class += tally.all();
+                report.other_classes.insert(class, tally.all());
             } else {
                 report.used += tally.inside;
                 report.outside += tally.outside;
@@ -377,7 +452,11 @@ mod tests {
         assert_eq!(points.len() as u64, report.used);
         assert_eq!(
             report.read,
-            report.used + report.withheld + report.other_class + report.outside
+            report.used
+                + report.withheld
+                + report.other_return
+                + report.other_class
+                + report.outside
         );
         (points.iter().map(|p| p[0]).collect(), report)
     }
@@ -420,6 +499,41 @@ mod tests {
         assert_eq!(unused(Classes::GroundOrAll, &batches[..3]), [2]);
         assert_eq!(unused(Classes::Only(vec![1]), &batches), [2, 3, 4]);
         assert!(unused(Classes::GroundOrAll, &[]).is_empty());
+    }
+
+    #[test]
+    fn returns_are_selected_and_noise_is_no_surface() {
+        let points = [(2, 1.0), (5, 2.0), (2, 3.0), (7, 4.0), (6, 5.0)];
+        let lidar = PointBatch {
+            return_number: vec![1, 1, 2, 1, 2],
+            return_count: vec![1, 2, 2, 1, 3],
+            ..batch(&points)
+        };
+        let select = |returns: &[Return], listed: &[u8]| {
+            let classes = Classes::of(listed, returns);
+            let mut selection = Selection::new(classes, None).with_returns(returns.to_vec());
+            selection.next_source();
+            selection.add(&lidar).unwrap();
+            selection.next_source();
+            selection.add(&classless(&[9.0])).unwrap();
+            let (points, report) = selection.finish();
+            let xs: Vec<f64> = points.iter().map(|p| p[0]).collect();
+            assert_eq!(report.without_return, u64::from(!returns.is_empty()));
+            (xs, [report.other_return, report.other_class])
+        };
+        let all: Vec<u8> = (0..=255).collect();
+        assert_eq!(select(&[], &[]), (vec![1.0, 3.0, 9.0], [0, 3]));
+        assert_eq!(select(&[Return::FIRST], &[]), (vec![1.0, 2.0, 9.0], [2, 1]));
+        assert_eq!(
+            select(&[Return::FIRST], &all),
+            (vec![1.0, 2.0, 4.0, 9.0], [2, 0])
+        );
+        assert_eq!(select(&[Return::FIRST], &[2]), (vec![1.0, 9.0], [2, 2]));
+        assert_eq!(select(&[Return::Last], &[]), (vec![1.0, 3.0, 9.0], [2, 1]));
+        assert_eq!(
+            select(&[Return::Single, Return::Number(2)], &all).0,
+            [1.0, 3.0, 4.0, 5.0, 9.0]
+        );
     }
 
     #[test]

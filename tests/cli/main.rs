@@ -13,6 +13,7 @@ mod methods;
 #[cfg(unix)]
 mod outputs;
 mod results;
+mod returns;
 mod usage;
 
 use program::{Run, files_of, folder_with, run_in, run_with};

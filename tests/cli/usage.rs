@@ -730,3 +730,47 @@ fn a_raster_is_no_input_of_tin_or_dem() {
     )
     .fails(2, &["one of the inputs"]);
 }
+
+#[test]
+fn messages_name_what_is_wrong_in_few_digits() {
+    let ring = geojson(25832, "Polygon", "[[[10,10],[11,10],[11,11],[10,10]]]");
+    let folder = folder_with(&[
+        ("a.xyz", SLOPE),
+        ("far.geojson", &ring),
+        ("high.xyz", "0 0 1\n1 0 1e300\n0 1 2\n1 1 3\n"),
+        ("full.ply/x", ""),
+    ]);
+    let run = |line: &str| run_in(&folder, &line.split(' ').collect::<Vec<_>>());
+    run("tin a.xyz --boundary far.geojson -o t.ply")
+        .fails(1, &["18 lie outside of the boundary far.geojson\n"]);
+    run("tin a.xyz --bounds 3.5,3.5,4,4 -o t.ply").fails(1, &["18 lie outside of the bounds\n"]);
+    run("tin a.xyz --bounds 3.5,3.5,4,4 --holes far.geojson -o t.ply").fails(
+        1,
+        &["outside of the bounds or in the holes of far.geojson\n"],
+    );
+    run("points a.xyz --boundary far.geojson -o p.xyz")
+        .fails(2, &["16 outside of the boundary far.geojson\n"]);
+    run("tin a.xyz -o t.ply/").fails(
+        2,
+        &[
+            "t.ply/: the output is a file",
+            "hint: leave the separator out: t.ply\n",
+        ],
+    );
+    run("tin a.xyz -o full.ply/").fails(2, &["hint: name a file in it, such as full.ply/out.ply"]);
+    for line in [
+        "contour high.xyz --interval 1 -o c.shp",
+        "contour high.xyz --interval 1e-300 -o c.shp",
+        "dem a.xyz --te 1e299,1e299,1e300,1e300 -o d.tif",
+        "tin high.xyz --max-edge 1e300 -o t.ply",
+        "info high.xyz",
+    ] {
+        let run = run(line);
+        let text = run.stdout + &run.stderr;
+        let longest = text
+            .split(|c: char| !c.is_ascii_digit())
+            .map(str::len)
+            .max();
+        assert!(longest.unwrap_or(0) < 20, "{line}: {text}");
+    }
+}

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 
 use breakline::crs::Crs;
-use breakline::data::Bounds;
+use breakline::data::{Bounds, Return};
 use breakline::error::Wording;
 use breakline::run::{
     self, Context, ContourOptions, DemOptions, Division, EdgeLimit, Execution, FlatOptions,
@@ -26,6 +26,7 @@ const NOT_IN_TILES: &[(&str, &str)] = &[
     ("OutputMayNotFit", "depends on the disk"),
     ("Triangulated", "a time; each task has its own"),
     ("Uncertain", "tiles use all points, whatever the bounds"),
+    ("FilesOutside", "tiles use all points, whatever the bounds"),
     ("Reprojecting", "tiles refuse --t-srs"),
     ("Transform", "tiles refuse --t-srs"),
     ("DelaunayUnchecked", "of `check`"),
@@ -273,6 +274,14 @@ fn cases_of_points(files: &Files) -> Vec<Case> {
         case(
             only(&[2, 5, 7], points(&[&a, &high, &text])),
             &["NoPointOfClass"],
+        ),
+        case(
+            TinRequest {
+                classes: Classes::AllButNoise,
+                returns: vec![Return::FIRST],
+                ..points(&[&a, &text])
+            },
+            &["NoiseUnused", "PointsWithoutReturnUsed"],
         ),
         case(points(&[&text]), &["NoSystem"]),
         case(points(&[&wide]), &["EdgeLimitUnusual"]),

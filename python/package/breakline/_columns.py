@@ -22,7 +22,7 @@ class Points(Compared):
         Classes as in LAS (2 is ground); None if no file has any.
     flags : ndarray of uint8, (n,), or None
         1 synthetic, 2 key point, 4 withheld, 8 overlap.
-    return_number : ndarray of uint8, (n,), or None
+    return_number, number_of_returns : ndarray of uint8, (n,), or None
     crs : str or None
         The coordinate system, as WKT.
     report : dict
@@ -35,6 +35,7 @@ class Points(Compared):
     classification: Optional[np.ndarray] = None
     flags: Optional[np.ndarray] = None
     return_number: Optional[np.ndarray] = None
+    number_of_returns: Optional[np.ndarray] = None
     crs: Optional[str] = None
     report: "dict[str, Any]" = field(default_factory=dict, repr=False, compare=False)
 

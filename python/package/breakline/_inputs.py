@@ -173,12 +173,23 @@ def crs_text(crs: Any) -> Optional[str]:
 
 
 def classes(values: Any) -> "Optional[list[int]]":
-    """Return classes of points by number; names as in LAS 1.4 are understood."""
+    """Return classes of points by number; names as in LAS 1.4, ranges and "all" are understood."""
     if values is None:
         return None
     several = _listed(values.split(",") if isinstance(values, str) else values, "classes")
-    numbers = [_breakline.class_number(value) if isinstance(value, str) else value for value in several]
+    numbers: "list[Any]" = []
+    for value in several:
+        numbers.extend(_breakline.class_numbers(value) if isinstance(value, str) else [value])
     return whole_numbers(numbers, "classes", 255)
+
+
+def returns(values: Any) -> "Optional[list[str]]":
+    """Return the words for returns of pulses: "first", "last", "single", "all", numbers or ranges."""
+    if values is None:
+        return None
+    several = _listed(values.split(",") if isinstance(values, str) else values, "returns")
+    numbers = whole_numbers([value for value in several if not isinstance(value, str)], "returns", 255)
+    return [value for value in several if isinstance(value, str)] + [str(number) for number in numbers]
 
 
 def bounds(values: Any, parameter: str = "bounds") -> "Optional[list[float]]":
@@ -195,9 +206,10 @@ def bounds(values: Any, parameter: str = "bounds") -> "Optional[list[float]]":
 
 
 def _columns(x: Any, y: Any, z: Any, **others: Any) -> "dict[str, Any]":
-    found = {"scale": [1.0] * 3, "offset": [0.0] * 3, "classes": None, "flags": None, "crs": None, **others}
+    bytewise = ("classes", "flags", "return_number", "return_count")
+    found = {"scale": [1.0] * 3, "offset": [0.0] * 3, "crs": None, **dict.fromkeys(bytewise), **others}
     columns = {"x": x, "y": y, "z": z}
-    columns.update({name: _bytes(found[name], name) for name in ("classes", "flags") if found[name] is not None})
+    columns.update({name: _bytes(found[name], name) for name in bytewise if found[name] is not None})
     lengths = [len(column) for column in columns.values()]
     if len(set(lengths)) > 1:
         raise usage("columns of points differ in length", lengths, "pass columns of equal length")
@@ -232,6 +244,8 @@ def _of_laspy(points: Any) -> "dict[str, Any]":
         offset=[float(value) for value in offsets],
         classes=np.asarray(points.classification),
         flags=flags,
+        return_number=getattr(points, "return_number", None),
+        return_count=getattr(points, "number_of_returns", None),
         crs=_system_of_laspy(header),
     )
 
@@ -272,7 +286,13 @@ def _of_fields(points: Any, names: "Iterable[str]") -> "dict[str, Any]":
     withheld = column("withheld")  # as PDAL names it
     if withheld is not None:
         withheld = (_masked.as_array(withheld) != 0).astype(np.uint8) * np.uint8(4)
-    return _columns(*axes, classes=column("classification", "class"), flags=withheld)
+    return _columns(
+        *axes,
+        classes=column("classification", "class"),
+        flags=withheld,
+        return_number=column("returnnumber", "return_number"),  # as PDAL and laspy name them
+        return_count=column("numberofreturns", "number_of_returns"),
+    )
 
 
 def _of_frame(frame: Any) -> "dict[str, Any]":
@@ -302,7 +322,16 @@ def _names_of(table: Any) -> "list[str]":
 
 def _points_of(value: Any) -> "dict[str, Any]":
     if isinstance(value, Points):
-        return _columns(value.x, value.y, value.z, classes=value.classification, flags=value.flags, crs=value.crs)
+        return _columns(
+            value.x,
+            value.y,
+            value.z,
+            classes=value.classification,
+            flags=value.flags,
+            return_number=value.return_number,
+            return_count=value.number_of_returns,
+            crs=value.crs,
+        )
     if hasattr(value, "scales") or all(hasattr(value, name) for name in ("header", "X", "Y", "Z")):
         return _of_laspy(value)
     if hasattr(value, "geometry"):

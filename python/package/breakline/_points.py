@@ -20,7 +20,7 @@ def _selection(
 ) -> "dict[str, Any]":
     return {
         "classes": _inputs.classes(classes),
-        "returns": None if returns is None else _inputs.whole_numbers(returns, "returns", 255),
+        "returns": _inputs.returns(returns),
         "drop_withheld": bool(drop_withheld),
         "bounds": _inputs.bounds(bounds),
         "boundary": [] if boundary is None else _inputs.files(boundary, "boundary"),
@@ -59,8 +59,8 @@ def read_points(
         LAS, LAZ, COPC, text (x y z) or vector layers; globs are expanded.
     classes : int, str or list of these, optional
         Classes to keep, by number or by name (``"ground"``); all by default.
-    returns : list of int, optional
-        Return numbers to keep.
+    returns : str, int or list of these, optional
+        Returns to keep: ``"first"``, ``"last"``, ``"single"``, numbers, or ranges such as ``"2-15"``; all by default.
     drop_withheld : bool
         Leave out points that are flagged as withheld.
     bounds : (xmin, ymin, xmax, ymax), optional
@@ -95,7 +95,7 @@ def read_points(
 
     Notes
     -----
-    Linear in the points; 27 bytes of memory for each.
+    Linear in the points; 28 bytes of memory for each.
 
     Examples
     --------

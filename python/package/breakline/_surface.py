@@ -25,6 +25,7 @@ DEFAULTS: "dict[str, Any]" = {
     "max_edge": None,
     "max_edge_inside": None,
     "classes": None,
+    "returns": None,
     "to_crs": None,
     "duplicates": "lowest",
     "on_crossing": "split",
@@ -60,6 +61,7 @@ class Building(TypedDict, total=False):
     max_edge: EdgeLimit
     max_edge_inside: Optional[float]
     classes: Any
+    returns: Any
     crs: Any
     to_crs: Any
     force_degrees: bool
@@ -96,6 +98,7 @@ def surface_arguments(options: "dict[str, Any]") -> "dict[str, Any]":
         **{name: _inputs.optional_number(options[name], name) for name in _NUMBERS},
         **{name: _inputs.name(options[name], name) for name in _NAMES},
         "classes": _inputs.classes(options["classes"]),
+        "returns": _inputs.returns(options["returns"]),
         "flat_buffer": _inputs.number(options["flat_buffer"], "flat_buffer"),
         "flat_points": bool(options["flat_points"]),
     }

@@ -510,6 +510,7 @@ def tin(
     max_edge: EdgeLimit = None,
     max_edge_inside: Optional[float] = None,
     classes: Any = None,
+    returns: Any = None,
     crs: Any = None,
     to_crs: Any = None,
     force_degrees: bool = False,
@@ -568,7 +569,11 @@ def tin(
     max_edge_inside : float, optional
         Longest edge anywhere: triangles with longer ones leave a hole.
     classes : int, str or list of these, optional
-        Classes of points to use. By default 2 (ground) if any point has it, else all. Withheld points are never used.
+        Classes of points to use, also ranges (``"0-31"``) or ``"all"``. By default 2 (ground) if any point has it,
+        else all; with ``returns``, all but noise (7 and 18). Withheld points are never used.
+    returns : str, int or list of these, optional
+        Returns to use: ``"first"`` for surface models, ``"last"``, ``"single"``, numbers, or ranges such as ``"2-15"``;
+        all by default. Points without returns are always used.
     crs : str, int or pyproj.CRS, optional
         Coordinate system to assign, whatever the input states.
     to_crs : str, int or pyproj.CRS, optional

@@ -146,7 +146,7 @@ def _run(
     files = [inputs] if isinstance(inputs, (str, os.PathLike)) else list(inputs)
     texts = [_inputs.path(file, "inputs") for file in files]
     urls = [text for text in texts if is_url(text)]
-    if urls and options.get("classes") is None:
+    if urls and options.get("classes") is None and options.get("returns") is None:
         cure = "pass classes=2 for ground: else points would be read to find out"
         raise usage("of objects, only the headers are read to plan", urls[0], cure)
     folder = _breakline.job_folder(_path(output)) if job is None else _path(job)

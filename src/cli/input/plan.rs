@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use super::args::{
-    CrossingZArg, DuplicatesArg, EdgeLength, FrameArgs, LineArgs, OnCrossingArg, OutputArgs,
-    SurfaceArgs, SystemArgs,
+    ClassRange, CrossingZArg, DuplicatesArg, EdgeLength, FrameArgs, LineArgs, OnCrossingArg,
+    OutputArgs, ReturnRange, SurfaceArgs, SystemArgs,
 };
 use super::inputs;
 use crate::cli::report::console::Console;
@@ -161,13 +161,12 @@ fn tin_request(
     building: TinRequest,
     args: &SurfaceArgs,
 ) -> TinRequest {
+    let returns = ReturnRange::all(&args.returns);
     TinRequest {
         points,
         read: args.read.options(),
-        classes: match args.class.as_slice() {
-            [] => Classes::GroundOrAll,
-            classes => Classes::Only(classes.to_vec()),
-        },
+        classes: Classes::of(&ClassRange::all(&args.class), &returns),
+        returns,
         bounds: args.bounds.map(|corners| corners.bounds()),
         max_edge: match args.max_edge {
             Some(EdgeLength::None) => EdgeLimit::Unlimited,
@@ -203,6 +202,7 @@ fn as_it_is(path: PathBuf, args: &SurfaceArgs) -> Result<PathBuf> {
         (lines.flat_points.is_some(), "--flat-points"),
         (lines.densify.is_some(), "--densify"),
         (!args.class.is_empty(), "--class"),
+        (!args.returns.is_empty(), "--return"),
         (args.duplicates != DuplicatesArg::default(), "--duplicates"),
         (
             args.on_crossing != OnCrossingArg::default(),

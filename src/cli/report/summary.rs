@@ -237,16 +237,9 @@ fn points_line(report: &SelectionReport, files: usize) -> String {
     text += &format!(", {} used", report.used);
     let mut dropped = Vec::new();
     if report.other_class > 0 {
-        let is_used = |class| {
-            report
-                .classes
-                .as_ref()
-                .is_none_or(|used| used.contains(class))
-        };
         let classes: Vec<String> = report
-            .by_class
+            .other_classes
             .iter()
-            .filter(|(class, _)| !is_used(class))
             .map(|(class, count)| format!("{class}: {count}"))
             .collect();
         dropped.push(format!(
@@ -254,6 +247,9 @@ fn points_line(report: &SelectionReport, files: usize) -> String {
             report.other_class,
             classes.join(", ")
         ));
+    }
+    if report.other_return > 0 {
+        dropped.push(format!("{} of other returns", report.other_return));
     }
     if report.withheld > 0 {
         dropped.push(format!("{} withheld", report.withheld));

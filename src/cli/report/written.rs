@@ -204,6 +204,7 @@ pub(crate) fn print_size(size: &JobSize, console: &Console) {
 fn print_tiles(report: &JobReport, console: &Console) {
     let dropped = [
         (report.other_class, "of other classes"),
+        (report.other_return, "of other returns"),
         (report.withheld, "withheld"),
     ];
     let dropped: Vec<String> = dropped

@@ -1,5 +1,5 @@
 use crate::cli::Exit;
-use crate::cli::input::args::PointsArgs;
+use crate::cli::input::args::{ClassRange, PointsArgs, ReturnRange};
 use crate::cli::input::plan::systems;
 use crate::cli::input::{inputs, outputs};
 use crate::cli::report::console::Console;
@@ -34,8 +34,8 @@ pub(crate) fn run(args: &PointsArgs, console: &Console) -> Result<Exit> {
     let request = PointsRequest {
         files,
         read: args.read.options(),
-        classes: args.class.clone(),
-        returns: args.returns.clone(),
+        classes: ClassRange::all(&args.class),
+        returns: ReturnRange::all(&args.returns),
         withheld: if args.drop_withheld {
             Withheld::Drop
         } else {

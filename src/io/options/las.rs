@@ -21,8 +21,8 @@ impl From<OnDamage> for ReadOptions {
 /// How much is read of each point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 pub enum Detail {
-    /// Coordinates, class, flags and return number. Compressed points of formats 6 to 10 are then
-    /// only partly decoded.
+    /// Coordinates, class, flags, and which return of its pulse each point is. Compressed points of
+    /// formats 6 to 10 are then only partly decoded.
     #[default]
     Columns,
     /// The columns, and also the whole [record](crate::data::PointBatch::records) of each point,

@@ -242,6 +242,16 @@ impl<'a> Journal<'a> {
     }
 
     /// Passes a notice to the monitor and keeps it.
+    /// Adds a notice about classes that no point has, if there are any.
+    pub(crate) fn add_missing_classes(&self, missing: impl Iterator<Item = u8>) {
+        let mut missing: Vec<u8> = missing.collect();
+        missing.sort_unstable();
+        missing.dedup();
+        if !missing.is_empty() {
+            self.add(Notice::NoPointOfClass(missing));
+        }
+    }
+
     pub(crate) fn add(&self, notice: Notice) {
         self.context.monitor.notice(&notice);
         self.notices

@@ -78,11 +78,15 @@ pub enum Notice {
     /// One of several files has no point that is used; with the classes that are used, if not all.
     NoPointUsed(PathBuf, Option<Vec<u8>>),
     /// No point has this class, which was requested.
-    NoPointOfClass(u8),
+    NoPointOfClass(Vec<u8>),
     /// Ground points (class 2) were found and are used alone.
     GroundUsed,
     /// This many points from files without classes are used in addition to ground points.
     PointsWithoutClassUsed(u64),
+    /// Points of all classes are used, except noise.
+    NoiseUnused,
+    /// Some returns are chosen, but so many points have none and are used, too.
+    PointsWithoutReturnUsed(u64),
     /// There are no ground points: all classes are used.
     AllClassesUsed,
     /// A file states a coordinate system that differs from the assigned one.
@@ -324,6 +328,7 @@ impl Notice {
             | Notice::Uncertain(..) => Severity::Detail,
             Notice::GroundUsed
             | Notice::PointsWithoutClassUsed(_)
+            | Notice::NoiseUnused
             | Notice::MemoryUnused(_)
             | Notice::Reassigned { .. }
             | Notice::SystemOfOthers(..)
@@ -347,6 +352,7 @@ impl Notice {
             | Notice::TasksMayNotFit { .. }
             | Notice::NoPointUsed(..)
             | Notice::NoPointOfClass(_)
+            | Notice::PointsWithoutReturnUsed(_)
             | Notice::AllClassesUsed
             | Notice::Transform(_)
             | Notice::FarApart(..)

@@ -113,7 +113,9 @@ fn text(notice: &Notice) -> Wording {
         Notice::OutputMayNotFit { need, free } => output_may_not_fit(*need, *free).into(),
         Notice::TasksMayNotFit { need, free } => tasks_may_not_fit(*need, *free).into(),
         Notice::NoPointUsed(path, classes) => no_point_used(path, classes.as_deref()),
-        Notice::NoPointOfClass(class) => format!("no point has class {class}").into(),
+        Notice::NoPointOfClass(classes) => format!("no point has class {}", listed(classes)).into(),
+        Notice::NoiseUnused => "points of all classes are used, except noise (7 and 18)".into(),
+        Notice::PointsWithoutReturnUsed(count) => points_without_return(*count).into(),
         Notice::GroundUsed => "points of class 2 (ground) are used".into(),
         Notice::PointsWithoutClassUsed(count) => points_without_class(*count).into(),
         Notice::AllClassesUsed => all_classes_used(),
@@ -204,6 +206,22 @@ fn no_point_used(path: &Path, classes: Option<&[u8]>) -> Wording {
 
 fn points_without_class(count: u64) -> String {
     format!("{count} points from files without classes are used, too")
+}
+
+fn points_without_return(count: u64) -> String {
+    format!("{count} points do not say which return they are, and are used, too")
+}
+
+/// Lists numbers in ascending order; three and more in a row as a range.
+fn listed(numbers: &[u8]) -> String {
+    let runs = numbers.chunk_by(|a, b| a.checked_add(1) == Some(*b));
+    let texts: Vec<String> = runs
+        .flat_map(|run| match run {
+            [first, _, .., last] => vec![format!("{first} to {last}")],
+            few => few.iter().map(u8::to_string).collect(),
+        })
+        .collect();
+    texts.join(", ")
 }
 
 fn all_classes_used() -> Wording {

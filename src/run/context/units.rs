@@ -3,6 +3,7 @@
 use std::fmt;
 
 use crate::crs::{Crs, CrsKind, Unit};
+use crate::error::{MANY_DIGITS, Plain};
 use crate::triangulation::num::unsigned_zero;
 
 /// Metres per degree along a meridian, approximately: good enough for defaults.
@@ -112,10 +113,13 @@ impl fmt::Display for Quantity {
 
 /// Formats a number with at most nine decimals.
 pub(crate) fn neat(value: f64) -> String {
+    if value.abs() >= MANY_DIGITS {
+        return format!("{value:e}");
+    }
     let text = format!("{:.9}", unsigned_zero(value));
     match text.trim_end_matches('0').trim_end_matches('.') {
         // Not zero, but too small for nine decimals.
-        "0" | "-0" if value != 0.0 => value.to_string(),
+        "0" | "-0" if value != 0.0 => Plain(value).to_string(),
         "-0" => "0".to_owned(),
         trimmed => trimmed.to_owned(),
     }
@@ -123,7 +127,9 @@ pub(crate) fn neat(value: f64) -> String {
 
 /// Formats a number with at most two decimals; below 1 with three digits, below 1e-6 with two.
 pub(crate) fn number(value: f64) -> String {
-    if value.abs() >= 1.0 || value == 0.0 {
+    if value.abs() >= MANY_DIGITS {
+        format!("{value:.2e}")
+    } else if value.abs() >= 1.0 || value == 0.0 {
         let text = format!("{value:.2}");
         text.trim_end_matches('0').trim_end_matches('.').to_owned()
     } else if value.abs() < 1e-6 {

@@ -94,6 +94,7 @@ pub(super) struct Found {
     unused: Vec<usize>,
     classes: BTreeSet<u8>,
     without_class: u64,
+    without_return: u64,
     extent_used: Bounds,
     rings: Vec<(usize, u64, f64)>,
     /// Triangles that holes and other clip lines cut, or leave out.
@@ -111,6 +112,7 @@ impl Found {
         if let Some(points) = facts.read() {
             self.classes.extend(&points.classes);
             self.without_class += points.without_class;
+            self.without_return += points.without_return;
             self.rings.extend(&points.rings);
             points.extent.add_to(&mut self.extent_used);
         }
@@ -212,8 +214,10 @@ impl Found {
     /// Reports which points are used.
     fn note_points(&self, job: &Job, journal: &Journal) {
         let Job { request, plan, .. } = job;
-        let classes =
-            Some(plan.classes.clone()).filter(|classes| classes.len() <= usize::from(u8::MAX));
+        let classes = match request.classes {
+            Classes::AllButNoise => None,
+            _ => Some(plan.classes.clone()).filter(|classes| classes.len() <= usize::from(u8::MAX)),
+        };
         let is_known: BTreeSet<usize> = plan
             .files
             .iter()
@@ -231,15 +235,18 @@ impl Found {
                 .chain(empty());
             unused.for_each(|input| journal.add(Notice::NoPointUsed(path(input), classes.clone())));
         }
+        if self.without_return > 0 {
+            journal.add(Notice::PointsWithoutReturnUsed(self.without_return));
+        }
         match &request.classes {
             Classes::Only(wanted) => {
-                let missing = wanted.iter().filter(|class| !self.classes.contains(class));
-                missing.for_each(|class| journal.add(Notice::NoPointOfClass(*class)));
+                let is_missing = |class: &u8| !self.classes.contains(class);
+                journal.add_missing_classes(wanted.iter().copied().filter(is_missing));
             }
             Classes::GroundOrAll if classes.is_some() && self.without_class > 0 => {
                 journal.add(Notice::PointsWithoutClassUsed(self.without_class));
             }
-            Classes::GroundOrAll => {}
+            Classes::GroundOrAll | Classes::All | Classes::AllButNoise => {}
         }
     }
 }

@@ -27,6 +27,8 @@ pub struct JobReport {
     pub used: u64,
     /// Points left out because they are flagged as withheld.
     pub withheld: u64,
+    /// Points left out because of their return.
+    pub other_return: u64,
     /// Points left out because of their class.
     pub other_class: u64,
     /// What the tasks found, and what follows from it. What was known before them came with the
@@ -81,6 +83,7 @@ impl Job {
                 report.read += points.read;
                 report.used += points.used;
                 report.withheld += points.withheld;
+                report.other_return += points.other_return;
                 report.other_class += points.other_class;
             }
             report.duplicates += facts.duplicates;
@@ -120,7 +123,8 @@ impl Job {
         } = report;
         Err(match (used, beyond_max_edge) {
             _ if *clipped > 0 => Error::format(format!(
-                "no triangle is left: {clipped} lie outside of the boundary or the bounds"
+                "no triangle is left: {clipped} lie {}",
+                self.request.what_is_clipped()
             ))
             .cure(wording![
                 "check them, and the coordinate systems: ",

@@ -417,6 +417,9 @@ fn classes_of(
         );
     }
     let classes = points.used_classes(&request.classes, journal)?;
+    if request.classes == Classes::AllButNoise && points.have_classes() {
+        journal.add(Notice::NoiseUnused);
+    }
     if are_open {
         match classes.len() {
             1 => journal.add(Notice::GroundUsed),

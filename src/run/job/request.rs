@@ -58,6 +58,7 @@ pub(super) fn options_of(
             detail,
         },
         classes,
+        returns,
         breaklines,
         boundary,
         lines,
@@ -74,6 +75,7 @@ pub(super) fn options_of(
     options.add(&[Setting::Columns, Setting::Parse], &(columns, detail));
     options.add(&[Setting::Partial], cut);
     options.add(&[Setting::Class], classes);
+    options.add(&[Setting::Return], returns);
     options.add(&[Setting::Breaklines], breaklines);
     options.add(&[Setting::Boundary], boundary);
     options.add(&[Setting::Bounds], &bounds.map(in_plan::corners));

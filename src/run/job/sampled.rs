@@ -62,7 +62,8 @@ fn sampled(
     }
     let work = context.start(Stage::ReadingPoints, Size::Unknown)?;
     let extent = file.spread();
-    let mut selection = Selection::new(Classes::Only(classes.to_vec()), None);
+    let mut selection =
+        Selection::new(Classes::Only(classes.to_vec()), None).with_returns(request.returns.clone());
     let mut batch = PointBatch::default();
     let (mut read, mut positions) = (0, Vec::new());
     loop {

@@ -63,7 +63,10 @@ pub(super) struct ReadFacts {
     pub(super) read: u64,
     pub(super) used: u64,
     pub(super) withheld: u64,
+    pub(super) other_return: u64,
     pub(super) other_class: u64,
+    /// Points without a return, if only some returns are used.
+    pub(super) without_return: u64,
     /// Points without a class.
     pub(super) without_class: u64,
     /// The classes that some point has.

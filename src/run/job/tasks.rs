@@ -187,7 +187,8 @@ impl Job {
         )?;
         self.plan
             .require_system(number, source.info().crs.as_ref(), &self.folder)?;
-        let mut selection = Selection::new(Classes::Only(self.plan.classes.clone()), None);
+        let mut selection = Selection::new(Classes::Only(self.plan.classes.clone()), None)
+            .with_returns(self.request.returns.clone());
         let spread = file.spread();
         let mut batch = PointBatch::default();
         let mut extent = Bounds::default();
@@ -205,6 +206,8 @@ impl Job {
                     read: report.read,
                     used: report.used,
                     withheld: report.withheld,
+                    other_return: report.other_return,
+                    without_return: report.without_return,
                     other_class: report.other_class,
                     without_class: report.without_class,
                     classes: report.by_class.keys().copied().collect(),

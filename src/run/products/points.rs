@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use super::lattice;
 use crate::crs::Crs;
 use crate::data::{
-    Bounds, Layer, PointBatch, PointFlags, PointInfo, PointSink, PointSource, PointSummary,
+    Bounds, Layer, PointBatch, PointFlags, PointInfo, PointSink, PointSource, PointSummary, Return,
 };
 use crate::error::{Command, Error, Result, Setting, wording};
 use crate::io::Destination;
@@ -15,7 +15,7 @@ use crate::run::context::memory;
 use crate::run::context::notice::Notice;
 use crate::run::context::{Context, Journal, Size, Stage};
 use crate::run::lines::layers::{self, Layers};
-use crate::run::request::input::{Input, is_read_once};
+use crate::run::request::input::{Input, is_read_once, named};
 use crate::run::sources::file_extent::stated_extent;
 use crate::run::sources::open;
 use crate::run::sources::point_files::{ASK_EVERY, FILES_KEPT_OPEN};
@@ -32,8 +32,8 @@ pub struct PointsRequest {
     pub read: Options,
     /// Classes to write; all if empty. Points of formats without classes are always written.
     pub classes: Vec<u8>,
-    /// Return numbers to write; all if empty. Points of formats without returns are always written.
-    pub returns: Vec<u8>,
+    /// Returns to write; all if empty. Points of formats without returns are always written.
+    pub returns: Vec<Return>,
     /// What to do with points that are flagged as withheld.
     pub withheld: Withheld,
     /// The box in plan to clip to, including its border.
@@ -72,7 +72,7 @@ pub struct PointsReport {
     pub withheld: u64,
     /// Points left out because of their class.
     pub other_class: u64,
-    /// Points left out because of their return number.
+    /// Points left out because of their return.
     pub other_return: u64,
     /// Points left out because they are outside of the bounds or the boundary.
     pub outside: u64,
@@ -212,7 +212,7 @@ fn transfer<'s>(
         });
     }
     if report.read == report.withheld + report.other_class + report.other_return + report.outside {
-        return Err(nothing_left(&report, &request.files));
+        return Err(nothing_left(&report, request));
     }
     work.end()?;
     report.written = sink.finish()?;
@@ -242,6 +242,7 @@ impl PointSink for Collected<'_> {
         extend(&mut all.class, &batch.class, before, after);
         extend(&mut all.flags, &batch.flags, before, after);
         extend(&mut all.return_number, &batch.return_number, before, after);
+        extend(&mut all.return_count, &batch.return_count, before, after);
         Ok(())
     }
 
@@ -312,6 +313,15 @@ fn select(
     let is_listed = |list: &[u8], column: &[u8], i: usize| {
         list.is_empty() || column.get(i).is_none_or(|value| list.contains(value))
     };
+    let is_of_returns = |found: Option<(u8, u8)>| {
+        let is_wanted = |(number, count)| {
+            request
+                .returns
+                .iter()
+                .any(|wanted| wanted.is(number, count))
+        };
+        request.returns.is_empty() || found.is_none_or(is_wanted)
+    };
     let is_withheld = |flags: Option<&PointFlags>| flags.is_some_and(|flags| flags.is_withheld());
     let mut keep = Vec::with_capacity(batch.len());
     for i in 0..batch.len() {
@@ -320,7 +330,7 @@ fn select(
             Some(&mut report.withheld)
         } else if !is_listed(&request.classes, &batch.class, i) {
             Some(&mut report.other_class)
-        } else if !is_listed(&request.returns, &batch.return_number, i) {
+        } else if !is_of_returns(batch.return_of(i)) {
             Some(&mut report.other_return)
         } else if request.bounds.is_some_and(|bounds| !is_within(&bounds, p))
             || inside.is_some_and(|inside| !inside.contains(p))
@@ -396,7 +406,7 @@ fn share_lattice(infos: &mut [PointInfo], numbers: &[Option<usize>]) {
 }
 
 #[cold]
-fn nothing_left(report: &PointsReport, files: &[PathBuf]) -> Error {
+fn nothing_left(report: &PointsReport, request: &PointsRequest) -> Error {
     let PointsReport {
         read,
         withheld,
@@ -406,6 +416,15 @@ fn nothing_left(report: &PointsReport, files: &[PathBuf]) -> Error {
         left_out,
         ..
     } = report;
+    let boundary = named(
+        "the boundary",
+        request.boundary.iter().map(PathBuf::as_path),
+    );
+    let area = match (request.bounds, boundary) {
+        (None, Some(boundary)) => boundary,
+        (Some(_), Some(boundary)) => format!("the bounds or {boundary}"),
+        (_, None) => "the bounds".to_owned(),
+    };
     let error = match read {
         0 if *left_out > 0 => Error::usage(
             "no point is left: by their headers, the files lie outside of the bounds",
@@ -414,11 +433,11 @@ fn nothing_left(report: &PointsReport, files: &[PathBuf]) -> Error {
         0 => Error::format("no points in the input").cure("pass files that contain points"),
         _ => Error::usage(format!(
             "no point is left of {read} read: {withheld} withheld, {other_class} of other classes, {other_return} of \
-             other returns, {outside} outside of the bounds or the boundary"
+             other returns, {outside} outside of {area}"
         ))
         .cure(wording![Command::Info, " shows classes, returns and extent of each file"]),
     };
-    match files {
+    match request.files.as_slice() {
         [file] => error.in_file(file),
         _ => error,
     }

@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use super::reach::{Reach, grown};
 use crate::crs::Crs;
-use crate::data::{Bounds, Columns, Layer};
+use crate::data::{Bounds, Columns, Layer, Return};
 use crate::error::{Command, Error, Result, Setting, Wording, wording};
 use crate::io::points;
 use crate::run::context::memory;
@@ -17,7 +17,7 @@ use crate::run::context::{Journal, Size, Stage};
 use crate::run::lines::crossings::{self, LineNames};
 use crate::run::lines::inputs::{Added, LineLayers, WALL_WIDTH_METRES};
 use crate::run::lines::notes::{self, LevelRing, LevelRings, LineInput};
-use crate::run::request::input::{Input, MemoryPoints};
+use crate::run::request::input::{Input, MemoryPoints, named};
 use crate::run::request::lines::{LineRequest, LineRole};
 use crate::run::request::serialized;
 use crate::run::sources::extents;
@@ -51,6 +51,9 @@ pub struct TinRequest {
     pub read: points::Options,
     /// The classes to use. Points that are flagged as withheld are never used.
     pub classes: Classes,
+    /// The returns to use; all if empty.
+    #[serde(default)]
+    pub returns: Vec<Return>,
     /// Lines with heights that the surface must follow; of polygons, the rings are used. At the
     /// vertices of a breakline its heights are used, not those of points.
     pub breaklines: Vec<Input<Layer>>,
@@ -117,6 +120,18 @@ impl TinRequest {
             }
             _ => Ok(()),
         }
+    }
+
+    /// Returns where triangles are that clipping leaves out, for a sentence.
+    pub(crate) fn what_is_clipped(&self) -> String {
+        let of_files = |what, layers: &[Input<Layer>]| named(what, layers.iter().map(Input::path));
+        let parts = [
+            of_files("outside of the boundary", &self.boundary),
+            self.bounds.map(|_| "outside of the bounds".to_owned()),
+            of_files("in the holes of", &self.lines.holes),
+        ];
+        let parts: Vec<String> = parts.into_iter().flatten().collect();
+        parts.join(" or ")
     }
 
     /// Returns those of the replaced points that the report has.
@@ -358,7 +373,7 @@ pub(crate) fn build(
     reach.note([left_out, files.len()], &units, journal);
     crossings::note(tin.report(), &names, &units, journal);
     if tin.report().triangles == 0 {
-        return Err(no_triangle(tin.report(), &rim, &units));
+        return Err(no_triangle(tin.report(), request, &rim, &units));
     }
     let report = BuildReport {
         sources: request.points.len(),
@@ -460,7 +475,8 @@ impl Building<'_> {
     /// If a file cannot be read, or no input is left, even with a wider reach.
     fn read(&self, files: &mut PointFiles, reach: &Reach) -> Result<Read> {
         let classes = &self.request.classes;
-        let mut selection = Selection::new(classes.clone(), reach.window());
+        let mut selection = Selection::new(classes.clone(), reach.window())
+            .with_returns(self.request.returns.clone());
         let files = files.read(self.by_file, self.transforms, &mut selection, self.journal)?;
         extents::compare_files(&self.paths, &files.extents, self.units, self.journal);
         let (points, report) = selection.finish();
@@ -635,25 +651,29 @@ impl Rim {
 }
 
 fn note_classes(report: &SelectionReport, wanted: &Classes, journal: &Journal) {
-    if let Classes::Only(classes) = wanted {
-        for class in classes
-            .iter()
-            .filter(|class| !report.by_class.contains_key(class))
-        {
-            journal.add(Notice::NoPointOfClass(*class));
+    if report.without_return > 0 {
+        journal.add(Notice::PointsWithoutReturnUsed(report.without_return));
+    }
+    match wanted {
+        Classes::Only(classes) => {
+            let is_missing = |class: &u8| !report.by_class.contains_key(class);
+            let missing = classes.iter().copied().filter(is_missing);
+            journal.add_missing_classes(missing);
         }
-    } else if report.classes.is_some() {
-        journal.add(Notice::GroundUsed);
-        if report.without_class > 0 {
-            journal.add(Notice::PointsWithoutClassUsed(report.without_class));
+        Classes::GroundOrAll if report.classes.is_some() => {
+            journal.add(Notice::GroundUsed);
+            if report.without_class > 0 {
+                journal.add(Notice::PointsWithoutClassUsed(report.without_class));
+            }
         }
-    } else if !report.by_class.is_empty() {
-        journal.add(Notice::AllClassesUsed);
+        Classes::GroundOrAll if !report.by_class.is_empty() => journal.add(Notice::AllClassesUsed),
+        Classes::AllButNoise if !report.by_class.is_empty() => journal.add(Notice::NoiseUnused),
+        Classes::GroundOrAll | Classes::All | Classes::AllButNoise => {}
     }
 }
 
 #[cold]
-fn no_triangle(report: &TinReport, rim: &Rim, units: &Units) -> Error {
+fn no_triangle(report: &TinReport, request: &TinRequest, rim: &Rim, units: &Units) -> Error {
     let TinReport {
         faces_beyond_max_edge: long,
         faces_clipped: clipped,
@@ -673,7 +693,8 @@ fn no_triangle(report: &TinReport, rim: &Rim, units: &Units) -> Error {
             ])
         }
         _ => Error::format(format!(
-            "no triangle is left: {clipped} lie outside of the boundary or the bounds"
+            "no triangle is left: {clipped} lie {}",
+            request.what_is_clipped()
         ))
         .cure(wording![Command::Info, " shows the extent of each file"]),
     }
@@ -684,6 +705,7 @@ fn nothing_left(report: &SelectionReport, left_out: usize, files: &[&Path]) -> E
     let SelectionReport {
         read,
         withheld,
+        other_return,
         other_class,
         outside,
         ..
@@ -697,6 +719,10 @@ fn nothing_left(report: &SelectionReport, left_out: usize, files: &[&Path]) -> E
             Error::format("no points in the input").cure("pass files that contain points"),
         );
     }
+    let of_returns = match other_return {
+        0 => String::new(),
+        count => format!(", {count} of other returns"),
+    };
     let unread = match left_out {
         0 => String::new(),
         files => {
@@ -704,7 +730,7 @@ fn nothing_left(report: &SelectionReport, left_out: usize, files: &[&Path]) -> E
         }
     };
     let error = named(Error::format(format!(
-        "no point is left of {read} read: {withheld} withheld, {other_class} of other classes, {outside} outside of the bounds{unread}"
+        "no point is left of {read} read: {withheld} withheld{of_returns}, {other_class} of other classes, {outside} outside of the bounds{unread}"
     )));
     if *outside > 0 || left_out > 0 {
         return error.cure(wording![
@@ -720,6 +746,13 @@ fn nothing_left(report: &SelectionReport, left_out: usize, files: &[&Path]) -> E
         return error.cure(wording![
             format!("the points have class {}: choose with ", classes.join(", ")),
             Setting::Class
+        ]);
+    }
+    if *other_return > 0 {
+        return error.cure(wording![
+            Command::Info,
+            " counts the points of each return: choose with ",
+            Setting::Return
         ]);
     }
     error.cure(

@@ -89,6 +89,18 @@ impl<T> Input<T> {
     }
 }
 
+/// Names files for a sentence, after what they are; `None` if there is none.
+pub(crate) fn named<'a>(
+    what: &str,
+    mut files: impl ExactSizeIterator<Item = &'a Path>,
+) -> Option<String> {
+    let first = files.next()?.display();
+    Some(match files.len() {
+        0 => format!("{what} {first}"),
+        others => format!("{what} {first} and {others} more"),
+    })
+}
+
 /// Returns true if a file can be read only once: the standard input, a pipe, a device.
 pub(crate) fn is_read_once(path: &Path) -> bool {
     path.as_os_str() == STDIN
@@ -137,13 +149,17 @@ impl MemorySource {
             z,
             class,
             flags,
-            ..
+            return_number,
+            return_count,
+            records: _,
         } = &points.points;
         let is_column = |length: usize| length == 0 || length == x.len();
         if y.len() != x.len()
             || z.len() != x.len()
             || !is_column(class.len())
             || !is_column(flags.len())
+            || !is_column(return_number.len())
+            || !is_column(return_count.len())
         {
             return Err(Error::usage("columns of points differ in length"));
         }
@@ -174,7 +190,9 @@ impl PointSource for MemorySource {
             z,
             class,
             flags,
-            ..
+            return_number,
+            return_count,
+            records: _,
         } = &self.points.points;
         let range = self.next..(self.next + BATCH).min(x.len());
         self.next = range.end;
@@ -187,7 +205,13 @@ impl PointSource for MemorySource {
             .extend_from_slice(class.get(range.clone()).unwrap_or_default());
         batch
             .flags
-            .extend_from_slice(flags.get(range).unwrap_or_default());
+            .extend_from_slice(flags.get(range.clone()).unwrap_or_default());
+        batch
+            .return_number
+            .extend_from_slice(return_number.get(range.clone()).unwrap_or_default());
+        batch
+            .return_count
+            .extend_from_slice(return_count.get(range).unwrap_or_default());
         Ok(())
     }
 }

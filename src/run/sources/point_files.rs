@@ -245,8 +245,8 @@ impl PointFiles {
     /// # Errors
     /// If a file cannot be read.
     pub(crate) fn used_classes(&self, classes: &Classes, journal: &Journal) -> Result<Vec<u8>> {
-        if let Classes::Only(classes) = classes {
-            return Ok(classes.clone());
+        if let Some(classes) = classes.listed() {
+            return Ok(classes);
         }
         let all: Vec<usize> = (0..self.files.len()).collect();
         if self.any_has_ground(&all, journal)? {

@@ -257,6 +257,7 @@ pub(crate) fn resolve<F: Copy>(
 ) -> Result<Outputs<F>> {
     let mut targets: Vec<Target<F>> = Vec::new();
     for path in files {
+        require_name(path)?;
         let format = find(path, formats)?;
         if targets.iter().any(|target| is_same(&target.path, path)) {
             return Err(Error::usage("the output is named twice").in_file(path));
@@ -357,6 +358,30 @@ fn folder_of(path: &Path) -> &Path {
     path.parent()
         .filter(|folder| !folder.as_os_str().is_empty())
         .unwrap_or(Path::new("."))
+}
+
+/// Returns an error for a path that ends with a separator, and so names a folder.
+fn require_name(path: &Path) -> Result<()> {
+    let text = path.to_string_lossy();
+    let name = text.trim_end_matches(std::path::is_separator);
+    if name.len() == text.len() {
+        return Ok(());
+    }
+    let error = Error::usage("the output is a file, but its name ends like that of a folder");
+    let cure = match Path::new(name).is_dir() {
+        true => format!("name a file in it, such as {text}out{}", extension_of(name)),
+        false => format!("leave the separator out: {name}"),
+    };
+    Err(error.in_file(path).cure(cure))
+}
+
+/// Returns the extension of a name with its dot; empty if it has none.
+fn extension_of(name: &str) -> String {
+    let extension = Path::new(name).extension().unwrap_or_default();
+    match extension.is_empty() {
+        true => String::new(),
+        false => format!(".{}", extension.to_string_lossy()),
+    }
 }
 
 /// Makes sure that a file and its companions can be written, and that nothing is lost by it.

@@ -10,8 +10,8 @@ use crate::crs::Crs;
 use crate::data::{Bounds, SurfaceFacts};
 use crate::error::Result;
 
-/// The version of the index, which is also what it begins with.
-const VERSION: &str = "{\"breakline_tin_parts\":2,";
+/// The name of the version, with which the index begins, and the version.
+const VERSION: (&str, u64) = ("breakline_tin_parts", 2);
 
 /// A surface in parts: what is true of the whole, and the file of each part.
 ///
@@ -66,8 +66,9 @@ impl TinIndex {
             facts: facts.clone(),
         };
         let surface = attributes.to_json();
+        let (name, version) = VERSION;
         let mut text = format!(
-            "{VERSION}\n\"surface\":{surface},\n\"area\":{},\n",
+            "{{\"{name}\":{version},\n\"surface\":{surface},\n\"area\":{},\n",
             json!(area)
         );
         // Writing to a string does not fail.
@@ -93,7 +94,8 @@ impl TinIndex {
         text + "\n]}\n"
     }
 
-    /// Reads an index.
+    /// Reads an index, also one that was written again by another program, with other spaces or in
+    /// another order.
     ///
     /// # Errors
     /// If the text is not that of an index, or has another version; the error names a value that is
@@ -102,10 +104,11 @@ impl TinIndex {
     /// # Complexity
     /// Linear in the bytes.
     pub fn from_text(text: &[u8]) -> Result<Self> {
-        if !text.starts_with(VERSION.as_bytes()) {
+        let value = parse(text)?;
+        let (name, version) = VERSION;
+        if value[name].as_u64() != Some(version) {
             return Err(wrong("the version of the index"));
         }
-        let value = parse(text)?;
         let Attributes { crs, facts } = Attributes::from_value(&value["surface"])
             .map_err(|e| e.within("the value `surface`"))?;
         let folder = value["folder"]
@@ -198,6 +201,11 @@ mod tests {
                 TinIndex::from_text(index.to_text().as_bytes()).unwrap(),
                 index
             );
+            // Sorted, and with spaces.
+            let value: Value = serde_json::from_str(&index.to_text()).unwrap();
+            let again = serde_json::to_string_pretty(&value).unwrap();
+            assert!(!again.starts_with("{\"breakline"));
+            assert_eq!(TinIndex::from_text(again.as_bytes()).unwrap(), index);
         }
     }
 

@@ -1,6 +1,6 @@
 //! Lakes: rings at one height.
 
-use crate::error::{Error, Result, Setting, wording};
+use crate::error::{Error, Plain, Result, Setting, wording};
 use crate::triangulation::num::unsigned_zero;
 
 /// Which height level water has.
@@ -119,7 +119,10 @@ fn check_ring(ring: &[[f64; 3]]) -> Result<()> {
     if first[..2] != last[..2] {
         return Err(Error::format(format!(
             "the shore is open: it begins at {} {} and ends at {} {}",
-            first[0], first[1], last[0], last[1]
+            Plain(first[0]),
+            Plain(first[1]),
+            Plain(last[0]),
+            Plain(last[1])
         ))
         .cure("a lake needs a closed ring: join its ends, or pass polygons"));
     }

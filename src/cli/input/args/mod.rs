@@ -21,7 +21,7 @@ use crate::io::formats;
 
 pub(crate) use job::{JobAction, JobArgs};
 pub(crate) use lines::LineArgs;
-pub(crate) use parse::{EdgeLength, finite};
+pub(crate) use parse::{ClassRange, EdgeLength, ReturnRange, finite};
 pub(crate) use surface::{CrossingZArg, DuplicatesArg, OnCrossingArg, SurfaceArgs};
 pub(crate) use switches::expand_switches;
 pub(crate) use systems::SystemArgs;

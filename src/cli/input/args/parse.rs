@@ -2,7 +2,7 @@
 
 use std::str::FromStr;
 
-use crate::data::Bounds;
+use crate::data::{Bounds, Return, classes, returns};
 
 /// A rectangle typed as `xmin,ymin,xmax,ymax`, with commas or blanks.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,6 +47,48 @@ impl Corners {
         Bounds {
             min: [self.min[0], self.min[1], f64::NEG_INFINITY],
             max: [self.max[0], self.max[1], f64::INFINITY],
+        }
+    }
+}
+
+/// One or several classes of points, typed as one word.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct ClassRange(pub(crate) Vec<u8>);
+
+impl FromStr for ClassRange {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        classes::parse(text).map(ClassRange)
+    }
+}
+
+impl ClassRange {
+    /// Returns all classes of several words.
+    pub(crate) fn all(ranges: &[Self]) -> Vec<u8> {
+        ranges.iter().flat_map(|range| range.0.clone()).collect()
+    }
+}
+
+/// One or several returns of pulses, typed as one word.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct ReturnRange(pub(crate) Vec<Return>);
+
+impl FromStr for ReturnRange {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        returns::parse(text).map(ReturnRange)
+    }
+}
+
+impl ReturnRange {
+    /// Returns the returns of several words; none, which means all, if one of them is `all`.
+    pub(crate) fn all(ranges: &[Self]) -> Vec<Return> {
+        if ranges.iter().any(|range| range.0.is_empty()) {
+            Vec::new()
+        } else {
+            ranges.iter().flat_map(|range| range.0.clone()).collect()
         }
     }
 }

@@ -3,10 +3,9 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 
 use super::lines::LineArgs;
-use super::parse::{Corners, EdgeLength, not_negative, positive};
+use super::parse::{ClassRange, Corners, EdgeLength, ReturnRange, not_negative, positive};
 use super::reading::ReadArgs;
 use super::systems::SystemArgs;
-use crate::data::classes;
 use crate::terrain::{CrossingRule, DuplicateRule};
 use crate::triangulation::OnCrossing;
 
@@ -92,10 +91,30 @@ pub(crate) struct SurfaceArgs {
 
     /// Classes to use, such as `2,8` or `ground` [default: 2 if any point has it, else all]
     ///
-    /// By number, or by name as in LAS 1.4: `ground,low-vegetation`. Points flagged as withheld are
-    /// never used; points from formats without classes are always used.
-    #[arg(long, value_name = "CLASS,..", value_parser = classes::parse, value_delimiter = ',', help_heading = "Surface")]
-    pub(crate) class: Vec<u8>,
+    /// By number, by name as in LAS 1.4 (`ground,low-vegetation`), as a range (`0-31`), or `all`.
+    /// With --return, the default is all but noise (7 and 18). Points flagged as withheld are never
+    /// used; points from formats without classes are always used.
+    #[arg(
+        long,
+        value_name = "CLASS,..",
+        value_delimiter = ',',
+        help_heading = "Surface"
+    )]
+    pub(crate) class: Vec<ClassRange>,
+
+    /// Returns to use: `first` (surface models), `last`, `single`, `all`, or numbers [default: all]
+    ///
+    /// `first` and `last` include pulses with a single return, as in LAStools. PDAL's `only` is
+    /// `single`. Numbers and ranges: `1,2` or `2-15`. Points from formats without returns are
+    /// always used. Where several points have the same position, --duplicates decides which height
+    /// counts.
+    #[arg(
+        long = "return",
+        value_name = "RETURN,..",
+        value_delimiter = ',',
+        help_heading = "Surface"
+    )]
+    pub(crate) returns: Vec<ReturnRange>,
 
     /// Which height is used where points have the same position
     ///

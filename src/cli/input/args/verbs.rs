@@ -2,12 +2,11 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::parse::{Corners, altitude, finite, positive, smallest_angle};
+use super::parse::{ClassRange, Corners, ReturnRange, altitude, finite, positive, smallest_angle};
 use super::reading::ReadArgs;
 use super::surface::{OnCrossingArg, SurfaceArgs};
 use super::systems::SystemArgs;
 use super::tiles::TileArgs;
-use crate::data::classes;
 use crate::run::{Alpha, Arithmetic};
 use crate::terrain::Method;
 
@@ -103,20 +102,28 @@ pub(crate) struct PointsArgs {
     #[command(flatten)]
     pub(crate) output: OutputArgs,
 
-    /// Classes to write, such as `2,8` or `ground` [default: all]
+    /// Classes to write, such as `2,8`, `0-31` or `ground` [default: all]
     ///
     /// Points of formats without classes are always written.
-    #[arg(long, value_name = "CLASS,..", value_parser = classes::parse, value_delimiter = ',', help_heading = "Selection")]
-    pub(crate) class: Vec<u8>,
-
-    /// Return numbers to write, such as `1,2` [default: all]
     #[arg(
-        long = "return",
-        value_name = "N,..",
+        long,
+        value_name = "CLASS,..",
         value_delimiter = ',',
         help_heading = "Selection"
     )]
-    pub(crate) returns: Vec<u8>,
+    pub(crate) class: Vec<ClassRange>,
+
+    /// Returns to write: `first`, `last`, `single`, `all`, or numbers such as `1,2` [default: all]
+    ///
+    /// `first` and `last` include pulses with a single return. Points of formats without returns
+    /// are always written.
+    #[arg(
+        long = "return",
+        value_name = "RETURN,..",
+        value_delimiter = ',',
+        help_heading = "Selection"
+    )]
+    pub(crate) returns: Vec<ReturnRange>,
 
     /// Leave out points that are flagged as withheld
     #[arg(long, help_heading = "Selection")]

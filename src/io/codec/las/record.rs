@@ -75,6 +75,9 @@ impl RecordLayout {
                 batch
                     .return_number
                     .extend(records().map(|record| record[14] & 0x07));
+                batch
+                    .return_count
+                    .extend(records().map(|record| record[14] >> 3 & 0x07));
             }
             RecordKind::Extended => {
                 batch.class.extend(records().map(|record| record[16]));
@@ -84,6 +87,9 @@ impl RecordLayout {
                 batch
                     .return_number
                     .extend(records().map(|record| record[14] & 0x0f));
+                batch
+                    .return_count
+                    .extend(records().map(|record| record[14] >> 4));
             }
         }
     }

@@ -61,6 +61,7 @@ pub(super) fn read(
         name: "variable length",
         start: vlr_start,
         end: points_start,
+        limit: "the points begin",
         count: vlr_count,
     };
     short.read(input, header, &mut payloads, warnings, |source| {
@@ -73,6 +74,7 @@ pub(super) fn read(
             name: "extended variable length",
             start: evlr_start,
             end: input.length,
+            limit: "the file ends",
             count: evlr_count,
         };
         long.read(input, header, &mut payloads, warnings, |source| {
@@ -89,6 +91,8 @@ struct Records {
     name: &'static str,
     start: u64,
     end: u64,
+    /// What is at the end, for messages.
+    limit: &'static str,
     count: u64,
 }
 
@@ -105,8 +109,16 @@ impl Records {
             name,
             start,
             end,
+            limit,
             count,
         } = *self;
+        if start > end {
+            warnings.push(
+                format!("the header states {count} {name} records at byte {start}, but {limit} at byte {end}; they are ignored")
+                    .into(),
+            );
+            return Ok(());
+        }
         let mut source = BufReader::new(&input.file);
         source.seek(SeekFrom::Start(start))?;
         let mut position = start;
@@ -161,7 +173,7 @@ impl Records {
         }
         if found < count {
             warnings.push(
-                format!("the header states {count} {name} records; {found} were found").into(),
+                format!("the header states {count} {name} records; {found} were found, from byte {start} to {position}").into(),
             );
         }
         Ok(())

@@ -148,11 +148,9 @@ fn read_parts(bytes: &mut Bytes<'_>, code: i32, odd: &mut Oddities) -> Result<Pa
     bytes.take(32, "box")?;
     let part_count = bytes.count("parts")?;
     let vertex_count = bytes.count("points")?;
-    let starts: Vec<usize> =
-        ints(bytes.take(4 * part_count, &format!("{part_count} part indices"))?)
-            // A negative index is out of range like any other.
-            .map(|start| usize::try_from(start).unwrap_or(usize::MAX))
-            .collect();
+    let starts: Vec<i64> = ints(bytes.take(4 * part_count, &format!("{part_count} part indices"))?)
+        .map(i64::from)
+        .collect();
     let kinds: Vec<i32> = match code {
         31 => ints(bytes.take(4 * part_count, &format!("{part_count} part types"))?).collect(),
         _ => Vec::new(),
@@ -161,18 +159,21 @@ fn read_parts(bytes: &mut Bytes<'_>, code: i32, odd: &mut Oddities) -> Result<Pa
 
     let mut parts = Vec::with_capacity(part_count);
     let mut kept = Vec::with_capacity(kinds.len());
-    odd.loose += starts
-        .first()
-        .map_or(vertices.len(), |&first| first.min(vertices.len()));
+    let index = |start: i64| usize::try_from(start).ok();
+    let first = starts.first().and_then(|&first| index(first));
+    odd.loose += first.map_or(vertices.len(), |first| first.min(vertices.len()));
     for (i, &start) in starts.iter().enumerate() {
-        let end = starts.get(i + 1).copied().unwrap_or(vertices.len());
-        let part = vertices.get(start..end).ok_or_else(|| {
-            Flaw::Damaged(format!(
-                "part {} holds points {start} to {end} of {}",
-                i + 1,
-                vertices.len()
-            ))
-        })?;
+        let end = starts.get(i + 1).copied().unwrap_or(vertices.len() as i64);
+        let range = index(start).zip(index(end));
+        let part = range
+            .and_then(|(start, end)| vertices.get(start..end))
+            .ok_or_else(|| {
+                Flaw::Damaged(format!(
+                    "part {} holds points {start} to {end} of {}",
+                    i + 1,
+                    vertices.len()
+                ))
+            })?;
         if part.is_empty() {
             odd.empty_parts += 1;
             continue;
@@ -435,7 +436,7 @@ mod tests {
             (40, -5, "-5 points"),
             (40, 1_000_004, "1000004 points"),
             (40, 12, "12 points take 192 bytes"),
-            (44, -1, "part 1"),
+            (44, -1, "part 1 holds points -1 to 2 of 4"),
             (48, 5, "part 1 holds points 0 to 5 of 4"),
             (44, 3, "part 1 holds points 3 to 2 of 4"),
             (0, 99, "shape type 99"),
