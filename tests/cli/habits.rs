@@ -45,6 +45,23 @@ fn what_cannot_be_done_names_what_can() {
             "dem -co COMPRESS=LZW a.xyz -o d.tif",
             "hint: leave it out: a GeoTIFF is tiled",
         ),
+        (
+            "lasclip -i a.xyz -poly b.shp",
+            "hint: `breakline points IN --boundary AREA.shp",
+        ),
+        ("foo -tr 1 2 a.xyz", "unrecognized subcommand 'foo'"),
+        (
+            "contour a.xyz --smooth 5 -o c.shp",
+            "hint: `breakline dem IN --method natural",
+        ),
+        (
+            "contour a.xyz -p -o c.shp",
+            "hint: contours are lines; `breakline dem IN -o dem.tif`, then `gdal_contour -p`",
+        ),
+        (
+            "tin a.xyz -p -o t.ply",
+            "hint: switches of Triangle are for `breakline triangulate`",
+        ),
         ("slope d.tif", "`gdaldem slope dem.tif OUT.tif`"),
         ("a.xyz", "hint: `breakline info a.xyz` shows what is in it"),
         (

@@ -24,6 +24,8 @@ struct Habit {
 enum Meaning {
     /// An option with the same values.
     Same(&'static str),
+    /// These words.
+    Words(&'static [&'static str]),
     /// An option with one number; two equal numbers count as one.
     Square(&'static str),
     /// An option with four numbers, which may be separate words.
@@ -42,11 +44,14 @@ enum Meaning {
     Refused(&'static str),
 }
 
-use Meaning::{Corners, Creation, Format, Input, List, Nothing, Refused, Same, Square};
+use Meaning::{Corners, Creation, Format, Input, List, Nothing, Refused, Same, Square, Words};
 
 const RASTERS: &[&str] = &["dem", "hillshade"];
 const CONTOUR: &[&str] = &["contour"];
 const SHADE: &[&str] = &["hillshade"];
+/// The verbs that choose points.
+const OF_POINTS: &[&str] = &["tin", "dem", "contour", "hillshade", "check", "points"];
+const SURFACES: &[&str] = &["tin", "dem", "contour", "hillshade", "check"];
 
 /// The habits; the first that fits applies.
 #[rustfmt::skip]
@@ -73,7 +78,21 @@ const HABITS: &[Habit] = &[
     Habit { typed: &["-keep_class", "--keep_class", "-keep_classification"], verbs: &[], meaning: List("--class") },
     Habit { typed: &["-drop_class", "--drop_class"], verbs: &[], meaning: Refused("--class N,.. lists the classes to use") },
     Habit { typed: &["-parse", "-iparse"], verbs: &[], meaning: Same("--parse") },
-    Habit { typed: &["-kill"], verbs: &[], meaning: Same("--max-edge") },
+    Habit { typed: &["-kill", "-concavity"], verbs: SURFACES, meaning: Same("--max-edge") },
+    Habit { typed: &["-first_only", "-keep_first"], verbs: OF_POINTS, meaning: Words(&["--return", "first"]) },
+    Habit { typed: &["-last_only", "-keep_last"], verbs: OF_POINTS, meaning: Words(&["--return", "last"]) },
+    Habit { typed: &["-keep_single"], verbs: OF_POINTS, meaning: Words(&["--return", "single"]) },
+    Habit { typed: &["-keep_return"], verbs: OF_POINTS, meaning: List("--return") },
+    Habit { typed: &["-keep_xy", "-inside"], verbs: OF_POINTS, meaning: Corners("--bounds") },
+    Habit { typed: &["-lakes"], verbs: SURFACES, meaning: Same("--flat") },
+    Habit { typed: &["-creeks"], verbs: SURFACES, meaning: Same("--breaklines") },
+    Habit { typed: &["-iso_every"], verbs: CONTOUR, meaning: Same("--interval") },
+    Habit { typed: &["-iso_value"], verbs: CONTOUR, meaning: List("--levels") },
+    Habit { typed: &["-smooth", "--smooth"], verbs: &[],
+        meaning: Refused("`breakline dem IN --method natural -o dem.tif` has no facets; `breakline contour dem.tif` draws its contours") },
+    Habit { typed: &["-p"], verbs: CONTOUR,
+        meaning: Refused("contours are lines; `breakline dem IN -o dem.tif`, then `gdal_contour -p` makes polygons") },
+    Habit { typed: &["-p"], verbs: &[], meaning: Refused("switches of Triangle are for `breakline triangulate`") },
     Habit { typed: &["-fl"], verbs: CONTOUR, meaning: List("--levels") },
     Habit { typed: &["-off"], verbs: CONTOUR, meaning: Same("--base") },
     Habit { typed: &["-3d"], verbs: CONTOUR, meaning: Nothing },
@@ -97,6 +116,35 @@ const VERBS: &[(&str, &str)] = &[
     ("lasinfo", "info"),
     ("gdalinfo", "info"),
     ("ogrinfo", "info"),
+];
+
+/// Programs of others that no verb replaces, and what there is instead.
+const OF_OTHERS: &[(&str, &str)] = &[
+    (
+        "lasclip",
+        "`breakline points IN --boundary AREA.shp -o OUT.laz` keeps the points in polygons",
+    ),
+    (
+        "lasgrid",
+        "`breakline dem IN --return first -o OUT.tif` makes a surface model",
+    ),
+    (
+        "lasheight",
+        "`breakline dem IN -o OUT.tif` writes the ground that heights are above",
+    ),
+    (
+        "lasground",
+        "points must be classified before: `pdal translate` with `filters.smrf` does it",
+    ),
+    (
+        "lasground_new",
+        "points must be classified before: `pdal translate` with `filters.smrf` does it",
+    ),
+    ("lasclassify", "points must be classified before"),
+    (
+        "lastile",
+        "verbs work in tiles by themselves where memory is short: `--tiles`",
+    ),
 ];
 
 /// Modes of `gdaldem` that this program does not have.
@@ -130,7 +178,11 @@ pub(crate) fn understood(args: impl IntoIterator<Item = OsString>) -> Result<Vec
         return Ok(args);
     };
     let rest = args.split_off(at + 1);
-    let verb = verb(&args[at])?;
+    let Some(verb) = verb(&args[at])? else {
+        // What it might be is said where the words are parsed.
+        args.extend(rest);
+        return Ok(args);
+    };
     args[at] = verb.clone().into();
     if verb == "triangulate" {
         args.extend(expand_switches(rest)?);
@@ -152,11 +204,18 @@ fn verb_position(args: &[OsString]) -> Option<usize> {
     (1..args.len()).find(is_verb)
 }
 
-fn verb(typed: &OsStr) -> Result<String> {
+/// Returns the verb of this program that a word means; `None` if it is not known.
+///
+/// # Errors
+/// If it is known that something else was meant; the hint says what to type.
+fn verb(typed: &OsStr) -> Result<Option<String>> {
     let word = typed.to_string_lossy();
     let is_ours = Cli::command().find_subcommand(&*word).is_some() || word == "help";
     if let Some((_, ours)) = VERBS.iter().find(|(theirs, _)| *theirs == word) {
-        return Ok((*ours).to_owned());
+        return Ok(Some((*ours).to_owned()));
+    }
+    if let Some((_, instead)) = OF_OTHERS.iter().find(|(theirs, _)| *theirs == word) {
+        return Err(Error::usage(format!("`{word}` is not a verb")).cure(*instead));
     }
     if !is_ours && OF_RASTERS.contains(&&*word) {
         return Err(Error::usage(format!("`{word}` is not a verb")).cure(format!(
@@ -170,7 +229,7 @@ fn verb(typed: &OsStr) -> Result<String> {
             )),
         );
     }
-    Ok(word.into_owned())
+    Ok(is_ours.then(|| word.into_owned()))
 }
 
 /// Returns the translated words after the verb, and the names of formats among them.
@@ -225,6 +284,7 @@ impl Translation<'_> {
     fn add(&mut self, name: &str, meaning: Meaning) -> Result<()> {
         match meaning {
             Same(option) => self.ours.push(option.into()),
+            Words(words) => self.ours.extend(words.iter().map(OsString::from)),
             Square(option) => self.add_square(name, option)?,
             Corners(option) => {
                 self.ours.push(option.into());
@@ -491,6 +551,16 @@ mod tests {
                 "b dem a.laz --a-srs EPSG:1 -o b.tif",
             ),
             ("b dem a.laz -qo b.tif", "b dem a.laz -qo b.tif"),
+            (
+                "b las2dem -i a.laz -first_only -lakes w.shp -creeks c.shp:Z -keep_xy 1 2 3 4 -o b.tif",
+                "b dem a.laz --return first --flat w.shp --breaklines c.shp:Z --bounds 1,2,3,4 -o b.tif",
+            ),
+            (
+                "b las2iso -i a.laz -iso_every 10 -keep_return 1 2 -o b.shp",
+                "b contour a.laz --interval 10 --return 1,2 -o b.shp",
+            ),
+            // What is no verb is left to the parser.
+            ("b foo -tr 1 2 -lakes", "b foo -tr 1 2 -lakes"),
             (
                 "b dem a.laz b.tif -tr 1 -1",
                 "b dem a.laz -o b.tif --resolution 1",
