@@ -11,7 +11,7 @@ use breakline::io::OnDamage;
 use breakline::io::points;
 use breakline::run::{
     Degrees, EdgeLimit, FlatOptions, FlatRule, FrameOptions, Input, LineRequest, LowerEdge,
-    MemoryPoints, PerRecord, ReplacedPoints, SystemOptions, TinRequest, WallOptions,
+    MemoryPoints, PerRecord, ReplacedPoints, SystemOptions, TinRequest, WallOptions, WrittenEdges,
 };
 use breakline::terrain::{Classes, CrossingRule, DuplicateRule, HighSide, Method};
 use breakline::triangulation::OnCrossing;
@@ -461,6 +461,15 @@ impl SurfaceArguments<'_> {
             river_width: self.river_width.as_ref().map(NumberOrName::per_record),
             densify: positive("densify", self.densify)?,
         })
+    }
+}
+
+/// Returns what a file says of edges, by the parameter `plain`.
+pub(crate) fn written_edges(plain: bool) -> WrittenEdges {
+    if plain {
+        WrittenEdges::Plain
+    } else {
+        WrittenEdges::WithLines
     }
 }
 

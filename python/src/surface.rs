@@ -347,10 +347,18 @@ impl Surface {
     }
 
     /// Writes the surface as a mesh.
-    fn write(&self, py: Python<'_>, file: PathBuf, overwrite: bool, call: Call) -> PyResult<()> {
+    fn write(
+        &self,
+        py: Python<'_>,
+        file: PathBuf,
+        plain: bool,
+        overwrite: bool,
+        call: Call,
+    ) -> PyResult<()> {
         let product = &self.product;
+        let edges = requests::written_edges(plain);
         write_to(py, &file, overwrite, &call, |target, context| {
-            run::write_mesh(product.triangles()?, target, context).map(drop)
+            edges.write(product.triangles()?, target, context).map(drop)
         })
     }
 }

@@ -157,7 +157,9 @@ fn verb(name: &str, options: &Bound<'_, PyDict>) -> PyResult<Arc<dyn Verb>> {
                 levels,
             })
         }
-        "tin" => Arc::new(SurfaceOptions),
+        "tin" => Arc::new(SurfaceOptions {
+            edges: requests::written_edges(options.as_any().get_item("plain")?.extract()?),
+        }),
         _ => {
             return Err(errors::usage(
                 "there is no such verb",

@@ -80,9 +80,9 @@ def test_a_verb_is_a_function_and_its_options_are_parameters(verb):
             continue
         if option["positional"]:
             assert POSITIONAL[name] & set(found), name
-        elif name in ("output", "overwrite") and verb in WRITTEN:
+        elif name in ("output", "overwrite", "plain") and verb in WRITTEN:
             write = inspect.signature(WRITTEN[verb].write).parameters
-            assert {"path", "overwrite"} <= set(write)
+            assert {"path", "overwrite", "plain"} & {"path", "overwrite", name} <= set(write)
         else:
             assert parameter_name(verb, name) in found, f"{verb} --{name}"
 

@@ -11,7 +11,7 @@
 //! | lines, polygons, points of a vector file | [`Shape`], [`Layer`], [`Column`] | |
 //! | contours | [`ContourLine`] | `Iterator<Item = ContourLine>` |
 //! | rasters | [`Grid`], georeferenced by its [`Frame`] | [`BlockSource`], read by [`Window`] |
-//! | triangles | [`Triangles`] as a file lists them, [`Mesh`] linked, [`SurfaceFacts`] counted | [`Surface`] |
+//! | triangles | [`Triangles`] as a file lists them, [`Mesh`] linked, [`SurfaceFacts`] counted | [`Surface`], also [`WithoutLines`] |
 //! | a box | [`Bounds`] | |
 //!
 //! # Conventions
@@ -42,6 +42,7 @@ mod shape;
 mod surface;
 mod surface_facts;
 mod triangles;
+mod without_lines;
 
 pub use bounds::Bounds;
 pub use columns::Columns;
@@ -60,3 +61,4 @@ pub use surface::{BaseFace, EdgeKind, Face, LineEdges, Surface};
 pub(crate) use surface::{corners, faces, faces_under};
 pub use surface_facts::SurfaceFacts;
 pub use triangles::{LinkFlaw, Triangles};
+pub use without_lines::WithoutLines;

@@ -72,6 +72,7 @@ settings! {
     Overwrite = "overwrite",
     Parse = "parse",
     Partial = "partial",
+    Plain = "plain",
     RegionAreas = "region-areas",
     Resolution = "resolution",
     Resume = "resume",

@@ -130,7 +130,7 @@ pub use triangulate::{
 #[cfg(feature = "cli")] // whether two names are one file
 pub(crate) use verbs::targets;
 pub use verbs::targets::{Existing, Outputs, Target, Targets};
-pub use verbs::{Keeps, Summary, SurfaceOptions, TileUse, Tiles, Verb, WriteRequest};
+pub use verbs::{Keeps, Summary, SurfaceOptions, TileUse, Tiles, Verb, WriteRequest, WrittenEdges};
 pub use write::{
     Execution, Origin, SurfaceReport, WriteReport, Written, WrittenOf, plan_job, run_job, run_task,
     write,

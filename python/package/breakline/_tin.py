@@ -345,7 +345,13 @@ class Tin:
         return [Flaw(text, np.array(at, dtype=float).reshape(-1, 2)) for text, at in flaws]
 
     def write(
-        self, path: Any, *, overwrite: bool = False, threads: Optional[int] = None, progress: Progress = None
+        self,
+        path: Any,
+        *,
+        plain: bool = False,
+        overwrite: bool = False,
+        threads: Optional[int] = None,
+        progress: Progress = None,
     ) -> None:
         """Write the surface as ``.tin``, ``.ply``, ``.obj``, ``.off`` or ``.stl``.
 
@@ -353,6 +359,9 @@ class Tin:
         ----------
         path : path
             Its extension names the format.
+        plain : bool
+            Write only vertices and triangles, not which edges are on lines: for programs that do not read the ``.ply``
+            otherwise, such as meshio.
         overwrite : bool
             Replace a file that exists.
         threads, progress
@@ -372,7 +381,7 @@ class Tin:
         >>> tin.write("surface.ply", overwrite=True)
         """
         with call(threads, progress) as request:
-            self._surface.write(_inputs.path(path, "path"), bool(overwrite), request)
+            self._surface.write(_inputs.path(path, "path"), bool(plain), bool(overwrite), request)
 
     def to_matplotlib(self) -> Any:
         """Return a ``matplotlib.tri.Triangulation`` of the surface in plan; heights are ``vertices[:, 2]``.

@@ -342,7 +342,7 @@ def _request(verb: str, inputs: "list[Any]", options: "dict[str, Any]", how: "di
 
 def _product(verb: str, own: "dict[str, Any]") -> "dict[str, Any]":
     if verb == "tin":
-        return {}
+        return {"plain": False}
     if verb == "contour":
         (levels,) = _masked.rows("levels", np.atleast_1d(_masked.as_array(own["levels"])).ravel())
         heights = [_inputs.number(level, "levels") for level in levels]

@@ -18,7 +18,7 @@ use std::sync::Arc;
 
 pub(super) use self::stored::{from_json, to_json};
 use self::targets::{Outputs, Target};
-pub use self::tin::SurfaceOptions;
+pub use self::tin::{SurfaceOptions, WrittenEdges};
 use crate::data::BlockSource;
 use crate::error::{Error, Result, Setting};
 use crate::io::Destination;

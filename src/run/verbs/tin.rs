@@ -5,14 +5,48 @@ use std::path::Path;
 
 use super::targets::{Outputs, Target};
 use super::{Keeps, Summary, TileUse, Tiles, Verb};
-use crate::error::{Error, Result, Setting};
+use crate::data::{Surface, WithoutLines};
+use crate::error::{Error, Result, Setting, wording};
+use crate::io::Destination;
 use crate::io::formats::{self, Product};
+use crate::io::mesh::MeshSummary;
 use crate::run::context::Context;
 use crate::run::products::surface::{self, SurfaceProduct};
 
-/// Options of writing a surface: there are none.
+/// Options of writing a surface.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-pub struct SurfaceOptions;
+pub struct SurfaceOptions {
+    /// What files say of the edges.
+    pub edges: WrittenEdges,
+}
+
+/// What a file says of the edges of a surface.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub enum WrittenEdges {
+    /// Which of them are on lines, if its format can say so.
+    #[default]
+    WithLines,
+    /// Nothing: some programs do not read a PLY that has more than vertices and triangles.
+    Plain,
+}
+
+impl WrittenEdges {
+    /// Writes a surface as a mesh.
+    ///
+    /// # Errors
+    /// Those of [`write_mesh`](surface::write_mesh), and if the format cannot leave lines out.
+    pub fn write(
+        self,
+        surface: &dyn Surface,
+        target: Destination,
+        context: &Context,
+    ) -> Result<MeshSummary> {
+        match self {
+            WrittenEdges::WithLines => surface::write_mesh(surface, target, context),
+            WrittenEdges::Plain => surface::write_mesh(&WithoutLines(surface), target, context),
+        }
+    }
+}
 
 impl Verb for SurfaceOptions {
     fn name(&self) -> &'static str {
@@ -23,7 +57,9 @@ impl Verb for SurfaceOptions {
         Product::Surface
     }
 
-    fn list(&self, _add: &mut dyn FnMut(Setting, &dyn Debug)) {}
+    fn list(&self, add: &mut dyn FnMut(Setting, &dyn Debug)) {
+        add(Setting::Plain, &self.edges);
+    }
 
     fn use_of_tiles(&self, targets: &[Target]) -> Result<TileUse> {
         let in_parts = targets.iter().find(|target| is_in_parts(&target.path));
@@ -32,7 +68,12 @@ impl Verb for SurfaceOptions {
                 .in_file(&target.path)
                 .cure("write the others from it afterwards")),
             // Parts are those of tiles, even if all would fit into memory.
-            (Some(_), _) => Ok(TileUse::Always),
+            (Some(target), _) => match self.edges {
+                WrittenEdges::WithLines => Ok(TileUse::Always),
+                WrittenEdges::Plain => Err(Error::usage("a TIN in parts keeps its lines")
+                    .in_file(&target.path)
+                    .cure(wording!["leave ", Setting::Plain, " out"])),
+            },
             (None, targets) => {
                 let error = Error::usage("tiles make a TIN in parts").cure("name the output .tins");
                 Ok(TileUse::Never(match targets {
@@ -51,7 +92,9 @@ impl Verb for SurfaceOptions {
     ) -> Result<Summary> {
         let triangles = surface.triangles()?;
         let write = |target: &Target| {
-            let written = surface::write_mesh(triangles, target.within(&outputs.set), context)?;
+            let written = self
+                .edges
+                .write(triangles, target.within(&outputs.set), context)?;
             Ok((target.path.clone(), written))
         };
         outputs

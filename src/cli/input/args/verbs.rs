@@ -180,6 +180,14 @@ pub(crate) struct TinArgs {
     pub(crate) surface: SurfaceArgs,
     #[command(flatten)]
     pub(crate) output: OutputArgs,
+
+    /// Write only vertices and triangles, not which edges are on lines
+    ///
+    /// For programs that do not read the .ply otherwise, such as meshio. The lines are then not in
+    /// the file: `check`, smooth methods of interpolation and `tin` do not know them.
+    #[arg(long)]
+    pub(crate) plain: bool,
+
     #[command(flatten)]
     pub(crate) tiles: TileArgs,
 }
