@@ -6,8 +6,9 @@ use crate::error::{Error, Result};
 
 /// A surface over the cell centers of a raster, for contours of a DEM.
 ///
-/// The centers of four neighboring cells are the corners of a quad. A fifth vertex in its middle,
-/// at the mean of their heights, divides the quad into four triangles:
+/// The centers of four neighboring cells are the corners of a quad. A fifth vertex in its middle
+/// divides the quad into four triangles. It is at the mean of their heights, or at the height that
+/// three of them have:
 ///
 /// ```text
 /// +-------+
@@ -20,7 +21,9 @@ use crate::error::{Error, Result};
 /// So no diagonal is preferred: rotated or mirrored rasters give rotated or mirrored surfaces, and
 /// a saddle has its pass in the middle, at the height of bilinear interpolation. (With the same
 /// diagonal in all quads, contours of valleys along it are smooth and others ragged; a diagonal
-/// chosen by the heights jumps when these change a little.)
+/// chosen by the heights jumps when these change a little.) At the border of flat ground, where
+/// three cells are equal, the mean would make its contour a staircase along the cells; so the flat
+/// ground ends at the diagonal.
 ///
 /// A quad with one missing cell (NaN, or infinite) is one triangle; with two or more missing cells
 /// it is empty. Faces are computed on request: the surface needs no memory in addition to the
@@ -181,9 +184,17 @@ impl<'a> GridSurface<'a> {
     }
 }
 
-/// The height in the middle of four cells.
+/// The height in the middle of four cells: that of three of them, or the mean.
 fn center(cells: [[f64; 2]; 2]) -> f64 {
-    let [[a, b], [c, d]] = cells.map(|row| row.map(|height| 0.25 * height));
+    let [[a, b], [c, d]] = cells;
+    // Three of the four contain a diagonal.
+    if a == d && (a == b || a == c) {
+        return a;
+    }
+    if b == c && (b == a || b == d) {
+        return b;
+    }
+    let [a, b, c, d] = [a, b, c, d].map(|height| 0.25 * height);
     // Summed by diagonals: the result is the same if the raster is rotated.
     (a + d) + (b + c)
 }

@@ -123,12 +123,18 @@ pub(crate) fn check_lines(surface: &Faces, half_level: i64, lines: &[ContourLine
         }
     }
     let border = border(surface, half_level);
-    let mut arrivals = BTreeMap::<Point, Vec<Passage>>::new();
+    let mut drawn: Vec<Vec<Point>> = Vec::new();
     for line in lines {
         let points: Vec<Point> = line.points.iter().map(|&p| lattice_point(p)).collect();
-        let closed = points.first() == points.last();
-        assert_eq!(closed, line.is_closed());
-        if closed {
+        let is_closed = points.first() == points.last();
+        assert_eq!(is_closed, line.is_closed());
+        let sites: BTreeSet<Point> = points.iter().copied().collect();
+        assert_eq!(
+            sites.len(),
+            points.len() - usize::from(is_closed),
+            "{points:?} touches itself"
+        );
+        if is_closed {
             assert_eq!(
                 points.iter().min(),
                 points.first(),
@@ -142,79 +148,117 @@ pub(crate) fn check_lines(surface: &Faces, half_level: i64, lines: &[ContourLine
                 );
             }
         }
-        for i in 0..points.len() {
-            let last = points.len() - 1;
-            if closed && i == last {
-                continue;
-            }
-            let before = if closed && i == 0 {
-                Some(points[last - 1])
-            } else {
-                i.checked_sub(1).map(|i| points[i])
-            };
-            let after = points.get(i + 1).copied();
-            arrivals.entry(points[i]).or_default().push((before, after));
+        drawn.push(points);
+    }
+    check_nodes(&drawn);
+    drawn.sort_unstable();
+    assert_eq!(drawn, joined(&segments));
+}
+
+/// Checks that no two lines cross where they meet.
+fn check_nodes(lines: &[Vec<Point>]) {
+    let mut passages = BTreeMap::<Point, Vec<[Point; 2]>>::new();
+    for points in lines {
+        let closing = [points[points.len() - 2], points[0], points[1]];
+        let closing = (points.first() == points.last()).then_some(&closing[..]);
+        for three in points.windows(3).chain(closing) {
+            passages
+                .entry(three[1])
+                .or_default()
+                .push([three[0], three[2]]);
         }
     }
-    for (&node, passages) in &arrivals {
-        check_turns(node, passages);
+    for (node, passages) in passages {
+        for (i, &one) in passages.iter().enumerate() {
+            for &other in &passages[..i] {
+                assert!(!is_crossing(node, one, other), "lines cross at {node:?}");
+            }
+        }
     }
 }
 
-/// The points before and after a point of a line.
-type Passage = (Option<Point>, Option<Point>);
+/// Returns true if a passage of a node separates the ends of another one.
+fn is_crossing(node: Point, [before, after]: [Point; 2], other: [Point; 2]) -> bool {
+    let turn = direction(node, before, after);
+    let [a, b] = other.map(|p| direction(node, before, p) < turn);
+    a != b
+}
 
-/// Checks that only whole pairs lie between an incoming ray and its outgoing one,
-/// counter-clockwise, and that not both kinds are left over.
-fn check_turns(node: Point, passages: &[Passage]) {
-    let starts = passages
-        .iter()
-        .filter(|(before, _)| before.is_none())
-        .count();
-    let ends = passages.iter().filter(|(_, after)| after.is_none()).count();
-    assert!(
-        starts == 0 || ends == 0,
-        "a line ends at {node:?} where another one begins"
-    );
-    for &(before, after) in passages {
-        let (Some(before), Some(after)) = (before, after) else {
-            continue;
-        };
-        let is_inside = |p: &Point| {
-            let from_before = |q| (direction(node, before, q), q);
-            from_before(*p).0.cmp(&from_before(after).0) == Ordering::Less && *p != before
-        };
-        for (other_before, other_after) in passages {
-            if (*other_before, *other_after) == (Some(before), Some(after)) {
-                continue;
-            }
-            let inside = [other_before, other_after].map(|p| p.as_ref().map(is_inside));
-            match inside {
-                [Some(a), Some(b)] => assert_eq!(a, b, "lines cross at {node:?}"),
-                [a, b] => assert!(
-                    a != Some(true) && b != Some(true),
-                    "a sharper turn was left over at {node:?}"
-                ),
-            }
+/// The lines that arcs are joined to, by the rules, naively; sorted.
+fn joined(arcs: &[Segment]) -> Vec<Vec<Point>> {
+    // The turn rule: what is left of the circle of a node, until nothing fits.
+    let mut next = BTreeMap::<Segment, Segment>::new();
+    let nodes: BTreeSet<Point> = arcs.iter().flatten().copied().collect();
+    for node in nodes {
+        let arrives = |arc: &Segment| arc[1] == node;
+        let far = |arc: &Segment| if arrives(arc) { arc[0] } else { arc[1] };
+        let mut circle: Vec<Segment> = arcs
+            .iter()
+            .filter(|arc| arc.contains(&node))
+            .copied()
+            .collect();
+        let zero = far(&circle[0]);
+        circle.sort_by_key(|arc| direction(node, zero, far(arc)));
+        while let Some(i) = (0..circle.len())
+            .find(|&i| arrives(&circle[i]) && !arrives(&circle[(i + 1) % circle.len()]))
+        {
+            let pair = [circle[i], circle[(i + 1) % circle.len()]];
+            next.insert(pair[0], pair[1]);
+            circle.retain(|arc| !pair.contains(arc));
         }
     }
-    // The sharpest turn to the right stays in one sector: only whole pairs lie between, whose
-    // first ray, counter-clockwise, is an incoming one.
-    for &(before, after) in passages {
-        let (Some(before), Some(after)) = (before, after) else {
-            continue;
-        };
-        let next = passages
-            .iter()
-            .flat_map(|(b, a)| [b.map(|p| (p, true)), a.map(|p| (p, false))])
-            .flatten()
-            .filter(|(p, _)| *p != before)
-            .min_by(|(p, _), (q, _)| direction(node, before, *p).cmp(&direction(node, before, *q)));
-        assert!(
-            next.is_some_and(|(p, is_in)| p == after || is_in),
-            "not the sharpest turn at {node:?}"
-        );
+    let mut lines = Vec::new();
+    let mut left: BTreeSet<Segment> = arcs.iter().copied().collect();
+    let follows: BTreeSet<Segment> = next.values().copied().collect();
+    while let Some(first) = left
+        .iter()
+        .find(|arc| !follows.contains(*arc))
+        .or(left.first())
+        .copied()
+    {
+        let mut points = vec![first[0]];
+        let mut arc = Some(first);
+        while let Some(taken) = arc.filter(|arc| left.remove(arc)) {
+            points.push(taken[1]);
+            arc = next.get(&taken).copied();
+        }
+        cut(points, arc.is_some(), &mut lines);
     }
+    lines.sort_unstable();
+    lines
+}
+
+/// The loop rule: the shortest loop is cut out, until there is none.
+fn cut(mut points: Vec<Point>, is_closed: bool, lines: &mut Vec<Vec<Point>>) {
+    let last = points.len() - 1;
+    let loops = (0..last).flat_map(|i| (i + 1..=last).map(move |j| [i, j]));
+    let shortest = loops
+        .filter(|&[i, j]| points[i] == points[j] && !(is_closed && j - i == last))
+        .min_by_key(|[i, j]| j - i);
+    let Some([i, j]) = shortest else {
+        if is_closed {
+            points.pop();
+            let smallest = (0..points.len()).min_by_key(|&i| points[i]).unwrap();
+            points.rotate_left(smallest);
+            points.push(points[0]);
+        }
+        return lines.push(points);
+    };
+    cut(points[i..=j].to_vec(), true, lines);
+    let passes = [i.checked_sub(1), Some(j + 1).filter(|&j| j <= last)];
+    if let [Some(before), Some(after)] = passes
+        && !is_closed
+        && is_crossing(
+            points[i],
+            [points[before], points[after]],
+            [points[i + 1], points[j - 1]],
+        )
+    {
+        cut(points[..=i].to_vec(), false, lines);
+        return cut(points[j..].to_vec(), false, lines);
+    }
+    points.drain(i..j);
+    cut(points, is_closed, lines);
 }
 
 /// The angle from `zero` to `p`, counter-clockwise around the node, comparable.

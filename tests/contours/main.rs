@@ -290,6 +290,31 @@ fn a_saddle_on_the_level_parts_the_high_ground() {
     }
 }
 
+/// High ground around a hollow, closed by the pass at the level: its outer and its inner border are
+/// two rings, which touch in the pass.
+#[test]
+fn high_ground_that_meets_itself_has_two_rings() {
+    #[rustfmt::skip]
+    let pass = [
+        0, 0, 0, 0, 0,
+        0, 2, 1, 2, 0,
+        0, 2, 0, 2, 0,
+        0, 2, 2, 2, 0,
+        0, 0, 0, 0, 0,
+    ];
+    let lines = check(&grid(5, &pass, |_| true), 2);
+    assert_eq!(lines.len(), 2);
+    assert!(
+        lines
+            .iter()
+            .all(|line| line.is_closed() && line.points.contains(&[2.0, 1.0]))
+    );
+    let mut areas: Vec<f64> = lines.iter().map(signed_area).collect();
+    areas.sort_by(f64::total_cmp);
+    // High ground is on the right of both: within the outer one, outside of the inner one.
+    assert!(areas[0] < -4.0 && areas[1] > 0.0, "{areas:?}");
+}
+
 /// A ridge that exceeds the level by the last bit has no width in `f64`, and no contour.
 #[test]
 fn what_is_narrower_than_a_bit_vanishes() {

@@ -149,7 +149,7 @@ pub(super) fn pair(mut group: Vec<End>, next: &mut [Option<usize>]) {
 }
 
 /// Compares the directions from the center to two points, counter-clockwise from east.
-fn around(center: [f64; 2], a: [f64; 2], b: [f64; 2]) -> Ordering {
+pub(super) fn around(center: [f64; 2], a: [f64; 2], b: [f64; 2]) -> Ordering {
     let lower_half = |p: [f64; 2]| p[1] < center[1] || (p[1] == center[1] && p[0] < center[0]);
     lower_half(a).cmp(&lower_half(b)).then_with(|| {
         match Exact::sign(&Orientation2([center, a, b])) {

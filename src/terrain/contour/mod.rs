@@ -57,6 +57,26 @@
 //! in the circle never cross. At the edge of the data the circle continues across the gap, so that
 //! a line ends there only if no arc is left to join it with.
 //!
+//! # The loop rule
+//!
+//! High ground that meets *itself* at a vertex surrounds low ground. The turn rule alone would draw
+//! its outer and its inner border as one line, which passes the vertex twice. So **a line is cut
+//! where it passes a point for the second time**: the loop in between becomes a line of its own. No
+//! line touches itself, and each closed one is the border of a simple polygon.
+//!
+//! ```text
+//!     +-----------+
+//!     |  +-----+  |     The high ground between the outer and the inner ring
+//!     |  | low |  |     meets itself at x. The two are cut there; both pass x.
+//!     |   \   /   |
+//!     +----`x´----+
+//! ```
+//!
+//! All passages turn around high ground, so that the loops lie on one side of the line and are
+//! nested or disjoint: it does not matter which is cut first. Only an open line can come back to a
+//! vertex on the other side of its loop, through a gap in the data: it ends there, and starts
+//! again.
+//!
 //! # Points
 //!
 //! Nodes are joined by the links between faces, never by comparing coordinates. The crossing of an
@@ -87,6 +107,7 @@ mod find;
 mod index;
 mod join;
 mod line;
+mod loops;
 mod narrow;
 pub mod parts;
 mod trace;

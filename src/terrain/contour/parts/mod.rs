@@ -64,9 +64,9 @@
 //!    depends on this face and on all levels, not on those within the heights of a task. Tasks hand
 //!    on the sites at narrow faces. A [`BendFinder`] has the arcs at all of them.
 //!
-//! Ends are matched by the numbers of vertices. By coordinates, other lines would result: crossings
-//! of different edges may have the same bits although no line falls together, and `contours` then
-//! follows the links between faces.
+//! Ends are matched by the numbers of vertices, as `contours` follows the links between faces:
+//! crossings of different edges may have the same bits although no line falls together. The loop
+//! rule then cuts whole lines.
 //!
 //! # Levels
 //!
