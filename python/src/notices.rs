@@ -1,6 +1,6 @@
 //! What was assumed and what looks wrong, as texts and as warnings.
 
-use breakline::run::{Notice, Severity};
+use breakline::run::{Event, Notice, Severity};
 use pyo3::prelude::*;
 
 use crate::names::name;
@@ -26,21 +26,39 @@ fn is_warning(notice: &Notice) -> bool {
     notice.severity() == Severity::Warning || matches!(notice, Notice::MemoryUnused(_))
 }
 
-/// Issues a Python warning for each notice that is one.
-///
-/// # Errors
-/// The exception that a warning is turned into, if the user has asked for that.
-pub(crate) fn warn(py: Python<'_>, notices: &[Notice]) -> PyResult<()> {
-    let mut warnings = notices
-        .iter()
-        .filter(|notice| is_warning(notice))
-        .peekable();
-    if warnings.peek().is_none() {
-        return Ok(());
+/// Returns true if an event changes what the caller goes on with.
+fn is_surprise(event: &Event) -> bool {
+    matches!(event, Event::PlannedAgain(_))
+}
+
+/// What a call warns of, in the order in which it was found.
+#[derive(Default)]
+pub(crate) struct Warnings(Vec<String>);
+
+impl Warnings {
+    pub(crate) fn notice(&mut self, notice: &Notice) {
+        if is_warning(notice) {
+            self.0.push(notice.text().render(&name));
+        }
     }
-    let texts: Vec<String> = warnings.map(|notice| notice.text().render(&name)).collect();
-    py.import("breakline._errors")?
-        .getattr("warn")?
-        .call1((texts,))
-        .map(drop)
+
+    pub(crate) fn event(&mut self, event: &Event) {
+        if is_surprise(event) {
+            self.0.extend(event.note());
+        }
+    }
+
+    /// Issues a Python warning for each.
+    ///
+    /// # Errors
+    /// The exception that a warning is turned into, if the user has asked for that.
+    pub(crate) fn issue(&self, py: Python<'_>) -> PyResult<()> {
+        if self.0.is_empty() {
+            return Ok(());
+        }
+        py.import("breakline._errors")?
+            .getattr("warn")?
+            .call1((&self.0,))
+            .map(drop)
+    }
 }

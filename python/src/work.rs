@@ -8,12 +8,12 @@ use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 use std::thread::{Builder, ThreadId, available_parallelism};
 use std::time::Duration;
 
-use breakline::run::{Context, Monitor, Notice, Progress, Size, Stage};
+use breakline::run::{Context, Event, Monitor, Notice, Progress, Size, Stage};
 use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use crate::errors;
-use crate::notices;
+use crate::notices::Warnings;
 
 /// How often a call that waits looks for signals, and reports progress.
 pub(crate) const POLL: Duration = Duration::from_millis(50);
@@ -305,7 +305,7 @@ fn ended<T, E: Into<PyErr>>(
     match outcome {
         Ok(Ok(done)) => {
             watch.report(py, progress.as_ref())?;
-            notices::warn(py, &locked(&watch.notices))?;
+            locked(&watch.warnings).issue(py)?;
             Ok(done)
         }
         Ok(Err(error)) => Err(error.into()),
@@ -351,7 +351,7 @@ struct Begun {
 #[derive(Default)]
 struct Watch {
     stage: Mutex<Option<Begun>>,
-    notices: Mutex<Vec<Notice>>,
+    warnings: Mutex<Warnings>,
 }
 
 /// Counts the items of a stage.
@@ -375,7 +375,11 @@ impl Monitor for Watch {
     }
 
     fn notice(&self, notice: &Notice) {
-        locked(&self.notices).push(notice.clone());
+        locked(&self.warnings).notice(notice);
+    }
+
+    fn event(&self, event: &Event) {
+        locked(&self.warnings).event(event);
     }
 }
 

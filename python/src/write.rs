@@ -3,12 +3,13 @@
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::time::Duration;
 
 use breakline::run::{
     self, BadFiles, ContourOptions, DemOptions, Division, Execution, Existing, FoundJob,
     HillshadeOptions, JobCommand, JobReport, LightOptions, Look, Origin, Source, StoredJob,
-    Summary, SurfaceOptions, SurfaceRequest, Targets, TileOptions, Verb, WriteReport, WriteRequest,
-    Written, WrittenOf,
+    Summary, SurfaceOptions, SurfaceRequest, Targets, TileOptions, Verb, WorkOptions, WriteReport,
+    WriteRequest, Written, WrittenOf,
 };
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
@@ -80,18 +81,9 @@ impl Asked<'_> {
                 )
             })
         });
-        let memory = self.memory.as_deref().map(|text| {
-            run::memory_of(text).map_err(|why| {
-                errors::usage(
-                    &format!("memory: {why}"),
-                    &format!("'{text}'"),
-                    "write '200MB'",
-                )
-            })
-        });
         Ok(TileOptions {
             division: division.transpose()?.unwrap_or_default(),
-            memory: memory.transpose()?,
+            memory: self.memory.as_deref().map(memory).transpose()?,
             folder: self.job.clone(),
             bad: if self.skip_bad {
                 BadFiles::Skip
@@ -119,6 +111,29 @@ impl Asked<'_> {
             }
         })
     }
+}
+
+/// Returns the bytes that a text states.
+fn memory(text: &str) -> PyResult<u64> {
+    run::memory_of(text).map_err(|why| {
+        errors::usage(
+            &format!("memory: {why}"),
+            &format!("'{text}'"),
+            "write '200MB'",
+        )
+    })
+}
+
+/// Returns the time in which a worker gives a sign of life.
+fn lease(seconds: f64) -> PyResult<Duration> {
+    let lease = Duration::try_from_secs_f64(seconds).ok();
+    lease.filter(|lease| lease.as_secs() > 0).ok_or_else(|| {
+        errors::usage(
+            "lease: expected a number of seconds, at least 1",
+            &seconds.to_string(),
+            "write 60",
+        )
+    })
 }
 
 /// Returns a verb with its options.
@@ -390,6 +405,9 @@ impl Job {
                 task.has_read.map(|state| (state.size, state.modified)),
             )?;
             found.set_item("done", task.is_done)?;
+            let lease = task.lease.filter(|lease| !lease.has_expired);
+            let worker = lease.and_then(|lease| lease.worker);
+            found.set_item("worker", worker.map(|worker| worker.to_string()))?;
             listed.append(found)?;
         }
         Ok(listed)
@@ -444,6 +462,25 @@ impl Job {
                 stored.command.targets.existing = Existing::of(overwrite);
             }
             Ok(run::run_job(&stored, context)?)
+        })?;
+        of_report(py, &report)
+    }
+
+    /// Does tasks together with other processes, until all are done; returns the report of the
+    /// output, which one of them writes.
+    fn work<'py>(
+        &self,
+        py: Python<'py>,
+        most: Option<String>,
+        seconds: f64,
+        call: Call,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let options = WorkOptions {
+            memory: most.as_deref().map(memory).transpose()?,
+            lease: lease(seconds)?,
+        };
+        let report = work::run_alone(py, &call, |context| -> Result<_> {
+            Ok(run::work_job(&self.found.stored()?, &options, context)?)
         })?;
         of_report(py, &report)
     }

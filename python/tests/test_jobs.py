@@ -7,6 +7,7 @@ import re
 import subprocess
 import sys
 import warnings
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import breakline
@@ -211,11 +212,28 @@ def test_a_job_that_plans_again_is_that_of_its_handle(whole, tmp_path, halves):
         assert job.write().report["has_holes"]
     count = len(job.tasks())
     halves[1].write_bytes(good)
-    assert job.write().report["has_holes"] is False
+    with pytest.warns(breakline.BreaklineWarning, match="was skipped, and can be read now: the job is planned again"):
+        assert job.write().report["has_holes"] is False
     assert not job.has_holes and len(job.tasks()) == count + 1
     assert job.write().path.read_bytes() == whole
     job.clean()
     assert not job.folder.exists()
+
+
+def test_workers_share_a_job(whole, tmp_path):
+    output, folder = tmp_path / "dem.tif", tmp_path / "job"
+    job = breakline.Job.plan("dem", VALLEY, output, job=folder, tiles="4x4")
+    for name, value in [("lease", 0.5), ("lease", float("nan")), ("memory", "much")]:
+        with pytest.raises(breakline.UsageError, match=name):
+            job.work(**{name: value})
+    with ThreadPoolExecutor() as pool:
+        works = [pool.submit(breakline.Job(folder).work, threads=1, memory="1GB") for _ in range(3)]
+        written = [work.result() for work in works]
+    assert all(one.path == output for one in written) and output.read_bytes() == whole
+    assert sum("triangles" in one.report for one in written) == 1
+    assert all(task.done and task.worker is None for task in job.tasks())
+    job.clean()
+    assert not folder.exists()
 
 
 def test_a_handle_of_an_interrupted_run_is_not_that_of_the_next_job(tmp_path):

@@ -46,6 +46,7 @@ mod options;
 pub(crate) use bytes::contain::contain;
 pub use bytes::contain::is_contained;
 pub use bytes::mapped;
+pub(crate) use bytes::output::Temporary;
 pub use bytes::output::{
     Abandoned, Destination, Output, OutputSet, abandon_outputs, is_stream, probe, remove_abandoned,
     require_absent,

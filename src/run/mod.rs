@@ -88,7 +88,7 @@ pub use context::units::Quantity;
 pub use context::{Context, Monitor, Progress, Silent, Size, Stage};
 pub use job::{
     Division, FileState, FoundJob, Job, JobCommand, JobLock, JobReport, JobTask, Look, NotInTiles,
-    StoredJob, TileOptions, needs_tiles, remove_job,
+    StoredJob, TaskLease, TileOptions, WorkOptions, Worker, needs_tiles, remove_job,
 };
 pub use lines::crossings::LineNames;
 pub use lines::notes::LineInput;
@@ -133,5 +133,5 @@ pub use verbs::targets::{Existing, Outputs, Target, Targets};
 pub use verbs::{Keeps, Summary, SurfaceOptions, TileUse, Tiles, Verb, WriteRequest, WrittenEdges};
 pub use write::{
     Execution, Origin, SurfaceReport, WriteReport, Written, WrittenOf, plan_job, run_job, run_task,
-    write,
+    work_job, write,
 };

@@ -19,6 +19,7 @@ mod real;
 mod removal;
 mod stored;
 mod trust;
+mod workers;
 
 use std::path::Path;
 

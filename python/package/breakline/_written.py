@@ -59,7 +59,8 @@ class Task(NamedTuple):
     """A task of a job.
 
     ``needs`` are the numbers of the tasks that must be done before; ``stage`` is higher than that of each of them.
-    ``input`` is the file of points that it reads, ``has_read`` that file's size and time as it has read it.
+    ``input`` is the file of points that it reads, ``has_read`` that file's size and time as it has read it. ``worker`` is
+    the process that does it now, as ``"host:process"``, if several share the job.
     """
 
     number: int
@@ -69,6 +70,7 @@ class Task(NamedTuple):
     input: Optional[str]
     has_read: "Optional[tuple[int, int]]"
     done: bool
+    worker: Optional[str]
 
 
 class Job:
@@ -224,6 +226,39 @@ class Job:
         """
         with call(threads, progress) as running:
             report = self._job.write(None if overwrite is None else bool(overwrite), running)
+        return Written(self.output, report)
+
+    def work(
+        self,
+        *,
+        memory: Optional[str] = None,
+        lease: float = 60.0,
+        threads: Optional[int] = None,
+        progress: Progress = None,
+    ) -> Written:
+        """Do tasks together with other processes, on any number of hosts, until all are done; return the output.
+
+        Each process that calls this, or runs ``breakline job work``, takes the tasks that are free; one of them writes
+        the output. They need nothing in common but the folder of the job, and the inputs, under the same names. A process
+        may begin, end or be killed at any time: the others do its tasks.
+
+        Parameters
+        ----------
+        memory : str, optional
+            Memory to use, such as ``"16GB"``: as many tasks are done at a time as have room in it, but at least one, and
+            at most one on each thread. What is free by default.
+        lease : float
+            Seconds. A process that gives no sign of life for so long loses its tasks to others.
+
+        Examples
+        --------
+        On each host::
+
+            breakline.Job("/shared/ground.job").work()
+        """
+        memory, lease = None if memory is None else str(memory), _inputs.number(lease, "lease")
+        with call(threads, progress) as running:
+            report = self._job.work(memory, lease, running)
         return Written(self.output, report)
 
     def clean(self) -> None:

@@ -151,17 +151,23 @@ impl Monitor for Shown<'_> {
 
     fn event(&self, event: &Event) {
         let console = self.console;
+        if let Some(note) = event.note() {
+            console.note(note);
+        }
         match event {
             Event::Planned(size) => print_size(size, console),
             Event::Resumed { done, tasks } => {
                 console.line(format_args!("resumed     {done} of {tasks} tasks are done"));
             }
-            Event::PlannedAgain(path) => console.note(format_args!(
-                "{} was skipped, and can be read now: the job is planned again",
-                path.display()
-            )),
             Event::TasksBegin(folder) => {
                 self.set_words(|| console.note_if_ended(self.kept(folder)))
+            }
+            Event::Waits { tasks } => console.note(format_args!(
+                "waits for {} of other processes",
+                counted(*tasks as u64, "task")
+            )),
+            Event::TasksEnd { done_here, tasks } => {
+                console.line(format_args!("tasks       {done_here} of {tasks} done here"));
             }
             Event::RasterBegins {
                 frame,
@@ -174,6 +180,7 @@ impl Monitor for Shown<'_> {
                 ));
             }
             Event::Written => self.set_words(|| None),
+            Event::PlannedAgain(_) | Event::TakenOver { .. } => {}
         }
     }
 }

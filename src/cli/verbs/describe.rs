@@ -243,7 +243,9 @@ mod tests {
             "{text}"
         );
         assert!(
-            text.contains("\njob status: Show which tasks are done\n"),
+            text.contains(
+                "\njob status: Show which tasks are done, and which process does which\n"
+            ),
             "{text}"
         );
     }

@@ -1,4 +1,5 @@
 use std::path::Path;
+use std::time::Duration;
 
 use clap::Parser;
 use serde_json::{Value, json};
@@ -11,7 +12,9 @@ use crate::cli::report::console::Console;
 use crate::cli::report::stdout::print;
 use crate::cli::report::written::Shown;
 use crate::error::{Error, Result};
-use crate::run::{self, Context, Job, JobCommand, JobTask, Look, StoredJob, TileOptions};
+use crate::run::{
+    self, Context, Job, JobCommand, JobTask, Look, StoredJob, TaskLease, TileOptions, WorkOptions,
+};
 
 /// Plans a run in tiles, or does its tasks.
 pub(crate) fn run(args: &JobArgs, console: &Console) -> Result<Exit> {
@@ -30,7 +33,14 @@ pub(crate) fn run(args: &JobArgs, console: &Console) -> Result<Exit> {
             command,
             console,
         ),
-        JobAction::Run { job, task } => work(job, *task, console),
+        JobAction::Run { job, task } => run_tasks(job, *task, console),
+        JobAction::Work { job, memory, lease } => {
+            let options = WorkOptions {
+                memory: *memory,
+                lease: Duration::from_secs((*lease).into()),
+            };
+            work(job, &options, console)
+        }
         JobAction::Status { job, json, verify } => {
             let context = console.context();
             let stored = StoredJob::read(job)?;
@@ -88,7 +98,7 @@ fn plan(job: &Path, look: Look, words: &[String], console: &Console) -> Result<E
         look,
         ..write::options(&tiles)
     };
-    let shown = Shown::new(console, how_to_go_on(job));
+    let shown = Shown::new(console, on_job("run", job));
     let command = JobCommand {
         words: words.to_vec(),
         ..JobCommand::new(&request, &targets, &tiles)?
@@ -103,13 +113,22 @@ fn plan(job: &Path, look: Look, words: &[String], console: &Console) -> Result<E
 }
 
 /// Returns what the user types to go on with a job.
-fn how_to_go_on(job: &Path) -> String {
-    format!("`breakline job run {}`", job.display())
+fn on_job(action: &str, job: &Path) -> String {
+    format!("`breakline job {action} {}`", job.display())
 }
 
-fn work(job: &Path, task: Option<usize>, console: &Console) -> Result<Exit> {
+/// Does tasks together with other processes.
+fn work(job: &Path, options: &WorkOptions, console: &Console) -> Result<Exit> {
     let stored = StoredJob::read(job)?;
-    let shown = Shown::new(console, how_to_go_on(stored.folder()));
+    let shown = Shown::new(console, on_job("work", stored.folder()));
+    let report = run::work_job(&stored, options, &shown.context())?;
+    Ok(shown.print(&report))
+}
+
+/// Does one task, or all that are left.
+fn run_tasks(job: &Path, task: Option<usize>, console: &Console) -> Result<Exit> {
+    let stored = StoredJob::read(job)?;
+    let shown = Shown::new(console, on_job("run", stored.folder()));
     let context = shown.context();
     let Some(task) = task else {
         return run::run_job(&stored, &context).map(|report| shown.print(&report));
@@ -133,6 +152,31 @@ fn print_status(open: &Job, context: &Context) -> Result<()> {
     let done = open.done(context)?;
     let finished = done.iter().filter(|is_done| **is_done).count();
     print(&format!("{finished} of {count} tasks are done\n"))?;
+    for (
+        task,
+        TaskLease {
+            worker,
+            age,
+            has_expired,
+            ..
+        },
+    ) in open.leases(&done)?
+    {
+        let name = if task < count {
+            open.task_name(task)
+        } else {
+            "output".to_owned()
+        };
+        let worker = worker.map_or_else(
+            || "an unknown process".to_owned(),
+            |worker| worker.to_string(),
+        );
+        let state = if has_expired { "lost by" } else { "done by" };
+        print(&format!(
+            "{task}: {name}, {state} {worker}, seen {} s ago\n",
+            age.as_secs()
+        ))?;
+    }
     match done.iter().position(|is_done| !is_done) {
         Some(next) => print(&format!("next: {next}, {}\n", open.task_name(next))),
         None => Ok(()),
@@ -145,6 +189,10 @@ fn print_tasks(open: &Job, words: &[String], output: &Path, context: &Context) -
         json!({
             "name": task.name, "stage": task.stage, "needs": task.needs, "input": task.input,
             "has_read": task.has_read.map(|state| [state.size, state.modified]), "done": task.is_done,
+            "worker": task.lease.map(|lease| json!({
+                "name": lease.worker.map(|worker| worker.to_string()), "age": lease.age.as_secs_f64(),
+                "expired": lease.has_expired,
+            })),
         })
     };
     let tasks: Vec<Value> = open

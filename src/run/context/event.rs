@@ -1,6 +1,7 @@
 //! What happens while files are written.
 
 use std::path::Path;
+use std::time::Duration;
 
 use crate::crs::Crs;
 use crate::data::Frame;
@@ -24,6 +25,27 @@ pub enum Event<'a> {
     PlannedAgain(&'a Path),
     /// The tasks of the job in a folder begin.
     TasksBegin(&'a Path),
+    /// A task was that of another process, which gave no sign of life, and is done here now.
+    TakenOver {
+        /// Its number.
+        task: usize,
+        /// Whose it was, such as "node7:4711"; `None` if that is not known.
+        worker: Option<&'a str>,
+        /// How long ago that process gave the last sign of life.
+        age: Duration,
+    },
+    /// Nothing can be done but to wait for so many tasks of other processes.
+    Waits {
+        /// Their number.
+        tasks: usize,
+    },
+    /// All tasks of a job are done that several processes share, except the output.
+    TasksEnd {
+        /// Those that this process has done.
+        done_here: usize,
+        /// All of them.
+        tasks: usize,
+    },
     /// The size of a raster is known, before its cells are computed.
     RasterBegins {
         /// Size and position.
@@ -35,6 +57,24 @@ pub enum Event<'a> {
     },
     /// All outputs have appeared.
     Written,
+}
+
+impl Event<'_> {
+    /// Returns what is not as planned; `None` if all is.
+    pub fn note(&self) -> Option<String> {
+        match self {
+            Event::PlannedAgain(path) => Some(format!(
+                "{} was skipped, and can be read now: the job is planned again",
+                path.display()
+            )),
+            Event::TakenOver { task, worker, age } => Some(format!(
+                "task {task} is done here: {} does not go on with it, seen {} s ago",
+                worker.unwrap_or("its process"),
+                age.as_secs()
+            )),
+            _ => None,
+        }
+    }
 }
 
 /// What a plan consists of.

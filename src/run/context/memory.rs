@@ -149,9 +149,14 @@ pub(crate) fn excess_of(points: u64) -> Option<Notice> {
     })
 }
 
-/// Returns half of the free memory; a gigabyte if the system does not say how much is free.
+/// Returns the free memory; two gigabytes if the system does not say how much is free.
+pub(crate) fn free() -> u64 {
+    left().map_or(2 << 30, |left| left.bytes)
+}
+
+/// Returns half of the free memory.
 pub(crate) fn half_of_free() -> u64 {
-    left().map_or(1 << 30, |left| left.bytes / 2)
+    free() / 2
 }
 
 /// Returns about how much memory a surface of this many points needs, with the points.

@@ -5,8 +5,9 @@ use std::collections::BTreeMap;
 
 use flate2::Crc;
 
-use super::folder::{remove_unfinished, tasks_in};
+use super::folder::remove_unfinished;
 use super::lock::JobLock;
+use super::paths::tasks_in;
 use super::task_file::{Found, TaskFile};
 use super::{FileState, Job};
 use crate::error::{Error, Kind, Result};
@@ -133,17 +134,27 @@ impl Job {
         sources.map(|sources| sum_of(sources.into_iter()))
     }
 
-    /// Returns true if the file of a task is there, and whole, and was made from the files that are
-    /// there now.
+    /// Returns the file of a task if it was made from the files that are there now. What is
+    /// damaged, or belongs to another task, is replaced.
+    fn current_file(&self, task: usize) -> Result<Option<TaskFile>> {
+        let Ok(Some(file)) = TaskFile::open(&self.task_file(task)) else {
+            return Ok(None);
+        };
+        let is_of_these = Sources::new(self).sum(self.needs(task))? == file.sources;
+        Ok(Some(file).filter(|_| is_of_these))
+    }
+
+    /// Returns true if the file of a task is there, and was made from the files that are there now.
+    /// It is not read to its begin: who needs it finds out whether it is damaged.
+    pub(super) fn has_current_file(&self, task: usize) -> Result<bool> {
+        Ok(self.current_file(task)?.is_some())
+    }
+
+    /// Like [`has_current_file`](Self::has_current_file), for a file that is read.
     fn is_current(&self, task: usize) -> Result<bool> {
-        match TaskFile::open(&self.task_file(task)) {
-            Ok(Some(mut file)) => {
-                let is_of_these = Sources::new(self).sum(self.needs(task))? == file.sources;
-                Ok(is_of_these && file.verify().is_ok())
-            }
-            // What is damaged, or belongs to another task, is replaced.
-            Ok(None) | Err(_) => Ok(false),
-        }
+        Ok(self
+            .current_file(task)?
+            .is_some_and(|mut file| file.verify().is_ok()))
     }
 
     /// Returns the state in which a task has read its file of points; `None` if it is not done, or
@@ -240,9 +251,15 @@ impl Job {
             Some(&missing) => Err(self.why_not_done(missing)),
             None => self.do_unless_current(task, context),
         };
+        self.noting_damage(&needed, done)
+    }
+
+    /// Returns what became of a task that needs these. If it failed because the file of one of them
+    /// is damaged, that is removed, and the error says so.
+    pub(super) fn noting_damage<T>(&self, needed: &[usize], done: Result<T>) -> Result<T> {
         match done {
             Err(error) if error.kind() == Kind::Format => {
-                Err(self.remove_damaged_of(&needed)?.unwrap_or(error))
+                Err(self.remove_damaged_of(needed)?.unwrap_or(error))
             }
             done => done,
         }

@@ -1,12 +1,12 @@
 //! The folder of a job: which files in it are the job's own, and their removal.
 
-use std::fs::File;
 use std::io::{ErrorKind, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use serde_json::Value;
 
 use super::lock::{JobLock, LOCK};
+use super::paths::{task_of, task_of_lease, tasks_in};
 use super::task_file::{is_unfinished, looks_like_task, unfinished_in};
 use crate::error::{Command, Error, Result, Setting, wording};
 use crate::io::remove_abandoned;
@@ -21,9 +21,6 @@ pub(super) const COMMAND: &str = "command.json";
 
 /// The file that says which files were written as the output.
 pub(super) const WRITTEN: &str = "output.json";
-
-/// The folder of the files of tasks.
-const TASKS: &str = "tasks";
 
 /// The plan of a job as it is in its folder.
 #[derive(Debug)]
@@ -179,23 +176,6 @@ fn is_note(path: &Path) -> bool {
     })
 }
 
-/// Returns the folder of the files of tasks.
-pub(super) fn tasks_in(folder: &Path) -> PathBuf {
-    folder.join(TASKS)
-}
-
-/// Returns the path of the file of a task.
-pub(super) fn task_path(folder: &Path, task: usize) -> PathBuf {
-    tasks_in(folder).join(format!("{task:06}.task"))
-}
-
-/// Returns the number of the task whose file has this name; `None` if it is none.
-fn task_of(path: &Path) -> Option<usize> {
-    let name = path.file_name()?.to_str()?;
-    let task = name.strip_suffix(".task")?.parse().ok()?;
-    (task_path(Path::new(""), task).file_name()?.to_str()? == name).then_some(task)
-}
-
 /// Returns true if a folder has a file that the task of a job has written, of whatever version.
 fn has_tasks(folder: &Path) -> bool {
     let files = std::fs::read_dir(tasks_in(folder))
@@ -265,7 +245,7 @@ pub(super) fn replaced(folder: &Path) -> Error {
 /// If the folder has no job, or the job cannot be removed, or the run is canceled.
 pub fn remove_job(folder: &Path, context: &Context) -> Result<()> {
     StoredPlan::read(folder)?.ok_or_else(|| no_job(folder))?;
-    let lock = JobLock::take(folder, File::try_lock, context)?;
+    let lock = JobLock::whole(folder, context)?;
     let stored = StoredPlan::read(folder)?.ok_or_else(|| no_job(folder))?;
     remove_files(folder, &stored, &lock)
 }
@@ -276,7 +256,7 @@ pub fn remove_job(folder: &Path, context: &Context) -> Result<()> {
 /// Also if the folder has another job.
 pub(super) fn remove_job_of(sum: u32, folder: &Path, context: &Context) -> Result<()> {
     StoredPlan::read_of(sum, folder)?;
-    let lock = JobLock::take(folder, File::try_lock, context)?;
+    let lock = JobLock::whole(folder, context)?;
     remove_files(folder, &StoredPlan::read_of(sum, folder)?, &lock)
 }
 
@@ -287,6 +267,7 @@ pub(super) fn remove_files(folder: &Path, stored: &StoredPlan, _lock: &JobLock) 
     if tasks.is_dir() {
         remove_where(&tasks, |path| {
             task_of(path).is_some_and(|task| (task as u64) < stored.tasks)
+                || task_of_lease(path).is_some_and(|task| task as u64 <= stored.tasks)
         })?;
         remove_if_empty(&tasks)?;
     }

@@ -1,8 +1,10 @@
 //! The tasks of a job, listed.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use super::{FileState, Job};
+use super::lease::leases_in;
+use super::{FileState, Job, TaskLease};
 use crate::error::Result;
 use crate::run::context::Context;
 
@@ -25,6 +27,8 @@ pub struct JobTask {
     pub has_read: Option<FileState>,
     /// True if it is done.
     pub is_done: bool,
+    /// Which process does it, if several share the job.
+    pub lease: Option<TaskLease>,
 }
 
 impl Job {
@@ -37,6 +41,7 @@ impl Job {
     /// If the run is canceled.
     pub fn tasks(&self, output: &Path, context: &Context) -> Result<Vec<JobTask>> {
         let (done, stages) = (self.done(context)?, self.stages());
+        let mut leases = self.leases(&done)?;
         let last = JobTask {
             number: self.task_count(),
             name: "output".to_owned(),
@@ -45,6 +50,7 @@ impl Job {
             input: None,
             has_read: None,
             is_done: self.has_written(output, context)?,
+            lease: leases.remove(&self.task_count()),
         };
         let of_task = |(number, stage)| {
             context.check()?;
@@ -56,6 +62,7 @@ impl Job {
                 input: self.input(number).map(Path::to_path_buf),
                 has_read: self.state_of_input(number),
                 is_done: done[number],
+                lease: leases.remove(&number),
             })
         };
         stages
@@ -64,5 +71,16 @@ impl Job {
             .map(of_task)
             .chain([Ok(last)])
             .collect()
+    }
+
+    /// Returns the leases of tasks that are not done, by their numbers.
+    ///
+    /// # Errors
+    /// If they cannot be read.
+    pub fn leases(&self, done: &[bool]) -> Result<BTreeMap<usize, TaskLease>> {
+        let mut leases = leases_in(&self.folder)?;
+        // That of a process which was killed once its task was done stays.
+        leases.retain(|&task, _| !done.get(task).is_some_and(|is_done| *is_done));
+        Ok(leases)
     }
 }

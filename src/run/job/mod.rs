@@ -19,12 +19,14 @@ mod division;
 mod done;
 mod folder;
 mod holes;
+mod lease;
 mod lines;
 mod listed;
 mod lock;
 mod not_in_tiles;
 mod notes;
 mod output;
+mod paths;
 mod plan;
 mod plan_json;
 mod planned_file;
@@ -39,9 +41,9 @@ mod task_facts;
 mod task_file;
 mod tasks;
 mod tile_options;
+mod work;
 mod written;
 
-use std::fs::{File, TryLockError};
 use std::hash::{BuildHasher, RandomState};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
@@ -51,19 +53,23 @@ use serde_json::json;
 pub use self::command::JobCommand;
 pub use self::division::Division;
 pub use self::folder::remove_job;
-use self::folder::{COMMAND, StoredPlan, tasks_in};
+use self::folder::{COMMAND, StoredPlan};
+pub use self::lease::{TaskLease, Worker};
 use self::lines::Known;
 pub use self::listed::JobTask;
 pub use self::lock::JobLock;
 pub use self::not_in_tiles::NotInTiles;
 use self::not_in_tiles::tiled;
 pub use self::output::JobReport;
+use self::paths::tasks_in;
 use self::plan::Plan;
 pub use self::planned_file::FileState;
 use self::planned_file::PlannedFile;
 pub use self::stored_job::{FoundJob, StoredJob};
 use self::task_file::TaskName;
 pub use self::tile_options::{Look, TileOptions};
+pub(crate) use self::work::LastTask;
+pub use self::work::WorkOptions;
 use super::verbs::{Keeps, Verb, WriteRequest};
 use crate::error::{Command, Error, Kind, Result, Setting, wording};
 use crate::run::context::event::JobSize;
@@ -206,7 +212,7 @@ impl Job {
         folder::require_no_job(&self.folder)?;
         let named = |e: std::io::Error| Error::from(e).in_file(&self.folder);
         std::fs::create_dir_all(&self.folder).map_err(named)?;
-        let lock = JobLock::take(&self.folder, File::try_lock, context)?;
+        let lock = JobLock::whole(&self.folder, context)?;
         // Another process may have created one meanwhile.
         folder::require_no_job(&self.folder)?;
         std::fs::create_dir_all(tasks_in(&self.folder)).map_err(named)?;
@@ -517,7 +523,7 @@ impl Job {
     /// Returns what the file of a task is called.
     fn task_file(&self, task: usize) -> TaskName {
         TaskName {
-            path: folder::task_path(&self.folder, task),
+            path: paths::task_path(&self.folder, task),
             job: self.sum,
             task,
         }
@@ -530,21 +536,22 @@ impl Job {
     /// If another process works on it, or has removed it, or put another job in its place; or if
     /// the run is canceled.
     pub fn lock(&self, context: &Context) -> Result<JobLock> {
-        self.lock_with(File::try_lock, context)
+        self.require_there(JobLock::whole(&self.folder, context))
     }
 
     /// Takes part in the job, together with other processes that do single tasks.
     fn lock_shared(&self, context: &Context) -> Result<JobLock> {
-        self.lock_with(File::try_lock_shared, context)
+        self.require_there(JobLock::shared(&self.folder, context))
     }
 
-    fn lock_with(
-        &self,
-        lock: fn(&File) -> std::result::Result<(), TryLockError>,
-        context: &Context,
-    ) -> Result<JobLock> {
-        let taken = JobLock::take(&self.folder, lock, context);
-        // What was read of the job before may be that of another one, whose end was waited for.
+    /// Takes the whole job for this process; `None` if another one works on it.
+    fn try_lock(&self) -> Result<Option<JobLock>> {
+        self.require_there(JobLock::try_whole(&self.folder))
+    }
+
+    /// Returns what became of a lock, unless the folder has not this job any more: what was read of
+    /// it before may be that of another one, whose end was waited for.
+    fn require_there<T>(&self, taken: Result<T>) -> Result<T> {
         StoredPlan::read_of(self.sum, &self.folder)?;
         taken
     }

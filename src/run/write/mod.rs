@@ -6,9 +6,12 @@ pub use self::report::{Origin, SurfaceReport, WriteReport, Written, WrittenOf};
 
 use std::path::{Path, PathBuf};
 
-use super::job::{Job, JobCommand, JobLock, NotInTiles, StoredJob, TileOptions, needs_tiles};
+use super::job::{
+    Job, JobCommand, JobLock, LastTask, NotInTiles, StoredJob, TileOptions, WorkOptions,
+    needs_tiles,
+};
 use super::verbs::{Summary, TileUse, WriteRequest};
-use crate::error::{Command, Error, Result, Setting, Wording, wording};
+use crate::error::{Error, Result, Wording, wording};
 use crate::run::context::Context;
 use crate::run::context::event::Event;
 use crate::run::context::notice::Notice;
@@ -145,12 +148,71 @@ pub fn run_task(
     if let Some(report) = already_written(job, targets, context)? {
         return Ok(Some(report));
     }
-    let request = job.request();
-    let prepared = Prepared::new(&request, targets)?.in_tiles()?;
     require_room(job, context)?;
     let lock = job.lock(context)?;
-    prepared.clear_up(job, &lock, context)?;
-    prepared.run(job, &lock, Folder::Kept, context).map(Some)
+    write_output(job, targets, &lock, context).map(Some)
+}
+
+/// Writes the outputs of a job, after what is left to do.
+fn write_output(
+    job: &Job,
+    targets: &Targets,
+    lock: &JobLock,
+    context: &Context,
+) -> Result<WriteReport> {
+    let request = job.request();
+    let prepared = Prepared::new(&request, targets)?.in_tiles()?;
+    prepared.clear_up(job, lock, context)?;
+    prepared.run(job, lock, Folder::Kept, context)
+}
+
+/// Does tasks of a job together with other processes that do the same, on any number of hosts,
+/// until all are done; one of them writes the outputs. Nobody distributes the tasks: each process
+/// takes what is free.
+///
+/// A task belongs to the process that has its lease, a file in the folder. A process that is killed
+/// loses its leases when they expire, and others do its tasks. Files that were skipped are not
+/// tried again; [`run_job`] does that.
+///
+/// # Errors
+/// If an input has changed, or the job was removed or replaced; the first error of a task that this
+/// process does, or of the outputs; if a process works on the whole job; and those of [`write()`].
+pub fn work_job(
+    stored: &StoredJob,
+    options: &WorkOptions,
+    context: &Context,
+) -> Result<WriteReport> {
+    let job = stored.job()?;
+    let targets = &stored.command.targets;
+    let last = LastOutput { job: &job, targets };
+    // Before hours of work. Asked first: another process may be about to write the outputs.
+    let request = job.request();
+    let prepared = Prepared::new(&request, targets).and_then(Prepared::in_tiles);
+    if let Some(report) = last.written(context)? {
+        return Ok(report);
+    }
+    drop(prepared?);
+    require_room(&job, context)?;
+    context.monitor.event(&Event::TasksBegin(job.folder()));
+    job.work(options, last, context)
+}
+
+/// The outputs of a job that several processes share.
+struct LastOutput<'a> {
+    job: &'a Job,
+    targets: &'a Targets,
+}
+
+impl LastTask for LastOutput<'_> {
+    type Report = WriteReport;
+
+    fn written(&self, context: &Context) -> Result<Option<WriteReport>> {
+        already_written(self.job, self.targets, context)
+    }
+
+    fn write(self, lock: &JobLock, context: &Context) -> Result<WriteReport> {
+        write_output(self.job, self.targets, lock, context)
+    }
 }
 
 /// Does all that is left of a job, which must be there, and writes the outputs; nothing if they are
@@ -401,23 +463,8 @@ impl<'a> Prepared<'a> {
         keep: Folder,
         context: &Context,
     ) -> Result<WriteReport> {
-        self.run_all(job, lock, keep, context).map_err(|error| {
-            let folder = job.folder().display().to_string();
-            let again = match job.command() {
-                Ok(None) => Setting::Resume.on(),
-                Ok(Some(_)) | Err(_) => Command::JobRun.on(folder.clone()),
-            };
-            let kept = wording![
-                "finished tasks are kept in ",
-                folder,
-                ": go on with ",
-                again
-            ];
-            let cure = error
-                .cure_text()
-                .map(|own| wording![own.clone(), "; ", kept.clone()]);
-            error.cure(cure.unwrap_or(kept))
-        })
+        self.run_all(job, lock, keep, context)
+            .map_err(|error| job.with_cure(error))
     }
 
     fn run_all(

@@ -2,6 +2,8 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 
+use crate::run::memory_of;
+
 /// Plan a run in tiles, and do its tasks one by one, as batch queues do
 ///
 /// A job is a folder: the plan, the command, and a file for each task that is done. Tasks may run
@@ -14,6 +16,7 @@ Example:
   breakline job run ground.job --task 17
   breakline job status ground.job
   breakline job run ground.job
+  breakline job work ground.job       # on each of some hosts, instead of numbers of tasks
   breakline job clean ground.job")]
 pub(crate) struct JobArgs {
     #[command(subcommand)]
@@ -46,7 +49,25 @@ pub(crate) enum JobAction {
         #[arg(long, value_name = "N")]
         task: Option<usize>,
     },
-    /// Show which tasks are done
+    /// Do tasks together with others: the same command on any number of hosts, as often as you like
+    ///
+    /// Each process takes tasks that are free, until all are done, here or elsewhere; one of them
+    /// writes the output. It does one task on each thread (--threads). Nothing else is needed than
+    /// the folder, which all see, and the inputs, under the same names. A process may begin, end or
+    /// be killed at any time: its tasks are done by the others
+    Work {
+        /// Folder of the job
+        #[arg(value_name = "JOB")]
+        job: PathBuf,
+        /// Memory to use, such as `16GB`: as many tasks are done at a time as have room in it, at
+        /// least one [default: what is free]
+        #[arg(long, value_name = "SIZE", value_parser = memory_of)]
+        memory: Option<u64>,
+        /// A process that gives no sign of life for so long loses its tasks to others
+        #[arg(long, value_name = "SECONDS", default_value = "60", value_parser = clap::value_parser!(u32).range(1..))]
+        lease: u32,
+    },
+    /// Show which tasks are done, and which process does which
     Status {
         /// Folder of the job
         #[arg(value_name = "JOB")]

@@ -7,4 +7,5 @@ mod temporary;
 
 pub use file::{Output, is_stream, probe, remove_abandoned, require_absent};
 pub use set::{Destination, OutputSet};
+pub(crate) use temporary::Temporary;
 pub use temporary::{Abandoned, abandon_outputs};

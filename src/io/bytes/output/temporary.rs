@@ -36,9 +36,10 @@ impl Renames {
     }
 }
 
-/// A hidden file, removed when dropped unless it was renamed.
+/// A file that is removed when dropped, or when the program ends early, unless it was renamed: a
+/// hidden one that becomes an output, or one that is there only as long as something is done.
 #[derive(Debug)]
-pub(super) struct Temporary {
+pub(crate) struct Temporary {
     path: PathBuf,
 }
 
@@ -59,6 +60,28 @@ impl Temporary {
         let path = path.keep().map_err(|e| e.error)?;
         all.push(path.clone());
         Ok((file, Temporary { path }))
+    }
+
+    /// Creates a file at this path, where there must be none.
+    ///
+    /// # Errors
+    /// With the kind `AlreadyExists` if there is one: of several processes that try, one succeeds.
+    pub(crate) fn create_at(path: &Path) -> io::Result<(File, Self)> {
+        let mut all = all();
+        let file = File::options().write(true).create_new(true).open(path)?;
+        all.push(path.to_path_buf());
+        let path = path.to_path_buf();
+        Ok((file, Temporary { path }))
+    }
+
+    /// Returns the path of the file.
+    pub(crate) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Leaves what is at the path to others: it is not removed.
+    pub(crate) fn leave(&self) {
+        all().retain(|path| *path != self.path);
     }
 
     /// Returns a name next to this file that is equally unlikely to be taken.

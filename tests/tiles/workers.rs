@@ -1,0 +1,329 @@
+//! Processes that share the tasks of a job: whatever happens to them, the bytes of one.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs::File;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, SystemTime};
+
+use breakline::run::{self, Context, StoredJob, WorkOptions, WriteReport};
+use tempfile::TempDir;
+
+use super::{bytes, landscape, output_of, program, valley};
+use program::{Run, files_of, run_in};
+
+fn run(folder: &TempDir, words: &str) -> Run {
+    run_in(folder, &words.split_whitespace().collect::<Vec<_>>())
+}
+
+/// A worker of the job `j`, which adds what it says to a file.
+fn worker(folder: &TempDir, words: &str) -> Child {
+    let said = File::options()
+        .create(true)
+        .append(true)
+        .open(folder.path().join("said"))
+        .unwrap();
+    Command::new(assert_cmd::cargo::cargo_bin!("breakline"))
+        .current_dir(folder.path())
+        .args(["job", "work", "j"])
+        .args(words.split_whitespace())
+        .stderr(said)
+        .stdout(Stdio::null())
+        .spawn()
+        .unwrap()
+}
+
+fn said(folder: &TempDir) -> String {
+    String::from_utf8(bytes(folder.path().join("said"))).unwrap()
+}
+
+fn lease(folder: &TempDir, task: usize) -> PathBuf {
+    folder.path().join(format!("j/tasks/{task:06}.lease"))
+}
+
+/// The lease of a process on another host, which has not been heard of for some seconds.
+fn write_lease(folder: &TempDir, task: usize, expires_after: u64, silent: u64) {
+    let text = format!(
+        r#"{{"worker":{{"host":"elsewhere","process":7}},"id":1,"expires_after":{}}}"#,
+        expires_after * 1000
+    );
+    std::fs::write(lease(folder, task), text).unwrap();
+    let file = File::options().append(true).open(lease(folder, task));
+    let written = SystemTime::now() - Duration::from_secs(silent);
+    file.unwrap().set_modified(written).unwrap();
+}
+
+/// The tasks that are done, with the times at which they were.
+fn done(folder: &TempDir) -> BTreeMap<usize, SystemTime> {
+    let tasks = folder.path().join("j/tasks");
+    let mut done = BTreeMap::new();
+    for name in files_of(&tasks) {
+        if let Some(task) = name.strip_suffix(".task")
+            && let Ok(about) = std::fs::metadata(tasks.join(&name))
+        {
+            done.insert(task.parse().unwrap(), about.modified().unwrap());
+        }
+    }
+    done
+}
+
+/// The tasks that workers have taken from others.
+fn taken_over(folder: &TempDir) -> BTreeSet<usize> {
+    let said = said(folder);
+    let lines = said.lines().filter_map(|line| {
+        let (task, _) = line
+            .strip_prefix("note: task ")?
+            .split_once(" is done here")?;
+        task.parse().ok()
+    });
+    lines.collect()
+}
+
+/// Kills one of four workers again and again, and begins another one instead, until the output is
+/// written. A task that is done is done once, unless it was taken from a process that was late.
+#[track_caller]
+fn kill_workers(folder: &TempDir, words: &str, every: Duration) -> u32 {
+    let mut workers: Vec<Child> = (0..4).map(|_| worker(folder, words)).collect();
+    let (mut known, mut again) = (BTreeMap::new(), BTreeSet::new());
+    let mut kills = 0;
+    'all: for i in (0..4).cycle() {
+        // So that slow machines come to an end.
+        std::thread::sleep(every + every * kills / 20);
+        for (task, time) in done(folder) {
+            if known
+                .insert(task, time)
+                .is_some_and(|before| before != time)
+            {
+                again.insert(task);
+            }
+        }
+        for other in &mut workers {
+            if let Some(status) = other.try_wait().unwrap() {
+                assert!(status.success(), "{}", said(folder));
+                break 'all;
+            }
+        }
+        // SIGKILL.
+        workers[i].kill().unwrap();
+        workers[i].wait().unwrap();
+        kills += 1;
+        workers[i] = worker(folder, words);
+    }
+    for mut worker in workers {
+        assert!(worker.wait().unwrap().success(), "{}", said(folder));
+    }
+    let late = taken_over(folder);
+    assert!(again.is_subset(&late), "{again:?}, {late:?}");
+    kills
+}
+
+#[test]
+fn workers_that_are_killed_write_the_bytes_of_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let (whole, _) = output_of(&folder, &format!("dem {}", valley()), "whole.tif");
+    let planned = format!("job plan j -- dem {} --tiles 12x12 -o dem.tif", valley());
+    run(&folder, &planned).works(&["job run j"]);
+    let kills = kill_workers(&folder, "--threads 1 --lease 2", Duration::from_millis(100));
+    assert!(kills > 0 && bytes(folder.path().join("dem.tif")) == whole);
+    // A late one finds that all is done.
+    let late = run(&folder, "job work j");
+    late.works(&["dem.tif is written"]);
+    run(&folder, "job clean j").works(&[]);
+    assert_eq!(files_of(folder.path()), ["dem.tif", "said", "whole.tif"]);
+}
+
+/// One of four is killed each second; the environment sets the number of points:
+/// `BREAKLINE_WORKERS=20000000 cargo test --release --test tiles workers`.
+#[test]
+fn workers_that_are_killed_each_second_write_the_bytes_of_one() {
+    let points = std::env::var("BREAKLINE_WORKERS")
+        .ok()
+        .and_then(|n| n.parse().ok());
+    let Some(points) = points else { return };
+    let folder = tempfile::tempdir().unwrap();
+    landscape::write(&folder.path().join("in"), points, 8).unwrap();
+    let (whole, _) = output_of(&folder, "dem in/*.laz", "whole.tif");
+    run(
+        &folder,
+        "job plan j -- dem in/*.laz --tiles 16x16 -o dem.tif",
+    )
+    .works(&["job run j"]);
+    let kills = kill_workers(&folder, "--threads 1 --lease 10", Duration::from_secs(1));
+    assert!(bytes(folder.path().join("dem.tif")) == whole);
+    eprintln!(
+        "{kills} workers were killed; taken over: {:?}",
+        taken_over(&folder)
+    );
+}
+
+/// Two workers in one process: each output is written once, and both learn of it.
+#[test]
+fn workers_of_the_library_share_a_job() {
+    let folder = tempfile::tempdir().unwrap();
+    let (whole, _) = output_of(&folder, &format!("dem {}", valley()), "whole.tif");
+    let planned = format!("job plan j -- dem {} --tiles 5x5 -o dem.tif", valley());
+    run(&folder, &planned).works(&[]);
+    let stored = StoredJob::read(&folder.path().join("j")).unwrap();
+    let reports: Vec<WriteReport> = std::thread::scope(|scope| {
+        let work = || run::work_job(&stored, &WorkOptions::default(), &Context::default());
+        let workers = [scope.spawn(work), scope.spawn(work)];
+        workers.map(|one| one.join().unwrap().unwrap()).into()
+    });
+    let written = reports
+        .iter()
+        .filter(|report| matches!(report, WriteReport::Written(_)));
+    assert_eq!(written.count(), 1, "{reports:?}");
+    assert!(bytes(folder.path().join("dem.tif")) == whole);
+}
+
+/// A lease lasts while it is renewed; then others have the task.
+#[test]
+fn what_a_process_has_left_is_taken_once_its_lease_has_expired() {
+    let folder = tempfile::tempdir().unwrap();
+    let (whole, _) = output_of(&folder, &format!("dem {}", valley()), "whole.tif");
+    let planned = format!("job plan j -- dem {} --tiles 2x2 -o dem.tif", valley());
+    run(&folder, &planned).works(&[]);
+    // Of a task, of one whose lease is damaged, and of the output.
+    write_lease(&folder, 0, 100, 101);
+    std::fs::write(lease(&folder, 2), "").unwrap();
+    write_lease(&folder, 7, 5, 3600);
+    let status = run(&folder, "job status j").stdout;
+    for line in [
+        "0 of 7 tasks are done\n",
+        "0: divide ",
+        "valley.laz, lost by elsewhere:7, seen 1",
+        "2: tile 2, done by an unknown process, seen ",
+        "7: output, lost by elsewhere:7, seen 36",
+    ] {
+        assert!(status.contains(line), "{line} in {status}");
+    }
+    let work = run(&folder, "job work j --lease 1 --threads 2 --memory 1MB");
+    work.works(&[
+        "task 0 is done here: elsewhere:7 does not go on with it, seen 1",
+        "task 2 is done here: its process does not go on with it",
+        "task 7 is done here: elsewhere:7",
+        "tasks       7 of 7 done here",
+    ]);
+    assert!(bytes(folder.path().join("dem.tif")) == whole);
+    let left = files_of(&folder.path().join("j/tasks"));
+    assert!(left.iter().all(|name| name.ends_with(".task")), "{left:?}");
+}
+
+/// Locks hold on one host only, or nowhere: leases of others are heeded as well.
+#[test]
+fn a_job_that_another_host_works_on_is_not_taken_from_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let planned = format!("job plan j -- dem {} --tiles 2x2 -o dem.tif", valley());
+    run(&folder, &planned).works(&[]);
+    write_lease(&folder, 3, 3600, 1);
+    let before = files_of(&folder.path().join("j/tasks"));
+    // Each waits for some seconds.
+    std::thread::scope(|scope| {
+        for words in ["job clean j", "job run j"] {
+            let said = ["another process works on this job: elsewhere:7 does task 3"];
+            let folder = &folder;
+            scope.spawn(move || run(folder, words).fails(2, &said));
+        }
+    });
+    assert_eq!(files_of(&folder.path().join("j/tasks")), before);
+    // All that does not need it is done meanwhile.
+    let mut worker = worker(&folder, "");
+    while !said(&folder).contains("waits for 1 task of other processes") {
+        assert_eq!(worker.try_wait().unwrap(), None, "{}", said(&folder));
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    // That process ends without having done it.
+    std::fs::remove_file(lease(&folder, 3)).unwrap();
+    assert!(worker.wait().unwrap().success(), "{}", said(&folder));
+    assert!(folder.path().join("dem.tif").exists());
+}
+
+#[test]
+fn what_workers_find_damaged_is_made_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let (whole, _) = output_of(&folder, &format!("dem {}", valley()), "whole.tif");
+    let planned = format!("job plan j -- dem {} --tiles 3x3 -o dem.tif", valley());
+    run(&folder, &planned).works(&[]);
+    for task in ["0", "4"] {
+        run(&folder, &format!("job run j --task {task}")).works(&[]);
+    }
+    let damage = |task: usize| {
+        let path = folder.path().join(format!("j/tasks/{task:06}.task"));
+        let mut damaged = bytes(&path);
+        damaged[100] ^= 1;
+        std::fs::write(path, damaged).unwrap();
+    };
+    damage(0);
+    damage(4);
+    run(&folder, "job work j").works(&["11 of 12 done here", "resumed     11 of 12"]);
+    assert!(bytes(folder.path().join("dem.tif")) == whole);
+}
+
+#[test]
+fn a_worker_that_fails_says_how_to_go_on_and_leaves_no_lease() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::copy(valley(), folder.path().join("a.laz")).unwrap();
+    let planned = "job plan j -- dem a.laz --tiles 2x2 -o dem.tif";
+    run(&folder, planned).works(&[]);
+    std::fs::rename(folder.path().join("a.laz"), folder.path().join("b.laz")).unwrap();
+    run(&folder, "job work j").fails(
+        1,
+        &[
+            "a.laz: ",
+            "finished tasks are kept in",
+            "`breakline job run ",
+        ],
+    );
+    assert!(files_of(&folder.path().join("j/tasks")).is_empty());
+    std::fs::rename(folder.path().join("b.laz"), folder.path().join("a.laz")).unwrap();
+    std::fs::write(folder.path().join("dem.tif"), "mine").unwrap();
+    run(&folder, "job work j").fails(1, &["dem.tif: ", "exists"]);
+    assert!(files_of(&folder.path().join("j/tasks")).is_empty());
+    run(&folder, "job work none").fails(2, &["there is no job in this folder"]);
+}
+
+/// A file that cannot be read is a hole, or an error, as the job was planned.
+#[test]
+fn workers_skip_what_the_job_skips() {
+    let folder = tempfile::tempdir().unwrap();
+    landscape::write(&folder.path().join("in"), 16_000, 4).unwrap();
+    let bad = folder.path().join("in/001_001.laz");
+    let whole = bytes(&bad);
+    std::fs::write(&bad, &whole[..whole.len() / 2]).unwrap();
+    run(
+        &folder,
+        "job plan j -- dem in/*.laz --tiles 2x2 -o dem.tif --skip-bad",
+    )
+    .works(&[]);
+    let mut workers = [worker(&folder, ""), worker(&folder, "")];
+    for one in &mut workers {
+        assert_eq!(one.wait().unwrap().code(), Some(3), "{}", said(&folder));
+    }
+}
+
+/// A signal ends a worker at once; what it had is free.
+#[cfg(unix)]
+#[test]
+fn a_worker_that_a_signal_ends_leaves_no_lease() {
+    let folder = tempfile::tempdir().unwrap();
+    landscape::write(&folder.path().join("in"), 400_000, 1).unwrap();
+    run(&folder, "job plan j -- dem in/*.laz --tiles 2x2 -o dem.tif").works(&[]);
+    let mut worker = worker(&folder, "");
+    let is_lease = |name: &String| name.ends_with(".lease");
+    let leases = || {
+        files_of(&folder.path().join("j/tasks"))
+            .iter()
+            .any(is_lease)
+    };
+    while worker.try_wait().unwrap().is_none() && !leases() {
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    // The one of the shell: not every system has a program `kill`.
+    let kill = ["-c", "kill \"$0\"", &worker.id().to_string()];
+    assert!(Command::new("sh").args(kill).status().unwrap().success());
+    worker.wait().unwrap();
+    assert!(!leases());
+    let said = said(&folder);
+    assert!(said.contains("go on with `breakline job work"), "{said}");
+    assert!(!Path::new("dem.tif").exists());
+}
