@@ -277,6 +277,7 @@ fn of_tiles(found: &Bound<'_, PyDict>, report: &JobReport, folder: &Path) -> PyR
         ("points_of_other_returns", report.other_return),
         ("duplicates", report.duplicates),
         ("points_on_breaklines", report.points_on_breaklines),
+        ("points_replaced", report.points_replaced),
         ("triangles", report.triangles),
         ("triangles_beyond_max_edge", report.beyond_max_edge),
         ("triangles_clipped", report.clipped),

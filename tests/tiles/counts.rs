@@ -3,14 +3,16 @@
 use std::fs;
 
 use breakline::run::{
-    self, Context, DemOptions, Division, Execution, Input, Origin, Source, SurfaceRequest, Targets,
-    TileOptions, TinRequest, WriteReport, WriteRequest, Written, WrittenOf,
+    self, Context, DemOptions, Division, Execution, Input, LineRequest, Origin, Source,
+    SurfaceRequest, Targets, TileOptions, TinRequest, WriteReport, WriteRequest, Written,
+    WrittenOf,
 };
 
 use super::layer;
 
-/// Returns the number of points merged into others, and of those at vertices of breaklines.
-fn counts(request: &WriteRequest, targets: &Targets, execution: &Execution) -> [u64; 2] {
+/// Returns the number of points merged into others, of those at vertices of breaklines, and of
+/// those in water.
+fn counts(request: &WriteRequest, targets: &Targets, execution: &Execution) -> [u64; 3] {
     let report = run::write(request, targets, execution, &Context::default()).unwrap();
     let WriteReport::Written(written) = report else {
         panic!("{report:?}")
@@ -18,12 +20,22 @@ fn counts(request: &WriteRequest, targets: &Targets, execution: &Execution) -> [
     let Written { surface, files, .. } = *written;
     files.iter().for_each(|file| fs::remove_file(file).unwrap());
     match surface {
-        WrittenOf::Tiles { report, .. } => [report.duplicates, report.points_on_breaklines],
+        WrittenOf::Tiles { report, .. } => [
+            report.duplicates,
+            report.points_on_breaklines,
+            report.points_replaced,
+        ],
         WrittenOf::Whole(surface) => {
             let Origin::Built(built) = surface.origin else {
                 panic!("{:?}", surface.origin)
             };
-            [built.tin.duplicates, built.tin.points_on_breaklines].map(|count| count as u64)
+            let tin = &built.tin;
+            [
+                tin.duplicates,
+                tin.points_on_breaklines,
+                tin.points_replaced,
+            ]
+            .map(|count| count as u64)
         }
     }
 }
@@ -62,15 +74,32 @@ fn points_at_one_site_are_counted_as_in_one_piece() {
         vec![[5.0, 0.0, 0.0], [7.0, 0.5, 0.0]],
     ];
     fs::write(path("lines.geojson"), layer(&lines, "LineString")).unwrap();
+    // Twelve points of the grid are in it, and one of the others.
+    let shore = [
+        [2.5, 2.5, 7.0],
+        [6.5, 2.5, 7.0],
+        [6.5, 5.5, 7.0],
+        [2.5, 5.5, 7.0],
+        [2.5, 2.5, 7.0],
+    ];
+    fs::write(path("lake.geojson"), layer(&[shore.to_vec()], "Polygon")).unwrap();
     let files =
         |names: &[std::path::PathBuf]| names.iter().cloned().map(Input::File).collect::<Vec<_>>();
-    for (breaklines, expected) in [
-        (vec![], [8, 0]),
-        (vec![Input::File(path("lines.geojson"))], [5, 7]),
+    let none = Vec::new;
+    let given = |name: &str| vec![Input::File(path(name))];
+    for (breaklines, flats, expected) in [
+        (none(), none(), [8, 0, 0]),
+        (given("lines.geojson"), none(), [5, 7, 0]),
+        (none(), given("lake.geojson"), [7, 0, 13]),
     ] {
+        let lines = LineRequest {
+            flats,
+            ..LineRequest::default()
+        };
         let tin = TinRequest {
             points: files(&names),
             breaklines,
+            lines,
             ..TinRequest::default()
         };
         let source = Source::Points(Box::new(tin));

@@ -646,6 +646,23 @@ fn an_error_of_a_job_says_where_tasks_are_kept_and_how_to_go_on() {
     }
 }
 
+/// A job that was planned for one output goes on to another: the folder alone does not know of it.
+#[test]
+fn a_job_that_goes_on_to_another_output_is_resumed() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |words: &str| run_in(&folder, &words.split(' ').collect::<Vec<_>>());
+    std::fs::copy(valley(), folder.path().join("a.laz")).unwrap();
+    let words = "dem a.laz --class 2 --tiles 2x2";
+    run(&format!("job plan j -- {words} -o d.tif")).works(&[]);
+    let whole = bytes(valley());
+    let mut damaged = whole.clone();
+    let (start, end) = (damaged.len() / 4, damaged.len() - 40);
+    damaged[start..end].fill(0xff);
+    std::fs::write(folder.path().join("a.laz"), damaged).unwrap();
+    run(&format!("{words} --resume --job j -o other.tif")).fails(1, &["go on with --resume\n"]);
+    run("job run j").fails(1, &["go on with `breakline job run "]);
+}
+
 /// What a dry run shows is what the run would meet.
 #[test]
 fn a_dry_run_shows_the_job_that_is_there() {
@@ -653,12 +670,21 @@ fn a_dry_run_shows_the_job_that_is_there() {
     let run = |words: &str| run_in(&folder, &words.split(' ').collect::<Vec<_>>());
     let words = format!("dem {} -o d.tif --tiles 2x2 --job j", valley());
     run(&words).works(&[]);
-    for end in ["--dry-run", "--dry-run --resume"] {
-        run(&format!("{words} --overwrite {end}"))
-            .works(&["tiles       4 (of 1 files", "folder      j"]);
-        run(&format!("{words} --overwrite --class 5 {end}"))
-            .fails(2, &["is that of another command; what differs: --class"]);
+    let end = "--overwrite --dry-run";
+    run(&format!("{words} {end} --resume")).works(&["tiles       4 (of 1 files", "folder      j"]);
+    run(&format!("{words} {end} --resume --class 5"))
+        .fails(2, &["is that of another command; what differs: --class"]);
+    for end in [end, "--overwrite"] {
+        run(&format!("{words} {end}")).fails(
+            2,
+            &[
+                "there is a job in this folder already",
+                "go on with it (--resume)",
+            ],
+        );
     }
+    run(&format!("{words} {end}").replace("--job j", "--job k"))
+        .works(&["tiles       4 (of 1 files", "folder      k"]);
 }
 
 /// A plan has no names: any name will do that the system has.

@@ -197,7 +197,7 @@ fn what_a_process_has_left_is_taken_once_its_lease_has_expired() {
     ] {
         assert!(status.contains(line), "{line} in {status}");
     }
-    let work = run(&folder, "job work j --lease 1 --threads 2 --memory 1MB");
+    let work = run(&folder, "job work j --lease 1 --threads 2 --memory 16MB");
     work.works(&[
         "task 0 is done here: elsewhere:7 does not go on with it, seen 1",
         "task 2 is done here: its process does not go on with it",
@@ -315,7 +315,9 @@ fn a_worker_that_a_signal_ends_leaves_no_lease() {
             .iter()
             .any(is_lease)
     };
-    while worker.try_wait().unwrap().is_none() && !leases() {
+    // It takes far longer than it takes to see the first.
+    while !leases() {
+        assert!(worker.try_wait().unwrap().is_none(), "{}", said(&folder));
         std::thread::sleep(Duration::from_millis(1));
     }
     // The one of the shell: not every system has a program `kill`.

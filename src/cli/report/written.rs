@@ -240,6 +240,12 @@ fn print_tiles(report: &JobReport, console: &Console) {
             "            {count} at a breakline's vertex (whose height is used)"
         ));
     }
+    if report.points_replaced > 0 {
+        let count = report.points_replaced;
+        console.line(format_args!(
+            "            {count} in water or walls (left out)"
+        ));
+    }
     if report.line_edges > 0 {
         console.line(format_args!("lines       {} edges", report.line_edges));
     }

@@ -41,7 +41,9 @@ pub(crate) fn run(verb: &Verb, console: &Console) -> Result<Exit> {
 /// Returns how a request is worked on.
 fn execution(args: &TileArgs) -> Execution {
     let options = options(args);
-    if args.dry_run {
+    if args.dry_run && args.resume {
+        Execution::PlanResume(options)
+    } else if args.dry_run {
         Execution::Plan(options)
     } else if args.resume {
         Execution::Resume(options)

@@ -150,7 +150,7 @@ fn there_is_a_job(folder: &Path) -> Error {
 ///
 /// # Errors
 /// If there is a job, or the plan, the command or the output of something else.
-pub(super) fn require_no_job(folder: &Path) -> Result<()> {
+pub(crate) fn require_no_job(folder: &Path) -> Result<()> {
     if StoredPlan::read(folder)?.is_some() {
         return Err(there_is_a_job(folder));
     }

@@ -146,10 +146,13 @@ impl JobLines {
             .and_then(|rings| rings.notice(found, &self.names, units))
     }
 
-    /// Removes the points that water and walls replace, and returns those of the others that may
-    /// matter to a line.
-    pub(super) fn take_points(&self, points: &mut Vec<[f64; 3]>) -> Vec<[f64; 3]> {
-        self.builder.take_replaced(points);
+    /// Removes the points that water and walls replace, and returns their number.
+    pub(super) fn take_replaced(&self, points: &mut Vec<[f64; 3]>) -> usize {
+        self.builder.take_replaced(points)
+    }
+
+    /// Returns the points that may matter to a line.
+    pub(super) fn near(&self, points: &[[f64; 3]]) -> Vec<[f64; 3]> {
         points
             .iter()
             .copied()

@@ -53,6 +53,7 @@ use serde_json::json;
 pub use self::command::JobCommand;
 pub use self::division::Division;
 pub use self::folder::remove_job;
+pub(crate) use self::folder::require_no_job;
 use self::folder::{COMMAND, StoredPlan};
 pub use self::lease::{TaskLease, Worker};
 use self::lines::Known;

@@ -31,6 +31,8 @@ pub struct JobReport {
     pub other_return: u64,
     /// Points left out because of their class.
     pub other_class: u64,
+    /// Points that water and walls replaced.
+    pub points_replaced: u64,
     /// What the tasks found, and what follows from it. What was known before them came with the
     /// plan.
     pub notices: Vec<Notice>,
@@ -85,6 +87,7 @@ impl Job {
                 report.withheld += points.withheld;
                 report.other_return += points.other_return;
                 report.other_class += points.other_class;
+                report.points_replaced += points.replaced;
             }
             report.duplicates += facts.duplicates;
             report.points_on_breaklines += facts.points_on_breaklines;

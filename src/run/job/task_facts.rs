@@ -67,6 +67,8 @@ pub(super) struct ReadFacts {
     pub(super) other_class: u64,
     /// Points without a return, if only some returns are used.
     pub(super) without_return: u64,
+    /// Those of the used ones that water and walls replace.
+    pub(super) replaced: u64,
     /// Points without a class.
     pub(super) without_class: u64,
     /// The classes that some point has.

@@ -68,13 +68,15 @@ impl Job {
         };
         let rings = lines.and_then(|lines| lines.rings.as_ref());
         let mut near = Vec::new();
+        let mut replaced = 0;
         let mut of_rings = rings.map(LevelRings::none_found).unwrap_or_default();
         let mut write_run = |points: &mut Vec<[f64; 3]>| -> Result<()> {
             if let Some(rings) = rings {
                 rings.count(points, &mut of_rings);
             }
             if let Some(lines) = lines {
-                near.append(&mut lines.take_points(points));
+                replaced += lines.take_replaced(points) as u64;
+                near.append(&mut lines.near(points));
             }
             let mut own = Vec::new();
             let mut tiles: Vec<(u32, u32)> = (0..)
@@ -114,7 +116,10 @@ impl Job {
                 table.clear();
                 near.clear();
             }
-            FileFacts::Read(points) => points.rings = notes::rings_found(&of_rings),
+            FileFacts::Read(points) => {
+                points.rings = notes::rings_found(&of_rings);
+                points.replaced = replaced;
+            }
         }
         writer.begin("table");
         writer.put(&table)?;
@@ -212,7 +217,7 @@ impl Job {
                     without_class: report.without_class,
                     classes: report.by_class.keys().copied().collect(),
                     extent: Extent::of(&extent),
-                    rings: Vec::new(),
+                    ..ReadFacts::default()
                 });
             }
             selection.add(&batch)?;

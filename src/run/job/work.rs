@@ -8,7 +8,7 @@ use super::lease::{LEASE, Lease, Leases};
 use super::lock::JobLock;
 use super::paths::tasks_in;
 use super::schedule::{Outcome, Pause};
-use crate::error::{Command, Error, Kind, Result, Setting, wording};
+use crate::error::{Command, Error, Kind, Result, Term, wording};
 use crate::run::context::event::Event;
 use crate::run::context::{Context, memory};
 
@@ -61,7 +61,7 @@ impl Job {
         std::fs::create_dir_all(&tasks).map_err(|e| Error::from(e).in_file(&tasks))?;
         Leases::while_renewed(&self.folder, options.lease, |leases| {
             self.work_on_tasks(options, leases, context)
-                .map_err(|error| self.with_cure(error))?;
+                .map_err(|error| self.with_cure(error, self.run_command()))?;
             self.end_together(leases, last, context)
         })
     }
@@ -100,7 +100,9 @@ impl Job {
         match self.noting_damage(&self.needs(task), done) {
             Err(error) if error.kind() == Kind::NotYet => Ok(Outcome::Again),
             // Another process had this task as well, and was faster.
-            Err(error) if error.kind() == Kind::Io && self.has_current_file(task)? => {
+            Err(error)
+                if error.kind() == Kind::Io && matches!(self.has_current_file(task), Ok(true)) =>
+            {
                 Ok(Outcome::Done)
             }
             done => done,
@@ -151,7 +153,7 @@ impl Job {
                 if let Some(report) = last.written(context)? {
                     return Ok(report);
                 }
-                if let Some(lease) = leases.take(task)?
+                if let Some(lease) = self.require_there(leases.take(task))?
                     // Another process may still do a task whose lease it has lost.
                     && let Some(lock) = self.try_lock()?
                 {
@@ -174,13 +176,9 @@ impl Job {
         }
     }
 
-    /// Returns an error that says how to go on with the job.
-    pub(crate) fn with_cure(&self, error: Error) -> Error {
+    /// Returns an error that says where the tasks are kept, and what goes on with them.
+    pub(crate) fn with_cure(&self, error: Error, again: Term) -> Error {
         let folder = self.folder().display().to_string();
-        let again = match self.command() {
-            Ok(None) => Setting::Resume.on(),
-            Ok(Some(_)) | Err(_) => Command::JobRun.on(folder.clone()),
-        };
         let kept = wording![
             "finished tasks are kept in ",
             folder,
@@ -191,5 +189,10 @@ impl Job {
             .cure_text()
             .map(|own| wording![own.clone(), "; ", kept.clone()]);
         error.cure(cure.unwrap_or(kept))
+    }
+
+    /// Returns the command that does what is left of the job.
+    pub(crate) fn run_command(&self) -> Term {
+        Command::JobRun.on(self.folder().display().to_string())
     }
 }

@@ -7,11 +7,11 @@ pub use self::report::{Origin, SurfaceReport, WriteReport, Written, WrittenOf};
 use std::path::{Path, PathBuf};
 
 use super::job::{
-    Job, JobCommand, JobLock, LastTask, NotInTiles, StoredJob, TileOptions, WorkOptions,
+    self, Job, JobCommand, JobLock, LastTask, NotInTiles, StoredJob, TileOptions, WorkOptions,
     needs_tiles,
 };
 use super::verbs::{Summary, TileUse, WriteRequest};
-use crate::error::{Error, Result, Wording, wording};
+use crate::error::{Error, Result, Setting, Term, Wording, wording};
 use crate::run::context::Context;
 use crate::run::context::event::Event;
 use crate::run::context::notice::Notice;
@@ -32,8 +32,10 @@ pub enum Execution {
     Tiles(TileOptions),
     /// In tiles, going on with the job in the folder, if there is one.
     Resume(TileOptions),
-    /// Not at all: tiles are planned, unless there is a job in the folder, and nothing is written.
+    /// Not at all: tiles are planned as for [`Tiles`](Self::Tiles), and nothing is written.
     Plan(TileOptions),
+    /// Not at all: what [`Resume`](Self::Resume) would go on with is planned, unless it is there.
+    PlanResume(TileOptions),
 }
 
 impl Default for Execution {
@@ -90,13 +92,8 @@ pub fn write(
         }
         Execution::Tiles(options) => prepared.in_tiles()?.anew(options, context),
         Execution::Resume(options) => prepared.in_tiles()?.resume(options, context),
-        Execution::Plan(options) => {
-            let job = prepared.in_tiles()?.looked_at(options, context)?;
-            Ok(WriteReport::Planned {
-                size: job.size(),
-                folder: job.folder().to_path_buf(),
-            })
-        }
+        Execution::Plan(options) => prepared.in_tiles()?.new_plan(options, context),
+        Execution::PlanResume(options) => prepared.in_tiles()?.plan_or_job(options, context),
     }
 }
 
@@ -163,7 +160,7 @@ fn write_output(
     let request = job.request();
     let prepared = Prepared::new(&request, targets)?.in_tiles()?;
     prepared.clear_up(job, lock, context)?;
-    prepared.run(job, lock, Folder::Kept, context)
+    prepared.run(job, lock, Caller::Folder, context)
 }
 
 /// Does tasks of a job together with other processes that do the same, on any number of hosts,
@@ -242,7 +239,7 @@ pub fn run_job(stored: &StoredJob, context: &Context) -> Result<WriteReport> {
     Prepared::new(request, &targets)?.in_tiles()?.go_on(
         job,
         tiles,
-        Folder::Kept,
+        Caller::Folder,
         |job| stored.follow(job),
         context,
     )
@@ -379,11 +376,17 @@ impl<'a> Prepared<'a> {
         Ok(job)
     }
 
-    /// Returns the job in the folder, or plans one if there is none; it has room.
-    fn looked_at(&self, options: &TileOptions, context: &Context) -> Result<Job> {
+    /// Plans a job, for which there must be a folder.
+    fn new_plan(&self, options: &TileOptions, context: &Context) -> Result<WriteReport> {
+        job::require_no_job(&self.folder(options)?)?;
+        self.planned(options, context).map(|job| shown(&job))
+    }
+
+    /// Shows the job in the folder, or plans one if there is none; it has room.
+    fn plan_or_job(&self, options: &TileOptions, context: &Context) -> Result<WriteReport> {
         match Job::stored(self.request, &self.folder(options)?, options)? {
-            Some(job) => require_room(&job, context).map(|()| job),
-            None => self.planned(options, context),
+            Some(job) => require_room(&job, context).map(|()| shown(&job)),
+            None => self.planned(options, context).map(|job| shown(&job)),
         }
     }
 
@@ -392,7 +395,7 @@ impl<'a> Prepared<'a> {
         let mut job = self.planned(options, context)?;
         let lock = job.create(None, context)?;
         self.outputs.set.mark(job.mark());
-        self.run(&job, &lock, Folder::of(options), context)
+        self.run(&job, &lock, Caller::of(options), context)
     }
 
     /// Goes on with the job in the folder, or plans one if there is none.
@@ -400,7 +403,7 @@ impl<'a> Prepared<'a> {
         match Job::stored(self.request, &self.folder(options)?, options)? {
             Some(job) => {
                 job.check_inputs(context)?;
-                self.go_on(job, options, Folder::of(options), |_| {}, context)
+                self.go_on(job, options, Caller::of(options), |_| {}, context)
             }
             None => self.anew(options, context),
         }
@@ -412,7 +415,7 @@ impl<'a> Prepared<'a> {
         self,
         mut job: Job,
         options: &TileOptions,
-        keep: Folder,
+        caller: Caller,
         planned_again: impl FnOnce(&Job),
         context: &Context,
     ) -> Result<WriteReport> {
@@ -437,7 +440,7 @@ impl<'a> Prepared<'a> {
             }
             None => self.clear_up(&job, &lock, context)?,
         }
-        self.run(&job, &lock, keep, context)
+        self.run(&job, &lock, caller, context)
     }
 
     /// Removes what a run has left when it was killed.
@@ -460,18 +463,18 @@ impl<'a> Prepared<'a> {
         self,
         job: &Job,
         lock: &JobLock,
-        keep: Folder,
+        caller: Caller,
         context: &Context,
     ) -> Result<WriteReport> {
-        self.run_all(job, lock, keep, context)
-            .map_err(|error| job.with_cure(error))
+        self.run_all(job, lock, caller, context)
+            .map_err(|error| job.with_cure(error, caller.cure(job)))
     }
 
     fn run_all(
         self,
         job: &Job,
         lock: &JobLock,
-        keep: Folder,
+        caller: Caller,
         context: &Context,
     ) -> Result<WriteReport> {
         let Prepared {
@@ -484,7 +487,7 @@ impl<'a> Prepared<'a> {
         let mut summary = request
             .verb
             .write_tiles(&job.tiles(&report), &outputs, context)?;
-        let is_kept = keep == Folder::Kept || report.skipped > 0;
+        let is_kept = caller != Caller::Request || report.skipped > 0;
         if is_kept {
             job.record(&outputs.set, &report, lock)?;
         }
@@ -508,22 +511,40 @@ impl<'a> Prepared<'a> {
     }
 }
 
-/// What becomes of the folder of a job once the outputs are written.
+/// Who has a job done.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Folder {
-    /// The caller has named it: it stays.
-    Kept,
-    /// It goes, unless files were skipped.
-    Removed,
+enum Caller {
+    /// A request; the folder goes once the outputs are written, unless files were skipped.
+    Request,
+    /// A request that has named the folder: it stays.
+    RequestInFolder,
+    /// One who knows the folder, and what is kept in it. It stays.
+    Folder,
 }
 
-impl Folder {
+impl Caller {
     fn of(options: &TileOptions) -> Self {
         if options.folder.is_some() {
-            Folder::Kept
+            Caller::RequestInFolder
         } else {
-            Folder::Removed
+            Caller::Request
         }
+    }
+
+    /// Returns what goes on with a job, and writes what this caller wants.
+    fn cure(self, job: &Job) -> Term {
+        match self {
+            Caller::Request | Caller::RequestInFolder => Setting::Resume.on(),
+            Caller::Folder => job.run_command(),
+        }
+    }
+}
+
+/// Returns the report of a plan.
+fn shown(job: &Job) -> WriteReport {
+    WriteReport::Planned {
+        size: job.size(),
+        folder: job.folder().to_path_buf(),
     }
 }
 

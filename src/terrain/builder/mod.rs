@@ -256,11 +256,13 @@ impl TinBuilder {
         points
     }
 
-    /// Removes the points that this builder's water and walls replace from a list.
-    pub(crate) fn take_replaced(&self, points: &mut Vec<[f64; 3]>) {
-        if !self.replaced.is_empty() {
-            self.replaced.split_off(points);
+    /// Removes the points that this builder's water and walls replace from a list, and returns
+    /// their number.
+    pub(crate) fn take_replaced(&self, points: &mut Vec<[f64; 3]>) -> usize {
+        if self.replaced.is_empty() {
+            return 0;
         }
+        self.replaced.split_off(points).len()
     }
 
     /// Returns the lines of all kinds in plan.

@@ -33,7 +33,7 @@ pub(crate) struct TileArgs {
     #[arg(long)]
     pub(crate) resume: bool,
 
-    /// Print the plan and end
+    /// Print the plan and end; with --resume, that of the job that would go on
     #[arg(long)]
     pub(crate) dry_run: bool,
 
