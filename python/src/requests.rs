@@ -353,6 +353,7 @@ pub(crate) struct SurfaceArguments<'py> {
     rivers: Vec<LayerInput<'py>>,
     river_width: Option<NumberOrName>,
     densify: Option<f64>,
+    add_ridges: bool,
 }
 
 impl SurfaceArguments<'_> {
@@ -460,6 +461,7 @@ impl SurfaceArguments<'_> {
             rivers: layers(&self.rivers)?,
             river_width: self.river_width.as_ref().map(NumberOrName::per_record),
             densify: positive("densify", self.densify)?,
+            add_ridges: self.add_ridges,
         })
     }
 }

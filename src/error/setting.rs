@@ -29,6 +29,7 @@ macro_rules! settings {
 }
 
 settings! {
+    AddRidges = "add-ridges",
     AlignTo = "align-to",
     Alpha = "alpha",
     Altitude = "altitude",

@@ -115,6 +115,7 @@ pub use request::lines::{
     FlatOptions, FlatRule, LineRequest, LineRole, LowerEdge, PerRecord, WallOptions,
 };
 pub use request::sizes::memory_of;
+pub use sources::open::is_of_lines;
 pub use sources::point_files::BadFiles;
 pub use sources::proj;
 pub use sources::systems::{Degrees, SystemOptions};

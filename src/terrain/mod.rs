@@ -46,6 +46,7 @@ mod crossings;
 mod cut;
 mod duplicates;
 mod grid_surface;
+mod groups;
 mod hillshade;
 mod inside;
 mod interpolate;
@@ -54,8 +55,11 @@ mod linear;
 mod lines;
 mod near_lines;
 mod nearest;
+mod peel;
+mod point_rim;
 mod rasterize;
 mod regions;
+mod ridges;
 mod selection;
 mod soundness;
 pub mod tiles;
@@ -76,9 +80,11 @@ pub(crate) use interpolate::Prepared;
 pub use interpolate::{CubicElement, Interpolant, Method};
 pub use levels::{Levels, MAX_LEVELS};
 pub use lines::{
-    Flat, FlatHeight, HighSide, River, RiverHeights, RiverLowering, Wall, WaterOverlap, densified,
+    Flat, FlatHeight, HighSide, JoinedLake, River, RiverHeights, RiverLowering, Wall, WaterOverlap,
+    densified,
 };
 pub(crate) use near_lines::NearLines;
+pub(crate) use point_rim::deciding;
 pub use rasterize::{Canvas, CanvasBlock, Dem, DemOfParts};
 pub use selection::{Classes, Selection, SelectionReport};
 pub use soundness::{SurfaceFlaw, shape_flaws, surface_flaws};

@@ -6,12 +6,14 @@ use crate::data::{BaseFace, Bounds, EdgeKind, Face, LineEdges, Surface};
 use crate::error::Result;
 use crate::triangulation::geometry::Terrain;
 use crate::triangulation::kernel::RANGE;
-use crate::triangulation::tds::{CellId, VertexId, ccw, cw};
-use crate::triangulation::{ConstrainedDelaunay, Flaw, Level, Location};
+use crate::triangulation::tds::{CellId, ccw, cw};
+use crate::triangulation::{ConstrainedDelaunay, Flaw, Level, LineId, Location};
 
 use super::cut::SurfaceCut;
 use super::linear::{linear, plan_distance};
 use super::lines::kinds::LineKinds;
+use super::peel::{finite_faces, peel};
+use super::ridges::Contoured;
 use super::{TinReport, compact};
 
 /// A surface of triangles over points and breaklines.
@@ -52,11 +54,7 @@ impl Tin {
 
     /// Makes every finite face part of the surface.
     pub(super) fn include_all(&mut self) {
-        let tds = self.triangulation.tds();
-        let is_face = |cell| tds.is_used(cell) && !tds.is_infinite(cell);
-        self.inside = (0..tds.cell_slots())
-            .map(|index| is_face(CellId::new(index)))
-            .collect();
+        self.inside = finite_faces(&self.triangulation);
     }
 
     /// Returns the counts of what was given and what was built.
@@ -147,30 +145,7 @@ impl Tin {
     /// Leaves out the faces that can be reached from outside of the hull over unconstrained edges
     /// longer than `limit`. Returns their number.
     pub(super) fn peel(&mut self, limit: f64) -> usize {
-        let tds = self.triangulation.tds();
-        let mut peeled = 0;
-        let at_hull = tds
-            .corners_around(VertexId::INFINITE)
-            .map(|(cell, i)| (tds.neighbor(cell, i), cell));
-        let mut exposed: Vec<(CellId, CellId)> = at_hull.collect();
-        while let Some((cell, from)) = exposed.pop() {
-            let i = tds.index_of_neighbor(cell, from);
-            let [a, b] = [ccw(i), cw(i)].map(|k| *self.triangulation.point(tds.vertex(cell, k)));
-            let open = self.inside[cell.index()] && !self.triangulation.is_constrained(cell, i);
-            if !open || plan_distance(a, b) <= limit {
-                continue;
-            }
-            self.inside[cell.index()] = false;
-            peeled += 1;
-            let onward = [ccw(i), cw(i)].map(|k| tds.neighbor(cell, k));
-            exposed.extend(
-                onward
-                    .into_iter()
-                    .filter(|n| self.inside[n.index()])
-                    .map(|n| (n, cell)),
-            );
-        }
-        peeled
+        peel(&self.triangulation, &mut self.inside, limit)
     }
 
     /// Leaves out the faces with an unconstrained edge longer than `limit`, except those in water.
@@ -194,6 +169,13 @@ impl Tin {
             }
         }
         left_out
+    }
+
+    /// The number of faces that are flat between the vertices of contours, and their share of the
+    /// area. A cut does not count.
+    pub(super) fn flat_share(&self) -> (usize, f64) {
+        let kind_of = |line: LineId| self.kinds.of_line(line.index());
+        Contoured::new(&self.triangulation, &self.inside, kind_of).flat_share()
     }
 
     /// The triangles that the patch of a cut replaces.

@@ -1,4 +1,4 @@
-use super::{CrossingHeights, WaterOverlap};
+use super::{CrossingHeights, JoinedLake, WaterOverlap};
 use crate::data::{Bounds, LineEdges};
 use crate::triangulation::Rounding;
 
@@ -33,6 +33,18 @@ pub struct TinReport {
     /// The pairs of waters that overlap or touch with a step larger than the tolerance, with the
     /// largest of each.
     pub water_overlaps: Vec<WaterOverlap>,
+    /// The lakes that have the height of a larger one, which they meet.
+    pub lakes_joined: Vec<JoinedLake>,
+    /// Vertices that [`add_ridges`](super::TinBuilder::add_ridges) has added.
+    pub ridge_vertices: usize,
+    /// Triangles that are flat because all of their corners are on lines of one height, before the
+    /// surface is clipped. Counted if lines have more vertices than there are points.
+    pub flat_triangles: usize,
+    /// The share of these triangles in the area of all, from 0 to 1.
+    pub flat_share: f64,
+    /// The first line of each water that reaches beyond the rim of all points and of the lines with
+    /// heights, and ends there.
+    pub waters_ended: Vec<usize>,
     /// Vertices of the surface.
     pub vertices: usize,
     /// Triangles of the surface.

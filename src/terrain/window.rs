@@ -26,6 +26,11 @@ pub struct ReadWindow {
 type Box2 = [[f64; 2]; 2];
 
 impl ReadWindow {
+    /// Returns true if there may be unread points.
+    pub(super) fn is_partial(&self) -> bool {
+        !self.unread().parts.is_empty()
+    }
+
     /// The boxes that may contain unread points. They overlap at the corners.
     fn unread(&self) -> Unread {
         let read = in_plan(&self.read);

@@ -87,8 +87,8 @@ fn lines_that_differ_in_height_are_told_by_file_and_feature() {
     run.works(&[
         "note: crossings of breaklines are rounded to 4.4e-16 m; no line moves by more than half of that",
         "warning: breaklines meet with different heights at 2 points, by up to 10.5 m (at 1.5 1.5)",
-        "1.5 1.5: 20 of l.geojson fid 0, 30.5 of l.geojson fid 1, part 1; 20 is used",
-        "3 3: 20 of l.geojson fid 0, 21 of l.geojson fid 1, part 2; 20 is used",
+        "1.5 1.5: 20 of l.geojson record 1, 30.5 of l.geojson record 2, part 1; 20 is used",
+        "3 3: 20 of l.geojson record 1, 21 of l.geojson record 2, part 2; 20 is used",
         "1 crossings between vertices",
     ]);
     let tolerant = [
@@ -174,14 +174,14 @@ fn what_is_refused_names_both_lines_and_leaves_nothing() {
     run(&["--on-crossing", "reject"]).fails(
         1,
         &[
-            "l.geojson fid 0 and l.geojson fid 1, part 1 cross at 1.5 1.5 without a common vertex",
+            "l.geojson record 1 and l.geojson record 2, part 1 cross at 1.5 1.5 without a common vertex",
             "--on-crossing split",
         ],
     );
     run(&["--crossing-z", "error"]).fails(
         1,
         &[
-            "different heights at 1.5 1.5: 20 of l.geojson fid 0, 30.5 of l.geojson fid 1, part 1, expected within 0.01",
+            "different heights at 1.5 1.5: 20 of l.geojson record 1, 30.5 of l.geojson record 2, part 1, expected within 0.01",
             "(2 such sites in total)",
         ],
     );
@@ -221,5 +221,5 @@ fn a_line_keeps_its_name_where_bounds_cut_it_into_runs() {
         &folder,
         &[&["check", "p.xyz", "--bounds", "0,0,3,3"][..], &lines].concat(),
     );
-    run.works(&["1.5 2.5: 5 of b.geojson fid 0, 9 of a.geojson fid 0; 5 is used"]);
+    run.works(&["1.5 2.5: 5 of b.geojson record 1, 9 of a.geojson record 1; 5 is used"]);
 }

@@ -191,7 +191,11 @@ fn mistakes_are_named() {
         (
             &[("Polygon", LAKE, "{}"), ("Polygon", other, "{}")],
             &["--flat", "l.geojson"],
-            &["two lakes meet at", "l.geojson fid 0", "l.geojson fid 1"],
+            &[
+                "two lakes meet at",
+                "l.geojson record 1",
+                "l.geojson record 2",
+            ],
         ),
         (
             &[("LineString", flat, "{}")],
@@ -255,7 +259,7 @@ fn what_looks_wrong_is_a_warning() {
         &["tin", "p.xyz", "--rivers", "l.geojson", "-o", "t.ply"],
     );
     run.works(&[
-        "warning: the banks of the river l.geojson fid 0",
+        "warning: the banks of the river l.geojson record 1",
         "differ by up to",
     ]);
     let shore = folder(&[("Polygon", LAKE, "{}")]);
@@ -282,7 +286,7 @@ fn what_looks_wrong_is_a_warning() {
         ],
     );
     run.works(&[
-        "warning: the banks of the river l.geojson fid 0 meet near",
+        "warning: the banks of the river l.geojson record 1 meet near",
         "twice is not water",
     ]);
     let quay = folder_with(&[
@@ -307,7 +311,7 @@ fn what_looks_wrong_is_a_warning() {
     ];
     run_in(&quay, &args).works(&[
         "2 vertices of walls have the height of water",
-        "of quay.geojson fid 0",
+        "of quay.geojson record 1",
     ]);
     let far = folder(&[("Polygon", "[[[50,50],[51,50],[51,51],[50,50]]]", "{}")]);
     for option in ["--holes", "--draped-lines"] {
@@ -346,12 +350,12 @@ fn lowered_rivers_are_named_with_those_that_lower_them() {
         "t.ply",
     ];
     let first = [
-        "the river l.geojson fid 1 is lowered by up to 0.5",
-        "from 1.5 1 on, to the river l.geojson fid 0",
+        "the river l.geojson record 2 is lowered by up to 0.5",
+        "from 1.5 1 on, to the river l.geojson record 1",
     ];
     let second = [
-        "the river l.geojson fid 2 is lowered by up to 0.2",
-        "from 2.2 1 on, to the river l.geojson fid 1",
+        "the river l.geojson record 3 is lowered by up to 0.2",
+        "from 2.2 1 on, to the river l.geojson record 2",
     ];
     let run = run_in(&folder(&reaches[..2]), &args);
     run.works(&[&first[..], &["correct the heights of either"]].concat());
@@ -384,7 +388,7 @@ fn waters_that_meet_are_reported_where_they_contradict_each_other() {
     ];
     let said = [
         "warning: two waters overlap or touch, and the lower height, or that of the lake, counts: a step of 2.4 m at",
-        ", from l.geojson fid 1 to l.geojson fid 0",
+        ", from l.geojson record 2 to l.geojson record 1",
     ];
     let crossing = folder(&[across, over]);
     run_in(&crossing, &args).works(&said);
@@ -416,7 +420,7 @@ fn waters_that_meet_are_reported_where_they_contradict_each_other() {
     run.works(&[
         "3 pairs of waters overlap or touch",
         "a step of 4 m at",
-        "from l.geojson fid 0 to lake.geojson fid 0",
+        "from l.geojson record 1 to lake.geojson record 1",
     ]);
     // A tributary from the north, which ends on the bank of the first river, rounded to mm.
     let main = (
@@ -425,8 +429,8 @@ fn waters_that_meet_are_reported_where_they_contradict_each_other() {
         "{}",
     );
     let lowered = [
-        "the river l.geojson fid 0, part 1 is lowered by up to 0.3",
-        "from 1.5 0.9005 on, to the river l.geojson fid 1",
+        "the river l.geojson record 1, part 1 is lowered by up to 0.3",
+        "from 1.5 0.9005 on, to the river l.geojson record 2",
     ];
     for (south, said) in [(4.9, &[][..]), (4.2, &lowered)] {
         let bank = |x: f64| format!("[[{x},2.8,6],[{x},1.201,{south}]]");
@@ -454,4 +458,140 @@ fn waters_that_meet_are_reported_where_they_contradict_each_other() {
             run.stderr
         );
     }
+}
+
+/// Rings of a summit, as lines.
+const SUMMIT: [(&str, &str, &str); 3] = [
+    (
+        "LineString",
+        "[[0,0,10],[90,0,10],[90,90,10],[0,90,10],[0,0,10]]",
+        "{}",
+    ),
+    (
+        "LineString",
+        "[[20,20,15],[70,20,15],[70,70,15],[20,70,15],[20,20,15]]",
+        "{}",
+    ),
+    (
+        "LineString",
+        "[[35,35,20],[55,35,20],[55,55,20],[35,55,20],[35,35,20]]",
+        "{}",
+    ),
+];
+
+#[test]
+fn contours_alone_are_a_surface() {
+    let folder = folder(&SUMMIT);
+    let flat = [
+        "2 triangles, 4.9 % of the area, are flat",
+        "(--add-ridges adds vertices",
+    ];
+    run_in(
+        &folder,
+        &["tin", "--breaklines", "l.geojson", "-o", "a.ply"],
+    )
+    .works(&flat);
+    let plain = run_in(&folder, &["tin", "l.geojson", "-o", "b.ply"]);
+    plain.works(&flat);
+    plain.works(&["note: l.geojson: lines are breaklines"]);
+    let file = |name: &str| std::fs::read(folder.path().join(name)).unwrap();
+    assert!(file("a.ply") == file("b.ply"));
+    let cured = run_in(
+        &folder,
+        &["tin", "l.geojson", "--add-ridges", "-o", "c.ply"],
+    );
+    cured.works(&["1 vertices were added on ridges and valleys"]);
+    assert!(!cured.stderr.contains("are flat"), "{}", cured.stderr);
+    run_in(
+        &folder,
+        &["dem", "l.geojson", "--resolution", "5", "-o", "d.tif"],
+    )
+    .works(&flat);
+    // With points, and where no line can be one.
+    run_in(&folder, &["tin", "p.xyz", "l.geojson", "-o", "e.ply"]).works(&["breaklines  3 in"]);
+    run_in(&folder, &["tin", "a.ply", "l.geojson", "-o", "f.ply"])
+        .fails(2, &["is a surface, and cannot be combined"]);
+    run_in(&folder, &["tin", "-o", "g.ply"]).fails(2, &["required"]);
+    run_in(
+        &folder,
+        &[
+            "tin",
+            "p.xyz",
+            "--add-ridges",
+            "--tiles",
+            "2x2",
+            "-o",
+            "h.tins",
+        ],
+    )
+    .fails(1, &["--add-ridges does not work with tiles yet"]);
+}
+
+#[test]
+fn each_lake_has_the_lowest_height_of_its_shore() {
+    let low = "[[[0.2,0.2,9],[1.2,0.2,9.21],[1.2,1.2,9.05],[0.2,1.2,9],[0.2,0.2,9]]]";
+    let high = "[[[1.6,1.6,12],[2.6,1.6,12.02],[2.6,2.6,12],[1.6,2.6,12],[1.6,1.6,12]]]";
+    let folder = folder(&[("Polygon", low, "{}"), ("Polygon", high, "{}")]);
+    let run = run_in(
+        &folder,
+        &["tin", "p.xyz", "--flat", "l.geojson", "-o", "a.obj"],
+    );
+    run.works(&[
+        "note: the shores of 2 lakes are not level: each lake has the lowest height of its shore, such as 9 m of l.geojson record 1",
+        "the shore rises up to 0.21 m above it (--flat-height)",
+    ]);
+    let obj = std::fs::read_to_string(folder.path().join("a.obj")).unwrap();
+    for level in [" 9", " 12"] {
+        let of_level = obj
+            .lines()
+            .filter(|line| line.starts_with("v ") && line.ends_with(level));
+        assert!(of_level.count() >= 4, "{level}: {obj}");
+    }
+    let strict = [
+        "tin",
+        "p.xyz",
+        "--flat",
+        "l.geojson",
+        "--flat-tolerance",
+        "0.1",
+        "-o",
+        "b.obj",
+    ];
+    run_in(&folder, &strict).fails(
+        1,
+        &[
+            "record 1",
+            "the shore is not level: its heights are 9 to 9.21",
+        ],
+    );
+}
+
+/// A channel beside a lake, drawn as a lake of its own, shares a part of its shore.
+#[test]
+fn lakes_that_meet_have_the_height_of_the_largest() {
+    let lake = "[[[0.2,0.2,9],[1.7,0.2,9],[1.7,1.2,9],[1.7,1.5,9],[0.2,1.5,9],[0.2,0.2,9]]]";
+    let channel = "[[[1.7,1.2,8.95],[2.6,1.2,8.97],[2.6,1.5,9.1],[1.7,1.5,9],[1.7,1.2,8.95]]]";
+    let folder = folder(&[("Polygon", channel, "{}"), ("Polygon", lake, "{}")]);
+    let said = "l.geojson record 1 meets a larger lake, l.geojson record 2, and has its height, which is 0.05 m";
+    run_in(
+        &folder,
+        &["tin", "p.xyz", "--flat", "l.geojson", "-o", "a.obj"],
+    )
+    .works(&[said]);
+    let obj = std::fs::read_to_string(folder.path().join("a.obj")).unwrap();
+    let of_lakes = obj
+        .lines()
+        .filter(|line| line.starts_with("v ") && line.ends_with(" 9"));
+    assert_eq!(of_lakes.count(), 7, "{obj}");
+    let given = [
+        "tin",
+        "p.xyz",
+        "--flat",
+        "l.geojson",
+        "--flat-height",
+        "lowest",
+        "-o",
+        "b.obj",
+    ];
+    run_in(&folder, &given).fails(1, &["two lakes meet at"]);
 }

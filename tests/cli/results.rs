@@ -466,7 +466,7 @@ fn breaklines_far_beyond_the_points_are_told() {
         );
         run.works(&["1 in, "]);
         run.stderr
-            .contains("note: breaklines reach 897 m beyond the points")
+            .contains("warning: breaklines reach 897 m beyond the points")
     };
     assert!(tin("a.ply", &[]));
     assert!(!tin("b.ply", &["--bounds", "0,0,3,3"]));

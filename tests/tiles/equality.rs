@@ -276,6 +276,59 @@ fn lines_of_all_kinds_are_the_same_in_any_tiles() {
     assert!(built * 2 > rounds(), "{built}");
 }
 
+/// Water that reaches beyond the points ends at their rim, which no tile knows by itself.
+#[test]
+fn waters_end_at_the_same_rim_in_any_tiles() {
+    let folder = tempfile::tempdir().unwrap();
+    let valley = valley();
+    let lake = |x: f64, y: f64, size: f64, z: f64| {
+        let corner = |dx: f64, dy: f64| [x + dx * size, y + dy * size, z];
+        vec![
+            corner(0.0, 0.0),
+            corner(1.0, 0.2),
+            corner(0.9, 1.1),
+            corner(-0.1, 0.8),
+            corner(0.0, 0.0),
+        ]
+    };
+    let lakes = [
+        lake(687_900.0, 5_261_000.0, 180.0, 801.0),
+        lake(688_380.0, 5_261_280.0, 300.0, 803.0),
+        lake(688_200.0, 5_261_100.0, 40.0, 802.0),
+        lake(689_900.0, 5_261_100.0, 40.0, 802.0),
+    ];
+    let river = vec![
+        [687_000.0, 5_261_130.0, 830.0],
+        [688_250.0, 5_261_230.0, 825.0],
+        [690_000.0, 5_261_190.0, 801.0],
+    ];
+    let file = |name: &str, text: String| std::fs::write(folder.path().join(name), text).unwrap();
+    file("lakes.geojson", layer(&lakes, "Polygon"));
+    file("river.geojson", layer(&[river], "LineString"));
+    for (words, tiling) in [
+        ("--flat lakes.geojson", "--tiles 4x4"),
+        ("--flat lakes.geojson --max-edge none", "--tiles 3x7"),
+        ("--flat lakes.geojson --max-edge 3 --class 2", "--tiles 9x2"),
+        (
+            "--rivers river.geojson --river-width 9 --flat lakes.geojson --max-edge 5",
+            "--tiles 5x5",
+        ),
+    ] {
+        let words = format!("dem {valley} {words} --resolution 0.9");
+        let (whole, said) = output_of(&folder, &words, "whole.tif");
+        assert!(
+            said.contains("at the rim that the surface has without water"),
+            "{said}"
+        );
+        let (tiled, said) = output_of(&folder, &format!("{words} {tiling}"), "tiled.tif");
+        assert!(tiled == whole, "{words} {tiling}: {said}");
+        assert!(
+            said.contains("at the rim that the surface has without water"),
+            "{said}"
+        );
+    }
+}
+
 /// Surfaces that are cut: the lines cross tiles, cuts and seams, and run beyond the points.
 #[test]
 fn clipped_surfaces_are_the_same_in_tiles() {

@@ -47,6 +47,7 @@ DEFAULTS: "dict[str, Any]" = {
     "rivers": None,
     "river_width": None,
     "densify": None,
+    "add_ridges": False,
     "columns": None,
     "partial": False,
 }
@@ -85,6 +86,7 @@ class Building(TypedDict, total=False):
     rivers: Any
     river_width: Any
     densify: Optional[float]
+    add_ridges: bool
     columns: Any
     partial: bool
 

@@ -543,6 +543,7 @@ def tin(
     rivers: Any = None,
     river_width: Any = None,
     densify: Optional[float] = None,
+    add_ridges: bool = False,
     columns: Any = None,
     partial: bool = False,
     output: Any = None,
@@ -609,9 +610,10 @@ def tin(
     wall_high : str
         The side of a wall on which the ground is higher, ``"left"`` or ``"right"``.
     flat_height : float or str, optional
-        Height of lakes: ``"lowest"`` or ``"mean"`` of the shore, a number, or the attribute that has it.
+        Height of lakes: ``"lowest"`` or ``"mean"`` of the shore, a number, or the attribute that has it;
+        by default the lowest of a shore that is about level.
     flat_tolerance : float, optional
-        Largest difference of heights of a level shore; 0.01 metres by default.
+        Largest difference of heights of a shore if ``flat_height`` is not given; 0.3 metres by default.
     flat_buffer : float
         Leave out points up to this distance outside of a shore, too.
     flat_points : bool
@@ -620,6 +622,8 @@ def tin(
         Width of rivers, or the attribute that has it: their lines run along the middle.
     densify : float, optional
         Largest distance between vertices of breaklines and soft lines: more are added.
+    add_ridges : bool
+        Add vertices on ridges and valleys, where triangles between contours are flat.
     columns : str or (x, y, z), optional
         Columns of text files: ``"PNEZD"``, ``"XYZ"``, or numbers from 1.
     partial : bool

@@ -13,7 +13,7 @@ use crate::error::{Error, Result};
 use crate::run::{
     Degrees, EdgeLimit, Existing, FlatOptions, FlatRule, FrameOptions, Input, LineRequest,
     LowerEdge, MemoryPoints, ReplacedPoints, Source, SurfaceRequest, SystemOptions, Targets,
-    TinRequest, WallOptions,
+    TinRequest, WallOptions, is_of_lines,
 };
 use crate::terrain::Classes;
 
@@ -31,7 +31,10 @@ impl SurfacePlan {
     /// # Errors
     /// If files are missing, kinds of input are mixed or options do not go together.
     pub(crate) fn resolve(args: &SurfaceArgs, console: &Console) -> Result<Self> {
-        let files = inputs::expand(&args.inputs, console)?;
+        let files = match args.inputs.as_slice() {
+            [] => Vec::new(), // lines alone
+            inputs => inputs::expand(inputs, console)?,
+        };
         let degrees = if args.force_degrees {
             Degrees::Allow
         } else {
@@ -41,7 +44,7 @@ impl SurfacePlan {
             degrees,
             ..systems(&args.systems)?
         };
-        let building = TinRequest {
+        let mut building = TinRequest {
             breaklines: layers(&args.breaklines)?,
             boundary: layers(&args.boundary)?,
             lines: line_request(&args.lines)?,
@@ -50,7 +53,16 @@ impl SurfacePlan {
         building.check_layers()?;
         let source = match Source::of_files(&files)? {
             Source::Points(points) => {
-                Source::Points(Box::new(tin_request(points.points, building, args)))
+                let (of_lines, points): (Vec<_>, Vec<_>) = points
+                    .points
+                    .into_iter()
+                    .partition(|input| is_of_lines(input.path()));
+                for path in of_lines.iter().map(Input::path) {
+                    let path = path.to_path_buf();
+                    console.note(format_args!("{}: lines are breaklines", path.display()));
+                    building.breaklines.push(Input::File(path));
+                }
+                Source::Points(Box::new(tin_request(points, building, args)))
             }
             Source::Mesh(path) => Source::Mesh(as_it_is(path, args)?),
             Source::Raster(path) => Source::Raster(as_it_is(path, args)?),
@@ -148,6 +160,7 @@ fn line_request(args: &LineArgs) -> Result<LineRequest> {
         rivers: layers(&args.rivers)?,
         river_width: args.river_width.as_ref().map(|width| width.0.clone()),
         densify: args.densify,
+        add_ridges: args.add_ridges,
     })
 }
 
@@ -201,6 +214,7 @@ fn as_it_is(path: PathBuf, args: &SurfaceArgs) -> Result<PathBuf> {
         (args.max_edge_inside.is_some(), "--max-edge-inside"),
         (lines.flat_points.is_some(), "--flat-points"),
         (lines.densify.is_some(), "--densify"),
+        (lines.add_ridges, "--add-ridges"),
         (!args.class.is_empty(), "--class"),
         (!args.returns.is_empty(), "--return"),
         (args.duplicates != DuplicatesArg::default(), "--duplicates"),

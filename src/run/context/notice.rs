@@ -114,6 +114,46 @@ pub enum Notice {
     BreaklinesApart(Quantity),
     /// Breaklines reach this far beyond the points.
     BreaklinesBeyond(Quantity),
+    /// Triangles between the lines of a surface of lines are flat.
+    FlatTriangles {
+        /// How many.
+        count: usize,
+        /// Their share of the area, from 0 to 1.
+        share: f64,
+        /// True if vertices on ridges were added: these remain.
+        has_ridges: bool,
+    },
+    /// Vertices were added on ridges and valleys; with their number.
+    RidgesAdded(usize),
+    /// Lakes have the lowest heights of their shores, which differ.
+    UnevenShores {
+        /// How many.
+        lakes: usize,
+        /// The name of the one whose shore differs most.
+        name: String,
+        /// Its height.
+        height: Quantity,
+        /// How far its shore is above it, at most.
+        largest: Quantity,
+    },
+    /// Lakes meet larger ones and have their height.
+    LakesJoined {
+        /// How many.
+        lakes: usize,
+        /// The name of the one that was moved most.
+        name: String,
+        /// The name of the larger one.
+        to: String,
+        /// How far it was moved.
+        by: Quantity,
+    },
+    /// Waters reach beyond the points and the lines with heights, and end at their rim.
+    WatersEnded {
+        /// How many.
+        waters: usize,
+        /// The name of the first.
+        name: String,
+    },
     /// Triangles at the rim with longer edges are left out.
     EdgeLimit(Quantity),
     /// No triangle at the rim is left out.
@@ -335,7 +375,10 @@ impl Notice {
             | Notice::NoSystem
             | Notice::DifferentUnits(..)
             | Notice::Reprojecting(..)
-            | Notice::BreaklinesBeyond(_)
+            | Notice::RidgesAdded(_)
+            | Notice::UnevenShores { .. }
+            | Notice::LakesJoined { .. }
+            | Notice::WatersEnded { .. }
             | Notice::EdgeLimit(_)
             | Notice::NoEdgeLimit
             | Notice::BoundsBuffer(_)
@@ -357,6 +400,8 @@ impl Notice {
             | Notice::Transform(_)
             | Notice::FarApart(..)
             | Notice::BreaklinesApart(_)
+            | Notice::BreaklinesBeyond(_)
+            | Notice::FlatTriangles { .. }
             | Notice::CrossingHeights { .. }
             | Notice::EdgeLimitUnusual { .. }
             | Notice::LevelRings { .. }

@@ -128,6 +128,17 @@ fn text(notice: &Notice) -> Wording {
         Notice::FarApart(before, after, gap) => far_apart(before, after, gap).into(),
         Notice::BreaklinesApart(gap) => breaklines_apart(gap).into(),
         Notice::BreaklinesBeyond(reach) => breaklines_beyond(reach),
+        Notice::FlatTriangles { count, share, has_ridges } => {
+            flat_triangles(*count, *share, *has_ridges)
+        }
+        Notice::RidgesAdded(count) => {
+            format!("{count} vertices were added on ridges and valleys, with heights by the lines around them").into()
+        }
+        Notice::UnevenShores { lakes, name, height, largest } => {
+            uneven_shores(*lakes, name, height, largest)
+        }
+        Notice::LakesJoined { lakes, name, to, by } => lakes_joined(*lakes, name, to, by).into(),
+        Notice::WatersEnded { waters, name } => waters_ended(*waters, name),
         Notice::EdgeLimit(length) => edge_limit(length),
         Notice::NoEdgeLimit => no_edge_limit(),
         Notice::BoundsBuffer(buffer) => bounds_buffer(buffer.as_ref()).into(),
@@ -278,6 +289,67 @@ fn breaklines_beyond(reach: &Quantity) -> Wording {
         ),
         Setting::Bounds,
         ")"
+    ]
+}
+
+fn flat_triangles(count: usize, share: f64, has_ridges: bool) -> Wording {
+    let flat = format!(
+        "{count} triangles, {:.1} % of the area, are flat: all of their corners are on lines of one height",
+        100.0 * share
+    );
+    if has_ridges {
+        wording![
+            flat,
+            ", and no line beside them says whether the ground rises or falls"
+        ]
+    } else {
+        wording![
+            flat,
+            " (",
+            Setting::AddRidges,
+            " adds vertices on ridges and valleys)"
+        ]
+    }
+}
+
+fn uneven_shores(lakes: usize, name: &str, height: &Quantity, largest: &Quantity) -> Wording {
+    let shores = match lakes {
+        1 => format!("the shore of {name} is not level: the lake has its lowest height, {height};"),
+        count => format!(
+            "the shores of {count} lakes are not level: each lake has the lowest height of its shore, such as {height} of {name};"
+        ),
+    };
+    wording![
+        format!("{shores} the shore rises up to {largest} above it ("),
+        Setting::FlatHeight,
+        ")"
+    ]
+}
+
+fn lakes_joined(lakes: usize, name: &str, to: &str, by: &Quantity) -> String {
+    match lakes {
+        1 => format!(
+            "{name} meets a larger lake, {to}, and has its height, which is {by} from its own"
+        ),
+        count => format!(
+            "{count} lakes meet larger ones and have their heights: {name} that of {to}, which is {by} from its own"
+        ),
+    }
+}
+
+fn waters_ended(waters: usize, name: &str) -> Wording {
+    let subject = match waters {
+        1 => format!("{name} reaches beyond the points and ends"),
+        count => format!("{count} lakes and rivers reach beyond the points and end"),
+    };
+    let which = match waters {
+        1 => String::new(),
+        _ => format!("; the first is {name}"),
+    };
+    wording![
+        format!("{subject} at the rim that the surface has without water ("),
+        Setting::MaxEdge,
+        format!("){which}")
     ]
 }
 

@@ -19,6 +19,7 @@ use crate::run::lines::crossings::{self, LineNames};
 use crate::run::lines::inputs::{Added, LineLayers};
 use crate::run::lines::notes::{self as line_notes, LevelRings, OtherHeights};
 use crate::run::products::tin::{TinRequest, builder_of, default_tolerance};
+use crate::run::sources::extents::LineExtents;
 use crate::run::sources::transforms::Transforms;
 use crate::terrain::tiles::{self, SubConstraint, TileClip, TileLayout};
 use crate::terrain::{NearLines, Tin, TinBuilder};
@@ -35,8 +36,8 @@ pub(super) struct JobLines {
     reach: f64,
     /// The box around all lines.
     pub(super) extent: Bounds,
-    /// The box around those that have heights by themselves.
-    pub(super) extent_of_heights: Bounds,
+    /// The boxes around those that have heights by themselves, and around waters.
+    pub(super) extents: LineExtents,
     /// Lines that may be shores.
     pub(super) rings: Option<LevelRings>,
 }
@@ -77,6 +78,7 @@ impl Known {
         let units = Units::of(crs);
         let mut builder = builder_of(request, &units, crs.cloned());
         let mut added = layers.add_to(&mut builder, &transforms.by_file, &transforms, &units)?;
+        line_notes::note_uneven_shores(&added.uneven_shores, &units, journal);
         line_notes::note_uneven(&added.uneven, &units, journal);
         line_notes::note_lowered(std::mem::take(&mut added.lowered), journal);
         line_notes::note_overlaps(&added.overlaps, journal);
@@ -134,7 +136,7 @@ impl JobLines {
             ),
             reach: tiles::rounding_reach(largest),
             extent,
-            extent_of_heights: added.extent,
+            extents: added.extents,
             rings: LevelRings::of(added.level_rings, &request.lines, default_tolerance(units)),
         }
     }
@@ -160,18 +162,26 @@ impl JobLines {
             .collect()
     }
 
-    /// Builds the lines with the points next to them. `extent` is that of all points.
+    /// Returns true if there are waters, which end at the rim of all points.
+    pub(super) fn need_rim(&self) -> bool {
+        self.builder.has_waters()
+    }
+
+    /// Builds the lines with the points next to them. `at_rim` are the points that decide where
+    /// waters end, `limit` is the longest edge there, and `extent` that of all points.
     ///
     /// # Errors
     /// If lines cross or differ in height where the rules refuse that.
     pub(super) fn build(
         &self,
         near: Vec<[f64; 3]>,
+        (at_rim, limit): (Vec<[f64; 3]>, Option<f64>),
         extent: &Bounds,
         crs: Option<&Crs>,
         journal: &Journal,
     ) -> Result<Tin> {
         let mut builder = self.builder.clone();
+        builder.end_waters(at_rim, limit);
         builder.add_owned_points(near);
         // A single line spans no area. These are far from all lines, and so decide nothing.
         let mut all = self.extent;
@@ -191,6 +201,8 @@ impl JobLines {
         let units = Units::of(crs);
         line_notes::note_water_overlaps(tin.report(), &self.names, &units, journal);
         line_notes::note_walls_in_water(tin.report(), &self.names, journal);
+        line_notes::note_lakes_joined(tin.report(), &self.names, &units, journal);
+        line_notes::note_waters_ended(tin.report(), &self.names, journal);
         crossings::note(tin.report(), &self.names, &units, journal);
         Ok(tin)
     }

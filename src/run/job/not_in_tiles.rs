@@ -13,6 +13,8 @@ use crate::terrain::Method;
 pub enum NotInTiles {
     /// The longest edge at the rim is chosen by the points.
     EdgeByPoints,
+    /// Vertices are added on ridges and valleys.
+    Ridges,
     /// The points are reprojected.
     Reproject,
     /// Longest edges anywhere, where there is water.
@@ -34,6 +36,7 @@ impl NotInTiles {
                 NotInTiles::EdgeByPoints,
                 request.max_edge == EdgeLimit::Auto,
             ),
+            (NotInTiles::Ridges, request.lines.add_ridges),
             (NotInTiles::Reproject, systems.target.is_some()),
             (
                 NotInTiles::EdgesBesideWater,
@@ -54,6 +57,7 @@ impl NotInTiles {
     fn settings(self) -> Wording {
         match self {
             NotInTiles::EdgeByPoints => Setting::MaxEdge.text("auto").into(),
+            NotInTiles::Ridges => Setting::AddRidges.into(),
             NotInTiles::Reproject => Setting::TargetCrs.into(),
             NotInTiles::EdgesBesideWater => {
                 wording![

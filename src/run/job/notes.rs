@@ -40,15 +40,13 @@ impl Plan {
         let extents: Vec<Bounds> = self.files.iter().map(|file| file.bounds()).collect();
         extents::compare_files(&paths, &extents, &units, journal);
         journal.add(request.max_edge.notice(&units));
-        let unusual = request
-            .max_edge
-            .unusual(mean_distance(self.point_count(), extents), &units);
+        let unusual = request.max_edge.unusual(self.spacing(), &units);
         unusual.into_iter().for_each(|notice| journal.add(notice));
         if request.bounds.is_some() {
             journal.add(Notice::BoundsBuffer(None));
         }
         if let Some(lines) = &known.lines {
-            note_of_lines(lines, &self.stated_extent(), request, &units)
+            self.note_of_lines(lines, &self.stated_extent(), request)
                 .into_iter()
                 .for_each(|n| journal.add(n));
         }
@@ -61,27 +59,36 @@ impl Plan {
     }
 }
 
+impl Plan {
+    /// Returns the mean distance between all points.
+    fn spacing(&self) -> Option<f64> {
+        let extents = self.files.iter().map(|file| file.bounds());
+        mean_distance(self.point_count(), extents)
+    }
+
+    /// Returns the notice about lines that are far from points in a box, or reach beyond them.
+    fn note_of_lines(
+        &self,
+        lines: &JobLines,
+        points: &Bounds,
+        request: &TinRequest,
+    ) -> Option<Notice> {
+        if is_cut(request) {
+            return None;
+        }
+        let units = Units::of(self.crs.as_ref());
+        let limit = request.max_edge;
+        let (buffer, usual) = (
+            limit.buffer(&units),
+            limit.usual_reach(self.spacing(), &units),
+        );
+        extents::compare_lines(points, &lines.extents, buffer, usual, &units)
+    }
+}
+
 /// Returns true if the surface is cut to bounds or a boundary, so that lines beyond it are usual.
 fn is_cut(request: &TinRequest) -> bool {
     request.bounds.is_some() || !request.boundary.is_empty()
-}
-
-/// Returns the notice about lines that are far from the points, or reach far beyond them.
-fn note_of_lines(
-    lines: &JobLines,
-    points: &Bounds,
-    request: &TinRequest,
-    units: &Units,
-) -> Option<Notice> {
-    let compare = || {
-        extents::compare_lines(
-            points,
-            &lines.extent_of_heights,
-            request.max_edge.buffer(units),
-            units,
-        )
-    };
-    if is_cut(request) { None } else { compare() }
 }
 
 /// What the tasks found.
@@ -141,8 +148,9 @@ impl Found {
             && let Some(lines) = &job.known(context)?.lines
         {
             // A notice that came with the plan is not repeated for the points that are used.
-            if note_of_lines(lines, &job.plan.stated_extent(), request, &units).is_none() {
-                note_of_lines(lines, &self.extent_used, request, &units)
+            let plan = &job.plan;
+            if (plan.note_of_lines(lines, &plan.stated_extent(), request)).is_none() {
+                plan.note_of_lines(lines, &self.extent_used, request)
                     .into_iter()
                     .for_each(|n| journal.add(n));
             }

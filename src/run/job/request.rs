@@ -188,6 +188,7 @@ impl Listed {
             rivers,
             river_width,
             densify,
+            add_ridges,
         } = lines;
         self.add(&[Setting::SoftLines], soft);
         self.add(&[Setting::DrapedLines], draped);
@@ -203,5 +204,6 @@ impl Listed {
         self.add(&[Setting::Rivers], rivers);
         self.add(&[Setting::RiverWidth], river_width);
         self.add(&[Setting::Densify], densify);
+        self.add(&[Setting::AddRidges], add_ridges);
     }
 }

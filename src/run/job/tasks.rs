@@ -3,7 +3,7 @@
 use super::bytes::{self, NumberReader, put_block, put_u32};
 use super::done::Sources;
 use super::holes::Holes;
-use super::lines::LinesOfTile;
+use super::lines::{JobLines, LinesOfTile};
 use super::planned_file::{require_state, state_of};
 use super::raster::Drawing;
 use super::surface::PartFaces;
@@ -24,7 +24,7 @@ use crate::terrain::contour::parts::{ContourCollector, LevelParts};
 use crate::terrain::tiles::{
     self, ClipSide, LongEdges, Rim, TileClip, TileTriangle, TinPart, Work, has_long_edge,
 };
-use crate::terrain::{Classes, PartCell, Selection, one_per_site};
+use crate::terrain::{Classes, PartCell, Selection, deciding, one_per_site};
 
 /// Points that are read before they are divided among tiles: 24 bytes each, and as much again while
 /// they are sorted.
@@ -33,6 +33,9 @@ const DIVIDED_AT_ONCE: u64 = 1 << 20;
 /// Bytes per point that is read before it is divided: the lists of points and of tiles, and what is
 /// written.
 const BYTES_A_DIVIDED_POINT: u64 = 120;
+
+/// Bytes per point that is triangulated to find the rim of the points.
+const BYTES_A_POINT_AT_RIM: u64 = 130;
 
 impl Job {
     /// Does a task and writes its file.
@@ -69,10 +72,16 @@ impl Job {
         let rings = lines.and_then(|lines| lines.rings.as_ref());
         let mut near = Vec::new();
         let mut replaced = 0;
+        let needs_rim = lines.is_some_and(JobLines::need_rim);
+        let limit = self.plan.max_edge;
+        let mut at_rim = Vec::new();
         let mut of_rings = rings.map(LevelRings::none_found).unwrap_or_default();
         let mut write_run = |points: &mut Vec<[f64; 3]>| -> Result<()> {
             if let Some(rings) = rings {
                 rings.count(points, &mut of_rings);
+            }
+            if needs_rim {
+                at_rim.append(&mut deciding(points.clone(), limit));
             }
             if let Some(lines) = lines {
                 replaced += lines.take_replaced(points) as u64;
@@ -95,8 +104,8 @@ impl Job {
             points.clear();
             Ok(())
         };
-        let most = (self.plan.task_memory / BYTES_A_DIVIDED_POINT).clamp(1 << 14, DIVIDED_AT_ONCE)
-            as usize;
+        let bytes = BYTES_A_DIVIDED_POINT + u64::from(needs_rim) * BYTES_A_POINT_AT_RIM;
+        let most = (self.plan.task_memory / bytes).clamp(1 << 14, DIVIDED_AT_ONCE) as usize;
         let mut written = Ok(());
         let read = self.read_file(file, journal, &mut |mut points| {
             if waiting.is_empty() {
@@ -115,6 +124,7 @@ impl Job {
             FileFacts::Skipped(_) => {
                 table.clear();
                 near.clear();
+                at_rim.clear();
             }
             FileFacts::Read(points) => {
                 points.rings = notes::rings_found(&of_rings);
@@ -125,6 +135,8 @@ impl Job {
         writer.put(&table)?;
         writer.begin("near");
         writer.put(&bytes::of_points(&near))?;
+        writer.begin("rim");
+        writer.put(&bytes::of_points(&deciding(at_rim, limit)))?;
         Ok(TaskFacts {
             file: Some(of_file),
             ..TaskFacts::default()
@@ -142,17 +154,19 @@ impl Job {
         let Some(lines) = &self.known(&journal.context)?.lines else {
             return Ok(TaskFacts::default());
         };
-        let mut near = Vec::new();
+        let (mut near, mut at_rim) = (Vec::new(), Vec::new());
         let mut extent = Bounds::default();
         for (number, file) in self.plan.files.iter().enumerate() {
             let mut divided = sources.open(number)?;
-            let bytes = divided.section("near")?;
-            bytes::add_points(&bytes, &mut near).ok_or_else(|| divided.damaged())?;
+            for (section, points) in [("near", &mut near), ("rim", &mut at_rim)] {
+                let bytes = divided.section(section)?;
+                bytes::add_points(&bytes, points).ok_or_else(|| divided.damaged())?;
+            }
             [file.min, file.max]
                 .into_iter()
                 .for_each(|[x, y]| extent.add([x, y, 0.0]));
         }
-        let tin = lines.build(near, &extent, crs, journal)?;
+        let tin = lines.build(near, (at_rim, self.plan.max_edge), &extent, crs, journal)?;
         let edges = lines::write(&tin, &self.plan.layout, writer)?;
         let report = tin.report();
         Ok(TaskFacts {

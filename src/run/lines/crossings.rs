@@ -45,7 +45,7 @@ impl LineNames {
         });
     }
 
-    /// Returns the name of a line, such as "edges.shp fid 12, part 2", by its position among the
+    /// Returns the name of a line, such as "edges.shp record 13, part 2", by its position among the
     /// breaklines; an empty string if there is no such line.
     pub fn name(&self, line: usize) -> String {
         let Some(LineName { file, fid, part }) = self.lines.get(line) else {
@@ -54,7 +54,8 @@ impl LineNames {
         let part = part
             .map(|part| format!(", part {part}"))
             .unwrap_or_default();
-        format!("{} fid {fid}{part}", self.files[*file].display())
+        let record = fid + 1;
+        format!("{} record {record}{part}", self.files[*file].display())
     }
 
     /// Writes a comma separated table of the points where lines meet with different heights. Each
@@ -168,7 +169,7 @@ mod tests {
         }
         assert_eq!(
             [0, 1].map(|line| names.name(line)),
-            ["a,b.shp fid 7", "c.shp fid 0, part 2"]
+            ["a,b.shp record 8", "c.shp record 1, part 2"]
         );
         let heights = vec![(0, 2.5), (1, 1.0), (2, 2.0)];
         let crossing = CrossingHeights {

@@ -7,7 +7,7 @@ use super::crossings::LineNames;
 use super::layers::{self, Layers};
 use super::notes::{LevelRing, LineInput};
 use super::shapes::{self, Drawn};
-use crate::data::{Bounds, Layer, Shape};
+use crate::data::{Layer, Shape};
 use crate::error::{Error, Result, Setting, wording};
 use crate::io::OnDamage;
 use crate::run::context::Journal;
@@ -17,6 +17,7 @@ use crate::run::request::input::Input;
 use crate::run::request::lines::{
     FlatRule, LineRequest, LineRole, LowerEdge, PerRecord, WallOptions,
 };
+use crate::run::sources::extents::LineExtents;
 use crate::run::sources::systems::Stated;
 use crate::run::sources::transforms::Transforms;
 use crate::terrain::{
@@ -37,10 +38,11 @@ pub(crate) struct LineLayers<'a> {
 pub(crate) struct Added {
     pub(crate) names: LineNames,
     pub(crate) inputs: Vec<LineInput>,
-    /// The box around all lines with heights.
-    pub(crate) extent: Bounds,
+    pub(crate) extents: LineExtents,
     /// The closed lines of one height.
     pub(crate) level_rings: Vec<LevelRing>,
+    /// Lakes whose shores differ in height: their names, their heights and the differences.
+    pub(crate) uneven_shores: Vec<(String, f64, f64)>,
     /// Rivers whose banks rise, or differ across.
     pub(crate) uneven: Vec<(String, RiverHeights)>,
     /// Rivers that are lowered to others.
@@ -125,19 +127,22 @@ impl<'a> LineLayers<'a> {
             added: Added {
                 names: LineNames::new(paths),
                 inputs: Vec::new(),
-                extent: Bounds::default(),
+                extents: LineExtents::default(),
                 level_rings: Vec::new(),
+                uneven_shores: Vec::new(),
                 uneven: Vec::new(),
                 lowered: Vec::new(),
                 overlaps: Vec::new(),
             },
             rivers: Vec::new(),
             lowerings: Vec::new(),
+            role: LineRole::Breaklines,
             file: 0,
             next: 0,
         };
         let mut by_file = by_file.iter();
         for (role, layers) in &self.groups {
+            adding.role = *role;
             let by_layer: Vec<Option<usize>> =
                 by_file.by_ref().take(layers.len()).copied().collect();
             // Lines that depend on those of other layers.
@@ -191,6 +196,8 @@ struct Adding<'a> {
     /// The number of the first line of each river.
     rivers: Vec<usize>,
     lowerings: Vec<RiverLowering>,
+    /// What the lines of the current layer are used as.
+    role: LineRole,
     /// The position of the current layer among all.
     file: usize,
     /// The number of the next line of the builder.
@@ -264,9 +271,11 @@ impl Adding<'_> {
         self.transforms
             .apply(transform, &mut line.points)
             .map_err(|e| e.in_file(path))?;
-        line.points
-            .iter()
-            .for_each(|&vertex| self.added.extent.add(vertex));
+        let extent = match self.role {
+            LineRole::Flats | LineRole::Rivers => &mut self.added.extents.waters,
+            _ => &mut self.added.extents.with_heights,
+        };
+        line.points.iter().for_each(|&vertex| extent.add(vertex));
         Ok(())
     }
 
@@ -281,6 +290,14 @@ impl Adding<'_> {
             .flat
             .tolerance
             .unwrap_or_else(|| self.units.height_of_metres(FLAT_TOLERANCE_METRES))
+    }
+
+    /// The largest difference of heights of a shore whose lowest is the height of the lake.
+    fn shore_tolerance(&self) -> f64 {
+        self.request
+            .flat
+            .tolerance
+            .unwrap_or_else(|| self.units.height_of_metres(SHORE_TOLERANCE_METRES))
     }
 
     /// The walls of all layers, by layer: where one ends, others may go on.
@@ -426,7 +443,7 @@ impl Adding<'_> {
             let first = rings[0].clone();
             let height = match &self.request.flat.height {
                 FlatRule::OfShore => FlatHeight::OfShore {
-                    tolerance: self.flat_tolerance(),
+                    tolerance: self.shore_tolerance(),
                 },
                 FlatRule::Lowest => FlatHeight::Lowest,
                 FlatRule::Mean => FlatHeight::Mean,
@@ -446,10 +463,17 @@ impl Adding<'_> {
             let rings: Vec<Vec<[f64; 3]>> = rings.into_iter().map(|ring| ring.points).collect();
             let flat =
                 Flat::new(&rings, height).map_err(|e| shapes::at_record(e, path, first.fid + 1))?;
+            let (height, spread) = (flat.height(), flat.spread());
             let numbers = self
                 .builder
                 .add_flat(flat.with_buffer(self.request.flat.buffer));
+            let line = numbers.start;
             self.name(&first, numbers);
+            let is_chosen = self.request.flat.height == FlatRule::OfShore;
+            if is_chosen && spread > self.flat_tolerance() {
+                let name = self.added.names.name(line);
+                self.added.uneven_shores.push((name, height, spread));
+            }
         }
         Ok(lakes.len())
     }
@@ -642,8 +666,11 @@ fn banks(by_record: Vec<Vec<Drawn>>, path: &Path) -> Result<Vec<Vec<Drawn>>> {
     }
 }
 
-/// The default tolerance of level shores.
+/// Differences of heights in water up to this are not reported.
 const FLAT_TOLERANCE_METRES: f64 = 0.01;
+
+/// The default tolerance of shores: those that were drawn on a lidar survey differ by its noise.
+const SHORE_TOLERANCE_METRES: f64 = 0.3;
 
 /// The lines of each record.
 fn records(drawn: Vec<Drawn>) -> Vec<Vec<Drawn>> {

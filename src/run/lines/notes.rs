@@ -106,6 +106,51 @@ pub(crate) fn note_walls_in_water(report: &TinReport, names: &LineNames, journal
     }
 }
 
+/// Adds a notice about lakes that have the height of larger ones, with the one that was moved most.
+pub(crate) fn note_lakes_joined(
+    report: &TinReport,
+    names: &LineNames,
+    units: &Units,
+    journal: &Journal,
+) {
+    let joined = &report.lakes_joined;
+    if let Some(lake) = joined.iter().max_by(|p, q| p.by.total_cmp(&q.by)) {
+        journal.add(Notice::LakesJoined {
+            lakes: joined.len(),
+            name: names.name(lake.line),
+            to: names.name(lake.to),
+            by: units.height(lake.by),
+        });
+    }
+}
+
+/// Adds a notice about waters that end at the rim of the points.
+pub(crate) fn note_waters_ended(report: &TinReport, names: &LineNames, journal: &Journal) {
+    if let Some(first) = report.waters_ended.first() {
+        journal.add(Notice::WatersEnded {
+            waters: report.waters_ended.len(),
+            name: names.name(*first),
+        });
+    }
+}
+
+/// Flat triangles with a smaller share of the area are not reported.
+const FLAT_SHARE: f64 = 1e-3;
+
+/// Adds notices about vertices on ridges, and about triangles that are flat between lines.
+pub(crate) fn note_flat_triangles(report: &TinReport, journal: &Journal) {
+    if report.ridge_vertices > 0 {
+        journal.add(Notice::RidgesAdded(report.ridge_vertices));
+    }
+    if report.flat_share > FLAT_SHARE {
+        journal.add(Notice::FlatTriangles {
+            count: report.flat_triangles,
+            share: report.flat_share,
+            has_ridges: report.ridge_vertices > 0,
+        });
+    }
+}
+
 /// Adds notices about draped lines and holes, none of which lies on the surface. Nothing else may
 /// clip it.
 pub(crate) fn note_apart(inputs: &[LineInput], report: &TinReport, journal: &Journal) {
@@ -119,6 +164,18 @@ pub(crate) fn note_apart(inputs: &[LineInput], report: &TinReport, journal: &Jou
     }
     if is_given(LineRole::Holes) && report.faces_clipped + report.faces_cut == 0 {
         journal.add(Notice::LinesApart(LineRole::Holes));
+    }
+}
+
+/// Adds a notice about lakes whose shores differ in height, with the one that differs most.
+pub(crate) fn note_uneven_shores(uneven: &[(String, f64, f64)], units: &Units, journal: &Journal) {
+    if let Some((name, height, spread)) = uneven.iter().max_by(|p, q| p.2.total_cmp(&q.2)) {
+        journal.add(Notice::UnevenShores {
+            lakes: uneven.len(),
+            name: name.clone(),
+            height: units.height(*height),
+            largest: units.height(*spread),
+        });
     }
 }
 

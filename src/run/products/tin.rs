@@ -20,7 +20,7 @@ use crate::run::lines::notes::{self, LevelRing, LevelRings, LineInput};
 use crate::run::request::input::{Input, MemoryPoints, named};
 use crate::run::request::lines::{LineRequest, LineRole};
 use crate::run::request::serialized;
-use crate::run::sources::extents;
+use crate::run::sources::extents::{self, LineExtents};
 use crate::run::sources::open::{self, Content, content};
 use crate::run::sources::point_files::{FilesRead, PointFiles};
 use crate::run::sources::systems::{self, SystemOptions, Systems};
@@ -36,6 +36,9 @@ const DEFAULT_MAX_EDGE_METRES: f64 = 100.0;
 
 /// The default tolerance of heights where breaklines meet: the accuracy of a survey of edges.
 const DEFAULT_CROSSING_TOLERANCE_METRES: f64 = 0.01;
+
+/// Lines may reach so many mean distances between points beyond these without a notice.
+const USUAL_REACH: f64 = 2.0;
 
 /// The points and lines that a TIN is built from, and the options of building it. Lengths are in
 /// the units of the coordinate system of the result, heights in its units of heights.
@@ -223,8 +226,17 @@ impl EdgeLimit {
         note_of_limit(self.length(units), units)
     }
 
-    /// Returns how far outside of bounds points are used at first, and how far lines may reach
-    /// beyond the points without a notice.
+    /// Returns how far lines may extend the surface beyond the points without a notice.
+    pub(crate) fn usual_reach(self, spacing: Option<f64>, units: &Units) -> f64 {
+        match (self, spacing) {
+            (EdgeLimit::Length(length), _) => length,
+            (_, Some(spacing)) => USUAL_REACH * spacing,
+            (_, None) => self.buffer(units),
+        }
+    }
+
+    /// Returns how far outside of bounds points are used at first, and how far lines may be from
+    /// the points without a notice.
     pub(crate) fn buffer(self, units: &Units) -> f64 {
         self.length(units)
             .unwrap_or_else(|| units.of_metres(DEFAULT_MAX_EDGE_METRES))
@@ -331,12 +343,14 @@ pub(crate) fn build(
     let Added {
         names,
         mut inputs,
-        extent: line_extent,
+        extents: line_extents,
         level_rings,
+        uneven_shores,
         uneven,
         lowered,
         overlaps,
     } = layers.add_to(&mut builder, of_layers, &transforms, &units)?;
+    notes::note_uneven_shores(&uneven_shores, &units, journal);
     notes::note_uneven(&uneven, &units, journal);
     notes::note_lowered(lowered, journal);
     notes::note_overlaps(&overlaps, journal);
@@ -347,7 +361,7 @@ pub(crate) fn build(
         layers: &layers,
         builder,
         names: &names,
-        line_extent,
+        line_extents,
         transforms: &transforms,
         by_file: of_points,
         units: &units,
@@ -395,7 +409,7 @@ struct Building<'a> {
     /// All options and lines, without points.
     builder: TinBuilder,
     names: &'a LineNames,
-    line_extent: Bounds,
+    line_extents: LineExtents,
     transforms: &'a Transforms,
     /// The transform of each file of points.
     by_file: &'a [Option<usize>],
@@ -441,9 +455,9 @@ impl Building<'_> {
                 report,
                 files: read,
             } = self.read(files, reach)?;
-            self.compare_lines(&points, rim.buffer);
             memory::require_for_points(points.len())?;
             rim.find_limit(&read);
+            self.compare_lines(&points, rim);
             // Once, also if more points are read.
             self.note_level_rings(std::mem::take(&mut level_rings), &points);
             let (tin, replaced) = self.triangulate(points, &read, rim, reach)?;
@@ -495,14 +509,20 @@ impl Building<'_> {
         })
     }
 
-    /// Adds a notice if the lines are farther than a length from all points.
-    fn compare_lines(&self, points: &[[f64; 3]], buffer: f64) {
+    /// Adds a notice if the lines are far from all points, or extend the surface beyond them.
+    fn compare_lines(&self, points: &[[f64; 3]], rim: &Rim) {
         if self.is_clipped() {
             return;
         }
         let mut extent = Bounds::default();
         points.iter().for_each(|&point| extent.add(point));
-        let notice = extents::compare_lines(&extent, &self.line_extent, buffer, self.units);
+        let notice = extents::compare_lines(
+            &extent,
+            &self.line_extents,
+            rim.buffer,
+            rim.limit.usual_reach(rim.spacing, self.units),
+            self.units,
+        );
         notice
             .into_iter()
             .for_each(|notice| self.journal.add(notice));
@@ -553,6 +573,9 @@ impl Building<'_> {
     fn note_lines(&self, inputs: &[LineInput], report: &TinReport) {
         notes::note_water_overlaps(report, self.names, self.units, self.journal);
         notes::note_walls_in_water(report, self.names, self.journal);
+        notes::note_lakes_joined(report, self.names, self.units, self.journal);
+        notes::note_waters_ended(report, self.names, self.journal);
+        notes::note_flat_triangles(report, self.journal);
         if !self.is_clipped() {
             notes::note_apart(inputs, report, self.journal);
         }
@@ -584,6 +607,7 @@ pub(crate) fn builder_of(request: &TinRequest, units: &Units, crs: Option<Crs>) 
         .unwrap_or_else(|| default_tolerance(units));
     builder.step_width = Some(units.of_metres(WALL_WIDTH_METRES));
     builder.max_edge_inside = request.max_edge_inside;
+    builder.add_ridges = request.lines.add_ridges;
     builder.bounds = request.bounds.map(|bounds| grown(bounds, 0.0));
     builder.crs = crs;
     builder

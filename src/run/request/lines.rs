@@ -35,6 +35,8 @@ pub struct LineRequest {
     pub river_width: Option<PerRecord>,
     /// The largest distance in plan between vertices of breaklines and soft lines; more are added.
     pub densify: Option<f64>,
+    /// Adds vertices on ridges and valleys, where triangles between contours would be flat.
+    pub add_ridges: bool,
 }
 
 /// A number for all records, in units of the result, or the attribute that has one for each, in
@@ -73,8 +75,8 @@ pub enum LowerEdge {
 pub struct FlatOptions {
     /// The height.
     pub height: FlatRule,
-    /// The largest difference between heights of a level shore. `None` is 0.01 metres, or 0.01
-    /// units if the unit is not known.
+    /// The largest difference between the heights of a shore that counts as level. `None` is 0.3
+    /// metres, or 0.3 units if the unit is not known; rivers are then reported from 0.01 on.
     pub tolerance: Option<f64>,
     /// Points up to this distance outside of the shore are left out, too.
     pub buffer: f64,
@@ -83,7 +85,7 @@ pub struct FlatOptions {
 /// Which height level water has.
 #[derive(Debug, Clone, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum FlatRule {
-    /// That of its shore, which must be level.
+    /// The lowest of its shore, which must be level within the tolerance.
     #[default]
     OfShore,
     /// The lowest of its shore.
@@ -172,6 +174,7 @@ impl LineRequest {
             rivers,
             river_width: _,
             densify: _,
+            add_ridges: _,
         } = self;
         for layers in [soft, draped, walls, holes, flats, rivers] {
             Input::each_file(layers, visit);

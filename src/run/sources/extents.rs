@@ -46,25 +46,37 @@ pub(crate) fn compare_files(files: &[&Path], extents: &[Bounds], units: &Units, 
     }
 }
 
-/// Returns a notice if lines are far from the points, or reach more than `buffer` beyond them, as
-/// the lines of a whole district do with the points of one tile: the extent of the surface may then
-/// be unexpected.
+/// The boxes around lines.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct LineExtents {
+    /// The box around the lines that are part of the surface wherever they are.
+    pub(crate) with_heights: Bounds,
+    /// The box around lakes and rivers, which end at the rim of the others.
+    pub(crate) waters: Bounds,
+}
+
+/// Returns a notice if lines are farther than `buffer` from the points, or extend the surface more
+/// than `usual` beyond them, as the lines of a whole district do with the points of one tile.
 pub(crate) fn compare_lines(
     points: &Bounds,
-    lines: &Bounds,
+    lines: &LineExtents,
     buffer: f64,
+    usual: f64,
     units: &Units,
 ) -> Option<Notice> {
-    if points.is_empty() || lines.is_empty() {
+    let mut all = lines.with_heights;
+    all.merge(&lines.waters);
+    if points.is_empty() || all.is_empty() {
         return None;
     }
     let gap = (0..2)
-        .map(|i| (points.min[i] - lines.max[i]).max(lines.min[i] - points.max[i]))
+        .map(|i| (points.min[i] - all.max[i]).max(all.min[i] - points.max[i]))
         .fold(0.0, f64::max);
     if gap > buffer {
         return Some(Notice::BreaklinesApart(units.length(gap)));
     }
+    let lines = lines.with_heights;
     let reach = (0..2).flat_map(|i| [points.min[i] - lines.min[i], lines.max[i] - points.max[i]]);
     let furthest = reach.fold(0.0, f64::max);
-    (furthest > buffer).then(|| Notice::BreaklinesBeyond(units.length(furthest)))
+    (furthest > usual).then(|| Notice::BreaklinesBeyond(units.length(furthest)))
 }

@@ -1,13 +1,15 @@
 //! Opening files of any kind, by their first bytes and extension.
 
 use std::borrow::Cow;
+use std::fs::File;
+use std::io::Read;
 use std::path::Path;
 use std::sync::Arc;
 
 use super::tin_parts::TinParts;
 use crate::crs::Crs;
 use crate::data::{
-    BlockSource, Frame, Grid, Layer, LinkFlaw, Mesh, PointInfo, PointSource, Triangles,
+    BlockSource, Frame, Grid, Layer, LinkFlaw, Mesh, PointInfo, PointSource, Shape, Triangles,
 };
 use crate::error::{Error, Kind, Result, Wording};
 pub(crate) use crate::io::formats::Content;
@@ -81,6 +83,35 @@ pub(crate) fn points_of_file(
             })
         }
     }
+}
+
+/// Returns true if a file is a vector layer of lines alone. Such a file is read for that; if it
+/// cannot be read, what uses it will say why.
+pub fn is_of_lines(path: &Path) -> bool {
+    let read = || layer(path, &[], OnDamage::Refuse, &Context::default());
+    content(path) == Content::Layer
+        && may_have_lines(path)
+        && read().is_ok_and(|layer| {
+            let mut shapes = layer
+                .shapes
+                .iter()
+                .filter(|shape| !matches!(shape, Shape::Null))
+                .peekable();
+            shapes.peek().is_some() && shapes.all(|shape| matches!(shape, Shape::Lines(_)))
+        })
+}
+
+/// Returns false if a file is text whose beginning has no line. `PERF:` so points as GeoJSON are
+/// read once.
+fn may_have_lines(path: &Path) -> bool {
+    const BEGINNING: u64 = 1 << 16;
+    let name = path.to_string_lossy();
+    let mut head = Vec::new();
+    let read = File::open(layer::file_of(&name))
+        .and_then(|file| file.take(BEGINNING).read_to_end(&mut head));
+    let is_text = head.first() == Some(&b'{');
+    let word = b"LineString";
+    read.is_ok() && (!is_text || head.windows(word.len()).any(|bytes| bytes == word))
 }
 
 /// Returns what the header of a file of points states that cannot be opened; `None` if it has none

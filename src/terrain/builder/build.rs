@@ -10,6 +10,8 @@ use crate::terrain::admitted::refused;
 use crate::terrain::crossings::{Pass, choose_heights, refuse};
 use crate::terrain::lines::areas::{self, Leveled};
 use crate::terrain::lines::kinds::LineKinds;
+use crate::terrain::peel::{finite_faces, peel};
+use crate::terrain::ridges::Contoured;
 use crate::terrain::tin::Count;
 use crate::terrain::window::uncertain;
 use crate::terrain::{CrossingRule, Tin, TinReport};
@@ -45,6 +47,7 @@ impl TinBuilder {
         cancel: &AtomicBool,
     ) -> Result<Tin> {
         self.mark_overlaps();
+        self.end_waters_at_points();
         let given = self.line_count();
         let overlaps = self.overlaps.take().unwrap_or_else(|| Overlaps {
             given,
@@ -65,7 +68,7 @@ impl TinBuilder {
         build.check_coordinates()?;
         build.leave_out_replaced();
         let given = build.builder.given_heights();
-        let (mut triangulation, disputed) = build.triangulate()?;
+        let (mut triangulation, disputed) = build.triangulate_with_ridges()?;
         build.choose_crossing_heights(&mut triangulation, disputed);
         let is_water = build.level_waters(&mut triangulation, given)?;
         go_on(cancel)?;
@@ -174,12 +177,42 @@ impl Build<'_> {
             report,
             ..
         } = self;
+        if let Some(ended) = &builder.ended {
+            report.waters_ended.clone_from(&ended.first_lines);
+        }
         report.water_overlaps.clone_from(&overlaps.found);
         report
             .water_overlaps
             .retain(|overlap| overlap.step > builder.crossing_tolerance);
         builder.take_replaced_points();
-        report.points_replaced = builder.replaced_count;
+        report.points_replaced = builder.replaced_points.len();
+    }
+
+    /// Triangulates all sites and lines, and once more with vertices on ridges and valleys if these
+    /// are wanted.
+    ///
+    /// # Errors
+    /// Those of [`triangulate`](Self::triangulate).
+    fn triangulate_with_ridges(&mut self) -> Result<(ConstrainedDelaunay<Terrain>, Vec<Pass>)> {
+        if !self.builder.add_ridges {
+            return self.triangulate();
+        }
+        let (builder, report) = (self.builder.clone(), self.report.clone());
+        let (flat, disputed) = self.triangulate()?;
+        let mut inside = finite_faces(&flat);
+        if let Some(limit) = builder.max_edge {
+            peel(&flat, &mut inside, limit);
+        }
+        let kind_of = |line: LineId| builder.line_kinds.get(line.index()).copied();
+        let vertices = Contoured::new(&flat, &inside, kind_of).ridge_vertices();
+        go_on(self.cancel)?;
+        if vertices.is_empty() {
+            return Ok((flat, disputed));
+        }
+        (self.builder, self.report) = (builder, report);
+        self.report.ridge_vertices = vertices.len();
+        self.builder.points.extend(vertices);
+        self.triangulate()
     }
 
     /// Triangulates all sites and lines. Returns also the lines at sites where their vertices have
@@ -253,7 +286,11 @@ impl Build<'_> {
         triangulation: &mut ConstrainedDelaunay<Terrain>,
         given: GivenHeights,
     ) -> Result<Vec<bool>> {
-        let Leveled { is_water, sites } = areas::level(
+        let Leveled {
+            is_water,
+            sites,
+            joined,
+        } = areas::level(
             triangulation,
             &self.builder.waters,
             &given.rims,
@@ -276,6 +313,7 @@ impl Build<'_> {
                 .walls_in_water
                 .extend(flooded.map(|([x, y, _], _)| (line, [x, y])));
         }
+        self.report.lakes_joined = joined;
         // In water, no line decides.
         let Build {
             overlaps, report, ..
@@ -318,6 +356,9 @@ impl Build<'_> {
         if let Some(limit) = builder.max_edge_inside {
             report.faces_with_long_edges = tin.leave_out_long(limit, is_water);
         }
+        if report.points < report.breakline_vertices {
+            (report.flat_triangles, report.flat_share) = tin.flat_share();
+        }
         let is_whole = report.faces_beyond_max_edge + report.faces_with_long_edges == 0;
         // Counted only if it does not follow from the final counts.
         let mut left = None;
@@ -338,6 +379,7 @@ impl Build<'_> {
                 builder.max_edge,
                 tin.replaced(),
             );
+            report.uncertain += builder.ended.map_or(0, |ended| ended.uncertain);
         }
         let Count {
             old_vertices,

@@ -1,4 +1,7 @@
 mod build;
+mod rim;
+#[cfg(test)]
+mod rim_tests;
 mod sites;
 
 use std::ops::Range;
@@ -61,6 +64,9 @@ pub struct TinBuilder {
     /// The longest edge (in plan, in the units of the data) anywhere: faces with a longer
     /// unconstrained edge are left out, except in water. `None` keeps them.
     pub max_edge_inside: Option<f64>,
+    /// True to add vertices on ridges and valleys, where triangles between contours would be flat.
+    /// Their heights follow from the contours around them.
+    pub add_ridges: bool,
     /// The distance in plan, in the units of the data, within which heights change where waters of
     /// different heights overlap: outside of the overlap, a river has its own heights from there
     /// on. `None` is 0.01. At least 1000 units in the last place of the largest coordinate are
@@ -90,8 +96,10 @@ pub struct TinBuilder {
     waters: Vec<Water>,
     /// What waters that overlap need; `None` as long as that is not known.
     overlaps: Option<Overlaps>,
+    /// What became of waters at the rim; `None` as long as they are not cut there.
+    ended: Option<EndedWaters>,
     replaced: Replaced,
-    replaced_count: usize,
+    replaced_points: Vec<[f64; 3]>,
     /// Lines in plan that the finished surface is cut along.
     draped: Vec<Vec<[f64; 2]>>,
     /// The areas to leave out, as rings in plan.
@@ -119,6 +127,15 @@ impl Overlaps {
             .and_then(|added| self.named.get(added).copied())
             .unwrap_or(line)
     }
+}
+
+/// What became of waters at the rim.
+#[derive(Debug, Clone, Default)]
+struct EndedWaters {
+    /// The first line of each water that reached beyond the rim, within what is judged.
+    first_lines: Vec<usize>,
+    /// The triangles at the rim that points outside of the window may change.
+    uncertain: usize,
 }
 
 /// The default of [`TinBuilder::step_width`].
@@ -252,7 +269,8 @@ impl TinBuilder {
         } else {
             self.replaced.split_off(&mut self.points)
         };
-        self.replaced_count += points.len();
+        // They count where the surface ends.
+        self.replaced_points.extend_from_slice(&points);
         points
     }
 
@@ -263,6 +281,11 @@ impl TinBuilder {
             return 0;
         }
         self.replaced.split_off(points).len()
+    }
+
+    /// Returns true if there are lakes or rivers.
+    pub(crate) fn has_waters(&self) -> bool {
+        !self.waters.is_empty()
     }
 
     /// Returns the lines of all kinds in plan.

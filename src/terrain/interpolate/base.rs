@@ -355,3 +355,12 @@ fn height_along(p: [f64; 3], r: [f64; 3], q: [f64; 2]) -> f64 {
     };
     p[2] + part.clamp(0.0, 1.0) * (r[2] - p[2])
 }
+
+/// Returns true if a position is in a triangle or on its border.
+pub(super) fn holds([a, b, c]: [[f64; 3]; 3], q: [f64; 2]) -> bool {
+    let q = [q[0], q[1], 0.0];
+    q.iter().all(|c| c.is_finite())
+        && [[a, b], [b, c], [c, a]]
+            .into_iter()
+            .all(|[p, r]| orientation([p, r, q]) != Sign::Negative)
+}

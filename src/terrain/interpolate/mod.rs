@@ -7,9 +7,11 @@
 //! | almost the same, in less time | [`Laplace`](Method::Laplace) | kinks at circles through vertices |
 //! | a surface to compute slopes from | [`Smooth`](Method::Smooth) | smooth except at hard edges; may overshoot |
 //! | a map of the areas nearest to points | [`Nearest`](Method::Nearest) | steps |
-//! | what another program calls IDW | [`Idw`](Method::Idw) | steps; ignores lines |
+//! | what another program calls IDW | [`Idw`](Method::Idw) | steps; ignores lines, but not water |
 //!
 //! *Hard* edges are those of breaklines ([`EdgeKind::is_hard`](crate::data::EdgeKind::is_hard)).
+//! The methods [`Nearest`](Method::Nearest) and [`Idw`](Method::Idw) know only vertices, except in
+//! water, which is level with all methods.
 //! The first four methods have the heights of the vertices at the vertices and those of a hard edge
 //! on it, and reproduce a plane.
 //!
@@ -26,18 +28,19 @@ mod element;
 mod natural;
 mod smooth;
 mod vertices;
+mod waters;
 
 use std::sync::{Arc, OnceLock};
 
 use super::boxes::{Boxed, Boxes, Extent};
 use super::linear::linear;
-use crate::data::{Surface, corners, faces_under, orientation};
+use crate::data::{Surface, corners, faces_under};
 use crate::error::Result;
-use crate::triangulation::num::Sign;
-use base::{Base, Site};
+use base::{Base, Site, holds};
 use natural::{Tour, laplace, sibson};
 use smooth::Patch;
 use vertices::{Search, Vertices};
+use waters::Waters;
 
 pub use element::CubicElement;
 
@@ -95,11 +98,11 @@ pub(crate) struct Prepared {
 #[derive(Debug)]
 enum Rule {
     Linear,
-    Nearest(Vertices),
+    Nearest(Vertices, Waters),
     Natural(Base),
     Laplace(Base),
     Smooth(Base),
-    Idw(Vertices),
+    Idw(Vertices, Waters),
 }
 
 /// The memory of queries, kept from one position to the next. Its content has no influence on
@@ -143,11 +146,11 @@ impl<'a, S: Surface + ?Sized> Interpolant<'a, S> {
         };
         let rule = match method {
             Method::Linear => Rule::Linear,
-            Method::Nearest => Rule::Nearest(Vertices::new(surface)),
+            Method::Nearest => Rule::Nearest(Vertices::new(surface), Waters::new(surface)),
             Method::Natural => Rule::Natural(delaunay()?),
             Method::Laplace => Rule::Laplace(delaunay()?),
             Method::Smooth => Rule::Smooth(Base::new(surface)?),
-            Method::Idw => Rule::Idw(Vertices::new(surface)),
+            Method::Idw => Rule::Idw(Vertices::new(surface), Waters::new(surface)),
         };
         surface.ensure_intact()?;
         let prepared = Prepared {
@@ -175,11 +178,11 @@ impl<'a, S: Surface + ?Sized> Interpolant<'a, S> {
     pub fn method(&self) -> Method {
         match self.prepared.rule {
             Rule::Linear => Method::Linear,
-            Rule::Nearest(_) => Method::Nearest,
+            Rule::Nearest(..) => Method::Nearest,
             Rule::Natural(_) => Method::Natural,
             Rule::Laplace(_) => Method::Laplace,
             Rule::Smooth(_) => Method::Smooth,
-            Rule::Idw(_) => Method::Idw,
+            Rule::Idw(..) => Method::Idw,
         }
     }
 
@@ -211,8 +214,12 @@ impl<'a, S: Surface + ?Sized> Interpolant<'a, S> {
     pub(super) fn height_in(&self, face: u32, q: [f64; 2], scratch: &mut QueryBuffers) -> f64 {
         let height = match &self.prepared.rule {
             Rule::Linear => None,
-            Rule::Nearest(vertices) => vertices.nearest(q, &mut scratch.search),
-            Rule::Idw(vertices) => vertices.inverse_distance(q, &mut scratch.search),
+            Rule::Nearest(vertices, waters) => waters
+                .height(q)
+                .or_else(|| vertices.nearest(q, &mut scratch.search)),
+            Rule::Idw(vertices, waters) => waters
+                .height(q)
+                .or_else(|| vertices.inverse_distance(q, &mut scratch.search)),
             Rule::Natural(base) => self.in_triangle(base, face, q, |site| match site {
                 Site::Height(height) | Site::Rim { height, .. } => Some(height),
                 Site::Inside { face, first } => sibson(base, face, first, q, &mut scratch.tour),
@@ -294,13 +301,4 @@ fn smooth(
         *patch = Some(Patch::new(base, face, first));
     }
     patch.as_ref()?.height(q)
-}
-
-/// Returns true if a position is in a triangle or on its border.
-fn holds([a, b, c]: [[f64; 3]; 3], q: [f64; 2]) -> bool {
-    let q = [q[0], q[1], 0.0];
-    q.iter().all(|c| c.is_finite())
-        && [[a, b], [b, c], [c, a]]
-            .into_iter()
-            .all(|[p, r]| orientation([p, r, q]) != Sign::Negative)
 }

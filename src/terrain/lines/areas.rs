@@ -6,16 +6,18 @@ use std::cell::OnceCell;
 use std::collections::BTreeSet;
 use std::ops::Range;
 
+use super::divided::Divided;
+use super::lake_levels::{JoinedLake, LakeLevels};
 use super::{Flat, River, RiverWater, Wall};
 use crate::error::{Error, Result, Setting, wording};
 use crate::terrain::boxes::{Boxed, Boxes, Extent};
 use crate::terrain::inside::{Inside, sides};
 use crate::terrain::near_lines::NearLines;
-use crate::terrain::regions::{self, Domain, Faces};
+use crate::terrain::regions::Domain;
 use crate::triangulation::ConstrainedDelaunay;
 use crate::triangulation::LineId;
 use crate::triangulation::geometry::Terrain;
-use crate::triangulation::tds::{CellId, VertexId};
+use crate::triangulation::tds::VertexId;
 
 /// An area of water, and the numbers of the lines around it.
 #[derive(Debug, Clone)]
@@ -25,6 +27,16 @@ pub(crate) struct Water {
     /// The lines that bound the area together.
     pub(crate) rim: Vec<usize>,
     pub(crate) level: WaterLevel,
+}
+
+impl Water {
+    /// Returns the lake and the number of its first line; `None` for a river.
+    fn lake(&self) -> Option<(&Flat, usize)> {
+        match &self.level {
+            WaterLevel::Flat(flat) => Some((flat, self.lines.start)),
+            WaterLevel::River(_) => None,
+        }
+    }
 }
 
 /// The heights of water.
@@ -138,30 +150,6 @@ impl Replaced {
     }
 }
 
-/// The cells of a triangulation, divided by the lines around water.
-struct Divided<'a> {
-    triangulation: &'a ConstrainedDelaunay<Terrain>,
-    /// For each edge on such lines, from the smaller vertex to the larger, the areas that it
-    /// bounds, each as often as lines around it run along the edge.
-    domains: FxHashMap<[VertexId; 2], Vec<Domain>>,
-}
-
-impl Faces for Divided<'_> {
-    fn beyond(&self, face: u32, side: usize, domains: &mut Vec<Domain>) -> Option<u32> {
-        let (tds, cell) = (self.triangulation.tds(), CellId::new(face as usize));
-        if self.triangulation.is_constrained(cell, side) {
-            let [p, q] = tds.edge_ends(cell, side);
-            domains.extend(
-                self.domains
-                    .get(&[p.min(q), p.max(q)])
-                    .into_iter()
-                    .flatten(),
-            );
-        }
-        Some(tds.neighbor(cell, side).index() as u32)
-    }
-}
-
 /// The cells in water, once all vertices there have its height.
 #[derive(Debug, Default)]
 pub(crate) struct Leveled {
@@ -169,11 +157,14 @@ pub(crate) struct Leveled {
     pub(crate) is_water: Vec<bool>,
     /// The bits of the sites of all vertices there.
     pub(crate) sites: FxHashSet<[u64; 2]>,
+    /// The lakes that have the height of another one.
+    pub(crate) joined: Vec<JoinedLake>,
 }
 
 /// Gives all vertices in water its height, shores and banks included.
 ///
-/// In a lake that is the height of the lake, to the last bit. In a river it is the height between
+/// In a lake that is the height of the lake, to the last bit; in lakes that meet, that of the
+/// largest. In a river it is the height between
 /// the level lines; where rivers overlap, the lowest. A lake counts before a river.
 ///
 /// `given` are the heights that the vertices of the lines around rivers were given with, by the
@@ -195,13 +186,20 @@ pub(crate) fn level(
     if waters.is_empty() {
         return Ok(Leveled::default());
     }
-    let divided = Divided::by_rims(triangulation, waters);
+    let rims = waters.iter().enumerate().flat_map(|(area, water)| {
+        let lines = water.rim.iter();
+        lines.map(move |&line| (area, LineId::new(line)))
+    });
+    let divided = Divided::by_rims(triangulation, rims);
     let Some(labels) = divided.labels() else {
         return Ok(Leveled::default());
     };
     let around = divided.areas_around(&labels);
+    let flats: Vec<Option<(&Flat, usize)>> = waters.iter().map(Water::lake).collect();
+    let lakes = LakeLevels::new(&flats, around.iter().map(|(_, areas)| areas.as_slice()));
     let heights = WaterHeights {
         waters,
+        lakes: &lakes,
         own: own_heights(triangulation, waters, given),
         surfaces: waters.iter().map(|_| OnceCell::new()).collect(),
         pairs: overlapping.iter().copied().collect(),
@@ -229,94 +227,17 @@ pub(crate) fn level(
         sites.insert([x.to_bits(), y.to_bits()]);
         triangulation.replace_point(vertex, [x, y, height]);
     }
-    Ok(Leveled { is_water, sites })
-}
-
-/// Which areas of water the cells of a triangulation lie in.
-struct Labels {
-    /// For each cell number, its label: an index into `areas`.
-    of_cells: Vec<u32>,
-    /// The areas of each label; none for the first.
-    areas: Vec<Vec<Domain>>,
-}
-
-impl<'a> Divided<'a> {
-    /// Divides a triangulation by the lines around waters; each water is a domain.
-    fn by_rims(triangulation: &'a ConstrainedDelaunay<Terrain>, waters: &[Water]) -> Self {
-        let mut domains: FxHashMap<[VertexId; 2], Vec<Domain>> = FxHashMap::default();
-        for (domain, water) in waters.iter().enumerate() {
-            for &line in &water.rim {
-                for pair in triangulation.chain(LineId::new(line)).windows(2) {
-                    domains
-                        .entry([pair[0].min(pair[1]), pair[0].max(pair[1])])
-                        .or_default()
-                        .push(domain);
-                }
-            }
-        }
-        Divided {
-            triangulation,
-            domains,
-        }
-    }
-
-    /// The areas that each cell lies in; `None` if there are no cells.
-    fn labels(&self) -> Option<Labels> {
-        let tds = self.triangulation.tds();
-        let start = tds.cell_of(VertexId::INFINITE)?;
-        let mut areas: Vec<Vec<Domain>> = vec![Vec::new()];
-        let of_cells = regions::label(
-            self,
-            tds.cell_slots(),
-            start.index() as u32,
-            Vec::new(),
-            |within| {
-                if within.is_empty() {
-                    return 0;
-                }
-                areas.push(within.to_vec());
-                areas.len() as u32 - 1
-            },
-        );
-        Some(Labels { of_cells, areas })
-    }
-
-    /// The areas around each vertex that lies in water or on its border, ordered by vertex. An area
-    /// may be named several times.
-    fn areas_around(&self, labels: &Labels) -> Vec<(VertexId, Vec<Domain>)> {
-        let tds = self.triangulation.tds();
-        let mut around: FxHashMap<VertexId, Vec<Domain>> = FxHashMap::default();
-        for cell in tds
-            .cells()
-            .filter(|cell| labels.of_cells[cell.index()] != 0)
-        {
-            let within = &labels.areas[labels.of_cells[cell.index()] as usize];
-            for &vertex in tds
-                .corners(cell)
-                .iter()
-                .filter(|vertex| **vertex != VertexId::INFINITE)
-            {
-                around.entry(vertex).or_default().extend(within);
-            }
-        }
-        // Where rounding brought banks together, a line around water may reach a vertex by the
-        // edges on which it leaves it, so that no water lies between them.
-        for (edge, areas) in &self.domains {
-            for vertex in edge {
-                if let Some(others) = around.get_mut(vertex) {
-                    others.extend(areas);
-                }
-            }
-        }
-        let mut vertices: Vec<(VertexId, Vec<Domain>)> = around.into_iter().collect();
-        vertices.sort_unstable_by_key(|(vertex, _)| *vertex);
-        vertices
-    }
+    Ok(Leveled {
+        is_water,
+        sites,
+        joined: lakes.joined,
+    })
 }
 
 /// What the heights of vertices in water follow from.
 struct WaterHeights<'a> {
     waters: &'a [Water],
+    lakes: &'a LakeLevels,
     /// The heights that vertices around rivers were given with.
     own: FxHashMap<(Domain, VertexId), f64>,
     /// The surface of each river, once it is needed.
@@ -372,7 +293,7 @@ impl WaterHeights<'_> {
         let mut lakes = areas
             .iter()
             .filter_map(|&area| match &self.waters[area].level {
-                WaterLevel::Flat(flat) => Some((area, flat.height)),
+                WaterLevel::Flat(_) => Some((area, self.lakes.of(area))),
                 WaterLevel::River(_) => None,
             });
         let Some((first, height)) = lakes.next() else {

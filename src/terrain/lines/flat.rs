@@ -29,6 +29,8 @@ pub struct Flat {
     pub(crate) rings: Vec<Vec<[f64; 3]>>,
     pub(crate) height: f64,
     pub(crate) buffer: f64,
+    spread: f64,
+    tolerance: f64,
 }
 
 impl Flat {
@@ -94,6 +96,11 @@ impl Flat {
             rings,
             height: level,
             buffer: 0.0,
+            spread: highest - lowest,
+            tolerance: match height {
+                FlatHeight::OfShore { tolerance } => tolerance,
+                FlatHeight::Lowest | FlatHeight::Mean | FlatHeight::Given(_) => 0.0,
+            },
         })
     }
 
@@ -104,6 +111,25 @@ impl Flat {
             buffer: buffer.max(0.0),
             ..self
         }
+    }
+
+    /// Returns how far the heights of the shore differed; NaN if it had none.
+    pub fn spread(&self) -> f64 {
+        self.spread
+    }
+
+    /// Returns how far the heights of lakes that are one water may differ from its own.
+    pub(crate) fn tolerance(&self) -> f64 {
+        self.tolerance
+    }
+
+    /// Returns the area in plan within the largest ring.
+    pub(crate) fn area(&self) -> f64 {
+        let of_ring = |ring: &Vec<[f64; 3]>| {
+            let fan = ring.windows(2).map(|pair| cross(ring[0], pair[0], pair[1]));
+            fan.sum::<f64>().abs() / 2.0
+        };
+        self.rings.iter().map(of_ring).fold(0.0, f64::max)
     }
 
     /// Returns the height of the water.

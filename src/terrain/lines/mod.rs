@@ -13,9 +13,11 @@
 
 pub(super) mod areas;
 mod densify;
+pub(super) mod divided;
 mod flat;
 mod joints;
 pub(super) mod kinds;
+mod lake_levels;
 mod offset;
 pub(super) mod overlap;
 mod river;
@@ -23,6 +25,7 @@ mod wall;
 
 pub use densify::densified;
 pub use flat::{Flat, FlatHeight};
+pub use lake_levels::JoinedLake;
 pub use overlap::WaterOverlap;
 pub(super) use river::RiverWater;
 pub use river::{River, RiverHeights, RiverLowering};

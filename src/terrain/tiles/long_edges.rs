@@ -3,6 +3,7 @@
 use rustc_hash::FxHashMap;
 
 use super::{TileTriangle, TileVertex};
+use crate::terrain::groups::Groups;
 use crate::terrain::linear::plan_distance;
 use crate::triangulation::tds::{ccw, cw};
 
@@ -25,10 +26,6 @@ pub struct LongEdges {
     /// A union-find structure over the triangles.
     groups: Groups,
 }
-
-/// Groups of things by number, which can be joined.
-#[derive(Debug, Clone, Default)]
-struct Groups(Vec<u32>);
 
 /// The triangles of a task that wait for a decision.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -126,27 +123,6 @@ fn edge_key(a: TileVertex, b: TileVertex) -> EdgeKey {
     [a.min(b), a.max(b)]
 }
 
-impl Groups {
-    fn add(&mut self) -> u32 {
-        self.0.push(self.0.len() as u32);
-        self.0.len() as u32 - 1
-    }
-
-    fn find(&mut self, mut of: u32) -> u32 {
-        while self.0[of as usize] != of {
-            // Shortens the path for the next search.
-            self.0[of as usize] = self.0[self.0[of as usize] as usize];
-            of = self.0[of as usize];
-        }
-        of
-    }
-
-    fn join(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.find(a), self.find(b));
-        self.0[a.max(b) as usize] = a.min(b);
-    }
-}
-
 /// Decides which groups of long edges are at the rim, once all tasks have added theirs. Memory is
 /// needed for the groups and the gates.
 #[derive(Debug, Clone, Default)]
@@ -160,7 +136,7 @@ pub struct Rim {
 impl Rim {
     /// Adds the groups of the next task. Linear, up to a factor that is nearly constant.
     pub fn add(&mut self, groups: u32, gates: &[Gate]) {
-        let first = self.groups.0.len() as u32;
+        let first = self.groups.count() as u32;
         self.first_of.push(first);
         (0..groups).for_each(|_| _ = self.groups.add());
         for gate in gates {
@@ -174,7 +150,7 @@ impl Rim {
     /// Returns, for each task in the order in which they were added, and for each of its groups,
     /// true if the group is removed: an edge of it has nothing on its other side.
     pub fn removed(mut self) -> Vec<Vec<bool>> {
-        let mut is_removed = vec![false; self.groups.0.len()];
+        let mut is_removed = vec![false; self.groups.count()];
         for group in self.open.into_values() {
             is_removed[self.groups.find(group) as usize] = true;
         }
@@ -183,7 +159,7 @@ impl Rim {
             .iter()
             .skip(1)
             .copied()
-            .chain([self.groups.0.len() as u32]);
+            .chain([self.groups.count() as u32]);
         let ranges: Vec<_> = self.first_of.iter().copied().zip(ends).collect();
         let mut of_task = |(first, end)| {
             (first..end)

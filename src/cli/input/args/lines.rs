@@ -80,7 +80,7 @@ pub(crate) struct LineArgs {
     #[arg(long, visible_alias = "lakes", value_name = "FILE[:NAME]")]
     pub(crate) flat: Vec<PathBuf>,
 
-    /// Height of lakes [default: that of their shore, which must be level]
+    /// Height of lakes [default: the lowest of their shore, which must be about level]
     ///
     /// The lowest or the mean height of the shore, a number, or the attribute that has the height
     /// of each lake. With a number or an attribute, the shore needs no heights.
@@ -92,7 +92,7 @@ pub(crate) struct LineArgs {
     )]
     pub(crate) flat_height: Option<FlatHeightArg>,
 
-    /// Largest difference of heights of a level shore [default: 0.01 metres]
+    /// Largest difference of heights of a shore [default: 0.3 metres]
     #[arg(long, requires = "flat", value_name = "HEIGHT", value_parser = not_negative, allow_negative_numbers = true)]
     pub(crate) flat_tolerance: Option<f64>,
 
@@ -129,6 +129,13 @@ pub(crate) struct LineArgs {
     /// Largest distance between vertices of breaklines and soft lines: more are added
     #[arg(long, value_name = "LENGTH", value_parser = positive, allow_negative_numbers = true)]
     pub(crate) densify: Option<f64>,
+
+    /// Add vertices on ridges and valleys, where triangles between contours are flat
+    ///
+    /// Their heights follow from the contours around: between two of different heights, or, on a
+    /// summit, from the slope around it.
+    #[arg(long)]
+    pub(crate) add_ridges: bool,
 }
 
 impl LineArgs {

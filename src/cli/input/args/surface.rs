@@ -15,12 +15,16 @@ pub(crate) struct SurfaceArgs {
     /// Files, globs, `@list.txt` or `-` (stdin)
     ///
     /// Points from LAS, LAZ, COPC, text (x y z) and vector layers (`FILE:FIELD` takes heights from
-    /// an attribute; of a file with several layers, `FILE:LAYER` or `FILE:LAYER:FIELD`). Or one
+    /// an attribute; of a file with several layers, `FILE:LAYER` or `FILE:LAYER:FIELD`). A layer of
+    /// lines, such as contours, is used like one of --breaklines; no points are needed then. Or one
     /// TIN: a .tin or a .ply of this program, with its breaklines and coordinate system, or an
     /// .obj. `@list.txt` contains one file name per line (`#` starts a comment), relative to the
     /// list. The order of the files makes no difference, except for `--duplicates first` and
     /// `last`.
-    #[arg(required = true, value_name = "IN")]
+    #[arg(
+        required_unless_present_any = ["breaklines", "soft_lines", "walls", "flat", "rivers"],
+        value_name = "IN"
+    )]
     pub(crate) inputs: Vec<PathBuf>,
 
     #[command(flatten)]

@@ -1,0 +1,48 @@
+//! What a longest edge leaves of a triangulation.
+
+use super::linear::plan_distance;
+use crate::triangulation::ConstrainedDelaunay;
+use crate::triangulation::geometry::Terrain;
+use crate::triangulation::tds::{CellId, VertexId, ccw, cw};
+
+/// Leaves out the faces that can be reached from outside of the hull over unconstrained edges
+/// longer than `limit`: sets `inside`, by the numbers of cells, to false. Returns their number.
+pub(super) fn peel(
+    triangulation: &ConstrainedDelaunay<Terrain>,
+    inside: &mut [bool],
+    limit: f64,
+) -> usize {
+    let tds = triangulation.tds();
+    let mut peeled = 0;
+    let at_hull = tds
+        .corners_around(VertexId::INFINITE)
+        .map(|(cell, i)| (tds.neighbor(cell, i), cell));
+    let mut exposed: Vec<(CellId, CellId)> = at_hull.collect();
+    while let Some((cell, from)) = exposed.pop() {
+        let i = tds.index_of_neighbor(cell, from);
+        let [a, b] = [ccw(i), cw(i)].map(|k| *triangulation.point(tds.vertex(cell, k)));
+        let open = inside[cell.index()] && !triangulation.is_constrained(cell, i);
+        if !open || plan_distance(a, b) <= limit {
+            continue;
+        }
+        inside[cell.index()] = false;
+        peeled += 1;
+        let onward = [ccw(i), cw(i)].map(|k| tds.neighbor(cell, k));
+        exposed.extend(
+            onward
+                .into_iter()
+                .filter(|n| inside[n.index()])
+                .map(|n| (n, cell)),
+        );
+    }
+    peeled
+}
+
+/// Returns for each cell number true if it is a finite face.
+pub(super) fn finite_faces(triangulation: &ConstrainedDelaunay<Terrain>) -> Vec<bool> {
+    let tds = triangulation.tds();
+    let is_face = |cell| tds.is_used(cell) && !tds.is_infinite(cell);
+    (0..tds.cell_slots())
+        .map(|index| is_face(CellId::new(index)))
+        .collect()
+}
