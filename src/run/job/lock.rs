@@ -21,55 +21,32 @@ impl JobLock {
     /// Waits for a folder that this process has alone, for some seconds. What was read of the
     /// folder before may have changed meanwhile.
     pub(super) fn whole(folder: &Path, context: &Context) -> Result<Self> {
-        Self::wait(folder, Self::try_whole, context)
+        Self::wait(folder, take_whole, context)
     }
 
     /// Like [`whole`](Self::whole), for a folder that processes have together.
     pub(super) fn shared(folder: &Path, context: &Context) -> Result<Self> {
-        let lock = |folder: &Path| Self::try_with(folder, File::try_lock_shared);
-        Self::wait(folder, lock, context)
+        Self::wait(folder, take_shared, context)
     }
 
     /// Locks a folder for this process alone; `None` if another one works in it.
     pub(super) fn try_whole(folder: &Path) -> Result<Option<Self>> {
-        let lock = Self::try_with(folder, File::try_lock)?;
-        // A lock may hold on this host only, or not at all; a lease is seen everywhere.
-        Ok(lock.filter(|_| lease::of_other_host(folder).is_none()))
-    }
-
-    fn try_with(
-        folder: &Path,
-        lock: fn(&File) -> std::result::Result<(), TryLockError>,
-    ) -> Result<Option<Self>> {
-        let path = folder.join(LOCK);
-        let named = |e: std::io::Error| Error::from(e).in_file(&path);
-        // Nothing is written to it: a folder that is no job yet may have such a file.
-        let file = File::options()
-            .write(true)
-            .create(true)
-            .truncate(false)
-            .open(&path)
-            .map_err(named)?;
-        let is_taken = match lock(&file) {
-            // The job may have been removed, and planned again, while this one waited.
-            Ok(()) => is_at(&file.metadata().map_err(named)?, &path),
-            Err(TryLockError::WouldBlock) => false,
-            // Some shared file systems have no locks.
-            Err(TryLockError::Error(_)) => true,
-        };
+        let file = open(folder)?;
+        let is_taken = take_whole(&file, folder)?;
         Ok(is_taken.then_some(JobLock { _file: file }))
     }
 
     fn wait(
         folder: &Path,
-        lock: impl Fn(&Path) -> Result<Option<Self>>,
+        take: fn(&File, &Path) -> Result<bool>,
         context: &Context,
     ) -> Result<Self> {
         let start = Instant::now();
         loop {
             context.check()?;
-            if let Some(lock) = lock(folder)? {
-                return Ok(lock);
+            let file = open(folder)?;
+            if take(&file, folder)? {
+                return Ok(JobLock { _file: file });
             }
             if start.elapsed() > PATIENCE {
                 let who = lease::of_other_host(folder)
@@ -86,6 +63,55 @@ impl JobLock {
             }
             std::thread::sleep(PATIENCE / 50);
         }
+    }
+}
+
+/// Opens the file that is locked. Nothing is written to it: a folder that is no job yet may have
+/// such a file.
+fn open(folder: &Path) -> Result<File> {
+    let path = folder.join(LOCK);
+    let file = File::options()
+        .write(true)
+        .create(true)
+        .truncate(false)
+        .open(&path);
+    file.map_err(|e| Error::from(e).in_file(path))
+}
+
+/// Locks a file for this process alone. Returns false if another one works in the folder.
+fn take_whole(file: &File, folder: &Path) -> Result<bool> {
+    if !is_taken(file.try_lock(), file, folder)? {
+        return Ok(false);
+    }
+    // A lock may hold on this host only, or not at all; a lease is seen everywhere.
+    let is_free = lease::of_other_host(folder).is_none();
+    if !is_free {
+        // Others on this host need not wait; where there are no locks, this fails.
+        let _ = file.unlock();
+    }
+    Ok(is_free)
+}
+
+/// Locks a file together with others. Returns false if another process has the folder alone.
+fn take_shared(file: &File, folder: &Path) -> Result<bool> {
+    is_taken(file.try_lock_shared(), file, folder)
+}
+
+fn is_taken(
+    locked: std::result::Result<(), TryLockError>,
+    file: &File,
+    folder: &Path,
+) -> Result<bool> {
+    match locked {
+        // The job may have been removed, and planned again, while this one waited.
+        Ok(()) => {
+            let path = folder.join(LOCK);
+            let about = file.metadata().map_err(|e| Error::from(e).in_file(&path))?;
+            Ok(is_at(&about, &path))
+        }
+        Err(TryLockError::WouldBlock) => Ok(false),
+        // Some shared file systems have no locks.
+        Err(TryLockError::Error(_)) => Ok(true),
     }
 }
 
