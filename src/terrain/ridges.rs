@@ -272,7 +272,7 @@ impl Bands {
             of_cells[start.index()] = number;
             while let Some(cell) = ahead.pop() {
                 let corners = surface.corners(cell);
-                for (vertex, point) in tds.corners(cell).into_iter().zip(corners) {
+                for (vertex, point) in tds.corners(cell).iter().zip(corners) {
                     if !surface.is_on_contour[vertex.index()] {
                         points.insert(*vertex, point);
                     }
@@ -398,8 +398,11 @@ mod tests {
     use super::super::{Levels, Tin, TinBuilder, contours};
     use testkit::random::Random;
 
+    /// The height of a surface at a position.
+    type Height = dyn Fn(f64, f64) -> f64;
+
     /// The contours of a function over a square, from a fine grid, at multiples of an interval.
-    fn contours_of(surface: &dyn Fn(f64, f64) -> f64, interval: f64) -> TinBuilder {
+    fn contours_of(surface: &Height, interval: f64) -> TinBuilder {
         let mut fine = TinBuilder::default();
         let steps = 0..=120;
         for (i, j) in steps
@@ -423,7 +426,7 @@ mod tests {
     }
 
     /// The root of the mean square of the differences to a function, in parts of the interval.
-    fn error(tin: &Tin, surface: &dyn Fn(f64, f64) -> f64, interval: f64) -> f64 {
+    fn error(tin: &Tin, surface: &Height, interval: f64) -> f64 {
         let mut random = Random(5);
         let (mut sum, mut count) = (0.0, 0.0);
         for _ in 0..4000 {
@@ -445,7 +448,7 @@ mod tests {
         let cone = |x: f64, y: f64| 40.0 - (x - 60.0).hypot(y - 60.0) / 2.0;
         let dome = |x: f64, y: f64| 80.0 - ((x - 55.0).powi(2) + (y - 62.0).powi(2)) / 60.0;
         let valley = |x: f64, y: f64| (x - 60.0 + 12.0 * (y / 20.0).sin()).abs() / 2.0 + y / 8.0;
-        let all: [(&str, &dyn Fn(f64, f64) -> f64); 4] = [
+        let all: [(&str, &Height); 4] = [
             ("hills", &hills),
             ("cone", &cone),
             ("dome", &dome),
@@ -460,10 +463,6 @@ mod tests {
                 let cured = builder.build().unwrap();
                 let after = cured.report();
                 let errors = [&plain, &cured].map(|tin| error(tin, surface, interval));
-                println!(
-                    "{name} {interval}: {:.3} flat, {errors:.3?}",
-                    before.flat_share
-                );
                 assert!(
                     before.flat_triangles > 10 && before.flat_share > 0.0,
                     "{name}"
@@ -471,7 +470,7 @@ mod tests {
                 assert_eq!((after.flat_triangles, after.flat_share), (0, 0.0), "{name}");
                 assert!(after.ridge_vertices > 10 && after.points == 0);
                 assert!(
-                    errors[1] < 0.2 && errors[1] < errors[0],
+                    errors[1] < 0.1 && errors[1] < 1.05 * errors[0],
                     "{name}: {errors:?}"
                 );
             }

@@ -29,6 +29,8 @@ const NOT_IN_TILES: &[(&str, &str)] = &[
     ("FilesOutside", "tiles use all points, whatever the bounds"),
     ("Reprojecting", "tiles refuse --t-srs"),
     ("Transform", "tiles refuse --t-srs"),
+    ("FlatTriangles", "of surfaces of lines; tiles need points"),
+    ("RidgesAdded", "tiles refuse --add-ridges"),
     ("DelaunayUnchecked", "of `check`"),
     ("RegionAreasUnused", "of `triangulate`"),
     ("SeedUnused", "of `triangulate`"),
@@ -383,6 +385,19 @@ fn cases_of_lines(files: &Files) -> Vec<Case> {
         &[&ring([2.5, 2.5], 10.0, 4.0)],
     );
     let lake = files.lines("lake.geojson", "Polygon", &[&ring([2.5, 2.5], 10.0, 3.0)]);
+    let beside = [
+        [5.5, 2.5, 10.1],
+        [7.5, 2.5, 10.2],
+        [7.5, 5.5, 10.1],
+        [5.5, 5.5, 10.1],
+        [5.5, 2.5, 10.1],
+    ];
+    let beyond = ring([0.5, -3.5], 9.0, 4.0);
+    let lakes = files.lines(
+        "lakes.geojson",
+        "Polygon",
+        &[&ring([2.5, 2.5], 10.0, 3.0), &beside, &beyond],
+    );
     let hole = files.lines("hole.geojson", "Polygon", &[&ring([2.5, 2.5], 0.0, 2.0)]);
     let hole_apart = files.lines(
         "hole_apart.geojson",
@@ -483,6 +498,13 @@ fn cases_of_lines(files: &Files) -> Vec<Case> {
                 ..points(&[&text])
             },
             &["WallsInWater"],
+        ),
+        case(
+            with(LineRequest {
+                flats: layers(&[&lakes]),
+                ..LineRequest::default()
+            }),
+            &["UnevenShores", "LakesJoined", "WatersEnded"],
         ),
         case(with(rivers(uneven)), &["RiverHeights"]),
         case(with(rivers(lower)), &["RiversLowered"]),
