@@ -481,6 +481,7 @@ fn hillshades_are_those_of_gdaldem() {
                 azimuth: 100.0,
                 altitude: 25.0,
                 z_factor: 0.4,
+                ..Light::default()
             },
         ),
     ] {

@@ -135,7 +135,7 @@ impl Surface {
         match &self.product.model {
             Model::Tin(_) | Model::Compact(_) | Model::Parts(_) => "tin",
             Model::Mesh(_) => "mesh",
-            Model::Raster(_) => "raster",
+            Model::Raster(_) | Model::RasterFile(_) => "raster",
         }
     }
 
@@ -370,7 +370,7 @@ impl Surface {
             Model::Tin(tin) => Some(tin.vertex_count()),
             Model::Compact(tin) => Some(tin.vertex_count()),
             Model::Mesh(mesh) => Some(mesh.vertex_count()),
-            Model::Parts(_) | Model::Raster(_) => None,
+            Model::Parts(_) | Model::Raster(_) | Model::RasterFile(_) => None,
         }
     }
 

@@ -8,6 +8,11 @@ pub struct ContourLine {
 }
 
 impl ContourLine {
+    /// Returns the number of edges.
+    pub fn edge_count(&self) -> u64 {
+        self.points.len().saturating_sub(1) as u64
+    }
+
     /// Returns true if the line ends where it begins.
     pub fn is_closed(&self) -> bool {
         self.points.len() > 2 && self.points.first() == self.points.last()

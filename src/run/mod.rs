@@ -118,6 +118,7 @@ pub use request::sizes::memory_of;
 pub use sources::open::is_of_lines;
 pub use sources::point_files::BadFiles;
 pub use sources::proj;
+pub use sources::raster_file::RasterFile;
 pub use sources::systems::{Degrees, SystemOptions};
 pub use sources::tin_parts::{TinParts, WrittenParts};
 pub use space::{

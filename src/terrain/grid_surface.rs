@@ -33,6 +33,8 @@ use crate::error::{Error, Result};
 #[derive(Debug, Clone, Copy)]
 pub struct GridSurface<'a> {
     grid: &'a Grid,
+    /// The row of the raster that the first row of the grid is.
+    first_row: usize,
     /// The number of quads in a row, and of rows of quads.
     quads: [usize; 2],
     /// The corners of a quad, counter-clockwise in plan, as offsets of column and row.
@@ -106,9 +108,37 @@ impl<'a> GridSurface<'a> {
         }
         Ok(GridSurface {
             grid,
+            first_row: 0,
             quads,
             corners,
         })
+    }
+
+    /// Creates the surface over some rows of a raster, from `first_row` on. The grid has the rows,
+    /// and the transform of the raster.
+    ///
+    /// # Errors
+    /// Those of [`new`](Self::new).
+    pub(crate) fn of_rows(grid: &'a Grid, first_row: usize) -> Result<Self> {
+        Ok(GridSurface {
+            first_row,
+            ..Self::new(grid)?
+        })
+    }
+
+    /// Row and column in the raster of a vertex that is the center of a cell. No side of a raster
+    /// has more than 2^32 cells.
+    pub(crate) fn cell_of(&self, vertex: u32) -> [u32; 2] {
+        let [column, row] = cell_at(vertex, self.grid.frame.width);
+        [(self.first_row + row) as u32, column as u32]
+    }
+
+    /// The faces of the first and of the last row of quads, with their vertices.
+    pub(crate) fn faces_of_first_and_last_row(&self) -> impl Iterator<Item = (u32, [u32; 3])> {
+        let (count, of_row) = (self.face_count(), 4 * self.quads[0]);
+        let last = of_row.max(count.saturating_sub(of_row));
+        let numbers = (0..of_row.min(count)).chain(last..count);
+        numbers.filter_map(|face| Some((face as u32, self.face(face as u32)?)))
     }
 
     /// Column and row of a face's quad, and the position of the face among its four.
@@ -217,11 +247,11 @@ impl Surface for GridSurface<'_> {
         let cells = self.grid.values.len() as u32;
         if vertex < cells {
             let [column, row] = cell_at(vertex, frame.width);
-            let [x, y] = frame.to_map(column as f64 + 0.5, row as f64 + 0.5);
+            let [x, y] = frame.to_map(column as f64 + 0.5, (self.first_row + row) as f64 + 0.5);
             return [x, y, self.grid.value(column, row)];
         }
         let [column, row] = cell_at(vertex - cells, self.quads[0]);
-        let [x, y] = frame.to_map(column as f64 + 1.0, row as f64 + 1.0);
+        let [x, y] = frame.to_map(column as f64 + 1.0, (self.first_row + row) as f64 + 1.0);
         [
             x,
             y,

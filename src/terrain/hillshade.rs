@@ -12,8 +12,10 @@ pub struct Light {
     pub azimuth: f64,
     /// The angle of the light above the horizon, in degrees.
     pub altitude: f64,
-    /// The factor for heights: units of x and y per unit of z, times any exaggeration.
+    /// The factor for heights: units of y per unit of z, times any exaggeration.
     pub z_factor: f64,
+    /// The length of a unit of x, in units of y; below 1 if they are degrees.
+    pub x_scale: f64,
 }
 
 impl Default for Light {
@@ -23,17 +25,21 @@ impl Default for Light {
             azimuth: 315.0,
             altitude: 45.0,
             z_factor: 1.0,
+            x_scale: 1.0,
         }
     }
 }
+
+/// The largest latitude at which the length of a degree of longitude is used: at the poles it is 0.
+const MOST_LATITUDE: f64 = 89.0;
 
 impl Light {
     /// Returns the default light with a z factor for the units of a coordinate system.
     ///
     /// A vertical unit that is not stated is assumed to be that of x and y, or the meter if those
-    /// are angles. A degree of longitude is assumed to be as long as one of latitude; so slopes far
-    /// from the equator are too gentle in one direction.
-    pub fn for_crs(crs: Option<&Crs>) -> Self {
+    /// are angles. Angles have the lengths that they have on a sphere at the latitude in the middle
+    /// of `frame`, which is not used otherwise.
+    pub fn for_crs(crs: Option<&Crs>, frame: &Frame) -> Self {
         let z_factor = crs.map_or(1.0, |crs| {
             let vertical = crs.vertical_unit.as_ref().map(|unit| unit.factor);
             match crs.kind {
@@ -41,8 +47,16 @@ impl Light {
                 _ => vertical.unwrap_or(crs.unit.factor) / crs.unit.factor,
             }
         });
+        let x_scale = crs
+            .filter(|crs| crs.kind == CrsKind::Geographic)
+            .map_or(1.0, |crs| {
+                let [_, middle] = frame.to_map(0.5 * frame.width as f64, 0.5 * frame.height as f64);
+                let most = MOST_LATITUDE.to_radians();
+                (middle * crs.unit.factor).clamp(-most, most).cos()
+            });
         Light {
             z_factor,
+            x_scale,
             ..Light::default()
         }
     }
@@ -62,6 +76,7 @@ pub struct Hillshade<S> {
     /// The unit vector towards the light: east, north, up.
     light: [f64; 3],
     z_factor: f64,
+    x_scale: f64,
 }
 
 impl<S: BlockSource> Hillshade<S> {
@@ -74,11 +89,13 @@ impl<S: BlockSource> Hillshade<S> {
             azimuth,
             altitude,
             z_factor,
+            x_scale,
         } = light;
         for (name, value) in [
             ("azimuth", azimuth),
             ("altitude", altitude),
             ("z factor", z_factor),
+            ("x scale", x_scale),
         ] {
             if !value.is_finite() {
                 return Err(Error::usage(format!(
@@ -96,6 +113,7 @@ impl<S: BlockSource> Hillshade<S> {
             to_pixels: frame.inverse(),
             light,
             z_factor,
+            x_scale,
         })
     }
 
@@ -114,6 +132,7 @@ impl<S: BlockSource> Hillshade<S> {
         let [dx, dy] = self
             .to_pixels
             .gradient(per_column * self.z_factor, per_row * self.z_factor);
+        let dx = dx / self.x_scale;
         let [east, north, up] = self.light;
         let lit = (up - dx * east - dy * north) / (1.0 + dx * dx + dy * dy).sqrt();
         (1.0 + 254.0 * lit.max(0.0)).round() as f32
@@ -367,12 +386,34 @@ mod tests {
             vertical_unit: None,
             wkt: None,
         };
-        assert_eq!(Light::for_crs(Some(&crs)).z_factor, 1.0);
+        let frame = Frame::north_up(10.0, 62.0, 0.5, 8, 8);
+        let of = |crs: &Crs| Light::for_crs(Some(crs), &frame);
+        assert_eq!(of(&crs).z_factor, 1.0);
         crs.vertical_unit = Some(unit(1.0));
-        assert_eq!(Light::for_crs(Some(&crs)).z_factor, 1.0 / 0.3048);
+        assert_eq!((of(&crs).z_factor, of(&crs).x_scale), (1.0 / 0.3048, 1.0));
         crs.kind = CrsKind::Geographic;
         crs.unit = unit(1f64.to_radians());
-        assert!((1.0 / Light::for_crs(Some(&crs)).z_factor - 111_195.0).abs() < 1.0);
+        assert!((1.0 / of(&crs).z_factor - 111_195.0).abs() < 1.0);
+        // Between 58 and 62 degrees north, a degree of longitude is half as long.
+        assert!((of(&crs).x_scale - 0.5).abs() < 1e-12);
+        // Numbers that are no latitudes are no error.
+        let wide = Frame::north_up(0.0, 4e6, 0.5, 8, 8);
+        assert!(Light::for_crs(Some(&crs), &wide).x_scale > 0.01);
+    }
+
+    /// A plane that rises as much per meter to the east as to the north, 60 degrees north.
+    #[test]
+    fn degrees_of_longitude_are_shorter() {
+        let frame = Frame::north_up(-1.0, 61.0, 0.25, 8, 8);
+        let steep = |light| shades(&grid(frame, |x, y| 0.5 * x + y), light)[9];
+        let light = |x_scale| Light {
+            azimuth: 225.0,
+            x_scale,
+            ..Light::default()
+        };
+        let even = shades(&grid(frame, |x, y| x + y), light(1.0))[9];
+        assert_eq!(steep(light(0.5)), even);
+        assert_ne!(steep(light(1.0)), even);
     }
 
     #[test]

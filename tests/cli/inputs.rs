@@ -652,3 +652,35 @@ fn a_glob_of_layers_may_name_the_attribute_with_the_heights() {
     missing("none-*.geojson:Z", "no file matches `none-*.geojson`");
     missing("none.geojson:Z", "no such file");
 }
+
+/// Contours need no lengths, and shades state those of a degree.
+#[test]
+fn a_dem_in_degrees_has_contours_and_shades() {
+    let folder = folder_with(&[("a.xyz", SLOPE)]);
+    let flags = [
+        "--a-srs",
+        "EPSG:4326",
+        "--max-edge",
+        "none",
+        "--force-degrees",
+        "--resolution",
+        "0.5",
+    ];
+    run_in(
+        &folder,
+        &[&["dem", "a.xyz", "-o", "e.tif"], &flags[..]].concat(),
+    )
+    .works(&[]);
+    run_in(&folder, &["contour", "e.tif", "-o", "c.shp"])
+        .works(&["note: x and y are in units of the degree"]);
+    run_in(&folder, &["hillshade", "e.tif", "-o", "s.tif"]).works(&[
+        "note: coordinates are angles: one unit of x is taken as 111",
+        "units of the heights, one of y as 111195, as in the middle of the raster (--z-factor",
+    ]);
+    let run = run_in(
+        &folder,
+        &["hillshade", "e.tif", "--z-factor", "0.1", "-o", "z.tif"],
+    );
+    run.works(&[]);
+    assert!(!run.stderr.contains("angles"), "{}", run.stderr);
+}

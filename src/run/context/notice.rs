@@ -270,6 +270,9 @@ pub enum Notice {
     DefaultInterval(Quantity),
     /// Heights are multiplied by this, to match the units of the plane.
     HeightFactor(f64),
+    /// A degree of x and one of y are taken as lengths, in units of the heights: those in the
+    /// middle of the raster.
+    AnglesAsLengths([f64; 2]),
     /// The format does not store breaklines: the Delaunay law is not checked.
     DelaunayUnchecked(PathBuf),
     /// A file has largest areas of regions, but they were not requested.
@@ -387,6 +390,7 @@ impl Notice {
             | Notice::DefaultResolution(_)
             | Notice::DefaultInterval(_)
             | Notice::HeightFactor(_)
+            | Notice::AnglesAsLengths(_)
             | Notice::DelaunayUnchecked(_) => Severity::Note,
             Notice::Reader(..)
             | Notice::Skipped { .. }

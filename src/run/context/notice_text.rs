@@ -171,6 +171,7 @@ fn text(notice: &Notice) -> Wording {
         Notice::DefaultResolution(width) => default_resolution(width),
         Notice::DefaultInterval(height) => default_interval(height),
         Notice::HeightFactor(factor) => height_factor(*factor),
+        Notice::AnglesAsLengths(lengths) => angles_as_lengths(*lengths),
         Notice::DelaunayUnchecked(path) => delaunay_unchecked(path),
         Notice::RegionAreasUnused(path) => region_areas_unused(path),
         Notice::SeedUnused { path, line, seed, why } => seed_unused(path, *line, *seed, *why),
@@ -543,6 +544,17 @@ fn height_factor(factor: f64) -> Wording {
         ),
         Setting::ZFactor,
         ")"
+    ]
+}
+
+fn angles_as_lengths([x, y]: [f64; 2]) -> Wording {
+    wording![
+        format!(
+            "coordinates are angles: one unit of x is taken as {x:.0} units of the heights, one of y as \
+             {y:.0}, as in the middle of the raster ("
+        ),
+        Setting::ZFactor,
+        " sets a factor for both)"
     ]
 }
 

@@ -10,7 +10,6 @@ use crate::error::{Error, Result, Setting, wording};
 use crate::io::Destination;
 use crate::io::contours::{self, ContourSummary};
 use crate::run::context::{Context, Size, Stage};
-use crate::run::products::contour::edge_count;
 use crate::terrain::Levels;
 use crate::terrain::contour::parts::{BendFinder, Bends, ContourParts, LevelParts, join_level};
 
@@ -151,7 +150,7 @@ impl DrawnContours {
             lines.map_err(fail).unwrap_or_default()
         };
         let is_wanted =
-            |line: &ContourLine| failed.borrow().is_ok() && drawing.add(edge_count(line)).is_ok();
+            |line: &ContourLine| failed.borrow().is_ok() && drawing.add(line.edge_count()).is_ok();
         let mut lines = bands(&self.levels)
             .flat_map(read)
             .flat_map(join)

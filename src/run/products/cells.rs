@@ -8,6 +8,7 @@ use crate::error::{Error, Result, Setting, wording};
 use crate::io::geotiff::{self, CellFormat, RasterSummary, WriteOptions};
 use crate::io::{Destination, png};
 use crate::run::context::notice::Notice;
+use crate::run::context::units::Units;
 use crate::run::context::watched::Watched;
 use crate::run::context::{Context, Journal, Size, Stage};
 use crate::terrain::{Dem, Hillshade, Light, Method};
@@ -111,6 +112,10 @@ pub fn hillshade<'a>(
             refuse_options(options)?;
             (Box::new(grid.as_ref()), None)
         }
+        Model::RasterFile(raster) => {
+            refuse_options(options)?;
+            (Box::new(raster.cells()), None)
+        }
         Model::Tin(_) | Model::Mesh(_) | Model::Compact(_) | Model::Parts(_) => {
             let heights_by = DemOptions {
                 frame: options.frame.clone(),
@@ -169,18 +174,25 @@ fn refuse_options(HillshadeOptions { frame, method, .. }: &HillshadeOptions) -> 
     Ok(())
 }
 
-fn light(options: &LightOptions, crs: Option<&Crs>, journal: &Journal) -> Light {
-    let z_factor = options.z_factor.unwrap_or_else(|| {
-        let factor = Light::for_crs(crs).z_factor;
-        if factor != 1.0 {
-            journal.add(Notice::HeightFactor(factor));
-        }
-        factor
-    });
+/// Returns the light over a frame. A given factor for heights is that of both axes.
+fn light(options: &LightOptions, crs: Option<&Crs>, frame: &Frame, journal: &Journal) -> Light {
+    let light = match options.z_factor {
+        Some(z_factor) => Light {
+            z_factor,
+            ..Light::default()
+        },
+        None => Light::for_crs(crs, frame),
+    };
+    if options.z_factor.is_none() && light.z_factor != 1.0 {
+        journal.add(match Units::of(crs).is_angular() {
+            true => Notice::AnglesAsLengths([light.x_scale, 1.0].map(|part| part / light.z_factor)),
+            false => Notice::HeightFactor(light.z_factor),
+        });
+    }
     Light {
         azimuth: options.azimuth,
         altitude: options.altitude,
-        z_factor,
+        ..light
     }
 }
 
@@ -202,7 +214,8 @@ impl<'a> CellProduct<'a> {
         crs: Option<&Crs>,
         journal: &Journal,
     ) -> Result<Self> {
-        let source = Box::new(Hillshade::new(source, light(options, crs, journal))?);
+        let light = light(options, crs, &source.frame(), journal);
+        let source = Box::new(Hillshade::new(source, light)?);
         Ok(CellProduct {
             source,
             surface: None,

@@ -103,7 +103,7 @@ pub fn surface_flaws(product: &SurfaceProduct, context: &Context) -> Result<Vec<
     match &product.model {
         Model::Compact(tin) => tin.check()?,
         Model::Parts(parts) => parts.check()?,
-        Model::Tin(_) | Model::Mesh(_) | Model::Raster(_) => {}
+        Model::Tin(_) | Model::Mesh(_) | Model::Raster(_) | Model::RasterFile(_) => {}
     }
     let watched = checked(product.triangles()?, context)?;
     let flaws = flaws_beside(&[], &terrain::surface_flaws(&watched), &watched);

@@ -1,5 +1,8 @@
 //! Contours of a surface.
 
+use std::io::Cursor;
+
+use super::contour_rows::{self, Scratch};
 use super::surface::{Model, SurfaceProduct};
 use crate::crs::Crs;
 use crate::data::{ContourLine, Surface};
@@ -90,11 +93,11 @@ pub fn write_contours(
     target: Destination,
     context: &Context,
 ) -> Result<ContourSummary> {
-    let count = lines.iter().map(edge_count).sum();
+    let count = lines.iter().map(ContourLine::edge_count).sum();
     target.put_whole(|target| {
         contours::check_size(target, count)?;
         let drawing = context.start(Stage::DrawingContours, Size::Items(count))?;
-        let is_wanted = |line: &&ContourLine| drawing.add(edge_count(line)).is_ok();
+        let is_wanted = |line: &&ContourLine| drawing.add(line.edge_count()).is_ok();
         let written = contours::write(
             target,
             &mut lines.iter().take_while(is_wanted).cloned(),
@@ -111,7 +114,8 @@ impl ContourProduct<'_> {
     /// # Errors
     /// If there are too many levels (see [`Levels::within`]), or the run is canceled.
     pub fn collect(&self, context: &Context) -> Result<Vec<ContourLine>> {
-        self.draw(context, |lines, _| Ok(lines.collect()))
+        let scratch = || Ok(Box::new(Cursor::new(Vec::new())) as Box<dyn Scratch>);
+        self.draw(context, scratch, |lines, _| Ok(lines.collect()))
     }
 
     /// Draws all lines and writes them one after another, in the format that the extension of
@@ -121,7 +125,8 @@ impl ContourProduct<'_> {
     /// If there are too many levels or lines, the file cannot be written, or the run is canceled.
     pub fn write(&self, target: Destination, context: &Context) -> Result<ContourSummary> {
         target.put_whole(|target| {
-            self.draw(context, |lines, count| {
+            let scratch = || Ok(Box::new(target.scratch()?) as Box<dyn Scratch>);
+            self.draw(context, scratch, |lines, count| {
                 contours::check_size(target, count)?;
                 contours::write(target, lines, self.product.crs())
             })
@@ -131,15 +136,19 @@ impl ContourProduct<'_> {
     fn draw<T>(
         &self,
         context: &Context,
+        scratch: impl FnOnce() -> Result<Box<dyn Scratch>>,
         take: impl FnOnce(&mut dyn Iterator<Item = ContourLine>, u64) -> Result<T>,
     ) -> Result<T> {
         match &self.product.model {
             Model::Raster(grid) => draw(&GridSurface::new(grid)?, &self.levels, context, take),
+            Model::RasterFile(raster) => {
+                contour_rows::draw(raster, &self.levels, scratch()?, context, take)
+            }
             Model::Parts(parts) => {
                 let finding = context.start(Stage::FindingContours, Size::Uncounted)?;
                 let lines = tin_parts::contours(parts, &self.levels, context)?;
                 finding.end()?;
-                let count = lines.iter().map(edge_count).sum();
+                let count = lines.iter().map(ContourLine::edge_count).sum();
                 take(&mut lines.into_iter(), count)
             }
             Model::Tin(_) | Model::Mesh(_) | Model::Compact(_) => {
@@ -147,11 +156,6 @@ impl ContourProduct<'_> {
             }
         }
     }
-}
-
-/// Returns the number of edges of a line.
-pub(crate) fn edge_count(line: &ContourLine) -> u64 {
-    line.points.len().saturating_sub(1) as u64
 }
 
 /// Calls `take` for the lines, with the number of their edges.
@@ -167,7 +171,7 @@ fn draw<S: Surface + ?Sized, T>(
     finding.end()?;
     let count = lines.arc_count() as u64;
     let drawing = context.start(Stage::DrawingContours, Size::Items(count))?;
-    let is_wanted = |line: &ContourLine| drawing.add(edge_count(line)).is_ok();
+    let is_wanted = |line: &ContourLine| drawing.add(line.edge_count()).is_ok();
     let taken = take(&mut lines.take_while(is_wanted), count);
     drawing.end()?;
     polled.end()?;

@@ -119,7 +119,7 @@ impl Heights {
         let is_walked = match &self.product.model {
             Model::Tin(_) => true,
             Model::Compact(tin) => !tin.has_fragments(),
-            Model::Parts(_) | Model::Mesh(_) | Model::Raster(_) => false,
+            Model::Parts(_) | Model::Mesh(_) | Model::Raster(_) | Model::RasterFile(_) => false,
         };
         (method == Method::Linear && is_walked) || self.known(method).is_some()
     }
@@ -192,7 +192,8 @@ impl Finder<'_> {
             | Model::Compact(_)
             | Model::Parts(_)
             | Model::Mesh(_)
-            | Model::Raster(_) => interpolated(),
+            | Model::Raster(_)
+            | Model::RasterFile(_) => interpolated(),
         };
         found.unwrap_or(f64::NAN)
     }

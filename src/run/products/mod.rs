@@ -3,6 +3,7 @@
 pub(crate) mod cells;
 pub(crate) mod check;
 pub(crate) mod contour;
+mod contour_rows;
 pub(crate) mod elevation;
 pub(crate) mod facts;
 pub(crate) mod frame;

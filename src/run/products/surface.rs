@@ -14,7 +14,8 @@ use crate::run::context::watched::Watched;
 use crate::run::context::{Context, Journal, Stage};
 use crate::run::request::input::{Input, MemoryPoints};
 use crate::run::sources::open::{self, Content, content};
-use crate::run::sources::systems::{self, Role, Stated, SystemOptions};
+use crate::run::sources::raster_file::RasterFile;
+use crate::run::sources::systems::{self, Degrees, Role, Stated, SystemOptions};
 use crate::run::sources::tin_parts::TinParts;
 use crate::terrain::{CompactTin, Tin};
 
@@ -110,7 +111,7 @@ pub struct SurfaceProduct {
     pub notices: Vec<Notice>,
 }
 
-/// A surface of one of five kinds.
+/// A surface of one of six kinds.
 #[derive(Debug)]
 pub enum Model {
     /// Built from points and lines.
@@ -121,8 +122,10 @@ pub enum Model {
     Compact(Box<CompactTin<Mapped>>),
     /// A TIN in parts, each in a file.
     Parts(Box<TinParts>),
-    /// Cells from a raster.
+    /// Cells of a raster, in memory.
     Raster(Box<Grid>),
+    /// Cells of a large raster, in their file.
+    RasterFile(Box<RasterFile>),
 }
 
 impl From<Model> for SurfaceProduct {
@@ -147,7 +150,7 @@ impl SurfaceProduct {
             Model::Mesh(mesh) => Ok(mesh.as_ref()),
             Model::Compact(tin) => Ok(tin.as_ref()),
             Model::Parts(parts) => Ok(parts.joined()?),
-            Model::Raster(_) => Err(Error::usage(
+            Model::Raster(_) | Model::RasterFile(_) => Err(Error::usage(
                 "the surface is a raster; points, a .tin or a .ply are needed",
             )),
         }
@@ -161,6 +164,7 @@ impl SurfaceProduct {
             Model::Compact(tin) => tin.crs(),
             Model::Parts(parts) => parts.crs(),
             Model::Raster(grid) => grid.crs.as_ref(),
+            Model::RasterFile(raster) => raster.crs(),
         }
     }
 
@@ -176,7 +180,7 @@ impl SurfaceProduct {
         match &self.model {
             Model::Compact(tin) => Ok(tin.facts().clone()),
             Model::Parts(parts) => Ok(parts.facts().clone()),
-            Model::Tin(_) | Model::Mesh(_) | Model::Raster(_) => {
+            Model::Tin(_) | Model::Mesh(_) | Model::Raster(_) | Model::RasterFile(_) => {
                 self.triangles().map(SurfaceFacts::of)
             }
         }
@@ -194,6 +198,7 @@ impl SurfaceProduct {
             Model::Compact(tin) => tin.facts().extent,
             Model::Parts(parts) => parts.facts().extent,
             Model::Raster(grid) => grid.extent(),
+            Model::RasterFile(raster) => raster.extent(),
         }
     }
 }
@@ -244,12 +249,7 @@ pub fn surface(request: &SurfaceRequest, context: &Context) -> Result<SurfacePro
             };
             (model, None)
         }
-        Source::Raster(path) => {
-            let (mut grid, warnings) = open::raster(path, &journal)?;
-            journal.add_warnings(path, &warnings);
-            grid.crs = one_system(path, grid.crs.as_ref(), &request.systems, &journal)?;
-            (Model::Raster(Box::new(grid)), None)
-        }
+        Source::Raster(path) => (raster_model(path, &request.systems, &journal)?, None),
     };
     Ok(SurfaceProduct {
         model,
@@ -271,6 +271,27 @@ pub fn triangles(request: &SurfaceRequest, context: &Context) -> Result<SurfaceP
         );
     }
     surface(request, context)
+}
+
+/// Reads a raster, in the coordinate system that it states or that is assigned. A large one stays
+/// in its file.
+fn raster_model(path: &Path, options: &SystemOptions, journal: &Journal) -> Result<Model> {
+    // Contours and shades of a raster need no lengths, or state their scale.
+    let options = SystemOptions {
+        degrees: Degrees::Allow,
+        ..options.clone()
+    };
+    let system = |crs: Option<&Crs>| one_system(path, crs, &options, journal);
+    Ok(match open::raster(path, journal)? {
+        open::OpenRaster::Memory(mut grid) => {
+            grid.crs = system(grid.crs.as_ref())?;
+            Model::Raster(grid)
+        }
+        open::OpenRaster::File(mut raster) => {
+            raster.set_crs(system(raster.crs())?);
+            Model::RasterFile(raster)
+        }
+    })
 }
 
 /// Returns a mesh as a model, in the coordinate system that it states or that is assigned.

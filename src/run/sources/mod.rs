@@ -6,6 +6,7 @@ pub(crate) mod file_extent;
 pub(crate) mod open;
 pub(crate) mod point_files;
 pub mod proj;
+pub(crate) mod raster_file;
 pub(crate) mod systems;
 pub(crate) mod tin_parts;
 pub(crate) mod transforms;

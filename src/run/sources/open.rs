@@ -6,12 +6,13 @@ use std::io::Read;
 use std::path::Path;
 use std::sync::Arc;
 
+use super::raster_file::RasterFile;
 use super::tin_parts::TinParts;
 use crate::crs::Crs;
 use crate::data::{
     BlockSource, Frame, Grid, Layer, LinkFlaw, Mesh, PointInfo, PointSource, Shape, Triangles,
 };
-use crate::error::{Error, Kind, Result, Wording};
+use crate::error::{Error, Kind, Result};
 pub(crate) use crate::io::formats::Content;
 use crate::io::formats::{self, Format, Holding};
 use crate::io::geotiff::GeoTiffReader;
@@ -227,20 +228,41 @@ impl Raster {
     }
 }
 
-/// Reads a whole raster; returns it with the warnings of its reader.
-pub(crate) fn raster(path: &Path, journal: &Journal) -> Result<(Grid, Vec<Wording>)> {
+/// A GeoTIFF with more cells stays in its file: 128 MB of heights.
+const MOST_CELLS_IN_MEMORY: u64 = 1 << 24;
+
+/// A raster that was read once.
+pub(crate) enum OpenRaster {
+    Memory(Box<Grid>),
+    File(Box<RasterFile>),
+}
+
+/// Reads a raster, and reports the warnings of its reader.
+pub(crate) fn raster(path: &Path, journal: &Journal) -> Result<OpenRaster> {
     let raster = Raster::open(path)?;
     let cells = raster.cells();
+    let raster = match raster {
+        Raster::GeoTiff(reader) if cells > MOST_CELLS_IN_MEMORY => {
+            let warnings = reader.info().warnings.clone();
+            let work = journal.start(Stage::ReadingCells, Size::Items(cells))?;
+            let raster = RasterFile::new(*reader, &|cells| work.add(cells))?;
+            journal.add_warnings(path, &warnings);
+            return Ok(OpenRaster::File(Box::new(raster)));
+        }
+        raster => raster,
+    };
     memory::require_for_cells(cells).map_err(|e| e.in_file(path))?;
     let work = journal.start(Stage::ReadingCells, Size::Items(cells))?;
     let watch = |cells| work.add(cells);
-    match raster {
-        Raster::GeoTiff(reader) => Ok((
+    let (grid, warnings) = match raster {
+        Raster::GeoTiff(reader) => (
             reader.read_grid_with(&watch)?,
             reader.info().warnings.clone(),
-        )),
-        Raster::Gdal(raster) => Ok((raster.read_grid_with(&watch)?, raster.warnings().to_vec())),
-    }
+        ),
+        Raster::Gdal(raster) => (raster.read_grid_with(&watch)?, raster.warnings().to_vec()),
+    };
+    journal.add_warnings(path, &warnings);
+    Ok(OpenRaster::Memory(Box::new(grid)))
 }
 
 /// The frame of a raster, and the coordinate system that it states.

@@ -335,7 +335,7 @@ fn judge(crs: &Crs, files: &[Stated], degrees: Degrees, journal: &Journal) -> Re
                 Some(Stated {
                     role: Role::Whole, ..
                 }) => wording![
-                    "build it from points in a projected system (a raster: gdalwarp), or continue with ",
+                    "build it from points in a projected system, or continue with ",
                     Setting::ForceDegrees.on()
                 ],
                 // The format implies degrees, but the file may contain something else.

@@ -97,6 +97,7 @@ impl SurfaceReport {
                 (Origin::Built(built), extent)
             }
             (None, Model::Raster(grid)) => (Origin::Cells(grid.frame), grid.extent()),
+            (None, Model::RasterFile(raster)) => (Origin::Cells(raster.frame()), raster.extent()),
             (None, Model::Mesh(_) | Model::Tin(_) | Model::Compact(_) | Model::Parts(_)) => {
                 let facts = product.facts()?;
                 let extent = facts.extent;

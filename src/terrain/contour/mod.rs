@@ -102,6 +102,7 @@
 //! contours of some of the faces are those of all faces, restricted to the arcs inside these faces
 //! and between two of them, but for arcs that are routed through common points.
 
+mod bands;
 mod cut;
 mod find;
 mod index;
@@ -115,10 +116,8 @@ mod trace;
 use super::Levels;
 use crate::data::{ContourLine, Surface};
 use crate::error::Result;
-use find::{Found, LevelArcs, Overview};
-use index::LevelIndex;
-use narrow::{Bends, NarrowArcs, Narrowness};
-use std::ops::Range;
+use bands::Bands;
+use narrow::{Bends, NarrowArcs};
 use trace::Traces;
 
 /// Returns the contours of a surface, sorted by level and then by their points.
@@ -142,44 +141,21 @@ pub fn contours<'a, S: Surface + ?Sized>(
     surface: &'a S,
     levels: &Levels,
 ) -> Result<Contours<'a, S>> {
-    let [low, high] = find::height_range(surface);
-    let index = LevelIndex::new(levels.within(low, high)?);
-    let Overview {
-        counts,
-        found,
-        narrow,
-    } = Overview::of(surface, &index, Narrowness::of(levels), BAND);
-    let mut contours = Contours {
-        surface,
-        index,
-        counts,
-        found,
-        bends: Bends::default(),
-        next_level: 0,
+    let bands = Bands::new(surface, levels)?;
+    Ok(Contours {
+        bends: bends_of(&bands),
+        bands,
         ready: Vec::new().into_iter(),
-    };
-    if !narrow.is_empty() {
-        contours.bends = contours.bends_at(&narrow);
-    }
-    Ok(contours)
+    })
 }
 
 /// An iterator over the contours of a surface, returned by [`contours`].
 #[must_use = "lines are drawn when they are asked for"]
 pub struct Contours<'a, S: ?Sized> {
-    surface: &'a S,
-    index: LevelIndex,
-    /// The number of arcs of each level.
-    counts: Vec<usize>,
-    /// All arcs, if they are few, until they are drawn.
-    found: Option<Found>,
+    bands: Bands<'a, S>,
     bends: Bends,
-    next_level: usize,
     ready: std::vec::IntoIter<ContourLine>,
 }
-
-/// The largest number of arcs of levels that are drawn together.
-const BAND: usize = 1 << 21;
 
 impl<S: Surface + ?Sized> Iterator for Contours<'_, S> {
     type Item = ContourLine;
@@ -189,10 +165,7 @@ impl<S: Surface + ?Sized> Iterator for Contours<'_, S> {
             if let Some(line) = self.ready.next() {
                 return Some(line);
             }
-            if self.next_level == self.counts.len() {
-                return None;
-            }
-            self.ready = self.draw_band().into_iter();
+            self.ready = self.draw_band()?.into_iter();
         }
     }
 }
@@ -203,59 +176,44 @@ impl<S: Surface + ?Sized> Contours<'_, S> {
     /// A line has one vertex per arc, and one more if it is open. The few arcs that rounding
     /// collapses have none; those that are bent, where several levels would cross, have more.
     pub fn arc_count(&self) -> usize {
-        self.counts.iter().sum()
+        self.bands.arc_count()
     }
 
-    /// Draws the next levels.
-    fn draw_band(&mut self) -> Vec<ContourLine> {
-        let band = self.band_from(self.next_level);
-        self.next_level = band.end;
-        let found = self.found.take();
-        self.draw(band, found).into_iter().flatten().collect()
+    /// Draws the next levels; `None` after the last.
+    fn draw_band(&mut self) -> Option<Vec<ContourLine>> {
+        let (surface, bends) = (self.bands.surface(), &self.bends);
+        let draw = |level, traces| finished(surface, level, traces, bends);
+        Some(self.bands.next(draw)?.into_iter().flatten().collect())
     }
+}
 
-    /// Returns the levels that are drawn together: at least one, and no more than have [`BAND`]
-    /// arcs.
-    fn band_from(&self, first: usize) -> Range<usize> {
-        let mut sum = 0;
-        let fits = |&&count: &&usize| {
-            sum += count;
-            sum == count || sum <= BAND
-        };
-        first..first + self.counts[first..].iter().take_while(fits).count()
-    }
+/// Returns the lines of a level.
+fn finished<S: Surface + ?Sized>(
+    surface: &S,
+    level: f64,
+    Traces {
+        traces,
+        touches_vertices,
+    }: Traces,
+    bends: &Bends,
+) -> Vec<ContourLine> {
+    line::finish_level(level, join::join(surface, traces), touches_vertices, bends)
+}
 
-    /// Draws levels, given their arcs if they are known.
-    fn draw(&self, band: Range<usize>, found: Option<Found>) -> Vec<Vec<ContourLine>> {
-        let found = found.unwrap_or_else(|| find::arcs(self.surface, &self.index, band.clone()));
-        let arcs = LevelArcs::new(found, band.start, &self.counts[band.clone()]);
-        let draw = |level,
-                    Traces {
-                        traces,
-                        touches_vertices,
-                    }| {
-            let lines = join::join(self.surface, traces);
-            line::finish_level(level, lines, touches_vertices, &self.bends)
-        };
-        trace::each_level(self.surface, &self.index, band, &arcs, draw)
-    }
-
-    /// Returns the bends at narrow faces. The levels that meet them are drawn for that, in bands.
-    fn bends_at(&self, faces: &[u32]) -> Bends {
-        let sites = faces
-            .iter()
-            .flat_map(|&face| narrow::sites_of(self.surface, &self.index, face));
-        let sites = narrow::by_level(sites.collect());
-        let (mut arcs, mut rest) = (NarrowArcs::default(), &sites[..]);
-        while let [(first, _), ..] = rest {
-            let band = self.band_from(*first);
-            let (now, later) = rest.split_at(rest.partition_point(|(level, _)| *level < band.end));
-            let lines = self.draw(band.clone(), None);
-            for (level, sites) in now {
-                arcs.add(&lines[level - band.start], sites);
-            }
-            rest = later;
+/// Returns the bends at narrow faces. The levels that meet them are drawn for that, in bands.
+fn bends_of<S: Surface + ?Sized>(bands: &Bands<S>) -> Bends {
+    let sites = bands.narrow_sites();
+    let (mut arcs, mut rest) = (NarrowArcs::default(), &sites[..]);
+    while let [(first, _), ..] = rest {
+        let band = bands.band_from(*first);
+        let (now, later) = rest.split_at(rest.partition_point(|(level, _)| *level < band.end));
+        let lines = bands.trace(band.clone(), None, |level, traces| {
+            finished(bands.surface(), level, traces, &Bends::default())
+        });
+        for (level, sites) in now {
+            arcs.add(&lines[level - band.start], sites);
         }
-        arcs.bends()
+        rest = later;
     }
+    arcs.bends()
 }

@@ -181,7 +181,7 @@ pub(crate) struct SurfaceArgs {
     /// Go on although the coordinates are in degrees
     ///
     /// A degree is not a length: triangles, slopes and edge lengths are then computed from the
-    /// numbers as they are.
+    /// numbers as they are. Contours and the hillshade of a DEM need no leave.
     #[arg(long, help_heading = "Coordinate system")]
     pub(crate) force_degrees: bool,
 }

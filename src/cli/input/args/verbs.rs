@@ -514,7 +514,8 @@ pub(crate) struct HillshadeArgs {
 
     /// Factor for heights [default: 1, or what converts them to the units of x and y]
     ///
-    /// By default, heights in feet over coordinates in metres are multiplied by 0.3048.
+    /// By default, heights in feet over coordinates in metres are multiplied by 0.3048, and degrees
+    /// are taken as the lengths that they have in the middle of the raster, shorter in x than in y.
     #[arg(long, value_name = "FACTOR", value_parser = positive, allow_negative_numbers = true, help_heading = "Light")]
     pub(crate) z_factor: Option<f64>,
 

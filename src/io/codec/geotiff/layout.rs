@@ -322,6 +322,11 @@ impl BandLayout {
         self.row_bytes() * self.span_height as u64
     }
 
+    /// Returns the columns and rows of a span.
+    pub(super) fn span_size(&self) -> [usize; 2] {
+        [self.block[0], self.span_height]
+    }
+
     /// Returns the number of cells of a span.
     pub(super) fn span_cells(&self) -> u64 {
         self.block[0] as u64 * self.span_height as u64

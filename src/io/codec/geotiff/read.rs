@@ -435,6 +435,55 @@ impl GeoTiffReader {
         Ok(found)
     }
 
+    /// Replaces the coordinate system.
+    pub fn set_crs(&mut self, crs: Option<Crs>) {
+        self.info.crs = crs;
+    }
+
+    /// Returns how many rows to read at a time, so that they have about this many cells and few
+    /// blocks are decoded twice.
+    pub fn rows_at_once(&self, cells: usize) -> usize {
+        let [_, block_height] = self.span_size();
+        let most = (cells / self.info.width.max(1)).max(1);
+        if block_height > 2 * most {
+            most
+        } else {
+            (most / block_height).max(1) * block_height
+        }
+    }
+
+    /// Returns the columns and rows that are decoded together, at most.
+    pub(super) fn span_size(&self) -> [usize; 2] {
+        self.layout.span_size()
+    }
+
+    /// Returns the value of cells of blocks that are not in the file.
+    pub(super) fn missing_value(&self) -> f32 {
+        let mut value = [self.nodata.of_missing_blocks()];
+        self.scale(&mut value);
+        value[0] as f32
+    }
+
+    /// Decodes the cells of a span that are in the raster.
+    pub(super) fn decoded(&self, span: &Span) -> Result<Vec<f32>> {
+        let part = overlap(span, self.frame().window());
+        let mut cells = Vec::with_capacity(part.width * part.height);
+        let mut take = |_, mut values: Vec<f64>| {
+            self.scale(&mut values);
+            cells.extend(values.into_iter().map(|value| value as f32));
+        };
+        block::values(
+            &self.layout,
+            &self.nodata,
+            &self.bytes,
+            span,
+            part,
+            &mut take,
+        )
+        .map_err(|e| with_file(e, &self.path))?;
+        Ok(cells)
+    }
+
     fn scale(&self, values: &mut [f64]) {
         let GeoTiffInfo { scale, offset, .. } = self.info;
         if scale != 1.0 || offset != 0.0 {
@@ -523,7 +572,7 @@ impl GeoTiffReader {
     }
 
     /// Returns the stored spans that a window touches.
-    fn spans(&self, window: Window) -> Result<Vec<Span>> {
+    pub(super) fn spans(&self, window: Window) -> Result<Vec<Span>> {
         let block_width = self.layout.block[0];
         let columns =
             window.column / block_width..(window.column + window.width).div_ceil(block_width);
@@ -533,7 +582,10 @@ impl GeoTiffReader {
         while row < window.row + window.height {
             let mut end = row + 1;
             for across in columns.clone() {
-                let span = self.layout.span(across, row, &self.bytes)?;
+                let span = self
+                    .layout
+                    .span(across, row, &self.bytes)
+                    .map_err(|e| with_file(e, &self.path))?;
                 end = span.first_row + span.rows;
                 if matches!(span.stored, Stored::At { .. }) {
                     spans.push(span);
@@ -546,7 +598,7 @@ impl GeoTiffReader {
 }
 
 /// Returns the part of a span within a window, which must touch it.
-fn overlap(span: &Span, window: Window) -> Window {
+pub(super) fn overlap(span: &Span, window: Window) -> Window {
     let column = span.first_column.max(window.column);
     let row = span.first_row.max(window.row);
     let width = (span.first_column + span.width).min(window.column + window.width) - column;

@@ -1,5 +1,6 @@
 use super::patch::Patch;
 use super::{ContourParts, LevelParts, NO_HEIGHTS, join};
+use crate::data;
 use crate::error::{Error, Result};
 use crate::terrain::Levels;
 use crate::terrain::contour::find::{self, LevelArcs};
@@ -128,11 +129,12 @@ impl ContourCollector {
         let found = find::arcs(mesh, &self.index, band.clone());
         let counts = find::counts_of(&found, band.clone());
         let arcs = LevelArcs::new(found, band.start, &counts);
+        let keyed = patch.keyed();
         let mut parts =
             trace::each_level(mesh, &self.index, band.clone(), &arcs, |level, traces| {
-                patch.parts(level, traces)
+                keyed.parts(level, traces)
             });
-        for (level, side) in patch.level_sides(&self.index) {
+        for (level, side) in keyed.level_sides(data::corners(mesh), &self.index) {
             parts[level - band.start].sides.push(side);
         }
         let narrowness = Narrowness::of(&self.levels);

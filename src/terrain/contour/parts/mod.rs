@@ -78,7 +78,9 @@
 mod bytes;
 mod collect;
 mod join;
+mod keyed;
 mod patch;
+mod rows;
 #[cfg(test)]
 mod tests;
 

@@ -1,15 +1,13 @@
 //! Triangles of a task that meet a level, as a mesh.
 
-use super::{LevelParts, LevelSide, LineEnd, OpenLine, VertexKey};
+use super::VertexKey;
+use super::keyed::Keyed;
 use crate::data::{self, LinkFlaw, Mesh, Surface, Triangles};
 use crate::error::{Error, Result};
 use crate::terrain::contour::index::LevelIndex;
 use crate::terrain::contour::narrow::{self, Narrowness};
-use crate::terrain::contour::trace::{LooseEnd, Trace, Traces};
 use crate::terrain::tiles::{TileTriangle, TileVertex};
-use crate::triangulation::num::unsigned_zero;
 use rustc_hash::FxHashMap;
-use std::cmp::Ordering;
 
 /// Triangles that are not linked yet.
 #[derive(Default)]
@@ -84,31 +82,12 @@ impl Patch {
 }
 
 impl LinkedPatch {
-    /// The parts that the lines of a level are.
-    pub(super) fn parts(
-        &self,
-        level: f64,
-        Traces {
-            traces,
-            touches_vertices,
-        }: Traces,
-    ) -> LevelParts {
-        let mut parts = LevelParts {
-            touches_vertices,
-            ..LevelParts::new(level)
-        };
-        for trace in traces {
-            match trace {
-                Trace::Closed(points) => parts.closed.push(points),
-                Trace::Open { points, ends } => {
-                    parts.open.push(OpenLine {
-                        points,
-                        ends: ends.map(|end| self.line_end(end)),
-                    });
-                }
-            }
+    /// The mesh as a part of the whole.
+    pub(super) fn keyed(&self) -> Keyed<'_, Mesh, impl Fn(u32) -> VertexKey> {
+        Keyed {
+            surface: &self.mesh,
+            key_of: |vertex: u32| self.keys[vertex as usize],
         }
-        parts
     }
 
     /// The sites at narrow faces, each with the index of its level.
@@ -122,50 +101,5 @@ impl LinkedPatch {
         let narrow = data::corners(&self.mesh).filter(|&(_, corners)| is_narrow(corners));
         let sites = narrow.flat_map(|(face, _)| narrow::sites_of(&self.mesh, index, face));
         narrow::by_level(sites.collect())
-    }
-
-    fn line_end(&self, end: LooseEnd) -> LineEnd {
-        match end {
-            LooseEnd::Edge(ends) => {
-                let [a, b] = ends.map(|end| self.keys[end as usize]);
-                LineEnd::Edge([a.min(b), a.max(b)])
-            }
-            LooseEnd::Vertex { vertex, toward } => LineEnd::Vertex {
-                vertex: self.keys[vertex as usize],
-                toward: self.plan(toward),
-            },
-        }
-    }
-
-    /// The sides of edges on levels that have no face on the other side, each with the index of its
-    /// level.
-    pub(super) fn level_sides(
-        &self,
-        index: &LevelIndex,
-    ) -> impl Iterator<Item = (usize, LevelSide)> {
-        let sides = data::corners(&self.mesh).flat_map(move |(face, corners)| {
-            let is_open = move |i: &usize| self.mesh.neighbor(face, *i).is_none();
-            (0..3)
-                .filter(is_open)
-                .map(move |i| [0, 1, 2].map(|k| corners[(i + k) % 3]))
-        });
-        sides.filter_map(|[third, a, b]| {
-            let [third_height, height, other_height] =
-                [third, a, b].map(|v| self.mesh.position(v)[2]);
-            let level = index.first_from(height);
-            let is_on_level = height == other_height && index.levels().get(level) == Some(&height);
-            let side = || LevelSide {
-                vertices: [a, b].map(|v| self.keys[v as usize]),
-                at: [a, b].map(|v| self.plan(v)),
-                is_high: third_height.partial_cmp(&height) != Some(Ordering::Less),
-            };
-            is_on_level.then(|| (level, side()))
-        })
-    }
-
-    /// A vertex in plan, as it is in contours.
-    fn plan(&self, vertex: u32) -> [f64; 2] {
-        let [x, y, _] = self.mesh.position(vertex);
-        [x, y].map(unsigned_zero)
     }
 }
