@@ -96,8 +96,6 @@ pub(crate) fn triangulate_arrays<'py>(
 
 /// Returns about how many vertices a mesh may have.
 fn expected(graph: &LineGraph, options: &TriangulateOptions) -> usize {
-    /// For each given vertex, of a mesh with a smallest angle.
-    const OF_ANGLE: usize = 8;
     let points = &graph.nodes.points;
     let extent = |axis: usize| {
         let along = points.iter().map(|p| p[axis]);
@@ -109,7 +107,8 @@ fn expected(graph: &LineGraph, options: &TriangulateOptions) -> usize {
     let given = points.len() + graph.segments.len();
     // A conversion that saturates.
     let added = (by_area as usize).saturating_add(match options.min_angle {
-        Some(_) => OF_ANGLE * given,
+        // Two lines near each other need as many vertices as their distance says.
+        Some(_) => options.max_added.unwrap_or(usize::MAX),
         None => 0,
     });
     given.saturating_add(added)

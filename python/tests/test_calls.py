@@ -23,7 +23,7 @@ FEW = """
         tri.simplices, tri.transform, tri.find_simplex(points), tri.add_points(points[:3] / 2)
         LinearNDInterpolator(points, points[:, 0])(points)
         NaturalNeighborInterpolator(points, points[:, 0])(points)
-        triangle.triangulate({"vertices": points}, "q20")
+        triangle.triangulate({"vertices": points}, "c")
         tin = breakline.tin(np.column_stack([points, points[:, 0]]), max_edge="none")
         tin.vertices, tin.elevation(points)
 """

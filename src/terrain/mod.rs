@@ -62,6 +62,7 @@ mod regions;
 mod ridges;
 mod selection;
 mod soundness;
+mod thin;
 pub mod tiles;
 mod tin;
 mod tin_report;

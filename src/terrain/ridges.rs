@@ -24,6 +24,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use super::boxes::{Boxed, Boxes, Extent, Near};
 use super::linear::plan_distance;
 use super::nearest::{nearest_part, squared_distance};
+use super::thin::is_thin;
 use crate::data::EdgeKind;
 use crate::triangulation::geometry::Terrain;
 use crate::triangulation::tds::{CellId, VertexId};
@@ -113,10 +114,11 @@ impl<'a> Contoured<'a> {
         (count, flat / all)
     }
 
-    /// Returns the flat faces.
+    /// Returns the flat faces. One that is thinner than rounding is no ground: three vertices of a
+    /// contour that should be on one straight line make such a face.
     fn flat_faces(&self) -> impl Iterator<Item = CellId> + '_ {
         let cells = self.triangulation.tds().cells();
-        cells.filter(|&cell| self.is_flat(cell))
+        cells.filter(|&cell| self.is_flat(cell) && !is_thin(self.corners(cell), 1.0))
     }
 
     /// Returns vertices on ridges and valleys: with them no face is flat whose contour has another

@@ -303,6 +303,11 @@ def _of_frame(frame: Any) -> "dict[str, Any]":
     shapes = np.asarray(geometry.values)
     if not np.isin(shapely.get_type_id(shapes), (0, 4)).all():
         raise usage("the frame has geometries other than points", None, "pass lines as breaklines")
+    counts = shapely.get_num_coordinates(shapes)
+    if (counts != 1).any():
+        row = int(np.argmax(counts != 1))
+        cure = "drop the empty ones (frame[~frame.is_empty]), and divide the others by explode()"
+        raise usage(f"row {row} of the frame has {counts[row]} points, where each row is one", None, cure)
     coordinates = shapely.get_coordinates(shapes, include_z=True)
     if np.isnan(coordinates[:, 2]).any():
         raise usage("points of the frame have no height", None, "set z: geopandas.points_from_xy(x, y, z)")

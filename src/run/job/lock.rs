@@ -67,10 +67,11 @@ impl JobLock {
 }
 
 /// Opens the file that is locked. Nothing is written to it: a folder that is no job yet may have
-/// such a file.
+/// such a file. NFS locks a file together with others only if it is open for reading, too.
 fn open(folder: &Path) -> Result<File> {
     let path = folder.join(LOCK);
     let file = File::options()
+        .read(true)
         .write(true)
         .create(true)
         .truncate(false)

@@ -10,6 +10,7 @@ use crate::run::context::Journal;
 use crate::run::context::notice::Notice;
 use crate::run::context::units::Units;
 use crate::run::sources::file_extent::FileExtent;
+use crate::terrain::SelectionReport;
 
 /// The buffer outside of the bounds in which points are used.
 pub(super) struct Reach {
@@ -105,12 +106,19 @@ impl Reach {
     }
 
     /// Adds notices about the buffer, and about files that were left out.
-    pub(super) fn note(&self, [left_out, files]: [usize; 2], units: &Units, journal: &Journal) {
+    pub(super) fn note(
+        &self,
+        points: &SelectionReport,
+        [left_out, files]: [usize; 2],
+        units: &Units,
+        journal: &Journal,
+    ) {
         if self.bounds.is_none() {
             return;
         }
+        let are_all_used = points.outside == 0 && left_out == 0;
         let buffer = Some(self.buffer)
-            .filter(|buffer| buffer.is_finite())
+            .filter(|buffer| buffer.is_finite() && !are_all_used)
             .map(|buffer| units.length(buffer));
         if left_out > 0 {
             journal.add(Notice::FilesOutside {

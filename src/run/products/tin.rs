@@ -369,7 +369,11 @@ pub(crate) fn build(
         paths: request.points.iter().map(Input::path).collect(),
     };
     let is_read_once = request.points.iter().any(Input::is_read_once);
-    let buffer = if is_read_once {
+    // Where waters end, and how high ridges are, depends on points that no triangle shows.
+    let reaches_far = !request.lines.flats.is_empty()
+        || !request.lines.rivers.is_empty()
+        || request.lines.add_ridges;
+    let buffer = if is_read_once || reaches_far {
         f64::INFINITY
     } else {
         rim.buffer
@@ -384,7 +388,7 @@ pub(crate) fn build(
     notes::count_edges(&mut inputs, &tin);
     building.note_lines(&inputs, tin.report());
     rim.note(&units, journal);
-    reach.note([left_out, files.len()], &units, journal);
+    reach.note(&points, [left_out, files.len()], &units, journal);
     crossings::note(tin.report(), &names, &units, journal);
     if tin.report().triangles == 0 {
         return Err(no_triangle(tin.report(), request, &rim, &units));

@@ -15,6 +15,7 @@ use super::cut::{ContourArc, Direction, LevelCut, Node};
 use super::index::LevelIndex;
 use crate::data::{ContourLine, Surface};
 use crate::terrain::Levels;
+use crate::terrain::thin::is_thin;
 use crate::triangulation::arrangement::Arrangement;
 
 /// Finds the faces that are too narrow for arcs that are rounded.
@@ -35,17 +36,12 @@ impl Narrowness {
     /// Returns true if the face, or the ground between two levels in it, may be narrower than some
     /// steps of its coordinates.
     #[inline]
-    pub(super) fn includes(self, [a, b, c]: [[f64; 3]; 3]) -> bool {
-        /// More than the errors of two crossings, and of this test.
-        const STEPS: f64 = 32.0;
-        let axis = |axis: usize| [a[axis], b[axis], c[axis]];
-        let range = |[a, b, c]: [f64; 3]| a.max(b).max(c) - a.min(b).min(c);
-        let size = |[a, b, c]: [f64; 3]| a.abs().max(b.abs()).max(c.abs());
-        let twice_area = (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]);
-        let length = range(axis(0)) + range(axis(1));
-        let step = f64::EPSILON * size(axis(0)).max(size(axis(1)));
-        let share = (self.step / range(axis(2))).min(1.0);
-        twice_area.abs() * share < STEPS * step * length
+    pub(super) fn includes(self, corners: [[f64; 3]; 3]) -> bool {
+        let [low, high] = [f64::min, f64::max].map(|of: fn(f64, f64) -> f64| {
+            let [a, b, c] = corners.map(|corner| corner[2]);
+            of(of(a, b), c)
+        });
+        is_thin(corners, (self.step / (high - low)).min(1.0))
     }
 }
 

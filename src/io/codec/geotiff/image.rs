@@ -33,6 +33,11 @@ const LEADER: usize = 4;
 /// Bytes that are copied between two calls of a watch.
 const COPIED_AT_ONCE: u64 = 1 << 23;
 
+/// How many tiles are packed at once: 16 for each thread keep all of them busy.
+pub(super) fn tiles_at_once() -> usize {
+    16 * rayon::current_num_threads()
+}
+
 /// The division of an image into tiles.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Tiling {
@@ -145,9 +150,8 @@ impl Image {
                 .map_init(TileBuffers::default, pack)
                 .collect()
         };
-        // One batch is computed while the previous one is written; 16 tiles per core keep all cores
-        // busy.
-        let batch = 16 * rayon::current_num_threads();
+        // One batch is computed while the previous one is written.
+        let batch = tiles_at_once();
         let mut done = 0;
         let mut ready = pack(0..batch.min(tiling.count))?;
         while !ready.is_empty() {

@@ -6,21 +6,24 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use rustc_hash::FxHashMap;
 
 use super::GeoTiffReader;
+use super::image::tiles_at_once;
 use super::layout::Span;
 use super::read::overlap;
+use super::tile::SIDE;
 use crate::crs::Crs;
 use crate::data::{BlockSource, Frame, Window};
 use crate::error::Result;
 
-/// The rows of windows, from the first to the last of which all blocks are kept: those of a row of
-/// tiles, and one on each side.
-const ROWS: usize = super::tile::SIDE + 2;
+/// The rows of cells of which all blocks are kept, besides those of the tiles that are packed at
+/// once: those of a row of tiles, and one on each side.
+const ROWS: usize = SIDE + 2;
 
 /// The cells of a GeoTIFF, for windows that are requested row by row of windows: the blocks that
 /// were decoded last are kept.
 ///
 /// # Complexity
-/// Memory: 4 bytes per cell, for about 260 rows of cells and two rows of blocks.
+/// Memory: 4 bytes per cell, for about 260 rows of cells and two rows of blocks, and for the tiles
+/// that all threads pack at once.
 pub struct KeptBlocks<'a> {
     reader: &'a GeoTiffReader,
     most_cells: u64,
@@ -42,7 +45,8 @@ struct Kept {
 impl<'a> KeptBlocks<'a> {
     /// Wraps a reader.
     pub fn new(reader: &'a GeoTiffReader) -> Self {
-        KeptBlocks::with_rows(reader, ROWS)
+        let across = reader.frame().width.div_ceil(SIDE);
+        KeptBlocks::with_rows(reader, ROWS + tiles_at_once().div_ceil(across) * SIDE)
     }
 
     fn with_rows(reader: &'a GeoTiffReader, rows: usize) -> Self {

@@ -21,8 +21,8 @@ fn northern(north: f64, south: f64, y: f64) -> River {
 fn built(rivers: &[River]) -> Tin {
     let mut builder = TinBuilder::default();
     builder.add_points(
-        &[-9.0, 30.0, -9.0, 30.0],
-        &[-9.0, -9.0, 30.0, 30.0],
+        &[-20.0, 60.0, -20.0, 60.0],
+        &[-20.0, -20.0, 60.0, 60.0],
         &[40.0; 4],
     );
     for river in rivers {
