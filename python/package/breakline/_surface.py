@@ -103,6 +103,7 @@ def surface_arguments(options: "dict[str, Any]") -> "dict[str, Any]":
         "returns": _inputs.returns(options["returns"]),
         "flat_buffer": _inputs.number(options["flat_buffer"], "flat_buffer"),
         "flat_points": bool(options["flat_points"]),
+        "add_ridges": bool(options["add_ridges"]),
     }
 
 
