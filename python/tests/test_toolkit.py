@@ -272,3 +272,14 @@ def test_withheld_points_of_records_are_never_used():
     corners = [(0, 0, 1, 0), (10, 0, 1, 0), (10, 10, 1, 0), (0, 10, 1, 0), (5, 5, 99, 1)]
     tin = breakline.tin(np.array(corners, dtype=names))
     assert tin.elevation([5.0, 5.0]) == 1.0
+
+
+def test_a_surface_of_contours_gets_ridges():
+    def ring(size, z):
+        return [[-size, -size, z], [size, -size, z], [size, size, z], [-size, size, z], [-size, -size, z]]
+
+    options = {"breaklines": [ring(10, 5), ring(20, 4)], "max_edge": "none"}
+    with pytest.warns(breakline.BreaklineWarning, match=r"flat.*add_ridges"):
+        flat = breakline.tin(np.zeros((0, 3)), **options)
+    assert flat.elevation([[0, 0]]) == [5]
+    assert 5.1 < breakline.tin(np.zeros((0, 3)), add_ridges=True, **options).elevation([[0, 0]])[0] < 6
