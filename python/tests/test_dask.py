@@ -90,7 +90,7 @@ class Transitions(distributed.SchedulerPlugin):
 
 
 class Killer(threading.Thread):
-    """Kills workers while they do a task, and remembers which files of tasks were there before each kill."""
+    """Kills workers while they do a task; if the job is given, once files of tasks are there, which are remembered."""
 
     def __init__(self, client, count, job=None):
         super().__init__()
@@ -107,8 +107,9 @@ class Killer(threading.Thread):
     def run(self):
         while self.kills < self.count and not self.done.wait(random.uniform(0.05, 0.2)):
             victims = [nanny for nanny in list(self.cluster.workers.values()) if self.is_busy(nanny)]
-            if victims:
-                self.files = {**written(self.job), **self.files} if self.job else {}
+            if self.job:
+                self.files = {**written(self.job), **self.files}
+            if victims and (self.files or not self.job):
                 with contextlib.suppress(psutil.Error):
                     psutil.Process(random.choice(victims).pid).kill()
                     self.kills += 1

@@ -9,10 +9,10 @@ use breakline::crs::Crs;
 use breakline::data::{Bounds, Return};
 use breakline::error::Wording;
 use breakline::run::{
-    self, Context, ContourOptions, DemOptions, Division, EdgeLimit, Execution, FlatOptions,
-    FrameOptions, HillshadeOptions, Input, JobCommand, LineRequest, LowerEdge, Monitor, Notice,
-    PerRecord, Progress, Severity, Size, Source, Stage, StoredJob, SurfaceRequest, SystemOptions,
-    Targets, TileOptions, TinRequest, Verb, WallOptions, WriteRequest,
+    self, Context, ContourOptions, Degrees, DemOptions, Division, EdgeLimit, Execution,
+    FlatOptions, FrameOptions, HillshadeOptions, Input, JobCommand, LineRequest, LowerEdge,
+    Monitor, Notice, PerRecord, Progress, Severity, Size, Source, Stage, StoredJob, SurfaceRequest,
+    SystemOptions, Targets, TileOptions, TinRequest, Verb, WallOptions, WriteRequest,
 };
 use breakline::terrain::Classes;
 use testkit::lidar::{las, tile};
@@ -319,6 +319,27 @@ fn cases_of_points(files: &Files) -> Vec<Case> {
             },
             verb: Arc::new(HillshadeOptions::default()),
             ..case(points(&[&text]), &["DifferentUnits", "HeightFactor"])
+        },
+        Case {
+            systems: SystemOptions {
+                assign: system("EPSG:4326"),
+                degrees: Degrees::Allow,
+                ..SystemOptions::default()
+            },
+            verb: Arc::new(HillshadeOptions {
+                frame: FrameOptions {
+                    resolution: Some(1.0),
+                    ..FrameOptions::default()
+                },
+                ..HillshadeOptions::default()
+            }),
+            ..case(
+                TinRequest {
+                    max_edge: EdgeLimit::Unlimited,
+                    ..points(&[&text])
+                },
+                &["AnglesAsLengths"],
+            )
         },
         case(points(&[&text]), &["ExtentApart"]).of(te(100.0, 104.0)),
         // Within the extent of the points, but not on the surface.

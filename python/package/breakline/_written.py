@@ -252,9 +252,10 @@ class Job:
 
         Examples
         --------
-        On each host::
-
-            breakline.Job("/shared/ground.job").work()
+        >>> import breakline
+        >>> job = breakline.Job.plan("dem", "valley.laz", "dem.tif", resolution=5, overwrite=True)
+        >>> breakline.Job(job.folder).work().path.name  # on each host
+        'dem.tif'
         """
         memory, lease = None if memory is None else str(memory), _inputs.number(lease, "lease")
         with call(threads, progress) as running:
