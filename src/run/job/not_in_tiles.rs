@@ -30,7 +30,6 @@ pub enum NotInTiles {
 impl NotInTiles {
     /// Returns what a request for a surface has and tiles do not.
     pub(super) fn of(request: &TinRequest, systems: &SystemOptions) -> Option<Self> {
-        let has_water = !(request.lines.flats.is_empty() && request.lines.rivers.is_empty());
         let known = [
             (
                 NotInTiles::EdgeByPoints,
@@ -40,7 +39,7 @@ impl NotInTiles {
             (NotInTiles::Reproject, systems.target.is_some()),
             (
                 NotInTiles::EdgesBesideWater,
-                request.max_edge_inside.is_some() && has_water,
+                request.max_edge_inside.is_some() && request.lines.has_water(),
             ),
             (
                 NotInTiles::ReplacedPoints,

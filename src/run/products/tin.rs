@@ -370,9 +370,7 @@ pub(crate) fn build(
     };
     let is_read_once = request.points.iter().any(Input::is_read_once);
     // Where waters end, and how high ridges are, depends on points that no triangle shows.
-    let reaches_far = !request.lines.flats.is_empty()
-        || !request.lines.rivers.is_empty()
-        || request.lines.add_ridges;
+    let reaches_far = request.lines.has_water() || request.lines.add_ridges;
     let buffer = if is_read_once || reaches_far {
         f64::INFINITY
     } else {

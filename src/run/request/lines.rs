@@ -148,6 +148,11 @@ impl LineRole {
 }
 
 impl LineRequest {
+    /// Returns true if there are lakes or rivers.
+    pub(crate) fn has_water(&self) -> bool {
+        !(self.flats.is_empty() && self.rivers.is_empty())
+    }
+
     /// Returns the inputs with what they are used as.
     pub(crate) fn inputs(&self) -> [(LineRole, &[Input<Layer>]); 6] {
         [
