@@ -37,19 +37,21 @@ impl Narrowness {
     /// steps of its coordinates.
     #[inline]
     pub(super) fn includes(self, corners: [[f64; 3]; 3]) -> bool {
-        let [low, high] = [f64::min, f64::max].map(|of: fn(f64, f64) -> f64| {
-            let [a, b, c] = corners.map(|corner| corner[2]);
-            of(of(a, b), c)
-        });
+        let [low, high] = heights_from_to(corners);
         is_thin(corners, (self.step / (high - low)).min(1.0))
     }
+}
+
+/// Returns the heights of the lowest and of the highest corner of a face.
+#[inline]
+fn heights_from_to([[.., a], [.., b], [.., c]]: [[f64; 3]; 3]) -> [f64; 2] {
+    [a.min(b).min(c), a.max(b).max(c)]
 }
 
 /// Returns the indices of the levels from the lowest corner of a face to the highest; none if it is
 /// horizontal.
 fn levels_of(corners: [[f64; 3]; 3], index: &LevelIndex) -> Range<usize> {
-    let [a, b, c] = corners.map(|corner| corner[2]);
-    let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+    let [low, high] = heights_from_to(corners);
     let first = index.first_from(low);
     let is_met = |level: &&f64| low < high && **level <= high;
     first..first + index.levels()[first..].iter().take_while(is_met).count()
