@@ -114,8 +114,8 @@ impl<'a> Contoured<'a> {
         (count, flat / all)
     }
 
-    /// Returns the flat faces. One that is thinner than rounding is no ground: three vertices of a
-    /// contour that should be on one straight line make such a face.
+    /// Returns the flat faces, without those that are thinner than rounding: these appear where
+    /// three vertices of a contour should be on one straight line.
     fn flat_faces(&self) -> impl Iterator<Item = CellId> + '_ {
         let cells = self.triangulation.tds().cells();
         cells.filter(|&cell| self.is_flat(cell) && !is_thin(self.corners(cell), 1.0))
@@ -320,7 +320,7 @@ impl Bands {
     ///   through both: it rises d (2 r - d) / (b (2 r + b)) of their difference, where r is the
     ///   largest d of the flat area. So summits are round.
     ///
-    /// Of both, the larger part is used, but less than all of the way.
+    /// The larger of the two parts is used, but at most [`MOST`].
     fn height(&self, candidate: &Candidate) -> Option<f64> {
         let z = candidate.site[2];
         let band = self.of(candidate.cell);

@@ -559,7 +559,7 @@ mod tests {
                 "b las2iso -i a.laz -iso_every 10 -keep_return 1 2 -o b.shp",
                 "b contour a.laz --interval 10 --return 1,2 -o b.shp",
             ),
-            // What is no verb is left to the parser.
+            // A word that is not a verb is left to the parser.
             ("b foo -tr 1 2 -lakes", "b foo -tr 1 2 -lakes"),
             (
                 "b dem a.laz b.tif -tr 1 -1",

@@ -150,7 +150,7 @@ fn expand_one(path: &Path, found: &mut Vec<PathBuf>) -> Result<()> {
 }
 
 /// Splits an input that is not a file into a glob and the names that follow it, with their colons;
-/// `None` if it is no glob.
+/// `None` if it is not a glob.
 fn glob_of(path: &Path) -> Option<(&str, &str)> {
     let text = path.to_str()?;
     let pattern = layer::file_of(text).to_str()?;

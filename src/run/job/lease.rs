@@ -78,7 +78,7 @@ fn host() -> String {
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct TaskLease {
-    /// Who has it; `None` if its file cannot be read.
+    /// The process that has it; `None` if its file cannot be read.
     pub worker: Option<Worker>,
     /// How long ago it was written.
     pub age: Duration,
@@ -143,7 +143,7 @@ impl FoundLease {
     /// or the lease was written again.
     fn remove(&self, path: &Path) -> Result<bool> {
         let named = |e: std::io::Error| Error::from(e).in_file(path);
-        // Who has renamed a file is the only one to have it, and finds out which it was.
+        // Only one process can rename the file; it can then see which lease it was.
         let aside = unfinished_in(path.parent().unwrap_or(Path::new(".")))
             .map_err(named)?
             .into_temp_path();

@@ -66,8 +66,8 @@ impl JobLock {
     }
 }
 
-/// Opens the file that is locked. Nothing is written to it: a folder that is no job yet may have
-/// such a file. NFS locks a file together with others only if it is open for reading, too.
+/// Opens the file that is locked. It stays empty: a folder without a job may have such a file, too.
+/// NFS gives a shared lock only to a file that is open for reading.
 fn open(folder: &Path) -> Result<File> {
     let path = folder.join(LOCK);
     let file = File::options()

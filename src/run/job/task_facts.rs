@@ -147,7 +147,7 @@ impl TaskNotice {
         TaskNotice(level.unwrap_or_default(), notice.text(), notice.details())
     }
 
-    /// Returns the notice; `None` if there is no such level.
+    /// Returns the notice; `None` if the number of its severity is not known.
     pub(super) fn notice(&self) -> Option<Notice> {
         let TaskNotice(level, text, details) = self;
         let severity = *SEVERITIES.get(*level)?;

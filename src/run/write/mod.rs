@@ -511,7 +511,7 @@ impl<'a> Prepared<'a> {
     }
 }
 
-/// Who has a job done.
+/// How a job is started, which decides whether its folder stays.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Caller {
     /// A request; the folder goes once the outputs are written, unless files were skipped.

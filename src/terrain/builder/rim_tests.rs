@@ -88,7 +88,8 @@ fn points_that_are_taken_count() {
     assert_eq!(whole, taken);
 }
 
-/// An area without points that can be reached from outside is no surface, whatever water is there.
+/// A gap between points that is open to the outside stays out of the surface, also where there is
+/// water.
 #[test]
 fn a_lake_ends_at_a_gap_between_points() {
     let is_measured = |[x, y]: [f64; 2]| x < 8.0 || y < 8.0;
