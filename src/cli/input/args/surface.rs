@@ -58,8 +58,8 @@ pub(crate) struct SurfaceArgs {
     /// proven to be the same as in the TIN of all data. Then the surface is cut. LAS and LAZ files
     /// that are further out by their headers are not read. The summary shows the final buffer, and
     /// how many files were left out. This takes at most about twice as long as the TIN of all data.
-    /// The values are in the units of the coordinate system of the result,
-    /// separated by commas or blanks.
+    /// With lakes, rivers or --add-ridges, all points are used. The values are in the units of the
+    /// coordinate system of the result, separated by commas or blanks.
     #[arg(
         long,
         value_name = "XMIN,YMIN,XMAX,YMAX",
