@@ -24,7 +24,7 @@ impl<T: Read + Write + Seek> Scratch for T {}
 /// written, or the run is canceled; and those of `take`.
 ///
 /// # Complexity
-/// Memory: that of some rows, and of the lines of one level.
+/// Memory: that of some rows, of the arcs of all levels in them, and of the lines of one level.
 pub(super) fn draw<T>(
     raster: &RasterFile,
     levels: &Levels,
