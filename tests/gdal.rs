@@ -257,7 +257,7 @@ mod with_gdal {
         );
         fails(
             tin(&["a.gpkg:points:H", "a.gpkg:lines"]),
-            &["has no points"],
+            &["lines are breaklines", "the line has no heights"],
         );
         fails(
             lines("a.gpkg:lines"),

@@ -415,7 +415,8 @@ fn too_little_memory_is_told_before_the_work() {
             .output()
             .unwrap()
     };
-    // What the program and its libraries take (with GDAL, ten times as much as without), and half of what the raster does.
+    // What the program takes with its libraries (GDAL's are large), and half of what the raster
+    // does.
     let to_start = (1..200)
         .map(|step| step * 16_384)
         .find(|&kilobytes| limited(kilobytes, "--version").status.success())
