@@ -58,7 +58,7 @@ pub use points::{PointBatch, PointFlags, PointInfo, PointSink, PointSource, Poin
 pub use returns::Return;
 pub use shape::{Column, Layer, Shape, ShapeKind};
 pub use surface::{BaseFace, EdgeKind, Face, LineEdges, Surface};
-pub(crate) use surface::{corners, faces, faces_under};
+pub(crate) use surface::{UsedVertices, corners, faces, faces_under, map_batches};
 pub use surface_facts::SurfaceFacts;
 pub use triangles::{LinkFlaw, Triangles};
 pub use without_lines::WithoutLines;

@@ -1,5 +1,8 @@
 use std::io::Write;
-use std::ops::Range;
+use std::ops::{AddAssign, Range};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use rayon::prelude::*;
 
 use crate::crs::Crs;
 use crate::error::{Error, Result};
@@ -335,8 +338,81 @@ impl LineEdges {
     }
 }
 
+impl AddAssign for LineEdges {
+    fn add_assign(&mut self, other: Self) {
+        for (count, more) in self.0.iter_mut().zip(other.0) {
+            *count += more;
+        }
+    }
+}
+
+/// Which vertices faces use, marked by any number of threads.
+pub(crate) struct UsedVertices(Vec<AtomicBool>);
+
+impl UsedVertices {
+    pub(crate) fn new(count: usize) -> Self {
+        UsedVertices((0..count).map(|_| AtomicBool::new(false)).collect())
+    }
+
+    /// Marks the corners of a face.
+    ///
+    /// `PERF:` what is marked already is not written: threads share what they only read.
+    #[inline]
+    pub(crate) fn add(&self, corners: [u32; 3]) {
+        for is_used in corners.map(|v| &self.0[v as usize]) {
+            if !is_used.load(Ordering::Relaxed) {
+                is_used.store(true, Ordering::Relaxed);
+            }
+        }
+    }
+
+    /// Returns the number of each vertex that is used.
+    pub(crate) fn into_numbers(self) -> impl Iterator<Item = usize> {
+        let used = |(vertex, is_used): (usize, AtomicBool)| is_used.into_inner().then_some(vertex);
+        self.0.into_iter().enumerate().filter_map(used)
+    }
+}
+
 /// The number of faces fetched at a time: few enough to stay in a core's cache.
 const BATCH: u32 = 1 << 11;
+
+/// The number of batches for each thread that are worked on before results are taken.
+const BATCHES_AT_ONCE: u32 = 32;
+
+/// Works on faces with numbers below `count` on all threads, a batch at a time. `ask` appends the
+/// faces in a range of numbers, as [`Surface::faces_in`] does. `take` receives what `make` returns
+/// for each batch, in order.
+///
+/// # Errors
+/// The first of `take`.
+pub(crate) fn map_batches<T, R: Send, E>(
+    count: usize,
+    ask: impl Fn(Range<u32>, &mut Vec<T>) + Sync,
+    make: impl Fn(&[T]) -> R + Sync,
+    mut take: impl FnMut(R) -> std::result::Result<(), E>,
+) -> std::result::Result<(), E> {
+    let count = count as u32;
+    let make = |batch: u32| {
+        let start = batch * BATCH;
+        let mut items = Vec::with_capacity(BATCH as usize);
+        ask(start..start.saturating_add(BATCH).min(count), &mut items);
+        make(&items)
+    };
+    let batches = count.div_ceil(BATCH);
+    if batches <= 1 {
+        // Other threads would take longer to wake up.
+        return (0..batches).map(make).try_for_each(take);
+    }
+    let at_once = BATCHES_AT_ONCE * rayon::current_num_threads() as u32;
+    for first in (0..batches).step_by(at_once as usize) {
+        let results: Vec<R> = (first..batches.min(first.saturating_add(at_once)))
+            .into_par_iter()
+            .map(make)
+            .collect();
+        results.into_iter().try_for_each(&mut take)?;
+    }
+    Ok(())
+}
 
 /// All faces of a surface with their corners, in order of their numbers.
 ///
@@ -373,4 +449,29 @@ fn batches<'s, S: Surface + ?Sized, T: 's>(
         );
         items
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::convert::Infallible;
+
+    use super::*;
+
+    #[test]
+    fn batches_are_taken_in_order_until_one_fails() {
+        let count = 3 * BATCH * BATCHES_AT_ONCE * rayon::current_num_threads() as u32 + 5;
+        let ask = |numbers: Range<u32>, items: &mut Vec<u32>| items.extend(numbers);
+        let mut found = Vec::new();
+        let Ok(()) = map_batches(count as usize, ask, <[u32]>::to_vec, |items| {
+            found.extend(items);
+            Ok::<(), Infallible>(())
+        });
+        assert!(found.into_iter().eq(0..count));
+        let mut taken = 0;
+        let stopped = map_batches(count as usize, ask, <[u32]>::len, |_| {
+            taken += 1;
+            if taken < 5 { Ok(()) } else { Err(taken) }
+        });
+        assert_eq!((stopped, taken), (Err(5), 5));
+    }
 }

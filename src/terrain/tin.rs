@@ -1,8 +1,11 @@
+use std::convert::Infallible;
 use std::io::Write;
 use std::ops::Range;
 
 use crate::crs::Crs;
-use crate::data::{BaseFace, Bounds, EdgeKind, Face, LineEdges, Surface};
+use crate::data::{
+    BaseFace, Bounds, EdgeKind, Face, LineEdges, Surface, UsedVertices, map_batches,
+};
 use crate::error::Result;
 use crate::triangulation::geometry::Terrain;
 use crate::triangulation::kernel::RANGE;
@@ -188,20 +191,24 @@ impl Tin {
 
     /// Counts the vertices and faces of the surface.
     pub(super) fn count(&self) -> Count {
-        let mut used = vec![false; self.vertex_count()];
-        let mut faces = 0;
-        for corners in (0..self.face_count() as u32).filter_map(|face| self.face(face)) {
-            faces += 1;
-            corners.iter().for_each(|&v| used[v as usize] = true);
-        }
+        let used = UsedVertices::new(self.vertex_count());
         let mut count = Count {
             old_vertices: 0,
             vertices: 0,
-            faces,
+            faces: 0,
             extent: Bounds::default(),
         };
+        let add = |faces: &[(u32, [u32; 3])]| {
+            faces.iter().for_each(|(_, corners)| used.add(*corners));
+            faces.len()
+        };
+        let ask = |numbers, faces: &mut _| self.corners_in(numbers, faces);
+        let Ok(()) = map_batches(self.face_count(), ask, add, |faces| {
+            count.faces += faces;
+            Ok::<(), Infallible>(())
+        });
         let old = self.triangulation.tds().vertex_slots();
-        for vertex in (0..used.len()).filter(|&vertex| used[vertex]) {
+        for vertex in used.into_numbers() {
             count.vertices += 1;
             count.old_vertices += usize::from(vertex < old);
             count.extent.add(self.position(vertex as u32));
@@ -211,9 +218,23 @@ impl Tin {
 
     /// The kinds of the edges opposite the corners of a face.
     ///
-    /// `PERF:` without a cut, this only looks at each neighbor.
+    /// `PERF:` for most faces of a surface that is not cut, only the neighbors are looked at.
     #[inline(always)]
     fn kinds(&self, face: u32) -> [EdgeKind; 3] {
+        let cell = CellId::new(face as usize);
+        let is_plain = |i: usize| {
+            !self.triangulation.is_constrained(cell, i)
+                && self.inside[self.triangulation.tds().neighbor(cell, i).index()]
+        };
+        if self.cut.is_none() && is_plain(0) && is_plain(1) && is_plain(2) {
+            return [EdgeKind::Plain; 3];
+        }
+        self.kinds_at_lines(face)
+    }
+
+    /// The kinds of the edges opposite the corners of any face.
+    #[inline(never)]
+    fn kinds_at_lines(&self, face: u32) -> [EdgeKind; 3] {
         if self.cut.is_some() {
             return [0, 1, 2].map(|i| self.edge_kind(face, i));
         }

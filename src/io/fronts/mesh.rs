@@ -119,13 +119,7 @@ pub fn list(surface: &dyn Surface) -> Result<Triangles> {
         listed
             .lines
             .extend(listing.edges().filter(|(_, kind)| kind.is_constrained()));
-        let is_fragment = |(_, (_, _, is_fragment)): &(u32, (_, _, bool))| *is_fragment;
-        listed.fragments.extend(
-            (0..)
-                .zip(listing.lined_faces())
-                .filter(is_fragment)
-                .map(|(number, _)| number),
-        );
+        listed.fragments.extend(listing.fragments());
     }
     surface.ensure_intact()?;
     Ok(listed)

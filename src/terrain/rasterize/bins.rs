@@ -15,18 +15,15 @@ pub(super) fn bins_of(
     side: usize,
     mut each: impl FnMut(usize, usize),
 ) {
-    if corners.as_flattened().iter().any(|c| !c.is_finite()) {
-        // Vertices near the end of the range of doubles overflow in a rotated raster.
+    let (low, high) = extent_along(corners, 1);
+    let rows = placement.rows.cells(low, high);
+    if rows.is_empty() {
         return;
     }
-    let [a, b, c] = corners;
-    let rows = placement
-        .rows
-        .cells(a[1].min(b[1]).min(c[1]), a[1].max(b[1]).max(c[1]));
-    let columns = placement
-        .columns
-        .cells(a[0].min(b[0]).min(c[0]), a[0].max(b[0]).max(c[0]));
-    if rows.is_empty() || columns.is_empty() {
+    let (left, right) = extent_along(corners, 0);
+    let columns = placement.columns.cells(left, right);
+    if columns.is_empty() || corners.as_flattened().iter().any(|c| !c.is_finite()) {
+        // Vertices near the end of the range of doubles overflow in a rotated raster.
         return;
     }
     let bins = |cells: &Range<usize>| cells.start / side..=(cells.end - 1) / side;
@@ -50,6 +47,17 @@ pub(super) fn bins_of(
             bins(&cells).for_each(|column| each(row, column));
         }
     }
+}
+
+/// The smallest and the largest coordinate of a triangle along an axis, if all are finite.
+///
+/// `PERF:` one instruction for each comparison, where `f64::min`, which heeds NaN, takes four.
+#[inline(always)]
+fn extent_along([a, b, c]: &[[f64; 3]; 3], axis: usize) -> (f64, f64) {
+    let (a, b, c) = (a[axis], b[axis], c[axis]);
+    let least = |a: f64, b: f64| if a < b { a } else { b };
+    let most = |a: f64, b: f64| if a > b { a } else { b };
+    (least(least(a, b), c), most(most(a, b), c))
 }
 
 /// The smallest and the largest x of a triangle in the band `low..=high` of y.

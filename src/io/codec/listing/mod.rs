@@ -4,7 +4,9 @@ pub(crate) mod crs_text;
 pub(crate) mod polygon;
 pub(crate) mod text;
 
-use crate::data::{self, EdgeKind, LineEdges, Surface};
+use std::convert::Infallible;
+
+use crate::data::{self, EdgeKind, Face, LineEdges, Surface, UsedVertices};
 
 const UNUSED: u32 = u32::MAX;
 
@@ -26,24 +28,37 @@ impl<'a> Listing<'a> {
     /// # Complexity
     /// Linear. Needs 4 bytes per vertex.
     pub(crate) fn new(surface: &'a dyn Surface) -> Self {
-        let mut number = vec![UNUSED; surface.vertex_count()];
+        let used = UsedVertices::new(surface.vertex_count());
         let mut face_count = 0;
         let mut lines = LineEdges::default();
-        let mut add = |corners: [u32; 3]| {
-            face_count += 1;
-            corners.iter().for_each(|&v| number[v as usize] = 0);
-        };
-        if surface.has_lines() {
-            data::faces(surface).for_each(|face| {
-                add(face.corners);
+        let add_lined = |faces: &[Face]| {
+            let mut lines = LineEdges::default();
+            for face in faces {
+                used.add(face.corners);
                 lines.add(surface, face.number, face.edges);
-            });
+            }
+            (faces.len(), lines)
+        };
+        let add = |faces: &[(u32, [u32; 3])]| {
+            faces.iter().for_each(|(_, corners)| used.add(*corners));
+            (faces.len(), LineEdges::default())
+        };
+        let sum = |(faces, of_faces)| {
+            face_count += faces;
+            lines += of_faces;
+            Ok::<(), Infallible>(())
+        };
+        let Ok(()) = if surface.has_lines() {
+            let ask = |numbers, faces: &mut _| surface.faces_in(numbers, faces);
+            data::map_batches(surface.face_count(), ask, add_lined, sum)
         } else {
-            data::corners(surface).for_each(|(_, corners)| add(corners));
-        }
+            let ask = |numbers, faces: &mut _| surface.corners_in(numbers, faces);
+            data::map_batches(surface.face_count(), ask, add, sum)
+        };
+        let mut number = vec![UNUSED; surface.vertex_count()];
         let mut vertex_count = 0;
-        for number in number.iter_mut().filter(|n| **n != UNUSED) {
-            *number = vertex_count;
+        for vertex in used.into_numbers() {
+            number[vertex] = vertex_count;
             vertex_count += 1;
         }
         Listing {
@@ -62,17 +77,21 @@ impl<'a> Listing<'a> {
 
     /// Returns the vertex numbers of each face, counter-clockwise.
     pub(crate) fn faces(&self) -> impl Iterator<Item = [u32; 3]> + '_ {
-        self.corners()
-            .map(|corners| corners.map(|v| self.number[v as usize]))
+        self.corners().map(|corners| self.numbers(corners))
     }
 
-    /// Returns each face with the kinds of the edges opposite its corners, and true if it is a
-    /// fragment of a cut triangle.
-    pub(crate) fn lined_faces(&self) -> impl Iterator<Item = ([u32; 3], [EdgeKind; 3], bool)> + '_ {
-        data::faces(self.surface).map(|face| {
-            let corners = face.corners.map(|v| self.number[v as usize]);
-            (corners, face.edges, self.surface.is_fragment(face.number))
-        })
+    /// Returns the numbers of the corners of a face of the surface.
+    #[inline]
+    pub(crate) fn numbers(&self, corners: [u32; 3]) -> [u32; 3] {
+        corners.map(|v| self.number[v as usize])
+    }
+
+    /// Returns the numbers of the faces that are fragments of cut triangles.
+    pub(crate) fn fragments(&self) -> impl Iterator<Item = u32> + '_ {
+        (0..)
+            .zip(data::corners(self.surface))
+            .filter(|(_, (face, _))| self.surface.is_fragment(*face))
+            .map(|(number, _)| number)
     }
 
     /// Returns all edges, each with its kind: once, with the face of the smaller number.
@@ -133,9 +152,7 @@ mod tests {
             ),
             (4, 2, 1)
         );
-        let kinds: Vec<_> = listing.lined_faces().map(|(_, kinds, _)| kinds).collect();
         let [rim, line] = [EdgeKind::Rim, EdgeKind::Breakline];
-        assert_eq!(kinds, [[rim, rim, line], [rim, line, rim]]);
         let edges: Vec<_> = listing.edges().collect();
         assert_eq!(
             edges,

@@ -15,7 +15,7 @@ use header::{Element, Encoding, Header, Property, Scalar};
 use super::listing::polygon::POLYGONS_AT_ONCE;
 use super::listing::{Listing, crs_text, polygon};
 use crate::crs::Crs;
-use crate::data::{EdgeKind, Triangles};
+use crate::data::{self, EdgeKind, Face, Triangles};
 use crate::error::{Error, Result};
 use crate::io::options::cut::open_line;
 use crate::io::{Destination, Watch};
@@ -66,23 +66,35 @@ pub(crate) fn write(target: Destination, mesh: &Listing, crs: Option<&Crs>) -> R
         }
         output.write_all(&row)
     })?;
-    let corners = |face: [u32; 3]| {
-        let mut row = [3; 13];
-        for (bytes, v) in row[1..].chunks_exact_mut(4).zip(face) {
+    let list = |corners: [u32; 3]| {
+        let mut list = [3; 13];
+        for (bytes, v) in list[1..].chunks_exact_mut(4).zip(mesh.numbers(corners)) {
             bytes.copy_from_slice(&v.to_le_bytes());
         }
-        row
+        list
     };
+    let surface = mesh.surface;
+    let faces = surface.face_count();
     if has_lines {
-        mesh.lined_faces()
-            .try_for_each(|(face, [b, c, a], is_fragment)| {
-                let [a, b, c] = [a, b, c].map(EdgeKind::number);
-                output.write_all(&corners(face))?;
-                output.write_all(&[a, b, c, u8::from(is_fragment)])
-            })?;
+        let row = |face: &Face| {
+            let mut row = [0; 17];
+            row[..13].copy_from_slice(&list(face.corners));
+            let [b, c, a] = face.edges.map(EdgeKind::number);
+            row[13..].copy_from_slice(&[a, b, c, u8::from(surface.is_fragment(face.number))]);
+            row
+        };
+        let ask = |numbers, faces: &mut _| surface.faces_in(numbers, faces);
+        let rows = |faces: &[Face]| faces.iter().map(row).collect::<Vec<_>>();
+        data::map_batches(faces, ask, rows, |rows| {
+            output.write_all(rows.as_flattened())
+        })?;
     } else {
-        mesh.faces()
-            .try_for_each(|face| output.write_all(&corners(face)))?;
+        let ask = |numbers, faces: &mut _| surface.corners_in(numbers, faces);
+        let row = |(_, corners): &(u32, [u32; 3])| list(*corners);
+        let rows = |faces: &[(u32, [u32; 3])]| faces.iter().map(row).collect::<Vec<_>>();
+        data::map_batches(faces, ask, rows, |rows| {
+            output.write_all(rows.as_flattened())
+        })?;
     }
     target.put(output)
 }
