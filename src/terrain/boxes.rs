@@ -114,6 +114,39 @@ impl<T: Boxed> Boxes<T> {
         }
     }
 
+    /// Returns what the items of each node have in common. `of` returns it for the items of a leaf,
+    /// and `both` for two nodes.
+    ///
+    /// # Complexity
+    /// Linear.
+    pub(super) fn in_common<C>(
+        &self,
+        of: impl Fn(&[T]) -> C,
+        both: impl Fn(&C, &C) -> C,
+    ) -> Vec<C> {
+        let leaves = self.nodes.len().div_ceil(2);
+        let first = self.nodes.len() - leaves;
+        let mut ranges = vec![(0, self.items.len())];
+        for node in 0..first {
+            let (start, end) = ranges[node];
+            let middle = halved(start, end);
+            ranges.extend([(start, middle), (middle, end)]);
+        }
+        // From the last node to the first, so that children come before their parents.
+        let mut found: Vec<C> = Vec::with_capacity(self.nodes.len());
+        for node in (0..self.nodes.len()).rev() {
+            let of_child = |child: usize| &found[self.nodes.len() - 1 - child];
+            found.push(if node < first {
+                both(of_child(2 * node + 1), of_child(2 * node + 2))
+            } else {
+                let (start, end) = ranges[node];
+                of(&self.items[start..end])
+            });
+        }
+        found.reverse();
+        found
+    }
+
     /// Calls `each` with items whose box may contain a position, until it returns a value.
     pub(super) fn find<R>(&self, q: [f64; 2], each: impl FnMut(&T) -> Option<R>) -> Option<R> {
         self.find_in(Extent { min: q, max: q }, each)
@@ -152,10 +185,16 @@ impl<T: Boxed> Boxes<T> {
     /// square of the distance up to which more are wanted.
     ///
     /// `left` is memory that is kept from one call to the next.
-    pub(super) fn around(
+    pub(super) fn around(&self, q: [f64; 2], left: &mut Vec<Near>, each: impl FnMut(&T) -> f64) {
+        self.around_in(q, left, |_| true, each);
+    }
+
+    /// Like [`around`](Self::around), but without the nodes for which `is_wanted` is false.
+    pub(super) fn around_in(
         &self,
         q: [f64; 2],
         left: &mut Vec<Near>,
+        is_wanted: impl Fn(usize) -> bool,
         mut each: impl FnMut(&T) -> f64,
     ) {
         let mut wanted = f64::INFINITY;
@@ -173,7 +212,7 @@ impl<T: Boxed> Boxes<T> {
             distance,
         }) = left.pop()
         {
-            if start == end || distance > wanted {
+            if start == end || distance > wanted || !is_wanted(node) {
                 continue;
             }
             if 2 * node + 2 >= self.nodes.len() {

@@ -27,6 +27,7 @@ use super::nearest::{nearest_part, squared_distance};
 use super::thin::is_thin;
 use crate::data::EdgeKind;
 use crate::triangulation::geometry::Terrain;
+use crate::triangulation::num::unsigned_zero;
 use crate::triangulation::tds::{CellId, VertexId};
 use crate::triangulation::{ConstrainedDelaunay, LineId};
 
@@ -230,7 +231,55 @@ struct Bands {
 /// What bounds a band: edges on lines, and vertices between them.
 struct Band {
     limits: Boxes<Limit>,
+    /// For each node of the limits, the heights that each of them has at one end, as bits.
+    common: Vec<Common>,
+    /// The level limits, by the bits of their height.
+    level: FxHashMap<u64, Boxes<Limit>>,
     search: RefCell<Vec<Near>>,
+}
+
+/// The heights that each of some limits has at one of its ends.
+#[derive(Debug, Clone, Copy)]
+enum Common {
+    /// There are no limits.
+    Any,
+    /// These; both may be the same.
+    Two([f64; 2]),
+    One(f64),
+    None,
+}
+
+impl Common {
+    fn of(limits: &[Limit]) -> Self {
+        let ends = |limit: &Limit| Common::Two(limit.ends.map(|end| end[2]));
+        limits
+            .iter()
+            .map(ends)
+            .fold(Common::Any, |all, next| all.and(&next))
+    }
+
+    fn has(&self, height: f64) -> bool {
+        match self {
+            Common::Any => true,
+            Common::Two(heights) => heights.contains(&height),
+            Common::One(one) => *one == height,
+            Common::None => false,
+        }
+    }
+
+    fn and(&self, other: &Self) -> Self {
+        match self {
+            Common::Any => *other,
+            Common::Two([a, b]) => match [a, b].map(|height| other.has(*height)) {
+                [true, true] => *self,
+                [true, false] => Common::One(*a),
+                [false, true] => Common::One(*b),
+                [false, false] => Common::None,
+            },
+            Common::One(one) if other.has(*one) => *self,
+            Common::One(_) | Common::None => Common::None,
+        }
+    }
 }
 
 /// An edge on a line, or a vertex.
@@ -296,10 +345,7 @@ impl Bands {
                 ends: [p, p],
                 beyond: None,
             }));
-            bands.push(Band {
-                limits: Boxes::new(limits),
-                search: RefCell::default(),
-            });
+            bands.push(Band::new(limits));
         }
         Bands { of_cells, bands }
     }
@@ -324,10 +370,10 @@ impl Bands {
     fn height(&self, candidate: &Candidate) -> Option<f64> {
         let z = candidate.site[2];
         let band = self.of(candidate.cell);
-        let own = band.nearest(candidate.site, |height| height == z)?;
-        let next = band.nearest(candidate.site, |height| height != z);
+        let own = band.nearest_at(candidate.site, z)?;
+        let next = band.nearest_not_at(candidate.site, z);
         let before = own.beyond.and_then(|beyond| {
-            let found = self.of(beyond).nearest(own.at, |height| height != z)?;
+            let found = self.of(beyond).nearest_not_at(own.at, z)?;
             let (d, r, b) = (own.distance, candidate.width, found.distance);
             let part = d * (2.0 * r - d) / (b * (2.0 * r + b));
             Some((z - found.at[2], part))
@@ -348,8 +394,50 @@ impl Bands {
 }
 
 impl Band {
-    /// Returns the nearest limit whose heights are wanted, both at its ends and between them.
-    fn nearest(&self, q: [f64; 3], is_wanted: impl Fn(f64) -> bool) -> Option<Found> {
+    /// # Complexity
+    /// O(n log n).
+    fn new(limits: Vec<Limit>) -> Self {
+        let mut level: FxHashMap<u64, Vec<Limit>> = FxHashMap::default();
+        for limit in &limits {
+            let [a, b] = limit.ends.map(|end| end[2]);
+            if a == b {
+                level.entry(height_key(a)).or_default().push(*limit);
+            }
+        }
+        let limits = Boxes::new(limits);
+        Band {
+            common: limits.in_common(Common::of, Common::and),
+            limits,
+            level: level
+                .into_iter()
+                .map(|(height, limits)| (height, Boxes::new(limits)))
+                .collect(),
+            search: RefCell::default(),
+        }
+    }
+
+    /// Returns the nearest limit of a height.
+    fn nearest_at(&self, q: [f64; 3], height: f64) -> Option<Found> {
+        let level = self.level.get(&height_key(height))?;
+        self.nearest(q, level, |_| true, |_| true)
+    }
+
+    /// Returns the nearest limit that does not have a height at an end.
+    fn nearest_not_at(&self, q: [f64; 3], height: f64) -> Option<Found> {
+        // `PERF:` all limits around may have that height.
+        let is_wanted = |node: usize| !self.common[node].has(height);
+        let is_other = |limit: &Limit| limit.ends.iter().all(|end| end[2] != height);
+        self.nearest(q, &self.limits, is_wanted, is_other)
+    }
+
+    /// Returns the nearest of the limits in a tree that is wanted and in a node that is.
+    fn nearest(
+        &self,
+        q: [f64; 3],
+        limits: &Boxes<Limit>,
+        is_node_wanted: impl Fn(usize) -> bool,
+        is_wanted: impl Fn(&Limit) -> bool,
+    ) -> Option<Found> {
         let site = [q[0], q[1]];
         // Of several at one distance always the same.
         let key = |(distance, limit): &(f64, Limit)| {
@@ -362,8 +450,8 @@ impl Band {
         };
         let mut nearest: Option<(f64, Limit)> = None;
         let mut left = self.search.borrow_mut();
-        self.limits.around(site, &mut left, |limit| {
-            if limit.ends.iter().all(|end| is_wanted(end[2])) {
+        limits.around_in(site, &mut left, is_node_wanted, |limit| {
+            if is_wanted(limit) {
                 let ends = limit.ends.map(|[x, y, _]| [x, y]);
                 let found = (squared_distance(ends, site), *limit);
                 if nearest.is_none_or(|nearest| key(&found) < key(&nearest)) {
@@ -390,14 +478,20 @@ impl Band {
 
     /// Returns the distance to the nearest contour of the height of a site.
     fn distance_to_own(&self, site: [f64; 3]) -> f64 {
-        let own = self.nearest(site, |height| height == site[2]);
+        let own = self.nearest_at(site, site[2]);
         own.map_or(0.0, |found| found.distance)
     }
+}
+
+/// Returns the same bits for both zeros.
+fn height_key(height: f64) -> u64 {
+    unsigned_zero(height).to_bits()
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::{Levels, Tin, TinBuilder, contours};
+    use super::{Band, Found, Limit, squared_distance};
     use testkit::random::Random;
 
     /// The height of a surface at a position.
@@ -477,6 +571,77 @@ mod tests {
                 );
             }
         }
+    }
+
+    /// Random limits, level and not: what is found is the nearest of those that count.
+    #[test]
+    fn the_nearest_limits_are_found_among_many_of_one_height() {
+        let mut random = Random(11);
+        for round in 0..200 {
+            let limits: Vec<Limit> = (0..1 + round)
+                .map(|_| {
+                    let [x, y] = [0, 1].map(|_| random.below(40) as f64);
+                    let z = random.pick(&[1.0, 1.0, 1.0, 1.0, 2.0, -0.0, 0.0]);
+                    let end = random.pick(&[z, z, z, 1.0]);
+                    let [dx, dy] = [0, 1].map(|_| random.below(3) as f64);
+                    Limit {
+                        ends: [[x, y, z], [x + dx, y + dy, end]],
+                        beyond: None,
+                    }
+                })
+                .collect();
+            let band = Band::new(limits.clone());
+            let expected = |q: [f64; 3], is_wanted: &dyn Fn(f64) -> bool| {
+                limits
+                    .iter()
+                    .filter(|limit| limit.ends.iter().all(|end| is_wanted(end[2])))
+                    .map(|limit| squared_distance(limit.ends.map(|[x, y, _]| [x, y]), [q[0], q[1]]))
+                    .min_by(f64::total_cmp)
+            };
+            for _ in 0..20 {
+                let q = [0, 1, 2].map(|_| random.below(400) as f64 / 10.0);
+                for z in [0.0, 1.0, 2.0, 5.0] {
+                    let [own, other] = [band.nearest_at(q, z), band.nearest_not_at(q, z)];
+                    let squared = |found: Found| found.distance * found.distance;
+                    for (found, expected) in [
+                        (own, expected(q, &|height| height == z)),
+                        (other, expected(q, &|height| height != z)),
+                    ] {
+                        assert_eq!(found.is_some(), expected.is_some());
+                        let off = found.map_or(0.0, squared) - expected.unwrap_or(0.0);
+                        assert!(off.abs() < 1e-9, "round {round}: {found:?}, {expected:?}");
+                    }
+                }
+            }
+        }
+    }
+
+    /// Of many limits of one height, few are looked at for one of another height.
+    #[test]
+    fn limits_of_the_height_itself_are_skipped() {
+        let ring = |count: u32, radius: f64, z: f64| {
+            let at = move |k: u32| {
+                let angle = f64::from(k) / f64::from(count) * std::f64::consts::TAU;
+                [radius * angle.cos(), radius * angle.sin(), z]
+            };
+            (0..count).map(move |k| Limit {
+                ends: [at(k), at(k + 1)],
+                beyond: None,
+            })
+        };
+        let band = Band::new(ring(4000, 10.0, 5.0).chain(ring(4000, 90.0, 6.0)).collect());
+        let looked_at = |z: f64| {
+            let mut count = 0;
+            let is_wanted = |node: usize| !band.common[node].has(z);
+            band.limits
+                .around_in([0.0, 9.0], &mut Vec::new(), is_wanted, |_| {
+                    count += 1;
+                    f64::INFINITY
+                });
+            count
+        };
+        assert_eq!(looked_at(7.0), 8000);
+        assert!((4000..4100).contains(&looked_at(5.0)), "{}", looked_at(5.0));
     }
 
     /// A ring alone says neither that the ground rises within it nor that it falls.

@@ -73,14 +73,14 @@ impl TinBuilder {
         }
         let judged = self.bounds.or(self.judged);
         let is_judged = |[x, y, _]: &[f64; 3]| judged.is_none_or(|bounds| bounds.holds(*x, *y));
-        let rims: Vec<Vec<Vec<[f64; 3]>>> =
-            areas.iter().map(|&area| cut.rim_of(area, self)).collect();
+        let rims = cut.rims_of(&areas, self);
         let (mut replaced, mut added, mut shortened) = (Vec::new(), Vec::new(), Vec::new());
         for (id, &number) in cut.lines.iter().enumerate() {
             let Parts { kept, left_out } = cut.parts(LineId::new(id), self.line(number));
             if left_out.is_empty() {
                 continue;
             }
+            // In ascending order, as the lines of waters are in the cut.
             if left_out.iter().any(is_judged) {
                 shortened.push(number);
             }
@@ -100,9 +100,10 @@ impl TinBuilder {
                 .iter()
                 .map(|ring| self.add_line_named(first, ring, kind))
                 .collect();
+            let after = shortened.partition_point(|&line| line < first);
             if shortened
-                .iter()
-                .any(|line| self.waters[area].lines.contains(line))
+                .get(after)
+                .is_some_and(|line| self.waters[area].lines.contains(line))
             {
                 ended.push(first);
             }
@@ -146,6 +147,8 @@ struct WaterCut {
     triangulation: ConstrainedDelaunay<Terrain>,
     /// The numbers that lines of waters have in the builder, by their ids here.
     lines: Vec<usize>,
+    /// Their ids here, by these numbers.
+    id_of: FxHashMap<usize, LineId>,
     labels: Labels,
     /// For each label, true if it is within the rim.
     is_within: Vec<bool>,
@@ -199,6 +202,7 @@ impl WaterCut {
         Some(WaterCut {
             triangulation,
             lines,
+            id_of,
             labels,
             is_within,
         })
@@ -225,9 +229,13 @@ impl WaterCut {
         self.is_within[self.label(cell)]
     }
 
-    /// Returns true if a cell is in a water, within the rim.
-    fn is_in(&self, cell: CellId, area: Domain) -> bool {
-        self.is_within(cell) && self.labels.areas[self.label(cell)].contains(&area)
+    /// Returns the areas that a cell is in, within the rim.
+    fn areas_of(&self, cell: CellId) -> &[Domain] {
+        if self.is_within(cell) {
+            &self.labels.areas[self.label(cell)]
+        } else {
+            &[]
+        }
     }
 
     fn site(&self, vertex: VertexId) -> [f64; 2] {
@@ -279,38 +287,36 @@ impl WaterCut {
         parts
     }
 
-    /// Returns the rings around what is left of a water, with its heights.
-    fn rim_of(&self, area: Domain, builder: &TinBuilder) -> Vec<Vec<[f64; 3]>> {
+    /// Returns, for each of some waters in ascending order, the rings around what is left of it,
+    /// with its heights.
+    ///
+    /// # Complexity
+    /// O(n log n) in the number of cells, counted once for each water that they are in.
+    fn rims_of(&self, areas: &[Domain], builder: &TinBuilder) -> Vec<Vec<Vec<[f64; 3]>>> {
         let tds = self.triangulation.tds();
-        let mut onward: FxHashMap<VertexId, Vec<VertexId>> = FxHashMap::default();
-        let mut starts = Vec::new();
-        for cell in tds.cells().filter(|&cell| self.is_in(cell, area)) {
-            for i in (0..3).filter(|&i| !self.is_in(tds.neighbor(cell, i), area)) {
-                let [from, to] = tds.edge_ends(cell, i);
-                onward.entry(from).or_default().push(to);
-                starts.push(from);
+        let mut borders: Vec<Vec<[VertexId; 2]>> = vec![Vec::new(); areas.len()];
+        for cell in tds.cells() {
+            for area in self.areas_of(cell) {
+                // `within`, the rim itself, is none of the waters.
+                let Ok(at) = areas.binary_search(area) else {
+                    continue;
+                };
+                let is_beyond = |i: &usize| !self.areas_of(tds.neighbor(cell, *i)).contains(area);
+                borders[at].extend((0..3).filter(is_beyond).map(|i| tds.edge_ends(cell, i)));
             }
         }
-        onward.values_mut().for_each(|next| next.sort_unstable());
-        starts.sort_unstable();
-        let height = self.heights(area, builder);
-        let vertex = |vertex: VertexId| {
-            let [x, y] = self.site(vertex);
-            [x, y, height(vertex)]
+        let rings = |(&area, border): (&Domain, Vec<[VertexId; 2]>)| {
+            let height = self.heights(area, builder);
+            let vertex = |vertex: VertexId| {
+                let [x, y] = self.site(vertex);
+                [x, y, height(vertex)]
+            };
+            rings_of(border)
+                .into_iter()
+                .map(|ring| ring.into_iter().map(vertex).collect())
+                .collect()
         };
-        let mut rings = Vec::new();
-        for start in starts {
-            let mut ring = vec![vertex(start)];
-            let mut here = start;
-            while let Some(next) = onward.get_mut(&here).and_then(Vec::pop) {
-                ring.push(vertex(next));
-                here = next;
-            }
-            if ring.len() > 1 {
-                rings.push(ring);
-            }
-        }
-        rings
+        areas.iter().zip(borders).map(rings).collect()
     }
 
     /// Returns the height that a water has at vertices: on the lines around it, the lowest of
@@ -328,12 +334,13 @@ impl WaterCut {
             WaterLevel::River(river) => RiverWater::new(river),
         };
         let mut own: FxHashMap<VertexId, f64> = FxHashMap::default();
-        for (id, number) in self.lines.iter().enumerate() {
-            if builder.waters[area].rim.contains(number) {
-                for (vertex, [_, _, z]) in self.chain(LineId::new(id), builder.line(*number)) {
-                    let lowest = own.entry(vertex).or_insert(z);
-                    *lowest = lowest.min(z);
-                }
+        for &number in &builder.waters[area].rim {
+            let Some(&id) = self.id_of.get(&number) else {
+                continue;
+            };
+            for (vertex, [_, _, z]) in self.chain(id, builder.line(number)) {
+                let lowest = own.entry(vertex).or_insert(z);
+                *lowest = lowest.min(z);
             }
         }
         Box::new(move |vertex| match own.get(&vertex) {
@@ -341,4 +348,28 @@ impl WaterCut {
             None => river.height(self.site(vertex)),
         })
     }
+}
+
+/// Joins the edges of a border to rings.
+fn rings_of(border: Vec<[VertexId; 2]>) -> Vec<Vec<VertexId>> {
+    let mut onward: FxHashMap<VertexId, Vec<VertexId>> = FxHashMap::default();
+    for &[from, to] in &border {
+        onward.entry(from).or_default().push(to);
+    }
+    onward.values_mut().for_each(|next| next.sort_unstable());
+    let mut starts: Vec<VertexId> = border.into_iter().map(|[from, _]| from).collect();
+    starts.sort_unstable();
+    let mut rings = Vec::new();
+    for start in starts {
+        let mut ring = vec![start];
+        let mut here = start;
+        while let Some(next) = onward.get_mut(&here).and_then(Vec::pop) {
+            ring.push(next);
+            here = next;
+        }
+        if ring.len() > 1 {
+            rings.push(ring);
+        }
+    }
+    rings
 }
