@@ -39,7 +39,7 @@ mod _breakline {
     use super::surface::{Surface, check_file, edge_kinds, write_cells, write_contours};
 
     #[pymodule_export]
-    use super::spatial::{CubicValues, Tessellation, Values};
+    use super::spatial::{CubicValues, Tessellation, Values, convex_hull, nested_lists};
 
     #[pymodule_export]
     use super::triangle::triangulate_arrays;

@@ -3,7 +3,7 @@
 import doctest
 import importlib
 import inspect
-import os
+import pkgutil
 import shutil
 
 import breakline
@@ -21,7 +21,7 @@ def public(module):
         if inspect.isfunction(value):
             yield name, value
         elif inspect.isclass(value) and value.__module__.startswith("breakline") and not issubclass(value, Exception):
-            for method, function in vars(value).items():
+            for method, function in inspect.getmembers(value):
                 function = getattr(function, "__func__", function)
                 if not method.startswith("_") and inspect.isfunction(function):
                     yield f"{name}.{method}", function
@@ -42,12 +42,11 @@ def test_examples_are_true(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     shutil.copy(FIXTURES / "valley.laz", tmp_path)
     (tmp_path / "square.poly").write_text(SQUARE)
-    folder = os.path.dirname(breakline.__file__)
-    modules = [name[:-3] for name in sorted(os.listdir(folder)) if name.endswith(".py") and name != "__main__.py"]
+    found = pkgutil.walk_packages(breakline.__path__, "breakline.")
+    modules = [module.name for module in found if module.name not in ("breakline.__main__", "breakline._breakline")]
     tried = 0
-    for name in modules:
-        module = importlib.import_module(f"breakline.{name}" if name != "__init__" else "breakline")
-        failed, of = doctest.testmod(module)
+    for name in ["breakline", *modules]:
+        failed, of = doctest.testmod(importlib.import_module(name))
         assert failed == 0, f"{name}: {failed} of {of} examples, printed above"
         tried += of
     assert tried > 80

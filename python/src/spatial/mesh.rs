@@ -11,6 +11,8 @@ use breakline::triangulation::tds::{CellId, Neighbors, Tds, VertexId};
 use breakline::triangulation::{Delaunay, InputError};
 use rayon::prelude::*;
 
+use super::lists::{Lists, Part};
+
 /// No simplex, and no point.
 pub(super) const NONE: i32 = -1;
 
@@ -131,6 +133,18 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
         })
     }
 
+    /// The cell of each simplex.
+    pub(super) fn cells(&self) -> &[CellId] {
+        &self.numbers().cells
+    }
+
+    /// The points at the site of an earlier one, each with the first there.
+    pub(super) fn repeated_points(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
+        let first = |vertex: VertexId| self.point_of[vertex.index()] as usize;
+        let repeated = self.repeated.iter();
+        repeated.map(move |&(point, vertex)| (point as usize, first(vertex)))
+    }
+
     /// Returns true if the points do not span the plane or the space.
     pub(super) fn has_no_simplices(&self) -> bool {
         self.t.dimension() < D as i32
@@ -208,18 +222,17 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
     /// number, a simplex there, and that other point.
     pub(super) fn coplanar(&self) -> Vec<[i32; 3]> {
         let at = self.simplices_at();
-        let listed = self.repeated.iter().map(|&(point, vertex)| {
-            let first = self.point_of[vertex.index()];
-            [point, at[first as usize], first]
-        });
-        listed.collect()
+        let listed = self.repeated_points();
+        listed
+            .map(|(point, first)| [point as i32, at[first], first as i32])
+            .collect()
     }
 
     /// Returns a simplex at each point: the first that has its site as a corner.
     pub(super) fn simplex_at(&self) -> Vec<i32> {
         let mut at = self.simplices_at();
-        for &(point, vertex) in &self.repeated {
-            at[point as usize] = at[self.point_of[vertex.index()] as usize];
+        for (point, first) in self.repeated_points() {
+            at[point] = at[first];
         }
         at
     }
@@ -258,60 +271,40 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
         vertices
     }
 
-    /// Returns the neighbors of all points: those of point `k` are `indices[starts[k]..starts[k +
-    /// 1]]`. A point that is not a corner has none.
-    pub(super) fn neighbor_points(&self) -> (Vec<i32>, Vec<i32>)
+    /// Returns the neighbors of each point. A point that is not a corner has none.
+    pub(super) fn neighbor_points(&self) -> Lists
     where
         Tds<N>: Neighbors<N, Error = Infallible>,
     {
-        let vertex_of = self.first_at_vertices();
-        let around = |vertex: VertexId, all: &mut Vec<i32>| {
-            let start = all.len();
-            let Ok(neighbors) = self.t.tds().neighbors_of(vertex);
-            let finite = neighbors
-                .map(|Ok(v)| v)
-                .filter(|&v| v != VertexId::INFINITE);
-            all.extend(finite.map(|v| self.point_of[v.index()]));
+        let around = |vertex: VertexId, neighbors: &mut Vec<i32>| {
+            let Ok(around) = self.t.tds().neighbors_of(vertex);
+            let finite = around.map(|Ok(v)| v).filter(|&v| v != VertexId::INFINITE);
+            neighbors.extend(finite.map(|v| self.point_of[v.index()]));
             if D > 2 {
                 // In space a neighbor may be met several times.
-                all[start..].sort_unstable();
-                let unique = all.split_off(start);
-                all.extend(
-                    unique
-                        .iter()
-                        .enumerate()
-                        .filter(|&(i, v)| i == 0 || unique[i - 1] != *v)
-                        .map(|(_, v)| v),
-                );
+                neighbors.sort_unstable();
+                neighbors.dedup();
             }
-            (all.len() - start) as i32
         };
-        let chunks: Vec<(Vec<i32>, Vec<i32>)> = vertex_of
-            .par_chunks(CHUNK)
-            .map(|vertices| {
-                let mut all = Vec::new();
-                let counts = vertices
-                    .iter()
-                    .map(|v| v.map_or(0, |v| around(v, &mut all)))
-                    .collect();
-                (counts, all)
-            })
-            .collect();
-        let mut starts = vec![0];
-        let mut end = 0;
-        for count in chunks.iter().flat_map(|(counts, _)| counts) {
-            end += count;
-            starts.push(end);
-        }
-        (
-            starts,
-            chunks.into_iter().flat_map(|(_, all)| all).collect(),
-        )
+        let of_chunk = |vertices: &[Option<VertexId>]| {
+            let (mut part, mut neighbors) = (Part::default(), Vec::new());
+            for &vertex in vertices {
+                neighbors.clear();
+                if let Some(vertex) = vertex {
+                    around(vertex, &mut neighbors);
+                }
+                part.push(&neighbors);
+            }
+            part
+        };
+        let vertex_of = self.first_at_vertices();
+        let parts: Vec<Part> = vertex_of.par_chunks(CHUNK).map(of_chunk).collect();
+        parts.into_iter().collect()
     }
 }
 
 /// Negative zeros become zeros: equal points are recognized by their bits.
-fn make_zeros_unsigned<const D: usize>(points: &mut [[f64; D]]) {
+pub(super) fn make_zeros_unsigned<const D: usize>(points: &mut [[f64; D]]) {
     let chunks = points.as_flattened_mut().par_chunks_mut(CHUNK);
     chunks.for_each(|chunk| chunk.iter_mut().for_each(|x| *x = unsigned_zero(*x)));
 }

@@ -1,10 +1,15 @@
-//! Drop-ins for `scipy.spatial.Delaunay` and the interpolators over it: what is computed. The
-//! signatures of scipy are in `package/breakline/spatial.py`.
+//! Drop-ins for triangulations, Voronoi diagrams and convex hulls of `scipy.spatial`, and for the
+//! interpolators over them: what is computed. The signatures of scipy are in
+//! `package/breakline/spatial`.
 
 mod cubic;
 mod dimensions;
+mod groups;
+mod hull;
+mod lists;
 mod mesh;
 mod queries;
+mod voronoi;
 
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{PoisonError, RwLock, RwLockReadGuard};
@@ -20,8 +25,11 @@ use numpy::{
 use pyo3::prelude::*;
 
 use self::cubic::{Gradients, Limits};
+use self::hull::Hull;
+pub(crate) use self::lists::nested_lists;
 use self::mesh::Mesh;
 use self::queries::Field;
+use self::voronoi::Diagram;
 use crate::arrays::{column, points, table};
 use crate::errors::{Failure, Result};
 use crate::work::{self, Call};
@@ -264,12 +272,29 @@ impl Tessellation {
         py: Python<'py>,
         call: Call,
     ) -> PyResult<[Bound<'py, PyArray1<i32>>; 2]> {
-        let (starts, all) = self.compute(
+        let neighbors = self.compute(
             py,
             &call,
             |any, _| of_dimension!(any, mesh => mesh.neighbor_points()),
         )?;
-        Ok([column(py, starts), column(py, all)])
+        let starts = neighbors.starts.into_iter().map(|start| start as i32);
+        Ok([column(py, starts.collect()), column(py, neighbors.items)])
+    }
+
+    /// The Voronoi diagram.
+    fn voronoi<'py>(&self, py: Python<'py>, call: Call) -> PyResult<DiagramArrays<'py>> {
+        enum Diagrams {
+            Plane(Diagram<2>),
+            Space(Diagram<3>),
+        }
+        let diagram = self.compute(py, &call, |any, _| match any {
+            Any::Plane(mesh) => Diagrams::Plane(mesh.diagram()),
+            Any::Space(mesh) => Diagrams::Space(mesh.diagram()),
+        })?;
+        match diagram {
+            Diagrams::Plane(diagram) => arrays_of(py, diagram),
+            Diagrams::Space(diagram) => arrays_of(py, diagram),
+        }
     }
 
     /// The simplex at each position of shape (q, d): an array of shape (q,).
@@ -304,6 +329,97 @@ impl Tessellation {
         })?;
         Ok(column(py, nearest?))
     }
+}
+
+/// Lists of different lengths: where each begins, and what they contain.
+type ListArrays<'py> = (Bound<'py, PyArray1<i64>>, Bound<'py, PyArray1<i32>>);
+
+/// A Voronoi diagram: the positions of its vertices, of shape (v, d); the points on both sides of
+/// each ridge, of shape (r, 2); the vertices around ridges, and around regions; the region of each
+/// point, of shape (n,).
+type DiagramArrays<'py> = (
+    Bound<'py, PyAny>,
+    Bound<'py, PyAny>,
+    ListArrays<'py>,
+    ListArrays<'py>,
+    Bound<'py, PyArray1<i64>>,
+);
+
+fn arrays_of<const D: usize>(py: Python<'_>, diagram: Diagram<D>) -> PyResult<DiagramArrays<'_>> {
+    Ok((
+        table(py, diagram.vertices)?,
+        table(py, diagram.ridge_points)?,
+        diagram.ridges.arrays(py),
+        diagram.regions.arrays(py),
+        column(py, diagram.region_of),
+    ))
+}
+
+/// A convex hull: its corners, of shape (k,); the corners of facets and their neighbors, of shape
+/// (f, d); their equations, of shape (f, d + 1); the volume and the area.
+type HullArrays<'py> = (
+    Bound<'py, PyArray1<i32>>,
+    Bound<'py, PyAny>,
+    Bound<'py, PyAny>,
+    Bound<'py, PyAny>,
+    f64,
+    f64,
+);
+
+/// Returns the convex hull of points of shape (n, d), of which so many were accepted before; `None`
+/// if they do not span the plane or the space.
+#[pyfunction]
+pub(crate) fn convex_hull<'py>(
+    py: Python<'py>,
+    points: PyReadonlyArray2<'py, f64>,
+    accepted: usize,
+    call: Call,
+) -> PyResult<Option<HullArrays<'py>>> {
+    enum Hulls {
+        Plane(Hull<2>),
+        Space(Hull<3>),
+    }
+    let points = Positions::of(&points);
+    let accepted = accepted.min(points.count());
+    let hull = work::run_on(py, &call, Some(points.count()), |context| {
+        Result::Ok(match points {
+            Positions::Plane(mut points) => hull::of_plane(&mut points, accepted, context.cancel)
+                .map_err(|e| refused(&e, &points[accepted..]))?
+                .map(Hulls::Plane),
+            Positions::Space(mut points) => hull::of_space(&mut points, accepted, context.cancel)
+                .map_err(|e| refused(&e, &points[accepted..]))?
+                .map(Hulls::Space),
+        })
+    })?;
+    match hull {
+        None => Ok(None),
+        Some(Hulls::Plane(hull)) => {
+            let equations = hull.normals.iter().map(|&([x, y], offset)| [x, y, offset]);
+            let equations = table(py, equations.collect())?;
+            hull_arrays(py, hull, equations).map(Some)
+        }
+        Some(Hulls::Space(hull)) => {
+            let equations = hull.normals.iter();
+            let equations = equations.map(|&([x, y, z], offset)| [x, y, z, offset]);
+            let equations = table(py, equations.collect())?;
+            hull_arrays(py, hull, equations).map(Some)
+        }
+    }
+}
+
+fn hull_arrays<'py, const D: usize>(
+    py: Python<'py>,
+    hull: Hull<D>,
+    equations: Bound<'py, PyAny>,
+) -> PyResult<HullArrays<'py>> {
+    Ok((
+        column(py, hull.vertices),
+        table(py, hull.facets)?,
+        table(py, hull.neighbors)?,
+        equations,
+        hull.volume,
+        hull.area,
+    ))
 }
 
 /// Values at the points of a triangulation.
