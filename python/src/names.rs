@@ -49,10 +49,11 @@ fn call(command: Command, file: Option<&str>) -> Option<String> {
         Command::Triangulate => ("triangulate", ""),
         Command::TriangulateInSpace => ("triangulate", "in_space=True"),
         Command::Check => ("check", ""),
-        Command::JobRun | Command::JobVerify | Command::JobClean => {
+        Command::JobRun | Command::JobWork | Command::JobVerify | Command::JobClean => {
             let of = file.map_or_else(|| "folder".to_owned(), |file| format!("{file:?}"));
             let method = match command {
                 Command::JobRun => "write",
+                Command::JobWork => "work",
                 Command::JobVerify => "verify",
                 _ => "clean",
             };

@@ -155,6 +155,8 @@ pub enum Command {
     Check,
     /// Does the tasks of a job.
     JobRun,
+    /// Does tasks of a job together with other processes.
+    JobWork,
     /// Verifies the tasks of a job that are done.
     JobVerify,
     /// Removes a job.
@@ -171,6 +173,7 @@ impl Command {
         Command::TriangulateInSpace,
         Command::Check,
         Command::JobRun,
+        Command::JobWork,
         Command::JobVerify,
         Command::JobClean,
     ];
@@ -190,6 +193,7 @@ impl Command {
             Command::TriangulateInSpace => "triangulate in space",
             Command::Check => "check",
             Command::JobRun => "job run",
+            Command::JobWork => "job work",
             Command::JobVerify => "job verify",
             Command::JobClean => "job clean",
         }

@@ -78,7 +78,9 @@ mod triangulate;
 mod verbs;
 mod write;
 
-pub use context::event::{Event, JobSize};
+#[cfg(feature = "cli")] // what is printed lists who is waited for
+pub(crate) use context::event::listed;
+pub use context::event::{Awaited, Event, JobSize};
 pub use context::notice::{
     CrossingNote, LoweredRiver, Notice, Seed, SeedFlaw, Severity, WaterStep,
 };

@@ -407,3 +407,32 @@ fn a_file_that_was_repaired_goes_on() {
 fn lidar_record(file: &[u8]) -> usize {
     usize::from(u16::from_le_bytes([file[105], file[106]]))
 }
+
+/// Files that are all gone are not damaged: their file system is not mounted.
+#[test]
+fn a_folder_that_is_gone_is_no_hole() {
+    let folder = tempfile::tempdir().unwrap();
+    landscape::write(&folder.path().join("in"), 16_000, 4).unwrap();
+    let [inputs, away] = ["in", "away"].map(|name| folder.path().join(name));
+    let work = |words: &str| run_in(&folder, &words.split_whitespace().collect::<Vec<_>>());
+    work("job plan j -- dem in/*.laz -o dem.tif --tiles 2x2 --skip-bad").works(&[]);
+    std::fs::rename(&inputs, &away).unwrap();
+    let is_gone = [
+        "laz: the file is missing, and so is its folder",
+        "is mounted",
+    ];
+    work("job run j").fails(2, &is_gone);
+    work("job run j --task 0").fails(2, &is_gone);
+    work("dem in/000_000.laz in/001_000.laz -o new.tif --tiles 2x2 --skip-bad")
+        .fails(1, &["in/000_000.laz: no such file"]);
+    std::fs::create_dir(&inputs).unwrap();
+    work("job run j").fails(
+        2,
+        &["the file is missing, and so are all others of its folder"],
+    );
+    // One that is missing among others is a hole.
+    std::fs::remove_dir(&inputs).unwrap();
+    std::fs::rename(&away, &inputs).unwrap();
+    std::fs::remove_file(inputs.join("001_001.laz")).unwrap();
+    assert_eq!(work("job run j").code, 3);
+}

@@ -136,7 +136,10 @@ fn notices_of_tiles(case: &Case, division: Division, folder: &Path) -> Vec<Notic
     };
     let command = JobCommand::new(&request, &targets, &options).unwrap();
     let planned = run::plan_job(&command, &job, &context).unwrap();
-    planned.job().unwrap().run(&Context::default()).unwrap();
+    let tasks = planned.job().unwrap();
+    let lock = tasks.lock(&Context::default()).unwrap();
+    tasks.run(&lock, &Context::default()).unwrap();
+    drop(lock);
     // As another process would go on.
     run::run_job(&StoredJob::read(&job).unwrap(), &context).unwrap();
     fs::remove_file(&targets.files[0]).unwrap();

@@ -18,6 +18,10 @@ fn run(folder: &TempDir, words: &str) -> Run {
 
 /// A worker of the job `j`, which adds what it says to a file.
 fn worker(folder: &TempDir, words: &str) -> Child {
+    spawn(folder, &format!("job work j {words}"))
+}
+
+fn spawn(folder: &TempDir, words: &str) -> Child {
     let said = File::options()
         .create(true)
         .append(true)
@@ -25,7 +29,6 @@ fn worker(folder: &TempDir, words: &str) -> Child {
         .unwrap();
     Command::new(assert_cmd::cargo::cargo_bin!("breakline"))
         .current_dir(folder.path())
-        .args(["job", "work", "j"])
         .args(words.split_whitespace())
         .stderr(said)
         .stdout(Stdio::null())
@@ -271,7 +274,7 @@ fn a_worker_that_fails_says_how_to_go_on_and_leaves_no_lease() {
         &[
             "a.laz: ",
             "finished tasks are kept in",
-            "`breakline job run ",
+            "`breakline job work ",
         ],
     );
     assert!(files_of(&folder.path().join("j/tasks")).is_empty());
@@ -301,13 +304,150 @@ fn workers_skip_what_the_job_skips() {
     }
 }
 
+/// The last task does not try files again that were skipped: that is what `job run` is for.
+#[test]
+fn workers_do_not_try_again_what_was_skipped() {
+    let folder = tempfile::tempdir().unwrap();
+    landscape::write(&folder.path().join("in"), 16_000, 4).unwrap();
+    let bad = folder.path().join("in/001_001.laz");
+    let whole = bytes(&bad);
+    std::fs::write(&bad, &whole[..whole.len() / 2]).unwrap();
+    let planned = "job plan j -- dem in/*.laz --tiles 2x2 -o dem.tif --skip-bad";
+    run(&folder, planned).works(&[]);
+    let mut task = 0;
+    while run(&folder, &format!("job run j --task {task}")).code == 0 {
+        task += 1;
+    }
+    let before = done(&folder);
+    // The last one, which is the output, has a hole.
+    assert_eq!(before.len(), task);
+    std::fs::remove_file(folder.path().join("dem.tif")).unwrap();
+    assert_eq!(run(&folder, "job work j").code, 3);
+    assert_eq!(done(&folder), before);
+}
+
+/// A job whose tasks take long enough to see what happens meanwhile.
+fn long_job(folder: &TempDir) {
+    landscape::write(&folder.path().join("in"), 400_000, 1).unwrap();
+    run(folder, "job plan j -- dem in/*.laz --tiles 2x2 -o dem.tif").works(&[]);
+}
+
+/// Waits until something has happened; the process must not end before.
+#[track_caller]
+fn wait_until(folder: &TempDir, process: &mut Child, happened: impl Fn() -> bool) {
+    while !happened() {
+        let ended = process.try_wait().unwrap();
+        assert!(ended.is_none(), "{ended:?}: {}", said(folder));
+        std::thread::sleep(Duration::from_millis(1));
+    }
+}
+
+/// Who has the whole job has the lease of the output, so that others wait where locks hold on one
+/// host only.
+#[test]
+fn a_run_of_the_whole_job_has_the_lease_of_the_output() {
+    let folder = tempfile::tempdir().unwrap();
+    long_job(&folder);
+    let mut whole = spawn(&folder, "job run j");
+    let own = format!(r#""process":{}}}"#, whole.id());
+    let has_lease = || {
+        let text = std::fs::read_to_string(lease(&folder, 7));
+        text.is_ok_and(|text| text.contains(&own))
+    };
+    wait_until(&folder, &mut whole, has_lease);
+    let late = worker(&folder, "").wait_with_output().unwrap();
+    assert!(late.status.success(), "{}", said(&folder));
+    assert!(whole.wait().unwrap().success(), "{}", said(&folder));
+    for line in [
+        "waits for another process that has the job: ",
+        " has the output, seen 0 s ago",
+        "dem.tif is written",
+    ] {
+        assert!(said(&folder).contains(line), "{line} in {}", said(&folder));
+    }
+    assert!(!lease(&folder, 7).exists());
+}
+
+/// A process whose lease another one has taken writes no output any more.
+#[test]
+fn a_run_that_has_lost_its_lease_writes_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    long_job(&folder);
+    let mut whole = spawn(&folder, "job run j");
+    wait_until(&folder, &mut whole, || !done(&folder).is_empty());
+    std::fs::remove_file(lease(&folder, 7)).unwrap();
+    write_lease(&folder, 7, 3600, 0);
+    assert_eq!(whole.wait().unwrap().code(), Some(4), "{}", said(&folder));
+    assert!(said(&folder).contains("this process gave no sign of life for so long that another"));
+    assert!(!folder.path().join("dem.tif").exists() && lease(&folder, 7).exists());
+    // Nor does a worker begin while another host has the whole job.
+    let before = done(&folder);
+    let mut worker = worker(&folder, "");
+    let waits = || said(&folder).contains("has the job: elsewhere:7 has the output, seen");
+    wait_until(&folder, &mut worker, waits);
+    std::thread::sleep(Duration::from_millis(200));
+    assert_eq!(done(&folder), before);
+    std::fs::remove_file(lease(&folder, 7)).unwrap();
+    assert!(worker.wait().unwrap().success(), "{}", said(&folder));
+    assert!(folder.path().join("dem.tif").exists());
+}
+
+#[cfg(unix)]
+fn signal(process: &Child, name: &str) {
+    // The one of the shell: not every system has a program `kill`.
+    let kill = ["-c", "kill -$1 $0", &process.id().to_string(), name];
+    assert!(Command::new("sh").args(kill).status().unwrap().success());
+}
+
+/// A process that is stopped has a lock that nobody can take from it. It is not waited for longer
+/// than its lease lasts, and does nothing that others have done when it goes on.
+#[cfg(unix)]
+#[test]
+fn a_worker_that_is_stopped_does_not_keep_others_from_the_output() {
+    let folder = tempfile::tempdir().unwrap();
+    long_job(&folder);
+    let mut stopped = worker(&folder, "--threads 1 --lease 1");
+    wait_until(&folder, &mut stopped, || {
+        (0..7).any(|task| lease(&folder, task).exists())
+    });
+    signal(&stopped, "STOP");
+    let mut other = worker(&folder, "--lease 1");
+    assert!(other.wait().unwrap().success(), "{}", said(&folder));
+    let mut lines = vec![
+        "does not go on with it",
+        "waits for another process that has the job",
+        "the output is written here: for",
+    ];
+    let holder = format!(
+        "process {} on this machine has the lock of the job and is stopped",
+        stopped.id()
+    );
+    if cfg!(target_os = "linux") {
+        lines.push(&holder);
+    }
+    for line in lines {
+        assert!(said(&folder).contains(line), "{line} in {}", said(&folder));
+    }
+    let written = || {
+        std::fs::metadata(folder.path().join("dem.tif"))
+            .unwrap()
+            .modified()
+            .unwrap()
+    };
+    let before = (done(&folder), written());
+    signal(&stopped, "CONT");
+    assert!(stopped.wait().unwrap().success(), "{}", said(&folder));
+    assert_eq!((done(&folder), written()), before);
+    let left = files_of(&folder.path().join("j/tasks"));
+    assert!(left.iter().all(|name| name.ends_with(".task")), "{left:?}");
+}
+
 /// A signal ends a worker at once; what it had is free.
 #[cfg(unix)]
 #[test]
 fn a_worker_that_a_signal_ends_leaves_no_lease() {
     let folder = tempfile::tempdir().unwrap();
-    landscape::write(&folder.path().join("in"), 400_000, 1).unwrap();
-    run(&folder, "job plan j -- dem in/*.laz --tiles 2x2 -o dem.tif").works(&[]);
+    long_job(&folder);
     let mut worker = worker(&folder, "");
     let is_lease = |name: &String| name.ends_with(".lease");
     let leases = || {
@@ -315,14 +455,8 @@ fn a_worker_that_a_signal_ends_leaves_no_lease() {
             .iter()
             .any(is_lease)
     };
-    // It takes far longer than it takes to see the first.
-    while !leases() {
-        assert!(worker.try_wait().unwrap().is_none(), "{}", said(&folder));
-        std::thread::sleep(Duration::from_millis(1));
-    }
-    // The one of the shell: not every system has a program `kill`.
-    let kill = ["-c", "kill \"$0\"", &worker.id().to_string()];
-    assert!(Command::new("sh").args(kill).status().unwrap().success());
+    wait_until(&folder, &mut worker, leases);
+    signal(&worker, "TERM");
     worker.wait().unwrap();
     assert!(!leases());
     let said = said(&folder);

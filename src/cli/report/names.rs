@@ -37,6 +37,7 @@ fn command(command: Command) -> &'static str {
         Command::TriangulateInSpace => "triangulate --3d",
         Command::Check => "check",
         Command::JobRun => "job run",
+        Command::JobWork => "job work",
         Command::JobVerify => "job status --verify",
         Command::JobClean => "job clean",
     }

@@ -12,6 +12,7 @@ use crate::error::Result;
 use crate::io::contours::ContourSummary;
 use crate::io::geotiff::RasterSummary;
 use crate::io::mesh::MeshSummary;
+use crate::run::listed;
 use crate::run::units::{Units, bytes};
 use crate::run::{
     Context, Event, JobReport, JobSize, Monitor, Notice, Origin, Outputs, Progress, Size, Stage,
@@ -162,9 +163,10 @@ impl Monitor for Shown<'_> {
             Event::TasksBegin(folder) => {
                 self.set_words(|| console.note_if_ended(self.kept(folder)))
             }
-            Event::Waits { tasks } => console.note(format_args!(
-                "waits for {} of other processes",
-                counted(*tasks as u64, "task")
+            Event::Waits { tasks, on } => console.note(format_args!(
+                "waits for {} of other processes{}",
+                counted(*tasks as u64, "task"),
+                listed(on)
             )),
             Event::TasksEnd { done_here, tasks } => {
                 console.line(format_args!("tasks       {done_here} of {tasks} done here"));
@@ -180,7 +182,10 @@ impl Monitor for Shown<'_> {
                 ));
             }
             Event::Written => self.set_words(|| None),
-            Event::PlannedAgain(_) | Event::TakenOver { .. } => {}
+            Event::PlannedAgain(_)
+            | Event::TakenOver { .. }
+            | Event::WaitsForJob { .. }
+            | Event::GoesOnWithout { .. } => {}
         }
     }
 }

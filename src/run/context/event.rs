@@ -1,5 +1,6 @@
 //! What happens while files are written.
 
+use std::fmt::{Display, Formatter};
 use std::path::Path;
 use std::time::Duration;
 
@@ -38,6 +39,20 @@ pub enum Event<'a> {
     Waits {
         /// Their number.
         tasks: usize,
+        /// Who does them, as far as that is known.
+        on: &'a [Awaited],
+    },
+    /// Nothing can be done but to wait for processes that have the job.
+    WaitsForJob {
+        /// Who they are, as far as that is known.
+        on: &'a [Awaited],
+    },
+    /// The output is written although other processes have the job: they give no sign of life.
+    GoesOnWithout {
+        /// Who they are, as far as that is known.
+        on: &'a [Awaited],
+        /// How long they were waited for.
+        after: Duration,
     },
     /// All tasks of a job are done that several processes share, except the output.
     TasksEnd {
@@ -72,9 +87,57 @@ impl Event<'_> {
                 worker.unwrap_or("its process"),
                 age.as_secs()
             )),
+            Event::GoesOnWithout { on, after } => Some(format!(
+                "the output is written here: for {} s no process gave a sign of life{}",
+                after.as_secs(),
+                listed(on)
+            )),
+            Event::WaitsForJob { on } => Some(format!(
+                "waits for another process that has the job{}",
+                listed(on)
+            )),
             _ => None,
         }
     }
+}
+
+/// Something that a process waits for.
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Awaited {
+    /// The process, such as "node7:4711".
+    pub who: String,
+    /// What it does, such as "does task 3".
+    pub what: String,
+    /// How long ago it gave the last sign of life, if it gives any.
+    pub silent: Option<Duration>,
+}
+
+impl Display for Awaited {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        let Awaited { who, what, silent } = self;
+        write!(f, "{who} {what}")?;
+        match silent {
+            Some(silent) => write!(f, ", seen {} s ago", silent.as_secs()),
+            None => Ok(()),
+        }
+    }
+}
+
+/// How many of those that are waited for are listed.
+const LISTED: usize = 3;
+
+/// Returns the first of those that are waited for, for the end of a sentence.
+pub(crate) fn listed(on: &[Awaited]) -> String {
+    let mut text = String::new();
+    for (i, one) in on.iter().take(LISTED).enumerate() {
+        text.push_str(if i == 0 { ": " } else { "; " });
+        text.push_str(&one.to_string());
+    }
+    if on.len() > LISTED {
+        text.push_str(&format!("; and {} more", on.len() - LISTED));
+    }
+    text
 }
 
 /// What a plan consists of.

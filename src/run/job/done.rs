@@ -215,7 +215,6 @@ impl Job {
         // An interrupted removal may have taken it.
         std::fs::create_dir_all(&tasks).map_err(|e| Error::from(e).in_file(&tasks))?;
         remove_unfinished(&self.folder)?;
-        self.try_again()?;
         self.remove_damaged(context)
     }
 
@@ -249,7 +248,8 @@ impl Job {
         let needed = self.needs(task);
         let done = match needed.iter().find(|needed| !is_there(needed)) {
             Some(&missing) => Err(self.why_not_done(missing)),
-            None => self.do_unless_current(task, context),
+            // Its process has no lease: whoever does the task writes the same file.
+            None => self.do_unless_current(task, &|| Ok(()), context),
         };
         self.noting_damage(&needed, done)
     }
@@ -285,12 +285,18 @@ impl Job {
         }))
     }
 
-    /// Does a task that needs no other one any more, unless its file is there.
-    pub(super) fn do_unless_current(&self, task: usize, context: &Context) -> Result<()> {
+    /// Does a task that needs no other one any more, unless its file is there. Its file gets its
+    /// name unless `confirm` fails.
+    pub(super) fn do_unless_current(
+        &self,
+        task: usize,
+        confirm: &dyn Fn() -> Result<()>,
+        context: &Context,
+    ) -> Result<()> {
         if self.is_current(task)? {
             Ok(())
         } else {
-            self.do_task(task, context)
+            self.do_task(task, confirm, context)
         }
     }
 }

@@ -5,8 +5,8 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use super::lock::{JobLock, LOCK};
-use super::paths::{task_of, task_of_lease, tasks_in};
+use super::lock::JobLock;
+use super::paths::{LOCK, task_of, task_of_lease, tasks_in};
 use super::task_file::{is_unfinished, looks_like_task, unfinished_in};
 use crate::error::{Command, Error, Result, Setting, wording};
 use crate::io::remove_abandoned;
@@ -244,8 +244,8 @@ pub(super) fn replaced(folder: &Path) -> Error {
 /// # Errors
 /// If the folder has no job, or the job cannot be removed, or the run is canceled.
 pub fn remove_job(folder: &Path, context: &Context) -> Result<()> {
-    StoredPlan::read(folder)?.ok_or_else(|| no_job(folder))?;
-    let lock = JobLock::whole(folder, context)?;
+    let found = StoredPlan::read(folder)?.ok_or_else(|| no_job(folder))?;
+    let lock = JobLock::whole(folder, found.tasks as usize, context)?;
     let stored = StoredPlan::read(folder)?.ok_or_else(|| no_job(folder))?;
     remove_files(folder, &stored, &lock)
 }
@@ -255,8 +255,8 @@ pub fn remove_job(folder: &Path, context: &Context) -> Result<()> {
 /// # Errors
 /// Also if the folder has another job.
 pub(super) fn remove_job_of(sum: u32, folder: &Path, context: &Context) -> Result<()> {
-    StoredPlan::read_of(sum, folder)?;
-    let lock = JobLock::whole(folder, context)?;
+    let found = StoredPlan::read_of(sum, folder)?;
+    let lock = JobLock::whole(folder, found.tasks as usize, context)?;
     remove_files(folder, &StoredPlan::read_of(sum, folder)?, &lock)
 }
 

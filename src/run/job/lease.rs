@@ -11,9 +11,9 @@ use std::fmt::{Display, Formatter};
 use std::fs::File;
 use std::hash::{BuildHasher, RandomState};
 use std::io::{ErrorKind, Read, Seek, Write};
-use std::path::Path;
-use std::sync::mpsc::{RecvTimeoutError, channel};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
+use std::sync::{Arc, Mutex, PoisonError, Weak};
 use std::time::{Duration, Instant, SystemTime};
 
 use serde::{Deserialize, Serialize};
@@ -171,16 +171,17 @@ fn is_gone(error: &std::io::Error) -> bool {
 
 /// The clock by which a file system dates files. Between two looks at it, time is that of this
 /// machine.
-struct FileClock<'a> {
-    folder: &'a Path,
+#[derive(Debug)]
+struct FileClock {
+    folder: PathBuf,
     seen: Mutex<Option<(Instant, SystemTime)>>,
 }
 
-impl<'a> FileClock<'a> {
+impl FileClock {
     /// The clock of the file system that a job is in.
-    fn of(folder: &'a Path) -> Self {
+    fn of(folder: &Path) -> Self {
         FileClock {
-            folder,
+            folder: folder.to_path_buf(),
             seen: Mutex::default(),
         }
     }
@@ -200,7 +201,7 @@ impl<'a> FileClock<'a> {
     /// Returns the date of a file that is written now; where none can be written, the time here.
     fn date(&self) -> SystemTime {
         let date = || {
-            let mut file = unfinished_in(&tasks_in(self.folder))?;
+            let mut file = unfinished_in(&tasks_in(&self.folder))?;
             file.write_all(b"now")?;
             file.as_file().metadata()?.modified()
         };
@@ -213,82 +214,177 @@ impl<'a> FileClock<'a> {
 /// # Errors
 /// If the files cannot be listed or read.
 pub(super) fn leases_in(folder: &Path) -> Result<BTreeMap<usize, TaskLease>> {
+    let clock = FileClock::of(folder);
+    let found = found_in(folder)?.into_iter();
+    Ok(found
+        .map(|(task, found)| (task, found.at(clock.now(), LEASE)))
+        .collect())
+}
+
+/// Reads the files of the leases of a job.
+fn found_in(folder: &Path) -> Result<BTreeMap<usize, FoundLease>> {
     let tasks = tasks_in(folder);
     let named = |e: std::io::Error| Error::from(e).in_file(&tasks);
     let entries = match std::fs::read_dir(&tasks) {
         Err(error) if is_gone(&error) => return Ok(BTreeMap::new()),
         entries => entries.map_err(named)?,
     };
-    let clock = FileClock::of(folder);
-    let mut leases = BTreeMap::new();
+    let mut all = BTreeMap::new();
     for entry in entries {
         let path = entry.map_err(named)?.path();
         if let Some(task) = task_of_lease(&path)
             && let Some(found) = FoundLease::read(&path)?
         {
-            leases.insert(task, found.at(clock.now(), LEASE));
+            all.insert(task, found);
         }
     }
-    Ok(leases)
+    Ok(all)
 }
 
-/// Returns a task of the job that a process on another host does, and which process; `None` if that
-/// is not known.
-pub(super) fn of_other_host(folder: &Path) -> Option<(usize, Worker)> {
-    let here = host();
-    let leases = leases_in(folder).unwrap_or_default();
-    let others = leases.into_iter().filter(|(_, lease)| !lease.has_expired);
-    let mut others = others.filter_map(|(task, lease)| Some((task, lease.worker?)));
-    others.find(|(_, worker)| worker.host != here)
+/// Which processes on this host may have leases.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Neighbors {
+    /// Any.
+    Heeded,
+    /// None: a lock proves that this process has the job alone on its host. What was left of others
+    /// is that of processes which were killed.
+    Gone,
 }
 
-/// The leases of this process.
-pub(super) struct Leases<'a> {
-    folder: &'a Path,
+/// The leases of this process, which are written again and again as long as this or one of them
+/// lives.
+#[derive(Debug, Clone)]
+pub(super) struct Leases(Arc<Shared>);
+
+#[derive(Debug)]
+struct Shared {
+    folder: PathBuf,
     stated: Stated,
     text: String,
-    clock: FileClock<'a>,
+    clock: FileClock,
+    neighbors: Neighbors,
     /// The files of those that it has, by the numbers of their tasks.
     held: Mutex<BTreeMap<usize, Arc<File>>>,
+    /// Ends the thread that writes them when it is dropped.
+    _running: Sender<()>,
 }
 
-impl<'a> Leases<'a> {
-    /// Calls a function with the leases of this process, which are written again and again until it
-    /// returns. `lease` is the time after which they expire.
-    pub(super) fn while_renewed<T>(
-        folder: &'a Path,
-        lease: Duration,
-        work: impl FnOnce(&Leases) -> Result<T>,
-    ) -> Result<T> {
+impl Leases {
+    /// Begins to have leases. `lease` is the time after which they expire.
+    ///
+    /// # Errors
+    /// If no thread can be started that writes them.
+    pub(super) fn begin(folder: &Path, lease: Duration, neighbors: Neighbors) -> Result<Self> {
         let stated = Stated {
             worker: Worker::here(),
             id: RandomState::new().hash_one(std::process::id()),
             expires_after: u64::try_from(lease.as_millis()).unwrap_or(u64::MAX),
         };
         let text = serde_json::to_string(&stated).map_err(std::io::Error::from)?;
-        let leases = Leases {
-            folder,
+        let (running, ended) = channel::<()>();
+        let shared = Arc::new(Shared {
+            folder: folder.to_path_buf(),
             stated,
             text,
             clock: FileClock::of(folder),
+            neighbors,
             held: Mutex::default(),
+            _running: running,
+        });
+        let weak: Weak<Shared> = Arc::downgrade(&shared);
+        let renew = move || {
+            while ended.recv_timeout(lease / WRITES) == Err(RecvTimeoutError::Timeout) {
+                if let Some(shared) = weak.upgrade() {
+                    shared.renew();
+                }
+            }
         };
-        let (running, ended) = channel::<()>();
-        std::thread::scope(|scope| {
-            let leases = &leases;
-            std::thread::Builder::new()
-                .name("breakline-leases".to_owned())
-                .spawn_scoped(scope, move || {
-                    while ended.recv_timeout(lease / WRITES) == Err(RecvTimeoutError::Timeout) {
-                        leases.renew();
-                    }
-                })?;
-            let done = work(leases);
-            drop(running);
-            done
-        })
+        std::thread::Builder::new()
+            .name("breakline-leases".to_owned())
+            .spawn(renew)?;
+        Ok(Leases(shared))
     }
 
+    /// Returns true if no process has the lease of a task, or it has expired.
+    pub(super) fn is_free(&self, task: usize) -> Result<bool> {
+        let found = FoundLease::read(&lease_path(&self.0.folder, task))?;
+        Ok(found.is_none_or(|found| self.0.judged(&found).has_expired))
+    }
+
+    /// Like [`is_free`](Self::is_free), but of processes on other hosts only.
+    pub(super) fn is_free_elsewhere(&self, task: usize) -> Result<bool> {
+        let found = FoundLease::read(&lease_path(&self.0.folder, task))?;
+        Ok(found.is_none_or(|found| {
+            let lease = self.0.judged(&found);
+            lease.has_expired || self.0.is_here(&lease)
+        }))
+    }
+
+    /// Returns the leases of other processes that have not expired, by the numbers of their tasks.
+    /// Those that are not complete do not count: their processes look for leases once they are.
+    ///
+    /// # Errors
+    /// If the files cannot be listed or read.
+    pub(super) fn of_others(&self) -> Result<BTreeMap<usize, TaskLease>> {
+        let is_other = |found: &FoundLease| {
+            let stated = found.stated.as_ref();
+            stated.is_some_and(|stated| *stated != self.0.stated)
+        };
+        let mut others = found_in(&self.0.folder)?
+            .into_iter()
+            .filter(|(_, found)| is_other(found))
+            .map(|(task, found)| (task, self.0.judged(&found)))
+            .collect::<BTreeMap<_, _>>();
+        others.retain(|_, lease| !lease.has_expired);
+        Ok(others)
+    }
+
+    /// Takes the lease of a task; `None` if another process has it.
+    ///
+    /// # Errors
+    /// If its file cannot be read or written.
+    pub(super) fn take(&self, task: usize) -> Result<Option<Lease>> {
+        let path = lease_path(&self.0.folder, task);
+        let mut from = None;
+        // The second time after one that has expired, or was given back.
+        for _ in 0..2 {
+            match Temporary::create_at(&path) {
+                Ok((file, own)) => return self.have(task, file, own, from).map(Some),
+                Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
+                Err(error) => return Err(Error::from(error).in_file(path)),
+            }
+            if let Some(found) = FoundLease::read(&path)? {
+                let judged = self.0.judged(&found);
+                if !judged.has_expired || !found.remove(&path)? {
+                    return Ok(None);
+                }
+                from = Some(judged);
+            }
+        }
+        Ok(None)
+    }
+
+    fn have(
+        &self,
+        task: usize,
+        file: File,
+        own: Temporary,
+        from: Option<TaskLease>,
+    ) -> Result<Lease> {
+        self.0
+            .write(&file)
+            .map_err(|e| Error::from(e).in_file(own.path()))?;
+        self.0.held().insert(task, Arc::new(file));
+        Ok(Lease {
+            leases: self.clone(),
+            task,
+            own,
+            from,
+        })
+    }
+}
+
+impl Shared {
     fn held(&self) -> std::sync::MutexGuard<'_, BTreeMap<usize, Arc<File>>> {
         self.held.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -308,76 +404,53 @@ impl<'a> Leases<'a> {
         file.sync_data()
     }
 
-    /// Returns true if no process has the lease of a task, or it has expired.
-    pub(super) fn is_free(&self, task: usize) -> Result<bool> {
-        let found = FoundLease::read(&lease_path(self.folder, task))?;
-        Ok(found.is_none_or(|found| self.judged(&found).has_expired))
-    }
-
     fn judged(&self, found: &FoundLease) -> TaskLease {
         let own = Duration::from_millis(self.stated.expires_after);
-        found.at(self.clock.now(), own)
+        let mut lease = found.at(self.clock.now(), own);
+        lease.has_expired |= self.neighbors == Neighbors::Gone && self.is_here(&lease);
+        lease
     }
 
-    /// Takes the lease of a task; `None` if another process has it.
-    ///
-    /// # Errors
-    /// If its file cannot be read or written.
-    pub(super) fn take(&self, task: usize) -> Result<Option<Lease<'_>>> {
-        let path = lease_path(self.folder, task);
-        let mut from = None;
-        // The second time after one that has expired, or was given back.
-        for _ in 0..2 {
-            match Temporary::create_at(&path) {
-                Ok((file, own)) => return self.begin(task, file, own, from).map(Some),
-                Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
-                Err(error) => return Err(Error::from(error).in_file(path)),
-            }
-            if let Some(found) = FoundLease::read(&path)? {
-                let judged = self.judged(&found);
-                if !judged.has_expired || !found.remove(&path)? {
-                    return Ok(None);
-                }
-                from = Some(judged);
-            }
-        }
-        Ok(None)
-    }
-
-    fn begin(
-        &self,
-        task: usize,
-        file: File,
-        own: Temporary,
-        from: Option<TaskLease>,
-    ) -> Result<Lease<'_>> {
-        self.write(&file)
-            .map_err(|e| Error::from(e).in_file(own.path()))?;
-        self.held().insert(task, Arc::new(file));
-        Ok(Lease {
-            leases: self,
-            task,
-            own,
-            from,
-        })
+    /// Returns true if a lease is that of a process on this host.
+    fn is_here(&self, lease: &TaskLease) -> bool {
+        let worker = lease.worker.as_ref();
+        worker.is_some_and(|worker| worker.host == self.stated.worker.host)
     }
 }
 
 /// The right of this process to a task; it is given back when this is dropped.
-pub(super) struct Lease<'a> {
-    leases: &'a Leases<'a>,
+#[derive(Debug)]
+pub(super) struct Lease {
+    leases: Leases,
     task: usize,
     own: Temporary,
     /// The lease that had expired before.
     pub(super) from: Option<TaskLease>,
 }
 
-impl Drop for Lease<'_> {
+impl Lease {
+    /// Returns an error if another process may have the task now: this one was stopped for longer
+    /// than the lease lasts.
+    pub(super) fn confirm(&self) -> Result<()> {
+        match FoundLease::read(self.own.path())? {
+            Some(found) if found.stated.as_ref() == Some(&self.leases.0.stated) => Ok(()),
+            _ => Err(lost().in_file(self.own.path())),
+        }
+    }
+}
+
+#[cold]
+fn lost() -> Error {
+    Error::not_yet("this process gave no sign of life for so long that another one does its task")
+        .cure("do it again")
+}
+
+impl Drop for Lease {
     fn drop(&mut self) {
-        self.leases.held().remove(&self.task);
+        self.leases.0.held().remove(&self.task);
         // It may have expired, and be that of another process.
         let found = FoundLease::read(self.own.path()).ok().flatten();
-        if found.is_some_and(|found| found.stated.as_ref() != Some(&self.leases.stated)) {
+        if found.is_some_and(|found| found.stated.as_ref() != Some(&self.leases.0.stated)) {
             self.own.leave();
         }
     }

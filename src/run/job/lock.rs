@@ -4,65 +4,146 @@ use std::fs::{File, Metadata, TryLockError};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use super::lease;
+use super::awaited;
+use super::lease::{LEASE, Lease, Leases, Neighbors};
+use super::paths::{LOCK, tasks_in};
 use crate::error::{Error, Result, Setting, wording};
 use crate::run::context::Context;
+use crate::run::context::event::Awaited;
 
-/// The file that is locked while a process works on the job; it is empty.
-pub(super) const LOCK: &str = "lock";
-
-/// A job that a process works on.
+/// A job that this process has alone: by the lock, which may hold on this host only or not at all,
+/// and by the lease of the last task, the output, which is seen everywhere.
 #[derive(Debug)]
 pub struct JobLock {
+    /// Given back before the lock.
+    lease: Lease,
     _file: File,
+}
+
+/// A job that this process has together with others that do its tasks.
+#[derive(Debug)]
+pub(super) struct SharedLock {
+    _file: File,
+    locked: Locked,
+}
+
+/// How a file is locked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Locked {
+    Yes,
+    /// Another process has locked it.
+    No,
+    /// The file system has no locks.
+    Unknown,
 }
 
 impl JobLock {
     /// Waits for a folder that this process has alone, for some seconds. What was read of the
-    /// folder before may have changed meanwhile.
-    pub(super) fn whole(folder: &Path, context: &Context) -> Result<Self> {
-        Self::wait(folder, take_whole, context)
+    /// folder before may have changed meanwhile. `last` is the number of the last task.
+    pub(super) fn whole(folder: &Path, last: usize, context: &Context) -> Result<Self> {
+        patiently(folder, last, || take_whole(folder, last), context)
     }
 
-    /// Like [`whole`](Self::whole), for a folder that processes have together.
-    pub(super) fn shared(folder: &Path, context: &Context) -> Result<Self> {
-        Self::wait(folder, take_shared, context)
-    }
-
-    /// Locks a folder for this process alone; `None` if another one works in it.
-    pub(super) fn try_whole(folder: &Path) -> Result<Option<Self>> {
-        let file = open(folder)?;
-        let is_taken = take_whole(&file, folder)?;
-        Ok(is_taken.then_some(JobLock { _file: file }))
-    }
-
-    fn wait(
+    /// Locks a folder for this process, which has the lease of the last task; returns that if
+    /// others work in it.
+    pub(super) fn of_output(
+        lease: Lease,
         folder: &Path,
-        take: fn(&File, &Path) -> Result<bool>,
-        context: &Context,
-    ) -> Result<Self> {
-        let start = Instant::now();
-        loop {
-            context.check()?;
-            let file = open(folder)?;
-            if take(&file, folder)? {
-                return Ok(JobLock { _file: file });
-            }
-            if start.elapsed() > PATIENCE {
-                let who = lease::of_other_host(folder)
-                    .map(|(task, worker)| format!(": {worker} does task {task}"));
-                let said = format!(
-                    "another process works on this job{}",
-                    who.unwrap_or_default()
-                );
-                return Err(Error::usage(said).in_file(folder).cure(wording![
-                    "wait for it, or name another folder (",
-                    Setting::Job,
-                    ")"
-                ]));
-            }
-            std::thread::sleep(PATIENCE / 50);
+    ) -> Result<std::result::Result<Self, Lease>> {
+        let file = open(folder)?;
+        Ok(match judged(file.try_lock(), &file, folder)? {
+            Locked::No => Err(lease),
+            Locked::Yes | Locked::Unknown => Ok(JobLock { lease, _file: file }),
+        })
+    }
+
+    /// Has a folder by the lease of the last task alone: who has the lock gives no sign of life.
+    pub(super) fn without_lock(lease: Lease, folder: &Path) -> Result<Self> {
+        let file = open(folder)?;
+        Ok(JobLock { lease, _file: file })
+    }
+
+    /// Returns the lease of the last task.
+    pub(super) fn lease(&self) -> &Lease {
+        &self.lease
+    }
+
+    /// Returns an error if another process may have the job now: this one was stopped for longer
+    /// than its lease lasts. Asked before files get their names.
+    ///
+    /// # Errors
+    /// Also if that cannot be found out.
+    pub fn confirm(&self) -> Result<()> {
+        self.lease.confirm()
+    }
+}
+
+impl SharedLock {
+    /// Waits for a folder that no process has alone, for some seconds. `last` is the number of the
+    /// last task.
+    pub(super) fn wait(folder: &Path, last: usize, context: &Context) -> Result<Self> {
+        patiently(folder, last, || Self::try_take(folder), context)
+    }
+
+    /// Locks a folder together with others; returns the file that could not be locked if a process
+    /// has it alone.
+    pub(super) fn try_take(folder: &Path) -> Result<Taken<Self>> {
+        let file = open(folder)?;
+        Ok(match judged(file.try_lock_shared(), &file, folder)? {
+            Locked::No => Err(file),
+            locked => Ok(SharedLock {
+                _file: file,
+                locked,
+            }),
+        })
+    }
+
+    /// Returns true unless a process has the whole job that does not see this lock: it has the
+    /// lease of the last task. On the same host that is left of one that was killed.
+    pub(super) fn permits(&self, leases: &Leases, last: usize) -> Result<bool> {
+        match self.locked {
+            Locked::Yes => leases.is_free_elsewhere(last),
+            Locked::No | Locked::Unknown => leases.is_free(last),
         }
+    }
+}
+
+/// What was taken, or the file that could not be locked.
+type Taken<T> = std::result::Result<T, File>;
+
+/// Tries again and again to take a folder, for some seconds.
+fn patiently<T>(
+    folder: &Path,
+    last: usize,
+    take: impl Fn() -> Result<Taken<T>>,
+    context: &Context,
+) -> Result<T> {
+    let start = Instant::now();
+    loop {
+        context.check()?;
+        // The file stays open meanwhile, so that it can be seen who waits.
+        let _waits = match take()? {
+            Ok(lock) => return Ok(lock),
+            Err(file) => file,
+        };
+        if start.elapsed() > PATIENCE {
+            let who: Vec<String> = awaited::of_job(folder, last)
+                .iter()
+                .map(Awaited::to_string)
+                .collect();
+            let who = if who.is_empty() {
+                String::new()
+            } else {
+                format!(": {}", who.join("; "))
+            };
+            let said = format!("another process works on this job{who}");
+            return Err(Error::usage(said).in_file(folder).cure(wording![
+                "wait for it, or name another folder (",
+                Setting::Job,
+                ")"
+            ]));
+        }
+        std::thread::sleep(PATIENCE / 50);
     }
 }
 
@@ -79,40 +160,48 @@ fn open(folder: &Path) -> Result<File> {
     file.map_err(|e| Error::from(e).in_file(path))
 }
 
-/// Locks a file for this process alone. Returns false if another one works in the folder.
-fn take_whole(file: &File, folder: &Path) -> Result<bool> {
-    if !is_taken(file.try_lock(), file, folder)? {
-        return Ok(false);
+/// Takes a folder for this process alone; returns the file of the lock if another one works in it.
+fn take_whole(folder: &Path, last: usize) -> Result<Taken<JobLock>> {
+    let file = open(folder)?;
+    let neighbors = match judged(file.try_lock(), &file, folder)? {
+        Locked::No => return Ok(Err(file)),
+        Locked::Yes => Neighbors::Gone,
+        Locked::Unknown => Neighbors::Heeded,
+    };
+    let tasks = tasks_in(folder);
+    std::fs::create_dir_all(&tasks).map_err(|e| Error::from(e).in_file(&tasks))?;
+    let leases = Leases::begin(folder, LEASE, neighbors)?;
+    // Asked first, so that this one is in nobody's way while it waits.
+    if leases.of_others()?.is_empty()
+        && let Some(lease) = leases.take(last)?
+        // Who takes a task from now on sees that lease; who has taken one before is seen now.
+        && leases.of_others()?.is_empty()
+    {
+        return Ok(Ok(JobLock { lease, _file: file }));
     }
-    // A lock may hold on this host only, or not at all; a lease is seen everywhere.
-    let is_free = lease::of_other_host(folder).is_none();
-    if !is_free {
-        // Others on this host need not wait; where there are no locks, this fails.
-        let _ = file.unlock();
-    }
-    Ok(is_free)
+    // Others on this host need not wait; where there are no locks, this fails.
+    let _ = file.unlock();
+    Ok(Err(file))
 }
 
-/// Locks a file together with others. Returns false if another process has the folder alone.
-fn take_shared(file: &File, folder: &Path) -> Result<bool> {
-    is_taken(file.try_lock_shared(), file, folder)
-}
-
-fn is_taken(
+fn judged(
     locked: std::result::Result<(), TryLockError>,
     file: &File,
     folder: &Path,
-) -> Result<bool> {
+) -> Result<Locked> {
     match locked {
         // The job may have been removed, and planned again, while this one waited.
         Ok(()) => {
             let path = folder.join(LOCK);
             let about = file.metadata().map_err(|e| Error::from(e).in_file(&path))?;
-            Ok(is_at(&about, &path))
+            Ok(if is_at(&about, &path) {
+                Locked::Yes
+            } else {
+                Locked::No
+            })
         }
-        Err(TryLockError::WouldBlock) => Ok(false),
-        // Some shared file systems have no locks.
-        Err(TryLockError::Error(_)) => Ok(true),
+        Err(TryLockError::WouldBlock) => Ok(Locked::No),
+        Err(TryLockError::Error(_)) => Ok(Locked::Unknown),
     }
 }
 

@@ -12,6 +12,7 @@
 //! 6. The product is composed of the cells that the tasks have drawn, joined from their contours,
 //!    or consists of their triangulations.
 
+mod awaited;
 mod bytes;
 mod command;
 mod contours;
@@ -59,6 +60,7 @@ pub use self::lease::{TaskLease, Worker};
 use self::lines::Known;
 pub use self::listed::JobTask;
 pub use self::lock::JobLock;
+use self::lock::SharedLock;
 pub use self::not_in_tiles::NotInTiles;
 use self::not_in_tiles::tiled;
 pub use self::output::JobReport;
@@ -213,7 +215,7 @@ impl Job {
         folder::require_no_job(&self.folder)?;
         let named = |e: std::io::Error| Error::from(e).in_file(&self.folder);
         std::fs::create_dir_all(&self.folder).map_err(named)?;
-        let lock = JobLock::whole(&self.folder, context)?;
+        let lock = JobLock::whole(&self.folder, self.task_count(), context)?;
         // Another process may have created one meanwhile.
         folder::require_no_job(&self.folder)?;
         std::fs::create_dir_all(tasks_in(&self.folder)).map_err(named)?;
@@ -537,17 +539,14 @@ impl Job {
     /// If another process works on it, or has removed it, or put another job in its place; or if
     /// the run is canceled.
     pub fn lock(&self, context: &Context) -> Result<JobLock> {
-        self.require_there(JobLock::whole(&self.folder, context))
+        let lock = self.require_there(JobLock::whole(&self.folder, self.task_count(), context))?;
+        self.note_expired(self.task_count(), lock.lease(), context);
+        Ok(lock)
     }
 
     /// Takes part in the job, together with other processes that do single tasks.
-    fn lock_shared(&self, context: &Context) -> Result<JobLock> {
-        self.require_there(JobLock::shared(&self.folder, context))
-    }
-
-    /// Takes the whole job for this process; `None` if another one works on it.
-    fn try_lock(&self) -> Result<Option<JobLock>> {
-        self.require_there(JobLock::try_whole(&self.folder))
+    fn lock_shared(&self, context: &Context) -> Result<SharedLock> {
+        self.require_there(SharedLock::wait(&self.folder, self.task_count(), context))
     }
 
     /// Returns what became of a lock, unless the folder has not this job any more: what was read of

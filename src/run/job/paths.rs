@@ -2,6 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
+/// The file that is locked while a process works on the job; it is empty.
+pub(super) const LOCK: &str = "lock";
+
 /// The folder of the files of tasks.
 const TASKS: &str = "tasks";
 

@@ -7,7 +7,9 @@ use serde::{Deserialize, Serialize};
 use super::division::Division;
 use super::lines::{self, Known};
 use super::not_in_tiles::NotInTiles;
-use super::planned_file::{FileState, PlannedFile, looked_at, planned, require_state, state_of};
+use super::planned_file::{
+    FileState, PlannedFile, looked_at, planned, require_folder, require_state, state_of,
+};
 use super::request::{Options, options_of};
 use super::sampled;
 use super::tile_options::{Look, TileOptions};
@@ -596,6 +598,7 @@ fn closed(request: &TinRequest, context: &Context) -> Result<Vec<Closed>> {
         match looked_at(number, request, context) {
             Ok(_) => {}
             Err(error) if BadFiles::Skip.skips(&error) => {
+                require_folder(input.path(), request)?;
                 closed.push(Closed {
                     number,
                     why: error.to_string(),

@@ -6,7 +6,7 @@ use std::time::UNIX_EPOCH;
 use serde::{Deserialize, Serialize};
 
 use crate::data::{Bounds, PointBatch};
-use crate::error::{Command, Error, Result, wording};
+use crate::error::{Command, Error, Result, Setting, wording};
 use crate::io::layer;
 use crate::run::context::{Context, Size, Stage};
 use crate::run::products::tin::TinRequest;
@@ -177,6 +177,34 @@ pub(super) fn require_state(path: &Path, planned: FileState, folder: &Path) -> R
                 " removes this one"
             ]),
     )
+}
+
+/// Returns an error if a file of points that cannot be read is missing, together with all others of
+/// its folder: rather than damaged files, that is a file system which is not mounted, or a folder
+/// that was moved.
+///
+/// # Errors
+/// Names the file.
+pub(super) fn require_folder(path: &Path, request: &TinRequest) -> Result<()> {
+    if state_of(path).is_ok() {
+        return Ok(());
+    }
+    let Some(folder) = path.parent() else {
+        return Ok(());
+    };
+    let mut others = request.points.iter().map(Input::path);
+    if others.any(|other| other.parent() == Some(folder) && state_of(other).is_ok()) {
+        return Ok(());
+    }
+    let what = match folder == Path::new("") || folder.is_dir() {
+        true => "the file is missing, and so are all others of its folder",
+        false => "the file is missing, and so is its folder",
+    };
+    Err(Error::usage(what).in_file(path).cure(wording![
+        "make sure that the file system is mounted; ",
+        Setting::SkipBad,
+        " skips a file only while another one of its folder is there"
+    ]))
 }
 
 /// Returns the state of a file, which may be named together with a layer.

@@ -5,7 +5,8 @@ use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-use super::Job;
+use super::lock::JobLock;
+use super::{Job, awaited};
 use crate::error::{Error, Kind, Result};
 use crate::run::context::event::Event;
 use crate::run::context::{Context, Size, Stage, Work};
@@ -41,6 +42,18 @@ impl Pause {
 
     const LONGEST: Duration = Duration::from_secs(3);
 
+    /// After how long is said again what is waited for.
+    const SAID_AGAIN: Duration = Duration::from_secs(60);
+
+    /// Returns true, and notes the time, if it is time to say what is waited for.
+    pub(super) fn is_time_to_say(said: &mut Option<Instant>) -> bool {
+        let is_time = said.is_none_or(|at| at.elapsed() > Self::SAID_AGAIN);
+        if is_time {
+            *said = Some(Instant::now());
+        }
+        is_time
+    }
+
     /// Returns the next step.
     pub(super) fn next(&mut self) -> Duration {
         let step = self.next;
@@ -73,8 +86,8 @@ struct Board {
     /// When is looked again what became of them.
     look_at: Instant,
     pause: Pause,
-    /// True if it was reported that nothing is left but tasks of others.
-    has_reported: bool,
+    /// When it was said last that nothing is left but tasks of others.
+    reported: Option<Instant>,
     failed: Option<Failure>,
 }
 
@@ -98,10 +111,11 @@ impl Job {
     /// is checked by [`run_job`](crate::run::run_job) before.
     ///
     /// # Errors
-    /// The first error of a task, or that the run is canceled.
-    pub fn run(&self, context: &Context) -> Result<()> {
+    /// The first error of a task, or that the run is canceled; or that another process has the job,
+    /// because this one was stopped for too long.
+    pub fn run(&self, lock: &JobLock, context: &Context) -> Result<()> {
         let attempt = |task| {
-            self.do_unless_current(task, context)
+            self.do_unless_current(task, &|| lock.confirm(), context)
                 .map(|()| Outcome::DoneHere)
         };
         self.schedule(rayon::current_num_threads(), &attempt, context)
@@ -163,7 +177,7 @@ impl Job {
             elsewhere: Vec::new(),
             look_at: Instant::now(),
             pause: Pause::default(),
-            has_reported: false,
+            reported: None,
             failed: None,
         })
     }
@@ -232,11 +246,12 @@ impl Crew<'_> {
                 .wait(now)
                 .unwrap_or_else(PoisonError::into_inner);
         }
-        if now.running == 0 && !now.has_reported {
-            now.has_reported = true;
-            self.context.monitor.event(&Event::Waits {
-                tasks: now.elsewhere.len(),
-            });
+        if now.running == 0 && Pause::is_time_to_say(&mut now.reported) {
+            let tasks = &now.elsewhere;
+            let is_meant = |task| tasks.contains(&task);
+            let on = &awaited::of_tasks(&self.job.folder, self.job.task_count(), is_meant)[..];
+            let tasks = tasks.len();
+            self.context.monitor.event(&Event::Waits { tasks, on });
         }
         (now, _) = self
             .changed
@@ -268,7 +283,7 @@ impl Board {
         self.states[task] = State::Done;
         self.left -= 1;
         self.pause = Pause::default();
-        self.has_reported = false;
+        self.reported = None;
         for next in std::mem::take(&mut self.after[task]) {
             if let State::Waits(count) = &mut self.states[next] {
                 *count -= 1;

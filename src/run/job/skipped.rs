@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use super::Job;
+use super::lock::JobLock;
 use super::planned_file::looked_at;
 use super::task_file::TaskFile;
 use crate::error::{Error, Kind, Result};
@@ -68,7 +69,7 @@ impl Job {
     ///
     /// # Errors
     /// If a file cannot be removed.
-    pub(super) fn try_again(&self) -> Result<()> {
+    pub fn try_again(&self, _lock: &JobLock) -> Result<()> {
         for task in (0..self.task_count()).filter(|&task| self.skips(task)) {
             let path = self.task_file(task).path;
             std::fs::remove_file(&path).map_err(|e| Error::from(e).in_file(&path))?;

@@ -225,9 +225,14 @@ impl TaskWriter {
         write(self).map_err(|e| Error::from(e).in_file(&self.name.path))
     }
 
-    /// Writes the facts and gives the file its name. `sources` is the checksum of what the task was
-    /// made from.
-    pub(super) fn finish(mut self, facts: &TaskFacts, sources: u32) -> Result<()> {
+    /// Writes the facts and gives the file its name, unless `confirm` fails, which is called right
+    /// before that. `sources` is the checksum of what the task was made from.
+    pub(super) fn finish(
+        mut self,
+        facts: &TaskFacts,
+        sources: u32,
+        confirm: &dyn Fn() -> Result<()>,
+    ) -> Result<()> {
         self.end_section();
         let facts = kept(facts).map_err(|e| e.in_file(&self.name.path))?;
         let section =
@@ -248,6 +253,7 @@ impl TaskWriter {
             .into_inner()
             .into_inner()
             .map_err(|e| named(e.into_error()))?;
+        confirm()?;
         file.persist(&target).map(drop).map_err(|e| named(e.error))
     }
 }
@@ -527,6 +533,7 @@ mod tests {
                     ..TaskFacts::default()
                 },
                 5,
+                &|| Ok(()),
             )
             .unwrap();
         blocks
@@ -580,7 +587,7 @@ mod tests {
         ] {
             let error = TaskWriter::create(name.clone())
                 .unwrap()
-                .finish(&facts, 5)
+                .finish(&facts, 5, &|| Ok(()))
                 .unwrap_err();
             assert!(
                 error.to_string().contains("a number that is not finite"),

@@ -4,7 +4,7 @@ use super::bytes::{self, NumberReader, put_block, put_u32};
 use super::done::Sources;
 use super::holes::Holes;
 use super::lines::{JobLines, LinesOfTile};
-use super::planned_file::{require_state, state_of};
+use super::planned_file::{require_folder, require_state, state_of};
 use super::raster::Drawing;
 use super::surface::PartFaces;
 use super::task_facts::{Extent, FileFacts, KeptFacts, ReadFacts, TaskFacts, TaskNotice};
@@ -38,8 +38,14 @@ const BYTES_A_DIVIDED_POINT: u64 = 120;
 const BYTES_A_POINT_AT_RIM: u64 = 130;
 
 impl Job {
-    /// Does a task and writes its file.
-    pub(super) fn do_task(&self, number: usize, context: &Context) -> Result<()> {
+    /// Does a task and writes its file, which gets its name unless `confirm` fails: another process
+    /// may have the task meanwhile.
+    pub(super) fn do_task(
+        &self,
+        number: usize,
+        confirm: &dyn Fn() -> Result<()>,
+        context: &Context,
+    ) -> Result<()> {
         let mut writer = TaskWriter::create(self.task_file(number))?;
         let sources = Sources::new(self);
         let journal = Journal::new(context);
@@ -55,7 +61,7 @@ impl Job {
         };
         context.check()?;
         facts.notices = journal.take().iter().map(TaskNotice::of).collect();
-        writer.finish(&facts, sources.sum(self.needs(number))?)
+        writer.finish(&facts, sources.sum(self.needs(number))?, confirm)
     }
 
     /// Divides the points of a file among the tiles.
@@ -182,6 +188,7 @@ impl Job {
         let path = &self.plan.files[file].path;
         match read {
             Err(error) if self.bad.skips(&error) => {
+                require_folder(path, &self.request)?;
                 Ok(FileFacts::Skipped(error.in_file(path).to_string()))
             }
             read => read.map(FileFacts::Read).map_err(|e| e.in_file(path)),

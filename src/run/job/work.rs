@@ -3,13 +3,13 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
-use super::Job;
-use super::lease::{LEASE, Lease, Leases};
-use super::lock::JobLock;
+use super::lease::{LEASE, Lease, Leases, Neighbors};
+use super::lock::{JobLock, SharedLock};
 use super::paths::tasks_in;
 use super::schedule::{Outcome, Pause};
+use super::{Job, awaited};
 use crate::error::{Command, Error, Kind, Result, Term, wording};
-use crate::run::context::event::Event;
+use crate::run::context::event::{Awaited, Event};
 use crate::run::context::{Context, memory};
 
 /// How a process works on a job together with others.
@@ -40,7 +40,39 @@ pub(crate) trait LastTask {
     fn written(&self, context: &Context) -> Result<Option<Self::Report>>;
 
     /// Writes the output, in the one process that has the job then.
-    fn write(self, lock: &JobLock, context: &Context) -> Result<Self::Report>;
+    fn write(&self, lock: &JobLock, context: &Context) -> Result<Self::Report>;
+}
+
+/// What becomes of a process that begins to work on a job.
+enum Joined<R> {
+    /// It does tasks together with others.
+    Shares(SharedLock),
+    /// The output was written while it waited.
+    Late(R),
+}
+
+/// The steps in which a process waits for others that have the job.
+#[derive(Default)]
+struct Waiting {
+    pause: Pause,
+    reported: Option<Instant>,
+    /// When the lock of the job was not to be had first, although its last task was.
+    locked_out: Option<Instant>,
+}
+
+impl Waiting {
+    /// Waits a while, and says from time to time what for.
+    fn step(&mut self, on: impl FnOnce() -> Vec<Awaited>, context: &Context) -> Result<()> {
+        if Pause::is_time_to_say(&mut self.reported) {
+            context.monitor.event(&Event::WaitsForJob { on: &on() });
+        }
+        let end = Instant::now() + self.pause.next();
+        while Instant::now() < end {
+            context.check()?;
+            std::thread::sleep(Pause::SLICE);
+        }
+        Ok(())
+    }
 }
 
 impl Job {
@@ -48,34 +80,69 @@ impl Job {
     /// is written by one of them.
     ///
     /// # Errors
-    /// The first error of a task that this process does, or of the output; if a process works on
-    /// the whole job, or the run is canceled.
+    /// The first error of a task that this process does, or of the output; if the job was removed
+    /// or replaced, or the run is canceled.
     pub(crate) fn work<L: LastTask>(
         &self,
         options: &WorkOptions,
-        last: L,
+        last: &L,
         context: &Context,
     ) -> Result<L::Report> {
         let tasks = tasks_in(&self.folder);
         // An interrupted removal may have taken it.
         std::fs::create_dir_all(&tasks).map_err(|e| Error::from(e).in_file(&tasks))?;
-        Leases::while_renewed(&self.folder, options.lease, |leases| {
-            self.work_on_tasks(options, leases, context)
-                .map_err(|error| self.with_cure(error, self.run_command()))?;
-            self.end_together(leases, last, context)
-        })
+        let leases = Leases::begin(&self.folder, options.lease, Neighbors::Heeded)?;
+        let ended = match self.join(&leases, last, context) {
+            Ok(Joined::Shares(lock)) => self
+                .work_on_tasks(options, &leases, &lock, context)
+                .and_then(|()| {
+                    drop(lock);
+                    self.end_together(&leases, options.lease, last, context)
+                }),
+            Ok(Joined::Late(report)) => Ok(report),
+            Err(error) => Err(error),
+        };
+        ended.map_err(|error| self.with_cure(error, self.work_command()))
+    }
+
+    /// Waits until no process has the whole job. One that has it may write the output, and then
+    /// nothing is left to do.
+    fn join<L: LastTask>(
+        &self,
+        leases: &Leases,
+        last: &L,
+        context: &Context,
+    ) -> Result<Joined<L::Report>> {
+        let mut waiting = Waiting::default();
+        loop {
+            let lock = self.require_there(SharedLock::try_take(&self.folder))?;
+            if let Ok(lock) = lock
+                && lock.permits(leases, self.task_count())?
+            {
+                return Ok(Joined::Shares(lock));
+            }
+            if let Some(report) = last.written(context)? {
+                return Ok(Joined::Late(report));
+            }
+            waiting.step(|| self.awaited(), context)?;
+        }
+    }
+
+    /// Returns which processes have the whole job, as far as that is known.
+    fn awaited(&self) -> Vec<Awaited> {
+        awaited::of_job(&self.folder, self.task_count())
     }
 
     fn work_on_tasks(
         &self,
         options: &WorkOptions,
         leases: &Leases,
+        lock: &SharedLock,
         context: &Context,
     ) -> Result<()> {
-        let _lock = self.lock_shared(context)?;
         let done_here = AtomicUsize::new(0);
         let attempt = |task: usize| {
-            let outcome = self.attempt(task, leases, context)?;
+            let outcome = self.attempt(task, leases, lock, context)?;
             done_here.fetch_add(usize::from(outcome == Outcome::DoneHere), Ordering::Relaxed);
             Ok(outcome)
         };
@@ -95,8 +162,14 @@ impl Job {
     }
 
     /// Does a task if no other process does it, and what it needs is there.
-    fn attempt(&self, task: usize, leases: &Leases, context: &Context) -> Result<Outcome> {
-        let done = self.do_if_free(task, leases, context);
+    fn attempt(
+        &self,
+        task: usize,
+        leases: &Leases,
+        lock: &SharedLock,
+        context: &Context,
+    ) -> Result<Outcome> {
+        let done = self.do_if_free(task, leases, lock, context);
         match self.noting_damage(&self.needs(task), done) {
             Err(error) if error.kind() == Kind::NotYet => Ok(Outcome::Again),
             // Another process had this task as well, and was faster.
@@ -109,24 +182,34 @@ impl Job {
         }
     }
 
-    fn do_if_free(&self, task: usize, leases: &Leases, context: &Context) -> Result<Outcome> {
+    fn do_if_free(
+        &self,
+        task: usize,
+        leases: &Leases,
+        lock: &SharedLock,
+        context: &Context,
+    ) -> Result<Outcome> {
         if self.has_current_file(task)? {
             return Ok(Outcome::Done);
         }
         let Some(lease) = leases.take(task)? else {
             return Ok(Outcome::Elsewhere);
         };
+        // Where locks hold on one host only, another one may have the whole job since.
+        if !lock.permits(leases, self.task_count())? {
+            return Ok(Outcome::Elsewhere);
+        }
         // Who had it before may have done the task since.
         if self.has_current_file(task)? {
             return Ok(Outcome::Done);
         }
         self.note_expired(task, &lease, context);
         self.check_inputs_of([task], context)?;
-        self.do_task(task, context)?;
+        self.do_task(task, &|| lease.confirm(), context)?;
         Ok(Outcome::DoneHere)
     }
 
-    fn note_expired(&self, task: usize, lease: &Lease, context: &Context) {
+    pub(super) fn note_expired(&self, task: usize, lease: &Lease, context: &Context) {
         if let Some(from) = &lease.from {
             let worker = from.worker.as_ref().map(ToString::to_string);
             context.monitor.event(&Event::TakenOver {
@@ -137,43 +220,65 @@ impl Job {
         }
     }
 
-    /// Writes the output if no other process does; else waits until it is there.
+    /// Writes the output if no other process does; else waits until it is there. A process that has
+    /// the job and gives no sign of life is not waited for longer than a lease lasts: when it goes
+    /// on, it has lost its own, and so gives no file its name any more.
     fn end_together<L: LastTask>(
         &self,
         leases: &Leases,
-        last: L,
+        patience: Duration,
+        last: &L,
         context: &Context,
     ) -> Result<L::Report> {
-        let task = self.task_count();
-        let mut pause = Pause::default();
-        let mut has_reported = false;
+        let mut waiting = Waiting::default();
         loop {
-            if leases.is_free(task)? {
+            if leases.is_free(self.task_count())? {
                 // Reads what was written, which others may do at the same time.
                 if let Some(report) = last.written(context)? {
                     return Ok(report);
                 }
-                if let Some(lease) = self.require_there(leases.take(task))?
-                    // Another process may still do a task whose lease it has lost.
-                    && let Some(lock) = self.try_lock()?
-                {
+                if let Some(lock) = self.take_output(leases, patience, &mut waiting, context)? {
                     if let Some(report) = last.written(context)? {
                         return Ok(report);
                     }
-                    self.note_expired(task, &lease, context);
-                    return last.write(&lock, context);
+                    self.note_expired(self.task_count(), lock.lease(), context);
+                    match last.write(&lock, context) {
+                        // Another process writes it: this one was stopped.
+                        Err(error) if error.kind() == Kind::NotYet && lock.confirm().is_err() => {}
+                        ended => return ended,
+                    }
                 }
             }
-            if !has_reported {
-                has_reported = true;
-                context.monitor.event(&Event::Waits { tasks: 1 });
-            }
-            let end = Instant::now() + pause.next();
-            while Instant::now() < end {
-                context.check()?;
-                std::thread::sleep(Pause::SLICE);
-            }
+            waiting.step(|| self.awaited(), context)?;
         }
+    }
+
+    /// Takes the output; `None` if another process has it or works on the job.
+    fn take_output(
+        &self,
+        leases: &Leases,
+        patience: Duration,
+        waiting: &mut Waiting,
+        context: &Context,
+    ) -> Result<Option<JobLock>> {
+        let Some(lease) = self.require_there(leases.take(self.task_count()))? else {
+            return Ok(None);
+        };
+        let lease = match self.require_there(JobLock::of_output(lease, &self.folder))? {
+            Ok(lock) => return Ok(Some(lock)),
+            // Another process still does a task whose lease it has lost.
+            Err(lease) => lease,
+        };
+        let after = waiting
+            .locked_out
+            .get_or_insert_with(Instant::now)
+            .elapsed();
+        if after <= patience || !leases.of_others()?.is_empty() {
+            return Ok(None);
+        }
+        let on = &awaited::holders(&self.folder)[..];
+        context.monitor.event(&Event::GoesOnWithout { on, after });
+        JobLock::without_lock(lease, &self.folder).map(Some)
     }
 
     /// Returns an error that says where the tasks are kept, and what goes on with them.
@@ -189,6 +294,11 @@ impl Job {
             .cure_text()
             .map(|own| wording![own.clone(), "; ", kept.clone()]);
         error.cure(cure.unwrap_or(kept))
+    }
+
+    /// Returns the command that does what is left of the job together with others.
+    fn work_command(&self) -> Term {
+        Command::JobWork.on(self.folder().display().to_string())
     }
 
     /// Returns the command that does what is left of the job.

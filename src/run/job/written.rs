@@ -22,11 +22,12 @@ impl Job {
     /// two.
     ///
     /// # Errors
-    /// If a file cannot be read, or the record cannot be written.
+    /// If a file cannot be read, or the record cannot be written; or if another process has the job,
+    /// because this one was stopped for too long.
     ///
     /// # Complexity
     /// Linear in the bytes of the files.
-    pub fn record(&self, outputs: &OutputSet, report: &JobReport, _lock: &JobLock) -> Result<()> {
+    pub fn record(&self, outputs: &OutputSet, report: &JobReport, lock: &JobLock) -> Result<()> {
         let mut files = Vec::new();
         outputs.read_back(&mut |path, file| {
             let (length, sum) = sum_of_file(file)?;
@@ -38,6 +39,7 @@ impl Job {
             Ok(())
         })?;
         let record = json!({ "job": self.sum, "sources": report.sources, "files": files });
+        lock.confirm()?;
         folder::replace(&self.folder.join(WRITTEN), &record.to_string())
     }
 

@@ -147,7 +147,7 @@ pub fn run_task(
     }
     require_room(job, context)?;
     let lock = job.lock(context)?;
-    write_output(job, targets, &lock, context).map(Some)
+    write_output(job, targets, &lock, Caller::Folder, context).map(Some)
 }
 
 /// Writes the outputs of a job, after what is left to do.
@@ -155,12 +155,13 @@ fn write_output(
     job: &Job,
     targets: &Targets,
     lock: &JobLock,
+    caller: Caller,
     context: &Context,
 ) -> Result<WriteReport> {
     let request = job.request();
     let prepared = Prepared::new(&request, targets)?.in_tiles()?;
     prepared.clear_up(job, lock, context)?;
-    prepared.run(job, lock, Caller::Folder, context)
+    prepared.run(job, lock, caller, context)
 }
 
 /// Does tasks of a job together with other processes that do the same, on any number of hosts,
@@ -173,7 +174,8 @@ fn write_output(
 ///
 /// # Errors
 /// If an input has changed, or the job was removed or replaced; the first error of a task that this
-/// process does, or of the outputs; if a process works on the whole job; and those of [`write()`].
+/// process does, or of the outputs; and those of [`write()`]. A process that works on the whole job
+/// is waited for.
 pub fn work_job(
     stored: &StoredJob,
     options: &WorkOptions,
@@ -191,7 +193,7 @@ pub fn work_job(
     drop(prepared?);
     require_room(&job, context)?;
     context.monitor.event(&Event::TasksBegin(job.folder()));
-    job.work(options, last, context)
+    job.work(options, &last, context)
 }
 
 /// The outputs of a job that several processes share.
@@ -207,8 +209,8 @@ impl LastTask for LastOutput<'_> {
         already_written(self.job, self.targets, context)
     }
 
-    fn write(self, lock: &JobLock, context: &Context) -> Result<WriteReport> {
-        write_output(self.job, self.targets, lock, context)
+    fn write(&self, lock: &JobLock, context: &Context) -> Result<WriteReport> {
+        write_output(self.job, self.targets, lock, Caller::Worker, context)
     }
 }
 
@@ -438,7 +440,10 @@ impl<'a> Prepared<'a> {
                 planned_again(&job);
                 self.outputs.set.mark(job.mark());
             }
-            None => self.clear_up(&job, &lock, context)?,
+            None => {
+                job.try_again(&lock)?;
+                self.clear_up(&job, &lock, context)?;
+            }
         }
         self.run(&job, &lock, caller, context)
     }
@@ -466,8 +471,11 @@ impl<'a> Prepared<'a> {
         caller: Caller,
         context: &Context,
     ) -> Result<WriteReport> {
-        self.run_all(job, lock, caller, context)
-            .map_err(|error| job.with_cure(error, caller.cure(job)))
+        let ended = self.run_all(job, lock, caller, context);
+        match caller.cure(job) {
+            Some(cure) => ended.map_err(|error| job.with_cure(error, cure)),
+            None => ended,
+        }
     }
 
     fn run_all(
@@ -482,7 +490,7 @@ impl<'a> Prepared<'a> {
         } = self;
         let folder = job.folder().to_path_buf();
         context.monitor.event(&Event::TasksBegin(&folder));
-        job.run(context)?;
+        job.run(lock, context)?;
         let report = job.report(context)?;
         let mut summary = request
             .verb
@@ -491,6 +499,7 @@ impl<'a> Prepared<'a> {
         if is_kept {
             job.record(&outputs.set, &report, lock)?;
         }
+        lock.confirm()?;
         let files = outputs.set.commit()?;
         if let Summary::Parts(parts) = &mut summary {
             parts.keep()?;
@@ -520,6 +529,8 @@ enum Caller {
     RequestInFolder,
     /// One who knows the folder, and what is kept in it. It stays.
     Folder,
+    /// One of several who share the job. The folder stays, and who shares it says how to go on.
+    Worker,
 }
 
 impl Caller {
@@ -531,11 +542,13 @@ impl Caller {
         }
     }
 
-    /// Returns what goes on with a job, and writes what this caller wants.
-    fn cure(self, job: &Job) -> Term {
+    /// Returns what goes on with a job, and writes what this caller wants; `None` if that is said
+    /// elsewhere.
+    fn cure(self, job: &Job) -> Option<Term> {
         match self {
-            Caller::Request | Caller::RequestInFolder => Setting::Resume.on(),
-            Caller::Folder => job.run_command(),
+            Caller::Request | Caller::RequestInFolder => Some(Setting::Resume.on()),
+            Caller::Folder => Some(job.run_command()),
+            Caller::Worker => None,
         }
     }
 }
