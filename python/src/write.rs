@@ -41,6 +41,7 @@ pub(crate) struct Asked<'py> {
     memory: Option<String>,
     job: Option<PathBuf>,
     resume: bool,
+    update: bool,
     skip_bad: bool,
     headers_only: bool,
     /// The memory of one task, for tasks that are done elsewhere.
@@ -103,6 +104,8 @@ impl Asked<'_> {
         let options = self.tiles()?;
         Ok(if self.resume {
             Execution::Resume(options)
+        } else if self.update {
+            Execution::Update(options)
         } else if self.tiles.is_some() || self.job.is_some() || self.skip_bad {
             Execution::Tiles(options)
         } else {
@@ -463,6 +466,15 @@ impl Job {
                 stored.command.targets.existing = Existing::of(overwrite);
             }
             Ok(run::run_job(&stored, context)?)
+        })?;
+        of_report(py, &report)
+    }
+
+    /// Does again what inputs reach that have changed; returns the report of the output, which is
+    /// replaced.
+    fn update<'py>(&self, py: Python<'py>, call: Call) -> PyResult<Bound<'py, PyDict>> {
+        let report = work::run_alone(py, &call, |context| -> Result<_> {
+            Ok(run::update_job(&self.found.stored()?, context)?)
         })?;
         of_report(py, &report)
     }

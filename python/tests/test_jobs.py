@@ -309,3 +309,19 @@ def test_what_is_not_for_a_job_is_refused(tmp_path):
         breakline.Job.plan("dem", VALLEY, tmp_path / "dem.tif", resume=True)
     with pytest.raises(breakline.UsageError, match="there is no such verb"):
         breakline.Job.plan("points", VALLEY, tmp_path / "dem.tif")
+
+
+def test_what_changed_files_reach_is_done_again(tmp_path, halves):
+    first, second = (
+        breakline.dem(halves[:count], output=tmp_path / "dem.tif", tiles="2x2", update=True) for count in (1, 2)
+    )
+    assert first.path == second.path and (tmp_path / "dem.tif.job").is_dir()
+    whole = breakline.dem(halves, output=tmp_path / "whole.tif")
+    assert second.path.read_bytes() == whole.path.read_bytes()
+    job = breakline.Job.plan("dem", halves, tmp_path / "b.tif", tiles="2x2")
+    job.write()
+    halves[1].write_bytes(halves[0].read_bytes())
+    assert job.update().path.read_bytes() == breakline.dem(halves[:1], output=tmp_path / "west.tif").path.read_bytes()
+    assert all(task.done for task in job.tasks())
+    with pytest.raises(breakline.UsageError, match="resume and update are given"):
+        breakline.dem(halves, output=tmp_path / "c.tif", resume=True, update=True)

@@ -215,6 +215,28 @@ impl Frame {
         t[2] == 0.0 && t[4] == 0.0 && are_shared(t[0], t[1]) && are_shared(t[3], t[5])
     }
 
+    /// Returns the frame from a column and a row of this one, which may be outside of it, to others
+    /// that are not included; `None` if its grid lines are not multiples of the size of its cells,
+    /// or it would be empty or too large. Its cells have the same [centers](Self::center).
+    pub(crate) fn on_its_lines(&self, from: [i64; 2], to: [i64; 2]) -> Option<Self> {
+        let t = &self.transform;
+        if t[2] != 0.0 || t[4] != 0.0 {
+            return None;
+        }
+        let line = |axis: usize| {
+            let (origin, step) = [(t[0], t[1]), (t[3], t[5])][axis];
+            GridLines::new(origin, step).line(from[axis])
+        };
+        let (left, top) = (line(0)?, line(1)?);
+        let side = |axis: usize| usize::try_from(to[axis].checked_sub(from[axis])?).ok();
+        let frame = Frame {
+            width: side(0)?,
+            height: side(1)?,
+            transform: [left, t[1], 0.0, top, 0.0, t[5]],
+        };
+        frame.checked().ok()
+    }
+
     /// Returns true if rows run from north to south and columns from west to east, without
     /// rotation.
     pub fn is_north_up(&self) -> bool {
@@ -278,6 +300,13 @@ impl GridLines {
             step,
             first,
         }
+    }
+
+    /// Returns the position of a line, counted from the first; `None` if lines are not multiples of
+    /// the step, or this one is too far away.
+    fn line(&self, i: i64) -> Option<f64> {
+        let number = self.first? + i as f64;
+        (number.abs() < MOST_LINES).then(|| multiple(number, self.step))
     }
 
     /// Returns the center between a line and the next one, counted from the first.

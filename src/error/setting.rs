@@ -85,6 +85,7 @@ settings! {
     SoftLines = "soft-lines",
     TargetCrs = "target-crs",
     Tiles = "tiles",
+    Update = "update",
     WallBottom = "wall-bottom",
     WallDrop = "wall-drop",
     WallHigh = "wall-high",

@@ -89,8 +89,8 @@ pub(crate) use context::units;
 pub use context::units::Quantity;
 pub use context::{Context, Monitor, Progress, Silent, Size, Stage};
 pub use job::{
-    Division, FileState, FoundJob, Job, JobCommand, JobLock, JobReport, JobTask, Look, NotInTiles,
-    StoredJob, TaskLease, TileOptions, WorkOptions, Worker, needs_tiles, remove_job,
+    Division, FileState, FoundJob, Job, JobCommand, JobLock, JobReport, JobTask, JobUpdate, Look,
+    NotInTiles, StoredJob, TaskLease, TileOptions, WorkOptions, Worker, needs_tiles, remove_job,
 };
 pub use lines::crossings::LineNames;
 pub use lines::notes::LineInput;
@@ -137,5 +137,5 @@ pub use verbs::targets::{Existing, Outputs, Target, Targets};
 pub use verbs::{Keeps, Summary, SurfaceOptions, TileUse, Tiles, Verb, WriteRequest, WrittenEdges};
 pub use write::{
     Execution, Origin, SurfaceReport, WriteReport, Written, WrittenOf, plan_job, run_job, run_task,
-    work_job, write,
+    update_job, work_job, write,
 };

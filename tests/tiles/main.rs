@@ -19,6 +19,7 @@ mod real;
 mod removal;
 mod stored;
 mod trust;
+mod update;
 mod workers;
 
 use std::path::Path;
@@ -53,6 +54,13 @@ fn output_with(folder: &TempDir, words: &str, out: &str, code: i32) -> (Vec<u8>,
 /// The bytes of a file.
 fn bytes(path: impl AsRef<Path>) -> Vec<u8> {
     std::fs::read(path).unwrap()
+}
+
+/// What the names of temporary files of a job contain.
+fn mark_of(folder: &TempDir, job: &str) -> String {
+    let plan = String::from_utf8(bytes(folder.path().join(job).join("plan.json"))).unwrap();
+    let value: serde_json::Value = serde_json::from_str(plan.split_once('\n').unwrap().1).unwrap();
+    format!("{:016x}", value["id"].as_u64().unwrap())
 }
 
 /// A layer of lines of one kind.

@@ -5,17 +5,11 @@ use std::path::PathBuf;
 use flate2::Crc;
 use tempfile::TempDir;
 
-use super::{bytes, program, valley};
+use super::{bytes, mark_of, program, valley};
 use program::{Run, files_of, run_in};
 
 fn run(folder: &TempDir, words: &str) -> Run {
     run_in(folder, &words.split_whitespace().collect::<Vec<_>>())
-}
-
-/// What the names of temporary files of a job contain.
-fn mark_of(folder: &TempDir, job: &str) -> String {
-    let plan = String::from_utf8(bytes(folder.path().join(job).join("plan.json"))).unwrap();
-    plan.lines().next().unwrap().to_owned()
 }
 
 /// Two jobs whose plans are equal, one of which still writes.
@@ -61,7 +55,7 @@ fn a_job_whose_folder_has_its_output_goes_on_and_is_removed() {
             mark_of(&folder, "j")
         ));
         // What another run is about to write here.
-        let other = job.join(".breakline-01234567-zz.unfinished");
+        let other = job.join(".breakline-0123456789abcdef-zz.unfinished");
         for left in [&own, &other] {
             std::fs::create_dir_all(left).unwrap();
             std::fs::write(left.join("000000.tin"), "half").unwrap();

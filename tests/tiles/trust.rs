@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 use testkit::lidar;
 
-use super::{bytes, output_of, program, valley};
+use super::{bytes, mark_of, output_of, program, valley};
 use program::{Run, files_of, run_in};
 
 fn run(folder: &TempDir, words: &str) -> Run {
@@ -454,8 +454,7 @@ fn temporary_files_of_an_output_are_removed_when_a_job_goes_on() {
         &format!("job plan j -- dem {} --tiles 2x2 -o dem.tif", valley()),
     )
     .works(&[]);
-    let plan = String::from_utf8(bytes(folder.path().join("j/plan.json"))).unwrap();
-    let mark = plan.lines().next().unwrap();
+    let mark = mark_of(&folder, "j");
     let file = |name: &str| folder.path().join(name);
     let left = format!(".breakline-{mark}-abcdef");
     std::fs::write(file(&left), "half of a DEM").unwrap();

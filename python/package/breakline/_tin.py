@@ -552,6 +552,7 @@ def tin(
     tiles: Optional[str] = None,
     job: Any = None,
     resume: bool = False,
+    update: bool = False,
     skip_bad: bool = False,
     threads: Optional[int] = None,
     progress: Progress = None,
@@ -642,6 +643,10 @@ def tin(
         Folder for the files of the tasks; by default the output's name with ``.job``. See :class:`Job`.
     resume : bool
         Go on with a job that was interrupted.
+    update : bool
+        Of a job that was done before, do again what files reach that have changed since, came new, or went, and replace
+        the output, if it is as the job has written it. The folder of the job stays, for the next time. Without a job
+        there, one is planned.
     skip_bad : bool
         In tiles, leave a hole where a file cannot be read; ``Written.report["has_holes"]`` says so.
     threads : int, optional

@@ -100,6 +100,7 @@ def dem(
     tiles: Optional[str] = None,
     job: Any = None,
     resume: bool = False,
+    update: bool = False,
     skip_bad: bool = False,
     threads: Optional[int] = None,
     progress: Progress = None,
@@ -115,7 +116,7 @@ def dem(
         Extent of the raster; ``bounds`` clips the surface, as in :func:`tin`.
     resolution, align_to, method, threads, progress
         As for :meth:`Tin.dem`.
-    output, overwrite, memory, tiles, job, resume, skip_bad
+    output, overwrite, memory, tiles, job, resume, update, skip_bad
         Write a file, as for :func:`tin`, and return a :class:`Written`: files that need more memory are worked on in
         tiles, with the same result.
     **surface
@@ -183,6 +184,7 @@ def hillshade(
     tiles: Optional[str] = None,
     job: Any = None,
     resume: bool = False,
+    update: bool = False,
     skip_bad: bool = False,
     threads: Optional[int] = None,
     progress: Progress = None,
@@ -198,7 +200,7 @@ def hillshade(
         As for :func:`dem`; a raster keeps its cells.
     azimuth, altitude, z_factor, threads, progress
         As for :meth:`Tin.hillshade`.
-    output, overwrite, memory, tiles, job, resume, skip_bad
+    output, overwrite, memory, tiles, job, resume, update, skip_bad
         Write a file, as for :func:`tin`, and return a :class:`Written`: files that need more memory are worked on in
         tiles, with the same result.
     **surface
@@ -254,6 +256,7 @@ def contour(
     tiles: Optional[str] = None,
     job: Any = None,
     resume: bool = False,
+    update: bool = False,
     skip_bad: bool = False,
     threads: Optional[int] = None,
     progress: Progress = None,
@@ -267,7 +270,7 @@ def contour(
         A :class:`Tin`, a :class:`Raster`, the path of a raster, or what :func:`tin` takes.
     interval, base, levels, threads, progress
         As for :meth:`Tin.contours`.
-    output, overwrite, memory, tiles, job, resume, skip_bad
+    output, overwrite, memory, tiles, job, resume, update, skip_bad
         Write a file, as for :func:`tin`, and return a :class:`Written`: files that need more memory are worked on in
         tiles, with the same result.
     **surface

@@ -78,7 +78,8 @@ class Job:
 
     ``breakline job plan`` makes one, and so does :meth:`plan`. A ``Job`` stands for the job that was in the folder when
     it was opened: if that is removed, or another one takes its place, the methods raise an :class:`OtherJobError`. Only
-    :meth:`write` may plan it again, when files that were skipped are repaired; it stands for the new one then.
+    :meth:`write` may plan it again, when files that were skipped are repaired, and :meth:`update`; it stands for the new
+    one then.
 
     Parameters
     ----------
@@ -127,6 +128,8 @@ class Job:
         """
         if "resume" in options:
             raise usage("resume is for a verb; Job.plan opens the job that is there", None, "leave resume out")
+        if "update" in options:
+            raise usage("update is for a verb", None, "call Job.update, or leave update out")
         how = {"output": output, "job": job}
         return cls._begin(verb, _inputs.points(points), options, how, headers_only=bool(headers_only))
 
@@ -228,6 +231,25 @@ class Job:
             report = self._job.write(None if overwrite is None else bool(overwrite), running)
         return Written(self.output, report)
 
+    def update(self, *, threads: Optional[int] = None, progress: Progress = None) -> Written:
+        """Do again what inputs reach that have changed since the job was planned, and return the output.
+
+        The output is replaced if it is as the job has written it; it stays if nothing has changed. For other files than
+        those that the job was planned with, call the function of the verb with ``update=True``.
+
+        Examples
+        --------
+        >>> import breakline
+        >>> job = breakline.Job.plan("dem", "valley.laz", "dem.tif", resolution=5, overwrite=True)
+        >>> job.write().path.name
+        'dem.tif'
+        >>> job.update().path.name
+        'dem.tif'
+        """
+        with call(threads, progress) as running:
+            report = self._job.update(running)
+        return Written(self.output, report)
+
     def work(
         self,
         *,
@@ -284,6 +306,7 @@ class Writing(Building, total=False):
     tiles: Optional[str]
     job: "Optional[_inputs.PathLike]"
     resume: bool
+    update: bool
     skip_bad: bool
     threads: Optional[int]
     progress: Progress
@@ -291,7 +314,8 @@ class Writing(Building, total=False):
 
 #: Parameters that say how files are written, and what they are if nobody says.
 HOW = {
-    "output": None, "overwrite": False, "tiles": None, "memory": None, "job": None, "resume": False, "skip_bad": False,
+    "output": None, "overwrite": False, "tiles": None, "memory": None, "job": None, "resume": False, "update": False,
+    "skip_bad": False,
 }  # fmt: skip
 
 #: Parameters of verbs other than those of a surface, and their defaults.
@@ -349,6 +373,8 @@ def _request(verb: str, inputs: "list[Any]", options: "dict[str, Any]", how: "di
     if options.get("flat_points"):
         cure = "leave it out, or write the Tin: tin(..., flat_points=True).write(path)"
         raise usage("flat_points is for Tin.replaced_points, but a file is written", True, cure)
+    if how["resume"] and how["update"]:
+        raise usage("resume and update are given", None, "use one of them")
     systems = _systems(options.pop("crs", None), options.pop("to_crs", None), options.pop("force_degrees", False))
     read = _read(options.pop("columns", None), options.pop("partial", False))
     kind = "points"
@@ -370,6 +396,7 @@ def _request(verb: str, inputs: "list[Any]", options: "dict[str, Any]", how: "di
         "memory": None if how["memory"] is None else str(how["memory"]),
         "job": None if how["job"] is None else _inputs.path(how["job"], "job"),
         "resume": bool(how["resume"]),
+        "update": bool(how["update"]),
         "skip_bad": bool(how["skip_bad"]),
         "headers_only": False,
         "task_memory": None,

@@ -143,6 +143,8 @@ def _run(
             raise usage(f"{name} is an object in a store", path, "name a path that all workers share")
     if "resume" in options:
         raise usage("resume is not needed: the same call goes on with what is done", None, "leave resume out")
+    if "update" in options:
+        raise usage("update is for one process", None, "call breakline.Job.update, or leave update out")
     files = [inputs] if isinstance(inputs, (str, os.PathLike)) else list(inputs)
     texts = [_inputs.path(file, "inputs") for file in files]
     urls = [text for text in texts if is_url(text)]

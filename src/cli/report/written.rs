@@ -183,6 +183,7 @@ impl Monitor for Shown<'_> {
             }
             Event::Written => self.set_words(|| None),
             Event::PlannedAgain(_)
+            | Event::TilesChosenAgain
             | Event::TakenOver { .. }
             | Event::WaitsForJob { .. }
             | Event::GoesOnWithout { .. } => {}

@@ -33,7 +33,10 @@ pub(crate) fn run(args: &JobArgs, console: &Console) -> Result<Exit> {
             command,
             console,
         ),
-        JobAction::Run { job, task } => run_tasks(job, *task, console),
+        JobAction::Run {
+            job, update: true, ..
+        } => update(job, console),
+        JobAction::Run { job, task, .. } => run_tasks(job, *task, console),
         JobAction::Work { job, memory, lease } => {
             let options = WorkOptions {
                 memory: *memory,
@@ -78,6 +81,7 @@ fn parse(words: &[String], console: &Console) -> Result<Asked> {
     let own = [
         (tiles.dry_run, "--dry-run"),
         (tiles.resume, "--resume"),
+        (tiles.update, "--update"),
         (tiles.job.is_some(), "--job"),
     ];
     match own.iter().find(|(is_given, _)| *is_given) {
@@ -122,6 +126,14 @@ fn work(job: &Path, options: &WorkOptions, console: &Console) -> Result<Exit> {
     let stored = StoredJob::read(job)?;
     let shown = Shown::new(console, on_job("work", stored.folder()));
     let report = run::work_job(&stored, options, &shown.context())?;
+    Ok(shown.print(&report))
+}
+
+/// Does again what inputs reach that have changed.
+fn update(job: &Path, console: &Console) -> Result<Exit> {
+    let stored = StoredJob::read(job)?;
+    let shown = Shown::new(console, on_job("run", stored.folder()));
+    let report = run::update_job(&stored, &shown.context())?;
     Ok(shown.print(&report))
 }
 

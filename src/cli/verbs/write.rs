@@ -33,7 +33,8 @@ pub(crate) fn run(verb: &Verb, console: &Console) -> Result<Exit> {
         targets,
         tiles,
     } = asked(verb, console)?;
-    let shown = Shown::new(console, "--resume".to_owned());
+    let again = if tiles.update { "--update" } else { "--resume" };
+    let shown = Shown::new(console, again.to_owned());
     let report = run::write(&request, &targets, &execution(&tiles), &shown.context())?;
     Ok(shown.print(&report))
 }
@@ -47,6 +48,8 @@ fn execution(args: &TileArgs) -> Execution {
         Execution::Plan(options)
     } else if args.resume {
         Execution::Resume(options)
+    } else if args.update {
+        Execution::Update(options)
     } else if args.are_asked_for() {
         Execution::Tiles(options)
     } else {

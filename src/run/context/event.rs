@@ -24,6 +24,9 @@ pub enum Event<'a> {
     /// A file that was skipped can be read now, and does not fit the plan: the job is planned
     /// again.
     PlannedAgain(&'a Path),
+    /// The files are no longer like those that the tiles of a job were chosen for: all of it is
+    /// planned again.
+    TilesChosenAgain,
     /// The tasks of the job in a folder begin.
     TasksBegin(&'a Path),
     /// A task was that of another process, which gave no sign of life, and is done here now.
@@ -82,6 +85,10 @@ impl Event<'_> {
                 "{} was skipped, and can be read now: the job is planned again",
                 path.display()
             )),
+            Event::TilesChosenAgain => Some(
+                "the inputs are no longer like those that the tiles were chosen for: all tasks are done again"
+                    .to_owned(),
+            ),
             Event::TakenOver { task, worker, age } => Some(format!(
                 "task {task} is done here: {} does not go on with it, seen {} s ago",
                 worker.unwrap_or("its process"),

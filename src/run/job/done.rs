@@ -4,26 +4,31 @@ use std::cell::RefCell;
 use std::collections::BTreeMap;
 
 use flate2::Crc;
+use rustc_hash::FxHashMap;
 
 use super::folder::remove_unfinished;
 use super::lock::JobLock;
 use super::paths::tasks_in;
 use super::task_file::{Found, TaskFile};
-use super::{FileState, Job};
+use super::{FileState, Job, lines};
 use crate::error::{Error, Kind, Result};
 use crate::run::context::Context;
 
 /// The files of other tasks, for a task that reads them.
 pub(super) struct Sources<'j> {
     job: &'j Job,
-    /// The checksums of those that were opened, by the numbers of their tasks.
+    /// The tile that the task triangulates, if it does.
+    tile: Option<u32>,
+    /// The checksums of what it takes from those that were opened, by the numbers of their tasks.
     sums: RefCell<BTreeMap<usize, u32>>,
 }
 
 impl<'j> Sources<'j> {
-    pub(super) fn new(job: &'j Job) -> Self {
+    /// The files of other tasks, for a task.
+    pub(super) fn new(job: &'j Job, task: usize) -> Self {
         Sources {
             job,
+            tile: job.tile_of(task),
             sums: RefCell::default(),
         }
     }
@@ -34,9 +39,15 @@ impl<'j> Sources<'j> {
     /// If it is missing, damaged, or that of another job or task, or if it has changed since it was
     /// opened before.
     pub(super) fn open(&self, task: usize) -> Result<TaskFile> {
-        let file = self.job.open_task(task)?;
-        match self.sums.borrow_mut().insert(task, file.sum) {
-            Some(before) if before != file.sum => Err(Error::not_yet(
+        let mut file = self.job.open_task(task)?;
+        let sum = match self.tile {
+            Some(tile) if self.job.lines_task() == Some(task) => {
+                *lines::sums_of_tiles(&mut file)?.entry(tile).or_default()
+            }
+            _ => file.sum,
+        };
+        match self.sums.borrow_mut().insert(task, sum) {
+            Some(before) if before != sum => Err(Error::not_yet(
                 "the file of a task was made again while another one read it",
             )
             .in_file(self.job.task_file(task).path)
@@ -52,21 +63,64 @@ impl<'j> Sources<'j> {
                 self.open(task)?;
             }
         }
-        Ok(sum_of(
-            self.sums.borrow().iter().map(|(task, sum)| (*task, *sum)),
-        ))
+        Ok(sum_of(self.sums.borrow().values().copied()))
     }
 }
 
-/// Returns the checksum of what a task was made from: tasks, ascending, with the checksums of their
-/// files.
-fn sum_of(sources: impl Iterator<Item = (usize, u32)>) -> u32 {
+/// Returns the checksum of what a task was made from: checksums of what it takes from the files of
+/// others, in the order of their tasks. Their numbers do not count, which shift once the inputs of
+/// the job have changed: which files it reads is in the key of a task.
+fn sum_of(sources: impl Iterator<Item = u32>) -> u32 {
     let mut all = Crc::new();
-    for (task, sum) in sources {
-        all.update(&(task as u64).to_le_bytes());
+    for sum in sources {
         all.update(&sum.to_le_bytes());
     }
     all.sum()
+}
+
+/// The checksums of the files of tasks that are done, from the first on.
+#[derive(Default)]
+struct Sums {
+    /// `None` for those that are not done.
+    files: Vec<Option<u32>>,
+    /// What lines give to tiles.
+    of_lines: FxHashMap<u32, u32>,
+}
+
+impl Sums {
+    /// Adds the file of the next task, and returns it, if it was made from those that were added
+    /// before; else the task counts as not done.
+    fn add(&mut self, job: &Job, mut file: Option<TaskFile>) -> Option<TaskFile> {
+        let task = self.files.len();
+        let sources = self.sources_of(job, task);
+        file = file.filter(|file| sources == Some(file.sources));
+        if job.lines_task() == Some(task) {
+            match file.as_mut().map(lines::sums_of_tiles) {
+                Some(Ok(of_lines)) => self.of_lines = of_lines,
+                _ => file = None,
+            }
+        }
+        self.files.push(file.as_ref().map(|file| file.sum));
+        file
+    }
+
+    /// Returns the checksum of what a task would be made from now; `None` if something is missing.
+    fn sources_of(&self, job: &Job, task: usize) -> Option<u32> {
+        let tile = job.tile_of(task);
+        let mut needed = job.needs(task);
+        needed.sort_unstable();
+        let sum = |&needed: &usize| {
+            let of_file = self.files[needed]?;
+            match tile {
+                Some(tile) if job.lines_task() == Some(needed) => {
+                    Some(self.of_lines.get(&tile).copied().unwrap_or_default())
+                }
+                _ => Some(of_file),
+            }
+        };
+        let sources: Option<Vec<u32>> = needed.iter().map(sum).collect();
+        sources.map(|sources| sum_of(sources.into_iter()))
+    }
 }
 
 impl Job {
@@ -90,7 +144,7 @@ impl Job {
     /// Returns the checksum of what an output would be made from now; `None` if a task is not done.
     pub(super) fn sources(&self, context: &Context) -> Result<Option<u32>> {
         let sums: Option<Vec<u32>> = self.sums(context)?.into_iter().collect();
-        Ok(sums.map(|sums| sum_of((0..).zip(sums))))
+        Ok(sums.map(|sums| sum_of(sums.into_iter())))
     }
 
     /// Opens the files of all tasks, for an output. Returns also the checksum of what it is made
@@ -99,39 +153,22 @@ impl Job {
     /// # Errors
     /// If a task is not done, or its file is damaged, or that of another job or task.
     pub(super) fn open_all(&self, mut take: impl FnMut(TaskFile)) -> Result<u32> {
-        let mut sums = Vec::with_capacity(self.task_count());
+        let mut sums = Sums::default();
         for task in 0..self.task_count() {
-            let file = self.open_task(task)?;
-            if self.sources_of(task, &sums) != Some(file.sources) {
-                return Err(self.why_not_done(task));
-            }
-            sums.push(Some(file.sum));
-            take(file);
+            let file = sums.add(self, Some(self.open_task(task)?));
+            take(file.ok_or_else(|| self.why_not_done(task))?);
         }
-        Ok(sum_of((0..).zip(sums.into_iter().flatten())))
+        Ok(sum_of(sums.files.into_iter().flatten()))
     }
 
     /// Returns the checksum of the file of each task that is done.
     fn sums(&self, context: &Context) -> Result<Vec<Option<u32>>> {
-        let mut sums = Vec::with_capacity(self.task_count());
+        let mut sums = Sums::default();
         for task in 0..self.task_count() {
             context.check()?;
-            let file = TaskFile::open(&self.task_file(task)).ok().flatten();
-            let is_of_these = |file: &TaskFile| self.sources_of(task, &sums) == Some(file.sources);
-            sums.push(file.filter(is_of_these).map(|file| file.sum));
+            sums.add(self, TaskFile::open(&self.task_file(task)).ok().flatten());
         }
-        Ok(sums)
-    }
-
-    /// Returns the checksum of what a task would be made from now; `None` if something is missing.
-    fn sources_of(&self, task: usize, sums: &[Option<u32>]) -> Option<u32> {
-        let mut needed = self.needs(task);
-        needed.sort_unstable();
-        let sources: Option<Vec<_>> = needed
-            .into_iter()
-            .map(|task| Some((task, sums[task]?)))
-            .collect();
-        sources.map(|sources| sum_of(sources.into_iter()))
+        Ok(sums.files)
     }
 
     /// Returns the file of a task if it was made from the files that are there now. What is
@@ -140,7 +177,7 @@ impl Job {
         let Ok(Some(file)) = TaskFile::open(&self.task_file(task)) else {
             return Ok(None);
         };
-        let is_of_these = Sources::new(self).sum(self.needs(task))? == file.sources;
+        let is_of_these = Sources::new(self, task).sum(self.needs(task))? == file.sources;
         Ok(Some(file).filter(|_| is_of_these))
     }
 

@@ -25,11 +25,16 @@ pub(super) const WRITTEN: &str = "output.json";
 /// The plan of a job as it is in its folder.
 #[derive(Debug)]
 pub(super) struct StoredPlan {
-    /// The checksum of the plan, which names the job.
+    /// The checksum of the plan.
     pub(super) sum: u32,
+    /// What the files of the tasks name the job by: it stays when the job is planned again because
+    /// its inputs have changed.
+    pub(super) id: u64,
     pub(super) plan: Value,
     /// The number of tasks.
-    tasks: u64,
+    pub(super) tasks: u64,
+    /// The numbers of all files of tasks are below this: an earlier plan may have had more.
+    pub(super) numbers: u64,
     /// The checksum of the command that is kept with the job, if there is one.
     pub(super) command: Option<u64>,
 }
@@ -88,11 +93,15 @@ impl StoredPlan {
         let tasks = value["tasks"]
             .as_u64()
             .filter(|_| is_plan && value["layout"].is_array())?;
+        // Plans of other versions can be removed, whatever they have.
+        let id = value["id"].as_u64().unwrap_or(u64::from(sum));
         let command = value["command"].as_u64();
         Some(StoredPlan {
             sum,
-            plan: value,
+            id,
             tasks,
+            numbers: value["numbers"].as_u64().unwrap_or(tasks),
+            plan: value,
             command,
         })
     }
@@ -120,6 +129,15 @@ pub(super) fn write_plan(folder: &Path, plan: &str) -> Result<u32> {
     }
 }
 
+/// Writes a plan in the place of another one, and returns its checksum.
+///
+/// # Errors
+/// If it cannot be written.
+pub(super) fn replace_plan(folder: &Path, plan: &str) -> Result<u32> {
+    let sum = checksum(plan.as_bytes());
+    replace(&folder.join(PLAN), &format!("{sum:08x}\n{plan}")).map(|()| sum)
+}
+
 /// Writes a file of the job, in the place of an older one.
 ///
 /// # Errors
@@ -129,6 +147,19 @@ pub(super) fn replace(path: &Path, text: &str) -> Result<()> {
     let mut file = unfinished_in(path.parent().unwrap_or(Path::new("."))).map_err(named)?;
     file.write_all(text.as_bytes()).map_err(named)?;
     file.persist(path).map(drop).map_err(|e| named(e.error))
+}
+
+/// Returns the error for a job that others can do by what is kept with it, which names other
+/// inputs.
+#[cold]
+pub(super) fn other_inputs(folder: &Path) -> Error {
+    Error::usage("the job in this folder keeps the command that planned it, which has other inputs")
+        .in_file(folder)
+        .cure(wording![
+            "plan it again: ",
+            Command::JobClean.on(folder.display().to_string()),
+            " removes it"
+        ])
 }
 
 #[cold]
@@ -188,10 +219,9 @@ fn has_tasks(folder: &Path) -> bool {
         .any(|path| looks_like_task(&path))
 }
 
-/// Returns what the names of temporary files contain that are written for a job, of which the
-/// checksum of the plan is given.
-pub(super) fn mark(sum: u32) -> String {
-    format!("{sum:08x}")
+/// Returns what the names of temporary files contain that are written for the job with this name.
+pub(super) fn mark(id: u64) -> String {
+    format!("{id:016x}")
 }
 
 /// Removes the files that a process left when it was killed. Folders stay: they become outputs, of
@@ -266,13 +296,13 @@ pub(super) fn remove_files(folder: &Path, stored: &StoredPlan, _lock: &JobLock) 
     let tasks = tasks_in(folder);
     if tasks.is_dir() {
         remove_where(&tasks, |path| {
-            task_of(path).is_some_and(|task| (task as u64) < stored.tasks)
-                || task_of_lease(path).is_some_and(|task| task as u64 <= stored.tasks)
+            task_of(path).is_some_and(|task| (task as u64) < stored.numbers)
+                || task_of_lease(path).is_some_and(|task| task as u64 <= stored.numbers)
         })?;
         remove_if_empty(&tasks)?;
     }
     // Of an output in the folder itself.
-    remove_abandoned(&folder.join(PLAN), &mark(stored.sum))?;
+    remove_abandoned(&folder.join(PLAN), &mark(stored.id))?;
     for (name, is_own) in [(COMMAND, stored.command.is_some()), (WRITTEN, false)] {
         let path = folder.join(name);
         // The plan says that there was a command, which may be damaged.

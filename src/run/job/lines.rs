@@ -5,7 +5,8 @@
 //! together with the points that are on them or next to them. Its constrained edges are those of
 //! the surface, with the same heights, and no two of them cross.
 
-use rustc_hash::FxHashSet;
+use flate2::Crc;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::bytes::{self, NumberReader, put_block, put_u32};
 use super::task_file::{TaskFile, TaskWriter};
@@ -284,6 +285,24 @@ pub(super) fn write(tin: &Tin, layout: &TileLayout, writer: &mut TaskWriter) -> 
     writer.begin("table");
     writer.put(&table)?;
     Ok(edges)
+}
+
+/// Returns a checksum of what the lines give to each tile, by their numbers; those that get nothing
+/// are left out.
+pub(super) fn sums_of_tiles(file: &mut TaskFile) -> Result<FxHashMap<u32, u32>> {
+    let table = file.section("table")?;
+    let mut entries = NumberReader::new(&table);
+    let mut sums = FxHashMap::default();
+    while let Some(of_tile) = entries.u32() {
+        let mut sum = Crc::new();
+        for _ in 0..2 {
+            let block = entries.block().ok_or_else(|| file.damaged())?;
+            sum.update(&block.length.to_le_bytes());
+            sum.update(&block.sum.to_le_bytes());
+        }
+        sums.insert(of_tile, sum.sum());
+    }
+    Ok(sums)
 }
 
 /// Reads what the lines give to a tile.

@@ -20,6 +20,8 @@ mod division;
 mod done;
 mod folder;
 mod holes;
+mod inputs;
+mod keys;
 mod lease;
 mod lines;
 mod listed;
@@ -32,6 +34,7 @@ mod plan;
 mod plan_json;
 mod planned_file;
 mod raster;
+mod readers;
 mod request;
 mod sampled;
 mod schedule;
@@ -42,6 +45,7 @@ mod task_facts;
 mod task_file;
 mod tasks;
 mod tile_options;
+mod update;
 mod work;
 mod written;
 
@@ -56,6 +60,8 @@ pub use self::division::Division;
 pub use self::folder::remove_job;
 pub(crate) use self::folder::require_no_job;
 use self::folder::{COMMAND, StoredPlan};
+use self::inputs::Inputs;
+use self::keys::Keys;
 pub use self::lease::{TaskLease, Worker};
 use self::lines::Known;
 pub use self::listed::JobTask;
@@ -67,12 +73,14 @@ pub use self::output::JobReport;
 use self::paths::tasks_in;
 use self::plan::Plan;
 pub use self::planned_file::FileState;
-use self::planned_file::PlannedFile;
+use self::readers::Readers;
 pub use self::stored_job::{FoundJob, StoredJob};
 use self::task_file::TaskName;
 pub use self::tile_options::{Look, TileOptions};
+pub use self::update::JobUpdate;
 pub(crate) use self::work::LastTask;
 pub use self::work::WorkOptions;
+pub(crate) use self::written::is_own_output;
 use super::verbs::{Keeps, Verb, WriteRequest};
 use crate::error::{Command, Error, Kind, Result, Setting, wording};
 use crate::run::context::event::JobSize;
@@ -83,7 +91,7 @@ use crate::run::products::tin::TinRequest;
 use crate::run::sources::checksum::checksum;
 use crate::run::sources::point_files::{BadFiles, PointFiles};
 use crate::run::sources::systems::SystemOptions;
-use crate::terrain::tiles::{Spread, TileStep, Work};
+use crate::terrain::tiles::{TileStep, Work};
 
 /// Bytes per point of a triangulation in its file; measured.
 const BYTES_A_POINT_OF_PART: u64 = 85;
@@ -111,10 +119,14 @@ pub struct Job {
     verb: Arc<dyn Verb>,
     bad: BadFiles,
     folder: PathBuf,
-    /// The checksum of the plan in the folder, which names the job; 0 until it is there.
+    /// What the files of its tasks name it by; 0 until it is there.
+    id: u64,
+    /// The checksum of the plan in the folder; 0 until it is there.
     sum: u32,
     plan: Plan,
     steps: Vec<TileStep>,
+    readers: Readers,
+    keys: Keys,
     /// Read by the first task that needs it, unless the plan was made by this process.
     known: OnceLock<Known>,
     /// For each tile the files that may have points of it, once somebody has asked.
@@ -143,7 +155,9 @@ impl Job {
         let (request, systems) = tiled(wanted)?;
         let verb = wanted.verb.as_ref();
         let journal = Journal::new(context);
-        let (plan, known) = Plan::new(request, systems, verb, options, &journal)?;
+        let inputs = Inputs::read(request, systems, verb, options, &journal)?;
+        let tiling = inputs.tiled(&journal.context)?;
+        let (plan, known) = inputs.planned(tiling, &journal)?;
         let known = OnceLock::from(known);
         Ok(Job {
             known,
@@ -170,9 +184,12 @@ impl Job {
                 options.bad
             },
             folder: folder.to_path_buf(),
+            id: 0,
             sum: 0,
-            plan,
             steps,
+            readers: Readers::of(&plan),
+            keys: Keys::of(&plan),
+            plan,
             known: OnceLock::new(),
             files_of_tiles: OnceLock::new(),
             notices: Vec::new(),
@@ -225,9 +242,10 @@ impl Job {
         // Last, because a folder is a job from here on.
         let mut plan = self.plan.to_json();
         plan["tasks"] = json!(self.task_count());
+        plan["numbers"] = json!(self.task_count());
         plan["command"] = json!(command.map(|command| checksum(command.as_bytes())));
-        // So that jobs whose plans are equal are not taken for one another.
-        plan["id"] = json!(RandomState::new().hash_one(std::process::id()));
+        self.id = new_id();
+        plan["id"] = json!(self.id);
         self.sum = folder::write_plan(&self.folder, &plan.to_string())?;
         Ok(lock)
     }
@@ -296,6 +314,7 @@ impl Job {
             .named(request, wanted.verb.as_ref())
             .ok_or_else(|| other_version(folder))?;
         Ok(Job {
+            id: stored.id,
             sum: stored.sum,
             ..Self::of_plan(wanted, (request, systems), folder, options, plan)
         })
@@ -344,11 +363,11 @@ impl Job {
     fn file_of(&self, task: usize) -> Option<usize> {
         match self.task(task) {
             Task::Divide(file) => Some(file),
-            Task::Triangulate(step) if !self.plan.divides => match self.steps[step].work {
-                Work::Leaf(tile) => Some(tile as usize),
+            Task::Triangulate(step) => match self.steps[step].work {
+                Work::Leaf(tile) => self.readers.whole(tile),
                 Work::Merge(_) => None,
             },
-            Task::Triangulate(_) | Task::Lines | Task::Rim | Task::Cut => None,
+            Task::Lines | Task::Rim | Task::Cut => None,
         }
     }
 
@@ -366,14 +385,10 @@ impl Job {
             files: plan.files.len(),
             points,
             tiles: plan.layout.tile_count(),
-            divides: plan.divides,
+            divides: plan.divides(),
             merges: plan.merge_count(),
             tasks: self.task_count(),
-            bytes_on_disk: drawn.saturating_add(if plan.divides {
-                points.saturating_mul(24)
-            } else {
-                0
-            }),
+            bytes_on_disk: drawn.saturating_add(plan.divided_points().saturating_mul(24)),
             task_memory: plan.task_memory,
         }
     }
@@ -409,17 +424,15 @@ impl Job {
 
     /// The number of files that are divided.
     fn divided(&self) -> usize {
-        if self.plan.divides {
-            self.plan.files.len()
-        } else {
-            0
-        }
+        self.readers.divided.len()
     }
 
     fn task(&self, number: usize) -> Task {
         match number.checked_sub(self.first_step()) {
-            None if number < self.divided() => Task::Divide(number),
-            None => Task::Lines,
+            None => match self.readers.divided.get(number) {
+                Some(&file) => Task::Divide(file),
+                None => Task::Lines,
+            },
             Some(step) if step < self.steps.len() => Task::Triangulate(step),
             Some(_) if Some(number) == self.rim_task() => Task::Rim,
             Some(_) => Task::Cut,
@@ -456,13 +469,11 @@ impl Job {
             Task::Divide(_) => Vec::new(),
             Task::Lines => (0..self.divided()).collect(),
             Task::Triangulate(step) => match &self.steps[step].work {
-                Work::Leaf(tile) if self.plan.divides => self
-                    .files_of(*tile)
-                    .iter()
-                    .copied()
-                    .chain(self.lines_task())
-                    .collect(),
-                Work::Leaf(_) => Vec::new(),
+                Work::Leaf(tile) => {
+                    let files = self.files_of(*tile).iter();
+                    let divided = files.filter_map(|&file| self.readers.task_of(file));
+                    divided.chain(self.lines_task()).collect()
+                }
                 Work::Merge(parts) => parts.iter().map(|&part| self.task_of_step(part)).collect(),
             },
             Task::Rim => (self.first_step()..self.after_steps()).collect(),
@@ -492,16 +503,9 @@ impl Job {
 
     /// Returns the files that may have points of a tile, in ascending order.
     fn files_of(&self, tile: u32) -> &[usize] {
-        let all = self.files_of_tiles.get_or_init(|| {
-            let Plan { layout, files, .. } = &self.plan;
-            let mut all = vec![Vec::new(); layout.tile_count()];
-            for (number, Spread { min, max, .. }) in
-                files.iter().map(PlannedFile::spread).enumerate()
-            {
-                layout.tiles_in(min, max, &mut |tile| all[tile as usize].push(number));
-            }
-            all
-        });
+        let all = self
+            .files_of_tiles
+            .get_or_init(|| Readers::files_of_tiles(&self.plan));
         &all[tile as usize]
     }
 
@@ -511,11 +515,12 @@ impl Job {
             Task::Divide(file) => format!("divide {}", self.plan.files[file].path.display()),
             Task::Lines => "lines".to_owned(),
             Task::Triangulate(step) => match &self.steps[step].work {
-                Work::Leaf(tile) if self.plan.divides => format!("tile {tile}"),
-                Work::Leaf(tile) => format!(
-                    "tile {tile}, {}",
-                    self.plan.files[*tile as usize].path.display()
-                ),
+                Work::Leaf(tile) => match self.readers.whole(*tile) {
+                    Some(file) => {
+                        format!("tile {tile}, {}", self.plan.files[file].path.display())
+                    }
+                    None => format!("tile {tile}"),
+                },
                 Work::Merge(parts) => format!("merge of {}", parts.len()),
             },
             Task::Rim => "rim".to_owned(),
@@ -523,12 +528,38 @@ impl Job {
         }
     }
 
+    /// Returns the key of a task.
+    fn key(&self, task: usize) -> String {
+        let Job {
+            keys, plan, steps, ..
+        } = self;
+        let key = match self.task(task) {
+            Task::Divide(file) => keys.of_division(&plan.files[file]),
+            Task::Lines => keys.of_lines(plan),
+            Task::Triangulate(step) => {
+                let TileStep { tile: covers, work } = &steps[step];
+                match work {
+                    Work::Leaf(tile) => {
+                        let file = |number: usize| &plan.files[number];
+                        let whole = self.readers.whole(*tile).map(file);
+                        let files = self.files_of(*tile).iter().map(|&number| file(number));
+                        keys.of_leaf(*tile, covers, whole, files)
+                    }
+                    Work::Merge(parts) => keys.of_merge(covers, parts.len()),
+                }
+            }
+            Task::Rim => keys.of_last("rim"),
+            Task::Cut => keys.of_last("cut"),
+        };
+        key.to_string()
+    }
+
     /// Returns what the file of a task is called.
     fn task_file(&self, task: usize) -> TaskName {
         TaskName {
             path: paths::task_path(&self.folder, task),
-            job: self.sum,
-            task,
+            job: self.id,
+            task: self.key(task),
         }
     }
 
@@ -566,6 +597,12 @@ impl Job {
             None => Ok(()),
         }
     }
+}
+
+/// Returns a number by which no other job is named: jobs whose plans are equal are not taken for
+/// one another.
+fn new_id() -> u64 {
+    RandomState::new().hash_one(std::process::id())
 }
 
 #[cold]

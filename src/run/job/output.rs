@@ -189,7 +189,7 @@ impl Tiles for KeptTiles<'_> {
         frame::require_filled(options, &frame, &report.extent, || report.area)?;
         Ok(Box::new(DrawnCells::open(
             job.step_files(),
-            drawn,
+            (drawn, job.plan.blocks_before),
             frame,
             report.crs.clone(),
         )?))

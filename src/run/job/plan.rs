@@ -4,44 +4,24 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::division::Division;
-use super::lines::{self, Known};
 use super::not_in_tiles::NotInTiles;
-use super::planned_file::{
-    FileState, PlannedFile, looked_at, planned, require_folder, require_state, state_of,
-};
-use super::request::{Options, options_of};
-use super::sampled;
-use super::tile_options::{Look, TileOptions};
+use super::planned_file::{FileState, PlannedFile, looked_at, require_state, state_of};
+use super::request::Options;
 use crate::crs::Crs;
-use crate::data::{Bounds, Frame, PointInfo};
-use crate::error::{Command, Error, Result, Setting, wording};
-use crate::run::context::memory;
-use crate::run::context::notice::Notice;
-use crate::run::context::units::Units;
-use crate::run::context::{Context, Journal};
-use crate::run::products::frame::{self, FrameOptions};
+use crate::data::{Bounds, Frame};
+use crate::error::{Command, Error, Result, wording};
+use crate::run::context::Context;
 use crate::run::products::tin::TinRequest;
-use crate::run::request::input::{Input, MemoryPoints};
+use crate::run::request::input::Input;
 use crate::run::request::serialized;
-use crate::run::sources::open;
-use crate::run::sources::point_files::{BadFiles, GROUND, PointFiles};
-use crate::run::sources::systems::{self, Stated, SystemOptions, Systems};
-use crate::run::verbs::{Keeps, Verb};
+use crate::run::sources::point_files::GROUND;
+use crate::run::sources::systems::SystemOptions;
+use crate::run::verbs::Verb;
 use crate::terrain::tiles::{Spread, TileLayout, Work};
 use crate::terrain::{Classes, SelectionReport};
 
 /// Bytes per point of a tile while it is triangulated and drawn; measured.
 pub(super) const BYTES_A_POINT: u64 = 220;
-
-/// Tiles with more points than this gain nothing.
-const MOST_POINTS: u64 = 1_000_000;
-
-/// Tiles with fewer points than this hand up much of what they have.
-const LEAST_POINTS: u64 = 10_000;
-
-/// The share of the most points that a tile has on average: files may be denser in one place.
-const AVERAGE: f64 = 0.5;
 
 /// A file that is read beside the points, as it was planned with. A plan does not name it: it has
 /// those of the request in their order.
@@ -49,12 +29,12 @@ const AVERAGE: f64 = 0.5;
 pub(super) struct OtherFile {
     #[serde(skip)]
     path: PathBuf,
-    state: FileState,
+    pub(super) state: FileState,
 }
 
 impl OtherFile {
     /// Returns a file with its present state.
-    fn of(path: &Path) -> Result<Self> {
+    pub(super) fn of(path: &Path) -> Result<Self> {
         Ok(OtherFile {
             path: path.to_path_buf(),
             state: state_of(path)?,
@@ -76,9 +56,6 @@ pub(super) struct Plan {
     pub(super) skipped: Vec<(usize, String)>,
     /// True if files whose points turn out to be damaged are skipped, too.
     pub(super) skips_bad: bool,
-    /// True if the files are divided among tiles first: they are not tiles themselves, or there are
-    /// lines.
-    pub(super) divides: bool,
     /// True if there are lines, which one task arranges.
     pub(super) has_lines: bool,
     /// True if the surface is cut along lines, which one task does.
@@ -94,6 +71,9 @@ pub(super) struct Plan {
     /// result.
     #[serde(with = "serialized::frame")]
     pub(super) frame: Option<Frame>,
+    /// The blocks of cells that the frame was enlarged by on the left and above, since the job
+    /// began: tasks count blocks from where it began.
+    pub(super) blocks_before: [u64; 2],
     /// The memory of one task.
     pub(super) task_memory: u64,
 }
@@ -125,84 +105,10 @@ pub(super) fn require_readable_again(request: &TinRequest) -> Result<()> {
 }
 
 impl Plan {
-    /// Chooses the tiles for the files of a request, by what their headers state; files that do not
-    /// state it are read once. Also returns what was found out on the way.
-    pub(super) fn new(
-        request: &TinRequest,
-        systems: &SystemOptions,
-        verb: &dyn Verb,
-        options: &TileOptions,
-        journal: &Journal,
-    ) -> Result<(Self, Known)> {
-        require_tiled(request, systems)?;
-        let FilesOfPoints {
-            points,
-            closed,
-            classes,
-            files,
-            skipped,
-        } = FilesOfPoints::of(request, systems, options, journal)?;
-        let extent = extent_of(&files);
-        let layers = lines::layers_of(request, journal)?;
-        let mut stated = points.stated(&request.classes, journal)?;
-        drop(points);
-        stated.extend(
-            closed
-                .iter()
-                .filter_map(|file| file.stated(request))
-                .map(Some),
-        );
-        stated.extend(layers.stated());
-        let Systems { crs, .. } = systems::reconcile_some(&stated, systems, journal)?;
-        let known = Known::of_layers(&layers, request, crs.as_ref(), &extent, journal)?;
-        if files.is_empty() {
-            return Err(
-                Error::format("no points in the input").cure("pass files that contain points")
-            );
-        }
-        let task_memory = task_memory(options);
-        let most = (task_memory / BYTES_A_POINT).clamp(LEAST_POINTS, MOST_POINTS);
-        let (layout, divides) = layout_of(
-            &files,
-            &classes,
-            &known,
-            most,
-            request,
-            options,
-            &journal.context,
-        )?;
-        let frame = match verb.keeps() {
-            Keeps::Heights(options) => Some(frame_of(
-                options,
-                drawn_extent(extent, &known, request),
-                crs.as_ref(),
-                journal,
-            )?),
-            Keeps::Contours(_) | Keeps::Triangles => None,
-        };
-        let max_edge = request.max_edge.length(&Units::of(crs.as_ref()));
-        let (has_lines, has_clip) = (known.lines.is_some(), known.clip.is_some());
-        let others = others(request, verb)
-            .map(|path| OtherFile::of(path))
-            .collect::<Result<_>>()?;
-        let plan = Plan {
-            request: options_of(request, systems, verb, options),
-            files,
-            others,
-            skipped,
-            skips_bad: options.bad == BadFiles::Skip,
-            divides,
-            has_lines,
-            has_clip,
-            layout,
-            crs,
-            classes,
-            max_edge,
-            frame,
-            task_memory,
-        };
-        plan.note(request, verb, &known, journal);
-        Ok((plan, known))
+    /// Returns true if some files are divided among tiles first: they are not tiles themselves, or
+    /// there are lines.
+    pub(super) fn divides(&self) -> bool {
+        self.files.iter().any(|file| file.tile.is_none())
     }
 
     /// Returns the box in plan around all points, as the files state it.
@@ -224,22 +130,31 @@ impl Plan {
         self.files.iter().map(|file| file.count).sum()
     }
 
+    /// Returns the number of points that are divided among tiles.
+    pub(super) fn divided_points(&self) -> u64 {
+        let divided = self.files.iter().filter(|file| file.tile.is_none());
+        divided.map(|file| file.count).sum()
+    }
+
     /// Returns about how many cells of the frame are drawn: those within the extents of the files,
-    /// unless triangles may be anywhere.
+    /// or around all of them if triangles may be between them; with lines, all.
     pub(super) fn cells(&self) -> u64 {
         let Some(frame) = &self.frame else { return 0 };
         let all = frame.width as f64 * frame.height as f64;
-        if self.max_edge.is_none() || self.has_lines {
+        if self.has_lines {
             return all as u64;
         }
         let [min, max] = [frame.extent().min, frame.extent().max];
-        let side = |file: &PlannedFile, k: usize| {
-            (file.max[k].min(max[k]) - file.min[k].max(min[k])).max(0.0)
+        let drawn = match self.max_edge {
+            Some(_) => self.files.iter().map(PlannedFile::bounds).collect(),
+            None => vec![self.stated_extent()],
         };
-        let covered: f64 = self
-            .files
+        let side = |drawn: &Bounds, k: usize| {
+            (drawn.max[k].min(max[k]) - drawn.min[k].max(min[k])).max(0.0)
+        };
+        let covered: f64 = drawn
             .iter()
-            .map(|file| side(file, 0) * side(file, 1))
+            .map(|drawn| side(drawn, 0) * side(drawn, 1))
             .sum();
         (all * (covered / ((max[0] - min[0]) * (max[1] - min[1]))).min(1.0)) as u64
     }
@@ -342,175 +257,6 @@ impl Plan {
     }
 }
 
-/// The files of points of a request, by what their headers state.
-struct FilesOfPoints {
-    /// Those that can be opened.
-    points: PointFiles,
-    /// Those that cannot, if such files are skipped.
-    closed: Vec<Closed>,
-    /// The classes that are used.
-    classes: Vec<u8>,
-    /// Those that have points, in the order of the request.
-    files: Vec<PlannedFile>,
-    /// Those of which not even the extent is known, by their positions in the request, and why.
-    skipped: Vec<(usize, String)>,
-}
-
-impl FilesOfPoints {
-    fn of(
-        request: &TinRequest,
-        systems: &SystemOptions,
-        options: &TileOptions,
-        journal: &Journal,
-    ) -> Result<Self> {
-        let closed = match options.bad {
-            BadFiles::Skip => closed(request, &journal.context)?,
-            BadFiles::Refuse => Vec::new(),
-        };
-        let (numbers, inputs) = opened(request, &closed);
-        let points = PointFiles::open(&inputs, request.read, journal)?.with_bad(options.bad);
-        let classes = classes_of(&points, request, options, journal)?;
-        let mut files = Vec::new();
-        for ((number, input), stated) in numbers
-            .into_iter()
-            .zip(&inputs)
-            .zip(points.stated_extents())
-        {
-            files.extend(planned(number, input, request, stated, &journal.context)?);
-        }
-        let mut skipped = Vec::new();
-        for file in &closed {
-            match file.extent() {
-                Some(extent) => {
-                    files.extend(file.planned(extent, request, systems, &journal.context)?)
-                }
-                None => skipped.push((file.number, file.why.clone())),
-            }
-        }
-        files.sort_by_key(|file| file.input);
-        Ok(FilesOfPoints {
-            points,
-            closed,
-            classes,
-            files,
-            skipped,
-        })
-    }
-}
-
-/// Returns the classes that are used, and adds a notice if the request leaves that open.
-///
-/// # Errors
-/// If the points would have to be read for that, but only headers may be.
-fn classes_of(
-    points: &PointFiles,
-    request: &TinRequest,
-    options: &TileOptions,
-    journal: &Journal,
-) -> Result<Vec<u8>> {
-    let are_open = request.classes == Classes::GroundOrAll;
-    if options.look == Look::Headers && are_open && points.have_classes() {
-        return Err(
-            Error::usage("which classes are used is not known from headers alone").cure(wording![
-                "state them, such as ",
-                Setting::Class.number("2"),
-                " for ground"
-            ]),
-        );
-    }
-    let classes = points.used_classes(&request.classes, journal)?;
-    if request.classes == Classes::AllButNoise && points.have_classes() {
-        journal.add(Notice::NoiseUnused);
-    }
-    if are_open {
-        match classes.len() {
-            1 => journal.add(Notice::GroundUsed),
-            _ if points.have_classes() => journal.add(Notice::AllClassesUsed),
-            // Nobody expects ground in a text.
-            _ => {}
-        }
-    }
-    Ok(classes)
-}
-
-/// Returns the memory of one task.
-fn task_memory(options: &TileOptions) -> u64 {
-    options.task_memory.unwrap_or_else(|| {
-        let workers = rayon::current_num_threads() as u64;
-        options.memory.unwrap_or_else(memory::half_of_free) / workers
-    })
-}
-
-/// Returns the tiles, of at most so many points each, and true if the files are divided among them
-/// first.
-fn layout_of(
-    files: &[PlannedFile],
-    classes: &[u8],
-    known: &Known,
-    most: u64,
-    request: &TinRequest,
-    options: &TileOptions,
-    context: &Context,
-) -> Result<(TileLayout, bool)> {
-    if let Division::Grid(counts) = options.division {
-        let Bounds { min, max } = extent_of(files);
-        let [min, max] = [min, max].map(|[x, y, _]| [x, y]);
-        return Ok((TileLayout::grid(min, max, counts), true));
-    }
-    let spreads: Vec<Spread> = files.iter().map(PlannedFile::spread).collect();
-    let are_small = files.iter().all(|file| file.count <= most);
-    if let Some(layout) =
-        TileLayout::of_boxes(&spreads).filter(|_| are_small && known.lines.is_none())
-    {
-        return Ok((layout, false));
-    }
-    let average = most as f64 * AVERAGE;
-    let spreads = match options.look {
-        Look::Points => sampled::spreads(files, request, classes, average, context)?,
-        Look::Headers => spreads,
-    };
-    Ok((TileLayout::balanced(&spreads, average), true))
-}
-
-/// Returns the box around all points and lines, within the bounds of the request if they have an
-/// area in common.
-fn drawn_extent(points: Bounds, known: &Known, request: &TinRequest) -> Bounds {
-    let mut extent = points;
-    if let Some(lines) = &known.lines {
-        [lines.extent.min, lines.extent.max]
-            .into_iter()
-            .for_each(|corner| extent.add(corner));
-    }
-    let within = request
-        .bounds
-        .map(|bounds| common(&bounds, &extent))
-        .filter(|within| !within.is_empty());
-    within.unwrap_or(extent)
-}
-
-/// Returns the frame of a raster that is drawn tile by tile.
-///
-/// # Errors
-/// If tiles could not agree on its cells, or the frame is refused.
-fn frame_of(
-    options: &FrameOptions,
-    extent: Bounds,
-    crs: Option<&Crs>,
-    journal: &Journal,
-) -> Result<Frame> {
-    let frame = frame::over_extent(options, extent, crs, journal)?;
-    if options.extent.is_none() && !frame.has_shared_centers() {
-        return Err(Error::unsupported(
-            "the raster's grid lines are not multiples of the size of its cells",
-        )
-        .cure(wording![
-            "state the extent of the result with ",
-            Setting::Extent
-        ]));
-    }
-    Ok(frame)
-}
-
 /// Returns the error for a file that was damaged when the job was planned, and does not fit it now.
 #[cold]
 fn does_not_fit(what: String, folder: &Path) -> Error {
@@ -522,7 +268,7 @@ fn does_not_fit(what: String, folder: &Path) -> Error {
 }
 
 /// Returns the box in plan around the points of files.
-fn extent_of(files: &[PlannedFile]) -> Bounds {
+pub(super) fn extent_of(files: &[PlannedFile]) -> Bounds {
     let mut extent = Bounds::default();
     for Spread { min, max, .. } in files.iter().map(PlannedFile::spread) {
         [min, max]
@@ -532,94 +278,11 @@ fn extent_of(files: &[PlannedFile]) -> Bounds {
     extent
 }
 
-/// Returns what two boxes have in common in plan.
-fn common(a: &Bounds, b: &Bounds) -> Bounds {
-    let (mut min, mut max) = (b.min, b.max);
-    for k in 0..2 {
-        (min[k], max[k]) = (min[k].max(a.min[k]), max[k].min(a.max[k]));
-    }
-    Bounds { min, max }
-}
-
-/// A file that cannot be opened.
-struct Closed {
-    /// Its position in the request.
-    number: usize,
-    why: String,
-    /// What its header states, if that can be read.
-    stated: Option<PointInfo>,
-}
-
-impl Closed {
-    /// Returns the coordinate system that its header states, if it does.
-    fn stated(&self, request: &TinRequest) -> Option<Stated> {
-        let stated = Stated::by_points(request.points[self.number].path(), self.stated.as_ref()?);
-        (stated.crs.is_some() || stated.unread.is_some()).then_some(stated)
-    }
-
-    /// Returns the number of points and the box around them that its header states, if it states
-    /// both.
-    fn extent(&self) -> Option<(Option<u64>, Option<Bounds>)> {
-        let info = self
-            .stated
-            .as_ref()
-            .filter(|info| info.count.is_some() && info.bounds.is_some())?;
-        Some((info.count, info.bounds))
-    }
-
-    /// Returns what the plan knows of it; `None` if it has no points.
-    fn planned(
-        &self,
-        extent: (Option<u64>, Option<Bounds>),
-        request: &TinRequest,
-        systems: &SystemOptions,
-        context: &Context,
-    ) -> Result<Option<PlannedFile>> {
-        let file = planned(
-            self.number,
-            &request.points[self.number],
-            request,
-            extent,
-            context,
-        )?;
-        let states_system = self.stated.as_ref().is_some_and(|info| info.crs.is_some());
-        let is_of_any_system = !states_system && systems.assign.is_none();
-        Ok(file.map(|file| PlannedFile {
-            is_of_any_system,
-            ..file
-        }))
-    }
-}
-
-/// Returns the files that cannot be opened.
-fn closed(request: &TinRequest, context: &Context) -> Result<Vec<Closed>> {
-    let mut closed = Vec::new();
-    for (number, input) in request.points.iter().enumerate() {
-        match looked_at(number, request, context) {
-            Ok(_) => {}
-            Err(error) if BadFiles::Skip.skips(&error) => {
-                require_folder(input.path(), request)?;
-                closed.push(Closed {
-                    number,
-                    why: error.to_string(),
-                    stated: open::stated(input.path()),
-                });
-            }
-            Err(error) => return Err(error),
-        }
-    }
-    Ok(closed)
-}
-
-/// Returns the other files, and their positions in the request.
-fn opened(request: &TinRequest, closed: &[Closed]) -> (Vec<usize>, Vec<Input<MemoryPoints>>) {
-    let is_closed = |number: &usize| closed.iter().any(|file| file.number == *number);
-    let inputs = request.points.iter().cloned().enumerate();
-    inputs.filter(|(number, _)| !is_closed(number)).unzip()
-}
-
 /// Returns the files that are read beside the points: layers of lines, a raster to align to.
-fn others<'a>(request: &'a TinRequest, verb: &'a dyn Verb) -> impl Iterator<Item = &'a PathBuf> {
+pub(super) fn others<'a>(
+    request: &'a TinRequest,
+    verb: &'a dyn Verb,
+) -> impl Iterator<Item = &'a PathBuf> {
     let layers = request
         .lines
         .inputs()

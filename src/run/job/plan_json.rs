@@ -21,7 +21,11 @@ impl Plan {
             return None;
         }
         let plan: Plan = serde_json::from_value(value.clone()).ok()?;
-        (plan.divides || plan.files.len() == plan.layout.tile_count()).then_some(plan)
+        let mut tiles: Vec<u32> = plan.files.iter().filter_map(|file| file.tile).collect();
+        tiles.sort_unstable();
+        let are_tiles = tiles.windows(2).all(|pair| pair[0] < pair[1])
+            && (tiles.last()).is_none_or(|&last| (last as usize) < plan.layout.tile_count());
+        are_tiles.then_some(plan)
     }
 }
 

@@ -11,6 +11,7 @@ use crate::io::layer;
 use crate::run::context::{Context, Size, Stage};
 use crate::run::products::tin::TinRequest;
 use crate::run::request::input::{Input, MemoryPoints};
+use crate::run::sources::checksum::checksum;
 use crate::run::sources::open;
 use crate::terrain::tiles::Spread;
 
@@ -34,6 +35,10 @@ pub(super) struct PlannedFile {
     pub(super) input: usize,
     #[serde(skip)]
     pub(super) path: PathBuf,
+    /// The checksum of the whole name that it was planned under.
+    pub(super) name: u32,
+    /// The tile that the file is; `None` if it is divided among tiles.
+    pub(super) tile: Option<u32>,
     /// As it was planned with.
     pub(super) state: FileState,
     /// The number of its points.
@@ -116,9 +121,12 @@ pub(super) fn planned(
         );
     }
     let [min, max] = [bounds.min, bounds.max].map(|[x, y, _]| [x, y]);
+    let whole = std::path::absolute(path).map_err(|e| Error::from(e).in_file(path))?;
     Ok(Some(PlannedFile {
         input: number,
         path: path.to_path_buf(),
+        name: checksum(whole.as_os_str().as_encoded_bytes()),
+        tile: None,
         state,
         count,
         min,

@@ -17,6 +17,8 @@ const MOST_OPEN: usize = 64;
 /// A canvas whose blocks go to the file of a task when they become many.
 pub(super) struct Drawing {
     canvas: Canvas,
+    /// The column and the row from which those of blocks are counted.
+    counted_from: [u64; 2],
     /// Column and row of the first cell of each block, and where its heights are.
     table: Vec<([u64; 2], Block)>,
 }
@@ -28,11 +30,17 @@ const MOST_BLOCKS: usize = 2048;
 const MOST_ROWS: usize = 8;
 
 impl Drawing {
-    /// Begins the section of cells.
-    pub(super) fn new(frame: Frame, writer: &mut TaskWriter) -> Result<Self> {
+    /// Begins the section of cells. Blocks are counted from where the frame began before these were
+    /// added on the left and above.
+    pub(super) fn new(
+        frame: Frame,
+        blocks_before: [u64; 2],
+        writer: &mut TaskWriter,
+    ) -> Result<Self> {
         writer.begin("cells");
         Ok(Drawing {
             canvas: Canvas::new(frame)?,
+            counted_from: first_cell(blocks_before),
             table: Vec::new(),
         })
     }
@@ -63,7 +71,12 @@ impl Drawing {
                 .heights
                 .iter()
                 .for_each(|height| bytes.extend_from_slice(&height.to_le_bytes()));
-            let first = [block.window.column as u64, block.window.row as u64];
+            let [column, row] = self.counted_from;
+            // Those before it have negative numbers.
+            let first = [
+                (block.window.column as u64).wrapping_sub(column),
+                (block.window.row as u64).wrapping_sub(row),
+            ];
             self.table.push((first, writer.put_block(&bytes)?));
         }
         Ok(())
@@ -80,6 +93,11 @@ impl Drawing {
         }
         writer.put(&bytes)
     }
+}
+
+/// Returns the column and the row after so many blocks.
+fn first_cell(blocks: [u64; 2]) -> [u64; 2] {
+    blocks.map(|count| count.saturating_mul(Canvas::SIDE as u64))
 }
 
 /// The heights that all tasks have drawn, as one raster.
@@ -99,17 +117,19 @@ pub(super) struct DrawnCells {
 }
 
 impl DrawnCells {
-    /// Opens the cells of these tasks.
+    /// Opens the cells of these tasks, which were drawn in a frame that was enlarged by some blocks
+    /// on the left and above.
     ///
     /// # Errors
     /// If a file is missing or damaged.
     pub(super) fn open(
         tasks: Vec<TaskName>,
-        drawn: Frame,
+        (drawn, blocks_before): (Frame, [u64; 2]),
         frame: Frame,
         crs: Option<Crs>,
     ) -> Result<Self> {
         let mut blocks: FxHashMap<[u32; 2], Vec<(u32, Block)>> = FxHashMap::default();
+        let counted_from = first_cell(blocks_before);
         for (number, name) in (0..).zip(&tasks) {
             let mut file = TaskFile::open_done(name)?;
             let table = file.section("table")?;
@@ -121,6 +141,8 @@ impl DrawnCells {
                     return Err(file.damaged());
                 };
                 let side = Canvas::SIDE as u64;
+                let column = column.wrapping_add(counted_from[0]);
+                let row = row.wrapping_add(counted_from[1]);
                 let is_block = column < drawn.width as u64 && row < drawn.height as u64;
                 if !is_block || column % side + row % side != 0 {
                     return Err(file.damaged());

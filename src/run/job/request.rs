@@ -101,6 +101,11 @@ pub(super) fn options_of(
     options.0
 }
 
+/// Takes what is read out of some options.
+pub(super) fn leave_out_inputs(options: &mut Options) {
+    options.remove(INPUTS);
+}
+
 /// Adds what a command says of its outputs, and of files that cannot be read.
 pub(super) fn add_targets(options: &mut Options, targets: &Targets, tiles: &TileOptions) {
     let Targets {

@@ -143,6 +143,8 @@ mod tests {
         let file = PlannedFile {
             input: 0,
             path: path.clone(),
+            name: 0,
+            tile: None,
             state: FileState {
                 size: 0,
                 modified: 0,

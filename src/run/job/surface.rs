@@ -231,7 +231,7 @@ impl Job {
     }
 
     /// The tile that a task triangulates; `None` for other tasks.
-    fn tile_of(&self, task: usize) -> Option<u32> {
+    pub(super) fn tile_of(&self, task: usize) -> Option<u32> {
         match self.task(task) {
             Task::Triangulate(step) => match self.steps[step].work {
                 Work::Leaf(tile) => Some(tile),

@@ -20,7 +20,7 @@ use crate::error::{Command, Error, Kind, Result, Setting, Wording, wording};
 use crate::run::sources::checksum::{Summed, checksum};
 
 /// The last bytes of a complete file.
-const MAGIC: &[u8; 8] = b"BRKTASK4";
+const MAGIC: &[u8; 8] = b"BRKTASK5";
 
 /// What the last bytes of complete files of all versions begin with.
 const ANY_MAGIC: &[u8] = b"BRKTASK";
@@ -67,10 +67,10 @@ pub(super) fn looks_like_task(path: &Path) -> bool {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct TaskName {
     pub(super) path: PathBuf,
-    /// The checksum of the plan.
-    pub(super) job: u32,
-    /// The number of the task.
-    pub(super) task: usize,
+    /// What names the job.
+    pub(super) job: u64,
+    /// The key of the task.
+    pub(super) task: String,
 }
 
 /// Bytes that are read in one go.
@@ -147,6 +147,13 @@ impl TaskName {
         }
         Ok(found)
     }
+}
+
+/// Returns what the file of a task says that its job and its task are; `None` if that cannot be
+/// read.
+pub(super) fn name_in(path: &Path) -> Option<(u64, String)> {
+    let (_, value, _) = read_value(File::open(path).ok()?).ok()?;
+    Some((value["job"].as_u64()?, value["task"].as_str()?.to_owned()))
 }
 
 /// Writes the file of a task.
@@ -238,8 +245,11 @@ impl TaskWriter {
         let section =
             |(name, block): &(&str, Block)| json!([name, block.at, block.length, block.sum]);
         let sections: Vec<Value> = self.sections.iter().map(section).collect();
-        let TaskName { job, task, .. } = self.name;
-        let end = json!({ "job": job, "task": task, "sources": sources, "sections": sections, "facts": facts });
+        let TaskName { job, task, .. } = &self.name;
+        let content = checksum(json!([sections, facts]).to_string().as_bytes());
+        let end = json!({
+            "job": job, "task": task, "sources": sources, "content": content, "sections": sections, "facts": facts
+        });
         let end = end.to_string();
         self.put(end.as_bytes())?;
         self.put(&(end.len() as u64).to_le_bytes())?;
@@ -309,7 +319,8 @@ pub(super) struct TaskFile {
     sections: Vec<(String, Block)>,
     /// The bytes before the end.
     length: u64,
-    /// The checksum of the end, and so of all that it has checksums of.
+    /// The checksum of what was found out and of the checksums of all sections, and so of all that
+    /// the task has made.
     pub(super) sum: u32,
     /// The checksum of what the task was made from.
     pub(super) sources: u32,
@@ -345,37 +356,15 @@ impl TaskFile {
     }
 
     fn read_end(file: File, name: &TaskName) -> Result<Self> {
-        let length = file.metadata()?.len();
-        let mut reader = FileReader::new(file);
-        let mut end = [0; END as usize];
-        let from = length.checked_sub(END).ok_or_else(damaged)?;
-        reader.read(from, &mut end)?;
-        let text_length = u64::from_le_bytes(std::array::from_fn(|i| end[i]));
-        let stated = u32::from_le_bytes(std::array::from_fn(|i| end[8 + i]));
-        let text_from = from.checked_sub(text_length).ok_or_else(damaged)?;
-        if &end[12..] != MAGIC || text_length > 1 << 26 {
-            return Err(damaged());
-        }
-        let mut text = vec![0; text_length as usize];
-        reader.read(text_from, &mut text)?;
-        let mut sum = Crc::new();
-        sum.update(&text);
-        sum.update(&end[..8]);
-        if sum.sum() != stated {
-            return Err(damaged());
-        }
-        let mut value: Value = serde_json::from_slice(&text).map_err(|_| damaged())?;
-        let (Some(job), Some(task)) = (value["job"].as_u64(), value["task"].as_u64()) else {
+        let (reader, mut value, text_from) = read_value(file)?;
+        let (Some(job), Some(task)) = (value["job"].as_u64(), value["task"].as_str()) else {
             return Err(damaged());
         };
-        if job != u64::from(name.job) {
+        if job != name.job {
             return Err(Error::not_yet("this is the file of another job").cure(make_again()));
         }
-        if task != name.task as u64 {
-            let message = format!(
-                "this is the file of task {task}, and not of task {}",
-                name.task
-            );
+        if task != name.task {
+            let message = "this is the file of another task, or was made from other inputs";
             return Err(Error::not_yet(message).cure(make_again()));
         }
         let number = |value: &Value| u32::try_from(value.as_u64()?).ok();
@@ -395,7 +384,10 @@ impl TaskFile {
             .get_mut("facts")
             .map(Value::take)
             .and_then(|facts| serde_json::from_value(facts).ok());
-        let (Some(sections), Some(sources), Some(facts)) = (sections, sources, facts) else {
+        let content = number(&value["content"]);
+        let (Some(sections), Some(sources), Some(sum), Some(facts)) =
+            (sections, sources, content, facts)
+        else {
             return Err(damaged());
         };
         Ok(TaskFile {
@@ -403,7 +395,7 @@ impl TaskFile {
             path: name.path.clone(),
             sections,
             length: text_from,
-            sum: stated,
+            sum,
             sources,
             facts,
         })
@@ -483,6 +475,31 @@ impl TaskFile {
     }
 }
 
+/// Reads the end of the file of a task. Returns it with the position where it begins.
+fn read_value(file: File) -> Result<(FileReader, Value, u64)> {
+    let length = file.metadata()?.len();
+    let mut reader = FileReader::new(file);
+    let mut end = [0; END as usize];
+    let from = length.checked_sub(END).ok_or_else(damaged)?;
+    reader.read(from, &mut end)?;
+    let text_length = u64::from_le_bytes(std::array::from_fn(|i| end[i]));
+    let stated = u32::from_le_bytes(std::array::from_fn(|i| end[8 + i]));
+    let text_from = from.checked_sub(text_length).ok_or_else(damaged)?;
+    if &end[12..] != MAGIC || text_length > 1 << 26 {
+        return Err(damaged());
+    }
+    let mut text = vec![0; text_length as usize];
+    reader.read(text_from, &mut text)?;
+    let mut sum = Crc::new();
+    sum.update(&text);
+    sum.update(&end[..8]);
+    if sum.sum() != stated {
+        return Err(damaged());
+    }
+    let value: Value = serde_json::from_slice(&text).map_err(|_| damaged())?;
+    Ok((reader, value, text_from))
+}
+
 /// What makes a file again.
 fn make_again() -> Wording {
     wording![
@@ -514,7 +531,7 @@ mod tests {
         TaskName {
             path: folder.join("1.task"),
             job: 0xfeed_beef,
-            task: 1,
+            task: "one".to_owned(),
         }
     }
 
@@ -651,11 +668,12 @@ mod tests {
             "{of_other_job}"
         );
         let of_other_task = said(TaskName {
-            task: 2,
+            task: "two".to_owned(),
             ..name.clone()
         });
         assert!(
-            of_other_task.ends_with("this is the file of task 1, and not of task 2"),
+            of_other_task
+                .ends_with("this is the file of another task, or was made from other inputs"),
             "{of_other_task}"
         );
     }

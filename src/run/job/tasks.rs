@@ -8,7 +8,7 @@ use super::planned_file::{require_folder, require_state, state_of};
 use super::raster::Drawing;
 use super::surface::PartFaces;
 use super::task_facts::{Extent, FileFacts, KeptFacts, ReadFacts, TaskFacts, TaskNotice};
-use super::task_file::TaskWriter;
+use super::task_file::{TaskFile, TaskWriter};
 use super::{Job, Task};
 use super::{contours, lines, notes};
 use crate::data::{Bounds, EdgeKind, PointBatch};
@@ -47,7 +47,7 @@ impl Job {
         context: &Context,
     ) -> Result<()> {
         let mut writer = TaskWriter::create(self.task_file(number))?;
-        let sources = Sources::new(self);
+        let sources = Sources::new(self, number);
         let journal = Journal::new(context);
         let mut facts = match self.task(number) {
             Task::Divide(file) => self.divide(file, &mut writer, &journal)?,
@@ -162,8 +162,9 @@ impl Job {
         };
         let (mut near, mut at_rim) = (Vec::new(), Vec::new());
         let mut extent = Bounds::default();
-        for (number, file) in self.plan.files.iter().enumerate() {
-            let mut divided = sources.open(number)?;
+        for (task, &file) in self.readers.divided.iter().enumerate() {
+            let mut divided = sources.open(task)?;
+            let file = &self.plan.files[file];
             for (section, points) in [("near", &mut near), ("rim", &mut at_rim)] {
                 let bytes = divided.section(section)?;
                 bytes::add_points(&bytes, points).ok_or_else(|| divided.damaged())?;
@@ -270,31 +271,7 @@ impl Job {
         journal: &Journal,
     ) -> Result<TaskFacts> {
         let mut holes = Holes::default();
-        let (points, file) = if self.plan.divides {
-            for &number in self.files_of(tile) {
-                if sources.open(number)?.facts.skipped().is_some() {
-                    holes.add_file(self, number);
-                }
-            }
-            (self.divided_points(tile, sources)?, None)
-        } else {
-            let file = tile as usize;
-            let mut all: Vec<[f64; 3]> = Vec::new();
-            let read = self.read_file(file, journal, &mut |mut points| {
-                if all.is_empty() {
-                    all = points
-                } else {
-                    all.append(&mut points)
-                }
-            });
-            let facts = self.facts_of_file(file, read);
-            let facts = facts.map_err(|e| e.within(format_args!("tile {tile}")))?;
-            if matches!(facts, FileFacts::Skipped(_)) {
-                all.clear();
-                holes.add_file(self, file);
-            }
-            (all, Some(facts))
-        };
+        let (points, file) = self.points_of(tile, sources, &mut holes, journal)?;
         let lines = match self.lines_task() {
             Some(task) => lines::read(&mut sources.open(task)?, tile)?,
             None => LinesOfTile::default(),
@@ -325,33 +302,52 @@ impl Job {
         })
         .map_err(|error| {
             let error = error.within(format_args!("tile {tile}"));
-            if self.plan.divides {
-                error
-            } else {
-                error.in_file(&self.plan.files[tile as usize].path)
+            match self.files_of(tile) {
+                [file] if self.readers.task_of(*file).is_none() => {
+                    error.in_file(&self.plan.files[*file].path)
+                }
+                _ => error,
             }
         })
     }
 
-    /// Returns the points of a tile from the divided files, in the order of the files.
-    fn divided_points(&self, tile: u32, sources: &Sources) -> Result<Vec<[f64; 3]>> {
-        let mut all = Vec::new();
-        let mut bytes = Vec::new();
-        for &number in self.files_of(tile) {
-            let mut divided = sources.open(number)?;
-            let table = divided.section("table")?;
-            let mut entries = NumberReader::new(&table);
-            while !entries.is_empty() {
-                let (Some(of_tile), Some(block)) = (entries.u32(), entries.block()) else {
-                    return Err(divided.damaged());
-                };
-                if of_tile == tile {
-                    divided.read(block, &mut bytes)?;
-                    bytes::add_points(&bytes, &mut all).ok_or_else(|| divided.damaged())?;
+    /// Returns the points of a tile, in the order of their files, and what the file says that is
+    /// the tile, if one is. Adds the extents of files that are skipped.
+    fn points_of(
+        &self,
+        tile: u32,
+        sources: &Sources,
+        holes: &mut Holes,
+        journal: &Journal,
+    ) -> Result<(Vec<[f64; 3]>, Option<FileFacts>)> {
+        let mut all: Vec<[f64; 3]> = Vec::new();
+        let mut of_file = None;
+        for &file in self.files_of(tile) {
+            let Some(task) = self.readers.task_of(file) else {
+                let before = all.len();
+                let read = self.read_file(file, journal, &mut |mut points| {
+                    if all.is_empty() {
+                        all = points
+                    } else {
+                        all.append(&mut points)
+                    }
+                });
+                let facts = self.facts_of_file(file, read);
+                let facts = facts.map_err(|e| e.within(format_args!("tile {tile}")))?;
+                if matches!(facts, FileFacts::Skipped(_)) {
+                    all.truncate(before);
+                    holes.add_file(self, file);
                 }
+                of_file = Some(facts);
+                continue;
+            };
+            let mut divided = sources.open(task)?;
+            if divided.facts.skipped().is_some() {
+                holes.add_file(self, file);
             }
+            add_points_of_tile(tile, &mut divided, &mut all)?;
         }
-        Ok(all)
+        Ok((all, of_file))
     }
 
     fn merge(
@@ -526,6 +522,23 @@ impl Job {
     }
 }
 
+/// Adds the points that a divided file has in a tile.
+fn add_points_of_tile(tile: u32, divided: &mut TaskFile, all: &mut Vec<[f64; 3]>) -> Result<()> {
+    let mut bytes = Vec::new();
+    let table = divided.section("table")?;
+    let mut entries = NumberReader::new(&table);
+    while !entries.is_empty() {
+        let (Some(of_tile), Some(block)) = (entries.u32(), entries.block()) else {
+            return Err(divided.damaged());
+        };
+        if of_tile == tile {
+            divided.read(block, &mut bytes)?;
+            bytes::add_points(&bytes, all).ok_or_else(|| divided.damaged())?;
+        }
+    }
+    Ok(())
+}
+
 /// What triangles become.
 enum Drawn {
     Cells(Drawing),
@@ -558,7 +571,9 @@ impl<'a> KeptTriangles<'a> {
                 Drawn::Contours(ContourCollector::new(&options.to_levels()?))
             }
             (Keeps::Triangles, _) => Drawn::Faces(PartFaces::default()),
-            (Keeps::Heights(_), Some(frame)) => Drawn::Cells(Drawing::new(frame, writer)?),
+            (Keeps::Heights(_), Some(frame)) => {
+                Drawn::Cells(Drawing::new(frame, job.plan.blocks_before, writer)?)
+            }
             (Keeps::Heights(_), None) => {
                 return Err(Error::format(
                     "the plan of the job lacks the frame of the raster",

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
-use super::folder::{self, WRITTEN};
+use super::folder::{self, StoredPlan, WRITTEN};
 use super::lock::JobLock;
 use super::surface::has_all_parts;
 use super::{Job, JobReport};
@@ -22,8 +22,8 @@ impl Job {
     /// two.
     ///
     /// # Errors
-    /// If a file cannot be read, or the record cannot be written; or if another process has the job,
-    /// because this one was stopped for too long.
+    /// If a file cannot be read, or the record cannot be written; or if another process has the
+    /// job, because this one was stopped for too long.
     ///
     /// # Complexity
     /// Linear in the bytes of the files.
@@ -38,7 +38,7 @@ impl Job {
             ]));
             Ok(())
         })?;
-        let record = json!({ "job": self.sum, "sources": report.sources, "files": files });
+        let record = json!({ "job": self.id, "sources": report.sources, "files": files });
         lock.confirm()?;
         folder::replace(&self.folder.join(WRITTEN), &record.to_string())
     }
@@ -51,41 +51,21 @@ impl Job {
     /// # Errors
     /// If the run is canceled.
     pub fn has_written(&self, output: &Path, context: &Context) -> Result<bool> {
-        let record = std::fs::read(self.folder.join(WRITTEN))
-            .ok()
-            .and_then(|text| serde_json::from_slice(&text).ok());
-        let record: Value = record.unwrap_or_default();
-        let files = record["files"]
-            .as_array()
-            .map(Vec::as_slice)
-            .unwrap_or_default();
-        let is_of_these = record["job"] == self.sum
-            && self
-                .sources(context)?
-                .is_some_and(|sum| record["sources"] == sum);
-        let Ok(output) = std::path::absolute(output) else {
+        let Some(record) = record_of(self.id, &self.folder, output, context)? else {
             return Ok(false);
         };
-        let is_there = |file: &Value| {
-            let path = Path::new(file[0].as_str().unwrap_or_default());
-            let state =
-                File::open(path).and_then(|file| sum_of_file(&mut Canceled { file, context }));
-            state.is_ok_and(|(length, sum)| file[1] == length && file[2] == sum)
-        };
-        let is_written = is_of_these
-            && files
-                .iter()
-                .any(|file| file[0] == output.to_string_lossy().as_ref())
-            && files.iter().all(is_there)
-            && (!matches!(self.verb.keeps(), Keeps::Triangles) || has_all_parts(&output));
-        context.check().map(|()| is_written)
+        let is_of_these = self
+            .sources(context)?
+            .is_some_and(|sum| record["sources"] == sum);
+        let has_parts = || !matches!(self.verb.keeps(), Keeps::Triangles) || has_all_parts(output);
+        Ok(is_of_these && has_parts())
     }
 
     /// Returns what the names of temporary files of outputs contain, for
     /// [`OutputSet::mark`](crate::io::OutputSet::mark): a process that goes on with the job can
     /// then remove those of one that was killed.
     pub fn mark(&self) -> String {
-        folder::mark(self.sum)
+        folder::mark(self.id)
     }
 
     /// Removes the temporary files that a process left next to an output when it was killed.
@@ -95,6 +75,49 @@ impl Job {
     pub fn remove_abandoned(&self, output: &Path, _lock: &JobLock) -> Result<()> {
         remove_abandoned(output, &self.mark()).map_err(|e: Error| e.in_file(output))
     }
+}
+
+/// Returns true if an output is there as the job in a folder has written it, of whatever its tasks
+/// were then.
+///
+/// # Complexity
+/// Linear in the bytes of the output, which is read.
+///
+/// # Errors
+/// If the folder has a damaged job, or the run is canceled.
+pub(crate) fn is_own_output(folder: &Path, output: &Path, context: &Context) -> Result<bool> {
+    match StoredPlan::read(folder)? {
+        Some(stored) => Ok(record_of(stored.id, folder, output, context)?.is_some()),
+        None => Ok(false),
+    }
+}
+
+/// Returns what a job has recorded about an output, if that and all files that it was written with
+/// are there as they were written.
+fn record_of(id: u64, folder: &Path, output: &Path, context: &Context) -> Result<Option<Value>> {
+    let record = std::fs::read(folder.join(WRITTEN))
+        .ok()
+        .and_then(|text| serde_json::from_slice(&text).ok());
+    let record: Value = record.unwrap_or_default();
+    let files = record["files"]
+        .as_array()
+        .map(Vec::as_slice)
+        .unwrap_or_default();
+    let Ok(output) = std::path::absolute(output) else {
+        return Ok(None);
+    };
+    let is_there = |file: &Value| {
+        let path = Path::new(file[0].as_str().unwrap_or_default());
+        let state = File::open(path).and_then(|file| sum_of_file(&mut Canceled { file, context }));
+        state.is_ok_and(|(length, sum)| file[1] == length && file[2] == sum)
+    };
+    let is_written = record["job"] == id
+        && files
+            .iter()
+            .any(|file| file[0] == output.to_string_lossy().as_ref())
+        && files.iter().all(is_there);
+    context.check()?;
+    Ok(is_written.then_some(record))
 }
 
 /// A file that cannot be read on once the run is canceled.

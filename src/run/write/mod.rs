@@ -32,6 +32,10 @@ pub enum Execution {
     Tiles(TileOptions),
     /// In tiles, going on with the job in the folder, if there is one.
     Resume(TileOptions),
+    /// In tiles, with the job in the folder, which stays: of its tasks only those are done that the
+    /// inputs reach which have changed since, or came new, or went. An output is replaced if it is
+    /// as that job has written it. Without a job there, one is planned.
+    Update(TileOptions),
     /// Not at all: tiles are planned as for [`Tiles`](Self::Tiles), and nothing is written.
     Plan(TileOptions),
     /// Not at all: what [`Resume`](Self::Resume) would go on with is planned, unless it is there.
@@ -74,10 +78,14 @@ pub fn write(
     execution: &Execution,
     context: &Context,
 ) -> Result<WriteReport> {
-    let prepared = Prepared::new(request, targets)?;
+    let prepared = || Prepared::new(request, targets);
     match execution {
-        Execution::Whole => prepared.whole(context),
+        Execution::Update(options) => {
+            update(request, targets, options, Caller::Update, |_| {}, context)
+        }
+        Execution::Whole => prepared()?.whole(context),
         Execution::Auto { memory } => {
+            let prepared = prepared()?;
             if prepared.needs_tiles(*memory, context) {
                 prepared.in_tiles()?.anew(
                     &TileOptions {
@@ -90,10 +98,10 @@ pub fn write(
                 prepared.whole(context)
             }
         }
-        Execution::Tiles(options) => prepared.in_tiles()?.anew(options, context),
-        Execution::Resume(options) => prepared.in_tiles()?.resume(options, context),
-        Execution::Plan(options) => prepared.in_tiles()?.new_plan(options, context),
-        Execution::PlanResume(options) => prepared.in_tiles()?.plan_or_job(options, context),
+        Execution::Tiles(options) => prepared()?.in_tiles()?.anew(options, context),
+        Execution::Resume(options) => prepared()?.in_tiles()?.resume(options, context),
+        Execution::Plan(options) => prepared()?.in_tiles()?.new_plan(options, context),
+        Execution::PlanResume(options) => prepared()?.in_tiles()?.plan_or_job(options, context),
     }
 }
 
@@ -245,6 +253,47 @@ pub fn run_job(stored: &StoredJob, context: &Context) -> Result<WriteReport> {
         |job| stored.follow(job),
         context,
     )
+}
+
+/// Does those tasks of a job again that are reached by inputs which have changed since it was
+/// planned, and replaces the outputs, unless they are not as the job has written them. `stored` is
+/// then the job as it is planned now.
+///
+/// # Errors
+/// Those of [`run_job`].
+pub fn update_job(stored: &StoredJob, context: &Context) -> Result<WriteReport> {
+    let JobCommand {
+        request,
+        targets,
+        tiles,
+        ..
+    } = &stored.command;
+    let options = TileOptions {
+        folder: Some(stored.folder().to_path_buf()),
+        ..tiles.clone()
+    };
+    let planned = |job: &Job| stored.follow(job);
+    update(request, targets, &options, Caller::Folder, planned, context)
+}
+
+/// Plans a job again, does what its inputs reach that have changed, and replaces the outputs.
+fn update(
+    request: &WriteRequest,
+    targets: &Targets,
+    options: &TileOptions,
+    caller: Caller,
+    planned: impl FnOnce(&Job),
+    context: &Context,
+) -> Result<WriteReport> {
+    let mut targets = targets.clone();
+    let folder = options.folder.clone().or_else(|| targets.job_folder());
+    if let (Some(folder), Some(output)) = (folder, targets.files.first())
+        && job::is_own_output(&folder, output, context)?
+    {
+        targets.existing = Existing::Replace;
+    }
+    let prepared = Prepared::new(request, &targets)?.in_tiles()?;
+    prepared.update(options, caller, planned, context)
 }
 
 /// Returns the report of outputs that are there as they were written of the tasks that are done.
@@ -411,6 +460,40 @@ impl<'a> Prepared<'a> {
         }
     }
 
+    /// Plans the job in the folder again, if there is one, and does it. It stays.
+    fn update(
+        self,
+        options: &TileOptions,
+        caller: Caller,
+        planned: impl FnOnce(&Job),
+        context: &Context,
+    ) -> Result<WriteReport> {
+        let folder = self.folder(options)?;
+        let Some(update) = Job::updated(self.request, &folder, options, context)? else {
+            let options = TileOptions {
+                folder: Some(folder),
+                ..options.clone()
+            };
+            return self.anew(&options, context);
+        };
+        require_room(update.job(), context)?;
+        if !update.keeps_tiles() {
+            context.monitor.event(&Event::TilesChosenAgain);
+        }
+        let (job, lock) = update.put(context)?;
+        planned(&job);
+        match already_written(&job, self.targets, context)? {
+            Some(WriteReport::Kept {
+                has_holes: true, ..
+            })
+            | None => {}
+            Some(report) => return Ok(report),
+        }
+        job.try_again(&lock)?;
+        self.clear_up(&job, &lock, context)?;
+        self.run(&job, &lock, caller, context)
+    }
+
     /// Goes on with a job, whose inputs are checked. If it has to be planned again, `planned_again`
     /// is called with the job that takes its place.
     fn go_on(
@@ -527,6 +610,8 @@ enum Caller {
     Request,
     /// A request that has named the folder: it stays.
     RequestInFolder,
+    /// A request that comes again when inputs have changed. The folder stays.
+    Update,
     /// One who knows the folder, and what is kept in it. It stays.
     Folder,
     /// One of several who share the job. The folder stays, and who shares it says how to go on.
@@ -547,6 +632,7 @@ impl Caller {
     fn cure(self, job: &Job) -> Option<Term> {
         match self {
             Caller::Request | Caller::RequestInFolder => Some(Setting::Resume.on()),
+            Caller::Update => Some(Setting::Update.on()),
             Caller::Folder => Some(job.run_command()),
             Caller::Worker => None,
         }

@@ -48,6 +48,10 @@ pub(crate) enum JobAction {
         /// tasks that it needs are not done
         #[arg(long, value_name = "N")]
         task: Option<usize>,
+        /// Do again what inputs reach that have changed since the job was planned, and replace the
+        /// output, if it is as the job has written it
+        #[arg(long, conflicts_with = "task")]
+        update: bool,
     },
     /// Do tasks together with others: the same command on any number of hosts, as often as you like
     ///

@@ -33,6 +33,14 @@ pub(crate) struct TileArgs {
     #[arg(long)]
     pub(crate) resume: bool,
 
+    /// Do again what changed inputs reach, and keep the job for the next time
+    ///
+    /// The same command as before: of the job in the folder, only those tasks are done that files
+    /// reach which have changed since, came new, or went. The output is replaced if it is as the
+    /// job has written it. Without a job there, one is planned.
+    #[arg(long, conflicts_with_all = ["resume", "dry_run"])]
+    pub(crate) update: bool,
+
     /// Print the plan and end; with --resume, that of the job that would go on
     #[arg(long)]
     pub(crate) dry_run: bool,
@@ -49,6 +57,7 @@ pub(crate) struct TileArgs {
 impl TileArgs {
     /// Returns true if any option asks for tiles.
     pub(crate) fn are_asked_for(&self) -> bool {
-        self.tiles.is_some() || self.job.is_some() || self.resume || self.dry_run || self.skip_bad
+        let switches = [self.resume, self.update, self.dry_run, self.skip_bad];
+        self.tiles.is_some() || self.job.is_some() || switches.contains(&true)
     }
 }

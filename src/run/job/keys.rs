@@ -1,0 +1,90 @@
+//! What tells tasks apart, in a job whose inputs may change: what each is made from, apart from the
+//! files of other tasks.
+//!
+//! A task with the same key, made from files of the same contents, writes the same file: also in a
+//! later plan of the job, where it may have another number. The options of the request are in no
+//! key: those of a job do not change.
+
+use serde_json::{Value, json};
+
+use super::plan::{Plan, extent_of};
+use super::planned_file::PlannedFile;
+use crate::run::sources::checksum::checksum;
+use crate::terrain::tiles::Tile;
+
+/// The keys of the tasks of a plan.
+#[derive(Debug)]
+pub(super) struct Keys {
+    /// The layers of lines, if the points of files have to do with them.
+    lines: Option<u32>,
+    /// What the surface is cut along, if it is. How near a triangle counts as near depends on the
+    /// extent of all points.
+    clip: Option<u32>,
+}
+
+impl Keys {
+    pub(super) fn of(plan: &Plan) -> Self {
+        let others = json!(plan.others);
+        let sum = |key: &Value| checksum(key.to_string().as_bytes());
+        let with_extent = || sum(&json!([others, corners(&plan.files)]));
+        Keys {
+            lines: plan.has_lines.then(|| sum(&others)),
+            clip: plan.has_clip.then(with_extent),
+        }
+    }
+
+    /// Returns the key of the task that divides a file.
+    pub(super) fn of_division(&self, file: &PlannedFile) -> Value {
+        json!(["divide", of_file(file), self.lines])
+    }
+
+    /// Returns the key of the task that arranges the lines.
+    pub(super) fn of_lines(&self, plan: &Plan) -> Value {
+        json!(["lines", self.lines, corners(&plan.files)])
+    }
+
+    /// Returns the key of a tile that has points of some files, of which one may be the tile.
+    pub(super) fn of_leaf<'f>(
+        &self,
+        tile: u32,
+        covers: &Tile,
+        whole: Option<&PlannedFile>,
+        files: impl Iterator<Item = &'f PlannedFile>,
+    ) -> Value {
+        // Of a file that is skipped, its extent is a hole.
+        let boxes: Vec<Value> = files
+            .map(|file| corners(std::slice::from_ref(file)))
+            .collect();
+        let whole = whole.map(of_file);
+        json!(["tile", tile, rectangle(covers), whole, boxes, self.clip])
+    }
+
+    /// Returns the key of a merge of so many parts.
+    pub(super) fn of_merge(&self, covers: &Tile, parts: usize) -> Value {
+        json!(["merge", rectangle(covers), parts, self.clip])
+    }
+
+    /// Returns the key of a task that reads those of all steps.
+    pub(super) fn of_last(&self, name: &str) -> Value {
+        json!([name, self.clip])
+    }
+}
+
+/// A file, as it is read.
+fn of_file(file: &PlannedFile) -> Value {
+    let PlannedFile {
+        name, state, count, ..
+    } = file;
+    json!([name, state, count, corners(std::slice::from_ref(file))])
+}
+
+/// The box in plan around some files, as they state it.
+fn corners(files: &[PlannedFile]) -> Value {
+    let bounds = extent_of(files);
+    json!([&bounds.min[..2], &bounds.max[..2]])
+}
+
+/// The sides of a tile, of which some may be infinite, and are `null` then.
+fn rectangle(tile: &Tile) -> Value {
+    json!([tile.min, tile.max])
+}

@@ -1,0 +1,306 @@
+//! Inputs that change after a job was done: of its tasks only those are done again that the changes
+//! reach, and the bytes are those of a new job.
+
+use std::collections::BTreeSet;
+use std::path::Path;
+use std::time::SystemTime;
+
+use serde_json::Value;
+use tempfile::TempDir;
+use testkit::random::Random;
+
+use super::{bytes, layer, output_of, program};
+use program::{Run, files_of, run_in};
+
+fn run(folder: &TempDir, words: &str) -> Run {
+    run_in(folder, &words.split_whitespace().collect::<Vec<_>>())
+}
+
+/// Writes a file of points in the square in this column and row; squares have gaps between them.
+fn write_square(path: &Path, [column, row]: [i32; 2], count: usize, seed: u64) {
+    let mut random = Random(seed);
+    let corner = [column, row].map(|at| f64::from(at) * 100.0);
+    let mut text = String::new();
+    // The corners, so that the extent is the same whatever the points.
+    for [x, y] in [[0.0, 0.0], [98.0, 0.0], [0.0, 98.0], [98.0, 98.0]] {
+        text += &format!("{} {} 5\n", corner[0] + x, corner[1] + y);
+    }
+    for _ in 4..count {
+        let [x, y, z] =
+            [98.0, 98.0, 30.0].map(|size| (random.unit() * size * 100.0).round() / 100.0);
+        text += &format!("{:.2} {:.2} {z:.2}\n", corner[0] + x, corner[1] + y);
+    }
+    std::fs::write(path, text).unwrap();
+}
+
+fn square(folder: &TempDir, [column, row]: [i32; 2]) -> std::path::PathBuf {
+    // So that names have the order of columns and rows, from -9 on.
+    folder
+        .path()
+        .join(format!("in/{}_{}.xyz", column + 9, row + 9))
+}
+
+/// A folder with squares of points in so many columns and rows.
+fn squares(side: i32) -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::create_dir(folder.path().join("in")).unwrap();
+    for at in (0..side * side).map(|i| [i % side, i / side]) {
+        write_square(
+            &square(&folder, at),
+            at,
+            300,
+            at[0] as u64 * 100 + at[1] as u64,
+        );
+    }
+    folder
+}
+
+/// The tasks of a job, without the one that writes the output.
+fn tasks(folder: &TempDir, job: &str) -> Vec<Value> {
+    let status = run(folder, &format!("job status {job} --json"));
+    let value: Value = serde_json::from_str(&status.stdout).unwrap();
+    let mut tasks = value["tasks"].as_array().unwrap().clone();
+    tasks.pop();
+    tasks
+}
+
+/// Those tasks for which a function returns true, and all that need them.
+fn reached(tasks: &[Value], is_first: impl Fn(&Value) -> bool) -> BTreeSet<usize> {
+    let mut reached = BTreeSet::new();
+    for (number, task) in tasks.iter().enumerate() {
+        let mut needs = task["needs"].as_array().unwrap().iter();
+        let is_reached = needs.any(|need| reached.contains(&(need.as_u64().unwrap() as usize)));
+        if is_reached || is_first(task) {
+            reached.insert(number);
+        }
+    }
+    reached
+}
+
+/// A file of a task, wherever it is: when it was written, and its bytes, since clocks are coarse.
+type Stamp = (SystemTime, Vec<u8>);
+
+/// The files of the tasks, by their numbers.
+fn stamps(folder: &TempDir, job: &str) -> Vec<(usize, Stamp)> {
+    let tasks = folder.path().join(job).join("tasks");
+    let stamp = |name: String| {
+        let number = name.strip_suffix(".task")?.parse().ok()?;
+        let path = tasks.join(name);
+        let written = std::fs::metadata(&path).unwrap().modified().unwrap();
+        Some((number, (written, bytes(path))))
+    };
+    files_of(&tasks).into_iter().filter_map(stamp).collect()
+}
+
+fn stamps_of(folder: &TempDir, job: &str) -> BTreeSet<Stamp> {
+    let all = stamps(folder, job).into_iter();
+    all.map(|(_, stamp)| stamp).collect()
+}
+
+/// Updates the job `j` after a change, and returns the tasks that were done again.
+#[track_caller]
+fn update(folder: &TempDir, change: impl FnOnce()) -> BTreeSet<usize> {
+    let before = stamps_of(folder, "j");
+    change();
+    run(folder, "job run j --update").works(&[]);
+    let again = stamps(folder, "j")
+        .into_iter()
+        .filter(|(_, stamp)| !before.contains(stamp));
+    again.map(|(number, _)| number).collect()
+}
+
+fn is_of(task: &Value, file: &Path) -> bool {
+    let input = task["input"].as_str().unwrap_or_default();
+    Path::new(input).file_name() == file.file_name()
+}
+
+/// One of several files changes: its tile, and what is above that.
+#[test]
+fn a_file_that_has_changed_is_read_again_and_no_other() {
+    let folder = squares(5);
+    run(
+        &folder,
+        "job plan j -- dem in/*.xyz --tiles auto -o dem.tif",
+    )
+    .works(&["the files"]);
+    run(&folder, "job run j").works(&[]);
+    let file = square(&folder, [3, 1]);
+    let again = update(&folder, || write_square(&file, [3, 1], 350, 7));
+    let expected = reached(&tasks(&folder, "j"), |task| is_of(task, &file));
+    assert_eq!(again, expected);
+    // A tile, two merges, the rim.
+    assert!((3..=4).contains(&again.len()), "{again:?}");
+    let (whole, _) = output_of(&folder, "dem in/*.xyz --tiles 1x1", "new.tif");
+    assert!(bytes(folder.path().join("dem.tif")) == whole);
+    // Nothing has changed.
+    assert_eq!(update(&folder, || ()), BTreeSet::new());
+    run(&folder, "job run j --update").works(&["dem.tif is written"]);
+    // An output that is not as it was written is somebody's.
+    write_square(&file, [3, 1], 300, 8);
+    std::fs::write(folder.path().join("dem.tif"), "mine").unwrap();
+    run(&folder, "job run j --update").fails(1, &["dem.tif: ", "exists"]);
+    assert_eq!(bytes(folder.path().join("dem.tif")), b"mine");
+}
+
+/// The same command again, whatever has happened to the files: each product has the bytes of a new
+/// one, and the tasks that are far away stay.
+#[test]
+fn files_that_come_and_go_change_what_they_reach() {
+    let folder = squares(4);
+    let mut first = BTreeSet::new();
+    let change = |step: usize| match step {
+        0 => {}
+        1 => write_square(&square(&folder, [0, 0]), [0, 0], 250, 9),
+        // Within the extent, on top of others, and beyond all of them.
+        2 => write_square(&folder.path().join("in/00.xyz"), [1, 1], 120, 10),
+        3 => write_square(&square(&folder, [-3, 0]), [-3, 0], 200, 11),
+        4 => write_square(&square(&folder, [0, 6]), [0, 6], 200, 12),
+        5 => std::fs::remove_file(square(&folder, [1, 0])).unwrap(),
+        6 => std::fs::remove_file(folder.path().join("in/00.xyz")).unwrap(),
+        7 => write_square(&square(&folder, [1, 0]), [1, 0], 300, 13),
+        8 => std::fs::rename(square(&folder, [0, 1]), folder.path().join("in/a.xyz")).unwrap(),
+        _ => unreachable!(),
+    };
+    let verbs = [
+        ("dem", "--resolution 0.7", "dem.tif"),
+        ("contour", "--interval 5", "lines.geojson"),
+        ("dem", "--te -10,-10,250,333 --max-edge none", "part.tif"),
+    ];
+    for step in 0..=8 {
+        change(step);
+        // Others have several changes at a time.
+        let count = if step % 4 == 0 { verbs.len() } else { 1 };
+        for (verb, options, out) in &verbs[..count] {
+            let words = format!("{verb} in/*.xyz {options}");
+            let ran = run(&folder, &format!("{words} --update --tiles auto -o {out}"));
+            ran.works(&[]);
+            assert!(
+                !ran.stderr.contains("all tasks are done again"),
+                "{step}: {}",
+                ran.stderr
+            );
+            let (whole, _) = output_of(
+                &folder,
+                &format!("{words} --tiles 1x1"),
+                &format!("new_{out}"),
+            );
+            assert!(bytes(folder.path().join(out)) == whole, "{step}, {out}");
+        }
+        let now = stamps_of(&folder, "dem.tif.job");
+        match step {
+            0 => first = now,
+            // Most tiles are those of the beginning, whatever their tasks are called.
+            _ => assert!(now.intersection(&first).count() >= 8, "{step}"),
+        }
+    }
+    // A new job would have as many tasks as there are files, and merges and a rim.
+    let left = files_of(&folder.path().join("dem.tif.job/tasks"));
+    assert!((17..=23).contains(&left.len()), "{left:?}");
+    run(
+        &folder,
+        "dem in/*.xyz --resolution 2 --update --tiles auto -o dem.tif",
+    )
+    .fails(
+        2,
+        &[
+            "the job in this folder is that of another command",
+            "--resolution",
+        ],
+    );
+    run(&folder, "job clean dem.tif.job").works(&[]);
+    assert!(!folder.path().join("dem.tif.job").exists());
+}
+
+/// Which tasks are done again when a file comes new or goes: those of the tiles that it reaches.
+#[test]
+fn tiles_that_a_new_file_does_not_reach_stay() {
+    let folder = squares(4);
+    let words = "dem in/*.xyz --tiles auto -o dem.tif --update --job j";
+    run(&folder, words).works(&[]);
+    // 16 tiles, a merge, the rim.
+    let first = stamps_of(&folder, "j");
+    assert_eq!(first.len(), 18);
+    let new = folder.path().join("in/00.xyz");
+    write_square(&new, [1, 1], 120, 10);
+    run(&folder, words).works(&[]);
+    let second = stamps_of(&folder, "j");
+    // It is divided, in the tile of another file.
+    let kept = |now: &BTreeSet<Stamp>, before: &BTreeSet<Stamp>| now.intersection(before).count();
+    assert_eq!((second.len(), kept(&second, &first)), (19, 15));
+    std::fs::remove_file(new).unwrap();
+    run(&folder, words).works(&[]);
+    let third = stamps_of(&folder, "j");
+    assert_eq!((third.len(), kept(&third, &first)), (18, 15));
+    // As an interruption leaves them: files that have not got their new numbers yet.
+    let file = |name: &str| folder.path().join("j/tasks").join(name);
+    std::fs::rename(file("000001.task"), file("x")).unwrap();
+    std::fs::rename(file("000003.task"), file("000001.task")).unwrap();
+    std::fs::rename(file("x"), file("000003.task")).unwrap();
+    run(&folder, words).works(&["dem.tif is written"]);
+    assert_eq!(stamps_of(&folder, "j"), third);
+    std::fs::remove_file(square(&folder, [2, 2])).unwrap();
+    run(&folder, words).works(&[]);
+    let fourth = stamps_of(&folder, "j");
+    assert_eq!((fourth.len(), kept(&fourth, &third)), (18, 15));
+}
+
+/// With lines all files are divided. A line that changes reaches the tiles that it meets.
+#[test]
+fn lines_that_change_reach_their_tiles() {
+    let folder = squares(3);
+    let lines = |height: f64| {
+        let text = layer(
+            &[
+                vec![[10.0, 10.0, 3.0], [30.0, 22.0, 4.0]],
+                vec![[250.0, 250.0, height], [270.0, 265.0, height]],
+            ],
+            "LineString",
+        );
+        std::fs::write(folder.path().join("lines.geojson"), text).unwrap();
+    };
+    lines(9.0);
+    let words = "dem in/*.xyz --breaklines lines.geojson --tiles 4x4";
+    run(&folder, &format!("job plan j -- {words} -o dem.tif")).works(&[]);
+    run(&folder, "job run j").works(&[]);
+    let equal = || {
+        let (whole, _) = output_of(&folder, &words.replace("4x4", "1x1"), "new.tif");
+        assert!(bytes(folder.path().join("dem.tif")) == whole);
+    };
+    equal();
+    // 9 files, the lines, 16 tiles.
+    let all = tasks(&folder, "j");
+    let is_tile = |task: &Value, tile: u32| task["name"] == format!("tile {tile}");
+    // Another height: all files are compared with the lines again, and are as before.
+    let again = update(&folder, || lines(11.0));
+    let mut expected = reached(&all, |task| is_tile(task, 15));
+    expected.extend(0..10);
+    assert_eq!(again, expected);
+    equal();
+    // Points far from lines: the lines are as before.
+    let file = square(&folder, [1, 0]);
+    let again = update(&folder, || write_square(&file, [1, 0], 320, 14));
+    let divided = all.iter().position(|task| is_of(task, &file)).unwrap();
+    let is_reader = |task: &Value| {
+        let name = task["name"].as_str().unwrap();
+        let needs = task["needs"].as_array().unwrap();
+        name.starts_with("tile ") && needs.contains(&Value::from(divided))
+    };
+    let mut expected = reached(&all, is_reader);
+    expected.extend([divided, 9]);
+    assert_eq!(again, expected);
+    equal();
+}
+
+/// Many more points than the tiles were chosen for: then nothing is kept.
+#[test]
+fn tiles_are_chosen_again_if_they_have_no_room() {
+    let folder = squares(2);
+    let words = "dem in/*.xyz --tiles auto --memory 16MB --threads 8 -o dem.tif --update";
+    run(&folder, words).works(&[]);
+    write_square(&square(&folder, [1, 1]), [1, 1], 41_000, 3);
+    run(&folder, words)
+        .works(&["the inputs are no longer like those that the tiles were chosen for"]);
+    let (whole, _) = output_of(&folder, "dem in/*.xyz", "new.tif");
+    assert!(bytes(folder.path().join("dem.tif")) == whole);
+    run(&folder, words).works(&["dem.tif is written"]);
+}
