@@ -165,6 +165,14 @@ def test_points_on_a_line_or_a_plane_are_refused(ndim):
         Voronoi(np.empty((0, ndim)))
 
 
+def test_coordinates_of_a_map_lose_no_ridges(scipy_spatial, cloud):
+    points = cloud[:2000, :2]
+    near_origin = points - np.floor(points.min(axis=0))
+    assert (near_origin + np.floor(points.min(axis=0)) == points).all()
+    # scipy itself loses ridges, because it computes with squares of coordinates.
+    assert pairs(Voronoi(points)) == pairs(Voronoi(near_origin)) == pairs(scipy_spatial.Voronoi(near_origin))
+
+
 @pytest.mark.parametrize("ndim", [2, 3])
 def test_equal_points_share_a_region(scipy_spatial, ndim):
     points = random_points(40, ndim)
