@@ -1,7 +1,7 @@
 //! From a triangulation to the contents of Triangle's files: numbers of vertices, attributes,
 //! boundary markers.
 
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 use super::build::Built;
 use crate::io::triangle::{Edge, LineGraph, Nodes, Triangulated};
@@ -153,8 +153,8 @@ fn attributes_between(nodes: &Nodes, [a, b]: [usize; 2], at: [f64; 2]) -> Vec<f6
 }
 
 /// Returns the marker of each constrained edge: that of the first segment through it that has one.
-fn segment_markers(graph: &LineGraph, built: &Built) -> HashMap<[u32; 2], i32> {
-    let mut markers = HashMap::new();
+fn segment_markers(graph: &LineGraph, built: &Built) -> FxHashMap<[u32; 2], i32> {
+    let mut markers = FxHashMap::default();
     for (segment, chain) in graph
         .segments
         .iter()

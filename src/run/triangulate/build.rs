@@ -1,11 +1,11 @@
 //! Building the triangulation for the verb, as plain lists.
 
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 use crate::triangulation::geometry::Plane;
 use crate::triangulation::kernel::{Kernel, twice_area};
 use crate::triangulation::num::unsigned_zero;
-use crate::triangulation::refine::{Quality, Shortfall};
+use crate::triangulation::refine::{Quality, Refined, Shortfall};
 use crate::triangulation::tds::{CellId, VertexId};
 use crate::triangulation::{ConstrainedDelaunay, InputError, LineId, Location, OnCrossing};
 
@@ -22,9 +22,11 @@ pub(super) struct Built {
     pub(super) chains: Vec<Vec<u32>>,
     /// The location of each seed.
     pub(super) seeds: Vec<SeedLocation>,
-    /// For each added vertex that is not at a crossing of segments: the corners of the triangle
-    /// that contained it before refinement, and their weights at the vertex.
-    pub(super) between: HashMap<u32, ([u32; 3], [f64; 3])>,
+    /// The number of vertices that the refinement added.
+    pub(super) added: usize,
+    /// If weights are requested, for each vertex that the refinement added: the corners of the
+    /// triangle that contained it before, and their weights at the vertex.
+    pub(super) between: FxHashMap<u32, ([u32; 3], [f64; 3])>,
     /// The reasons why triangles are not as requested.
     pub(super) shortfall: Vec<Shortfall>,
 }
@@ -48,6 +50,14 @@ pub(super) enum SeedLocation {
     Outside,
 }
 
+/// What is computed for each vertex that a refinement adds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum OfAdded {
+    Position,
+    /// Also its triangle before the refinement, of which a copy is kept meanwhile.
+    Weights,
+}
+
 /// Triangulates points and segments, refines the triangulation if a quality is given, and locates
 /// the seeds. The line id of each segment is its position in the list.
 pub(super) fn build<K: Kernel>(
@@ -55,23 +65,46 @@ pub(super) fn build<K: Kernel>(
     segments: &[[u32; 2]],
     seeds: &[[f64; 2]],
     on_crossing: OnCrossing,
-    quality: Option<&Quality<'_>>,
+    quality: Option<(&Quality<'_>, OfAdded)>,
 ) -> Result<Built, InputError> {
     // Negative zero becomes zero: sites are compared bit by bit when sorted.
     let sites: Vec<[f64; 2]> = points.iter().map(|p| p.map(unsigned_zero)).collect();
-    let (coarse, vertices) =
+    let (t, vertices) =
         ConstrainedDelaunay::from_lines(Plane::<K>::default(), &sites, segments, on_crossing)?;
-    let refined = quality.map(|quality| coarse.clone().refined(quality));
-    let t = refined.as_deref().unwrap_or(&coarse);
-    let chains: Vec<Vec<VertexId>> = (0..segments.len())
-        .map(|i| t.chain(LineId::new(i)))
-        .collect();
+    let Some((quality, of_added)) = quality else {
+        return Ok(listed(&t, &numbers(&t), &vertices, segments.len(), seeds));
+    };
+    let before = (of_added == OfAdded::Weights).then(|| t.clone());
+    let refined = t.refined(quality);
+    let numbers = numbers(&refined);
+    let built = listed(&refined, &numbers, &vertices, segments.len(), seeds);
+    let why = refined.shortfall().iter().map(|&(_, why)| why);
+    Ok(Built {
+        added: refined.added().len(),
+        between: before.map_or_else(FxHashMap::default, |t| between(&t, &refined, &numbers)),
+        shortfall: why.collect(),
+        ..built
+    })
+}
 
-    // Vertices that were added and removed again leave unused numbers.
+/// Returns the number of each vertex among those in use: vertices that were added and removed again
+/// leave unused ids.
+fn numbers<K: Kernel>(t: &ConstrainedDelaunay<Plane<K>>) -> Vec<u32> {
     let mut numbers = vec![u32::MAX; t.tds().vertex_slots()];
     for (number, v) in (0..).zip(t.tds().vertices()) {
         numbers[v.index()] = number;
     }
+    numbers
+}
+
+/// Returns the lists of a triangulation, given the numbers of its vertices.
+fn listed<K: Kernel>(
+    t: &ConstrainedDelaunay<Plane<K>>,
+    numbers: &[u32],
+    vertices: &[VertexId],
+    segment_count: usize,
+    seeds: &[[f64; 2]],
+) -> Built {
     let number = |v: &VertexId| numbers[v.index()];
     let cells: Vec<CellId> = if t.dimension() == 2 {
         t.finite_cells().collect()
@@ -87,59 +120,71 @@ pub(super) fn build<K: Kernel>(
         neighbors: [0, 1, 2].map(|i| face_of[t.tds().neighbor(*cell, i).index()]),
         is_constrained: [0, 1, 2].map(|i| t.is_constrained(*cell, i)),
     };
-    Ok(Built {
+    let chain = |i: usize| t.chain(LineId::new(i)).iter().map(number).collect();
+    Built {
         vertices: t.tds().vertices().map(|v| *t.point(v)).collect(),
         vertex_of: vertices.iter().map(number).collect(),
         faces: cells.iter().map(face).collect(),
-        chains: chains
-            .iter()
-            .map(|chain| chain.iter().map(number).collect())
-            .collect(),
+        chains: (0..segment_count).map(chain).collect(),
         seeds: seeds
             .iter()
             .map(|p| locate_seed(t, &face_of, p.map(unsigned_zero)))
             .collect(),
-        between: refined
-            .iter()
-            .flat_map(|refined| refined.added())
-            .filter_map(|v| {
-                let (corners, weights) = weights(&coarse, t.point(*v))?;
-                Some((number(v), (corners.map(|v| number(&v)), weights)))
-            })
-            .collect(),
-        shortfall: refined
-            .iter()
-            .flat_map(|refined| refined.shortfall())
-            .map(|&(_, why)| why)
-            .collect(),
-    })
+        ..Built::default()
+    }
 }
 
-/// Returns the corners of the triangle that contains a point, and their barycentric weights.
-fn weights<K: Kernel>(
+/// Returns the triangle before the refinement of each added vertex, and its weights, by the number
+/// of the vertex.
+fn between<K: Kernel>(
+    before: &ConstrainedDelaunay<Plane<K>>,
+    refined: &Refined<Plane<K>>,
+    numbers: &[u32],
+) -> FxHashMap<u32, ([u32; 3], [f64; 3])> {
+    let number = |v: VertexId| numbers[v.index()];
+    // Vertices that were added one after the other are mostly near each other.
+    let mut near = None;
+    let added = refined.added().iter().filter_map(|&v| {
+        let p = refined.point(v);
+        near = triangle_at(before, p, near);
+        let (corners, weights) = weights(before, near?, p);
+        Some((number(v), (corners.map(number), weights)))
+    });
+    added.collect()
+}
+
+/// Returns the triangle that contains a point, given one that may be near.
+fn triangle_at<K: Kernel>(
     t: &ConstrainedDelaunay<Plane<K>>,
     p: &[f64; 2],
-) -> Option<([VertexId; 3], [f64; 3])> {
-    let cell = match t.locate(p, None) {
-        Location::Cell { cell, .. } => cell,
+    near: Option<CellId>,
+) -> Option<CellId> {
+    match t.locate(p, near) {
+        Location::Cell { cell, .. } => Some(cell),
         // Outside of the hull by rounding only.
-        Location::OutsideHull { cell } => t
-            .tds()
-            .neighbor(cell, t.tds().index_of(cell, VertexId::INFINITE)?),
-        Location::Vertex(_) | Location::OutsideAffineHull | Location::Nowhere => return None,
-    };
-    let corners = *t.tds().corners(cell);
+        Location::OutsideHull { cell } => {
+            let infinite = t.tds().index_of(cell, VertexId::INFINITE)?;
+            Some(t.tds().neighbor(cell, infinite))
+        }
+        Location::Vertex(_) | Location::OutsideAffineHull | Location::Nowhere => None,
+    }
+}
+
+/// Returns the corners of a triangle, and the barycentric weights of a point in it.
+fn weights<K: Kernel>(
+    t: &ConstrainedDelaunay<Plane<K>>,
+    triangle: CellId,
+    p: &[f64; 2],
+) -> ([VertexId; 3], [f64; 3]) {
+    let corners = *t.tds().corners(triangle);
     let [a, b, c] = corners.map(|v| *t.point(v));
     let whole = twice_area(a, b, c);
-    Some((
-        corners,
-        [
-            twice_area(b, c, *p),
-            twice_area(c, a, *p),
-            twice_area(a, b, *p),
-        ]
-        .map(|part| part / whole),
-    ))
+    let parts = [
+        twice_area(b, c, *p),
+        twice_area(c, a, *p),
+        twice_area(a, b, *p),
+    ];
+    (corners, parts.map(|part| part / whole))
 }
 
 fn locate_seed<K: Kernel>(

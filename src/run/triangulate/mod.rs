@@ -6,7 +6,7 @@ mod carve;
 
 use std::path::Path;
 
-use self::build::{Built, SeedLocation};
+use self::build::{Built, OfAdded, SeedLocation};
 use self::carve::Outside;
 use crate::data::{EdgeKind, Mesh, Triangles};
 use crate::error::{Error, Result, Setting, wording};
@@ -173,11 +173,10 @@ fn triangulate_journaled(
     }
     let given = graph.nodes.points.len();
     let added = triangulated.nodes.points.len() - given;
-    let for_quality = built.between.len();
     let report = TriangulateReport {
         vertices_given: given,
-        vertices_at_crossings: added - for_quality.min(added),
-        vertices_for_quality: for_quality,
+        vertices_at_crossings: added - built.added.min(added),
+        vertices_for_quality: built.added,
         duplicates: given + added - built.vertices.len(),
         segments_given: graph.segments.len(),
         triangles_built: built.faces.len(),
@@ -275,12 +274,16 @@ fn build_with<K: Kernel>(
         .chain(graph.regions.iter().map(|region| region.at))
         .collect();
     let quality = quality(options, graph, context);
+    let of_added = match graph.nodes.attribute_count {
+        0 => OfAdded::Position,
+        _ => OfAdded::Weights,
+    };
     build::build::<K>(
         &graph.nodes.points,
         &segments,
         &seeds,
         options.on_crossing,
-        quality.as_ref(),
+        quality.as_ref().map(|quality| (quality, of_added)),
     )
 }
 
