@@ -46,6 +46,21 @@ def test_linear_values_are_those_of_scipy(scipy_interpolate, ndim, threads):
 
 
 @pytest.mark.parametrize("ndim", [2, 3])
+@pytest.mark.parametrize("offset, scale", [(0, [1, 1, 1]), (1e9, [1, 1, 1]), (0, [1, 1e-4, 1]), (0, [1e-40] * 3)])
+def test_positions_in_rows_have_the_values_of_single_ones(ndim, offset, scale):
+    # A search that starts from the position before finds what one without a start finds, to the bit: also in thin
+    # simplices, on corners, outside, and where coordinates have few digits left.
+    scale = np.array(scale[:ndim])
+    points = offset + random_points(300, ndim) * scale
+    along = np.linspace(-0.05, 1.05, 111).round(3)
+    rows = [np.column_stack([along, *[np.full_like(along, at)] * (ndim - 1)]) for at in (0.1, 0.25, 0.333, 0.5)]
+    xi = np.vstack([offset + np.vstack(rows) * scale, points, (points[1:] + points[:-1]) / 2])
+    interpolator = LinearNDInterpolator(points, values_at(random_points(300, ndim)), threads=1)
+    single = np.concatenate([interpolator(position[None]) for position in xi])
+    assert np.array_equal(interpolator(xi), single, equal_nan=True) and np.isfinite(single).any()
+
+
+@pytest.mark.parametrize("ndim", [2, 3])
 def test_nearest_values_are_those_of_scipy(scipy_interpolate, ndim):
     points, xi = random_points(800, ndim), random_points(9000, ndim, seed=1) * 1.6 - 0.3
     values = values_at(points)
