@@ -1,7 +1,8 @@
 //! Arrays of numpy to numbers, and numbers to arrays.
 
-use numpy::ndarray::ArrayView2;
-use numpy::{Element, IntoPyArray, PyArray1, PyArrayMethods, PyReadonlyArray2};
+use numpy::ndarray::{Array2, ArrayView2};
+use numpy::{Element, IntoPyArray, PyArray1, PyReadonlyArray2};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 /// Returns the rows of an array as points, in any layout of memory.
@@ -36,11 +37,22 @@ pub(crate) fn table<T: Element, const N: usize>(
     rows: Vec<[T; N]>,
 ) -> PyResult<Bound<'_, PyAny>> {
     let count = rows.len();
-    Ok(rows
-        .into_flattened()
-        .into_pyarray(py)
-        .reshape([count, N])?
-        .into_any())
+    shaped(py, rows.into_flattened(), [count, N])
+}
+
+/// Returns an array of the numbers of a vector, row by row, which are not copied.
+///
+/// # Errors
+/// If the shape is for another number of them.
+pub(crate) fn shaped<T: Element>(
+    py: Python<'_>,
+    values: Vec<T>,
+    shape: [usize; 2],
+) -> PyResult<Bound<'_, PyAny>> {
+    // In one step: an array that is reshaped is two objects.
+    let array = Array2::from_shape_vec(shape, values);
+    let array = array.map_err(|error| PyValueError::new_err(error.to_string()))?;
+    Ok(array.into_pyarray(py).into_any())
 }
 
 /// Makes an array read-only, for one that is kept and given to everyone who asks.

@@ -1,16 +1,18 @@
 //! A drop-in for the package `triangle`: from arrays to the content of Triangle's files and the
 //! other way round. The switches are read in `breakline/triangle.py`.
 
+use std::mem::take;
 use std::path::Path;
 
 use breakline::io::triangle::{Edge, Hole, LineGraph, Nodes, Region, Segment, Triangulated};
-use breakline::run::{TriangulateOptions, triangulate_graph};
-use numpy::{PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
+use breakline::run::{Context, Silent, TriangulateOptions, TriangulateProduct, triangulate_graph};
+use breakline::triangulation::refine::Shortfall;
+use numpy::{Element, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::arrays::{column, points, rows, table};
-use crate::errors::Result;
+use crate::arrays::{points, rows, shaped, table};
+use crate::errors::{self, Result};
 use crate::work::{self, Call};
 
 /// The name of the input in errors.
@@ -47,13 +49,15 @@ pub(crate) struct Switches {
     max_added: Option<usize>,
 }
 
-/// Triangulates a planar straight-line graph. Returns arrays of all that Triangle can return, and
-/// the number of triangles that are not as the switches require.
+/// Triangulates a planar straight-line graph. Returns arrays by the names of the package
+/// `triangle`, each of which is given once, and the number of triangles that are not as the
+/// switches require.
 #[pyfunction]
 pub(crate) fn triangulate_arrays<'py>(
     py: Python<'py>,
     graph: Graph<'py>,
     switches: Switches,
+    names: Vec<String>,
     call: Call,
 ) -> PyResult<(Bound<'py, PyDict>, usize)> {
     let Switches {
@@ -79,22 +83,67 @@ pub(crate) fn triangulate_arrays<'py>(
         max_added,
         ..Default::default()
     };
-    let count = expected(&graph, &options);
-    let product = work::run_on(py, &call, Some(count), |context| -> Result<_> {
-        Ok(triangulate_graph(
-            &graph,
-            Path::new(NAME),
-            &options,
-            context,
-        )?)
-    })?;
+    let product = match triangulated_here(py, &call, &graph, &options)? {
+        Some(product) => product,
+        None => work::run(py, &call, |context| -> Result<_> {
+            Ok(triangulate_graph(
+                &graph,
+                Path::new(NAME),
+                &options,
+                context,
+            )?)
+        })?,
+    };
     Ok((
-        arrays(py, product.triangulated)?,
+        arrays(py, product.triangulated, &names)?,
         product.report.shortfall.len(),
     ))
 }
 
-/// Returns about how many vertices a mesh may have.
+/// The number of vertices that the calling thread may add. It takes some 30 ms, less than until the
+/// next look for signals.
+const TRIED: usize = 1 << 14;
+
+/// Triangulates on the calling thread; `None` if that would take too long.
+///
+/// How many vertices an angle needs is not known before: two lines near each other need as many as
+/// their distance says. So it is tried, and few points seldom need more.
+fn triangulated_here(
+    py: Python<'_>,
+    call: &Call,
+    graph: &LineGraph,
+    options: &TriangulateOptions,
+) -> PyResult<Option<TriangulateProduct>> {
+    let most = options.max_added.unwrap_or(usize::MAX);
+    let limited = TriangulateOptions {
+        max_added: match options.min_angle {
+            Some(_) => Some(most.min(TRIED)),
+            None => options.max_added,
+        },
+        ..options.clone()
+    };
+    work::run_few(py, call, expected(graph, options), |context| {
+        // What is tried in vain reports nothing.
+        let silent = Context {
+            monitor: &Silent,
+            ..*context
+        };
+        let product = triangulate_graph(graph, Path::new(NAME), &limited, &silent)?;
+        let is_cut = limited.max_added.is_some_and(|limit| limit < most)
+            && product.report.shortfall.contains(&Shortfall::Limit);
+        if is_cut {
+            return Result::Ok(None);
+        }
+        product
+            .notices
+            .iter()
+            .for_each(|notice| context.monitor.notice(notice));
+        Ok(Some(product))
+    })
+    .map(Option::flatten)
+}
+
+/// Returns about how many vertices a mesh may have, but for those that angles need.
 fn expected(graph: &LineGraph, options: &TriangulateOptions) -> usize {
     let points = &graph.nodes.points;
     let extent = |axis: usize| {
@@ -104,14 +153,8 @@ fn expected(graph: &LineGraph, options: &TriangulateOptions) -> usize {
     let of_regions = graph.regions.iter().filter_map(|region| region.max_area);
     let areas = of_regions.chain(options.max_area);
     let by_area = areas.map(|area| extent(0) * extent(1) / area).sum::<f64>();
-    let given = points.len() + graph.segments.len();
     // A conversion that saturates.
-    let added = (by_area as usize).saturating_add(match options.min_angle {
-        // Two lines near each other need as many vertices as their distance says.
-        Some(_) => options.max_added.unwrap_or(usize::MAX),
-        None => 0,
-    });
-    given.saturating_add(added)
+    (by_area as usize).saturating_add(points.len() + graph.segments.len())
 }
 
 impl Graph<'_> {
@@ -156,13 +199,17 @@ impl Graph<'_> {
     }
 }
 
-/// Returns the arrays of a triangulation, by the names of the package `triangle`.
-fn arrays(py: Python<'_>, triangulated: Triangulated) -> PyResult<Bound<'_, PyDict>> {
+/// Returns the arrays of a triangulation that have these names in the package `triangle`.
+fn arrays<'py>(
+    py: Python<'py>,
+    triangulated: Triangulated,
+    names: &[String],
+) -> PyResult<Bound<'py, PyDict>> {
     let Triangulated {
-        nodes,
+        mut nodes,
         triangles,
         neighbors,
-        attributes,
+        mut attributes,
         edges,
         segments,
         ..
@@ -170,32 +217,33 @@ fn arrays(py: Python<'_>, triangulated: Triangulated) -> PyResult<Bound<'_, PyDi
     let number = |index: u32| index as i32;
     let beside = |neighbor: Option<u32>| neighbor.map_or(-1, number);
     let ends = |edges: &[Edge]| table(py, edges.iter().map(|edge| edge.ends.map(number)).collect());
-    let markers = |edges: &[Edge]| table(py, edges.iter().map(|edge| [edge.marker]).collect());
-    let single =
-        |markers: Vec<i32>| table(py, markers.into_iter().map(|marker| [marker]).collect());
+    let markers = |edges: &[Edge]| single(py, edges.iter().map(|edge| edge.marker).collect());
+    let count = nodes.points.len();
     let arrays = PyDict::new(py);
-    let of_vertices = [nodes.points.len(), nodes.attribute_count];
-    arrays.set_item("vertices", table(py, nodes.points)?)?;
-    arrays.set_item(
-        "vertex_attributes",
-        column(py, nodes.attributes).reshape(of_vertices)?,
-    )?;
-    arrays.set_item("vertex_markers", single(nodes.markers)?)?;
-    arrays.set_item(
-        "triangles",
-        table(py, triangles.into_iter().map(|t| t.map(number)).collect())?,
-    )?;
-    arrays.set_item(
-        "neighbors",
-        table(py, neighbors.into_iter().map(|t| t.map(beside)).collect())?,
-    )?;
-    arrays.set_item(
-        "triangle_attributes",
-        table(py, attributes.into_iter().map(|value| [value]).collect())?,
-    )?;
-    arrays.set_item("edges", ends(&edges)?)?;
-    arrays.set_item("edge_markers", markers(&edges)?)?;
-    arrays.set_item("segments", ends(&segments)?)?;
-    arrays.set_item("segment_markers", markers(&segments)?)?;
+    for name in names {
+        let array = match name.as_str() {
+            "vertices" => table(py, take(&mut nodes.points)),
+            "vertex_attributes" => {
+                let shape = [count, nodes.attribute_count];
+                shaped(py, take(&mut nodes.attributes), shape)
+            }
+            "vertex_markers" => single(py, take(&mut nodes.markers)),
+            "triangles" => table(py, triangles.iter().map(|t| t.map(number)).collect()),
+            "neighbors" => table(py, neighbors.iter().map(|t| t.map(beside)).collect()),
+            "triangle_attributes" => single(py, take(&mut attributes)),
+            "edges" => ends(&edges),
+            "edge_markers" => markers(&edges),
+            "segments" => ends(&segments),
+            "segment_markers" => markers(&segments),
+            other => Err(errors::internal(&format!("no array is called {other}"))),
+        };
+        arrays.set_item(name, array?)?;
+    }
     Ok(arrays)
+}
+
+/// Returns an array of one column.
+fn single<T: Element>(py: Python<'_>, values: Vec<T>) -> PyResult<Bound<'_, PyAny>> {
+    let count = values.len();
+    shaped(py, values, [count, 1])
 }

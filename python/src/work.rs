@@ -3,7 +3,7 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::sync::mpsc::{RecvTimeoutError, sync_channel};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 use std::thread::{Builder, ThreadId, available_parallelism};
 use std::time::Duration;
@@ -154,7 +154,7 @@ pub(crate) fn run<T: Send, E: Send + Into<PyErr>>(
     call: &Call,
     work: impl FnOnce(&Context<'_>) -> Result<T, E> + Send,
 ) -> PyResult<T> {
-    run_around(py, call, |pool, context| pool.install(|| work(context)))
+    on_pool(py, &*pool(py, call.0)?, call, work)
 }
 
 /// Like [`run`], for work on so many points; `None` if nobody knows.
@@ -164,9 +164,22 @@ pub(crate) fn run_on<T: Send, E: Send + Into<PyErr>>(
     points: Option<usize>,
     work: impl FnOnce(&Context<'_>) -> Result<T, E> + Send,
 ) -> PyResult<T> {
-    run_around_on(py, call, points, |pool, context| {
-        pool.install(|| work(context))
-    })
+    match own_pool_for(points) {
+        Some(pool) => here(py, call, |context| pool.install(|| work(context))),
+        None => run(py, call, work),
+    }
+}
+
+/// Does work on so many points on the calling thread, if they are few; `None` if they are not.
+pub(crate) fn run_few<T: Send, E: Send + Into<PyErr>>(
+    py: Python<'_>,
+    call: &Call,
+    points: usize,
+    work: impl FnOnce(&Context<'_>) -> Result<T, E> + Send,
+) -> PyResult<Option<T>> {
+    let pool = own_pool_for(Some(points));
+    pool.map(|pool| here(py, call, |context| pool.install(|| work(context))))
+        .transpose()
 }
 
 /// Like [`run_around`], for work on so many points; `None` if nobody knows.
@@ -176,11 +189,16 @@ pub(crate) fn run_around_on<T: Send, E: Send + Into<PyErr>>(
     points: Option<usize>,
     work: impl FnOnce(&ThreadPool, &Context<'_>) -> Result<T, E> + Send,
 ) -> PyResult<T> {
-    let are_few = points.is_some_and(|points| points < FEW);
-    match are_few.then(own_pool).flatten() {
-        Some(pool) => here(py, pool, call, work),
+    match own_pool_for(points) {
+        Some(pool) => here(py, call, |context| work(pool, context)),
         None => run_around(py, call, work),
     }
+}
+
+/// Returns the pool whose only thread is the calling one, if there are few points.
+fn own_pool_for(points: Option<usize>) -> Option<&'static ThreadPool> {
+    let are_few = points.is_some_and(|points| points < FEW);
+    are_few.then(own_pool).flatten()
 }
 
 /// Returns the pool whose only thread is the calling one; `None` on all threads but the first that
@@ -198,17 +216,12 @@ fn own_pool() -> Option<&'static ThreadPool> {
 /// Does the work on the calling thread.
 fn here<T: Send, E: Send + Into<PyErr>>(
     py: Python<'_>,
-    pool: &ThreadPool,
     call: &Call,
-    work: impl FnOnce(&ThreadPool, &Context<'_>) -> Result<T, E> + Send,
+    work: impl FnOnce(&Context<'_>) -> Result<T, E> + Send,
 ) -> PyResult<T> {
-    let watch = Watch::default();
-    let context = Context {
-        monitor: &watch,
-        ..Context::default()
-    };
-    let outcome = py.detach(|| catch_unwind(AssertUnwindSafe(|| work(pool, &context))));
-    ended(py, call, &watch, outcome)
+    let running = Running::default();
+    let outcome = py.detach(|| running.outcome(work));
+    running.ended(py, call, Some(outcome), None)
 }
 
 /// Like [`run`], for work that takes a lock, and then uses the pool.
@@ -220,7 +233,8 @@ pub(crate) fn run_around<T: Send, E: Send + Into<PyErr>>(
     call: &Call,
     work: impl FnOnce(&ThreadPool, &Context<'_>) -> Result<T, E> + Send,
 ) -> PyResult<T> {
-    on_pool(py, &*pool(py, call.0)?, call, work)
+    let pool = pool(py, call.0)?;
+    on_thread(py, call, |context| work(&pool, context))
 }
 
 /// Like [`run`], for work that takes the lock of a job and keeps it: on threads that no other call
@@ -234,82 +248,123 @@ pub(crate) fn run_alone<T: Send, E: Send + Into<PyErr>>(
     work: impl FnOnce(&Context<'_>) -> Result<T, E> + Send,
 ) -> PyResult<T> {
     let Pool { pool, .. } = started(call.0.unwrap_or_else(cores))?;
-    on_pool(py, &pool, call, |pool, context| {
-        pool.install(|| work(context))
-    })
+    on_pool(py, &pool, call, work)
 }
 
-/// Does the work with a pool.
+/// Does the work on the threads of a pool.
 fn on_pool<T: Send, E: Send + Into<PyErr>>(
     py: Python<'_>,
     pool: &ThreadPool,
     call: &Call,
-    work: impl FnOnce(&ThreadPool, &Context<'_>) -> Result<T, E> + Send,
+    work: impl FnOnce(&Context<'_>) -> Result<T, E> + Send,
 ) -> PyResult<T> {
-    let Call(_, progress) = call;
-    let watch = Watch::default();
-    let cancel = AtomicBool::new(false);
-    let mut interruption: Option<PyErr> = None;
-    let outcome = py.detach(|| {
+    let running = &Running::default();
+    let (outcome, interruption) = py.detach(|| {
+        // Not `install`, in which the calling thread could not look for signals; and no thread is
+        // started that would.
+        pool.in_place_scope(|scope| {
+            let (sender, receiver) = sync_channel(1);
+            scope.spawn(move |_| {
+                // The receiver waits for as long as this is in scope.
+                let _ = sender.send(running.outcome(work));
+            });
+            running.wait(call, &receiver)
+        })
+    });
+    running.ended(py, call, outcome, interruption)
+}
+
+/// Does the work on a thread of its own.
+fn on_thread<T: Send, E: Send + Into<PyErr>>(
+    py: Python<'_>,
+    call: &Call,
+    work: impl FnOnce(&Context<'_>) -> Result<T, E> + Send,
+) -> PyResult<T> {
+    let running = &Running::default();
+    let waited = py.detach(|| {
         std::thread::scope(|scope| {
             let (sender, receiver) = sync_channel(1);
-            let (watch, cancel) = (&watch, &cancel);
             let worker = move || {
-                let context = Context {
-                    monitor: watch,
-                    cancel,
-                };
-                let outcome = catch_unwind(AssertUnwindSafe(|| work(pool, &context)));
-                // The receiver waits for as long as this is in scope.
-                let _ = sender.send(outcome);
+                let _ = sender.send(running.outcome(work));
             };
             Builder::new()
                 .name("breakline-call".to_owned())
                 .spawn_scoped(scope, worker)?;
-            loop {
-                match receiver.recv_timeout(POLL) {
-                    Ok(outcome) => return Ok(Some(outcome)),
-                    Err(RecvTimeoutError::Timeout) if interruption.is_none() => {
-                        if let Err(error) = Python::attach(|py| watch.poll(py, progress.as_ref())) {
-                            cancel.store(true, Ordering::Relaxed);
-                            interruption = Some(error);
-                        }
-                    }
-                    Err(RecvTimeoutError::Timeout) => {}
-                    Err(RecvTimeoutError::Disconnected) => return Ok(None),
-                }
-            }
+            Ok(running.wait(call, &receiver))
         })
     });
-    let outcome = outcome
+    let (outcome, interruption) = waited
         .map_err(|e: std::io::Error| errors::limit(&format!("a thread cannot be started: {e}")))?;
-    if let Some(interruption) = interruption {
-        if let Some(Ok(Err(canceled))) = outcome {
-            note_cure(py, &interruption, &canceled.into());
-        }
-        return Err(interruption);
-    }
-    match outcome {
-        Some(outcome) => ended(py, call, &watch, outcome),
-        None => Err(errors::internal(&"the work ended without a result")),
-    }
+    running.ended(py, call, outcome, interruption)
 }
 
-/// Returns the result of work that has ended, after its last stage and its warnings.
-fn ended<T, E: Into<PyErr>>(
-    py: Python<'_>,
-    Call(_, progress): &Call,
-    watch: &Watch,
-    outcome: std::thread::Result<Result<T, E>>,
-) -> PyResult<T> {
-    match outcome {
-        Ok(Ok(done)) => {
-            watch.report(py, progress.as_ref())?;
-            locked(&watch.warnings).issue(py)?;
-            Ok(done)
+/// The outcome of work, or its panic.
+type Outcome<T, E> = std::thread::Result<Result<T, E>>;
+
+/// A call in progress: what its work reports, and the flag that cancels it.
+#[derive(Default)]
+struct Running {
+    watch: Watch,
+    cancel: AtomicBool,
+}
+
+impl Running {
+    /// Does the work.
+    fn outcome<T, E>(&self, work: impl FnOnce(&Context<'_>) -> Result<T, E>) -> Outcome<T, E> {
+        let context = Context {
+            monitor: &self.watch,
+            cancel: &self.cancel,
+        };
+        catch_unwind(AssertUnwindSafe(|| work(&context)))
+    }
+
+    /// Returns the outcome that another thread sends, if it sends one, and the exception that has
+    /// canceled the work. Meanwhile handles signals and reports progress.
+    fn wait<T, E>(
+        &self,
+        Call(_, progress): &Call,
+        receiver: &Receiver<Outcome<T, E>>,
+    ) -> (Option<Outcome<T, E>>, Option<PyErr>) {
+        let mut interruption = None;
+        loop {
+            match receiver.recv_timeout(POLL) {
+                Ok(outcome) => return (Some(outcome), interruption),
+                Err(RecvTimeoutError::Timeout) if interruption.is_none() => {
+                    let polled = Python::attach(|py| self.watch.poll(py, progress.as_ref()));
+                    interruption = polled.err();
+                    self.cancel.store(interruption.is_some(), Ordering::Relaxed);
+                }
+                Err(RecvTimeoutError::Timeout) => {}
+                Err(RecvTimeoutError::Disconnected) => return (None, interruption),
+            }
         }
-        Ok(Err(error)) => Err(error.into()),
-        Err(panic) => Err(errors::internal(panic.as_ref())),
+    }
+
+    /// Returns the result of work that has ended, after its last stage and its warnings; the
+    /// exception that has canceled it.
+    fn ended<T, E: Into<PyErr>>(
+        &self,
+        py: Python<'_>,
+        Call(_, progress): &Call,
+        outcome: Option<Outcome<T, E>>,
+        interruption: Option<PyErr>,
+    ) -> PyResult<T> {
+        if let Some(interruption) = interruption {
+            if let Some(Ok(Err(canceled))) = outcome {
+                note_cure(py, &interruption, &canceled.into());
+            }
+            return Err(interruption);
+        }
+        match outcome {
+            Some(Ok(Ok(done))) => {
+                self.watch.report(py, progress.as_ref())?;
+                locked(&self.watch.warnings).issue(py)?;
+                Ok(done)
+            }
+            Some(Ok(Err(error))) => Err(error.into()),
+            Some(Err(panic)) => Err(errors::internal(panic.as_ref())),
+            None => Err(errors::internal(&"the work ended without a result")),
+        }
     }
 }
 

@@ -211,3 +211,18 @@ def test_arrays_of_any_layout():
     strided[::2, ::2] = points
     for same in (read_only, strided[::2, ::2], np.asfortranarray(points), points.tolist(), points.astype(">f8")):
         assert (ours.triangulate({"vertices": same})["triangles"] == expected).all()
+
+
+def test_few_points_may_need_many_vertices():
+    # More than the calling thread tries; what it says meanwhile is said once.
+    strip = {
+        "vertices": [[0, 0], [1, 0], [1, 4e-5], [0, 4e-5]],
+        "segments": [[0, 1], [1, 2], [2, 3], [3, 0]],
+        "holes": [[2, 2]],
+    }
+    with pytest.warns(BreaklineWarning) as said:
+        mesh = ours.triangulate(strip, "pq30")
+    assert len(mesh["vertices"]) > 20_000 and angles(mesh).min() > 30 - 1e-9
+    assert [str(warning.message).count("hole") for warning in said] == [1]
+    limited = ours.triangulate({**strip, "holes": []}, "pq30S100000")
+    assert np.array_equal(limited["triangles"], mesh["triangles"])

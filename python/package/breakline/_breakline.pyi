@@ -169,5 +169,5 @@ class CubicValues:
     def at(self, positions: NDArray[np.float64], call: _Call) -> NDArray[np.float64]: ...
 
 def triangulate_arrays(
-    graph: dict[str, NDArray[Any]], switches: dict[str, Any], call: _Call
+    graph: dict[str, NDArray[Any]], switches: dict[str, Any], names: list[str], call: _Call
 ) -> tuple[dict[str, NDArray[Any]], int]: ...

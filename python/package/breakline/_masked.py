@@ -14,7 +14,7 @@ def as_array(values: Any) -> np.ndarray:
 
     So are missing values of columns of pandas, pyarrow and polars.
     """
-    if isinstance(values, np.ma.MaskedArray):
+    if type(values) is np.ndarray or isinstance(values, np.ma.MaskedArray):
         return values
     if hasattr(values, "dtype") and hasattr(values.dtype, "na_value"):
         return _of_pandas(values)
