@@ -134,6 +134,18 @@ fn a_file_that_has_changed_is_read_again_and_no_other() {
     assert!(bytes(folder.path().join("dem.tif")) == whole);
     // Nothing has changed.
     assert_eq!(update(&folder, || ()), BTreeSet::new());
+    // Another file: what is kept for others has it, too.
+    write_square(&square(&folder, [6, 6]), [6, 6], 200, 15);
+    let words = "dem in/*.xyz --tiles auto -o dem.tif --job j --update";
+    run(&folder, words).works(&["7750 read"]);
+    run(&folder, "job run j").works(&["dem.tif is written"]);
+    let command = folder.path().join("j/command.json");
+    let text = String::from_utf8(bytes(&command)).unwrap();
+    assert!(text.contains("15_15.xyz"), "{text}");
+    // As an interruption leaves it.
+    std::fs::rename(&command, folder.path().join("j/command.next.json")).unwrap();
+    std::fs::write(&command, "{}").unwrap();
+    run(&folder, "job run j --update").works(&["dem.tif is written"]);
     run(&folder, "job run j --update").works(&["dem.tif is written"]);
     // An output that is not as it was written is somebody's.
     write_square(&file, [3, 1], 300, 8);

@@ -7,7 +7,7 @@ use serde::ser::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::Value;
 
-use super::folder::{COMMAND, StoredPlan};
+use super::folder::{COMMAND, NEXT_COMMAND, StoredPlan};
 use super::plan;
 use super::request::{self, Options};
 use super::tile_options::TileOptions;
@@ -64,11 +64,11 @@ impl JobCommand {
         };
         let path = folder.join(COMMAND);
         let text = std::fs::read_to_string(&path).map_err(|e| Error::from(e).in_file(&path))?;
-        let command = if u64::from(checksum(text.as_bytes())) == sum {
-            serde_json::from_str(&text).ok()
-        } else {
-            None
-        };
+        let of_job = |text: &String| u64::from(checksum(text.as_bytes())) == sum;
+        // An update that was interrupted has not renamed it.
+        let next = || std::fs::read_to_string(folder.join(NEXT_COMMAND)).ok();
+        let text = Some(text).filter(of_job).or_else(|| next().filter(of_job));
+        let command = text.and_then(|text| serde_json::from_str(&text).ok());
         command.map(Some).ok_or_else(|| {
             Error::format("the command of the job is damaged, or that of another one")
                 .in_file(path)

@@ -19,6 +19,9 @@ const PLAN: &str = "plan.json";
 /// The file that has what the job was planned for, if that was kept; it is removed with the job.
 pub(super) const COMMAND: &str = "command.json";
 
+/// The file that has it once the inputs have changed, until the plan is there that goes with it.
+pub(super) const NEXT_COMMAND: &str = "command.next.json";
+
 /// The file that says which files were written as the output.
 pub(super) const WRITTEN: &str = "output.json";
 
@@ -149,19 +152,6 @@ pub(super) fn replace(path: &Path, text: &str) -> Result<()> {
     file.persist(path).map(drop).map_err(|e| named(e.error))
 }
 
-/// Returns the error for a job that others can do by what is kept with it, which names other
-/// inputs.
-#[cold]
-pub(super) fn other_inputs(folder: &Path) -> Error {
-    Error::usage("the job in this folder keeps the command that planned it, which has other inputs")
-        .in_file(folder)
-        .cure(wording![
-            "plan it again: ",
-            Command::JobClean.on(folder.display().to_string()),
-            " removes it"
-        ])
-}
-
 #[cold]
 fn there_is_a_job(folder: &Path) -> Error {
     Error::usage("there is a job in this folder already")
@@ -185,7 +175,7 @@ pub(crate) fn require_no_job(folder: &Path) -> Result<()> {
     if StoredPlan::read(folder)?.is_some() {
         return Err(there_is_a_job(folder));
     }
-    for name in [COMMAND, WRITTEN] {
+    for name in [COMMAND, NEXT_COMMAND, WRITTEN] {
         let path = folder.join(name);
         if path.exists() && !is_note(&path) {
             return Err(Error::usage("this was not written by a job")
@@ -303,7 +293,12 @@ pub(super) fn remove_files(folder: &Path, stored: &StoredPlan, _lock: &JobLock) 
     }
     // Of an output in the folder itself.
     remove_abandoned(&folder.join(PLAN), &mark(stored.id))?;
-    for (name, is_own) in [(COMMAND, stored.command.is_some()), (WRITTEN, false)] {
+    let notes = [
+        (COMMAND, stored.command.is_some()),
+        (NEXT_COMMAND, false),
+        (WRITTEN, false),
+    ];
+    for (name, is_own) in notes {
         let path = folder.join(name);
         // The plan says that there was a command, which may be damaged.
         if is_own || is_note(&path) {

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::json;
 
-use super::folder::{self, StoredPlan, other_inputs};
+use super::folder::{self, COMMAND, NEXT_COMMAND, StoredPlan};
 use super::inputs::{Inputs, Tiling, most_points};
 use super::lock::JobLock;
 use super::paths::{task_of, task_path, tasks_in};
@@ -18,10 +18,11 @@ use super::plan::Plan;
 use super::planned_file::PlannedFile;
 use super::task_file::{name_in, unfinished_in};
 use super::tile_options::TileOptions;
-use super::{Job, command, new_id, other_version, request, tiled};
+use super::{Job, JobCommand, command, new_id, other_version, request, tiled};
 use crate::data::Frame;
 use crate::error::{Error, Result};
 use crate::run::context::{Context, Journal};
+use crate::run::sources::checksum::checksum;
 use crate::run::sources::point_files::BadFiles;
 use crate::run::verbs::WriteRequest;
 use crate::terrain::Canvas;
@@ -36,6 +37,8 @@ const GROWTH: f64 = 2.0;
 pub struct JobUpdate {
     job: Job,
     before: StoredPlan,
+    /// What is kept with the job for others, if that changes with the inputs.
+    command: Option<String>,
     /// True if the tiles are those of before, and so most tasks may be.
     keeps_tiles: bool,
 }
@@ -62,9 +65,6 @@ impl Job {
             None => wanted.clone(),
         };
         require_same_options(&asked, &old, folder, options)?;
-        if stored.command.is_some() && old.request != request::asked(&asked, options)? {
-            return Err(other_inputs(folder));
-        }
         let (points, systems) = tiled(&asked)?;
         let options = TileOptions {
             bad: match old.skips_bad {
@@ -79,6 +79,13 @@ impl Job {
         let keeps_tiles = kept.is_some();
         let tiling = kept.map_or_else(|| inputs.tiled(&journal.context), Ok)?;
         let (plan, known) = inputs.planned(tiling, &journal)?;
+        let command = match JobCommand::read(folder, &stored)? {
+            Some(command) if old.request != plan.request => {
+                let request = asked.clone();
+                Some(JobCommand { request, ..command }.to_text(&plan.request)?)
+            }
+            _ => None,
+        };
         let job = Job {
             id: if keeps_tiles { stored.id } else { new_id() },
             known: known.into(),
@@ -88,6 +95,7 @@ impl Job {
         Ok(Some(JobUpdate {
             job,
             before: stored,
+            command,
             keeps_tiles,
         }))
     }
@@ -156,7 +164,10 @@ impl JobUpdate {
     /// written, or the run is canceled.
     pub fn put(self, context: &Context) -> Result<(Job, JobLock)> {
         let JobUpdate {
-            mut job, before, ..
+            mut job,
+            before,
+            command,
+            ..
         } = self;
         let last = before.tasks as usize;
         let lock = JobLock::whole(&job.folder, last, context)?;
@@ -166,6 +177,12 @@ impl JobUpdate {
         // Files of tasks that went may be there until they are removed.
         plan["numbers"] = json!(before.numbers.max(job.task_count() as u64));
         plan["command"] = before.plan["command"].clone();
+        // Whichever plan is there finds the command that goes with it.
+        let next = job.folder.join(NEXT_COMMAND);
+        if let Some(command) = &command {
+            folder::replace(&next, command)?;
+            plan["command"] = json!(checksum(command.as_bytes()));
+        }
         plan["id"] = json!(job.id);
         let unchanged = |name: &str| plan[name] == before.plan[name];
         let is_same = plan
@@ -175,6 +192,10 @@ impl JobUpdate {
             true => before.sum,
             false => folder::replace_plan(&job.folder, &plan.to_string())?,
         };
+        if command.is_some() {
+            let named = |e: std::io::Error| Error::from(e).in_file(&next);
+            std::fs::rename(&next, job.folder.join(COMMAND)).map_err(named)?;
+        }
         job.rename_files(before.id)?;
         if job.task_count() == last {
             return Ok((job, lock));
