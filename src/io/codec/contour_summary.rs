@@ -16,13 +16,13 @@ pub struct ContourSummary {
 }
 
 impl ContourSummary {
-    /// Adds a line to the counts.
-    pub(crate) fn add(&mut self, line: &ContourLine) {
+    /// Adds a line to the counts, and returns its extent.
+    pub(crate) fn add(&mut self, line: &ContourLine) -> Bounds {
         self.lines += 1;
         self.vertices += line.points.len();
         self.closed += usize::from(line.is_closed());
-        line.points
-            .iter()
-            .for_each(|&[x, y]| self.bounds.add([x, y, line.level]));
+        let bounds = line.bounds();
+        self.bounds.merge(&bounds);
+        bounds
     }
 }

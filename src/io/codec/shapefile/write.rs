@@ -69,14 +69,14 @@ pub fn write_contours<'a>(
         if line.points.len() < 2 {
             continue;
         }
-        summary.add(&line);
+        let bounds = summary.add(&line);
         let vertices = line.points.iter().map(|&[x, y]| [x, y, line.level]);
         record.clear();
-        poly(&mut record, 13, &[line.points.len()], vertices.clone());
+        poly(&mut record, 13, &[line.points.len()], vertices, &bounds);
         if elevation.0 != line.level {
             elevation = (line.level, real(line.level));
         }
-        set.write(&record, vertices, &[&id(summary.lines), &elevation.1])?;
+        set.write(&record, &bounds, &[&id(summary.lines), &elevation.1])?;
     }
     set.finish(target, crs)?;
     Ok(summary)
@@ -115,8 +115,9 @@ pub fn write_layer<'a>(
     let mut set = FileSet::create(target, code, &fields)?;
     let mut record = Vec::new();
     for (i, shape) in layer.shapes.iter().enumerate() {
+        let bounds = bounds(shape.vertices().copied());
         record.clear();
-        content(&mut record, code, shape);
+        content(&mut record, code, shape, &bounds);
         let cells: Vec<String> = match columns {
             [] => vec![id(i + 1)],
             _ => columns
@@ -124,7 +125,7 @@ pub fn write_layer<'a>(
                 .map(|column| real(column.values[i]))
                 .collect(),
         };
-        set.write(&record, shape.vertices().copied(), &cells)?;
+        set.write(&record, &bounds, &cells)?;
     }
     set.finish(target, layer.crs.as_ref())
 }
@@ -175,18 +176,18 @@ fn type_code(shapes: &[Shape]) -> Result<i32> {
     Ok(if heights { flat + 10 } else { flat })
 }
 
-/// Appends the content of one record.
-fn content(out: &mut Vec<u8>, code: i32, shape: &Shape) {
+/// Appends the content of one record; `bounds` are those of its vertices.
+fn content(out: &mut Vec<u8>, code: i32, shape: &Shape, bounds: &Bounds) {
     match shape {
         Shape::Lines(parts) | Shape::Polygon(parts) => {
             let lengths: Vec<usize> = parts.iter().map(Vec::len).collect();
-            poly(out, code, &lengths, parts.iter().flatten().copied());
+            poly(out, code, &lengths, parts.iter().flatten().copied(), bounds);
         }
         Shape::Points(points) if code % 10 == 8 => {
             int(out, code);
-            put_box(out, points.iter().copied());
+            put_box(out, bounds);
             int(out, points.len() as i32);
-            vertices(out, code, points.iter().copied());
+            vertices(out, code, points.len(), points.iter().copied(), bounds);
         }
         Shape::Points(points) => {
             int(out, code);
@@ -206,31 +207,50 @@ fn poly(
     code: i32,
     lengths: &[usize],
     points: impl Iterator<Item = [f64; 3]> + Clone,
+    bounds: &Bounds,
 ) {
+    let count = lengths.iter().sum::<usize>();
     int(out, code);
-    put_box(out, points.clone());
+    put_box(out, bounds);
     int(out, lengths.len() as i32);
-    int(out, lengths.iter().sum::<usize>() as i32);
+    int(out, count as i32);
     let mut start = 0;
     for length in lengths {
         int(out, start);
         start += *length as i32;
     }
-    vertices(out, code, points);
+    vertices(out, code, count, points, bounds);
 }
 
-/// Appends all x and y and, for Z types, the range of z and every z. Measures are optional and left
-/// out.
-fn vertices(out: &mut Vec<u8>, code: i32, points: impl Iterator<Item = [f64; 3]> + Clone) {
-    points.clone().for_each(|[x, y, _]| {
-        double(out, x);
-        double(out, y);
-    });
-    if code > 10 {
-        let bounds = bounds(points.clone());
-        range(out, bounds.min[2], bounds.max[2]);
-        points.for_each(|p| double(out, if p[2].is_nan() { NO_HEIGHT } else { p[2] }));
+/// Appends all x and y of some points and, for Z types, the range of z and every z. Measures are
+/// optional and left out.
+fn vertices(
+    out: &mut Vec<u8>,
+    code: i32,
+    count: usize,
+    points: impl Iterator<Item = [f64; 3]> + Clone,
+    bounds: &Bounds,
+) {
+    let plan = grown(out, 16 * count).chunks_exact_mut(16);
+    for (bytes, [x, y, _]) in plan.zip(points.clone()) {
+        bytes[..8].copy_from_slice(&x.to_le_bytes());
+        bytes[8..].copy_from_slice(&y.to_le_bytes());
     }
+    if code > 10 {
+        range(out, bounds.min[2], bounds.max[2]);
+        let heights = grown(out, 8 * count).chunks_exact_mut(8);
+        for (bytes, [.., z]) in heights.zip(points) {
+            let z = if z.is_nan() { NO_HEIGHT } else { z };
+            bytes.copy_from_slice(&z.to_le_bytes());
+        }
+    }
+}
+
+/// Appends zeros and returns them.
+fn grown(out: &mut Vec<u8>, bytes: usize) -> &mut [u8] {
+    let start = out.len();
+    out.resize(start + bytes, 0);
+    &mut out[start..]
 }
 
 fn bounds(points: impl Iterator<Item = [f64; 3]>) -> Bounds {
@@ -240,8 +260,7 @@ fn bounds(points: impl Iterator<Item = [f64; 3]>) -> Bounds {
     })
 }
 
-fn put_box(out: &mut Vec<u8>, points: impl Iterator<Item = [f64; 3]>) {
-    let Bounds { min, max } = bounds(points);
+fn put_box(out: &mut Vec<u8>, Bounds { min, max }: &Bounds) {
     for value in [min[0], min[1], max[0], max[1]] {
         double(out, if value.is_finite() { value } else { 0.0 });
     }
@@ -340,13 +359,9 @@ impl FileSet {
         Ok(set)
     }
 
-    /// Adds a record; `points` are its vertices, `cells` its attributes in their full width.
-    fn write(
-        &mut self,
-        content: &[u8],
-        points: impl Iterator<Item = [f64; 3]>,
-        cells: &[impl AsRef<str>],
-    ) -> Result<()> {
+    /// Adds a record; `bounds` are those of its vertices, `cells` its attributes in their full
+    /// width.
+    fn write(&mut self, content: &[u8], bounds: &Bounds, cells: &[impl AsRef<str>]) -> Result<()> {
         let row: usize = 1 + cells.iter().map(|cell| cell.as_ref().len()).sum::<usize>();
         let shp_bytes = self.shp_bytes + 8 + content.len() as u64;
         let dbf_bytes = self.dbf_bytes + row as u64;
@@ -361,15 +376,15 @@ impl FileSet {
             }
         }
         self.records += 1;
-        self.bounds.merge(&bounds(points));
+        self.bounds.merge(bounds);
 
         let words = |bytes: u64| ((bytes / 2) as u32).to_be_bytes();
         self.scratch.clear();
         self.scratch.extend(self.records.to_be_bytes());
         self.scratch.extend(words(content.len() as u64));
-        self.scratch.extend(content);
         self.shp
             .write_all(&self.scratch)
+            .and_then(|()| self.shp.write_all(content))
             .map_err(|e| failed(e, self.shp.target()))?;
 
         self.scratch.clear();
@@ -624,9 +639,9 @@ mod tests {
         let mut set =
             FileSet::create((&target).into(), 13, &[field("ID", ID_WIDTH, 0).unwrap()]).unwrap();
         set.shp_bytes = MAX_BYTES - 100;
-        assert!(set.write(&[0; 40], std::iter::empty(), &[id(1)]).is_ok());
+        assert!(set.write(&[0; 40], &Bounds::default(), &[id(1)]).is_ok());
         let error = set
-            .write(&[0; 60], std::iter::empty(), &[id(2)])
+            .write(&[0; 60], &Bounds::default(), &[id(2)])
             .unwrap_err();
         assert_eq!(error.kind(), crate::error::Kind::Limit);
         assert!(
@@ -637,7 +652,7 @@ mod tests {
         );
         set.dbf_bytes = MAX_BYTES;
         assert!(
-            set.write(&[0; 4], std::iter::empty(), &[id(2)])
+            set.write(&[0; 4], &Bounds::default(), &[id(2)])
                 .unwrap_err()
                 .to_string()
                 .contains("x.dbf")
