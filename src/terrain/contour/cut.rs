@@ -43,6 +43,32 @@ pub(super) enum Node {
     Corner(usize),
 }
 
+/// An edge with one end above and one below the level, as seen from the face that a line leaves
+/// through it.
+pub(super) struct PassedEdge {
+    pub(super) face: u32,
+    /// The corner of the face opposite the edge.
+    opposite: usize,
+    /// The next corners, counter-clockwise, and their positions.
+    pub(super) vertices: [u32; 2],
+    at: [[f64; 3]; 2],
+}
+
+impl PassedEdge {
+    /// Returns true if the edge has an end at a point in plan.
+    #[inline]
+    pub(super) fn ends_at(&self, point: [f64; 2]) -> bool {
+        self.at.iter().any(|end| end[..2] == point)
+    }
+}
+
+/// What a line meets in the face beyond an edge.
+pub(super) enum Beyond {
+    Edge(PassedEdge),
+    /// The corner opposite the edge, of this face, is on the level.
+    Corner(u32),
+}
+
 /// An arc that begins or ends at a vertex, as seen from the vertex.
 pub(super) struct Ray {
     pub(super) face: Face,
@@ -76,13 +102,21 @@ impl<'a, S: Surface + ?Sized> LevelCut<'a, S> {
         at[2].partial_cmp(&self.level).unwrap_or(Less)
     }
 
+    /// The face across the edge opposite corner `i`, which has these ends: its number, its vertices
+    /// and its corner opposite the edge.
+    #[inline]
+    fn beyond(&self, face: u32, i: usize, [a, b]: [u32; 2]) -> Option<(u32, [u32; 3], usize)> {
+        let id = self.surface.neighbor(face, i)?;
+        let vertices = self.surface.face(id)?;
+        let j = (0..3).find(|&j| vertices[(j + 1) % 3] == b && vertices[(j + 2) % 3] == a)?;
+        Some((id, vertices, j))
+    }
+
     /// The face across the edge opposite corner `i`, and its corner opposite the edge.
     pub(super) fn across(&self, face: &Face, i: usize) -> Option<(Face, usize)> {
-        let id = self.surface.neighbor(face.id, i)?;
-        let vertices = self.surface.face(id)?;
         let edge = [(i + 2) % 3, (i + 1) % 3];
-        let j = (0..3)
-            .find(|&j| [1, 2].map(|k| vertices[(j + k) % 3]) == edge.map(|k| face.vertices[k]))?;
+        let [b, a] = edge.map(|k| face.vertices[k]);
+        let (id, vertices, j) = self.beyond(face.id, i, [a, b])?;
         let new = self.surface.position(vertices[j]);
         let mut other = Face {
             id,
@@ -103,6 +137,41 @@ impl<'a, S: Surface + ?Sized> LevelCut<'a, S> {
         let i = (0..3).find(|&i| face.has_level_edge(i))?;
         let (high, j) = self.across(&face, i)?;
         (high.side[j] != Less).then_some(ContourArc::Along(high.id, j as u8))
+    }
+
+    /// What a line meets that passes an edge.
+    #[inline]
+    pub(super) fn pass(&self, edge: &PassedEdge, direction: Direction) -> Option<Beyond> {
+        let (id, vertices, j) = self.beyond(edge.face, edge.opposite, edge.vertices)?;
+        let new = self.surface.position(vertices[j]);
+        let side = self.side(new);
+        if side == Equal {
+            return Some(Beyond::Corner(id));
+        }
+        // It goes on between the new corner and the end on the other side of the level. Forward,
+        // the first end is above the level.
+        let ([first, last], [at_first, at_last]) = (edge.vertices, edge.at);
+        let next = match (side == Greater) == (direction == Direction::Forward) {
+            true => PassedEdge {
+                face: id,
+                opposite: (j + 2) % 3,
+                vertices: [vertices[j], last],
+                at: [new, at_last],
+            },
+            false => PassedEdge {
+                face: id,
+                opposite: (j + 1) % 3,
+                vertices: [first, vertices[j]],
+                at: [at_first, new],
+            },
+        };
+        Some(Beyond::Edge(next))
+    }
+
+    /// The point at which a line passes an edge.
+    #[inline]
+    pub(super) fn point_on(&self, edge: &PassedEdge) -> [f64; 2] {
+        crossing(edge.at[0], edge.at[1], self.level)
     }
 
     /// The face on the high side of the edge opposite corner `i`, if the edge is an arc.
@@ -196,11 +265,15 @@ impl Face {
         }
     }
 
-    /// Returns true if the edge opposite corner `i` has an end at a point in plan.
-    pub(super) fn ends_at(&self, i: usize, point: [f64; 2]) -> bool {
-        [1, 2]
-            .into_iter()
-            .any(|k| self.at[(i + k) % 3][..2] == point)
+    /// The edge opposite corner `i`, as seen from the face.
+    pub(super) fn edge(&self, i: usize) -> PassedEdge {
+        let ends = [(i + 1) % 3, (i + 2) % 3];
+        PassedEdge {
+            face: self.id,
+            opposite: i,
+            vertices: ends.map(|k| self.vertices[k]),
+            at: ends.map(|k| self.at[k]),
+        }
     }
 
     /// The arc across the face that begins or ends at a corner on the level.
@@ -277,9 +350,13 @@ fn crossing(a: [f64; 3], b: [f64; 3], level: f64) -> [f64; 2] {
     let (a, b) = if a <= b { (a, b) } else { (b, a) };
     // Differences of halves cannot overflow; otherwise halving does not change the result.
     let t = (0.5 * level - 0.5 * a[2]) / (0.5 * b[2] - 0.5 * a[2]);
+    // `PERF:` half the instructions of `f64::min`. If `t` is not a number, `low` remains.
+    let lower = |a: f64, b: f64| if a < b { a } else { b };
+    let higher = |a: f64, b: f64| if a > b { a } else { b };
     let between = |a: f64, b: f64| {
         let value = 2.0 * (0.5 * a + t * (0.5 * b - 0.5 * a));
-        unsigned_zero(value.max(a.min(b)).min(a.max(b)))
+        let (low, high) = (lower(a, b), higher(a, b));
+        unsigned_zero(lower(higher(value, low), high))
     };
     [between(a[0], b[0]), between(a[1], b[1])]
 }

@@ -1,4 +1,4 @@
-use super::cut::{ContourArc, Direction, Face, LevelCut, Node};
+use super::cut::{Beyond, ContourArc, Direction, Face, LevelCut, Node, PassedEdge};
 use super::find::LevelArcs;
 use super::index::LevelIndex;
 use crate::data::Surface;
@@ -165,45 +165,84 @@ impl<S: Surface + ?Sized> Tracer<'_, '_, S> {
             let node = face.node(arc, direction);
             let point = self.cut.point(&face, node);
             points.push(point);
-            let next = match node {
+            let i = match node {
+                Node::Corner(i) => i,
                 Node::Edge(i) => {
-                    self.touches_vertices |= face.ends_at(i, point);
-                    self.cut
-                        .across(&face, i)
-                        .map(|(next, _)| (next, ContourArc::Across(next.id)))
+                    let edge = face.edge(i);
+                    self.touches_vertices |= edge.ends_at(point);
+                    match self.pass_edges(edge, seed, direction, points) {
+                        Passage::Corner(next) => {
+                            (face, arc) = (next, ContourArc::Across(next.id));
+                            continue;
+                        }
+                        Passage::End(end) => return end,
+                    }
                 }
-                Node::Corner(i) => self
-                    .cut
-                    .continuation(&face, i, direction)
-                    .map(|ray| (ray.face, ray.arc)),
             };
-            match next {
-                Some((next, next_arc)) if self.done.insert(next_arc) => {
-                    (face, arc) = (next, next_arc)
-                }
-                Some((_, next_arc)) if next_arc == seed => return None,
+            match self.cut.continuation(&face, i, direction) {
+                Some(ray) if self.done.insert(ray.arc) => (face, arc) = (ray.face, ray.arc),
+                Some(ray) if ray.arc == seed => return None,
                 // `Some` occurs only if the links between faces contradict each other.
-                Some(_) | None => return Some(face.loose_end(arc, node)),
+                Some(_) | None => return Some(face.loose_end(arc, i)),
+            }
+        }
+    }
+
+    /// Follows arcs beyond an edge, from edge to edge.
+    ///
+    /// `PERF:` most arcs are followed here, with one corner of each face.
+    fn pass_edges(
+        &mut self,
+        mut edge: PassedEdge,
+        seed: ContourArc,
+        direction: Direction,
+        points: &mut Vec<[f64; 2]>,
+    ) -> Passage {
+        loop {
+            let loose = LooseEnd::Edge(edge.vertices);
+            let Some(beyond) = self.cut.pass(&edge, direction) else {
+                return Passage::End(Some(loose));
+            };
+            let (Beyond::Edge(PassedEdge { face, .. }) | Beyond::Corner(face)) = beyond;
+            let arc = ContourArc::Across(face);
+            if !self.done.insert(arc) {
+                // Not the seed only if the links between faces contradict each other.
+                return Passage::End((arc != seed).then_some(loose));
+            }
+            match beyond {
+                Beyond::Edge(next) => {
+                    let point = self.cut.point_on(&next);
+                    self.touches_vertices |= next.ends_at(point);
+                    points.push(point);
+                    edge = next;
+                }
+                Beyond::Corner(face) => {
+                    let face = self.cut.face(face);
+                    return face.map_or(Passage::End(Some(loose)), Passage::Corner);
+                }
             }
         }
     }
 }
 
+/// How far arcs lead from edge to edge.
+enum Passage {
+    /// To the corner of a face, on the level.
+    Corner(Face),
+    /// To the edge of the data; `None` at the seed.
+    End(Option<LooseEnd>),
+}
+
 impl Face {
-    /// Returns the loose end of an arc at a node, where the faces end.
-    fn loose_end(&self, arc: ContourArc, node: Node) -> LooseEnd {
-        match (node, arc) {
-            (Node::Edge(i), _) => LooseEnd::Edge([1, 2].map(|k| self.vertices[(i + k) % 3])),
-            (Node::Corner(i), arc) => {
-                let toward = match arc {
-                    ContourArc::Along(_, opposite) => 3 - i - usize::from(opposite),
-                    ContourArc::Across(_) => (i + 1) % 3,
-                };
-                LooseEnd::Vertex {
-                    vertex: self.vertices[i],
-                    toward: self.vertices[toward],
-                }
-            }
+    /// Returns the loose end of an arc at corner `i`, where the faces end.
+    fn loose_end(&self, arc: ContourArc, i: usize) -> LooseEnd {
+        let toward = match arc {
+            ContourArc::Along(_, opposite) => 3 - i - usize::from(opposite),
+            ContourArc::Across(_) => (i + 1) % 3,
+        };
+        LooseEnd::Vertex {
+            vertex: self.vertices[i],
+            toward: self.vertices[toward],
         }
     }
 }
