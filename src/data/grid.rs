@@ -39,10 +39,13 @@ impl Grid {
     pub fn extent(&self) -> Bounds {
         let mut bounds = self.frame.extent();
         let [x, y, _] = bounds.min;
-        self.values
-            .iter()
-            .filter(|z| !z.is_nan())
-            .for_each(|&z| bounds.add([x, y, z]));
+        let mut add = |z| bounds.add([x, y, z]);
+        for some in self.values.chunks(1 << 10) {
+            match range_of_finite(some) {
+                Some(ends) => ends.into_iter().for_each(&mut add),
+                None => some.iter().filter(|z| !z.is_nan()).for_each(|&z| add(z)),
+            }
+        }
         bounds
     }
 
@@ -175,6 +178,38 @@ impl BlockSource for Grid {
         }
         Ok(())
     }
+}
+
+/// Returns the lowest and the highest of some heights; `None` if one of them is missing.
+///
+/// `PERF:` compiled to vector instructions.
+pub(crate) fn range_of_finite(heights: &[f64]) -> Option<[f64; 2]> {
+    const LANES: usize = 8;
+    let (mut low, mut high) = ([f64::INFINITY; LANES], [f64::NEG_INFINITY; LANES]);
+    // Stays 0 while all are finite.
+    let mut nothing = [0.0; LANES];
+    let mut add = |lane: usize, height: f64| {
+        low[lane] = if height < low[lane] {
+            height
+        } else {
+            low[lane]
+        };
+        high[lane] = if height > high[lane] {
+            height
+        } else {
+            high[lane]
+        };
+        nothing[lane] += 0.0 * height;
+    };
+    let (chunks, rest) = heights.as_chunks::<LANES>();
+    for chunk in chunks {
+        (0..LANES).for_each(|lane| add(lane, chunk[lane]));
+    }
+    rest.iter().for_each(|&height| add(0, height));
+    let is_complete = nothing.iter().sum::<f64>() == 0.0;
+    let lowest = low.into_iter().fold(f64::INFINITY, f64::min);
+    let highest = high.into_iter().fold(f64::NEG_INFINITY, f64::max);
+    is_complete.then_some([lowest, highest])
 }
 
 #[cfg(test)]

@@ -187,6 +187,15 @@ pub trait Surface: Sync {
         false
     }
 
+    /// A lower bound of the width of each face, in steps of an `f64` at the largest coordinate of
+    /// the surface in plan; 0 if none is known. The width is twice the area, divided by the sum of
+    /// the sides of the box around the face.
+    ///
+    /// Where it is large, callers can skip a search for faces that are thinner than rounding.
+    fn least_width(&self) -> f64 {
+        0.0
+    }
+
     /// The coordinate system, if known.
     fn crs(&self) -> Option<&Crs>;
 

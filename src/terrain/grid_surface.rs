@@ -1,7 +1,7 @@
 use std::ops::Range;
 
 use crate::crs::Crs;
-use crate::data::{EdgeKind, Grid, Surface};
+use crate::data::{EdgeKind, Frame, Grid, Surface, range_of_finite};
 use crate::error::{Error, Result};
 
 /// A surface over the cell centers of a raster, for contours of a DEM.
@@ -39,7 +39,15 @@ pub struct GridSurface<'a> {
     quads: [usize; 2],
     /// The corners of a quad, counter-clockwise in plan, as offsets of column and row.
     corners: [[usize; 2]; 4],
+    /// Division by the numbers of cells and of quads in a row.
+    by_row_of_cells: Divisor,
+    by_row_of_quads: Divisor,
+    /// True if no cell is missing.
+    is_complete: bool,
 }
+
+/// The number of quads that are compared with levels together.
+const BLOCK: usize = 64;
 
 /// Which corners of a quad have values.
 enum Quad {
@@ -111,6 +119,9 @@ impl<'a> GridSurface<'a> {
             first_row: 0,
             quads,
             corners,
+            by_row_of_cells: Divisor::new(frame.width),
+            by_row_of_quads: Divisor::new(quads[0]),
+            is_complete: range_of_finite(&grid.values).is_some(),
         })
     }
 
@@ -129,7 +140,7 @@ impl<'a> GridSurface<'a> {
     /// Row and column in the raster of a vertex that is the center of a cell. No side of a raster
     /// has more than 2^32 cells.
     pub(crate) fn cell_of(&self, vertex: u32) -> [u32; 2] {
-        let [column, row] = cell_at(vertex, self.grid.frame.width);
+        let [column, row] = self.by_row_of_cells.column_and_row(vertex);
         [(self.first_row + row) as u32, column as u32]
     }
 
@@ -143,10 +154,15 @@ impl<'a> GridSurface<'a> {
 
     /// Column and row of a face's quad, and the position of the face among its four.
     fn quad_of(&self, face: u32) -> ([usize; 2], usize) {
-        (cell_at(face / 4, self.quads[0]), face as usize % 4)
+        let quad = self.by_row_of_quads.column_and_row(face / 4);
+        (quad, face as usize % 4)
     }
 
+    #[inline]
     fn quad(&self, [column, row]: [usize; 2]) -> Quad {
+        if self.is_complete {
+            return Quad::Whole;
+        }
         Quad::of(
             self.corners
                 .map(|[right, down]| self.grid.value(column + right, row + down)),
@@ -229,12 +245,31 @@ fn center(cells: [[f64; 2]; 2]) -> f64 {
     (a + d) + (b + c)
 }
 
-/// Column and row of a number that counts row by row. All numbers fit into 32 bits, which divide
-/// faster.
-fn cell_at(number: u32, width: usize) -> [usize; 2] {
-    // Called only for numbers that exist, so the width is not 0.
-    let width = width as u32;
-    [(number % width) as usize, (number / width) as usize]
+/// A number of columns that divides by a multiplication. All numbers have 32 bits.
+#[derive(Debug, Clone, Copy)]
+struct Divisor {
+    columns: u32,
+    /// 2^64 / columns, rounded up: exact for dividends of 32 bits (Lemire, Kaser and Kurz, "Faster
+    /// remainder by direct computation", 2019).
+    reciprocal: u128,
+}
+
+impl Divisor {
+    fn new(columns: usize) -> Self {
+        // Numbers are divided only if there are columns.
+        let columns = columns.max(1) as u32;
+        Divisor {
+            columns,
+            reciprocal: (1_u128 << 64).div_ceil(u128::from(columns)),
+        }
+    }
+
+    /// Column and row of a number that counts row by row.
+    #[inline]
+    fn column_and_row(self, number: u32) -> [usize; 2] {
+        let row = ((self.reciprocal * u128::from(number)) >> 64) as u32;
+        [(number - row * self.columns) as usize, row as usize]
+    }
 }
 
 impl Surface for GridSurface<'_> {
@@ -246,11 +281,11 @@ impl Surface for GridSurface<'_> {
         let frame = &self.grid.frame;
         let cells = self.grid.values.len() as u32;
         if vertex < cells {
-            let [column, row] = cell_at(vertex, frame.width);
+            let [column, row] = self.by_row_of_cells.column_and_row(vertex);
             let [x, y] = frame.to_map(column as f64 + 0.5, (self.first_row + row) as f64 + 0.5);
             return [x, y, self.grid.value(column, row)];
         }
-        let [column, row] = cell_at(vertex - cells, self.quads[0]);
+        let [column, row] = self.by_row_of_quads.column_and_row(vertex - cells);
         let [x, y] = frame.to_map(column as f64 + 1.0, (self.first_row + row) as f64 + 1.0);
         [
             x,
@@ -328,16 +363,41 @@ impl Surface for GridSurface<'_> {
             let upper = &self.grid.values[(row * width + column) as usize..][..=count as usize];
             let lower =
                 &self.grid.values[((row + 1) * width + column) as usize..][..=count as usize];
-            for (upper, lower) in upper.windows(2).zip(lower.windows(2)) {
-                let cells = [[upper[0], upper[1]], [lower[0], lower[1]]];
-                self.heights_between(cells, 4 * quad, &numbers, is_wanted, faces);
-                quad += 1;
+            for start in (0..count as usize).step_by(BLOCK) {
+                let block = (count as usize - start).min(BLOCK);
+                let [upper, lower] = [upper, lower].map(|row| &row[start..=start + block]);
+                // `PERF:` quads that are far from all levels are skipped together.
+                let range = range_of_finite(upper).zip(range_of_finite(lower));
+                let is_near = range.is_none_or(|([a, b], [c, d])| is_wanted(a.min(c), b.max(d)));
+                if is_near {
+                    for (at, (upper, lower)) in (quad..).zip(upper.windows(2).zip(lower.windows(2)))
+                    {
+                        let cells = [[upper[0], upper[1]], [lower[0], lower[1]]];
+                        self.heights_between(cells, 4 * at, &numbers, is_wanted, faces);
+                    }
+                }
+                quad += block as u32;
             }
         }
     }
 
     fn has_lines(&self) -> bool {
         false
+    }
+
+    fn least_width(&self) -> f64 {
+        let Frame {
+            width,
+            height,
+            transform: t,
+        } = self.grid.frame;
+        let area = (t[1] * t[5] - t[2] * t[4]).abs();
+        let sides = t[1].abs() + t[2].abs() + t[4].abs() + t[5].abs();
+        let [rows, width] = [self.first_row + height, width].map(|count| count as f64);
+        let size = [0, 3].map(|i| t[i].abs() + width * t[i + 1].abs() + rows * t[i + 2].abs());
+        // A face has a quarter of the area of a cell, at least. Half of what that gives is left for
+        // the rounding of positions.
+        0.25 * area / sides / (f64::EPSILON * size[0].max(size[1]))
     }
 
     fn crs(&self) -> Option<&Crs> {
@@ -348,52 +408,113 @@ impl Surface for GridSurface<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::terrain::thin::{STEPS, is_thin};
 
-    /// The faces of a range whose heights meet a range.
+    fn surface_test(frame: Frame, hole_every: u32, check: impl Fn(&GridSurface)) {
+        let cell = |i: u32| match i.wrapping_mul(2_654_435_769) >> 29 {
+            _ if i.is_multiple_of(hole_every) => f64::NAN,
+            height => f64::from(height) + f64::from(i / 100),
+        };
+        let grid = Grid {
+            frame,
+            crs: None,
+            values: (1..).take(frame.width * frame.height).map(cell).collect(),
+        };
+        check(&GridSurface::new(&grid).unwrap());
+    }
+
+    const TRANSFORMS: [[f64; 6]; 3] = [
+        [0.0, 1.0, 0.0, 0.0, 0.0, 1.0],
+        [0.0, 1.0, 0.0, 0.0, 0.0, -1.0],
+        [512_000.1, 0.3, 0.1, 5_403_000.7, -0.2, -0.3],
+    ];
+
+    /// The faces of a range whose heights meet a range: with many holes, some and none.
     #[test]
     fn heights_are_those_of_the_faces() {
-        let cell = |i: u32| match i.wrapping_mul(2_654_435_769) >> 29 {
-            0 => f64::NAN,
-            height => f64::from(height),
-        };
-        for transform in [
-            [0.0, 1.0, 0.0, 0.0, 0.0, 1.0],
-            [0.0, 1.0, 0.0, 0.0, 0.0, -1.0],
-        ] {
-            let frame = crate::data::Frame {
-                width: 7,
-                height: 9,
+        for (transform, hole_every) in TRANSFORMS.into_iter().zip([8, 500, 100_000]) {
+            for [width, height] in [[7, 9], [150, 5]] {
+                let frame = Frame {
+                    width,
+                    height,
+                    transform,
+                };
+                surface_test(frame, hole_every, |surface| {
+                    let count = surface.face_count() as u32;
+                    let ranges = [
+                        (0, count),
+                        (1, count - 1),
+                        (5, 6),
+                        (22, 75),
+                        (24, 24),
+                        (30, 31),
+                    ];
+                    for (start, end) in ranges {
+                        for level in [0.0, 1.0, 2.25, 5.0, 7.0, 8.0] {
+                            let is_wanted = |low: f64, high: f64| low < level && level <= high;
+                            let mut found = Vec::new();
+                            surface.heights_in(start..end, &is_wanted, &mut found);
+                            let heights =
+                                |face| Some((face, surface.triangle(face)?.map(|p| p[2])));
+                            let expected =
+                                (start..end).filter_map(heights).filter(|(_, [a, b, c])| {
+                                    is_wanted(a.min(*b).min(*c), a.max(*b).max(*c))
+                                });
+                            assert_eq!(
+                                found,
+                                expected.collect::<Vec<_>>(),
+                                "{start}..{end} at {level}"
+                            );
+                        }
+                    }
+                });
+            }
+        }
+    }
+
+    #[test]
+    fn no_face_is_narrower_than_stated() {
+        for transform in TRANSFORMS {
+            let frame = Frame {
+                width: 6,
+                height: 5,
                 transform,
             };
-            let grid = Grid {
-                frame,
-                crs: None,
-                values: (0..63).map(cell).collect(),
-            };
-            let surface = GridSurface::new(&grid).unwrap();
-            let count = surface.face_count() as u32;
-            for (start, end) in [
-                (0, count),
-                (1, count - 1),
-                (5, 6),
-                (22, 75),
-                (24, 24),
-                (30, 31),
-            ] {
-                for level in [0.0, 1.0, 2.25, 5.0, 7.0, 8.0] {
-                    let is_wanted = |low: f64, high: f64| low < level && level <= high;
-                    let mut found = Vec::new();
-                    surface.heights_in(start..end, &is_wanted, &mut found);
-                    let faces = (start..end)
-                        .filter_map(|face| Some((face, surface.triangle(face)?.map(|p| p[2]))));
-                    let expected = faces
-                        .filter(|(_, [a, b, c])| is_wanted(a.min(*b).min(*c), a.max(*b).max(*c)));
-                    assert_eq!(
-                        found,
-                        expected.collect::<Vec<_>>(),
-                        "{start}..{end} at {level}"
-                    );
+            surface_test(frame, 8, |surface| {
+                let least = surface.least_width();
+                for corners in (0..surface.face_count() as u32).filter_map(|f| surface.triangle(f))
+                {
+                    assert!(!is_thin(corners, STEPS / least), "{corners:?} {least}");
                 }
+            });
+        }
+    }
+
+    #[test]
+    fn a_divisor_divides() {
+        let numbers = [
+            0,
+            1,
+            2,
+            3,
+            63,
+            64,
+            65,
+            12_345,
+            65_535,
+            65_536,
+            u32::MAX - 1,
+            u32::MAX,
+        ];
+        for columns in numbers.into_iter().filter(|&columns| columns > 0) {
+            let divisor = Divisor::new(columns as usize);
+            for number in numbers {
+                let expected = [number % columns, number / columns].map(|n| n as usize);
+                assert_eq!(
+                    divisor.column_and_row(number),
+                    expected,
+                    "{number} / {columns}"
+                );
             }
         }
     }

@@ -65,10 +65,18 @@ impl Levels {
     pub(super) fn smallest_step(&self) -> f64 {
         match &self.0 {
             Choice::Every { interval, .. } => *interval,
-            Choice::Listed(levels) => levels
-                .windows(2)
-                .map(|pair| pair[1] - pair[0])
-                .fold(f64::INFINITY, f64::min),
+            Choice::Listed(levels) => smallest_difference(levels),
+        }
+    }
+
+    /// Returns the difference of a level and the nearest other one; infinity if there is none.
+    pub(super) fn step_around(&self, level: f64) -> f64 {
+        match &self.0 {
+            Choice::Every { interval, .. } => *interval,
+            Choice::Listed(levels) => {
+                let at = levels.partition_point(|&other| other < level);
+                smallest_difference(&levels[at.saturating_sub(1)..levels.len().min(at + 2)])
+            }
         }
     }
 
@@ -88,6 +96,11 @@ impl Levels {
                 .collect()),
         }
     }
+}
+
+fn smallest_difference(levels: &[f64]) -> f64 {
+    let differences = levels.windows(2).map(|pair| pair[1] - pair[0]);
+    differences.fold(f64::INFINITY, f64::min)
 }
 
 /// Whole numbers up to here are exact in an `f64`.

@@ -139,6 +139,10 @@ impl<S: Surface + ?Sized> Surface for Watched<'_, S> {
         self.source.is_fragment(face)
     }
 
+    fn least_width(&self) -> f64 {
+        self.source.least_width()
+    }
+
     fn crs(&self) -> Option<&Crs> {
         self.source.crs()
     }

@@ -8,7 +8,7 @@ use crate::data::ContourLine;
 use crate::error::{Error, Result};
 use crate::run::context::{Context, Size, Stage};
 use crate::run::sources::raster_file::RasterFile;
-use crate::terrain::contour::parts::{BendFinder, Bends, ContourParts, LevelParts, join_level};
+use crate::terrain::contour::parts::{BendFinder, Bends, LevelParts, join_level, parts_of_rows};
 use crate::terrain::{GridSurface, Levels};
 
 /// Where parts wait: a file or memory.
@@ -24,7 +24,8 @@ impl<T: Read + Write + Seek> Scratch for T {}
 /// written, or the run is canceled; and those of `take`.
 ///
 /// # Complexity
-/// Memory: that of some rows, of the arcs of all levels in them, and of the lines of one level.
+/// Memory: that of some rows, of two million arcs in them (or those of one level, if it has more),
+/// and of the lines of one level.
 pub(super) fn draw<T>(
     raster: &RasterFile,
     levels: &Levels,
@@ -34,13 +35,18 @@ pub(super) fn draw<T>(
 ) -> Result<T> {
     let finding = context.start(Stage::FindingContours, Size::Uncounted)?;
     let mut found = FoundParts::new(scratch);
+    let mut heights = [f64::INFINITY, f64::NEG_INFINITY];
     raster.each_rows(&mut |rows, first_row| {
         context.check()?;
         let surface = GridSurface::of_rows(rows, first_row)?;
-        found.add(&ContourParts::of_rows(&surface, levels)?)
+        let [low, high] = parts_of_rows(&surface, levels, |parts| {
+            context.check()?;
+            found.add(parts)
+        })?;
+        heights = [heights[0].min(low), heights[1].max(high)];
+        Ok(())
     })?;
-    let [low, high] = found.heights;
-    levels.within(low, high)?;
+    levels.within(heights[0], heights[1])?;
     finding.end()?;
     found.draw(context, take)
 }
@@ -58,7 +64,6 @@ struct FoundParts {
     scratch: Box<dyn Scratch>,
     blocks: Vec<Block>,
     end: u64,
-    heights: [f64; 2],
     /// The number of edges of all lines.
     edges: u64,
 }
@@ -69,28 +74,22 @@ impl FoundParts {
             scratch,
             blocks: Vec::new(),
             end: 0,
-            heights: [f64::INFINITY, f64::NEG_INFINITY],
             edges: 0,
         }
     }
 
-    fn add(&mut self, parts: &ContourParts) -> Result<()> {
-        let [low, high] = parts.heights();
-        self.heights = [self.heights[0].min(low), self.heights[1].max(high)];
+    fn add(&mut self, parts: &LevelParts) -> Result<()> {
         let mut bytes = Vec::new();
-        for of_level in parts.levels() {
-            bytes.clear();
-            of_level.write(&mut bytes)?;
-            self.scratch.write_all(&bytes)?;
-            self.blocks.push(Block {
-                level: of_level.level(),
-                start: self.end,
-                length: bytes.len(),
-                may_bend: of_level.may_bend(),
-            });
-            self.end += bytes.len() as u64;
-            self.edges += of_level.edge_count() as u64;
-        }
+        parts.write(&mut bytes)?;
+        self.scratch.write_all(&bytes)?;
+        self.blocks.push(Block {
+            level: parts.level(),
+            start: self.end,
+            length: bytes.len(),
+            may_bend: parts.may_bend(),
+        });
+        self.end += bytes.len() as u64;
+        self.edges += parts.edge_count() as u64;
         Ok(())
     }
 

@@ -13,14 +13,18 @@ use crate::terrain::Levels;
 /// The largest number of arcs of levels that are traced together.
 const BAND: usize = 1 << 21;
 
+/// The largest number of faces with arcs that are kept until all levels are traced: 64 MB.
+const MOST_KEPT: usize = 1 << 22;
+
 /// The levels within the heights of a surface, of which the next are traced on request.
 pub(super) struct Bands<'a, S: ?Sized> {
     surface: &'a S,
+    levels: Levels,
     heights: [f64; 2],
     index: LevelIndex,
     /// The number of arcs of each level.
     counts: Vec<usize>,
-    /// All arcs, if they are few, until they are traced.
+    /// All faces that have arcs, if they are few.
     found: Option<Found>,
     /// The faces that meet a level and are [narrow](Narrowness).
     narrow: Vec<u32>,
@@ -36,13 +40,21 @@ impl<'a, S: Surface + ?Sized> Bands<'a, S> {
         let heights = find::height_range(surface);
         let [low, high] = heights;
         let index = LevelIndex::new(levels.within(low, high)?);
+        let narrowness = Narrowness::on(levels, surface, heights);
+        let is_narrow = |face| {
+            narrowness.is_some_and(|narrowness| {
+                let corners = surface.triangle(face);
+                corners.is_some_and(|corners| narrowness.includes(corners))
+            })
+        };
         let Overview {
             counts,
             found,
             narrow,
-        } = Overview::of(surface, &index, Narrowness::of(levels), BAND);
+        } = Overview::of(surface, &index, is_narrow, MOST_KEPT);
         Ok(Bands {
             surface,
+            levels: levels.clone(),
             heights,
             index,
             counts,
@@ -72,7 +84,8 @@ impl<'a, S: Surface + ?Sized> Bands<'a, S> {
 
     /// The sites at narrow faces, by the index of their level.
     pub(super) fn narrow_sites(&self) -> Vec<(usize, Vec<[f64; 2]>)> {
-        let sites_of = |&face: &u32| narrow::sites_of(self.surface, &self.index, face);
+        let narrowness = Narrowness::of(&self.levels);
+        let sites_of = |&face: &u32| narrowness.sites_of(self.surface, &self.index, face);
         narrow::by_level(self.narrow.iter().flat_map(sites_of).collect())
     }
 
@@ -86,8 +99,7 @@ impl<'a, S: Surface + ?Sized> Bands<'a, S> {
         }
         let band = self.band_from(self.next_level);
         self.next_level = band.end;
-        let found = self.found.take();
-        Some(self.trace(band, found, finish))
+        Some(self.trace(band, finish))
     }
 
     /// The levels that are traced together: at least one, and no more than have [`BAND`] arcs.
@@ -100,15 +112,18 @@ impl<'a, S: Surface + ?Sized> Bands<'a, S> {
         first..first + self.counts[first..].iter().take_while(fits).count()
     }
 
-    /// Traces levels, given their arcs if they are known.
+    /// Traces levels.
     pub(super) fn trace<T: Send>(
         &self,
         band: Range<usize>,
-        found: Option<Found>,
         finish: impl Fn(f64, Traces) -> T + Sync,
     ) -> Vec<T> {
-        let found = found.unwrap_or_else(|| find::arcs(self.surface, &self.index, band.clone()));
-        let arcs = LevelArcs::new(found, band.start, &self.counts[band.clone()]);
+        let crossed = match &self.found {
+            Some(found) => found,
+            None => &find::crossed(self.surface, &self.index, band.clone()),
+        };
+        let counts = &self.counts[band.clone()];
+        let arcs = LevelArcs::new(self.surface, &self.index, crossed, band.clone(), counts);
         trace::each_level(self.surface, &self.index, band, &arcs, finish)
     }
 }

@@ -2,13 +2,10 @@
 
 use super::cut::{ContourArc, LevelCut};
 use super::index::LevelIndex;
-use super::narrow::Narrowness;
 use crate::data::Surface;
 use rayon::prelude::*;
 use std::cell::Cell;
 use std::ops::Range;
-use std::sync::atomic::AtomicUsize;
-use std::sync::atomic::Ordering::Relaxed;
 
 /// The number of faces of a stretch.
 const STRETCH: u32 = 1 << 15;
@@ -34,6 +31,15 @@ pub(super) fn height_range<S: Surface + ?Sized>(surface: &S) -> [f64; 2] {
         .reduce(|| [f64::INFINITY, f64::NEG_INFINITY], joined)
 }
 
+/// Returns the lowest and the highest height of a face.
+///
+/// `PERF:` heights are finite. Without a case for NaN, as in `f64::min`, half the instructions.
+pub(super) fn lowest_and_highest([a, b, c]: [f64; 3]) -> [f64; 2] {
+    let lower = |a: f64, b: f64| if a < b { a } else { b };
+    let higher = |a: f64, b: f64| if a > b { a } else { b };
+    [lower(lower(a, b), c), higher(higher(a, b), c)]
+}
+
 pub(super) fn joined(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
     [a[0].min(b[0]), a[1].max(b[1])]
 }
@@ -42,87 +48,104 @@ pub(super) fn joined(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
 pub(super) struct Overview {
     /// The number of arcs of each level.
     pub(super) counts: Vec<usize>,
-    /// All arcs, if they are few.
+    /// All faces that have arcs, if they are few.
     pub(super) found: Option<Found>,
-    /// The faces that meet a level and are [narrow](Narrowness).
+    /// The faces that meet a level and are narrow.
     pub(super) narrow: Vec<u32>,
 }
 
 impl Overview {
-    /// Passes over all faces; the arcs are few if there are at most so many.
+    /// Passes over all faces; those that have arcs are few if there are at most so many.
+    /// `is_narrow` is called for each face that meets a level.
     pub(super) fn of<S: Surface + ?Sized>(
         surface: &S,
         index: &LevelIndex,
-        narrowness: Narrowness,
+        is_narrow: impl Fn(u32) -> bool + Sync,
         most: usize,
     ) -> Self {
-        if let Some((found, narrow)) = few_arcs(surface, index, narrowness, most) {
-            return Overview {
-                counts: counts_of(&found, 0..index.levels().len()),
-                found: Some(found),
-                narrow,
-            };
-        }
-        let (counts, narrow) = count(surface, index, narrowness);
-        Overview {
-            counts,
-            found: None,
-            narrow,
-        }
-    }
-}
-
-/// Returns true if a face is narrow.
-fn is_narrow<S: Surface + ?Sized>(surface: &S, face: u32, narrowness: Narrowness) -> bool {
-    let corners = surface.face(face);
-    corners.is_some_and(|corners| narrowness.includes(corners.map(|v| surface.position(v))))
-}
-
-/// Returns the number of arcs of each level, and the faces that meet a level and are narrow.
-fn count<S: Surface + ?Sized>(
-    surface: &S,
-    index: &LevelIndex,
-    narrowness: Narrowness,
-) -> (Vec<usize>, Vec<u32>) {
-    let mut counts = vec![0; index.levels().len()];
-    let mut all_narrow = Vec::new();
-    for waiting in stretches(surface).chunks(WAITING) {
-        let of_stretch = |numbers: &Range<u32>| {
-            let (mut crossed, mut narrow) = (Vec::new(), Vec::new());
-            faces_at(
-                surface,
-                index,
-                0..index.levels().len(),
-                numbers.clone(),
-                |face, heights, levels| {
-                    let Crossed { across, along } = Crossed::of(heights, levels, index);
-                    let has_shore = along
-                        && LevelCut {
-                            surface,
-                            level: index.levels()[across.end],
-                        }
-                        .shore(face)
-                        .is_some();
-                    crossed.push(across.start..across.end + usize::from(has_shore));
-                    narrow.extend(is_narrow(surface, face, narrowness).then_some(face));
-                },
-            );
-            (crossed, narrow)
+        let all = 0..index.levels().len();
+        let mut overview = Overview {
+            counts: vec![0; all.len()],
+            found: Some(Found::new()),
+            narrow: Vec::new(),
         };
-        let of_stretches: Vec<(Vec<Range<usize>>, Vec<u32>)> =
-            waiting.par_iter().map(of_stretch).collect();
-        for (crossed, narrow) in of_stretches {
-            for levels in crossed {
-                counts[levels].iter_mut().for_each(|count| *count += 1);
+        let mut total = 0;
+        for waiting in stretches(surface).chunks(WAITING) {
+            let of_stretch = |numbers: &Range<u32>| {
+                let mut narrow = Vec::new();
+                let meets = |face| narrow.extend(is_narrow(face).then_some(face));
+                let crossed = crossed_faces(surface, index, all.clone(), numbers.clone(), meets);
+                (crossed, narrow)
+            };
+            let of_stretches: Vec<(Vec<CrossedFace>, Vec<u32>)> =
+                waiting.par_iter().map(of_stretch).collect();
+            for (crossed, narrow) in of_stretches {
+                overview.narrow.extend(narrow);
+                count(&crossed, all.start, &mut overview.counts);
+                total += crossed.len();
+                overview.found = overview.found.filter(|_| total <= most);
+                if let Some(found) = &mut overview.found {
+                    found.push(crossed);
+                }
             }
-            all_narrow.extend(narrow);
         }
+        overview
     }
-    (counts, all_narrow)
 }
 
-/// The arcs of each stretch, with their levels, in the order of the faces.
-pub(super) type Found = Vec<Vec<(usize, ContourArc)>>;
+/// A face that has arcs.
+pub(super) struct CrossedFace {
+    face: u32,
+    /// The first of the levels of the arcs across the face, and the one after the last.
+    across: [u32; 2],
+    /// True if the next level has an arc along one of its edges.
+    has_shore: bool,
+}
+
+/// The faces of each stretch that have arcs, in order.
+pub(super) type Found = Vec<Vec<CrossedFace>>;
+
+impl CrossedFace {
+    /// The levels of its arcs, in a band of levels.
+    fn levels(&self, band: &Range<usize>) -> Range<usize> {
+        let [start, end] = self.across;
+        let end = end as usize + usize::from(self.has_shore);
+        (start as usize).max(band.start)..end.min(band.end)
+    }
+
+    /// The arc of one of its levels.
+    fn arc<S: Surface + ?Sized>(
+        &self,
+        surface: &S,
+        index: &LevelIndex,
+        level: usize,
+    ) -> Option<ContourArc> {
+        if level < self.across[1] as usize {
+            return Some(ContourArc::Across(self.face));
+        }
+        let level = index.levels()[level];
+        LevelCut { surface, level }.shore(self.face)
+    }
+}
+
+/// Adds the arcs of faces to the numbers of those of each level, from the first level on.
+fn count(faces: &[CrossedFace], first_level: usize, counts: &mut [usize]) {
+    let band = first_level..first_level + counts.len();
+    for face in faces {
+        for level in face.levels(&band) {
+            counts[level - first_level] += 1;
+        }
+    }
+}
+
+/// Returns the number of arcs of each level of a band.
+pub(super) fn counts_of(found: &Found, band: Range<usize>) -> Vec<usize> {
+    let mut counts = vec![0; band.len()];
+    found
+        .iter()
+        .for_each(|faces| count(faces, band.start, &mut counts));
+    counts
+}
 
 /// The arcs of some levels, sorted by level.
 pub(super) struct LevelArcs {
@@ -133,8 +156,14 @@ pub(super) struct LevelArcs {
 }
 
 impl LevelArcs {
-    /// Sorts arcs of a band of levels, of which the numbers of arcs are known.
-    pub(super) fn new(found: Found, first_level: usize, counts: &[usize]) -> Self {
+    /// Sorts the arcs of a band of levels, of which the numbers are known.
+    pub(super) fn new<S: Surface + ?Sized>(
+        surface: &S,
+        index: &LevelIndex,
+        found: &Found,
+        band: Range<usize>,
+        counts: &[usize],
+    ) -> Self {
         // A counting sort.
         let mut starts = vec![0];
         starts.extend(counts.iter().scan(0, |end, count| {
@@ -143,15 +172,19 @@ impl LevelArcs {
         }));
         let mut arcs = vec![ContourArc::Across(0); starts[counts.len()]];
         let mut free = starts.clone();
-        for (level, arc) in found.into_iter().flatten() {
-            let slot = &mut free[level - first_level];
-            arcs[*slot] = arc;
-            *slot += 1;
+        for face in found.iter().flatten() {
+            for level in face.levels(&band) {
+                if let Some(arc) = face.arc(surface, index, level) {
+                    let slot = &mut free[level - band.start];
+                    arcs[*slot] = arc;
+                    *slot += 1;
+                }
+            }
         }
         LevelArcs {
             arcs,
             starts,
-            first_level,
+            first_level: band.start,
         }
     }
 
@@ -162,85 +195,42 @@ impl LevelArcs {
     }
 }
 
-/// Returns the number of arcs of each level of a band.
-pub(super) fn counts_of(found: &Found, band: Range<usize>) -> Vec<usize> {
-    let mut counts = vec![0; band.len()];
-    found
-        .iter()
-        .flatten()
-        .for_each(|&(level, _)| counts[level - band.start] += 1);
-    counts
-}
-
-/// Returns the arcs of some levels.
-pub(super) fn arcs<S: Surface + ?Sized>(
+/// Returns the faces that have arcs of some levels.
+pub(super) fn crossed<S: Surface + ?Sized>(
     surface: &S,
     index: &LevelIndex,
     band: Range<usize>,
 ) -> Found {
-    let of_stretch =
-        |numbers: Range<u32>| arcs_of_stretch(surface, index, band.clone(), numbers, |_, _| true);
+    let of_stretch = |numbers| crossed_faces(surface, index, band.clone(), numbers, |_| ());
     stretches(surface).into_par_iter().map(of_stretch).collect()
 }
 
-/// Returns the arcs of all levels, and the faces that meet a level and are narrow. `None` if there
-/// may be more than `most` arcs.
-fn few_arcs<S: Surface + ?Sized>(
-    surface: &S,
-    index: &LevelIndex,
-    narrowness: Narrowness,
-    most: usize,
-) -> Option<(Found, Vec<u32>)> {
-    let total = AtomicUsize::new(0);
-    let of_stretch = |numbers: Range<u32>| {
-        let mut narrow = Vec::new();
-        let fits = |face: u32, more: usize| {
-            narrow.extend(is_narrow(surface, face, narrowness).then_some(face));
-            total.fetch_add(more, Relaxed) + more <= most
-        };
-        let arcs = arcs_of_stretch(surface, index, 0..index.levels().len(), numbers, fits);
-        (arcs, narrow)
-    };
-    let (mut found, mut all_narrow) = (Found::new(), Vec::new());
-    for some in stretches(surface).chunks(WAITING) {
-        let of_stretches: Vec<_> = some.par_iter().cloned().map(of_stretch).collect();
-        for (arcs, narrow) in of_stretches {
-            found.push(arcs);
-            all_narrow.extend(narrow);
-        }
-        if total.load(Relaxed) > most {
-            return None;
-        }
-    }
-    Some((found, all_narrow))
-}
-
-/// Returns the arcs of a stretch, without those of faces for which `fits` is false, given the
-/// number of their arcs, or one more.
-fn arcs_of_stretch<S: Surface + ?Sized>(
+/// Returns the faces of a stretch that have arcs of some levels. Calls `meets` for each that meets
+/// such a level.
+fn crossed_faces<S: Surface + ?Sized>(
     surface: &S,
     index: &LevelIndex,
     band: Range<usize>,
     numbers: Range<u32>,
-    mut fits: impl FnMut(u32, usize) -> bool,
-) -> Vec<(usize, ContourArc)> {
-    let mut arcs = Vec::new();
+    mut meets: impl FnMut(u32),
+) -> Vec<CrossedFace> {
+    let mut crossed = Vec::new();
     faces_at(surface, index, band, numbers, |face, heights, levels| {
+        meets(face);
         let Crossed { across, along } = Crossed::of(heights, levels, index);
-        if !fits(face, across.len() + usize::from(along)) {
-            return;
-        }
-        let highest = across.end;
-        arcs.extend(across.map(|level| (level, ContourArc::Across(face))));
-        if along {
-            let cut = LevelCut {
-                surface,
-                level: index.levels()[highest],
-            };
-            arcs.extend(cut.shore(face).map(|arc| (highest, arc)));
+        let has_shore = along && {
+            let level = index.levels()[across.end];
+            LevelCut { surface, level }.shore(face).is_some()
+        };
+        if !across.is_empty() || has_shore {
+            crossed.push(CrossedFace {
+                face,
+                across: [across.start as u32, across.end as u32],
+                has_shore,
+            });
         }
     });
-    arcs
+    crossed
 }
 
 /// The levels that have an arc at a face.
@@ -254,8 +244,7 @@ struct Crossed {
 impl Crossed {
     /// The levels of a face; `levels` are those from its lowest corner to its highest, inclusive.
     fn of(heights: [f64; 3], levels: Range<usize>, index: &LevelIndex) -> Self {
-        let [a, b, c] = heights;
-        let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+        let [low, high] = lowest_and_highest(heights);
         let all = &index.levels()[levels.clone()];
         let from = levels.start + usize::from(all.first() == Some(&low));
         let is_at_top = all.last() == Some(&high);
@@ -286,14 +275,14 @@ fn faces_at<S: Surface + ?Sized>(
     };
     let mut faces = Vec::new();
     surface.heights_in(numbers, &is_wanted, &mut faces);
-    for (face, [a, b, c]) in faces {
-        let first = first_at(a.min(b).min(c));
-        let high = a.max(b).max(c);
+    for (face, heights) in faces {
+        let [low, high] = lowest_and_highest(heights);
+        let first = first_at(low);
         let count = levels[first..band.end]
             .iter()
             .take_while(|&&level| level <= high)
             .count();
-        found(face, [a, b, c], first..first + count);
+        found(face, heights, first..first + count);
     }
 }
 

@@ -20,12 +20,12 @@ pub(super) fn finish_level(
     if touches_vertices || is_bent || lines.iter().any(falls_together) {
         lines = rejoin(&lines);
     }
-    let mut lines: Vec<ContourLine> = lines
-        .into_iter()
-        .flat_map(|line| finish(level, line))
-        .collect();
-    lines.sort_by(|a, b| a.points.partial_cmp(&b.points).unwrap_or(Ordering::Equal));
-    lines
+    let mut finished = Vec::with_capacity(lines.len());
+    for line in lines {
+        finish(level, line, &mut finished);
+    }
+    finished.sort_by(|a, b| a.points.partial_cmp(&b.points).unwrap_or(Ordering::Equal));
+    finished
 }
 
 /// Returns true if rounding has removed the length of an arc or the width of a line.
@@ -39,35 +39,49 @@ fn falls_together(line: &Joined) -> bool {
         .any(|pair| pair[0] == pair[1] || after_next.next() == Some(&pair[0]))
 }
 
-/// The simple lines that a line consists of; the first point of a closed one depends on its shape
-/// alone.
-fn finish(level: f64, Joined { mut points, closed }: Joined) -> Vec<ContourLine> {
+/// Adds the simple lines that a line consists of; the first point of a closed one depends on its
+/// shape alone.
+fn finish(level: f64, Joined { mut points, closed }: Joined, lines: &mut Vec<ContourLine>) {
     if closed {
         points.pop();
         start_at_smallest(&mut points);
     }
-    let mut lines = Vec::new();
-    cut_loops(points, closed, |mut points, is_closed| {
+    let mut add = |mut points: Vec<[f64; 2]>, is_closed| {
+        points.extend_from_within(..usize::from(is_closed));
+        lines.push(ContourLine { level, points });
+    };
+    let is_cut = cut_loops(&points, closed, |mut points, is_closed| {
         if is_closed {
             start_at_smallest(&mut points);
-            points.extend_from_within(..1);
         }
-        lines.push(ContourLine { level, points });
+        add(points, is_closed);
     });
-    lines
+    if !is_cut {
+        add(points, closed);
+    }
 }
 
 /// Rotates a ring to its smallest point; if that occurs more than once, to the occurrence from
 /// which the whole ring is smallest.
 fn start_at_smallest(ring: &mut [[f64; 2]]) {
-    let from = |start: usize| ring[start..].iter().chain(&ring[..start]);
-    let best = (0..ring.len()).min_by(|&a, &b| {
-        let by_point = ring[a].partial_cmp(&ring[b]).filter(|order| order.is_ne());
-        by_point
-            .or_else(|| from(a).partial_cmp(from(b)))
-            .unwrap_or(Ordering::Equal)
-    });
-    ring.rotate_left(best.unwrap_or(0));
+    let (mut best, mut is_repeated) = (0, false);
+    for (i, point) in ring.iter().enumerate().skip(1) {
+        let smallest = ring[best];
+        if point[0] < smallest[0] || (point[0] == smallest[0] && point[1] < smallest[1]) {
+            (best, is_repeated) = (i, false);
+        } else {
+            is_repeated |= *point == smallest;
+        }
+    }
+    if is_repeated {
+        let occurrences = (best..ring.len()).filter(|&i| ring[i] == ring[best]);
+        let from = |start: usize| ring[start..].iter().chain(&ring[..start]);
+        let by_ring = |a: &usize, b: &usize| from(*a).partial_cmp(from(*b));
+        best = occurrences
+            .min_by(|a, b| by_ring(a, b).unwrap_or(Ordering::Equal))
+            .unwrap_or(best);
+    }
+    ring.rotate_left(best);
 }
 
 #[cfg(test)]
@@ -84,7 +98,9 @@ mod tests {
 
     fn finished(names: &str) -> Vec<String> {
         let name = |p: &[f64; 2]| p[0] as u8 as char;
-        finish(0.0, line(names))
+        let mut lines = Vec::new();
+        finish(0.0, line(names), &mut lines);
+        lines
             .iter()
             .map(|line| line.points.iter().map(name).collect())
             .collect()

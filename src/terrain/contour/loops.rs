@@ -3,8 +3,9 @@
 use super::join::around;
 use std::cmp::Ordering;
 
-/// Calls `found` with the simple lines that a line consists of: none passes a point twice. A closed
-/// one does not repeat its first point.
+/// Calls `found` with the simple lines that a line consists of, if it is not simple itself: none
+/// passes a point twice. A closed one does not repeat its first point. Returns false for a simple
+/// line.
 ///
 /// Between two passages of a point lies a loop, which becomes a line of its own; the rest goes on
 /// from the point. Loops of two points, which enclose nothing, are left out. Where the rest of an
@@ -12,14 +13,14 @@ use std::cmp::Ordering;
 /// and goes on at the other, through a gap in the data.
 ///
 /// # Complexity
-/// Linear, and `n log n` for `n` points with the same hash.
+/// Linear.
 pub(super) fn cut_loops(
-    line: Vec<[f64; 2]>,
+    line: &[[f64; 2]],
     is_closed: bool,
     mut found: impl FnMut(Vec<[f64; 2]>, bool),
-) {
-    let Some(sites) = Sites::of(&line) else {
-        return found(line, is_closed);
+) -> bool {
+    let Some(sites) = Sites::of(line) else {
+        return false;
     };
     // The points since the start, without loops; and where each site is among them.
     let mut simple: Vec<usize> = Vec::new();
@@ -27,7 +28,7 @@ pub(super) fn cut_loops(
     let points_of = |numbers: &[usize]| numbers.iter().map(|&i| line[i]).collect::<Vec<_>>();
     for (i, &site) in sites.of_points.iter().enumerate() {
         if let Some(start) = site.and_then(|site: usize| position[site]) {
-            let is_crossed = !is_closed && crosses_loop(&line, &simple, start, i);
+            let is_crossed = !is_closed && crosses_loop(line, &simple, start, i);
             if simple.len() - start > 2 {
                 found(points_of(&simple[start..]), true);
             }
@@ -49,6 +50,7 @@ pub(super) fn cut_loops(
     if simple.len() > if is_closed { 2 } else { 1 } {
         found(points_of(&simple), is_closed);
     }
+    true
 }
 
 /// Returns true if an open line without the loop that starts at `simple[start]` and ends at point
@@ -81,48 +83,58 @@ struct Sites {
 impl Sites {
     /// Returns the sites of points; `None` if each has its own.
     fn of(points: &[[f64; 2]]) -> Option<Self> {
-        let mut order = suspects(points);
-        let by_point = |a: &usize, b: &usize| {
-            points[*a]
-                .partial_cmp(&points[*b])
-                .unwrap_or(Ordering::Equal)
-        };
-        order.sort_unstable_by(by_point);
         let mut sites: Option<Sites> = None;
-        let shared = order.chunk_by(|a, b| points[*a] == points[*b]);
-        for same in shared.filter(|same| same.len() > 1) {
+        each_repeated(points, |first, again| {
             let sites = sites.get_or_insert_with(|| Sites {
                 of_points: vec![None; points.len()],
                 count: 0,
             });
-            same.iter()
-                .for_each(|&i| sites.of_points[i] = Some(sites.count));
-            sites.count += 1;
-        }
+            let new = sites.count;
+            let site = *sites.of_points[first].get_or_insert(new);
+            sites.of_points[again] = Some(site);
+            sites.count += usize::from(site == new);
+        });
         sites
     }
 }
 
-/// Returns the numbers of all points that share their site with another one, and of some others:
-/// those with the same hash, of eight times as many hashes as there are points.
-fn suspects(points: &[[f64; 2]]) -> Vec<usize> {
-    let hashes = (8 * points.len()).next_power_of_two().max(64);
-    let slot = |[x, y]: &[f64; 2]| {
-        let mixed = (x.to_bits() ^ y.to_bits().rotate_left(32)).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-        let slot = (mixed >> (64 - hashes.trailing_zeros())) as usize;
-        (slot / 64, 1_u64 << (slot % 64))
-    };
-    let mut seen = vec![0; hashes / 64];
-    let mut seen_again = vec![0; hashes / 64];
-    for (word, bit) in points.iter().map(slot) {
-        seen_again[word] |= seen[word] & bit;
-        seen[word] |= bit;
+/// Calls `found` for each point that is the same as one before it, with the number of the first of
+/// these and its own.
+///
+/// `PERF:` most lines have few points or none twice. Few are compared with each other; the others
+/// are entered into a table of their numbers, by hash.
+fn each_repeated(points: &[[f64; 2]], mut found: impl FnMut(usize, usize)) {
+    const FEW: usize = 12;
+    if points.len() <= FEW {
+        for (i, point) in points.iter().enumerate() {
+            if let Some(first) = points[..i].iter().position(|before| before == point) {
+                found(first, i);
+            }
+        }
+        return;
     }
-    let is_suspect = |&i: &usize| {
-        let (word, bit) = slot(&points[i]);
-        seen_again[word] & bit != 0
-    };
-    (0..points.len()).filter(is_suspect).collect()
+    let mut table = vec![0_u32; (2 * points.len()).next_power_of_two()];
+    let last_slot = table.len() - 1;
+    let shift = 64 - table.len().trailing_zeros();
+    for (i, point) in points.iter().enumerate() {
+        let [x, y] = point.map(f64::to_bits);
+        let mixed = (x ^ y.rotate_left(32)).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        let mut slot = (mixed >> shift) as usize;
+        loop {
+            match table[slot] {
+                0 => {
+                    // No line has as many points as there are numbers.
+                    table[slot] = i as u32 + 1;
+                    break;
+                }
+                number if points[number as usize - 1] == *point => {
+                    found(number as usize - 1, i);
+                    break;
+                }
+                _ => slot = (slot + 1) & last_slot,
+            }
+        }
+    }
 }
 
 #[cfg(test)]
@@ -136,14 +148,17 @@ mod tests {
         let is_closed = points.len() > 2 && points.first() == points.last();
         points.truncate(points.len() - usize::from(is_closed));
         let mut lines = Vec::new();
-        cut_loops(points, is_closed, |mut line, is_closed| {
+        let mut add = |mut line: Vec<[f64; 2]>, is_closed| {
             line.extend_from_within(..usize::from(is_closed));
             lines.push(
                 line.iter()
                     .map(|p| (p[0] + 5.0 * p[1]) as u8 as char)
                     .collect(),
             );
-        });
+        };
+        if !cut_loops(&points, is_closed, &mut add) {
+            add(points, is_closed);
+        }
         lines
     }
 
@@ -169,6 +184,22 @@ mod tests {
         assert_eq!(cut("abcbda"), ["abda"]);
     }
 
+    /// Whatever their number: few points are compared with each other, many by hash.
+    #[test]
+    fn repeated_points_are_found() {
+        let at = |i: usize| [0.1 * i as f64, -3.0];
+        for count in [2, 5, 12, 13, 40, 1000] {
+            let mut points: Vec<_> = (0..count).map(at).collect();
+            assert!(Sites::of(&points).is_none(), "{count}");
+            points.extend([at(count - 1), at(0), at(count - 1)]);
+            let mut found = Vec::new();
+            each_repeated(&points, |first, again| found.push([first, again]));
+            let expected = [[count - 1, count], [0, count + 1], [count - 1, count + 2]];
+            assert_eq!(found, expected);
+            assert_eq!(Sites::of(&points).map(|sites| sites.count), Some(2));
+        }
+    }
+
     /// From one side of the loop through a gap in the data to the other.
     #[test]
     fn an_open_line_ends_where_it_would_cross_its_loop() {
@@ -176,7 +207,9 @@ mod tests {
         let around = [[-0.2, -1.0], [2.0, 0.0], [0.0, 2.0], [-1.0, 0.2]];
         let line = [&[start, v][..], &around, &[v, end]].concat();
         let mut lines = Vec::new();
-        cut_loops(line, false, |line, is_closed| lines.push((line, is_closed)));
+        cut_loops(&line, false, |line, is_closed| {
+            lines.push((line, is_closed))
+        });
         let ring = [&[v][..], &around].concat();
         assert_eq!(
             lines,

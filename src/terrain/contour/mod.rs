@@ -130,13 +130,14 @@ use trace::Traces;
 /// If more than [`MAX_LEVELS`](super::MAX_LEVELS) levels lie within the heights of the surface.
 ///
 /// # Complexity
-/// Linear in faces and arcs, except for sorting the lines. Up to two million arcs take two passes
-/// over the faces. More take three, and one more for every two million (or for one level with
-/// more), which are drawn together when the iterator needs them. Levels that meet a face narrower
-/// than some steps of its coordinates are drawn twice. A face that no level meets costs a
-/// comparison; in a raster, a quarter of one. Memory: 24 bytes per arc and 16 bytes per point, of
-/// those drawn together; 24 bytes per level; one bit per face for each thread. Faces are scanned in
-/// parallel, and levels are drawn in parallel.
+/// Linear in faces and arcs, except for sorting the lines. Two passes over the faces find those
+/// that have arcs. If these are more than four million, each two million arcs (or one level with
+/// more), which are drawn together when the iterator needs them, take a pass more. Levels that meet
+/// a face narrower than some steps of its coordinates are drawn twice. A face that no level meets
+/// costs a comparison; in a raster, much less. Memory: 16 bytes per face with arcs, of up to four
+/// million; of the arcs that are drawn together, 8 bytes each and 16 per point; 24 bytes per level;
+/// one bit per face for each thread. Faces are scanned in parallel, and levels are drawn in
+/// parallel.
 pub fn contours<'a, S: Surface + ?Sized>(
     surface: &'a S,
     levels: &Levels,
@@ -207,7 +208,7 @@ fn bends_of<S: Surface + ?Sized>(bands: &Bands<S>) -> Bends {
     while let [(first, _), ..] = rest {
         let band = bands.band_from(*first);
         let (now, later) = rest.split_at(rest.partition_point(|(level, _)| *level < band.end));
-        let lines = bands.trace(band.clone(), None, |level, traces| {
+        let lines = bands.trace(band.clone(), |level, traces| {
             finished(bands.surface(), level, traces, &Bends::default())
         });
         for (level, sites) in now {

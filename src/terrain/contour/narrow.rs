@@ -12,79 +12,101 @@ use std::ops::Range;
 use rustc_hash::FxHashMap;
 
 use super::cut::{ContourArc, Direction, LevelCut, Node};
+use super::find::lowest_and_highest;
 use super::index::LevelIndex;
 use crate::data::{ContourLine, Surface};
 use crate::terrain::Levels;
-use crate::terrain::thin::is_thin;
+use crate::terrain::thin::{STEPS, is_thin};
 use crate::triangulation::arrangement::Arrangement;
 
 /// Finds the faces that are too narrow for arcs that are rounded.
 #[derive(Clone, Copy)]
-pub(super) struct Narrowness {
-    /// The smallest difference of two levels.
-    step: f64,
+pub(super) struct Narrowness<'a> {
+    levels: &'a Levels,
+    smallest_step: f64,
 }
 
-impl Narrowness {
+impl<'a> Narrowness<'a> {
     /// Returns that of faces between these levels.
-    pub(super) fn of(levels: &Levels) -> Self {
+    pub(super) fn of(levels: &'a Levels) -> Self {
         Narrowness {
-            step: levels.smallest_step(),
+            levels,
+            smallest_step: levels.smallest_step(),
         }
     }
 
+    /// Returns that of the faces of a surface with this lowest and highest height; `None` if it is
+    /// known that none of them is narrow.
+    pub(super) fn on<S: Surface + ?Sized>(
+        levels: &'a Levels,
+        surface: &S,
+        [low, high]: [f64; 2],
+    ) -> Option<Self> {
+        let narrowness = Self::of(levels);
+        let share = share_between(narrowness.smallest_step, [low, high]);
+        let is_wide = surface.least_width() * share >= STEPS;
+        (!is_wide).then_some(narrowness)
+    }
+
     /// Returns true if the face, or the ground between two levels in it, may be narrower than some
-    /// steps of its coordinates.
+    /// steps of its coordinates; also for some faces at which no level [is narrow](Self::sites_of).
     #[inline]
     pub(super) fn includes(self, corners: [[f64; 3]; 3]) -> bool {
-        let [low, high] = heights_from_to(corners);
-        is_thin(corners, (self.step / (high - low)).min(1.0))
+        let heights = lowest_and_highest(corners.map(|[.., z]| z));
+        is_thin(corners, share_between(self.smallest_step, heights))
+    }
+
+    /// Returns the ends of the arcs of a narrow face and its corners, for each of its levels at
+    /// which it is narrow: where it, or the ground up to the next level above or below, may be
+    /// narrower than some steps.
+    pub(super) fn sites_of<S: Surface + ?Sized>(
+        self,
+        surface: &S,
+        index: &LevelIndex,
+        face: u32,
+    ) -> Vec<(usize, [f64; 2])> {
+        let mut sites = Vec::new();
+        let Some(corners) = surface.triangle(face) else {
+            return sites;
+        };
+        let heights = lowest_and_highest(corners.map(|[.., z]| z));
+        for number in levels_between(heights, index) {
+            let level = index.levels()[number];
+            let share = share_between(self.levels.step_around(level), heights);
+            let cut = LevelCut { surface, level };
+            let Some(face) = cut.face(face).filter(|_| is_thin(corners, share)) else {
+                continue;
+            };
+            let mut nodes = vec![Node::Corner(0), Node::Corner(1), Node::Corner(2)];
+            if face.is_crossed() {
+                let across = ContourArc::Across(face.id);
+                nodes.extend(
+                    [Direction::Forward, Direction::Backward].map(|d| face.node(across, d)),
+                );
+            }
+            sites.extend(
+                nodes
+                    .into_iter()
+                    .map(|node| (number, cut.point(&face, node))),
+            );
+        }
+        sites
     }
 }
 
-/// Returns the heights of the lowest and of the highest corner of a face.
+/// Returns the share of a face, given its lowest and its highest height, that lies between two
+/// levels.
 #[inline]
-fn heights_from_to([[.., a], [.., b], [.., c]]: [[f64; 3]; 3]) -> [f64; 2] {
-    [a.min(b).min(c), a.max(b).max(c)]
+fn share_between(step: f64, [low, high]: [f64; 2]) -> f64 {
+    (step / (high - low)).min(1.0)
 }
 
 /// Returns the indices of the levels from the lowest corner of a face to the highest; none if it is
 /// horizontal.
-fn levels_of(corners: [[f64; 3]; 3], index: &LevelIndex) -> Range<usize> {
-    let [low, high] = heights_from_to(corners);
+fn levels_between([low, high]: [f64; 2], index: &LevelIndex) -> Range<usize> {
     let first = index.first_from(low);
     let is_met = |level: &&f64| low < high && **level <= high;
     first..first + index.levels()[first..].iter().take_while(is_met).count()
-}
-
-/// Returns the ends of the arcs of a narrow face and its corners, for each of its levels.
-pub(super) fn sites_of<S: Surface + ?Sized>(
-    surface: &S,
-    index: &LevelIndex,
-    face: u32,
-) -> Vec<(usize, [f64; 2])> {
-    let mut sites = Vec::new();
-    let Some(corners) = surface.face(face) else {
-        return sites;
-    };
-    for number in levels_of(corners.map(|v| surface.position(v)), index) {
-        let cut = LevelCut {
-            surface,
-            level: index.levels()[number],
-        };
-        let Some(face) = cut.face(face) else { continue };
-        let mut nodes = vec![Node::Corner(0), Node::Corner(1), Node::Corner(2)];
-        if face.is_crossed() {
-            let across = ContourArc::Across(face.id);
-            nodes.extend([Direction::Forward, Direction::Backward].map(|d| face.node(across, d)));
-        }
-        sites.extend(
-            nodes
-                .into_iter()
-                .map(|node| (number, cut.point(&face, node))),
-        );
-    }
-    sites
 }
 
 /// Returns the same sites, each once, grouped by level.
@@ -183,5 +205,22 @@ impl Bends {
         let is_bent = bent.len() > points.len();
         *points = bent;
         is_bent
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::Mesh;
+    use crate::terrain::contour::bands::Bands;
+
+    #[test]
+    fn levels_next_to_each_other_make_faces_narrow_for_no_others() {
+        let corners = vec![[0.0, 0.0, 0.5], [8.0, 0.0, 3.5], [0.0, 8.0, 1.5]];
+        let mesh = Mesh::new(corners, vec![[0, 1, 2]], &[], None).unwrap();
+        let levels = Levels::listed(&[1.0, 2.0, 2.0_f64.next_up(), 3.0]).unwrap();
+        let sites = Bands::new(&mesh, &levels).unwrap().narrow_sites();
+        let of_levels: Vec<usize> = sites.iter().map(|(level, _)| *level).collect();
+        assert_eq!(of_levels, [1, 2]);
     }
 }

@@ -126,9 +126,9 @@ impl ContourCollector {
         let mesh = &patch.mesh;
         let [low, high] = find::height_range(mesh);
         let band = self.index.first_from(low)..self.index.first_from(high.next_up());
-        let found = find::arcs(mesh, &self.index, band.clone());
+        let found = find::crossed(mesh, &self.index, band.clone());
         let counts = find::counts_of(&found, band.clone());
-        let arcs = LevelArcs::new(found, band.start, &counts);
+        let arcs = LevelArcs::new(mesh, &self.index, &found, band.clone(), &counts);
         let keyed = patch.keyed();
         let mut parts =
             trace::each_level(mesh, &self.index, band.clone(), &arcs, |level, traces| {

@@ -88,6 +88,7 @@ pub use super::narrow::Bends;
 pub use bytes::StoredParts;
 pub use collect::ContourCollector;
 pub use join::{BendFinder, join_level};
+pub(crate) use rows::parts_of_rows;
 
 /// What the triangles of some tasks say about the contours of the whole surface.
 #[derive(Debug, Clone, PartialEq)]

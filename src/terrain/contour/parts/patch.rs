@@ -99,7 +99,7 @@ impl LinkedPatch {
         let is_narrow =
             |corners: [u32; 3]| narrowness.includes(corners.map(|v| self.mesh.position(v)));
         let narrow = data::corners(&self.mesh).filter(|&(_, corners)| is_narrow(corners));
-        let sites = narrow.flat_map(|(face, _)| narrow::sites_of(&self.mesh, index, face));
+        let sites = narrow.flat_map(|(face, _)| narrowness.sites_of(&self.mesh, index, face));
         narrow::by_level(sites.collect())
     }
 }

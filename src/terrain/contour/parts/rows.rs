@@ -1,42 +1,49 @@
 //! Contours of a raster that is larger than memory, from some of its rows at a time.
 
-use super::ContourParts;
 use super::keyed::Keyed;
+use super::{LevelParts, LevelSide};
 use crate::error::Result;
 use crate::terrain::contour::bands::Bands;
 use crate::terrain::{GridSurface, Levels};
+use std::collections::BTreeMap;
 
-impl ContourParts {
-    /// Returns the parts of some rows of a raster. Rows that follow begin with the last of these:
-    /// then [`join_level`](super::join_level) returns the lines of the whole raster.
-    ///
-    /// # Errors
-    /// If there are too many levels (see [`Levels::within`]).
-    ///
-    /// # Complexity
-    /// That of [`contours`](crate::terrain::contours).
-    pub(crate) fn of_rows(rows: &GridSurface, levels: &Levels) -> Result<Self> {
-        let keyed = Keyed {
-            surface: rows,
-            key_of: |vertex| rows.cell_of(vertex),
-        };
-        let mut bands = Bands::new(rows, levels)?;
-        let mut parts = Vec::new();
-        while let Some(band) = bands.next(|level, traces| keyed.parts(level, traces)) {
-            parts.extend(band);
-        }
-        for (level, side) in keyed.level_sides(rows.faces_of_first_and_last_row(), bands.index()) {
-            parts[level].sides.push(side);
-        }
-        for (level, sites) in bands.narrow_sites() {
-            parts[level].narrow = sites;
-        }
-        parts.retain(|parts| !parts.is_empty());
-        Ok(ContourParts {
-            heights: bands.heights(),
-            levels: parts,
-        })
+/// Calls `take` with the parts of each level that some rows of a raster have, by ascending levels.
+/// Returns the lowest and the highest height. Rows that follow begin with the last of these: then
+/// [`join_level`](super::join_level) returns the lines of the whole raster.
+///
+/// # Errors
+/// If there are too many levels (see [`Levels::within`]), and those of `take`.
+///
+/// # Complexity
+/// That of [`contours`](crate::terrain::contours), also in memory: parts are made when they are
+/// taken.
+pub(crate) fn parts_of_rows(
+    rows: &GridSurface,
+    levels: &Levels,
+    mut take: impl FnMut(&LevelParts) -> Result<()>,
+) -> Result<[f64; 2]> {
+    let keyed = Keyed {
+        surface: rows,
+        key_of: |vertex| rows.cell_of(vertex),
+    };
+    let mut bands = Bands::new(rows, levels)?;
+    let mut sides: BTreeMap<usize, Vec<LevelSide>> = BTreeMap::new();
+    for (level, side) in keyed.level_sides(rows.faces_of_first_and_last_row(), bands.index()) {
+        sides.entry(level).or_default().push(side);
     }
+    let mut narrow: BTreeMap<usize, Vec<[f64; 2]>> = bands.narrow_sites().into_iter().collect();
+    let mut level = 0;
+    while let Some(band) = bands.next(|level, traces| keyed.parts(level, traces)) {
+        for mut parts in band {
+            parts.sides = sides.remove(&level).unwrap_or_default();
+            parts.narrow = narrow.remove(&level).unwrap_or_default();
+            if !parts.is_empty() {
+                take(&parts)?;
+            }
+            level += 1;
+        }
+    }
+    Ok(bands.heights())
 }
 
 #[cfg(test)]
@@ -44,7 +51,7 @@ mod tests {
     use super::*;
     use crate::data::{Frame, Grid};
     use crate::terrain::contour::contours;
-    use crate::terrain::contour::parts::{BendFinder, LevelParts, join_level};
+    use crate::terrain::contour::parts::{BendFinder, join_level};
     use testkit::random::Random;
 
     /// Lakes, saddles, holes and staircases that go through the rows at which the raster is cut.
@@ -93,12 +100,16 @@ mod tests {
                     values: raster.values[row * width..(end + 1) * width].to_vec(),
                 };
                 let surface = GridSurface::of_rows(&rows, row).unwrap();
-                parts.push(ContourParts::of_rows(&surface, &levels).unwrap());
+                let take = |of_level: &LevelParts| {
+                    parts.push(of_level.clone());
+                    Ok(())
+                };
+                parts_of_rows(&surface, &levels, take).unwrap();
                 row = end;
             }
             let all = levels.within(f64::MIN, f64::MAX).unwrap();
             let of_level = |level: f64| -> Vec<LevelParts> {
-                let all = parts.iter().flat_map(|parts| parts.levels());
+                let all = parts.iter();
                 all.filter(|parts| parts.level() == level)
                     .cloned()
                     .collect()
