@@ -1,4 +1,4 @@
-"""`Voronoi` against scipy: ridges by their points, vertices within rounding; and where points are on one circle or sphere."""
+"""`Voronoi` against scipy: ridges by their points, vertices within rounding; points on one circle or sphere."""
 
 import itertools
 import pickle
@@ -187,7 +187,8 @@ def test_equal_points_share_a_region(scipy_spatial, ndim):
 
 def test_the_option_for_the_point_at_infinity_adds_an_empty_region():
     points = random_points(30, 2)
-    for options, incremental, has_empty in [(None, False, True), ("Qbb Qc Qz", False, True), ("Qbb Qc", False, False), (None, True, False)]:
+    cases = [(None, False, True), ("Qbb Qc Qz", False, True), ("Qbb Qc", False, False), (None, True, False)]
+    for options, incremental, has_empty in cases:
         diagram = Voronoi(points, incremental=incremental, qhull_options=options)
         assert len(diagram.regions) == 30 + has_empty
         assert ([] in diagram.regions) == has_empty

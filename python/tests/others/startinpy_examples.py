@@ -2,9 +2,9 @@
 
     python python/tests/others/startinpy_examples.py
 
-Nothing is fetched. `startinpy` is no drop-in's original: each of its methods is either called beside its counterpart here,
-on the same points, or listed with the reason why there is none. Exit code 1 if a result differs, or a method is in neither
-list.
+Nothing is fetched. `startinpy` is no drop-in's original: each of its methods is either called beside its counterpart
+here, on the same points, or listed with the reason why there is none. Exit code 1 if a result differs, or a method is
+in neither list.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ NOT_OFFERED = {
         "attributes are columns of the caller's arrays, which `points` follows"
     ),
     "remove is_vertex_removed collect_garbage has_garbage": "no vertex is removed in Python: build without it",
-    "update_vertex_z_value vertical_exaggeration": "change the heights in numpy: a triangulation does not depend on them",
+    "update_vertex_z_value vertical_exaggeration": "change heights in numpy: triangulations do not depend on them",
     "snap_tolerance": "points are merged if they are equal: round or thin the array before",
     "jump_and_walk": "searches begin near by themselves",
     "write_cityjson write_geojson": "not among the formats of `Tin.write`: `Tin.to_geopandas().to_file` writes GeoJSON",

@@ -6,8 +6,8 @@ Nothing is fetched: the graphs are the files in the installed package, and the s
 Wherever both give a result, the results are compared; what is refused, and what differs, is listed with the reason.
 Exit code 1 if anything else differs.
 
-Without refinement, triangles are the same, unless corners are cocircular: then their number and area are the same, and the
-smallest angle. With it, the bounds that were asked for hold, and the number of triangles is at
+Without refinement, triangles are the same, unless corners are cocircular: then their number and area are the same, and
+the smallest angle. With it, the bounds that were asked for hold, and the number of triangles is at
 most half as many again.
 """
 
@@ -53,7 +53,7 @@ NOT_OFFERED = {
 }
 DIFFERS = {
     r"box (p|pq|pqa0.2|penA)": "nothing encloses the holes: an error here, a dict without triangles there",
-    r"la pqa?": "segments meet at 4 to 14 degrees, where neither can reach 20: 5 more such triangles here, 10 fewer in all",
+    r"la pqa?": "segments meet at 4 to 14 degrees, where neither reaches 20: 5 more of these here, 10 fewer in all",
 }
 
 
