@@ -19,6 +19,7 @@ struct Scene {
     lines: Vec<Vec<[f64; 3]>>,
     bounds: Bounds,
     max_edge: Option<f64>,
+    leave_out_caps: bool,
 }
 
 const SIDE: u64 = 64;
@@ -51,6 +52,7 @@ impl Scene {
             lines,
             bounds,
             max_edge: random.pick(&[None, Some(6.0 * step), Some(12.0 * step)]),
+            leave_out_caps: random.below(2) == 0,
         }
     }
 
@@ -58,6 +60,7 @@ impl Scene {
         let mut builder = TinBuilder::default();
         builder.bounds = Some(self.bounds);
         builder.max_edge = self.max_edge;
+        builder.leave_out_caps = self.leave_out_caps;
         builder.add_owned_points(self.points.iter().copied().filter(|p| read(p)).collect());
         self.lines
             .iter()

@@ -99,6 +99,7 @@ pub use products::cells::{
 };
 pub use products::check::{CheckProduct, FlawKind, LocatedFlaw, check, surface_flaws};
 pub use products::contour::{ContourOptions, ContourProduct, contour, write_contours};
+pub use products::edge_limit::EdgeLimit;
 pub use products::elevation::{Heights, elevations};
 pub use products::facts::{
     Facts, LayerFacts, MeshFacts, PlaneFacts, PointFacts, RasterFacts, facts,
@@ -109,9 +110,10 @@ pub use products::points::{
     PointsProduct, PointsReport, PointsRequest, Withheld, read_points, write_points,
 };
 pub use products::surface::{
-    Model, Source, SurfaceProduct, SurfaceRequest, surface, triangles, write_mesh,
+    Model, Source, SurfaceProduct, SurfaceRequest, surface, surface_for, triangles, triangles_for,
+    write_mesh,
 };
-pub use products::tin::{BuildReport, EdgeLimit, ReplacedPoints, TinRequest};
+pub use products::tin::{BuildReport, ReplacedPoints, TinRequest};
 pub use request::input::{Input, MemoryPoints, STDIN};
 pub use request::lines::{
     FlatOptions, FlatRule, LineRequest, LineRole, LowerEdge, PerRecord, WallOptions,

@@ -60,6 +60,7 @@ mod point_rim;
 mod rasterize;
 mod regions;
 mod ridges;
+mod rim_rule;
 mod selection;
 mod soundness;
 mod thin;
@@ -87,6 +88,7 @@ pub use lines::{
 pub(crate) use near_lines::NearLines;
 pub(crate) use point_rim::deciding;
 pub use rasterize::{Canvas, CanvasBlock, Dem, DemOfParts};
+pub use rim_rule::RimRule;
 pub use selection::{Classes, Selection, SelectionReport};
 pub use soundness::{SurfaceFlaw, shape_flaws, surface_flaws};
 pub use tin::Tin;

@@ -1,16 +1,16 @@
-//! What a longest edge leaves of a triangulation.
+//! What the rule of the rim leaves of a triangulation.
 
-use super::linear::plan_distance;
+use super::rim_rule::RimRule;
 use crate::triangulation::ConstrainedDelaunay;
 use crate::triangulation::geometry::Terrain;
 use crate::triangulation::tds::{CellId, VertexId, ccw, cw};
 
-/// Leaves out the faces that can be reached from outside of the hull over unconstrained edges
-/// longer than `limit`: sets `inside`, by the numbers of cells, to false. Returns their number.
+/// Leaves out the faces that can be reached from outside of the hull over unconstrained edges that
+/// are open to them: sets `inside`, by the numbers of cells, to false. Returns their number.
 pub(super) fn peel(
     triangulation: &ConstrainedDelaunay<Terrain>,
     inside: &mut [bool],
-    limit: f64,
+    rule: RimRule,
 ) -> usize {
     let tds = triangulation.tds();
     let mut peeled = 0;
@@ -20,9 +20,11 @@ pub(super) fn peel(
     let mut exposed: Vec<(CellId, CellId)> = at_hull.collect();
     while let Some((cell, from)) = exposed.pop() {
         let i = tds.index_of_neighbor(cell, from);
-        let [a, b] = [ccw(i), cw(i)].map(|k| *triangulation.point(tds.vertex(cell, k)));
-        let open = inside[cell.index()] && !triangulation.is_constrained(cell, i);
-        if !open || plan_distance(a, b) <= limit {
+        if !inside[cell.index()] || triangulation.is_constrained(cell, i) {
+            continue;
+        }
+        let corners = tds.corners(cell).map(|vertex| *triangulation.point(vertex));
+        if !rule.is_open(&corners, i) {
             continue;
         }
         inside[cell.index()] = false;

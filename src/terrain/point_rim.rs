@@ -8,6 +8,7 @@
 //! where all edges around are short, where no way from outside leads.
 
 use super::peel::{finite_faces, peel};
+use super::rim_rule::RimRule;
 use super::window::{ReadWindow, uncertain};
 use crate::data::Bounds;
 use crate::triangulation::ConstrainedDelaunay;
@@ -34,9 +35,7 @@ impl PointRim {
             return None;
         }
         let mut inside = finite_faces(&triangulation);
-        if let Some(limit) = limit {
-            peel(&triangulation, &mut inside, limit);
-        }
+        peel(&triangulation, &mut inside, RimRule::longest(limit));
         inside.contains(&true).then_some(PointRim {
             triangulation,
             inside,
@@ -74,7 +73,8 @@ impl PointRim {
         window: &ReadWindow,
         limit: Option<f64>,
     ) -> usize {
-        uncertain(&self.triangulation, bounds, window, limit, &[])
+        let rule = RimRule::longest(limit);
+        uncertain(&self.triangulation, bounds, window, rule, &[])
     }
 }
 

@@ -17,6 +17,7 @@ use super::linear::{linear, plan_distance};
 use super::lines::kinds::LineKinds;
 use super::peel::{finite_faces, peel};
 use super::ridges::Contoured;
+use super::rim_rule::RimRule;
 use super::{TinReport, compact};
 
 /// A surface of triangles over points and breaklines.
@@ -146,9 +147,9 @@ impl Tin {
     }
 
     /// Leaves out the faces that can be reached from outside of the hull over unconstrained edges
-    /// longer than `limit`. Returns their number.
-    pub(super) fn peel(&mut self, limit: f64) -> usize {
-        peel(&self.triangulation, &mut self.inside, limit)
+    /// that are open to them. Returns their number.
+    pub(super) fn peel(&mut self, rule: RimRule) -> usize {
+        peel(&self.triangulation, &mut self.inside, rule)
     }
 
     /// Leaves out the faces with an unconstrained edge longer than `limit`, except those in water.

@@ -51,7 +51,7 @@ pub struct TinReport {
     pub triangles: usize,
     /// The box around the surface.
     pub extent: Bounds,
-    /// Triangles left out by `max_edge`.
+    /// Triangles left out at the rim, by `max_edge` and as caps.
     pub faces_beyond_max_edge: usize,
     /// Triangles left out by `max_edge_inside`, wherever they are.
     pub faces_with_long_edges: usize,
@@ -59,8 +59,8 @@ pub struct TinReport {
     /// [window](super::TinBuilder::window) may change. If there are none, the surface is that of
     /// all points, in every triangle and height.
     pub uncertain: usize,
-    /// Vertices left out of the surface because `max_edge` or `max_edge_inside` left out all of
-    /// their triangles.
+    /// Vertices left out of the surface because all of their triangles were left out at the rim or
+    /// by `max_edge_inside`.
     pub vertices_beyond_max_edge: usize,
     /// Triangles left out by the boundary, the bounds or holes.
     pub faces_clipped: usize,

@@ -7,6 +7,7 @@
 //! triangle that is reported as certain is certain. The opposite need not hold: the work is
 //! bounded, and what would take more is reported as not certain.
 
+use super::rim_rule::RimRule;
 use crate::data::Bounds;
 use crate::triangulation::ConstrainedDelaunay;
 use crate::triangulation::geometry::{Geometry, Terrain};
@@ -84,7 +85,7 @@ impl Unread {
 /// Counts the triangles that meet a box, or were cut along it, and that unread points may change.
 ///
 /// Also counted are triangles that connect triangles in the box to the rim over unconstrained edges
-/// longer than `max_edge`, and edges of the hull that unread points may change.
+/// that are open to them, and edges of the hull that unread points may change.
 ///
 /// # Complexity
 /// Linear in the number of triangles. Triangles near the border of what was read are counted as
@@ -94,7 +95,7 @@ pub(super) fn uncertain(
     triangulation: &ConstrainedDelaunay<Terrain>,
     bounds: &Bounds,
     window: &ReadWindow,
-    max_edge: Option<f64>,
+    rule: RimRule,
     cut: &[CellId],
 ) -> usize {
     let unread = window.unread();
@@ -135,11 +136,9 @@ pub(super) fn uncertain(
         }
         uncertain += usize::from(!judge.is_certain(cell));
         for i in (0..3).filter(|&i| !triangulation.is_constrained(cell, i)) {
-            let [p, q] = judge.ends(cell, i);
+            let corners = tds.corners(cell).map(|vertex| *triangulation.point(vertex));
             let beyond = tds.neighbor(cell, i);
-            if max_edge.is_some_and(|limit| (p[0] - q[0]).hypot(p[1] - q[1]) > limit)
-                && !std::mem::replace(&mut is_seen[beyond.index()], true)
-            {
+            if rule.is_open(&corners, i) && !std::mem::replace(&mut is_seen[beyond.index()], true) {
                 ahead.push(beyond);
             }
         }

@@ -1,6 +1,7 @@
 //! Heights between the vertices, as typed: `--method`.
 
 use super::{SLOPE, bytes, fixture, folder_with, run_in};
+use testkit::random::Random;
 
 #[test]
 fn each_method_makes_a_raster_of_its_own_and_linear_is_the_default() {
@@ -117,4 +118,36 @@ fn a_hillshade_of_a_tin_has_a_method_and_one_of_a_dem_has_none() {
         &["hillshade", "d.tif", "--method", "natural", "-o", "s.png"],
     )
     .fails(2, &["--method is for a TIN", "hint: leave it out"]);
+}
+
+/// Other methods than linear read vertices that no triangle within the bounds shows.
+#[test]
+fn cells_within_bounds_are_those_of_the_whole_by_any_method() {
+    let mut random = Random(7);
+    let points: Vec<String> = (0..3000)
+        .map(|_| {
+            let [x, y, z] = [10_000, 10_000, 2000].map(|most| random.below(most) as f64 / 100.0);
+            format!("{x} {y} {z}\n")
+        })
+        .collect();
+    let folder = folder_with(&[("a.xyz", &points.concat())]);
+    for window in ["48,48,52,52", "70,20,72,23"] {
+        for method in ["linear", "nearest", "natural", "laplace", "smooth", "idw"] {
+            let dem = |name: &str, options: &[&str]| {
+                let shared = ["dem", "a.xyz", "--te", window, "--resolution", "0.1"];
+                let of_method = ["--max-edge", "4", "--method", method, "-o", name];
+                run_in(&folder, &[&shared[..], &of_method, options].concat())
+            };
+            let (part, whole) = (format!("{window}{method}.tif"), format!("{window}.tif"));
+            dem(&part, &["--bounds", window]).works(&[match method {
+                "linear" => "outside of the bounds are used",
+                _ => "all points are used",
+            }]);
+            dem(&whole, &["--overwrite"]).works(&[]);
+            assert!(
+                bytes(&folder, &part) == bytes(&folder, &whole),
+                "{window} {method}"
+            );
+        }
+    }
 }

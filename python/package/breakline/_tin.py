@@ -574,9 +574,11 @@ def tin(
     boundary : as breaklines, optional
         Polygons that the surface is clipped to; arrays (k, 2) or (k, 3) are closed rings.
     bounds : (xmin, ymin, xmax, ymax), optional
-        A rectangle to clip to. Points around it are used, too.
+        A rectangle to clip to. Points around it are used, too; for other methods than ``"linear"``, they may be too few,
+        and a warning says so.
     max_edge : float, "auto" or "none", optional
-        Longest edge at the rim; 100 metres by default.
+        Longest edge at the rim; by default 100 metres, and caps (triangles with an angle over 165 degrees) are left out
+        there, too.
     max_edge_inside : float, optional
         Longest edge anywhere: triangles with longer ones leave a hole.
     classes : int, str or list of these, optional

@@ -167,10 +167,7 @@ fn print_lines(built: &BuildReport, console: &Console) {
 
 fn left_out(tin: &TinReport) -> String {
     listed(&[
-        (
-            tin.faces_beyond_max_edge,
-            "with long edges at the rim left out",
-        ),
+        (tin.faces_beyond_max_edge, "at the rim left out"),
         (tin.faces_with_long_edges, "with long edges left out"),
         (tin.faces_clipped, "clipped"),
         (tin.faces_cut, "cut"),

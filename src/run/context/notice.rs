@@ -156,10 +156,14 @@ pub enum Notice {
     },
     /// Triangles at the rim with longer edges are left out.
     EdgeLimit(Quantity),
+    /// By default, triangles at the rim with longer edges are left out, and caps.
+    StandardEdgeLimit(Quantity),
     /// No triangle at the rim is left out.
     NoEdgeLimit,
     /// Points are used up to this distance from the bounds; `None` if all points are used.
     BoundsBuffer(Option<Quantity>),
+    /// Points far outside of the bounds are not used, and a method other than linear is.
+    PartForLinear,
     /// Files were not read, because they state that all of their points lie outside of the bounds.
     FilesOutside {
         /// How many.
@@ -383,6 +387,7 @@ impl Notice {
             | Notice::LakesJoined { .. }
             | Notice::WatersEnded { .. }
             | Notice::EdgeLimit(_)
+            | Notice::StandardEdgeLimit(_)
             | Notice::NoEdgeLimit
             | Notice::BoundsBuffer(_)
             | Notice::FilesOutside { .. }
@@ -402,6 +407,7 @@ impl Notice {
             | Notice::PointsWithoutReturnUsed(_)
             | Notice::AllClassesUsed
             | Notice::Transform(_)
+            | Notice::PartForLinear
             | Notice::FarApart(..)
             | Notice::BreaklinesApart(_)
             | Notice::BreaklinesBeyond(_)

@@ -139,13 +139,17 @@ fn text(notice: &Notice) -> Wording {
         }
         Notice::LakesJoined { lakes, name, to, by } => lakes_joined(*lakes, name, to, by).into(),
         Notice::WatersEnded { waters, name } => waters_ended(*waters, name),
-        Notice::EdgeLimit(length) => edge_limit(length),
+        Notice::EdgeLimit(length) => edge_limit(length, ""),
+        Notice::StandardEdgeLimit(length) => {
+            edge_limit(length, ", and those with an angle over 165 degrees")
+        }
         Notice::NoEdgeLimit => no_edge_limit(),
         Notice::BoundsBuffer(buffer) => bounds_buffer(buffer.as_ref()).into(),
         Notice::FilesOutside { left_out, files, buffer } => {
             files_outside(*left_out, *files, buffer.as_ref()).into()
         }
         Notice::Triangulated(time) => format!("triangulated in {:.2} s", time.as_secs_f64()).into(),
+        Notice::PartForLinear => part_for_linear(),
         Notice::Uncertain(count, buffer) => uncertain(*count, buffer).into(),
         Notice::CrossingsRounded { unit, on_grid } => rounded(unit, *on_grid).into(),
         Notice::EdgeLimitUnusual { limit, spacing } => unusual_edge_limit(limit, spacing),
@@ -354,9 +358,9 @@ fn waters_ended(waters: usize, name: &str) -> Wording {
     ]
 }
 
-fn edge_limit(length: &Quantity) -> Wording {
+fn edge_limit(length: &Quantity, others: &str) -> Wording {
     wording![
-        format!("triangles at the rim with edges over {length} are left out ("),
+        format!("triangles at the rim with edges over {length} are left out{others} ("),
         Setting::MaxEdge,
         ")"
     ]
@@ -387,6 +391,15 @@ fn bounds_buffer(buffer: Option<&Quantity>) -> String {
         Some(buffer) => format!("points up to {buffer} outside of the bounds are used"),
     };
     format!("{how_far}, so that the surface inside is the same as with all points")
+}
+
+fn part_for_linear() -> Wording {
+    wording![
+        "points far outside of the bounds were left out, because linear heights do not depend on them; near the bounds, heights by this method (",
+        Setting::Method,
+        ") can differ from those of all points: build the surface for it, or without ",
+        Setting::Bounds
+    ]
 }
 
 fn files_outside(left_out: usize, files: usize, buffer: Option<&Quantity>) -> String {

@@ -3,7 +3,7 @@
 use super::task_file::Block;
 use crate::data::EdgeKind;
 use crate::terrain::tiles::{
-    Gate, Residual, ResidualEdge, SubConstraint, TileTriangle, TileVertex, Waiting,
+    Gate, GateSide, Residual, ResidualEdge, SubConstraint, TileTriangle, TileVertex, Waiting,
 };
 
 pub(super) fn put_u32(to: &mut Vec<u8>, value: u32) {
@@ -213,9 +213,15 @@ pub(super) fn to_residual(bytes: &[u8]) -> Option<Residual> {
 /// Returns the bytes of the gates of what waits, and of its triangles.
 pub(super) fn of_waiting(waiting: &Waiting) -> [Vec<u8>; 2] {
     let (mut gates, mut triangles) = (Vec::new(), Vec::new());
-    for Gate { edge, group } in &waiting.gates {
+    for Gate { edge, side } in &waiting.gates {
         edge.iter().for_each(|&end| put_u64(&mut gates, end));
-        put_u32(&mut gates, *group);
+        let (kind, group) = match side {
+            GateSide::Outside => (0, 0),
+            GateSide::Open(group) => (1, *group),
+            GateSide::Closed(group) => (2, *group),
+        };
+        gates.push(kind);
+        put_u32(&mut gates, group);
     }
     for (triangle, group) in waiting.triangles.iter().zip(&waiting.group_of) {
         put_waiting(&mut triangles, triangle, *group);
@@ -233,15 +239,23 @@ pub(super) fn put_waiting(to: &mut Vec<u8>, triangle: &TileTriangle, number: u32
     put_u32(to, number);
 }
 
-/// Returns the gates with these bytes; `None` if they are not those of gates.
-pub(super) fn to_gates(bytes: &[u8]) -> Option<Vec<Gate>> {
+/// The bytes of a gate.
+const GATE_BYTES: usize = 2 * 8 + 1 + 4;
+
+/// Returns the gates with these bytes, of which there are some groups; `None` if they are not those
+/// of gates.
+pub(super) fn to_gates(bytes: &[u8], groups: u32) -> Option<Vec<Gate>> {
     let mut reader = NumberReader::new(bytes);
-    let mut gates = Vec::with_capacity(bytes.len() / 20);
+    let mut gates = Vec::with_capacity(bytes.len() / GATE_BYTES);
     while !reader.is_empty() {
-        gates.push(Gate {
-            edge: [reader.u64()?, reader.u64()?],
-            group: reader.u32()?,
-        });
+        let edge = [reader.u64()?, reader.u64()?];
+        let side = match (reader.take()?, reader.u32()?) {
+            ([0], 0) => GateSide::Outside,
+            ([1], group) if group < groups => GateSide::Open(group),
+            ([2], group) if group < groups => GateSide::Closed(group),
+            _ => return None,
+        };
+        gates.push(Gate { edge, side });
     }
     Some(gates)
 }

@@ -7,7 +7,8 @@
 //! 2. If there are *lines*, one task arranges them, with the points next to them.
 //! 3. Each *step* triangulates a tile, or merges what tiles hand up, and draws the triangles that
 //!    are final; see [`tiles`](crate::terrain::tiles).
-//! 4. The *rim* is decided: triangles with edges over the limit wait until all others are known.
+//! 4. The *rim* is decided: triangles with edges over the limit, and caps, wait until all others
+//!    are known.
 //! 5. Triangles that clip lines come near are *cut*, all of them together.
 //! 6. The product is composed of the cells that the tasks have drawn, joined from their contours,
 //!    or consists of their triangulations.

@@ -1,8 +1,9 @@
 //! What tiles cannot do yet.
 
 use crate::error::{Error, Result, Setting, Wording, wording};
+use crate::run::products::edge_limit::EdgeLimit;
 use crate::run::products::surface::{Source, SurfaceRequest};
-use crate::run::products::tin::{EdgeLimit, ReplacedPoints, TinRequest};
+use crate::run::products::tin::{ReplacedPoints, TinRequest};
 use crate::run::sources::systems::SystemOptions;
 use crate::run::verbs::WriteRequest;
 use crate::terrain::Method;

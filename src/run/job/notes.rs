@@ -12,7 +12,8 @@ use crate::run::context::notice::Notice;
 use crate::run::context::units::Units;
 use crate::run::context::{Context, Journal};
 use crate::run::lines::notes::OtherHeights;
-use crate::run::products::tin::{TinRequest, mean_distance};
+use crate::run::products::edge_limit::mean_distance;
+use crate::run::products::tin::TinRequest;
 use crate::run::request::lines::LineRole;
 use crate::run::sources::extents;
 use crate::run::verbs::{Keeps, Verb};
@@ -39,7 +40,7 @@ impl Plan {
         let paths: Vec<_> = self.files.iter().map(|file| file.path.as_path()).collect();
         let extents: Vec<Bounds> = self.files.iter().map(|file| file.bounds()).collect();
         extents::compare_files(&paths, &extents, &units, journal);
-        journal.add(request.max_edge.notice(&units));
+        journal.add(request.max_edge.notice(self.max_edge, &units));
         let unusual = request.max_edge.unusual(self.spacing(), &units);
         unusual.into_iter().for_each(|notice| journal.add(notice));
         if request.bounds.is_some() {

@@ -148,10 +148,10 @@ impl Job {
                 ")"
             ]),
             _ => Error::format(format!(
-                "no triangle is left: {beyond_max_edge} have edges over the limit at the rim"
+                "no triangle is left: {beyond_max_edge} are left out at the rim, with long edges or as flat ones"
             ))
             .cure(wording![
-                "allow longer edges with ",
+                "allow them with ",
                 Setting::MaxEdge.number("LENGTH"),
                 " or ",
                 Setting::MaxEdge.text("none")

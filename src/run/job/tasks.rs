@@ -22,9 +22,9 @@ use crate::run::sources::open;
 use crate::run::verbs::Keeps;
 use crate::terrain::contour::parts::{ContourCollector, LevelParts};
 use crate::terrain::tiles::{
-    self, ClipSide, LongEdges, Rim, TileClip, TileTriangle, TinPart, Work, has_long_edge,
+    self, AtRim, ClipSide, Rim, TileClip, TileTriangle, TinPart, Work, has_long_edge,
 };
-use crate::terrain::{Classes, PartCell, Selection, deciding, one_per_site};
+use crate::terrain::{Classes, PartCell, RimRule, Selection, deciding, one_per_site};
 
 /// Points that are read before they are divided among tiles: 24 bytes each, and as much again while
 /// they are sorted.
@@ -392,14 +392,15 @@ impl Job {
         run: impl FnOnce(&mut dyn FnMut(TileTriangle)) -> Result<(tiles::Residual, Option<TinPart>)>,
     ) -> Result<TaskFacts> {
         let mut kept = KeptTriangles::new(self, writer, self.clip(context)?)?;
-        let mut long = self.plan.max_edge.map(LongEdges::new);
+        let mut at_rim = self.rim_rule().map(AtRim::new);
         let mut failed = Ok(());
         let mut over_skipped = 0_u64;
         let (residual, part) = run(&mut |triangle| {
             if holes.meet(triangle.corners.map(|corner| corner.position)) {
                 over_skipped += 1;
                 kept.add_removed(&triangle);
-            } else if long.as_mut().is_some_and(|long| long.take(&triangle)) {
+                at_rim.iter_mut().for_each(|rim| rim.add_outside(&triangle));
+            } else if at_rim.as_mut().is_some_and(|rim| rim.take(&triangle)) {
                 kept.wait();
             } else if failed.is_ok() {
                 failed = kept.add(&triangle, writer);
@@ -412,8 +413,8 @@ impl Job {
         writer.begin("residual");
         writer.put(&bytes::of_residual(&residual))?;
         facts.handed_up = residual.vertices.len() as u64;
-        if let Some(long) = long {
-            let waiting = long.finish();
+        if let Some(at_rim) = at_rim {
+            let waiting = at_rim.finish();
             let [gates, triangles] = bytes::of_waiting(&waiting);
             writer.begin("gates");
             writer.put(&gates)?;
@@ -437,9 +438,12 @@ impl Job {
             let mut file = sources.open(self.task_of_step(step))?;
             let bytes = file.section("gates")?;
             let groups = file.facts.groups;
-            let gates = bytes::to_gates(&bytes)
-                .filter(|gates| gates.iter().all(|gate| gate.group < groups));
+            let gates = bytes::to_gates(&bytes, groups);
             rim.add(groups, &gates.ok_or_else(|| file.damaged())?);
+            if self.steps[step].tile.is_plane() {
+                let root = bytes::to_residual(&file.section("residual")?);
+                rim.add_outside(&root.ok_or_else(|| file.damaged())?);
+            }
         }
         let mut removed = 0_u64;
         let mut kept = KeptTriangles::new(self, writer, self.clip(context)?)?;
@@ -463,6 +467,14 @@ impl Job {
             kept: kept.finish(None, writer)?,
             removed,
             ..TaskFacts::default()
+        })
+    }
+
+    /// The rule of the rim; `None` if nothing is left out there.
+    fn rim_rule(&self) -> Option<RimRule> {
+        self.plan.max_edge.map(|limit| RimRule {
+            max_edge: Some(limit),
+            opens_caps: self.request.max_edge.leaves_out_caps(),
         })
     }
 

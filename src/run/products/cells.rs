@@ -138,6 +138,10 @@ fn heights<'a>(
     journal: &Journal,
 ) -> Result<HeightSource<'a>> {
     journal.context.check()?;
+    product
+        .unread_by(*method)
+        .into_iter()
+        .for_each(|notice| journal.add(notice));
     if let Model::Parts(parts) = &product.model
         && *method == Method::Linear
     {

@@ -44,6 +44,9 @@ pub fn elevations(
         work.end()?;
         return Ok(heights);
     }
+    if let Some(notice) = product.unread_by(method) {
+        context.monitor.notice(&notice);
+    }
     let interpolant = Interpolant::new(product.triangles()?, method)?;
     heights(product, interpolant, positions, context)
 }
@@ -148,6 +151,9 @@ impl Heights {
         let interpolant = match self.known(method) {
             Some(prepared) => Interpolant::of_prepared(surface, prepared),
             None => {
+                if let Some(notice) = product.unread_by(method) {
+                    context.monitor.notice(&notice);
+                }
                 let interpolant = Interpolant::new(surface, method)?;
                 self.lock().push((method, interpolant.prepared()));
                 interpolant

@@ -4,6 +4,7 @@ pub(crate) mod cells;
 pub(crate) mod check;
 pub(crate) mod contour;
 mod contour_rows;
+pub(crate) mod edge_limit;
 pub(crate) mod elevation;
 pub(crate) mod facts;
 pub(crate) mod frame;

@@ -105,6 +105,13 @@ impl Reach {
         }
     }
 
+    /// Returns true if points outside of the bounds are not used.
+    pub(super) fn leaves_out(&self, points: &SelectionReport, files_left_out: usize) -> bool {
+        self.bounds.is_some()
+            && self.buffer.is_finite()
+            && (points.outside > 0 || files_left_out > 0)
+    }
+
     /// Adds notices about the buffer, and about files that were left out.
     pub(super) fn note(
         &self,
@@ -116,10 +123,9 @@ impl Reach {
         if self.bounds.is_none() {
             return;
         }
-        let are_all_used = points.outside == 0 && left_out == 0;
-        let buffer = Some(self.buffer)
-            .filter(|buffer| buffer.is_finite() && !are_all_used)
-            .map(|buffer| units.length(buffer));
+        let buffer = self
+            .leaves_out(points, left_out)
+            .then(|| units.length(self.buffer));
         if left_out > 0 {
             journal.add(Notice::FilesOutside {
                 left_out,

@@ -17,7 +17,7 @@ use crate::run::sources::open::{self, Content, content};
 use crate::run::sources::raster_file::RasterFile;
 use crate::run::sources::systems::{self, Degrees, Role, Stated, SystemOptions};
 use crate::run::sources::tin_parts::TinParts;
-use crate::terrain::{CompactTin, Tin};
+use crate::terrain::{CompactTin, Method, Tin};
 
 /// The surface that a verb works on, and its coordinate system.
 #[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
@@ -156,6 +156,13 @@ impl SurfaceProduct {
         }
     }
 
+    /// Returns a notice if a method reads vertices that were left out, because linear heights
+    /// within the bounds do not depend on them.
+    pub(super) fn unread_by(&self, method: Method) -> Option<Notice> {
+        let is_part = self.built.as_ref().is_some_and(|built| built.is_part);
+        (is_part && method != Method::Linear).then_some(Notice::PartForLinear)
+    }
+
     /// Returns the coordinate system, if it is known.
     pub fn crs(&self) -> Option<&Crs> {
         match &self.model {
@@ -228,10 +235,24 @@ pub fn write_mesh(
 /// # Errors
 /// If something cannot be read or is refused, or the run is canceled.
 pub fn surface(request: &SurfaceRequest, context: &Context) -> Result<SurfaceProduct> {
+    surface_for(Method::Linear, request, context)
+}
+
+/// Like [`surface`], for heights by a method: within bounds they are those of all points. Other
+/// methods than [`Method::Linear`] read vertices that no triangle within the bounds shows, so that
+/// all points are used.
+///
+/// # Errors
+/// Those of [`surface`].
+pub fn surface_for(
+    method: Method,
+    request: &SurfaceRequest,
+    context: &Context,
+) -> Result<SurfaceProduct> {
     let journal = Journal::new(context);
     let (model, built) = match &request.source {
         Source::Points(points) => {
-            let (tin, report) = tin::build(points, &request.systems, &journal)?;
+            let (tin, report) = tin::build(points, &request.systems, method, &journal)?;
             (Model::Tin(Box::new(tin)), Some(Box::new(report)))
         }
         Source::Mesh(path) => {
@@ -263,6 +284,18 @@ pub fn surface(request: &SurfaceRequest, context: &Context) -> Result<SurfacePro
 /// # Errors
 /// Those of [`surface`], and if the input is a raster, which is not read then.
 pub fn triangles(request: &SurfaceRequest, context: &Context) -> Result<SurfaceProduct> {
+    triangles_for(Method::Linear, request, context)
+}
+
+/// Like [`surface_for`], for verbs that need triangles.
+///
+/// # Errors
+/// Those of [`triangles`].
+pub fn triangles_for(
+    method: Method,
+    request: &SurfaceRequest,
+    context: &Context,
+) -> Result<SurfaceProduct> {
     if let Source::Raster(path) = &request.source {
         return Err(
             Error::usage("the input is a raster; points, a .tin or a .ply are needed")
@@ -270,7 +303,7 @@ pub fn triangles(request: &SurfaceRequest, context: &Context) -> Result<SurfaceP
                 .cure("`contour` and `hillshade` take rasters"),
         );
     }
-    surface(request, context)
+    surface_for(method, request, context)
 }
 
 /// Reads a raster, in the coordinate system that it states or that is assigned. A large one stays

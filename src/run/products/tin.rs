@@ -5,6 +5,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use super::edge_limit::{EdgeLimit, mean_distance};
 use super::reach::{Reach, grown};
 use crate::crs::Crs;
 use crate::data::{Bounds, Columns, Layer, Return};
@@ -26,26 +27,21 @@ use crate::run::sources::point_files::{FilesRead, PointFiles};
 use crate::run::sources::systems::{self, SystemOptions, Systems};
 use crate::run::sources::transforms::Transforms;
 use crate::terrain::{
-    Classes, CrossingRule, DuplicateRule, ReadWindow, Selection, SelectionReport, Tin, TinBuilder,
-    TinReport,
+    Classes, CrossingRule, DuplicateRule, Method, ReadWindow, Selection, SelectionReport, Tin,
+    TinBuilder, TinReport,
 };
 use crate::triangulation::OnCrossing;
 
-/// The default longest edge at the rim, and width of the buffer around bounds.
-const DEFAULT_MAX_EDGE_METRES: f64 = 100.0;
-
 /// The default tolerance of heights where breaklines meet: the accuracy of a survey of edges.
 const DEFAULT_CROSSING_TOLERANCE_METRES: f64 = 0.01;
-
-/// Lines may reach so many mean distances between points beyond these without a notice.
-const USUAL_REACH: f64 = 2.0;
 
 /// The points and lines that a TIN is built from, and the options of building it. Lengths are in
 /// the units of the coordinate system of the result, heights in its units of heights.
 ///
 /// The default has no input, and these options: ground points are used (class 2; all points if no
-/// point has it), triangles at the rim with edges over 100 metres are left out, the lowest of
-/// several heights is used, and breaklines are split where they cross.
+/// point has it), triangles at the rim with edges over 100 metres are left out, and flat ones
+/// ([`EdgeLimit::Standard`]), the lowest of several heights is used, and breaklines are split where
+/// they cross.
 #[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
 pub struct TinRequest {
     /// The points. Their order makes no difference, except for [`DuplicateRule::First`] and `Last`.
@@ -194,88 +190,6 @@ fn refuse_other_kinds(wanted: Wording, layers: &[Input<Layer>]) -> Result<()> {
     Ok(())
 }
 
-/// The longest edge that a triangle at the rim may have in plan. Triangles that can be reached from
-/// outside across longer edges are left out; breaklines are not crossed.
-#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
-pub enum EdgeLimit {
-    /// 100 metres, in units of the coordinate system; 100 units if none is known.
-    #[default]
-    Standard,
-    /// No limit: the whole convex hull is kept.
-    Unlimited,
-    /// 100 times the mean distance between points, from the number of all points and the extents of
-    /// all inputs.
-    Auto,
-    /// This length, in the units of the coordinate system.
-    Length(f64),
-}
-
-impl EdgeLimit {
-    /// Returns the length in the units of the coordinate system. `None` means that there is no
-    /// limit, or that it is derived from the points.
-    pub(crate) fn length(self, units: &Units) -> Option<f64> {
-        match self {
-            EdgeLimit::Unlimited | EdgeLimit::Auto => None,
-            EdgeLimit::Length(length) => Some(length),
-            EdgeLimit::Standard => Some(units.of_metres(DEFAULT_MAX_EDGE_METRES)),
-        }
-    }
-
-    /// Returns the notice about the limit.
-    pub(crate) fn notice(self, units: &Units) -> Notice {
-        note_of_limit(self.length(units), units)
-    }
-
-    /// Returns how far lines may extend the surface beyond the points without a notice.
-    pub(crate) fn usual_reach(self, spacing: Option<f64>, units: &Units) -> f64 {
-        match (self, spacing) {
-            (EdgeLimit::Length(length), _) => length,
-            (_, Some(spacing)) => USUAL_REACH * spacing,
-            (_, None) => self.buffer(units),
-        }
-    }
-
-    /// Returns how far outside of bounds points are used at first, and how far lines may be from
-    /// the points without a notice.
-    pub(crate) fn buffer(self, units: &Units) -> f64 {
-        self.length(units)
-            .unwrap_or_else(|| units.of_metres(DEFAULT_MAX_EDGE_METRES))
-    }
-
-    /// Returns a notice if the default looks wrong for points with this mean distance.
-    pub(crate) fn unusual(self, spacing: Option<f64>, units: &Units) -> Option<Notice> {
-        let (EdgeLimit::Standard, Some(limit), Some(spacing)) = (self, self.length(units), spacing)
-        else {
-            return None;
-        };
-        let is_usual = USUAL_SPACINGS.contains(&(limit / spacing));
-        (!is_usual).then(|| Notice::EdgeLimitUnusual {
-            limit: units.length(limit),
-            spacing: units.length(spacing),
-        })
-    }
-}
-
-/// Returns the mean distance between points, from the number of all points and the extents of all
-/// inputs; `None` if these have no area.
-pub(crate) fn mean_distance(read: u64, extents: impl IntoIterator<Item = Bounds>) -> Option<f64> {
-    let area = |b: Bounds| {
-        if b.is_empty() {
-            0.0
-        } else {
-            (b.max[0] - b.min[0]) * (b.max[1] - b.min[1])
-        }
-    };
-    let area: f64 = extents.into_iter().map(area).sum();
-    Some((area / read as f64).sqrt()).filter(|spacing| spacing.is_normal())
-}
-
-fn note_of_limit(limit: Option<f64>, units: &Units) -> Notice {
-    limit.map_or(Notice::NoEdgeLimit, |length| {
-        Notice::EdgeLimit(units.length(length))
-    })
-}
-
 /// The report of a TIN that was built: its input and what was done with it.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
@@ -296,6 +210,8 @@ pub struct BuildReport {
     pub duplicates: DuplicateRule,
     /// Names of the breaklines, by their positions in [`TinReport::crossing_heights`].
     pub line_names: LineNames,
+    /// True if points far outside of the bounds are not used: linear heights do not depend on them.
+    pub is_part: bool,
 }
 
 impl BuildReport {
@@ -312,10 +228,11 @@ impl BuildReport {
     }
 }
 
-/// Reads the points and lines of a request and builds the TIN.
+/// Reads the points and lines of a request and builds the TIN, for heights by a method.
 pub(crate) fn build(
     request: &TinRequest,
     options: &SystemOptions,
+    method: Method,
     journal: &Journal,
 ) -> Result<(Tin, BuildReport)> {
     request.check_bounds()?;
@@ -369,9 +286,7 @@ pub(crate) fn build(
         paths: request.points.iter().map(Input::path).collect(),
     };
     let is_read_once = request.points.iter().any(Input::is_read_once);
-    // Where waters end, and how high ridges are, depends on points that no triangle shows.
-    let reaches_far = request.lines.has_water() || request.lines.add_ridges;
-    let buffer = if is_read_once || reaches_far {
+    let buffer = if is_read_once || reaches_far(request, method) {
         f64::INFINITY
     } else {
         rim.buffer
@@ -393,6 +308,7 @@ pub(crate) fn build(
     }
     let report = BuildReport {
         sources: request.points.len(),
+        is_part: reach.leaves_out(&points, left_out),
         points,
         columns: files.columns(),
         lines: inputs,
@@ -402,6 +318,12 @@ pub(crate) fn build(
         line_names: names,
     };
     Ok((tin, report))
+}
+
+/// Returns true if the surface depends on points that no triangle shows: where waters end, how high
+/// ridges are, and what a method makes of the vertices.
+fn reaches_far(request: &TinRequest, method: Method) -> bool {
+    request.lines.has_water() || request.lines.add_ridges || method != Method::Linear
 }
 
 /// What stays the same where points are read and triangulated several times.
@@ -557,6 +479,7 @@ impl Building<'_> {
     ) -> Result<(Result<Tin>, Vec<[f64; 3]>)> {
         let mut builder = self.builder.clone();
         builder.max_edge = rim.max_edge;
+        builder.leave_out_caps = rim.limit.leaves_out_caps();
         builder.window = reach.window().map(|read| ReadWindow {
             read,
             all: files.extents.clone(),
@@ -624,10 +547,6 @@ pub(crate) fn default_tolerance(units: &Units) -> f64 {
 /// of 60 to 80 mean distances: under buildings and over water.
 const AUTO_EDGE_SPACINGS: f64 = 100.0;
 
-/// The default longest edge looks wrong if it is less than so many, or more than so many, mean
-/// distances between points.
-const USUAL_SPACINGS: std::ops::Range<f64> = 10.0..1000.0;
-
 /// The limits of the surface where nothing was measured.
 struct Rim {
     limit: EdgeLimit,
@@ -653,7 +572,7 @@ impl Rim {
     }
 
     fn note_limit(&self, units: &Units, journal: &Journal) {
-        journal.add(note_of_limit(self.max_edge, units));
+        journal.add(self.limit.notice(self.max_edge, units));
     }
 
     /// Finds the mean distance between points, and the limit that follows from it.
@@ -708,11 +627,15 @@ fn no_triangle(report: &TinReport, request: &TinRequest, rim: &Rim, units: &Unit
     match rim.max_edge {
         Some(length) if *long > 0 => {
             let length = units.length(length);
+            let or_caps = match request.max_edge.leaves_out_caps() {
+                true => " or are flat",
+                false => "",
+            };
             Error::format(format!(
-                "no triangle is left: {long} have edges over {length} at the rim, {clipped} are clipped"
+                "no triangle is left: {long} have edges over {length}{or_caps} at the rim, {clipped} are clipped"
             ))
             .cure(wording![
-                "allow longer edges with ",
+                "allow them with ",
                 Setting::MaxEdge.number("LENGTH"),
                 " or ",
                 Setting::MaxEdge.text("none")

@@ -58,7 +58,7 @@ impl Verb for HillshadeOptions {
     }
 
     fn surface(&self, request: &SurfaceRequest, context: &Context) -> Result<SurfaceProduct> {
-        surface::surface(request, context)
+        surface::surface_for(self.method, request, context)
     }
 
     fn write(

@@ -106,9 +106,9 @@ pub trait Verb: Any + Debug + Send + Sync {
     /// Builds or reads the surface.
     ///
     /// # Errors
-    /// Those of [`triangles`](surface::triangles).
+    /// Those of [`triangles_for`](surface::triangles_for).
     fn surface(&self, request: &SurfaceRequest, context: &Context) -> Result<SurfaceProduct> {
-        surface::triangles(request, context)
+        surface::triangles_for(self.method(), request, context)
     }
 
     /// Writes what is made of a surface in memory.

@@ -200,9 +200,7 @@ impl Build<'_> {
         let (builder, report) = (self.builder.clone(), self.report.clone());
         let (flat, disputed) = self.triangulate()?;
         let mut inside = finite_faces(&flat);
-        if let Some(limit) = builder.max_edge {
-            peel(&flat, &mut inside, limit);
-        }
+        peel(&flat, &mut inside, builder.rim_rule());
         let kind_of = |line: LineId| builder.line_kinds.get(line.index()).copied();
         let vertices = Contoured::new(&flat, &inside, kind_of).ridge_vertices();
         go_on(self.cancel)?;
@@ -350,9 +348,7 @@ impl Build<'_> {
             ..
         } = self;
         let all = tin.triangulation.vertex_count();
-        if let Some(limit) = builder.max_edge {
-            report.faces_beyond_max_edge = tin.peel(limit);
-        }
+        report.faces_beyond_max_edge = tin.peel(builder.rim_rule());
         if let Some(limit) = builder.max_edge_inside {
             report.faces_with_long_edges = tin.leave_out_long(limit, is_water);
         }
@@ -376,7 +372,7 @@ impl Build<'_> {
                 &tin.triangulation,
                 bounds,
                 window,
-                builder.max_edge,
+                builder.rim_rule(),
                 tin.replaced(),
             );
             report.uncertain += builder.ended.map_or(0, |ended| ended.uncertain);

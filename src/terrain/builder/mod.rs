@@ -13,7 +13,7 @@ use super::lines::areas::{Replaced, Water, WaterLevel};
 use super::lines::kinds::Precedence;
 use super::lines::narrowest;
 use super::lines::overlap::{self, Marks};
-use super::{CrossingRule, DuplicateRule, Flat, ReadWindow, River, Wall, WaterOverlap};
+use super::{CrossingRule, DuplicateRule, Flat, ReadWindow, RimRule, River, Wall, WaterOverlap};
 use crate::crs::Crs;
 use crate::data::{Bounds, EdgeKind};
 use crate::triangulation::OnCrossing;
@@ -64,6 +64,10 @@ pub struct TinBuilder {
     /// The longest edge (in plan, in the units of the data) anywhere: faces with a longer
     /// unconstrained edge are left out, except in water. `None` keeps them.
     pub max_edge_inside: Option<f64>,
+    /// True to leave out caps at the rim, too: faces with an angle over 165 degrees that can be
+    /// reached from outside over their longest edge, see [`RimRule`]. They follow the hull of the
+    /// points, however long or short they are, and not the ground.
+    pub leave_out_caps: bool,
     /// True to add vertices on ridges and valleys, where triangles between contours would be flat.
     /// Their heights follow from the contours around them.
     pub add_ridges: bool,
@@ -399,6 +403,14 @@ impl TinBuilder {
     /// them.
     pub fn add_boundary(&mut self, rings: &[Vec<[f64; 2]>]) {
         self.boundaries.push(rings.to_vec());
+    }
+
+    /// The rule of the rim of the surface.
+    pub(crate) fn rim_rule(&self) -> RimRule {
+        RimRule {
+            max_edge: self.max_edge,
+            opens_caps: self.leave_out_caps,
+        }
     }
 
     /// Takes what the surface is cut along; the bounds stay.

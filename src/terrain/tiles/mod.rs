@@ -11,7 +11,7 @@
 //!    and the *seams*, the edges between triangles that are final and others.
 //! 3. A [`merge`] triangulates the vertices of several residuals, takes away what lies on the final
 //!    side of their seams, and goes on as a leaf does, with the union of the tiles.
-//! 4. At the root all points are known, and every triangle is final.
+//! 4. At the root all points are known, and every triangle is final. What is left is the outside.
 //!
 //! *Why.* A triangle is in the triangulation of all points if and only if no other point is in
 //! conflict with it, and a point in conflict lies in the closed disk, ties included. A vertex is
@@ -76,10 +76,10 @@ mod layout;
 mod lines;
 #[cfg(test)]
 mod lines_tests;
-mod long_edges;
 mod node;
 mod part;
 mod residual;
+mod rim;
 mod sub_constraint;
 #[cfg(test)]
 mod tests;
@@ -90,10 +90,10 @@ mod triangle;
 
 pub use clip::{ClipSide, TileClip};
 pub use layout::{Node, Spread, TileLayout, TileStep, Work};
-pub use long_edges::{EdgeKey, Gate, LongEdges, Rim, Waiting, has_long_edge};
 pub use node::{leaf, leaf_with_part, merge, merge_with_part};
 pub use part::TinPart;
 pub use residual::{Residual, ResidualEdge};
+pub use rim::{AtRim, EdgeKey, Gate, GateSide, Rim, Waiting, has_long_edge};
 pub use sub_constraint::{SubConstraint, rounding_reach};
 pub use triangle::{TileTriangle, TileVertex};
 

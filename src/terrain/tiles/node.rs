@@ -114,8 +114,9 @@ fn of_points(
 /// Merges the residuals of parts of a tile. Calls `emit` for each triangle that is final now, and
 /// returns what may still change.
 ///
-/// The tile is the union of those of the parts; with [`Tile::PLANE`] all triangles are final, and
-/// nothing is left. `tight` is that of [`leaf`], the same in all tasks.
+/// The tile is the union of those of the parts. With [`Tile::PLANE`] all triangles are final, and
+/// what is left is the outside: its edges are those of the hull. `tight` is that of [`leaf`], the
+/// same in all tasks.
 ///
 /// # Errors
 /// If an edge names a vertex that does not exist, or the residuals contradict each other: they are
@@ -354,14 +355,7 @@ impl<'a> Task<'a> {
                 }
             }
         }
-        Ok((
-            if is_known {
-                Residual::default()
-            } else {
-                self.rest(&is_final, lines)
-            },
-            emitted,
-        ))
+        Ok((self.rest(&is_final, lines), emitted))
     }
 
     /// Returns, for each cell, true if triangles in its place were final before: if it is on the

@@ -170,7 +170,10 @@ pub(super) fn tiled_by(
         rows = rows.chunks(fan).map(joined).collect();
         level = above;
     }
-    assert!(level.iter().all(|rest| *rest == Residual::default()));
+    for rest in &level {
+        assert!(rest.edges.iter().all(|edge| edge.is_seam) && rest.pending.is_empty());
+        assert_eq!(rest.edges.len(), rest.vertices.len(), "the hull");
+    }
     let of = |triangle: &TileTriangle| {
         canonical(triangle.corners.map(|corner| corner.site()), triangle.edges)
     };

@@ -58,8 +58,9 @@ pub(crate) struct SurfaceArgs {
     /// proven to be the same as in the TIN of all data. Then the surface is cut. LAS and LAZ files
     /// that are further out by their headers are not read. The summary shows the final buffer, and
     /// how many files were left out. This takes at most about twice as long as the TIN of all data.
-    /// With lakes, rivers or --add-ridges, all points are used. The values are in the units of the
-    /// coordinate system of the result, separated by commas or blanks.
+    /// With lakes, rivers, --add-ridges or a --method other than linear, all points are used. The
+    /// values are in the units of the coordinate system of the result, separated by commas or
+    /// blanks.
     #[arg(
         long,
         value_name = "XMIN,YMIN,XMAX,YMAX",
@@ -68,13 +69,14 @@ pub(crate) struct SurfaceArgs {
     )]
     pub(crate) bounds: Option<Corners>,
 
-    /// Longest edge at the rim, `auto`, or `none` [default: 100 metres]
+    /// Longest edge at the rim, `auto`, or `none` [default: 100 metres, without caps]
     ///
     /// Triangles that can be reached from outside across longer edges are left out: the convex hull
-    /// of real data has long slivers where nothing was measured. No breakline is crossed. In the
-    /// units of the coordinate system (100 metres are 328.08 feet); without one, 100 units. `auto`
-    /// is 100 times the mean distance between points, from the number of all points and the extents
-    /// of all files; the summary shows it.
+    /// of real data has long slivers where nothing was measured. By default, caps are left out
+    /// there, too: triangles with an angle over 165 degrees, in which contours would run along the
+    /// edge of the data. No breakline is crossed. In the units of the coordinate system (100 metres
+    /// are 328.08 feet); without one, 100 units. `auto` is 100 times the mean distance between
+    /// points, from the number of all points and the extents of all files; the summary shows it.
     #[arg(
         long,
         value_name = "LENGTH|auto|none",
