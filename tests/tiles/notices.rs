@@ -27,6 +27,10 @@ const NOT_IN_TILES: &[(&str, &str)] = &[
     ("Triangulated", "a time; each task has its own"),
     ("Uncertain", "tiles use all points, whatever the bounds"),
     ("FilesOutside", "tiles use all points, whatever the bounds"),
+    (
+        "PartForLinear",
+        "of other methods than linear, which tiles refuse",
+    ),
     ("Reprojecting", "tiles refuse --t-srs"),
     ("Transform", "tiles refuse --t-srs"),
     ("FlatTriangles", "of surfaces of lines; tiles need points"),
@@ -270,7 +274,7 @@ fn cases_of_points(files: &Files) -> Vec<Case> {
         ),
         case(
             points(&[&a, &text]),
-            &["SystemOfOthers", "EdgeLimit", "DefaultResolution"],
+            &["SystemOfOthers", "StandardEdgeLimit", "DefaultResolution"],
         ),
         case(points(&[&a, &b, &high]), &["NoPointUsed"]),
         case(points(&[&a, &empty, &b]), &["NoPointUsed"]),
