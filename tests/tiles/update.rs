@@ -316,3 +316,54 @@ fn tiles_are_chosen_again_if_they_have_no_room() {
     assert!(bytes(folder.path().join("dem.tif")) == whole);
     run(&folder, words).works(&["dem.tif is written"]);
 }
+
+/// A file that was there in between, and was accepted because its extent was the same.
+#[test]
+fn what_was_made_from_another_file_is_made_again() {
+    let folder = squares(2);
+    let file = square(&folder, [1, 0]);
+    let kept = folder.path().join("kept");
+    run(
+        &folder,
+        "job plan j -- dem in/*.xyz --tiles auto -o dem.tif",
+    )
+    .works(&[]);
+    std::fs::rename(&file, &kept).unwrap();
+    write_square(&file, [1, 0], 300, 21);
+    run(&folder, "job run j").works(&[]);
+    std::fs::rename(&kept, &file).unwrap();
+    run(&folder, "job run j --update").works(&[]);
+    let (whole, _) = output_of(&folder, "dem in/*.xyz --tiles 1x1", "new.tif");
+    assert!(bytes(folder.path().join("dem.tif")) == whole);
+    run(&folder, "job run j --update").works(&["dem.tif is written"]);
+}
+
+/// Of points at one position the first file's is used.
+#[test]
+fn the_order_of_files_is_not_lost() {
+    let folder = squares(2);
+    let file = square(&folder, [0, 0]);
+    let text = String::from_utf8(bytes(&file)).unwrap();
+    let higher: String = text
+        .lines()
+        .map(|line| format!("{} 99\n", line.rsplit_once(' ').unwrap().0))
+        .collect();
+    let other = folder.path().join("in/a.xyz");
+    std::fs::write(&other, higher).unwrap();
+    let options = "--duplicates first";
+    let squares = "in/9_9.xyz in/10_9.xyz in/9_10.xyz in/10_10.xyz";
+    for inputs in [
+        squares.to_owned(),
+        format!("{squares} in/a.xyz"),
+        format!("in/a.xyz {squares}"),
+    ] {
+        let words = format!("dem {inputs} {options}");
+        run(
+            &folder,
+            &format!("{words} --tiles auto --update -o dem.tif"),
+        )
+        .works(&[]);
+        let (whole, _) = output_of(&folder, &format!("{words} --tiles 1x1"), "new.tif");
+        assert!(bytes(folder.path().join("dem.tif")) == whole, "{inputs}");
+    }
+}

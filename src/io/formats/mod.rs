@@ -258,6 +258,33 @@ pub fn read_along_with(path: &Path) -> Vec<PathBuf> {
     files.into_iter().skip(1).map(|(path, _)| path).collect()
 }
 
+/// Returns the files that are there of those that are [read along](read_along_with) with a file.
+pub fn found_along_with(path: &Path) -> Vec<PathBuf> {
+    let wanted = read_along_with(path);
+    if wanted.iter().all(|path| path.exists()) {
+        return wanted;
+    }
+    let folder = match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    let is_wanted = |found: &PathBuf| {
+        let mut names = wanted.iter().filter_map(|path| path.file_name());
+        names.any(|name| {
+            found
+                .file_name()
+                .is_some_and(|own| own.eq_ignore_ascii_case(name))
+        })
+    };
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let mut found: Vec<PathBuf> = entries
+        .map(|entry| entry.path())
+        .filter(is_wanted)
+        .collect();
+    found.sort_unstable();
+    found
+}
+
 /// Returns a file and its companions, each with the extension of its format. `companions` are
 /// those of [`Format::beside`].
 pub fn with_companions(

@@ -593,12 +593,15 @@ pub static FORMATS: &[Format] = &[
         &[],
         &[Magic::At(4, b"jP  "), Magic::At(0, b"\xff\x4f\xff\x51")],
     ),
-    vector(
-        "GeoPackage (SQLite)",
-        "a GeoPackage or another SQLite database",
-        &["gpkg"],
-        &[Magic::At(0, b"SQLite format 3\0")],
-    ),
+    Format {
+        read_along: &["gpkg-wal"],
+        ..vector(
+            "GeoPackage (SQLite)",
+            "a GeoPackage or another SQLite database",
+            &["gpkg"],
+            &[Magic::At(0, b"SQLite format 3\0")],
+        )
+    },
     vector(
         "FlatGeobuf",
         "a FlatGeobuf file",

@@ -1,7 +1,5 @@
 //! What a job is planned from: the inputs of a request, by what their headers state.
 
-use std::path::PathBuf;
-
 use super::division::Division;
 use super::lines::{self, Known};
 use super::plan::{BYTES_A_POINT, OtherFile, Plan, extent_of, others, require_tiled};
@@ -44,6 +42,9 @@ pub(super) struct Inputs<'a> {
     options: &'a TileOptions,
     /// The files of points that have some.
     pub(super) files: Vec<PlannedFile>,
+    /// The other files, as they were before they were read: one that changes meanwhile has another
+    /// state than the plan, and so is found out.
+    others: Vec<OtherFile>,
     skipped: Vec<(usize, String)>,
     pub(super) classes: Vec<u8>,
     pub(super) crs: Option<Crs>,
@@ -78,6 +79,9 @@ impl<'a> Inputs<'a> {
         journal: &Journal,
     ) -> Result<Self> {
         require_tiled(request, systems)?;
+        let others = others(request, verb)
+            .map(|path| OtherFile::of(path))
+            .collect::<Result<_>>()?;
         let FilesOfPoints {
             points,
             closed,
@@ -119,6 +123,7 @@ impl<'a> Inputs<'a> {
             verb,
             options,
             files,
+            others,
             skipped,
             classes,
             crs,
@@ -153,21 +158,14 @@ impl<'a> Inputs<'a> {
     }
 
     /// Returns the plan with these tiles, and what was found out on the way.
-    ///
-    /// # Errors
-    /// If an input cannot be asked for its state.
-    pub(super) fn planned(mut self, tiling: Tiling, journal: &Journal) -> Result<(Plan, Known)> {
+    pub(super) fn planned(mut self, tiling: Tiling, journal: &Journal) -> (Plan, Known) {
         for (file, tile) in self.files.iter_mut().zip(tiling.tiles) {
             file.tile = tile;
         }
-        let others: Vec<&PathBuf> = others(self.request, self.verb).collect();
         let plan = Plan {
             request: options_of(self.request, self.systems, self.verb, self.options),
             files: self.files,
-            others: others
-                .into_iter()
-                .map(|path| OtherFile::of(path))
-                .collect::<Result<_>>()?,
+            others: self.others,
             skipped: self.skipped,
             skips_bad: self.options.bad == BadFiles::Skip,
             has_lines: self.known.lines.is_some(),
@@ -181,7 +179,7 @@ impl<'a> Inputs<'a> {
             task_memory: tiling.task_memory,
         };
         plan.note(self.request, self.verb, &self.known, journal);
-        Ok((plan, self.known))
+        (plan, self.known)
     }
 
     /// Returns the tiles, of at most so many points each, and true if the files are these tiles; if

@@ -43,20 +43,22 @@ impl Keys {
         json!(["lines", self.lines, corners(&plan.files)])
     }
 
-    /// Returns the key of a tile that has points of some files, of which one may be the tile.
+    /// Returns the key of a tile that has points of some files, of which one may be the tile. Their
+    /// order is in it: of points at one position the first may be used, or the last.
     pub(super) fn of_leaf<'f>(
         &self,
         tile: u32,
         covers: &Tile,
-        whole: Option<&PlannedFile>,
         files: impl Iterator<Item = &'f PlannedFile>,
     ) -> Value {
-        // Of a file that is skipped, its extent is a hole.
-        let boxes: Vec<Value> = files
-            .map(|file| corners(std::slice::from_ref(file)))
+        let files: Vec<Value> = files
+            .map(|file| match file.tile {
+                Some(_) => of_file(file),
+                // Of a file that is skipped, its extent is a hole.
+                None => corners(std::slice::from_ref(file)),
+            })
             .collect();
-        let whole = whole.map(of_file);
-        json!(["tile", tile, rectangle(covers), whole, boxes, self.clip])
+        json!(["tile", tile, rectangle(covers), files, self.clip])
     }
 
     /// Returns the key of a merge of so many parts.

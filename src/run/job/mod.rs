@@ -158,7 +158,7 @@ impl Job {
         let journal = Journal::new(context);
         let inputs = Inputs::read(request, systems, verb, options, &journal)?;
         let tiling = inputs.tiled(&journal.context)?;
-        let (plan, known) = inputs.planned(tiling, &journal)?;
+        let (plan, known) = inputs.planned(tiling, &journal);
         let known = OnceLock::from(known);
         Ok(Job {
             known,
@@ -461,6 +461,8 @@ impl Job {
         };
         let (crs, extent) = (self.plan.crs.as_ref(), self.plan.extent());
         let known = Known::read(&self.request, crs, &extent, &Journal::new(&quiet))?;
+        // They may have changed since they were compared with the plan.
+        self.plan.require_others_unchanged(&self.folder)?;
         Ok(self.known.get_or_init(|| known))
     }
 
@@ -541,10 +543,8 @@ impl Job {
                 let TileStep { tile: covers, work } = &steps[step];
                 match work {
                     Work::Leaf(tile) => {
-                        let file = |number: usize| &plan.files[number];
-                        let whole = self.readers.whole(*tile).map(file);
-                        let files = self.files_of(*tile).iter().map(|&number| file(number));
-                        keys.of_leaf(*tile, covers, whole, files)
+                        let files = self.files_of(*tile).iter();
+                        keys.of_leaf(*tile, covers, files.map(|&number| &plan.files[number]))
                     }
                     Work::Merge(parts) => keys.of_merge(covers, parts.len()),
                 }

@@ -1,5 +1,6 @@
 //! Files of points as a plan knows them, and the states of files.
 
+use std::fs::Metadata;
 use std::path::{Path, PathBuf};
 use std::time::UNIX_EPOCH;
 
@@ -7,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::data::{Bounds, PointBatch};
 use crate::error::{Command, Error, Result, Setting, wording};
-use crate::io::layer;
+use crate::io::{formats, layer};
 use crate::run::context::{Context, Size, Stage};
 use crate::run::products::tin::TinRequest;
 use crate::run::request::input::{Input, MemoryPoints};
@@ -18,13 +19,17 @@ use crate::terrain::tiles::Spread;
 /// The rounding of the coordinates that headers state, in units of the last place.
 const HEADER_ROUNDING: f64 = 8.0;
 
-/// What tells whether a file has changed.
+/// What tells whether a file has changed, or one that is read along with it.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct FileState {
     /// The length in bytes.
     pub size: u64,
     /// The time of the last change, in nanoseconds since 1970.
     pub modified: u64,
+    /// A checksum of the names, lengths and times of the files that are read along with it, such as
+    /// `roads.dbf` with `roads.shp`, or that are in it, if it is a folder; 0 if there are none.
+    #[serde(default)]
+    pub beside: u32,
 }
 
 /// A file of points as the plan knows it. A plan has its position in the request only: so it may be
@@ -217,23 +222,98 @@ pub(super) fn require_folder(path: &Path, request: &TinRequest) -> Result<()> {
 
 /// Returns the state of a file, which may be named together with a layer.
 pub(super) fn state_of(path: &Path) -> Result<FileState> {
-    let about = match std::fs::metadata(path) {
-        Ok(about) => about,
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
-            let spec = path.to_str().and_then(|text| layer::Spec::parse(text).ok());
-            match spec.map(|spec| std::fs::metadata(spec.path)) {
-                Some(Ok(about)) => about,
+    let (path, about) = match std::fs::metadata(path) {
+        Ok(about) => (path, about),
+        Err(error) => {
+            let named = path.to_str().map(|text| Path::new(layer::file_of(text)));
+            let found = named.and_then(|file| Some((file, std::fs::metadata(file).ok()?)));
+            match found {
+                Some(found) if error.kind() == std::io::ErrorKind::NotFound => found,
                 _ => return Err(Error::from(error).in_file(path)),
             }
         }
-        Err(error) => return Err(Error::from(error).in_file(path)),
     };
+    let beside = match about.is_dir() {
+        true => files_in(path).map_err(|e| Error::from(e).in_file(path))?,
+        false => formats::found_along_with(path),
+    };
+    Ok(FileState {
+        size: about.len(),
+        modified: modified(&about),
+        beside: sum_of_states(&beside),
+    })
+}
+
+/// Returns when a file was changed, in nanoseconds since 1970.
+fn modified(about: &Metadata) -> u64 {
     let modified = about
         .modified()
         .ok()
         .and_then(|time| time.duration_since(UNIX_EPOCH).ok());
-    Ok(FileState {
-        size: about.len(),
-        modified: modified.map_or(0, |time| time.as_nanos() as u64),
-    })
+    modified.map_or(0, |time| time.as_nanos() as u64)
+}
+
+/// Returns what is in a folder, in an order that does not depend on the file system.
+fn files_in(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
+    let mut files = std::fs::read_dir(folder)?
+        .map(|entry| entry.map(|entry| entry.path()))
+        .collect::<std::io::Result<Vec<_>>>()?;
+    files.sort_unstable();
+    Ok(files)
+}
+
+/// Returns a checksum of the names and states of files; 0 if there are none. Empty ones do not
+/// count: readers of databases create such files while they read.
+fn sum_of_states(files: &[PathBuf]) -> u32 {
+    let state = |path: &PathBuf| {
+        let about = std::fs::metadata(path)
+            .ok()
+            .filter(|about| about.len() > 0)?;
+        let name = path.file_name().unwrap_or_default();
+        Some((name.to_owned(), about.len(), modified(&about)))
+    };
+    let states: Vec<_> = files.iter().filter_map(state).collect();
+    match states.is_empty() {
+        true => 0,
+        false => checksum(format!("{states:?}").as_bytes()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The heights of a field are in the table, not in the file that is named.
+    #[test]
+    fn the_state_of_a_file_covers_what_is_read_with_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let write = |name: &str, text: &str| {
+            let path = folder.path().join(name);
+            std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+            std::fs::write(path, text).unwrap();
+        };
+        for (file, beside) in [
+            ("a.shp", "a.dbf"),
+            ("b.shp:ELEV", "b.DBF"),
+            ("c.gpkg:lines", "c.gpkg-wal"),
+            ("d.gdb", "d.gdb/a00000001.gdbtable"),
+        ] {
+            let (main, _) = file.split_once(':').unwrap_or((file, ""));
+            match main.ends_with(".gdb") {
+                true => write(&format!("{main}/gdb"), "4"),
+                false => write(main, "points"),
+            }
+            let state = || state_of(&folder.path().join(file)).unwrap();
+            write(&format!("{main}.other"), "not read");
+            let alone = state();
+            write(beside, "");
+            assert_eq!(state().beside, alone.beside, "{file}");
+            write(beside, "heights");
+            let first = state();
+            assert_ne!(first.beside, alone.beside, "{file}");
+            write(beside, "other heights");
+            assert_ne!(state().beside, first.beside, "{file}");
+        }
+        assert!(state_of(&folder.path().join("e.shp:ELEV")).is_err());
+    }
 }

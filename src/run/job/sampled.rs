@@ -148,6 +148,7 @@ mod tests {
             state: FileState {
                 size: 0,
                 modified: 0,
+                beside: 0,
             },
             count: points.len() as u64,
             min: [0.0; 2],

@@ -171,6 +171,7 @@ mod tests {
             state: FileState {
                 size: u64::MAX,
                 modified: 7,
+                beside: 0,
             },
             classes: vec![2, 255],
             extent: Extent::of(&bounds),

@@ -16,7 +16,7 @@ use super::lock::JobLock;
 use super::paths::{task_of, task_path, tasks_in};
 use super::plan::Plan;
 use super::planned_file::PlannedFile;
-use super::task_file::{name_in, unfinished_in};
+use super::task_file::{TaskFile, TaskName, name_in, unfinished_in};
 use super::tile_options::TileOptions;
 use super::{Job, JobCommand, command, new_id, other_version, request, tiled};
 use crate::data::Frame;
@@ -78,7 +78,7 @@ impl Job {
         let kept = inputs.tiled_like(&old);
         let keeps_tiles = kept.is_some();
         let tiling = kept.map_or_else(|| inputs.tiled(&journal.context), Ok)?;
-        let (plan, known) = inputs.planned(tiling, &journal)?;
+        let (plan, known) = inputs.planned(tiling, &journal);
         let command = match JobCommand::read(folder, &stored)? {
             Some(command) if old.request != plan.request => {
                 let request = asked.clone();
@@ -124,6 +124,9 @@ impl Job {
             };
             match name_in(&path) {
                 Some((job, key)) if job == self.id => match numbers.remove(&key) {
+                    Some(now) if !self.has_read_planned(now, &path) => {
+                        std::fs::remove_file(&path).map_err(named)?;
+                    }
                     Some(now) if now == number => {}
                     Some(now) => {
                         let aside = unfinished_in(&tasks).map_err(named)?.into_temp_path();
@@ -142,6 +145,23 @@ impl Job {
             aside.persist(&path).map_err(|e| named(e.error))?;
         }
         Ok(())
+    }
+}
+
+impl Job {
+    /// Returns true unless the task of a file has read another file of points than the one that is
+    /// planned now: one that was there in between, and was accepted for the same extent.
+    fn has_read_planned(&self, task: usize, path: &Path) -> bool {
+        let name = TaskName {
+            path: path.to_path_buf(),
+            ..self.task_file(task)
+        };
+        let file = TaskFile::open(&name).ok().flatten();
+        let read = file.and_then(|file| file.state_of_input());
+        let planned = self
+            .file_of(task)
+            .map(|number| self.plan.files[number].state);
+        read.is_none() || read == planned
     }
 }
 
