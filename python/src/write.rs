@@ -393,8 +393,8 @@ impl Job {
     fn tasks<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
         let tasks = work::run_alone(py, &Call::BRIEF, |context| -> Result<_> {
             let stored = self.found.stored()?;
-            let output = first_output(&stored).unwrap_or_default();
-            Ok(stored.job()?.tasks(&output, context)?)
+            let outputs = &stored.command.targets.files;
+            Ok(stored.job()?.tasks(outputs, context)?)
         })?;
         let listed = PyList::empty(py);
         for task in tasks {

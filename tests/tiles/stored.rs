@@ -567,8 +567,8 @@ fn the_memory_of_a_task_is_that_of_where_it_runs() {
 #[test]
 fn what_reads_all_tasks_can_be_canceled() {
     let folder = tempfile::tempdir().unwrap();
-    let output = folder.path().join("d.tif");
-    let stored = plan(&command(&Targets::of(&output)), &folder.path().join("j")).unwrap();
+    let targets = Targets::of(folder.path().join("d.tif"));
+    let stored = plan(&command(&targets), &folder.path().join("j")).unwrap();
     run::run_job(&stored, &Context::default()).unwrap();
     let cancel = std::sync::atomic::AtomicBool::new(true);
     let context = Context {
@@ -577,10 +577,10 @@ fn what_reads_all_tasks_can_be_canceled() {
     };
     let job = stored.job().unwrap();
     for error in [
-        job.tasks(&output, &context).err(),
+        job.tasks(&targets.files, &context).err(),
         job.done(&context).err(),
         job.has_holes(&context).err(),
-        job.has_written(&output, &context).err(),
+        job.has_written(&targets.files, &context).err(),
         job.remove_damaged(&context).err(),
         job.lock(&context).err(),
         stored.remove(&context).err(),
@@ -589,7 +589,10 @@ fn what_reads_all_tasks_can_be_canceled() {
     ] {
         assert_eq!(error.unwrap().kind(), Kind::Canceled);
     }
-    assert!(job.has_written(&output, &Context::default()).unwrap());
+    assert!(
+        job.has_written(&targets.files, &Context::default())
+            .unwrap()
+    );
 }
 
 /// Whoever cannot see what is shown meanwhile learns it from the error.

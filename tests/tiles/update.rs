@@ -317,6 +317,30 @@ fn tiles_are_chosen_again_if_they_have_no_room() {
     run(&folder, words).works(&["dem.tif is written"]);
 }
 
+/// A file that the job has not written is somebody's: another output, or one beside an output.
+#[test]
+fn only_what_the_job_has_written_is_replaced() {
+    let folder = squares(2);
+    let at = |name: &str| folder.path().join(name);
+    let words = "contour in/*.xyz --interval 5 --tiles auto --update --job j -o a.geojson";
+    run(&folder, words).works(&[]);
+    let two = format!("{words} -o b.shp");
+    // Nothing has changed, but an output came new.
+    run(&folder, &two).works(&["b.shp"]);
+    run(&folder, &two).works(&["is written"]);
+    std::fs::remove_file(at("b.shp")).unwrap();
+    run(&folder, &two).works(&["b.shp"]);
+    let change = |seed: u64| write_square(&square(&folder, [1, 1]), [1, 1], 300, seed);
+    for (number, mine) in ["c.geojson", "d.prj"].into_iter().enumerate() {
+        change(20 + number as u64);
+        std::fs::write(at(mine), "mine").unwrap();
+        let output = mine.replace(".prj", ".shp");
+        run(&folder, &format!("{words} -o {output}")).fails(1, &[mine, "exists"]);
+        assert_eq!(bytes(at(mine)), b"mine");
+        run(&folder, &format!("{words} -o {output} --overwrite")).works(&[&output]);
+    }
+}
+
 /// A file that was there in between, and was accepted because its extent was the same.
 #[test]
 fn what_was_made_from_another_file_is_made_again() {

@@ -1,4 +1,4 @@
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use clap::Parser;
@@ -52,9 +52,9 @@ pub(crate) fn run(args: &JobArgs, console: &Console) -> Result<Exit> {
                 open.remove_damaged(&context)?;
             }
             let JobCommand { targets, words, .. } = &stored.command;
-            let printed = match &targets.files[..] {
-                [output, ..] if *json => print_tasks(&open, words, output, &context),
-                _ => print_status(&open, &context),
+            let printed = match *json {
+                true => print_tasks(&open, words, &targets.files, &context),
+                false => print_status(&open, &context),
             };
             printed.map(|()| Exit::Done)
         }
@@ -196,7 +196,7 @@ fn print_status(open: &Job, context: &Context) -> Result<()> {
 }
 
 /// Prints all tasks as a JSON object; the last one writes the output.
-fn print_tasks(open: &Job, words: &[String], output: &Path, context: &Context) -> Result<()> {
+fn print_tasks(open: &Job, words: &[String], outputs: &[PathBuf], context: &Context) -> Result<()> {
     let of_task = |task: JobTask| {
         json!({
             "name": task.name, "stage": task.stage, "needs": task.needs, "input": task.input,
@@ -208,7 +208,7 @@ fn print_tasks(open: &Job, words: &[String], output: &Path, context: &Context) -
         })
     };
     let tasks: Vec<Value> = open
-        .tasks(output, context)?
+        .tasks(outputs, context)?
         .into_iter()
         .map(of_task)
         .collect();

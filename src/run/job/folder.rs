@@ -31,8 +31,11 @@ pub(super) struct StoredPlan {
     /// The checksum of the plan.
     pub(super) sum: u32,
     /// What the files of the tasks name the job by: it stays when the job is planned again because
-    /// its inputs have changed.
+    /// its inputs have changed, unless its tiles are chosen again.
     pub(super) id: u64,
+    /// What the record of its outputs and temporary files name the job by: it stays as long as the
+    /// job does.
+    pub(super) name: u64,
     pub(super) plan: Value,
     /// The number of tasks.
     pub(super) tasks: u64,
@@ -102,6 +105,7 @@ impl StoredPlan {
         Some(StoredPlan {
             sum,
             id,
+            name: value["name"].as_u64().unwrap_or(id),
             tasks,
             numbers: value["numbers"].as_u64().unwrap_or(tasks),
             plan: value,
@@ -210,8 +214,8 @@ fn has_tasks(folder: &Path) -> bool {
 }
 
 /// Returns what the names of temporary files contain that are written for the job with this name.
-pub(super) fn mark(id: u64) -> String {
-    format!("{id:016x}")
+pub(super) fn mark(name: u64) -> String {
+    format!("{name:016x}")
 }
 
 /// Removes the files that a process left when it was killed. Folders stay: they become outputs, of
@@ -292,7 +296,7 @@ pub(super) fn remove_files(folder: &Path, stored: &StoredPlan, _lock: &JobLock) 
         remove_if_empty(&tasks)?;
     }
     // Of an output in the folder itself.
-    remove_abandoned(&folder.join(PLAN), &mark(stored.id))?;
+    remove_abandoned(&folder.join(PLAN), &mark(stored.name))?;
     let notes = [
         (COMMAND, stored.command.is_some()),
         (NEXT_COMMAND, false),

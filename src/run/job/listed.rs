@@ -32,14 +32,15 @@ pub struct JobTask {
 }
 
 impl Job {
-    /// Returns all tasks, each after those that it needs; the last one writes `output`.
+    /// Returns all tasks, each after those that it needs; the last one writes
+    /// `outputs`.
     ///
     /// # Complexity
-    /// Reads the ends of the files of all tasks; and the output, if it is there.
+    /// Reads the ends of the files of all tasks; and the outputs, if they are there.
     ///
     /// # Errors
     /// If the run is canceled.
-    pub fn tasks(&self, output: &Path, context: &Context) -> Result<Vec<JobTask>> {
+    pub fn tasks(&self, outputs: &[PathBuf], context: &Context) -> Result<Vec<JobTask>> {
         let (done, stages) = (self.done(context)?, self.stages());
         let mut leases = self.leases(&done)?;
         let last = JobTask {
@@ -49,7 +50,7 @@ impl Job {
             needs: self.last_needs(),
             input: None,
             has_read: None,
-            is_done: self.has_written(output, context)?,
+            is_done: self.has_written(outputs, context)?,
             lease: leases.remove(&self.task_count()),
         };
         let of_task = |(number, stage)| {

@@ -81,7 +81,7 @@ pub use self::tile_options::{Look, TileOptions};
 pub use self::update::JobUpdate;
 pub(crate) use self::work::LastTask;
 pub use self::work::WorkOptions;
-pub(crate) use self::written::is_own_output;
+pub(crate) use self::written::OwnFiles;
 use super::verbs::{Keeps, Verb, WriteRequest};
 use crate::error::{Command, Error, Kind, Result, Setting, wording};
 use crate::run::context::event::JobSize;
@@ -122,6 +122,8 @@ pub struct Job {
     folder: PathBuf,
     /// What the files of its tasks name it by; 0 until it is there.
     id: u64,
+    /// What the record of its outputs names it by; 0 until it is there.
+    name: u64,
     /// The checksum of the plan in the folder; 0 until it is there.
     sum: u32,
     plan: Plan,
@@ -186,6 +188,7 @@ impl Job {
             },
             folder: folder.to_path_buf(),
             id: 0,
+            name: 0,
             sum: 0,
             steps,
             readers: Readers::of(&plan),
@@ -246,7 +249,9 @@ impl Job {
         plan["numbers"] = json!(self.task_count());
         plan["command"] = json!(command.map(|command| checksum(command.as_bytes())));
         self.id = new_id();
+        self.name = self.id;
         plan["id"] = json!(self.id);
+        plan["name"] = json!(self.name);
         self.sum = folder::write_plan(&self.folder, &plan.to_string())?;
         Ok(lock)
     }
@@ -316,6 +321,7 @@ impl Job {
             .ok_or_else(|| other_version(folder))?;
         Ok(Job {
             id: stored.id,
+            name: stored.name,
             sum: stored.sum,
             ..Self::of_plan(wanted, (request, systems), folder, options, plan)
         })

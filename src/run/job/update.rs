@@ -87,6 +87,7 @@ impl Job {
             _ => None,
         };
         let job = Job {
+            name: stored.name,
             id: if keeps_tiles { stored.id } else { new_id() },
             known: known.into(),
             notices: journal.take(),
@@ -204,6 +205,7 @@ impl JobUpdate {
             plan["command"] = json!(checksum(command.as_bytes()));
         }
         plan["id"] = json!(job.id);
+        plan["name"] = json!(job.name);
         let unchanged = |name: &str| plan[name] == before.plan[name];
         let is_same = plan
             .as_object()

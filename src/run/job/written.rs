@@ -2,9 +2,9 @@
 
 use std::fs::File;
 use std::io::Read;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use serde_json::{Value, json};
+use serde::{Deserialize, Serialize};
 
 use super::folder::{self, StoredPlan, WRITTEN};
 use super::lock::JobLock;
@@ -16,10 +16,90 @@ use crate::run::context::Context;
 use crate::run::sources::checksum::sum_of_file;
 use crate::run::verbs::Keeps;
 
+/// What a job has recorded of its outputs.
+#[derive(Debug, Serialize, Deserialize)]
+struct Record {
+    /// What names the job.
+    job: u64,
+    /// The checksum of what they were made from.
+    sources: u32,
+    files: Vec<WrittenFile>,
+    /// The files that they replace: those are there until the outputs get their names.
+    #[serde(default)]
+    before: OwnFiles,
+}
+
+/// A file as it was written: its whole name, its length, and its checksum.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+struct WrittenFile(String, u64, u32);
+
+impl WrittenFile {
+    /// Returns true if the file is there as it was written.
+    fn is_there(&self, context: &Context) -> bool {
+        let WrittenFile(path, length, sum) = self;
+        let state = File::open(path).and_then(|file| sum_of_file(&mut Canceled { file, context }));
+        state.is_ok_and(|found| found == (*length, *sum))
+    }
+}
+
+/// Files that are there as a job has written them, which it may replace.
+#[derive(Debug, Default, Serialize, Deserialize)]
+#[serde(transparent)]
+pub(crate) struct OwnFiles(Vec<WrittenFile>);
+
+impl OwnFiles {
+    /// Returns those that the job in a folder has written, of whatever its tasks were then; none if
+    /// there is no job.
+    ///
+    /// # Complexity
+    /// Linear in the bytes of the files, which are read.
+    ///
+    /// # Errors
+    /// If the folder has a damaged job, or the run is canceled.
+    pub(crate) fn of_job(folder: &Path, context: &Context) -> Result<Self> {
+        let stored = StoredPlan::read(folder)?;
+        let record = stored.and_then(|stored| record_of(stored.name, folder));
+        let Some(Record {
+            mut files, before, ..
+        }) = record
+        else {
+            return Ok(OwnFiles::default());
+        };
+        files.extend(before.0);
+        OwnFiles(files).still_there(context)
+    }
+
+    /// Returns those that are still there as they were written.
+    ///
+    /// # Complexity
+    /// Linear in the bytes of the files, which are read.
+    ///
+    /// # Errors
+    /// If the run is canceled.
+    pub(crate) fn still_there(mut self, context: &Context) -> Result<Self> {
+        self.0.retain(|file| file.is_there(context));
+        context.check()?;
+        Ok(self)
+    }
+
+    /// Returns true if a file is one of them.
+    pub(crate) fn has(&self, path: &Path) -> bool {
+        has(&self.0, path)
+    }
+}
+
+/// Returns true if a file is among others, which have whole names.
+fn has(files: &[WrittenFile], path: &Path) -> bool {
+    std::path::absolute(path).is_ok_and(|path| {
+        let path = path.to_string_lossy();
+        files.iter().any(|WrittenFile(own, ..)| *own == path)
+    })
+}
+
 impl Job {
-    /// Records the files that are about to appear. Afterwards
-    /// [`has_written`](Self::has_written) recognizes them, also if this process ends between the
-    /// two.
+    /// Records the files that are about to appear, and those that they replace. Afterwards
+    /// [`has_written`](Self::has_written) recognizes the former, also if this process ends between
+    /// the two; and the latter stay the job's own.
     ///
     /// # Errors
     /// If a file cannot be read, or the record cannot be written; or if another process has the
@@ -27,37 +107,53 @@ impl Job {
     ///
     /// # Complexity
     /// Linear in the bytes of the files.
-    pub fn record(&self, outputs: &OutputSet, report: &JobReport, lock: &JobLock) -> Result<()> {
+    pub(crate) fn record(
+        &self,
+        outputs: &OutputSet,
+        report: &JobReport,
+        before: OwnFiles,
+        lock: &JobLock,
+    ) -> Result<()> {
         let mut files = Vec::new();
         outputs.read_back(&mut |path, file| {
             let (length, sum) = sum_of_file(file)?;
-            files.push(json!([
-                std::path::absolute(path)?.to_string_lossy(),
-                length,
-                sum
-            ]));
+            let path = std::path::absolute(path)?;
+            files.push(WrittenFile(path.to_string_lossy().into(), length, sum));
             Ok(())
         })?;
-        let record = json!({ "job": self.id, "sources": report.sources, "files": files });
+        let record = Record {
+            job: self.name,
+            sources: report.sources,
+            files,
+            before,
+        };
+        let text = serde_json::to_string(&record).map_err(std::io::Error::from)?;
         lock.confirm()?;
-        folder::replace(&self.folder.join(WRITTEN), &record.to_string())
+        folder::replace(&self.folder.join(WRITTEN), &text)
     }
 
-    /// Returns true if an output is there as it was written from the tasks that are done.
+    /// Returns true if outputs are there as they were written from the tasks that are done.
     ///
     /// # Complexity
-    /// Linear in the bytes of the output, which is read.
+    /// Linear in the bytes of the outputs, which are read.
     ///
     /// # Errors
     /// If the run is canceled.
-    pub fn has_written(&self, output: &Path, context: &Context) -> Result<bool> {
-        let Some(record) = record_of(self.id, &self.folder, output, context)? else {
+    pub fn has_written(&self, outputs: &[PathBuf], context: &Context) -> Result<bool> {
+        let Some(record) = record_of(self.name, &self.folder) else {
             return Ok(false);
         };
-        let is_of_these = self
-            .sources(context)?
-            .is_some_and(|sum| record["sources"] == sum);
-        let has_parts = || !matches!(self.verb.keeps(), Keeps::Triangles) || has_all_parts(output);
+        let is_written = outputs.iter().all(|output| has(&record.files, output))
+            && record.files.iter().all(|file| file.is_there(context));
+        context.check()?;
+        if !is_written {
+            return Ok(false);
+        }
+        let is_of_these = self.sources(context)? == Some(record.sources);
+        let has_parts = || {
+            !matches!(self.verb.keeps(), Keeps::Triangles)
+                || outputs.iter().all(|output| has_all_parts(output))
+        };
         Ok(is_of_these && has_parts())
     }
 
@@ -65,7 +161,7 @@ impl Job {
     /// [`OutputSet::mark`](crate::io::OutputSet::mark): a process that goes on with the job can
     /// then remove those of one that was killed.
     pub fn mark(&self) -> String {
-        folder::mark(self.id)
+        folder::mark(self.name)
     }
 
     /// Removes the temporary files that a process left next to an output when it was killed.
@@ -77,47 +173,12 @@ impl Job {
     }
 }
 
-/// Returns true if an output is there as the job in a folder has written it, of whatever its tasks
-/// were then.
-///
-/// # Complexity
-/// Linear in the bytes of the output, which is read.
-///
-/// # Errors
-/// If the folder has a damaged job, or the run is canceled.
-pub(crate) fn is_own_output(folder: &Path, output: &Path, context: &Context) -> Result<bool> {
-    match StoredPlan::read(folder)? {
-        Some(stored) => Ok(record_of(stored.id, folder, output, context)?.is_some()),
-        None => Ok(false),
-    }
-}
-
-/// Returns what a job has recorded about an output, if that and all files that it was written with
-/// are there as they were written.
-fn record_of(id: u64, folder: &Path, output: &Path, context: &Context) -> Result<Option<Value>> {
-    let record = std::fs::read(folder.join(WRITTEN))
-        .ok()
-        .and_then(|text| serde_json::from_slice(&text).ok());
-    let record: Value = record.unwrap_or_default();
-    let files = record["files"]
-        .as_array()
-        .map(Vec::as_slice)
-        .unwrap_or_default();
-    let Ok(output) = std::path::absolute(output) else {
-        return Ok(None);
-    };
-    let is_there = |file: &Value| {
-        let path = Path::new(file[0].as_str().unwrap_or_default());
-        let state = File::open(path).and_then(|file| sum_of_file(&mut Canceled { file, context }));
-        state.is_ok_and(|(length, sum)| file[1] == length && file[2] == sum)
-    };
-    let is_written = record["job"] == id
-        && files
-            .iter()
-            .any(|file| file[0] == output.to_string_lossy().as_ref())
-        && files.iter().all(is_there);
-    context.check()?;
-    Ok(is_written.then_some(record))
+/// Returns what the job of this name has recorded in its folder; `None` if nothing is there, or
+/// what is there is that of another job.
+fn record_of(job: u64, folder: &Path) -> Option<Record> {
+    let text = std::fs::read(folder.join(WRITTEN)).ok()?;
+    let record: Record = serde_json::from_slice(&text).ok()?;
+    (record.job == job).then_some(record)
 }
 
 /// A file that cannot be read on once the run is canceled.

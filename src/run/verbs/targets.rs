@@ -98,18 +98,21 @@ impl Targets {
     }
 
     /// Finds the format of each output and makes sure that no file is lost that should be kept;
-    /// `read` are the files that the request reads.
+    /// `read` are the files that the request reads, and for those that may be replaced in any case
+    /// `is_own` returns true.
     ///
     /// # Errors
     /// If an extension is not that of a format for the product, an output is an input or named
     /// twice, its folder does not exist, or it exists and may not be replaced.
-    pub(crate) fn resolve(&self, product: Product, read: &[PathBuf]) -> Result<Outputs> {
-        let outputs = resolve(
-            &self.files,
-            self.existing,
-            &formats_of(product, |_| ()),
-            read,
-        )?;
+    pub(crate) fn resolve(
+        &self,
+        product: Product,
+        read: &[PathBuf],
+        is_own: &dyn Fn(&Path) -> bool,
+    ) -> Result<Outputs> {
+        let may_replace = |file: &Path| self.existing == Existing::Replace || is_own(file);
+        let formats = formats_of(product, |_| ());
+        let outputs = resolve_where(&self.files, &may_replace, &formats, read)?;
         self.check_tables(read)?;
         let is_target = |table: &&Path| {
             outputs
@@ -128,8 +131,9 @@ impl Targets {
     /// # Errors
     /// Those of [`resolve`](Self::resolve).
     pub(crate) fn check_tables(&self, read: &[PathBuf]) -> Result<()> {
+        let may_replace = |_: &Path| self.existing == Existing::Replace;
         self.tables()
-            .try_for_each(|table| require_free(table, find(table, TABLES)?, self.existing, read))
+            .try_for_each(|table| require_free(table, find(table, TABLES)?, &may_replace, read))
     }
 
     /// Writes the tables of crossings and of replaced points, if they were requested.
@@ -255,6 +259,17 @@ pub(crate) fn resolve<F: Copy>(
     formats: &[Format<F>],
     inputs: &[PathBuf],
 ) -> Result<Outputs<F>> {
+    let may_replace = |_: &Path| existing == Existing::Replace;
+    resolve_where(files, &may_replace, formats, inputs)
+}
+
+/// Like [`resolve`], where a file may be replaced for which a function returns true.
+fn resolve_where<F: Copy>(
+    files: &[PathBuf],
+    may_replace: &dyn Fn(&Path) -> bool,
+    formats: &[Format<F>],
+    inputs: &[PathBuf],
+) -> Result<Outputs<F>> {
     let mut targets: Vec<Target<F>> = Vec::new();
     for path in files {
         require_name(path)?;
@@ -262,7 +277,7 @@ pub(crate) fn resolve<F: Copy>(
         if targets.iter().any(|target| is_same(&target.path, path)) {
             return Err(Error::usage("the output is named twice").in_file(path));
         }
-        require_free(path, format, existing, inputs)?;
+        require_free(path, format, may_replace, inputs)?;
         targets.push(Target {
             path: path.clone(),
             kind: format.kind,
@@ -388,7 +403,7 @@ fn extension_of(name: &str) -> String {
 fn require_free<F>(
     path: &Path,
     format: &Format<F>,
-    existing: Existing,
+    may_replace: &dyn Fn(&Path) -> bool,
     inputs: &[PathBuf],
 ) -> Result<()> {
     let folder = folder_of(path);
@@ -407,7 +422,7 @@ fn require_free<F>(
         .iter()
         .try_for_each(|(file, _)| require_not_read_along(file, inputs))?;
     for (file, _) in files {
-        if existing == Existing::Keep {
+        if !may_replace(&file) {
             io::require_absent(&file)?;
         }
         if !io::is_stream(&file) {

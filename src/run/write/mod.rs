@@ -7,8 +7,8 @@ pub use self::report::{Origin, SurfaceReport, WriteReport, Written, WrittenOf};
 use std::path::{Path, PathBuf};
 
 use super::job::{
-    self, Job, JobCommand, JobLock, LastTask, NotInTiles, StoredJob, TileOptions, WorkOptions,
-    needs_tiles,
+    self, Job, JobCommand, JobLock, LastTask, NotInTiles, OwnFiles, StoredJob, TileOptions,
+    WorkOptions, needs_tiles,
 };
 use super::verbs::{Summary, TileUse, WriteRequest};
 use crate::error::{Error, Result, Setting, Term, Wording, wording};
@@ -87,18 +87,22 @@ pub fn write(
         Execution::Auto { memory } => {
             let prepared = prepared()?;
             if prepared.needs_tiles(*memory, context) {
-                prepared.in_tiles()?.anew(
-                    &TileOptions {
-                        memory: *memory,
-                        ..TileOptions::default()
-                    },
-                    context,
-                )
+                let options = TileOptions {
+                    memory: *memory,
+                    ..TileOptions::default()
+                };
+                prepared
+                    .in_tiles()?
+                    .anew(&options, Caller::Request, context)
             } else {
                 prepared.whole(context)
             }
         }
-        Execution::Tiles(options) => prepared()?.in_tiles()?.anew(options, context),
+        Execution::Tiles(options) => {
+            prepared()?
+                .in_tiles()?
+                .anew(options, Caller::of(options), context)
+        }
         Execution::Resume(options) => prepared()?.in_tiles()?.resume(options, context),
         Execution::Plan(options) => prepared()?.in_tiles()?.new_plan(options, context),
         Execution::PlanResume(options) => prepared()?.in_tiles()?.plan_or_job(options, context),
@@ -167,7 +171,7 @@ fn write_output(
     context: &Context,
 ) -> Result<WriteReport> {
     let request = job.request();
-    let prepared = Prepared::new(&request, targets)?.in_tiles()?;
+    let prepared = Prepared::of_job(&request, targets, job.folder(), context)?.in_tiles()?;
     prepared.clear_up(job, lock, context)?;
     prepared.run(job, lock, caller, context)
 }
@@ -194,7 +198,8 @@ pub fn work_job(
     let last = LastOutput { job: &job, targets };
     // Before hours of work. Asked first: another process may be about to write the outputs.
     let request = job.request();
-    let prepared = Prepared::new(&request, targets).and_then(Prepared::in_tiles);
+    let prepared =
+        Prepared::of_job(&request, targets, job.folder(), context).and_then(Prepared::in_tiles);
     if let Some(report) = last.written(context)? {
         return Ok(report);
     }
@@ -246,13 +251,15 @@ pub fn run_job(stored: &StoredJob, context: &Context) -> Result<WriteReport> {
         Some(report) => return Ok(report),
         None => {}
     }
-    Prepared::new(request, &targets)?.in_tiles()?.go_on(
-        job,
-        tiles,
-        Caller::Folder,
-        |job| stored.follow(job),
-        context,
-    )
+    Prepared::of_job(request, &targets, stored.folder(), context)?
+        .in_tiles()?
+        .go_on(
+            job,
+            tiles,
+            Caller::Folder,
+            |job| stored.follow(job),
+            context,
+        )
 }
 
 /// Does those tasks of a job again that are reached by inputs which have changed since it was
@@ -285,15 +292,13 @@ fn update(
     planned: impl FnOnce(&Job),
     context: &Context,
 ) -> Result<WriteReport> {
-    let mut targets = targets.clone();
-    let folder = options.folder.clone().or_else(|| targets.job_folder());
-    if let (Some(folder), Some(output)) = (folder, targets.files.first())
-        && job::is_own_output(&folder, output, context)?
-    {
-        targets.existing = Existing::Replace;
-    }
-    let prepared = Prepared::new(request, &targets)?.in_tiles()?;
-    prepared.update(options, caller, planned, context)
+    let prepared = match options.folder.clone().or_else(|| targets.job_folder()) {
+        Some(folder) => Prepared::of_job(request, targets, &folder, context),
+        None => Prepared::new(request, targets),
+    };
+    prepared?
+        .in_tiles()?
+        .update(options, caller, planned, context)
 }
 
 /// Returns the report of outputs that are there as they were written of the tasks that are done.
@@ -301,7 +306,7 @@ fn already_written(job: &Job, targets: &Targets, context: &Context) -> Result<Op
     let Some(output) = targets.files.first() else {
         return Ok(None);
     };
-    match job.has_written(output, context)? {
+    match job.has_written(&targets.files, context)? {
         true => Ok(Some(WriteReport::Kept {
             output: output.clone(),
             has_holes: job.has_holes(context)?,
@@ -310,25 +315,47 @@ fn already_written(job: &Job, targets: &Targets, context: &Context) -> Result<Op
     }
 }
 
+/// Checks the outputs of a request, of which those may be there that a job has written.
+fn resolved(request: &WriteRequest, targets: &Targets, own: &OwnFiles) -> Result<Outputs> {
+    let read = targets.with_lists(request.files());
+    targets.resolve(request.verb.product(), &read, &|file| own.has(file))
+}
+
 /// A request whose outputs are checked.
 struct Prepared<'a> {
     request: &'a WriteRequest,
     targets: &'a Targets,
     outputs: Outputs,
+    /// The files that the job has written, which may be replaced.
+    own: OwnFiles,
     use_of_tiles: TileUse,
 }
 
 impl<'a> Prepared<'a> {
     fn new(request: &'a WriteRequest, targets: &'a Targets) -> Result<Self> {
+        Self::replacing(request, targets, OwnFiles::default())
+    }
+
+    /// Those outputs may be there that are as the job in a folder has written them.
+    fn of_job(
+        request: &'a WriteRequest,
+        targets: &'a Targets,
+        folder: &Path,
+        context: &Context,
+    ) -> Result<Self> {
+        Self::replacing(request, targets, OwnFiles::of_job(folder, context)?)
+    }
+
+    fn replacing(request: &'a WriteRequest, targets: &'a Targets, own: OwnFiles) -> Result<Self> {
         let verb = request.verb.as_ref();
         verb.check()?;
-        let read = targets.with_lists(request.files());
-        let outputs = targets.resolve(verb.product(), &read)?;
+        let outputs = resolved(request, targets, &own)?;
         let use_of_tiles = verb.use_of_tiles(&outputs.targets)?;
         Ok(Prepared {
             request,
             targets,
             outputs,
+            own,
             use_of_tiles,
         })
     }
@@ -442,11 +469,11 @@ impl<'a> Prepared<'a> {
     }
 
     /// Plans a job and does it.
-    fn anew(self, options: &TileOptions, context: &Context) -> Result<WriteReport> {
+    fn anew(self, options: &TileOptions, caller: Caller, context: &Context) -> Result<WriteReport> {
         let mut job = self.planned(options, context)?;
         let lock = job.create(None, context)?;
         self.outputs.set.mark(job.mark());
-        self.run(&job, &lock, Caller::of(options), context)
+        self.run(&job, &lock, caller, context)
     }
 
     /// Goes on with the job in the folder, or plans one if there is none.
@@ -456,7 +483,7 @@ impl<'a> Prepared<'a> {
                 job.check_inputs(context)?;
                 self.go_on(job, options, Caller::of(options), |_| {}, context)
             }
-            None => self.anew(options, context),
+            None => self.anew(options, Caller::of(options), context),
         }
     }
 
@@ -474,7 +501,7 @@ impl<'a> Prepared<'a> {
                 folder: Some(folder),
                 ..options.clone()
             };
-            return self.anew(&options, context);
+            return self.anew(&options, caller, context);
         };
         require_room(update.job(), context)?;
         if !update.keeps_tiles() {
@@ -569,7 +596,11 @@ impl<'a> Prepared<'a> {
         context: &Context,
     ) -> Result<WriteReport> {
         let Prepared {
-            request, outputs, ..
+            request,
+            targets,
+            outputs,
+            own,
+            ..
         } = self;
         let folder = job.folder().to_path_buf();
         context.monitor.event(&Event::TasksBegin(&folder));
@@ -580,7 +611,10 @@ impl<'a> Prepared<'a> {
             .write_tiles(&job.tiles(&report), &outputs, context)?;
         let is_kept = caller != Caller::Request || report.skipped > 0;
         if is_kept {
-            job.record(&outputs.set, &report, lock)?;
+            // Somebody may have written there since the tasks began.
+            let own = own.still_there(context)?;
+            drop(resolved(request, targets, &own)?);
+            job.record(&outputs.set, &report, own, lock)?;
         }
         lock.confirm()?;
         let files = outputs.set.commit()?;
