@@ -60,7 +60,7 @@ fn bytes(path: impl AsRef<Path>) -> Vec<u8> {
 fn mark_of(folder: &TempDir, job: &str) -> String {
     let plan = String::from_utf8(bytes(folder.path().join(job).join("plan.json"))).unwrap();
     let value: serde_json::Value = serde_json::from_str(plan.split_once('\n').unwrap().1).unwrap();
-    format!("{:016x}", value["id"].as_u64().unwrap())
+    format!("{:016x}", value["name"].as_u64().unwrap())
 }
 
 /// A layer of lines of one kind.

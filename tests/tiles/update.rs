@@ -9,7 +9,7 @@ use serde_json::Value;
 use tempfile::TempDir;
 use testkit::random::Random;
 
-use super::{bytes, layer, output_of, program};
+use super::{bytes, layer, output_of, program, valley};
 use program::{Run, files_of, run_in};
 
 fn run(folder: &TempDir, words: &str) -> Run {
@@ -389,5 +389,54 @@ fn the_order_of_files_is_not_lost() {
         .works(&[]);
         let (whole, _) = output_of(&folder, &format!("{words} --tiles 1x1"), "new.tif");
         assert!(bytes(folder.path().join("dem.tif")) == whole, "{inputs}");
+    }
+}
+
+/// An update that ends before its output gets its name leaves the one before, which stays the job's
+/// own, and the same command goes on.
+#[test]
+fn an_update_that_was_interrupted_goes_on() {
+    let folder = squares(2);
+    let at = |name: &str| folder.path().join(name);
+    let words = "dem in/*.xyz --tiles auto --memory 16MB --threads 8 -o dem.tif";
+    run(&folder, &format!("job plan j -- {words}")).works(&[]);
+    run(&folder, "job run j").works(&[]);
+    let mut before = (bytes(at("dem.tif")), bytes(at("j/output.json")));
+    // The last time tiles are chosen again.
+    for (step, count) in [350, 300, 41_000].into_iter().enumerate() {
+        write_square(&square(&folder, [1, 1]), [1, 1], count, 30 + step as u64);
+        run(&folder, "job run j --update").works(&[]);
+        let after = (bytes(at("dem.tif")), bytes(at("j/output.json")));
+        assert!(before.0 != after.0 && before.1 != after.1);
+        // Before the rename, and before the record.
+        for (record, again) in [
+            (&after.1, "job run j --update"),
+            (&after.1, "job run j"),
+            (&before.1, "job work j"),
+            (&before.1, "job run j --update"),
+        ] {
+            std::fs::write(at("dem.tif"), &before.0).unwrap();
+            std::fs::write(at("j/output.json"), record).unwrap();
+            run(&folder, again).works(&[]);
+            assert!(bytes(at("dem.tif")) == after.0, "{step}, {again}");
+        }
+        before = after;
+    }
+    let left = files_of(&at("j"));
+    assert!(left.iter().all(|name| !name.starts_with('.')), "{left:?}");
+}
+
+/// What ends an update says how to go on so that the job stays.
+#[test]
+fn an_update_that_fails_says_how_to_go_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut damaged = bytes(valley());
+    let start = u32::from_le_bytes(damaged[96..100].try_into().unwrap()) as usize + 8;
+    let end = damaged.len() - 40;
+    damaged[start..end].fill(0xff);
+    std::fs::write(folder.path().join("a.laz"), damaged).unwrap();
+    let words = "dem a.laz --class 2 --tiles 2x2 --update -o dem.tif";
+    for _ in 0..2 {
+        run(&folder, words).fails(1, &["finished tasks are kept in ", "go on with --update"]);
     }
 }
