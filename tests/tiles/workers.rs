@@ -190,12 +190,21 @@ fn what_a_process_has_left_is_taken_once_its_lease_has_expired() {
     write_lease(&folder, 0, 100, 101);
     std::fs::write(lease(&folder, 2), "").unwrap();
     write_lease(&folder, 7, 5, 3600);
+    // Of a host whose clock was ahead, or before the clock of the file server was set back.
+    write_lease(&folder, 3, 5, 0);
+    let file = File::options()
+        .append(true)
+        .open(lease(&folder, 3))
+        .unwrap();
+    let ahead = SystemTime::now() + Duration::from_secs(3600);
+    file.set_modified(ahead).unwrap();
     let status = run(&folder, "job status j").stdout;
     for line in [
         "0 of 7 tasks are done\n",
         "0: divide ",
         "valley.laz, lost by elsewhere:7, seen 1",
         "2: tile 2, done by an unknown process, seen ",
+        ", lost by elsewhere:7, seen 0 s ago",
         "7: output, lost by elsewhere:7, seen 36",
     ] {
         assert!(status.contains(line), "{line} in {status}");
@@ -204,6 +213,7 @@ fn what_a_process_has_left_is_taken_once_its_lease_has_expired() {
     work.works(&[
         "task 0 is done here: elsewhere:7 does not go on with it, seen 1",
         "task 2 is done here: its process does not go on with it",
+        "task 3 is done here: elsewhere:7",
         "task 7 is done here: elsewhere:7",
         "tasks       7 of 7 done here",
     ]);
@@ -392,6 +402,20 @@ fn a_run_that_has_lost_its_lease_writes_nothing() {
     assert!(folder.path().join("dem.tif").exists());
 }
 
+/// What somebody writes at the output while tasks are done stays.
+#[test]
+fn an_output_that_appears_meanwhile_is_not_replaced() {
+    let folder = tempfile::tempdir().unwrap();
+    long_job(&folder);
+    let mut whole = spawn(&folder, "job run j");
+    wait_until(&folder, &mut whole, || !done(&folder).is_empty());
+    std::fs::write(folder.path().join("dem.tif"), "mine").unwrap();
+    assert_eq!(whole.wait().unwrap().code(), Some(1), "{}", said(&folder));
+    assert!(said(&folder).contains("exists"), "{}", said(&folder));
+    assert_eq!(bytes(folder.path().join("dem.tif")), b"mine");
+    assert!(!folder.path().join("j/output.json").exists());
+}
+
 #[cfg(unix)]
 fn signal(process: &Child, name: &str) {
     // The one of the shell: not every system has a program `kill`.
@@ -462,4 +486,24 @@ fn a_worker_that_a_signal_ends_leaves_no_lease() {
     let said = said(&folder);
     assert!(said.contains("go on with `breakline job work"), "{said}");
     assert!(!Path::new("dem.tif").exists());
+}
+
+/// A lease that another process has taken meanwhile stays when a signal ends this one.
+#[cfg(unix)]
+#[test]
+fn a_signal_does_not_take_the_lease_of_another() {
+    let folder = tempfile::tempdir().unwrap();
+    long_job(&folder);
+    let mut worker = worker(&folder, "--threads 1");
+    let held = || (0..7).find(|&task| lease(&folder, task).exists());
+    wait_until(&folder, &mut worker, || held().is_some());
+    signal(&worker, "STOP");
+    let task = held().unwrap();
+    std::fs::remove_file(lease(&folder, task)).unwrap();
+    write_lease(&folder, task, 3600, 0);
+    let other = bytes(lease(&folder, task));
+    signal(&worker, "TERM");
+    signal(&worker, "CONT");
+    worker.wait().unwrap();
+    assert_eq!(bytes(lease(&folder, task)), other);
 }

@@ -128,14 +128,16 @@ impl FoundLease {
     /// state that.
     fn at(&self, now: SystemTime, otherwise: Duration) -> TaskLease {
         let stated = self.stated.as_ref();
-        let age = now.duration_since(self.written).unwrap_or_default();
+        let lasts = stated.map_or(otherwise, |stated| {
+            Duration::from_millis(stated.expires_after)
+        });
+        let age = now.duration_since(self.written);
+        // A date far ahead is that of another clock: who has the lease soon writes it again.
+        let distance = age.clone().unwrap_or_else(|ahead| ahead.duration());
         TaskLease {
             worker: stated.map(|stated| stated.worker.clone()),
-            age,
-            has_expired: age
-                > stated.map_or(otherwise, |stated| {
-                    Duration::from_millis(stated.expires_after)
-                }),
+            age: age.unwrap_or_default(),
+            has_expired: distance > lasts,
         }
     }
 
@@ -348,7 +350,7 @@ impl Leases {
         let mut from = None;
         // The second time after one that has expired, or was given back.
         for _ in 0..2 {
-            match Temporary::create_at(&path) {
+            match Temporary::create_at(&path, &self.0.text) {
                 Ok((file, own)) => return self.have(task, file, own, from).map(Some),
                 Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
                 Err(error) => return Err(Error::from(error).in_file(path)),
@@ -447,11 +449,7 @@ fn lost() -> Error {
 
 impl Drop for Lease {
     fn drop(&mut self) {
+        // Its file goes with `own`, unless it is that of another process now.
         self.leases.0.held().remove(&self.task);
-        // It may have expired, and be that of another process.
-        let found = FoundLease::read(self.own.path()).ok().flatten();
-        if found.is_some_and(|found| found.stated.as_ref() != Some(&self.leases.0.stated)) {
-            self.own.leave();
-        }
     }
 }

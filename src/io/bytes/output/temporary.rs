@@ -14,14 +14,35 @@ const PREFIX: &str = ".breakline-";
 const BACKUP: &str = ".old";
 
 /// All temporary files of the process. Locked while one is created and while a set is renamed.
-static ALL: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+static ALL: Mutex<Vec<Listed>> = Mutex::new(Vec::new());
 
-fn all() -> MutexGuard<'static, Vec<PathBuf>> {
+/// A temporary file of the process.
+#[derive(Debug)]
+struct Listed {
+    path: PathBuf,
+    /// What it says, if other processes may put files of theirs in its place.
+    text: Option<String>,
+}
+
+impl Listed {
+    /// Removes the file, unless it is that of another process now.
+    fn remove(&self) {
+        let is_own = |text: &String| {
+            // It may not be complete.
+            std::fs::read(&self.path).is_ok_and(|found| text.as_bytes().starts_with(&found))
+        };
+        if self.text.as_ref().is_none_or(is_own) {
+            let _ = std::fs::remove_file(&self.path);
+        }
+    }
+}
+
+fn all() -> MutexGuard<'static, Vec<Listed>> {
     ALL.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// The right to rename temporary files.
-pub(super) struct Renames(MutexGuard<'static, Vec<PathBuf>>);
+pub(super) struct Renames(MutexGuard<'static, Vec<Listed>>);
 
 impl Renames {
     /// Waits until no other set is being renamed.
@@ -31,7 +52,7 @@ impl Renames {
 
     pub(super) fn rename(&mut self, temporary: &Temporary, target: &Path) -> io::Result<()> {
         std::fs::rename(&temporary.path, target)?;
-        self.0.retain(|path| *path != temporary.path);
+        self.0.retain(|listed| listed.path != temporary.path);
         Ok(())
     }
 }
@@ -58,30 +79,32 @@ impl Temporary {
         let mut all = all();
         let (file, path) = builder.tempfile_in(folder)?.into_parts();
         let path = path.keep().map_err(|e| e.error)?;
-        all.push(path.clone());
+        all.push(Listed {
+            path: path.clone(),
+            text: None,
+        });
         Ok((file, Temporary { path }))
     }
 
-    /// Creates a file at this path, where there must be none.
+    /// Creates a file at this path, where there must be none, for a text. Other processes may put
+    /// files of theirs in its place: only one with this text, or the begin of it, is removed.
     ///
     /// # Errors
     /// With the kind `AlreadyExists` if there is one: of several processes that try, one succeeds.
-    pub(crate) fn create_at(path: &Path) -> io::Result<(File, Self)> {
+    pub(crate) fn create_at(path: &Path, text: &str) -> io::Result<(File, Self)> {
         let mut all = all();
         let file = File::options().write(true).create_new(true).open(path)?;
-        all.push(path.to_path_buf());
         let path = path.to_path_buf();
+        all.push(Listed {
+            path: path.clone(),
+            text: Some(text.to_owned()),
+        });
         Ok((file, Temporary { path }))
     }
 
     /// Returns the path of the file.
     pub(crate) fn path(&self) -> &Path {
         &self.path
-    }
-
-    /// Leaves what is at the path to others: it is not removed.
-    pub(crate) fn leave(&self) {
-        all().retain(|path| *path != self.path);
     }
 
     /// Returns a name next to this file that is equally unlikely to be taken.
@@ -100,9 +123,8 @@ impl Temporary {
 impl Drop for Temporary {
     fn drop(&mut self) {
         let mut all = all();
-        if let Some(i) = all.iter().position(|path| *path == self.path) {
-            all.swap_remove(i);
-            let _ = std::fs::remove_file(&self.path);
+        if let Some(i) = all.iter().position(|listed| listed.path == self.path) {
+            all.swap_remove(i).remove();
         }
     }
 }
@@ -137,18 +159,17 @@ pub(super) fn remove_all(folder: &Path, prefix: &str) -> io::Result<()> {
 #[derive(Debug)]
 #[must_use = "outputs that are still being written may appear once it is dropped"]
 pub struct Abandoned {
-    _all: MutexGuard<'static, Vec<PathBuf>>,
+    _all: MutexGuard<'static, Vec<Listed>>,
 }
 
-/// Removes the temporary files of all outputs, for a program that is about to end early.
+/// Removes the temporary files of all outputs, for a program that is about to end early; those
+/// that other processes have put in their places stay.
 ///
 /// Keep the returned guard until the program has ended. A set that is being renamed is completed
 /// first.
 pub fn abandon_outputs() -> Abandoned {
     let mut all = all();
-    for path in all.drain(..) {
-        let _ = std::fs::remove_file(path);
-    }
+    all.drain(..).for_each(|listed| listed.remove());
     Abandoned { _all: all }
 }
 
