@@ -58,8 +58,10 @@ impl Surface {
         read: ReadArguments,
         systems: SystemArguments,
         options: SurfaceArguments<'_>,
+        method: &str,
         call: Call,
     ) -> PyResult<Self> {
+        let method = requests::method(method)?;
         let source = Source::Points(Box::new(options.request(&points, &read)?));
         let request = SurfaceRequest {
             source,
@@ -69,7 +71,7 @@ impl Surface {
         // The arrays are copied, and may be changed.
         drop((points, options));
         work::run_on(py, &call, count, move |context| -> Result<_> {
-            Ok(run::triangles(&request, context)?)
+            Ok(run::triangles_for(method, &request, context)?)
         })
         .map(Surface::of)
     }

@@ -38,6 +38,17 @@ def test_a_verb_writes_what_the_program_writes(whole, tmp_path, verb, name):
     assert Path(again).read_bytes() == whole[verb]
 
 
+@pytest.mark.parametrize("method", ["smooth", "idw", "natural"])
+def test_heights_within_bounds_are_those_of_all_points_by_any_method(tmp_path, method):
+    xmin, ymin, xmax, ymax = breakline.tin(VALLEY).bounds
+    bounds = (xmin, ymin, (xmin + xmax) / 2, (ymin + ymax) / 2)
+    how = {"bounds": bounds, "method": method, "resolution": 5}
+    in_memory = breakline.dem(VALLEY, **how)
+    file = breakline.dem(VALLEY, **how, output=tmp_path / "file.tif")
+    in_memory.write(tmp_path / "memory.tif")
+    assert Path(file).read_bytes() == (tmp_path / "memory.tif").read_bytes()
+
+
 def test_files_that_need_more_memory_are_worked_on_in_tiles(whole, tmp_path):
     made = breakline.dem(VALLEY, output=tmp_path / "d.tif", tiles="4x3")
     assert made.report["in_tiles"] and made.path.read_bytes() == whole["dem"]

@@ -22,7 +22,12 @@ def settings() -> list[tuple[str, Optional[str]]]: ...
 class Surface:
     @staticmethod
     def build(
-        points: list[Any], read: dict[str, Any], systems: dict[str, Any], options: dict[str, Any], call: _Call
+        points: list[Any],
+        read: dict[str, Any],
+        systems: dict[str, Any],
+        options: dict[str, Any],
+        method: str,
+        call: _Call,
     ) -> Surface: ...
     @staticmethod
     def open(file: str, systems: dict[str, Any], call: _Call) -> Optional[Surface]: ...

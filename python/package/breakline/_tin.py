@@ -688,10 +688,15 @@ def tin(
     if output is not None:
         return write("tin", options.pop("points"), options, how)
     refuse_how(how)
-    found = _inputs.points(points)
-    systems = _systems(crs, to_crs, force_degrees)
+    return built(options, "linear")
+
+
+def built(options: "dict[str, Any]", method: str) -> Tin:
+    """Open or build the TIN of the parameters of `tin`, such that heights by a method are those of all points."""
+    found = _inputs.points(options["points"])
+    systems = _systems(options["crs"], options["to_crs"], options["force_degrees"])
     is_file = len(found) == 1 and isinstance(found[0], str)
-    with call(threads, progress) as request:
+    with call(options["threads"], options["progress"]) as request:
         opened = _breakline.Surface.open(found[0], systems, request) if is_file else None
         if opened is not None:
             refuse_building(found[0], options)
@@ -702,8 +707,9 @@ def tin(
         lines = [layer for name in LINES for layer in arguments[name]]
         masked = _inputs.masked_rows([*found, *lines])
         try:
-            built = _breakline.Surface.build(found, _read(columns, partial), systems, arguments, request)
+            read = _read(options["columns"], options["partial"])
+            surface = _breakline.Surface.build(found, read, systems, arguments, method, request)
         except FormatError as error:
             _inputs.name_row(error, found)
             raise
-        return Tin(built, masked=masked)
+        return Tin(surface, masked=masked)

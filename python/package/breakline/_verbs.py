@@ -7,6 +7,7 @@ import os
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
+from inspect import signature
 from typing import TYPE_CHECKING, Any, Optional, overload
 
 import numpy as np
@@ -20,15 +21,17 @@ from ._names import Kernel, Method, OnCrossing
 from ._points import _read, _systems
 from ._results import Contours, Raster, draw, frame_of, light, of_cells
 from ._surface import FOR_ANY, Building
-from ._tin import Flaw, Tin, tin
+from ._tin import Flaw, Tin, built, tin
 from ._written import HOW, Writing, Written, refuse_how, write, write_made
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
 
-def _surface(points: Any, surface: "dict[str, Any]", threads: Any, progress: Any) -> _breakline.Surface:
-    """Return the surface of the library for a Tin, a raster, or what ``tin`` takes."""
+def _surface(
+    points: Any, surface: "dict[str, Any]", threads: Any, progress: Any, method: str = "linear"
+) -> _breakline.Surface:
+    """Return the surface of the library for a Tin, a raster, or what ``tin`` takes, for heights by a method."""
     if isinstance(points, (Tin, Raster)):
         _refuse(surface, "this")
         return points._surface if isinstance(points, Tin) else points._surface()
@@ -39,8 +42,10 @@ def _surface(points: Any, surface: "dict[str, Any]", threads: Any, progress: Any
         if opened is not None and opened.kind == "raster":
             _refuse({name: surface[name] for name in surface if name not in FOR_ANY}, os.fspath(points))
             return opened
-    built: Tin = tin(points, threads=threads, progress=progress, **surface)
-    return built._surface
+    bound = signature(tin).bind(points, threads=threads, progress=progress, **surface)
+    bound.apply_defaults()
+    options = {name: value for name, value in bound.arguments.items() if name not in HOW}
+    return built(options, method)._surface
 
 
 def _refuse(surface: "dict[str, Any]", what: str) -> None:
@@ -133,9 +138,10 @@ def dem(
     written = _written(dem, dict(locals()))
     if written is not None:
         return written
-    found = _surface(points, surface, threads, progress)
+    method = _inputs.name(method, "method")
+    found = _surface(points, surface, threads, progress, method)
     with call(threads, progress) as request:
-        return of_cells(found.dem(frame_of(resolution, extent, align_to), _inputs.name(method, "method"), request))
+        return of_cells(found.dem(frame_of(resolution, extent, align_to), method, request))
 
 
 @overload
@@ -215,11 +221,12 @@ def hillshade(
     written = _written(hillshade, dict(locals()))
     if written is not None:
         return written
-    found = _surface(points, surface, threads, progress)
+    method = _inputs.name(method, "method")
+    found = _surface(points, surface, threads, progress, method)
     sun = light(azimuth, altitude, z_factor)
     with call(threads, progress) as request:
         frame = frame_of(resolution, extent, align_to)
-        return of_cells(found.hillshade(frame, _inputs.name(method, "method"), sun, request))
+        return of_cells(found.hillshade(frame, method, sun, request))
 
 
 @overload
