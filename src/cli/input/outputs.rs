@@ -1,6 +1,6 @@
 //! The files of results, checked before the work starts.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::args::OutputArgs;
 use crate::error::Result;
@@ -19,7 +19,9 @@ pub(crate) fn resolve<F: Copy>(
     formats: &[Format<F>],
     inputs: &[PathBuf],
 ) -> Result<Outputs<F>> {
-    targets::resolve(&args.output, Existing::of(args.overwrite), formats, inputs)
+    let existing = Existing::of(args.overwrite);
+    let may_replace = |_: &Path| existing == Existing::Replace;
+    targets::resolve(&args.output, &may_replace, formats, inputs)
 }
 
 /// Returns the companions of a target, then the target itself.

@@ -112,7 +112,7 @@ impl Targets {
     ) -> Result<Outputs> {
         let may_replace = |file: &Path| self.existing == Existing::Replace || is_own(file);
         let formats = formats_of(product, |_| ());
-        let outputs = resolve_where(&self.files, &may_replace, &formats, read)?;
+        let outputs = resolve(&self.files, &may_replace, &formats, read)?;
         self.check_tables(read)?;
         let is_target = |table: &&Path| {
             outputs
@@ -248,23 +248,13 @@ impl<F> Outputs<F> {
     }
 }
 
-/// Finds the format of each output and makes sure that no file is lost that should be kept.
+/// Finds the format of each output and makes sure that no file is lost that should be kept: only
+/// those may be replaced for which a function returns true.
 ///
 /// # Errors
 /// If an extension is not among the formats, an output is an input or named twice, its folder does
 /// not exist, or it exists and may not be replaced.
 pub(crate) fn resolve<F: Copy>(
-    files: &[PathBuf],
-    existing: Existing,
-    formats: &[Format<F>],
-    inputs: &[PathBuf],
-) -> Result<Outputs<F>> {
-    let may_replace = |_: &Path| existing == Existing::Replace;
-    resolve_where(files, &may_replace, formats, inputs)
-}
-
-/// Like [`resolve`], where a file may be replaced for which a function returns true.
-fn resolve_where<F: Copy>(
     files: &[PathBuf],
     may_replace: &dyn Fn(&Path) -> bool,
     formats: &[Format<F>],
