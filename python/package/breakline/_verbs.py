@@ -138,10 +138,10 @@ def dem(
     written = _written(dem, dict(locals()))
     if written is not None:
         return written
-    method = _inputs.name(method, "method")
-    found = _surface(points, surface, threads, progress, method)
+    by = _inputs.name(method, "method")
+    found = _surface(points, surface, threads, progress, by)
     with call(threads, progress) as request:
-        return of_cells(found.dem(frame_of(resolution, extent, align_to), method, request))
+        return of_cells(found.dem(frame_of(resolution, extent, align_to), by, request))
 
 
 @overload
@@ -221,12 +221,12 @@ def hillshade(
     written = _written(hillshade, dict(locals()))
     if written is not None:
         return written
-    method = _inputs.name(method, "method")
-    found = _surface(points, surface, threads, progress, method)
+    by = _inputs.name(method, "method")
+    found = _surface(points, surface, threads, progress, by)
     sun = light(azimuth, altitude, z_factor)
     with call(threads, progress) as request:
         frame = frame_of(resolution, extent, align_to)
-        return of_cells(found.hillshade(frame, method, sun, request))
+        return of_cells(found.hillshade(frame, by, sun, request))
 
 
 @overload
