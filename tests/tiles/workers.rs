@@ -189,7 +189,7 @@ fn what_a_process_has_left_is_taken_once_its_lease_has_expired() {
     // Of a task, of one whose lease is damaged, and of the output.
     write_lease(&folder, 0, 100, 101);
     std::fs::write(lease(&folder, 2), "").unwrap();
-    write_lease(&folder, 7, 5, 3600);
+    write_lease(&folder, 7, 5, 3605);
     // Of a host whose clock was ahead, or before the clock of the file server was set back.
     write_lease(&folder, 3, 5, 0);
     let file = File::options()
