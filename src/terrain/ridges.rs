@@ -616,7 +616,7 @@ mod tests {
         }
     }
 
-    /// Of many limits of one height, few are looked at for one of another height.
+    /// A search for limits of other heights looks at few of the many that have one height.
     #[test]
     fn limits_of_the_height_itself_are_skipped() {
         let ring = |count: u32, radius: f64, z: f64| {

@@ -42,17 +42,17 @@ pub enum Event<'a> {
     Waits {
         /// Their number.
         tasks: usize,
-        /// Who does them, as far as that is known.
+        /// The processes that do them, as far as they are known.
         on: &'a [Awaited],
     },
     /// Nothing can be done but to wait for processes that have the job.
     WaitsForJob {
-        /// Who they are, as far as that is known.
+        /// These processes, as far as they are known.
         on: &'a [Awaited],
     },
     /// The output is written although other processes have the job: they give no sign of life.
     GoesOnWithout {
-        /// Who they are, as far as that is known.
+        /// These processes, as far as they are known.
         on: &'a [Awaited],
         /// How long they were waited for.
         after: Duration,

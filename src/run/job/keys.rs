@@ -1,5 +1,5 @@
-//! What tells tasks apart, in a job whose inputs may change: what each is made from, apart from the
-//! files of other tasks.
+//! The keys of tasks, which identify them in a job whose inputs may change: a key says what a task
+//! is made from, apart from the files of other tasks.
 //!
 //! A task with the same key, made from files of the same contents, writes the same file: also in a
 //! later plan of the job, where it may have another number. The options of the request are in no

@@ -174,7 +174,8 @@ fn take_whole(folder: &Path, last: usize) -> Result<Taken<JobLock>> {
     // Asked first, so that this one is in nobody's way while it waits.
     if leases.of_others()?.is_empty()
         && let Some(lease) = leases.take(last)?
-        // Who takes a task from now on sees that lease; who has taken one before is seen now.
+        // Processes that take a task from now on see that lease. Those that took one before are
+        // seen now.
         && leases.of_others()?.is_empty()
     {
         return Ok(Ok(JobLock { lease, _file: file }));

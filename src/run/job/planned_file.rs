@@ -19,7 +19,8 @@ use crate::terrain::tiles::Spread;
 /// The rounding of the coordinates that headers state, in units of the last place.
 const HEADER_ROUNDING: f64 = 8.0;
 
-/// What tells whether a file has changed, or one that is read along with it.
+/// The state of a file and of those that are read along with it, which differs once one of them has
+/// changed.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct FileState {
     /// The length in bytes.

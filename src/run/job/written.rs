@@ -48,7 +48,7 @@ impl WrittenFile {
 pub(crate) struct OwnFiles(Vec<WrittenFile>);
 
 impl OwnFiles {
-    /// Returns those that the job in a folder has written, of whatever its tasks were then; none if
+    /// Returns the files that the job in a folder has written, also by an earlier plan; none if
     /// there is no job.
     ///
     /// # Complexity

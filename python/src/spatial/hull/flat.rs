@@ -18,9 +18,9 @@ pub(super) struct Facet {
 
 /// Returns facets between extreme points only, from those of a convex surface.
 ///
-/// A point in the interior of an edge or a side is no corner. A side with more than three corners
-/// is a fan from the one with the smallest coordinates, so that the facets depend on the set of
-/// points only.
+/// A point in the interior of an edge or a side is not a corner. A side with more than three
+/// corners is a fan from the one with the smallest coordinates, so that the facets depend on the
+/// set of points only.
 pub(super) fn in_flat_sides(points: &[[f64; 3]], facets: Vec<Facet>) -> Vec<Facet> {
     let pairs = coplanar_neighbors(points, &facets);
     if pairs.is_empty() {

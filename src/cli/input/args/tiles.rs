@@ -35,9 +35,9 @@ pub(crate) struct TileArgs {
 
     /// Do again what changed inputs reach, and keep the job for the next time
     ///
-    /// The same command as before: of the job in the folder, only those tasks are done that files
-    /// reach which have changed since, came new, or went. The output is replaced if it is as the
-    /// job has written it. Without a job there, one is planned.
+    /// Repeat the command that began the job. Files that were changed, added or removed since are
+    /// found, and only the tasks that they affect are done again. The output is replaced if it is
+    /// as the job has written it. If there is no job yet, one is planned.
     #[arg(long, conflicts_with_all = ["resume", "dry_run"])]
     pub(crate) update: bool,
 
