@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, NoReturn
+from typing import Any, NoReturn, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,6 +12,8 @@ from .. import _masked
 from .._breakline import Tessellation
 from .._errors import usage
 from ._common import PointSet, check_options, flat, positions_of, unsupported
+
+_T = TypeVar("_T")
 
 #: How far outside of the hull, in barycentric coordinates, counts as inside: as in scipy.
 TOLERANCE = 100 * float(np.finfo(np.float64).eps)
@@ -62,11 +64,11 @@ class Triangulated(PointSet):
         self.points = everything
         self._cache = {}
 
-    def _once(self, name: str, compute: Callable[[], Any]) -> Any:
-        cache = self._cache
-        if name not in cache:
-            cache[name] = compute()
-        return cache[name]
+    def _once(self, name: str, compute: Callable[[], _T]) -> _T:
+        if name not in self._cache:
+            self._cache[name] = compute()
+        found: _T = self._cache[name]
+        return found
 
 
 class Delaunay(Triangulated):
@@ -173,38 +175,32 @@ class Delaunay(Triangulated):
 
     @property
     def simplices(self) -> NDArray[np.int32]:
-        simplices: NDArray[np.int32] = self._once("tables", lambda: self._core.tables(self._call))[0]
-        return simplices
+        return self._once("tables", lambda: self._core.tables(self._call))[0]
 
     @property
     def neighbors(self) -> NDArray[np.int32]:
-        neighbors: NDArray[np.int32] = self._once("tables", lambda: self._core.tables(self._call))[1]
-        return neighbors
+        return self._once("tables", lambda: self._core.tables(self._call))[1]
 
     @property
     def coplanar(self) -> NDArray[np.int32]:
-        coplanar: NDArray[np.int32] = self._once("coplanar", lambda: self._core.coplanar(self._call))
-        return coplanar
+        return self._once("coplanar", lambda: self._core.coplanar(self._call))
 
     @property
     def convex_hull(self) -> NDArray[np.int32]:
-        hull: NDArray[np.int32] = self._once("hull", lambda: self._core.hull(self._call))
-        return hull
+        return self._once("hull", lambda: self._core.hull(self._call))
 
     @property
     def vertex_to_simplex(self) -> NDArray[np.int32]:
-        simplex_at: NDArray[np.int32] = self._once("simplex_at", lambda: self._core.simplex_at(self._call))
-        return simplex_at
+        return self._once("simplex_at", lambda: self._core.simplex_at(self._call))
 
     @property
     def vertex_neighbor_vertices(self) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
-        neighbors: tuple[NDArray[np.int32], NDArray[np.int32]] = self._once("neighbor_points", lambda: tuple(self._core.neighbor_points(self._call)))
-        return neighbors
+        starts, neighbors = self._once("neighbor_points", lambda: self._core.neighbor_points(self._call))
+        return starts, neighbors
 
     @property
     def transform(self) -> NDArray[np.float64]:
-        transforms: NDArray[np.float64] = self._once("transforms", lambda: self._core.transforms(self._call))
-        return transforms
+        return self._once("transforms", lambda: self._core.transforms(self._call))
 
     def find_simplex(self, xi: ArrayLike, bruteforce: bool = False, tol: float | None = None) -> NDArray[np.int32]:
         """Return the simplex that contains each position.

@@ -101,39 +101,33 @@ class Voronoi(Triangulated):
         self._has_empty = state["has_empty"]
         super().__setstate__(state)
 
-    def _diagram(self) -> Any:
+    def _diagram(self) -> tuple[NDArray[np.float64], NDArray[np.int32], Any, Any, NDArray[np.int64]]:
         return self._once("diagram", lambda: self._core.voronoi(self._call))
 
     @property
     def vertices(self) -> NDArray[np.float64]:
-        vertices: NDArray[np.float64] = self._diagram()[0]
-        return vertices
+        return self._diagram()[0]
 
     @property
     def ridge_points(self) -> NDArray[np.int32]:
-        points: NDArray[np.int32] = self._diagram()[1]
-        return points
+        return self._diagram()[1]
 
     @property
     def ridge_vertices(self) -> list[list[int]]:
-        vertices: list[list[int]] = self._once("ridge_vertices", lambda: nested_lists(*self._diagram()[2]))
-        return vertices
+        return self._once("ridge_vertices", lambda: nested_lists(*self._diagram()[2]))
 
     @property
     def ridge_dict(self) -> dict[tuple[int, int], list[int]]:
-        ridges: dict[tuple[int, int], list[int]] = self._once(
+        return self._once(
             "ridge_dict", lambda: dict(zip(map(tuple, self.ridge_points.tolist()), self.ridge_vertices))
         )
-        return ridges
 
     @property
     def regions(self) -> list[list[int]]:
-        regions: list[list[int]] = self._once(
+        return self._once(
             "regions", lambda: ([[]] if self._has_empty else []) + nested_lists(*self._diagram()[3])
         )
-        return regions
 
     @property
     def point_region(self) -> NDArray[np.int64]:
-        region: NDArray[np.int64] = self._once("point_region", lambda: self._diagram()[4] + int(self._has_empty))
-        return region
+        return self._once("point_region", lambda: self._diagram()[4] + int(self._has_empty))
