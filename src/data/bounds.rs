@@ -47,6 +47,26 @@ impl Bounds {
     }
 }
 
+/// Returns the lower of two numbers; `b` if one of them is NaN.
+///
+/// `PERF:` one instruction. [`f64::min`], which returns the number that is not NaN, takes four.
+#[inline(always)]
+pub(crate) fn lower(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
+/// Returns the higher of two numbers; `b` if one of them is NaN. See [`lower`].
+#[inline(always)]
+pub(crate) fn higher(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
+/// Returns the lowest and the highest of three numbers that are not NaN.
+#[inline(always)]
+pub(crate) fn lowest_and_highest([a, b, c]: [f64; 3]) -> [f64; 2] {
+    [lower(lower(a, b), c), higher(higher(a, b), c)]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

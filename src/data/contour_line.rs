@@ -1,4 +1,4 @@
-use super::Bounds;
+use super::{Bounds, higher, lower};
 
 /// A contour: a polyline at one level, with higher ground on its right.
 #[derive(Debug, Clone, PartialEq)]
@@ -17,7 +17,7 @@ impl ContourLine {
 
     /// Returns the box around the line.
     ///
-    /// `PERF:` half the instructions of [`Bounds::add`]. A NaN changes nothing, either.
+    /// `PERF:` half the instructions of [`Bounds::add`]. As there, a NaN changes nothing.
     pub(crate) fn bounds(&self) -> Bounds {
         if self.points.is_empty() {
             return Bounds::default();
@@ -25,9 +25,8 @@ impl ContourLine {
         let (mut min, mut max) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
         for point in &self.points {
             for axis in 0..2 {
-                let x = point[axis];
-                min[axis] = if x < min[axis] { x } else { min[axis] };
-                max[axis] = if x > max[axis] { x } else { max[axis] };
+                min[axis] = lower(point[axis], min[axis]);
+                max[axis] = higher(point[axis], max[axis]);
             }
         }
         Bounds {

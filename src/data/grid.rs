@@ -1,6 +1,6 @@
 use rayon::prelude::*;
 
-use super::{Bounds, Frame, Window};
+use super::{Bounds, Frame, Window, higher, lower};
 use crate::crs::Crs;
 use crate::error::{Error, Result};
 
@@ -189,16 +189,8 @@ pub(crate) fn range_of_finite(heights: &[f64]) -> Option<[f64; 2]> {
     // Stays 0 while all are finite.
     let mut nothing = [0.0; LANES];
     let mut add = |lane: usize, height: f64| {
-        low[lane] = if height < low[lane] {
-            height
-        } else {
-            low[lane]
-        };
-        high[lane] = if height > high[lane] {
-            height
-        } else {
-            high[lane]
-        };
+        low[lane] = lower(height, low[lane]);
+        high[lane] = higher(height, high[lane]);
         nothing[lane] += 0.0 * height;
     };
     let (chunks, rest) = heights.as_chunks::<LANES>();

@@ -45,6 +45,7 @@ mod triangles;
 mod without_lines;
 
 pub use bounds::Bounds;
+pub(crate) use bounds::{higher, lower, lowest_and_highest};
 pub use columns::Columns;
 pub use contour_line::ContourLine;
 pub(crate) use frame::GridLines;

@@ -1,4 +1,4 @@
-use crate::data::Surface;
+use crate::data::{Surface, higher, lower};
 use crate::triangulation::num::unsigned_zero;
 use std::cmp::Ordering::{self, Equal, Greater, Less};
 
@@ -350,9 +350,7 @@ fn crossing(a: [f64; 3], b: [f64; 3], level: f64) -> [f64; 2] {
     let (a, b) = if a <= b { (a, b) } else { (b, a) };
     // Differences of halves cannot overflow; otherwise halving does not change the result.
     let t = (0.5 * level - 0.5 * a[2]) / (0.5 * b[2] - 0.5 * a[2]);
-    // `PERF:` half the instructions of `f64::min`. If `t` is not a number, `low` remains.
-    let lower = |a: f64, b: f64| if a < b { a } else { b };
-    let higher = |a: f64, b: f64| if a > b { a } else { b };
+    // If `t` is not a number, `low` remains.
     let between = |a: f64, b: f64| {
         let value = 2.0 * (0.5 * a + t * (0.5 * b - 0.5 * a));
         let (low, high) = (lower(a, b), higher(a, b));

@@ -2,7 +2,7 @@
 
 use super::cut::{ContourArc, LevelCut};
 use super::index::LevelIndex;
-use crate::data::Surface;
+use crate::data::{Surface, lowest_and_highest};
 use rayon::prelude::*;
 use std::cell::Cell;
 use std::ops::Range;
@@ -29,15 +29,6 @@ pub(super) fn height_range<S: Surface + ?Sized>(surface: &S) -> [f64; 2] {
         .into_par_iter()
         .map(of_stretch)
         .reduce(|| [f64::INFINITY, f64::NEG_INFINITY], joined)
-}
-
-/// Returns the lowest and the highest height of a face.
-///
-/// `PERF:` heights are finite. Without a case for NaN, as in `f64::min`, half the instructions.
-pub(super) fn lowest_and_highest([a, b, c]: [f64; 3]) -> [f64; 2] {
-    let lower = |a: f64, b: f64| if a < b { a } else { b };
-    let higher = |a: f64, b: f64| if a > b { a } else { b };
-    [lower(lower(a, b), c), higher(higher(a, b), c)]
 }
 
 pub(super) fn joined(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {

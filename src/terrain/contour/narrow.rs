@@ -12,9 +12,8 @@ use std::ops::Range;
 use rustc_hash::FxHashMap;
 
 use super::cut::{ContourArc, Direction, LevelCut, Node};
-use super::find::lowest_and_highest;
 use super::index::LevelIndex;
-use crate::data::{ContourLine, Surface};
+use crate::data::{ContourLine, Surface, lowest_and_highest};
 use crate::terrain::Levels;
 use crate::terrain::thin::{STEPS, is_thin};
 use crate::triangulation::arrangement::Arrangement;

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::placement::Placement;
+use crate::data::lowest_and_highest;
 
 /// Calls `each` with row and column of each bin in which a face may contain the center of a cell:
 /// in each row of bins, those between the leftmost and the rightmost point of the face.
@@ -15,12 +16,12 @@ pub(super) fn bins_of(
     side: usize,
     mut each: impl FnMut(usize, usize),
 ) {
-    let (low, high) = extent_along(corners, 1);
+    let [low, high] = lowest_and_highest(corners.map(|corner| corner[1]));
     let rows = placement.rows.cells(low, high);
     if rows.is_empty() {
         return;
     }
-    let (left, right) = extent_along(corners, 0);
+    let [left, right] = lowest_and_highest(corners.map(|corner| corner[0]));
     let columns = placement.columns.cells(left, right);
     if columns.is_empty() || corners.as_flattened().iter().any(|c| !c.is_finite()) {
         // Vertices near the end of the range of doubles overflow in a rotated raster.
@@ -47,17 +48,6 @@ pub(super) fn bins_of(
             bins(&cells).for_each(|column| each(row, column));
         }
     }
-}
-
-/// The smallest and the largest coordinate of a triangle along an axis, if all are finite.
-///
-/// `PERF:` one instruction for each comparison, where `f64::min`, which heeds NaN, takes four.
-#[inline(always)]
-fn extent_along([a, b, c]: &[[f64; 3]; 3], axis: usize) -> (f64, f64) {
-    let (a, b, c) = (a[axis], b[axis], c[axis]);
-    let least = |a: f64, b: f64| if a < b { a } else { b };
-    let most = |a: f64, b: f64| if a > b { a } else { b };
-    (least(least(a, b), c), most(most(a, b), c))
 }
 
 /// The smallest and the largest x of a triangle in the band `low..=high` of y.
