@@ -23,7 +23,7 @@ pub struct AtRim {
     rule: RimRule,
     triangles: Vec<TileTriangle>,
     /// What is on one side of each edge whose other side was not seen yet.
-    open: FxHashMap<EdgeKey, GateSide>,
+    unmatched: FxHashMap<EdgeKey, GateSide>,
     /// Edges that were seen from both sides, but are not open from both.
     gates: Vec<(EdgeKey, GateSide)>,
     /// A union-find structure over the triangles.
@@ -123,8 +123,7 @@ impl AtRim {
 
     fn add(&mut self, edge: EdgeKey, side: GateSide) {
         use GateSide::{Closed, Open, Outside};
-        let Some(other) = self.open.remove(&edge) else {
-            self.open.insert(edge, side);
+        let Some(other) = other_side(&mut self.unmatched, edge, side) else {
             return;
         };
         match (side, other) {
@@ -149,7 +148,7 @@ impl AtRim {
             group_of.push(*number);
         }
         let mut gates: Vec<Gate> = self
-            .open
+            .unmatched
             .into_iter()
             .chain(self.gates)
             .map(|(edge, side)| Gate {
@@ -165,6 +164,20 @@ impl AtRim {
             groups,
         }
     }
+}
+
+/// Returns what was seen on the other side of an edge, which is then forgotten; `None` if nothing
+/// was, and this side is then kept.
+fn other_side(
+    unmatched: &mut FxHashMap<EdgeKey, GateSide>,
+    edge: EdgeKey,
+    side: GateSide,
+) -> Option<GateSide> {
+    let other = unmatched.remove(&edge);
+    if other.is_none() {
+        unmatched.insert(edge, side);
+    }
+    other
 }
 
 fn edge_of(triangle: &TileTriangle, i: usize) -> EdgeKey {
@@ -185,7 +198,7 @@ pub struct Rim {
     /// The groups that are removed or stay together.
     groups: Groups,
     /// What is on one side of each gate whose other side was not seen yet.
-    open: FxHashMap<EdgeKey, GateSide>,
+    unmatched: FxHashMap<EdgeKey, GateSide>,
     /// Pairs of groups: the second is removed if the first is.
     passages: Vec<[u32; 2]>,
     /// Groups that the outside reaches.
@@ -215,8 +228,7 @@ impl Rim {
 
     fn add_side(&mut self, edge: EdgeKey, side: GateSide) {
         use GateSide::{Closed, Open, Outside};
-        let Some(other) = self.open.remove(&edge) else {
-            self.open.insert(edge, side);
+        let Some(other) = other_side(&mut self.unmatched, edge, side) else {
             return;
         };
         match (side, other) {
