@@ -135,8 +135,8 @@ pub(super) fn uncertain(
             continue;
         }
         uncertain += usize::from(!judge.is_certain(cell));
+        let corners = tds.corners(cell).map(|vertex| *triangulation.point(vertex));
         for i in (0..3).filter(|&i| !triangulation.is_constrained(cell, i)) {
-            let corners = tds.corners(cell).map(|vertex| *triangulation.point(vertex));
             let beyond = tds.neighbor(cell, i);
             if rule.is_open(&corners, i) && !std::mem::replace(&mut is_seen[beyond.index()], true) {
                 ahead.push(beyond);

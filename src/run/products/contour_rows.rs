@@ -66,6 +66,8 @@ struct FoundParts {
     end: u64,
     /// The number of edges of all lines.
     edges: u64,
+    /// Memory that is kept from one call of [`add`](Self::add) to the next.
+    bytes: Vec<u8>,
 }
 
 impl FoundParts {
@@ -75,20 +77,21 @@ impl FoundParts {
             blocks: Vec::new(),
             end: 0,
             edges: 0,
+            bytes: Vec::new(),
         }
     }
 
     fn add(&mut self, parts: &LevelParts) -> Result<()> {
-        let mut bytes = Vec::new();
-        parts.write(&mut bytes)?;
-        self.scratch.write_all(&bytes)?;
+        self.bytes.clear();
+        parts.write(&mut self.bytes)?;
+        self.scratch.write_all(&self.bytes)?;
         self.blocks.push(Block {
             level: parts.level(),
             start: self.end,
-            length: bytes.len(),
+            length: self.bytes.len(),
             may_bend: parts.may_bend(),
         });
-        self.end += bytes.len() as u64;
+        self.end += self.bytes.len() as u64;
         self.edges += parts.edge_count() as u64;
         Ok(())
     }
