@@ -241,7 +241,6 @@ impl<'a> Journal<'a> {
         }
     }
 
-    /// Passes a notice to the monitor and keeps it.
     /// Adds a notice about classes that no point has, if there are any.
     pub(crate) fn add_missing_classes(&self, missing: impl Iterator<Item = u8>) {
         let mut missing: Vec<u8> = missing.collect();
@@ -252,6 +251,7 @@ impl<'a> Journal<'a> {
         }
     }
 
+    /// Passes a notice to the monitor and keeps it.
     pub(crate) fn add(&self, notice: Notice) {
         self.context.monitor.notice(&notice);
         self.notices

@@ -138,10 +138,9 @@ fn heights<'a>(
     journal: &Journal,
 ) -> Result<HeightSource<'a>> {
     journal.context.check()?;
-    product
-        .unread_by(*method)
-        .into_iter()
-        .for_each(|notice| journal.add(notice));
+    if let Some(notice) = product.unread_by(*method) {
+        journal.add(notice);
+    }
     if let Model::Parts(parts) = &product.model
         && *method == Method::Linear
     {

@@ -156,8 +156,8 @@ impl SurfaceProduct {
         }
     }
 
-    /// Returns a notice if a method reads vertices that were left out, because linear heights
-    /// within the bounds do not depend on them.
+    /// Returns a notice if a method reads vertices outside of the bounds that were left out. Linear
+    /// heights do not depend on these.
     pub(super) fn unread_by(&self, method: Method) -> Option<Notice> {
         let is_part = self.built.as_ref().is_some_and(|built| built.is_part);
         (is_part && method != Method::Linear).then_some(Notice::PartForLinear)

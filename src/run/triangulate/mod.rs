@@ -175,7 +175,7 @@ fn triangulate_journaled(
     let added = triangulated.nodes.points.len() - given;
     let report = TriangulateReport {
         vertices_given: given,
-        vertices_at_crossings: added - built.added.min(added),
+        vertices_at_crossings: added.saturating_sub(built.added),
         vertices_for_quality: built.added,
         duplicates: given + added - built.vertices.len(),
         segments_given: graph.segments.len(),
