@@ -215,9 +215,10 @@ impl Frame {
         t[2] == 0.0 && t[4] == 0.0 && are_shared(t[0], t[1]) && are_shared(t[3], t[5])
     }
 
-    /// Returns the frame from a column and a row of this one, which may be outside of it, to others
-    /// that are not included; `None` if its grid lines are not multiples of the size of its cells,
-    /// or it would be empty or too large. Its cells have the same [centers](Self::center).
+    /// Returns the frame of the cells from column and row `from` up to those of `to`, which are not
+    /// included, counted in this frame and possibly outside of it. Its cells have the same
+    /// [centers](Self::center). `None` if this frame is rotated, its grid lines are not multiples
+    /// of the size of its cells, or the other frame would be empty or too large.
     pub(crate) fn on_its_lines(&self, from: [i64; 2], to: [i64; 2]) -> Option<Self> {
         let t = &self.transform;
         if t[2] != 0.0 || t[4] != 0.0 {

@@ -180,7 +180,8 @@ impl BlockSource for Grid {
     }
 }
 
-/// Returns the lowest and the highest of some heights; `None` if one of them is missing.
+/// Returns the lowest and the highest of some heights; `None` if one of them is not finite. Without
+/// heights, infinity and its negative.
 ///
 /// `PERF:` compiled to vector instructions.
 pub(crate) fn range_of_finite(heights: &[f64]) -> Option<[f64; 2]> {

@@ -359,6 +359,7 @@ impl AddAssign for LineEdges {
 pub(crate) struct UsedVertices(Vec<AtomicBool>);
 
 impl UsedVertices {
+    /// Creates marks for so many vertices, none of which is used yet; a byte each.
     pub(crate) fn new(count: usize) -> Self {
         UsedVertices((0..count).map(|_| AtomicBool::new(false)).collect())
     }
@@ -394,6 +395,9 @@ const BATCHES_AT_ONCE: u32 = 32;
 ///
 /// # Errors
 /// The first of `take`.
+///
+/// # Complexity
+/// Linear. Memory: the faces of one batch and the results of 32, for each thread.
 pub(crate) fn map_batches<T, R: Send, E>(
     count: usize,
     ask: impl Fn(Range<u32>, &mut Vec<T>) + Sync,

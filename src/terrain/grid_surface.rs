@@ -392,7 +392,7 @@ impl Surface for GridSurface<'_> {
         let sides = t[1].abs() + t[2].abs() + t[4].abs() + t[5].abs();
         let [rows, width] = [self.first_row + height, width].map(|count| count as f64);
         let size = [0, 3].map(|i| t[i].abs() + width * t[i + 1].abs() + rows * t[i + 2].abs());
-        // A face has a quarter of the area of a cell, at least. Half of what that gives is left for
+        // Twice the area of a face is at least half the area of a cell. Half of that is left for
         // the rounding of positions.
         0.25 * area / sides / (f64::EPSILON * size[0].max(size[1]))
     }

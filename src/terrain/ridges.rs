@@ -430,7 +430,7 @@ impl Band {
         self.nearest(q, &self.limits, is_wanted, is_other)
     }
 
-    /// Returns the nearest of the limits in a tree that is wanted and in a node that is.
+    /// Returns the nearest wanted limit of a tree. Nodes that are not wanted are skipped.
     fn nearest(
         &self,
         q: [f64; 3],

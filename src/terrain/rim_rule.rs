@@ -1,4 +1,4 @@
-//! Which triangles the outside takes away from the rim of a surface.
+//! The rule by which triangles are left out at the rim of a surface.
 
 use super::linear::plan_distance;
 use crate::triangulation::tds::{ccw, cw};
@@ -17,7 +17,8 @@ use crate::triangulation::tds::{ccw, cw};
 /// edges in any part of the triangulation.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct RimRule {
-    /// Edges longer than this are open; none is by its length if this is `None`.
+    /// Edges longer than this in plan, in the units of the data, are open. With `None`, length
+    /// opens no edge.
     pub max_edge: Option<f64>,
     /// True if the longest edges of *caps* are open: triangles with an angle over 165 degrees.
     pub opens_caps: bool,

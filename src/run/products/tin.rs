@@ -39,7 +39,7 @@ const DEFAULT_CROSSING_TOLERANCE_METRES: f64 = 0.01;
 /// the units of the coordinate system of the result, heights in its units of heights.
 ///
 /// The default has no input, and these options: ground points are used (class 2; all points if no
-/// point has it), triangles at the rim with edges over 100 metres are left out, and flat ones
+/// point has it), caps and triangles with edges over 100 metres are left out at the rim
 /// ([`EdgeLimit::Standard`]), the lowest of several heights is used, and breaklines are split where
 /// they cross.
 #[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]

@@ -97,9 +97,9 @@ impl Targets {
             .for_each(visit);
     }
 
-    /// Finds the format of each output and makes sure that no file is lost that should be kept;
-    /// `read` are the files that the request reads, and for those that may be replaced in any case
-    /// `is_own` returns true.
+    /// Finds the format of each output and makes sure that no file is lost that should be kept.
+    /// `read` are the files that the request reads. `is_own` returns true for a file that may be
+    /// replaced in any case.
     ///
     /// # Errors
     /// If an extension is not that of a format for the product, an output is an input or named
@@ -248,8 +248,8 @@ impl<F> Outputs<F> {
     }
 }
 
-/// Finds the format of each output and makes sure that no file is lost that should be kept: only
-/// those may be replaced for which a function returns true.
+/// Finds the format of each output and makes sure that no file is lost that should be kept.
+/// `may_replace` returns true for a file that may be replaced.
 ///
 /// # Errors
 /// If an extension is not among the formats, an output is an input or named twice, its folder does

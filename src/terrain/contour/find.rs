@@ -46,7 +46,7 @@ pub(super) struct Overview {
 }
 
 impl Overview {
-    /// Passes over all faces; those that have arcs are few if there are at most so many.
+    /// Passes over all faces once. Those that have arcs are few if there are at most `most`.
     /// `is_narrow` is called for each face that meets a level.
     pub(super) fn of<S: Surface + ?Sized>(
         surface: &S,

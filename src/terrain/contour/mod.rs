@@ -131,13 +131,13 @@ use trace::Traces;
 ///
 /// # Complexity
 /// Linear in faces and arcs, except for sorting the lines. Two passes over the faces find those
-/// that have arcs. If these are more than four million, each two million arcs (or one level with
-/// more), which are drawn together when the iterator needs them, take a pass more. Levels that meet
-/// a face narrower than some steps of its coordinates are drawn twice. A face that no level meets
-/// costs a comparison; in a raster, much less. Memory: 16 bytes per face with arcs, of up to four
-/// million; of the arcs that are drawn together, 8 bytes each and 16 per point; 24 bytes per level;
-/// one bit per face for each thread. Faces are scanned in parallel, and levels are drawn in
-/// parallel.
+/// that have arcs. Levels are drawn when the iterator needs them, two million arcs at a time (or
+/// one level with more); if more than four million faces have arcs, each time takes one more pass.
+/// Levels that meet a face narrower than some steps of its coordinates are drawn twice. A face that
+/// no level meets costs a comparison; in a raster, much less. Memory: 16 bytes for each face with
+/// arcs, unless there are more than four million; 8 bytes for each arc that is drawn and 16 for
+/// each of its points; 24 bytes per level; one bit per face for each thread. Faces are scanned in
+/// parallel, and levels are drawn in parallel.
 pub fn contours<'a, S: Surface + ?Sized>(
     surface: &'a S,
     levels: &Levels,

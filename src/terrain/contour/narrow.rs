@@ -48,7 +48,8 @@ impl<'a> Narrowness<'a> {
     }
 
     /// Returns true if the face, or the ground between two levels in it, may be narrower than some
-    /// steps of its coordinates; also for some faces at which no level [is narrow](Self::sites_of).
+    /// steps of its coordinates. Faces of which [`sites_of`](Self::sites_of) then returns no sites
+    /// may be among these.
     #[inline]
     pub(super) fn includes(self, corners: [[f64; 3]; 3]) -> bool {
         let heights = lowest_and_highest(corners.map(|[.., z]| z));

@@ -206,7 +206,7 @@ impl<S: Surface + ?Sized> Tracer<'_, '_, S> {
             let (Beyond::Edge(PassedEdge { face, .. }) | Beyond::Corner(face)) = beyond;
             let arc = ContourArc::Across(face);
             if !self.done.insert(arc) {
-                // Not the seed only if the links between faces contradict each other.
+                // This is the seed, unless the links between faces contradict each other.
                 return Passage::End((arc != seed).then_some(loose));
             }
             match beyond {
@@ -225,11 +225,11 @@ impl<S: Surface + ?Sized> Tracer<'_, '_, S> {
     }
 }
 
-/// How far arcs lead from edge to edge.
+/// Where arcs that are followed from edge to edge stop.
 enum Passage {
-    /// To the corner of a face, on the level.
+    /// In this face, at the corner on the level.
     Corner(Face),
-    /// To the edge of the data; `None` at the seed.
+    /// At the edge of the data; `None` at the seed, where the line is closed.
     End(Option<LooseEnd>),
 }
 

@@ -11,7 +11,7 @@
 //!    and the *seams*, the edges between triangles that are final and others.
 //! 3. A [`merge`] triangulates the vertices of several residuals, takes away what lies on the final
 //!    side of their seams, and goes on as a leaf does, with the union of the tiles.
-//! 4. At the root all points are known, and every triangle is final. What is left is the outside.
+//! 4. At the root all points are known, and every triangle is final. The residual is the hull.
 //!
 //! *Why.* A triangle is in the triangulation of all points if and only if no other point is in
 //! conflict with it, and a point in conflict lies in the closed disk, ties included. A vertex is

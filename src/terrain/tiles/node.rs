@@ -115,8 +115,8 @@ fn of_points(
 /// returns what may still change.
 ///
 /// The tile is the union of those of the parts. With [`Tile::PLANE`] all triangles are final, and
-/// what is left is the outside: its edges are those of the hull. `tight` is that of [`leaf`], the
-/// same in all tasks.
+/// the edges of the residual are those of the hull. `tight` is that of [`leaf`], the same in all
+/// tasks.
 ///
 /// # Errors
 /// If an edge names a vertex that does not exist, or the residuals contradict each other: they are

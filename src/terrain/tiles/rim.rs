@@ -1,4 +1,4 @@
-//! What is left out at the rim, for triangles that no task has all of.
+//! What is left out at the rim, where each task has only some of the triangles.
 
 use rustc_hash::FxHashMap;
 
@@ -206,7 +206,10 @@ pub struct Rim {
 }
 
 impl Rim {
-    /// Adds the groups of the next task. Linear, up to a factor that is nearly constant.
+    /// Adds the groups of the next task.
+    ///
+    /// # Complexity
+    /// Linear, up to a factor that is nearly constant.
     pub fn add(&mut self, groups: u32, gates: &[Gate]) {
         let first = self.groups.count() as u32;
         self.first_of.push(first);
@@ -243,7 +246,7 @@ impl Rim {
     /// true if the group is removed.
     ///
     /// # Complexity
-    /// O(n log n) in the number of gates.
+    /// O(n log n) in the number of gates, and nearly linear in that of groups.
     pub fn removed(mut self) -> Vec<Vec<bool>> {
         let groups = &mut self.groups;
         let mut passages: Vec<[u32; 2]> = self
