@@ -42,7 +42,7 @@ impl<'j> Sources<'j> {
         let mut file = self.job.open_task(task)?;
         let sum = match self.tile {
             Some(tile) if self.job.lines_task() == Some(task) => {
-                *lines::sums_of_tiles(&mut file)?.entry(tile).or_default()
+                lines::sum_of_tile(&mut file, tile)?
             }
             _ => file.sum,
         };

@@ -9,7 +9,7 @@ use flate2::Crc;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::bytes::{self, NumberReader, put_block, put_u32};
-use super::task_file::{TaskFile, TaskWriter};
+use super::task_file::{Block, TaskFile, TaskWriter};
 use crate::crs::Crs;
 use crate::data::{Bounds, Surface};
 use crate::error::Result;
@@ -287,44 +287,59 @@ pub(super) fn write(tin: &Tin, layout: &TileLayout, writer: &mut TaskWriter) -> 
     Ok(edges)
 }
 
+/// Returns the tiles that get something from the lines, each with where its vertices and its
+/// constraints are.
+fn tiles_in(file: &mut TaskFile) -> Result<Vec<(u32, [Block; 2])>> {
+    let table = file.section("table")?;
+    let mut entries = NumberReader::new(&table);
+    let mut tiles = Vec::new();
+    while let Some(tile) = entries.u32() {
+        let [Some(vertices), Some(constraints)] = [(); 2].map(|()| entries.block()) else {
+            return Err(file.damaged());
+        };
+        tiles.push((tile, [vertices, constraints]));
+    }
+    Ok(tiles)
+}
+
+/// Returns a checksum of what the lines give to a tile, which has these blocks.
+fn sum_of(blocks: &[Block; 2]) -> u32 {
+    let mut sum = Crc::new();
+    for block in blocks {
+        sum.update(&block.length.to_le_bytes());
+        sum.update(&block.sum.to_le_bytes());
+    }
+    sum.sum()
+}
+
 /// Returns a checksum of what the lines give to each tile, by their numbers; those that get nothing
 /// are left out.
 pub(super) fn sums_of_tiles(file: &mut TaskFile) -> Result<FxHashMap<u32, u32>> {
-    let table = file.section("table")?;
-    let mut entries = NumberReader::new(&table);
-    let mut sums = FxHashMap::default();
-    while let Some(of_tile) = entries.u32() {
-        let mut sum = Crc::new();
-        for _ in 0..2 {
-            let block = entries.block().ok_or_else(|| file.damaged())?;
-            sum.update(&block.length.to_le_bytes());
-            sum.update(&block.sum.to_le_bytes());
-        }
-        sums.insert(of_tile, sum.sum());
-    }
-    Ok(sums)
+    let tiles = tiles_in(file)?.into_iter();
+    Ok(tiles
+        .map(|(tile, blocks)| (tile, sum_of(&blocks)))
+        .collect())
+}
+
+/// Returns the [checksum](sums_of_tiles) of what the lines give to one tile; 0 if it gets nothing.
+pub(super) fn sum_of_tile(file: &mut TaskFile, tile: u32) -> Result<u32> {
+    let mut tiles = tiles_in(file)?.into_iter();
+    let own = tiles.find(|(of_tile, _)| *of_tile == tile);
+    Ok(own.map_or(0, |(_, blocks)| sum_of(&blocks)))
 }
 
 /// Reads what the lines give to a tile.
 pub(super) fn read(file: &mut TaskFile, tile: u32) -> Result<LinesOfTile> {
-    let table = file.section("table")?;
-    let mut entries = NumberReader::new(&table);
-    while let Some(of_tile) = entries.u32() {
-        let [Some(vertices), Some(constraints)] = [(); 2].map(|()| entries.block()) else {
-            return Err(file.damaged());
-        };
-        if of_tile != tile {
-            continue;
-        }
-        let mut lines = LinesOfTile::default();
+    let mut lines = LinesOfTile::default();
+    let mut tiles = tiles_in(file)?.into_iter();
+    if let Some((_, [vertices, constraints])) = tiles.find(|(of_tile, _)| *of_tile == tile) {
         let mut bytes = Vec::new();
         file.read(vertices, &mut bytes)?;
         bytes::add_points(&bytes, &mut lines.vertices).ok_or_else(|| file.damaged())?;
         file.read(constraints, &mut bytes)?;
         lines.constraints = bytes::to_constraints(&bytes).ok_or_else(|| file.damaged())?;
-        return Ok(lines);
     }
-    Ok(LinesOfTile::default())
+    Ok(lines)
 }
 
 impl LinesOfTile {
