@@ -402,8 +402,10 @@ impl Job {
 
     /// Returns how many bytes the files of the tasks have that are there.
     pub fn bytes_there(&self) -> u64 {
-        let length =
-            |task| std::fs::metadata(self.task_file(task).path).map_or(0, |about| about.len());
+        let length = |task| {
+            let path = paths::task_path(&self.folder, task);
+            std::fs::metadata(path).map_or(0, |about| about.len())
+        };
         (0..self.task_count()).map(length).sum()
     }
 

@@ -86,7 +86,7 @@ impl PlannedFile {
 
 /// Returns the length of a file in bytes; 0 if it cannot be asked for.
 pub(super) fn length_of(path: &Path) -> u64 {
-    state_of(path).map_or(0, |state| state.size)
+    found(path).map_or(0, |(_, about)| about.len())
 }
 
 /// The bytes of a point in a text, at least.
@@ -221,19 +221,25 @@ pub(super) fn require_folder(path: &Path, request: &TinRequest) -> Result<()> {
     ]))
 }
 
-/// Returns the state of a file, which may be named together with a layer.
-pub(super) fn state_of(path: &Path) -> Result<FileState> {
-    let (path, about) = match std::fs::metadata(path) {
-        Ok(about) => (path, about),
+/// Returns the name of a file without that of a layer, which may follow, and what the system knows
+/// of the file.
+fn found(path: &Path) -> Result<(&Path, Metadata)> {
+    match std::fs::metadata(path) {
+        Ok(about) => Ok((path, about)),
         Err(error) => {
             let named = path.to_str().map(|text| Path::new(layer::file_of(text)));
             let found = named.and_then(|file| Some((file, std::fs::metadata(file).ok()?)));
             match found {
-                Some(found) if error.kind() == std::io::ErrorKind::NotFound => found,
-                _ => return Err(Error::from(error).in_file(path)),
+                Some(found) if error.kind() == std::io::ErrorKind::NotFound => Ok(found),
+                _ => Err(Error::from(error).in_file(path)),
             }
         }
-    };
+    }
+}
+
+/// Returns the state of a file, which may be named together with a layer.
+pub(super) fn state_of(path: &Path) -> Result<FileState> {
+    let (path, about) = found(path)?;
     let beside = match about.is_dir() {
         true => files_in(path).map_err(|e| Error::from(e).in_file(path))?,
         false => formats::found_along_with(path),

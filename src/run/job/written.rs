@@ -143,18 +143,19 @@ impl Job {
         let Some(record) = record_of(self.name, &self.folder) else {
             return Ok(false);
         };
-        let is_written = outputs.iter().all(|output| has(&record.files, output))
-            && record.files.iter().all(|file| file.is_there(context));
-        context.check()?;
-        if !is_written {
+        // Before the outputs are read: of the files of tasks, only the ends are.
+        let is_of_these = outputs.iter().all(|output| has(&record.files, output))
+            && self.sources(context)? == Some(record.sources);
+        if !is_of_these {
             return Ok(false);
         }
-        let is_of_these = self.sources(context)? == Some(record.sources);
         let has_parts = || {
             !matches!(self.verb.keeps(), Keeps::Triangles)
                 || outputs.iter().all(|output| has_all_parts(output))
         };
-        Ok(is_of_these && has_parts())
+        let is_written = record.files.iter().all(|file| file.is_there(context));
+        context.check()?;
+        Ok(is_written && has_parts())
     }
 
     /// Returns what the names of temporary files of outputs contain, for
