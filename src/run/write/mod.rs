@@ -497,11 +497,7 @@ impl<'a> Prepared<'a> {
     ) -> Result<WriteReport> {
         let folder = self.folder(options)?;
         let Some(update) = Job::updated(self.request, &folder, options, context)? else {
-            let options = TileOptions {
-                folder: Some(folder),
-                ..options.clone()
-            };
-            return self.anew(&options, caller, context);
+            return self.anew(options, caller, context);
         };
         require_room(update.job(), context)?;
         if !update.keeps_tiles() {
