@@ -263,8 +263,11 @@ impl Dual<3> for Mesh<Space, 4, 3> {
                     let t = self.simplex(other);
                     t == NONE || t >= s as i32
                 });
+                if !is_first {
+                    continue;
+                }
                 close(&mut around);
-                if !is_first || !self.has_area(edge, &around) {
+                if !self.has_area(edge, &around) {
                     continue;
                 }
                 let ends = tds.edge_ends(edge);

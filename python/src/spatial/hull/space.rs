@@ -122,26 +122,14 @@ fn first_solid(points: &[[f64; 3]]) -> Option<[u32; 4]> {
 
 impl<'a> Quickhull<'a> {
     fn new(points: &'a [[f64; 3]], [a, b, c, d]: [u32; 4]) -> Self {
-        // Facet `k` is opposite corner `k` of `a b c d`.
+        // Facet `k` is opposite corner `k` of `a b c d`: corners, and the facet opposite each.
         let facets = [
             ([b, c, d], [1, 2, 3]),
-            ([a, d, c], [0, 2, 3]),
+            ([a, d, c], [0, 3, 2]),
             ([a, b, d], [0, 1, 3]),
-            ([a, c, b], [0, 1, 2]),
+            ([a, c, b], [0, 2, 1]),
         ];
-        let neighbors = |corners: [u32; 3]| {
-            let opposite = |p: u32| {
-                [a, b, c, d]
-                    .iter()
-                    .position(|&q| q == p)
-                    .unwrap_or_default()
-            };
-            corners.map(|p| opposite(p) as u32)
-        };
-        let facets = facets.map(|(corners, _)| Facet {
-            corners,
-            neighbors: neighbors(corners),
-        });
+        let facets = facets.map(|(corners, neighbors)| Facet { corners, neighbors });
         let mut hull = Quickhull {
             points,
             facets: Vec::new(),
