@@ -3,7 +3,9 @@
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::types::PyList;
+use rayon::prelude::*;
 
+use super::mesh::CHUNK;
 use crate::arrays::column;
 
 /// List `k` has the numbers `items[starts[k]..starts[k + 1]]`.
@@ -46,6 +48,21 @@ impl FromIterator<Part> for Lists {
 }
 
 impl Lists {
+    /// Returns the list of each item, in order. `list_of` gets an empty vector and adds the numbers.
+    pub(super) fn of<T: Sync>(items: &[T], list_of: impl Fn(&T, &mut Vec<i32>) + Sync) -> Self {
+        let of_chunk = |items: &[T]| {
+            let (mut part, mut list) = (Part::default(), Vec::new());
+            for item in items {
+                list.clear();
+                list_of(item, &mut list);
+                part.push(&list);
+            }
+            part
+        };
+        let parts: Vec<Part> = items.par_chunks(CHUNK).map(of_chunk).collect();
+        parts.into_iter().collect()
+    }
+
     /// Returns two arrays: where each list begins, and what they contain.
     pub(super) fn arrays(
         self,

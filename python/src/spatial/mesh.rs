@@ -11,7 +11,7 @@ use breakline::triangulation::tds::{CellId, Neighbors, Tds, VertexId};
 use breakline::triangulation::{Delaunay, InputError};
 use rayon::prelude::*;
 
-use super::lists::{Lists, Part};
+use super::lists::Lists;
 
 /// No simplex, and no point.
 pub(super) const NONE: i32 = -1;
@@ -276,7 +276,8 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
     where
         Tds<N>: Neighbors<N, Error = Infallible>,
     {
-        let around = |vertex: VertexId, neighbors: &mut Vec<i32>| {
+        Lists::of(&self.first_at_vertices(), |&vertex, neighbors| {
+            let Some(vertex) = vertex else { return };
             let Ok(around) = self.t.tds().neighbors_of(vertex);
             let finite = around.map(|Ok(v)| v).filter(|&v| v != VertexId::INFINITE);
             neighbors.extend(finite.map(|v| self.point_of[v.index()]));
@@ -285,21 +286,7 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
                 neighbors.sort_unstable();
                 neighbors.dedup();
             }
-        };
-        let of_chunk = |vertices: &[Option<VertexId>]| {
-            let (mut part, mut neighbors) = (Part::default(), Vec::new());
-            for &vertex in vertices {
-                neighbors.clear();
-                if let Some(vertex) = vertex {
-                    around(vertex, &mut neighbors);
-                }
-                part.push(&neighbors);
-            }
-            part
-        };
-        let vertex_of = self.first_at_vertices();
-        let parts: Vec<Part> = vertex_of.par_chunks(CHUNK).map(of_chunk).collect();
-        parts.into_iter().collect()
+        })
     }
 }
 

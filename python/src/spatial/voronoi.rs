@@ -1,8 +1,8 @@
 //! Voronoi diagrams, as scipy lists them: the dual of a triangulation, in which all simplices on
 //! one sphere have one vertex.
 //!
-//! Whether they are on one sphere is decided exactly. So no ridge has two equal vertices, or none
-//! but for rounding.
+//! Whether they are on one sphere is decided exactly. So rounding neither adds ridges without a
+//! length or an area, nor removes others.
 
 use std::ops::Range;
 
@@ -200,20 +200,12 @@ impl Dual<2> for Mesh<Plane, 3, 2> {
     }
 
     fn regions(&self, sites: &[VertexId], vertex_of: &[i32]) -> Lists {
-        let of_chunk = |sites: &[VertexId]| {
-            let (mut part, mut around) = (Part::default(), Vec::new());
-            for &site in sites {
-                around.clear();
-                for cell in self.t.tds().around(site) {
-                    push(&mut around, self.voronoi_vertex(cell, vertex_of));
-                }
-                close(&mut around);
-                part.push(&around);
+        Lists::of(sites, |&site, around| {
+            for cell in self.t.tds().around(site) {
+                push(around, self.voronoi_vertex(cell, vertex_of));
             }
-            part
-        };
-        let parts: Vec<Part> = sites.par_chunks(CHUNK).map(of_chunk).collect();
-        parts.into_iter().collect()
+            close(around);
+        })
     }
 }
 
@@ -280,17 +272,18 @@ impl Dual<3> for Mesh<Space, 4, 3> {
 
     fn regions(&self, sites: &[VertexId], vertex_of: &[i32]) -> Lists {
         let tds = self.t.tds();
-        // Those of the simplices at each vertex, one vertex after the other, by counting.
-        let mut ends = vec![0usize; tds.vertex_slots() + 1];
+        // The Voronoi vertices of the simplices at each vertex, sorted by counting: those of `v`
+        // are `around[starts[v]..starts[v + 1]]`.
+        let mut starts = vec![0usize; tds.vertex_slots() + 1];
         for corner in self.cells().iter().flat_map(|&cell| tds.corners(cell)) {
-            ends[corner.index() + 1] += 1;
+            starts[corner.index() + 1] += 1;
         }
-        for v in 1..ends.len() {
-            ends[v] += ends[v - 1];
+        for v in 1..starts.len() {
+            starts[v] += starts[v - 1];
         }
-        let mut around = vec![NONE; ends.last().copied().unwrap_or_default()];
+        let mut around = vec![NONE; starts.last().copied().unwrap_or_default()];
         let mut is_on_hull = vec![false; tds.vertex_slots()];
-        let mut next = ends.clone();
+        let mut next = starts.clone();
         for (&cell, &vertex) in self.cells().iter().zip(vertex_of) {
             for corner in tds.corners(cell) {
                 let slot = &mut next[corner.index()];
@@ -303,19 +296,12 @@ impl Dual<3> for Mesh<Space, 4, 3> {
                 }
             }
         }
-        let of_chunk = |sites: &[VertexId]| {
-            let (mut part, mut region) = (Part::default(), Vec::new());
-            for site in sites.iter().map(|site| site.index()) {
-                region.clear();
-                region.extend(is_on_hull[site].then_some(NONE));
-                region.extend_from_slice(&around[ends[site]..ends[site + 1]]);
-                region.sort_unstable();
-                region.dedup();
-                part.push(&region);
-            }
-            part
-        };
-        let parts: Vec<Part> = sites.par_chunks(CHUNK).map(of_chunk).collect();
-        parts.into_iter().collect()
+        Lists::of(sites, |site, region| {
+            let site = site.index();
+            region.extend(is_on_hull[site].then_some(NONE));
+            region.extend_from_slice(&around[starts[site]..starts[site + 1]]);
+            region.sort_unstable();
+            region.dedup();
+        })
     }
 }
