@@ -40,7 +40,7 @@ pub(crate) fn table<T: Element, const N: usize>(
     shaped(py, rows.into_flattened(), [count, N])
 }
 
-/// Returns an array of the numbers of a vector, row by row, which are not copied.
+/// Returns a vector as an array of this shape, row by row, without a copy.
 ///
 /// # Errors
 /// If the shape is for another number of them.

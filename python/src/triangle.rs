@@ -123,7 +123,7 @@ fn triangulated_here(
         ..options.clone()
     };
     work::run_few(py, call, expected(graph, options), |context| {
-        // What is tried in vain reports nothing.
+        // An attempt that is given up must not report what the next one reports again.
         let silent = Context {
             monitor: &Silent,
             ..*context

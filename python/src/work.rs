@@ -170,7 +170,8 @@ pub(crate) fn run_on<T: Send, E: Send + Into<PyErr>>(
     }
 }
 
-/// Does work on so many points on the calling thread, if they are few; `None` if they are not.
+/// Does work on so many points on the calling thread; `None`, without having begun, if they are not
+/// few, or the calling thread has no pool of its own. Errors are those of [`run`].
 pub(crate) fn run_few<T: Send, E: Send + Into<PyErr>>(
     py: Python<'_>,
     call: &Call,
@@ -260,8 +261,8 @@ fn on_pool<T: Send, E: Send + Into<PyErr>>(
 ) -> PyResult<T> {
     let running = &Running::default();
     let (outcome, interruption) = py.detach(|| {
-        // Not `install`, in which the calling thread could not look for signals; and no thread is
-        // started that would.
+        // `install` would block the calling thread, which looks for signals. With a scope, no other
+        // thread has to be started.
         pool.in_place_scope(|scope| {
             let (sender, receiver) = sync_channel(1);
             scope.spawn(move |_| {

@@ -646,9 +646,9 @@ def tin(
     resume : bool
         Go on with a job that was interrupted.
     update : bool
-        Of a job that was done before, do again what files reach that have changed since, came new, or went, and replace
-        the output, if it is as the job has written it. The folder of the job stays, for the next time. Without a job
-        there, one is planned.
+        Do again the part of an earlier job that is reached by files that were changed, added or removed since, and
+        replace the output, if it is as the job has written it. The folder of the job stays, for the next update.
+        Without an earlier job, one is planned.
     skip_bad : bool
         In tiles, leave a hole where a file cannot be read; ``Written.report["has_holes"]`` says so.
     threads : int, optional

@@ -78,8 +78,8 @@ class Job:
 
     ``breakline job plan`` makes one, and so does :meth:`plan`. A ``Job`` stands for the job that was in the folder when
     it was opened: if that is removed, or another one takes its place, the methods raise an :class:`OtherJobError`. Only
-    :meth:`write` may plan it again, when files that were skipped are repaired, and :meth:`update`; it stands for the new
-    one then.
+    :meth:`update` may plan it again, and :meth:`write`, when files that were skipped are repaired; it then stands for
+    the new job.
 
     Parameters
     ----------
@@ -232,7 +232,7 @@ class Job:
         return Written(self.output, report)
 
     def update(self, *, threads: Optional[int] = None, progress: Progress = None) -> Written:
-        """Do again what inputs reach that have changed since the job was planned, and return the output.
+        """Do again what is reached by inputs that have changed since the job was planned, and return the output.
 
         The output is replaced if it is as the job has written it; it stays if nothing has changed. For other files than
         those that the job was planned with, call the function of the verb with ``update=True``.

@@ -48,7 +48,8 @@ impl FromIterator<Part> for Lists {
 }
 
 impl Lists {
-    /// Returns the list of each item, in order. `list_of` gets an empty vector and adds the numbers.
+    /// Returns the list of each item, in order. `list_of` gets an empty vector and adds the
+    /// numbers.
     pub(super) fn of<T: Sync>(items: &[T], list_of: impl Fn(&T, &mut Vec<i32>) + Sync) -> Self {
         let of_chunk = |items: &[T]| {
             let (mut part, mut list) = (Part::default(), Vec::new());

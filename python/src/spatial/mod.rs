@@ -366,8 +366,8 @@ type HullArrays<'py> = (
     f64,
 );
 
-/// Returns the convex hull of points of shape (n, d), of which so many were accepted before; `None`
-/// if they do not span the plane or the space.
+/// Returns the convex hull of points of shape (n, d), the first `accepted` of which were checked
+/// before; `None` if they do not span the plane or the space.
 #[pyfunction]
 pub(crate) fn convex_hull<'py>(
     py: Python<'py>,

@@ -36,7 +36,7 @@ const FLAT: f64 = 1e-10;
 /// rounded, all simplices at the hull are.
 const ROUNDINGS: f64 = 4.0;
 
-/// So many simplices are looked at by rounded numbers before a position is located.
+/// The most simplices that are tried by rounded numbers before a position is located exactly.
 const STEPS: usize = 8;
 
 /// A position is in a simplex for certain if it is inside of each facet by more than this part of

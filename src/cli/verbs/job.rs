@@ -129,7 +129,7 @@ fn work(job: &Path, options: &WorkOptions, console: &Console) -> Result<Exit> {
     Ok(shown.print(&report))
 }
 
-/// Does again what inputs reach that have changed.
+/// Does again what changed inputs reach.
 fn update(job: &Path, console: &Console) -> Result<Exit> {
     let stored = StoredJob::read(job)?;
     let shown = Shown::new(console, on_job("run", stored.folder()));

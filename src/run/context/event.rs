@@ -134,7 +134,8 @@ impl Display for Awaited {
 /// How many of those that are waited for are listed.
 const LISTED: usize = 3;
 
-/// Returns the first of those that are waited for, for the end of a sentence.
+/// Returns a list of the first of them that ends a sentence, such as ": a; b; and 2 more"; nothing
+/// if there are none.
 pub(crate) fn listed(on: &[Awaited]) -> String {
     let mut text = String::new();
     for (i, one) in on.iter().take(LISTED).enumerate() {

@@ -68,8 +68,8 @@ impl<'j> Sources<'j> {
 }
 
 /// Returns the checksum of what a task was made from: checksums of what it takes from the files of
-/// others, in the order of their tasks. Their numbers do not count, which shift once the inputs of
-/// the job have changed: which files it reads is in the key of a task.
+/// others, in the order of their tasks. The numbers of these tasks do not count, because they shift
+/// once inputs come or go. The key of a task says which files it reads.
 fn sum_of(sources: impl Iterator<Item = u32>) -> u32 {
     let mut all = Crc::new();
     for sum in sources {

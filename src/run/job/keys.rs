@@ -15,10 +15,11 @@ use crate::terrain::tiles::Tile;
 /// The keys of the tasks of a plan.
 #[derive(Debug)]
 pub(super) struct Keys {
-    /// The layers of lines, if the points of files have to do with them.
+    /// A checksum of the states of all files but those of points, if there are lines: points are
+    /// divided with regard to them.
     lines: Option<u32>,
-    /// What the surface is cut along, if it is. How near a triangle counts as near depends on the
-    /// extent of all points.
+    /// A checksum of the same and of the extent of all points, if the surface is cut: the distance
+    /// at which a triangle counts as near a clip line depends on that extent.
     clip: Option<u32>,
 }
 
@@ -43,8 +44,8 @@ impl Keys {
         json!(["lines", self.lines, corners(&plan.files)])
     }
 
-    /// Returns the key of a tile that has points of some files, of which one may be the tile. Their
-    /// order is in it: of points at one position the first may be used, or the last.
+    /// Returns the key of a tile that has points of some files; one of them may be the tile. The
+    /// key has them in their order, which decides between points at one site.
     pub(super) fn of_leaf<'f>(
         &self,
         tile: u32,
@@ -54,7 +55,7 @@ impl Keys {
         let files: Vec<Value> = files
             .map(|file| match file.tile {
                 Some(_) => of_file(file),
-                // Of a file that is skipped, its extent is a hole.
+                // If the file is skipped, its extent is a hole.
                 None => corners(std::slice::from_ref(file)),
             })
             .collect();
@@ -86,7 +87,7 @@ fn corners(files: &[PlannedFile]) -> Value {
     json!([&bounds.min[..2], &bounds.max[..2]])
 }
 
-/// The sides of a tile, of which some may be infinite, and are `null` then.
+/// The corners of a tile; coordinates that are infinite become `null`.
 fn rectangle(tile: &Tile) -> Value {
     json!([tile.min, tile.max])
 }

@@ -57,7 +57,8 @@ impl JobLock {
         })
     }
 
-    /// Has a folder by the lease of the last task alone: who has the lock gives no sign of life.
+    /// Takes a folder by the lease of the last task alone, because the process that has the lock
+    /// gives no sign of life.
     pub(super) fn without_lock(lease: Lease, folder: &Path) -> Result<Self> {
         let file = open(folder)?;
         Ok(JobLock { lease, _file: file })
@@ -98,8 +99,9 @@ impl SharedLock {
         })
     }
 
-    /// Returns true unless a process has the whole job that does not see this lock: it has the
-    /// lease of the last task. On the same host that is left of one that was killed.
+    /// Returns true unless a process that does not see this lock has the whole job, and so the
+    /// lease of the last task. With locks, such a lease of this host was left by a process that was
+    /// killed.
     pub(super) fn permits(&self, leases: &Leases, last: usize) -> Result<bool> {
         match self.locked {
             Locked::Yes => leases.is_free_elsewhere(last),

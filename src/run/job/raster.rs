@@ -30,8 +30,8 @@ const MOST_BLOCKS: usize = 2048;
 const MOST_ROWS: usize = 8;
 
 impl Drawing {
-    /// Begins the section of cells. Blocks are counted from where the frame began before these were
-    /// added on the left and above.
+    /// Begins the section of cells. Blocks are counted from the first one after `blocks_before`,
+    /// those that were added on the left and above since the job began.
     pub(super) fn new(
         frame: Frame,
         blocks_before: [u64; 2],

@@ -475,7 +475,8 @@ impl TaskFile {
     }
 }
 
-/// Reads the end of the file of a task. Returns it with the position where it begins.
+/// Reads the end of the file of a task. Returns a reader of the file, the end, and the position
+/// where that begins.
 fn read_value(file: File) -> Result<(FileReader, Value, u64)> {
     let length = file.metadata()?.len();
     let mut reader = FileReader::new(file);

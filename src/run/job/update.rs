@@ -28,8 +28,8 @@ use crate::run::verbs::WriteRequest;
 use crate::terrain::Canvas;
 use crate::terrain::tiles::{Spread, Tile, TileLayout, Work};
 
-/// How many times as many points as a tile may have, or had, others than the ones it was planned
-/// for may bring.
+/// Tiles are chosen again once one of them has more points than this times what it had before, and
+/// than this times the most that a tile may have.
 const GROWTH: f64 = 2.0;
 
 /// A job that was planned again, because its inputs may have changed. It is not in its folder yet.

@@ -32,9 +32,9 @@ pub enum Execution {
     Tiles(TileOptions),
     /// In tiles, going on with the job in the folder, if there is one.
     Resume(TileOptions),
-    /// In tiles, with the job in the folder, which stays: of its tasks only those are done that the
-    /// inputs reach which have changed since, or came new, or went. An output is replaced if it is
-    /// as that job has written it. Without a job there, one is planned.
+    /// In tiles, with the job in the folder, which stays. Only the tasks are done that inputs reach
+    /// which were changed, added or removed since. An output is replaced if it is as that job has
+    /// written it. Without a job there, one is planned.
     Update(TileOptions),
     /// Not at all: tiles are planned as for [`Tiles`](Self::Tiles), and nothing is written.
     Plan(TileOptions),
@@ -262,9 +262,9 @@ pub fn run_job(stored: &StoredJob, context: &Context) -> Result<WriteReport> {
         )
 }
 
-/// Does those tasks of a job again that are reached by inputs which have changed since it was
-/// planned, and replaces the outputs, unless they are not as the job has written them. `stored` is
-/// then the job as it is planned now.
+/// Does the tasks of a job again that inputs reach which have changed since it was planned. Outputs
+/// are replaced if they are as the job has written them. `stored` is then the job as it is planned
+/// now.
 ///
 /// # Errors
 /// Those of [`run_job`].
@@ -283,7 +283,7 @@ pub fn update_job(stored: &StoredJob, context: &Context) -> Result<WriteReport> 
     update(request, targets, &options, Caller::Folder, planned, context)
 }
 
-/// Plans a job again, does what its inputs reach that have changed, and replaces the outputs.
+/// Plans a job again, does the tasks that changed inputs reach, and replaces the outputs.
 fn update(
     request: &WriteRequest,
     targets: &Targets,
@@ -315,7 +315,7 @@ fn already_written(job: &Job, targets: &Targets, context: &Context) -> Result<Op
     }
 }
 
-/// Checks the outputs of a request, of which those may be there that a job has written.
+/// Checks the outputs of a request. Files in `own` may be replaced.
 fn resolved(request: &WriteRequest, targets: &Targets, own: &OwnFiles) -> Result<Outputs> {
     let read = targets.with_lists(request.files());
     targets.resolve(request.verb.product(), &read, &|file| own.has(file))
@@ -336,7 +336,8 @@ impl<'a> Prepared<'a> {
         Self::replacing(request, targets, OwnFiles::default())
     }
 
-    /// Those outputs may be there that are as the job in a folder has written them.
+    /// Like [`new`](Self::new), but outputs may be replaced that are as the job in a folder has
+    /// written them.
     fn of_job(
         request: &'a WriteRequest,
         targets: &'a Targets,
@@ -644,7 +645,8 @@ enum Caller {
     Update,
     /// One who knows the folder, and what is kept in it. It stays.
     Folder,
-    /// One of several who share the job. The folder stays, and who shares it says how to go on.
+    /// One of several processes that share the job. The folder stays; [`Job::work`] says how to go
+    /// on.
     Worker,
 }
 

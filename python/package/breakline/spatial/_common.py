@@ -126,8 +126,8 @@ class PointSet:
 
 def flat(points: NDArray[np.float64], what: str, cure: str) -> UsageError:
     """Return the error of points that do not span the plane or the space."""
-    flat = "line" if points.shape[1] == 2 else "plane"
-    return usage(f"all {len(points)} points lie on one {flat}: {what}", cure=cure, kind=QhullError)
+    shape = "line" if points.shape[1] == 2 else "plane"
+    return usage(f"all {len(points)} points lie on one {shape}: {what}", cure=cure, kind=QhullError)
 
 
 def checked(threads: int | None) -> int | None:

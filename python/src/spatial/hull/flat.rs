@@ -67,8 +67,8 @@ fn coplanar_neighbors(points: &[[f64; 3]], facets: &[Facet]) -> Vec<[u32; 2]> {
 
 /// Returns the corners of each side, counter-clockwise.
 fn polygons(facets: &[Facet], groups: &mut Groups) -> Vec<Vec<u32>> {
-    // The border of each side, and how many sides there are at each of its points: of a side that
-    // a point is on the border of, one edge of the border starts there.
+    // The border of each side, and the number of sides at each point of it: the border of each of
+    // these sides has exactly one edge that starts at the point.
     let mut border: Vec<(u32, [u32; 2])> = Vec::new();
     let mut sides_at: HashMap<u32, u32> = HashMap::new();
     for (f, facet) in (0..).zip(facets) {

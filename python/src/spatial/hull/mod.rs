@@ -15,8 +15,8 @@ use rayon::prelude::*;
 pub(super) use self::listed::Hull;
 use super::mesh::{CHUNK, make_zeros_unsigned};
 
-/// Returns the hull of points in the plane, of which so many were accepted before; `None` if they
-/// are collinear.
+/// Returns the hull of points in the plane, the first `accepted` of which were checked before;
+/// `None` if all are collinear.
 ///
 /// # Errors
 /// If one of the others is refused, or the work is canceled.
@@ -29,8 +29,8 @@ pub(super) fn of_plane(
     plane::hull(points, cancel)
 }
 
-/// Returns the hull of points in space, of which so many were accepted before; `None` if they are
-/// coplanar.
+/// Returns the hull of points in space, the first `accepted` of which were checked before; `None`
+/// if all are coplanar.
 ///
 /// # Errors
 /// If one of the others is refused, or the work is canceled.
@@ -43,7 +43,7 @@ pub(super) fn of_space(
     space::hull(points, cancel)
 }
 
-/// Negative zeros among points become zeros.
+/// Makes negative zeros positive, and checks the points from number `accepted` on.
 ///
 /// # Errors
 /// If one that was not accepted before is not finite, or out of the range of exact arithmetic. Its

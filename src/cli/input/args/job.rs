@@ -48,8 +48,8 @@ pub(crate) enum JobAction {
         /// tasks that it needs are not done
         #[arg(long, value_name = "N")]
         task: Option<usize>,
-        /// Do again what inputs reach that have changed since the job was planned, and replace the
-        /// output, if it is as the job has written it
+        /// Do again what is reached by inputs that have changed since the job was planned, and
+        /// replace the output, if it is as the job has written it
         #[arg(long, conflicts_with = "task")]
         update: bool,
     },

@@ -20,7 +20,8 @@ static ALL: Mutex<Vec<Listed>> = Mutex::new(Vec::new());
 #[derive(Debug)]
 struct Listed {
     path: PathBuf,
-    /// What it says, if other processes may put files of theirs in its place.
+    /// What it contains once it is written, if other processes may put files of their own in its
+    /// place.
     text: Option<String>,
 }
 
@@ -86,8 +87,9 @@ impl Temporary {
         Ok((file, Temporary { path }))
     }
 
-    /// Creates a file at this path, where there must be none, for a text. Other processes may put
-    /// files of theirs in its place: only one with this text, or the begin of it, is removed.
+    /// Creates a file at this path, where there must be none. The caller will write `text` to it.
+    /// Other processes may put files of their own in its place, so what is there is removed only if
+    /// it contains `text`, or the begin of it.
     ///
     /// # Errors
     /// With the kind `AlreadyExists` if there is one: of several processes that try, one succeeds.
