@@ -5,8 +5,10 @@ use pyo3::prelude::*;
 use pyo3::types::PyList;
 use rayon::prelude::*;
 
-use super::mesh::CHUNK;
 use crate::arrays::column;
+
+/// Items per parallel task: points, simplices or lists.
+pub(super) const CHUNK: usize = 1 << 12;
 
 /// List `k` has the numbers `items[starts[k]..starts[k + 1]]`.
 #[derive(Default)]

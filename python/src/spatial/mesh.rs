@@ -11,13 +11,10 @@ use breakline::triangulation::tds::{CellId, Neighbors, Tds, VertexId};
 use breakline::triangulation::{Delaunay, InputError};
 use rayon::prelude::*;
 
-use super::lists::Lists;
+use super::lists::{CHUNK, Lists};
 
 /// No simplex, and no point.
 pub(super) const NONE: i32 = -1;
-
-/// Points or simplices per parallel task.
-pub(super) const CHUNK: usize = 1 << 12;
 
 /// A geometry of the plane or of space, with `D` coordinates and simplices of `N` corners.
 pub(super) trait Dimension<const N: usize, const D: usize>:

@@ -9,7 +9,8 @@ use breakline::triangulation::{Location, spatial_order};
 use numpy::ndarray::ArrayView2;
 use rayon::prelude::*;
 
-use super::mesh::{CHUNK, Dimension, Mesh, NONE};
+use super::lists::CHUNK;
+use super::mesh::{Dimension, Mesh, NONE};
 
 /// So many queries are answered in the order in which they are given.
 const FEW: usize = 64;

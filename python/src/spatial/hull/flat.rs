@@ -7,7 +7,7 @@ use breakline::triangulation::num::Sign;
 use rayon::prelude::*;
 
 use crate::spatial::groups::Groups;
-use crate::spatial::mesh::CHUNK;
+use crate::spatial::lists::CHUNK;
 
 /// A triangle, counter-clockwise as seen from outside, and the facets opposite its corners.
 #[derive(Clone, Copy)]
