@@ -1,8 +1,11 @@
 // What triangulation/examples/bench_editing.rs does, by CGAL's Triangulation_hierarchy_2, in space by
-// Delaunay_triangulation_3 with Fast_location, in the same line format.
+// Delaunay_triangulation_3 with Fast_location (alpha shapes by Alpha_shape_3), in the same line format.
 //
 //   g++ -std=c++17 -O3 -DNDEBUG benches/cgal_editing.cpp -o cgal_editing -lgmp -lmpfr     (Debian: libcgal-dev)
 //   ./cgal_editing FILE.xy|FILE.xyz
+#include <CGAL/Alpha_shape_3.h>
+#include <CGAL/Alpha_shape_cell_base_3.h>
+#include <CGAL/Alpha_shape_vertex_base_3.h>
 #include <CGAL/Delaunay_triangulation_2.h>
 #include <CGAL/Delaunay_triangulation_3.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -18,6 +21,9 @@ typedef CGAL::Triangulation_hierarchy_vertex_base_2<CGAL::Triangulation_vertex_b
 typedef CGAL::Delaunay_triangulation_2<K, CGAL::Triangulation_data_structure_2<Vb, CGAL::Triangulation_face_base_2<K>>> Plain;
 typedef CGAL::Triangulation_hierarchy_2<Plain> Hierarchy;
 typedef CGAL::Delaunay_triangulation_3<K, CGAL::Fast_location> InSpace;
+typedef CGAL::Triangulation_data_structure_3<CGAL::Alpha_shape_vertex_base_3<K>, CGAL::Alpha_shape_cell_base_3<K>> WithAlphas;
+typedef CGAL::Delaunay_triangulation_3<K, WithAlphas> ForAlphas;
+typedef CGAL::Alpha_shape_3<ForAlphas> Alphas;
 
 static std::string stem;
 static size_t count;
@@ -64,6 +70,11 @@ template <class T, class Point> void measure(const std::vector<Point>& points) {
     });
 }
 
+static void alpha_shapes(const std::vector<K::Point_3>& points) {
+    ForAlphas t(points.begin(), points.end());
+    timed("alpha", [&] { return Alphas(t, 0, Alphas::GENERAL).number_of_alphas(); });
+}
+
 int main(int argc, char** argv) {
     if (argc < 2) return 2;
     std::string path = argv[1];
@@ -81,6 +92,8 @@ int main(int argc, char** argv) {
         else points.emplace_back(p[0], p[1]);
     }
     fclose(file);
-    if (in_space) measure<InSpace>(points_in_space);
-    else measure<Hierarchy>(points);
+    if (in_space) {
+        measure<InSpace>(points_in_space);
+        alpha_shapes(points_in_space);
+    } else measure<Hierarchy>(points);
 }

@@ -9,8 +9,9 @@
 //! The points (pairs or triples of 64-bit little-endian floating-point numbers) are inserted in the
 //! order of the file. The midpoints of consecutive points are located, and their nearest vertices
 //! found. Then every second point is removed. In a regular triangulation of one cell around them,
-//! all points are inserted, too light to be seen, and removed. The last number but one of a line
-//! counts cells, or points that were found.
+//! all points are inserted, too light to be seen, and removed. In space, the alpha shapes of the
+//! points, for all alphas, are built from their Delaunay triangulation. The last number but one of
+//! a line counts cells, alphas, or points that were found.
 
 #![allow(clippy::print_stdout, reason = "what it is for")]
 
@@ -113,6 +114,16 @@ macro_rules! in_geometry {
 in_geometry!(in_plane, Plane, Weighted, 2, 3);
 in_geometry!(in_space, Space, WeightedSpace, 3, 4);
 
+fn alpha_shapes(stem: &str, points: &[[f64; 3]]) -> Result<(), Box<dyn std::error::Error>> {
+    let (t, _) = Delaunay::<Space, 4>::from_points(Space::default(), points)?;
+    let start = Instant::now();
+    let alphas = t.alpha_shapes().alphas().len();
+    let seconds = start.elapsed().as_secs_f64();
+    let count = points.len();
+    println!("breakline_alpha {stem} {count} 1 {seconds:.4} 0 0 {alphas} {seconds:.4}");
+    Ok(())
+}
+
 fn main() -> ExitCode {
     let path = std::env::args().nth(1).unwrap_or_default();
     let bytes = match std::fs::read(&path) {
@@ -134,7 +145,8 @@ fn main() -> ExitCode {
         .to_string_lossy()
         .into_owned();
     let done = if path.ends_with(".xyz") {
-        in_space(&stem, numbers.as_chunks::<3>().0)
+        let points = numbers.as_chunks::<3>().0;
+        in_space(&stem, points).and_then(|()| alpha_shapes(&stem, points))
     } else {
         in_plane(&stem, numbers.as_chunks::<2>().0)
     };

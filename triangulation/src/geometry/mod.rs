@@ -43,7 +43,7 @@ mod weighted_space;
 
 pub use mapped::{Mapped, seen_along};
 pub use metric::Metric;
-pub(crate) use perturbation::{in_sphere, in_sphere_of_flat, in_tied_circle};
+pub(crate) use perturbation::{in_sphere, in_sphere_of_flat, in_tied_circle, in_tied_sphere};
 pub use plane::{Plane, distance_to_segment};
 pub use space::Space;
 pub use steps::Steps;

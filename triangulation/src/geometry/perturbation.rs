@@ -24,12 +24,21 @@ pub(crate) fn in_sphere<G: Geometry<N>, const N: usize>(
     match geometry.side_of_sphere(simplex, q) {
         Sign::Positive => true,
         Sign::Negative => false,
-        Sign::Zero => decide(geometry, &simplex, q, |replaced| {
-            let mut corners = simplex;
-            corners[replaced] = q;
-            geometry.orientation(corners)
-        }),
+        Sign::Zero => in_tied_sphere(geometry, simplex, q),
     }
+}
+
+/// Like [`in_sphere`], for a `q` that lies on the sphere.
+pub(crate) fn in_tied_sphere<G: Geometry<N>, const N: usize>(
+    geometry: &G,
+    simplex: [&G::Point; N],
+    q: &G::Point,
+) -> bool {
+    decide(geometry, &simplex, q, |replaced| {
+        let mut corners = simplex;
+        corners[replaced] = q;
+        geometry.orientation(corners)
+    })
 }
 
 /// Returns true if `q`, which lies on the circle of three points in the plane, is inside after the
@@ -71,8 +80,17 @@ fn decide<G: Geometry<N>, const N: usize>(
 ) -> bool {
     let mut order = [0, 1, 2, 3];
     let order = &mut order[..simplex.len()];
-    order.sort_unstable_by(|&i, &j| geometry.compare(simplex[j], simplex[i]));
-    for &corner in order.iter() {
+    for k in 0..order.len() {
+        // The largest of those that are left: nearly always the first or the second decides.
+        for other in k + 1..order.len() {
+            if geometry
+                .compare(simplex[order[k]], simplex[order[other]])
+                .is_lt()
+            {
+                order.swap(k, other);
+            }
+        }
+        let corner = order[k];
         if geometry.compare(q, simplex[corner]) != Ordering::Less {
             // A corner of the simplex itself (`compare` is `Equal`) is on the sphere, and stays
             // there.

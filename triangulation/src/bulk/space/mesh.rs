@@ -5,7 +5,7 @@ use crate::num::lanes::{self, prefetch};
 
 use super::blocks::Block;
 use super::cell::{Cell, Corner, DUMMY, FACETS};
-use super::predicates::Predicates;
+use super::predicates::{Precision, Predicates};
 use super::source::Source;
 use super::sphere::{self, Arrow, Frame, MARKED, Origin, Query, Sphere, UNKNOWN};
 use super::weights::Weights;
@@ -14,8 +14,7 @@ use super::weights::Weights;
 #[derive(Clone, Copy)]
 pub(super) struct Extent {
     pub(super) frame: Frame,
-    /// Determinants of orientations of absolute value above it have the right sign.
-    flatness: f64,
+    precision: Precision,
     /// The least and the greatest weight.
     weights: [f64; 2],
 }
@@ -34,10 +33,10 @@ impl Extent {
             middle: [0, 1, 2].map(|axis| 0.5 * min[axis] + 0.5 * max[axis]),
             scale: 2.0 / x.max(y).max(z),
         };
-        // Each of the six terms has eight roundings (Higham 2002, lemma 3.1).
+        let positions = (0..source.count as u32).map(|rank| source.position(rank));
         Extent {
             frame,
-            flatness: 6.0 * 9e-16 * x * y * z,
+            precision: Precision::of([x, y, z], positions.flatten()),
             weights: [min[3], max[3]],
         }
     }
@@ -165,7 +164,7 @@ impl<'a> Mesh<'a> {
             predicates: Predicates {
                 source,
                 ranks,
-                flatness: extent.flatness,
+                precision: extent.precision,
                 may_hide: weights.may_hide(),
             },
             corners,

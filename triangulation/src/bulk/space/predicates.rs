@@ -1,10 +1,72 @@
 //! What floating point is sure of, before the geometry is asked.
 
 use crate::kernel::{ErrorBound, Filter, InSphere, Orientation3, Predicate};
-use crate::num::Sign;
+use crate::num::{Sign, lattice};
 
 use super::cell::{Cell, Corner, FACETS};
 use super::source::Source;
+
+/// What determinants of the sites' coordinates are known to be.
+#[derive(Clone, Copy)]
+pub(super) struct Precision {
+    /// Determinants of orientations of absolute value above it have the right sign.
+    flatness: f64,
+    /// Determinants of differences below it are not rounded.
+    exact: f64,
+}
+
+/// A determinant of an in-sphere test is the sum of at most 72 products of five differences; so,
+/// if those are integers below `2^9`, neither it nor any part of it exceeds `2^53`.
+const EXACT: f64 = 512.0;
+
+impl Precision {
+    /// Returns what is known of sites with these extents along the axes. `numbers` are all
+    /// coordinates, within the range of floating point.
+    pub(super) fn of([x, y, z]: [f64; 3], numbers: impl Iterator<Item = f64>) -> Self {
+        Precision {
+            // Each of the six terms has eight roundings (Higham 2002, lemma 3.1).
+            flatness: 6.0 * 9e-16 * x * y * z,
+            exact: unit(numbers).map_or(0.0, |unit| EXACT * unit),
+        }
+    }
+
+    /// Returns on which side of the sphere of four sites, a positive cell, the last site lies;
+    /// `None` if one evaluation is not sure of it.
+    ///
+    /// Let `X`, `Y` and `Z` be the largest absolute differences to the last site. The determinant
+    /// is a sum of 24 terms, none above `X Y Z (X^2 + Y^2 + Z^2)`, and on the path of each there
+    /// are 16 roundings: of five differences, four products and seven sums (Higham 2002, lemma
+    /// 3.1). So the error is below `24 * 16 u = 4.27e-14` of it; the rest covers the roundings of
+    /// the bound.
+    #[inline(always)]
+    pub(super) fn side_of_sphere(&self, sites: [[f64; 3]; 5]) -> Option<Sign> {
+        let [a, b, c, d, e] = sites;
+        let larger = |x: f64, y: f64| if x > y { x } else { y };
+        let largest = |axis: usize| {
+            let distance = |p: [f64; 3]| (p[axis] - e[axis]).abs();
+            larger(
+                larger(distance(a), distance(b)),
+                larger(distance(c), distance(d)),
+            )
+        };
+        let (x, y, z) = (largest(0), largest(1), largest(2));
+        let bound = 4.4e-14 * (x * y * z) * (x * x + y * y + z * z);
+        let determinant = InSphere(sites).value(|x, y| x - y);
+        let is_sure = determinant.abs() > bound || larger(x, larger(y, z)) < self.exact;
+        is_sure.then(|| Sign::of(&determinant))
+    }
+}
+
+/// Returns a power of two of which all numbers are multiples. `None` if they are so fine that hardly
+/// any difference would be a small multiple of it; most sets of points end with the first of them.
+fn unit(mut numbers: impl Iterator<Item = f64>) -> Option<f64> {
+    const LARGEST: f64 = (1u64 << 40) as f64;
+    numbers.try_fold(f64::INFINITY, |unit, x| {
+        let bit = lattice::lowest_bit(x);
+        let unit = bit.map_or(unit, |bit| unit.min(lattice::power_of_two(bit)));
+        (x.abs() < LARGEST * unit).then_some(unit)
+    })
+}
 
 /// The predicates of vertices.
 #[derive(Clone, Copy)]
@@ -12,8 +74,7 @@ pub(super) struct Predicates<'a> {
     pub(super) source: Source<'a>,
     /// The points of the vertices.
     pub(super) ranks: &'a [u32],
-    /// Determinants of orientations of absolute value above it have the right sign.
-    pub(super) flatness: f64,
+    pub(super) precision: Precision,
     /// True if vertices may be hidden: not all weights are equal.
     pub(super) may_hide: bool,
 }
@@ -29,9 +90,10 @@ impl Predicates<'_> {
         let vertices = [facet[0], facet[1], facet[2], vertex];
         let determinant =
             Orientation3(vertices.map(|v| corners[v as usize].site)).value(|x, y| x - y);
-        if determinant > self.flatness {
+        let flatness = self.precision.flatness;
+        if determinant > flatness {
             Sign::Positive
-        } else if determinant < -self.flatness {
+        } else if determinant < -flatness {
             Sign::Negative
         } else {
             (self.source.orientation)(self.points(vertices))
@@ -56,47 +118,24 @@ impl Predicates<'_> {
     /// Returns true if a vertex is in the sphere of four others.
     ///
     /// `PERF:` on a surface the spheres of a tenth of the cells are not known well enough, on the
-    /// moment curve hardly any is. The geometry would check the range of the sites again, and an
-    /// error bound for each operation takes as long as the operations.
+    /// moment curve hardly any is, and on a lattice most points lie on them. The geometry would
+    /// check the range of the sites again, and an error bound for each operation takes as long as
+    /// the operations.
     #[inline(always)]
     fn in_sphere(&self, corners: &[Corner], vertices: [u32; 4], vertex: u32) -> bool {
+        let (simplex, q) = (self.points(vertices), self.ranks[vertex as usize]);
         if !self.may_hide {
             let site = |v: u32| corners[v as usize].site;
             let [a, b, c, d] = vertices;
             let sites = [site(a), site(b), site(c), site(d), site(vertex)];
-            if let Some(is_inside) = is_surely_inside(sites) {
-                return is_inside;
-            }
-            if let Some(sign @ (Sign::Positive | Sign::Negative)) =
-                ErrorBound::try_sign(&InSphere(sites))
-            {
-                return sign == Sign::Positive;
+            let sign = self.precision.side_of_sphere(sites);
+            match sign.or_else(|| ErrorBound::try_sign(&InSphere(sites))) {
+                Some(Sign::Positive) => return true,
+                Some(Sign::Negative) => return false,
+                Some(Sign::Zero) => return (self.source.in_tied_sphere)(simplex, q),
+                None => {}
             }
         }
-        (self.source.in_sphere)(self.points(vertices), self.ranks[vertex as usize])
+        (self.source.in_sphere)(simplex, q)
     }
-}
-
-/// Returns true if the last site is in the sphere of the others, a positive cell; `None` if one
-/// evaluation is not sure of it.
-///
-/// Let `X`, `Y` and `Z` be the largest absolute differences to the last site. The determinant is a
-/// sum of 24 terms, none above `X Y Z (X^2 + Y^2 + Z^2)`, and on the path of each there are 16
-/// roundings: of five differences, four products and seven sums (Higham 2002, lemma 3.1). So the
-/// error is below `24 * 16 u = 4.27e-14` of it; the rest covers the roundings of the bound.
-#[inline(always)]
-pub(super) fn is_surely_inside(sites: [[f64; 3]; 5]) -> Option<bool> {
-    let [a, b, c, d, e] = sites;
-    let largest = |axis: usize| {
-        let distance = |p: [f64; 3]| (p[axis] - e[axis]).abs();
-        let larger = |x: f64, y: f64| if x > y { x } else { y };
-        larger(
-            larger(distance(a), distance(b)),
-            larger(distance(c), distance(d)),
-        )
-    };
-    let (x, y, z) = (largest(0), largest(1), largest(2));
-    let bound = 4.4e-14 * (x * y * z) * (x * x + y * y + z * z);
-    let determinant = InSphere(sites).value(|x, y| x - y);
-    (determinant.abs() > bound).then_some(determinant > 0.0)
 }

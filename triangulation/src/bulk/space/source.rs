@@ -1,6 +1,6 @@
 //! The points, by their ranks.
 
-use crate::geometry::{Coordinates, in_sphere, in_sphere_of_flat};
+use crate::geometry::{Coordinates, in_sphere, in_sphere_of_flat, in_tied_sphere};
 use crate::num::Sign;
 
 /// Points in spatial order, and the predicates of their geometry, by their ranks.
@@ -16,6 +16,8 @@ pub(super) struct Source<'a> {
     pub(super) turn: &'a (dyn Fn([u32; 3]) -> Sign + Sync),
     /// True if a point is in the sphere of four positively oriented ones, ties decided.
     pub(super) in_sphere: &'a (dyn Fn([u32; 4], u32) -> bool + Sync),
+    /// The same for a point that lies on the sphere.
+    pub(super) in_tied_sphere: &'a (dyn Fn([u32; 4], u32) -> bool + Sync),
     /// True if a point is in the circle of three others in its plane, ties decided.
     pub(super) in_circle: &'a (dyn Fn([u32; 3], u32) -> bool + Sync),
 }
@@ -41,6 +43,7 @@ pub(super) fn with_source<G: Coordinates<N>, const N: usize, T>(
         orientation: &|ranks| geometry.orientation(simplex(ranks)),
         turn: &|ranks| geometry.orientation_in_flat(&ranks.map(point)),
         in_sphere: &|ranks, q| in_sphere(geometry, simplex(ranks), point(q)),
+        in_tied_sphere: &|ranks, q| in_tied_sphere(geometry, simplex(ranks), point(q)),
         in_circle: &|ranks, q| in_sphere_of_flat::<G, N>(geometry, &ranks.map(point), point(q)),
     })
 }

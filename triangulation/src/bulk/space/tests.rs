@@ -16,9 +16,10 @@ use super::blocks::Blocks;
 use super::mesh::Extent;
 use super::order::rounds;
 use super::part::Built;
+use super::predicates::Precision;
 use super::source::with_source;
 use super::sphere::{self, Frame, Origin};
-use super::{build, by_blocks, predicates, whole};
+use super::{build, by_blocks, whole};
 
 const FRAME: Frame = Frame {
     middle: [0.0; 3],
@@ -184,6 +185,7 @@ fn what_is_sure_of_weights_is_right() {
 fn one_evaluation_is_never_wrong() {
     let mut random = Random(3);
     let mut sure = 0;
+    let unknown = Precision::of([1.0; 3], [0.1].into_iter());
     for round in 0..20_000 {
         // Nearly on one sphere, from 1 down to a few roundings off it.
         let off = 0.5f64.powi(round % 56);
@@ -193,16 +195,54 @@ fn one_evaluation_is_never_wrong() {
                 (x * x + y * y + z * z).sqrt() * (1.0 + off * random.around(1000) as f64 / 1000.0);
             [x / length, y / length, z / length]
         });
-        if let Some(is_inside) = predicates::is_surely_inside(sites) {
+        if let Some(sign) = unknown.side_of_sphere(sites) {
             sure += 1;
-            assert_eq!(
-                is_inside,
-                Adaptive::sign(&InSphere(sites)) == Sign::Positive,
-                "{sites:?}"
-            );
+            assert_eq!(sign, Adaptive::sign(&InSphere(sites)), "{sites:?}");
         }
     }
     assert!((10_000..20_000).contains(&sure), "{sure}");
+}
+
+#[test]
+fn small_multiples_of_a_unit_are_decided_by_one_evaluation() {
+    let mut random = Random(4);
+    let mut ties = 0;
+    for round in 0..20_000 {
+        // Far from the origin in every third round. Ties are frequent in small cubes.
+        let size = [2, 16, 256, 511][round % 4];
+        let (unit, origin) = (
+            [1.0, 0.125, 3.0 * 64.0][round % 3],
+            [0.0, -7.0, 1e6][round % 3],
+        );
+        let sites = [0; 5].map(|_| [0; 3].map(|_| origin + unit * random.index(size + 1) as f64));
+        let numbers = sites.into_iter().flatten();
+        let precision = Precision::of([size as f64 * unit; 3], numbers.chain([unit]));
+        let expected = Adaptive::sign(&InSphere(sites));
+        ties += usize::from(expected == Sign::Zero);
+        if let Some(sign) = precision.side_of_sphere(sites) {
+            assert_eq!(sign, expected, "{sites:?}");
+        } else {
+            assert_eq!((unit, size >= 256), (192.0, true), "{sites:?}");
+        }
+    }
+    assert!(ties > 1_000, "{ties}");
+}
+
+#[test]
+fn differences_that_are_too_large_are_not_taken_as_exact() {
+    // 2^9 units from the last site; one unit beside the sphere at 2^20 units.
+    let precision = Precision::of([1e6; 3], [1.0, 1024.0].into_iter());
+    let on_sphere = |r: f64| {
+        [
+            [r, 0.0, 0.0],
+            [0.0, r, 0.0],
+            [0.0, 0.0, r],
+            [-r, 0.0, 0.0],
+            [0.0, -r, 0.0],
+        ]
+    };
+    assert_eq!(precision.side_of_sphere(on_sphere(128.0)), Some(Sign::Zero));
+    assert_eq!(precision.side_of_sphere(on_sphere(1024.0)), None);
 }
 
 #[test]
