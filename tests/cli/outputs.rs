@@ -444,8 +444,8 @@ fn memory_that_has_no_effect_is_noted_with_what_to_do() {
     run("tin a.xyz -o x.ply --memory 2GB").works(&[
         "note: --memory has no effect: x.ply: tiles make a TIN in parts: name the output .tins\n",
     ]);
-    run("dem a.xyz -o d.tif --memory 2GB --max-edge auto")
-        .works(&["note: --memory has no effect: --max-edge auto does not work with tiles yet\n"]);
+    run("dem a.xyz -o d.tif --memory 2GB --crossing-report c.csv")
+        .works(&["note: --memory has no effect: --crossing-report does not work with tiles yet\n"]);
     assert!(!run("tin a.xyz -o y.ply").stderr.contains("--memory"));
 }
 

@@ -423,6 +423,64 @@ fn files_that_are_tiles_are_not_divided() {
     assert!(tiled == whole);
 }
 
+/// Rows of points with this corner and size, in steps of 1.
+fn rows([x, y]: [u32; 2], [width, height]: [u32; 2]) -> String {
+    let at = |i: u32| [x + i % width, y + i / width];
+    let row = |[x, y]: [u32; 2]| format!("{x} {y} {}\n", f64::from(x * x % 97 + y * 7 % 31) / 8.0);
+    (0..width * height).map(at).map(row).collect()
+}
+
+/// Three sides of a rectangle: what is between them is left out, as it is wider than the limit.
+#[test]
+fn a_limit_that_follows_from_the_points_is_that_of_one_piece() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+    write("left.xyz", &rows([0, 0], [10, 300]));
+    write("right.xyz", &rows([150, 0], [10, 300]));
+    write("below.xyz", &rows([10, 0], [140, 3]));
+    let line = vec![[5.0, 5.0, 9.0], [80.5, 1.0, 4.0], [155.0, 290.0, 2.0]];
+    write("line.geojson", &layer(&[line], "LineString"));
+    let ring = [
+        [4.0, 200.0],
+        [156.0, 200.0],
+        [156.0, 230.0],
+        [4.0, 230.0],
+        [4.0, 200.0],
+    ];
+    let ring = ring.map(|[x, y]| [x, y, 3.0]).to_vec();
+    write("ring.geojson", &layer(&[ring], "Polygon"));
+    let files = "left.xyz right.xyz below.xyz --a-srs EPSG:25832";
+    for words in [
+        "",
+        "--breaklines line.geojson",
+        "--flat ring.geojson",
+        "--boundary ring.geojson",
+        "--bounds 3.2,50,157,250.5",
+    ] {
+        let words = format!("dem {files} {words}");
+        let auto = format!("{words} --max-edge auto");
+        let dem = assert_same(&folder, &auto, &["--tiles 7x5", "--tiles auto"]);
+        let (all, _) = output_of(&folder, &format!("{words} --max-edge none"), "all.tif");
+        assert!(dem != all, "{words}");
+    }
+    // 100 times the mean distance, which is 0.939 by the boxes of the files and their points.
+    let limit = "edges over 94 m ";
+    let words = format!("contour {files} --max-edge auto");
+    let (whole, said) = output_of(&folder, &words, "whole.geojson");
+    assert!(said.contains(limit), "{said}");
+    let (tiled, said) = output_of(&folder, &format!("{words} --tiles 3x4"), "tiled.geojson");
+    assert!(tiled == whole && said.contains(limit), "{said}");
+    let part = format!("{words} --bounds 3.2,50,157,250.5");
+    let (_, said) = output_of(&folder, &part, "part.geojson");
+    assert!(said.contains(limit), "{said}");
+    for surface in ["whole.tin", "parts.tins"] {
+        output_of(&folder, &words.replace("contour", "tin"), surface);
+    }
+    let [of_whole, of_parts] = ["whole.tin", "parts.tins"]
+        .map(|surface| output_of(&folder, &format!("dem {surface}"), "dem.tif").0);
+    assert!(of_whole == of_parts);
+}
+
 /// Two million points in little memory.
 #[test]
 fn two_million_points_take_the_memory_that_is_allowed() {
@@ -453,10 +511,6 @@ fn what_tiles_do_not_have_is_refused() {
         (
             format!("{valley} --crossing-report a.csv"),
             "--crossing-report does not work with tiles yet",
-        ),
-        (
-            format!("{valley} --max-edge auto"),
-            "--max-edge auto does not work with tiles yet",
         ),
         (
             format!("{valley} --method natural"),

@@ -304,6 +304,13 @@ fn cases_of_points(files: &Files) -> Vec<Case> {
             },
             &["NoEdgeLimit"],
         ),
+        case(
+            TinRequest {
+                max_edge: EdgeLimit::Auto,
+                ..points(&[&a, &b, &text])
+            },
+            &["EdgeLimit"],
+        ),
         // One piece says how far out it has read; tiles read all points.
         case(
             TinRequest {

@@ -421,8 +421,8 @@ fn parts_come_from_a_job_like_all_else() {
         .fails(2, &["tiles make a TIN in parts", "name the output .tins"]);
     run(&format!("tin {valley} -o w.tins -o v.ply")).fails(2, &["written alone"]);
     run("tin v.tins -o w.tins").fails(2, &["tiles are made of points"]);
-    run(&format!("tin {valley} -o w.tins --max-edge auto"))
-        .fails(1, &["--max-edge auto does not work with tiles yet"]);
+    run(&format!("tin {valley} -o w.tins --crossing-report c.csv"))
+        .fails(1, &["--crossing-report does not work with tiles yet"]);
     let planned = run(&format!("tin {valley} -o w.tins --dry-run"));
     assert!(
         planned.code == 0 && planned.stderr.contains("on the disk"),

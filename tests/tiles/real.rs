@@ -36,6 +36,7 @@ fn four_tiles_of_a_survey() {
     let files = files.each_ref().map(String::as_str);
     assert_same("dem", &files, "--resolution 0.5", "8x8");
     assert_same("contour", &files, "", "3x20");
+    assert_same("dem", &files, "--max-edge auto", "6x6");
 }
 
 #[test]
@@ -48,6 +49,8 @@ fn a_town_with_breaklines() {
     let lines = "--breaklines @delft_ahn3_bgt/breaklines_z_derived.shp";
     assert_same("dem", &files, lines, "16x16");
     assert_same("contour", &files, lines, "5x5");
+    let auto = format!("{lines} --max-edge auto");
+    assert_same("contour", &files, &auto, "5x5");
 }
 
 /// Bounds that cut breaklines, and a boundary.

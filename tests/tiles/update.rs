@@ -114,6 +114,27 @@ fn is_of(task: &Value, file: &Path) -> bool {
     Path::new(input).file_name() == file.file_name()
 }
 
+/// A limit that follows from the points has two digits: it stays the same if few points change. If
+/// it changes, all is done again.
+#[test]
+fn a_limit_that_follows_from_the_points_is_found_again() {
+    let folder = squares(4);
+    let plan = "job plan j -- dem in/*.xyz --max-edge auto --tiles auto -o dem.tif";
+    run(&folder, plan).works(&["the files", "edges over 570 units"]);
+    run(&folder, "job run j").works(&[]);
+    let file = square(&folder, [2, 1]);
+    let again = update(&folder, || write_square(&file, [2, 1], 310, 7));
+    let expected = reached(&tasks(&folder, "j"), |task| is_of(task, &file));
+    assert_eq!(again, expected);
+    let count = tasks(&folder, "j").len();
+    let again = update(&folder, || write_square(&file, [2, 1], 3000, 8));
+    assert_eq!(again.len(), count);
+    let words = "dem in/*.xyz --max-edge auto";
+    let (whole, said) = output_of(&folder, words, "new.tif");
+    assert!(said.contains("edges over 450 units"), "{said}");
+    assert!(bytes(folder.path().join("dem.tif")) == whole);
+}
+
 /// One of several files changes: its tile, and what is above that.
 #[test]
 fn a_file_that_has_changed_is_read_again_and_no_other() {

@@ -14,6 +14,7 @@ use crate::run::context::memory;
 use crate::run::context::notice::Notice;
 use crate::run::context::units::Units;
 use crate::run::context::{Context, Journal};
+use crate::run::products::edge_limit::mean_distance;
 use crate::run::products::frame::{self, FrameOptions};
 use crate::run::products::tin::TinRequest;
 use crate::run::request::input::{Input, MemoryPoints};
@@ -107,7 +108,8 @@ impl<'a> Inputs<'a> {
                 Error::format("no points in the input").cure("pass files that contain points")
             );
         }
-        let max_edge = request.max_edge.length(&Units::of(crs.as_ref()));
+        let spacing = mean_distance(files.iter().map(PlannedFile::extent));
+        let max_edge = request.max_edge.length(spacing, &Units::of(crs.as_ref()));
         let frame = match verb.keeps() {
             Keeps::Heights(options) => Some(frame_of(
                 options,

@@ -1,7 +1,6 @@
 //! What tiles cannot do yet.
 
 use crate::error::{Error, Result, Setting, Wording, wording};
-use crate::run::products::edge_limit::EdgeLimit;
 use crate::run::products::surface::{Source, SurfaceRequest};
 use crate::run::products::tin::{ReplacedPoints, TinRequest};
 use crate::run::sources::systems::SystemOptions;
@@ -12,8 +11,6 @@ use crate::terrain::Method;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum NotInTiles {
-    /// The longest edge at the rim is chosen by the points.
-    EdgeByPoints,
     /// Vertices are added on ridges and valleys.
     Ridges,
     /// The points are reprojected.
@@ -32,10 +29,6 @@ impl NotInTiles {
     /// Returns what a request for a surface has and tiles do not.
     pub(super) fn of(request: &TinRequest, systems: &SystemOptions) -> Option<Self> {
         let known = [
-            (
-                NotInTiles::EdgeByPoints,
-                request.max_edge == EdgeLimit::Auto,
-            ),
             (NotInTiles::Ridges, request.lines.add_ridges),
             (NotInTiles::Reproject, systems.target.is_some()),
             (
@@ -56,7 +49,6 @@ impl NotInTiles {
     /// Returns the settings that ask for it.
     fn settings(self) -> Wording {
         match self {
-            NotInTiles::EdgeByPoints => Setting::MaxEdge.text("auto").into(),
             NotInTiles::Ridges => Setting::AddRidges.into(),
             NotInTiles::Reproject => Setting::TargetCrs.into(),
             NotInTiles::EdgesBesideWater => {

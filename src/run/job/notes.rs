@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use super::Job;
 use super::lines::{JobLines, Known};
 use super::plan::Plan;
+use super::planned_file::PlannedFile;
 use super::task_facts::{FileFacts, TaskFacts, TaskNotice};
 use crate::data::Bounds;
 use crate::error::Result;
@@ -63,8 +64,7 @@ impl Plan {
 impl Plan {
     /// Returns the mean distance between all points.
     fn spacing(&self) -> Option<f64> {
-        let extents = self.files.iter().map(|file| file.bounds());
-        mean_distance(self.point_count(), extents)
+        mean_distance(self.files.iter().map(PlannedFile::extent))
     }
 
     /// Returns the notice about lines that are far from points in a box, or reach beyond them.

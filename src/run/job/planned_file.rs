@@ -13,11 +13,9 @@ use crate::run::context::{Context, Size, Stage};
 use crate::run::products::tin::TinRequest;
 use crate::run::request::input::{Input, MemoryPoints};
 use crate::run::sources::checksum::checksum;
+use crate::run::sources::file_extent::{FileExtent, with_rounding};
 use crate::run::sources::open;
 use crate::terrain::tiles::Spread;
-
-/// The rounding of the coordinates that headers state, in units of the last place.
-const HEADER_ROUNDING: f64 = 8.0;
 
 /// The state of a file and of those that are read along with it, which differs once one of them has
 /// changed.
@@ -67,18 +65,20 @@ impl PlannedFile {
         bounds
     }
 
+    /// Returns the number of its points and the box around them, as its header states them.
+    pub(super) fn extent(&self) -> FileExtent {
+        FileExtent {
+            points: Some(self.count),
+            bounds: Some(self.bounds()),
+        }
+    }
+
     /// Returns the box around its points, with what rounding may add to a header.
     pub(super) fn spread(&self) -> Spread {
-        let PlannedFile { min, max, .. } = *self;
-        let rounding =
-            [0, 1].map(|k: usize| HEADER_ROUNDING * f64::EPSILON * min[k].abs().max(max[k].abs()));
-        let (low, high) = (
-            [0, 1].map(|k| min[k] - rounding[k]),
-            [0, 1].map(|k| max[k] + rounding[k]),
-        );
+        let [min, max] = with_rounding([self.min, self.max]);
         Spread {
-            min: low,
-            max: high,
+            min,
+            max,
             count: self.count as f64,
         }
     }

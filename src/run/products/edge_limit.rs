@@ -3,9 +3,15 @@
 use crate::data::Bounds;
 use crate::run::context::notice::Notice;
 use crate::run::context::units::Units;
+use crate::run::sources::file_extent::FileExtent;
 
 /// The default longest edge at the rim, and width of the buffer around bounds.
 const DEFAULT_MAX_EDGE_METRES: f64 = 100.0;
+
+/// How many mean distances between points the longest edge at the rim has with
+/// [`EdgeLimit::Auto`]. In real ground points, the largest empty disks inside of an area have radii
+/// of 60 to 80 mean distances: under buildings and over water.
+const AUTO_EDGE_SPACINGS: f64 = 100.0;
 
 /// Lines may reach so many mean distances between points beyond these without a notice.
 const USUAL_REACH: f64 = 2.0;
@@ -25,19 +31,23 @@ pub enum EdgeLimit {
     Standard,
     /// No limit: the whole convex hull is kept.
     Unlimited,
-    /// 100 times the mean distance between points, from the number of all points and the extents of
-    /// all inputs.
+    /// 100 times the mean distance between points, rounded to two digits. The distance follows
+    /// from the number of all points and the extents of all inputs, as their headers state them:
+    /// so it is the same for a part of the area, and for any classes.
     Auto,
     /// This length, in the units of the coordinate system.
     Length(f64),
 }
 
 impl EdgeLimit {
-    /// Returns the length in the units of the coordinate system. `None` means that there is no
-    /// limit, or that it is derived from the points.
-    pub(crate) fn length(self, units: &Units) -> Option<f64> {
+    /// Returns the length in the units of the coordinate system, for points with this mean
+    /// distance, if that is known. `None` means that there is no limit.
+    pub(crate) fn length(self, spacing: Option<f64>, units: &Units) -> Option<f64> {
         match self {
-            EdgeLimit::Unlimited | EdgeLimit::Auto => None,
+            EdgeLimit::Unlimited => None,
+            EdgeLimit::Auto => {
+                spacing.map(|spacing| rounded_to_two_digits(AUTO_EDGE_SPACINGS * spacing))
+            }
             EdgeLimit::Length(length) => Some(length),
             EdgeLimit::Standard => Some(units.of_metres(DEFAULT_MAX_EDGE_METRES)),
         }
@@ -69,13 +79,14 @@ impl EdgeLimit {
     /// Returns how far outside of bounds points are used at first, and how far lines may be from
     /// the points without a notice.
     pub(crate) fn buffer(self, units: &Units) -> f64 {
-        self.length(units)
+        self.length(None, units)
             .unwrap_or_else(|| units.of_metres(DEFAULT_MAX_EDGE_METRES))
     }
 
     /// Returns a notice if the default looks wrong for points with this mean distance.
     pub(crate) fn unusual(self, spacing: Option<f64>, units: &Units) -> Option<Notice> {
-        let (EdgeLimit::Standard, Some(limit), Some(spacing)) = (self, self.length(units), spacing)
+        let (EdgeLimit::Standard, Some(limit), Some(spacing)) =
+            (self, self.length(None, units), spacing)
         else {
             return None;
         };
@@ -89,7 +100,7 @@ impl EdgeLimit {
 
 /// Returns the mean distance between points, from the number of all points and the extents of all
 /// inputs; `None` if these have no area.
-pub(crate) fn mean_distance(read: u64, extents: impl IntoIterator<Item = Bounds>) -> Option<f64> {
+pub(crate) fn mean_distance(files: impl IntoIterator<Item = FileExtent>) -> Option<f64> {
     let area = |b: Bounds| {
         if b.is_empty() {
             0.0
@@ -97,6 +108,49 @@ pub(crate) fn mean_distance(read: u64, extents: impl IntoIterator<Item = Bounds>
             (b.max[0] - b.min[0]) * (b.max[1] - b.min[1])
         }
     };
-    let area: f64 = extents.into_iter().map(area).sum();
-    Some((area / read as f64).sqrt()).filter(|spacing| spacing.is_normal())
+    let (mut points, mut all) = (0, 0.0);
+    for file in files {
+        points += file.points.unwrap_or(0);
+        all += area(file.bounds.unwrap_or_default());
+    }
+    Some((all / points as f64).sqrt()).filter(|spacing| spacing.is_normal())
+}
+
+/// Returns a positive number, rounded to two significant digits: so it stays the same if a few
+/// points change.
+fn rounded_to_two_digits(number: f64) -> f64 {
+    format!("{number:.1e}").parse().unwrap_or(number)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_automatic_limit_has_two_digits() {
+        let limit = |spacing| EdgeLimit::Auto.length(Some(spacing), &Units::of(None));
+        for (spacing, expected) in [
+            (0.270_11, 27.0),
+            (1.054_5, 110.0),
+            (0.002_345, 0.23),
+            (1e-308, 1e-306),
+        ] {
+            assert_eq!(limit(spacing), Some(expected));
+        }
+        assert_eq!(EdgeLimit::Auto.length(None, &Units::of(None)), None);
+    }
+
+    #[test]
+    fn the_mean_distance_is_that_of_all_files_together() {
+        let file = |points, side: f64| FileExtent {
+            points: Some(points),
+            bounds: Some(Bounds {
+                min: [0.0; 3],
+                max: [side, side, 1.0],
+            }),
+        };
+        assert_eq!(mean_distance([file(60, 8.0), file(40, 6.0)]), Some(1.0));
+        assert_eq!(mean_distance([file(9, 0.0)]), None);
+        assert_eq!(mean_distance([]), None);
+    }
 }

@@ -380,7 +380,7 @@ impl Building<'_> {
                 files: read,
             } = self.read(files, reach)?;
             memory::require_for_points(points.len())?;
-            rim.find_limit(&read);
+            rim.find_limit(&read, self.units);
             self.compare_lines(&points, rim);
             // Once, also if more points are read.
             self.note_level_rings(std::mem::take(&mut level_rings), &points);
@@ -542,11 +542,6 @@ pub(crate) fn default_tolerance(units: &Units) -> f64 {
     units.height_of_metres(DEFAULT_CROSSING_TOLERANCE_METRES)
 }
 
-/// How many mean distances between points the longest edge at the rim has with
-/// [`EdgeLimit::Auto`]. In real ground points, the largest empty disks inside of an area have radii
-/// of 60 to 80 mean distances: under buildings and over water.
-const AUTO_EDGE_SPACINGS: f64 = 100.0;
-
 /// The limits of the surface where nothing was measured.
 struct Rim {
     limit: EdgeLimit,
@@ -561,7 +556,7 @@ impl Rim {
         let limit = request.max_edge;
         let rim = Rim {
             limit,
-            max_edge: limit.length(units),
+            max_edge: limit.length(None, units),
             buffer: limit.buffer(units),
             spacing: None,
         };
@@ -576,11 +571,9 @@ impl Rim {
     }
 
     /// Finds the mean distance between points, and the limit that follows from it.
-    fn find_limit(&mut self, files: &FilesRead) {
-        self.spacing = mean_distance(files.points, files.extents.iter().copied());
-        if self.limit == EdgeLimit::Auto {
-            self.max_edge = self.spacing.map(|spacing| AUTO_EDGE_SPACINGS * spacing);
-        }
+    fn find_limit(&mut self, files: &FilesRead, units: &Units) {
+        self.spacing = mean_distance(files.counted.iter().copied());
+        self.max_edge = self.limit.length(self.spacing, units);
     }
 
     /// Adds a notice about a limit that was found, and about a default that looks wrong.

@@ -2,6 +2,9 @@
 
 use crate::data::{Bounds, PointInfo};
 
+/// The rounding of the coordinates that headers state, in units of the last place.
+const HEADER_ROUNDING: f64 = 8.0;
+
 /// What is known of the points of a file.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct FileExtent {
@@ -16,6 +19,14 @@ impl FileExtent {
     pub(crate) fn meets(&self, window: &Bounds) -> bool {
         self.bounds.is_none_or(|bounds| {
             (0..2).all(|k| bounds.min[k] <= window.max[k] && window.min[k] <= bounds.max[k])
+        })
+    }
+
+    /// Returns true if all points of the file can lie in a box that a header states, in plan.
+    fn is_within(&self, stated: &Bounds) -> bool {
+        let [low, high] = with_rounding([stated.min, stated.max].map(|[x, y, _]| [x, y]));
+        self.bounds.is_none_or(|bounds| {
+            bounds.is_empty() || (0..2).all(|k| low[k] <= bounds.min[k] && bounds.max[k] <= high[k])
         })
     }
 
@@ -37,6 +48,37 @@ impl FileExtent {
             0.0
         }
     }
+}
+
+/// Returns the corners of a box that a header states, enlarged in plan by what rounding may add.
+pub(crate) fn with_rounding([min, max]: [[f64; 2]; 2]) -> [[f64; 2]; 2] {
+    let rounding =
+        [0, 1].map(|k: usize| HEADER_ROUNDING * f64::EPSILON * min[k].abs().max(max[k].abs()));
+    [
+        [0, 1].map(|k| min[k] - rounding[k]),
+        [0, 1].map(|k| max[k] + rounding[k]),
+    ]
+}
+
+/// Returns the points of a file by which their mean distance is computed: those that it states, so
+/// that the distance is known before anything is read; those that were read if it states none, or a
+/// box that does not contain them.
+pub(crate) fn counted(
+    stated: (Option<u64>, Option<Bounds>),
+    read: Option<FileExtent>,
+) -> Option<FileExtent> {
+    let (Some(points), Some(bounds)) = stated else {
+        return read;
+    };
+    let is_finite = (0..2).all(|k| bounds.min[k].is_finite() && bounds.max[k].is_finite());
+    let is_true = points > 0 && is_finite && read.is_none_or(|read| read.is_within(&bounds));
+    if !is_true {
+        return read;
+    }
+    Some(FileExtent {
+        points: Some(points),
+        bounds: Some(bounds),
+    })
 }
 
 /// Returns what a file states of its points. The box is enlarged by what headers are rounded by.
@@ -103,6 +145,34 @@ mod tests {
             bounds: None,
         };
         assert!(unknown.meets(&square(0.0, 1.0)) && unknown.share(&square(0.0, 1.0)) == 1.0);
+    }
+
+    #[test]
+    fn what_is_counted_is_what_is_stated_unless_that_is_wrong() {
+        let of = |points, min, max| FileExtent {
+            points: Some(points),
+            bounds: Some(square(min, max)),
+        };
+        let stated = |points, min, max| (Some(points), Some(square(min, max)));
+        let read = of(9, 1.0, 10.0 + 1e-15);
+        assert_eq!(
+            counted(stated(10, 0.0, 10.0), None),
+            Some(of(10, 0.0, 10.0))
+        );
+        assert_eq!(
+            counted(stated(10, 0.0, 10.0), Some(read)),
+            Some(of(10, 0.0, 10.0))
+        );
+        for wrong in [
+            stated(10, 0.0, 9.0),
+            stated(10, 0.0, f64::INFINITY),
+            stated(0, 0.0, 10.0),
+            (None, Some(square(0.0, 10.0))),
+            (Some(10), None),
+        ] {
+            assert_eq!(counted(wrong, Some(read)), Some(read), "{wrong:?}");
+            assert!(counted(wrong, None).is_none() || wrong == stated(10, 0.0, 9.0));
+        }
     }
 
     #[test]

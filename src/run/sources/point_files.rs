@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::file_extent::{FileExtent, stated_extent};
+use super::file_extent::{FileExtent, counted, stated_extent};
 use super::open;
 use super::systems::Stated;
 use super::transforms::Transforms;
@@ -75,6 +75,12 @@ impl PointFile {
         }
     }
 
+    /// The points by which their mean distance is computed; `None` if that is not known yet.
+    fn counted(&self) -> Option<FileExtent> {
+        let read = self.is_read.then_some(self.extent);
+        counted((self.count, self.bounds), read)
+    }
+
     /// Returns true if the file has a point of these classes. Reads until one is found.
     fn has_any(&self, options: Options, classes: &Classes, journal: &Journal) -> Result<bool> {
         let path = self.input.path();
@@ -101,8 +107,8 @@ pub(crate) struct FilesRead {
     /// The extent of each file: that of its points, or for a file that was left out, what it
     /// states.
     pub(crate) extents: Vec<Bounds>,
-    /// The number of points in all files, used or not.
-    pub(crate) points: u64,
+    /// The points of each file by which their mean distance is computed.
+    pub(crate) counted: Vec<FileExtent>,
     /// The number of files that were left out because they state that their points lie outside of
     /// the window.
     pub(crate) left_out: usize,
@@ -332,7 +338,7 @@ impl PointFiles {
         }
         let extents = self.extents(by_file);
         Ok(FilesRead {
-            points: extents.iter().filter_map(|extent| extent.points).sum(),
+            counted: self.files.iter().filter_map(PointFile::counted).collect(),
             extents: extents
                 .into_iter()
                 .map(|extent| extent.bounds.unwrap_or_default())
