@@ -12,5 +12,5 @@ while getopts "r:t:p:${takes:-}" option; do
 done
 shift $((OPTIND - 1))
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
-cargo build --release --quiet --manifest-path "$root/Cargo.toml" --features bench --example bench_triangulation
+cargo build --release --quiet --manifest-path "$root/Cargo.toml" -p breakline-triangulation --features bench,parallel --example bench_triangulation
 ours=${CARGO_TARGET_DIR:-$root/target}/release/examples/bench_triangulation
