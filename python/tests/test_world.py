@@ -84,6 +84,65 @@ def test_columns_that_know_missing_values():
         assert np.array_equal(tin.vertices, expected) and tin.report["masked_rows"] == 1
 
 
+def test_what_is_no_geojson_is_named_with_its_place():
+    judge("shapely")
+    line = {"type": "LineString", "coordinates": RIDGE}
+    feature = {"type": "Feature", "properties": {}, "geometry": line}
+
+    class Odd:
+        def __init__(self, interface):
+            self.__geo_interface__ = interface
+
+    def collection(*features, **members):
+        return {"type": "FeatureCollection", "features": list(features), **members}
+
+    for lines, message in (
+        ({"type": "FeatureCollection"}, "no list of features"),
+        ({"type": "FeatureCollection", "features": None}, "no list of features"),
+        ({"type": "FeatureCollection", "features": {"a": 1}}, "no list of features"),
+        (collection(feature, None), "feature 1: .* none of GeoJSON"),
+        (collection(feature, {**feature, "geometry": "line"}), "feature 1: .* geometry of GeoJSON"),
+        (collection({**feature, "properties": [1]}), "feature 0: .* properties of GeoJSON"),
+        (collection(feature, crs="EPSG:25832"), "crs of GeoJSON"),
+        (collection(feature, crs={"properties": {"name": 25832}}), "name of the crs"),
+        (Odd("line"), "__geo_interface__"),
+        (Odd({}), "__geo_interface__"),
+        (np.array([None, 5], object), "row 1: .* no geometry"),
+    ):
+        with pytest.raises(breakline.UsageError, match=message) as caught:
+            with_lines(lines)
+        assert caught.value.cure, message
+    # What is not used as heights may be as it likes.
+    assert with_lines(collection({**feature, "properties": {"n": 10**400}})) == with_lines(line)
+
+
+def test_columns_that_are_no_numbers_are_named():
+    pyarrow = judge("pyarrow")
+    columns = {name: [float(row[axis]) for row in SQUARE] for axis, name in enumerate("xyz")}
+    for heights, message in (
+        (pyarrow.array(["1", "2", "3", None]), "column z has the type"),
+        (pyarrow.array([[1.0], [2.0], [3.0], None]), "column z has the type"),
+        (pyarrow.array([{"a": 1.0}, None, None, None]), "column z has the type"),
+        (pyarrow.nulls(4), "all 4 points are masked"),
+    ):
+        with pytest.raises(breakline.UsageError, match=message):
+            breakline.tin(pyarrow.table({**columns, "z": heights}))
+    with pytest.raises(breakline.UsageError, match="all 4 points are masked"):
+        breakline.tin(pyarrow.table({**columns, "class": pyarrow.nulls(4)}))
+    for odd in ({"x": 1.0, "y": 2.0, "z": 3.0}, dict.fromkeys("xyz", np.ones((4, 3)))):
+        with pytest.raises(breakline.UsageError, match="column x of points has the shape"):
+            breakline.tin(odd)
+
+
+def test_a_surface_of_lines_alone(tmp_path):
+    expected = breakline.tin(np.empty((0, 3)), breaklines=[SQUARE], max_edge="none").vertices
+    for none in ([], ()):
+        assert np.array_equal(breakline.tin(none, breaklines=[SQUARE], max_edge="none").vertices, expected)
+    breakline.dem([], breaklines=[SQUARE], max_edge="none", resolution=1, output=tmp_path / "dem.tif")
+    with pytest.raises(breakline.FormatError, match="no points"):
+        breakline.tin([])
+
+
 def test_vertices_know_their_rows():
     points = np.array([[5, 5, 2], [0, 0, 1], [10, 0, 1], [0, 0, 0.5], [10, 10, 3], [0, 10, 3], [0, 0, 0.5]], float)
     tin = breakline.tin(points, breaklines=[[[2, 3, 9], [8, 3, 9]]], max_edge="none")

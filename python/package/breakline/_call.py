@@ -41,7 +41,7 @@ class call:
     """
 
     def __init__(self, threads: Optional[int], progress: Progress) -> None:
-        self.threads = None if threads is None else _checked(threads)
+        self.threads = checked(threads)
         self.bar = _bar(progress)
         self.progress = self.bar or (progress if callable(progress) else None)
 
@@ -53,14 +53,16 @@ class call:
             self.bar.close()
 
 
-def _checked(threads: int) -> int:
-    """Return a number of threads; raise if it is none."""
+def checked(threads: Optional[int]) -> Optional[int]:
+    """Return a number of threads, or None for one per core; raise for anything else."""
+    if threads is None:
+        return None
     if isinstance(threads, bool) or not hasattr(threads, "__index__"):
         raise usage("threads is not a whole number", threads, "pass 1 or more, or None", ArgumentTypeError)
-    threads = threads.__index__()
-    if not 1 <= threads <= _MOST_THREADS:
-        raise usage(f"threads is {threads}", threads, f"pass 1 to {_MOST_THREADS}, or None for one per core")
-    return threads
+    count = threads.__index__()
+    if not 1 <= count <= _MOST_THREADS:
+        raise usage(f"threads is {count}", count, f"pass 1 to {_MOST_THREADS}, or None for one per core")
+    return count
 
 
 def _bar(progress: Progress) -> Optional[_Bar]:

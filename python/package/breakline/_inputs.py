@@ -15,6 +15,9 @@ from ._columns import Points
 from ._errors import ArgumentTypeError, BreaklineError, usage, warn
 
 _POINT_KINDS = "an array (n, 3), columns x, y and z, a laspy or PDAL record, a GeoDataFrame of points, or paths"
+#: The cure for what is no GeoJSON.
+_AS_LOADED = "pass GeoJSON as json.load returns it"
+
 _LINE_KINDS = "paths, arrays (n, 3), geometries, a GeoDataFrame, GeoJSON, or Contours"
 
 PathLike = Union[str, "os.PathLike[str]"]
@@ -210,6 +213,9 @@ def _columns(x: Any, y: Any, z: Any, **others: Any) -> "dict[str, Any]":
     found = {"scale": [1.0] * 3, "offset": [0.0] * 3, "crs": None, **dict.fromkeys(bytewise), **others}
     columns = {"x": x, "y": y, "z": z}
     columns.update({name: _bytes(found[name], name) for name in bytewise if found[name] is not None})
+    for name, column in columns.items():
+        if np.ndim(column) != 1:
+            raise usage(f"column {name} of points has the shape {np.shape(column)}", None, "pass columns (n,)")
     lengths = [len(column) for column in columns.values()]
     if len(set(lengths)) > 1:
         raise usage("columns of points differ in length", lengths, "pass columns of equal length")
@@ -394,6 +400,8 @@ def points(value: Any) -> "list[Any]":
             return [_points_of(item) for item in value]
     if value is None:
         raise usage("points is None", None, f"pass {_POINT_KINDS}", ArgumentTypeError)
+    if isinstance(value, (list, tuple)) and not value:
+        return []  # a surface of lines alone
     return [_points_of(value)]
 
 
@@ -428,6 +436,8 @@ class _Shapes:
     def add_geometry(self, geometry: Any, parameter: str) -> None:
         import shapely
 
+        if geometry is not None and not hasattr(geometry, "geom_type"):
+            raise usage(f"{parameter} has something that is no geometry", geometry, f"pass {_LINE_KINDS}", ArgumentTypeError)
         if geometry is None or geometry.is_empty:
             return self.add(_LINES, [])
         parts = list(shapely.get_parts(geometry))
@@ -445,8 +455,12 @@ class _Shapes:
         """Return the shapes of a GeoDataFrame, a GeoSeries or an array of geometries."""
         shapes = cls()
         geometry = getattr(frame, "geometry", frame)
-        for shape in np.asarray(getattr(geometry, "values", geometry)):
-            shapes.add_geometry(shape, parameter)
+        for row, shape in enumerate(np.asarray(getattr(geometry, "values", geometry))):
+            try:
+                shapes.add_geometry(shape, parameter)
+            except BreaklineError as error:
+                error.location = f"row {row}"
+                raise
         shapes.crs = crs_text(getattr(frame, "crs", None))
         for name in getattr(frame, "columns", ()):
             if getattr(frame[name].dtype, "kind", "") in "fiu" and frame[name].dtype != object:
@@ -469,16 +483,28 @@ class _Shapes:
     def of_features(cls, collection: "dict[str, Any]", parameter: str) -> "dict[str, Any]":
         """Return the shapes of a FeatureCollection of GeoJSON, with those properties that are numbers."""
         shapes = cls()
-        features = list(collection["features"])
-        for feature in features:
-            shapes.add_geometry(_geometry(feature, parameter), parameter)
-        properties = [feature.get("properties") or {} for feature in features]
+        features = collection.get("features")
+        if isinstance(features, (str, bytes, dict)) or not isinstance(features, Iterable):
+            raise usage(f"{parameter}: a FeatureCollection has no list of features", features, _AS_LOADED)
+        properties = []
+        for row, feature in enumerate(features):
+            try:
+                json = _geojson(feature, parameter)
+                if json is None:
+                    raise usage(f"{parameter} has a feature that is none of GeoJSON", feature, _AS_LOADED)
+                shapes.add_geometry(_geometry(json, parameter), parameter)
+                properties.append(_member(json, "properties", parameter))
+            except BreaklineError as error:
+                error.location = f"feature {row}"
+                raise
         for name in dict.fromkeys(name for values in properties for name in values):
-            column = [values.get(name) for values in properties]
-            if all(value is None or isinstance(value, (int, float)) for value in column):
-                numbers = [np.nan if value is None else float(value) for value in column]
+            numbers = _numbers([values.get(name) for values in properties])
+            if numbers is not None:
                 shapes.columns.append((str(name), numbers))
-        shapes.crs = ((collection.get("crs") or {}).get("properties") or {}).get("name")
+        system = _member(_member(collection, "crs", parameter), "properties", parameter).get("name")
+        if not isinstance(system, (str, type(None))):
+            raise usage(f"{parameter}: the name of the crs is not a text", system, "such as urn:ogc:def:crs:EPSG::25832")
+        shapes.crs = system
         return shapes.as_dict()
 
     def as_dict(self) -> "dict[str, Any]":
@@ -493,12 +519,34 @@ def _is_geometries(value: Any) -> bool:
     return (dtype == object and np.ndim(value) == 1) or getattr(dtype, "name", None) == "geometry"
 
 
-def _geojson(value: Any) -> "Optional[dict[str, Any]]":
+def _geojson(value: Any, parameter: str) -> "Optional[dict[str, Any]]":
     """Return the GeoJSON that a value is or has; None if it has none."""
     if isinstance(value, dict) and "type" in value:
         return value
-    found: "Optional[dict[str, Any]]" = getattr(value, "__geo_interface__", None)
+    found = getattr(value, "__geo_interface__", None)
+    if found is not None and not (isinstance(found, dict) and "type" in found):
+        raise usage(f"{parameter}: what __geo_interface__ returns is not GeoJSON", found, f"pass {_LINE_KINDS}")
     return found
+
+
+def _member(json: "dict[str, Any]", name: str, parameter: str) -> "dict[str, Any]":
+    """Return what an object of GeoJSON has under a name, which is an object; an empty one if it is null or absent."""
+    found = json.get(name)
+    if found is None:
+        return {}
+    if not isinstance(found, dict):
+        raise usage(f"{parameter}: {name} of GeoJSON is not an object", found, _AS_LOADED)
+    return found
+
+
+def _numbers(values: "list[Any]") -> "Optional[list[float]]":
+    """Return a column of properties as numbers, not a number where one is absent; None if others are among them."""
+    try:
+        if all(value is None or isinstance(value, (int, float)) for value in values):
+            return [np.nan if value is None else float(value) for value in values]
+    except OverflowError:  # a whole number that no float can be
+        pass
+    return None
 
 
 def _geometry(json: "dict[str, Any]", parameter: str) -> Any:
@@ -506,6 +554,8 @@ def _geometry(json: "dict[str, Any]", parameter: str) -> Any:
     import shapely.geometry
 
     geometry = json.get("geometry") if json.get("type") == "Feature" else json
+    if geometry is not None and not isinstance(geometry, dict):
+        raise usage(f"{parameter}: geometry of GeoJSON is not an object", geometry, _AS_LOADED)
     try:
         return None if geometry is None else shapely.geometry.shape(geometry)
     except (shapely.errors.ShapelyError, AttributeError, KeyError, TypeError, ValueError) as error:
@@ -526,7 +576,7 @@ def layers(value: Any, parameter: str, rings: bool = False) -> "list[Any]":
             loose.add_geometry(item, parameter)
         elif hasattr(item, "levels") and hasattr(item, "offsets"):
             found.append(_Shapes.of_contours(item))
-        elif (json := _geojson(item)) is None:
+        elif (json := _geojson(item, parameter)) is None:
             loose.add_array(item, _POLYGON if rings else _LINES, parameter)
         elif json["type"] == "FeatureCollection":
             found.append(_Shapes.of_features(json, parameter))

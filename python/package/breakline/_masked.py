@@ -40,7 +40,13 @@ def _of_arrow(column: Any) -> np.ndarray:
     count = column.null_count() if callable(column.null_count) else column.null_count
     if not count:
         return np.asarray(column)
-    return np.ma.masked_array(np.asarray(column.fill_null(0)), np.asarray(column.is_null(), bool))
+    if count == len(column):
+        return np.ma.masked_array(np.zeros(count, np.uint8), True)
+    try:
+        filled = np.asarray(column.fill_null(0))
+    except (TypeError, ValueError, NotImplementedError):  # not numbers: who takes the column says so
+        return np.asarray(column)
+    return np.ma.masked_array(filled, np.asarray(column.is_null(), bool))
 
 
 def kept(what: str, *columns: Any) -> Optional[np.ndarray]:

@@ -9,7 +9,7 @@ import numpy as np
 from . import _breakline, _inputs
 from ._call import Progress, call
 from ._compare import same
-from ._errors import ArgumentTypeError, FormatError, usage
+from ._errors import ArgumentTypeError, FormatError, LimitError, usage
 from ._inputs import PathLike
 from ._names import CrossingHeight, EdgeLimit, Height, Method, OnCrossing, Severity, Side
 from ._points import _read, _systems
@@ -709,7 +709,7 @@ def built(options: "dict[str, Any]", method: str) -> Tin:
         try:
             read = _read(options["columns"], options["partial"])
             surface = _breakline.Surface.build(found, read, systems, arguments, method, request)
-        except FormatError as error:
+        except (FormatError, LimitError) as error:
             _inputs.name_row(error, found)
             raise
         return Tin(surface, masked=masked)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .. import _masked
-from .._call import call
+from .._call import checked
 from .._errors import ArgumentTypeError, UnsupportedError, UsageError, usage
 
 
@@ -128,12 +128,6 @@ def flat(points: NDArray[np.float64], what: str, cure: str) -> UsageError:
     """Return the error of points that do not span the plane or the space."""
     shape = "line" if points.shape[1] == 2 else "plane"
     return usage(f"all {len(points)} points lie on one {shape}: {what}", cure=cure, kind=QhullError)
-
-
-def checked(threads: int | None) -> int | None:
-    """Return a number of threads, if it is one."""
-    with call(threads, None) as (checked, _):
-        return checked
 
 
 def check_options(options: str | bytes | None, harmless: frozenset[str], reasons: dict[str, tuple[str, str]]) -> None:

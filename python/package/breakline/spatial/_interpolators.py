@@ -10,8 +10,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from .. import _masked
 from .._breakline import CubicValues, Tessellation, Values
+from .._call import checked
 from .._errors import ArgumentTypeError, BreaklineWarning, usage, warn
-from ._common import checked, joined, numbers, points_of, positions_of, unsupported
+from ._common import joined, numbers, points_of, positions_of, unsupported
 from ._delaunay import TOLERANCE, Delaunay
 
 
