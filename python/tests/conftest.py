@@ -1,4 +1,4 @@
-"""What the tests share: the valley of the repository, and judges that may be absent."""
+"""What the tests share: the valley of the repository, judges that may be absent, and points."""
 
 import importlib
 import pathlib
@@ -20,6 +20,33 @@ def judge(name):
     except ImportError:
         _MISSING[name] = _MISSING.get(name, 0) + 1
         pytest.skip(f"judge {name} is not installed")
+
+
+@pytest.fixture
+def scipy_spatial():
+    """What judges triangulations, hulls and diagrams."""
+    return judge("scipy.spatial")
+
+
+@pytest.fixture
+def scipy_interpolate():
+    """What judges interpolators."""
+    return judge("scipy.interpolate")
+
+
+def random_points(count, ndim=2, seed=0):
+    """Return points in the unit square or cube."""
+    return np.random.default_rng(seed).random((count, ndim))
+
+
+def grid(side, ndim):
+    """Return all points of an integer grid: every square and cube of it is a tie."""
+    return np.stack(np.meshgrid(*[np.arange(side)] * ndim, indexing="ij"), axis=-1).reshape(-1, ndim).astype(float)
+
+
+def sets_of(simplices):
+    """Return the rows of an array as sets, so that their order makes no difference."""
+    return {frozenset(simplex) for simplex in simplices.tolist()}
 
 
 def pytest_terminal_summary(terminalreporter):

@@ -4,14 +4,9 @@ import pickle
 
 import numpy as np
 import pytest
-from conftest import judge
+from conftest import random_points
 
 from breakline.spatial import CloughTocher2DInterpolator, Delaunay, GradientEstimationWarning
-
-
-@pytest.fixture
-def scipy_interpolate():
-    return judge("scipy.interpolate")
 
 
 def franke(x, y):
@@ -22,10 +17,6 @@ def franke(x, y):
         + 0.5 * np.exp(-((9 * x - 7) ** 2 + (9 * y - 3) ** 2) / 4)
         - 0.2 * np.exp(-((9 * x - 4) ** 2) - (9 * y - 7) ** 2)
     )
-
-
-def random_points(count, seed=0):
-    return np.random.default_rng(seed).random((count, 2))
 
 
 @pytest.mark.parametrize("count", [3, 4, 10, 100, 3000])

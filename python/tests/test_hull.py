@@ -6,31 +6,14 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from conftest import judge
+from conftest import grid, random_points, sets_of
 
 from breakline.spatial import ConvexHull, Delaunay, QhullError
-
-
-@pytest.fixture
-def scipy_spatial():
-    return judge("scipy.spatial")
-
-
-def random_points(count, ndim, seed=0):
-    return np.random.default_rng(seed).random((count, ndim))
 
 
 def on_sphere(count, ndim, seed=0):
     points = np.random.default_rng(seed).normal(size=(count, ndim))
     return points / np.linalg.norm(points, axis=1)[:, None]
-
-
-def grid(side, ndim):
-    return np.stack(np.meshgrid(*[np.arange(side)] * ndim, indexing="ij"), axis=-1).reshape(-1, ndim).astype(float)
-
-
-def sets_of(simplices):
-    return {frozenset(simplex) for simplex in simplices.tolist()}
 
 
 def determinant(points, corners, point):

@@ -5,7 +5,7 @@ import threading
 
 import numpy as np
 import pytest
-from conftest import judge
+from conftest import random_points
 
 from breakline.spatial import (
     Delaunay,
@@ -16,18 +16,9 @@ from breakline.spatial import (
 )
 
 
-@pytest.fixture
-def scipy_interpolate():
-    return judge("scipy.interpolate")
-
-
 FIVE = np.array([(0, 0), (-0.5, -0.5), (-0.5, 0.5), (0.5, 0.5), (0.25, 0.3)])
 SMOOTH = [LinearNDInterpolator, NaturalNeighborInterpolator]
 ALL = [*SMOOTH, NearestNDInterpolator]
-
-
-def random_points(count, ndim, seed=0):
-    return np.random.default_rng(seed).random((count, ndim))
 
 
 def values_at(points):

@@ -8,30 +8,12 @@ import threading
 
 import numpy as np
 import pytest
-from conftest import judge
+from conftest import grid, random_points, sets_of
 
 from breakline.spatial import ClosedError, Delaunay, QhullError, tsearch
 
 
-@pytest.fixture
-def scipy_spatial():
-    return judge("scipy.spatial")
-
-
 DIMENSIONS = [2, 3]
-
-
-def random_points(count, ndim, seed=0):
-    return np.random.default_rng(seed).random((count, ndim))
-
-
-def integer_grid(side, ndim):
-    """All points of an integer grid: every square and cube of it is a tie."""
-    return np.stack(np.meshgrid(*[np.arange(side)] * ndim, indexing="ij"), axis=-1).reshape(-1, ndim).astype(float)
-
-
-def sets_of(simplices):
-    return {frozenset(simplex) for simplex in simplices.tolist()}
 
 
 def volumes(points, simplices):
@@ -86,7 +68,7 @@ def test_random_points_have_the_simplices_of_scipy(scipy_spatial, ndim, threads)
 
 @pytest.mark.parametrize("ndim", DIMENSIONS)
 def test_ties_are_consistent_and_the_same_in_any_order(ndim):
-    points = integer_grid(7 if ndim == 2 else 4, ndim)
+    points = grid(7 if ndim == 2 else 4, ndim)
     tri = Delaunay(points)
     assert_consistent(tri)
     assert np.isclose(volumes(points, tri.simplices).sum(), (6**2 * 2) if ndim == 2 else (3**3 * 6))
@@ -170,7 +152,7 @@ def test_find_simplex_finds_what_contains_the_position(scipy_spatial, ndim, orde
 
 
 def test_find_simplex_at_centroids_is_the_simplex():
-    for points in (random_points(300, 2), integer_grid(10, 2), random_points(100, 3), integer_grid(4, 3)):
+    for points in (random_points(300, 2), grid(10, 2), random_points(100, 3), grid(4, 3)):
         tri = Delaunay(points)
         centroids = points[tri.simplices].mean(axis=1)
         assert (tri.find_simplex(centroids) == np.arange(tri.nsimplex)).all()
@@ -180,7 +162,7 @@ def test_find_simplex_has_the_tolerance_of_scipy():
     """On a slanted side, positions are rounded to either side of it."""
     angle = 0.3
     turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
-    points = integer_grid(30, 2) @ turn
+    points = grid(30, 2) @ turn
     rim = np.stack([np.linspace(0, 29, 1000), np.zeros(1000)], axis=1) @ turn
     tri = Delaunay(points)
     assert (tri.find_simplex(rim) >= 0).all()
@@ -353,11 +335,11 @@ def test_nasty_grids():
     """Centroids of grids that are off by a rounding, or that are there twice, are in some simplex."""
     rng = np.random.default_rng(1234)
     for ndim, side in ((2, 70), (3, 11)):
-        grid = integer_grid(side, ndim) / (side - 1)
-        perturbed = grid.copy()
-        chosen = rng.random(len(grid)) < 0.2
+        even = grid(side, ndim) / (side - 1)
+        perturbed = even.copy()
+        chosen = rng.random(len(even)) < 0.2
         perturbed[chosen] += 2 * np.finfo(float).eps * (rng.random((chosen.sum(), ndim)) - 0.5)
-        for points in (grid, perturbed, np.concatenate([grid, grid])):
+        for points in (even, perturbed, np.concatenate([even, even])):
             tri = Delaunay(points)
             centroids = points[tri.simplices].mean(axis=1)
             assert (tri.find_simplex(centroids) >= 0).all()

@@ -5,26 +5,13 @@ import pickle
 
 import numpy as np
 import pytest
-from conftest import judge
+from conftest import grid, random_points
 
 from breakline.spatial import ConvexHull, Delaunay, QhullError, Voronoi
 
 #: All points with whole coordinates on a circle of radius 5, and on a sphere of radius 3.
 CIRCLE = np.array([p for p in itertools.product(range(-5, 6), repeat=2) if np.dot(p, p) == 25], float)
 SPHERE = np.array([p for p in itertools.product(range(-3, 4), repeat=3) if np.dot(p, p) == 9], float)
-
-
-@pytest.fixture
-def scipy_spatial():
-    return judge("scipy.spatial")
-
-
-def random_points(count, ndim, seed=0):
-    return np.random.default_rng(seed).random((count, ndim))
-
-
-def grid(side, ndim):
-    return np.stack(np.meshgrid(*[np.arange(side)] * ndim, indexing="ij"), axis=-1).reshape(-1, ndim).astype(float)
 
 
 def pairs(diagram):
