@@ -13,8 +13,8 @@ use breakline::triangulation::tds::{CellId, VertexId};
 use rayon::prelude::*;
 
 use super::groups::Groups;
-use super::lists::{Lists, Part};
-use super::mesh::{CHUNK, Dimension, Mesh, NONE};
+use super::lists::{CHUNK, Lists, Part};
+use super::mesh::{Dimension, Mesh, NONE};
 
 /// A Voronoi diagram. Its vertices are numbered; [`NONE`] is the one at infinity.
 pub(super) struct Diagram<const D: usize> {

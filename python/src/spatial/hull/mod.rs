@@ -13,7 +13,8 @@ use breakline::triangulation::geometry::{Geometry, Plane, Space};
 use rayon::prelude::*;
 
 pub(super) use self::listed::Hull;
-use super::mesh::{CHUNK, make_zeros_unsigned};
+use super::lists::CHUNK;
+use super::mesh::make_zeros_unsigned;
 
 /// Returns the hull of points in the plane, the first `accepted` of which were checked before;
 /// `None` if all are collinear.

@@ -9,7 +9,7 @@ use breakline::triangulation::num::Sign;
 use rayon::prelude::*;
 
 use super::listed::{Hull, equation};
-use crate::spatial::mesh::CHUNK;
+use crate::spatial::lists::CHUNK;
 
 /// The polygon has outermost points in these directions.
 const DIRECTIONS: [[f64; 2]; 8] = [

@@ -12,7 +12,7 @@ use rayon::prelude::*;
 
 use super::flat::{Facet, in_flat_sides};
 use super::listed::{Hull, equation};
-use crate::spatial::mesh::CHUNK;
+use crate::spatial::lists::CHUNK;
 
 /// A facet of the hull of the points so far.
 struct Growing {
