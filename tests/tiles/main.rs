@@ -17,6 +17,7 @@ mod notices;
 mod parts;
 mod real;
 mod removal;
+mod reprojection;
 mod stored;
 mod trust;
 mod update;

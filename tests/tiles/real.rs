@@ -53,6 +53,20 @@ fn a_town_with_breaklines() {
     assert_same("contour", &files, &auto, "5x5");
 }
 
+#[cfg(feature = "proj")]
+#[test]
+#[cfg_attr(not(has_shared), ignore = "needs ../shared")]
+fn surveys_in_another_system() {
+    let files = [1, 2, 3, 4].map(|i| format!("lidar/bcts/bcts_{i}.laz"));
+    let files = files.each_ref().map(String::as_str);
+    assert_same("dem", &files, "--t-srs EPSG:26910", "6x6");
+    let files = [1, 2].map(|i| format!("lidar/delft_ahn3_bgt/ahn3_cropped_{i}.laz"));
+    let files = files.each_ref().map(String::as_str);
+    let lines = "--breaklines @delft_ahn3_bgt/breaklines_z_derived.shp";
+    let systems = "--a-srs EPSG:28992 --t-srs EPSG:25831 --max-edge auto";
+    assert_same("contour", &files, &format!("{lines} {systems}"), "5x5");
+}
+
 /// Bounds that cut breaklines, and a boundary.
 #[test]
 #[cfg_attr(not(has_shared), ignore = "needs ../shared")]

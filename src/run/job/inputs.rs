@@ -21,6 +21,7 @@ use crate::run::request::input::{Input, MemoryPoints};
 use crate::run::sources::open;
 use crate::run::sources::point_files::{BadFiles, PointFiles};
 use crate::run::sources::systems::{self, Stated, SystemOptions, Systems};
+use crate::run::sources::transforms::{FileTransform, Transforms};
 use crate::run::verbs::{Keeps, Verb};
 use crate::terrain::Canvas;
 use crate::terrain::Classes;
@@ -49,6 +50,7 @@ pub(super) struct Inputs<'a> {
     skipped: Vec<(usize, String)>,
     pub(super) classes: Vec<u8>,
     pub(super) crs: Option<Crs>,
+    layers_from: Vec<Option<Crs>>,
     pub(super) max_edge: Option<f64>,
     pub(super) known: Known,
     /// The frame over all points and lines, for a raster.
@@ -79,30 +81,26 @@ impl<'a> Inputs<'a> {
         options: &'a TileOptions,
         journal: &Journal,
     ) -> Result<Self> {
-        require_tiled(request, systems)?;
+        require_tiled(request)?;
         let others = others(request, verb)
             .map(|path| OtherFile::of(path))
             .collect::<Result<_>>()?;
-        let FilesOfPoints {
-            points,
-            closed,
+        let opened = Opened::of(request, options, journal)?;
+        let layers = lines::layers_of(request, journal)?;
+        let mut stated = opened.stated(request, systems, journal)?;
+        let of_points = stated.len();
+        stated.extend(layers.stated());
+        let Systems { mut from, crs } = systems::reconcile_some(&stated, systems, journal)?;
+        let transforms = Transforms::new(&from, crs.as_ref(), journal)?;
+        let layers_from = from.split_off(of_points);
+        let Found {
             classes,
             files,
             skipped,
-        } = FilesOfPoints::of(request, systems, options, journal)?;
+        } = opened.looked_at(request, systems, &transforms, &journal.context)?;
         let extent = extent_of(&files);
-        let layers = lines::layers_of(request, journal)?;
-        let mut stated = points.stated(&request.classes, journal)?;
-        drop(points);
-        stated.extend(
-            closed
-                .iter()
-                .filter_map(|file| file.stated(request))
-                .map(Some),
-        );
-        stated.extend(layers.stated());
-        let Systems { crs, .. } = systems::reconcile_some(&stated, systems, journal)?;
-        let known = Known::of_layers(&layers, request, crs.as_ref(), &extent, journal)?;
+        let of_layers = (layers_from.as_slice(), crs.as_ref());
+        let known = Known::of_layers(&layers, request, of_layers, &extent, journal)?;
         if files.is_empty() {
             return Err(
                 Error::format("no points in the input").cure("pass files that contain points")
@@ -129,6 +127,7 @@ impl<'a> Inputs<'a> {
             skipped,
             classes,
             crs,
+            layers_from,
             max_edge,
             known,
             frame,
@@ -174,6 +173,7 @@ impl<'a> Inputs<'a> {
             has_clip: self.known.clip.is_some(),
             layout: tiling.layout,
             crs: self.crs,
+            layers_from: self.layers_from,
             classes: self.classes,
             max_edge: self.max_edge,
             frame: tiling.frame,
@@ -209,7 +209,10 @@ impl<'a> Inputs<'a> {
         }
         let average = most as f64 * AVERAGE;
         let spreads = match options.look {
-            Look::Points => sampled::spreads(files, request, classes, average, context)?,
+            Look::Points => {
+                let used = (classes.as_slice(), self.crs.as_ref());
+                sampled::spreads(files, request, used, average, context)?
+            }
             Look::Headers => spreads,
         };
         Ok((TileLayout::balanced(&spreads, average), false))
@@ -221,12 +224,19 @@ pub(super) fn most_points(task_memory: u64) -> u64 {
     (task_memory / BYTES_A_POINT).clamp(LEAST_POINTS, MOST_POINTS)
 }
 
-/// The files of points of a request, by what their headers state.
-struct FilesOfPoints {
-    /// Those that can be opened.
+/// The files of points of a request, opened.
+struct Opened {
+    /// Those that can be opened, and their positions in the request.
     points: PointFiles,
+    numbers: Vec<usize>,
     /// Those that cannot, if such files are skipped.
     closed: Vec<Closed>,
+    /// The classes that are used.
+    classes: Vec<u8>,
+}
+
+/// The files of points of a request, by what their headers state.
+struct Found {
     /// The classes that are used.
     classes: Vec<u8>,
     /// Those that have points, in the order of the request.
@@ -235,13 +245,8 @@ struct FilesOfPoints {
     skipped: Vec<(usize, String)>,
 }
 
-impl FilesOfPoints {
-    fn of(
-        request: &TinRequest,
-        systems: &SystemOptions,
-        options: &TileOptions,
-        journal: &Journal,
-    ) -> Result<Self> {
+impl Opened {
+    fn of(request: &TinRequest, options: &TileOptions, journal: &Journal) -> Result<Self> {
         let closed = match options.bad {
             BadFiles::Skip => closed(request, &journal.context)?,
             BadFiles::Refuse => Vec::new(),
@@ -249,28 +254,55 @@ impl FilesOfPoints {
         let (numbers, inputs) = opened(request, &closed);
         let points = PointFiles::open(&inputs, request.read, journal)?.with_bad(options.bad);
         let classes = classes_of(&points, request, options, journal)?;
-        let mut files = Vec::new();
-        for ((number, input), stated) in numbers
-            .into_iter()
-            .zip(&inputs)
-            .zip(points.stated_extents())
-        {
-            files.extend(planned(number, input, request, stated, &journal.context)?);
+        Ok(Opened {
+            points,
+            numbers,
+            closed,
+            classes,
+        })
+    }
+
+    /// Returns the coordinate systems that the files state, as far as they matter: of those that
+    /// can be opened, then of the others.
+    fn stated(
+        &self,
+        request: &TinRequest,
+        systems: &SystemOptions,
+        journal: &Journal,
+    ) -> Result<Vec<Option<Stated>>> {
+        let mut stated = self.points.stated(&request.classes, journal)?;
+        let closed = self.closed.iter();
+        stated.extend(closed.map(|file| file.stated(request, systems)));
+        Ok(stated)
+    }
+
+    /// Returns what the plan knows of the files, each of which has its transform, in the order of
+    /// [`stated`](Self::stated).
+    fn looked_at(
+        self,
+        request: &TinRequest,
+        systems: &SystemOptions,
+        transforms: &Transforms,
+        context: &Context,
+    ) -> Result<Found> {
+        let mut of_files = transforms.by_file.iter();
+        let mut transform = || transforms.numbered(of_files.next().copied().flatten());
+        let (mut files, mut skipped) = (Vec::new(), Vec::new());
+        for (number, stated) in self.numbers.iter().zip(self.points.stated_extents()) {
+            files.extend(planned(*number, request, stated, transform(), context)?);
         }
-        let mut skipped = Vec::new();
-        for file in &closed {
-            match file.extent() {
+        for file in &self.closed {
+            let transform = transform();
+            match file.extent(systems, transform) {
                 Some(extent) => {
-                    files.extend(file.planned(extent, request, systems, &journal.context)?)
+                    files.extend(file.planned(extent, request, systems, transform, context)?);
                 }
                 None => skipped.push((file.number, file.why.clone())),
             }
         }
         files.sort_by_key(|file| file.input);
-        Ok(FilesOfPoints {
-            points,
-            closed,
-            classes,
+        Ok(Found {
+            classes: self.classes,
             files,
             skipped,
         })
@@ -378,20 +410,25 @@ struct Closed {
 }
 
 impl Closed {
-    /// Returns the coordinate system that its header states, if it does.
-    fn stated(&self, request: &TinRequest) -> Option<Stated> {
+    /// Returns the coordinate system that its header states, if it does, or if one is assigned.
+    fn stated(&self, request: &TinRequest, systems: &SystemOptions) -> Option<Stated> {
         let stated = Stated::by_points(request.points[self.number].path(), self.stated.as_ref()?);
-        (stated.crs.is_some() || stated.unread.is_some()).then_some(stated)
+        let has_system = stated.crs.is_some() || stated.unread.is_some();
+        (has_system || systems.assign.is_some()).then_some(stated)
     }
 
     /// Returns the number of points and the box around them that its header states, if it states
-    /// both.
-    fn extent(&self) -> Option<(Option<u64>, Option<Bounds>)> {
-        let info = self
-            .stated
-            .as_ref()
-            .filter(|info| info.count.is_some() && info.bounds.is_some())?;
-        Some((info.count, info.bounds))
+    /// both, and if it is known where that is in the system of the result.
+    fn extent(
+        &self,
+        systems: &SystemOptions,
+        transform: FileTransform,
+    ) -> Option<(Option<u64>, Option<Bounds>)> {
+        let info = self.stated.as_ref()?;
+        let (count, bounds) = (info.count?, info.bounds?);
+        let has_system = info.crs.is_some() || systems.assign.is_some();
+        let is_known = systems.target.is_none() || has_system;
+        (is_known && transform.around(bounds).is_some()).then_some((Some(count), Some(bounds)))
     }
 
     /// Returns what the plan knows of it; `None` if it has no points.
@@ -400,15 +437,10 @@ impl Closed {
         extent: (Option<u64>, Option<Bounds>),
         request: &TinRequest,
         systems: &SystemOptions,
+        transform: FileTransform,
         context: &Context,
     ) -> Result<Option<PlannedFile>> {
-        let file = planned(
-            self.number,
-            &request.points[self.number],
-            request,
-            extent,
-            context,
-        )?;
+        let file = planned(self.number, request, extent, transform, context)?;
         let states_system = self.stated.as_ref().is_some_and(|info| info.crs.is_some());
         let is_of_any_system = !states_system && systems.assign.is_none();
         Ok(file.map(|file| PlannedFile {
@@ -421,8 +453,9 @@ impl Closed {
 /// Returns the files that cannot be opened.
 fn closed(request: &TinRequest, context: &Context) -> Result<Vec<Closed>> {
     let mut closed = Vec::new();
+    let as_it_is = Transforms::default();
     for (number, input) in request.points.iter().enumerate() {
-        match looked_at(number, request, context) {
+        match looked_at(number, request, as_it_is.numbered(None), context) {
             Ok(_) => {}
             Err(error) if BadFiles::Skip.skips(&error) => {
                 require_folder(input.path(), request)?;

@@ -25,7 +25,7 @@ pub(super) struct Keys {
 
 impl Keys {
     pub(super) fn of(plan: &Plan) -> Self {
-        let others = json!(plan.others);
+        let others = json!([plan.others, plan.layers_from]);
         let sum = |key: &Value| checksum(key.to_string().as_bytes());
         let with_extent = || sum(&json!([others, corners(&plan.files)]));
         Keys {
@@ -76,9 +76,19 @@ impl Keys {
 /// A file, as it is read.
 fn of_file(file: &PlannedFile) -> Value {
     let PlannedFile {
-        name, state, count, ..
+        name,
+        state,
+        count,
+        from,
+        ..
     } = file;
-    json!([name, state, count, corners(std::slice::from_ref(file))])
+    json!([
+        name,
+        state,
+        count,
+        from,
+        corners(std::slice::from_ref(file))
+    ])
 }
 
 /// The box in plan around some files, as they state it.

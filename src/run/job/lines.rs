@@ -13,9 +13,9 @@ use super::task_file::{Block, TaskFile, TaskWriter};
 use crate::crs::Crs;
 use crate::data::{Bounds, Surface};
 use crate::error::Result;
-use crate::run::context::Journal;
 use crate::run::context::notice::Notice;
 use crate::run::context::units::Units;
+use crate::run::context::{Context, Journal};
 use crate::run::lines::crossings::{self, LineNames};
 use crate::run::lines::inputs::{Added, LineLayers};
 use crate::run::lines::notes::{self as line_notes, LevelRings, OtherHeights};
@@ -49,33 +49,36 @@ pub(super) struct Known {
     pub(super) lines: Option<JobLines>,
     /// What the surface is cut along.
     pub(super) clip: Option<TileClip>,
+    /// The warnings of the transforms that reproject the layers.
+    pub(super) of_transforms: Vec<String>,
 }
 
 impl Known {
-    /// Reads the layers of a request. `crs` is the system of the result, `extent` the box around
-    /// all points.
+    /// Reads the layers of a request. `systems` are those that they are reprojected from, and that
+    /// of the result; `extent` is the box around all points.
     ///
     /// # Errors
-    /// If a layer cannot be read, or is not what its option takes.
+    /// If a layer cannot be read or reprojected, or is not what its option takes.
     pub(super) fn read(
         request: &TinRequest,
-        crs: Option<&Crs>,
+        systems: (&[Option<Crs>], Option<&Crs>),
         extent: &Bounds,
         journal: &Journal,
     ) -> Result<Self> {
-        Self::of_layers(&layers_of(request, journal)?, request, crs, extent, journal)
+        let layers = layers_of(request, journal)?;
+        Self::of_layers(&layers, request, systems, extent, journal)
     }
 
     /// Like [`read`](Self::read), of layers that were read.
     pub(super) fn of_layers(
         layers: &LineLayers,
         request: &TinRequest,
-        crs: Option<&Crs>,
+        (from, crs): (&[Option<Crs>], Option<&Crs>),
         extent: &Bounds,
         journal: &Journal,
     ) -> Result<Self> {
-        let from = vec![None; layers.stated().count()];
-        let transforms = Transforms::new(&from, crs, journal)?;
+        // The plan has said which systems are reprojected.
+        let transforms = Transforms::new(from, crs, &Journal::new(&Context::default()))?;
         let units = Units::of(crs);
         let mut builder = builder_of(request, &units, crs.cloned());
         let mut added = layers.add_to(&mut builder, &transforms.by_file, &transforms, &units)?;
@@ -97,7 +100,11 @@ impl Known {
         let with_heights = layers.has_lines_with_heights();
         let lines = with_heights
             .then(|| JobLines::new(builder, added, &in_plan, of_lines, request, &units));
-        Ok(Known { lines, clip })
+        Ok(Known {
+            lines,
+            clip,
+            of_transforms: transforms.warnings().collect(),
+        })
     }
 }
 

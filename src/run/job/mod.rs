@@ -467,8 +467,12 @@ impl Job {
             cancel: context.cancel,
             ..Context::default()
         };
-        let (crs, extent) = (self.plan.crs.as_ref(), self.plan.extent());
-        let known = Known::read(&self.request, crs, &extent, &Journal::new(&quiet))?;
+        let Plan {
+            layers_from, crs, ..
+        } = &self.plan;
+        let systems = (layers_from.as_slice(), crs.as_ref());
+        let extent = self.plan.extent();
+        let known = Known::read(&self.request, systems, &extent, &Journal::new(&quiet))?;
         // They may have changed since they were compared with the plan.
         self.plan.require_others_unchanged(&self.folder)?;
         Ok(self.known.get_or_init(|| known))
@@ -632,8 +636,8 @@ fn other_version(folder: &Path) -> Error {
 /// # Errors
 /// If it cannot be done in tiles, or a file cannot be opened.
 pub fn needs_tiles(wanted: &WriteRequest, memory: Option<u64>, context: &Context) -> Result<bool> {
-    let (points, systems) = tiled(wanted)?;
-    plan::require_tiled(points, systems)?;
+    let (points, _) = tiled(wanted)?;
+    plan::require_tiled(points)?;
     let memory = memory.unwrap_or_else(crate::run::context::memory::half_of_free);
     // Opening a layer reads it. A point takes a byte at least, so the lengths nearly always
     // suffice.

@@ -13,8 +13,6 @@ use crate::terrain::Method;
 pub enum NotInTiles {
     /// Vertices are added on ridges and valleys.
     Ridges,
-    /// The points are reprojected.
-    Reproject,
     /// Longest edges anywhere, where there is water.
     EdgesBesideWater,
     /// The crossings of lines are listed.
@@ -27,10 +25,9 @@ pub enum NotInTiles {
 
 impl NotInTiles {
     /// Returns what a request for a surface has and tiles do not.
-    pub(super) fn of(request: &TinRequest, systems: &SystemOptions) -> Option<Self> {
+    pub(super) fn of(request: &TinRequest) -> Option<Self> {
         let known = [
             (NotInTiles::Ridges, request.lines.add_ridges),
-            (NotInTiles::Reproject, systems.target.is_some()),
             (
                 NotInTiles::EdgesBesideWater,
                 request.max_edge_inside.is_some() && request.lines.has_water(),
@@ -50,7 +47,6 @@ impl NotInTiles {
     fn settings(self) -> Wording {
         match self {
             NotInTiles::Ridges => Setting::AddRidges.into(),
-            NotInTiles::Reproject => Setting::TargetCrs.into(),
             NotInTiles::EdgesBesideWater => {
                 wording![
                     Setting::MaxEdgeInside,

@@ -103,6 +103,8 @@ pub(super) struct Found {
     classes: BTreeSet<u8>,
     without_class: u64,
     without_return: u64,
+    /// The warnings of the transforms of points.
+    of_transforms: BTreeSet<String>,
     extent_used: Bounds,
     rings: Vec<(usize, u64, f64)>,
     /// Triangles that holes and other clip lines cut, or leave out.
@@ -122,6 +124,8 @@ impl Found {
             self.without_class += points.without_class;
             self.without_return += points.without_return;
             self.rings.extend(&points.rings);
+            self.of_transforms
+                .extend(points.of_transform.iter().cloned());
             points.extent.add_to(&mut self.extent_used);
         }
         match (file, &facts.file) {
@@ -141,6 +145,7 @@ impl Found {
         self.notices
             .iter()
             .for_each(|notice| journal.add(notice.clone()));
+        self.note_transforms(job, context, journal)?;
         self.note_skipped(&job.plan, journal);
         self.note_points(job, journal);
         let units = Units::of(job.plan.crs.as_ref());
@@ -184,6 +189,17 @@ impl Found {
             .into_iter()
             .filter(|(_, is_apart)| *is_apart && !is_cut(request));
         apart.for_each(|(role, _)| journal.add(Notice::LinesApart(role)));
+        Ok(())
+    }
+
+    /// Reports what the transforms of points and of layers have to say, once.
+    fn note_transforms(&self, job: &Job, context: &Context, journal: &Journal) -> Result<()> {
+        let mut all = self.of_transforms.clone();
+        if job.plan.layers_from.iter().any(Option::is_some) {
+            all.extend(job.known(context)?.of_transforms.iter().cloned());
+        }
+        all.into_iter()
+            .for_each(|text| journal.add(Notice::Transform(text)));
         Ok(())
     }
 

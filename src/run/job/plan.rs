@@ -15,7 +15,6 @@ use crate::run::products::tin::TinRequest;
 use crate::run::request::input::Input;
 use crate::run::request::serialized;
 use crate::run::sources::point_files::GROUND;
-use crate::run::sources::systems::SystemOptions;
 use crate::run::verbs::Verb;
 use crate::terrain::tiles::{Spread, TileLayout, Work};
 use crate::terrain::{Classes, SelectionReport};
@@ -63,6 +62,8 @@ pub(super) struct Plan {
     pub(super) layout: TileLayout,
     /// The coordinate system of the result.
     pub(super) crs: Option<Crs>,
+    /// The systems that the layers of lines are reprojected from, if they are.
+    pub(super) layers_from: Vec<Option<Crs>>,
     /// The classes that are used.
     pub(super) classes: Vec<u8>,
     /// The longest edge at the rim.
@@ -79,8 +80,8 @@ pub(super) struct Plan {
 }
 
 /// Returns an error if the request has something that tiles do not have yet.
-pub(super) fn require_tiled(request: &TinRequest, systems: &SystemOptions) -> Result<()> {
-    if let Some(what) = NotInTiles::of(request, systems) {
+pub(super) fn require_tiled(request: &TinRequest) -> Result<()> {
+    if let Some(what) = NotInTiles::of(request) {
         return Err(what.into());
     }
     request.check_bounds()?;
@@ -241,7 +242,10 @@ impl Plan {
         if state_of(&file.path)? == file.state {
             return Ok(());
         }
-        let found = looked_at(file.input, request, &Context::default())?;
+        let context = Context::default();
+        let transforms = file.transforms(self.crs.as_ref(), &context)?;
+        let transform = transforms.numbered(transforms.by_file[0]);
+        let found = looked_at(file.input, request, transform, &context)?;
         match found {
             Some(found)
                 if (found.count, found.min, found.max) == (file.count, file.min, file.max) =>

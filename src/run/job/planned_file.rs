@@ -6,15 +6,18 @@ use std::time::UNIX_EPOCH;
 
 use serde::{Deserialize, Serialize};
 
+use crate::crs::Crs;
 use crate::data::{Bounds, PointBatch};
 use crate::error::{Command, Error, Result, Setting, wording};
 use crate::io::{formats, layer};
-use crate::run::context::{Context, Size, Stage};
+use crate::run::context::units::neat;
+use crate::run::context::{Context, Journal, Size, Stage};
 use crate::run::products::tin::TinRequest;
 use crate::run::request::input::{Input, MemoryPoints};
 use crate::run::sources::checksum::checksum;
 use crate::run::sources::file_extent::{FileExtent, with_rounding};
 use crate::run::sources::open;
+use crate::run::sources::transforms::{FileTransform, Transforms};
 use crate::terrain::tiles::Spread;
 
 /// The state of a file and of those that are read along with it, which differs once one of them has
@@ -47,7 +50,11 @@ pub(super) struct PlannedFile {
     pub(super) state: FileState,
     /// The number of its points.
     pub(super) count: u64,
-    /// The box around its points in plan, as its header states it.
+    /// The system that its points are reprojected from, if they are.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) from: Option<Crs>,
+    /// The box around its points in plan, as its header states it; if they are reprojected, one
+    /// that contains it in the system of the result.
     pub(super) min: [f64; 2],
     pub(super) max: [f64; 2],
     /// True if its coordinate system was not known, because it was damaged. Else it agrees with the
@@ -56,6 +63,16 @@ pub(super) struct PlannedFile {
 }
 
 impl PlannedFile {
+    /// Returns the transform of its points to the system of the result, as that of the first of
+    /// several files.
+    pub(super) fn transforms(&self, to: Option<&Crs>, context: &Context) -> Result<Transforms> {
+        let quiet = Context {
+            cancel: context.cancel,
+            ..Context::default()
+        };
+        Transforms::new(std::slice::from_ref(&self.from), to, &Journal::new(&quiet))
+    }
+
     /// Returns the box around its points in plan, as its header states it.
     pub(super) fn bounds(&self) -> Bounds {
         let mut bounds = Bounds::default();
@@ -82,6 +99,28 @@ impl PlannedFile {
             count: self.count as f64,
         }
     }
+
+    /// Returns an error unless points that were read are where the plan expects them: others would
+    /// be in tiles that do not ask for this file.
+    pub(super) fn require_within(&self, points: &[[f64; 3]]) -> Result<()> {
+        let spread = self.spread();
+        let Some(&[x, y, _]) = points
+            .iter()
+            .find(|point| !spread.holds([point[0], point[1]]))
+        else {
+            return Ok(());
+        };
+        let ([x0, y0], [x1, y1]) = (self.min.map(neat), self.max.map(neat));
+        let [x, y] = [x, y].map(neat);
+        let reprojected = match &self.from {
+            Some(from) => format!(", reprojected from {from}"),
+            None => String::new(),
+        };
+        Err(Error::format(format!(
+            "there is a point at {x} {y}, but the header states an extent from {x0} {y0} to {x1} {y1}{reprojected}"
+        ))
+        .cure(wording![Command::Points, " writes a file with a true header"]))
+    }
 }
 
 /// Returns the length of a file in bytes; 0 if it cannot be asked for.
@@ -97,20 +136,26 @@ pub(super) fn points_of_text(path: &Path) -> u64 {
     length_of(path) / BYTES_A_POINT_OF_TEXT
 }
 
-/// Returns what the plan has to know of a file; `None` if it has no points.
+/// Returns what the plan has to know of a file, whose points a transform reprojects; `None` if it
+/// has no points.
 pub(super) fn planned(
     number: usize,
-    input: &Input<MemoryPoints>,
     request: &TinRequest,
     stated: (Option<u64>, Option<Bounds>),
+    transform: FileTransform,
     context: &Context,
 ) -> Result<Option<PlannedFile>> {
+    let input = &request.points[number];
     let path = input.path();
     let state = state_of(path)?;
+    let stated = match stated {
+        (Some(0), _) => return Ok(None),
+        (Some(count), Some(bounds)) => transform.around(bounds).map(|around| (count, around)),
+        _ => None,
+    };
     let (count, bounds) = match stated {
-        (Some(count), Some(bounds)) => (count, bounds),
-        (Some(0), None) => (0, Bounds::default()),
-        _ => measured(input, request, context).map_err(|e| e.in_file(path))?,
+        Some(stated) => stated,
+        None => measured(input, request, transform, context).map_err(|e| e.in_file(path))?,
     };
     if count == 0 {
         return Ok(None);
@@ -135,6 +180,7 @@ pub(super) fn planned(
         tile: None,
         state,
         count,
+        from: transform.from().cloned(),
         min,
         max,
         is_of_any_system: false,
@@ -145,21 +191,25 @@ pub(super) fn planned(
 pub(super) fn looked_at(
     number: usize,
     request: &TinRequest,
+    transform: FileTransform,
     context: &Context,
 ) -> Result<Option<PlannedFile>> {
     let input = &request.points[number];
     let look = || {
         let source = open::points(input, request.read, context)?;
         let info = source.info();
-        planned(number, input, request, (info.count, info.bounds), context)
+        let stated = (info.count, info.bounds);
+        planned(number, request, stated, transform, context)
     };
     look().map_err(|e| e.in_file(input.path()))
 }
 
-/// Counts the points of a file that does not state their number or extent.
+/// Counts the points of a file that does not state their number or extent, or not in a system from
+/// which a box can be reprojected.
 fn measured(
     input: &Input<MemoryPoints>,
     request: &TinRequest,
+    transform: FileTransform,
     context: &Context,
 ) -> Result<(u64, Bounds)> {
     let mut source = open::points(input, request.read, context)?;
@@ -172,6 +222,7 @@ fn measured(
             return Ok((count, bounds));
         }
         count += batch.len() as u64;
+        transform.apply_to_batch(&mut batch)?;
         (0..batch.len()).for_each(|i| bounds.add([batch.x[i], batch.y[i], batch.z[i]]));
         work.add(batch.len() as u64)?;
     }

@@ -1,6 +1,7 @@
 //! Where the points of large files are, for tiles that suit them.
 
 use super::planned_file::PlannedFile;
+use crate::crs::Crs;
 use crate::data::PointBatch;
 use crate::error::{Kind, Result};
 use crate::run::context::{Context, Size, Stage};
@@ -17,7 +18,8 @@ const LARGE: f64 = 8.0;
 const POSITIONS_A_TILE: f64 = 100.0;
 
 /// Returns boxes that stand for the points of the files that are used; of large files, positions of
-/// some of them. A tile shall have about `average` points.
+/// some of them. Points of these classes are used, in this system; a tile shall have about
+/// `average` of them.
 ///
 /// # Complexity
 /// Linear in the files. Of large ones, some 50 000 points are read for each tile: a tenth if a tile
@@ -25,14 +27,14 @@ const POSITIONS_A_TILE: f64 = 100.0;
 pub(super) fn spreads(
     files: &[PlannedFile],
     request: &TinRequest,
-    classes: &[u8],
+    (classes, crs): (&[u8], Option<&Crs>),
     average: f64,
     context: &Context,
 ) -> Result<Vec<Spread>> {
     let mut all = Vec::new();
     for file in files {
         let sampled = if file.count as f64 >= LARGE * average {
-            sampled(file, request, classes, average, context)
+            sampled(file, request, (classes, crs), average, context)
         } else {
             Ok(Vec::new())
         };
@@ -52,7 +54,7 @@ pub(super) fn spreads(
 fn sampled(
     file: &PlannedFile,
     request: &TinRequest,
-    classes: &[u8],
+    (classes, crs): (&[u8], Option<&Crs>),
     average: f64,
     context: &Context,
 ) -> Result<Vec<Spread>> {
@@ -62,6 +64,7 @@ fn sampled(
     }
     let work = context.start(Stage::ReadingPoints, Size::Unknown)?;
     let extent = file.spread();
+    let transforms = file.transforms(crs, context)?;
     let mut selection =
         Selection::new(Classes::Only(classes.to_vec()), None).with_returns(request.returns.clone());
     let mut batch = PointBatch::default();
@@ -72,6 +75,7 @@ fn sampled(
             break;
         }
         work.add(batch.len() as u64)?;
+        transforms.apply_to_batch(transforms.by_file[0], &mut batch)?;
         selection.add(&batch)?;
         let used = selection.take_points();
         let wanted = (batch.len() as f64 / average * POSITIONS_A_TILE).max(POSITIONS_A_TILE);
@@ -151,6 +155,7 @@ mod tests {
                 beside: 0,
             },
             count: points.len() as u64,
+            from: None,
             min: [0.0; 2],
             max: [402.0; 2],
             is_of_any_system: false,
@@ -167,7 +172,7 @@ mod tests {
         let found = spreads(
             from_ref(&file),
             &request,
-            &[0, 1, 2],
+            (&[0, 1, 2], None),
             average,
             &Context::default(),
         )
@@ -184,7 +189,7 @@ mod tests {
         let of_one = spreads(
             from_ref(&file),
             &request,
-            &[2],
+            (&[2], None),
             average,
             &Context::default(),
         )
@@ -192,7 +197,14 @@ mod tests {
         assert_eq!(count(&of_one), 133_333.0);
         // Few points are taken to be even, and so are those of a file that cannot be read.
         assert_eq!(
-            spreads(from_ref(&file), &request, &[2], 1e6, &Context::default()).unwrap(),
+            spreads(
+                from_ref(&file),
+                &request,
+                (&[2], None),
+                1e6,
+                &Context::default()
+            )
+            .unwrap(),
             [file.spread()]
         );
         std::fs::write(&path, "LASF").unwrap();
@@ -200,7 +212,7 @@ mod tests {
             spreads(
                 from_ref(&file),
                 &request,
-                &[2],
+                (&[2], None),
                 average,
                 &Context::default()
             )

@@ -8,6 +8,7 @@ use super::planned_file::looked_at;
 use super::task_file::TaskFile;
 use crate::error::{Error, Kind, Result};
 use crate::run::context::{Context, Journal};
+use crate::run::sources::transforms::Transforms;
 
 impl Job {
     /// Returns true if a task that is done has skipped its file of points.
@@ -44,7 +45,9 @@ impl Job {
             ..Context::default()
         };
         for (input, _) in &self.plan.skipped {
-            if looked_at(*input, &self.request, &quiet).is_ok() {
+            let as_it_is = Transforms::default();
+            let found = looked_at(*input, &self.request, as_it_is.numbered(None), &quiet);
+            if found.is_ok() {
                 return Ok(Some(self.request.points[*input].path()));
             }
         }

@@ -75,6 +75,8 @@ pub(super) struct ReadFacts {
     pub(super) classes: Vec<u8>,
     /// The box around the points that are used.
     pub(super) extent: Extent,
+    /// The warnings of the transform that reprojects them.
+    pub(super) of_transform: Vec<String>,
     /// Lines that may be shores: their numbers, how many points within have other heights, and the
     /// largest difference.
     pub(super) rings: Vec<(usize, u64, f64)>,

@@ -12,9 +12,8 @@ use super::task_file::{TaskFile, TaskWriter};
 use super::{Job, Task};
 use super::{contours, lines, notes};
 use crate::data::{Bounds, EdgeKind, PointBatch};
-use crate::error::{Command, Error, Result, wording};
+use crate::error::{Error, Result};
 use crate::run::context::notice::Notice;
-use crate::run::context::units::neat;
 use crate::run::context::{Context, Journal};
 use crate::run::lines::notes::LevelRings;
 use crate::run::products::frame;
@@ -216,7 +215,7 @@ impl Job {
             .require_system(number, source.info().crs.as_ref(), &self.folder)?;
         let mut selection = Selection::new(Classes::Only(self.plan.classes.clone()), None)
             .with_returns(self.request.returns.clone());
-        let spread = file.spread();
+        let transforms = file.transforms(self.plan.crs.as_ref(), &journal.context)?;
         let mut batch = PointBatch::default();
         let mut extent = Bounds::default();
         loop {
@@ -239,22 +238,14 @@ impl Job {
                     without_class: report.without_class,
                     classes: report.by_class.keys().copied().collect(),
                     extent: Extent::of(&extent),
+                    of_transform: transforms.warnings().collect(),
                     ..ReadFacts::default()
                 });
             }
+            transforms.apply_to_batch(transforms.by_file[0], &mut batch)?;
             selection.add(&batch)?;
             let points = selection.take_points();
-            if let Some(&[x, y, _]) = points
-                .iter()
-                .find(|point| !spread.holds([point[0], point[1]]))
-            {
-                let ([x0, y0], [x1, y1]) = (file.min.map(neat), file.max.map(neat));
-                let [x, y] = [x, y].map(neat);
-                return Err(Error::format(format!(
-                    "there is a point at {x} {y}, but the header states an extent from {x0} {y0} to {x1} {y1}"
-                ))
-                .cure(wording![Command::Points, " writes a file with a true header"]));
-            }
+            file.require_within(&points)?;
             points.iter().for_each(|point| extent.add(*point));
             take(points);
             journal.context.check()?;

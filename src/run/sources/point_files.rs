@@ -5,7 +5,7 @@ use std::path::Path;
 use super::file_extent::{FileExtent, counted, stated_extent};
 use super::open;
 use super::systems::Stated;
-use super::transforms::Transforms;
+use super::transforms::{FileTransform, Transforms};
 use crate::data::{Bounds, Columns, PointBatch, PointSource};
 use crate::error::{Error, Kind, Result, Setting, wording};
 use crate::io::points::Options;
@@ -75,10 +75,12 @@ impl PointFile {
         }
     }
 
-    /// The points by which their mean distance is computed; `None` if that is not known yet.
-    fn counted(&self) -> Option<FileExtent> {
+    /// The points by which their mean distance is computed, in the coordinates to which a transform
+    /// leads; `None` if that is not known yet.
+    fn counted(&self, transform: FileTransform) -> Option<FileExtent> {
         let read = self.is_read.then_some(self.extent);
-        counted((self.count, self.bounds), read)
+        let stated = self.bounds.and_then(|bounds| transform.around(bounds));
+        counted((self.count, stated), read)
     }
 
     /// Returns true if the file has a point of these classes. Reads until one is found.
@@ -338,7 +340,12 @@ impl PointFiles {
         }
         let extents = self.extents(by_file);
         Ok(FilesRead {
-            counted: self.files.iter().filter_map(PointFile::counted).collect(),
+            counted: self
+                .files
+                .iter()
+                .zip(by_file)
+                .filter_map(|(file, number)| file.counted(transforms.numbered(*number)))
+                .collect(),
             extents: extents
                 .into_iter()
                 .map(|extent| extent.bounds.unwrap_or_default())
