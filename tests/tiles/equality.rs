@@ -481,6 +481,48 @@ fn a_limit_that_follows_from_the_points_is_that_of_one_piece() {
     assert!(of_whole == of_parts);
 }
 
+/// A window of a delivery that would not fit into memory: what is far from it is not read.
+#[test]
+fn files_far_from_the_bounds_do_not_make_tiles_necessary() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, [x, y]: [u32; 2], side: u32| {
+        let at = |i: u32| [x + i % side, y + i / side].map(f64::from);
+        let points: Vec<([f64; 3], u8)> = (0..side * side)
+            .map(at)
+            .map(|[x, y]| ([x, y, (x * 0.3).sin() + (y * 0.2).cos()], 2))
+            .collect();
+        std::fs::write(folder.path().join(name), lidar::las(&points, Some(25832))).unwrap();
+    };
+    write("a.las", [0, 0], 60);
+    write("b.las", [5000, 0], 260);
+    write("c.las", [0, 8000], 260);
+    write("d.las", [5000, 8000], 260);
+    let ring = [[20.0, 20.0], [30.0, 20.0], [30.0, 30.0], [20.0, 20.0]];
+    let ring = ring.map(|[x, y]| [x, y, 3.0]).to_vec();
+    let lake = layer(&[ring], "Polygon");
+    std::fs::write(folder.path().join("lake.geojson"), lake).unwrap();
+    let in_tiles = "tiles       ";
+    let words = "dem a.las b.las c.las d.las --resolution 2";
+    let bounds = "--bounds 10,10,50.5,50";
+    let little = "--memory 16MB";
+    let (part, said) = output_of(&folder, &format!("{words} {bounds} {little}"), "part.tif");
+    assert!(
+        !said.contains(in_tiles) && said.contains("3 of 4"),
+        "{said}"
+    );
+    let (tiled, said) = output_of(
+        &folder,
+        &format!("{words} {bounds} --tiles 3x3"),
+        "tiled.tif",
+    );
+    assert!(tiled == part && said.contains(in_tiles), "{said}");
+    // All points are needed: there are no bounds, or where water ends may depend on any.
+    for more in ["", "--bounds 10,10,50.5,50 --flat lake.geojson"] {
+        let (_, said) = output_of(&folder, &format!("{words} {more} {little}"), "all.tif");
+        assert!(said.contains(in_tiles), "{said}");
+    }
+}
+
 /// Two million points in little memory.
 #[test]
 fn two_million_points_take_the_memory_that_is_allowed() {

@@ -88,7 +88,7 @@ use crate::run::context::event::JobSize;
 use crate::run::context::notice::Notice;
 use crate::run::context::{Context, Journal};
 use crate::run::products::surface::{Source, SurfaceRequest};
-use crate::run::products::tin::TinRequest;
+use crate::run::products::tin::{self, TinRequest};
 use crate::run::sources::checksum::checksum;
 use crate::run::sources::point_files::{BadFiles, PointFiles};
 use crate::run::sources::systems::SystemOptions;
@@ -631,12 +631,13 @@ fn other_version(folder: &Path) -> Error {
         ])
 }
 
-/// Returns true if a request would need more memory than there is.
+/// Returns true if a request would need more memory than there is. With bounds, what is far from
+/// them does not count, because it is not read in one piece.
 ///
 /// # Errors
 /// If it cannot be done in tiles, or a file cannot be opened.
 pub fn needs_tiles(wanted: &WriteRequest, memory: Option<u64>, context: &Context) -> Result<bool> {
-    let (points, _) = tiled(wanted)?;
+    let (points, systems) = tiled(wanted)?;
     plan::require_tiled(points)?;
     let memory = memory.unwrap_or_else(crate::run::context::memory::half_of_free);
     // Opening a layer reads it. A point takes a byte at least, so the lengths nearly always
@@ -654,11 +655,13 @@ pub fn needs_tiles(wanted: &WriteRequest, memory: Option<u64>, context: &Context
         ..Context::default()
     };
     let files = PointFiles::open(&points.points, points.read, &Journal::new(&quiet))?;
-    let stated = points.points.iter().zip(files.stated_extents());
-    let count: u64 = stated
-        .map(|(input, (count, _))| {
-            count.unwrap_or_else(|| planned_file::points_of_text(input.path()))
-        })
-        .sum();
+    // Where reprojected files are is not known from headers alone.
+    let by_file = vec![systems.target.as_ref().map(|_| 0); points.points.len()];
+    let mut extents = files.extents(&by_file);
+    for (extent, input) in extents.iter_mut().zip(&points.points) {
+        let of_text = || planned_file::points_of_text(input.path());
+        extent.points = Some(extent.points.unwrap_or_else(of_text));
+    }
+    let count = tin::used_at_first(points, wanted.verb.method(), &extents);
     Ok(crate::run::context::memory::need_of(count) > memory)
 }

@@ -1,6 +1,6 @@
 //! What tiles cannot do yet.
 
-use crate::error::{Error, Result, Setting, Wording, wording};
+use crate::error::{Command, Error, Result, Setting, Wording, wording};
 use crate::run::products::surface::{Source, SurfaceRequest};
 use crate::run::products::tin::{ReplacedPoints, TinRequest};
 use crate::run::sources::systems::SystemOptions;
@@ -67,7 +67,13 @@ impl From<NotInTiles> for Error {
     #[cold]
     fn from(what: NotInTiles) -> Self {
         if what == NotInTiles::Method {
-            let cure = wording!["leave out ", what.settings(), ", or ", Setting::Tiles];
+            let cure = wording![
+                Command::Tin,
+                " writes the surface in parts (.tins), of which any method takes heights in memory; or leave out ",
+                what.settings(),
+                ", or ",
+                Setting::Tiles
+            ];
             return Error::unsupported("tiles have linear heights only").cure(cure);
         }
         let whole = " the whole surface is built in memory";

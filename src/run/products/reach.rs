@@ -71,6 +71,13 @@ impl Reach {
         self.bounds.map(|bounds| grown(bounds, self.buffer))
     }
 
+    /// Returns about how many points of files are used.
+    pub(super) fn points_of(&self, files: &[FileExtent]) -> u64 {
+        let all = || files.iter().filter_map(|file| file.points).sum();
+        self.window()
+            .map_or_else(all, |window| Work::within(&window, files).used as u64)
+    }
+
     /// Returns the width of the buffer.
     pub(super) fn buffer(&self) -> f64 {
         self.buffer

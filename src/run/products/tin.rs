@@ -22,6 +22,7 @@ use crate::run::request::input::{Input, MemoryPoints, named};
 use crate::run::request::lines::{LineRequest, LineRole};
 use crate::run::request::serialized;
 use crate::run::sources::extents::{self, LineExtents};
+use crate::run::sources::file_extent::FileExtent;
 use crate::run::sources::open::{self, Content, content};
 use crate::run::sources::point_files::{FilesRead, PointFiles};
 use crate::run::sources::systems::{self, SystemOptions, Systems};
@@ -285,12 +286,7 @@ pub(crate) fn build(
         journal,
         paths: request.points.iter().map(Input::path).collect(),
     };
-    let is_read_once = request.points.iter().any(Input::is_read_once);
-    let buffer = if is_read_once || reaches_far(request, method) {
-        f64::INFINITY
-    } else {
-        rim.buffer
-    };
+    let buffer = first_buffer(request, method, &units);
     let mut reach = Reach::new(request.bounds, buffer, &files.extents(of_points));
     let Built {
         tin,
@@ -324,6 +320,23 @@ pub(crate) fn build(
 /// ridges are, and what a method makes of the vertices.
 fn reaches_far(request: &TinRequest, method: Method) -> bool {
     request.lines.has_water() || request.lines.add_ridges || method != Method::Linear
+}
+
+/// Returns how far outside of bounds points are used at first.
+fn first_buffer(request: &TinRequest, method: Method, units: &Units) -> f64 {
+    let is_read_once = request.points.iter().any(Input::is_read_once);
+    if is_read_once || reaches_far(request, method) {
+        f64::INFINITY
+    } else {
+        request.max_edge.buffer(units)
+    }
+}
+
+/// Returns about how many points of files are used: those not too far from the bounds, if there are
+/// bounds. Lengths are taken to be in metres.
+pub(crate) fn used_at_first(request: &TinRequest, method: Method, files: &[FileExtent]) -> u64 {
+    let buffer = first_buffer(request, method, &Units::of(None));
+    Reach::new(request.bounds, buffer, files).points_of(files)
 }
 
 /// What stays the same where points are read and triangulated several times.

@@ -11,7 +11,8 @@ pub(crate) struct TileArgs {
     /// Work in tiles: `auto`, or columns and rows such as `8x8` [default: if memory is short]
     ///
     /// The result is the same, byte for byte. `auto` takes the files as tiles if they are separate
-    /// and small; else their points are divided among tiles first. With linear heights.
+    /// and small; else their points are divided among tiles first. With linear heights. All files
+    /// are read, also those far from --bounds.
     #[arg(long, value_name = "auto|COLUMNSxROWS")]
     pub(crate) tiles: Option<Division>,
 
