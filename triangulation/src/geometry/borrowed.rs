@@ -45,6 +45,11 @@ impl<G: Geometry<N>, const N: usize> Geometry<N> for &G {
     }
 
     #[inline]
+    fn sides_error(&self, simplex: [&G::Point; N], q: &G::Point) -> f64 {
+        (**self).sides_error(simplex, q)
+    }
+
+    #[inline]
     fn point_hash(&self, p: &G::Point) -> Option<u64> {
         (**self).point_hash(p)
     }

@@ -150,6 +150,11 @@ where
     }
 
     #[inline(always)]
+    fn sides_error(&self, simplex: [&P; 3], q: &P) -> f64 {
+        Plane::<K>::default().sides_error(simplex.map(&self.site).each_ref(), &(self.site)(q))
+    }
+
+    #[inline(always)]
     fn orientation(&self, simplex: [&P; 3]) -> Sign {
         Plane::<K>::default().orientation(simplex.map(&self.site).each_ref())
     }

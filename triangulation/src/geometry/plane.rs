@@ -1,7 +1,7 @@
 use std::cmp::Ordering;
 use std::marker::PhantomData;
 
-use super::{Coordinates, Crossing, Geometry, lexicographic, manhattan, rough_areas};
+use super::{Coordinates, Crossing, Geometry, areas_error, lexicographic, manhattan, rough_areas};
 use crate::kernel::{Adaptive, InCircle, Kernel, Orientation2};
 use crate::num::Sign;
 
@@ -43,6 +43,11 @@ impl<K: Kernel> Geometry<3> for Plane<K> {
     #[inline(always)]
     fn rough_sides(&self, simplex: [&[f64; 2]; 3], q: &[f64; 2]) -> Option<[f64; 3]> {
         Some(rough_areas(simplex.map(|p| *p), *q))
+    }
+
+    #[inline(always)]
+    fn sides_error(&self, simplex: [&[f64; 2]; 3], q: &[f64; 2]) -> f64 {
+        areas_error(simplex.map(|p| *p), *q)
     }
 
     #[inline(always)]

@@ -1,11 +1,11 @@
 use std::cmp::Ordering;
 use std::marker::PhantomData;
 
-use super::{Coordinates, Geometry, lexicographic, manhattan};
+use super::{Coordinates, Geometry, lexicographic, manhattan, widths};
 use crate::kernel::{
     Adaptive, InCircleOfPlane, InSphere, Kernel, Orientation2, Orientation3, Predicate,
 };
-use crate::num::Sign;
+use crate::num::{Bounded, Sign};
 
 /// The geometry of points in space, `[x, y, z]`.
 #[derive(Debug, Clone, Copy, Default)]
@@ -56,6 +56,15 @@ impl<K: Kernel> Geometry<4> for Space<K> {
         // Exchanging two points twice changes no sign.
         let facets = [[b, d, c], [d, a, c], [b, a, d], [a, b, c]];
         Some(facets.map(|[a, b, c]| Orientation3([*a, *b, *c, *q]).value(|x, y| x - y)))
+    }
+
+    #[inline(always)]
+    fn sides_error(&self, simplex: [&[f64; 3]; 4], q: &[f64; 3]) -> f64 {
+        let largest = widths(simplex.map(|p| *p), *q);
+        largest.map_or(f64::INFINITY, |widths| {
+            let volume = Orientation3([widths, widths, widths, [0.0; 3]]);
+            volume.value(Bounded::difference).error()
+        })
     }
 
     #[inline(always)]

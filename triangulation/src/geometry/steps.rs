@@ -1,7 +1,7 @@
 use std::cmp::Ordering;
 use std::marker::PhantomData;
 
-use super::{Coordinates, Geometry, Plane, manhattan, rough_areas};
+use super::{Coordinates, Geometry, Plane, areas_error, manhattan, rough_areas};
 use crate::kernel::{Kernel, Lattice};
 use crate::num::Sign;
 
@@ -49,6 +49,11 @@ impl<K: Kernel> Geometry<3> for Steps<K> {
     #[inline(always)]
     fn rough_sides(&self, simplex: [&[i32; 3]; 3], q: &[i32; 3]) -> Option<[f64; 3]> {
         Some(rough_areas(simplex.map(plan), plan(q)))
+    }
+
+    #[inline(always)]
+    fn sides_error(&self, simplex: [&[i32; 3]; 3], q: &[i32; 3]) -> f64 {
+        areas_error(simplex.map(plan), plan(q))
     }
 
     #[inline(always)]

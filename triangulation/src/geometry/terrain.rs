@@ -1,7 +1,9 @@
 use std::cmp::Ordering;
 use std::marker::PhantomData;
 
-use super::{Coordinates, Crossing, Geometry, lexicographic, manhattan, plan, rough_areas};
+use super::{
+    Coordinates, Crossing, Geometry, areas_error, lexicographic, manhattan, plan, rough_areas,
+};
 use crate::kernel::{Adaptive, InCircle, Kernel, Orientation2};
 use crate::num::Sign;
 
@@ -47,6 +49,11 @@ impl<K: Kernel> Geometry<3> for Terrain<K> {
     #[inline(always)]
     fn rough_sides(&self, simplex: [&[f64; 3]; 3], q: &[f64; 3]) -> Option<[f64; 3]> {
         Some(rough_areas(simplex.map(plan), plan(q)))
+    }
+
+    #[inline(always)]
+    fn sides_error(&self, simplex: [&[f64; 3]; 3], q: &[f64; 3]) -> f64 {
+        areas_error(simplex.map(plan), plan(q))
     }
 
     #[inline(always)]

@@ -90,6 +90,11 @@ impl<K: Kernel> Geometry<3> for Unweighted<K> {
     }
 
     #[inline(always)]
+    fn sides_error(&self, simplex: [&[f64; 3]; 3], q: &[f64; 3]) -> f64 {
+        Self::plane().sides_error(simplex.map(plan).each_ref(), &plan(q))
+    }
+
+    #[inline(always)]
     fn orientation(&self, simplex: [&[f64; 3]; 3]) -> Sign {
         Self::plane().orientation(simplex.map(plan).each_ref())
     }
@@ -140,6 +145,11 @@ impl<K: Kernel> Geometry<4> for Unweighted<K> {
     #[inline(always)]
     fn rough_sides(&self, simplex: [&[f64; 4]; 4], q: &[f64; 4]) -> Option<[f64; 4]> {
         Self::space().rough_sides(simplex.map(site).each_ref(), &site(q))
+    }
+
+    #[inline(always)]
+    fn sides_error(&self, simplex: [&[f64; 4]; 4], q: &[f64; 4]) -> f64 {
+        Self::space().sides_error(simplex.map(site).each_ref(), &site(q))
     }
 
     #[inline(always)]

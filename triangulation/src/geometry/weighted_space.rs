@@ -74,6 +74,12 @@ impl<K: Kernel> Geometry<4> for WeightedSpace<K> {
             .rough_sides(simplex.map(site).each_ref(), &site(q))
     }
 
+    #[inline(always)]
+    fn sides_error(&self, simplex: [&[f64; 4]; 4], q: &[f64; 4]) -> f64 {
+        self.space()
+            .sides_error(simplex.map(site).each_ref(), &site(q))
+    }
+
     #[inline]
     fn point_hash(&self, p: &[f64; 4]) -> Option<u64> {
         Some(hash(*p))

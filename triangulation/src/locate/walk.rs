@@ -110,6 +110,12 @@ pub fn locate<const N: usize, T: Embedded<N>>(
             steps += reached.steps;
             from = from.filter(|_| reached.steps == 0);
         }
+        if seems == Seems::Inside {
+            return Ok(Location::Cell {
+                cell,
+                facets: Facets::default(),
+            });
+        }
         if let Seems::Outside(i) = seems
             && side_of_facet(t, cell, i, q)? == Sign::Negative
         {
@@ -187,6 +193,8 @@ pub(super) struct Reached {
 /// Where a point seems to be, seen from a cell.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Seems {
+    /// Inside of the cell, for certain.
+    Inside,
     /// In the cell.
     There,
     /// Outside of the hull, beyond the facet opposite this vertex.
@@ -232,18 +240,20 @@ pub(super) fn approach<const N: usize, T: Embedded<N>>(
             }
         }
         let Some((i, beyond)) = next else {
+            let error = t
+                .geometry()
+                .sides_error(simplex(t, cell)?.each_ref().map(Borrow::borrow), q);
             // All are zero if the cell is too small to be distinguished from there.
             let is_there =
                 sides.iter().all(|&side| side >= 0.0) && sides.iter().any(|&side| side > 0.0);
-            return Ok(Reached {
-                cell,
-                steps,
-                seems: if is_there {
-                    Seems::There
-                } else {
-                    Seems::Elsewhere
-                },
-            });
+            let seems = if sides.iter().all(|&side| side > error) {
+                Seems::Inside
+            } else if is_there {
+                Seems::There
+            } else {
+                Seems::Elsewhere
+            };
+            return Ok(Reached { cell, steps, seems });
         };
         if complex.is_infinite(beyond)? {
             return Ok(Reached {
