@@ -45,6 +45,24 @@ def assert_exact(hull):
     assert all(len(planes) >= ndim for planes in planes.values())
 
 
+@pytest.mark.parametrize("spread", [[1, 1, 1], [1e6, 1, 1e-6], [1e-40, 1e-40, 1e-42], [1, 1e-12, 1]])
+@pytest.mark.parametrize("make", [random_points, on_sphere])
+def test_what_is_inside_is_left_out_at_any_scale(make, spread):
+    """Points in a box within the hull are not looked at; the triangulation has all of them."""
+    points = np.concatenate([make(300, 3), random_points(3000, 3, seed=1) * 0.9 + 0.05]) * spread
+    for points in (points, np.repeat(points, 2, axis=0), points[:, [2, 0, 1]]):
+        hull = ConvexHull(points)
+        assert sets_of(hull.simplices) == sets_of(Delaunay(points).convex_hull)
+
+
+def test_points_on_the_box_within_are_kept():
+    # The box from -1 to 1 in a cube: its sides are sides of the hull, too.
+    corners = grid(2, 3) * 2 - 1
+    sides = np.concatenate([corners, corners * [1.5, 0.25, 0.25], grid(5, 3) / 4 - 0.5, corners])
+    assert_exact(ConvexHull(sides))
+    assert_exact(ConvexHull(np.concatenate([grid(4, 3), grid(2, 3) * 3])))
+
+
 @pytest.mark.parametrize("threads", [1, 2, None])
 @pytest.mark.parametrize("ndim", [2, 3])
 @pytest.mark.parametrize("make", [random_points, on_sphere])

@@ -2,6 +2,7 @@
 //! which is decided exactly: none lies on the straight line or in the plane of others.
 
 mod flat;
+mod inner_box;
 mod listed;
 mod plane;
 mod space;

@@ -7,16 +7,18 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use breakline::triangulation::InputError;
 use breakline::triangulation::geometry::{Geometry, Space};
 use breakline::triangulation::kernel::{Adaptive, Kernel, Orientation3};
-use breakline::triangulation::num::Sign;
+use breakline::triangulation::num::{Bounded, Sign};
 use rayon::prelude::*;
 
 use super::flat::{Facet, in_flat_sides};
+use super::inner_box::{Bounds, bounds, not_inside};
 use super::listed::{Hull, equation};
 use crate::spatial::lists::CHUNK;
 
 /// A facet of the hull of the points so far.
 struct Growing {
     facet: Facet,
+    plane: Rounded,
     /// Points outside of its plane, each at one facet only, and the farthest of them.
     outside: Vec<u32>,
     farthest: Option<(u32, f64)>,
@@ -24,9 +26,47 @@ struct Growing {
     seen: (u32, bool),
 }
 
+/// The plane of a facet in floating-point numbers.
+#[derive(Clone, Copy)]
+struct Rounded {
+    /// The first corner.
+    at: [f64; 3],
+    /// Outward; its length is twice the area.
+    normal: [f64; 3],
+    /// A bound on the error of heights of points in the bounding box.
+    error: f64,
+}
+
+impl Rounded {
+    fn new([a, b, c]: [[f64; 3]; 3], bounds: &Bounds) -> Self {
+        let minus = |p: [f64; 3], q: [f64; 3]| [0, 1, 2].map(|k| Bounded::difference(p[k], q[k]));
+        let (u, v) = (minus(b, a), minus(c, a));
+        let normal = [(1, 2), (2, 0), (0, 1)].map(|(i, j)| u[i] * v[j] - u[j] * v[i]);
+        // Errors grow with the distances along the axes: at most those from a corner of the box.
+        let along = |axis: usize| {
+            let [to_low, to_high] = [0, 1].map(|end| bounds[end][axis] - a[axis]);
+            let far = if to_high > -to_low { 1 } else { 0 };
+            normal[axis] * Bounded::difference(bounds[far][axis], a[axis])
+        };
+        Rounded {
+            at: a,
+            normal: normal.map(Bounded::value),
+            error: (along(0) + along(1) + along(2)).error(),
+        }
+    }
+
+    /// Returns how far a point is outside, times the length of the normal.
+    #[inline]
+    fn height(&self, p: [f64; 3]) -> f64 {
+        dot(self.normal, minus(p, self.at))
+    }
+}
+
 /// The hull of the points so far.
 struct Quickhull<'a> {
     points: &'a [[f64; 3]],
+    /// Of all points.
+    bounds: Bounds,
     facets: Vec<Growing>,
     /// Facets that are no more.
     free: Vec<u32>,
@@ -41,10 +81,15 @@ pub(super) fn hull(
     points: &[[f64; 3]],
     cancel: &AtomicBool,
 ) -> Result<Option<Hull<3>>, InputError> {
-    let Some(solid) = first_solid(points) else {
+    let bounds = bounds(points);
+    let candidates = not_inside(points, &bounds);
+    if cancel.load(Ordering::Relaxed) {
+        return Err(InputError::Canceled);
+    }
+    let Some(solid) = first_solid(points, &candidates) else {
         return Ok(None);
     };
-    let mut growing = Quickhull::new(points, solid);
+    let mut growing = Quickhull::new(points, bounds, solid, &candidates);
     while let Some(facet) = growing.open.pop() {
         if cancel.load(Ordering::Relaxed) {
             return Err(InputError::Canceled);
@@ -71,8 +116,12 @@ fn dot(p: [f64; 3], q: [f64; 3]) -> f64 {
     p[0] * q[0] + p[1] * q[1] + p[2] * q[2]
 }
 
-/// Returns the point with the largest measure, the first of several.
-fn largest(points: &[[f64; 3]], measure: impl Fn([f64; 3]) -> f64 + Sync) -> Option<u32> {
+/// Returns the one of some points with the largest measure, the first of several.
+fn largest(
+    points: &[[f64; 3]],
+    of: &[u32],
+    measure: impl Fn([f64; 3]) -> f64 + Sync,
+) -> Option<u32> {
     let larger = |p: (u32, f64), q: (u32, f64)| {
         if q.1 > p.1 || (q.1 == p.1 && q.0 < p.0) {
             q
@@ -80,37 +129,36 @@ fn largest(points: &[[f64; 3]], measure: impl Fn([f64; 3]) -> f64 + Sync) -> Opt
             p
         }
     };
-    let all = points.par_iter().with_min_len(CHUNK).enumerate();
-    all.map(|(k, &p)| (k as u32, measure(p)))
+    let all = of.par_iter().with_min_len(CHUNK);
+    all.map(|&k| (k, measure(points[k as usize])))
         .reduce_with(larger)
         .map(|(k, _)| k)
 }
 
-/// Returns four points that are not coplanar, positively oriented and about as far from each other
-/// as points are; `None` if there are none.
-fn first_solid(points: &[[f64; 3]]) -> Option<[u32; 4]> {
+/// Returns four of some points that are not coplanar, positively oriented and about as far from
+/// each other as points are; `None` if there are none.
+fn first_solid(points: &[[f64; 3]], of: &[u32]) -> Option<[u32; 4]> {
     let at = |p: u32| points[p as usize];
-    let all = || 0..points.len() as u32;
     // By floating-point numbers if these find some, otherwise the first.
     let chosen = |p: Option<u32>, is_good: &dyn Fn(u32) -> bool| {
         p.filter(|&p| is_good(p))
-            .or_else(|| all().find(|&p| is_good(p)))
+            .or_else(|| of.iter().copied().find(|&p| is_good(p)))
     };
-    let a = largest(points, |p| -p[0])?;
-    let b = largest(points, |p| {
+    let a = largest(points, of, |p| -p[0])?;
+    let b = largest(points, of, |p| {
         let d = minus(p, at(a));
         dot(d, d)
     });
     let b = chosen(b, &|p| at(p) != at(a))?;
     let along = minus(at(b), at(a));
-    let c = largest(points, |p| {
+    let c = largest(points, of, |p| {
         let normal = cross(along, minus(p, at(a)));
         dot(normal, normal)
     });
     let spans = |p: u32| Space::new().orientation_in_flat(&[&at(a), &at(b), &at(p)]);
     let c = chosen(c, &|p| spans(p) != Sign::Zero)?;
     let normal = cross(along, minus(at(c), at(a)));
-    let d = largest(points, |p| dot(normal, minus(p, at(a))).abs());
+    let d = largest(points, of, |p| dot(normal, minus(p, at(a))).abs());
     let side = |p: u32| Adaptive::sign(&Orientation3([a, b, c, p].map(at)));
     let d = chosen(d, &|p| side(p) != Sign::Zero)?;
     Some(if side(d) == Sign::Positive {
@@ -121,7 +169,8 @@ fn first_solid(points: &[[f64; 3]]) -> Option<[u32; 4]> {
 }
 
 impl<'a> Quickhull<'a> {
-    fn new(points: &'a [[f64; 3]], [a, b, c, d]: [u32; 4]) -> Self {
+    /// Begins with a solid of four of some points; the others are inside of the hull.
+    fn new(points: &'a [[f64; 3]], bounds: Bounds, [a, b, c, d]: [u32; 4], of: &[u32]) -> Self {
         // Facet `k` is opposite corner `k` of `a b c d`: corners, and the facet opposite each.
         let facets = [
             ([b, c, d], [1, 2, 3]),
@@ -132,26 +181,37 @@ impl<'a> Quickhull<'a> {
         let facets = facets.map(|(corners, neighbors)| Facet { corners, neighbors });
         let mut hull = Quickhull {
             points,
+            bounds,
             facets: Vec::new(),
             free: Vec::new(),
             open: Vec::new(),
             starts_at: vec![0; points.len()],
         };
         let new: Vec<u32> = facets.into_iter().map(|facet| hull.push(facet)).collect();
-        let all: Vec<u32> = (0..points.len() as u32).collect();
-        hull.assign(&all, &new);
+        hull.assign(of, &new);
         hull
     }
 
-    fn is_outside(&self, facet: u32, point: u32) -> bool {
-        let [a, b, c] = self.facets[facet as usize].facet.corners;
-        let corners = [a, b, c, point].map(|p| self.points[p as usize]);
-        Adaptive::sign(&Orientation3(corners)) == Sign::Positive
+    /// Returns about how far a point is outside of a facet, compared with other points; `None` if
+    /// it is not outside, which is exact.
+    fn height(&self, facet: u32, point: u32) -> Option<f64> {
+        let Growing { facet, plane, .. } = &self.facets[facet as usize];
+        let height = plane.height(self.points[point as usize]);
+        let is_outside = if height.abs() > plane.error {
+            height > 0.0
+        } else {
+            let [a, b, c] = facet.corners;
+            let corners = [a, b, c, point].map(|p| self.points[p as usize]);
+            Adaptive::sign(&Orientation3(corners)) == Sign::Positive
+        };
+        is_outside.then_some(height)
     }
 
     fn push(&mut self, facet: Facet) -> u32 {
+        let corners = facet.corners.map(|p| self.points[p as usize]);
         let new = Growing {
             facet,
+            plane: Rounded::new(corners, &self.bounds),
             outside: Vec::new(),
             farthest: None,
             seen: (u32::MAX, false),
@@ -174,21 +234,19 @@ impl<'a> Quickhull<'a> {
         let this = &*self;
         let facet_of = |&point: &u32| {
             new.iter()
-                .copied()
-                .find(|&facet| this.is_outside(facet, point))
+                .find_map(|&facet| Some((facet, this.height(facet, point)?)))
         };
-        let found: Vec<Option<u32>> = points
-            .par_iter()
-            .with_min_len(CHUNK)
-            .map(facet_of)
-            .collect();
-        for (&point, facet) in points.iter().zip(found) {
-            let Some(facet) = facet else { continue };
-            let at = self.points[point as usize];
+        let found: Vec<Option<(u32, f64)>> = if points.len() < CHUNK {
+            points.iter().map(facet_of).collect()
+        } else {
+            let all = points.par_iter().with_min_len(CHUNK);
+            all.map(facet_of).collect()
+        };
+        for (&point, found) in points.iter().zip(found) {
+            let Some((facet, height)) = found else {
+                continue;
+            };
             let of = &mut self.facets[facet as usize];
-            let [a, b, c] = of.facet.corners.map(|p| self.points[p as usize]);
-            // Compared within one facet only, so that the length of the normal does not matter.
-            let height = dot(cross(minus(b, a), minus(c, a)), minus(at, a));
             of.outside.push(point);
             if of.farthest.is_none_or(|(_, most)| height > most) {
                 of.farthest = Some((point, height));
@@ -212,7 +270,7 @@ impl<'a> Quickhull<'a> {
             let Facet { corners, neighbors } = self.facets[here as usize].facet;
             for (k, beyond) in neighbors.into_iter().enumerate() {
                 if self.facets[beyond as usize].seen.0 != point {
-                    let is_visible = self.is_outside(beyond, point);
+                    let is_visible = self.height(beyond, point).is_some();
                     self.facets[beyond as usize].seen = (point, is_visible);
                     visible.extend(is_visible.then_some(beyond));
                 }
