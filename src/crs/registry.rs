@@ -1,8 +1,8 @@
 //! The EPSG registry: definitions from `proj-core`, further names from `crs-definitions`.
 
 use std::cmp::Reverse;
-use std::collections::{HashMap, HashSet};
-use std::sync::OnceLock;
+use std::collections::{BTreeMap, HashMap, HashSet};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use proj_core::{AxisOrder, CrsDef, HorizontalCrsDef, VerticalCrsDef};
 
@@ -300,9 +300,9 @@ fn heights(unit: &Unit) -> impl Iterator<Item = &'static VerticalCrsDef> {
 pub(super) fn identify(wanted: &Definition, name: &str) -> Option<u32> {
     let datum = wanted.datum.code?;
     let codes: Vec<u32> = match wanted.kind {
-        CrsKind::Projected => projected()
+        CrsKind::Projected => projected(datum)
             .iter()
-            .filter(|(_, found)| found.datum.code == Some(datum) && found.is_same(wanted))
+            .filter(|(_, found)| found.is_same(wanted))
             .map(|(code, _)| *code)
             .collect(),
         CrsKind::Geographic => geographic()
@@ -356,17 +356,26 @@ fn words(name: &str) -> HashSet<String> {
     words.map(str::to_ascii_lowercase).collect()
 }
 
-/// All projected systems, by code.
-fn projected() -> &'static [(u32, Definition)] {
-    static ALL: OnceLock<Vec<(u32, Definition)>> = OnceLock::new();
-    ALL.get_or_init(|| {
+/// Projected systems, by code.
+type ProjectedSystems = Arc<[(u32, Definition)]>;
+
+/// The projected systems with a datum.
+///
+/// `PERF:` the definitions of all datums would take longer than a million points take to be sorted.
+fn projected(datum: u32) -> ProjectedSystems {
+    static KNOWN: Mutex<BTreeMap<u32, ProjectedSystems>> = Mutex::new(BTreeMap::new());
+    let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
+    let definition = |code| match proj_core::lookup_epsg(code)? {
+        found @ CrsDef::Projected(_) => Some((code, plain(&found).definition?)),
+        _ => None,
+    };
+    let find = || {
         (1024..=LAST_CODE)
-            .filter_map(|code| match proj_core::lookup_epsg(code)? {
-                found @ CrsDef::Projected(_) => Some((code, plain(&found).definition?)),
-                _ => None,
-            })
+            .filter(|&code| proj_core::lookup_datum_code_for_crs(code) == Some(datum))
+            .filter_map(definition)
             .collect()
-    })
+    };
+    Arc::clone(known.entry(datum).or_insert_with(find))
 }
 
 struct Geographic {
@@ -380,6 +389,7 @@ fn geographic() -> &'static [Geographic] {
     static ALL: OnceLock<Vec<Geographic>> = OnceLock::new();
     ALL.get_or_init(|| {
         (1024..=LAST_CODE)
+            .filter(|&code| proj_core::lookup_datum_code_for_crs(code).is_some())
             .filter_map(|code| match proj_core::lookup_epsg(code)? {
                 CrsDef::Geographic(found) => Some(Geographic {
                     code,
@@ -414,14 +424,29 @@ mod tests {
 
     #[test]
     fn every_projected_system_is_identified_from_its_definition() {
-        for (code, definition) in projected() {
-            let name = find(*code).unwrap().name;
-            let found = identify(definition, &name).unwrap_or_else(|| panic!("EPSG:{code} {name}"));
+        let all = (1024..=LAST_CODE)
+            .filter(|&code| proj_core::lookup_datum_code_for_crs(code).is_some())
+            .filter_map(|code| Some((code, find(code)?)));
+        let is_projected = |system: &System| system.kind == CrsKind::Projected;
+        let mut count = 0;
+        for (code, system) in all.filter(|(_, system)| is_projected(system)) {
+            let Some(definition) = system.definition.filter(|_| system.vertical.is_none()) else {
+                continue;
+            };
+            let name = system.name;
+            let found =
+                identify(&definition, &name).unwrap_or_else(|| panic!("EPSG:{code} {name}"));
             assert!(
-                find(found).unwrap().definition.unwrap().is_same(definition),
+                find(found)
+                    .unwrap()
+                    .definition
+                    .unwrap()
+                    .is_same(&definition),
                 "{code} is taken for {found}"
             );
+            count += 1;
         }
+        assert!(count > 4_000, "{count}");
     }
 
     #[test]

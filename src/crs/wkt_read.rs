@@ -362,25 +362,22 @@ fn datum(base: &Node, missing: &dyn Fn(&str) -> Error) -> Result<Datum> {
                 .map_or(1.0, f64::to_degrees);
             meridian.number(0).unwrap_or(0.0) * degrees
         });
-    let by_base = base
-        .epsg()
-        .and_then(registry::find)
-        .and_then(|found| found.definition?.datum.code);
+    let by_base = || registry::find(base.epsg()?)?.definition?.datum.code;
     // A datum with a known name but a different ellipsoid or meridian is not that datum; Esri's
     // names of datums do not depend on the prime meridian.
     let fits = |known: &Datum| {
         known.ellipsoid.is_same(&ellipsoid) && (known.meridian - meridian).abs() < 1e-6
     };
-    let codes = [
-        node.epsg(),
-        by_base,
-        registry::datum_code(node.name(), ""),
-        registry::datum_code("", base.name()),
+    // PERF: one after the other; the last one needs the names of all systems.
+    let codes: [&dyn Fn() -> Option<u32>; 4] = [
+        &|| node.epsg(),
+        &by_base,
+        &|| registry::datum_code(node.name(), ""),
+        &|| registry::datum_code("", base.name()),
     ];
     if let Some(known) = codes
         .into_iter()
-        .flatten()
-        .filter_map(registry::datum)
+        .filter_map(|code| registry::datum(code()?))
         .find(fits)
     {
         return Ok(known);
