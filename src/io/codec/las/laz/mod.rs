@@ -5,15 +5,16 @@
 //! in memory by all threads, and only those layers of layered chunks (formats 6 to 10) are decoded
 //! that the columns need.
 
+mod ahead;
 mod chunk;
 mod compression;
 mod stream;
 mod table;
 
 use std::collections::VecDeque;
+use std::sync::Arc;
 
-use rayon::prelude::*;
-
+use self::ahead::Ahead;
 use self::compression::{ChunkSize, Compression, Order};
 use self::stream::Stream;
 use self::table::Chunk;
@@ -125,9 +126,9 @@ impl Laz {
         Ok(Laz::Chunks(Chunks {
             layout: RecordLayout::new(header, options.detail),
             input,
-            compression,
+            compression: Arc::new(compression),
             waiting: chunks.into(),
-            decoded: VecDeque::new(),
+            decoding: VecDeque::new(),
             spare: Vec::new(),
         }))
     }
@@ -169,67 +170,60 @@ fn check_count(header: &Header) -> Result<()> {
     .cure("the header is damaged, or the file was made to overload programs: get it again from its producer"))
 }
 
-/// Decodes several chunks ahead, and returns them one by one.
+/// Returns chunks one by one, while other threads decode the next ones.
 #[derive(Debug)]
 pub(super) struct Chunks {
     input: Input,
-    compression: Compression,
+    compression: Arc<Compression>,
     layout: RecordLayout,
     waiting: VecDeque<Chunk>,
-    decoded: VecDeque<Result<PointBatch>>,
+    /// The next chunks in order, each with the number of its points.
+    decoding: VecDeque<(u64, Ahead<Result<PointBatch>>)>,
     /// Batches whose memory is reused.
     spare: Vec<PointBatch>,
 }
 
 impl Chunks {
     fn read(&mut self, batch: &mut PointBatch) -> Result<()> {
-        if self.decoded.is_empty() {
-            self.decode_ahead()?;
-        }
-        if let Some(decoded) = self.decoded.pop_front() {
-            self.spare.push(std::mem::replace(batch, decoded?));
+        self.decode_ahead();
+        if let Some((_, decoded)) = self.decoding.pop_front() {
+            self.spare.push(std::mem::replace(batch, decoded.take()?));
         }
         Ok(())
     }
 
-    fn decode_ahead(&mut self) -> Result<()> {
-        let group = self.take_group();
-        let mut work = Vec::with_capacity(group.len());
-        for chunk in group {
-            let bytes = self.input.bytes(chunk.start, chunk.bytes as usize)?;
-            work.push((chunk, bytes, self.spare.pop().unwrap_or_default()));
-        }
-        let (compression, layout) = (&self.compression, self.layout);
-        let decoded: Vec<_> = work
-            .into_par_iter()
-            .map(|(chunk, bytes, mut batch)| {
-                batch.clear();
-                match chunk::decode(&bytes, chunk.points, compression, layout, &mut batch) {
-                    Ok(()) => Ok(batch),
-                    Err(reason) => Err(damaged(&chunk, &reason)),
-                }
-            })
-            .collect();
-        self.decoded.extend(decoded);
-        Ok(())
-    }
-
-    /// Takes the chunks to decode next.
-    fn take_group(&mut self) -> Vec<Chunk> {
+    /// Starts to decode as many chunks as are decoded ahead.
+    fn decode_ahead(&mut self) {
         let threads = rayon::current_num_threads();
-        let mut group = Vec::new();
-        let mut points = 0;
+        let mut points: u64 = self.decoding.iter().map(|(points, _)| points).sum();
         while let Some(&chunk) = self.waiting.front() {
             points += chunk.points;
-            let is_full = group.len() == CHUNKS_PER_THREAD * threads
+            let is_full = self.decoding.len() == CHUNKS_PER_THREAD * threads
                 || points > POINTS_PER_THREAD * threads as u64;
-            if is_full && !group.is_empty() {
+            if is_full && !self.decoding.is_empty() {
                 break;
             }
-            group.push(chunk);
             self.waiting.pop_front();
+            let decoding = self.decode(chunk);
+            self.decoding.push_back((chunk.points, decoding));
         }
-        group
+    }
+
+    /// Starts to decode a chunk.
+    fn decode(&mut self, chunk: Chunk) -> Ahead<Result<PointBatch>> {
+        let bytes = match self.input.bytes(chunk.start, chunk.bytes as usize) {
+            Ok(bytes) => bytes,
+            Err(error) => return Ahead::known(Err(error.into())),
+        };
+        let (compression, layout) = (Arc::clone(&self.compression), self.layout);
+        let mut batch = self.spare.pop().unwrap_or_default();
+        Ahead::start(move || {
+            batch.clear();
+            match chunk::decode(&bytes, chunk.points, &compression, layout, &mut batch) {
+                Ok(()) => Ok(batch),
+                Err(reason) => Err(damaged(&chunk, &reason)),
+            }
+        })
     }
 }
 
