@@ -1,3 +1,8 @@
+use rayon::prelude::*;
+
+/// The number of points, vertices or faces that a thread takes at a time in a pass over all.
+pub(crate) const AT_ONCE: usize = 1 << 14;
+
 /// An axis-aligned box in space, or in plan if only `x` and `y` are used.
 ///
 /// The default is empty (`min > max`), so that [`add`](Self::add) and [`merge`](Self::merge) can
@@ -20,6 +25,26 @@ impl Default for Bounds {
 }
 
 impl Bounds {
+    /// Returns the box around points.
+    ///
+    /// # Complexity
+    /// Linear, on all threads.
+    pub fn around(points: &[[f64; 3]]) -> Self {
+        let of_some = |points: &[[f64; 3]]| {
+            let mut bounds = Bounds::default();
+            points.iter().for_each(|&p| bounds.add(p));
+            bounds
+        };
+        let join = |mut bounds: Bounds, other: Bounds| {
+            bounds.merge(&other);
+            bounds
+        };
+        points
+            .par_chunks(AT_ONCE)
+            .map(of_some)
+            .reduce(Bounds::default, join)
+    }
+
     /// Grows the box to contain `p`. A NaN coordinate changes nothing.
     pub fn add(&mut self, p: [f64; 3]) {
         for ((min, max), value) in self.min.iter_mut().zip(&mut self.max).zip(p) {

@@ -1,3 +1,4 @@
+use std::convert::Infallible;
 use std::io::Write;
 use std::ops::{AddAssign, Range};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -237,6 +238,12 @@ pub trait Surface: Sync {
         faces.extend(numbers.filter_map(|face| Some((face, self.face(face)?))));
     }
 
+    /// Appends the coordinates of the corners of the faces in a range of numbers, in order, each
+    /// with the number of its face; unused numbers are skipped.
+    fn triangles_in(&self, numbers: Range<u32>, triangles: &mut Vec<(u32, [[f64; 3]; 3])>) {
+        triangles.extend(numbers.filter_map(|face| Some((face, self.triangle(face)?))));
+    }
+
     /// Appends the faces in a range of numbers, in order; unused numbers are skipped.
     fn faces_in(&self, numbers: Range<u32>, faces: &mut Vec<Face>) {
         faces.extend(numbers.filter_map(|number| {
@@ -247,6 +254,14 @@ pub trait Surface: Sync {
                 edges: [0, 1, 2].map(|i| self.edge_kind(number, i)),
             })
         }));
+    }
+
+    /// Counts the faces and the edges on lines, and finds the vertices that no face has.
+    ///
+    /// # Complexity
+    /// Linear, on all threads.
+    fn census(&self) -> Census {
+        Census::by_faces(self)
     }
 
     /// One more than the largest number of a [base face](Self::base_faces_in).
@@ -355,31 +370,61 @@ impl AddAssign for LineEdges {
     }
 }
 
-/// Which vertices faces use, marked by any number of threads.
-pub(crate) struct UsedVertices(Vec<AtomicBool>);
+/// The parts of a surface: what a file of it lists.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Census {
+    /// For each vertex number, true if a face has the vertex.
+    pub used: Vec<bool>,
+    /// The number of faces.
+    pub faces: usize,
+    /// The numbers of edges on lines.
+    pub lines: LineEdges,
+}
 
-impl UsedVertices {
-    /// Creates marks for so many vertices, none of which is used yet; a byte each.
-    pub(crate) fn new(count: usize) -> Self {
-        UsedVertices((0..count).map(|_| AtomicBool::new(false)).collect())
-    }
-
-    /// Marks the corners of a face.
-    ///
-    /// `PERF:` what is marked already is not written: threads share what they only read.
-    #[inline]
-    pub(crate) fn add(&self, corners: [u32; 3]) {
-        for is_used in corners.map(|v| &self.0[v as usize]) {
-            if !is_used.load(Ordering::Relaxed) {
-                is_used.store(true, Ordering::Relaxed);
+impl Census {
+    /// Looks at each face.
+    fn by_faces<S: Surface + ?Sized>(surface: &S) -> Self {
+        let used: Vec<AtomicBool> = (0..surface.vertex_count())
+            .map(|_| AtomicBool::new(false))
+            .collect();
+        // PERF: what is marked already is not written: threads share what they only read.
+        let mark = |corners: [u32; 3]| {
+            for is_used in corners.map(|v| &used[v as usize]) {
+                if !is_used.load(Ordering::Relaxed) {
+                    is_used.store(true, Ordering::Relaxed);
+                }
             }
+        };
+        let (mut count, mut lines) = (0, LineEdges::default());
+        let add_lined = |faces: &[Face]| {
+            let mut lines = LineEdges::default();
+            for face in faces {
+                mark(face.corners);
+                lines.add(surface, face.number, face.edges);
+            }
+            (faces.len(), lines)
+        };
+        let add = |faces: &[(u32, [u32; 3])]| {
+            faces.iter().for_each(|(_, corners)| mark(*corners));
+            (faces.len(), LineEdges::default())
+        };
+        let sum = |(faces, of_faces)| {
+            count += faces;
+            lines += of_faces;
+            Ok::<(), Infallible>(())
+        };
+        let Ok(()) = if surface.has_lines() {
+            let ask = |numbers, faces: &mut _| surface.faces_in(numbers, faces);
+            map_batches(surface.face_count(), ask, add_lined, sum)
+        } else {
+            let ask = |numbers, faces: &mut _| surface.corners_in(numbers, faces);
+            map_batches(surface.face_count(), ask, add, sum)
+        };
+        Census {
+            used: used.into_iter().map(AtomicBool::into_inner).collect(),
+            faces: count,
+            lines,
         }
-    }
-
-    /// Returns the number of each vertex that is used.
-    pub(crate) fn into_numbers(self) -> impl Iterator<Item = usize> {
-        let used = |(vertex, is_used): (usize, AtomicBool)| is_used.into_inner().then_some(vertex);
-        self.0.into_iter().enumerate().filter_map(used)
     }
 }
 
@@ -389,20 +434,20 @@ const BATCH: u32 = 1 << 11;
 /// The number of batches for each thread that are worked on before results are taken.
 const BATCHES_AT_ONCE: u32 = 32;
 
-/// Works on faces with numbers below `count` on all threads, a batch at a time. `ask` appends the
-/// faces in a range of numbers, as [`Surface::faces_in`] does. `take` receives what `make` returns
-/// for each batch, in order.
+/// Works on faces or vertices with numbers below `count` on all threads, a batch at a time. `ask`
+/// appends those in a range of numbers, as [`Surface::faces_in`] does. `take` receives what `make`
+/// returns for each batch, in order, while the next ones are made.
 ///
 /// # Errors
 /// The first of `take`.
 ///
 /// # Complexity
-/// Linear. Memory: the faces of one batch and the results of 32, for each thread.
-pub(crate) fn map_batches<T, R: Send, E>(
+/// Linear. Memory: the faces of one batch and the results of 64, for each thread.
+pub(crate) fn map_batches<T, R: Send, E: Send>(
     count: usize,
     ask: impl Fn(Range<u32>, &mut Vec<T>) + Sync,
     make: impl Fn(&[T]) -> R + Sync,
-    mut take: impl FnMut(R) -> std::result::Result<(), E>,
+    mut take: impl FnMut(R) -> std::result::Result<(), E> + Send,
 ) -> std::result::Result<(), E> {
     let count = count as u32;
     let make = |batch: u32| {
@@ -417,14 +462,18 @@ pub(crate) fn map_batches<T, R: Send, E>(
         return (0..batches).map(make).try_for_each(take);
     }
     let at_once = BATCHES_AT_ONCE * rayon::current_num_threads() as u32;
-    for first in (0..batches).step_by(at_once as usize) {
-        let results: Vec<R> = (first..batches.min(first.saturating_add(at_once)))
-            .into_par_iter()
-            .map(make)
-            .collect();
-        results.into_iter().try_for_each(&mut take)?;
+    let make_some = |first: u32| -> Vec<R> {
+        let some = first..batches.min(first.saturating_add(at_once));
+        some.into_par_iter().map(make).collect()
+    };
+    let mut ready = make_some(0);
+    for next in (at_once..batches).step_by(at_once as usize) {
+        let taken = || ready.into_iter().try_for_each(&mut take);
+        let (taken, following) = rayon::join(taken, || make_some(next));
+        taken?;
+        ready = following;
     }
-    Ok(())
+    ready.into_iter().try_for_each(take)
 }
 
 /// All faces of a surface with their corners, in order of their numbers.

@@ -1,7 +1,7 @@
 use std::io::Write;
 use std::ops::Range;
 
-use super::{EdgeKind, Surface};
+use super::{Census, EdgeKind, LineEdges, Surface};
 use crate::crs::Crs;
 use crate::error::{Error, Result, Setting, wording};
 
@@ -57,6 +57,13 @@ impl Surface for WithoutLines<'_> {
                 " out, or write .ply"
             ]),
         )
+    }
+
+    fn census(&self) -> Census {
+        Census {
+            lines: LineEdges::default(),
+            ..self.0.census()
+        }
     }
 
     fn corners_in(&self, range: Range<u32>, out: &mut Vec<(u32, [u32; 3])>) {

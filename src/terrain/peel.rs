@@ -1,6 +1,9 @@
 //! What the rule of the rim leaves of a triangulation.
 
+use rayon::prelude::*;
+
 use super::rim_rule::RimRule;
+use crate::data::AT_ONCE;
 use crate::triangulation::ConstrainedDelaunay;
 use crate::triangulation::geometry::Terrain;
 use crate::triangulation::tds::{CellId, VertexId, ccw, cw};
@@ -45,6 +48,8 @@ pub(super) fn finite_faces(triangulation: &ConstrainedDelaunay<Terrain>) -> Vec<
     let tds = triangulation.tds();
     let is_face = |cell| tds.is_used(cell) && !tds.is_infinite(cell);
     (0..tds.cell_slots())
+        .into_par_iter()
+        .with_min_len(AT_ONCE)
         .map(|index| is_face(CellId::new(index)))
         .collect()
 }

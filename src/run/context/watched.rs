@@ -5,7 +5,7 @@ use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::crs::Crs;
-use crate::data::{BlockSource, EdgeKind, Face, Frame, Surface, Window};
+use crate::data::{BlockSource, Census, EdgeKind, Face, Frame, Surface, Window};
 use crate::error::{Error, Result};
 use crate::run::context::{Context, Size, Stage, Work};
 
@@ -156,6 +156,16 @@ impl<S: Surface + ?Sized> Surface for Watched<'_, S> {
             out,
             work: &self.work,
         })
+    }
+
+    fn census(&self) -> Census {
+        if self.goes_on(self.source.face_count()) {
+            return self.source.census();
+        }
+        Census {
+            used: vec![false; self.source.vertex_count()],
+            ..Census::default()
+        }
     }
 
     fn corners_in(&self, numbers: Range<u32>, faces: &mut Vec<(u32, [u32; 3])>) {

@@ -448,13 +448,11 @@ impl Building<'_> {
 
     /// Adds a notice if the lines are far from all points, or extend the surface beyond them.
     fn compare_lines(&self, points: &[[f64; 3]], rim: &Rim) {
-        if self.is_clipped() {
+        if self.is_clipped() || self.line_extents.all().is_empty() {
             return;
         }
-        let mut extent = Bounds::default();
-        points.iter().for_each(|&point| extent.add(point));
         let notice = extents::compare_lines(
-            &extent,
+            &Bounds::around(points),
             &self.line_extents,
             rim.buffer,
             rim.limit.usual_reach(rim.spacing, self.units),

@@ -55,6 +55,15 @@ pub(crate) struct LineExtents {
     pub(crate) waters: Bounds,
 }
 
+impl LineExtents {
+    /// Returns the box around all lines.
+    pub(crate) fn all(&self) -> Bounds {
+        let mut all = self.with_heights;
+        all.merge(&self.waters);
+        all
+    }
+}
+
 /// Returns a notice if lines are farther than `buffer` from the points, or extend the surface more
 /// than `usual` beyond them, as the lines of a whole district do with the points of one tile.
 pub(crate) fn compare_lines(
@@ -64,8 +73,7 @@ pub(crate) fn compare_lines(
     usual: f64,
     units: &Units,
 ) -> Option<Notice> {
-    let mut all = lines.with_heights;
-    all.merge(&lines.waters);
+    let all = lines.all();
     if points.is_empty() || all.is_empty() {
         return None;
     }

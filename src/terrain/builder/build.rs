@@ -2,9 +2,11 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use rayon::prelude::*;
+
 use super::sites::Sites;
 use super::{Overlaps, TinBuilder};
-use crate::data::{Bounds, EdgeKind};
+use crate::data::{AT_ONCE, Bounds, EdgeKind};
 use crate::error::{Error, Result, Setting, wording};
 use crate::terrain::admitted::refused;
 use crate::terrain::crossings::{Pass, choose_heights, refuse};
@@ -158,7 +160,8 @@ impl Build<'_> {
         } = &self.builder;
         let geometry: Terrain = Terrain::default();
         let bad = |p: &[f64; 3]| !geometry.admits(p) || !p[2].is_finite();
-        if let Some(at) = points.iter().position(bad) {
+        let points_at_once = points.par_iter().with_min_len(AT_ONCE);
+        if let Some(at) = points_at_once.position_first(bad) {
             return Err(refused(points[at]).at(format!("point {at}")));
         }
         if let Some(at) = line_points.iter().position(bad) {
@@ -387,14 +390,8 @@ impl Build<'_> {
         report.vertices_beyond_max_edge = all - left;
         report.vertices_clipped = left - old_vertices;
         report.vertices_cut = vertices - old_vertices;
-        let (has_lines, is_clipped) = (report.breaklines > 0, !clip.is_everything());
-        if is_clipped || has_lines && !(is_whole && tin.kinds.are_breaklines()) {
+        if report.breaklines > 0 || !clip.is_everything() {
             report.edges = tin.count_lines();
-        } else if has_lines {
-            report.edges.add_edges(
-                EdgeKind::Breakline,
-                tin.triangulation.constrained_edges().count(),
-            );
         }
         (report.vertices, report.triangles, report.extent) = (vertices, faces, extent);
         tin.report = report;

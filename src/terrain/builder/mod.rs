@@ -6,6 +6,7 @@ mod sites;
 
 use std::ops::Range;
 
+use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
 use super::clip::Clip;
@@ -15,7 +16,7 @@ use super::lines::narrowest;
 use super::lines::overlap::{self, Marks};
 use super::{CrossingRule, DuplicateRule, Flat, ReadWindow, RimRule, River, Wall, WaterOverlap};
 use crate::crs::Crs;
-use crate::data::{Bounds, EdgeKind};
+use crate::data::{AT_ONCE, Bounds, EdgeKind};
 use crate::triangulation::OnCrossing;
 use crate::triangulation::geometry::{Geometry, Terrain};
 use crate::triangulation::num::unsigned_zero;
@@ -172,7 +173,8 @@ impl TinBuilder {
     /// Adds points from a vector; the first vector is taken over without a copy.
     pub fn add_owned_points(&mut self, mut points: Vec<[f64; 3]>) {
         points
-            .iter_mut()
+            .par_iter_mut()
+            .with_min_len(AT_ONCE)
             .for_each(|point| *point = positive_zero(*point));
         if self.points.is_empty() {
             self.points = points;

@@ -4,9 +4,9 @@ pub(crate) mod crs_text;
 pub(crate) mod polygon;
 pub(crate) mod text;
 
-use std::convert::Infallible;
+use std::ops::Range;
 
-use crate::data::{self, EdgeKind, Face, LineEdges, Surface, UsedVertices};
+use crate::data::{self, Census, EdgeKind, Surface};
 
 const UNUSED: u32 = u32::MAX;
 
@@ -28,46 +28,26 @@ impl<'a> Listing<'a> {
     /// # Complexity
     /// Linear, on all threads. Needs 5 bytes per vertex, of which 4 are kept.
     pub(crate) fn new(surface: &'a dyn Surface) -> Self {
-        let used = UsedVertices::new(surface.vertex_count());
-        let mut face_count = 0;
-        let mut lines = LineEdges::default();
-        let add_lined = |faces: &[Face]| {
-            let mut lines = LineEdges::default();
-            for face in faces {
-                used.add(face.corners);
-                lines.add(surface, face.number, face.edges);
-            }
-            (faces.len(), lines)
+        let Census { used, faces, lines } = surface.census();
+        let mut next = 0;
+        let number_of = |is_used: bool| {
+            let number = if is_used { next } else { UNUSED };
+            next += u32::from(is_used);
+            number
         };
-        let add = |faces: &[(u32, [u32; 3])]| {
-            faces.iter().for_each(|(_, corners)| used.add(*corners));
-            (faces.len(), LineEdges::default())
-        };
-        let sum = |(faces, of_faces)| {
-            face_count += faces;
-            lines += of_faces;
-            Ok::<(), Infallible>(())
-        };
-        let Ok(()) = if surface.has_lines() {
-            let ask = |numbers, faces: &mut _| surface.faces_in(numbers, faces);
-            data::map_batches(surface.face_count(), ask, add_lined, sum)
-        } else {
-            let ask = |numbers, faces: &mut _| surface.corners_in(numbers, faces);
-            data::map_batches(surface.face_count(), ask, add, sum)
-        };
-        let mut number = vec![UNUSED; surface.vertex_count()];
-        let mut vertex_count = 0;
-        for vertex in used.into_numbers() {
-            number[vertex] = vertex_count;
-            vertex_count += 1;
-        }
         Listing {
             surface,
-            number,
-            vertex_count: vertex_count as usize,
-            face_count,
+            number: used.into_iter().map(number_of).collect(),
+            vertex_count: next as usize,
+            face_count: faces,
             constrained_edges: lines.total(),
         }
+    }
+
+    /// Appends the coordinates of the vertices of the file that have these numbers in the surface.
+    pub(crate) fn vertices_in(&self, numbers: Range<u32>, vertices: &mut Vec<[f64; 3]>) {
+        let used = numbers.filter(|&v| self.number[v as usize] != UNUSED);
+        vertices.extend(used.map(|v| self.surface.position(v)));
     }
 
     pub(crate) fn vertices(&self) -> impl Iterator<Item = [f64; 3]> + '_ {

@@ -59,12 +59,11 @@ pub(crate) fn write(target: Destination, mesh: &Listing, crs: Option<&Crs>) -> R
             .try_for_each(|name| writeln!(output, "property uchar {name}"))?;
     }
     output.write_all(b"end_header\n")?;
-    mesh.vertices().try_for_each(|p| {
-        let mut row = [0; 24];
-        for (bytes, value) in row.chunks_exact_mut(8).zip(p) {
-            bytes.copy_from_slice(&value.to_le_bytes());
-        }
-        output.write_all(&row)
+    let row = |p: &[f64; 3]| p.map(f64::to_le_bytes);
+    let rows = |points: &[[f64; 3]]| points.iter().map(row).collect::<Vec<_>>();
+    let ask = |numbers, points: &mut _| mesh.vertices_in(numbers, points);
+    data::map_batches(mesh.surface.vertex_count(), ask, rows, |rows| {
+        output.write_all(rows.as_flattened().as_flattened())
     })?;
     let list = |corners: [u32; 3]| {
         let mut list = [3; 13];
