@@ -5,6 +5,29 @@ use std::ops::Range;
 use super::placement::Placement;
 use crate::data::lowest_and_highest;
 
+/// Returns the rows and the columns of the cells whose centers the box around a face may contain;
+/// `None` if there are none.
+///
+/// Corners are those in the plane of the scan.
+#[inline]
+pub(super) fn cells_of(
+    corners: &[[f64; 3]; 3],
+    placement: &Placement,
+) -> Option<[Range<usize>; 2]> {
+    let [low, high] = lowest_and_highest(corners.map(|corner| corner[1]));
+    let rows = placement.rows.cells(low, high);
+    if rows.is_empty() {
+        return None;
+    }
+    let [left, right] = lowest_and_highest(corners.map(|corner| corner[0]));
+    let columns = placement.columns.cells(left, right);
+    if columns.is_empty() || corners.as_flattened().iter().any(|c| !c.is_finite()) {
+        // Vertices near the end of the range of doubles overflow in a rotated raster.
+        return None;
+    }
+    Some([rows, columns])
+}
+
 /// Calls `each` with row and column of each bin in which a face may contain the center of a cell:
 /// in each row of bins, those between the leftmost and the rightmost point of the face.
 ///
@@ -16,17 +39,9 @@ pub(super) fn bins_of(
     side: usize,
     mut each: impl FnMut(usize, usize),
 ) {
-    let [low, high] = lowest_and_highest(corners.map(|corner| corner[1]));
-    let rows = placement.rows.cells(low, high);
-    if rows.is_empty() {
+    let Some([rows, columns]) = cells_of(corners, placement) else {
         return;
-    }
-    let [left, right] = lowest_and_highest(corners.map(|corner| corner[0]));
-    let columns = placement.columns.cells(left, right);
-    if columns.is_empty() || corners.as_flattened().iter().any(|c| !c.is_finite()) {
-        // Vertices near the end of the range of doubles overflow in a rotated raster.
-        return;
-    }
+    };
     let bins = |cells: &Range<usize>| cells.start / side..=(cells.end - 1) / side;
     let (bin_rows, bin_columns) = (bins(&rows), bins(&columns));
     if bin_rows.start() == bin_rows.end() || bin_columns.start() == bin_columns.end() {

@@ -120,12 +120,7 @@ impl Canvas {
                 ..
             } = &mut blocks[*recent];
             let (of_rows, of_columns) = (0..rows.values().len(), 0..columns.values().len());
-            Scan {
-                columns,
-                rows,
-                cells,
-            }
-            .draw(corners, &of_rows, &of_columns, &Heights);
+            Scan { columns, rows }.draw(corners, &of_rows, &of_columns, &mut Heights(cells));
         });
     }
 

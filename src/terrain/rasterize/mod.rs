@@ -1,15 +1,17 @@
 mod bins;
 mod canvas;
+mod drawing;
 mod face_index;
 mod of_parts;
 mod placement;
 mod scan;
 
 pub use canvas::{Canvas, CanvasBlock};
+use drawing::Drawing;
 use face_index::FaceIndex;
 pub use of_parts::DemOfParts;
 use placement::{Centers, Placement};
-use scan::{Heights, Ink, Number, Scan};
+use scan::{Heights, Ink, NO_FACE, Numbers, Scan};
 
 use super::interpolate::{Interpolant, Method, QueryBuffers};
 use crate::crs::Crs;
@@ -30,37 +32,42 @@ pub struct Dem<'a, S: ?Sized> {
     surface: &'a S,
     frame: Frame,
     placement: Placement,
-    index: FaceIndex,
+    faces: Faces,
     /// Unless heights are linear.
     interpolant: Option<Interpolant<'a, S>>,
 }
 
-/// A cell whose center is in no face.
-const NO_FACE: u32 = u32::MAX;
+/// How the face of a cell is found.
+#[derive(Debug)]
+enum Faces {
+    /// All cells were drawn: there are few for each face.
+    Drawn(Drawing),
+    /// Windows are drawn on demand.
+    Indexed(FaceIndex),
+}
 
 impl<'a, S: Surface + ?Sized> Dem<'a, S> {
-    /// Prepares the raster by a spatial index of the faces. No cell is computed yet.
+    /// Prepares the raster. If it has at most two cells for each face, all of them are drawn;
+    /// otherwise by a spatial index of the faces, and no cell is computed yet.
     ///
     /// # Errors
     /// Those of [`Frame::checked`].
     ///
     /// # Complexity
-    /// Linear in the faces; the index takes up to about 6 bytes per face.
+    /// Linear in the faces, on all threads; cells take 8 bytes each, the index up to about 6 per
+    /// face.
     pub fn new(surface: &'a S, frame: Frame) -> Result<Self> {
         let frame = frame.checked()?;
         let placement = Placement::new(&frame);
-        let all = Window {
-            column: 0,
-            row: 0,
-            width: frame.width,
-            height: frame.height,
+        let faces = match Drawing::new(surface, &placement, &frame) {
+            Some(drawing) => Faces::Drawn(drawing),
+            None => Faces::Indexed(FaceIndex::new(surface, &placement, frame.window())),
         };
-        let index = FaceIndex::new(surface, &placement, all);
         Ok(Dem {
             surface,
             frame,
             placement,
-            index,
+            faces,
             interpolant: None,
         })
     }
@@ -81,21 +88,26 @@ impl<'a, S: Surface + ?Sized> Dem<'a, S> {
     }
 
     /// Draws the faces that meet a window into its cells.
-    fn draw<T, I: Ink<T>>(&self, window: Window, cells: &mut [T], ink: impl Fn(u32) -> I) {
-        draw(
-            self.surface,
-            &self.index,
-            &self.placement,
-            window,
-            cells,
-            ink,
-        );
+    fn draw(&self, index: &FaceIndex, window: Window, ink: &mut impl Ink) {
+        draw(self.surface, index, &self.placement, window, ink);
+    }
+
+    /// Returns the face of each cell of a window.
+    fn faces_in(&self, window: Window) -> Vec<u32> {
+        let mut cells = vec![NO_FACE; window.width * window.height];
+        match &self.faces {
+            Faces::Drawn(drawing) => drawing.faces(window, &mut cells),
+            Faces::Indexed(index) => {
+                let cells = &mut cells;
+                self.draw(index, window, &mut Numbers { cells, face: 0 });
+            }
+        }
+        cells
     }
 
     /// Computes the heights of a window: finds the face of each cell, then goes from cell to cell.
     fn interpolate(&self, interpolant: &Interpolant<S>, window: Window, out: &mut [f32]) {
-        let mut faces = vec![NO_FACE; out.len()];
-        self.draw(window, &mut faces, Number);
+        let faces = self.faces_in(window);
         let mut scratch = QueryBuffers::default();
         let center = self.frame.centers();
         let cells = out
@@ -114,13 +126,12 @@ impl<'a, S: Surface + ?Sized> Dem<'a, S> {
 }
 
 /// Draws the faces of a surface that meet a window into its cells.
-fn draw<T, I: Ink<T>, S: Surface + ?Sized>(
+fn draw<S: Surface + ?Sized>(
     surface: &S,
     index: &FaceIndex,
     placement: &Placement,
     window: Window,
-    cells: &mut [T],
-    ink: impl Fn(u32) -> I,
+    ink: &mut impl Ink,
 ) {
     let Window {
         column,
@@ -130,10 +141,9 @@ fn draw<T, I: Ink<T>, S: Surface + ?Sized>(
     } = window;
     let columns = Centers::new(placement.columns, column, width);
     let rows = Centers::new(placement.rows, row, height);
-    let mut scan = Scan {
+    let scan = Scan {
         columns: &columns,
         rows: &rows,
-        cells,
     };
     for (faces, rows, columns) in index.bins_in(row..row + height, column..column + width) {
         let rows = rows.start - row..rows.end - row;
@@ -143,7 +153,8 @@ fn draw<T, I: Ink<T>, S: Surface + ?Sized>(
                 continue;
             };
             let corners = corners.map(|p| placement.to_plane(p));
-            scan.draw(corners, &rows, &columns, &ink(face));
+            ink.of_face(face);
+            scan.draw(corners, &rows, &columns, ink);
         }
     }
 }
@@ -160,10 +171,93 @@ impl<S: Surface + ?Sized> BlockSource for Dem<'_, S> {
     fn fill(&self, window: Window, out: &mut [f32]) -> Result<()> {
         self.frame.check_window(window, out.len())?;
         out.fill(f32::NAN);
-        match &self.interpolant {
-            None => self.draw(window, out, |_| Heights),
-            Some(interpolant) => self.interpolate(interpolant, window, out),
+        match (&self.interpolant, &self.faces) {
+            (None, Faces::Drawn(drawing)) => drawing.heights(window, out),
+            (None, Faces::Indexed(index)) => self.draw(index, window, &mut Heights(out)),
+            (Some(interpolant), _) => self.interpolate(interpolant, window, out),
         }
         self.surface.ensure_intact()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::Mesh;
+    use crate::terrain::TinBuilder;
+    use testkit::random::Random;
+
+    /// Points on centers of cells and beside them.
+    fn points(random: &mut Random, count: usize, size: f64) -> Vec<[f64; 3]> {
+        (0..count)
+            .map(|_| [0, 1, 2].map(|_| (random.unit() * size * 4.0).round() / 4.0))
+            .collect()
+    }
+
+    fn assert_drawn_as_indexed(surface: &dyn Surface, frame: Frame, method: Method) {
+        let drawn = Dem::new(surface, frame).unwrap();
+        assert!(matches!(drawn.faces, Faces::Drawn(_)));
+        let placement = Placement::new(&frame);
+        let index = FaceIndex::new(surface, &placement, frame.window());
+        let indexed = Dem {
+            faces: Faces::Indexed(index),
+            ..Dem::new(surface, frame).unwrap()
+        };
+        let [drawn, indexed] = [drawn, indexed].map(|dem| dem.with_method(method).unwrap());
+        for window in [
+            frame.window(),
+            Window {
+                column: 3,
+                row: 5,
+                width: 1,
+                height: 7,
+            },
+        ] {
+            let [mut found, mut expected] = [0, 1].map(|_| vec![0.0; window.width * window.height]);
+            drawn.fill(window, &mut found).unwrap();
+            indexed.fill(window, &mut expected).unwrap();
+            assert!(expected.iter().any(|z| !z.is_nan()));
+            let bits = |cells: &[f32]| cells.iter().map(|z| z.to_bits()).collect::<Vec<_>>();
+            assert!(bits(&found) == bits(&expected), "{window:?} {method:?}");
+        }
+    }
+
+    #[test]
+    fn cells_that_are_drawn_at_once_are_those_of_windows() {
+        let mut random = Random(76);
+        for transform in [
+            [-1.0, 1.0, 0.0, 41.0, 0.0, -1.0],
+            [40.0, -0.7, 0.0, 3.0, 0.0, 0.7],
+            [20.0, 0.6, -0.8, 0.0, 0.8, 0.6],
+        ] {
+            let frame = Frame {
+                width: 45,
+                height: 40,
+                transform,
+            };
+            for method in [Method::Linear, Method::Nearest] {
+                let mut builder = TinBuilder::default();
+                builder.add_owned_points(points(&mut random, 900, 40.0));
+                assert_drawn_as_indexed(&builder.build().unwrap(), frame, method);
+            }
+        }
+    }
+
+    #[test]
+    fn where_faces_overlap_the_last_one_counts_on_any_number_of_threads() {
+        let mut random = Random(77);
+        let vertices = (0..30_000)
+            .map(|_| [0, 1, 2].map(|_| random.unit() * 40.0))
+            .collect();
+        let faces = (0..10_000).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        let mesh = Mesh::new(vertices, faces, &[], None).unwrap();
+        let frame = Frame::north_up(-1.0, 41.0, 1.0, 45, 45);
+        for threads in 1..4 {
+            let pool = rayon::ThreadPoolBuilder::new()
+                .num_threads(threads)
+                .build()
+                .unwrap();
+            pool.install(|| assert_drawn_as_indexed(&mesh, frame, Method::Linear));
+        }
     }
 }

@@ -152,8 +152,7 @@ impl<S: Surface + Send> BlockSource for DemOfParts<'_, S> {
                 &opened.index,
                 &self.placement,
                 window,
-                out,
-                |_| Heights,
+                &mut Heights(out),
             );
             opened.surface.ensure_intact()?;
         }

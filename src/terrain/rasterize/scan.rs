@@ -13,67 +13,103 @@ use std::ops::Range;
 
 use super::placement::Centers;
 use crate::data::orientation;
+use crate::triangulation::kernel::{Filter, FlooredErrorBound, Orientation2};
 use crate::triangulation::num::Sign;
 
+/// The number in a cell whose center is in no face.
+pub(super) const NO_FACE: u32 = u32::MAX;
+
 /// A block of cells into which faces are drawn.
-pub(super) struct Scan<'a, T> {
+pub(super) struct Scan<'a> {
     pub(super) columns: &'a Centers,
     pub(super) rows: &'a Centers,
-    /// The cells, row by row, as many columns and rows as there are centers.
-    pub(super) cells: &'a mut [T],
 }
 
-/// What is written into the cells of a face.
-pub(super) trait Ink<T> {
-    /// Returns the value of one cell, given its height.
-    fn value(&self, height: f64) -> T;
+/// What faces are drawn with. Cells are numbered row by row, as many columns and rows as there are
+/// centers.
+pub(super) trait Ink {
+    /// Called before a face is drawn.
+    fn of_face(&mut self, _face: u32) {}
 
-    /// Writes a row of cells, given their x and the x and height of both ends of the segment in
-    /// which the row cuts the face.
-    fn row(&self, cells: &mut [T], centers: &[f64], ends: [(f64, f64); 2]);
+    /// Writes one cell, given its height.
+    fn cell(&mut self, cell: usize, height: f64);
+
+    /// Writes cells next to each other from `start` on, given their x and the x and height of both
+    /// ends of the segment in which the row cuts the face.
+    fn row(&mut self, start: usize, centers: &[f64], ends: [(f64, f64); 2]);
 }
 
 /// Writes heights.
-pub(super) struct Heights;
+pub(super) struct Heights<'a>(pub(super) &'a mut [f32]);
 
-impl Ink<f32> for Heights {
+impl Ink for Heights<'_> {
     #[inline]
-    fn value(&self, height: f64) -> f32 {
-        height as f32
+    fn cell(&mut self, cell: usize, height: f64) {
+        self.0[cell] = height as f32;
     }
 
     #[inline(always)]
-    fn row(&self, cells: &mut [f32], centers: &[f64], [left, right]: [(f64, f64); 2]) {
-        let slope = (right.1 - left.1) / (right.0 - left.0);
-        for (cell, x) in cells.iter_mut().zip(centers) {
-            *cell = (left.1 + (x - left.0) * slope) as f32;
+    fn row(&mut self, start: usize, centers: &[f64], ends: [(f64, f64); 2]) {
+        let cells = &mut self.0[start..start + centers.len()];
+        for (cell, height) in cells.iter_mut().zip(heights_along(centers, ends)) {
+            *cell = height;
         }
     }
 }
 
-/// Writes the number of the face.
-pub(super) struct Number(pub(super) u32);
+/// Returns the height at each x of a segment with these ends.
+#[inline(always)]
+pub(super) fn heights_along(
+    centers: &[f64],
+    [left, right]: [(f64, f64); 2],
+) -> impl Iterator<Item = f32> {
+    let slope = (right.1 - left.1) / (right.0 - left.0);
+    centers
+        .iter()
+        .map(move |x| (left.1 + (x - left.0) * slope) as f32)
+}
 
-impl Ink<u32> for Number {
-    fn value(&self, _height: f64) -> u32 {
-        self.0
+/// Writes the number of the face.
+pub(super) struct Numbers<'a> {
+    pub(super) cells: &'a mut [u32],
+    pub(super) face: u32,
+}
+
+impl Ink for Numbers<'_> {
+    fn of_face(&mut self, face: u32) {
+        self.face = face;
     }
 
-    fn row(&self, cells: &mut [u32], _centers: &[f64], _ends: [(f64, f64); 2]) {
-        cells.fill(self.0);
+    fn cell(&mut self, cell: usize, _height: f64) {
+        self.cells[cell] = self.face;
+    }
+
+    fn row(&mut self, start: usize, centers: &[f64], _ends: [(f64, f64); 2]) {
+        self.cells[start..start + centers.len()].fill(self.face);
     }
 }
 
-impl<T> Scan<'_, T> {
+impl Scan<'_> {
+    /// Returns true if the center of a cell is certainly outside of a triangle: on different sides
+    /// of two edges. If it is near an edge, this may remain open.
+    #[inline(always)]
+    pub(super) fn misses(&self, corners: &[[f64; 3]; 3], row: usize, column: usize) -> bool {
+        let center = [self.columns.values()[column], self.rows.values()[row]];
+        let [a, b, c] = corners.map(|[x, y, _]| [x, y]);
+        let side = |p, q| FlooredErrorBound::try_sign(&Orientation2([p, q, center]));
+        let sides = [side(a, b), side(b, c), side(c, a)];
+        sides.contains(&Some(Sign::Positive)) && sides.contains(&Some(Sign::Negative))
+    }
+
     /// Writes the cells of `rows` and `columns` (counted in the block) whose centers lie in the
     /// triangle or on its border. The corners may be in any order.
     #[inline]
     pub(super) fn draw(
-        &mut self,
+        &self,
         corners: [[f64; 3]; 3],
         rows: &Range<usize>,
         columns: &Range<usize>,
-        ink: &impl Ink<T>,
+        ink: &mut impl Ink,
     ) {
         let face = Face::new(corners);
         let [low, middle, high] = &face.corners;
@@ -104,21 +140,21 @@ impl<T> Scan<'_, T> {
             if from >= to {
                 continue;
             }
-            let line = &mut self.cells[row * centers.len()..][..centers.len()];
+            let line = row * centers.len();
             let mut inside = from..to;
             while !inside.is_empty() && centers[inside.start] <= left.0 + face.error {
                 if let Some(height) = face.judge(centers[inside.start], y, [left, right]) {
-                    line[inside.start] = ink.value(height);
+                    ink.cell(line + inside.start, height);
                 }
                 inside.start += 1;
             }
             while !inside.is_empty() && centers[inside.end - 1] >= right.0 - face.error {
                 inside.end -= 1;
                 if let Some(height) = face.judge(centers[inside.end], y, [left, right]) {
-                    line[inside.end] = ink.value(height);
+                    ink.cell(line + inside.end, height);
                 }
             }
-            ink.row(&mut line[inside.clone()], &centers[inside], [left, right]);
+            ink.row(line + inside.start, &centers[inside], [left, right]);
         }
     }
 }

@@ -1,0 +1,149 @@
+//! All cells of a raster, drawn by all threads.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use rayon::prelude::*;
+
+use super::bins::cells_of;
+use super::placement::{Centers, Placement};
+use super::scan::{Ink, NO_FACE, Scan, heights_along};
+use crate::data::{AT_ONCE, Frame, Surface, Window};
+
+/// The most cells for each face of a surface with which a raster is drawn at once. So it needs less
+/// memory than the triangulation did. Larger rasters would gain little: drawing is most of their
+/// work.
+const CELLS_PER_FACE: usize = 2;
+
+/// The number of triangles that are fetched at a time: few enough to stay in the nearest cache.
+const TRIANGLES_AT_ONCE: usize = 1 << 8;
+
+/// The face and the height of each cell of a raster.
+///
+/// Faces are drawn in their own order, without an index. So a thread may meet any cell at any time.
+/// A cell that several faces have, as on an edge, keeps the one with the highest number, whoever
+/// comes first.
+#[derive(Debug)]
+pub(super) struct Drawing {
+    width: usize,
+    /// Row by row: one more than the number of the face in the high half, the height in the low
+    /// one. 0 where there is no face.
+    cells: Vec<AtomicU64>,
+}
+
+impl Drawing {
+    /// Draws all faces; `None` if the raster has too many cells.
+    ///
+    /// # Complexity
+    /// Linear in the faces and the cells. 8 bytes for each cell.
+    pub(super) fn new<S: Surface + ?Sized>(
+        surface: &S,
+        placement: &Placement,
+        frame: &Frame,
+    ) -> Option<Self> {
+        let Frame { width, height, .. } = *frame;
+        let count = width.checked_mul(height)?;
+        if count > CELLS_PER_FACE * surface.face_count() {
+            return None;
+        }
+        let empty = (0..count).into_par_iter().with_min_len(AT_ONCE);
+        let cells: Vec<AtomicU64> = empty.map(|_| AtomicU64::new(0)).collect();
+        let columns = Centers::new(placement.columns, 0, width);
+        let rows = Centers::new(placement.rows, 0, height);
+        let scan = Scan {
+            columns: &columns,
+            rows: &rows,
+        };
+        let faces = surface.face_count();
+        let ranges = (0..faces.div_ceil(TRIANGLES_AT_ONCE)).into_par_iter();
+        ranges
+            .with_min_len(AT_ONCE / TRIANGLES_AT_ONCE)
+            .for_each_init(Vec::new, |triangles, range| {
+                let start = range * TRIANGLES_AT_ONCE;
+                let end = faces.min(start + TRIANGLES_AT_ONCE);
+                triangles.clear();
+                surface.triangles_in(start as u32..end as u32, triangles);
+                let mut ink = Shared {
+                    cells: &cells,
+                    face: 0,
+                };
+                for &(face, corners) in &*triangles {
+                    let corners = corners.map(|p| placement.to_plane(p));
+                    let Some([rows, columns]) = cells_of(&corners, placement) else {
+                        continue;
+                    };
+                    // PERF: of these boxes around faces, every other one has a face without it.
+                    let is_one = rows.len() == 1 && columns.len() == 1;
+                    if is_one && scan.misses(&corners, rows.start, columns.start) {
+                        continue;
+                    }
+                    ink.of_face(face);
+                    scan.draw(corners, &rows, &columns, &mut ink);
+                }
+            });
+        Some(Drawing { width, cells })
+    }
+
+    /// Copies the heights of a window; NaN where there is no face.
+    pub(super) fn heights(&self, window: Window, out: &mut [f32]) {
+        self.copy(window, out, |cell| match cell >> 32 {
+            0 => f32::NAN,
+            _ => f32::from_bits(cell as u32),
+        });
+    }
+
+    /// Copies the numbers of the faces of a window.
+    pub(super) fn faces(&self, window: Window, out: &mut [u32]) {
+        self.copy(window, out, |cell| match (cell >> 32) as u32 {
+            0 => NO_FACE,
+            next => next - 1,
+        });
+    }
+
+    fn copy<T>(&self, window: Window, out: &mut [T], value: impl Fn(u64) -> T) {
+        if out.is_empty() {
+            return;
+        }
+        let rows = self.cells.chunks_exact(self.width).skip(window.row);
+        for (row, line) in rows.zip(out.chunks_exact_mut(window.width)) {
+            let cells = &row[window.column..window.column + window.width];
+            for (out, cell) in line.iter_mut().zip(cells) {
+                *out = value(cell.load(Ordering::Relaxed));
+            }
+        }
+    }
+}
+
+/// Writes to cells that other threads write to, too.
+struct Shared<'a> {
+    cells: &'a [AtomicU64],
+    face: u32,
+}
+
+impl Shared<'_> {
+    #[inline]
+    fn write(&self, cell: &AtomicU64, height: f32) {
+        let value = (u64::from(self.face) + 1) << 32 | u64::from(height.to_bits());
+        cell.fetch_max(value, Ordering::Relaxed);
+    }
+}
+
+impl Ink for Shared<'_> {
+    fn of_face(&mut self, face: u32) {
+        self.face = face;
+    }
+
+    #[inline]
+    fn cell(&mut self, cell: usize, height: f64) {
+        self.write(&self.cells[cell], height as f32);
+    }
+
+    #[inline(always)]
+    fn row(&mut self, start: usize, centers: &[f64], ends: [(f64, f64); 2]) {
+        let cells = &self.cells[start..start + centers.len()];
+        let heights = heights_along(centers, ends);
+        cells
+            .iter()
+            .zip(heights)
+            .for_each(|(cell, height)| self.write(cell, height));
+    }
+}
