@@ -54,6 +54,28 @@ def test_values_of_several_columns_and_complex_ones(scipy_interpolate):
         assert np.allclose(ours.grad, theirs.grad, rtol=1e-9, atol=1e-9) and ours.grad.shape == theirs.grad.shape
 
 
+def test_many_positions_have_the_values_of_few():
+    """Of many, the elements over all triangles are made first; then all calls use them."""
+    points, xi = random_points(500), random_points(5000, seed=1) * 1.2 - 0.1
+    values = np.stack([franke(*points.T), points.sum(axis=1)], axis=1)
+    ours = CloughTocher2DInterpolator(points, values)
+    before = np.concatenate([ours(part) for part in np.array_split(xi, 50)])
+    at_once = ours(xi)
+    after = np.concatenate([ours(part) for part in np.array_split(xi, 50)])
+    assert np.array_equal(before, at_once, equal_nan=True) and np.array_equal(after, at_once, equal_nan=True)
+
+
+def test_coordinates_come_in_any_form():
+    points = random_points(100)
+    ours = CloughTocher2DInterpolator(points, franke(*points.T), fill_value=-1)
+    x, y = np.meshgrid(np.linspace(-0.1, 1, 23), np.linspace(0, 1.1, 31))
+    expected = ours(np.stack([x, y], axis=-1))
+    assert expected.shape == (31, 23)
+    for args in ((x, y), ((x, y),), (x.tolist(), y), (np.asfortranarray(x), y[:, :1]), (x.T.copy().T, y)):
+        assert np.array_equal(ours(*args), expected)
+    assert ours(x[0], y[0, 0]).shape == (23,) and ours(x[3, 4], y[3, 4]) == expected[3, 4]
+
+
 def test_rescaling_and_options(scipy_interpolate):
     points = random_points(300) * [1.0, 1000.0] + [5.0, -70.0]
     xi = random_points(1000, seed=3) * [1.0, 1000.0] + [5.0, -70.0]

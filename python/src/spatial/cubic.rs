@@ -24,6 +24,7 @@
 //! depend on the scale of the axes.
 
 use std::convert::Infallible;
+use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use breakline::terrain::CubicElement;
@@ -32,6 +33,7 @@ use breakline::triangulation::tds::{CellId, Neighbors, VertexId};
 use numpy::ndarray::Array3;
 use rayon::prelude::*;
 
+use super::lists::CHUNK;
 use super::mesh::Mesh;
 use super::queries::{Field, Site};
 
@@ -183,6 +185,31 @@ fn half_inverse(spokes: &[Spoke]) -> [f64; 3] {
     }
 }
 
+/// What cubic values are computed from.
+pub(super) struct Surface {
+    gradients: Gradients,
+    /// The elements over all triangles, by the numbers of their cells, one for each column of
+    /// values. Made when first worth it: they take 152 bytes each.
+    elements: OnceLock<Vec<CubicElement>>,
+}
+
+impl Surface {
+    pub(super) fn new(gradients: Gradients) -> Self {
+        Surface {
+            gradients,
+            elements: OnceLock::new(),
+        }
+    }
+
+    pub(super) fn gradients(&self) -> &Gradients {
+        &self.gradients
+    }
+}
+
+/// How many times as many positions as cells there must be before the elements of all are made: so
+/// many that the elements are few beside them, and that most are used several times.
+const MANY: usize = 2;
+
 /// The elements over the last triangle in which a position was: one for each column of values.
 #[derive(Default)]
 struct Patch {
@@ -226,25 +253,35 @@ impl Mesh<Plane, 3, 2> {
     pub(super) fn cubic(
         &self,
         queries: &[[f64; 2]],
-        (field, gradients): (&Field, &Gradients),
+        (field, surface): (&Field, &Surface),
         outside: &[f64],
         tolerance: f64,
         cancel: &AtomicBool,
     ) -> Vec<f64> {
+        let (width, gradients) = (field.width(), &surface.gradients);
+        let table = self.table(queries.len(), field, surface);
         self.each(queries, outside, cancel, || {
-            let mut patch = Patch::default();
+            let (mut patch, mut last) = (Patch::default(), None);
             move |q, near, values: &mut [f64]| {
-                let (site, near) = self.site(q, near, tolerance);
+                let (site, near) = self.site(q, near, &mut last, tolerance);
                 match site {
                     Site::Vertex(vertex) => values.copy_from_slice(field.at(vertex)),
                     Site::Cell(cell, parts) => {
-                        if patch.cell != Some(cell) {
-                            self.lay(&mut patch, cell, field, gradients);
-                        }
+                        let elements = match table {
+                            Some(table) => &table[cell.index() * width..][..width],
+                            None => {
+                                if patch.cell != Some(cell) {
+                                    patch.cell = Some(cell);
+                                    patch.elements.clear();
+                                    patch.elements.extend(self.elements(cell, field, gradients));
+                                }
+                                &patch.elements
+                            }
+                        };
                         // Relative to one corner, so that constant values are reproduced.
                         let origin = field.at(self.t.tds().vertex(cell, 0));
                         for ((value, element), origin) in
-                            values.iter_mut().zip(&patch.elements).zip(origin)
+                            values.iter_mut().zip(elements).zip(origin)
                         {
                             *value = origin + element.height(parts);
                         }
@@ -256,22 +293,56 @@ impl Mesh<Plane, 3, 2> {
         })
     }
 
-    /// Lays the elements over a triangle.
-    fn lay(&self, patch: &mut Patch, cell: CellId, field: &Field, gradients: &Gradients) {
+    /// Returns the elements over all triangles, if they are there or so many positions are worth
+    /// it.
+    fn table<'a>(
+        &self,
+        positions: usize,
+        field: &Field,
+        surface: &'a Surface,
+    ) -> Option<&'a [CubicElement]> {
+        let new = || -> Vec<CubicElement> {
+            let cells = (0..self.t.tds().cell_slots())
+                .into_par_iter()
+                .map(CellId::new);
+            let of_cell = |cell: CellId| {
+                let is_flat = !self.t.tds().is_used(cell) || self.t.tds().is_infinite(cell);
+                let none = is_flat.then(|| std::iter::repeat_n(CubicElement::FLAT, field.width()));
+                let some = (!is_flat).then(|| self.elements(cell, field, &surface.gradients));
+                none.into_iter().flatten().chain(some.into_iter().flatten())
+            };
+            cells.with_min_len(CHUNK).flat_map_iter(of_cell).collect()
+        };
+        let table = surface.elements.get();
+        let table = table.or_else(|| {
+            // Not made under a lock: a thread of a pool that waits may take up another call, which
+            // would ask for it, too. Both may make it then; one is kept.
+            (positions >= MANY * self.t.tds().cell_slots()).then(|| {
+                let new = new();
+                surface.elements.get_or_init(|| new)
+            })
+        });
+        table.map(Vec::as_slice)
+    }
+
+    /// Returns the elements over a triangle: one for each column of values.
+    fn elements(
+        &self,
+        cell: CellId,
+        field: &Field,
+        gradients: &Gradients,
+    ) -> impl Iterator<Item = CubicElement> {
         let vertices = self.t.tds().corners(cell);
         let feet = self.feet(cell);
         let [origin, ..] = vertices.map(|v| field.at(v));
-        patch.cell = Some(cell);
-        patch.elements.clear();
-        patch
-            .elements
-            .extend(gradients.columns.iter().enumerate().map(|(k, gradients)| {
-                let corners = vertices.map(|v| {
-                    let [x, y] = *self.t.point(v);
-                    [x, y, field.at(v)[k] - origin[k]]
-                });
-                CubicElement::new(corners, vertices.map(|v| gradients[v.index()]), feet)
-            }));
+        let columns = gradients.columns.iter().enumerate();
+        columns.map(move |(k, gradients)| {
+            let corners = vertices.map(|v| {
+                let [x, y] = *self.t.point(v);
+                [x, y, field.at(v)[k] - origin[k]]
+            });
+            CubicElement::new(corners, vertices.map(|v| gradients[v.index()]), feet)
+        })
     }
 
     /// Returns in which directions the slopes across the edges of a triangle are linear, see

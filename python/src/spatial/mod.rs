@@ -20,18 +20,19 @@ use breakline::triangulation::geometry::{Plane, Space};
 use breakline::triangulation::kernel::{Adaptive, Kernel, Range};
 use breakline::triangulation::num::unsigned_zero;
 use numpy::{
-    IntoPyArray, PyArray1, PyArray3, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods,
+    IntoPyArray, PyArray1, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2,
+    PyUntypedArrayMethods,
 };
 use pyo3::prelude::*;
 
-use self::cubic::{Gradients, Limits};
+use self::cubic::{Limits, Surface};
 use self::hull::Hull;
 pub(crate) use self::lists::nested_lists;
 use self::mesh::Mesh;
 use self::queries::Field;
 use self::voronoi::Diagram;
 use crate::arrays::{column, points, table};
-use crate::errors::{Failure, Result};
+use crate::errors::{self, Failure, Result};
 use crate::work::{self, Call};
 
 /// A triangulation of the plane or of space.
@@ -44,6 +45,33 @@ enum Any {
 enum Positions {
     Plane(Vec<[f64; 2]>),
     Space(Vec<[f64; 3]>),
+}
+
+/// Positions as Python passes them: rows of coordinates, or an array for each axis, all of one
+/// length.
+#[derive(FromPyObject)]
+enum Given<'py> {
+    Rows(PyReadonlyArray2<'py, f64>),
+    Axes(Vec<PyReadonlyArray1<'py, f64>>),
+}
+
+impl Given<'_> {
+    /// Copies them, so that other threads may change the arrays meanwhile.
+    fn read(&self) -> PyResult<Positions> {
+        let axes = match self {
+            Given::Rows(rows) => return Ok(Positions::of(rows)),
+            Given::Axes(axes) => axes.iter().map(|axis| axis.as_slice()),
+        };
+        let axes = axes.collect::<std::result::Result<Vec<_>, _>>()?;
+        Ok(match axes[..] {
+            [x, y] => Positions::Plane(x.iter().zip(y).map(|(&x, &y)| [x, y]).collect()),
+            [x, y, z] => {
+                let all = x.iter().zip(y).zip(z);
+                Positions::Space(all.map(|((&x, &y), &z)| [x, y, z]).collect())
+            }
+            _ => return Err(errors::internal(&"there are two or three axes")),
+        })
+    }
 }
 
 /// Calls a method of the triangulation in the plane or in space.
@@ -149,10 +177,10 @@ impl Tessellation {
         &self,
         py: Python<'_>,
         call: &Call,
-        positions: &PyReadonlyArray2<'_, f64>,
+        positions: &Given<'_>,
         answer: impl FnOnce(&Any, &Positions, &AtomicBool) -> T + Send,
     ) -> PyResult<T> {
-        let positions = Positions::of(positions).rounded();
+        let positions = positions.read()?.rounded();
         work::run_around_on(py, call, Some(positions.count()), |pool, context| {
             let any = self.read();
             let any: &Any = &any;
@@ -301,7 +329,7 @@ impl Tessellation {
     fn find<'py>(
         &self,
         py: Python<'py>,
-        positions: PyReadonlyArray2<'py, f64>,
+        positions: Given<'py>,
         tolerance: f64,
         call: Call,
     ) -> PyResult<Bound<'py, PyArray1<i32>>> {
@@ -319,7 +347,7 @@ impl Tessellation {
     fn nearest<'py>(
         &self,
         py: Python<'py>,
-        positions: PyReadonlyArray2<'py, f64>,
+        positions: Given<'py>,
         values: usize,
         call: Call,
     ) -> PyResult<Bound<'py, PyArray1<i32>>> {
@@ -467,7 +495,7 @@ impl Values {
     fn linear<'py>(
         &self,
         py: Python<'py>,
-        positions: PyReadonlyArray2<'py, f64>,
+        positions: Given<'py>,
         call: Call,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let values =
@@ -486,7 +514,7 @@ impl Values {
     fn natural<'py>(
         &self,
         py: Python<'py>,
-        positions: PyReadonlyArray2<'py, f64>,
+        positions: Given<'py>,
         call: Call,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let values =
@@ -506,7 +534,7 @@ impl Values {
 #[pyclass(frozen, module = "breakline._breakline")]
 pub(crate) struct CubicValues {
     values: Py<Values>,
-    gradients: Gradients,
+    surface: Surface,
 }
 
 #[pymethods]
@@ -528,13 +556,14 @@ impl CubicValues {
             let gradients = plane(any)?.gradients(&of.field, limits, cancel);
             Result::Ok(gradients)
         })??;
-        Ok(CubicValues { values, gradients })
+        let surface = Surface::new(gradients);
+        Ok(CubicValues { values, surface })
     }
 
     /// True if gradients changed by no more than the tolerance at the end.
     #[getter]
     fn has_converged(&self) -> bool {
-        self.gradients.have_converged
+        self.surface.gradients().have_converged
     }
 
     /// The gradients at the points: an array of shape (n, k, 2).
@@ -542,7 +571,7 @@ impl CubicValues {
         let of = self.values.get();
         let gradients = of.tessellation.get().compute(py, &call, |any, _| {
             one_for_each_point(any, of.count)?;
-            Result::Ok(plane(any)?.gradients_at_points(&self.gradients))
+            Result::Ok(plane(any)?.gradients_at_points(self.surface.gradients()))
         })??;
         Ok(gradients.into_pyarray(py))
     }
@@ -551,7 +580,7 @@ impl CubicValues {
     fn at<'py>(
         &self,
         py: Python<'py>,
-        positions: PyReadonlyArray2<'py, f64>,
+        positions: Given<'py>,
         call: Call,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let of = self.values.get();
@@ -563,7 +592,7 @@ impl CubicValues {
                     let (mesh, Positions::Plane(at)) = (plane(any)?, positions) else {
                         return Err(not_of_the_plane());
                     };
-                    let data = (&of.field, &self.gradients);
+                    let data = (&of.field, &self.surface);
                     Result::Ok(mesh.cubic(at, data, &of.outside, of.tolerance, cancel))
                 })?;
         Ok(column(py, values?))

@@ -49,6 +49,25 @@ const CLEAR: f64 = 1e-10;
 /// coordinates; as in scipy.
 const BROAD: f64 = 1.5e-8;
 
+/// A cell, and what tells by rounded numbers if a position is clearly in it.
+pub(super) struct Frame<const N: usize, const D: usize> {
+    cell: CellId,
+    corners: [[f64; D]; N],
+    /// The smallest and the largest coordinates of the corners.
+    bounds: [[f64; D]; 2],
+    /// A cell with no more volume, times `D!`, is thin, or there by rounding.
+    least_volume: f64,
+}
+
+impl<const N: usize, const D: usize> Frame<N, D> {
+    /// Returns true if a position is in the box around the cell.
+    #[inline]
+    fn surrounds(&self, q: &[f64; D]) -> bool {
+        let [low, high] = &self.bounds;
+        (0..D).all(|axis| low[axis] <= q[axis] && q[axis] <= high[axis])
+    }
+}
+
 /// Values at the vertices: `width` numbers for each.
 pub(super) struct Field {
     values: Vec<f64>,
@@ -151,7 +170,10 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
         cancel: &AtomicBool,
     ) -> Vec<f64> {
         self.each(queries, outside, cancel, || {
-            |q, near, mean: &mut [f64]| self.linear_at(q, near, field, tolerance, mean)
+            let mut last = None;
+            move |q, near, mean: &mut [f64]| {
+                self.linear_at(q, near, &mut last, (field, tolerance), mean)
+            }
         })
     }
 
@@ -159,11 +181,11 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
         &self,
         q: &[f64; D],
         near: Option<CellId>,
-        field: &Field,
-        tolerance: f64,
+        last: &mut Option<Frame<N, D>>,
+        (field, tolerance): (&Field, f64),
         mean: &mut [f64],
     ) -> Option<CellId> {
-        let (site, near) = self.site(q, near, tolerance);
+        let (site, near) = self.site(q, near, last, tolerance);
         match site {
             Site::Vertex(vertex) => mean.copy_from_slice(field.at(vertex)),
             Site::Cell(cell, weights) => {
@@ -199,7 +221,7 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
                 }) else {
                     // On the hull up to a rounding error, where the limit is linear; outside; or
                     // where squares overflow or underflow.
-                    return self.linear_at(q, near, field, tolerance, mean);
+                    return self.linear_at(q, near, &mut None, (field, tolerance), mean);
                 };
                 field.mean(weights.iter().copied(), mean);
                 weights
@@ -307,7 +329,8 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
         spatial_order(queries.len(), within).ok()
     }
 
-    /// Returns where a position has its value, and a finite cell there or nearby.
+    /// Returns where a position has its value, and a finite cell there or nearby. `last` is for the
+    /// next call: positions that follow each other are mostly in one cell.
     ///
     /// That is where it is, except in simplices that are at the hull by rounding: values there are
     /// those of a neighbor, so that they do not depend on which points of a straight side are
@@ -316,9 +339,10 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
         &self,
         q: &[f64; D],
         near: Option<CellId>,
+        last: &mut Option<Frame<N, D>>,
         tolerance: f64,
     ) -> (Site<N>, Option<CellId>) {
-        if let Some((cell, sides)) = near.and_then(|near| self.clearly_in(q, near)) {
+        if let Some((cell, sides)) = near.and_then(|near| self.clearly_in(q, near, last)) {
             return (Site::Cell(cell, weights(sides)), Some(cell));
         }
         let in_cell = |cell: CellId| Site::Cell(cell, weights(self.sides(cell, q)));
@@ -360,30 +384,51 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
     /// doubt: the cell and the numbers are those that an exact search would find.
     ///
     /// `PERF:` positions in rows are mostly in the cell of the one before, or next to it.
-    fn clearly_in(&self, q: &[f64; D], near: CellId) -> Option<(CellId, [f64; N])> {
-        let tds = self.t.tds();
+    #[inline]
+    fn clearly_in(
+        &self,
+        q: &[f64; D],
+        near: CellId,
+        last: &mut Option<Frame<N, D>>,
+    ) -> Option<(CellId, [f64; N])> {
         let mut cell = near;
         for _ in 0..STEPS {
-            if tds.is_infinite(cell) {
-                return None;
+            if last.as_ref().is_none_or(|last| last.cell != cell) {
+                *last = Some(self.frame(cell)?);
             }
-            let corners = tds.corners(cell).map(|v| self.t.point(v));
-            let sides = self.t.geometry().rough_sides(corners, q)?;
+            let frame = last.as_ref()?;
+            let sides = self.t.geometry().rough_sides(frame.corners.each_ref(), q)?;
             let lesser = |i: usize, j: usize| if sides[j] < sides[i] { j } else { i };
             let least = (1..N).fold(0, lesser);
             if sides[least] < 0.0 {
-                cell = tds.neighbor(cell, least);
+                cell = self.t.tds().neighbor(cell, least);
                 continue;
             }
-            let around @ [low, high] = self.box_around(cell);
-            let (widths, volume) = (widths(&around), volume(&sides));
-            let is_clear = sides[least] > CLEAR * volume
-                && (0..D).all(|axis| low[axis] <= q[axis] && q[axis] <= high[axis])
-                && !Self::is_thin(&widths, volume, THIN)
-                && !self.is_by_rounding(&widths, volume);
+            let volume = volume(&sides);
+            let is_clear =
+                sides[least] > CLEAR * volume && volume > frame.least_volume && frame.surrounds(q);
             return is_clear.then_some((cell, sides));
         }
         None
+    }
+
+    /// Returns the frame of a cell; `None` if it is infinite.
+    fn frame(&self, cell: CellId) -> Option<Frame<N, D>> {
+        if self.t.tds().is_infinite(cell) {
+            return None;
+        }
+        let bounds = self.box_around(cell);
+        let widths = widths(&bounds);
+        let [thin, rounding] = [
+            THIN * cube_around(&widths),
+            self.volume_by_rounding(&widths),
+        ];
+        Some(Frame {
+            cell,
+            corners: self.t.tds().corners(cell).map(|v| *self.t.point(v)),
+            bounds,
+            least_volume: if thin > rounding { thin } else { rounding },
+        })
     }
 
     /// Returns a finite cell at a vertex.
@@ -437,14 +482,18 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
 
     /// Returns true if the volume of a cell is at most a part of that of a cube around it.
     fn is_thin(widths: &[f64; D], volume: f64, part: f64) -> bool {
-        let width = widths.iter().copied().fold(0.0, f64::max);
-        volume <= part * width.powi(D as i32)
+        volume <= part * cube_around(widths)
     }
 
     /// Returns true if a cell would not be there if its corners were not rounded, for all that is
     /// known; given its widths and its volume.
-    #[inline]
     fn is_by_rounding(&self, widths: &[f64; D], volume: f64) -> bool {
+        volume <= self.volume_by_rounding(widths)
+    }
+
+    /// Returns the volume that a cell with these widths may have by rounding only.
+    #[inline]
+    fn volume_by_rounding(&self, widths: &[f64; D]) -> f64 {
         let [low, high] = &self.bounds;
         let moved = |axis: usize| {
             let rounding = low[axis].abs().max(high[axis].abs()) * f64::EPSILON;
@@ -452,7 +501,7 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
                 .filter(|&other| other != axis)
                 .fold(rounding, |volume, other| volume * widths[other])
         };
-        volume <= ROUNDINGS * (0..D).map(moved).sum::<f64>()
+        ROUNDINGS * (0..D).map(moved).sum::<f64>()
     }
 
     /// Returns true if a cell is infinite, or cells of a kind lead from it to an infinite one,
@@ -555,6 +604,11 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
 /// Returns how wide a box is along each axis.
 fn widths<const D: usize>([low, high]: &[[f64; D]; 2]) -> [f64; D] {
     std::array::from_fn(|axis| high[axis] - low[axis])
+}
+
+/// Returns the volume of a cube around a box.
+fn cube_around<const D: usize>(widths: &[f64; D]) -> f64 {
+    widths.iter().copied().fold(0.0, f64::max).powi(D as i32)
 }
 
 /// Returns the volume of a cell, times `D!`: the sum of those that its facets span with a position.

@@ -43,6 +43,15 @@ pub struct CubicElement {
 }
 
 impl CubicElement {
+    /// The surface of height 0.
+    pub const FLAT: Self = CubicElement {
+        heights: [0.0; 3],
+        beside: [[0.0; 3]; 3],
+        middle: [0.0; 3],
+        inner: [0.0; 3],
+        center: 0.0,
+    };
+
     /// Returns the surface over a triangle with these corners, in counter-clockwise order, and
     /// these gradients there.
     ///
@@ -75,6 +84,7 @@ impl CubicElement {
     }
 
     /// Returns the height at a position, given by its barycentric coordinates.
+    #[inline]
     pub fn height(&self, parts: [f64; 3]) -> f64 {
         // The polynomial over the part of the triangle between the centroid and the farthest edge.
         let i = (1..3).fold(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -10,6 +10,10 @@ from numpy.typing import ArrayLike, NDArray
 from .. import _masked
 from .._call import checked
 from .._errors import ArgumentTypeError, UnsupportedError, UsageError, usage
+
+
+#: Positions of shape (n, ndim), or an array of shape (n,) for each axis.
+Positions = Union[NDArray[np.float64], list[NDArray[np.float64]]]
 
 
 class QhullError(UsageError, RuntimeError):
@@ -181,6 +185,17 @@ def positions_of(xi: Any, ndim: int) -> tuple[NDArray[np.float64], NDArray[np.bo
     if masked is None:
         return np.ascontiguousarray(np.asarray(xi)), np.zeros(len(xi), bool)
     return np.ma.filled(xi, np.nan), masked
+
+
+def are_plain(axes: tuple[Any, ...], ndim: int) -> bool:
+    """Return true if these are arrays of float64, one for each axis, of one shape and not masked."""
+    return len(axes) == ndim and all(
+        type(axis) is np.ndarray
+        and axis.dtype == np.float64
+        and axis.flags.aligned
+        and axis.shape == axes[0].shape
+        for axis in axes
+    )
 
 
 def joined(coordinates: Any, ndim: int | None = None) -> NDArray[Any]:

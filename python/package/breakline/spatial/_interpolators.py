@@ -12,7 +12,7 @@ from .. import _masked
 from .._breakline import CubicValues, Tessellation, Values
 from .._call import checked
 from .._errors import ArgumentTypeError, BreaklineWarning, usage, warn
-from ._common import joined, numbers, points_of, positions_of, unsupported
+from ._common import Positions, are_plain, joined, numbers, points_of, positions_of, unsupported
 from ._delaunay import TOLERANCE, Delaunay
 
 
@@ -117,8 +117,8 @@ class _SmoothInterpolator(_Interpolator):
         outside = ([fill.real, fill.imag] if self.is_complex else [fill]) * columns
         self._core = Values(self.tri._core, self.values.view(np.float64), outside, TOLERANCE, (self.threads, None))
 
-    def _evaluate(self, positions: NDArray[np.float64], call: tuple[int | None, None]) -> NDArray[np.float64]:
-        """Return the numbers of all columns at positions of shape (n, ndim)."""
+    def _evaluate(self, positions: Positions, call: tuple[int | None, None]) -> NDArray[np.float64]:
+        """Return the numbers of all columns at positions of shape (n, ndim), or at n for each axis."""
         raise NotImplementedError
 
     def __getstate__(self) -> dict[str, Any]:
@@ -141,10 +141,15 @@ class _SmoothInterpolator(_Interpolator):
         ndarray of float64 or complex128, shape (...) + values.shape[1:]
             ``fill_value`` outside of the convex hull, and where a coordinate is masked.
         """
-        xi = self._positions(args)
-        flat, _ = positions_of(xi, self.points.shape[1])
-        values: NDArray[Any] = self._evaluate(flat, (self.threads, None))
-        return values.view(self.values.dtype).reshape(xi.shape[:-1] + self.values_shape)
+        ndim = self.points.shape[1]
+        positions: Positions
+        if self.offset is None and are_plain(args, ndim):
+            positions, shape = [axis.ravel() for axis in args], args[0].shape
+        else:
+            xi = self._positions(args)
+            (positions, _), shape = positions_of(xi, ndim), xi.shape[:-1]
+        values = self._evaluate(positions, (self.threads, None))
+        return values.view(self.values.dtype).reshape(shape + self.values_shape)
 
 
 class LinearNDInterpolator(_SmoothInterpolator):
@@ -184,7 +189,7 @@ class LinearNDInterpolator(_SmoothInterpolator):
     3.0
     """
 
-    def _evaluate(self, positions: NDArray[np.float64], call: tuple[int | None, None]) -> NDArray[np.float64]:
+    def _evaluate(self, positions: Positions, call: tuple[int | None, None]) -> NDArray[np.float64]:
         return self._core.linear(positions, call)
 
 
@@ -228,7 +233,9 @@ class CloughTocher2DInterpolator(_SmoothInterpolator):
 
     Notes
     -----
-    Some twenty to forty rounds over all points prepare it. A value that is not finite spoils the
+    Some twenty to forty rounds over all points prepare it. The first call with at least twice as many
+    positions as there are triangles also prepares what all later calls use: 152 bytes for each
+    triangle and column. A value that is not finite spoils the
     gradients of all points that are connected with it. The value at a point is exactly the given one, and
     constant values are reproduced exactly.
 
@@ -271,7 +278,7 @@ class CloughTocher2DInterpolator(_SmoothInterpolator):
         gradients = self._cubic.gradients((self.threads, None))
         return gradients[:, 0::2] + 1j * gradients[:, 1::2] if self.is_complex else gradients
 
-    def _evaluate(self, positions: NDArray[np.float64], call: tuple[int | None, None]) -> NDArray[np.float64]:
+    def _evaluate(self, positions: Positions, call: tuple[int | None, None]) -> NDArray[np.float64]:
         return self._cubic.at(positions, call)
 
 
@@ -299,7 +306,7 @@ class NaturalNeighborInterpolator(_SmoothInterpolator):
     8.0
     """
 
-    def _evaluate(self, positions: NDArray[np.float64], call: tuple[int | None, None]) -> NDArray[np.float64]:
+    def _evaluate(self, positions: Positions, call: tuple[int | None, None]) -> NDArray[np.float64]:
         return self._core.natural(positions, call)
 
 
