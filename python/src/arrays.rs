@@ -1,7 +1,10 @@
 //! Arrays of numpy to numbers, and numbers to arrays.
 
-use numpy::ndarray::{Array2, ArrayView2};
-use numpy::{Element, IntoPyArray, PyArray1, PyReadonlyArray2};
+use numpy::ndarray::{Array2, ArrayView2, Dimension};
+use numpy::{
+    Element, IntoPyArray, PyArray, PyArray1, PyArrayMethods, PyReadonlyArray2,
+    PyUntypedArrayMethods,
+};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
@@ -19,6 +22,17 @@ pub(crate) fn rows<T: Element + Copy + Default, const N: usize>(
         point
     };
     array.rows().into_iter().map(row).collect()
+}
+
+/// Returns true if all numbers of an array are where the processor expects them: arrays made by
+/// numpy are, those over the bytes of others may not be.
+pub(crate) fn is_aligned<T, D>(array: &Bound<'_, PyArray<T, D>>) -> bool
+where
+    T: Element,
+    D: Dimension,
+{
+    let multiple = align_of::<T>() as isize;
+    array.data().is_aligned() && array.strides().iter().all(|&stride| stride % multiple == 0)
 }
 
 /// Returns the rows of an array of positions, copied so that other threads may change it meanwhile.

@@ -42,7 +42,7 @@ mod _breakline {
     use super::spatial::{CubicValues, Tessellation, Values, convex_hull, nested_lists};
 
     #[pymodule_export]
-    use super::triangle::triangulate_arrays;
+    use super::triangle::{TriangleSwitches, triangulate_arrays};
 
     #[pymodule_export]
     use super::write::{Job, job_folder, kind_of, write};

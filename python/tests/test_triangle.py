@@ -213,6 +213,53 @@ def test_arrays_of_any_layout():
         assert (ours.triangulate({"vertices": same})["triangles"] == expected).all()
 
 
+def test_lists_and_arrays_have_the_same_result():
+    """Arrays of the types that the package returns are read at once, all others one by one."""
+    graph = dict(
+        PLATE,
+        vertex_attributes=np.arange(18.0).reshape(9, 2),
+        vertex_markers=np.arange(9),
+        segment_markers=np.arange(8) + 3,
+        regions=[[3, 3, 7, 0.05]],
+    )
+    for integer in (np.int32, np.int64):
+        arrays = {name: np.array(values, float) for name, values in graph.items()}
+        arrays["segments"] = arrays["segments"].astype(integer)
+        for name in ("vertex_markers", "segment_markers"):
+            arrays[name] = arrays[name].astype(np.int32).reshape(-1, 1)
+        bytes_of_others = np.zeros(8 * 18 + 1, np.uint8)
+        unaligned = np.ndarray((9, 2), float, bytes_of_others.data, 1)
+        unaligned[:] = arrays["vertices"]
+        assert not unaligned.flags.aligned
+        for opts in ("", "e", "p", "pAe", "pq30Aa", "pO", "pP", "pBE", "pNj", "pj", "pA", "pqO", "jc"):
+            expected = ours.triangulate(graph, opts)
+            for same in (arrays, arrays | {"vertices": unaligned}, dict(arrays, triangles=None)):
+                mesh = ours.triangulate(same, opts)
+                assert list(mesh) == list(expected)
+                for name, array in mesh.items():
+                    assert np.array_equal(array, expected[name]) and array.dtype == expected[name].dtype
+
+
+@pytest.mark.parametrize(
+    "wrong, text",
+    [
+        ({"vertices": np.array([[0.0, 0.0], [1.0, 0.0], [0.0, np.inf]])}, "row 2 of vertices"),
+        ({"vertices": np.array([[0.0, 0.0], [1.0, 0.0]])}, "2 vertices"),
+        ({"segments": np.array([[0, 1], [3, 9]], np.int32)}, "segment 1 joins"),
+        ({"segments": np.array([[-1, 1]])}, "segment 0 joins"),
+        ({"holes": np.array([[np.nan, 0.0]])}, "row 0 of holes"),
+        ({"regions": np.array([[0.0, 0.0, 1.0]])}, "regions of shape"),
+        ({"vertex_markers": np.zeros(3, np.int32)}, "vertex_markers of shape"),
+        ({"vertex_attributes": np.zeros(18)}, "18 vertex_attributes"),
+        ({"segments": None, "segment_markers": np.zeros(3, np.int32)}, "segment_markers of shape"),
+    ],
+)
+def test_what_is_wrong_with_arrays_is_said(wrong, text):
+    graph = {"vertices": SQUARE["vertices"].astype(float), "segments": np.array([[0, 1]])} | wrong
+    with pytest.raises(UsageError, match=text):
+        ours.triangulate({name: values for name, values in graph.items() if values is not None}, "pc")
+
+
 def test_few_points_may_need_many_vertices():
     # More than the calling thread tries; what it says meanwhile is said once.
     strip = {

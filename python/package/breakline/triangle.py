@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _masked
-from ._breakline import triangulate_arrays
+from ._breakline import TriangleSwitches, triangulate_arrays
 from ._call import call
 from ._errors import ArgumentTypeError, BreaklineWarning, FormatError, LimitError, UnsupportedError, UsageError, usage
 
@@ -74,6 +74,9 @@ _KEYS = frozenset(
     "vertices vertex_attributes vertex_markers triangles triangle_max_area triangle_attributes segments"
     " segment_markers holes regions neighbors edges edge_markers".split()
 )
+
+#: What the numbers of vertices depend on: unused ones are dropped by the first and the last.
+_NUMBERED = frozenset({"vertices", "triangles"})
 
 #: The smallest angle of the switch q without a number, in degrees.
 _ANGLE = 20.0
@@ -181,30 +184,23 @@ def triangulate(tri: Mapping[str, Any], opts: str = "", *, threads: int | None =
     >>> len(mesh["triangles"]) >= 10
     True
     """
-    switches = _switches(opts)
+    switches, read = _read(opts)
     if not _KEYS.issuperset(tri):
         unknown = ", ".join(sorted(set(tri) - _KEYS))
         raise usage(f"unknown keys {unknown}", cure=f"known are {', '.join(sorted(_KEYS))}", kind=UnknownKeyError)
-    graph = _graph(tri, switches)
-    if len(graph["vertices"]) < 3:
-        raise usage(f"{len(graph['vertices'])} vertices, expected at least three")
-    wanted = _wanted(graph, switches)
-    options = {
-        "convex": "c" in switches or "p" not in switches,
-        "min_angle": switches.get("q"),
-        "max_area": switches.get("a"),
-        "region_areas": "a" in switches and switches["a"] is None and len(graph["regions"]) > 0,
-        "max_added": switches.get("S"),
-    }
     try:
         with call(threads, None) as checked:
-            arrays, short = triangulate_arrays(graph, options, _read(wanted, switches), checked)
+            made = triangulate_arrays(tri, read, checked)
+            if made is None:
+                # Lists, other types, masked rows; or something is wrong, and this raises.
+                made = triangulate_arrays(_graph(tri, switches), read, checked)
     except FormatError as error:
         error.cure = "close the outer boundary with segments, or add the switch c to keep the convex hull"
         raise
     except LimitError as error:
         error.cure = "use a smaller angle or a larger area, or end the refinement by the switch S"
         raise
+    arrays, short = made
     if short:
         warnings.warn(
             f"{short} triangles are not as {opts!r} requires: at small angles between segments, or because the limit"
@@ -214,7 +210,9 @@ def triangulate(tri: Mapping[str, Any], opts: str = "", *, threads: int | None =
         )
     if "j" in switches:
         _drop_unused(arrays)
-    return {name: arrays[name] for name in wanted} | _given(tri, graph, switches)
+        for name in _NUMBERED - set(_wanted(switches)):
+            del arrays[name]
+    return arrays
 
 
 def delaunay(pts: ArrayLike) -> NDArray[np.int32]:
@@ -248,6 +246,24 @@ def _unsupported(message: str) -> UnsupportedError:
 
 
 @lru_cache(maxsize=64)
+def _read(opts: str) -> tuple[Mapping[str, Any], TriangleSwitches]:
+    """Return the switches that are obeyed, also as `triangulate_arrays` takes them."""
+    switches = _switches(opts)
+    wanted = _wanted(switches)
+    read = {
+        "lines": "p" in switches,
+        "convex": "c" in switches or "p" not in switches,
+        "min_angle": switches.get("q"),
+        "max_area": switches.get("a"),
+        "region_areas": "a" in switches and switches["a"] is None,
+        "max_added": switches.get("S"),
+        "ignore_holes": "O" in switches,
+        "return_given": "p" in switches and "P" not in switches,
+        "names": list(dict.fromkeys([*wanted, *_NUMBERED])) if "j" in switches else wanted,
+    }
+    return switches, TriangleSwitches(read)
+
+
 def _switches(opts: str) -> Mapping[str, Any]:
     """Return the switches that are obeyed, with their numbers or None."""
     switches: dict[str, Any] = {}
@@ -278,7 +294,7 @@ def _switches(opts: str) -> Mapping[str, Any]:
 
 
 def _graph(tri: Mapping[str, Any], switches: Mapping[str, Any]) -> dict[str, NDArray[Any]]:
-    """Return the arrays of the input that the switches use."""
+    """Return the arrays of the input that the switches use, as `triangulate_arrays` reads them."""
     lines = tri if "p" in switches else {}
     vertices = _floats(tri, "vertices", 2)
     count = len(vertices)
@@ -291,15 +307,16 @@ def _graph(tri: Mapping[str, Any], switches: Mapping[str, Any]) -> dict[str, NDA
         vertices, attributes, markers = vertices[kept], attributes[kept], markers[kept]
         remain = kept[segments].all(axis=1)
         segments, segment_markers = (np.cumsum(kept) - 1)[segments[remain]], segment_markers[remain]
-    return {
+    if len(vertices) < 3:
+        raise usage(f"{len(vertices)} vertices, expected at least three")
+    graph = {
         "vertices": vertices,
-        "vertex_attributes": attributes.reshape(len(vertices), attributes.size // max(len(vertices), 1)),
+        "vertex_attributes": attributes,
         "vertex_markers": markers,
-        "segments": segments.astype(np.uint32, copy=False),
+        "segments": segments.astype(np.int64, copy=False),
         "segment_markers": segment_markers,
-        "holes": _rows({} if "O" in switches else lines, "holes", 2),
-        "regions": _rows(lines, "regions", 4),
     }
+    return graph | {name: _rows(lines, name, width) for name, width in (("holes", 2), ("regions", 4)) if name in lines}
 
 
 def _attributes(tri: Mapping[str, Any], count: int) -> NDArray[np.float64]:
@@ -315,7 +332,7 @@ def _attributes(tri: Mapping[str, Any], count: int) -> NDArray[np.float64]:
 def _segments(lines: Mapping[str, Any], count: int) -> tuple[NDArray[Any], NDArray[np.int32]]:
     """Return the segments between so many vertices, and their markers."""
     if "segments" not in lines and "segment_markers" not in lines:
-        return np.empty((0, 2), np.uint32), np.empty(0, np.int32)
+        return np.empty((0, 2), np.int64), np.empty(0, np.int32)
     segments = _integers(lines, "segments")
     if segments.ndim != 2 or segments.shape[1] != 2:
         raise usage(f"segments of shape {segments.shape}, expected (m, 2)")
@@ -384,12 +401,10 @@ def _markers(tri: Mapping[str, Any], key: str, count: int) -> NDArray[np.int32]:
     return values.reshape(count).astype(np.int32)
 
 
-def _wanted(graph: Mapping[str, NDArray[Any]], switches: Mapping[str, Any]) -> list[str]:
-    """Return the names of the arrays of the result that the switches ask for."""
-    wanted = ["vertices", "vertex_markers", "triangles"]
-    if graph["vertex_attributes"].shape[1]:
-        wanted.append("vertex_attributes")
-    if "A" in switches and len(graph["regions"]):
+def _wanted(switches: Mapping[str, Any]) -> list[str]:
+    """Return the names of the arrays of the result that the switches ask for, if there are attributes."""
+    wanted = ["vertices", "vertex_markers", "triangles", "vertex_attributes"]
+    if "A" in switches:
         wanted.append("triangle_attributes")
     if "n" in switches:
         wanted.append("neighbors")
@@ -403,22 +418,6 @@ def _wanted(graph: Mapping[str, NDArray[Any]], switches: Mapping[str, Any]) -> l
         if switch in switches and dropped in wanted:
             wanted.remove(dropped)
     return wanted
-
-
-def _read(wanted: list[str], switches: Mapping[str, Any]) -> list[str]:
-    """Return the names of the arrays that a result with these is made of."""
-    return list({*wanted, "vertices", "triangles"}) if "j" in switches else wanted
-
-
-def _given(
-    tri: Mapping[str, Any], graph: Mapping[str, NDArray[Any]], switches: Mapping[str, Any]
-) -> dict[str, NDArray[Any]]:
-    """Return the arrays of the input that are in the result."""
-    if "p" not in switches or "P" in switches:
-        return {}
-    holes = _rows(tri, "holes", 2) if "O" in switches else graph["holes"]
-    given = {"holes": holes, "regions": graph["regions"]}
-    return {name: given[name] for name in given if name in tri}
 
 
 def _drop_unused(arrays: dict[str, NDArray[Any]]) -> None:

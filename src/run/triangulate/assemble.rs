@@ -23,7 +23,12 @@ pub(super) fn assemble(
     for (new, face) in (0u32..).zip(kept.clone()) {
         new_number[face] = Some(new);
     }
+    let count = kept.clone().count();
     let mut triangulated = Triangulated {
+        triangles: Vec::with_capacity(count),
+        neighbors: Vec::with_capacity(count),
+        // Three for each two triangles, and a few.
+        edges: Vec::with_capacity(2 * count),
         holes: graph.holes.clone(),
         regions: graph.regions.clone(),
         ..Default::default()

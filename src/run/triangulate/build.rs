@@ -18,7 +18,7 @@ pub(super) struct Built {
     pub(super) vertex_of: Vec<u32>,
     /// The triangles; empty if all points are on one line.
     pub(super) faces: Vec<Face>,
-    /// The vertices along each segment.
+    /// The vertices along each segment that is traced; of the others none.
     pub(super) chains: Vec<Vec<u32>>,
     /// The location of each seed.
     pub(super) seeds: Vec<SeedLocation>,
@@ -59,10 +59,12 @@ pub(super) enum OfAdded {
 }
 
 /// Triangulates points and segments, refines the triangulation if a quality is given, and locates
-/// the seeds. The line id of each segment is its position in the list.
+/// the seeds. The line id of each segment is its position in the list. `is_traced` says
+/// for each segment if it is traced; all are if there are no triangles.
 pub(super) fn build<K: Kernel>(
     points: &[[f64; 2]],
     segments: &[[u32; 2]],
+    is_traced: &[bool],
     seeds: &[[f64; 2]],
     on_crossing: OnCrossing,
     quality: Option<(&Quality<'_>, OfAdded)>,
@@ -72,12 +74,12 @@ pub(super) fn build<K: Kernel>(
     let (t, vertices) =
         ConstrainedDelaunay::from_lines(Plane::<K>::default(), &sites, segments, on_crossing)?;
     let Some((quality, of_added)) = quality else {
-        return Ok(listed(&t, &numbers(&t), &vertices, segments.len(), seeds));
+        return Ok(listed(&t, &numbers(&t), &vertices, is_traced, seeds));
     };
     let before = (of_added == OfAdded::Weights).then(|| t.clone());
     let refined = t.refined(quality);
     let numbers = numbers(&refined);
-    let built = listed(&refined, &numbers, &vertices, segments.len(), seeds);
+    let built = listed(&refined, &numbers, &vertices, is_traced, seeds);
     let why = refined.shortfall().iter().map(|&(_, why)| why);
     Ok(Built {
         added: refined.added().len(),
@@ -102,7 +104,7 @@ fn listed<K: Kernel>(
     t: &ConstrainedDelaunay<Plane<K>>,
     numbers: &[u32],
     vertices: &[VertexId],
-    segment_count: usize,
+    is_traced: &[bool],
     seeds: &[[f64; 2]],
 ) -> Built {
     let number = |v: &VertexId| numbers[v.index()];
@@ -120,12 +122,15 @@ fn listed<K: Kernel>(
         neighbors: [0, 1, 2].map(|i| face_of[t.tds().neighbor(*cell, i).index()]),
         is_constrained: [0, 1, 2].map(|i| t.is_constrained(*cell, i)),
     };
-    let chain = |i: usize| t.chain(LineId::new(i)).iter().map(number).collect();
+    let chain = |(segment, &is_traced): (usize, &bool)| match is_traced || cells.is_empty() {
+        true => t.chain(LineId::new(segment)).iter().map(number).collect(),
+        false => Vec::new(),
+    };
     Built {
         vertices: t.tds().vertices().map(|v| *t.point(v)).collect(),
         vertex_of: vertices.iter().map(number).collect(),
         faces: cells.iter().map(face).collect(),
-        chains: (0..segment_count).map(chain).collect(),
+        chains: is_traced.iter().enumerate().map(chain).collect(),
         seeds: seeds
             .iter()
             .map(|p| locate_seed(t, &face_of, p.map(unsigned_zero)))

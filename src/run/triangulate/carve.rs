@@ -102,7 +102,15 @@ mod tests {
         };
         let seeds = [holes, regions].concat();
         (
-            build::<Adaptive>(&points, &segments, &seeds, OnCrossing::Split, None).unwrap(),
+            build::<Adaptive>(
+                &points,
+                &segments,
+                &[true; 8],
+                &seeds,
+                OnCrossing::Split,
+                None,
+            )
+            .unwrap(),
             graph,
         )
     }

@@ -278,9 +278,14 @@ fn build_with<K: Kernel>(
         0 => OfAdded::Position,
         _ => OfAdded::Weights,
     };
+    // Chains are for markers and attributes, and for the check of plain floating point.
+    let has_attributes = graph.nodes.attribute_count > 0;
+    let needs_all = has_attributes || options.arithmetic == Arithmetic::Fast;
+    let is_traced = graph.segments.iter().map(|s| needs_all || s.marker != 0);
     build::build::<K>(
         &graph.nodes.points,
         &segments,
+        &is_traced.collect::<Vec<bool>>(),
         &seeds,
         options.on_crossing,
         quality.as_ref().map(|quality| (quality, of_added)),
