@@ -57,8 +57,9 @@ impl Precision {
     }
 }
 
-/// Returns a power of two of which all numbers are multiples. `None` if they are so fine that hardly
-/// any difference would be a small multiple of it; most sets of points end with the first of them.
+/// Returns a power of two of which all numbers are multiples. `None` if they are so fine that
+/// hardly any difference would be a small multiple of it; most sets of points end with the first of
+/// them.
 fn unit(mut numbers: impl Iterator<Item = f64>) -> Option<f64> {
     const LARGEST: f64 = (1u64 << 40) as f64;
     numbers.try_fold(f64::INFINITY, |unit, x| {

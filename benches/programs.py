@@ -1,6 +1,6 @@
 """Times of whole programs, from a file on disk to a finished file on disk: breakline beside the others, in turn.
 
-    benches/roads.py FOLDER TILE.laz LINES.shp [--breakline PROGRAM] [--pdal COMMAND] [--runs 5] [--only NAME]
+    benches/programs.py FOLDER TILE.laz LINES.shp [--breakline PROGRAM] [--pdal COMMAND] [--runs 5] [--only NAME]
 
 Outputs and temporary files go to FOLDER. `PROGRAM` and `COMMAND` are split at spaces: `--pdal "chroot DEBIAN pdal"`
 works if FOLDER and the tile have the same paths there. Needs PDAL, the programs of GDAL, and laspy, triangle, pyogrio
