@@ -143,6 +143,13 @@ def test_a_surface_of_lines_alone(tmp_path):
         breakline.tin([])
 
 
+def test_what_is_lost_with_flat_triangles_is_a_warning():
+    rails = [[5 * i, (i % 2) * 0.2 - 300, i] for i in range(40)]
+    field = [[10 * (i % 20) + i // 20 % 3, 10 * (i // 20), 7] for i in range(400)]
+    with pytest.warns(breakline.BreaklineWarning, match="left out at the rim.*points .keep them with max_edge="):
+        breakline.tin([*rails, *field])
+
+
 def test_vertices_know_their_rows():
     points = np.array([[5, 5, 2], [0, 0, 1], [10, 0, 1], [0, 0, 0.5], [10, 10, 3], [0, 10, 3], [0, 0, 0.5]], float)
     tin = breakline.tin(points, breaklines=[[[2, 3, 9], [8, 3, 9]]], max_edge="none")
@@ -240,3 +247,8 @@ def test_rows_are_counted_from_0():
     with pytest.warns(breakline.BreaklineWarning, match="masked"), pytest.raises(ValueError) as refused:
         breakline.tin(masked)
     assert refused.value.location == "row 2", "of the rows that were given"
+    # Too large for the arithmetic: the row is that of all points, whatever their classes.
+    columns = dict(zip("xyz", np.array(SQUARE + [[1e200, 0, 0]], float).T), classification=[5, 2, 2, 2, 2])
+    with pytest.raises(breakline.LimitError, match="1e200") as refused:
+        breakline.tin(columns, classes=2)
+    assert refused.value.location == "row 4"

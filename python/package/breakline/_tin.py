@@ -568,7 +568,8 @@ def tin(
         Points with heights: an array of x, y, z; columns (:class:`Points`, a structured array such as PDAL's, a
         DataFrame or a dict with x, y, z and Classification); a laspy record, whose integers are taken as they are; a
         GeoDataFrame of points; or files, also by globs. Or one file of a surface (``.tin``, ``.ply``, ...), which is
-        then opened. Arrays are copied. Masked rows are left out, and counted in a warning and in the report.
+        then opened. An empty list for a surface of lines alone. Arrays are copied. Masked rows are left out, and
+        counted in a warning and in the report.
     breaklines : paths, arrays (k, 3), shapely geometries, GeoDataFrame, GeoJSON, Contours, or a list of these, optional
         Lines with heights that the surface must follow. ``"edges.shp:FIELD"`` takes heights from an attribute.
     boundary : as breaklines, optional
