@@ -7,6 +7,7 @@ use std::time::SystemTime;
 
 use serde_json::Value;
 use tempfile::TempDir;
+use testkit::lidar;
 use testkit::random::Random;
 
 use super::{bytes, layer, output_of, program, valley};
@@ -336,6 +337,107 @@ fn tiles_are_chosen_again_if_they_have_no_room() {
     let (whole, _) = output_of(&folder, "dem in/*.xyz", "new.tif");
     assert!(bytes(folder.path().join("dem.tif")) == whole);
     run(&folder, words).works(&["dem.tif is written"]);
+}
+
+/// What counts is what the tiles were chosen for, and not what they had before the last update.
+#[test]
+fn tiles_do_not_double_again_and_again() {
+    let folder = squares(2);
+    let words = "dem in/*.xyz --tiles auto --memory 16MB --threads 8 -o dem.tif --update";
+    run(&folder, words).works(&[]);
+    let chosen_again = |number: usize| {
+        let file = folder.path().join(format!("in/a{number}.xyz"));
+        write_square(&file, [1, 1], 9000, number as u64);
+        let run = run(&folder, words);
+        run.works(&[]);
+        run.stderr.contains("the tiles were chosen for")
+    };
+    // 10 000 points have room, and so twice as many.
+    assert_eq!([0, 1, 2].map(chosen_again), [false, false, true]);
+    let (whole, _) = output_of(&folder, "dem in/*.xyz", "new.tif");
+    assert!(bytes(folder.path().join("dem.tif")) == whole);
+}
+
+/// Texts state neither the number of their points nor their extent, and what has no ground is read
+/// to its end to find that out. Those that are as they were are not read again.
+#[test]
+fn files_that_have_not_changed_are_not_read() {
+    let folder = squares(2);
+    let las = folder.path().join("in/unclassified.las");
+    std::fs::write(&las, lidar::las(&lidar::tile([200.0, 0.0], 1), None)).unwrap();
+    // Without a word to the clock: who looks into the files finds something else.
+    let rewrite = |path: &Path, change: &dyn Fn(&mut Vec<u8>)| {
+        let before = std::fs::metadata(path).unwrap().modified().unwrap();
+        let mut content = bytes(path);
+        change(&mut content);
+        std::fs::write(path, content).unwrap();
+        let file = std::fs::File::options().append(true).open(path).unwrap();
+        file.set_modified(before).unwrap();
+    };
+    let of_class = |class: u8| {
+        move |content: &mut Vec<u8>| {
+            let u32_at = |at: usize| u32::from_le_bytes(content[at..at + 4].try_into().unwrap());
+            let (start, length) = (u32_at(96) as usize, content[105] as usize);
+            let at = if content[104] & 0x3f < 6 { 15 } else { 16 };
+            let end = content.len();
+            (start..end)
+                .step_by(length)
+                .filter(|first| first + length <= end)
+                .for_each(|first| content[first + at] = class);
+        }
+    };
+    let words = "dem in/*.xyz in/*.las --tiles auto -o dem.tif --update";
+    run(&folder, words).works(&[]);
+    let before = stamps(&folder, "dem.tif.job");
+    rewrite(&las, &of_class(2));
+    rewrite(&square(&folder, [1, 1]), &|content| content[0] = b'9');
+    run(&folder, words).works(&["dem.tif is written"]);
+    assert_eq!(stamps(&folder, "dem.tif.job"), before);
+}
+
+/// The files of tasks that have to be renamed stay if one of them cannot be.
+#[test]
+fn a_rename_that_fails_loses_no_task() {
+    let folder = squares(3);
+    let words = "dem in/*.xyz --tiles 4x4 -o dem.tif --update --job j";
+    run(&folder, words).works(&[]);
+    let (count, before) = (stamps(&folder, "j").len(), stamps_of(&folder, "j"));
+    // Comes first, and so shifts the numbers of all others.
+    write_square(&folder.path().join("in/0.xyz"), [0, 0], 20, 40);
+    let taken = folder.path().join("j/tasks/000007.task");
+    std::fs::remove_file(&taken).unwrap();
+    std::fs::create_dir(&taken).unwrap();
+    run(&folder, words).fails(1, &["tasks"]);
+    std::fs::remove_dir(&taken).unwrap();
+    // That one, and tiles that have other files now.
+    let kept = |now: BTreeSet<Stamp>| before.intersection(&now).count();
+    let left = kept(stamps_of(&folder, "j"));
+    assert!(left + 5 >= count, "{left} of {count}");
+    run(&folder, words).works(&[]);
+    let numbers: Vec<usize> = stamps(&folder, "j")
+        .into_iter()
+        .map(|(task, _)| task)
+        .collect();
+    assert_eq!(numbers, Vec::from_iter(0..numbers.len()));
+    let (whole, _) = output_of(&folder, "dem in/*.xyz", "new.tif");
+    assert!(bytes(folder.path().join("dem.tif")) == whole);
+    let left = kept(stamps_of(&folder, "j"));
+    assert!(left > 15, "{left} of {count}");
+}
+
+/// Two tasks with one key.
+#[test]
+fn a_file_that_is_given_twice_is_divided_twice() {
+    let folder = squares(2);
+    let words = "dem in/*.xyz in/9_9.xyz --tiles 2x2 --update -o dem.tif";
+    run(&folder, words).works(&[]);
+    let before = stamps(&folder, "dem.tif.job");
+    run(&folder, words).works(&["dem.tif is written"]);
+    assert_eq!(stamps(&folder, "dem.tif.job"), before);
+    std::fs::remove_file(square(&folder, [1, 1])).unwrap();
+    run(&folder, words).works(&[]);
+    let (whole, _) = output_of(&folder, "dem in/*.xyz", "new.tif");
+    assert!(bytes(folder.path().join("dem.tif")) == whole);
 }
 
 /// A file that the job has not written is somebody's: another output, or one beside an output.

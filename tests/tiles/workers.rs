@@ -251,6 +251,64 @@ fn a_job_that_another_host_works_on_is_not_taken_from_it() {
     assert!(folder.path().join("dem.tif").exists());
 }
 
+/// Only leases of a host that is gone, and that expire soon: they are waited for.
+#[test]
+fn leases_that_nobody_renews_are_waited_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let planned = format!("job plan j -- dem {} --tiles 2x2 -o dem.tif", valley());
+    run(&folder, &planned).works(&[]);
+    write_lease(&folder, 3, 13, 0);
+    let waits = "waits for another process that has the job: elsewhere:7 does task 3";
+    run(&folder, "job run j").works(&[waits]);
+    assert!(folder.path().join("dem.tif").exists());
+}
+
+/// Another host updates a job that a worker has, because locks hold on one host only: the worker
+/// goes on with the job as it is planned now.
+#[test]
+fn a_job_that_is_updated_meanwhile_goes_on_as_it_is_now() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, heights: f64| {
+        let points = (0..400).map(|i| {
+            let (x, y) = (f64::from(i % 20), f64::from(i / 20));
+            format!("{x} {y} {}\n", heights + (x * y) % 7.0)
+        });
+        std::fs::write(folder.path().join(name), points.collect::<String>()).unwrap();
+    };
+    write("a.xyz", 1.0);
+    run(&folder, "job plan j -- dem a.xyz --tiles 2x2 -o dem.tif").works(&[]);
+    let copied = |from: &str, to: &str| {
+        let [from, to] = [from, to].map(|name| folder.path().join(name));
+        std::fs::create_dir_all(to.join("tasks")).unwrap();
+        for name in ["plan.json", "command.json"] {
+            let aside = to.join("aside");
+            std::fs::copy(from.join(name), &aside).unwrap();
+            std::fs::rename(aside, to.join(name)).unwrap();
+        }
+    };
+    // While it waits for all of the job, between tasks, and before its first task.
+    for (round, task) in [7, 3, 0].into_iter().enumerate() {
+        copied("j", "k");
+        let _ = std::fs::remove_file(folder.path().join("dem.tif"));
+        for name in files_of(&folder.path().join("j/tasks")) {
+            std::fs::remove_file(folder.path().join("j/tasks").join(name)).unwrap();
+        }
+        write("a.xyz", 10.0 * (round as f64 + 2.0));
+        write_lease(&folder, task, 3600, 0);
+        let mut worker = worker(&folder, "");
+        let waits = || said(&folder).matches("waits for").count() > round;
+        wait_until(&folder, &mut worker, waits);
+        run(&folder, "job run k --update").works(&[]);
+        copied("k", "j");
+        std::fs::remove_file(folder.path().join("dem.tif")).unwrap();
+        std::fs::remove_file(lease(&folder, task)).unwrap();
+        assert!(worker.wait().unwrap().success(), "{}", said(&folder));
+        let (whole, _) = output_of(&folder, "dem a.xyz", "whole.tif");
+        assert!(bytes(folder.path().join("dem.tif")) == whole, "{task}");
+        std::fs::remove_dir_all(folder.path().join("k")).unwrap();
+    }
+}
+
 #[test]
 fn what_workers_find_damaged_is_made_again() {
     let folder = tempfile::tempdir().unwrap();
@@ -440,7 +498,7 @@ fn a_worker_that_is_stopped_does_not_keep_others_from_the_output() {
     let mut lines = vec![
         "does not go on with it",
         "waits for another process that has the job",
-        "the output is written here: for",
+        "the job goes on here: for",
     ];
     let holder = format!(
         "process {} on this machine has the lock of the job and is stopped",
@@ -464,6 +522,69 @@ fn a_worker_that_is_stopped_does_not_keep_others_from_the_output() {
     assert_eq!((done(&folder), written()), before);
     let left = files_of(&folder.path().join("j/tasks"));
     assert!(left.iter().all(|name| name.ends_with(".task")), "{left:?}");
+}
+
+/// Neither does one that has the whole job: its lease expires, and then others do the tasks. If it
+/// goes on, it gives no file its name.
+#[cfg(unix)]
+#[test]
+fn a_run_that_is_stopped_does_not_keep_others_from_the_tasks() {
+    let folder = tempfile::tempdir().unwrap();
+    long_job(&folder);
+    let mut stopped = spawn(&folder, "job run j");
+    wait_until(&folder, &mut stopped, || !done(&folder).is_empty());
+    signal(&stopped, "STOP");
+    let before = done(&folder);
+    // As if it had been stopped for longer.
+    let file = File::options().append(true).open(lease(&folder, 7));
+    let written = SystemTime::now() - Duration::from_secs(100);
+    file.unwrap().set_modified(written).unwrap();
+    let mut other = worker(&folder, "--lease 1");
+    assert!(other.wait().unwrap().success(), "{}", said(&folder));
+    assert!(said(&folder).contains("the job goes on here: for"));
+    let mut after = done(&folder);
+    after.retain(|task, _| before.contains_key(task));
+    assert_eq!(after, before);
+    let written = || {
+        std::fs::metadata(folder.path().join("dem.tif"))
+            .unwrap()
+            .modified()
+    };
+    let before = (done(&folder), written().unwrap());
+    signal(&stopped, "CONT");
+    assert_eq!(stopped.wait().unwrap().code(), Some(4), "{}", said(&folder));
+    assert_eq!((done(&folder), written().unwrap()), before);
+    let left = files_of(&folder.path().join("j/tasks"));
+    assert!(left.iter().all(|name| name.ends_with(".task")), "{left:?}");
+}
+
+/// A lease that is held without the lock counts until it expires, also for who has the lock.
+#[test]
+fn a_lease_without_the_lock_counts_on_its_own_host() {
+    let folder = tempfile::tempdir().unwrap();
+    long_job(&folder);
+    let mut killed = worker(&folder, "--threads 1 --lease 3600");
+    let held = || {
+        let texts = (0..7).map(|task| std::fs::read_to_string(lease(&folder, task)));
+        texts.flatten().find(|text| text.ends_with('}'))
+    };
+    wait_until(&folder, &mut killed, || held().is_some());
+    killed.kill().unwrap();
+    killed.wait().unwrap();
+    let text = held().unwrap();
+    assert!(text.contains(r#""has_lock":true"#), "{text}");
+    let write = |text: &str| std::fs::write(lease(&folder, 3), text).unwrap();
+    let without = text.replace(r#""has_lock":true"#, r#""has_lock":false"#);
+    write(&without);
+    run(&folder, "job clean j").fails(2, &["another process works on this job"]);
+    // Another machine that has the same name.
+    if text.contains(r#""boot":""#) {
+        let (begin, end) = text.split_once(r#""boot":""#).unwrap();
+        write(&format!(r#"{begin}"boot":"other-{end}"#));
+        run(&folder, "job clean j").fails(2, &["another process works on this job"]);
+    }
+    write(&text);
+    run(&folder, "job clean j").works(&[]);
 }
 
 /// A signal ends a worker at once; what it had is free.

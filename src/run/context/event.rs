@@ -50,7 +50,7 @@ pub enum Event<'a> {
         /// These processes, as far as they are known.
         on: &'a [Awaited],
     },
-    /// The output is written although other processes have the job: they give no sign of life.
+    /// This process goes on with a job that other processes have: they give no sign of life.
     GoesOnWithout {
         /// These processes, as far as they are known.
         on: &'a [Awaited],
@@ -95,7 +95,7 @@ impl Event<'_> {
                 age.as_secs()
             )),
             Event::GoesOnWithout { on, after } => Some(format!(
-                "the output is written here: for {} s no process gave a sign of life{}",
+                "the job goes on here: for {} s no other process gave a sign of life{}",
                 after.as_secs(),
                 listed(on)
             )),

@@ -1,6 +1,6 @@
 //! The folder of a job: which files in it are the job's own, and their removal.
 
-use std::io::{ErrorKind, Write};
+use std::io::{ErrorKind, Read, Write};
 use std::path::Path;
 
 use serde_json::Value;
@@ -39,7 +39,8 @@ pub(super) struct StoredPlan {
     pub(super) plan: Value,
     /// The number of tasks.
     pub(super) tasks: u64,
-    /// The numbers of all files of tasks are below this: an earlier plan may have had more.
+    /// The numbers of all files of tasks are below this: an earlier plan may have had more, and an
+    /// update that was interrupted has left files beyond the last.
     pub(super) numbers: u64,
     /// The checksum of the command that is kept with the job, if there is one.
     pub(super) command: Option<u64>,
@@ -111,6 +112,30 @@ impl StoredPlan {
             plan: value,
             command,
         })
+    }
+}
+
+/// Returns an error unless the plan in a folder is the one with this checksum, which is all that is
+/// read.
+///
+/// # Errors
+/// If it is not in the folder any more.
+pub(super) fn require_plan(sum: u32, folder: &Path) -> Result<()> {
+    let path = folder.join(PLAN);
+    let stated = format!("{sum:08x}\n");
+    let mut begin = vec![0; stated.len()];
+    let read = std::fs::File::open(&path).and_then(|mut file| file.read_exact(&mut begin));
+    match read {
+        Ok(()) if begin == stated.as_bytes() => Ok(()),
+        Err(error)
+            if !matches!(
+                error.kind(),
+                ErrorKind::NotFound | ErrorKind::NotADirectory | ErrorKind::UnexpectedEof
+            ) =>
+        {
+            Err(Error::from(error).in_file(path))
+        }
+        _ => Err(replaced(folder)),
     }
 }
 

@@ -1,9 +1,12 @@
 //! What a job is planned from: the inputs of a request, by what their headers state.
 
+use std::path::Path;
+
 use super::division::Division;
+use super::fullest::fullest;
 use super::lines::{self, Known};
 use super::plan::{BYTES_A_POINT, OtherFile, Plan, extent_of, others, require_tiled};
-use super::planned_file::{PlannedFile, looked_at, planned, require_folder};
+use super::planned_file::{KnownFiles, PlannedFile, looked_at, planned, require_folder};
 use super::request::options_of;
 use super::sampled;
 use super::tile_options::{Look, TileOptions};
@@ -66,10 +69,13 @@ pub(super) struct Tiling {
     pub(super) frame: Option<Frame>,
     pub(super) blocks_before: [u64; 2],
     pub(super) task_memory: u64,
+    /// About how many points the fullest tile had when the tiles were chosen.
+    pub(super) fullest: u64,
 }
 
 impl<'a> Inputs<'a> {
-    /// Looks at the inputs: at headers, and at whole files that do not state what has to be known.
+    /// Looks at the inputs: at headers, and at whole files that do not state what has to be known,
+    /// unless an earlier plan knows it.
     ///
     /// # Errors
     /// If the request has something that tiles do not have yet, or an input cannot be read; if
@@ -79,13 +85,14 @@ impl<'a> Inputs<'a> {
         systems: &'a SystemOptions,
         verb: &'a dyn Verb,
         options: &'a TileOptions,
+        known_files: &KnownFiles,
         journal: &Journal,
     ) -> Result<Self> {
         require_tiled(request)?;
         let others = others(request, verb)
             .map(|path| OtherFile::of(path))
             .collect::<Result<_>>()?;
-        let opened = Opened::of(request, options, journal)?;
+        let opened = Opened::of(request, options, known_files, journal)?;
         let layers = lines::layers_of(request, journal)?;
         let mut stated = opened.stated(request, systems, journal)?;
         let of_points = stated.len();
@@ -97,7 +104,7 @@ impl<'a> Inputs<'a> {
             classes,
             files,
             skipped,
-        } = opened.looked_at(request, systems, &transforms, &journal.context)?;
+        } = opened.looked_at(request, systems, &transforms, known_files, &journal.context)?;
         let extent = extent_of(&files);
         let of_layers = (layers_from.as_slice(), crs.as_ref());
         let known = Known::of_layers(&layers, request, of_layers, &extent, journal)?;
@@ -147,11 +154,13 @@ impl<'a> Inputs<'a> {
             let whole = frame.on_its_lines([0, 0], [side(frame.width), side(frame.height)]);
             whole.unwrap_or(frame)
         });
+        let tiles: Vec<Option<u32>> = (0..self.files.len() as u32)
+            .map(|tile| are_tiles.then_some(tile))
+            .collect();
         Ok(Tiling {
+            fullest: fullest(&layout, &self.files, tiles.iter().copied()),
             layout,
-            tiles: (0..self.files.len() as u32)
-                .map(|tile| are_tiles.then_some(tile))
-                .collect(),
+            tiles,
             frame,
             blocks_before: [0; 2],
             task_memory,
@@ -179,6 +188,7 @@ impl<'a> Inputs<'a> {
             frame: tiling.frame,
             blocks_before: tiling.blocks_before,
             task_memory: tiling.task_memory,
+            fullest: tiling.fullest,
         };
         plan.note(self.request, self.verb, &self.known, journal);
         (plan, self.known)
@@ -246,14 +256,19 @@ struct Found {
 }
 
 impl Opened {
-    fn of(request: &TinRequest, options: &TileOptions, journal: &Journal) -> Result<Self> {
+    fn of(
+        request: &TinRequest,
+        options: &TileOptions,
+        known: &KnownFiles,
+        journal: &Journal,
+    ) -> Result<Self> {
         let closed = match options.bad {
             BadFiles::Skip => closed(request, &journal.context)?,
             BadFiles::Refuse => Vec::new(),
         };
         let (numbers, inputs) = opened(request, &closed);
         let points = PointFiles::open(&inputs, request.read, journal)?.with_bad(options.bad);
-        let classes = classes_of(&points, request, options, journal)?;
+        let classes = classes_of(&points, request, options, known, journal)?;
         Ok(Opened {
             points,
             numbers,
@@ -283,13 +298,21 @@ impl Opened {
         request: &TinRequest,
         systems: &SystemOptions,
         transforms: &Transforms,
+        known: &KnownFiles,
         context: &Context,
     ) -> Result<Found> {
         let mut of_files = transforms.by_file.iter();
         let mut transform = || transforms.numbered(of_files.next().copied().flatten());
         let (mut files, mut skipped) = (Vec::new(), Vec::new());
         for (number, stated) in self.numbers.iter().zip(self.points.stated_extents()) {
-            files.extend(planned(*number, request, stated, transform(), context)?);
+            files.extend(planned(
+                *number,
+                request,
+                stated,
+                transform(),
+                known,
+                context,
+            )?);
         }
         for file in &self.closed {
             let transform = transform();
@@ -317,6 +340,7 @@ fn classes_of(
     points: &PointFiles,
     request: &TinRequest,
     options: &TileOptions,
+    known: &KnownFiles,
     journal: &Journal,
 ) -> Result<Vec<u8>> {
     let are_open = request.classes == Classes::GroundOrAll;
@@ -329,7 +353,8 @@ fn classes_of(
             ]),
         );
     }
-    let classes = points.used_classes(&request.classes, journal)?;
+    let may_have_ground = |path: &Path| known.may_have_ground(path);
+    let classes = points.used_classes(&request.classes, may_have_ground, journal)?;
     if request.classes == Classes::AllButNoise && points.have_classes() {
         journal.add(Notice::NoiseUnused);
     }
@@ -440,7 +465,8 @@ impl Closed {
         transform: FileTransform,
         context: &Context,
     ) -> Result<Option<PlannedFile>> {
-        let file = planned(self.number, request, extent, transform, context)?;
+        let known = KnownFiles::default();
+        let file = planned(self.number, request, extent, transform, &known, context)?;
         let states_system = self.stated.as_ref().is_some_and(|info| info.crs.is_some());
         let is_of_any_system = !states_system && systems.assign.is_none();
         Ok(file.map(|file| PlannedFile {

@@ -74,6 +74,13 @@ fn host() -> String {
     std::env::var("COMPUTERNAME").unwrap_or_default()
 }
 
+/// Returns what this system has chosen for itself when it started, as Linux does: many machines are
+/// called `localhost`.
+fn boot() -> Option<String> {
+    let id = std::fs::read_to_string("/proc/sys/kernel/random/boot_id").ok()?;
+    Some(id.trim().to_owned()).filter(|id| !id.is_empty())
+}
+
 /// The lease of a task, as it is found.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
@@ -84,16 +91,24 @@ pub struct TaskLease {
     pub age: Duration,
     /// True if that is longer ago than it states: another worker may take the task.
     pub has_expired: bool,
+    /// After how long it expires unless it is written again.
+    pub left: Duration,
 }
 
 /// What the file of a lease says.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 struct Stated {
     worker: Worker,
+    /// What tells its host from others of that name; `None` where the system does not say.
+    #[serde(default)]
+    boot: Option<String>,
     /// So that no process is taken for an earlier one.
     id: u64,
     /// In milliseconds.
     expires_after: u64,
+    /// True if the process has the lock of the job, or its part of it.
+    #[serde(default)]
+    has_lock: bool,
 }
 
 /// The file of a lease.
@@ -138,6 +153,7 @@ impl FoundLease {
             worker: stated.map(|stated| stated.worker.clone()),
             age: age.unwrap_or_default(),
             has_expired: distance > lasts,
+            left: lasts.saturating_sub(distance),
         }
     }
 
@@ -243,14 +259,16 @@ fn found_in(folder: &Path) -> Result<BTreeMap<usize, FoundLease>> {
     Ok(all)
 }
 
-/// Which processes on this host may have leases.
+/// What a process has of the lock of a job, which holds on its host at least.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Neighbors {
-    /// Any.
-    Heeded,
-    /// None: a lock proves that this process has the job alone on its host. What was left of others
-    /// is that of processes which were killed.
-    Gone,
+pub(super) enum HostLock {
+    /// All of it. So leases of this host whose processes had a part of it are left over from
+    /// processes that were killed.
+    Whole,
+    /// A part, together with others.
+    Shared,
+    /// None: the file system has no locks, or the process that has it gives no sign of life.
+    Lacking,
 }
 
 /// The leases of this process, which are written again and again as long as this or one of them
@@ -264,7 +282,7 @@ struct Shared {
     stated: Stated,
     text: String,
     clock: FileClock,
-    neighbors: Neighbors,
+    lock: HostLock,
     /// The files of those that it has, by the numbers of their tasks.
     held: Mutex<BTreeMap<usize, Arc<File>>>,
     /// Ends the thread that writes them when it is dropped.
@@ -276,11 +294,13 @@ impl Leases {
     ///
     /// # Errors
     /// If no thread can be started that writes them.
-    pub(super) fn begin(folder: &Path, lease: Duration, neighbors: Neighbors) -> Result<Self> {
+    pub(super) fn begin(folder: &Path, lease: Duration, lock: HostLock) -> Result<Self> {
         let stated = Stated {
             worker: Worker::here(),
+            boot: boot(),
             id: RandomState::new().hash_one(std::process::id()),
             expires_after: u64::try_from(lease.as_millis()).unwrap_or(u64::MAX),
+            has_lock: lock != HostLock::Lacking,
         };
         let text = serde_json::to_string(&stated).map_err(std::io::Error::from)?;
         let (running, ended) = channel::<()>();
@@ -289,7 +309,7 @@ impl Leases {
             stated,
             text,
             clock: FileClock::of(folder),
-            neighbors,
+            lock,
             held: Mutex::default(),
             _running: running,
         });
@@ -313,32 +333,25 @@ impl Leases {
         Ok(found.is_none_or(|found| self.0.judged(&found).has_expired))
     }
 
-    /// Like [`is_free`](Self::is_free), but of processes on other hosts only.
+    /// Like [`is_free`](Self::is_free), but heeds no process on this host that had the lock.
     pub(super) fn is_free_elsewhere(&self, task: usize) -> Result<bool> {
         let found = FoundLease::read(&lease_path(&self.0.folder, task))?;
-        Ok(found.is_none_or(|found| {
-            let lease = self.0.judged(&found);
-            lease.has_expired || self.0.is_here(&lease)
-        }))
+        Ok(found
+            .is_none_or(|found| self.0.had_lock_here(&found) || self.0.judged(&found).has_expired))
     }
 
-    /// Returns the leases of other processes that have not expired, by the numbers of their tasks.
-    /// Those that are not complete do not count: their processes look for leases once they are.
+    /// Returns true if another process has a lease that has not expired. Those that are not
+    /// complete do not count: their processes look for leases once they are.
     ///
     /// # Errors
     /// If the files cannot be listed or read.
-    pub(super) fn of_others(&self) -> Result<BTreeMap<usize, TaskLease>> {
+    pub(super) fn has_others(&self) -> Result<bool> {
         let is_other = |found: &FoundLease| {
             let stated = found.stated.as_ref();
             stated.is_some_and(|stated| *stated != self.0.stated)
+                && !self.0.judged(found).has_expired
         };
-        let mut others = found_in(&self.0.folder)?
-            .into_iter()
-            .filter(|(_, found)| is_other(found))
-            .map(|(task, found)| (task, self.0.judged(&found)))
-            .collect::<BTreeMap<_, _>>();
-        others.retain(|_, lease| !lease.has_expired);
-        Ok(others)
+        Ok(found_in(&self.0.folder)?.values().any(is_other))
     }
 
     /// Takes the lease of a task; `None` if another process has it.
@@ -409,14 +422,17 @@ impl Shared {
     fn judged(&self, found: &FoundLease) -> TaskLease {
         let own = Duration::from_millis(self.stated.expires_after);
         let mut lease = found.at(self.clock.now(), own);
-        lease.has_expired |= self.neighbors == Neighbors::Gone && self.is_here(&lease);
+        lease.has_expired |= self.lock == HostLock::Whole && self.had_lock_here(found);
         lease
     }
 
-    /// Returns true if a lease is that of a process on this host.
-    fn is_here(&self, lease: &TaskLease) -> bool {
-        let worker = lease.worker.as_ref();
-        worker.is_some_and(|worker| worker.host == self.stated.worker.host)
+    /// Returns true if a lease is that of a process on this host which had the lock of the job.
+    fn had_lock_here(&self, found: &FoundLease) -> bool {
+        found.stated.as_ref().is_some_and(|stated| {
+            let is_here =
+                stated.boot == self.stated.boot && stated.worker.host == self.stated.worker.host;
+            is_here && stated.has_lock
+        })
     }
 }
 
@@ -431,6 +447,11 @@ pub(super) struct Lease {
 }
 
 impl Lease {
+    /// Returns the leases of this process.
+    pub(super) fn leases(&self) -> &Leases {
+        &self.leases
+    }
+
     /// Returns an error if another process may have the task now: this one was stopped for longer
     /// than the lease lasts.
     pub(super) fn confirm(&self) -> Result<()> {

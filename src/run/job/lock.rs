@@ -5,11 +5,12 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use super::awaited;
-use super::lease::{LEASE, Lease, Leases, Neighbors};
+use super::lease::{HostLock, LEASE, Lease, Leases};
 use super::paths::{LOCK, tasks_in};
+use super::pause::Pause;
 use crate::error::{Error, Result, Setting, wording};
 use crate::run::context::Context;
-use crate::run::context::event::Awaited;
+use crate::run::context::event::{Event, listed};
 
 /// A job that this process has alone: by the lock, which may hold on this host only or not at all,
 /// and by the lease of the last task, the output, which is seen everywhere.
@@ -69,6 +70,17 @@ impl JobLock {
         &self.lease
     }
 
+    /// Takes the lease of another task, which is the last one once the job is planned again.
+    pub(super) fn take_next(&self, last: usize, folder: &Path) -> Result<Lease> {
+        let taken = self.lease.leases().take(last)?;
+        taken.ok_or_else(|| busy(folder, last))
+    }
+
+    /// Has the job by the lease of what is the last task now.
+    pub(super) fn moved_to(self, lease: Lease) -> Self {
+        JobLock { lease, ..self }
+    }
+
     /// Returns an error if another process may have the job now: this one was stopped for longer
     /// than its lease lasts. Asked before files get their names.
     ///
@@ -86,22 +98,37 @@ impl SharedLock {
         patiently(folder, last, || Self::try_take(folder), context)
     }
 
-    /// Locks a folder together with others; returns the file that could not be locked if a process
-    /// has it alone.
+    /// Locks a folder together with others.
     pub(super) fn try_take(folder: &Path) -> Result<Taken<Self>> {
         let file = open(folder)?;
         Ok(match judged(file.try_lock_shared(), &file, folder)? {
-            Locked::No => Err(file),
-            locked => Ok(SharedLock {
+            Locked::No => Taken::Locked(file),
+            locked => Taken::Yes(SharedLock {
                 _file: file,
                 locked,
             }),
         })
     }
 
+    /// Works in a folder without the lock, because the process that has it gives no sign of life.
+    pub(super) fn without(file: File) -> Self {
+        SharedLock {
+            _file: file,
+            locked: Locked::No,
+        }
+    }
+
+    /// Returns what this process has of the lock.
+    pub(super) fn of_host(&self) -> HostLock {
+        match self.locked {
+            Locked::Yes => HostLock::Shared,
+            Locked::No | Locked::Unknown => HostLock::Lacking,
+        }
+    }
+
     /// Returns true unless a process that does not see this lock has the whole job, and so the
-    /// lease of the last task. With locks, such a lease of this host was left by a process that was
-    /// killed.
+    /// lease of the last task. With locks, such a lease of a process on this host that had the lock
+    /// was left when that was killed.
     pub(super) fn permits(&self, leases: &Leases, last: usize) -> Result<bool> {
         match self.locked {
             Locked::Yes => leases.is_free_elsewhere(last),
@@ -110,10 +137,19 @@ impl SharedLock {
     }
 }
 
-/// What was taken, or the file that could not be locked.
-type Taken<T> = std::result::Result<T, File>;
+/// What became of an attempt to take a folder.
+pub(super) enum Taken<T> {
+    Yes(T),
+    /// Another process has locked this file. It stays open while it is waited for, so that it can
+    /// be seen who waits.
+    Locked(File),
+    /// It can be locked, but other processes have leases.
+    Leased,
+}
 
-/// Tries again and again to take a folder, for some seconds.
+/// Tries again and again to take a folder, for some seconds; then only as long as nothing but
+/// leases is waited for that expire soon, since their processes have given no sign of life
+/// meanwhile.
 fn patiently<T>(
     folder: &Path,
     last: usize,
@@ -121,32 +157,38 @@ fn patiently<T>(
     context: &Context,
 ) -> Result<T> {
     let start = Instant::now();
+    let mut reported = None;
     loop {
         context.check()?;
-        // The file stays open meanwhile, so that it can be seen who waits.
-        let _waits = match take()? {
-            Ok(lock) => return Ok(lock),
-            Err(file) => file,
-        };
-        if start.elapsed() > PATIENCE {
-            let who: Vec<String> = awaited::of_job(folder, last)
-                .iter()
-                .map(Awaited::to_string)
-                .collect();
-            let who = if who.is_empty() {
-                String::new()
-            } else {
-                format!(": {}", who.join("; "))
-            };
-            let said = format!("another process works on this job{who}");
-            return Err(Error::usage(said).in_file(folder).cure(wording![
-                "wait for it, or name another folder (",
-                Setting::Job,
-                ")"
-            ]));
+        let waits = take()?;
+        if let Taken::Yes(lock) = waits {
+            return Ok(lock);
+        }
+        let waited = start.elapsed();
+        if waited > PATIENCE {
+            let is_leased = matches!(waits, Taken::Leased);
+            if !is_leased || !awaited::leases_expire(folder, waited, LEASE) {
+                return Err(busy(folder, last));
+            }
+            if Pause::is_time_to_say(&mut reported) {
+                let on = &awaited::of_job(folder, last)[..];
+                context.monitor.event(&Event::WaitsForJob { on });
+            }
         }
         std::thread::sleep(PATIENCE / 50);
     }
+}
+
+#[cold]
+fn busy(folder: &Path, last: usize) -> Error {
+    let who = listed(&awaited::of_job(folder, last));
+    Error::usage(format!("another process works on this job{who}"))
+        .in_file(folder)
+        .cure(wording![
+            "wait for it, or name another folder (",
+            Setting::Job,
+            ")"
+        ])
 }
 
 /// Opens the file that is locked. It stays empty: a folder without a job may have such a file, too.
@@ -162,29 +204,29 @@ fn open(folder: &Path) -> Result<File> {
     file.map_err(|e| Error::from(e).in_file(path))
 }
 
-/// Takes a folder for this process alone; returns the file of the lock if another one works in it.
+/// Takes a folder for this process alone.
 fn take_whole(folder: &Path, last: usize) -> Result<Taken<JobLock>> {
     let file = open(folder)?;
-    let neighbors = match judged(file.try_lock(), &file, folder)? {
-        Locked::No => return Ok(Err(file)),
-        Locked::Yes => Neighbors::Gone,
-        Locked::Unknown => Neighbors::Heeded,
+    let lock = match judged(file.try_lock(), &file, folder)? {
+        Locked::No => return Ok(Taken::Locked(file)),
+        Locked::Yes => HostLock::Whole,
+        Locked::Unknown => HostLock::Lacking,
     };
     let tasks = tasks_in(folder);
     std::fs::create_dir_all(&tasks).map_err(|e| Error::from(e).in_file(&tasks))?;
-    let leases = Leases::begin(folder, LEASE, neighbors)?;
+    let leases = Leases::begin(folder, LEASE, lock)?;
     // Asked first, so that this one is in nobody's way while it waits.
-    if leases.of_others()?.is_empty()
+    if !leases.has_others()?
         && let Some(lease) = leases.take(last)?
         // Processes that take a task from now on see that lease. Those that took one before are
         // seen now.
-        && leases.of_others()?.is_empty()
+        && !leases.has_others()?
     {
-        return Ok(Ok(JobLock { lease, _file: file }));
+        return Ok(Taken::Yes(JobLock { lease, _file: file }));
     }
     // Others on this host need not wait; where there are no locks, this fails.
     let _ = file.unlock();
-    Ok(Err(file))
+    Ok(Taken::Leased)
 }
 
 fn judged(
@@ -223,4 +265,26 @@ fn is_at(open: &Metadata, path: &Path) -> bool {
 #[cfg(not(unix))]
 fn is_at(_open: &Metadata, _path: &Path) -> bool {
     true
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::job::paths::lease_path;
+
+    /// The number of the last task changes with the plan.
+    #[test]
+    fn a_job_that_is_planned_again_has_the_lease_of_an_output_all_the_time() {
+        let folder = tempfile::tempdir().unwrap();
+        let lock = JobLock::whole(folder.path(), 3, &Context::default()).unwrap();
+        let leased = || [3, 5].map(|task| lease_path(folder.path(), task).exists());
+        assert_eq!(leased(), [true, false]);
+        let next = lock.take_next(5, folder.path()).unwrap();
+        assert_eq!(leased(), [true, true]);
+        let lock = lock.moved_to(next);
+        assert_eq!(leased(), [false, true]);
+        lock.confirm().unwrap();
+        drop(lock);
+        assert_eq!(leased(), [false, false]);
+    }
 }

@@ -20,6 +20,7 @@ mod contours;
 mod division;
 mod done;
 mod folder;
+mod fullest;
 mod holes;
 mod inputs;
 mod keys;
@@ -31,6 +32,7 @@ mod not_in_tiles;
 mod notes;
 mod output;
 mod paths;
+mod pause;
 mod plan;
 mod plan_json;
 mod planned_file;
@@ -54,7 +56,7 @@ use std::hash::{BuildHasher, RandomState};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
-use serde_json::json;
+use serde_json::{Value, json};
 
 pub use self::command::JobCommand;
 pub use self::division::Division;
@@ -74,6 +76,7 @@ pub use self::output::JobReport;
 use self::paths::tasks_in;
 use self::plan::Plan;
 pub use self::planned_file::FileState;
+use self::planned_file::KnownFiles;
 use self::readers::Readers;
 pub use self::stored_job::{FoundJob, StoredJob};
 use self::task_file::TaskName;
@@ -158,7 +161,8 @@ impl Job {
         let (request, systems) = tiled(wanted)?;
         let verb = wanted.verb.as_ref();
         let journal = Journal::new(context);
-        let inputs = Inputs::read(request, systems, verb, options, &journal)?;
+        let known = KnownFiles::default();
+        let inputs = Inputs::read(request, systems, verb, options, &known, &journal)?;
         let tiling = inputs.tiled(&journal.context)?;
         let (plan, known) = inputs.planned(tiling, &journal);
         let known = OnceLock::from(known);
@@ -244,16 +248,26 @@ impl Job {
             std::fs::write(self.folder.join(COMMAND), command).map_err(named)?;
         }
         // Last, because a folder is a job from here on.
-        let mut plan = self.plan.to_json();
-        plan["tasks"] = json!(self.task_count());
-        plan["numbers"] = json!(self.task_count());
-        plan["command"] = json!(command.map(|command| checksum(command.as_bytes())));
         self.id = new_id();
         self.name = self.id;
-        plan["id"] = json!(self.id);
-        plan["name"] = json!(self.name);
+        let command = command.map(|command| checksum(command.as_bytes()).into());
+        let plan = self.stored_plan(0, command);
         self.sum = folder::write_plan(&self.folder, &plan.to_string())?;
         Ok(lock)
+    }
+
+    /// Returns the plan as it is stored. The files of earlier plans have numbers below `numbers`,
+    /// and `command` is the checksum of what is kept with the job.
+    fn stored_plan(&self, numbers: u64, command: Option<u64>) -> Value {
+        let tasks = self.task_count() as u64;
+        let mut plan = self.plan.to_json();
+        plan["tasks"] = json!(tasks);
+        // While an update renames files, they have numbers beyond the last.
+        plan["numbers"] = json!(numbers.max(2 * tasks));
+        plan["command"] = json!(command);
+        plan["id"] = json!(self.id);
+        plan["name"] = json!(self.name);
+        plan
     }
 
     /// Checks that the file of points that a task reads, if any, is as the task has read it or as

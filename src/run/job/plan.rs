@@ -77,6 +77,8 @@ pub(super) struct Plan {
     pub(super) blocks_before: [u64; 2],
     /// The memory of one task.
     pub(super) task_memory: u64,
+    /// About how many points the fullest tile had when the tiles were chosen.
+    pub(super) fullest: u64,
 }
 
 /// Returns an error if the request has something that tiles do not have yet.

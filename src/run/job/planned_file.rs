@@ -1,5 +1,6 @@
 //! Files of points as a plan knows them, and the states of files.
 
+use std::collections::BTreeMap;
 use std::fs::Metadata;
 use std::path::{Path, PathBuf};
 use std::time::UNIX_EPOCH;
@@ -136,6 +137,42 @@ pub(super) fn points_of_text(path: &Path) -> u64 {
     length_of(path) / BYTES_A_POINT_OF_TEXT
 }
 
+/// The files of points of an earlier plan, so that they are not read again only to learn the same.
+#[derive(Default)]
+pub(super) struct KnownFiles<'a> {
+    /// By the checksums of their names.
+    files: BTreeMap<u32, &'a PlannedFile>,
+    /// True if none of them has a ground point, for a request that depends on that.
+    have_no_ground: bool,
+}
+
+impl<'a> KnownFiles<'a> {
+    /// Returns the files of a plan that uses these classes.
+    pub(super) fn of(files: &'a [PlannedFile], classes: &[u8]) -> Self {
+        KnownFiles {
+            files: files.iter().map(|file| (file.name, file)).collect(),
+            have_no_ground: classes.len() > 1,
+        }
+    }
+
+    /// Returns a file as it was planned with, if it has not changed since.
+    fn unchanged(&self, path: &Path) -> Option<&'a PlannedFile> {
+        let file = self.files.get(&name_of(path).ok()?)?;
+        (state_of(path).ok()? == file.state).then_some(*file)
+    }
+
+    /// Returns true unless a file is known to have no ground point.
+    pub(super) fn may_have_ground(&self, path: &Path) -> bool {
+        !self.have_no_ground || self.unchanged(path).is_none()
+    }
+}
+
+/// Returns the checksum of the whole name of a file.
+fn name_of(path: &Path) -> Result<u32> {
+    let whole = std::path::absolute(path).map_err(|e| Error::from(e).in_file(path))?;
+    Ok(checksum(whole.as_os_str().as_encoded_bytes()))
+}
+
 /// Returns what the plan has to know of a file, whose points a transform reprojects; `None` if it
 /// has no points.
 pub(super) fn planned(
@@ -143,6 +180,7 @@ pub(super) fn planned(
     request: &TinRequest,
     stated: (Option<u64>, Option<Bounds>),
     transform: FileTransform,
+    known: &KnownFiles,
     context: &Context,
 ) -> Result<Option<PlannedFile>> {
     let input = &request.points[number];
@@ -155,7 +193,11 @@ pub(super) fn planned(
     };
     let (count, bounds) = match stated {
         Some(stated) => stated,
-        None => measured(input, request, transform, context).map_err(|e| e.in_file(path))?,
+        // Of one that is reprojected, the extent depends on the system of the result, too.
+        None => match known.unchanged(path).filter(|_| transform.from().is_none()) {
+            Some(file) if file.from.is_none() => (file.count, file.bounds()),
+            _ => measured(input, request, transform, context).map_err(|e| e.in_file(path))?,
+        },
     };
     if count == 0 {
         return Ok(None);
@@ -172,11 +214,10 @@ pub(super) fn planned(
         );
     }
     let [min, max] = [bounds.min, bounds.max].map(|[x, y, _]| [x, y]);
-    let whole = std::path::absolute(path).map_err(|e| Error::from(e).in_file(path))?;
     Ok(Some(PlannedFile {
         input: number,
         path: path.to_path_buf(),
-        name: checksum(whole.as_os_str().as_encoded_bytes()),
+        name: name_of(path)?,
         tile: None,
         state,
         count,
@@ -199,7 +240,8 @@ pub(super) fn looked_at(
         let source = open::points(input, request.read, context)?;
         let info = source.info();
         let stated = (info.count, info.bounds);
-        planned(number, request, stated, transform, context)
+        let known = KnownFiles::default();
+        planned(number, request, stated, transform, &known, context)
     };
     look().map_err(|e| e.in_file(input.path()))
 }

@@ -128,6 +128,15 @@ impl StoredJob {
         self.found.sum.store(job.sum, Ordering::Relaxed);
     }
 
+    /// Returns what takes the place of a job in its folder: the same one, planned again for inputs
+    /// that have changed. `None` if that has not happened.
+    pub(crate) fn updated(job: &Job) -> Result<Option<Self>> {
+        let stored = StoredPlan::read(&job.folder)?;
+        let updated = stored.filter(|stored| stored.name == job.name && stored.sum != job.sum);
+        let of = |stored: &StoredPlan| Self::of(FoundJob::new(&job.folder, stored.sum)?, stored);
+        updated.as_ref().map(of).transpose()
+    }
+
     /// Returns the job without what it was planned for.
     pub fn found(&self) -> &FoundJob {
         &self.found

@@ -5,18 +5,17 @@
 //! them, unless it is alone in one. So nearly all tasks have the keys that they had, and find their
 //! files.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-use serde_json::json;
-
 use super::folder::{self, COMMAND, NEXT_COMMAND, StoredPlan};
+use super::fullest::fullest;
 use super::inputs::{Inputs, Tiling, most_points};
 use super::lock::JobLock;
 use super::paths::{task_of, task_path, tasks_in};
 use super::plan::Plan;
-use super::planned_file::PlannedFile;
-use super::task_file::{TaskFile, TaskName, name_in, unfinished_in};
+use super::planned_file::{KnownFiles, PlannedFile};
+use super::task_file::{TaskFile, TaskName, name_in};
 use super::tile_options::TileOptions;
 use super::{Job, JobCommand, command, new_id, other_version, request, tiled};
 use crate::data::Frame;
@@ -26,11 +25,11 @@ use crate::run::sources::checksum::checksum;
 use crate::run::sources::point_files::BadFiles;
 use crate::run::verbs::WriteRequest;
 use crate::terrain::Canvas;
-use crate::terrain::tiles::{Spread, Tile, TileLayout, Work};
+use crate::terrain::tiles::Spread;
 
-/// Tiles are chosen again once one of them has more points than this times what it had before, and
-/// than this times the most that a tile may have.
-const GROWTH: f64 = 2.0;
+/// Tiles are chosen again once one of them has more points than this times the most that any had
+/// when they were chosen, and than this times the most that a tile may have.
+const GROWTH: u64 = 2;
 
 /// A job that was planned again, because its inputs may have changed. It is not in its folder yet.
 #[derive(Debug)]
@@ -74,7 +73,9 @@ impl Job {
             ..options.clone()
         };
         let journal = Journal::new(context);
-        let inputs = Inputs::read(points, systems, asked.verb.as_ref(), &options, &journal)?;
+        let known = KnownFiles::of(&old.files, &old.classes);
+        let verb = asked.verb.as_ref();
+        let inputs = Inputs::read(points, systems, verb, &options, &known, &journal)?;
         let kept = inputs.tiled_like(&old);
         let keeps_tiles = kept.is_some();
         let tiling = kept.map_or_else(|| inputs.tiled(&journal.context), Ok)?;
@@ -102,51 +103,70 @@ impl Job {
     }
 
     /// Gives the files of tasks the names that they have in this plan, and removes those of tasks
-    /// that are not in it. `before` is what named the job before.
+    /// that are not in it. `before` is the plan before.
     ///
-    /// An interruption loses what is not in its place yet, and nothing else: every file has the key
-    /// of its task.
-    fn rename_files(&self, before: u64) -> Result<()> {
+    /// An error or an interruption loses nothing: every file has the key of its task, and those on
+    /// their way have numbers beyond the last.
+    fn rename_files(&self, before: &StoredPlan) -> Result<()> {
         let tasks = tasks_in(&self.folder);
         let named = |e: std::io::Error| Error::from(e).in_file(&tasks);
-        let mut numbers: BTreeMap<String, usize> = (0..self.task_count())
-            .map(|task| (self.key(task), task))
-            .collect();
-        let mut moved = Vec::new();
-        let entries = std::fs::read_dir(&tasks).map_err(named)?;
-        let mut found: Vec<PathBuf> = entries
-            .map(|entry| entry.map(|entry| entry.path()))
-            .collect::<std::io::Result<_>>()
-            .map_err(named)?;
-        found.sort_unstable();
-        for path in found {
-            let Some(number) = task_of(&path) else {
-                continue;
-            };
+        let mut free: BTreeMap<String, BTreeSet<usize>> = BTreeMap::new();
+        for task in 0..self.task_count() {
+            free.entry(self.key(task)).or_default().insert(task);
+        }
+        let mut elsewhere = Vec::new();
+        for (number, path) in task_files(&tasks).map_err(named)? {
             match name_in(&path) {
-                Some((job, key)) if job == self.id => match numbers.remove(&key) {
-                    Some(now) if !self.has_read_planned(now, &path) => {
+                Some((job, key)) if job == self.id => {
+                    let is_there = free.get_mut(&key).is_some_and(|free| free.remove(&number));
+                    if !is_there {
+                        elsewhere.push((number, path, key));
+                    } else if !self.has_read_planned(number, &path) {
                         std::fs::remove_file(&path).map_err(named)?;
                     }
-                    Some(now) if now == number => {}
-                    Some(now) => {
-                        let aside = unfinished_in(&tasks).map_err(named)?.into_temp_path();
-                        std::fs::rename(&path, &aside).map_err(named)?;
-                        moved.push((aside, now));
-                    }
-                    None => std::fs::remove_file(&path).map_err(named)?,
-                },
-                Some((job, _)) if job == before => std::fs::remove_file(&path).map_err(named)?,
+                }
+                Some((job, _)) if job == before.id => {
+                    std::fs::remove_file(&path).map_err(named)?;
+                }
                 // Damaged, or somebody else's.
                 _ => {}
             }
         }
-        for (aside, now) in moved {
-            let path = task_path(&self.folder, now);
-            aside.persist(&path).map_err(|e| named(e.error))?;
+        let mut moved = Vec::new();
+        for (number, path, key) in elsewhere {
+            match free.get_mut(&key).and_then(BTreeSet::pop_first) {
+                Some(now) if self.has_read_planned(now, &path) => moved.push((number, path, now)),
+                _ => std::fs::remove_file(&path).map_err(named)?,
+            }
         }
-        Ok(())
+        let beyond = self.task_count().max(before.tasks as usize);
+        let mut next = beyond;
+        for (number, path, _) in &mut moved {
+            // Others were on their way when an update was interrupted.
+            if *number < beyond {
+                while task_path(&self.folder, next).exists() {
+                    next += 1;
+                }
+                let aside = task_path(&self.folder, next);
+                std::fs::rename(&path, &aside).map_err(named)?;
+                *path = aside;
+            }
+        }
+        moved.into_iter().try_for_each(|(_, path, now)| {
+            std::fs::rename(path, task_path(&self.folder, now)).map_err(named)
+        })
     }
+}
+
+/// Returns the files of tasks in a folder, with their numbers, in ascending order.
+fn task_files(tasks: &Path) -> std::io::Result<Vec<(usize, PathBuf)>> {
+    let mut found = Vec::new();
+    for entry in std::fs::read_dir(tasks)? {
+        let path = entry?.path();
+        found.extend(task_of(&path).map(|number| (number, path)));
+    }
+    found.sort_unstable();
+    Ok(found)
 }
 
 impl Job {
@@ -193,23 +213,24 @@ impl JobUpdate {
         let last = before.tasks as usize;
         let lock = JobLock::whole(&job.folder, last, context)?;
         StoredPlan::read_of(before.sum, &job.folder)?;
-        let mut plan = job.plan.to_json();
-        plan["tasks"] = json!(job.task_count());
-        // Files of tasks that went may be there until they are removed.
-        plan["numbers"] = json!(before.numbers.max(job.task_count() as u64));
-        plan["command"] = before.plan["command"].clone();
+        // The lease of the output has another name then. Who sees the new plan has to find it.
+        let next_lease = match job.task_count() {
+            count if count == last => None,
+            count => Some(lock.take_next(count, &job.folder)?),
+        };
         // Whichever plan is there finds the command that goes with it.
         let next = job.folder.join(NEXT_COMMAND);
+        let mut sum_of_command = before.command;
         if let Some(command) = &command {
             folder::replace(&next, command)?;
-            plan["command"] = json!(checksum(command.as_bytes()));
+            sum_of_command = Some(checksum(command.as_bytes()).into());
         }
-        plan["id"] = json!(job.id);
-        plan["name"] = json!(job.name);
+        let plan = job.stored_plan(before.numbers, sum_of_command);
         let unchanged = |name: &str| plan[name] == before.plan[name];
         let is_same = plan
             .as_object()
             .is_some_and(|plan| plan.keys().all(|name| unchanged(name)));
+        lock.confirm()?;
         job.sum = match is_same {
             true => before.sum,
             false => folder::replace_plan(&job.folder, &plan.to_string())?,
@@ -218,13 +239,11 @@ impl JobUpdate {
             let named = |e: std::io::Error| Error::from(e).in_file(&next);
             std::fs::rename(&next, job.folder.join(COMMAND)).map_err(named)?;
         }
-        job.rename_files(before.id)?;
-        if job.task_count() == last {
-            return Ok((job, lock));
-        }
-        // The lease of the output has another name now.
-        drop(lock);
-        let lock = job.lock(context)?;
+        job.rename_files(&before)?;
+        let lock = match next_lease {
+            Some(lease) => lock.moved_to(lease),
+            None => lock,
+        };
         Ok((job, lock))
     }
 }
@@ -261,16 +280,9 @@ impl Inputs<'_> {
         }
         let most = most_points(old.task_memory);
         let tiles = tiles_of(&self.files, old, most);
-        let [before, now] = [
-            points_of_tiles(
-                &old.layout,
-                &old.files,
-                old.files.iter().map(|file| file.tile),
-            ),
-            points_of_tiles(&old.layout, &self.files, tiles.iter().copied()),
-        ];
-        let is_crowded = |(&before, &now): (&f64, &f64)| now > GROWTH * before.max(most as f64);
-        if before.iter().zip(&now).any(is_crowded) {
+        let now = fullest(&old.layout, &self.files, tiles.iter().copied());
+        // Not of the plan before: tiles could double with each update.
+        if now > GROWTH.saturating_mul(old.fullest.max(most)) {
             return None;
         }
         let (frame, blocks_before) = match (self.frame, old.frame) {
@@ -287,6 +299,7 @@ impl Inputs<'_> {
             frame,
             blocks_before,
             task_memory: old.task_memory,
+            fullest: old.fullest,
         })
     }
 }
@@ -328,38 +341,6 @@ fn tiles_of(files: &[PlannedFile], old: &Plan, most: u64) -> Vec<Option<u32>> {
         }
     }
     tiles
-}
-
-/// Returns about how many points each tile has, of files that are tiles or are divided.
-fn points_of_tiles(
-    layout: &TileLayout,
-    files: &[PlannedFile],
-    tiles: impl Iterator<Item = Option<u32>>,
-) -> Vec<f64> {
-    let mut points = vec![0.0; layout.tile_count()];
-    let mut rectangles = vec![Tile::PLANE; layout.tile_count()];
-    for step in layout.steps() {
-        if let Work::Leaf(tile) = step.work {
-            rectangles[tile as usize] = step.tile;
-        }
-    }
-    for (file, tile) in files.iter().zip(tiles) {
-        let Spread { min, max, count } = file.spread();
-        if let Some(tile) = tile {
-            points[tile as usize] += count;
-            continue;
-        }
-        layout.tiles_in(min, max, &mut |tile| {
-            let within = &rectangles[tile as usize];
-            let share = |k: usize| {
-                let length = max[k] - min[k];
-                let common = max[k].min(within.max[k]) - min[k].max(within.min[k]);
-                if length > 0.0 { common / length } else { 1.0 }
-            };
-            points[tile as usize] += count * share(0) * share(1);
-        });
-    }
-    points
 }
 
 /// Returns the frame that was drawn in, enlarged by whole blocks so that it covers another one, and

@@ -3,11 +3,12 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
-use super::lease::{LEASE, Lease, Leases, Neighbors};
-use super::lock::{JobLock, SharedLock};
+use super::lease::{HostLock, LEASE, Lease, Leases};
+use super::lock::{JobLock, SharedLock, Taken};
 use super::paths::tasks_in;
-use super::schedule::{Outcome, Pause};
-use super::{Job, awaited};
+use super::pause::Pause;
+use super::schedule::Outcome;
+use super::{Job, awaited, folder};
 use crate::error::{Command, Error, Kind, Result, Term, wording};
 use crate::run::context::event::{Awaited, Event};
 use crate::run::context::{Context, memory};
@@ -56,7 +57,7 @@ enum Joined<R> {
 struct Waiting {
     pause: Pause,
     reported: Option<Instant>,
-    /// When the lock of the job was not to be had first, although its last task was.
+    /// Since when the lock of the job cannot be had, although nobody else has a lease.
     locked_out: Option<Instant>,
 }
 
@@ -72,6 +73,17 @@ impl Waiting {
             std::thread::sleep(Pause::SLICE);
         }
         Ok(())
+    }
+
+    /// Returns for how long no other process has had a lease, although one has the lock, once that
+    /// is longer than a lease lasts: that process gives no sign of life.
+    fn locked_out(&mut self, leases: &Leases, lease: Duration) -> Result<Option<Duration>> {
+        if leases.has_others()? {
+            self.locked_out = None;
+            return Ok(None);
+        }
+        let after = self.locked_out.get_or_insert_with(Instant::now).elapsed();
+        Ok((after > lease).then_some(after))
     }
 }
 
@@ -91,41 +103,65 @@ impl Job {
         let tasks = tasks_in(&self.folder);
         // An interrupted removal may have taken it.
         std::fs::create_dir_all(&tasks).map_err(|e| Error::from(e).in_file(&tasks))?;
-        let leases = Leases::begin(&self.folder, options.lease, Neighbors::Heeded)?;
-        let ended = match self.join(&leases, last, context) {
-            Ok(Joined::Shares(lock)) => self
-                .work_on_tasks(options, &leases, &lock, context)
-                .and_then(|()| {
-                    drop(lock);
-                    self.end_together(&leases, options.lease, last, context)
-                }),
+        let ended = match self.join(options.lease, last, context) {
+            Ok(Joined::Shares(lock)) => self.work_with(lock, options, last, context),
             Ok(Joined::Late(report)) => Ok(report),
             Err(error) => Err(error),
         };
         ended.map_err(|error| self.with_cure(error, self.work_command()))
     }
 
+    fn work_with<L: LastTask>(
+        &self,
+        lock: SharedLock,
+        options: &WorkOptions,
+        last: &L,
+        context: &Context,
+    ) -> Result<L::Report> {
+        let leases = Leases::begin(&self.folder, options.lease, lock.of_host())?;
+        self.work_on_tasks(options, &leases, &lock, context)?;
+        drop(lock);
+        self.end_together(&leases, options.lease, last, context)
+    }
+
     /// Waits until no process has the whole job. One that has it may write the output, and then
-    /// nothing is left to do.
+    /// nothing is left to do. One that gives no sign of life is not waited for longer than a lease
+    /// lasts.
     fn join<L: LastTask>(
         &self,
-        leases: &Leases,
+        lease: Duration,
         last: &L,
         context: &Context,
     ) -> Result<Joined<L::Report>> {
+        let leases = Leases::begin(&self.folder, lease, HostLock::Lacking)?;
         let mut waiting = Waiting::default();
         loop {
-            let lock = self.require_there(SharedLock::try_take(&self.folder))?;
-            if let Ok(lock) = lock
-                && lock.permits(leases, self.task_count())?
-            {
-                return Ok(Joined::Shares(lock));
+            match self.require_there(SharedLock::try_take(&self.folder))? {
+                Taken::Yes(lock) if lock.permits(&leases, self.task_count())? => {
+                    return Ok(Joined::Shares(lock));
+                }
+                Taken::Locked(file) => {
+                    if let Some(after) = waiting.locked_out(&leases, lease)?
+                        // Who had the lease of the output sees that it is lost once it goes on.
+                        && leases.take(self.task_count())?.is_some()
+                    {
+                        self.note_going_on(after, context);
+                        return Ok(Joined::Shares(SharedLock::without(file)));
+                    }
+                }
+                Taken::Yes(_) | Taken::Leased => {}
             }
             if let Some(report) = last.written(context)? {
                 return Ok(Joined::Late(report));
             }
             waiting.step(|| self.awaited(), context)?;
         }
+    }
+
+    /// Reports that this process goes on without the lock of the job.
+    fn note_going_on(&self, after: Duration, context: &Context) {
+        let on = &awaited::holders(&self.folder)[..];
+        context.monitor.event(&Event::GoesOnWithout { on, after });
     }
 
     /// Returns which processes have the whole job, as far as that is known.
@@ -203,9 +239,15 @@ impl Job {
         if self.has_current_file(task)? {
             return Ok(Outcome::Done);
         }
+        // Nor does a lock of one host keep another one from planning the job again.
+        folder::require_plan(self.sum, &self.folder)?;
         self.note_expired(task, &lease, context);
         self.check_inputs_of([task], context)?;
-        self.do_task(task, &|| lease.confirm(), context)?;
+        let confirm = || {
+            lease.confirm()?;
+            folder::require_plan(self.sum, &self.folder)
+        };
+        self.do_task(task, &confirm, context)?;
         Ok(Outcome::DoneHere)
     }
 
@@ -269,15 +311,16 @@ impl Job {
             // Another process still does a task whose lease it has lost.
             Err(lease) => lease,
         };
-        let after = waiting
-            .locked_out
-            .get_or_insert_with(Instant::now)
-            .elapsed();
-        if after <= patience || !leases.of_others()?.is_empty() {
+        let Some(after) = waiting.locked_out(leases, patience)? else {
             return Ok(None);
-        }
-        let on = &awaited::holders(&self.folder)[..];
-        context.monitor.event(&Event::GoesOnWithout { on, after });
+        };
+        // One that says that this process has no lock: if the lock becomes free, it still counts.
+        drop(lease);
+        let unlocked = Leases::begin(&self.folder, patience, HostLock::Lacking)?;
+        let Some(lease) = unlocked.take(self.task_count())? else {
+            return Ok(None);
+        };
+        self.note_going_on(after, context);
         JobLock::without_lock(lease, &self.folder).map(Some)
     }
 

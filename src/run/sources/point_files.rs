@@ -248,16 +248,22 @@ impl PointFiles {
     }
 
     /// Returns the classes that are used, without a default that depends on the points: for
-    /// [`Classes::GroundOrAll`], files are read until a ground point is found.
+    /// [`Classes::GroundOrAll`], files that may have a ground point are read until one is found.
     ///
     /// # Errors
     /// If a file cannot be read.
-    pub(crate) fn used_classes(&self, classes: &Classes, journal: &Journal) -> Result<Vec<u8>> {
+    pub(crate) fn used_classes(
+        &self,
+        classes: &Classes,
+        may_have_ground: impl Fn(&Path) -> bool,
+        journal: &Journal,
+    ) -> Result<Vec<u8>> {
         if let Some(classes) = classes.listed() {
             return Ok(classes);
         }
-        let all: Vec<usize> = (0..self.files.len()).collect();
-        if self.any_has_ground(&all, journal)? {
+        let may_have_ground = |&i: &usize| may_have_ground(self.files[i].input.path());
+        let files: Vec<usize> = (0..self.files.len()).filter(may_have_ground).collect();
+        if self.any_has_ground(&files, journal)? {
             Ok(vec![GROUND])
         } else {
             Ok((0..=u8::MAX).collect())

@@ -11,7 +11,7 @@ use super::job::{
     WorkOptions, needs_tiles,
 };
 use super::verbs::{Summary, TileUse, WriteRequest};
-use crate::error::{Error, Result, Setting, Term, Wording, wording};
+use crate::error::{Error, Kind, Result, Setting, Term, Wording, wording};
 use crate::run::context::Context;
 use crate::run::context::event::Event;
 use crate::run::context::notice::Notice;
@@ -187,15 +187,37 @@ fn write_output(
 /// # Errors
 /// If an input has changed, or the job was removed or replaced; the first error of a task that this
 /// process does, or of the outputs; and those of [`write()`]. A process that works on the whole job
-/// is waited for.
+/// is waited for; if it updates the job, `stored` is then the job as it is planned now.
 pub fn work_job(
     stored: &StoredJob,
     options: &WorkOptions,
     context: &Context,
 ) -> Result<WriteReport> {
-    let job = stored.job()?;
-    let targets = &stored.command.targets;
-    let last = LastOutput { job: &job, targets };
+    let mut now = stored.clone();
+    loop {
+        let job = now.job()?;
+        stored.follow(&job);
+        let ended = work_on(&job, &now.command.targets, options, context);
+        match &ended {
+            Err(error) if error.kind() == Kind::OtherJob => {}
+            _ => return ended,
+        }
+        match StoredJob::updated(&job) {
+            // Another process has updated it.
+            Ok(Some(next)) => now = next,
+            _ => return ended,
+        }
+    }
+}
+
+/// Does tasks of a job as it is planned now.
+fn work_on(
+    job: &Job,
+    targets: &Targets,
+    options: &WorkOptions,
+    context: &Context,
+) -> Result<WriteReport> {
+    let last = LastOutput { job, targets };
     // Before hours of work. Asked first: another process may be about to write the outputs.
     let request = job.request();
     let prepared =
@@ -204,7 +226,7 @@ pub fn work_job(
         return Ok(report);
     }
     drop(prepared?);
-    require_room(&job, context)?;
+    require_room(job, context)?;
     context.monitor.event(&Event::TasksBegin(job.folder()));
     job.work(options, &last, context)
 }
@@ -292,13 +314,18 @@ fn update(
     planned: impl FnOnce(&Job),
     context: &Context,
 ) -> Result<WriteReport> {
-    let prepared = match options.folder.clone().or_else(|| targets.job_folder()) {
+    let prepared = match folder_of(options, targets) {
         Some(folder) => Prepared::of_job(request, targets, &folder, context),
         None => Prepared::new(request, targets),
     };
     prepared?
         .in_tiles()?
         .update(options, caller, planned, context)
+}
+
+/// Returns the folder of a job; `None` if neither it nor an output is named.
+fn folder_of(options: &TileOptions, targets: &Targets) -> Option<PathBuf> {
+    options.folder.clone().or_else(|| targets.job_folder())
 }
 
 /// Returns the report of outputs that are there as they were written of the tasks that are done.
@@ -431,7 +458,7 @@ impl<'a> Prepared<'a> {
 
     /// Returns the folder of a job.
     fn folder(&self, options: &TileOptions) -> Result<PathBuf> {
-        let folder = options.folder.clone().or_else(|| self.targets.job_folder());
+        let folder = folder_of(options, self.targets);
         let folder = folder.ok_or_else(|| Error::usage("no output is named"))?;
         match self
             .outputs
@@ -608,13 +635,14 @@ impl<'a> Prepared<'a> {
             .write_tiles(&job.tiles(&report), &outputs, context)?;
         let is_kept = caller != Caller::Request || report.skipped > 0;
         if is_kept {
+            // What this process would find is the output of another one.
+            lock.confirm()?;
             // Somebody may have written there since the tasks began.
             let own = own.still_there(context)?;
             drop(resolved(request, targets, &own)?);
             job.record(&outputs.set, &report, own, lock)?;
         }
-        lock.confirm()?;
-        let files = outputs.set.commit()?;
+        let files = outputs.set.commit_if(&|| lock.confirm())?;
         if let Summary::Parts(parts) = &mut summary {
             parts.keep()?;
         }

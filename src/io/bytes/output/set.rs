@@ -93,6 +93,15 @@ impl OutputSet {
     /// If the last bytes cannot be written or a rename fails. All previous files are then restored;
     /// bytes that went to a pipe or a device are gone.
     pub fn commit(self) -> Result<Vec<PathBuf>> {
+        self.commit_if(&|| Ok(()))
+    }
+
+    /// Like [`commit`](Self::commit), but renames nothing if a function fails, which is called once
+    /// all outputs are on the disk: that may take long.
+    ///
+    /// # Errors
+    /// Also those of the function.
+    pub(crate) fn commit_if(self, confirm: &dyn Fn() -> Result<()>) -> Result<Vec<PathBuf>> {
         let Staged {
             companions,
             outputs,
@@ -101,6 +110,7 @@ impl OutputSet {
         let companion_count = companions.len();
         let all = companions.into_iter().chain(outputs);
         let flushed: Vec<Flushed> = all.map(Output::flush_to_disk).collect::<Result<_>>()?;
+        confirm()?;
         // Dropped before `flushed`, whose remains are removed under the same lock.
         let mut renames = Renames::begin();
         let mut moves = Vec::new();
@@ -431,6 +441,25 @@ mod tests {
         let expected =
             [("a", "old"), ("c", "/"), ("s", "kept")].map(|(n, t)| (n.to_owned(), t.to_owned()));
         assert_eq!(listed(folder.path()), expected);
+    }
+
+    /// The disk may have taken long, and another process may have the right to the outputs since.
+    #[test]
+    fn what_is_not_confirmed_does_not_appear() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a");
+        std::fs::write(&path, "old").unwrap();
+        let set = OutputSet::default();
+        staged(&set, &path, "new");
+        let confirm = || {
+            let found = listed(folder.path());
+            assert!(found.iter().any(|(_, text)| text == "new"), "{found:?}");
+            assert!(found.contains(&("a".to_owned(), "old".to_owned())));
+            Err(Error::not_yet("it belongs to others"))
+        };
+        let error = set.commit_if(&confirm).unwrap_err();
+        assert_eq!(error.to_string(), "it belongs to others");
+        assert_eq!(listed(folder.path()), [("a".to_owned(), "old".to_owned())]);
     }
 
     #[test]
