@@ -39,6 +39,7 @@
 mod admitted;
 mod boxes;
 mod builder;
+mod caps;
 mod clip;
 mod compact;
 pub mod contour;
@@ -70,6 +71,7 @@ mod tin_report;
 mod window;
 
 pub use builder::TinBuilder;
+pub use caps::{LeftOutAtRim, LostCaps};
 pub use compact::{CompactTin, PartCell, TinIndex, TinIndexPart};
 pub use contour::{Contours, contours};
 pub use crossings::{CrossingHeights, CrossingRule};

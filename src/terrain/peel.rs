@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use super::caps::{LeftOutAtRim, LostCaps};
 use super::rim_rule::RimRule;
 use crate::data::AT_ONCE;
 use crate::triangulation::ConstrainedDelaunay;
@@ -9,14 +10,14 @@ use crate::triangulation::geometry::Terrain;
 use crate::triangulation::tds::{CellId, VertexId, ccw, cw};
 
 /// Leaves out the faces that can be reached from outside of the hull over unconstrained edges that
-/// are open to them: sets `inside`, by the numbers of cells, to false. Returns their number.
+/// are open to them: sets `inside`, by the numbers of cells, to false. Returns these faces.
 pub(super) fn peel(
     triangulation: &ConstrainedDelaunay<Terrain>,
     inside: &mut [bool],
     rule: RimRule,
-) -> usize {
+) -> Vec<CellId> {
     let tds = triangulation.tds();
-    let mut peeled = 0;
+    let mut peeled = Vec::new();
     let at_hull = tds
         .corners_around(VertexId::INFINITE)
         .map(|(cell, i)| (tds.neighbor(cell, i), cell));
@@ -31,7 +32,7 @@ pub(super) fn peel(
             continue;
         }
         inside[cell.index()] = false;
-        peeled += 1;
+        peeled.push(cell);
         let onward = [ccw(i), cw(i)].map(|k| tds.neighbor(cell, k));
         exposed.extend(
             onward
@@ -41,6 +42,27 @@ pub(super) fn peel(
         );
     }
     peeled
+}
+
+/// Returns what is lost with the caps among faces that were left out.
+pub(super) fn lost_caps(
+    triangulation: &ConstrainedDelaunay<Terrain>,
+    peeled: &[CellId],
+    rule: RimRule,
+) -> LostCaps {
+    let tds = triangulation.tds();
+    let number = |vertex: VertexId| vertex.index() as u64;
+    let point = |vertex: VertexId| *triangulation.point(vertex);
+    let mut left_out = LeftOutAtRim::new(rule.max_edge);
+    for (cell, i) in tds.corners_around(VertexId::INFINITE) {
+        let ends = tds.edge_ends(cell, i);
+        left_out.add_hull(ends.map(number), ends.map(point));
+    }
+    for &cell in peeled {
+        let corners = tds.corners(cell);
+        left_out.add(corners.map(number), corners.map(point));
+    }
+    left_out.lost()
 }
 
 /// Returns for each cell number true if it is a finite face.

@@ -3,6 +3,9 @@ use std::ops::Range;
 
 use crate::data::{Bounds, PointBatch, PointSource, Return};
 use crate::error::{Error, Result};
+use crate::triangulation::geometry::{Geometry, Terrain};
+
+use super::admitted::refused;
 
 /// The class of ground points in LAS.
 const GROUND: u8 = 2;
@@ -264,8 +267,9 @@ impl Selection {
     /// Adds the selected points of a batch.
     ///
     /// # Errors
-    /// If a point that is not withheld has a coordinate that is not finite; the error names its
-    /// number in its file, counted from 1. If memory runs out.
+    /// If a point that is not withheld has a coordinate that is not finite, or one that is selected
+    /// cannot be triangulated; the error names its number in its file, counted from 1. If memory
+    /// runs out.
     pub fn add(&mut self, batch: &PointBatch) -> Result<()> {
         if self.kept.try_reserve(batch.len()).is_err() {
             let count = self.kept.len() + batch.len();
@@ -295,12 +299,12 @@ impl Selection {
             if !p.iter().all(|value| value.is_finite()) {
                 return Err(self.not_finite(p));
             }
-            self.take(p, batch.class.get(i).copied());
+            self.take(p, batch.class.get(i).copied())?;
         }
         Ok(())
     }
 
-    fn take(&mut self, point: [f64; 3], class: Option<u8>) {
+    fn take(&mut self, point: [f64; 3], class: Option<u8>) -> Result<()> {
         if class == Some(GROUND) && !self.has_ground {
             self.note_ground();
         }
@@ -313,12 +317,16 @@ impl Selection {
             .is_some_and(|window| !window.holds(point[0], point[1]))
         {
             tally.outside += 1;
-            return;
+            return Ok(());
         }
         tally.inside += 1;
         let fate = self.fate(class);
         if fate == Use::No {
-            return;
+            return Ok(());
+        }
+        let geometry: Terrain = Terrain::default();
+        if !geometry.admits(&point) {
+            return Err(refused(point).at(self.last_read()));
         }
         let at = self.kept.len();
         self.kept.push(point);
@@ -328,6 +336,12 @@ impl Selection {
                 _ => self.spare.push(at..at + 1),
             }
         }
+        Ok(())
+    }
+
+    /// Returns what errors call the point that was read last.
+    fn last_read(&self) -> String {
+        format!("point {}", self.read - self.read_before_source)
     }
 
     fn fate(&self, class: Option<u8>) -> Use {
@@ -359,7 +373,6 @@ impl Selection {
 
     #[cold]
     fn not_finite(&self, p: [f64; 3]) -> Error {
-        let number = self.read - self.read_before_source;
         let error = if p[2].is_nan() && p[0].is_finite() && p[1].is_finite() {
             Error::format("the point has no height")
                 .cure("name the attribute that holds the height: FILE:FIELD")
@@ -369,7 +382,7 @@ impl Selection {
                 p[0], p[1], p[2]
             ))
         };
-        error.at(format!("point {number}"))
+        error.at(self.last_read())
     }
 
     /// Returns the counts of points read and kept so far.
@@ -633,5 +646,17 @@ mod tests {
             selection.add(&flat).unwrap_err().to_string(),
             "point 1: the point has no height"
         );
+    }
+
+    /// Only one that is selected counts; its number is that of all points.
+    #[test]
+    fn a_coordinate_beyond_the_range_is_refused_by_its_number_in_its_file() {
+        let mut selection = Selection::new(Classes::Only(vec![2]), None);
+        selection.add(&batch(&[(2, 1.0), (2, 2.0)])).unwrap();
+        selection.next_source();
+        let points = [(3, 1e200), (3, 2.0), (2, 1.0), (2, 1e200)];
+        let error = selection.add(&batch(&points)).unwrap_err();
+        assert_eq!(error.kind(), crate::error::Kind::Limit);
+        assert!(error.to_string().starts_with("point 4: [1e200"), "{error}");
     }
 }

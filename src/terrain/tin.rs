@@ -14,10 +14,10 @@ use crate::triangulation::{ConstrainedDelaunay, Flaw, Level, LineId, Location};
 use super::cut::SurfaceCut;
 use super::linear::{linear, plan_distance};
 use super::lines::kinds::LineKinds;
-use super::peel::{finite_faces, peel};
+use super::peel::{finite_faces, lost_caps, peel};
 use super::ridges::Contoured;
 use super::rim_rule::RimRule;
-use super::{TinReport, compact};
+use super::{LostCaps, TinReport, compact};
 
 /// A surface of triangles over points and breaklines.
 ///
@@ -146,9 +146,14 @@ impl Tin {
     }
 
     /// Leaves out the faces that can be reached from outside of the hull over unconstrained edges
-    /// that are open to them. Returns their number.
-    pub(super) fn peel(&mut self, rule: RimRule) -> usize {
-        peel(&self.triangulation, &mut self.inside, rule)
+    /// that are open to them. Returns their number, and what is lost with the caps among them.
+    pub(super) fn peel(&mut self, rule: RimRule) -> (usize, LostCaps) {
+        let peeled = peel(&self.triangulation, &mut self.inside, rule);
+        let lost = match rule.opens_caps {
+            true => lost_caps(&self.triangulation, &peeled, rule),
+            false => LostCaps::default(),
+        };
+        (peeled.len(), lost)
     }
 
     /// Leaves out the faces with an unconstrained edge longer than `limit`, except those in water.

@@ -591,6 +591,19 @@ fn files_that_state_to_be_far_outside_of_the_bounds_are_not_read() {
         1,
         &["no triangle is left: 12 have edges over 10 m at the rim, 36 are clipped"],
     );
+    // Without ground, the others are looked into; classes that they may have are not denied.
+    write("far.las", [5000.0, 0.0], 5);
+    write("beyond.las", [9000.0, 4000.0], 6);
+    tin(&all, &window, "searched.ply").works(&[
+        "2 of 3 files are read only until one has a ground point, as no other file has: by their headers",
+        "16 read from 3 files",
+    ]);
+    let classes = [&window[..], &["--class", "5,6"]].concat();
+    tin(&all, &classes, "five.ply").works(&[
+        left_out,
+        "no point that was read has class 6; 2 files outside of the bounds were not",
+    ]);
+    write("far.las", [5000.0, 0.0], 2);
     // A header that was not filled in is not trusted, and one without area is not.
     let mut unfilled = las(&tile([0.0, 0.0], 2), Some(25832));
     unfilled[179..227].fill(0);
@@ -677,10 +690,16 @@ fn a_dem_in_degrees_has_contours_and_shades() {
         "note: coordinates are angles: one unit of x is taken as 111",
         "units of the heights, one of y as 111195, as in the middle of the raster (--z-factor",
     ]);
-    let run = run_in(
-        &folder,
-        &["hillshade", "e.tif", "--z-factor", "0.1", "-o", "z.tif"],
-    );
+    let with_factor = |factor: &str| {
+        let words = ["hillshade", "e.tif", "--z-factor", factor, "-o", "z.tif"];
+        run_in(&folder, &[&words[..], &["--overwrite"]].concat())
+    };
+    let run = with_factor("0.001");
     run.works(&[]);
     assert!(!run.stderr.contains("angles"), "{}", run.stderr);
+    // Twice the heights are meant.
+    with_factor("2").works(&[
+        "warning: coordinates are angles: with a factor of 2, slopes are 222390 times too steep",
+        "twice the heights are --z-factor 1.80e-5",
+    ]);
 }

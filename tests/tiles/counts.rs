@@ -8,7 +8,8 @@ use breakline::run::{
     WrittenOf,
 };
 
-use super::layer;
+use super::program::run_in;
+use super::{layer, valley};
 
 /// Returns the number of points merged into others, of those at vertices of breaklines, and of
 /// those in water.
@@ -120,4 +121,22 @@ fn points_at_one_site_are_counted_as_in_one_piece() {
             assert_eq!(counts(&request, &targets, &tiles), expected, "{division:?}");
         }
     }
+}
+
+#[test]
+fn what_leaves_no_point_is_said() {
+    let folder = tempfile::tempdir().unwrap();
+    let words = format!(
+        "dem {} --class 2 --return 3 --tiles 2x2 -o dem.tif",
+        valley()
+    );
+    let run = run_in(&folder, &words.split_whitespace().collect::<Vec<_>>());
+    run.fails(
+        2,
+        &[
+            "no point is left of 62776 read: 40 withheld",
+            "of other returns",
+            "--return",
+        ],
+    );
 }

@@ -10,9 +10,10 @@ use breakline::data::{Bounds, Return};
 use breakline::error::Wording;
 use breakline::run::{
     self, Context, ContourOptions, Degrees, DemOptions, Division, EdgeLimit, Execution,
-    FlatOptions, FrameOptions, HillshadeOptions, Input, JobCommand, LineRequest, LowerEdge,
-    Monitor, Notice, PerRecord, Progress, Severity, Size, Source, Stage, StoredJob, SurfaceRequest,
-    SystemOptions, Targets, TileOptions, TinRequest, Verb, WallOptions, WriteRequest,
+    FlatOptions, FrameOptions, HillshadeOptions, Input, JobCommand, LightOptions, LineRequest,
+    LowerEdge, Monitor, Notice, PerRecord, Progress, Severity, Size, Source, Stage, StoredJob,
+    SurfaceRequest, SystemOptions, Targets, TileOptions, TinRequest, Verb, WallOptions,
+    WriteRequest,
 };
 use breakline::terrain::Classes;
 use testkit::lidar::{las, tile};
@@ -224,6 +225,16 @@ fn cases_of_points(files: &Files) -> Vec<Case> {
     let far = files.tile("far.las", [1e5, 0.0], 2);
     let text = files.slope("t.xyz", 8, 1.0);
     let wide = files.slope("w.xyz", 8, 60.0);
+    let rails: Vec<String> = (0..40)
+        .map(|i| format!("{} {} {i}\n", 5 * i, f64::from(i % 2) * 0.2 - 300.0))
+        .collect();
+    let rails = files.write("rails.xyz", rails.concat());
+    let beside = files.write(
+        "beside.xyz",
+        (0..400)
+            .map(|i| format!("{} {} 7\n", 10 * (i % 20) + i / 20 % 3, 30 + 10 * (i / 20)))
+            .collect::<String>(),
+    );
     let empty = files.write("e.las", las(&[], Some(25832)));
     // Half of the points are missing.
     let whole = fs::read(&a).unwrap();
@@ -294,6 +305,8 @@ fn cases_of_points(files: &Files) -> Vec<Case> {
         ),
         case(points(&[&text]), &["NoSystem"]),
         case(points(&[&wide]), &["EdgeLimitUnusual"]),
+        case(points(&[&rails, &text]), &["CapsLost"]).of(te(0.0, 4.0)),
+        case(points(&[&rails, &beside]), &["CapsLost"]).of(te(40.0, 180.0)),
         case(points(&[&a, &far]), &["FarApart"]).of(te(0.0, 4.0)),
         case(partial(points(&[&cut, &b])), &["Reader"]),
         case(partial(points(&[&counted])), &["Reader"]),
@@ -353,6 +366,31 @@ fn cases_of_points(files: &Files) -> Vec<Case> {
                     ..points(&[&text])
                 },
                 &["AnglesAsLengths"],
+            )
+        },
+        Case {
+            systems: SystemOptions {
+                assign: system("EPSG:4326"),
+                degrees: Degrees::Allow,
+                ..SystemOptions::default()
+            },
+            verb: Arc::new(HillshadeOptions {
+                frame: FrameOptions {
+                    resolution: Some(1.0),
+                    ..FrameOptions::default()
+                },
+                light: LightOptions {
+                    z_factor: Some(2.0),
+                    ..LightOptions::default()
+                },
+                ..HillshadeOptions::default()
+            }),
+            ..case(
+                TinRequest {
+                    max_edge: EdgeLimit::Unlimited,
+                    ..points(&[&text])
+                },
+                &["SteepAngles"],
             )
         },
         case(points(&[&text]), &["ExtentApart"]).of(te(100.0, 104.0)),

@@ -241,13 +241,17 @@ impl<'a> Journal<'a> {
         }
     }
 
-    /// Adds a notice about classes that no point has, if there are any.
-    pub(crate) fn add_missing_classes(&self, missing: impl Iterator<Item = u8>) {
+    /// Adds a notice about classes that no point has, if there are any; so many files were not
+    /// read.
+    pub(crate) fn add_missing_classes(&self, missing: impl Iterator<Item = u8>, unread: usize) {
         let mut missing: Vec<u8> = missing.collect();
         missing.sort_unstable();
         missing.dedup();
         if !missing.is_empty() {
-            self.add(Notice::NoPointOfClass(missing));
+            self.add(Notice::NoPointOfClass {
+                classes: missing,
+                unread,
+            });
         }
     }
 

@@ -77,8 +77,13 @@ pub enum Notice {
     },
     /// One of several files has no point that is used; with the classes that are used, if not all.
     NoPointUsed(PathBuf, Option<Vec<u8>>),
-    /// No point has this class, which was requested.
-    NoPointOfClass(Vec<u8>),
+    /// No point has these classes, which were requested.
+    NoPointOfClass {
+        /// The classes.
+        classes: Vec<u8>,
+        /// Files outside of the bounds, whose points may have them.
+        unread: usize,
+    },
     /// Ground points (class 2) were found and are used alone.
     GroundUsed,
     /// This many points from files without classes are used in addition to ground points.
@@ -170,6 +175,8 @@ pub enum Notice {
         left_out: usize,
         /// The number of all files.
         files: usize,
+        /// True if they were read until one had a ground point, since no other file has one.
+        are_searched: bool,
         /// The distance from the bounds that they are beyond, if not 0.
         buffer: Option<Quantity>,
     },
@@ -202,6 +209,15 @@ pub enum Notice {
         limit: Quantity,
         /// The mean distance.
         spacing: Quantity,
+    },
+    /// By default, much of the surface is left out at the rim with caps.
+    CapsLost {
+        /// Their number.
+        faces: u64,
+        /// Their share of the area, from 0 to 1.
+        share: f64,
+        /// Points all of whose triangles are left out.
+        points: u64,
     },
     /// Points inside of closed breaklines of one height have other heights: the lines may be
     /// shores.
@@ -274,6 +290,14 @@ pub enum Notice {
     DefaultInterval(Quantity),
     /// Heights are multiplied by this, to match the units of the plane.
     HeightFactor(f64),
+    /// Coordinates are angles, and heights are multiplied by a number that makes slopes far too
+    /// steep.
+    SteepAngles {
+        /// That factor.
+        factor: f64,
+        /// The factor that makes lengths of angles.
+        usual: f64,
+    },
     /// A degree of x and one of y are taken as lengths, in units of the heights: those in the
     /// middle of the raster.
     AnglesAsLengths([f64; 2]),
@@ -403,7 +427,7 @@ impl Notice {
             | Notice::OutputMayNotFit { .. }
             | Notice::TasksMayNotFit { .. }
             | Notice::NoPointUsed(..)
-            | Notice::NoPointOfClass(_)
+            | Notice::NoPointOfClass { .. }
             | Notice::PointsWithoutReturnUsed(_)
             | Notice::AllClassesUsed
             | Notice::Transform(_)
@@ -414,6 +438,8 @@ impl Notice {
             | Notice::FlatTriangles { .. }
             | Notice::CrossingHeights { .. }
             | Notice::EdgeLimitUnusual { .. }
+            | Notice::CapsLost { .. }
+            | Notice::SteepAngles { .. }
             | Notice::LevelRings { .. }
             | Notice::RiverHeights { .. }
             | Notice::RiversLowered { .. }

@@ -113,7 +113,7 @@ fn text(notice: &Notice) -> Wording {
         Notice::OutputMayNotFit { need, free } => output_may_not_fit(*need, *free).into(),
         Notice::TasksMayNotFit { need, free } => tasks_may_not_fit(*need, *free).into(),
         Notice::NoPointUsed(path, classes) => no_point_used(path, classes.as_deref()),
-        Notice::NoPointOfClass(classes) => format!("no point has class {}", listed(classes)).into(),
+        Notice::NoPointOfClass { classes, unread } => no_point_of_class(classes, *unread).into(),
         Notice::NoiseUnused => "points of all classes are used, except noise (7 and 18)".into(),
         Notice::PointsWithoutReturnUsed(count) => points_without_return(*count).into(),
         Notice::GroundUsed => "points of class 2 (ground) are used".into(),
@@ -145,14 +145,15 @@ fn text(notice: &Notice) -> Wording {
         }
         Notice::NoEdgeLimit => no_edge_limit(),
         Notice::BoundsBuffer(buffer) => bounds_buffer(buffer.as_ref()).into(),
-        Notice::FilesOutside { left_out, files, buffer } => {
-            files_outside(*left_out, *files, buffer.as_ref()).into()
+        Notice::FilesOutside { left_out, files, are_searched, buffer } => {
+            files_outside([*left_out, *files], *are_searched, buffer.as_ref()).into()
         }
         Notice::Triangulated(time) => format!("triangulated in {:.2} s", time.as_secs_f64()).into(),
         Notice::PartForLinear => part_for_linear(),
         Notice::Uncertain(count, buffer) => uncertain(*count, buffer).into(),
         Notice::CrossingsRounded { unit, on_grid } => rounded(unit, *on_grid).into(),
         Notice::EdgeLimitUnusual { limit, spacing } => unusual_edge_limit(limit, spacing),
+        Notice::CapsLost { faces, share, points } => caps_lost(*faces, *share, *points),
         Notice::LevelRings { rings, points, name, largest } => {
             level_rings(*rings, *points, name, largest)
         }
@@ -175,6 +176,7 @@ fn text(notice: &Notice) -> Wording {
         Notice::DefaultResolution(width) => default_resolution(width),
         Notice::DefaultInterval(height) => default_interval(height),
         Notice::HeightFactor(factor) => height_factor(*factor),
+        Notice::SteepAngles { factor, usual } => steep_angles(*factor, *usual),
         Notice::AnglesAsLengths(lengths) => angles_as_lengths(*lengths),
         Notice::DelaunayUnchecked(path) => delaunay_unchecked(path),
         Notice::RegionAreasUnused(path) => region_areas_unused(path),
@@ -218,6 +220,19 @@ fn no_point_used(path: &Path, classes: Option<&[u8]>) -> Wording {
         None => "it has none".to_owned(),
     };
     of_file(path, &format!("none of its points is used: {why}"))
+}
+
+fn no_point_of_class(classes: &[u8], unread: usize) -> String {
+    let classes = listed(classes);
+    match unread {
+        0 => format!("no point has class {classes}"),
+        1 => format!(
+            "no point that was read has class {classes}; 1 file outside of the bounds was not"
+        ),
+        files => format!(
+            "no point that was read has class {classes}; {files} files outside of the bounds were not"
+        ),
+    }
 }
 
 fn points_without_class(count: u64) -> String {
@@ -381,7 +396,26 @@ fn unusual_edge_limit(limit: &Quantity, spacing: &Quantity) -> Wording {
         ),
         Setting::MaxEdge.number("LENGTH"),
         " or ",
-        Setting::MaxEdge.text("auto")
+        Setting::MaxEdge.text("auto"),
+        ", which keep triangles with an angle over 165 degrees"
+    ]
+}
+
+fn caps_lost(faces: u64, share: f64, points: u64) -> Wording {
+    let of_points = match points {
+        0 => String::new(),
+        points => format!(", and all triangles of {points} points"),
+    };
+    wording![
+        format!(
+            "{faces} triangles with an angle over 165 degrees are left out at the rim, {:.1} % of the area{of_points} \
+             (keep them with ",
+            100.0 * share
+        ),
+        Setting::MaxEdge.number("LENGTH"),
+        " or ",
+        Setting::MaxEdge.text("none"),
+        ")"
     ]
 }
 
@@ -402,10 +436,18 @@ fn part_for_linear() -> Wording {
     ]
 }
 
-fn files_outside(left_out: usize, files: usize, buffer: Option<&Quantity>) -> String {
+fn files_outside(
+    [left_out, files]: [usize; 2],
+    are_searched: bool,
+    buffer: Option<&Quantity>,
+) -> String {
     let how_far = buffer.map_or(String::new(), |buffer| format!("more than {buffer} "));
+    let read = match are_searched {
+        true => "are read only until one has a ground point, as no other file has",
+        false => "are not read",
+    };
     format!(
-        "{left_out} of {files} files are not read: by their headers they lie {how_far}outside of the bounds"
+        "{left_out} of {files} files {read}: by their headers they lie {how_far}outside of the bounds"
     )
 }
 
@@ -557,6 +599,18 @@ fn height_factor(factor: f64) -> Wording {
         ),
         Setting::ZFactor,
         ")"
+    ]
+}
+
+fn steep_angles(factor: f64, usual: f64) -> Wording {
+    wording![
+        format!(
+            "coordinates are angles: with a factor of {}, slopes are {:.0} times too steep; twice the heights are ",
+            number(factor),
+            factor / usual
+        ),
+        Setting::ZFactor.number(format!("{:.2e}", 2.0 * usual)),
+        ", and without it lengths of angles are known"
     ]
 }
 

@@ -18,7 +18,7 @@ use crate::run::products::tin::TinRequest;
 use crate::run::request::lines::LineRole;
 use crate::run::sources::extents;
 use crate::run::verbs::{Keeps, Verb};
-use crate::terrain::Classes;
+use crate::terrain::{Classes, LostCaps};
 
 /// Returns the lines that may be shores and have points of other heights within, as a task keeps
 /// them.
@@ -110,6 +110,9 @@ pub(super) struct Found {
     /// Triangles that holes and other clip lines cut, or leave out.
     met: u64,
     draped: u64,
+    lost_caps: LostCaps,
+    /// Points that are used and not merged into others.
+    sites: u64,
 }
 
 impl Found {
@@ -118,6 +121,11 @@ impl Found {
         self.notices
             .extend(facts.notices.iter().filter_map(TaskNotice::notice));
         self.met += facts.met + facts.kept.clipped;
+        self.lost_caps = facts.lost_caps.map_or(self.lost_caps, LostCaps::from);
+        self.sites += facts
+            .read()
+            .map_or(0, |points| points.used.saturating_sub(points.replaced));
+        self.sites = self.sites.saturating_sub(facts.duplicates);
         self.draped += facts.draped;
         if let Some(points) = facts.read() {
             self.classes.extend(&points.classes);
@@ -150,6 +158,8 @@ impl Found {
         self.note_points(job, journal);
         let units = Units::of(job.plan.crs.as_ref());
         let request = &job.request;
+        let lost = request.max_edge.lost(&self.lost_caps, self.sites);
+        lost.into_iter().for_each(|notice| journal.add(notice));
         if job.plan.has_lines
             && let Some(lines) = &job.known(context)?.lines
         {
@@ -266,7 +276,7 @@ impl Found {
         match &request.classes {
             Classes::Only(wanted) => {
                 let is_missing = |class: &u8| !self.classes.contains(class);
-                journal.add_missing_classes(wanted.iter().copied().filter(is_missing));
+                journal.add_missing_classes(wanted.iter().copied().filter(is_missing), 0);
             }
             Classes::GroundOrAll if classes.is_some() && self.without_class > 0 => {
                 journal.add(Notice::PointsWithoutClassUsed(self.without_class));

@@ -120,6 +120,9 @@ impl Job {
         let JobReport {
             read,
             used,
+            withheld,
+            other_return,
+            other_class,
             beyond_max_edge,
             clipped,
             ..
@@ -134,10 +137,16 @@ impl Job {
                 Command::Info,
                 " shows the extent of each file"
             ]),
-            (0, _) => Error::usage(format!("no point is left of {read} read")).cure(wording![
+            (0, _) => Error::usage(format!(
+                "no point is left of {read} read: {withheld} withheld, {other_return} of other returns, \
+                 {other_class} of other classes"
+            ))
+            .cure(wording![
                 Command::Info,
-                " shows the classes of each file: choose with ",
-                Setting::Class
+                " counts the points of each class and return: choose with ",
+                Setting::Class,
+                " and ",
+                Setting::Return
             ]),
             (_, 0) => Error::format(format!(
                 "{used} points on one line, or fewer than three, do not span a surface"

@@ -6,6 +6,7 @@ use super::planned_file::FileState;
 use crate::data::Bounds;
 use crate::error::Wording;
 use crate::run::context::notice::{Notice, Severity};
+use crate::terrain::LostCaps;
 
 /// The facts of a task. Tasks of one kind have some of them; the others have their defaults.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -32,6 +33,8 @@ pub(super) struct TaskFacts {
     pub(super) groups: u32,
     /// Triangles that were removed at the rim.
     pub(super) removed: u64,
+    /// What the surface loses with caps, as the task of the rim finds it.
+    pub(super) lost_caps: Option<LostCapsFacts>,
     /// Triangles that were left out because they reach into the extents of skipped files.
     pub(super) over_skipped: u64,
     /// The triangles that stay.
@@ -39,6 +42,27 @@ pub(super) struct TaskFacts {
     /// Triangles that clip lines cut or leave out, and those that draped lines meet.
     pub(super) met: u64,
     pub(super) draped: u64,
+}
+
+/// What a surface loses with caps: their number, their share of the area, and the number of
+/// vertices.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub(super) struct LostCapsFacts(u64, f64, u64);
+
+impl From<LostCaps> for LostCapsFacts {
+    fn from(lost: LostCaps) -> Self {
+        LostCapsFacts(lost.faces, lost.share, lost.vertices)
+    }
+}
+
+impl From<LostCapsFacts> for LostCaps {
+    fn from(LostCapsFacts(faces, share, vertices): LostCapsFacts) -> Self {
+        LostCaps {
+            faces,
+            share,
+            vertices,
+        }
+    }
 }
 
 /// The corners of a box in plan.

@@ -21,9 +21,9 @@ use crate::run::sources::open;
 use crate::run::verbs::Keeps;
 use crate::terrain::contour::parts::{ContourCollector, LevelParts};
 use crate::terrain::tiles::{
-    self, AtRim, ClipSide, Rim, TileClip, TileTriangle, TinPart, Work, has_long_edge,
+    self, AtRim, ClipSide, Rim, TileClip, TileTriangle, TileVertex, TinPart, Work, has_long_edge,
 };
-use crate::terrain::{Classes, PartCell, RimRule, Selection, deciding, one_per_site};
+use crate::terrain::{Classes, LeftOutAtRim, PartCell, RimRule, Selection, deciding, one_per_site};
 
 /// Points that are read before they are divided among tiles: 24 bytes each, and as much again while
 /// they are sorted.
@@ -425,6 +425,8 @@ impl Job {
         context: &Context,
     ) -> Result<TaskFacts> {
         let mut rim = Rim::default();
+        let rule = self.rim_rule().unwrap_or_default();
+        let mut left_out = rule.opens_caps.then(|| LeftOutAtRim::new(rule.max_edge));
         for step in 0..self.steps.len() {
             let mut file = sources.open(self.task_of_step(step))?;
             let bytes = file.section("gates")?;
@@ -433,7 +435,14 @@ impl Job {
             rim.add(groups, &gates.ok_or_else(|| file.damaged())?);
             if self.steps[step].tile.is_plane() {
                 let root = bytes::to_residual(&file.section("residual")?);
-                rim.add_outside(&root.ok_or_else(|| file.damaged())?);
+                let root = root.ok_or_else(|| file.damaged())?;
+                rim.add_outside(&root);
+                if let Some(left_out) = &mut left_out {
+                    let add = |ends: [TileVertex; 2]| {
+                        left_out.add_hull(ends.map(|end| end.key()), ends.map(|end| end.position));
+                    };
+                    root.hull().for_each(add);
+                }
             }
         }
         let mut removed = 0_u64;
@@ -447,6 +456,10 @@ impl Job {
                     Some(true) => {
                         removed += 1;
                         kept.add_removed(&triangle);
+                        if let Some(left_out) = &mut left_out {
+                            let corners = triangle.corners;
+                            left_out.add(corners.map(|c| c.key()), corners.map(|c| c.position));
+                        }
                     }
                     Some(false) => kept.add(&triangle, writer)?,
                     None => return Err(file.damaged()),
@@ -457,6 +470,7 @@ impl Job {
         Ok(TaskFacts {
             kept: kept.finish(None, writer)?,
             removed,
+            lost_caps: left_out.map(|left_out| left_out.lost().into()),
             ..TaskFacts::default()
         })
     }

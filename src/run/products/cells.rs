@@ -177,15 +177,28 @@ fn refuse_options(HillshadeOptions { frame, method, .. }: &HillshadeOptions) -> 
     Ok(())
 }
 
+/// Nobody wants heights over angles to be exaggerated more.
+const MOST_EXAGGERATION: f64 = 1000.0;
+
 /// Returns the light over a frame. A given factor for heights is that of both axes.
 fn light(options: &LightOptions, crs: Option<&Crs>, frame: &Frame, journal: &Journal) -> Light {
+    let usual = Light::for_crs(crs, frame);
     let light = match options.z_factor {
         Some(z_factor) => Light {
             z_factor,
             ..Light::default()
         },
-        None => Light::for_crs(crs, frame),
+        None => usual,
     };
+    if let Some(factor) = options.z_factor
+        && Units::of(crs).is_angular()
+        && factor > MOST_EXAGGERATION * usual.z_factor
+    {
+        journal.add(Notice::SteepAngles {
+            factor,
+            usual: usual.z_factor,
+        });
+    }
     if options.z_factor.is_none() && light.z_factor != 1.0 {
         journal.add(match Units::of(crs).is_angular() {
             true => Notice::AnglesAsLengths([light.x_scale, 1.0].map(|part| part / light.z_factor)),

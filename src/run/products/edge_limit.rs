@@ -4,6 +4,7 @@ use crate::data::Bounds;
 use crate::run::context::notice::Notice;
 use crate::run::context::units::Units;
 use crate::run::sources::file_extent::FileExtent;
+use crate::terrain::LostCaps;
 
 /// The default longest edge at the rim, and width of the buffer around bounds.
 const DEFAULT_MAX_EDGE_METRES: f64 = 100.0;
@@ -19,6 +20,10 @@ const USUAL_REACH: f64 = 2.0;
 /// The default longest edge looks wrong if it is less than so many, or more than so many, mean
 /// distances between points.
 const USUAL_SPACINGS: std::ops::Range<f64> = 10.0..1000.0;
+
+/// More than this share of the area, or of the points, is not left out with caps of ground points.
+const USUAL_SHARE_OF_CAPS: f64 = 0.05;
+const USUAL_SHARE_OF_POINTS: f64 = 0.01;
 
 /// The longest edge that a triangle at the rim may have in plan. Triangles that can be reached from
 /// outside across longer edges are left out; breaklines are not crossed.
@@ -81,6 +86,22 @@ impl EdgeLimit {
     pub(crate) fn buffer(self, units: &Units) -> f64 {
         self.length(None, units)
             .unwrap_or_else(|| units.of_metres(DEFAULT_MAX_EDGE_METRES))
+    }
+
+    /// Returns a notice if much of a surface over so many sites was left out with caps.
+    pub(crate) fn lost(self, lost: &LostCaps, sites: u64) -> Option<Notice> {
+        let LostCaps {
+            faces,
+            share,
+            vertices,
+        } = *lost;
+        let is_much =
+            share > USUAL_SHARE_OF_CAPS || vertices as f64 > USUAL_SHARE_OF_POINTS * sites as f64;
+        (self.leaves_out_caps() && is_much).then_some(Notice::CapsLost {
+            faces,
+            share,
+            points: vertices,
+        })
     }
 
     /// Returns a notice if the default looks wrong for points with this mean distance.

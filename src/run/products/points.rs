@@ -208,6 +208,7 @@ fn transfer<'s>(
         journal.add(Notice::FilesOutside {
             left_out: report.left_out,
             files: request.files.len(),
+            are_searched: false,
             buffer: None,
         });
     }

@@ -10,6 +10,7 @@ use crate::run::context::Journal;
 use crate::run::context::notice::Notice;
 use crate::run::context::units::Units;
 use crate::run::sources::file_extent::FileExtent;
+use crate::run::sources::point_files::LeftOutFiles;
 use crate::terrain::SelectionReport;
 
 /// The buffer outside of the bounds in which points are used.
@@ -123,7 +124,8 @@ impl Reach {
     pub(super) fn note(
         &self,
         points: &SelectionReport,
-        [left_out, files]: [usize; 2],
+        left_out: LeftOutFiles,
+        files: usize,
         units: &Units,
         journal: &Journal,
     ) {
@@ -131,12 +133,13 @@ impl Reach {
             return;
         }
         let buffer = self
-            .leaves_out(points, left_out)
+            .leaves_out(points, left_out.count)
             .then(|| units.length(self.buffer));
-        if left_out > 0 {
+        if left_out.count > 0 {
             journal.add(Notice::FilesOutside {
-                left_out,
+                left_out: left_out.count,
                 files,
+                are_searched: left_out.are_searched,
                 buffer: buffer.clone(),
             });
         }

@@ -24,7 +24,7 @@ use crate::run::request::serialized;
 use crate::run::sources::extents::{self, LineExtents};
 use crate::run::sources::file_extent::FileExtent;
 use crate::run::sources::open::{self, Content, content};
-use crate::run::sources::point_files::{FilesRead, PointFiles};
+use crate::run::sources::point_files::{FilesRead, LeftOutFiles, PointFiles};
 use crate::run::sources::systems::{self, SystemOptions, Systems};
 use crate::run::sources::transforms::Transforms;
 use crate::terrain::{
@@ -296,15 +296,15 @@ pub(crate) fn build(
     } = building.surface(&mut files, level_rings, &mut rim, &mut reach)?;
     notes::count_edges(&mut inputs, &tin);
     building.note_lines(&inputs, tin.report());
-    rim.note(&units, journal);
-    reach.note(&points, [left_out, files.len()], &units, journal);
+    rim.note(tin.report(), &units, journal);
+    reach.note(&points, left_out, files.len(), &units, journal);
     crossings::note(tin.report(), &names, &units, journal);
     if tin.report().triangles == 0 {
         return Err(no_triangle(tin.report(), request, &rim, &units));
     }
     let report = BuildReport {
         sources: request.points.len(),
-        is_part: reach.leaves_out(&points, left_out),
+        is_part: reach.leaves_out(&points, left_out.count),
         points,
         columns: files.columns(),
         lines: inputs,
@@ -367,8 +367,8 @@ struct Read {
 struct Built {
     tin: Tin,
     points: SelectionReport,
-    /// The number of files that were not read.
-    left_out: usize,
+    /// The files that were not read.
+    left_out: LeftOutFiles,
     /// The points that water and walls replaced.
     replaced: Vec<[f64; 3]>,
 }
@@ -432,12 +432,12 @@ impl Building<'_> {
         extents::compare_files(&self.paths, &files.extents, self.units, self.journal);
         let (points, report) = selection.finish();
         self.transforms.warn(self.journal);
-        note_classes(&report, classes, self.journal);
+        note_classes(&report, classes, files.left_out, self.journal);
         if points.is_empty()
             && !self.layers.has_lines_with_heights()
             && !reach.may_grow_into(&files.extents)
         {
-            return Err(nothing_left(&report, files.left_out, &self.paths));
+            return Err(nothing_left(&report, files.left_out.count, &self.paths));
         }
         Ok(Read {
             points,
@@ -587,8 +587,9 @@ impl Rim {
         self.max_edge = self.limit.length(self.spacing, units);
     }
 
-    /// Adds a notice about a limit that was found, and about a default that looks wrong.
-    fn note(&self, units: &Units, journal: &Journal) {
+    /// Adds a notice about a limit that was found, and about a default that looks wrong, also by
+    /// what it leaves out.
+    fn note(&self, report: &TinReport, units: &Units, journal: &Journal) {
         if self.limit == EdgeLimit::Auto {
             self.note_limit(units, journal);
         }
@@ -596,10 +597,20 @@ impl Rim {
             .unusual(self.spacing, units)
             .into_iter()
             .for_each(|notice| journal.add(notice));
+        let sites = report.points.saturating_sub(report.duplicates);
+        self.limit
+            .lost(&report.lost_caps, sites as u64)
+            .into_iter()
+            .for_each(|notice| journal.add(notice));
     }
 }
 
-fn note_classes(report: &SelectionReport, wanted: &Classes, journal: &Journal) {
+fn note_classes(
+    report: &SelectionReport,
+    wanted: &Classes,
+    left_out: LeftOutFiles,
+    journal: &Journal,
+) {
     if report.without_return > 0 {
         journal.add(Notice::PointsWithoutReturnUsed(report.without_return));
     }
@@ -607,7 +618,7 @@ fn note_classes(report: &SelectionReport, wanted: &Classes, journal: &Journal) {
         Classes::Only(classes) => {
             let is_missing = |class: &u8| !report.by_class.contains_key(class);
             let missing = classes.iter().copied().filter(is_missing);
-            journal.add_missing_classes(missing);
+            journal.add_missing_classes(missing, left_out.count);
         }
         Classes::GroundOrAll if report.classes.is_some() => {
             journal.add(Notice::GroundUsed);

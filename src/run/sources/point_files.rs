@@ -111,9 +111,15 @@ pub(crate) struct FilesRead {
     pub(crate) extents: Vec<Bounds>,
     /// The points of each file by which their mean distance is computed.
     pub(crate) counted: Vec<FileExtent>,
-    /// The number of files that were left out because they state that their points lie outside of
-    /// the window.
-    pub(crate) left_out: usize,
+    pub(crate) left_out: LeftOutFiles,
+}
+
+/// Files that are left out because they state that their points lie outside of the window.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct LeftOutFiles {
+    pub(crate) count: usize,
+    /// True if they were read until one had a ground point.
+    pub(crate) are_searched: bool,
 }
 
 /// The files of points of a run.
@@ -332,7 +338,9 @@ impl PointFiles {
             file.is_read = true;
         }
         progress.end()?;
-        if selection.waits_for_ground() && self.any_has_ground(&left_out, journal)? {
+        let has_classes = |&i: &usize| self.files[i].has_classes;
+        let are_searched = selection.waits_for_ground() && left_out.iter().any(has_classes);
+        if are_searched && self.any_has_ground(&left_out, journal)? {
             selection.note_ground();
         }
         if self.files.len() > 1 {
@@ -356,7 +364,10 @@ impl PointFiles {
                 .into_iter()
                 .map(|extent| extent.bounds.unwrap_or_default())
                 .collect(),
-            left_out: left_out.len(),
+            left_out: LeftOutFiles {
+                count: left_out.len(),
+                are_searched,
+            },
         })
     }
 

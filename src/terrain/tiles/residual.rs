@@ -33,6 +33,14 @@ pub struct Residual {
 }
 
 impl Residual {
+    /// Returns the ends of all edges: of the root, those of the hull.
+    pub fn hull(&self) -> impl Iterator<Item = [TileVertex; 2]> + '_ {
+        self.edges.iter().filter_map(|edge| {
+            let [a, b] = edge.ends.map(|end| self.vertices.get(end as usize));
+            Some([*a?, *b?])
+        })
+    }
+
     /// Returns what several parts have in common: their vertices, edges and sub-constraints.
     ///
     /// # Errors

@@ -185,7 +185,7 @@ fn edge_of(triangle: &TileTriangle, i: usize) -> EdgeKey {
 }
 
 fn edge_key(a: TileVertex, b: TileVertex) -> EdgeKey {
-    let [a, b] = [a, b].map(|vertex| u64::from(vertex.tile) << 32 | u64::from(vertex.number));
+    let [a, b] = [a.key(), b.key()];
     [a.min(b), a.max(b)]
 }
 
@@ -221,11 +221,8 @@ impl Rim {
 
     /// Adds the outside of all tasks: the residual of the root.
     pub fn add_outside(&mut self, root: &Residual) {
-        for edge in &root.edges {
-            let [a, b] = edge.ends.map(|end| root.vertices.get(end as usize));
-            if let (Some(a), Some(b)) = (a, b) {
-                self.add_side(edge_key(*a, *b), GateSide::Outside);
-            }
+        for [a, b] in root.hull() {
+            self.add_side(edge_key(a, b), GateSide::Outside);
         }
     }
 

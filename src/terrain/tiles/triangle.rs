@@ -22,6 +22,11 @@ impl TileVertex {
         self.tile == u32::MAX
     }
 
+    /// Returns one number for both of its numbers.
+    pub fn key(&self) -> u64 {
+        u64::from(self.tile) << 32 | u64::from(self.number)
+    }
+
     pub(super) fn site(&self) -> [f64; 2] {
         [self.position[0], self.position[1]]
     }

@@ -1,0 +1,141 @@
+//! What a surface loses with the caps that are left out at its rim.
+
+use rustc_hash::{FxHashMap, FxHashSet};
+
+use super::linear::plan_distance;
+use crate::triangulation::tds::{ccw, cw};
+
+/// What a surface loses with the caps that the [rule of the rim](super::RimRule) leaves out: those
+/// without an edge longer than the limit.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct LostCaps {
+    /// Their number.
+    pub faces: u64,
+    /// Their area in plan, as a share of itself and the area that stays, before the surface is
+    /// clipped: from 0 to 1.
+    pub share: f64,
+    /// Vertices of caps all of whose triangles were left out at the rim.
+    pub vertices: u64,
+}
+
+/// A collection of what is left out at the rim, to find out what the surface loses with caps.
+///
+/// A vertex has lost all of its triangles if each edge at it has nothing else on either side: a
+/// triangle that was left out, or the outside of the hull.
+#[derive(Debug, Clone, Default)]
+pub struct LeftOutAtRim {
+    /// Longer edges than this are open whatever the shape of a triangle is.
+    limit: Option<f64>,
+    /// How many sides of an edge are left out or outside, by the numbers of its ends.
+    sides: FxHashMap<[u64; 2], u8>,
+    hull: Vec<[[f64; 3]; 2]>,
+    /// The vertices of caps.
+    vertices: FxHashSet<u64>,
+    faces: u64,
+    area_of_caps: f64,
+    area_of_all: f64,
+}
+
+impl LeftOutAtRim {
+    /// Creates a collection for a longest edge.
+    pub fn new(limit: Option<f64>) -> Self {
+        LeftOutAtRim {
+            limit,
+            ..LeftOutAtRim::default()
+        }
+    }
+
+    /// Adds a triangle that is left out, by the numbers of its vertices and their positions.
+    pub fn add(&mut self, vertices: [u64; 3], corners: [[f64; 3]; 3]) {
+        let area = area(corners);
+        self.area_of_all += area;
+        let is_long = |i: usize| {
+            let length = plan_distance(corners[ccw(i)], corners[cw(i)]);
+            self.limit.is_some_and(|limit| length > limit)
+        };
+        if !(0..3).any(is_long) {
+            self.faces += 1;
+            self.area_of_caps += area;
+            self.vertices.extend(vertices);
+        }
+        (0..3).for_each(|i| self.add_side([vertices[ccw(i)], vertices[cw(i)]]));
+    }
+
+    /// Adds an edge of the hull, by the numbers of its ends and their positions.
+    pub fn add_hull(&mut self, ends: [u64; 2], positions: [[f64; 3]; 2]) {
+        self.hull.push(positions);
+        self.add_side(ends);
+    }
+
+    fn add_side(&mut self, [a, b]: [u64; 2]) {
+        *self.sides.entry([a.min(b), a.max(b)]).or_default() += 1;
+    }
+
+    /// Returns what the surface loses, once all of the hull and all that is left out was added.
+    pub fn lost(mut self) -> LostCaps {
+        for (ends, sides) in &self.sides {
+            if *sides < 2 {
+                ends.iter().for_each(|end| _ = self.vertices.remove(end));
+            }
+        }
+        let kept = (self.area_of_hull() - self.area_of_all).max(0.0);
+        let all = kept + self.area_of_caps;
+        LostCaps {
+            faces: self.faces,
+            share: if all > 0.0 && all.is_finite() {
+                self.area_of_caps / all
+            } else {
+                0.0
+            },
+            vertices: self.vertices.len() as u64,
+        }
+    }
+
+    /// The hull is convex: triangles from a point within to its edges cover it.
+    fn area_of_hull(&self) -> f64 {
+        let count = self.hull.len().max(1) as f64;
+        let mean = |k: usize| self.hull.iter().map(|[p, _]| p[k] / count).sum();
+        let within = [mean(0), mean(1), 0.0];
+        self.hull.iter().map(|&[p, q]| area([within, p, q])).sum()
+    }
+}
+
+fn area([a, b, c]: [[f64; 3]; 3]) -> f64 {
+    let [u, v] = [b, c].map(|p| [p[0] - a[0], p[1] - a[1]]);
+    (u[0] * v[1] - u[1] * v[0]).abs() / 2.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::terrain::TinBuilder;
+
+    /// Rails beside a square of points: 0.5 apart, with a point each 10.
+    #[test]
+    fn rows_as_close_as_rails_are_lost_with_all_of_their_points() {
+        let lost = |has_square: bool, limit: f64| {
+            let mut builder = TinBuilder::default();
+            for i in 0..20 {
+                let x = 10.0 * f64::from(i);
+                builder.add_points(&[x, x + 3.0], &[0.0, 0.5], &[1.0, 2.0]);
+            }
+            if has_square {
+                for i in 0..400 {
+                    let [x, y] = [i % 20, i / 20].map(f64::from);
+                    let row = 0.1 * ((x * 7.0 + y * 3.0) % 5.0);
+                    builder.add_points(&[10.0 * x + row], &[200.0 + 10.0 * y], &[0.0]);
+                }
+            }
+            (builder.max_edge, builder.leave_out_caps) = (Some(limit), true);
+            builder.build().unwrap().report().clone()
+        };
+        let both = lost(true, 50.0).lost_caps;
+        assert_eq!(both.vertices, 40, "{both:?}");
+        assert!(both.faces > 30 && both.share < 0.01, "{both:?}");
+        // What long edges reach is not due to the shape.
+        let long = lost(true, 5.0);
+        assert_eq!(long.lost_caps, LostCaps::default());
+        let alone = lost(false, 50.0).lost_caps;
+        assert!(alone.share > 0.9 && alone.vertices > 30, "{alone:?}");
+    }
+}
