@@ -419,7 +419,7 @@ fn widths<const D: usize, const N: usize>(simplex: [[f64; D]; N], q: [f64; D]) -
         high - low
     };
     let widths: [f64; D] = std::array::from_fn(width);
-    let is_ordinary = |&width: &f64| RANGE.min <= width && width <= 2.0 * RANGE.max;
+    let is_ordinary = |width: &f64| (RANGE.min..=2.0 * RANGE.max).contains(width);
     widths.iter().all(is_ordinary).then_some(widths)
 }
 
