@@ -158,6 +158,8 @@ def unsupported(message: str, cure: str) -> UnsupportedError:
 def numbers(array: Any) -> NDArray[np.float64]:
     """Return an array as float64, masked if it is; without a copy if it is that already."""
     array = _masked.as_array(array)
+    if type(array) is np.ndarray and array.dtype == np.float64 and array.flags.aligned:
+        return array  # what follows does the same, in a third of the time of a query
     if array.dtype.kind not in "biuf" and array.size:
         raise usage(f"coordinates of dtype {array.dtype}, expected real numbers", kind=ArgumentTypeError)
     if isinstance(array, np.ma.MaskedArray):
@@ -181,7 +183,7 @@ def points_of(points: Any) -> NDArray[np.float64]:
 def positions_of(xi: Any, ndim: int) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
     """Return positions as a C-contiguous array of shape (n, ndim), and which of them are masked; these are NaN."""
     xi = numbers(xi).reshape(-1, ndim)
-    masked = _masked.without_value("positions", xi)
+    masked = None if type(xi) is np.ndarray else _masked.without_value("positions", xi)
     if masked is None:
         return np.ascontiguousarray(np.asarray(xi)), np.zeros(len(xi), bool)
     return np.ma.filled(xi, np.nan), masked
