@@ -689,6 +689,7 @@ fn nothing_left(report: &SelectionReport, left_out: usize, files: &[&Path]) -> E
     };
     let unread = match left_out {
         0 => String::new(),
+        1 => "; 1 file is not read, because by its header it is further out".to_owned(),
         files => {
             format!("; {files} files are not read, because by their headers they are further out")
         }
