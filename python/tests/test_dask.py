@@ -267,7 +267,7 @@ def test_what_is_wrong_is_an_error_with_its_cure(client, tmp_path):
     with pytest.raises(breakline.BreaklineError, match="none.laz"):
         breakline.dask.dem(tmp_path / "none.laz", tmp_path / "dem.tif", client=client)
     with pytest.raises(breakline.BreaklineError, match="does not work with tiles yet"):
-        breakline.dask.dem(VALLEY, tmp_path / "dem.tif", client=client, max_edge="auto")
+        breakline.dask.dem(VALLEY, tmp_path / "dem.tif", client=client, add_ridges=True)
     with pytest.raises(breakline.UsageError, match="client"):
         breakline.dask.dem(VALLEY, tmp_path / "dem.tif", client=None)
     with pytest.raises(breakline.UsageError, match="the same call goes on"):
