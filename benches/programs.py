@@ -1,10 +1,11 @@
-"""Times of whole programs, from a file on disk to a finished file on disk: breakline beside the others, in turn.
+"""Times of whole programs, from a file to a finished file: breakline beside the others, in turn.
 
     benches/programs.py FOLDER TILE.laz LINES.shp [--breakline PROGRAM] [--pdal COMMAND] [--runs 5] [--only NAME]
 
 Outputs and temporary files go to FOLDER. `PROGRAM` and `COMMAND` are split at spaces: `--pdal "chroot DEBIAN pdal"`
 works if FOLDER and the tile have the same paths there. Needs PDAL, the programs of GDAL, and laspy, triangle, pyogrio
-and shapely for Python; a route whose program is missing is left out.
+and shapely for Python; the row of a route whose program is missing has the error. Rows that begin with a DEM need that
+of the row "LAZ to 1 m DEM" in FOLDER.
 
 A row of the table that is printed: the medians of elapsed seconds, of processor seconds and of the peak in MiB, first
 of breakline, then of the other, and the median ratio of elapsed times of consecutive runs: above 1 breakline is faster.
@@ -102,15 +103,15 @@ def routes(options):
     yield "the same with breaklines", with_lines, triangle, [[*python, out("triangle.ply"), options.lines]]
     yield "LAZ to 1 m DEM", breakline("dem", tile, "-o", out("dem.tif")), "PDAL", [dem]
 
-    def gdal_contour(*levels):
-        return ["gdal_contour", "-q", "-3d", "-a", "ELEV", *levels, out("dem.tif"), out("gdal.shp")]
+    def gdal_contour(raster, interval, *options):
+        return ["gdal_contour", "-q", *options, "-a", "ELEV", "-i", interval, out(raster), out("gdal.shp")]
 
     contour = breakline("contour", tile, "-o", out("contours.shp"))
-    of_pdal = ["gdal_contour", "-q", "-i", "1", "-a", "ELEV", out("pdal.tif"), out("gdal.shp")]
-    yield "LAZ to 1 m contours", contour, "PDAL, gdal_contour", [dem, of_pdal]
+    yield "LAZ to 1 m contours", contour, "PDAL, gdal_contour", [dem, gdal_contour("pdal.tif", "1")]
     for interval in ("10", "1", "0.02"):
         contour = breakline("contour", out("dem.tif"), "--interval", interval, "-o", out("contours.shp"))
-        yield f"DEM to contours every {interval} m", contour, "gdal_contour", [gdal_contour("-i", interval)]
+        theirs = [gdal_contour("dem.tif", interval, "-3d")]
+        yield f"DEM to contours every {interval} m", contour, "gdal_contour", theirs
     shaded = ["gdaldem", "hillshade", "-q", "-compute_edges", out("dem.tif"), out("gdal_shaded.tif")]
     yield "DEM to hillshade", breakline("hillshade", out("dem.tif"), "-o", out("shaded.tif")), "gdaldem", [shaded]
     selected = breakline("points", tile, "--class", "2", "-o", out("ground.laz"))
