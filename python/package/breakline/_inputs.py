@@ -15,7 +15,7 @@ from ._columns import Points
 from ._errors import ArgumentTypeError, BreaklineError, usage, warn
 
 _POINT_KINDS = "an array (n, 3), columns x, y and z, a laspy or PDAL record, a GeoDataFrame of points, or paths"
-#: The cure for what is no GeoJSON.
+#: The cure for what is not GeoJSON.
 _AS_LOADED = "pass GeoJSON as json.load returns it"
 
 _LINE_KINDS = "paths, arrays (n, 3), geometries, a GeoDataFrame, GeoJSON, or Contours"

@@ -75,7 +75,7 @@ _KEYS = frozenset(
     " segment_markers holes regions neighbors edges edge_markers".split()
 )
 
-#: What the numbers of vertices depend on: unused ones are dropped by the first and the last.
+#: What `_drop_unused` needs, also where switches leave it out of the result.
 _NUMBERED = frozenset({"vertices", "triangles"})
 
 #: The smallest angle of the switch q without a number, in degrees.
@@ -402,7 +402,7 @@ def _markers(tri: Mapping[str, Any], key: str, count: int) -> NDArray[np.int32]:
 
 
 def _wanted(switches: Mapping[str, Any]) -> list[str]:
-    """Return the names of the arrays of the result that the switches ask for, if there are attributes."""
+    """Return the names of the arrays that the switches ask for, as if vertices and regions had attributes."""
     wanted = ["vertices", "vertex_markers", "triangles", "vertex_attributes"]
     if "A" in switches:
         wanted.append("triangle_attributes")

@@ -59,8 +59,8 @@ pub(super) enum OfAdded {
 }
 
 /// Triangulates points and segments, refines the triangulation if a quality is given, and locates
-/// the seeds. The line id of each segment is its position in the list. `is_traced` says
-/// for each segment if it is traced; all are if there are no triangles.
+/// the seeds. The line id of each segment is its position in the list. `is_traced` says for each
+/// segment if it is traced; all are if there are no triangles.
 pub(super) fn build<K: Kernel>(
     points: &[[f64; 2]],
     segments: &[[u32; 2]],
@@ -122,9 +122,13 @@ fn listed<K: Kernel>(
         neighbors: [0, 1, 2].map(|i| face_of[t.tds().neighbor(*cell, i).index()]),
         is_constrained: [0, 1, 2].map(|i| t.is_constrained(*cell, i)),
     };
-    let chain = |(segment, &is_traced): (usize, &bool)| match is_traced || cells.is_empty() {
-        true => t.chain(LineId::new(segment)).iter().map(number).collect(),
-        false => Vec::new(),
+    // Without triangles, only chains have edges.
+    let chain = |(segment, &is_traced): (usize, &bool)| {
+        if is_traced || cells.is_empty() {
+            t.chain(LineId::new(segment)).iter().map(number).collect()
+        } else {
+            Vec::new()
+        }
     };
     Built {
         vertices: t.tds().vertices().map(|v| *t.point(v)).collect(),
