@@ -189,7 +189,7 @@ fn half_inverse(spokes: &[Spoke]) -> [f64; 3] {
 pub(super) struct Surface {
     gradients: Gradients,
     /// The elements over all triangles, by the numbers of their cells, one for each column of
-    /// values. Made when first worth it: they take 152 bytes each.
+    /// values. They take 152 bytes each, and are made when first worth it.
     elements: OnceLock<Vec<CubicElement>>,
 }
 
@@ -206,8 +206,9 @@ impl Surface {
     }
 }
 
-/// How many times as many positions as cells there must be before the elements of all are made: so
-/// many that the elements are few beside them, and that most are used several times.
+/// How many times as many positions as cells there must be before the elements of all are made:
+/// so many that most elements are used, and that they take about three times the memory of the
+/// positions and one column of values.
 const MANY: usize = 2;
 
 /// The elements over the last triangle in which a position was: one for each column of values.
@@ -293,8 +294,8 @@ impl Mesh<Plane, 3, 2> {
         })
     }
 
-    /// Returns the elements over all triangles, if they are there or so many positions are worth
-    /// it.
+    /// Returns the elements over all triangles if they were made before, or if this number of
+    /// positions is worth making them.
     fn table<'a>(
         &self,
         positions: usize,
@@ -306,9 +307,10 @@ impl Mesh<Plane, 3, 2> {
                 .into_par_iter()
                 .map(CellId::new);
             let of_cell = |cell: CellId| {
-                let is_flat = !self.t.tds().is_used(cell) || self.t.tds().is_infinite(cell);
-                let none = is_flat.then(|| std::iter::repeat_n(CubicElement::FLAT, field.width()));
-                let some = (!is_flat).then(|| self.elements(cell, field, &surface.gradients));
+                let is_absent = !self.t.tds().is_used(cell) || self.t.tds().is_infinite(cell);
+                let none =
+                    is_absent.then(|| std::iter::repeat_n(CubicElement::FLAT, field.width()));
+                let some = (!is_absent).then(|| self.elements(cell, field, &surface.gradients));
                 none.into_iter().flatten().chain(some.into_iter().flatten())
             };
             cells.with_min_len(CHUNK).flat_map_iter(of_cell).collect()

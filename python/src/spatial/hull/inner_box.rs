@@ -1,4 +1,4 @@
-//! Points in a box within the hull, which are no corners (Akl and Toussaint 1978).
+//! Points in a box within the hull, which are not corners (Akl and Toussaint 1978).
 //!
 //! In each octant there is a point that is at least as far out as the corner of the box there,
 //! along all three axes. So in any direction one of these eight is farther than all that is inside
@@ -8,7 +8,7 @@
 //!     +-------------------- *     * a point of each quadrant (of each octant, in space)
 //!     |   *                 |
 //!     |     +-----------+   |
-//!     |     |  no       |   |
+//!     |     |  not      |   |
 //!     |     |  corners  |   |
 //!     |     +-----------+   |
 //!     |  *               *  |
@@ -38,7 +38,7 @@ pub(super) fn bounds(points: &[[f64; 3]]) -> Bounds {
     let around = |[low, high]: Bounds, [other_low, other_high]: Bounds| {
         [
             [0, 1, 2].map(|axis| lesser(low[axis], other_low[axis])),
-            [0, 1, 2].map(|axis| -lesser(-high[axis], -other_high[axis])),
+            [0, 1, 2].map(|axis| greater(high[axis], other_high[axis])),
         ]
     };
     let none = || [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
@@ -50,6 +50,11 @@ pub(super) fn bounds(points: &[[f64; 3]]) -> Bounds {
 /// Returns the smaller number. One instruction, unlike `f64::min`: coordinates are numbers.
 fn lesser(x: f64, y: f64) -> f64 {
     if y < x { y } else { x }
+}
+
+/// Like [`lesser`], but returns the larger number.
+fn greater(x: f64, y: f64) -> f64 {
+    if y > x { y } else { x }
 }
 
 /// Returns the points, with this bounding box, that are not inside of a box within their hull.
@@ -74,7 +79,7 @@ fn inner_box(points: [[Measured; 2]; 4]) -> Bounds {
         for (end, (_, p)) in [-1.0, 1.0].into_iter().zip(ends) {
             for axis in 0..3 {
                 if end * octant[axis] < 0.0 {
-                    low[axis] = -lesser(-low[axis], -p[axis]);
+                    low[axis] = greater(low[axis], p[axis]);
                 } else {
                     high[axis] = lesser(high[axis], p[axis]);
                 }
