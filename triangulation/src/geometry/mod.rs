@@ -356,6 +356,12 @@ pub trait Crossing: Coordinates<3> {
     /// rounding.
     fn meet(&self, site: [f64; 2], segments: &[[&Self::Point; 2]]) -> Self::Point;
 
+    /// Returns true if points are nothing but sites, so that [`meet`](Self::meet) does not depend on
+    /// the segments. Nothing is interpolated then where vertices are added between lines.
+    fn is_of_sites(&self) -> bool {
+        false
+    }
+
     /// Returns the point where segments `a b` and `c d` cross in their interiors, rounded.
     ///
     /// Or an end of one of them, if it is so near to the other segment that rounding may hide on
@@ -372,7 +378,15 @@ pub trait Crossing: Coordinates<3> {
         if step == 0.0 {
             site
         } else {
-            site.map(|x| unsigned_zero((x / step).round() * step))
+            // Numbers with their last place at the step or above it are multiples.
+            let is_multiple = |x: f64| x.abs() * f64::EPSILON >= step;
+            site.map(|x| {
+                if is_multiple(x) {
+                    x
+                } else {
+                    unsigned_zero((x / step).round() * step)
+                }
+            })
         }
     }
 }

@@ -86,8 +86,14 @@ impl<K: Kernel> Crossing for Plane<K> {
         K::RANGE.min * f64::EPSILON
     }
 
+    #[inline]
     fn meet(&self, site: [f64; 2], _: &[[&[f64; 2]; 2]]) -> [f64; 2] {
         site
+    }
+
+    #[inline]
+    fn is_of_sites(&self) -> bool {
+        true
     }
 }
 

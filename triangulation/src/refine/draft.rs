@@ -35,6 +35,15 @@ pub(super) enum VertexOrigin {
     Free,
 }
 
+/// A constrained edge that is to be split.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Encroached {
+    pub(super) ends: [VertexId; 2],
+    /// The cell on its left when it was queued, and its index there: it is looked up only if the
+    /// cell has changed.
+    pub(super) edge: (CellId, usize),
+}
+
 /// The outcome of an attempt to add a vertex.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Attempt {
@@ -55,7 +64,7 @@ pub(super) struct Draft<G: Crossing, V> {
     /// The number of vertices that may still be added.
     pub(super) budget: usize,
     /// Constrained edges that are to be split.
-    pub(super) encroached: VecDeque<[VertexId; 2]>,
+    pub(super) encroached: VecDeque<Encroached>,
     origins: Vec<VertexOrigin>,
     pub(super) shells: Shells,
     pub(super) encroachment: Encroachment,
@@ -63,25 +72,36 @@ pub(super) struct Draft<G: Crossing, V> {
 
 impl<G: Crossing, V: Default> Draft<G, V> {
     pub(super) fn new(
-        t: ConstrainedDelaunay<G, V>,
-        regions: Vec<u32>,
+        mut t: ConstrainedDelaunay<G, V>,
+        mut regions: Vec<u32>,
         encroachment: Encroachment,
         budget: usize,
     ) -> Self {
+        // Lists that are full would grow as much, but each on its own, and small ones repeatedly.
+        let count = t.tds().vertex_slots();
+        t.inner.reserve(count.min(budget));
+        regions.reserve(2 * count.min(budget));
+        let mut origins = Vec::with_capacity(count + count.min(budget));
+        origins.resize(count, VertexOrigin::Given);
         let mut draft = Draft {
             regions,
             fresh: Vec::new(),
             budget,
             encroached: VecDeque::new(),
-            origins: vec![VertexOrigin::Given; t.tds().vertex_slots()],
-            shells: Shells::new(t.tds().vertex_slots()),
+            origins,
+            shells: Shells::new(count),
             encroachment,
             t,
         };
-        for cell in draft.t.tds().cells() {
+        for k in 0..draft.t.tds().cell_slots() {
+            let cell = CellId::new(k);
             for i in 0..3 {
-                if cell < draft.t.tds().neighbor(cell, i) && draft.is_encroached(cell, i) {
-                    draft.encroached.push_back(draft.t.tds().edge_ends(cell, i));
+                if draft.t.is_constrained(cell, i)
+                    && cell < draft.t.tds().neighbor(cell, i)
+                    && draft.t.tds().is_used(cell)
+                    && draft.is_encroached(cell, i)
+                {
+                    draft.queue_edge((cell, i));
                 }
             }
         }
@@ -115,6 +135,7 @@ impl<G: Crossing, V: Default> Draft<G, V> {
     }
 
     /// Returns true if the vertex of a cell in the domain is too near to the edge opposite it.
+    #[inline]
     fn is_apex_near(&self, cell: CellId, i: usize) -> bool {
         let tds = self.t.tds();
         let apex = tds.vertex(cell, i);
@@ -135,6 +156,7 @@ impl<G: Crossing, V: Default> Draft<G, V> {
     }
 
     /// Returns true if a point is too near to an edge with these ends.
+    #[inline]
     fn encroaches(&self, ends: [VertexId; 2], site: [f64; 2]) -> bool {
         let [a, b] = ends.map(|v| self.t.plan_of(v));
         let angle = || Wide::sign(&DotProduct([a, site, b]));
@@ -220,11 +242,15 @@ impl<G: Crossing, V: Default> Draft<G, V> {
         if let Some((from, i)) = self.grow(&mut zone, cell, &p, is_near) {
             zone.finish();
             self.t.inner.zone = zone;
-            self.encroached.push_back(self.t.tds().edge_ends(from, i));
+            self.queue_edge((from, i));
             return Attempt::Encroaches;
         }
         let region = self.regions[cell.index()];
-        let p = self.interpolate(zone.cells(), site);
+        let p = if self.t.geometry().is_of_sites() {
+            p
+        } else {
+            self.interpolate(zone.cells(), site)
+        };
         self.star(zone, p, VertexOrigin::Free, |_| region);
         self.budget -= 1;
         Attempt::Added

@@ -76,7 +76,7 @@ fn largest(x: f64, y: f64) -> f64 {
 }
 
 impl Shape {
-    #[inline]
+    #[inline(always)]
     pub(super) fn of(corners: [[f64; 2]; 3]) -> Self {
         let square = |k: usize| {
             let edge = minus(corners[(k + 1) % 3], corners[k]);
@@ -108,23 +108,32 @@ impl Shape {
         shorter(shorter(0, 1), 2)
     }
 
-    /// Returns the square of the cosine of the smallest angle, by the law of cosines.
+    /// Returns true if the square of the cosine of the smallest angle, by the law of cosines, is
+    /// larger than a bound.
     ///
-    /// `PERF:` computed for every new triangle, and which edge is the shortest is not predictable.
-    #[inline]
-    pub(super) fn cosine(&self) -> f64 {
+    /// `PERF:` computed for every new triangle: without a division, and without branches, because
+    /// which edge is the shortest is not predictable.
+    #[inline(always)]
+    pub(super) fn is_thinner(&self, cosine: f64) -> bool {
         let [a, b, c] = self.squares;
-        let (short, long) = (self.shortest(), largest(largest(a, b), c));
-        if ORDINARY.contains(&short) && ORDINARY.contains(&long) {
-            // At most a few bits are lost: it is at least a quarter of the longest.
-            let middle = (a + b + c) - (short + long);
+        let (low, high) = (least(a, b), largest(a, b));
+        let (short, long) = (least(low, c), largest(high, c));
+        if short > ORDINARY.start && long < ORDINARY.end {
+            let middle = largest(low, least(high, c));
             let along = 0.5 * (middle + long - short);
-            along * along / (middle * long)
+            along * along > cosine * (middle * long)
         } else {
-            let [p, q, r] = self.shortest_first();
-            let [u, v] = [minus(r, q), minus(p, r)].map(|edge| edge.map(|x| x / length(edge)));
-            dot(u, v).powi(2)
+            self.squared_cosine() > cosine
         }
+    }
+
+    /// Returns the square of the cosine of the smallest angle, by unit vectors, so that nothing
+    /// overflows or underflows.
+    #[cold]
+    fn squared_cosine(&self) -> f64 {
+        let [p, q, r] = self.shortest_first();
+        let [u, v] = [minus(r, q), minus(p, r)].map(|edge| edge.map(|x| x / length(edge)));
+        dot(u, v).powi(2)
     }
 
     /// Returns the corners, the two ends of the shortest edge first.
@@ -201,9 +210,12 @@ mod tests {
             (shape.first(), shape.shortest(), shape.area()),
             (1, 9.0, 6.0)
         );
-        assert!((shape.cosine() - 16.0 / 25.0).abs() < 1e-15);
         let tiny = Shape::of([[0.0, 0.0], [4e-100, 0.0], [4e-100, 3e-100]]);
-        assert!((tiny.cosine() - 16.0 / 25.0).abs() < 1e-15);
+        for shape in [shape, tiny] {
+            assert!((shape.squared_cosine() - 16.0 / 25.0).abs() < 1e-15);
+            assert!(shape.is_thinner(16.0 / 25.0 - 1e-15));
+            assert!(!shape.is_thinner(16.0 / 25.0 + 1e-15));
+        }
         assert_eq!(
             shape.off_center(1e9),
             [2.0, 1.5],

@@ -5,7 +5,7 @@ use crate::kernel::{DotProduct, Kernel, Wide};
 use crate::num::{Sign, unsigned_zero};
 use crate::tds::{CellId, VertexId, Zone, cw};
 
-use super::draft::{Draft, Encroachment, VertexOrigin};
+use super::draft::{Draft, Encroached, Encroachment, VertexOrigin};
 use super::shape::{length, minus};
 
 impl<G: Crossing, V: Default> Draft<G, V> {
@@ -15,18 +15,25 @@ impl<G: Crossing, V: Default> Draft<G, V> {
     pub(super) fn split_encroached(&mut self) -> bool {
         let before = self.budget;
         while self.budget > 0
-            && let Some(ends) = self.encroached.pop_front()
+            && let Some(Encroached { ends, edge }) = self.encroached.pop_front()
         {
-            let edge = self
-                .t
-                .tds()
-                .edge(ends[0], ends[1])
-                .filter(|&(cell, i)| self.t.is_constrained(cell, i));
-            if edge.is_some_and(|edge| self.split(edge, ends)) {
+            let edge = if self.t.tds().edge_ends(edge.0, edge.1) == ends {
+                Some(edge)
+            } else {
+                self.t.tds().edge(ends[0], ends[1])
+            };
+            let constrained = edge.filter(|&(cell, i)| self.t.is_constrained(cell, i));
+            if constrained.is_some_and(|edge| self.split(edge, ends)) {
                 self.budget -= 1;
             }
         }
         self.budget < before
+    }
+
+    /// Queues a constrained edge to be split.
+    pub(super) fn queue_edge(&mut self, edge: (CellId, usize)) {
+        let ends = self.t.tds().edge_ends(edge.0, edge.1);
+        self.encroached.push_back(Encroached { ends, edge });
     }
 
     /// Splits a constrained edge, given by the cell on its left, and its ends. Returns false if the
@@ -64,18 +71,24 @@ impl<G: Crossing, V: Default> Draft<G, V> {
 
         // Phase 2: the star of the new vertex replaces the triangles on both sides that see it and
         // have it in their circles. The vertex may lie off the edge by a rounding. Nothing is
-        // replaced if something is nearer to the edge than the rounding.
+        // replaced if something is nearer to the edge than the rounding: another constraint or an
+        // end. Other edges on the border cannot be: the circle within contains the vertex, that
+        // beyond does not, and the edge is on their radical axis.
         let (cell, beside) = (edge.0, self.beyond(edge).0);
         let sides = [cell, beside].map(|side| self.regions[side.index()]);
         self.t.inner.set_constrained(edge, false);
         let mut zone = std::mem::take(&mut self.t.inner.zone);
+        let mut hidden = None;
         if let Some(start) = [cell, beside]
             .into_iter()
             .find(|&side| self.t.inner.in_conflict(side, &p))
         {
-            self.grow(&mut zone, start, &p, |_, _| false);
+            hidden = self.grow(&mut zone, start, &p, |from, i| {
+                self.t.inner.side_of_facet(from, i, &p) != Sign::Positive
+            });
         }
-        let Some([after_a, after_b]) = self.rim(&zone, &p, [a, b]) else {
+        let rim = || self.rim(&zone, &p, [a, b]);
+        let Some([after_a, after_b]) = hidden.map_or_else(rim, |_| None) else {
             zone.finish();
             self.t.inner.zone = zone;
             self.t.inner.set_constrained(edge, true);
@@ -99,13 +112,12 @@ impl<G: Crossing, V: Default> Draft<G, V> {
                 continue;
             };
             if self.is_encroached_by_apex(cell, i) {
-                self.encroached.push_back(self.t.tds().edge_ends(cell, i));
+                self.queue_edge((cell, i));
             }
             if k == after_a || k == after_b {
                 self.t.inner.set_constrained((cell, cw(i)), true);
                 if self.is_encroached(cell, cw(i)) {
-                    self.encroached
-                        .push_back(self.t.tds().edge_ends(cell, cw(i)));
+                    self.queue_edge((cell, cw(i)));
                 }
             }
         }
@@ -113,25 +125,22 @@ impl<G: Crossing, V: Default> Draft<G, V> {
     }
 
     /// Returns the positions on the border of a zone of the edges that begin at two vertices;
-    /// `None` if one of them is not on it, or if a point does not see all of it from within.
-    fn rim(&self, zone: &Zone, p: &G::Point, ends: [VertexId; 2]) -> Option<[usize; 2]> {
-        let mut at = [None; 2];
+    /// `None` if one of them is not on it, or if the edge between them is on it and a point is not
+    /// strictly within.
+    fn rim(&self, zone: &Zone, p: &G::Point, [a, b]: [VertexId; 2]) -> Option<[usize; 2]> {
+        let [mut first, mut second] = [None; 2];
         for (k, (cell, i)) in zone.border().enumerate() {
             let [start, end] = self.t.tds().edge_ends(cell, i);
-            let is_finite = start != VertexId::INFINITE && end != VertexId::INFINITE;
-            if is_finite && self.t.inner.side_of_facet(cell, i, p) != Sign::Positive {
+            if start != a && start != b {
+                continue;
+            }
+            if (end == a || end == b) && self.t.inner.side_of_facet(cell, i, p) != Sign::Positive {
                 return None;
             }
-            for (at, v) in at.iter_mut().zip(ends) {
-                if start == v {
-                    *at = Some(k);
-                }
-            }
+            let position = if start == a { &mut first } else { &mut second };
+            *position = Some(k);
         }
-        let [Some(first), Some(second)] = at else {
-            return None;
-        };
-        Some([first, second])
+        Some([first?, second?])
     }
 
     /// Returns the same edge as the cell on its other side has it.

@@ -154,6 +154,9 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         data: impl Fn(&C, usize) -> C,
     ) -> &'a [CellId] {
         zone.star.clear();
+        let is_surface = self.dimension() == 2;
+        // Of triangles, each is linked to the one before it as it is created.
+        let mut before = (CellId::NONE, 0);
         for &(old, i) in &zone.border {
             let i = i as usize;
             let mut links = self.links[old.index()];
@@ -163,12 +166,27 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
             let j = self.index_of_neighbor(outside, old);
             links.neighbors = [CellId::NONE; N];
             links.neighbors[i] = outside;
+            if is_surface {
+                links.neighbors[cw(i)] = before.0;
+            }
             let new = self.add_cell(links, payload);
             self.links[outside.index()].neighbors[j] = new;
+            if is_surface {
+                if let Some(before_links) = self.links.get_mut(before.0.index()) {
+                    debug_assert_eq!(
+                        before_links.vertices[cw(before.1)],
+                        links.vertices[ccw(i)],
+                        "the border comes in order"
+                    );
+                    before_links.neighbors[ccw(before.1)] = new;
+                }
+                self.set_cell_of(links.vertices[ccw(i)], new);
+                before = (new, i);
+            }
             zone.star.push(new);
         }
-        if self.dimension() == 2 {
-            self.link_around(zone, apex);
+        if is_surface {
+            self.close_around(zone, apex, before);
         } else {
             self.link_by_turning(zone);
         }
@@ -179,30 +197,15 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         &zone.star
     }
 
-    /// Links each triangle of a star to the next one, and makes each the cell of its vertices.
+    /// Links the last triangle of a star to the first one, and makes it the cell of the apex. The
+    /// others are linked already, and are the cells of their vertices.
     ///
     /// `PERF:` without turning through the zone, insertion one by one takes 8 % fewer instructions
     /// (10 000 uniform points, callgrind of `bench_editing`).
-    fn link_around(&mut self, zone: &Zone, apex: VertexId) {
-        let around = zone
-            .border
-            .iter()
-            .zip(&zone.star)
-            .map(|(&(_, i), &new)| (new, i as usize));
-        let Some((mut before, mut i)) = around.clone().next_back() else {
-            return;
-        };
-        self.set_cell_of(apex, before);
-        for (new, k) in around {
-            let start = self.links[new.index()].vertices[ccw(k)];
-            debug_assert_eq!(
-                start,
-                self.links[before.index()].vertices[cw(i)],
-                "the border comes in order"
-            );
-            self.set_cell_of(start, new);
-            self.link(before, ccw(i), new, cw(k));
-            (before, i) = (new, k);
+    fn close_around(&mut self, zone: &Zone, apex: VertexId, (last, k): (CellId, usize)) {
+        if let (Some(&first), Some(&(_, i))) = (zone.star.first(), zone.border.first()) {
+            self.link(last, ccw(k), first, cw(i as usize));
+            self.set_cell_of(apex, last);
         }
     }
 
