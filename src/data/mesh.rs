@@ -481,6 +481,11 @@ fn folded(flaw: LinkFlaw) -> Error {
         .cure("a surface has one height at each position: remove overhangs and repeated faces")
 }
 
+/// Returns the area of a triangle in plan; negative if it is clockwise.
+pub(crate) fn area_of([a, b, c]: [[f64; 3]; 3]) -> f64 {
+    ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) / 2.0
+}
+
 /// The orientation of three points in plan: positive if counter-clockwise, zero if collinear. Exact
 /// for all finite coordinates.
 pub(crate) fn orientation(corners: [[f64; 3]; 3]) -> Sign {

@@ -55,7 +55,7 @@ pub use grid::{BlockSource, Grid, cells};
 pub use las_head::LasHead;
 pub use lattice::{Embedding, Lattice};
 pub use mesh::Mesh;
-pub(crate) use mesh::{not_finite, orientation};
+pub(crate) use mesh::{area_of, not_finite, orientation};
 pub use points::{PointBatch, PointFlags, PointInfo, PointSink, PointSource, PointSummary};
 pub use returns::Return;
 pub use shape::{Column, Layer, Shape, ShapeKind};

@@ -3,6 +3,7 @@
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::linear::plan_distance;
+use crate::data::area_of;
 use crate::triangulation::tds::{ccw, cw};
 
 /// What a surface loses with the caps that the [rule of the rim](super::RimRule) leaves out: those
@@ -47,7 +48,7 @@ impl LeftOutAtRim {
 
     /// Adds a triangle that is left out, by the numbers of its vertices and their positions.
     pub fn add(&mut self, vertices: [u64; 3], corners: [[f64; 3]; 3]) {
-        let area = area(corners);
+        let area = area_of(corners).abs();
         self.area_of_all += area;
         let is_long = |i: usize| {
             let length = plan_distance(corners[ccw(i)], corners[cw(i)]);
@@ -96,13 +97,9 @@ impl LeftOutAtRim {
         let count = self.hull.len().max(1) as f64;
         let mean = |k: usize| self.hull.iter().map(|[p, _]| p[k] / count).sum();
         let within = [mean(0), mean(1), 0.0];
-        self.hull.iter().map(|&[p, q]| area([within, p, q])).sum()
+        let from_within = |&[p, q]: &[[f64; 3]; 2]| area_of([within, p, q]).abs();
+        self.hull.iter().map(from_within).sum()
     }
-}
-
-fn area([a, b, c]: [[f64; 3]; 3]) -> f64 {
-    let [u, v] = [b, c].map(|p| [p[0] - a[0], p[1] - a[1]]);
-    (u[0] * v[1] - u[1] * v[0]).abs() / 2.0
 }
 
 #[cfg(test)]

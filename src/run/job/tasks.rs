@@ -11,12 +11,11 @@ use super::task_facts::{Extent, FileFacts, KeptFacts, ReadFacts, TaskFacts, Task
 use super::task_file::{TaskFile, TaskWriter};
 use super::{Job, Task};
 use super::{contours, lines, notes};
-use crate::data::{Bounds, EdgeKind, PointBatch};
+use crate::data::{Bounds, EdgeKind, PointBatch, area_of};
 use crate::error::{Error, Result};
 use crate::run::context::notice::Notice;
 use crate::run::context::{Context, Journal};
 use crate::run::lines::notes::LevelRings;
-use crate::run::products::frame;
 use crate::run::sources::open;
 use crate::run::verbs::Keeps;
 use crate::terrain::contour::parts::{ContourCollector, LevelParts};
@@ -652,7 +651,7 @@ impl<'a> KeptTriangles<'a> {
     fn keep(&mut self, triangle: &TileTriangle, writer: &mut TaskWriter) -> Result<()> {
         let corners = triangle.corners.map(|corner| corner.position);
         self.triangles += 1;
-        self.area += frame::area_of(corners);
+        self.area += area_of(corners);
         corners
             .into_iter()
             .for_each(|corner| self.extent.add(corner));

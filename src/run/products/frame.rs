@@ -106,13 +106,8 @@ pub(crate) fn cells_on(surface: &dyn Surface, frame: &Frame) -> f64 {
 /// Returns the area of a surface in plan.
 fn area(surface: &dyn Surface) -> f64 {
     data::corners(surface)
-        .map(|(_, corners)| area_of(corners.map(|vertex| surface.position(vertex))))
+        .map(|(_, corners)| data::area_of(corners.map(|vertex| surface.position(vertex))))
         .sum()
-}
-
-/// Returns the area of a triangle in plan.
-pub(crate) fn area_of([a, b, c]: [[f64; 3]; 3]) -> f64 {
-    ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) / 2.0
 }
 
 fn cell_area(frame: &Frame) -> f64 {
