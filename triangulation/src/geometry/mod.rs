@@ -455,6 +455,7 @@ fn hash<const D: usize>(p: [f64; D]) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use testkit::random::Random;
 
     /// Counts sides that are certain, of those of a simplex that is positively oriented.
     fn certain<G: Geometry<N>, const N: usize>(
@@ -484,20 +485,16 @@ mod tests {
     /// Corners of few bits and of many, of any size; points on facets, up to a few roundings.
     #[test]
     fn sides_above_the_bound_are_certain() {
-        let mut state = 1u64;
-        let mut random = || {
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
-            (state >> 11) as f64 / (1u64 << 53) as f64
-        };
+        let mut random = Random(1);
         let (mut in_plane, mut in_space) = (0, 0);
         for round in 0..40_000 {
             let scale = [1.0, 1e-300, 1e-55, 1e-40, 1e30, 1e60, 1e150][round % 7];
             let coarse = |x: f64| if round % 2 == 0 { (x * 5.0).floor() } else { x };
-            let mut point = || [(); 3].map(|()| scale * (1.0 + coarse(random())));
-            let simplex = [(); 4].map(|()| point());
-            let mut weights = [(); 4].map(|()| [0.0, 1e-16, random()][(random() * 3.0) as usize]);
+            let simplex = [[(); 3]; 4].map(|p| p.map(|()| scale * (1.0 + coarse(random.unit()))));
+            let mut weights = [(); 4].map(|()| {
+                let any = random.unit();
+                random.pick(&[0.0, 1e-16, any])
+            });
             let sum: f64 = weights.iter().sum();
             weights = weights.map(|weight| if sum > 0.0 { weight / sum } else { 0.25 });
             let q = [0, 1, 2].map(|axis| (0..4).map(|k| weights[k] * simplex[k][axis]).sum());
