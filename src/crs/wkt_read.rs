@@ -368,7 +368,8 @@ fn datum(base: &Node, missing: &dyn Fn(&str) -> Error) -> Result<Datum> {
     let fits = |known: &Datum| {
         known.ellipsoid.is_same(&ellipsoid) && (known.meridian - meridian).abs() < 1e-6
     };
-    // PERF: one after the other; the last one needs the names of all systems.
+    // PERF: each is looked up only if those before do not fit. The last one needs the names of all
+    // systems.
     let codes: [&dyn Fn() -> Option<u32>; 4] = [
         &|| node.epsg(),
         &by_base,

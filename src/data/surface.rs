@@ -436,7 +436,7 @@ const BATCHES_AT_ONCE: u32 = 32;
 
 /// Works on faces or vertices with numbers below `count` on all threads, a batch at a time. `ask`
 /// appends those in a range of numbers, as [`Surface::faces_in`] does. `take` receives what `make`
-/// returns for each batch, in order, while the next ones are made.
+/// returns for each batch, in order, while the next batches are made.
 ///
 /// # Errors
 /// The first of `take`.

@@ -25,9 +25,9 @@ pub struct LostCaps {
 /// triangle that was left out, or the outside of the hull.
 #[derive(Debug, Clone, Default)]
 pub struct LeftOutAtRim {
-    /// Longer edges than this are open whatever the shape of a triangle is.
+    /// Edges longer than this are open, whatever the shape of a triangle is.
     limit: Option<f64>,
-    /// How many sides of an edge are left out or outside, by the numbers of its ends.
+    /// How many of the two sides of an edge are left out or outside, by the numbers of its ends.
     sides: FxHashMap<[u64; 2], u8>,
     hull: Vec<[[f64; 3]; 2]>,
     /// The vertices of caps.

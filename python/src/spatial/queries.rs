@@ -49,7 +49,7 @@ const CLEAR: f64 = 1e-10;
 /// coordinates; as in scipy.
 const BROAD: f64 = 1.5e-8;
 
-/// A cell, and what tells by rounded numbers if a position is clearly in it.
+/// A cell, with the numbers by which a position can be seen, in spite of rounding, to be in it.
 pub(super) struct Frame<const N: usize, const D: usize> {
     cell: CellId,
     corners: [[f64; D]; N],

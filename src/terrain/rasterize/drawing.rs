@@ -9,9 +9,9 @@ use super::placement::{Centers, Placement};
 use super::scan::{Ink, NO_FACE, Scan, heights_along};
 use crate::data::{AT_ONCE, Frame, Surface, Window};
 
-/// The most cells for each face of a surface with which a raster is drawn at once. So it needs less
-/// memory than the triangulation did. Larger rasters would gain little: drawing is most of their
-/// work.
+/// A raster is drawn at once if it has no more cells than this for each face of the surface: then
+/// its cells need less memory than the triangulation did. Larger rasters would gain little, because
+/// drawing is most of their work.
 const CELLS_PER_FACE: usize = 2;
 
 /// The number of triangles that are fetched at a time: few enough to stay in the nearest cache.
@@ -19,14 +19,14 @@ const TRIANGLES_AT_ONCE: usize = 1 << 8;
 
 /// The face and the height of each cell of a raster.
 ///
-/// Faces are drawn in their own order, without an index. So a thread may meet any cell at any time.
-/// A cell that several faces have, as on an edge, keeps the one with the highest number, whoever
-/// comes first.
+/// Faces are drawn in their own order, without an index, so that any thread may come to any cell at
+/// any time. A cell that several faces have, as on an edge, keeps the face with the highest number,
+/// whichever is drawn first.
 #[derive(Debug)]
 pub(super) struct Drawing {
     width: usize,
-    /// Row by row: one more than the number of the face in the high half, the height in the low
-    /// one. 0 where there is no face.
+    /// Row by row. The high half of a cell is one more than the number of its face, the low half
+    /// the height; a cell without a face is 0.
     cells: Vec<AtomicU64>,
 }
 
@@ -71,7 +71,7 @@ impl Drawing {
                     let Some([rows, columns]) = cells_of(&corners, placement) else {
                         continue;
                     };
-                    // PERF: of these boxes around faces, every other one has a face without it.
+                    // PERF: every other face with one center in its box does not contain it.
                     let is_one = rows.len() == 1 && columns.len() == 1;
                     if is_one && scan.misses(&corners, rows.start, columns.start) {
                         continue;
@@ -83,7 +83,7 @@ impl Drawing {
         Some(Drawing { width, cells })
     }
 
-    /// Copies the heights of a window; NaN where there is no face.
+    /// Copies the heights of a window, with NaN for cells without a face.
     pub(super) fn heights(&self, window: Window, out: &mut [f32]) {
         self.copy(window, out, |cell| match cell >> 32 {
             0 => f32::NAN,
@@ -91,7 +91,7 @@ impl Drawing {
         });
     }
 
-    /// Copies the numbers of the faces of a window.
+    /// Copies the numbers of the faces of a window, with [`NO_FACE`] for cells without one.
     pub(super) fn faces(&self, window: Window, out: &mut [u32]) {
         self.copy(window, out, |cell| match (cell >> 32) as u32 {
             0 => NO_FACE,

@@ -47,8 +47,9 @@ enum Faces {
 }
 
 impl<'a, S: Surface + ?Sized> Dem<'a, S> {
-    /// Prepares the raster. If it has at most two cells for each face, all of them are drawn;
-    /// otherwise by a spatial index of the faces, and no cell is computed yet.
+    /// Prepares the raster. If it has at most two cells for each face, all of them are drawn now.
+    /// Otherwise the faces are indexed by their positions, and cells are drawn when they are asked
+    /// for.
     ///
     /// # Errors
     /// Those of [`Frame::checked`].

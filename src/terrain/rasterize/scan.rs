@@ -90,8 +90,9 @@ impl Ink for Numbers<'_> {
 }
 
 impl Scan<'_> {
-    /// Returns true if the center of a cell is certainly outside of a triangle: on different sides
-    /// of two edges. If it is near an edge, this may remain open.
+    /// Returns true if the center of a cell is certainly outside of a triangle, because it is on
+    /// different sides of two edges. False does not mean that it is inside: near an edge, nothing
+    /// is certain.
     #[inline(always)]
     pub(super) fn misses(&self, corners: &[[f64; 3]; 3], row: usize, column: usize) -> bool {
         let center = [self.columns.values()[column], self.rows.values()[row]];

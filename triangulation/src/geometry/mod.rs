@@ -159,8 +159,9 @@ pub trait Geometry<const N: usize> {
     /// Returns a bound on the errors of [`rough_sides`](Self::rough_sides) of these points;
     /// infinite, the default, if there is none.
     ///
-    /// If a side is larger, `q` is inside of that facet by [`orientation`](Self::orientation), too:
-    /// a walk that ends in a simplex need not ask. With the default it is slower but still correct.
+    /// If a rough side is larger than the bound, [`orientation`](Self::orientation) would say, too,
+    /// that `q` is inside of that facet, so that walks need not ask it. With the default, walks are
+    /// slower, and as correct.
     #[inline(always)]
     fn sides_error(&self, _: [&Self::Point; N], _: &Self::Point) -> f64 {
         f64::INFINITY
@@ -419,8 +420,8 @@ fn areas_error(triangle: [[f64; 2]; 3], q: [f64; 2]) -> f64 {
 /// Returns the widths of the box around a simplex and a point; `None` if rounded predicates of
 /// points in the box may overflow or underflow.
 ///
-/// From the smallest of these widths on, a bound relative to their product is far above all that
-/// is lost where smaller differences underflow.
+/// Differences that are much smaller than the widths may underflow. All that is lost by it is far
+/// less than a bound that is relative to the product of the widths.
 #[inline(always)]
 fn widths<const D: usize, const N: usize>(simplex: [[f64; D]; N], q: [f64; D]) -> Option<[f64; D]> {
     let width = |axis: usize| {

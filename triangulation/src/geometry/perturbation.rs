@@ -81,7 +81,7 @@ fn decide<G: Geometry<N>, const N: usize>(
     let mut order = [0, 1, 2, 3];
     let order = &mut order[..simplex.len()];
     for k in 0..order.len() {
-        // The largest of those that are left: nearly always the first or the second decides.
+        // PERF: sorted only as far as needed; nearly always the first or the second decides.
         for other in k + 1..order.len() {
             if geometry
                 .compare(simplex[order[k]], simplex[order[other]])

@@ -193,9 +193,9 @@ pub(super) struct Reached {
 /// Where a point seems to be, seen from a cell.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Seems {
-    /// Inside of the cell, for certain.
+    /// Inside of the cell; this is certain.
     Inside,
-    /// In the cell.
+    /// In the cell, as far as rounded numbers tell.
     There,
     /// Outside of the hull, beyond the facet opposite this vertex.
     Outside(usize),

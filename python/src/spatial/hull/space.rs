@@ -65,7 +65,7 @@ impl Rounded {
 /// The hull of the points so far.
 struct Quickhull<'a> {
     points: &'a [[f64; 3]],
-    /// Of all points.
+    /// The box around all points.
     bounds: Bounds,
     facets: Vec<Growing>,
     /// Facets that are no more.

@@ -6,22 +6,23 @@ use crate::num::{Sign, lattice};
 use super::cell::{Cell, Corner, FACETS};
 use super::source::Source;
 
-/// What determinants of the sites' coordinates are known to be.
+/// How precisely floating point evaluates the determinants of some sites.
 #[derive(Clone, Copy)]
 pub(super) struct Precision {
-    /// Determinants of orientations of absolute value above it have the right sign.
+    /// An orientation has the right sign if the absolute value of its determinant is larger.
     flatness: f64,
-    /// Determinants of differences below it are not rounded.
+    /// An in-sphere test is not rounded at all if all differences of coordinates are smaller.
     exact: f64,
 }
 
-/// A determinant of an in-sphere test is the sum of at most 72 products of five differences; so,
-/// if those are integers below `2^9`, neither it nor any part of it exceeds `2^53`.
+/// The value of `exact`, in units of which all coordinates are multiples. The determinant of an
+/// in-sphere test is the sum of 72 products of five differences: if these are integers below `2^9`,
+/// neither it nor any part of it exceeds `2^53`.
 const EXACT: f64 = 512.0;
 
 impl Precision {
-    /// Returns what is known of sites with these extents along the axes. `numbers` are all
-    /// coordinates, within the range of floating point.
+    /// Returns the precision for sites with these extents along the axes. `numbers` are all of
+    /// their coordinates, within the [range](crate::kernel::RANGE) of floating point.
     pub(super) fn of([x, y, z]: [f64; 3], numbers: impl Iterator<Item = f64>) -> Self {
         Precision {
             // Each of the six terms has eight roundings (Higham 2002, lemma 3.1).
@@ -57,9 +58,10 @@ impl Precision {
     }
 }
 
-/// Returns a power of two of which all numbers are multiples. `None` if they are so fine that
-/// hardly any difference would be a small multiple of it; most sets of points end with the first of
-/// them.
+/// Returns a power of two of which all numbers are multiples. `None` if a number is such a large
+/// multiple that small ones among the differences are hardly to be expected.
+///
+/// `PERF:` of most sets of points, the first number ends the search.
 fn unit(mut numbers: impl Iterator<Item = f64>) -> Option<f64> {
     const LARGEST: f64 = (1u64 << 40) as f64;
     numbers.try_fold(f64::INFINITY, |unit, x| {

@@ -16,7 +16,7 @@ pub(super) struct Source<'a> {
     pub(super) turn: &'a (dyn Fn([u32; 3]) -> Sign + Sync),
     /// True if a point is in the sphere of four positively oriented ones, ties decided.
     pub(super) in_sphere: &'a (dyn Fn([u32; 4], u32) -> bool + Sync),
-    /// The same for a point that lies on the sphere.
+    /// Like `in_sphere`, for a point that lies on the sphere.
     pub(super) in_tied_sphere: &'a (dyn Fn([u32; 4], u32) -> bool + Sync),
     /// True if a point is in the circle of three others in its plane, ties decided.
     pub(super) in_circle: &'a (dyn Fn([u32; 3], u32) -> bool + Sync),

@@ -230,7 +230,7 @@ fn small_multiples_of_a_unit_are_decided_by_one_evaluation() {
 
 #[test]
 fn differences_that_are_too_large_are_not_taken_as_exact() {
-    // 2^9 units from the last site; one unit beside the sphere at 2^20 units.
+    // The largest difference to the last site is 2 r; the unit is 1.
     let precision = Precision::of([1e6; 3], [1.0, 1024.0].into_iter());
     let on_sphere = |r: f64| {
         [

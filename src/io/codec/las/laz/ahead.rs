@@ -13,10 +13,10 @@ struct Slot<T> {
 }
 
 impl<T: Send + 'static> Ahead<T> {
-    /// Lets a thread of the pool compute a result, which must not panic. If the pool has one
-    /// thread, the caller computes it at once: otherwise two would work.
+    /// Lets a thread of the pool compute a result. `compute` must not panic. If the pool has one
+    /// thread, the caller computes the result at once: otherwise two threads would work.
     ///
-    /// If the value is dropped before the computation begins, it never does.
+    /// If the value is dropped before `compute` is called, it never is.
     pub(super) fn start(compute: impl FnOnce() -> T + Send + 'static) -> Self {
         if rayon::current_num_threads() == 1 {
             return Self::known(compute());
@@ -45,8 +45,8 @@ impl<T: Send + 'static> Ahead<T> {
         }))
     }
 
-    /// Returns the result once it is there. A thread of the pool works on what else waits for the
-    /// pool meanwhile.
+    /// Waits for the result and returns it. Meanwhile, if the caller is a thread of the pool, it
+    /// does other work that waits for the pool.
     pub(super) fn take(self) -> T {
         let Slot { result, is_there } = &*self.0;
         let lock = || result.lock().unwrap_or_else(PoisonError::into_inner);
@@ -57,8 +57,8 @@ impl<T: Send + 'static> Ahead<T> {
             if rayon::yield_now() == Some(Yield::Executed) {
                 continue;
             }
-            // Nothing waits for the pool, so another thread is at the computation, and waits for
-            // nobody.
+            // No work waits for the pool. So another thread is computing the result, and it waits
+            // for nobody.
             let mut result = lock();
             while result.is_none() {
                 result = is_there
