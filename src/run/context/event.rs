@@ -50,7 +50,8 @@ pub enum Event<'a> {
         /// These processes, as far as they are known.
         on: &'a [Awaited],
     },
-    /// This process goes on with a job that other processes have: they give no sign of life.
+    /// This process goes on with a job although other processes have it, because they give no sign
+    /// of life.
     GoesOnWithout {
         /// These processes, as far as they are known.
         on: &'a [Awaited],
@@ -134,8 +135,8 @@ impl Display for Awaited {
 /// How many of those that are waited for are listed.
 const LISTED: usize = 3;
 
-/// Returns a list of the first of them that ends a sentence, such as ": a; b; and 2 more"; nothing
-/// if there are none.
+/// Returns the first of them as the end of a sentence, such as `: a; b; and 2 more`; empty if there
+/// are none.
 pub(crate) fn listed(on: &[Awaited]) -> String {
     let mut text = String::new();
     for (i, one) in on.iter().take(LISTED).enumerate() {

@@ -190,6 +190,14 @@ impl<'a> Context<'a> {
         }
     }
 
+    /// Returns a context that reports nothing, and is canceled together with this one.
+    pub(crate) fn quiet(&self) -> Self {
+        Context {
+            cancel: self.cancel,
+            ..Context::default()
+        }
+    }
+
     /// Begins a stage; returns an error if the run is canceled.
     pub(crate) fn start(&self, stage: Stage, size: Size) -> Result<Work<'a>> {
         self.check()?;
@@ -241,8 +249,8 @@ impl<'a> Journal<'a> {
         }
     }
 
-    /// Adds a notice about classes that no point has, if there are any; so many files were not
-    /// read.
+    /// Adds a notice if there are classes that no point has. `unread` is the number of files that
+    /// were not read.
     pub(crate) fn add_missing_classes(&self, missing: impl Iterator<Item = u8>, unread: usize) {
         let mut missing: Vec<u8> = missing.collect();
         missing.sort_unstable();

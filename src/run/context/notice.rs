@@ -175,7 +175,7 @@ pub enum Notice {
         left_out: usize,
         /// The number of all files.
         files: usize,
-        /// True if they were read until one had a ground point, since no other file has one.
+        /// True if they were read up to the first ground point, because no other file has one.
         are_searched: bool,
         /// The distance from the bounds that they are beyond, if not 0.
         buffer: Option<Quantity>,
@@ -210,7 +210,7 @@ pub enum Notice {
         /// The mean distance.
         spacing: Quantity,
     },
-    /// By default, much of the surface is left out at the rim with caps.
+    /// Much of the surface is left out at the rim with caps, which is the default.
     CapsLost {
         /// Their number.
         faces: u64,
@@ -295,7 +295,7 @@ pub enum Notice {
     SteepAngles {
         /// That factor.
         factor: f64,
-        /// The factor that makes lengths of angles.
+        /// The factor with which slopes are true.
         usual: f64,
     },
     /// A degree of x and one of y are taken as lengths, in units of the heights: those in the

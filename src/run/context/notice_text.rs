@@ -610,7 +610,7 @@ fn steep_angles(factor: f64, usual: f64) -> Wording {
             factor / usual
         ),
         Setting::ZFactor.number(format!("{:.2e}", 2.0 * usual)),
-        ", and without it lengths of angles are known"
+        "; without it, heights fit the angles"
     ]
 }
 

@@ -15,8 +15,8 @@ pub(super) fn of_job(folder: &Path, last: usize) -> Vec<Awaited> {
     all
 }
 
-/// Returns who has those tasks for which a function returns true, and whose leases have not
-/// expired; `last` is the number of the last one, the output.
+/// Returns the processes that have tasks for which a function returns true, by leases that have not
+/// expired; `last` is the number of the last task, the output.
 pub(super) fn of_tasks(
     folder: &Path,
     last: usize,
@@ -41,8 +41,8 @@ pub(super) fn of_tasks(
         .collect()
 }
 
-/// Returns true if all leases of a job that have not expired do so within some time, unless they
-/// are written again, and none was written for so long.
+/// Returns true if all leases of a job that have not expired were last written at least `silent`
+/// ago, and expire `within` some time unless they are written again.
 pub(super) fn leases_expire(folder: &Path, silent: Duration, within: Duration) -> bool {
     // Dates of files may be coarse.
     let silent = silent.saturating_sub(Duration::from_secs(2));

@@ -158,7 +158,7 @@ impl<'a> Inputs<'a> {
             .map(|tile| are_tiles.then_some(tile))
             .collect();
         Ok(Tiling {
-            fullest: fullest(&layout, &self.files, tiles.iter().copied()),
+            fullest: fullest(&layout, &self.files, &tiles),
             layout,
             tiles,
             frame,
@@ -443,7 +443,7 @@ impl Closed {
     }
 
     /// Returns the number of points and the box around them that its header states, if it states
-    /// both, and if it is known where that is in the system of the result.
+    /// both, and if the box has a position in the system of the result.
     fn extent(
         &self,
         systems: &SystemOptions,
@@ -479,9 +479,8 @@ impl Closed {
 /// Returns the files that cannot be opened.
 fn closed(request: &TinRequest, context: &Context) -> Result<Vec<Closed>> {
     let mut closed = Vec::new();
-    let as_it_is = Transforms::default();
     for (number, input) in request.points.iter().enumerate() {
-        match looked_at(number, request, as_it_is.numbered(None), context) {
+        match looked_at(number, request, FileTransform::default(), context) {
             Ok(_) => {}
             Err(error) if BadFiles::Skip.skips(&error) => {
                 require_folder(input.path(), request)?;

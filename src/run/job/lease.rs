@@ -74,8 +74,8 @@ fn host() -> String {
     std::env::var("COMPUTERNAME").unwrap_or_default()
 }
 
-/// Returns what this system has chosen for itself when it started, as Linux does: many machines are
-/// called `localhost`.
+/// Returns the id that Linux chose when it started; `None` elsewhere. The names of hosts do not
+/// suffice: many are called `localhost`.
 fn boot() -> Option<String> {
     let id = std::fs::read_to_string("/proc/sys/kernel/random/boot_id").ok()?;
     Some(id.trim().to_owned()).filter(|id| !id.is_empty())
@@ -91,7 +91,7 @@ pub struct TaskLease {
     pub age: Duration,
     /// True if that is longer ago than it states: another worker may take the task.
     pub has_expired: bool,
-    /// After how long it expires unless it is written again.
+    /// The time until it expires unless it is written again.
     pub left: Duration,
 }
 
@@ -99,14 +99,15 @@ pub struct TaskLease {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 struct Stated {
     worker: Worker,
-    /// What tells its host from others of that name; `None` where the system does not say.
+    /// The id that its host chose when it started, because another one may have the same name;
+    /// `None` where the system has none.
     #[serde(default)]
     boot: Option<String>,
     /// So that no process is taken for an earlier one.
     id: u64,
     /// In milliseconds.
     expires_after: u64,
-    /// True if the process has the lock of the job, or its part of it.
+    /// True if the process has the lock of the job, or shares it.
     #[serde(default)]
     has_lock: bool,
 }
@@ -262,8 +263,8 @@ fn found_in(folder: &Path) -> Result<BTreeMap<usize, FoundLease>> {
 /// What a process has of the lock of a job, which holds on its host at least.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum HostLock {
-    /// All of it. So leases of this host whose processes had a part of it are left over from
-    /// processes that were killed.
+    /// All of it. Other leases of this host that state the lock are then left over from processes
+    /// that were killed.
     Whole,
     /// A part, together with others.
     Shared,
@@ -341,7 +342,7 @@ impl Leases {
     }
 
     /// Returns true if another process has a lease that has not expired. Those that are not
-    /// complete do not count: their processes look for leases once they are.
+    /// complete do not count: their processes look for other leases once they are.
     ///
     /// # Errors
     /// If the files cannot be listed or read.

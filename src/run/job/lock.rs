@@ -76,7 +76,7 @@ impl JobLock {
         taken.ok_or_else(|| busy(folder, last))
     }
 
-    /// Has the job by the lease of what is the last task now.
+    /// Keeps the job by the lease of the task that is now the last one.
     pub(super) fn moved_to(self, lease: Lease) -> Self {
         JobLock { lease, ..self }
     }
@@ -147,9 +147,8 @@ pub(super) enum Taken<T> {
     Leased,
 }
 
-/// Tries again and again to take a folder, for some seconds; then only as long as nothing but
-/// leases is waited for that expire soon, since their processes have given no sign of life
-/// meanwhile.
+/// Tries again and again to take a folder, for some seconds. After that, only leases are waited for
+/// that expire soon: their processes have given no sign of life meanwhile.
 fn patiently<T>(
     folder: &Path,
     last: usize,
@@ -215,7 +214,7 @@ fn take_whole(folder: &Path, last: usize) -> Result<Taken<JobLock>> {
     let tasks = tasks_in(folder);
     std::fs::create_dir_all(&tasks).map_err(|e| Error::from(e).in_file(&tasks))?;
     let leases = Leases::begin(folder, LEASE, lock)?;
-    // Asked first, so that this one is in nobody's way while it waits.
+    // Asked first, so that this one keeps nobody from a task while it waits.
     if !leases.has_others()?
         && let Some(lease) = leases.take(last)?
         // Processes that take a task from now on see that lease. Those that took one before are

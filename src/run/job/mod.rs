@@ -477,16 +477,17 @@ impl Job {
             return Ok(known);
         }
         // What there is to say about the layers was said with the plan.
-        let quiet = Context {
-            cancel: context.cancel,
-            ..Context::default()
-        };
         let Plan {
             layers_from, crs, ..
         } = &self.plan;
         let systems = (layers_from.as_slice(), crs.as_ref());
         let extent = self.plan.extent();
-        let known = Known::read(&self.request, systems, &extent, &Journal::new(&quiet))?;
+        let known = Known::read(
+            &self.request,
+            systems,
+            &extent,
+            &Journal::new(&context.quiet()),
+        )?;
         // They may have changed since they were compared with the plan.
         self.plan.require_others_unchanged(&self.folder)?;
         Ok(self.known.get_or_init(|| known))
@@ -664,11 +665,7 @@ pub fn needs_tiles(wanted: &WriteRequest, memory: Option<u64>, context: &Context
     if crate::run::context::memory::need_of(bytes) <= memory {
         return Ok(false);
     }
-    let quiet = Context {
-        cancel: context.cancel,
-        ..Context::default()
-    };
-    let files = PointFiles::open(&points.points, points.read, &Journal::new(&quiet))?;
+    let files = PointFiles::open(&points.points, points.read, &Journal::new(&context.quiet()))?;
     // Where reprojected files are is not known from headers alone.
     let by_file = vec![systems.target.as_ref().map(|_| 0); points.points.len()];
     let mut extents = files.extents(&by_file);

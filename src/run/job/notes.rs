@@ -122,12 +122,9 @@ impl Found {
             .extend(facts.notices.iter().filter_map(TaskNotice::notice));
         self.met += facts.met + facts.kept.clipped;
         self.lost_caps = facts.lost_caps.map_or(self.lost_caps, LostCaps::from);
-        self.sites += facts
-            .read()
-            .map_or(0, |points| points.used.saturating_sub(points.replaced));
-        self.sites = self.sites.saturating_sub(facts.duplicates);
         self.draped += facts.draped;
         if let Some(points) = facts.read() {
+            self.sites += points.used.saturating_sub(points.replaced);
             self.classes.extend(&points.classes);
             self.without_class += points.without_class;
             self.without_return += points.without_return;
@@ -136,6 +133,7 @@ impl Found {
                 .extend(points.of_transform.iter().cloned());
             points.extent.add_to(&mut self.extent_used);
         }
+        self.sites = self.sites.saturating_sub(facts.duplicates);
         match (file, &facts.file) {
             (Some(file), Some(FileFacts::Skipped(why))) => self.skipped.push((file, why.clone())),
             (Some(file), Some(FileFacts::Read(points))) if points.used == 0 => {

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-/// The steps in which is waited for other processes: longer and longer.
+/// The steps in which other processes are waited for: longer and longer.
 #[derive(Debug)]
 pub(super) struct Pause {
     next: Duration,
@@ -20,7 +20,7 @@ impl Pause {
 
     const LONGEST: Duration = Duration::from_secs(3);
 
-    /// After how long is said again what is waited for.
+    /// After this time, it is said again what is waited for.
     const SAID_AGAIN: Duration = Duration::from_secs(60);
 
     /// Returns true, and notes the time, if it is time to say what is waited for.

@@ -246,8 +246,7 @@ impl Plan {
         }
         let context = Context::default();
         let transforms = file.transforms(self.crs.as_ref(), &context)?;
-        let transform = transforms.numbered(transforms.by_file[0]);
-        let found = looked_at(file.input, request, transform, &context)?;
+        let found = looked_at(file.input, request, transforms.of_file(0), &context)?;
         match found {
             Some(found)
                 if (found.count, found.min, found.max) == (file.count, file.min, file.max) =>

@@ -64,14 +64,10 @@ pub(super) struct PlannedFile {
 }
 
 impl PlannedFile {
-    /// Returns the transform of its points to the system of the result, as that of the first of
-    /// several files.
+    /// Returns the transforms to the system of the result of one file, which is this one.
     pub(super) fn transforms(&self, to: Option<&Crs>, context: &Context) -> Result<Transforms> {
-        let quiet = Context {
-            cancel: context.cancel,
-            ..Context::default()
-        };
-        Transforms::new(std::slice::from_ref(&self.from), to, &Journal::new(&quiet))
+        let journal = Journal::new(&context.quiet());
+        Transforms::new(std::slice::from_ref(&self.from), to, &journal)
     }
 
     /// Returns the box around its points in plan, as its header states it.
@@ -101,8 +97,8 @@ impl PlannedFile {
         }
     }
 
-    /// Returns an error unless points that were read are where the plan expects them: others would
-    /// be in tiles that do not ask for this file.
+    /// Returns an error unless points that were read are where the plan expects them: elsewhere
+    /// they could be in tiles that do not read this file.
     pub(super) fn require_within(&self, points: &[[f64; 3]]) -> Result<()> {
         let spread = self.spread();
         let Some(&[x, y, _]) = points

@@ -75,7 +75,7 @@ fn sampled(
             break;
         }
         work.add(batch.len() as u64)?;
-        transforms.apply_to_batch(transforms.by_file[0], &mut batch)?;
+        transforms.of_file(0).apply_to_batch(&mut batch)?;
         selection.add(&batch)?;
         let used = selection.take_points();
         let wanted = (batch.len() as f64 / average * POSITIONS_A_TILE).max(POSITIONS_A_TILE);

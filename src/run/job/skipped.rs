@@ -8,7 +8,7 @@ use super::planned_file::looked_at;
 use super::task_file::TaskFile;
 use crate::error::{Error, Kind, Result};
 use crate::run::context::{Context, Journal};
-use crate::run::sources::transforms::Transforms;
+use crate::run::sources::transforms::FileTransform;
 
 impl Job {
     /// Returns true if a task that is done has skipped its file of points.
@@ -40,14 +40,9 @@ impl Job {
     /// # Complexity
     /// Linear in the files that were skipped, which are read.
     pub fn outgrown_by(&self, context: &Context) -> Result<Option<&Path>> {
-        let quiet = Context {
-            cancel: context.cancel,
-            ..Context::default()
-        };
+        let quiet = context.quiet();
         for (input, _) in &self.plan.skipped {
-            let as_it_is = Transforms::default();
-            let found = looked_at(*input, &self.request, as_it_is.numbered(None), &quiet);
-            if found.is_ok() {
+            if looked_at(*input, &self.request, FileTransform::default(), &quiet).is_ok() {
                 return Ok(Some(self.request.points[*input].path()));
             }
         }

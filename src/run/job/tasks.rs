@@ -241,7 +241,7 @@ impl Job {
                     ..ReadFacts::default()
                 });
             }
-            transforms.apply_to_batch(transforms.by_file[0], &mut batch)?;
+            transforms.of_file(0).apply_to_batch(&mut batch)?;
             selection.add(&batch)?;
             let points = selection.take_points();
             file.require_within(&points)?;

@@ -142,7 +142,7 @@ impl Job {
         let beyond = self.task_count().max(before.tasks as usize);
         let mut next = beyond;
         for (number, path, _) in &mut moved {
-            // Others were on their way when an update was interrupted.
+            // The others have been there since an update was interrupted.
             if *number < beyond {
                 while task_path(&self.folder, next).exists() {
                     next += 1;
@@ -213,7 +213,8 @@ impl JobUpdate {
         let last = before.tasks as usize;
         let lock = JobLock::whole(&job.folder, last, context)?;
         StoredPlan::read_of(before.sum, &job.folder)?;
-        // The lease of the output has another name then. Who sees the new plan has to find it.
+        // The output is the last task, so its lease is renamed if the number of tasks changes. The
+        // new one has to be there before others see the new plan.
         let next_lease = match job.task_count() {
             count if count == last => None,
             count => Some(lock.take_next(count, &job.folder)?),
@@ -280,8 +281,8 @@ impl Inputs<'_> {
         }
         let most = most_points(old.task_memory);
         let tiles = tiles_of(&self.files, old, most);
-        let now = fullest(&old.layout, &self.files, tiles.iter().copied());
-        // Not of the plan before: tiles could double with each update.
+        let now = fullest(&old.layout, &self.files, &tiles);
+        // Compared with when the tiles were chosen: else they could double with each update.
         if now > GROWTH.saturating_mul(old.fullest.max(most)) {
             return None;
         }

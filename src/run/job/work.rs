@@ -75,8 +75,8 @@ impl Waiting {
         Ok(())
     }
 
-    /// Returns for how long no other process has had a lease, although one has the lock, once that
-    /// is longer than a lease lasts: that process gives no sign of life.
+    /// Returns for how long no other process has had a lease although one has the lock, if that is
+    /// longer than a lease lasts: that process gives no sign of life.
     fn locked_out(&mut self, leases: &Leases, lease: Duration) -> Result<Option<Duration>> {
         if leases.has_others()? {
             self.locked_out = None;
@@ -142,7 +142,8 @@ impl Job {
                 }
                 Taken::Locked(file) => {
                     if let Some(after) = waiting.locked_out(&leases, lease)?
-                        // Who had the lease of the output sees that it is lost once it goes on.
+                        // If the process that has the lock goes on, it sees that it has lost the
+                        // lease of the output.
                         && leases.take(self.task_count())?.is_some()
                     {
                         self.note_going_on(after, context);
@@ -239,7 +240,7 @@ impl Job {
         if self.has_current_file(task)? {
             return Ok(Outcome::Done);
         }
-        // Nor does a lock of one host keep another one from planning the job again.
+        // Another host, which does not see the lock of this one, may have planned the job again.
         folder::require_plan(self.sum, &self.folder)?;
         self.note_expired(task, &lease, context);
         self.check_inputs_of([task], context)?;
@@ -314,7 +315,8 @@ impl Job {
         let Some(after) = waiting.locked_out(leases, patience)? else {
             return Ok(None);
         };
-        // One that says that this process has no lock: if the lock becomes free, it still counts.
+        // The next one says that this process has no lock: so it still counts for a process that
+        // gets the lock.
         drop(lease);
         let unlocked = Leases::begin(&self.folder, patience, HostLock::Lacking)?;
         let Some(lease) = unlocked.take(self.task_count())? else {

@@ -177,7 +177,7 @@ fn refuse_options(HillshadeOptions { frame, method, .. }: &HillshadeOptions) -> 
     Ok(())
 }
 
-/// Nobody wants heights over angles to be exaggerated more.
+/// Heights over angles are exaggerated more by mistake only.
 const MOST_EXAGGERATION: f64 = 1000.0;
 
 /// Returns the light over a frame. A given factor for heights is that of both axes.

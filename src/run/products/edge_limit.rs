@@ -21,7 +21,8 @@ const USUAL_REACH: f64 = 2.0;
 /// distances between points.
 const USUAL_SPACINGS: std::ops::Range<f64> = 10.0..1000.0;
 
-/// More than this share of the area, or of the points, is not left out with caps of ground points.
+/// With ground points, no more than these shares of the area and of the points are left out with
+/// caps.
 const USUAL_SHARE_OF_CAPS: f64 = 0.05;
 const USUAL_SHARE_OF_POINTS: f64 = 0.01;
 
@@ -45,8 +46,9 @@ pub enum EdgeLimit {
 }
 
 impl EdgeLimit {
-    /// Returns the length in the units of the coordinate system, for points with this mean
-    /// distance, if that is known. `None` means that there is no limit.
+    /// Returns the length in the units of the coordinate system; `None` if there is no limit.
+    /// `spacing` is the mean distance between points. While that is not known, [`Auto`](Self::Auto)
+    /// is no limit.
     pub(crate) fn length(self, spacing: Option<f64>, units: &Units) -> Option<f64> {
         match self {
             EdgeLimit::Unlimited => None,
@@ -120,7 +122,7 @@ impl EdgeLimit {
 }
 
 /// Returns the mean distance between points, from the number of all points and the extents of all
-/// inputs; `None` if these have no area.
+/// files; `None` if these have no area.
 pub(crate) fn mean_distance(files: impl IntoIterator<Item = FileExtent>) -> Option<f64> {
     let area = |b: Bounds| {
         if b.is_empty() {

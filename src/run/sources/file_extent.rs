@@ -60,9 +60,10 @@ pub(crate) fn with_rounding([min, max]: [[f64; 2]; 2]) -> [[f64; 2]; 2] {
     ]
 }
 
-/// Returns the points of a file by which their mean distance is computed: those that it states, so
-/// that the distance is known before anything is read; those that were read if it states none, or a
-/// box that does not contain them. Both boxes are in the coordinates of the result.
+/// Returns the number of points of a file, and the box around them, by which their mean distance is
+/// computed: as the file states them, so that the distance is known before anything is read. If it
+/// does not state both, or a box that does not contain the points, it is what was read. Both boxes
+/// are in the coordinates of the result.
 pub(crate) fn counted(
     stated: (Option<u64>, Option<Bounds>),
     read: Option<FileExtent>,

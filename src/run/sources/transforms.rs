@@ -12,7 +12,7 @@ use crate::run::context::notice::Notice;
 /// Points per task of reprojection: enough tasks to keep all cores busy.
 const REPROJECTED_AT_ONCE: usize = 4096;
 
-/// The parts of a side of a box for which it is looked up where they are after a transform.
+/// The number of parts of each side of a box whose ends are transformed to find a box around it.
 const STEPS_A_SIDE: usize = 32;
 
 /// By how much of its size a box is enlarged after a transform: operations that change within it,
@@ -20,21 +20,23 @@ const STEPS_A_SIDE: usize = 32;
 const MARGIN: f64 = 0.01;
 
 /// The transforms in use, and for each file the index of its transform.
-#[derive(Default)]
 pub(crate) struct Transforms {
     /// Each with the system that it leads from.
     transforms: Vec<(Crs, Box<dyn Transform>)>,
     pub(crate) by_file: Vec<Option<usize>>,
 }
 
-/// The transform of a file; none if its coordinates are used as they are.
-#[derive(Clone, Copy)]
-pub(crate) struct FileTransform<'a> {
-    transforms: &'a Transforms,
-    number: Option<usize>,
-}
+/// The transform of a file, with the system that it leads from; by default none: the coordinates
+/// are used as they are.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct FileTransform<'a>(Option<&'a (Crs, Box<dyn Transform>)>);
 
 impl Transforms {
+    /// Finds the transforms from the systems of files, one for each system. Files without one stay
+    /// as they are.
+    ///
+    /// # Errors
+    /// If there is no transform between two systems, or no PROJ.
     pub(crate) fn new(from: &[Option<Crs>], to: Option<&Crs>, journal: &Journal) -> Result<Self> {
         let mut transforms = Transforms {
             transforms: Vec::new(),
@@ -66,10 +68,12 @@ impl Transforms {
 
     /// Returns the transform that a number of [`by_file`](Self::by_file) stands for.
     pub(crate) fn numbered(&self, number: Option<usize>) -> FileTransform<'_> {
-        FileTransform {
-            transforms: self,
-            number,
-        }
+        FileTransform(number.map(|number| &self.transforms[number]))
+    }
+
+    /// Returns the transform of a file.
+    pub(crate) fn of_file(&self, file: usize) -> FileTransform<'_> {
+        self.numbered(self.by_file[file])
     }
 
     /// Returns the warnings of the transforms: their operations and accuracy. Complete only after
@@ -87,15 +91,7 @@ impl Transforms {
     }
 
     pub(crate) fn apply(&self, number: Option<usize>, points: &mut [[f64; 3]]) -> Result<()> {
-        match number {
-            Some(number) => {
-                let (_, transform) = &self.transforms[number];
-                points
-                    .par_chunks_mut(REPROJECTED_AT_ONCE)
-                    .try_for_each(|chunk| transform.transform(chunk))
-            }
-            None => Ok(()),
-        }
+        self.numbered(number).apply(points)
     }
 
     pub(crate) fn apply_to_batch(
@@ -103,7 +99,31 @@ impl Transforms {
         number: Option<usize>,
         batch: &mut PointBatch,
     ) -> Result<()> {
-        if number.is_none() {
+        self.numbered(number).apply_to_batch(batch)
+    }
+}
+
+impl FileTransform<'_> {
+    /// Returns the system that the file is reprojected from.
+    pub(crate) fn from(&self) -> Option<&Crs> {
+        self.0.map(|(from, _)| from)
+    }
+
+    fn apply(&self, points: &mut [[f64; 3]]) -> Result<()> {
+        match self.0 {
+            Some((_, transform)) => points
+                .par_chunks_mut(REPROJECTED_AT_ONCE)
+                .try_for_each(|chunk| transform.transform(chunk)),
+            None => Ok(()),
+        }
+    }
+
+    /// Reprojects points of the file.
+    ///
+    /// # Errors
+    /// If one lies outside of the area of the operation.
+    pub(crate) fn apply_to_batch(&self, batch: &mut PointBatch) -> Result<()> {
+        if self.0.is_none() {
             return Ok(());
         }
         let mut points: Vec<[f64; 3]> = batch
@@ -113,27 +133,11 @@ impl Transforms {
             .zip(&batch.z)
             .map(|((&x, &y), &z)| [x, y, z])
             .collect();
-        self.apply(number, &mut points)?;
+        self.apply(&mut points)?;
         for (i, [x, y, z]) in points.into_iter().enumerate() {
             (batch.x[i], batch.y[i], batch.z[i]) = (x, y, z);
         }
         Ok(())
-    }
-}
-
-impl FileTransform<'_> {
-    /// Returns the system that the file is reprojected from.
-    pub(crate) fn from(&self) -> Option<&Crs> {
-        self.number
-            .map(|number| &self.transforms.transforms[number].0)
-    }
-
-    /// Reprojects points of the file.
-    ///
-    /// # Errors
-    /// If one lies outside of the area of the operation.
-    pub(crate) fn apply_to_batch(&self, batch: &mut PointBatch) -> Result<()> {
-        self.transforms.apply_to_batch(self.number, batch)
     }
 
     /// Returns a box that contains another one after the transform, with a margin; `None` if that
@@ -149,9 +153,8 @@ impl FileTransform<'_> {
             return None;
         }
         let mut outline = outline_of(&bounds);
-        self.transforms.apply(self.number, &mut outline).ok()?;
-        let mut around = Bounds::default();
-        outline.iter().for_each(|&point| around.add(point));
+        self.apply(&mut outline).ok()?;
+        let mut around = Bounds::around(&outline);
         let turn = |k: usize| {
             let turns = outline
                 .windows(3)
@@ -238,15 +241,14 @@ mod tests {
         let mut random = Random(5);
         for bend in [0.0, 1e-4, 1e-3, -2e-3] {
             let transforms = bent(bend, f64::NEG_INFINITY, 25832);
-            let transform = transforms.numbered(transforms.by_file[0]);
+            let transform = transforms.of_file(0);
             let around = transform.around(square(100.0, 400.0)).unwrap();
             let mut points: Vec<[f64; 3]> = (0..10_000)
                 .map(|_| [0, 1].map(|_| 100.0 + 300.0 * random.unit()))
                 .map(|[x, y]| [x, y, 5.0])
                 .collect();
-            transforms.apply(Some(0), &mut points).unwrap();
-            let mut exact = Bounds::default();
-            points.iter().for_each(|&point| exact.add(point));
+            transform.apply(&mut points).unwrap();
+            let exact = Bounds::around(&points);
             for k in 0..2 {
                 let size = exact.max[k] - exact.min[k];
                 let slack = [exact.min[k] - around.min[k], around.max[k] - exact.max[k]];
@@ -260,14 +262,13 @@ mod tests {
 
     #[test]
     fn without_a_transform_a_box_stays_and_where_one_fails_there_is_none() {
-        let none = Transforms::default();
         assert_eq!(
-            none.numbered(None).around(square(1.0, 2.0)),
+            FileTransform::default().around(square(1.0, 2.0)),
             Some(square(1.0, 2.0))
         );
         let box_of = |from, code| {
             let transforms = bent(0.0, from, code);
-            transforms.numbered(Some(0)).around(square(100.0, 400.0))
+            transforms.of_file(0).around(square(100.0, 400.0))
         };
         assert!(box_of(50.0, 25832).is_some());
         assert!(box_of(150.0, 25832).is_none());

@@ -18,7 +18,7 @@ pub(super) struct Built {
     pub(super) vertex_of: Vec<u32>,
     /// The triangles; empty if all points are on one line.
     pub(super) faces: Vec<Face>,
-    /// The vertices along each segment that is traced; of the others none.
+    /// The vertices along each segment that is traced; empty for the others.
     pub(super) chains: Vec<Vec<u32>>,
     /// The location of each seed.
     pub(super) seeds: Vec<SeedLocation>,
@@ -60,7 +60,7 @@ pub(super) enum OfAdded {
 
 /// Triangulates points and segments, refines the triangulation if a quality is given, and locates
 /// the seeds. The line id of each segment is its position in the list. `is_traced` says for each
-/// segment if it is traced; all are if there are no triangles.
+/// segment if it is traced; without triangles, all are.
 pub(super) fn build<K: Kernel>(
     points: &[[f64; 2]],
     segments: &[[u32; 2]],

@@ -32,9 +32,9 @@ pub enum Execution {
     Tiles(TileOptions),
     /// In tiles, going on with the job in the folder, if there is one.
     Resume(TileOptions),
-    /// In tiles, with the job in the folder, which stays. Only the tasks are done that inputs reach
-    /// which were changed, added or removed since. An output is replaced if it is as that job has
-    /// written it. Without a job there, one is planned.
+    /// In tiles, with the job in the folder, which stays. Only the tasks are done that are
+    /// affected by inputs which were changed, added or removed since. An output is replaced if it
+    /// is still as that job wrote it. Without a job there, one is planned.
     Update(TileOptions),
     /// Not at all: tiles are planned as for [`Tiles`](Self::Tiles), and nothing is written.
     Plan(TileOptions),
@@ -284,9 +284,9 @@ pub fn run_job(stored: &StoredJob, context: &Context) -> Result<WriteReport> {
         )
 }
 
-/// Does the tasks of a job again that inputs reach which have changed since it was planned. Outputs
-/// are replaced if they are as the job has written them. `stored` is then the job as it is planned
-/// now.
+/// Does the tasks of a job again that are affected by inputs which have changed since it was
+/// planned. Outputs are replaced if they are still as the job wrote them. `stored` is then the job
+/// as it is planned now.
 ///
 /// # Errors
 /// Those of [`run_job`].
@@ -635,7 +635,7 @@ impl<'a> Prepared<'a> {
             .write_tiles(&job.tiles(&report), &outputs, context)?;
         let is_kept = caller != Caller::Request || report.skipped > 0;
         if is_kept {
-            // What this process would find is the output of another one.
+            // Without the lock, the output that is found may be that of another process.
             lock.confirm()?;
             // Somebody may have written there since the tasks began.
             let own = own.still_there(context)?;

@@ -48,8 +48,8 @@ pub(crate) enum JobAction {
         /// tasks that it needs are not done
         #[arg(long, value_name = "N")]
         task: Option<usize>,
-        /// Do again what is reached by inputs that have changed since the job was planned, and
-        /// replace the output, if it is as the job has written it
+        /// Do only the tasks again that changed inputs affect, and replace the output, if it is
+        /// still as the job wrote it
         #[arg(long, conflicts_with = "task")]
         update: bool,
     },

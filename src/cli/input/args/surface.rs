@@ -76,8 +76,8 @@ pub(crate) struct SurfaceArgs {
     /// there, too: triangles with an angle over 165 degrees, in which contours would run along the
     /// edge of the data. No breakline is crossed. In the units of the coordinate system (100 metres
     /// are 328.08 feet); without one, 100 units. `auto` is 100 times the mean distance between
-    /// points, to two digits, from the numbers of points and the extents that the files state: so
-    /// it does not depend on --class and --bounds; the summary shows it.
+    /// points, rounded to two digits. It follows from the numbers of points and the extents that
+    /// the files state, and does not depend on --class and --bounds. The summary shows it.
     #[arg(
         long,
         value_name = "LENGTH|auto|none",

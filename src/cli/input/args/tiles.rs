@@ -38,7 +38,7 @@ pub(crate) struct TileArgs {
     ///
     /// Repeat the command that began the job. Files that were changed, added or removed since are
     /// found, and only the tasks that they affect are done again. The output is replaced if it is
-    /// as the job has written it. If there is no job yet, one is planned.
+    /// still as the job wrote it. If there is no job yet, one is planned.
     #[arg(long, conflicts_with_all = ["resume", "dry_run"])]
     pub(crate) update: bool,
 
