@@ -8,8 +8,7 @@ use breakline::run::{
     WrittenOf,
 };
 
-use super::program::run_in;
-use super::{layer, valley};
+use super::{layer, run, valley};
 
 /// Returns the number of points merged into others, of those at vertices of breaklines, and of
 /// those in water.
@@ -130,8 +129,7 @@ fn what_leaves_no_point_is_said() {
         "dem {} --class 2 --return 3 --tiles 2x2 -o dem.tif",
         valley()
     );
-    let run = run_in(&folder, &words.split_whitespace().collect::<Vec<_>>());
-    run.fails(
+    run(&folder, &words).fails(
         2,
         &[
             "no point is left of 62776 read: 40 withheld",

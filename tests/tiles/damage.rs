@@ -9,8 +9,8 @@ use tempfile::TempDir;
 use testkit::lidar;
 use testkit::random::Random;
 
-use super::{bytes, layer, program};
-use program::{Run, files_of, run_in};
+use super::{bytes, layer, program, run};
+use program::{Run, files_of};
 
 /// A job of each product that is done, with others whose files must not count in it.
 struct Done {
@@ -23,10 +23,6 @@ struct Done {
     jobs: [String; 3],
     /// What the other command wrote.
     other_product: Vec<u8>,
-}
-
-fn run(folder: &TempDir, words: &str) -> Run {
-    run_in(folder, &words.split_whitespace().collect::<Vec<_>>())
 }
 
 /// The bytes of an output, and of all parts that it has.

@@ -2,7 +2,7 @@
 
 use testkit::random::Random;
 
-use super::{landscape, layer, output_of, program, valley};
+use super::{assert_parts_are_whole, landscape, layer, output_of, program, valley};
 use program::{files_of, run_in};
 use testkit::lidar;
 
@@ -473,12 +473,7 @@ fn a_limit_that_follows_from_the_points_is_that_of_one_piece() {
     let part = format!("{words} --bounds 3.2,50,157,250.5");
     let (_, said) = output_of(&folder, &part, "part.geojson");
     assert!(said.contains(limit), "{said}");
-    for surface in ["whole.tin", "parts.tins"] {
-        output_of(&folder, &words.replace("contour", "tin"), surface);
-    }
-    let [of_whole, of_parts] = ["whole.tin", "parts.tins"]
-        .map(|surface| output_of(&folder, &format!("dem {surface}"), "dem.tif").0);
-    assert!(of_whole == of_parts);
+    assert_parts_are_whole(&folder, &format!("{files} --max-edge auto"));
 }
 
 /// A window of a delivery that would not fit into memory: what is far from it is not read.

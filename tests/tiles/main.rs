@@ -25,12 +25,24 @@ mod workers;
 
 use std::path::Path;
 
-use program::run_in;
+use program::{Run, run_in};
 use tempfile::TempDir;
 
 /// The valley of the fixtures.
 fn valley() -> String {
     format!("{}/fixtures/valley.laz", env!("CARGO_MANIFEST_DIR"))
+}
+
+/// Runs the program in a folder.
+fn run(folder: &TempDir, words: &str) -> Run {
+    run_in(folder, &words.split_whitespace().collect::<Vec<_>>())
+}
+
+/// Plans the job `j`: heights of the valley in four tiles.
+#[track_caller]
+fn plan_valley(folder: &TempDir) {
+    let words = format!("job plan j -- dem {} --tiles 2x2 -o dem.tif", valley());
+    run(folder, &words).works(&[]);
 }
 
 /// Runs the program, which must succeed, and returns the bytes of the file `out` in the folder, and
@@ -50,6 +62,16 @@ fn output_with(folder: &TempDir, words: &str, out: &str, code: i32) -> (Vec<u8>,
     let run = run_in(folder, &words);
     assert_eq!(run.code, code, "{words:?}: {}", run.stderr);
     (std::fs::read(folder.path().join(out)).unwrap(), run.stderr)
+}
+
+/// Fails unless heights of a surface are the same from a TIN and from its parts.
+#[track_caller]
+fn assert_parts_are_whole(folder: &TempDir, words: &str) {
+    let [whole, parts] = ["whole.tin", "parts.tins"].map(|surface| {
+        output_of(folder, &format!("tin {words}"), surface);
+        output_of(folder, &format!("dem {surface}"), "dem.tif").0
+    });
+    assert!(whole == parts, "{words}");
 }
 
 /// The bytes of a file.

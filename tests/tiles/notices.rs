@@ -268,6 +268,31 @@ fn cases_of_points(files: &Files) -> Vec<Case> {
             ..DemOptions::default()
         }
     };
+    let shaded_degrees = |z_factor: Option<f64>, kinds| Case {
+        systems: SystemOptions {
+            assign: system("EPSG:4326"),
+            degrees: Degrees::Allow,
+            ..SystemOptions::default()
+        },
+        verb: Arc::new(HillshadeOptions {
+            frame: FrameOptions {
+                resolution: Some(1.0),
+                ..FrameOptions::default()
+            },
+            light: LightOptions {
+                z_factor,
+                ..LightOptions::default()
+            },
+            ..HillshadeOptions::default()
+        }),
+        ..case(
+            TinRequest {
+                max_edge: EdgeLimit::Unlimited,
+                ..points(&[&text])
+            },
+            kinds,
+        )
+    };
     let diagonal: Vec<([f64; 3], u8)> = (0..40)
         .map(|i| ([f64::from(i), f64::from(i + i % 2), 1.0], 2))
         .collect();
@@ -347,52 +372,8 @@ fn cases_of_points(files: &Files) -> Vec<Case> {
             verb: Arc::new(HillshadeOptions::default()),
             ..case(points(&[&text]), &["DifferentUnits", "HeightFactor"])
         },
-        Case {
-            systems: SystemOptions {
-                assign: system("EPSG:4326"),
-                degrees: Degrees::Allow,
-                ..SystemOptions::default()
-            },
-            verb: Arc::new(HillshadeOptions {
-                frame: FrameOptions {
-                    resolution: Some(1.0),
-                    ..FrameOptions::default()
-                },
-                ..HillshadeOptions::default()
-            }),
-            ..case(
-                TinRequest {
-                    max_edge: EdgeLimit::Unlimited,
-                    ..points(&[&text])
-                },
-                &["AnglesAsLengths"],
-            )
-        },
-        Case {
-            systems: SystemOptions {
-                assign: system("EPSG:4326"),
-                degrees: Degrees::Allow,
-                ..SystemOptions::default()
-            },
-            verb: Arc::new(HillshadeOptions {
-                frame: FrameOptions {
-                    resolution: Some(1.0),
-                    ..FrameOptions::default()
-                },
-                light: LightOptions {
-                    z_factor: Some(2.0),
-                    ..LightOptions::default()
-                },
-                ..HillshadeOptions::default()
-            }),
-            ..case(
-                TinRequest {
-                    max_edge: EdgeLimit::Unlimited,
-                    ..points(&[&text])
-                },
-                &["SteepAngles"],
-            )
-        },
+        shaded_degrees(None, &["AnglesAsLengths"]),
+        shaded_degrees(Some(2.0), &["SteepAngles"]),
         case(points(&[&text]), &["ExtentApart"]).of(te(100.0, 104.0)),
         // Within the extent of the points, but not on the surface.
         case(

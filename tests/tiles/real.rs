@@ -29,66 +29,54 @@ fn assert_same(verb: &str, files: &[&str], words: &str, tiles: &str) {
     );
 }
 
+const SURVEY: &[&str] = &[
+    "lidar/bcts/bcts_1.laz",
+    "lidar/bcts/bcts_2.laz",
+    "lidar/bcts/bcts_3.laz",
+    "lidar/bcts/bcts_4.laz",
+];
+
+const TOWN: &[&str] = &[
+    "lidar/delft_ahn3_bgt/ahn3_cropped_1.laz",
+    "lidar/delft_ahn3_bgt/ahn3_cropped_2.laz",
+];
+
+const LINES_OF_TOWN: &str = "--breaklines @delft_ahn3_bgt/breaklines_z_derived.shp";
+
 #[test]
 #[cfg_attr(not(has_shared), ignore = "needs ../shared")]
 fn four_tiles_of_a_survey() {
-    let files = [1, 2, 3, 4].map(|i| format!("lidar/bcts/bcts_{i}.laz"));
-    let files = files.each_ref().map(String::as_str);
-    assert_same("dem", &files, "--resolution 0.5", "8x8");
-    assert_same("contour", &files, "", "3x20");
-    assert_same("dem", &files, "--max-edge auto", "6x6");
+    assert_same("dem", SURVEY, "--resolution 0.5", "8x8");
+    assert_same("contour", SURVEY, "", "3x20");
+    assert_same("dem", SURVEY, "--max-edge auto", "6x6");
 }
 
 #[test]
 #[cfg_attr(not(has_shared), ignore = "needs ../shared")]
 fn a_town_with_breaklines() {
-    let files = [
-        "lidar/delft_ahn3_bgt/ahn3_cropped_1.laz",
-        "lidar/delft_ahn3_bgt/ahn3_cropped_2.laz",
-    ];
-    let lines = "--breaklines @delft_ahn3_bgt/breaklines_z_derived.shp";
-    assert_same("dem", &files, lines, "16x16");
-    assert_same("contour", &files, lines, "5x5");
-    let auto = format!("{lines} --max-edge auto");
-    assert_same("contour", &files, &auto, "5x5");
+    assert_same("dem", TOWN, LINES_OF_TOWN, "16x16");
+    assert_same("contour", TOWN, LINES_OF_TOWN, "5x5");
+    let auto = format!("{LINES_OF_TOWN} --max-edge auto");
+    assert_same("contour", TOWN, &auto, "5x5");
 }
 
 #[cfg(feature = "proj")]
 #[test]
 #[cfg_attr(not(has_shared), ignore = "needs ../shared")]
 fn surveys_in_another_system() {
-    let files = [1, 2, 3, 4].map(|i| format!("lidar/bcts/bcts_{i}.laz"));
-    let files = files.each_ref().map(String::as_str);
-    assert_same("dem", &files, "--t-srs EPSG:26910", "6x6");
-    let files = [1, 2].map(|i| format!("lidar/delft_ahn3_bgt/ahn3_cropped_{i}.laz"));
-    let files = files.each_ref().map(String::as_str);
-    let lines = "--breaklines @delft_ahn3_bgt/breaklines_z_derived.shp";
+    assert_same("dem", SURVEY, "--t-srs EPSG:26910", "6x6");
     let systems = "--a-srs EPSG:28992 --t-srs EPSG:25831 --max-edge auto";
-    assert_same("contour", &files, &format!("{lines} {systems}"), "5x5");
+    let words = format!("{LINES_OF_TOWN} {systems}");
+    assert_same("contour", TOWN, &words, "5x5");
 }
 
 /// Bounds that cut breaklines, and a boundary.
 #[test]
 #[cfg_attr(not(has_shared), ignore = "needs ../shared")]
 fn a_part_of_a_town() {
-    let files = [
-        "lidar/delft_ahn3_bgt/ahn3_cropped_1.laz",
-        "lidar/delft_ahn3_bgt/ahn3_cropped_2.laz",
-    ];
-    let lines = "--breaklines @delft_ahn3_bgt/breaklines_z_derived.shp";
-    let bounds = "84850.1,447450.3,84960.7,447600.9";
-    assert_same(
-        "dem",
-        &files,
-        &format!("{lines} --bounds {bounds} --resolution 0.25"),
-        "9x7",
-    );
-    assert_same(
-        "contour",
-        &files,
-        &format!("{lines} --bounds {bounds} --interval 0.25"),
-        "4x11",
-    );
+    let part = format!("{LINES_OF_TOWN} --bounds 84850.1,447450.3,84960.7,447600.9");
+    assert_same("dem", TOWN, &format!("{part} --resolution 0.25"), "9x7");
+    assert_same("contour", TOWN, &format!("{part} --interval 0.25"), "4x11");
 }
 
 #[test]

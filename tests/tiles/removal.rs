@@ -3,14 +3,9 @@
 use std::path::PathBuf;
 
 use flate2::Crc;
-use tempfile::TempDir;
 
-use super::{bytes, mark_of, program, valley};
-use program::{Run, files_of, run_in};
-
-fn run(folder: &TempDir, words: &str) -> Run {
-    run_in(folder, &words.split_whitespace().collect::<Vec<_>>())
-}
+use super::{bytes, mark_of, plan_valley, program, run, valley};
+use program::files_of;
 
 /// Two jobs whose plans are equal, one of which still writes.
 #[test]
@@ -101,11 +96,7 @@ fn a_job_of_countless_tasks_is_removed() {
 #[test]
 fn who_cannot_clean_a_job_learns_what_to_delete() {
     let folder = tempfile::tempdir().unwrap();
-    run(
-        &folder,
-        &format!("job plan j -- dem {} --tiles 2x2 -o dem.tif", valley()),
-    )
-    .works(&[]);
+    plan_valley(&folder);
     run(&folder, "job run j --task 0").works(&[]);
     let path: PathBuf = folder.path().join("j/plan.json");
     let mut plan = bytes(&path);

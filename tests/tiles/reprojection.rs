@@ -17,12 +17,12 @@ fn a_target_that_is_the_system_of_the_files_changes_nothing() {
 #[cfg(not(feature = "proj"))]
 #[test]
 fn without_proj_tiles_say_what_one_piece_says() {
-    use super::program::{files_of, run_in};
+    use super::program::files_of;
+    use super::run;
     let folder = tempfile::tempdir().unwrap();
     for tiles in ["", " --tiles 3x3"] {
         let words = format!("dem {} --t-srs EPSG:25833 -o dem.tif{tiles}", valley());
-        run_in(&folder, &words.split(' ').collect::<Vec<_>>())
-            .fails(1, &["from EPSG:25832", "to EPSG:25833", "needs PROJ"]);
+        run(&folder, &words).fails(1, &["from EPSG:25832", "to EPSG:25833", "needs PROJ"]);
     }
     assert!(files_of(folder.path()).is_empty());
 }
@@ -30,16 +30,11 @@ fn without_proj_tiles_say_what_one_piece_says() {
 #[cfg(feature = "proj")]
 mod with_proj {
     use std::collections::BTreeSet;
-    use std::path::Path;
 
     use tempfile::TempDir;
 
-    use super::super::{bytes, layer, output_of, program, valley};
-    use program::{Run, files_of, run_in};
-
-    fn run(folder: &TempDir, words: &str) -> Run {
-        run_in(folder, &words.split_whitespace().collect::<Vec<_>>())
-    }
+    use super::super::update::stamps;
+    use super::super::{assert_parts_are_whole, bytes, layer, output_of, run, valley};
 
     fn fixture(name: &str) -> String {
         valley().replace("valley.laz", name)
@@ -120,16 +115,7 @@ mod with_proj {
         );
         let words = format!("hillshade {valley} --t-srs EPSG:3035 --resolution 2");
         assert_same(&folder, &words, "--tiles 4x4", "tif");
-        for surface in ["whole.tin", "parts.tins"] {
-            output_of(
-                &folder,
-                &format!("tin {valley} --t-srs EPSG:25833"),
-                surface,
-            );
-        }
-        let [of_whole, of_parts] = ["whole.tin", "parts.tins"]
-            .map(|surface| output_of(&folder, &format!("dem {surface}"), "dem.tif").0);
-        assert!(of_whole == of_parts);
+        assert_parts_are_whole(&folder, &format!("{valley} --t-srs EPSG:25833"));
     }
 
     #[test]
@@ -181,14 +167,9 @@ mod with_proj {
         let (whole, _) = output_of(&folder, words, "whole.tif");
         assert!(bytes(&dem) == whole);
         // Nothing has changed: no task is done again.
-        let times = |folder: &Path| -> Vec<_> {
-            let tasks = folder.join("j/tasks");
-            let time = |name| tasks.join(name).metadata().unwrap().modified().unwrap();
-            files_of(&tasks).into_iter().map(time).collect()
-        };
-        let before = times(folder.path());
+        let before = stamps(&folder, "j");
         run(&folder, "job run j --update").works(&[]);
-        assert_eq!(times(folder.path()), before);
+        assert!(stamps(&folder, "j") == before);
     }
 
     #[test]

@@ -5,12 +5,8 @@ use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 use testkit::lidar;
 
-use super::{bytes, mark_of, output_of, program, valley};
-use program::{Run, files_of, run_in};
-
-fn run(folder: &TempDir, words: &str) -> Run {
-    run_in(folder, &words.split_whitespace().collect::<Vec<_>>())
-}
+use super::{bytes, mark_of, output_of, plan_valley, program, run, valley};
+use program::files_of;
 
 /// All files below a folder, with their bytes, in order.
 fn contents(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
@@ -160,11 +156,7 @@ fn the_command_of_a_job_is_verified() {
 #[test]
 fn a_task_refuses_a_damaged_file_of_another() {
     let folder = tempfile::tempdir().unwrap();
-    run(
-        &folder,
-        &format!("job plan j -- dem {} --tiles 2x2 -o dem.tif", valley()),
-    )
-    .works(&[]);
+    plan_valley(&folder);
     run(&folder, "job run j --task 0").works(&[]);
     let path = folder.path().join("j/tasks/000000.task");
     let whole = bytes(&path);
@@ -449,11 +441,7 @@ fn an_output_counts_by_its_bytes_and_not_by_its_date() {
 #[test]
 fn temporary_files_of_an_output_are_removed_when_a_job_goes_on() {
     let folder = tempfile::tempdir().unwrap();
-    run(
-        &folder,
-        &format!("job plan j -- dem {} --tiles 2x2 -o dem.tif", valley()),
-    )
-    .works(&[]);
+    plan_valley(&folder);
     let mark = mark_of(&folder, "j");
     let file = |name: &str| folder.path().join(name);
     let left = format!(".breakline-{mark}-abcdef");

@@ -10,12 +10,8 @@ use tempfile::TempDir;
 use testkit::lidar;
 use testkit::random::Random;
 
-use super::{bytes, layer, output_of, program, valley};
-use program::{Run, files_of, run_in};
-
-fn run(folder: &TempDir, words: &str) -> Run {
-    run_in(folder, &words.split_whitespace().collect::<Vec<_>>())
-}
+use super::{bytes, layer, output_of, program, run, valley};
+use program::files_of;
 
 /// Writes a file of points in the square in this column and row; squares have gaps between them.
 fn write_square(path: &Path, [column, row]: [i32; 2], count: usize, seed: u64) {
@@ -82,7 +78,7 @@ fn reached(tasks: &[Value], is_first: impl Fn(&Value) -> bool) -> BTreeSet<usize
 type Stamp = (SystemTime, Vec<u8>);
 
 /// The files of the tasks, by their numbers.
-fn stamps(folder: &TempDir, job: &str) -> Vec<(usize, Stamp)> {
+pub(super) fn stamps(folder: &TempDir, job: &str) -> Vec<(usize, Stamp)> {
     let tasks = folder.path().join(job).join("tasks");
     let stamp = |name: String| {
         let number = name.strip_suffix(".task")?.parse().ok()?;

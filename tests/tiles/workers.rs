@@ -9,12 +9,8 @@ use std::time::{Duration, SystemTime};
 use breakline::run::{self, Context, StoredJob, WorkOptions, WriteReport};
 use tempfile::TempDir;
 
-use super::{bytes, landscape, output_of, program, valley};
-use program::{Run, files_of, run_in};
-
-fn run(folder: &TempDir, words: &str) -> Run {
-    run_in(folder, &words.split_whitespace().collect::<Vec<_>>())
-}
+use super::{bytes, landscape, output_of, plan_valley, program, run, valley};
+use program::files_of;
 
 /// A worker of the job `j`, which adds what it says to a file.
 fn worker(folder: &TempDir, words: &str) -> Child {
@@ -184,8 +180,7 @@ fn workers_of_the_library_share_a_job() {
 fn what_a_process_has_left_is_taken_once_its_lease_has_expired() {
     let folder = tempfile::tempdir().unwrap();
     let (whole, _) = output_of(&folder, &format!("dem {}", valley()), "whole.tif");
-    let planned = format!("job plan j -- dem {} --tiles 2x2 -o dem.tif", valley());
-    run(&folder, &planned).works(&[]);
+    plan_valley(&folder);
     // Of a task, of one whose lease is damaged, and of the output.
     write_lease(&folder, 0, 100, 101);
     std::fs::write(lease(&folder, 2), "").unwrap();
@@ -226,8 +221,7 @@ fn what_a_process_has_left_is_taken_once_its_lease_has_expired() {
 #[test]
 fn a_job_that_another_host_works_on_is_not_taken_from_it() {
     let folder = tempfile::tempdir().unwrap();
-    let planned = format!("job plan j -- dem {} --tiles 2x2 -o dem.tif", valley());
-    run(&folder, &planned).works(&[]);
+    plan_valley(&folder);
     write_lease(&folder, 3, 3600, 1);
     let before = files_of(&folder.path().join("j/tasks"));
     // Each waits for some seconds.
@@ -255,8 +249,7 @@ fn a_job_that_another_host_works_on_is_not_taken_from_it() {
 #[test]
 fn leases_that_nobody_renews_are_waited_for() {
     let folder = tempfile::tempdir().unwrap();
-    let planned = format!("job plan j -- dem {} --tiles 2x2 -o dem.tif", valley());
-    run(&folder, &planned).works(&[]);
+    plan_valley(&folder);
     write_lease(&folder, 3, 13, 0);
     let waits = "waits for another process that has the job: elsewhere:7 does task 3";
     run(&folder, "job run j").works(&[waits]);
