@@ -357,8 +357,8 @@ pub trait Crossing: Coordinates<3> {
     /// rounding.
     fn meet(&self, site: [f64; 2], segments: &[[&Self::Point; 2]]) -> Self::Point;
 
-    /// Returns true if points are nothing but sites, so that [`meet`](Self::meet) does not depend on
-    /// the segments. Nothing is interpolated then where vertices are added between lines.
+    /// Returns true if points are nothing but sites, so that [`meet`](Self::meet) does not depend
+    /// on the segments. Nothing is interpolated then where vertices are added between lines.
     fn is_of_sites(&self) -> bool {
         false
     }
