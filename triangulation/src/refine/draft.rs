@@ -12,6 +12,9 @@ use super::quality::OUTSIDE;
 use super::shape::{area, is_in_lens, minus};
 use super::shells::Shells;
 
+/// The number of vertices for which there is room from the start, however few are given.
+const FEW: usize = 64;
+
 /// The region around a constrained edge in which a vertex encroaches upon it.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Encroachment {
@@ -79,15 +82,16 @@ impl<G: Crossing, V: Default> Draft<G, V> {
     ) -> Self {
         // Lists that are full would grow as much, but each on its own, and small ones repeatedly.
         let count = t.tds().vertex_slots();
-        t.inner.reserve(count.min(budget));
-        regions.reserve(2 * count.min(budget));
-        let mut origins = Vec::with_capacity(count + count.min(budget));
+        let room = count.max(FEW).min(budget);
+        t.inner.reserve(room);
+        regions.reserve(2 * room);
+        let mut origins = Vec::with_capacity(count + room);
         origins.resize(count, VertexOrigin::Given);
         let mut draft = Draft {
             regions,
-            fresh: Vec::new(),
+            fresh: Vec::with_capacity(FEW),
             budget,
-            encroached: VecDeque::new(),
+            encroached: VecDeque::with_capacity(FEW),
             origins,
             shells: Shells::new(count),
             encroachment,
@@ -167,6 +171,13 @@ impl<G: Crossing, V: Default> Draft<G, V> {
         }
     }
 
+    /// Returns true if a point encroaches upon an edge of a cell or is not strictly on its inner
+    /// side.
+    fn is_near(&self, cell: CellId, i: usize, p: &G::Point) -> bool {
+        self.encroaches(self.t.tds().edge_ends(cell, i), self.t.geometry().plan(p))
+            || self.t.inner.side_of_facet(cell, i, p) != Sign::Positive
+    }
+
     /// Grows the zone of a point that is in conflict with a cell, up to constraints, or to the
     /// first constraint for which `stops` returns true, given as an edge of a cell in the zone.
     /// Returns that one.
@@ -230,15 +241,21 @@ impl<G: Crossing, V: Default> Draft<G, V> {
         let [a, b, _] = self.t.tds().corners(cell).map(|v| self.t.point(v));
         let site = self.t.geometry().on_step(site);
         let p = self.t.geometry().meet(site, &[[a, b]]);
-        if self.t.inner.admit(&p).is_err() || !self.t.inner.in_conflict(cell, &p) {
+        if self.t.inner.admit(&p).is_err() {
+            return Attempt::TooFine;
+        }
+        // The first of several is enough: once it is split, most of the others need not be.
+        // Often it is an edge of the triangle itself.
+        let is_near = |&i: &usize| self.t.is_constrained(cell, i) && self.is_near(cell, i, &p);
+        if let Some(i) = (0..3).find(is_near) {
+            self.queue_edge((cell, i));
+            return Attempt::Encroaches;
+        }
+        if !self.t.inner.in_conflict(cell, &p) {
             return Attempt::TooFine;
         }
         let mut zone = std::mem::take(&mut self.t.inner.zone);
-        // The first of several is enough: once it is split, most of the others need not be.
-        let is_near = |from, i| {
-            self.encroaches(self.t.tds().edge_ends(from, i), site)
-                || self.t.inner.side_of_facet(from, i, &p) != Sign::Positive
-        };
+        let is_near = |from, i| self.is_near(from, i, &p);
         if let Some((from, i)) = self.grow(&mut zone, cell, &p, is_near) {
             zone.finish();
             self.t.inner.zone = zone;

@@ -30,6 +30,8 @@ pub(super) struct Shells {
     cluster: FxHashMap<[VertexId; 2], u32>,
     /// The radius of each cluster.
     radius: Vec<f64>,
+    /// The other ends of the constraints of the vertex at hand; kept for its memory.
+    ends: Vec<VertexId>,
 }
 
 impl Shells {
@@ -50,8 +52,11 @@ impl Shells {
     ) {
         for apex in constraint {
             if !std::mem::replace(&mut self.is_known[apex.index()], true) {
-                let ends: Vec<VertexId> = t.constrained_around(apex).collect();
+                let mut ends = std::mem::take(&mut self.ends);
+                ends.extend(t.constrained_around(apex));
                 self.add(t, apex, &ends);
+                ends.clear();
+                self.ends = ends;
             }
         }
     }

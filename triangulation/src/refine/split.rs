@@ -106,6 +106,13 @@ impl<G: Crossing, V: Default> Draft<G, V> {
             sides[usize::from(is_right(k))]
         });
         self.t.lines.split_edge(a, b, vertex);
+        self.constrain_halves(vertex, [after_a, after_b]);
+        true
+    }
+
+    /// Constrains the halves of an edge that a new vertex has split, given the positions of their
+    /// cells in its star, and queues the edges upon which something encroaches now.
+    fn constrain_halves(&mut self, vertex: VertexId, halves: [usize; 2]) {
         for k in 0..self.t.inner.zone.star.len() {
             let cell = self.t.inner.zone.star[k];
             let Some(i) = self.t.tds().index_of(cell, vertex) else {
@@ -114,14 +121,13 @@ impl<G: Crossing, V: Default> Draft<G, V> {
             if self.is_encroached_by_apex(cell, i) {
                 self.queue_edge((cell, i));
             }
-            if k == after_a || k == after_b {
+            if halves.contains(&k) {
                 self.t.inner.set_constrained((cell, cw(i)), true);
                 if self.is_encroached(cell, cw(i)) {
                     self.queue_edge((cell, cw(i)));
                 }
             }
         }
-        true
     }
 
     /// Returns the positions on the border of a zone of the edges that begin at two vertices;
