@@ -715,6 +715,52 @@ fn switches_of_triangle_refine() {
     }
 }
 
+/// Attributes of added vertices are linear in the triangle that contained them before, whatever the
+/// attributes are, and beside crossings, too. On the second of two segments that cross, they are
+/// linear between its ends.
+#[test]
+fn attributes_are_interpolated_in_the_triangles_before() {
+    let corners = "1 0 0 7\n2 100 0 1\n3 100 100 40\n4 0 100 3\n";
+    let rows = (5..=20).map(|i| {
+        let (x, y, value) = (i * 37 % 97, i * 53 % 89, i * i * 29 % 53);
+        format!("{i} {x} {y} {value}\n")
+    });
+    let nodes = rows.collect::<String>();
+    let folder = folder_with(&[(
+        "drawing.poly",
+        &format!("20 2 1 0\n{corners}{nodes}2 0\n1 1 3\n2 2 4\n0\n"),
+    )]);
+    for (switches, name) in [("-c", "coarse"), ("-cq30a20", "fine")] {
+        run(
+            &folder,
+            &format!("triangulate {switches} drawing.poly -o {name}.ele"),
+        )
+        .ends(0, &[]);
+    }
+    let given = table(&folder, "coarse.node");
+    let triangles = table(&folder, "coarse.ele");
+    let fine = table(&folder, "fine.node");
+    assert!(fine.len() > 100 && given.len() < 30);
+    let is_on_second = |row: &[f64]| (row[1] + row[2] - 100.0).abs() < 1e-9;
+    for row in &fine[given.len()..] {
+        if is_on_second(row) {
+            assert!((row[3] - (3.0 - row[1] / 50.0)).abs() < 1e-9, "{row:?}");
+            continue;
+        }
+        let is_right = |triangle: &Vec<f64>| {
+            let [a, b, c] = [1, 2, 3].map(|k| &given[triangle[k] as usize]);
+            let area = |p: &[f64], q: &[f64], r: &[f64]| {
+                (q[1] - p[1]) * (r[2] - p[2]) - (q[2] - p[2]) * (r[1] - p[1])
+            };
+            let weights =
+                [area(b, c, row), area(c, a, row), area(a, b, row)].map(|w| w / area(a, b, c));
+            let value = weights[0] * a[3] + weights[1] * b[3] + weights[2] * c[3];
+            weights.iter().all(|&w| w > -1e-9) && (value - row[3]).abs() < 1e-6
+        };
+        assert!(triangles[1..].iter().any(is_right), "{row:?}");
+    }
+}
+
 /// An angle that cannot be reached: an error that tells how far it came, or what is there at the
 /// limit that was given.
 #[test]

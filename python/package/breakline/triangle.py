@@ -111,7 +111,8 @@ def triangulate(tri: Mapping[str, Any], opts: str = "", *, threads: int | None =
         The input, by the names of the package `triangle`:
 
         ``vertices`` : (n, 2) floats. Positions.
-        ``vertex_attributes`` : (n, k) floats, optional. Interpolated for added vertices.
+        ``vertex_attributes`` : (n, k) floats, optional. Those of added vertices are interpolated
+        linearly in the triangulation without them.
         ``vertex_markers`` : (n,) or (n, 1) ints, optional.
         ``segments`` : (m, 2) ints, optional. Ends of segments; used with ``p``.
         ``segment_markers`` : (m,) or (m, 1) ints, optional.

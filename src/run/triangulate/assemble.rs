@@ -3,6 +3,7 @@
 
 use rustc_hash::FxHashMap;
 
+use super::between::Between;
 use super::build::Built;
 use crate::io::triangle::{Edge, LineGraph, Nodes, Triangulated};
 
@@ -96,65 +97,59 @@ fn number_nodes(graph: &LineGraph, built: &Built, nodes: &mut Nodes) -> Vec<u32>
             .iter()
             .for_each(|&vertex| _ = segment_of[vertex as usize].get_or_insert(segment));
     }
-    let numbered = node_of.iter().enumerate().map(|(vertex, node)| {
-        node.unwrap_or_else(|| {
+    let mut between = built.between.iter().peekable();
+    let mut numbered = Vec::with_capacity(node_of.len());
+    for (vertex, node) in node_of.into_iter().enumerate() {
+        numbered.push(node.unwrap_or_else(|| {
             let at = built.vertices[vertex];
-            let attributes = match segment_of[vertex] {
-                Some(segment) => {
-                    attributes_between(nodes, segment.ends.map(|end| end as usize), at)
-                }
-                None => attributes_within(nodes, built, &node_of, vertex as u32),
-            };
+            let within = between.next_if(|within| within.vertex == vertex as u32);
+            if let Some(segment) = segment_of[vertex] {
+                add_attributes_between(nodes, segment.ends.map(|end| end as usize), at);
+            } else {
+                // The corners were there before, so that they have smaller numbers.
+                add_attributes_within(nodes, within, |corner| numbered[corner as usize]);
+            }
             nodes.points.push(at);
-            nodes.attributes.extend(attributes);
             nodes.markers.push(0);
             nodes.points.len() as u32 - 1
-        })
-    });
-    numbered.collect()
-}
-
-/// Returns the attributes of an added vertex, linear in the triangle of the input's vertices that
-/// contains it. A corner at a crossing of segments has no attributes and counts as zero.
-fn attributes_within(
-    nodes: &Nodes,
-    built: &Built,
-    node_of: &[Option<u32>],
-    vertex: u32,
-) -> Vec<f64> {
-    let mut attributes = vec![0.0; nodes.attribute_count];
-    if let Some((corners, weights)) = built.between.get(&vertex) {
-        for (corner, weight) in corners.iter().zip(weights) {
-            let Some(node) = node_of[*corner as usize] else {
-                continue;
-            };
-            let values = nodes.attributes_of(node as usize);
-            attributes
-                .iter_mut()
-                .zip(values)
-                .for_each(|(sum, value)| *sum += weight * value);
-        }
+        }));
     }
-    attributes
+    numbered
 }
 
-/// Returns the attributes at a position between two vertices, linear in the distance.
-fn attributes_between(nodes: &Nodes, [a, b]: [usize; 2], at: [f64; 2]) -> Vec<f64> {
+/// Adds the attributes of an added vertex, linear in the triangle that contained it before.
+fn add_attributes_within(
+    nodes: &mut Nodes,
+    within: Option<&Between<u32>>,
+    node_of: impl Fn(u32) -> u32,
+) {
+    let (count, start) = (nodes.attribute_count, nodes.attributes.len());
+    nodes.attributes.resize(start + count, 0.0);
+    let (given, added) = nodes.attributes.split_at_mut(start);
+    for (corner, weight) in within.iter().flat_map(|b| b.corners.iter().zip(b.weights)) {
+        let values = &given[node_of(*corner) as usize * count..][..count];
+        added
+            .iter_mut()
+            .zip(values)
+            .for_each(|(sum, value)| *sum += weight * value);
+    }
+}
+
+/// Adds the attributes at a position between two vertices, linear in the distance.
+fn add_attributes_between(nodes: &mut Nodes, [a, b]: [usize; 2], at: [f64; 2]) {
     let (from, to) = (nodes.points[a], nodes.points[b]);
     // Halves, so that no difference is larger than a double can hold.
     let half = [0, 1].map(|axis| to[axis] / 2.0 - from[axis] / 2.0);
     let axis = usize::from(half[1].abs() > half[0].abs());
     let along = ((at[axis] / 2.0 - from[axis] / 2.0) / half[axis]).clamp(0.0, 1.0);
-    let values = nodes.attributes_of(a).iter().zip(nodes.attributes_of(b));
-    values
-        .map(|(from, to)| {
-            if from == to {
-                *from
-            } else {
-                from * (1.0 - along) + to * along
-            }
-        })
-        .collect()
+    for k in 0..nodes.attribute_count {
+        let [from, to] = [a, b].map(|end| nodes.attributes[end * nodes.attribute_count + k]);
+        nodes.attributes.push(if from == to {
+            from
+        } else {
+            from * (1.0 - along) + to * along
+        });
+    }
 }
 
 /// Returns the marker of each constrained edge: that of the first segment through it that has one.

@@ -1,11 +1,10 @@
 //! Building the triangulation for the verb, as plain lists.
 
-use rustc_hash::FxHashMap;
-
+use super::between::{Before, Between};
 use crate::triangulation::geometry::Plane;
-use crate::triangulation::kernel::{Kernel, twice_area};
+use crate::triangulation::kernel::Kernel;
 use crate::triangulation::num::unsigned_zero;
-use crate::triangulation::refine::{Quality, Refined, Shortfall};
+use crate::triangulation::refine::{Quality, Shortfall};
 use crate::triangulation::tds::{CellId, VertexId};
 use crate::triangulation::{ConstrainedDelaunay, InputError, LineId, Location, OnCrossing};
 
@@ -24,9 +23,9 @@ pub(super) struct Built {
     pub(super) seeds: Vec<SeedLocation>,
     /// The number of vertices that the refinement added.
     pub(super) added: usize,
-    /// If weights are requested, for each vertex that the refinement added: the corners of the
-    /// triangle that contained it before, and their weights at the vertex.
-    pub(super) between: FxHashMap<u32, ([u32; 3], [f64; 3])>,
+    /// If weights are requested, the triangle before of each vertex that the refinement added,
+    /// unless it is on a chain; in order.
+    pub(super) between: Vec<Between<u32>>,
     /// The reasons why triangles are not as requested.
     pub(super) shortfall: Vec<Shortfall>,
 }
@@ -54,7 +53,7 @@ pub(super) enum SeedLocation {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum OfAdded {
     Position,
-    /// Also its triangle before the refinement, of which a copy is kept meanwhile.
+    /// Also its triangle before the refinement. The triangles are kept meanwhile.
     Weights,
 }
 
@@ -76,14 +75,28 @@ pub(super) fn build<K: Kernel>(
     let Some((quality, of_added)) = quality else {
         return Ok(listed(&t, &numbers(&t), &vertices, is_traced, seeds));
     };
-    let before = (of_added == OfAdded::Weights).then(|| t.clone());
+    let before = (of_added == OfAdded::Weights)
+        .then(|| Before::of(&t))
+        .flatten();
     let refined = t.refined(quality);
     let numbers = numbers(&refined);
     let built = listed(&refined, &numbers, &vertices, is_traced, seeds);
+    let between = before.map_or_else(Vec::new, |before| {
+        let mut is_on_chain = vec![false; built.vertices.len()];
+        built
+            .chains
+            .iter()
+            .flatten()
+            .for_each(|&v| is_on_chain[v as usize] = true);
+        let number = |v: VertexId| numbers[v.index()];
+        let all = before.between(&refined, |v| !is_on_chain[number(v) as usize]);
+        let numbered = |between: Between<VertexId>| between.map(number);
+        all.into_iter().map(numbered).collect()
+    });
     let why = refined.shortfall().iter().map(|&(_, why)| why);
     Ok(Built {
         added: refined.added().len(),
-        between: before.map_or_else(FxHashMap::default, |t| between(&t, &refined, &numbers)),
+        between,
         shortfall: why.collect(),
         ..built
     })
@@ -141,59 +154,6 @@ fn listed<K: Kernel>(
             .collect(),
         ..Built::default()
     }
-}
-
-/// Returns the triangle before the refinement of each added vertex, and its weights, by the number
-/// of the vertex.
-fn between<K: Kernel>(
-    before: &ConstrainedDelaunay<Plane<K>>,
-    refined: &Refined<Plane<K>>,
-    numbers: &[u32],
-) -> FxHashMap<u32, ([u32; 3], [f64; 3])> {
-    let number = |v: VertexId| numbers[v.index()];
-    // Vertices that were added one after the other are mostly near each other.
-    let mut near = None;
-    let added = refined.added().iter().filter_map(|&v| {
-        let p = refined.point(v);
-        near = triangle_at(before, p, near);
-        let (corners, weights) = weights(before, near?, p);
-        Some((number(v), (corners.map(number), weights)))
-    });
-    added.collect()
-}
-
-/// Returns the triangle that contains a point, given one that may be near.
-fn triangle_at<K: Kernel>(
-    t: &ConstrainedDelaunay<Plane<K>>,
-    p: &[f64; 2],
-    near: Option<CellId>,
-) -> Option<CellId> {
-    match t.locate(p, near) {
-        Location::Cell { cell, .. } => Some(cell),
-        // Outside of the hull by rounding only.
-        Location::OutsideHull { cell } => {
-            let infinite = t.tds().index_of(cell, VertexId::INFINITE)?;
-            Some(t.tds().neighbor(cell, infinite))
-        }
-        Location::Vertex(_) | Location::OutsideAffineHull | Location::Nowhere => None,
-    }
-}
-
-/// Returns the corners of a triangle, and the barycentric weights of a point in it.
-fn weights<K: Kernel>(
-    t: &ConstrainedDelaunay<Plane<K>>,
-    triangle: CellId,
-    p: &[f64; 2],
-) -> ([VertexId; 3], [f64; 3]) {
-    let corners = *t.tds().corners(triangle);
-    let [a, b, c] = corners.map(|v| *t.point(v));
-    let whole = twice_area(a, b, c);
-    let parts = [
-        twice_area(b, c, *p),
-        twice_area(c, a, *p),
-        twice_area(a, b, *p),
-    ];
-    (corners, parts.map(|part| part / whole))
 }
 
 fn locate_seed<K: Kernel>(

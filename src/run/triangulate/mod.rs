@@ -1,6 +1,7 @@
 //! Triangulation of Triangle's files.
 
 mod assemble;
+mod between;
 mod build;
 mod carve;
 
