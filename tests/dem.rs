@@ -1,7 +1,7 @@
 //! The raster of a surface: the values of its cells, independent of everything else.
 
 use breakline::data::{BlockSource, Frame, Grid, Mesh, Surface, Window};
-use breakline::terrain::{Dem, Hillshade, Light};
+use breakline::terrain::{Dem, Gradient, Hillshade, Light, Quantity, QuantityMap, Ruggedness};
 use rayon::prelude::*;
 use testkit::random::Random;
 
@@ -448,8 +448,8 @@ fn ascii_grid(grid: &Grid) -> String {
     text
 }
 
-#[test]
-fn hillshades_are_those_of_gdaldem() {
+/// Hills with a hole, in the north-up frame of a projected system.
+fn hills() -> Grid {
     let frame = Frame::north_up(500_000.0, 5_400_000.0, 2.5, 90, 70);
     let values = (0..90 * 70)
         .map(|i| {
@@ -462,17 +462,44 @@ fn hillshades_are_those_of_gdaldem() {
             }
         })
         .collect();
-    let grid = Grid {
+    Grid {
         frame,
         crs: None,
         values,
-    };
+    }
+}
+
+/// What a mode of `gdaldem` computes of a grid; `None` if the program is not here.
+fn by_gdaldem(grid: &Grid, mode: &str, options: &[&str]) -> Option<Vec<f64>> {
     let folder = tempfile::tempdir().unwrap();
-    let (input, output) = (
-        folder.path().join("dem.asc"),
-        folder.path().join("shade.asc"),
+    let (input, output) = (folder.path().join("dem.asc"), folder.path().join("out.asc"));
+    std::fs::write(&input, ascii_grid(grid)).unwrap();
+    let run = std::process::Command::new("gdaldem")
+        .args([mode, "-q", "-of", "AAIGrid"])
+        .args([&input, &output])
+        .args(options)
+        .output();
+    let Ok(run) = run else {
+        eprintln!("skipped: gdaldem is not here");
+        return None;
+    };
+    assert!(
+        run.status.success(),
+        "{}",
+        String::from_utf8_lossy(&run.stderr)
     );
-    std::fs::write(&input, ascii_grid(&grid)).unwrap();
+    let text = std::fs::read_to_string(&output).unwrap();
+    let numbers = text
+        .lines()
+        .filter(|line| !line.starts_with(|c: char| c.is_alphabetic()))
+        .flat_map(str::split_whitespace)
+        .map(|word| word.parse().unwrap());
+    Some(numbers.collect())
+}
+
+#[test]
+fn hillshades_are_those_of_gdaldem() {
+    let grid = hills();
     for (options, light) in [
         (&[][..], Light::default()),
         (
@@ -485,33 +512,15 @@ fn hillshades_are_those_of_gdaldem() {
             },
         ),
     ] {
-        let run = std::process::Command::new("gdaldem")
-            .args(["hillshade", "-q", "-of", "AAIGrid"])
-            .args([&input, &output])
-            .args(options)
-            .output();
-        let Ok(run) = run else {
-            eprintln!("skipped: gdaldem is not here");
+        let Some(theirs) = by_gdaldem(&grid, "hillshade", options) else {
             return;
         };
-        assert!(
-            run.status.success(),
-            "{}",
-            String::from_utf8_lossy(&run.stderr)
-        );
-        let text = std::fs::read_to_string(&output).unwrap();
-        let numbers: Vec<f64> = text
-            .lines()
-            .filter(|line| !line.starts_with(|c: char| c.is_alphabetic()))
-            .flat_map(str::split_whitespace)
-            .map(|word| word.parse().unwrap())
-            .collect();
         let ours = Grid::collect(&Hillshade::new(&grid, light).unwrap())
             .unwrap()
             .values;
-        assert_eq!(numbers.len(), ours.len());
+        assert_eq!(theirs.len(), ours.len());
         let mut compared = 0;
-        for (i, (theirs, ours)) in numbers.iter().zip(&ours).enumerate() {
+        for (i, (theirs, ours)) in theirs.iter().zip(&ours).enumerate() {
             // gdaldem leaves out the border of the data.
             if *theirs != 0.0 {
                 assert!(
@@ -522,5 +531,50 @@ fn hillshades_are_those_of_gdaldem() {
             }
         }
         assert!(compared > 5500, "{compared}");
+    }
+}
+
+#[test]
+fn quantities_are_those_of_gdaldem() {
+    let grid = hills();
+    let by_four = Gradient::ZevenbergenThorne;
+    let four = &["-alg", "ZevenbergenThorne"][..];
+    for (mode, options, quantity) in [
+        ("slope", &[][..], Quantity::SlopeDegrees(Gradient::Horn)),
+        ("slope", &["-p"], Quantity::SlopePercent(Gradient::Horn)),
+        ("slope", four, Quantity::SlopeDegrees(by_four)),
+        ("aspect", &[], Quantity::Aspect(Gradient::Horn)),
+        ("aspect", four, Quantity::Aspect(by_four)),
+        ("roughness", &[], Quantity::Roughness),
+        (
+            "TRI",
+            &["-alg", "Riley"],
+            Quantity::Ruggedness(Ruggedness::Riley),
+        ),
+        (
+            "TRI",
+            &["-alg", "Wilson"],
+            Quantity::Ruggedness(Ruggedness::Wilson),
+        ),
+        ("TPI", &[], Quantity::Position),
+    ] {
+        let Some(theirs) = by_gdaldem(&grid, mode, options) else {
+            return;
+        };
+        let map = QuantityMap::of(&grid, quantity, 1.0, 1.0).unwrap();
+        let ours = Grid::collect(&map).unwrap().values;
+        assert_eq!(theirs.len(), ours.len());
+        let mut compared = 0;
+        for (i, (theirs, ours)) in theirs.iter().zip(&ours).enumerate() {
+            // gdaldem leaves out the border of the data.
+            if *theirs != -9999.0 {
+                assert!(
+                    (theirs - ours).abs() <= 1e-4 * ours.abs().max(1.0),
+                    "{quantity:?}: {ours} in cell {i}, gdaldem says {theirs}"
+                );
+                compared += 1;
+            }
+        }
+        assert!(compared > 5500, "{quantity:?}: {compared}");
     }
 }

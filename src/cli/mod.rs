@@ -99,9 +99,16 @@ fn dispatch(verb: &Verb, how: &ConsoleArgs, console: &Console) -> Result<Exit> {
     match verb {
         Verb::Info(args) => verbs::info::run(args, console),
         Verb::Points(args) => verbs::points::run(args, console),
-        Verb::Tin(_) | Verb::Dem(_) | Verb::Contour(_) | Verb::Hillshade(_) => {
-            verbs::write::run(verb, console)
-        }
+        Verb::Tin(_)
+        | Verb::Dem(_)
+        | Verb::Contour(_)
+        | Verb::Hillshade(_)
+        | Verb::Slope(_)
+        | Verb::Aspect(_)
+        | Verb::Curvature(_)
+        | Verb::Roughness(_)
+        | Verb::Tri(_)
+        | Verb::Tpi(_) => verbs::write::run(verb, console),
         Verb::Triangulate(args) => verbs::triangulate::run(args, console),
         Verb::Check(args) => verbs::check::run(args, console),
         Verb::Job(args) => verbs::job::run(args, console),

@@ -12,6 +12,7 @@
 //! | heights at the centers of cells | [`DemOptions`] | [`dem`] | [`CellProduct`] |
 //! | heights at positions | positions | [`elevations`], [`Heights`] | a list |
 //! | shaded relief | [`HillshadeOptions`] | [`hillshade`] | [`CellProduct`] |
+//! | slope, aspect, curvature, roughness | [`QuantityOptions`] | [`quantity`] | [`CellProduct`] |
 //! | contours | [`ContourOptions`] | [`contour()`] | [`ContourProduct`] |
 //! | select, clip and merge points | [`PointsRequest`] | [`write_points`], [`read_points`] | [`PointsReport`] |
 //! | find flaws | [`SurfaceRequest`] | [`check()`] | [`CheckProduct`] |
@@ -95,7 +96,8 @@ pub use job::{
 pub use lines::crossings::LineNames;
 pub use lines::notes::LineInput;
 pub use products::cells::{
-    CellProduct, DemOptions, HillshadeOptions, LightOptions, dem, hillshade,
+    CellProduct, DemOptions, HillshadeOptions, LightOptions, QuantityOptions, dem, hillshade,
+    quantity,
 };
 pub use products::check::{CheckProduct, FlawKind, LocatedFlaw, check, surface_flaws};
 pub use products::contour::{ContourOptions, ContourProduct, contour, write_contours};

@@ -10,6 +10,7 @@
 //! | any surface | contours | [`contours()`], at [`Levels`] |
 //! | a DEM | contours | [`GridSurface`], a surface over its cells |
 //! | a DEM | shaded relief | [`Hillshade`] |
+//! | a DEM | slope, aspect, curvature, roughness | [`QuantityMap`], of a [`Quantity`] |
 //! | a TIN in a file | a surface, at once | [`CompactTin`] |
 //! | more points than fit into memory | their triangles, from tiles | [`tiles`] |
 //! | triangles from tiles | the contours of the whole | [`contour::parts`] |
@@ -46,9 +47,9 @@ pub mod contour;
 mod crossings;
 mod cut;
 mod duplicates;
+mod focal;
 mod grid_surface;
 mod groups;
-mod hillshade;
 mod inside;
 mod interpolate;
 mod levels;
@@ -77,8 +78,9 @@ pub use contour::{Contours, contours};
 pub use crossings::{CrossingHeights, CrossingRule};
 pub use duplicates::DuplicateRule;
 pub(crate) use duplicates::one_per_site;
+pub use focal::{Focal, Gradient, Hillshade, Light, Quantity, QuantityMap, Ruggedness};
 pub use grid_surface::GridSurface;
-pub use hillshade::{Hillshade, Light};
+
 pub use inside::Inside;
 pub(crate) use interpolate::Prepared;
 pub use interpolate::{CubicElement, Interpolant, Method};

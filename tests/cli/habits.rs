@@ -62,7 +62,10 @@ fn what_cannot_be_done_names_what_can() {
             "tin a.xyz -p -o t.ply",
             "hint: switches of Triangle are for `breakline triangulate`",
         ),
-        ("slope d.tif", "`gdaldem slope dem.tif OUT.tif`"),
+        (
+            "color-relief d.tif",
+            "`gdaldem color-relief dem.tif OUT.tif`",
+        ),
         ("a.xyz", "hint: `breakline info a.xyz` shows what is in it"),
         (
             "tin a.xyz b.ply",

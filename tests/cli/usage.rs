@@ -16,6 +16,12 @@ fn help_goes_to_stdout_and_tells_each_verb_with_an_example() {
         "dem",
         "contour",
         "hillshade",
+        "slope",
+        "aspect",
+        "curvature",
+        "roughness",
+        "tri",
+        "tpi",
         "check",
         "demo",
     ] {

@@ -56,6 +56,19 @@ fn the_valley_in_tiles_is_the_valley() {
     let part = "--te 688100.3,5261050,688300,5261222.2 --resolution 0.9";
     assert_same(&folder, &format!("dem {valley} {part}"), &few);
     assert_same(&folder, &format!("hillshade {valley} --azimuth 200"), &few);
+    for quantity in [
+        "slope --percent",
+        "aspect",
+        "curvature --formula plan",
+        "tri",
+    ] {
+        let (verb, options) = quantity.split_once(' ').unwrap_or((quantity, ""));
+        assert_same(
+            &folder,
+            &format!("{verb} {valley} --resolution 2 {options}"),
+            &few,
+        );
+    }
     output_of(
         &folder,
         &format!("dem {valley} --resolution 2.5"),

@@ -46,12 +46,36 @@ enum Meaning {
 
 use Meaning::{Corners, Creation, Format, Input, List, Nothing, Refused, Same, Square, Words};
 
-const RASTERS: &[&str] = &["dem", "hillshade"];
+const RASTERS: &[&str] = &[
+    "dem",
+    "hillshade",
+    "slope",
+    "aspect",
+    "curvature",
+    "roughness",
+    "tri",
+    "tpi",
+];
 const CONTOUR: &[&str] = &["contour"];
 const SHADE: &[&str] = &["hillshade"];
 /// The verbs that choose points.
-const OF_POINTS: &[&str] = &["tin", "dem", "contour", "hillshade", "check", "points"];
-const SURFACES: &[&str] = &["tin", "dem", "contour", "hillshade", "check"];
+const OF_POINTS: &[&str] = &[
+    "tin",
+    "dem",
+    "contour",
+    "hillshade",
+    "slope",
+    "aspect",
+    "curvature",
+    "roughness",
+    "tri",
+    "tpi",
+    "check",
+    "points",
+];
+const SURFACES: &[&str] = OF_POINTS.split_at(OF_POINTS.len() - 1).0;
+/// The verbs that `gdaldem` has, too, with formulas to choose from.
+const BY_FORMULA: &[&str] = &["slope", "aspect", "tri"];
 
 /// The habits; the first that fits applies.
 #[rustfmt::skip]
@@ -61,7 +85,7 @@ const HABITS: &[Habit] = &[
     Habit { typed: &["--bounds"], verbs: &[], meaning: Corners("--bounds") },
     Habit { typed: &["--te", "-te", "-spat", "-projwin"], verbs: &[],
         meaning: Refused("--bounds XMIN,YMIN,XMAX,YMAX clips the surface; --te is the extent of a raster") },
-    Habit { typed: &["-tr", "--tr", "-step"], verbs: &[], meaning: Refused("--resolution is for rasters: `dem`, `hillshade`") },
+    Habit { typed: &["-tr", "--tr", "-step"], verbs: &[], meaning: Refused("--resolution is for rasters, such as those of `dem` and `hillshade`") },
     Habit { typed: &["-ts", "-outsize"], verbs: &[], meaning: Refused("--resolution LENGTH is the size of a cell") },
     Habit { typed: &["-a_srs", "--a_srs", "-s_srs", "--s_srs", "--s-srs", "-s-srs", "-a-srs"], verbs: &[], meaning: Same("--a-srs") },
     Habit { typed: &["-t_srs", "--t_srs", "-t-srs"], verbs: &[], meaning: Same("--t-srs") },
@@ -92,6 +116,12 @@ const HABITS: &[Habit] = &[
         meaning: Refused("`breakline dem IN --method natural -o dem.tif` has no facets; `breakline contour dem.tif` draws its contours") },
     Habit { typed: &["-p"], verbs: CONTOUR,
         meaning: Refused("contours are lines; `breakline dem IN -o dem.tif`, then `gdal_contour -p` makes polygons") },
+    Habit { typed: &["-p"], verbs: &["slope"], meaning: Same("--percent") },
+    Habit { typed: &["-alg"], verbs: BY_FORMULA, meaning: Same("--formula") },
+    Habit { typed: &["-compute_edges"], verbs: RASTERS, meaning: Nothing },
+    Habit { typed: &["-s"], verbs: &["slope"], meaning: Refused("--z-factor FACTOR multiplies heights: 1 divided by the scale of gdaldem") },
+    Habit { typed: &["-zero_for_flat"], verbs: &["aspect"], meaning: Refused("level cells have nodata, -9999") },
+    Habit { typed: &["-trigonometric"], verbs: &["aspect"], meaning: Refused("directions are clockwise from north: 90 - direction is the angle") },
     Habit { typed: &["-p"], verbs: &[], meaning: Refused("switches of Triangle are for `breakline triangulate`") },
     Habit { typed: &["-fl"], verbs: CONTOUR, meaning: List("--levels") },
     Habit { typed: &["-off"], verbs: CONTOUR, meaning: Same("--base") },
@@ -101,7 +131,7 @@ const HABITS: &[Habit] = &[
     Habit { typed: &["-az"], verbs: SHADE, meaning: Same("--azimuth") },
     Habit { typed: &["-alt"], verbs: SHADE, meaning: Same("--altitude") },
     Habit { typed: &["-z"], verbs: SHADE, meaning: Same("--z-factor") },
-    Habit { typed: &["-a_nodata", "-dstnodata", "-nodata"], verbs: &[], meaning: Refused("nodata is -9999 in heights, 0 in shades") },
+    Habit { typed: &["-a_nodata", "-dstnodata", "-nodata"], verbs: &[], meaning: Refused("nodata is -9999, but 0 in shades") },
 ];
 
 /// Programs of others, and the verb that does the same.
@@ -115,6 +145,8 @@ const VERBS: &[(&str, &str)] = &[
     ("gdal_contour", "contour"),
     ("lasinfo", "info"),
     ("gdalinfo", "info"),
+    ("TRI", "tri"),
+    ("TPI", "tpi"),
     ("ogrinfo", "info"),
 ];
 
@@ -147,8 +179,8 @@ const OF_OTHERS: &[(&str, &str)] = &[
     ),
 ];
 
-/// Modes of `gdaldem` that this program does not have.
-const OF_RASTERS: &[&str] = &["slope", "aspect", "color-relief", "roughness", "TRI", "TPI"];
+/// A mode of `gdaldem` that this program does not have.
+const OF_RASTERS: &str = "color-relief";
 
 /// Creation options that describe how a GeoTIFF is always written.
 const AS_WRITTEN: &[&str] = &[
@@ -217,7 +249,7 @@ fn verb(typed: &OsStr) -> Result<Option<String>> {
     if let Some((_, instead)) = OF_OTHERS.iter().find(|(theirs, _)| *theirs == word) {
         return Err(Error::usage(format!("`{word}` is not a verb")).cure(*instead));
     }
-    if !is_ours && OF_RASTERS.contains(&&*word) {
+    if !is_ours && word == OF_RASTERS {
         return Err(Error::usage(format!("`{word}` is not a verb")).cure(format!(
             "write heights with `breakline dem ... -o dem.tif`, then `gdaldem {word} dem.tif OUT.tif`"
         )));
@@ -464,7 +496,9 @@ fn written(verb: &str) -> Vec<&'static str> {
     match verb {
         "points" => formats::extensions(Product::Points),
         "tin" => formats::extensions(Product::Surface),
-        "dem" => formats::extensions(Product::Heights),
+        "dem" | "slope" | "aspect" | "curvature" | "roughness" | "tri" | "tpi" => {
+            formats::extensions(Product::Heights)
+        }
         "contour" => formats::extensions(Product::Contours),
         "hillshade" => formats::extensions(Product::Shades),
         _ => Vec::new(),
@@ -626,9 +660,9 @@ mod tests {
                 "gdal_translate",
             ),
             (
-                "b slope dem.tif",
-                "`slope` is not a verb",
-                "gdaldem slope dem.tif",
+                "b color-relief dem.tif",
+                "`color-relief` is not a verb",
+                "gdaldem color-relief dem.tif",
             ),
             (
                 "b a.laz -o b.tif",

@@ -18,6 +18,7 @@ use crate::run::{
     Context, Event, JobReport, JobSize, Monitor, Notice, Origin, Outputs, Progress, Size, Stage,
     Summary, WriteReport, Written, WrittenOf,
 };
+use crate::terrain::Quantity;
 
 /// Shows what happens while files are written.
 #[derive(Debug)]
@@ -97,7 +98,7 @@ impl<'a> Shown<'a> {
             WrittenOf::Whole(report) => {
                 match (&report.origin, summary) {
                     // The size of the raster is printed already.
-                    (Origin::Cells(_), Summary::Shades) => {
+                    (Origin::Cells(_), Summary::Shades | Summary::Quantity(..)) => {
                         print_extent(report.extent, report.crs.as_ref(), console)
                     }
                     _ => print_surface(report, console),
@@ -111,6 +112,7 @@ impl<'a> Shown<'a> {
         };
         match summary {
             Summary::Heights(cells) => print_heights(cells, crs, console),
+            Summary::Quantity(quantity, cells) => print_quantity(*quantity, cells, crs, console),
             Summary::Contours(drawn) => print_contours(drawn, crs, console),
             Summary::Parts(parts) => {
                 let folder = files
@@ -290,6 +292,27 @@ fn print_heights(cells: &RasterSummary, crs: Option<&Crs>, console: &Console) {
     console.line(format_args!(
         "            {} with a height, from {low} to {high}",
         cells.valid
+    ));
+}
+
+fn print_quantity(quantity: Quantity, cells: &RasterSummary, crs: Option<&Crs>, console: &Console) {
+    if cells.valid == 0 {
+        return console.warning("no cell has a value");
+    }
+    let units = Units::of(crs);
+    let shown = |value: f64| match quantity {
+        Quantity::SlopeDegrees(_) | Quantity::Aspect(_) => format!("{value:.1} degrees"),
+        Quantity::SlopePercent(_) => format!("{value:.1} %"),
+        Quantity::ProfileCurvature | Quantity::PlanCurvature => format!("{value:.4}"),
+        Quantity::Roughness | Quantity::Ruggedness(_) | Quantity::Position => {
+            units.height(value).to_string()
+        }
+    };
+    console.line(format_args!(
+        "            {} with a value, from {} to {}",
+        cells.valid,
+        shown(cells.min),
+        shown(cells.max)
     ));
 }
 

@@ -10,6 +10,7 @@ mod hillshade;
 pub(super) mod info;
 pub(super) mod job;
 pub(super) mod points;
+mod quantity;
 mod tin;
 pub(super) mod triangulate;
 mod triangulate_space;

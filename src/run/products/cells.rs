@@ -1,4 +1,4 @@
-//! Rasters of a surface: heights and hillshades.
+//! Rasters of a surface: heights, hillshades, and quantities such as the slope.
 
 use super::frame::{self, FrameOptions};
 use super::surface::{Model, SurfaceProduct};
@@ -11,7 +11,7 @@ use crate::run::context::notice::Notice;
 use crate::run::context::units::Units;
 use crate::run::context::watched::Watched;
 use crate::run::context::{Context, Journal, Size, Stage};
-use crate::terrain::{Dem, Hillshade, Light, Method};
+use crate::terrain::{Dem, Hillshade, Light, Method, Quantity, QuantityMap};
 
 /// The light of a hillshade. By default it comes from the northwest, 45 degrees above the horizon.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -55,6 +55,31 @@ pub struct HillshadeOptions {
     pub method: Method,
     /// The light.
     pub light: LightOptions,
+}
+
+/// Options of a quantity in cells, such as the slope.
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
+pub struct QuantityOptions {
+    /// The quantity.
+    pub quantity: Quantity,
+    /// Size and position of the cells; a raster keeps its own.
+    pub frame: FrameOptions,
+    /// How heights between the vertices are computed; a raster has its heights.
+    pub method: Method,
+    /// The factor for heights; if `None`, what converts them to the units of the plane.
+    pub z_factor: Option<f64>,
+}
+
+impl QuantityOptions {
+    /// Returns the usual options for a quantity.
+    pub fn new(quantity: Quantity) -> Self {
+        QuantityOptions {
+            quantity,
+            frame: FrameOptions::default(),
+            method: Method::default(),
+            z_factor: None,
+        }
+    }
 }
 
 /// The cells of a raster. For a surface they are computed on demand, so that the raster may be
@@ -107,25 +132,57 @@ pub fn hillshade<'a>(
     context: &Context,
 ) -> Result<CellProduct<'a>> {
     let journal = Journal::new(context);
-    let (source, surface): (Box<dyn BlockSource>, _) = match &product.model {
+    let heights_by = DemOptions {
+        frame: options.frame.clone(),
+        method: options.method,
+    };
+    let (source, surface) = given_or_drawn(product, &heights_by, &journal)?;
+    let shades = CellProduct::shades_of(source, &options.light, product.crs(), &journal)?;
+    Ok(CellProduct { surface, ..shades })
+}
+
+/// Prepares a quantity in cells, such as the slope; NaN where there is none.
+///
+/// # Errors
+/// If the frame cannot be chosen, or is chosen for a raster, which keeps its own; or if the run is
+/// canceled.
+///
+/// # Complexity
+/// Linear in the triangles.
+pub fn quantity<'a>(
+    product: &'a SurfaceProduct,
+    options: &QuantityOptions,
+    context: &Context,
+) -> Result<CellProduct<'a>> {
+    let journal = Journal::new(context);
+    let heights_by = DemOptions {
+        frame: options.frame.clone(),
+        method: options.method,
+    };
+    let (source, surface) = given_or_drawn(product, &heights_by, &journal)?;
+    let cells = CellProduct::quantity_of(source, options, product.crs(), &journal)?;
+    Ok(CellProduct { surface, ..cells })
+}
+
+/// Returns the cells of a raster, or the heights of another surface in cells.
+fn given_or_drawn<'a>(
+    product: &'a SurfaceProduct,
+    options: &DemOptions,
+    journal: &Journal,
+) -> Result<HeightSource<'a>> {
+    match &product.model {
         Model::Raster(grid) => {
             refuse_options(options)?;
-            (Box::new(grid.as_ref()), None)
+            Ok((Box::new(grid.as_ref()), None))
         }
         Model::RasterFile(raster) => {
             refuse_options(options)?;
-            (Box::new(raster.cells()), None)
+            Ok((Box::new(raster.cells()), None))
         }
         Model::Tin(_) | Model::Mesh(_) | Model::Compact(_) | Model::Parts(_) => {
-            let heights_by = DemOptions {
-                frame: options.frame.clone(),
-                method: options.method,
-            };
-            heights(product, &heights_by, &journal)?
+            heights(product, options, journal)
         }
-    };
-    let shades = CellProduct::shades_of(source, &options.light, product.crs(), &journal)?;
-    Ok(CellProduct { surface, ..shades })
+    }
 }
 
 /// Heights, and the triangles that they are computed from unless these are in parts.
@@ -156,7 +213,7 @@ fn heights<'a>(
 }
 
 /// Returns an error if options are given that only a TIN has a use for.
-fn refuse_options(HillshadeOptions { frame, method, .. }: &HillshadeOptions) -> Result<()> {
+fn refuse_options(DemOptions { frame, method }: &DemOptions) -> Result<()> {
     if frame.resolution.is_some() || frame.extent.is_some() || frame.align_to.is_some() {
         return Err(Error::usage(wording![
             Setting::Resolution,
@@ -181,7 +238,12 @@ fn refuse_options(HillshadeOptions { frame, method, .. }: &HillshadeOptions) -> 
 const MOST_EXAGGERATION: f64 = 1000.0;
 
 /// Returns the light over a frame. A given factor for heights is that of both axes.
-fn light(options: &LightOptions, crs: Option<&Crs>, frame: &Frame, journal: &Journal) -> Light {
+fn light_over(
+    options: &LightOptions,
+    crs: Option<&Crs>,
+    frame: &Frame,
+    journal: &Journal,
+) -> Light {
     let usual = Light::for_crs(crs, frame);
     let light = match options.z_factor {
         Some(z_factor) => Light {
@@ -230,12 +292,42 @@ impl<'a> CellProduct<'a> {
         crs: Option<&Crs>,
         journal: &Journal,
     ) -> Result<Self> {
-        let light = light(options, crs, &source.frame(), journal);
+        let light = light_over(options, crs, &source.frame(), journal);
         let source = Box::new(Hillshade::new(source, light)?);
         Ok(CellProduct {
             source,
             surface: None,
             cells: CellFormat::Shades,
+            notices: journal.take(),
+        })
+    }
+
+    /// A quantity of heights that were drawn already.
+    pub(crate) fn quantity_of(
+        source: Box<dyn BlockSource + 'a>,
+        options: &QuantityOptions,
+        crs: Option<&Crs>,
+        journal: &Journal,
+    ) -> Result<Self> {
+        let QuantityOptions {
+            quantity, z_factor, ..
+        } = *options;
+        let light = LightOptions {
+            z_factor,
+            ..LightOptions::default()
+        };
+        // Differences of heights need no lengths.
+        let Light {
+            z_factor, x_scale, ..
+        } = match quantity.has_lengths() {
+            true => light_over(&light, crs, &source.frame(), journal),
+            false => Light::default(),
+        };
+        let source = Box::new(QuantityMap::of(source, quantity, z_factor, x_scale)?);
+        Ok(CellProduct {
+            source,
+            surface: None,
+            cells: CellFormat::Heights,
             notices: journal.take(),
         })
     }

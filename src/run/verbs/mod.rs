@@ -6,6 +6,7 @@
 mod contour;
 mod dem;
 mod hillshade;
+mod quantity;
 mod raster;
 mod stored;
 pub(crate) mod targets;
@@ -31,7 +32,7 @@ use crate::run::products::contour::ContourOptions;
 use crate::run::products::frame::FrameOptions;
 use crate::run::products::surface::{self, SurfaceProduct, SurfaceRequest};
 use crate::run::sources::tin_parts::WrittenParts;
-use crate::terrain::Method;
+use crate::terrain::{Method, Quantity};
 
 /// A surface, and what is written of it.
 #[derive(Debug, Clone)]
@@ -194,6 +195,8 @@ pub trait Tiles {
 pub enum Summary {
     /// Heights in cells.
     Heights(RasterSummary),
+    /// A quantity in cells.
+    Quantity(Quantity, RasterSummary),
     /// Shades in cells.
     Shades,
     /// Contours.

@@ -9,7 +9,7 @@ use serde_json::Value;
 
 use super::Verb;
 use super::tin::SurfaceOptions;
-use crate::run::products::cells::{DemOptions, HillshadeOptions};
+use crate::run::products::cells::{DemOptions, HillshadeOptions, QuantityOptions};
 use crate::run::products::contour::ContourOptions;
 
 /// How the options of a verb are kept with a job.
@@ -37,6 +37,7 @@ impl StoredVerb {
 const STORED: &[StoredVerb] = &[
     StoredVerb::of::<DemOptions>("dem"),
     StoredVerb::of::<HillshadeOptions>("hillshade"),
+    StoredVerb::of::<QuantityOptions>("slope"),
     StoredVerb::of::<ContourOptions>("contour"),
     StoredVerb::of::<SurfaceOptions>("tin"),
 ];

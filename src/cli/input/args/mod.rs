@@ -4,6 +4,7 @@
 mod job;
 mod lines;
 mod parse;
+mod quantity;
 mod reading;
 mod surface;
 mod switches;
@@ -22,6 +23,10 @@ use crate::io::formats;
 pub(crate) use job::{JobAction, JobArgs};
 pub(crate) use lines::LineArgs;
 pub(crate) use parse::{ClassRange, EdgeLength, ReturnRange, finite};
+pub(crate) use quantity::{
+    AspectArgs, CurvatureArg, CurvatureArgs, QuantityArgs, RoughnessArgs, SlopeArgs, TpiArgs,
+    TriArgs,
+};
 pub(crate) use surface::{CrossingZArg, DuplicatesArg, OnCrossingArg, SurfaceArgs};
 pub(crate) use switches::expand_switches;
 pub(crate) use systems::SystemArgs;
@@ -103,6 +108,12 @@ pub(crate) enum Verb {
     Dem(DemArgs),
     Contour(ContourArgs),
     Hillshade(HillshadeArgs),
+    Slope(SlopeArgs),
+    Aspect(AspectArgs),
+    Curvature(CurvatureArgs),
+    Roughness(RoughnessArgs),
+    Tri(TriArgs),
+    Tpi(TpiArgs),
     Check(CheckArgs),
     Job(JobArgs),
     Demo(DemoArgs),

@@ -1,6 +1,10 @@
+//! Shaded relief.
+
 use crate::crs::{Crs, CrsKind};
-use crate::data::{BlockSource, Frame, ToPixels, Window};
+use crate::data::{BlockSource, Frame};
 use crate::error::{Error, Result};
+
+use super::{Focal, Neighbors, Rule};
 
 /// Meters in one radian of a great circle on the mean earth (6 371 008.8 m, Moritz 2000).
 const EARTH_RADIUS: f64 = 6_371_008.8;
@@ -69,12 +73,13 @@ impl Light {
 /// over the 3 x 3 cells around each cell, as in `gdaldem hillshade`. At the edge of the data the
 /// surface is extrapolated linearly, so that the shade of a plane is constant up to its edge.
 /// Frames may be rotated; the direction of the light refers to the map, not to the raster.
-pub struct Hillshade<S> {
-    source: S,
-    frame: Frame,
-    to_pixels: ToPixels,
+pub type Hillshade<S> = Focal<S, Shade>;
+
+/// How light falls on a cell.
+#[derive(Debug, Clone, Copy)]
+pub struct Shade {
     /// The unit vector towards the light: east, north, up.
-    light: [f64; 3],
+    towards: [f64; 3],
     z_factor: f64,
     x_scale: f64,
 }
@@ -103,132 +108,24 @@ impl<S: BlockSource> Hillshade<S> {
                 )));
             }
         }
-        let frame = source.frame().checked()?;
         let (east, north) = azimuth.to_radians().sin_cos();
         let (up, flat) = altitude.to_radians().sin_cos();
-        let light = [east * flat, north * flat, up];
-        Ok(Hillshade {
-            source,
-            frame,
-            to_pixels: frame.inverse(),
-            light,
+        let rule = Shade {
+            towards: [east * flat, north * flat, up],
             z_factor,
             x_scale,
-        })
+        };
+        Focal::of_rule(source, rule)
     }
+}
 
-    /// The shade of the center of 3 x 3 heights, given row by row.
-    fn shade(&self, mut heights: [f64; 9]) -> f32 {
-        let center = heights[4];
-        if center.is_nan() {
-            return f32::NAN;
-        }
-        if heights.iter().any(|z| z.is_nan()) {
-            continue_straight(&mut heights);
-        }
-        let [nw, n, ne, w, _, e, sw, s, se] = heights;
-        let per_column = ((ne + 2.0 * e + se) - (nw + 2.0 * w + sw)) / 8.0;
-        let per_row = ((sw + 2.0 * s + se) - (nw + 2.0 * n + ne)) / 8.0;
-        let [dx, dy] = self
-            .to_pixels
-            .gradient(per_column * self.z_factor, per_row * self.z_factor);
+impl Rule for Shade {
+    fn value(&self, around: &Neighbors) -> f32 {
+        let [dx, dy] = around.gradient_by_horn(self.z_factor);
         let dx = dx / self.x_scale;
-        let [east, north, up] = self.light;
+        let [east, north, up] = self.towards;
         let lit = (up - dx * east - dy * north) / (1.0 + dx * dx + dy * dy).sqrt();
         (1.0 + 254.0 * lit.max(0.0)).round() as f32
-    }
-}
-
-impl<S: BlockSource> BlockSource for Hillshade<S> {
-    fn frame(&self) -> Frame {
-        self.frame
-    }
-
-    fn crs(&self) -> Option<&Crs> {
-        self.source.crs()
-    }
-
-    fn fill(&self, window: Window, out: &mut [f32]) -> Result<()> {
-        self.frame.check_window(window, out.len())?;
-        if out.is_empty() {
-            return Ok(());
-        }
-        let around = Around::new(&self.source, &self.frame, window)?;
-        for (row, line) in out.chunks_exact_mut(window.width).enumerate() {
-            let lines = [0, 1, 2].map(|i| around.line(row + i));
-            for (column, cell) in line.iter_mut().enumerate() {
-                let height = |i: usize| f64::from(lines[i / 3][column + i % 3]);
-                *cell = self.shade(std::array::from_fn(height));
-            }
-        }
-        Ok(())
-    }
-}
-
-impl<S> std::fmt::Debug for Hillshade<S> {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Hillshade")
-            .field("frame", &self.frame)
-            .field("light", &self.light)
-            .finish_non_exhaustive()
-    }
-}
-
-/// Fills missing heights around the center of 3 x 3 cells by linear extrapolation: at the sides
-/// from the opposite cell through the center, at the corners from the two cells next to them.
-fn continue_straight(heights: &mut [f64; 9]) {
-    let known = *heights;
-    let center = known[4];
-    for i in [1, 3, 5, 7] {
-        if known[i].is_nan() {
-            let opposite = known[8 - i];
-            heights[i] = if opposite.is_nan() {
-                center
-            } else {
-                2.0 * center - opposite
-            };
-        }
-    }
-    for (corner, beside) in [(0, [1, 3]), (2, [1, 5]), (6, [3, 7]), (8, [5, 7])] {
-        if known[corner].is_nan() {
-            heights[corner] = heights[beside[0]] + heights[beside[1]] - center;
-        }
-    }
-}
-
-/// A window of heights with one more cell on each side, NaN beyond the raster.
-struct Around {
-    width: usize,
-    heights: Vec<f32>,
-}
-
-impl Around {
-    fn new(source: &impl BlockSource, frame: &Frame, window: Window) -> Result<Self> {
-        // The number of cells of the raster before and after the window, at most one.
-        let before = [window.column.min(1), window.row.min(1)];
-        let after = [
-            (frame.width - window.column - window.width).min(1),
-            (frame.height - window.row - window.height).min(1),
-        ];
-        let grown = Window {
-            column: window.column - before[0],
-            row: window.row - before[1],
-            width: window.width + before[0] + after[0],
-            height: window.height + before[1] + after[1],
-        };
-        let mut block = vec![0.0; grown.width * grown.height];
-        source.fill(grown, &mut block)?;
-        let width = window.width + 2;
-        let mut heights = vec![f32::NAN; width * (window.height + 2)];
-        for (row, line) in block.chunks_exact(grown.width).enumerate() {
-            let first = (row + 1 - before[1]) * width + (1 - before[0]);
-            heights[first..first + grown.width].copy_from_slice(line);
-        }
-        Ok(Around { width, heights })
-    }
-
-    fn line(&self, row: usize) -> &[f32] {
-        &self.heights[row * self.width..][..self.width]
     }
 }
 
@@ -236,7 +133,7 @@ impl Around {
 mod tests {
     use super::*;
     use crate::crs::Unit;
-    use crate::data::Grid;
+    use crate::data::{Grid, Window};
 
     fn grid(frame: Frame, height: impl Fn(f64, f64) -> f64) -> Grid {
         let values = (0..frame.width * frame.height)

@@ -1,0 +1,107 @@
+//! Quantities in cells: slope, aspect, curvature, roughness.
+
+use std::fmt::Debug;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use super::raster::{announce, list_frame};
+use super::targets::Outputs;
+use super::{Keeps, Summary, Tiles, Verb};
+use crate::error::{Result, Setting};
+use crate::io::formats::Product;
+use crate::io::geotiff::{COPIES_ON_DISK, RasterSummary};
+use crate::run::context::{Context, Journal};
+use crate::run::products::cells::{self, CellProduct, QuantityOptions};
+use crate::run::products::surface::{self, SurfaceProduct, SurfaceRequest};
+use crate::terrain::{Method, Quantity};
+
+impl Verb for QuantityOptions {
+    fn name(&self) -> &'static str {
+        self.quantity.name()
+    }
+
+    fn product(&self) -> Product {
+        Product::Heights
+    }
+
+    fn list(&self, add: &mut dyn FnMut(Setting, &dyn Debug)) {
+        let QuantityOptions {
+            quantity,
+            frame,
+            method,
+            z_factor,
+        } = self;
+        list_frame(frame, add);
+        add(Setting::Method, method);
+        add(
+            Setting::Percent,
+            &matches!(quantity, Quantity::SlopePercent(_)),
+        );
+        add(Setting::Formula, quantity);
+        add(Setting::ZFactor, z_factor);
+    }
+
+    fn method(&self) -> Method {
+        self.method
+    }
+
+    fn also_reads(&self) -> Option<&PathBuf> {
+        self.frame.align_to.as_ref()
+    }
+
+    fn reading(&self, file: PathBuf) -> Option<Arc<dyn Verb>> {
+        Some(Arc::new(QuantityOptions {
+            frame: self.frame.aligned_to(file),
+            ..self.clone()
+        }))
+    }
+
+    fn surface(&self, request: &SurfaceRequest, context: &Context) -> Result<SurfaceProduct> {
+        surface::surface_for(self.method, request, context)
+    }
+
+    fn write(
+        &self,
+        surface: &SurfaceProduct,
+        outputs: &Outputs,
+        context: &Context,
+    ) -> Result<Summary> {
+        let cells = cells::quantity(surface, self, context)?;
+        write(&cells, self.quantity, outputs, context)
+    }
+
+    fn keeps(&self) -> Keeps<'_> {
+        Keeps::Heights(&self.frame)
+    }
+
+    fn write_tiles(
+        &self,
+        tiles: &dyn Tiles,
+        outputs: &Outputs,
+        context: &Context,
+    ) -> Result<Summary> {
+        let heights = tiles.heights(&self.frame, context)?;
+        let crs = heights.crs().cloned();
+        let journal = Journal::new(context);
+        let cells = CellProduct::quantity_of(heights, self, crs.as_ref(), &journal)?;
+        write(&cells, self.quantity, outputs, context)
+    }
+}
+
+fn write(
+    cells: &CellProduct,
+    quantity: Quantity,
+    outputs: &Outputs,
+    context: &Context,
+) -> Result<Summary> {
+    announce(cells, outputs, |_| (4, COPIES_ON_DISK), context)?;
+    let mut cells_written = RasterSummary {
+        min: f64::NAN,
+        max: f64::NAN,
+        valid: 0,
+    };
+    for target in &outputs.targets {
+        cells_written = cells.write(target.within(&outputs.set), context)?;
+    }
+    Ok(Summary::Quantity(quantity, cells_written))
+}
