@@ -40,8 +40,14 @@ pub(crate) fn points<const N: usize>(array: &PyReadonlyArray2<'_, f64>) -> Vec<[
     rows(array.as_array())
 }
 
-/// Returns an array of the numbers of a vector, which are not copied.
+/// So few numbers are copied to an array sooner than an object is made that owns their vector.
+const FEW: usize = 64;
+
+/// Returns an array of the numbers of a vector, which are not copied unless they are few.
 pub(crate) fn column<T: Element>(py: Python<'_>, values: Vec<T>) -> Bound<'_, PyArray1<T>> {
+    if values.len() <= FEW {
+        return PyArray1::from_slice(py, &values);
+    }
     values.into_pyarray(py)
 }
 

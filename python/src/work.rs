@@ -382,6 +382,15 @@ fn note_cure(py: Python<'_>, interruption: &PyErr, canceled: &PyErr) {
     }
 }
 
+/// Does work of a microsecond on the calling thread, with the interpreter's lock: to release it and
+/// to wait for it again would take as long.
+///
+/// # Errors
+/// An `InternalError` if the work panics.
+pub(crate) fn at_once<T>(work: impl FnOnce() -> T) -> PyResult<T> {
+    catch_unwind(AssertUnwindSafe(work)).map_err(|panic| errors::internal(panic.as_ref()))
+}
+
 /// Does short work on the calling thread, without the interpreter's lock.
 ///
 /// # Errors

@@ -51,6 +51,29 @@ def test_positions_in_rows_have_the_values_of_single_ones(ndim, offset, scale):
     assert np.array_equal(interpolator(xi), single, equal_nan=True) and np.isfinite(single).any()
 
 
+@pytest.mark.parametrize("count", [2, 15, 16, 17, 33, 64, 65, 300, 4097, 9000])
+@pytest.mark.parametrize("kind", ALL)
+def test_many_positions_have_the_values_of_single_ones(kind, count):
+    # Several searches take turns. They meet rows that begin far away, gaps, whole rows outside, corners and edges.
+    points = np.vstack([np.argwhere(np.ones((20, 20))).astype(float), 19 * random_points(200, 2)])
+    rng = np.random.default_rng(count)
+    interpolator = kind(points, rng.random(len(points)), threads=2)
+    side = int(np.ceil(count**0.5))
+    xi = np.stack(np.meshgrid(np.linspace(-1, 20, side), np.linspace(-3, 22, side)), axis=-1).reshape(-1, 2)[:count]
+    xi[::5] = xi[::5].round()
+    if kind is not NearestNDInterpolator:  # it refuses these
+        xi[::7] = np.nan
+        xi[3::11, 1] = np.inf
+        xi[5::13] = 1e300
+    some = rng.integers(count, size=200)
+    single = np.concatenate([interpolator(position[None]) for position in xi[some]])
+    # On an edge, the last bit depends on which of its triangles is found.
+    assert np.allclose(interpolator(xi)[some], single, rtol=0, atol=1e-15, equal_nan=True)
+    found = interpolator.tri.find_simplex(xi) if kind is not NearestNDInterpolator else None
+    if found is not None:
+        assert [f >= 0 for f in found[some]] == [interpolator.tri.find_simplex(q) >= 0 for q in xi[some]]
+
+
 @pytest.mark.parametrize("ndim", [2, 3])
 def test_nearest_values_are_those_of_scipy(scipy_interpolate, ndim):
     points, xi = random_points(800, ndim), random_points(9000, ndim, seed=1) * 1.6 - 0.3

@@ -151,6 +151,24 @@ def test_find_simplex_finds_what_contains_the_position(scipy_spatial, ndim, orde
     assert (tri.find_simplex(xi.reshape(50, 100, ndim)) == found.reshape(50, 100)).all()
 
 
+@pytest.mark.parametrize("ndim", DIMENSIONS)
+@pytest.mark.parametrize("shape", [(), (1,), (7,), (3, 40), (0,), (3, 0)])
+def test_find_simplex_takes_arrays_of_any_layout(ndim, shape):
+    tri = Delaunay(random_points(60, ndim))
+    xi = (random_points(int(np.prod(shape)), ndim, seed=1) * 1.4 - 0.2).astype(np.float32).astype(float)
+    xi = xi.reshape(*shape, ndim)
+    expected = tri.find_simplex(xi.tolist() if xi.size else xi.astype(np.float32))
+    unaligned = np.frombuffer(b" " + xi.tobytes(), np.uint8)[1:].view(float).reshape(xi.shape) if xi.size else xi
+    kept = xi.copy()
+    kept.flags.writeable = False
+    layouts = [xi, kept, np.asfortranarray(xi), np.stack([xi, xi], axis=-1)[..., 0], xi.astype(np.float32)]
+    layouts += [xi.astype(">f8"), unaligned, np.ma.masked_array(xi), np.repeat(xi, 2, axis=-1)[..., ::2]]
+    for given in layouts:
+        found = tri.find_simplex(given)
+        assert type(found) is np.ndarray and found.dtype == np.int32 and found.shape == shape
+        assert found.flags.writeable and np.array_equal(found, expected)
+
+
 def test_find_simplex_at_centroids_is_the_simplex():
     for points in (random_points(300, 2), grid(10, 2), random_points(100, 3), grid(4, 3)):
         tri = Delaunay(points)

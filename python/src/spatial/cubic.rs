@@ -212,7 +212,6 @@ impl Surface {
 const MANY: usize = 2;
 
 /// The elements over the last triangle in which a position was: one for each column of values.
-#[derive(Default)]
 struct Patch {
     cell: Option<CellId>,
     elements: Vec<CubicElement>,
@@ -262,9 +261,12 @@ impl Mesh<Plane, 3, 2> {
         let (width, gradients) = (field.width(), &surface.gradients);
         let table = self.table(queries.len(), field, surface);
         self.each(queries, outside, cancel, || {
-            let (mut patch, mut last) = (Patch::default(), None);
-            move |q, near, values: &mut [f64]| {
-                let (site, near) = self.site(q, near, &mut last, tolerance);
+            let mut patch = Patch {
+                cell: None,
+                elements: vec![CubicElement::FLAT; width],
+            };
+            move |q, start, values: &mut [f64]| {
+                let (site, near) = self.site(q, start, tolerance);
                 match site {
                     Site::Vertex(vertex) => values.copy_from_slice(field.at(vertex)),
                     Site::Cell(cell, parts) => {
@@ -273,8 +275,10 @@ impl Mesh<Plane, 3, 2> {
                             None => {
                                 if patch.cell != Some(cell) {
                                     patch.cell = Some(cell);
-                                    patch.elements.clear();
-                                    patch.elements.extend(self.elements(cell, field, gradients));
+                                    let triangle = self.triangle(cell);
+                                    for (column, element) in patch.elements.iter_mut().enumerate() {
+                                        *element = triangle.element(field, gradients, column);
+                                    }
                                 }
                                 &patch.elements
                             }
@@ -310,7 +314,11 @@ impl Mesh<Plane, 3, 2> {
                 let is_absent = !self.t.tds().is_used(cell) || self.t.tds().is_infinite(cell);
                 let none =
                     is_absent.then(|| std::iter::repeat_n(CubicElement::FLAT, field.width()));
-                let some = (!is_absent).then(|| self.elements(cell, field, &surface.gradients));
+                let some = (!is_absent).then(|| {
+                    let triangle = self.triangle(cell);
+                    let columns = 0..field.width();
+                    columns.map(move |k| triangle.element(field, &surface.gradients, k))
+                });
                 none.into_iter().flatten().chain(some.into_iter().flatten())
             };
             cells.with_min_len(CHUNK).flat_map_iter(of_cell).collect()
@@ -327,46 +335,60 @@ impl Mesh<Plane, 3, 2> {
         table.map(Vec::as_slice)
     }
 
-    /// Returns the elements over a triangle: one for each column of values.
-    fn elements(
-        &self,
-        cell: CellId,
-        field: &Field,
-        gradients: &Gradients,
-    ) -> impl Iterator<Item = CubicElement> {
-        let vertices = self.t.tds().corners(cell);
-        let feet = self.feet(cell);
-        let [origin, ..] = vertices.map(|v| field.at(v));
-        let columns = gradients.columns.iter().enumerate();
-        columns.map(move |(k, gradients)| {
-            let corners = vertices.map(|v| {
-                let [x, y] = *self.t.point(v);
-                [x, y, field.at(v)[k] - origin[k]]
-            });
-            CubicElement::new(corners, vertices.map(|v| gradients[v.index()]), feet)
-        })
-    }
-
-    /// Returns in which directions the slopes across the edges of a triangle are linear, see
-    /// [`CubicElement::new`].
-    fn feet(&self, cell: CellId) -> [f64; 3] {
-        let tds = self.t.tds();
-        let corners = tds.corners(cell).map(|v| *self.t.point(v));
-        [0, 1, 2].map(|i| {
-            let beyond = tds.neighbor(cell, i);
+    /// Returns what all elements over a triangle have in common.
+    #[inline(always)]
+    fn triangle(&self, cell: CellId) -> Triangle {
+        let (tds, points) = (self.t.tds(), self.t.points());
+        let vertices = *tds.corners(cell);
+        let corners = vertices.map(|v| points[v.index()]);
+        let numbers = vertices.map(VertexId::index);
+        let feet = [0, 1, 2].map(|i| {
             let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-            if tds.is_infinite(beyond) {
+            // `PERF:` what three numbers have more than two of them is the third, without a branch
+            // or a search.
+            let beyond = tds.corners(tds.neighbor(cell, i)).map(VertexId::index);
+            let apex = beyond.iter().sum::<usize>() - numbers[j] - numbers[k];
+            // The infinite vertex has no point.
+            let Some(&apex) = points.get(apex) else {
                 return 0.5;
-            }
-            let apex = *self
-                .t
-                .point(tds.vertex(beyond, tds.index_of_neighbor(beyond, cell)));
+            };
             // The line between both centroids is parallel to that between the apexes.
             let direction = minus(apex, corners[i]);
             let from_j = |corner: usize| cross(minus(corners[corner], corners[j]), direction);
             let foot = (1.0 + from_j(i) / from_j(k)) / 3.0;
             if foot.is_finite() { foot } else { 0.5 }
-        })
+        });
+        Triangle {
+            vertices,
+            corners,
+            feet,
+        }
+    }
+}
+
+/// A triangle as elements need it.
+struct Triangle {
+    vertices: [VertexId; 3],
+    corners: [[f64; 2]; 3],
+    /// In which directions the slopes across its edges are linear, see [`CubicElement::new`].
+    feet: [f64; 3],
+}
+
+impl Triangle {
+    /// Returns the element for one column of values, relative to that at the first corner.
+    #[inline(always)]
+    fn element(&self, field: &Field, gradients: &Gradients, column: usize) -> CubicElement {
+        let values = self.vertices.map(|v| field.at(v)[column]);
+        let gradients = &gradients.columns[column];
+        let corners = [0, 1, 2].map(|i| {
+            let [x, y] = self.corners[i];
+            [x, y, values[i] - values[0]]
+        });
+        CubicElement::new(
+            corners,
+            self.vertices.map(|v| gradients[v.index()]),
+            self.feet,
+        )
     }
 }
 

@@ -7,7 +7,7 @@ use std::sync::atomic::AtomicBool;
 
 use breakline::triangulation::geometry::{Coordinates, Metric};
 use breakline::triangulation::num::unsigned_zero;
-use breakline::triangulation::tds::{CellId, Neighbors, Tds, VertexId};
+use breakline::triangulation::tds::{CellId, Complex, Neighbors, Tds, VertexId};
 use breakline::triangulation::{Delaunay, InputError};
 use rayon::prelude::*;
 
@@ -56,6 +56,8 @@ pub(super) struct Mesh<G: Dimension<N, D>, const N: usize, const D: usize> {
     numbers: OnceLock<Numbers>,
     /// The bounding box of the points: the smallest coordinates, then the largest.
     pub(super) bounds: [[f64; D]; 2],
+    /// How much the largest of the coordinates may be rounded, for each axis.
+    pub(super) roundings: [f64; D],
 }
 
 impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
@@ -75,6 +77,7 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
             repeated,
             numbers: OnceLock::new(),
             bounds,
+            roundings: [0.0; D],
         };
         mesh.adopt(points, &vertices);
         Ok(mesh)
@@ -111,6 +114,8 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
                 high[axis] = high[axis].max(p[axis]);
             }
         }
+        let largest = |axis: usize| low[axis].abs().max(high[axis].abs());
+        self.roundings = std::array::from_fn(|axis| largest(axis) * f64::EPSILON);
         self.numbers = OnceLock::new();
     }
 
@@ -128,6 +133,12 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
             }
             Numbers { cells, simplex_of }
         })
+    }
+
+    /// Returns the cell itself if it is finite, or the finite one across the hull.
+    pub(super) fn inside_of(&self, cell: CellId) -> CellId {
+        let Ok(inside) = self.t.tds().inner(cell);
+        inside
     }
 
     /// The cell of each simplex.

@@ -5,6 +5,7 @@
 mod cubic;
 mod dimensions;
 mod groups;
+mod guesses;
 mod hull;
 mod lists;
 mod mesh;
@@ -20,8 +21,8 @@ use breakline::triangulation::geometry::{Plane, Space};
 use breakline::triangulation::kernel::{Adaptive, Kernel, Range};
 use breakline::triangulation::num::unsigned_zero;
 use numpy::{
-    IntoPyArray, PyArray1, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2,
-    PyUntypedArrayMethods,
+    IntoPyArray, IxDyn, PyArray1, PyArray3, PyArrayDyn, PyArrayMethods, PyReadonlyArray1,
+    PyReadonlyArray2, PyUntypedArray, PyUntypedArrayMethods,
 };
 use pyo3::prelude::*;
 
@@ -31,7 +32,7 @@ pub(crate) use self::lists::nested_lists;
 use self::mesh::Mesh;
 use self::queries::Field;
 use self::voronoi::Diagram;
-use crate::arrays::{column, points, table};
+use crate::arrays::{column, is_aligned, points, table};
 use crate::errors::{self, Failure, Result};
 use crate::work::{self, Call};
 
@@ -106,6 +107,24 @@ impl Positions {
         }
     }
 
+    /// Copies an array of shape (..., `width`) that needs no conversion: exactly of type `ndarray`
+    /// (masked arrays are of a subclass), of float64, in C order. `None` for all else.
+    fn of_plain(array: &Bound<'_, PyAny>, width: usize) -> Option<Self> {
+        if !array.is_exact_instance_of::<PyUntypedArray>() {
+            return None;
+        }
+        let array = array.cast::<PyArrayDyn<f64>>().ok()?;
+        if array.shape().last() != Some(&width) || !array.is_c_contiguous() || !is_aligned(array) {
+            return None;
+        }
+        let array = array.try_readonly().ok()?;
+        let numbers = array.as_slice().ok()?;
+        Some(match width {
+            2 => Positions::Plane(numbers.as_chunks().0.to_vec()),
+            _ => Positions::Space(numbers.as_chunks().0.to_vec()),
+        })
+    }
+
     /// Rounds coordinates below the range of exact arithmetic to the nearest that it has, which is
     /// closer than any two points are: no position is outside because it is near an axis.
     fn rounded(mut self) -> Self {
@@ -124,6 +143,14 @@ impl Positions {
         match self {
             Positions::Plane(points) => points.len(),
             Positions::Space(points) => points.len(),
+        }
+    }
+
+    /// The number of coordinates of a point.
+    fn width(&self) -> usize {
+        match self {
+            Positions::Plane(_) => 2,
+            Positions::Space(_) => 3,
         }
     }
 
@@ -148,6 +175,8 @@ pub(crate) struct Tessellation {
     any: RwLock<Any>,
     /// The number of points, without a lock.
     points: AtomicUsize,
+    /// The number of coordinates of a point.
+    width: usize,
 }
 
 impl Tessellation {
@@ -177,10 +206,16 @@ impl Tessellation {
         &self,
         py: Python<'_>,
         call: &Call,
-        positions: &Given<'_>,
+        positions: Positions,
         answer: impl FnOnce(&Any, &Positions, &AtomicBool) -> T + Send,
     ) -> PyResult<T> {
-        let positions = positions.read()?.rounded();
+        let positions = positions.rounded();
+        // `PERF:` one is found before another thread would have the interpreter's lock.
+        if positions.count() == 1
+            && let Ok(any) = self.any.try_read()
+        {
+            return work::at_once(|| answer(&any, &positions, &AtomicBool::new(false)));
+        }
         work::run_around_on(py, call, Some(positions.count()), |pool, context| {
             let any = self.read();
             let any: &Any = &any;
@@ -196,12 +231,14 @@ impl Tessellation {
     fn new(py: Python<'_>, points: PyReadonlyArray2<'_, f64>, call: Call) -> PyResult<Self> {
         let points = Positions::of(&points);
         let count = points.count();
+        let width = points.width();
         let any = work::run_on(py, &call, Some(count), |context| {
             points.triangulated(context.cancel)
         })?;
         Ok(Tessellation {
             any: RwLock::new(any),
             points: AtomicUsize::new(count),
+            width,
         })
     }
 
@@ -336,10 +373,33 @@ impl Tessellation {
         let found = self.answer(
             py,
             &call,
-            &positions,
+            positions.read()?,
             |any, positions, cancel| at_positions!(any, positions, (mesh, at) => mesh.find(at, tolerance, cancel)),
         )?;
         Ok(column(py, found))
+    }
+
+    /// Like `find`, at an array of shape (..., d) that needs no conversion: an array of shape
+    /// (...); `None` if that is something else.
+    fn find_plain<'py>(
+        &self,
+        py: Python<'py>,
+        positions: &Bound<'py, PyAny>,
+        tolerance: f64,
+        call: Call,
+    ) -> PyResult<Option<Bound<'py, PyAny>>> {
+        let Some(copied) = Positions::of_plain(positions, self.width) else {
+            return Ok(None);
+        };
+        let found = self.answer(py, &call, copied, |any, positions, cancel| {
+            at_positions!(any, positions, (mesh, at) => mesh.find(at, tolerance, cancel))
+        })?;
+        let (found, given) = (column(py, found), positions.cast::<PyUntypedArray>()?);
+        Ok(Some(match given.shape() {
+            [_, _] => found.into_any(),
+            [shape @ .., _] => found.reshape(IxDyn(shape))?.into_any(),
+            [] => return Ok(None),
+        }))
     }
 
     /// The point nearest to each position of shape (q, d): an array of shape (q,). There must be
@@ -351,7 +411,7 @@ impl Tessellation {
         values: usize,
         call: Call,
     ) -> PyResult<Bound<'py, PyArray1<i32>>> {
-        let nearest = self.answer(py, &call, &positions, |any, positions, cancel| {
+        let nearest = self.answer(py, &call, positions.read()?, |any, positions, cancel| {
             one_for_each_point(any, values)?;
             Result::Ok(at_positions!(any, positions, (mesh, at) => mesh.nearest(at, cancel)))
         })?;
@@ -498,15 +558,17 @@ impl Values {
         positions: Given<'py>,
         call: Call,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let values =
-            self.tessellation
-                .get()
-                .answer(py, &call, &positions, |any, positions, cancel| {
-                    one_for_each_point(any, self.count)?;
-                    Result::Ok(at_positions!(any, positions, (mesh, at) => {
-                        mesh.linear(at, &self.field, &self.outside, self.tolerance, cancel)
-                    }))
-                })?;
+        let values = self.tessellation.get().answer(
+            py,
+            &call,
+            positions.read()?,
+            |any, positions, cancel| {
+                one_for_each_point(any, self.count)?;
+                Result::Ok(at_positions!(any, positions, (mesh, at) => {
+                    mesh.linear(at, &self.field, &self.outside, self.tolerance, cancel)
+                }))
+            },
+        )?;
         Ok(column(py, values?))
     }
 
@@ -517,15 +579,17 @@ impl Values {
         positions: Given<'py>,
         call: Call,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let values =
-            self.tessellation
-                .get()
-                .answer(py, &call, &positions, |any, positions, cancel| {
-                    one_for_each_point(any, self.count)?;
-                    Result::Ok(at_positions!(any, positions, (mesh, at) => {
-                        mesh.natural(at, &self.field, &self.outside, self.tolerance, cancel)
-                    }))
-                })?;
+        let values = self.tessellation.get().answer(
+            py,
+            &call,
+            positions.read()?,
+            |any, positions, cancel| {
+                one_for_each_point(any, self.count)?;
+                Result::Ok(at_positions!(any, positions, (mesh, at) => {
+                    mesh.natural(at, &self.field, &self.outside, self.tolerance, cancel)
+                }))
+            },
+        )?;
         Ok(column(py, values?))
     }
 }
@@ -584,17 +648,19 @@ impl CubicValues {
         call: Call,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let of = self.values.get();
-        let values =
-            of.tessellation
-                .get()
-                .answer(py, &call, &positions, |any, positions, cancel| {
-                    one_for_each_point(any, of.count)?;
-                    let (mesh, Positions::Plane(at)) = (plane(any)?, positions) else {
-                        return Err(not_of_the_plane());
-                    };
-                    let data = (&of.field, &self.surface);
-                    Result::Ok(mesh.cubic(at, data, &of.outside, of.tolerance, cancel))
-                })?;
+        let values = of.tessellation.get().answer(
+            py,
+            &call,
+            positions.read()?,
+            |any, positions, cancel| {
+                one_for_each_point(any, of.count)?;
+                let (mesh, Positions::Plane(at)) = (plane(any)?, positions) else {
+                    return Err(not_of_the_plane());
+                };
+                let data = (&of.field, &self.surface);
+                Result::Ok(mesh.cubic(at, data, &of.outside, of.tolerance, cancel))
+            },
+        )?;
         Ok(column(py, values?))
     }
 }

@@ -4,7 +4,7 @@
 use std::convert::Infallible;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use breakline::triangulation::tds::{CellId, Complex, Neighbors, Tds, VertexId};
+use breakline::triangulation::tds::{CellId, Neighbors, Tds, VertexId};
 use breakline::triangulation::{Location, spatial_order};
 use numpy::ndarray::ArrayView2;
 use rayon::prelude::*;
@@ -37,9 +37,6 @@ const FLAT: f64 = 1e-10;
 /// rounded, all simplices at the hull are.
 const ROUNDINGS: f64 = 4.0;
 
-/// The most simplices that are tried by rounded numbers before a position is located exactly.
-const STEPS: usize = 8;
-
 /// A position is in a simplex for certain if it is inside of each facet by more than this part of
 /// the volume, unless the simplex is [`THIN`]: in a cube around it the errors of rounded volumes
 /// are less than a hundredth of that, and no coordinate is so small that products underflow.
@@ -49,22 +46,20 @@ const CLEAR: f64 = 1e-10;
 /// coordinates; as in scipy.
 const BROAD: f64 = 1.5e-8;
 
-/// A cell, with the numbers by which a position can be seen, in spite of rounding, to be in it.
-pub(super) struct Frame<const N: usize, const D: usize> {
-    cell: CellId,
-    corners: [[f64; D]; N],
-    /// The smallest and the largest coordinates of the corners.
-    bounds: [[f64; D]; 2],
-    /// A cell with no more volume, times `D!`, is thin, or there by rounding.
-    least_volume: f64,
+/// From where a position is searched.
+pub(super) enum Start<const N: usize> {
+    /// It is in this cell, and so far inside of each facet: an exact search would find the same.
+    In(CellId, [f64; N]),
+    /// A cell that was found for the position before, if one was.
+    Near(Option<CellId>),
 }
 
-impl<const N: usize, const D: usize> Frame<N, D> {
-    /// Returns true if a position is in the box around the cell.
-    #[inline]
-    fn surrounds(&self, q: &[f64; D]) -> bool {
-        let [low, high] = &self.bounds;
-        (0..D).all(|axis| low[axis] <= q[axis] && q[axis] <= high[axis])
+impl<const N: usize> Start<N> {
+    fn cell(self) -> Option<CellId> {
+        match self {
+            Start::In(cell, _) => Some(cell),
+            Start::Near(cell) => cell,
+        }
     }
 }
 
@@ -85,18 +80,18 @@ impl Field {
     }
 
     /// Returns the weighted mean of values, exactly the value where only one weight is not zero.
-    fn mean(&self, weights: impl Iterator<Item = (VertexId, f64)>, mean: &mut [f64]) {
-        let mut weights = weights.filter(|&(_, weight)| weight != 0.0);
-        let Some((first, _)) = weights.next() else {
+    #[inline(always)]
+    fn mean(&self, weights: &[(VertexId, f64)], mean: &mut [f64]) {
+        let mut weights = weights.iter().filter(|(_, weight)| *weight != 0.0);
+        let Some(&(first, _)) = weights.next() else {
             return;
         };
-        // Relative to one of them, so that constant values are reproduced.
-        let origin = self.at(first);
-        mean.copy_from_slice(origin);
-        for (vertex, weight) in weights {
-            for ((mean, value), origin) in mean.iter_mut().zip(self.at(vertex)).zip(origin) {
-                *mean += weight * (value - origin);
-            }
+        for (column, mean) in mean.iter_mut().enumerate() {
+            // Relative to one of them, so that constant values are reproduced.
+            let origin = self.at(first)[column];
+            *mean = weights.clone().fold(origin, |mean, &(vertex, weight)| {
+                mean + weight * (self.at(vertex)[column] - origin)
+            });
         }
     }
 }
@@ -141,7 +136,14 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
         cancel: &AtomicBool,
     ) -> Vec<i32> {
         self.each(queries, &[NONE], cancel, || {
-            |q, near, found: &mut [i32]| {
+            |q, start, found: &mut [i32]| {
+                let near = match start {
+                    Start::In(cell, _) => {
+                        found[0] = self.simplex(cell);
+                        return Some(cell);
+                    }
+                    Start::Near(near) => near,
+                };
                 let (cell, near) = match self.t.locate(q, near) {
                     Location::Cell { cell, .. } => (Some(cell), Some(cell)),
                     Location::Vertex(vertex) => {
@@ -170,29 +172,25 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
         cancel: &AtomicBool,
     ) -> Vec<f64> {
         self.each(queries, outside, cancel, || {
-            let mut last = None;
-            move |q, near, mean: &mut [f64]| {
-                self.linear_at(q, near, &mut last, (field, tolerance), mean)
-            }
+            |q, start, mean: &mut [f64]| self.linear_at(q, start, (field, tolerance), mean)
         })
     }
 
+    #[inline(always)]
     fn linear_at(
         &self,
         q: &[f64; D],
-        near: Option<CellId>,
-        last: &mut Option<Frame<N, D>>,
+        start: Start<N>,
         (field, tolerance): (&Field, f64),
         mean: &mut [f64],
     ) -> Option<CellId> {
-        let (site, near) = self.site(q, near, last, tolerance);
+        let (site, near) = self.site(q, start, tolerance);
         match site {
             Site::Vertex(vertex) => mean.copy_from_slice(field.at(vertex)),
             Site::Cell(cell, weights) => {
-                field.mean(
-                    self.t.tds().corners(cell).iter().copied().zip(weights),
-                    mean,
-                );
+                let corners = self.t.tds().corners(cell);
+                let weights: [_; N] = std::array::from_fn(|i| (corners[i], weights[i]));
+                field.mean(&weights, mean);
             }
             Site::Outside => {}
         }
@@ -209,7 +207,8 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
         cancel: &AtomicBool,
     ) -> Vec<f64> {
         self.each(queries, outside, cancel, || {
-            |q, near, mean: &mut [f64]| {
+            |q, start, mean: &mut [f64]| {
+                let near = start.cell();
                 let location = self.t.locate(q, near);
                 let near = location.cell(&self.t).or(near);
                 let is_at_rim =
@@ -221,9 +220,9 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
                 }) else {
                     // On the hull up to a rounding error, where the limit is linear; outside; or
                     // where squares overflow or underflow.
-                    return self.linear_at(q, near, &mut None, (field, tolerance), mean);
+                    return self.linear_at(q, Start::Near(near), (field, tolerance), mean);
                 };
-                field.mean(weights.iter().copied(), mean);
+                field.mean(&weights, mean);
                 weights
                     .first()
                     .and_then(|&(vertex, _)| self.t.tds().cell_of(vertex))
@@ -238,17 +237,17 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
         Tds<N>: Neighbors<N, Error = Infallible>,
     {
         self.each(queries, &[NONE], cancel, || {
-            |q, near, nearest: &mut [i32]| {
-                let vertex = self.t.nearest(q, near)?;
+            |q, start, nearest: &mut [i32]| {
+                let vertex = self.t.nearest(q, start.cell())?;
                 nearest[0] = self.point_of[vertex.index()];
                 self.t.tds().cell_of(vertex)
             }
         })
     }
 
-    /// Calls `work` for each position with a cell from which to search and the numbers of its
-    /// result, which are those of `blank`; it returns the cell that it found. Each task has a
-    /// `work` of its own, which may remember what it has found.
+    /// Calls `work` for each position with the start of its search and the numbers of its result,
+    /// which are those of `blank`; it returns the cell that it found. Each task has a `work` of its
+    /// own, which may remember what it has found.
     ///
     /// Results do not depend on the number of threads: tasks are the same for any number of them.
     pub(super) fn each<T: Copy + Send + Sync, W>(
@@ -259,21 +258,25 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
         work: impl Fn() -> W + Sync,
     ) -> Vec<T>
     where
-        W: FnMut(&[f64; D], Option<CellId>, &mut [T]) -> Option<CellId>,
+        W: FnMut(&[f64; D], Start<N>, &mut [T]) -> Option<CellId>,
     {
         let mut results = blank.repeat(queries.len());
         let width = blank.len();
         if width == 0 {
             return results;
         }
-        let answer = |results: &mut [T], index: &dyn Fn(usize) -> usize| {
+        let answer = |results: &mut [T], positions: &[[f64; D]]| {
+            let guesses = self.guesses(positions);
             let (mut near, mut work) = (None, work());
-            for (rank, result) in results.chunks_exact_mut(width).enumerate() {
-                near = work(&queries[index(rank)], near, result).or(near);
+            let rows = results.chunks_exact_mut(width);
+            for ((q, guess), result) in positions.iter().zip(guesses).zip(rows) {
+                let clear = guess.and_then(|cell| self.clearly_in(q, cell));
+                let start = clear.unwrap_or(Start::Near(near));
+                near = work(q, start, result).or(near);
             }
         };
         if queries.len() <= FEW {
-            answer(&mut results, &|rank| rank);
+            answer(&mut results, queries);
             return results;
         }
         let order = if self.are_far_apart(queries) {
@@ -289,9 +292,13 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
                     return;
                 }
                 let start = chunk * CHUNK;
+                let ranks = start..start + results.len() / width;
                 match &order {
-                    Some(order) => answer(results, &|rank| order[start + rank] as usize),
-                    None => answer(results, &|rank| start + rank),
+                    Some(order) => {
+                        let ordered = order[ranks].iter().map(|&index| queries[index as usize]);
+                        answer(results, &ordered.collect::<Vec<_>>());
+                    }
+                    None => answer(results, &queries[ranks]),
                 }
             });
         let Some(order) = order else { return results };
@@ -329,22 +336,31 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
         spatial_order(queries.len(), within).ok()
     }
 
-    /// Returns where a position has its value, and a finite cell there or nearby. `last` is for the
-    /// next call: positions that follow each other are mostly in one cell.
+    /// Returns where a position has its value, and a finite cell there or nearby.
     ///
     /// That is where it is, except in simplices that are at the hull by rounding: values there are
     /// those of a neighbor, so that they do not depend on which points of a straight side are
     /// rounded inward.
+    #[inline(always)]
     pub(super) fn site(
         &self,
         q: &[f64; D],
-        near: Option<CellId>,
-        last: &mut Option<Frame<N, D>>,
+        start: Start<N>,
         tolerance: f64,
     ) -> (Site<N>, Option<CellId>) {
-        if let Some((cell, sides)) = near.and_then(|near| self.clearly_in(q, near, last)) {
-            return (Site::Cell(cell, weights(sides)), Some(cell));
+        match start {
+            Start::In(cell, sides) => (Site::Cell(cell, weights(sides)), Some(cell)),
+            Start::Near(near) => self.located_site(q, near, tolerance),
         }
+    }
+
+    /// Like `site`, by an exact search from a cell.
+    fn located_site(
+        &self,
+        q: &[f64; D],
+        near: Option<CellId>,
+        tolerance: f64,
+    ) -> (Site<N>, Option<CellId>) {
         let in_cell = |cell: CellId| Site::Cell(cell, weights(self.sides(cell, q)));
         match self.t.locate(q, near) {
             Location::Vertex(vertex) => (Site::Vertex(vertex), self.inside_at(vertex)),
@@ -379,56 +395,26 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
         }
     }
 
-    /// Returns the cell that a position is in, and how far it lies inside of each facet, if a few
-    /// steps from a cell nearby lead there. By rounded numbers, but only where these leave no
-    /// doubt: the cell and the numbers are those that an exact search would find.
-    ///
-    /// `PERF:` positions in rows are mostly in the cell of the one before, or next to it.
-    #[inline]
-    fn clearly_in(
-        &self,
-        q: &[f64; D],
-        near: CellId,
-        last: &mut Option<Frame<N, D>>,
-    ) -> Option<(CellId, [f64; N])> {
-        let mut cell = near;
-        for _ in 0..STEPS {
-            if last.as_ref().is_none_or(|last| last.cell != cell) {
-                *last = Some(self.frame(cell)?);
-            }
-            let frame = last.as_ref()?;
-            let sides = self.t.geometry().rough_sides(frame.corners.each_ref(), q)?;
-            let lesser = |i: usize, j: usize| if sides[j] < sides[i] { j } else { i };
-            let least = (1..N).fold(0, lesser);
-            if sides[least] < 0.0 {
-                cell = self.t.tds().neighbor(cell, least);
-                continue;
-            }
-            let volume = volume(&sides);
-            let is_clear =
-                sides[least] > CLEAR * volume && volume > frame.least_volume && frame.surrounds(q);
-            return is_clear.then_some((cell, sides));
-        }
-        None
-    }
-
-    /// Returns the frame of a cell; `None` if it is infinite.
-    fn frame(&self, cell: CellId) -> Option<Frame<N, D>> {
-        if self.t.tds().is_infinite(cell) {
-            return None;
-        }
-        let bounds = self.box_around(cell);
+    /// Returns a finite cell as the start if a position is in it. By rounded numbers, but only
+    /// where these leave no doubt: an exact search would find the same cell and numbers.
+    #[inline(always)]
+    fn clearly_in(&self, q: &[f64; D], cell: CellId) -> Option<Start<N>> {
+        let corners = self.t.tds().corners(cell).map(|v| self.t.point(v));
+        let sides = self.t.geometry().rough_sides(corners, q)?;
+        let least = sides[1..].iter().fold(
+            sides[0],
+            |least, &side| {
+                if side < least { side } else { least }
+            },
+        );
+        let volume = volume(&sides);
+        let bounds = box_around(corners);
         let widths = widths(&bounds);
-        let [thin, rounding] = [
-            THIN * cube_around(&widths),
-            self.volume_by_rounding(&widths),
-        ];
-        Some(Frame {
-            cell,
-            corners: self.t.tds().corners(cell).map(|v| *self.t.point(v)),
-            bounds,
-            least_volume: if thin > rounding { thin } else { rounding },
-        })
+        let is_clear = least > CLEAR * volume
+            && !Self::is_thin(&widths, volume, THIN)
+            && !self.is_by_rounding(&widths, volume)
+            && is_within(&bounds, q);
+        is_clear.then_some(Start::In(cell, sides))
     }
 
     /// Returns a finite cell at a vertex.
@@ -437,12 +423,6 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
             .tds()
             .cell_of(vertex)
             .map(|cell| self.inside_of(cell))
-    }
-
-    /// Returns the cell itself if it is finite, or the finite one across the hull.
-    fn inside_of(&self, cell: CellId) -> CellId {
-        let Ok(inside) = self.t.tds().inner(cell);
-        inside
     }
 
     /// Returns how far a position lies inside of each facet of a finite cell, as the volume, times
@@ -457,22 +437,8 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
     }
 
     /// Returns the smallest and the largest coordinates of the corners of a cell.
-    #[inline]
     fn box_around(&self, cell: CellId) -> [[f64; D]; 2] {
-        let corners = self.t.tds().corners(cell).map(|v| self.t.point(v));
-        let (mut low, mut high) = (*corners[0], *corners[0]);
-        // `PERF:` one instruction each, unlike `min` and `max`: coordinates are numbers.
-        for p in &corners[1..] {
-            for axis in 0..D {
-                if p[axis] < low[axis] {
-                    low[axis] = p[axis];
-                }
-                if p[axis] > high[axis] {
-                    high[axis] = p[axis];
-                }
-            }
-        }
-        [low, high]
+        box_around(self.t.tds().corners(cell).map(|v| self.t.point(v)))
     }
 
     /// Returns how wide a cell is along each axis.
@@ -494,12 +460,10 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
     /// Returns the volume that a cell with these widths may have by rounding only.
     #[inline]
     fn volume_by_rounding(&self, widths: &[f64; D]) -> f64 {
-        let [low, high] = &self.bounds;
         let moved = |axis: usize| {
-            let rounding = low[axis].abs().max(high[axis].abs()) * f64::EPSILON;
             (0..D)
                 .filter(|&other| other != axis)
-                .fold(rounding, |volume, other| volume * widths[other])
+                .fold(self.roundings[axis], |volume, other| volume * widths[other])
         };
         ROUNDINGS * (0..D).map(moved).sum::<f64>()
     }
@@ -599,6 +563,34 @@ impl<G: Dimension<N, D>, const N: usize, const D: usize> Mesh<G, N, D> {
         let is_hull = |i: usize| self.t.tds().is_infinite(self.t.tds().neighbor(cell, i));
         (0..N).any(|i| is_hull(i) && -sides[i] > tolerance * size * facet)
     }
+}
+
+/// Returns the smallest and the largest coordinates of the corners of a cell.
+#[inline]
+fn box_around<const N: usize, const D: usize>(corners: [&[f64; D]; N]) -> [[f64; D]; 2] {
+    let (mut low, mut high) = (*corners[0], *corners[0]);
+    // `PERF:` one instruction each, unlike `min` and `max`: coordinates are numbers.
+    for p in &corners[1..] {
+        for axis in 0..D {
+            low[axis] = if p[axis] < low[axis] {
+                p[axis]
+            } else {
+                low[axis]
+            };
+            high[axis] = if p[axis] > high[axis] {
+                p[axis]
+            } else {
+                high[axis]
+            };
+        }
+    }
+    [low, high]
+}
+
+/// Returns true if a position is in a box.
+#[inline]
+fn is_within<const D: usize>([low, high]: &[[f64; D]; 2], q: &[f64; D]) -> bool {
+    (0..D).all(|axis| low[axis] <= q[axis] && q[axis] <= high[axis])
 }
 
 /// Returns how wide a box is along each axis.

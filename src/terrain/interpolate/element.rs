@@ -13,6 +13,8 @@
 //!                                        003
 //! ```
 
+use std::hint::select_unpredictable;
+
 use super::base::{before, minus, next};
 
 /// A cubic surface over one triangle, which continues over its neighbors without a kink.
@@ -58,6 +60,7 @@ impl CubicElement {
     /// `feet` says for each corner in which direction the slope across the opposite edge is linear:
     /// from the centroid to the point at this part of the edge, 0 at the next corner and 1 at the
     /// one before.
+    #[inline]
     pub fn new(corners: [[f64; 3]; 3], gradients: [[f64; 2]; 3], feet: [f64; 3]) -> Self {
         let heights = corners.map(|corner| corner[2]);
         let vector = |i: usize, j: usize| minus(corners[j], corners[i]);
@@ -87,10 +90,11 @@ impl CubicElement {
     #[inline]
     pub fn height(&self, parts: [f64; 3]) -> f64 {
         // The polynomial over the part of the triangle between the centroid and the farthest edge.
-        let i = (1..3).fold(
-            0,
-            |least, i| if parts[i] < parts[least] { i } else { least },
-        );
+        let (mut i, mut least) = (0, parts[0]);
+        for (other, &part) in parts.iter().enumerate().skip(1) {
+            i = select_unpredictable(part < least, other, i);
+            least = select_unpredictable(part < least, part, least);
+        }
         let (j, k) = (next(i), before(i));
         let [u, v, w] = [parts[j] - parts[i], parts[k] - parts[i], 3.0 * parts[i]];
         let ([jk, _, jm], [_, kj, km]) = (self.beside[j], self.beside[k]);

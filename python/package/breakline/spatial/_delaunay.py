@@ -229,6 +229,10 @@ class Delaunay(Triangulated):
         >>> tri.find_simplex([[1, 1], [3, 3]]).tolist()
         [0, -1]
         """
+        if tol is None:
+            found = self._core.find_plain(xi, TOLERANCE, (self.threads, None))
+            if found is not None:
+                return found
         xi = _masked.as_array(xi)
         if xi.shape[-1] != self.ndim:
             raise usage(f"wrong dimensionality in xi: shape {xi.shape}, expected (..., {self.ndim})")
