@@ -67,6 +67,7 @@ mod raise;
 mod rebuild;
 mod refill;
 mod remove;
+mod ridges;
 pub mod space;
 mod zone;
 
