@@ -80,6 +80,7 @@ pub use neighbors::Neighbors;
 pub use numbers::{Cells, FiniteCells, Vertices};
 pub(crate) use plane::Star;
 pub(crate) use rebuild::Parts;
+pub(crate) use refill::FacetSide;
 pub(crate) use zone::Zone;
 
 /// The vertices and neighbors of one cell.
