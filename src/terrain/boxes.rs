@@ -2,6 +2,8 @@
 
 use rayon::join;
 
+use crate::data::{Surface, corners};
+
 /// The number of items in a leaf, at most.
 const LEAF: usize = 8;
 
@@ -67,6 +69,29 @@ impl Extent {
     }
 }
 
+/// A face of a surface, with the box around it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct LocatedFace {
+    pub(super) number: u32,
+    pub(super) extent: Extent,
+}
+
+impl LocatedFace {
+    /// Returns all faces of a surface, in order of their numbers.
+    pub(super) fn all<S: Surface + ?Sized>(surface: &S) -> impl Iterator<Item = Self> + '_ {
+        corners(surface).map(|(number, corners)| LocatedFace {
+            number,
+            extent: Extent::of(corners.map(|v| surface.position(v))),
+        })
+    }
+}
+
+impl Boxed for LocatedFace {
+    fn extent(&self) -> Extent {
+        self.extent
+    }
+}
+
 /// Items with boxes, halved again and again along the longer side.
 #[derive(Debug)]
 pub(super) struct Boxes<T> {
@@ -112,6 +137,11 @@ impl<T: Boxed> Boxes<T> {
             items,
             nodes: levels.concat(),
         }
+    }
+
+    /// Returns the items, in an order of the tree.
+    pub(super) fn items(&self) -> &[T] {
+        &self.items
     }
 
     /// Returns what the items of each node have in common. `of` returns it for the items of a leaf,

@@ -11,6 +11,7 @@
 //! | a DEM | contours | [`GridSurface`], a surface over its cells |
 //! | a DEM | shaded relief | [`Hillshade`] |
 //! | a DEM | slope, aspect, curvature, roughness | [`QuantityMap`], of a [`Quantity`] |
+//! | two surfaces, or one and a level | cut and fill | [`volumes()`], in [`Zones`] |
 //! | a TIN in a file | a surface, at once | [`CompactTin`] |
 //! | more points than fit into memory | their triangles, from tiles | [`tiles`] |
 //! | triangles from tiles | the contours of the whole | [`contour::parts`] |
@@ -57,6 +58,7 @@ mod linear;
 mod lines;
 mod near_lines;
 mod nearest;
+mod overlay;
 mod peel;
 mod point_rim;
 mod rasterize;
@@ -69,6 +71,7 @@ mod thin;
 pub mod tiles;
 mod tin;
 mod tin_report;
+mod volume;
 mod window;
 
 pub use builder::TinBuilder;
@@ -97,4 +100,5 @@ pub use selection::{Classes, Selection, SelectionReport};
 pub use soundness::{SurfaceFlaw, shape_flaws, surface_flaws};
 pub use tin::Tin;
 pub use tin_report::TinReport;
+pub use volume::{Volume, VolumeBase, Zones, volumes};
 pub use window::ReadWindow;

@@ -174,6 +174,12 @@ impl<S: Surface + ?Sized> Surface for Watched<'_, S> {
         }
     }
 
+    fn triangles_in(&self, numbers: Range<u32>, triangles: &mut Vec<(u32, [[f64; 3]; 3])>) {
+        if self.goes_on(numbers.len()) {
+            self.source.triangles_in(numbers, triangles);
+        }
+    }
+
     fn faces_in(&self, numbers: Range<u32>, faces: &mut Vec<Face>) {
         if self.goes_on(numbers.len()) {
             self.source.faces_in(numbers, faces);

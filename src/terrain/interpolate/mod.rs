@@ -32,9 +32,9 @@ mod waters;
 
 use std::sync::{Arc, OnceLock};
 
-use super::boxes::{Boxed, Boxes, Extent};
+use super::boxes::{Boxes, Extent, LocatedFace};
 use super::linear::linear;
-use crate::data::{Surface, corners, faces_under};
+use crate::data::{Surface, faces_under};
 use crate::error::Result;
 use base::{Base, Site, holds};
 use natural::{Tour, laplace, sibson};
@@ -89,9 +89,9 @@ pub struct Interpolant<'a, S: ?Sized> {
 pub(crate) struct Prepared {
     rule: Rule,
     /// The faces of the surface, for single positions.
-    faces: OnceLock<Boxes<Located>>,
+    faces: OnceLock<Boxes<LocatedFace>>,
     /// The triangles that are not faces of the surface, for positions in fragments.
-    beneath: OnceLock<Boxes<Located>>,
+    beneath: OnceLock<Boxes<LocatedFace>>,
 }
 
 /// A method with what it has prepared.
@@ -112,19 +112,6 @@ pub(super) struct QueryBuffers {
     tour: Tour,
     search: Search,
     patch: Option<Patch>,
-}
-
-/// A triangle in a tree.
-#[derive(Debug, Clone, Copy)]
-struct Located {
-    number: u32,
-    extent: Extent,
-}
-
-impl Boxed for Located {
-    fn extent(&self) -> Extent {
-        self.extent
-    }
 }
 
 impl<'a, S: Surface + ?Sized> Interpolant<'a, S> {
@@ -198,13 +185,10 @@ impl<'a, S: Surface + ?Sized> Interpolant<'a, S> {
                 .triangle(face)
                 .is_some_and(|triangle| holds(triangle, q))
         };
-        let faces = self.prepared.faces.get_or_init(|| {
-            let located = |(number, corners): (u32, [u32; 3])| Located {
-                number,
-                extent: Extent::of(corners.map(|v| self.surface.position(v))),
-            };
-            Boxes::by_one_thread(corners(self.surface).map(located).collect())
-        });
+        let faces = self
+            .prepared
+            .faces
+            .get_or_init(|| Boxes::by_one_thread(LocatedFace::all(self.surface).collect()));
         let face = faces.find(q, |face| is_in(face.number).then_some(face.number))?;
         Some(self.height_in(face, q, &mut QueryBuffers::default()))
     }
@@ -276,7 +260,7 @@ impl<'a, S: Surface + ?Sized> Interpolant<'a, S> {
             let extent = |corners: [u32; 3]| Extent::of(corners.map(|v| base.point(v)));
             Boxes::by_one_thread(
                 faces
-                    .map(|face| Located {
+                    .map(|face| LocatedFace {
                         number: face.number,
                         extent: extent(face.corners),
                     })
