@@ -20,6 +20,7 @@ mod requests;
 mod spatial;
 mod surface;
 mod triangle;
+mod volume;
 mod work;
 mod write;
 
@@ -43,6 +44,9 @@ mod _breakline {
 
     #[pymodule_export]
     use super::triangle::{TriangleSwitches, triangulate_arrays};
+
+    #[pymodule_export]
+    use super::volume::volume;
 
     #[pymodule_export]
     use super::write::{Job, job_folder, kind_of, write};

@@ -243,11 +243,15 @@ pub(crate) enum LayerInput<'py> {
 }
 
 fn layers(inputs: &[LayerInput<'_>]) -> PyResult<Vec<Input<Layer>>> {
-    let read = |input: &LayerInput<'_>| match input {
+    inputs.iter().map(layer).collect()
+}
+
+/// Returns a layer as an input; that of arrays is copied.
+pub(crate) fn layer(input: &LayerInput<'_>) -> PyResult<Input<Layer>> {
+    match input {
         LayerInput::File(path) => Ok(Input::File(path.clone())),
         LayerInput::Shapes(shapes) => Ok(Input::Memory(Arc::new(shapes.read()?))),
-    };
-    inputs.iter().map(read).collect()
+    }
 }
 
 /// A number, or a name.

@@ -46,6 +46,11 @@ impl Surface {
             product,
         }
     }
+
+    /// Returns the surface of the library.
+    pub(crate) fn product(&self) -> Arc<SurfaceProduct> {
+        Arc::clone(&self.product)
+    }
 }
 
 #[pymethods]

@@ -38,10 +38,10 @@ ELSEWHERE = {
 WRITTEN = {"tin": breakline.Tin, "dem": breakline.Raster, "hillshade": breakline.Raster, "contour": breakline.Contours}
 
 #: Options that a verb does not need because of what it returns.
-OF_RESULTS = {"check": {"overwrite"}}
+OF_RESULTS = {"check": {"overwrite"}, "volume": {"output", "overwrite"}}
 
 #: Names of positional arguments.
-POSITIONAL = {"inputs": {"points", "inputs"}, "input": {"path"}, "files": {"path"}}
+POSITIONAL = {"inputs": {"points", "inputs", "a"}, "input": {"path"}, "files": {"path"}}
 
 
 def parameters(function):
@@ -91,8 +91,10 @@ def test_a_verb_is_a_function_and_its_options_are_parameters(verb):
 def test_parameters_are_options(verb):
     known = {parameter_name(verb, option["name"]) for option in [*VERBS[verb]["options"], *PROGRAM["options"]]}
     known |= {"points", "inputs", "path", "progress"}
-    if verb in WRITTEN or verb == "check":
+    if verb in WRITTEN or verb in ("check", "volume"):
         known |= {"bounds"}
+    if verb == "volume":
+        known |= {"a", "b"}
     assert set(parameters(getattr(breakline, verb))) <= known
 
 

@@ -87,6 +87,7 @@ settings! {
     SoftLines = "soft-lines",
     TargetCrs = "target-crs",
     Tiles = "tiles",
+    Unit = "unit",
     Update = "update",
     WallBottom = "wall-bottom",
     WallDrop = "wall-drop",
@@ -94,6 +95,7 @@ settings! {
     WallWidth = "wall-width",
     Walls = "walls",
     Weighted = "weighted",
+    Within = "within",
     ZFactor = "z-factor",
 }
 

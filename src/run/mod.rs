@@ -15,6 +15,7 @@
 //! | slope, aspect, curvature, roughness | [`QuantityOptions`] | [`quantity`] | [`CellProduct`] |
 //! | contours | [`ContourOptions`] | [`contour()`] | [`ContourProduct`] |
 //! | select, clip and merge points | [`PointsRequest`] | [`write_points`], [`read_points`] | [`PointsReport`] |
+//! | cut and fill above another surface or a level | [`VolumeOptions`] | [`volume()`] | [`VolumeProduct`] |
 //! | find flaws | [`SurfaceRequest`] | [`check()`] | [`CheckProduct`] |
 //! | count what is in a file | a path | [`facts()`] | [`Facts`] |
 //! | triangulate points in space | [`SpaceOptions`] | [`triangulate_space`] | [`SpaceProduct`] |
@@ -116,6 +117,9 @@ pub use products::surface::{
     write_mesh,
 };
 pub use products::tin::{BuildReport, ReplacedPoints, TinRequest};
+pub use products::volume::{
+    VolumeBase, VolumeOptions, VolumeProduct, VolumeRow, VolumeUnit, volume,
+};
 pub use request::input::{Input, MemoryPoints, STDIN};
 pub use request::lines::{
     FlatOptions, FlatRule, LineRequest, LineRole, LowerEdge, PerRecord, WallOptions,

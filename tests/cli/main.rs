@@ -15,6 +15,7 @@ mod outputs;
 mod results;
 mod returns;
 mod usage;
+mod volumes;
 
 use program::{Run, files_of, folder_with, run_in, run_with};
 use tempfile::TempDir;

@@ -22,6 +22,7 @@ fn help_goes_to_stdout_and_tells_each_verb_with_an_example() {
         "roughness",
         "tri",
         "tpi",
+        "volume",
         "check",
         "demo",
     ] {

@@ -15,6 +15,7 @@ heights             :meth:`Tin.elevation`
 a raster            :meth:`Tin.dem`, :func:`dem`
 contours            :meth:`Tin.contours`, :func:`contour`
 a picture           :meth:`Tin.hillshade`, :func:`hillshade`
+cut and fill        :func:`volume`
 flaws               :meth:`Tin.check`, :func:`check`
 facts about a file  :func:`info`
 Triangle's files    :func:`triangulate`
@@ -49,6 +50,7 @@ from ._tin import EDGE_KINDS, Flaw, Notice, Tin, tin
 from ._verbs import (
     SpaceTriangulation,
     Triangulation,
+    Volume,
     check,
     contour,
     dem,
@@ -56,6 +58,7 @@ from ._verbs import (
     hillshade,
     info,
     triangulate,
+    volume,
 )
 from ._written import Job, Task, Written
 
@@ -86,6 +89,7 @@ __all__ = [
     "Triangulation",
     "UnsupportedError",
     "UsageError",
+    "Volume",
     "Written",
     "__version__",
     "check",
@@ -98,4 +102,5 @@ __all__ = [
     "read_points",
     "tin",
     "triangulate",
+    "volume",
 ]

@@ -297,6 +297,135 @@ def contour(
     return draw(found, crs, interval, base, levels, threads, progress)
 
 
+@dataclass(frozen=True)
+class Volume:
+    """The volumes between a surface and its base, in one polygon or of all of the surface.
+
+    Attributes
+    ----------
+    record : int or None
+        The record of the polygon in ``within``, counted from 1.
+    level : float or None
+        The height of the base, if it is level.
+    cut, fill, net : float
+        The volume of the surface above its base, that of the base above the surface, and the difference.
+    cut_area, fill_area, level_area, common_area : float
+        The areas in plan of both, where both are equally high, and of all three.
+    surface_only, base_only : float
+        The areas where only one of both is. Nothing is counted there.
+    unit : str or None
+        ``"m3"`` or ``"yd3"``; areas are in its squares. None if no coordinate system is known: then volumes are in cubes
+        of the unit of the data.
+    """
+
+    record: Optional[int]
+    level: Optional[float]
+    cut: float
+    fill: float
+    net: float
+    cut_area: float
+    fill_area: float
+    level_area: float
+    common_area: float
+    surface_only: float
+    base_only: float
+    unit: Optional[str]
+
+
+def volume(
+    a: Any,
+    b: Any = None,
+    *,
+    plane: Optional[float] = None,
+    levels: Any = None,
+    base: Optional[str] = None,
+    within: Any = None,
+    unit: Optional[str] = None,
+    threads: Optional[int] = None,
+    progress: Progress = None,
+    **surface: Any,
+) -> "list[Volume]":
+    """Return cut and fill between two surfaces, or above a level, exact on the triangles.
+
+    Parameters
+    ----------
+    a, b
+        The surface and its base: each a :class:`Tin`, a :class:`Raster`, the path of a raster, or what :func:`tin` takes.
+    plane : float, optional
+        A level plane as the base, instead of ``b``.
+    levels : sequence of float, optional
+        Several level planes, one row for each: ``fill`` is the volume below the level and above the surface.
+    base : "rim", optional
+        In each polygon, the triangulation of its vertices, at the heights of the surface there: the ground under a
+        stockpile that is outlined at its foot.
+    within : path or polygons, optional
+        Polygons, with a row for each, as :func:`tin` takes them for ``boundary``.
+    unit : "m3" or "yd3", optional
+        The unit of volumes; areas are in its squares. Cubic meters if the coordinate system is known.
+    threads, progress
+        As for :func:`tin`.
+    **surface
+        Parameters of :func:`tin`, for those of ``a`` and ``b`` that are points.
+
+    Returns
+    -------
+    list of Volume
+
+    Examples
+    --------
+    >>> import breakline
+    >>> pit = breakline.tin([[0, 0, 1], [10, 0, 1], [10, 10, 3], [0, 10, 3]])
+    >>> (row,) = breakline.volume(pit, plane=1.5)
+    >>> round(row.cut, 9), round(row.fill, 9), round(row.fill_area, 9)
+    (56.25, 6.25, 25.0)
+    """
+    if [b, plane, levels, base].count(None) != 3:
+        given = {"b": b, "plane": plane, "levels": levels, "base": base}
+        named = [name for name, value in given.items() if value is not None]
+        raise usage("volumes have one base", named or None, "pass one of b, plane, levels and base")
+    if base not in (None, "rim"):
+        raise usage("base has an unknown value", base, 'use base="rim"')
+    for name in [*HOW, "flat_points"]:
+        if name in surface:
+            raise usage(f"{name} is for a surface that is kept", surface[name], f"leave {name} out")
+    heights = None if levels is None else [_inputs.number(level, "levels") for level in levels]
+    if plane is not None:
+        heights = [_inputs.number(plane, "plane")]
+    outlines = [] if within is None else _inputs.layers(within, "within", True)
+    if len(outlines) > 1:
+        raise usage("polygons of several layers", len(outlines), "pass one file, or one list of polygons")
+    inputs = [a] if b is None else [a, b]
+    is_built = [_is_built(points) for points in inputs]
+    of_any = {name: value for name, value in surface.items() if name in FOR_ANY}
+    found = [
+        # The options are for the other one, if that is built.
+        _surface(points, of_any if any(is_built) and not built else surface, threads, progress)
+        for points, built in zip(inputs, is_built)
+    ]
+    names = [os.fspath(item) if _inputs.is_path(item) else name for item, name in [(a, "a"), (b, "b")]]
+    # With another system as the target, the stated one is that of the points alone.
+    assign = None if surface.get("to_crs") is not None else _inputs.crs_text(surface.get("crs"))
+    with call(threads, progress) as request:
+        rows, known = _breakline.volume(
+            found[0],
+            found[1] if b is not None else None,
+            heights,
+            outlines[0] if outlines else None,
+            assign,
+            None if unit is None else _inputs.name(unit, "unit"),
+            names,
+            request,
+        )
+    return [Volume(record, level, *numbers, known) for record, level, numbers in rows]
+
+
+def _is_built(points: Any) -> bool:
+    """Return whether a TIN is built of what `volume` takes."""
+    if isinstance(points, (Tin, Raster)):
+        return False
+    return not _inputs.is_path(points) or _breakline.kind_of(os.fspath(points)) == "points"
+
+
 def check(
     points: Any,
     *,

@@ -70,6 +70,7 @@ const OF_POINTS: &[&str] = &[
     "roughness",
     "tri",
     "tpi",
+    "volume",
     "check",
     "points",
 ];

@@ -35,15 +35,7 @@ impl SurfacePlan {
             [] => Vec::new(), // lines alone
             inputs => inputs::expand(inputs, console)?,
         };
-        let degrees = if args.force_degrees {
-            Degrees::Allow
-        } else {
-            Degrees::Refuse
-        };
-        let systems = SystemOptions {
-            degrees,
-            ..systems(&args.systems)?
-        };
+        let systems = systems_of(args)?;
         let mut building = TinRequest {
             breaklines: layers(&args.breaklines)?,
             boundary: layers(&args.boundary)?,
@@ -79,6 +71,47 @@ impl SurfacePlan {
         })
     }
 
+    /// Returns a request for each input: a surface of its own. The options of building a TIN apply
+    /// to all inputs of points.
+    ///
+    /// # Errors
+    /// Those of [`resolve`](Self::resolve).
+    pub(crate) fn resolve_each(args: &SurfaceArgs, console: &Console) -> Result<Vec<Self>> {
+        let alone = |input: &PathBuf| SurfaceArgs {
+            inputs: vec![input.clone()],
+            ..args.clone()
+        };
+        let each: Vec<SurfaceArgs> = args.inputs.iter().map(alone).collect();
+        let sources = each
+            .iter()
+            .map(|args| Source::of_files(&inputs::expand(&args.inputs, console)?))
+            .collect::<Result<Vec<_>>>()?;
+        let is_built = |source: &Source| matches!(source, Source::Points(_));
+        let any_is_built = sources.iter().any(is_built);
+        let plan = |(args, source): (&SurfaceArgs, Source)| match any_is_built && !is_built(&source)
+        {
+            // The options are for the other one.
+            true => Self::as_it_is(source, args),
+            false => Self::resolve(args, console),
+        };
+        each.iter().zip(sources).map(plan).collect()
+    }
+
+    /// Returns the request for a surface that is read, whatever options there are of building one.
+    fn as_it_is(source: Source, args: &SurfaceArgs) -> Result<Self> {
+        let systems = SystemOptions {
+            target: None,
+            ..systems_of(args)?
+        };
+        Ok(SurfacePlan {
+            request: SurfaceRequest { source, systems },
+            targets: Targets {
+                also_read: inputs::lists(&args.inputs).collect(),
+                ..Targets::default()
+            },
+        })
+    }
+
     /// Returns the targets with these outputs.
     pub(crate) fn targets(&self, args: &OutputArgs) -> Targets {
         let existing = Existing::of(args.overwrite);
@@ -101,6 +134,19 @@ pub(crate) fn frame(args: &FrameArgs) -> Result<FrameOptions> {
         resolution: args.resolution,
         extent,
         align_to: args.align_to.clone(),
+    })
+}
+
+/// Returns the coordinate systems of a surface, and what to do with degrees.
+fn systems_of(args: &SurfaceArgs) -> Result<SystemOptions> {
+    let degrees = if args.force_degrees {
+        Degrees::Allow
+    } else {
+        Degrees::Refuse
+    };
+    Ok(SystemOptions {
+        degrees,
+        ..systems(&args.systems)?
     })
 }
 

@@ -7,4 +7,5 @@ pub(super) mod names;
 mod progress;
 pub(super) mod stdout;
 pub(super) mod summary;
+pub(super) mod volumes;
 pub(super) mod written;

@@ -217,6 +217,7 @@ mod tests {
                 "roughness",
                 "tri",
                 "tpi",
+                "volume",
                 "check",
                 "job",
                 "demo",

@@ -14,4 +14,5 @@ mod quantity;
 mod tin;
 pub(super) mod triangulate;
 mod triangulate_space;
+pub(super) mod volume;
 pub(super) mod write;

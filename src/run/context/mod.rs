@@ -105,6 +105,8 @@ pub enum Stage {
     Writing,
     /// Heights are computed, counted in positions.
     ComputingHeights,
+    /// Volumes are computed, counted in faces, each of which is visited a few times.
+    ComputingVolumes,
     /// The tasks of a job run, counted in tasks.
     RunningTasks,
 }
@@ -128,6 +130,7 @@ impl Stage {
             Stage::DrawingContours => "drawing contours",
             Stage::Writing => "writing",
             Stage::ComputingHeights => "computing heights",
+            Stage::ComputingVolumes => "computing volumes",
             Stage::RunningTasks => "running tasks",
         }
     }

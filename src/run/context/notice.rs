@@ -113,6 +113,11 @@ pub enum Notice {
     Reprojecting(Box<Crs>, Box<Crs>),
     /// A message about a transform: the operation and its accuracy.
     Transform(String),
+    /// The surface and its base, which are named, have no area in common.
+    NothingInCommon(String, String),
+    /// In the polygons of these records of a file, the surface and its base have no area in
+    /// common.
+    PolygonsOutside(PathBuf, Vec<usize>),
     /// The gap between two files is far wider than any file.
     FarApart(PathBuf, PathBuf, Quantity),
     /// The breaklines are this far from all points.
@@ -432,6 +437,8 @@ impl Notice {
             | Notice::AllClassesUsed
             | Notice::Transform(_)
             | Notice::PartForLinear
+            | Notice::NothingInCommon(..)
+            | Notice::PolygonsOutside(..)
             | Notice::FarApart(..)
             | Notice::BreaklinesApart(_)
             | Notice::BreaklinesBeyond(_)

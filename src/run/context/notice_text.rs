@@ -125,6 +125,10 @@ fn text(notice: &Notice) -> Wording {
         Notice::DifferentUnits(plan, height) => different_units(plan, height).into(),
         Notice::Reprojecting(from, to) => format!("reprojecting from {from} to {to}").into(),
         Notice::Transform(text) => text.clone().into(),
+        Notice::NothingInCommon(one, other) => {
+            format!("{one} and {other} do not overlap: there is no volume between them").into()
+        }
+        Notice::PolygonsOutside(path, records) => polygons_outside(path, records),
         Notice::FarApart(before, after, gap) => far_apart(before, after, gap).into(),
         Notice::BreaklinesApart(gap) => breaklines_apart(gap).into(),
         Notice::BreaklinesBeyond(reach) => breaklines_beyond(reach),
@@ -286,6 +290,24 @@ fn no_system() -> &'static str {
 
 fn different_units(plan: &str, height: &str) -> String {
     format!("x and y are in units of the {plan}, heights in units of the {height}")
+}
+
+fn polygons_outside(path: &Path, records: &[usize]) -> Wording {
+    const MOST_LISTED: usize = 5;
+    let first = records.iter().take(MOST_LISTED);
+    let listed: Vec<String> = first.map(usize::to_string).collect();
+    let more = match records.len().saturating_sub(MOST_LISTED) {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    let s = if records.len() == 1 { "" } else { "s" };
+    of_file(
+        path,
+        &format!(
+            "record{s} {}{more}: nothing to compute a volume of is in the polygon{s}",
+            listed.join(", ")
+        ),
+    )
 }
 
 fn far_apart(before: &Path, after: &Path, gap: &Quantity) -> String {

@@ -70,6 +70,13 @@ impl Units {
         }
     }
 
+    /// Returns the meters in a unit of the plan and in one of the heights; `None` if the units are
+    /// not known, or angles.
+    pub(crate) fn in_metres(&self) -> Option<[f64; 2]> {
+        let [plan, height] = [self.plan.as_ref()?, self.height.as_ref()?];
+        (!self.is_angular).then_some([plan.factor, height.factor])
+    }
+
     /// Returns true if coordinates in plan are angles.
     pub(crate) fn is_angular(&self) -> bool {
         self.is_angular

@@ -218,11 +218,11 @@ impl Adding<'_> {
             LineRole::Boundary | LineRole::Holes => {
                 let polygons =
                     layers::polygons(layer, path, role.setting(), transform, self.transforms)?;
-                for rings in &polygons {
+                for polygon in &polygons {
                     if role == LineRole::Holes {
-                        self.builder.add_hole(rings);
+                        self.builder.add_hole(&polygon.rings);
                     } else {
-                        self.builder.add_boundary(rings);
+                        self.builder.add_boundary(&polygon.rings);
                     }
                 }
                 Ok(polygons.len())

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::path::Path;
 
-use super::shapes::{self, Rings};
+use super::shapes::{self, Polygon, Rings};
 use crate::data::Layer;
 use crate::error::{Result, Setting};
 use crate::io::OnDamage;
@@ -55,13 +55,8 @@ pub(crate) fn boundaries(
 ) -> Result<Vec<Rings>> {
     let mut all = Vec::new();
     for ((path, layer), transform) in boundary.iter().zip(by_file) {
-        all.extend(polygons(
-            layer,
-            path,
-            Setting::Boundary,
-            *transform,
-            transforms,
-        )?);
+        let polygons = polygons(layer, path, Setting::Boundary, *transform, transforms)?;
+        all.extend(polygons.into_iter().map(|polygon| polygon.rings));
     }
     Ok(all)
 }
@@ -76,9 +71,9 @@ pub(crate) fn polygons(
     setting: Setting,
     transform: Option<usize>,
     transforms: &Transforms,
-) -> Result<Vec<Rings>> {
+) -> Result<Vec<Polygon>> {
     let mut polygons = shapes::polygons(layer, path, setting)?;
-    for ring in polygons.iter_mut().flatten() {
+    for ring in polygons.iter_mut().flat_map(|polygon| &mut polygon.rings) {
         let mut points: Vec<[f64; 3]> = ring.iter().map(|p| [p[0], p[1], 0.0]).collect();
         transforms
             .apply(transform, &mut points)

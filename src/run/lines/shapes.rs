@@ -9,6 +9,14 @@ use crate::error::{Error, Result, Setting, Wording, wording};
 /// The rings of a polygon, in plan.
 pub(crate) type Rings = Vec<Vec<[f64; 2]>>;
 
+/// A polygon of a layer.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Polygon {
+    /// The number of its record, counted from 1; that of the first line if it consists of lines.
+    pub(crate) record: usize,
+    pub(crate) rings: Rings,
+}
+
 /// A line of a layer, with its record and part.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Drawn {
@@ -74,7 +82,7 @@ fn read(
 ///
 /// # Errors
 /// If there are none, a coordinate is not finite, or the lines leave a gap.
-pub(crate) fn polygons(layer: &Layer, path: &Path, setting: Setting) -> Result<Vec<Rings>> {
+pub(crate) fn polygons(layer: &Layer, path: &Path, setting: Setting) -> Result<Vec<Polygon>> {
     let mut polygons = Vec::new();
     let mut lines: Vec<Drawn> = Vec::new();
     for (record, shape) in (1..).zip(&layer.shapes) {
@@ -86,25 +94,20 @@ pub(crate) fn polygons(layer: &Layer, path: &Path, setting: Setting) -> Result<V
         }
         match shape {
             Shape::Polygon(_) => {
-                polygons.push(
-                    parts
-                        .iter()
-                        .map(|ring| ring.iter().map(|p| [p[0], p[1]]).collect())
-                        .collect(),
-                );
+                let rings = parts.iter().map(|ring| in_two(ring)).collect();
+                polygons.push(Polygon { record, rings });
             }
             _ => lines.extend(drawn(parts, record - 1)),
         }
     }
     if !lines.is_empty() {
-        let flat: Vec<Vec<[f64; 2]>> = lines
-            .iter()
-            .map(|line| line.points.iter().map(|p| [p[0], p[1]]).collect())
-            .collect();
-        polygons.push(
-            rings::close(&flat)
-                .map_err(|gap| at_record(gap.error(), path, lines[gap.line].fid + 1))?,
-        );
+        let flat: Rings = lines.iter().map(|line| in_two(&line.points)).collect();
+        let record = |line: usize| lines[line].fid + 1;
+        polygons.push(Polygon {
+            record: record(0),
+            rings: rings::close(&flat)
+                .map_err(|gap| at_record(gap.error(), path, record(gap.line)))?,
+        });
     }
     if polygons.is_empty() {
         return Err(
@@ -114,6 +117,11 @@ pub(crate) fn polygons(layer: &Layer, path: &Path, setting: Setting) -> Result<V
         );
     }
     Ok(polygons)
+}
+
+/// Returns points without their heights.
+fn in_two(points: &[[f64; 3]]) -> Vec<[f64; 2]> {
+    points.iter().map(|&[x, y, _]| [x, y]).collect()
 }
 
 /// Returns the parts that are lines, with their numbers.

@@ -14,3 +14,4 @@ pub(crate) mod points;
 mod reach;
 pub(crate) mod surface;
 pub(crate) mod tin;
+pub(crate) mod volume;

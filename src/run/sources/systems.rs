@@ -33,7 +33,7 @@ pub enum Degrees {
 }
 
 /// Returns the hint for coordinates in the wrong system. Without PROJ, there is no target system.
-fn reproject_first() -> Wording {
+pub(crate) fn reproject_first() -> Wording {
     match cfg!(feature = "proj") {
         true => wording!["reproject with ", Setting::TargetCrs.text("EPSG:CODE")],
         false => "reproject first (ogr2ogr, gdalwarp, pdal): this build is without PROJ".into(),

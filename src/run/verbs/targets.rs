@@ -158,7 +158,11 @@ impl Targets {
     }
 }
 
-fn add_table(
+/// Writes a table to a file that appears with the others of a set.
+///
+/// # Errors
+/// If it cannot be written.
+pub(crate) fn add_table(
     path: &Path,
     set: &OutputSet,
     write: impl FnOnce(&mut Output) -> std::io::Result<()>,
@@ -169,7 +173,8 @@ fn add_table(
     Ok(())
 }
 
-const TABLES: &[Format<()>] = &[Format {
+/// The format of tables.
+pub(crate) const TABLES: &[Format<()>] = &[Format {
     extension: "csv",
     kind: (),
     companions: &[],

@@ -11,6 +11,7 @@ mod switches;
 mod systems;
 mod tiles;
 mod verbs;
+mod volume;
 
 use std::num::NonZeroUsize;
 
@@ -35,6 +36,7 @@ pub(crate) use verbs::{
     CheckArgs, ContourArgs, DemArgs, DemoArgs, DescribeArgs, FrameArgs, HillshadeArgs, InfoArgs,
     OutputArgs, PointsArgs, TinArgs, TriangulateArgs,
 };
+pub(crate) use volume::VolumeArgs;
 
 /// Lidar and breaklines to TIN, DEM, contours and mesh
 ///
@@ -57,6 +59,7 @@ Examples:
   breakline points tiles/*.laz --class ground --bounds 500,200,700,400 -o part.laz
   breakline dem ground.ply --resolution 0.5 -o dem.tif
   breakline contour ground.ply --interval 1 -o contours.shp
+  breakline volume ground.ply --plane 104.5
   breakline demo
 
 `breakline VERB --help` lists the options of a verb, with defaults and an example.";
@@ -114,6 +117,7 @@ pub(crate) enum Verb {
     Roughness(RoughnessArgs),
     Tri(TriArgs),
     Tpi(TpiArgs),
+    Volume(VolumeArgs),
     Check(CheckArgs),
     Job(JobArgs),
     Demo(DemoArgs),

@@ -117,6 +117,54 @@ impl FromStr for EdgeLength {
     }
 }
 
+/// Levels typed as `from:to:step`.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct LevelSteps(pub(crate) Vec<f64>);
+
+/// The most levels of one table.
+const MOST_LEVELS: f64 = 100_000.0;
+
+impl FromStr for LevelSteps {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let values: Vec<f64> = text.split(':').map(finite).collect::<Result<_, _>>()?;
+        let &[from, to, step] = values.as_slice() else {
+            return Err(format!(
+                "expected three numbers FROM:TO:STEP, found {}",
+                values.len()
+            ));
+        };
+        if from > to || step <= 0.0 {
+            return Err("expected FROM <= TO and a STEP above zero".to_owned());
+        }
+        // A step that is no binary number, such as 0.1, reaches the last level all the same.
+        let count = ((to - from) / step + 1e-9).floor();
+        if count >= MOST_LEVELS {
+            return Err(format!(
+                "{count:e} levels: at most {MOST_LEVELS} are computed"
+            ));
+        }
+        let digits = text.split(':').map(decimals).max().unwrap_or_default();
+        let level = |i: u32| rounded(from + f64::from(i) * step, digits);
+        Ok(LevelSteps((0..=count as u32).map(level).collect()))
+    }
+}
+
+/// Returns the number of decimals of a typed number; 15 if it has an exponent.
+fn decimals(text: &str) -> usize {
+    match text.trim().split_once('.') {
+        _ if text.contains(['e', 'E']) => 15,
+        Some((_, decimals)) => decimals.len(),
+        None => 0,
+    }
+}
+
+/// Rounds to decimals: 3 times 0.1 becomes 0.3.
+fn rounded(value: f64, digits: usize) -> f64 {
+    format!("{value:.digits$}").parse().unwrap_or(value)
+}
+
 /// Parses a finite number.
 pub(crate) fn finite(text: &str) -> Result<f64, String> {
     match text.trim().parse::<f64>() {
@@ -193,6 +241,20 @@ mod tests {
             "a,b,c,d",
         ] {
             assert!(wrong.parse::<Corners>().is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn levels_are_as_they_are_written() {
+        let levels = |text: &str| text.parse::<LevelSteps>().map(|steps| steps.0);
+        assert_eq!(levels("0:0.3:0.1"), Ok(vec![0.0, 0.1, 0.2, 0.3]));
+        assert_eq!(levels("-1:1.2:0.5"), Ok(vec![-1.0, -0.5, 0.0, 0.5, 1.0]));
+        assert_eq!(levels("7.123:8:2"), Ok(vec![7.123]));
+        assert_eq!(levels("100.7:100.9:0.1"), Ok(vec![100.7, 100.8, 100.9]));
+        for wrong in [
+            "", "1", "1:2", "1:2:3:4", "2:1:1", "1:2:0", "1:2:-1", "0:nan:1", "0:1:1e-9", "0:inf:1",
+        ] {
+            assert!(levels(wrong).is_err(), "{wrong}");
         }
     }
 

@@ -1,0 +1,71 @@
+//! Cut and fill between surfaces.
+
+use std::path::PathBuf;
+
+use breakline::run::{self, VolumeBase, VolumeOptions, VolumeRow, VolumeUnit};
+use pyo3::prelude::*;
+
+use crate::errors::Result;
+use crate::requests::{self, LayerInput};
+use crate::surface::Surface;
+use crate::work::{self, Call};
+
+/// The record of the polygon, the level of the base, and the volumes and areas, in the order of the
+/// fields in Python.
+type Row = (Option<usize>, Option<f64>, [f64; 9]);
+
+const UNITS: [(&str, VolumeUnit); 2] = [
+    ("m3", VolumeUnit::CubicMeters),
+    ("yd3", VolumeUnit::CubicYards),
+];
+
+/// Returns the volumes between a surface and its base, and their unit. The base is a second
+/// surface, or levels, or, if there are neither, the rim of the polygons.
+#[pyfunction]
+pub(crate) fn volume(
+    py: Python<'_>,
+    surface: PyRef<'_, Surface>,
+    base: Option<PyRef<'_, Surface>>,
+    levels: Option<Vec<f64>>,
+    within: Option<LayerInput<'_>>,
+    assign: Option<&str>,
+    unit: Option<&str>,
+    names: [PathBuf; 2],
+    call: Call,
+) -> PyResult<(Vec<Row>, Option<&'static str>)> {
+    let options = VolumeOptions {
+        within: within.map(|layer| requests::layer(&layer)).transpose()?,
+        assign: requests::crs(assign)?,
+        unit: unit
+            .map(|name| requests::choose("unit", name, &UNITS))
+            .transpose()?,
+        names,
+    };
+    let (surface, other) = (surface.product(), base.map(|base| base.product()));
+    let product = work::run(py, &call, |context| -> Result<_> {
+        let base = match (&other, &levels) {
+            (Some(base), _) => VolumeBase::Surface(base),
+            (None, Some(levels)) => VolumeBase::Levels(levels),
+            (None, None) => VolumeBase::Rim,
+        };
+        Ok(run::volume(&surface, base, &options, context)?)
+    })?;
+    let unit = product.unit.map(|unit| unit.symbols()[0]);
+    Ok((product.rows.iter().map(row).collect(), unit))
+}
+
+fn row(row: &VolumeRow) -> Row {
+    let of = &row.volume;
+    let numbers = [
+        of.cut,
+        of.fill,
+        of.net(),
+        of.cut_area,
+        of.fill_area,
+        of.level_area(),
+        of.common_area,
+        of.surface_only_area,
+        of.base_only_area,
+    ];
+    (row.record, row.level, numbers)
+}

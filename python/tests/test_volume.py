@@ -1,0 +1,64 @@
+"""Cut and fill: known volumes, what they are computed of, and what is refused."""
+
+import breakline
+import numpy as np
+import pytest
+
+#: A square of 10 that rises from 1 to 3.
+SLOPE = [[0, 0, 1], [10, 0, 1], [10, 10, 3], [0, 10, 3]]
+
+
+def test_two_surfaces_of_any_kind():
+    slope, flat = breakline.tin(SLOPE), breakline.tin([[x + 5, y, 1] for x, y, _ in SLOPE])
+    (row,) = breakline.volume(slope, flat)
+    assert (row.record, row.level, row.unit) == (None, None, None) and row.fill == pytest.approx(0, abs=1e-12)
+    assert row.cut == row.net == pytest.approx(50, rel=1e-12)
+    assert [row.common_area, row.surface_only, row.base_only] == pytest.approx([50, 50, 50], rel=1e-12)
+    (other,) = breakline.volume(flat, slope)
+    assert (other.cut, other.fill, other.net) == (row.fill, row.cut, -row.net)
+    assert breakline.volume(SLOPE, flat) == [row]
+    dem = slope.dem(1)
+    (between,) = breakline.volume(dem, slope)
+    # Heights of a raster have 24 bits: those below 4 are off by at most 1.2e-7.
+    assert between.common_area == pytest.approx(81, rel=1e-12)
+    assert between.cut + between.fill < 81 * 1.2e-7
+
+
+def test_levels_polygons_and_units():
+    slope = breakline.tin(SLOPE, crs="EPSG:25832")
+    rows = breakline.volume(slope, levels=np.array([1.0, 2.0, 3.0]))
+    assert [row.level for row in rows] == [1, 2, 3]
+    assert [row.fill for row in rows] == pytest.approx([0, 25, 100], abs=1e-10)
+    halves = [np.array([[0, 0], [5, 0], [5, 10], [0, 10]]), np.array([[5, 0], [10, 0], [10, 10], [5, 10]])]
+    whole = breakline.volume(slope, plane=2)[0]
+    rows = breakline.volume(slope, plane=2, within=halves)
+    assert [row.record for row in rows] == [1, 2] and rows[0].unit == "m3"
+    assert sum(row.cut for row in rows) == pytest.approx(whole.cut, rel=1e-12)
+    (yards,) = breakline.volume(slope, plane=2, unit="yd3")
+    assert yards.unit == "yd3" and yards.cut * 0.9144**3 == pytest.approx(whole.cut, rel=1e-12)
+
+
+def test_a_pile_on_its_rim():
+    pile = [[0, 0, 5], [4, 0, 5], [4, 4, 5], [0, 4, 5], [1, 1, 5], [3, 1, 5], [3, 3, 5], [1, 3, 5], [2, 2, 8]]
+    (row,) = breakline.volume(pile, base="rim", within=np.array([[1, 1], [3, 1], [3, 3], [1, 3]]))
+    assert row.cut == pytest.approx(4, rel=1e-12) and row.fill == 0
+
+
+def test_what_is_refused():
+    slope = breakline.tin(SLOPE)
+    for wrong, said in [
+        ({}, "one base"),
+        ({"plane": 1, "levels": [1]}, "one base"),
+        ({"base": "top"}, "unknown value"),
+        ({"base": "rim"}, "within"),
+        ({"plane": float("nan")}, "not a height"),
+        ({"plane": 1, "unit": "m3"}, "no coordinate system"),
+        ({"plane": 1, "unit": "acres"}, "unit"),
+        ({"plane": 1, "output": "x.csv"}, "output"),
+        ({"plane": 1, "max_edge": 3}, "max_edge"),
+    ]:
+        with pytest.raises(breakline.BreaklineError) as raised:
+            breakline.volume(slope, **wrong)
+        assert said in f"{raised.value} {raised.value.cure}", wrong
+    with pytest.warns(breakline.BreaklineWarning, match="do not overlap"):
+        breakline.volume(slope, [[x + 50, y, 1] for x, y, _ in SLOPE])

@@ -1,0 +1,176 @@
+//! Volumes as a table, as JSON and as CSV.
+
+use serde_json::{Map, Value, json};
+
+use super::escape;
+use crate::run::units::number;
+use crate::run::{VolumeProduct, VolumeRow, VolumeUnit};
+
+/// What a number of a row is measured in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Measure {
+    Volume,
+    Area,
+}
+
+/// A number of a row.
+struct Field {
+    name: &'static str,
+    measure: Measure,
+    of: fn(&VolumeRow) -> f64,
+}
+
+/// The numbers of a row, in the order of all outputs.
+const FIELDS: &[Field] = &[
+    Field::volume("cut", |row| row.volume.cut),
+    Field::volume("fill", |row| row.volume.fill),
+    Field::volume("net", |row| row.volume.net()),
+    Field::area("cut area", |row| row.volume.cut_area),
+    Field::area("fill area", |row| row.volume.fill_area),
+    Field::area("level area", |row| row.volume.level_area()),
+    Field::area("common area", |row| row.volume.common_area),
+    Field::area("surface only", |row| row.volume.surface_only_area),
+    Field::area("base only", |row| row.volume.base_only_area),
+];
+
+impl Field {
+    const fn volume(name: &'static str, of: fn(&VolumeRow) -> f64) -> Self {
+        Field {
+            name,
+            measure: Measure::Volume,
+            of,
+        }
+    }
+
+    const fn area(name: &'static str, of: fn(&VolumeRow) -> f64) -> Self {
+        Field {
+            name,
+            measure: Measure::Area,
+            of,
+        }
+    }
+
+    /// Returns the name for files, such as `cut_area`.
+    fn key(&self) -> String {
+        self.name.replace(' ', "_")
+    }
+}
+
+/// Returns the symbols of volumes and of areas.
+fn symbols(unit: Option<VolumeUnit>) -> [&'static str; 2] {
+    unit.map_or(["cubic units", "square units"], VolumeUnit::symbols)
+}
+
+/// Returns a number without a sign if it is 0.
+fn plain(value: f64) -> f64 {
+    value + 0.0
+}
+
+/// Returns rounded numbers for a terminal: one row as lines, several as a table.
+pub(crate) fn text(product: &VolumeProduct) -> String {
+    match &product.rows[..] {
+        [row] => lines(row, product.unit),
+        rows => table(rows, product.unit),
+    }
+}
+
+fn lines(row: &VolumeRow, unit: Option<VolumeUnit>) -> String {
+    let [of_volumes, of_areas] = symbols(unit);
+    let mut text = String::new();
+    for (name, value) in keys(row) {
+        text += &format!("{name:<12} {value:>16}\n");
+    }
+    for field in FIELDS {
+        let symbol = match field.measure {
+            Measure::Volume => of_volumes,
+            Measure::Area => of_areas,
+        };
+        let value = number(plain((field.of)(row)));
+        text += &format!("{:<12} {value:>16} {symbol}\n", field.name);
+    }
+    text
+}
+
+fn table(rows: &[VolumeRow], unit: Option<VolumeUnit>) -> String {
+    let [of_volumes, of_areas] = symbols(unit);
+    let first = rows.first().map(keys).unwrap_or_default();
+    let mut cells: Vec<Vec<String>> = vec![
+        first
+            .iter()
+            .map(|(name, _)| (*name).to_owned())
+            .chain(FIELDS.iter().map(|field| field.name.to_owned()))
+            .collect(),
+    ];
+    cells.extend(rows.iter().map(|row| {
+        let values = FIELDS.iter().map(|field| number(plain((field.of)(row))));
+        let keys = keys(row).into_iter().map(|(_, value)| value);
+        keys.chain(values).collect()
+    }));
+    let columns = first.len() + FIELDS.len();
+    let width = |column: usize| cells.iter().map(|row| row[column].len()).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..columns).map(width).collect();
+    let mut text = format!("volumes in {of_volumes}, areas in {of_areas}\n");
+    for row in &cells {
+        let aligned = row
+            .iter()
+            .zip(&widths)
+            .map(|(cell, width)| format!("{cell:>width$}"));
+        text += &aligned.collect::<Vec<_>>().join("  ");
+        text.push('\n');
+    }
+    text
+}
+
+/// Returns what a row is about: its polygon and its level, if there are any.
+fn keys(row: &VolumeRow) -> Vec<(&'static str, String)> {
+    let record = row.record.map(|record| ("record", record.to_string()));
+    let level = row.level.map(|level| ("level", plain(level).to_string()));
+    record.into_iter().chain(level).collect()
+}
+
+/// Returns exact numbers as JSON.
+pub(crate) fn json(product: &VolumeProduct) -> String {
+    let [of_volumes, of_areas] = match product.unit {
+        Some(unit) => unit.symbols().map(Value::from),
+        None => [Value::Null, Value::Null],
+    };
+    let row = |row: &VolumeRow| {
+        let mut object = Map::new();
+        if let Some(record) = row.record {
+            object.insert("record".to_owned(), record.into());
+        }
+        if let Some(level) = row.level {
+            object.insert("level".to_owned(), plain(level).into());
+        }
+        for field in FIELDS {
+            object.insert(field.key(), plain((field.of)(row)).into());
+        }
+        Value::Object(object)
+    };
+    let rows: Vec<Value> = product.rows.iter().map(row).collect();
+    let all = json!({ "unit": of_volumes, "area_unit": of_areas, "rows": rows });
+    escape::json(&format!("{all:#}\n"))
+}
+
+/// Returns exact numbers as CSV.
+pub(crate) fn csv(product: &VolumeProduct) -> String {
+    let unit = product.unit.map_or("", |unit| unit.symbols()[0]);
+    let names: Vec<String> = FIELDS.iter().map(Field::key).collect();
+    let mut text = format!("record,level,{},unit\n", names.join(","));
+    for row in &product.rows {
+        let record = row.record.map(|record| record.to_string());
+        let level = row.level.map(|level| plain(level).to_string());
+        let values = FIELDS
+            .iter()
+            .map(|field| plain((field.of)(row)).to_string());
+        let cells: Vec<String> = [record, level]
+            .map(Option::unwrap_or_default)
+            .into_iter()
+            .chain(values)
+            .chain([unit.to_owned()])
+            .collect();
+        text += &cells.join(",");
+        text.push('\n');
+    }
+    text
+}

@@ -1,0 +1,467 @@
+//! Cut and fill between a surface and its base.
+
+use std::path::{Path, PathBuf};
+
+use super::surface::{Model, SurfaceProduct};
+use crate::crs::Crs;
+use crate::data::{Grid, Layer, Mesh, Surface};
+use crate::error::{Error, Result, Setting, wording};
+use crate::io::OnDamage;
+use crate::run::context::notice::Notice;
+use crate::run::context::units::Units;
+use crate::run::context::watched::Watched;
+use crate::run::context::{Context, Journal, Stage};
+use crate::run::lines::layers::{self, Layers};
+use crate::run::lines::shapes::{self, Rings, at_record};
+use crate::run::request::input::Input;
+use crate::run::sources::systems::{self, Role, Stated, SystemOptions, reproject_first};
+use crate::terrain::{self, GridSurface, Interpolant, Method, Volume, Zones};
+
+/// How often each face is visited for the volumes of a surface.
+const VISITS: u64 = 3;
+
+/// The meters in an international yard.
+const YARD: f64 = 0.9144;
+
+/// What a surface is compared with.
+#[derive(Debug, Clone, Copy)]
+pub enum VolumeBase<'a> {
+    /// Another surface.
+    Surface(&'a SurfaceProduct),
+    /// Level planes at these heights, one after another.
+    Levels(&'a [f64]),
+    /// In each polygon, the triangulation of its vertices, at the heights that the surface has
+    /// there: the ground under a stockpile that is outlined at its foot.
+    Rim,
+}
+
+/// How volumes are computed. By default, of all of the surface.
+#[derive(Debug, Clone, Default)]
+pub struct VolumeOptions {
+    /// Polygons: each has volumes of its own.
+    pub within: Option<Input<Layer>>,
+    /// The coordinate system of these polygons, whatever their file states.
+    pub assign: Option<Crs>,
+    /// The unit of the result; cubic meters if it is `None` and units are known.
+    pub unit: Option<VolumeUnit>,
+    /// What messages call the surface and its base, such as the names of their files.
+    pub names: [PathBuf; 2],
+}
+
+/// A unit of volumes; areas are in its squares.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum VolumeUnit {
+    /// Cubic meters.
+    CubicMeters,
+    /// Cubic yards, of 0.9144 meters.
+    CubicYards,
+}
+
+impl VolumeUnit {
+    /// Returns the symbols of volumes and of areas, such as "m3" and "m2".
+    pub fn symbols(self) -> [&'static str; 2] {
+        match self {
+            VolumeUnit::CubicMeters => ["m3", "m2"],
+            VolumeUnit::CubicYards => ["yd3", "yd2"],
+        }
+    }
+
+    /// Returns the meters in the length whose cube it is.
+    fn length(self) -> f64 {
+        match self {
+            VolumeUnit::CubicMeters => 1.0,
+            VolumeUnit::CubicYards => YARD,
+        }
+    }
+}
+
+/// The volumes in one polygon, or of all of the surface, above one base.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct VolumeRow {
+    /// The record of the polygon, counted from 1; `None` if there are no polygons.
+    pub record: Option<usize>,
+    /// The height of the base, if it is level.
+    pub level: Option<f64>,
+    /// The volumes and areas.
+    pub volume: Volume,
+}
+
+/// Volumes between a surface and its base.
+#[derive(Debug)]
+#[non_exhaustive]
+pub struct VolumeProduct {
+    /// The rows, by level and then by polygon.
+    pub rows: Vec<VolumeRow>,
+    /// The unit; `None` if no coordinate system is known: then volumes are in cubes of the unit of
+    /// the data.
+    pub unit: Option<VolumeUnit>,
+    /// What was assumed and what looks wrong, in the order in which it was found.
+    pub notices: Vec<Notice>,
+}
+
+/// Computes cut and fill between a surface and its base, exactly on the triangles of both; a raster
+/// is a surface between the centers of its cells. Where only one of both is, nothing counts but its
+/// area.
+///
+/// Lengths and heights in different units are converted.
+///
+/// # Errors
+/// If the coordinate systems differ or are in degrees, the unit of the result cannot be known, a
+/// polygon has no area, a level is not finite, the base is the rim and there are no polygons or one
+/// is not on the surface; if a file is damaged, and if the run is canceled.
+pub fn volume(
+    surface: &SurfaceProduct,
+    base: VolumeBase<'_>,
+    options: &VolumeOptions,
+    context: &Context,
+) -> Result<VolumeProduct> {
+    let journal = Journal::new(context);
+    context.check()?;
+    let within = options.within.as_slice();
+    let layers = layers::read(within, &[], OnDamage::Refuse, &journal)?;
+    let crs = common_system(surface, base, &layers, options, &journal)?;
+    let scale = Scale::new(crs.as_ref(), options.unit)?;
+    let outlines = layers.first().map(Outlines::read).transpose()?;
+    let computing = Computing {
+        outlines: outlines.as_ref(),
+        context,
+    };
+    let mut rows = with_faces(surface, context, |faces| match base {
+        VolumeBase::Surface(base) => {
+            with_faces(base, context, |base| computing.above_surface(faces, base))
+        }
+        VolumeBase::Levels(levels) => computing.above_levels(faces, levels),
+        VolumeBase::Rim => computing.above_rims(faces),
+    })?;
+    note_nothing(&rows, outlines.as_ref(), base, &options.names, &journal);
+    for row in &mut rows {
+        row.volume = scale.applied(&row.volume);
+    }
+    Ok(VolumeProduct {
+        rows,
+        unit: scale.unit,
+        notices: journal.take(),
+    })
+}
+
+/// Adds a notice if there is nothing to compute a volume of, in all or in some polygons.
+fn note_nothing(
+    rows: &[VolumeRow],
+    outlines: Option<&Outlines>,
+    base: VolumeBase,
+    names: &[PathBuf; 2],
+    journal: &Journal,
+) {
+    let has_nothing = |row: &&VolumeRow| row.volume.common_area == 0.0;
+    match outlines {
+        Some(Outlines { path, records, .. }) => {
+            let rows = rows.iter().take(records.len());
+            let outside: Vec<usize> = rows
+                .filter(has_nothing)
+                .filter_map(|row| row.record)
+                .collect();
+            if !outside.is_empty() {
+                journal.add(Notice::PolygonsOutside(path.to_path_buf(), outside));
+            }
+        }
+        None if matches!(base, VolumeBase::Surface(_))
+            && rows.iter().all(|row| has_nothing(&row)) =>
+        {
+            let [one, other] = names.each_ref().map(|name| name.display().to_string());
+            journal.add(Notice::NothingInCommon(one, other));
+        }
+        None => {}
+    }
+}
+
+/// Returns the coordinate system of the surface, its base and the polygons, if any states one.
+fn common_system(
+    surface: &SurfaceProduct,
+    base: VolumeBase,
+    layers: &Layers,
+    options: &VolumeOptions,
+    journal: &Journal,
+) -> Result<Option<Crs>> {
+    let [of_surface, of_base] = &options.names;
+    let whole = |path: &Path, product: &SurfaceProduct| Stated {
+        path: path.to_path_buf(),
+        crs: product.crs().cloned(),
+        unread: None,
+        role: Role::Whole,
+    };
+    let mut stated = vec![whole(of_surface, surface)];
+    if let VolumeBase::Surface(base) = base {
+        stated.push(whole(of_base, base));
+    }
+    for (path, layer) in layers {
+        let of_layer = Stated::by_layer(path, layer);
+        stated.push(match &options.assign {
+            Some(crs) => Stated {
+                crs: Some(crs.clone()),
+                unread: None,
+                ..of_layer
+            },
+            None => of_layer,
+        });
+    }
+    Ok(systems::unify(&stated, &SystemOptions::default(), journal)?.crs)
+}
+
+/// Calls a function with the triangles of a surface; those of a raster lie between the centers of
+/// its cells.
+fn with_faces<T>(
+    product: &SurfaceProduct,
+    context: &Context,
+    take: impl FnOnce(&dyn Surface) -> Result<T>,
+) -> Result<T> {
+    match &product.model {
+        Model::Raster(grid) => take(&GridSurface::new(grid)?),
+        Model::RasterFile(raster) => {
+            let cells = raster.cells();
+            let grid = Grid::collect(&Watched::cells(&cells, Stage::ReadingCells, context)?)?;
+            take(&GridSurface::new(&grid)?)
+        }
+        Model::Tin(_) | Model::Mesh(_) | Model::Compact(_) | Model::Parts(_) => {
+            take(product.triangles()?)
+        }
+    }
+}
+
+/// The factors that convert areas and volumes from the units of the data.
+struct Scale {
+    area: f64,
+    volume: f64,
+    unit: Option<VolumeUnit>,
+}
+
+impl Scale {
+    fn new(crs: Option<&Crs>, asked: Option<VolumeUnit>) -> Result<Self> {
+        let units = Units::of(crs);
+        match (units.in_metres(), crs) {
+            (Some([plan, height]), _) => {
+                let unit = asked.unwrap_or(VolumeUnit::CubicMeters);
+                let [plan, height] = [plan, height].map(|factor| factor / unit.length());
+                Ok(Scale {
+                    area: plan * plan,
+                    volume: plan * plan * height,
+                    unit: Some(unit),
+                })
+            }
+            (None, Some(crs)) => Err(Error::unsupported(format!(
+                "the coordinates are in degrees ({crs}), which have no area"
+            ))
+            .cure(reproject_first())),
+            (None, None) if asked.is_some() => Err(Error::usage(
+                "no coordinate system is known, so volumes cannot be converted to a unit",
+            )
+            .cure(wording![
+                "state the system with ",
+                Setting::Crs.text("CRS"),
+                ", or leave out ",
+                Setting::Unit
+            ])),
+            (None, None) => Ok(Scale {
+                area: 1.0,
+                volume: 1.0,
+                unit: None,
+            }),
+        }
+    }
+
+    fn applied(&self, of: &Volume) -> Volume {
+        Volume {
+            cut: of.cut * self.volume,
+            fill: of.fill * self.volume,
+            cut_area: of.cut_area * self.area,
+            fill_area: of.fill_area * self.area,
+            common_area: of.common_area * self.area,
+            surface_only_area: of.surface_only_area * self.area,
+            base_only_area: of.base_only_area * self.area,
+        }
+    }
+}
+
+/// The polygons of a layer.
+struct Outlines<'a> {
+    path: &'a Path,
+    /// Their records, counted from 1.
+    records: Vec<usize>,
+    rings: Vec<Rings>,
+    zones: Zones,
+}
+
+impl<'a> Outlines<'a> {
+    fn read((path, layer): &'a (&Path, std::borrow::Cow<'_, Layer>)) -> Result<Self> {
+        let polygons = shapes::polygons(layer, path, Setting::Within)?;
+        let (records, rings): (Vec<usize>, Vec<Rings>) = polygons
+            .into_iter()
+            .map(|polygon| (polygon.record, polygon.rings))
+            .unzip();
+        let zones = Zones::new(&rings).map_err(|e| e.in_file(path))?;
+        if let Some(empty) = (0..records.len()).find(|&zone| zones.is_empty(zone)) {
+            let error =
+                Error::format("the polygon has no area").cure("repair or remove the record");
+            return Err(at_record(error, path, records[empty]));
+        }
+        Ok(Outlines {
+            path,
+            records,
+            rings,
+            zones,
+        })
+    }
+}
+
+/// What volumes are computed in, and under which context.
+struct Computing<'a> {
+    outlines: Option<&'a Outlines<'a>>,
+    context: &'a Context<'a>,
+}
+
+impl Computing<'_> {
+    fn above_surface(&self, surface: &dyn Surface, base: &dyn Surface) -> Result<Vec<VolumeRow>> {
+        // Most of the time passes with the larger one.
+        let is_swapped = surface.face_count() < base.face_count();
+        let watched = |surface, is_larger: bool| match is_larger {
+            true => Watched::faces(surface, VISITS, Stage::ComputingVolumes, self.context),
+            false => Watched::polled(surface, self.context),
+        };
+        let surface = watched(surface, !is_swapped)?;
+        let base = watched(base, is_swapped)?;
+        let found = terrain::volumes(&surface, terrain::VolumeBase::Surface(&base), self.zones())?;
+        surface.end()?;
+        base.end()?;
+        Ok(self.rows(None, found).collect())
+    }
+
+    fn above_levels(&self, surface: &dyn Surface, levels: &[f64]) -> Result<Vec<VolumeRow>> {
+        let visits = VISITS * levels.len() as u64;
+        let watched = Watched::faces(surface, visits, Stage::ComputingVolumes, self.context)?;
+        let mut rows = Vec::new();
+        for &level in levels {
+            let found =
+                terrain::volumes(&watched, terrain::VolumeBase::Level(level), self.zones())?;
+            rows.extend(self.rows(Some(level), found));
+        }
+        watched.end()?;
+        Ok(rows)
+    }
+
+    fn above_rims(&self, surface: &dyn Surface) -> Result<Vec<VolumeRow>> {
+        let Some(Outlines {
+            path,
+            records,
+            rings,
+            ..
+        }) = self.outlines
+        else {
+            return Err(
+                Error::usage("the base is the rim of polygons, but there are none").cure(wording![
+                    "name the outlines with ",
+                    Setting::Within.text("FILE")
+                ]),
+            );
+        };
+        let visits = VISITS * records.len() as u64;
+        let watched = Watched::faces(surface, visits, Stage::ComputingVolumes, self.context)?;
+        let interpolant = Interpolant::new(surface, Method::Linear)?;
+        let mut rows = Vec::new();
+        for (&record, rings) in records.iter().zip(rings) {
+            let zone = Zones::new(std::slice::from_ref(rings))?;
+            let base = rim_base(&zone, &interpolant).map_err(|e| at_record(e, path, record))?;
+            let found =
+                terrain::volumes(&watched, terrain::VolumeBase::Surface(&base), Some(&zone))?;
+            rows.extend(found.into_iter().map(|volume| VolumeRow {
+                record: Some(record),
+                level: None,
+                volume,
+            }));
+        }
+        watched.end()?;
+        Ok(rows)
+    }
+
+    fn zones(&self) -> Option<&Zones> {
+        self.outlines.map(|outlines| &outlines.zones)
+    }
+
+    fn rows(
+        &self,
+        level: Option<f64>,
+        found: Vec<Volume>,
+    ) -> impl Iterator<Item = VolumeRow> + use<'_> {
+        found
+            .into_iter()
+            .enumerate()
+            .map(move |(zone, volume)| VolumeRow {
+                record: self.outlines.map(|outlines| outlines.records[zone]),
+                level,
+                volume,
+            })
+    }
+}
+
+/// Returns the triangles of a polygon, at the heights of a surface.
+///
+/// # Errors
+/// If a vertex is not on the surface.
+fn rim_base(zone: &Zones, heights: &Interpolant<'_, dyn Surface + '_>) -> Result<Mesh> {
+    let mut vertices = Vec::new();
+    for [x, y] in zone.triangles().flatten() {
+        let z = heights.height(x, y).ok_or_else(|| {
+            Error::format(format!("the outline leaves the surface at {x} {y}"))
+                .cure("draw the outline within the surface")
+        })?;
+        vertices.push([x, y, z]);
+    }
+    let faces = (0..vertices.len() as u32 / 3)
+        .map(|face| [0, 1, 2].map(|k| 3 * face + k))
+        .collect();
+    Mesh::new(vertices, faces, &[], None)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::atomic::{AtomicBool, Ordering};
+
+    use super::*;
+    use crate::error::Kind;
+    use crate::run::context::{Monitor, Progress, Size};
+
+    /// Cancels the run as soon as volumes are computed.
+    struct Cancels<'a>(&'a AtomicBool);
+
+    impl Monitor for Cancels<'_> {
+        fn start(&self, stage: Stage, _: Size) -> Box<dyn Progress> {
+            self.0
+                .fetch_or(stage == Stage::ComputingVolumes, Ordering::Relaxed);
+            Box::new(())
+        }
+
+        fn notice(&self, _: &Notice) {}
+    }
+
+    #[test]
+    fn a_canceled_run_returns_no_volumes() {
+        let corners = vec![[0.0, 0.0, 1.0], [9.0, 0.0, 2.0], [0.0, 9.0, 3.0]];
+        let mesh = Mesh::new(corners, vec![[0, 1, 2]], &[], None).unwrap();
+        let product = SurfaceProduct::from(Model::Mesh(Box::new(mesh)));
+        let bases = [
+            VolumeBase::Surface(&product),
+            VolumeBase::Levels(&[1.0, 2.0]),
+        ];
+        for base in bases {
+            let options = VolumeOptions::default();
+            let done = volume(&product, base, &options, &Context::default()).unwrap();
+            assert_eq!(done.rows[0].volume.common_area, 40.5);
+            let cancel = AtomicBool::new(false);
+            let context = Context {
+                monitor: &Cancels(&cancel),
+                cancel: &cancel,
+            };
+            let error = volume(&product, base, &options, &context).unwrap_err();
+            assert_eq!(error.kind(), Kind::Canceled);
+        }
+    }
+}

@@ -1,0 +1,439 @@
+//! Cut and fill as they are typed.
+
+use serde_json::Value;
+
+use super::{Run, SLOPE, bytes, files_of, fixture, folder_with, geojson, run_in};
+use tempfile::TempDir;
+
+/// The corners of a rectangle at 11, which overlaps [`SLOPE`] from 1 to 3.
+const FLAT: &str = "1 0 11\n5 0 11\n5 3 11\n1 3 11\n";
+
+/// A pile of 4 cubic units on ground that falls to the west.
+const PILE: &str = "0 0 5\n4 0 7\n4 4 7\n0 4 5\n1 1 5.5\n3 1 6.5\n3 3 6.5\n1 3 5.5\n2 2 9\n";
+
+/// Returns a GeoJSON layer of polygons, each a list of corners.
+fn polygons(rings: &[&str]) -> String {
+    let features = rings.iter().map(|ring| {
+        format!(r#"{{"type":"Feature","properties":{{}},"geometry":{{"type":"Polygon","coordinates":[{ring}]}}}}"#)
+    });
+    let features: Vec<String> = features.collect();
+    let system = r#"{"type":"name","properties":{"name":"urn:ogc:def:crs:EPSG::25832"}}"#;
+    format!(
+        r#"{{"type":"FeatureCollection","crs":{system},"features":[{}]}}"#,
+        features.join(",")
+    )
+}
+
+#[track_caller]
+fn json(run: &Run) -> Value {
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    serde_json::from_str(&run.stdout).unwrap()
+}
+
+#[track_caller]
+fn near(row: &Value, expected: &[(&str, f64)]) {
+    for (key, value) in expected {
+        let found = row[*key]
+            .as_f64()
+            .unwrap_or_else(|| panic!("{key} in {row}"));
+        assert!(
+            (found - value).abs() <= 1e-12 * value.abs().max(1.0),
+            "{key}: {found} for {value}"
+        );
+    }
+}
+
+fn of(folder: &TempDir, words: &[&str]) -> Value {
+    json(&run_in(folder, &[&["volume", "--json"], words].concat()))
+}
+
+#[test]
+fn two_surfaces_enclose_a_known_volume_where_both_are() {
+    let folder = folder_with(&[("a.xyz", SLOPE), ("b.xyz", FLAT)]);
+    let run = run_in(&folder, &["volume", "a.xyz", "b.xyz"]);
+    run.works(&["note: no coordinate system is stated"]);
+    let words = |line: &str| line.split_whitespace().collect::<Vec<_>>().join(" ");
+    let lines: Vec<String> = run.stdout.lines().map(words).collect();
+    for line in [
+        "cut 6 cubic units",
+        "fill 0 cubic units",
+        "net 6 cubic units",
+        "common area 6 square units",
+        "surface only 3 square units",
+        "base only 6 square units",
+    ] {
+        assert!(
+            lines.iter().any(|found| found == line),
+            "{line}: {}",
+            run.stdout
+        );
+    }
+    let found = of(&folder, &["a.xyz", "b.xyz"]);
+    assert_eq!(
+        (&found["unit"], &found["area_unit"]),
+        (&Value::Null, &Value::Null)
+    );
+    let other = of(&folder, &["b.xyz", "a.xyz"]);
+    assert_eq!(found["rows"][0]["cut"], other["rows"][0]["fill"]);
+    near(
+        &other["rows"][0],
+        &[
+            ("cut", 0.0),
+            ("net", -6.0),
+            ("fill_area", 6.0),
+            ("surface_only", 6.0),
+            ("base_only", 3.0),
+        ],
+    );
+    // A surface and itself, whatever it is read from.
+    run_in(&folder, &["tin", "a.xyz", "-o", "a.tin", "-o", "a.ply"]).works(&[]);
+    for pair in [["a.xyz", "a.tin"], ["a.ply", "a.xyz"], ["a.tin", "a.ply"]] {
+        let row = &of(&folder, &pair)["rows"][0];
+        near(
+            row,
+            &[
+                ("cut", 0.0),
+                ("fill", 0.0),
+                ("level_area", 9.0),
+                ("common_area", 9.0),
+            ],
+        );
+    }
+}
+
+#[test]
+fn a_plane_and_levels_are_exact_and_written_as_a_table() {
+    let folder = folder_with(&[("a.xyz", SLOPE)]);
+    let row = &of(&folder, &["a.xyz", "--plane", "11.5"])["rows"][0];
+    near(
+        row,
+        &[
+            ("level", 11.5),
+            ("cut", 3.375),
+            ("fill", 3.375),
+            ("cut_area", 4.5),
+            ("base_only", 0.0),
+        ],
+    );
+    let run = run_in(
+        &folder,
+        &[
+            "volume", "a.xyz", "--levels", "10:13:1", "-o", "t.csv", "-q",
+        ],
+    );
+    assert_eq!((run.code, run.stderr.as_str()), (0, ""));
+    assert!(
+        run.stdout
+            .starts_with("volumes in cubic units, areas in square units\n"),
+        "{}",
+        run.stdout
+    );
+    assert_eq!(run.stdout.lines().count(), 6);
+    let table = String::from_utf8(bytes(&folder, "t.csv")).unwrap();
+    let rows: Vec<Vec<&str>> = table
+        .lines()
+        .map(|line| line.split(',').collect())
+        .collect();
+    assert_eq!(rows[0][..5], ["record", "level", "cut", "fill", "net"]);
+    let numbers: Vec<(f64, f64, f64)> = rows[1..]
+        .iter()
+        .map(|row| [1, 3, 6].map(|column: usize| row[column].parse().unwrap()))
+        .map(|[level, below, area]: [f64; 3]| (level, below, area))
+        .collect();
+    let expected = [
+        (10.0, 0.0, 0.0),
+        (11.0, 1.5, 3.0),
+        (12.0, 6.0, 6.0),
+        (13.0, 13.5, 9.0),
+    ];
+    for (found, expected) in numbers.iter().zip(expected) {
+        assert_eq!(found.0, expected.0);
+        assert!(
+            (found.1 - expected.1).abs() < 1e-12 && (found.2 - expected.2).abs() < 1e-12,
+            "{found:?}"
+        );
+    }
+    // It is not replaced by accident.
+    let again = ["volume", "a.xyz", "--plane", "1", "-o", "t.csv"];
+    run_in(&folder, &again).fails(1, &["t.csv", "--overwrite"]);
+    assert_eq!(bytes(&folder, "t.csv"), table.as_bytes());
+    run_in(&folder, &[&again[..], &["--overwrite"]].concat()).works(&["written     t.csv"]);
+}
+
+#[test]
+fn units_of_plan_and_heights_are_converted() {
+    let folder = folder_with(&[("a.xyz", SLOPE)]);
+    let cut = |words: &[&str]| {
+        let found = of(&folder, &[&["a.xyz", "--plane", "10"], words].concat());
+        (
+            found["rows"][0]["cut"].as_f64().unwrap(),
+            found["unit"].clone(),
+        )
+    };
+    let foot = 1200.0 / 3937.0;
+    for (system, factor) in [
+        ("EPSG:25832", 1.0),
+        ("EPSG:25832+6360", foot),
+        ("EPSG:2229", foot * foot * foot),
+        ("EPSG:2229+5703", foot * foot),
+    ] {
+        let (found, unit) = cut(&["--a-srs", system]);
+        assert!(
+            (found - 13.5 * factor).abs() < 1e-12 * found,
+            "{system}: {found}"
+        );
+        assert_eq!(unit, "m3");
+        let (yards, unit) = cut(&["--a-srs", system, "--unit", "yd3"]);
+        assert!(
+            (yards * 0.9144f64.powi(3) - found).abs() < 1e-12 * found,
+            "{system}: {yards}"
+        );
+        assert_eq!(unit, "yd3");
+    }
+    run_in(
+        &folder,
+        &["volume", "a.xyz", "--plane", "1", "--unit", "yd3"],
+    )
+    .fails(2, &["no coordinate system", "--a-srs CRS", "--unit"]);
+}
+
+#[test]
+fn polygons_have_a_row_each() {
+    let folder = folder_with(&[
+        ("a.xyz", SLOPE),
+        ("b.xyz", FLAT),
+        (
+            "zones.geojson",
+            &polygons(&[
+                "[[0,0],[2,0],[2,9],[0,9],[0,0]]",
+                "[[2,-1],[9,-1],[9,9],[2,9],[2,-1]]",
+                "[[70,0],[80,0],[80,1],[70,0]]",
+            ]),
+        ),
+    ]);
+    let run = run_in(
+        &folder,
+        &[
+            "volume",
+            "a.xyz",
+            "b.xyz",
+            "--within",
+            "zones.geojson",
+            "--json",
+        ],
+    );
+    run.works(&["warning: zones.geojson: record 3: nothing"]);
+    let found = json(&run);
+    assert_eq!(found["unit"], "m3");
+    let rows = &found["rows"];
+    near(
+        &rows[0],
+        &[
+            ("record", 1.0),
+            ("cut", 1.5),
+            ("surface_only", 3.0),
+            ("base_only", 0.0),
+        ],
+    );
+    near(
+        &rows[1],
+        &[
+            ("record", 2.0),
+            ("cut", 4.5),
+            ("surface_only", 0.0),
+            ("base_only", 6.0),
+        ],
+    );
+    near(
+        &rows[2],
+        &[("record", 3.0), ("cut", 0.0), ("common_area", 0.0)],
+    );
+    assert_eq!(rows.as_array().unwrap().len(), 3);
+    let levels = [
+        "volume",
+        "a.xyz",
+        "--levels",
+        "11:12:1",
+        "--within",
+        "zones.geojson",
+    ];
+    assert_eq!(run_in(&folder, &levels).stdout.lines().count(), 8);
+}
+
+#[test]
+fn a_pile_stands_on_its_rim() {
+    let outline = |ring: &str| geojson(25832, "Polygon", &format!("[{ring}]"));
+    let folder = folder_with(&[
+        ("pile.xyz", PILE),
+        ("foot.geojson", &outline("[[1,1],[3,1],[3,3],[1,3],[1,1]]")),
+        ("far.geojson", &outline("[[1,1],[30,1],[3,3],[1,3],[1,1]]")),
+    ]);
+    let row = &of(
+        &folder,
+        &["pile.xyz", "--base", "rim", "--within", "foot.geojson"],
+    )["rows"][0];
+    near(
+        row,
+        &[
+            ("cut", 4.0),
+            ("fill", 0.0),
+            ("cut_area", 4.0),
+            ("surface_only", 0.0),
+        ],
+    );
+    run_in(
+        &folder,
+        &[
+            "volume",
+            "pile.xyz",
+            "--base",
+            "rim",
+            "--within",
+            "far.geojson",
+        ],
+    )
+    .fails(
+        1,
+        &[
+            "far.geojson: record 1: the outline leaves the surface at 30 1",
+            "within the surface",
+        ],
+    );
+    run_in(&folder, &["volume", "pile.xyz", "--base", "rim"]).fails(2, &["--base rim", "--within"]);
+}
+
+#[test]
+fn the_valley_and_its_dem_are_nearly_one_surface() {
+    let folder = folder_with(&[]);
+    let (points, dem) = (fixture("valley.laz"), fixture("dem.tif"));
+    // The options are those of building the TIN; the DEM is read as it is.
+    let found = of(&folder, &[&points, &dem, "--class", "ground"]);
+    let row = &found["rows"][0];
+    let number = |key: &str| row[key].as_f64().unwrap();
+    let area = number("common_area");
+    assert!(area > 100_000.0, "{row}");
+    assert!(
+        number("cut") / area < 0.05 && number("fill") / area < 0.05,
+        "{row}"
+    );
+}
+
+#[test]
+fn what_makes_no_sense_is_refused_with_the_cure() {
+    let folder = folder_with(&[
+        ("a.xyz", SLOPE),
+        ("b.xyz", FLAT),
+        ("far.xyz", "70 0 1\n71 0 1\n70 1 1\n"),
+        ("thin.geojson", &polygons(&["[[0,0],[1,1],[2,2],[0,0]]"])),
+        (
+            "line.geojson",
+            &geojson(25832, "LineString", "[[0,0],[1,1]]"),
+        ),
+    ]);
+    for (name, system) in [
+        ("m.ply", "EPSG:25832"),
+        ("u.ply", "EPSG:25833"),
+        ("d.ply", "EPSG:4326"),
+    ] {
+        let tin = [
+            "tin",
+            "a.xyz",
+            "--a-srs",
+            system,
+            "--force-degrees",
+            "--max-edge",
+            "none",
+            "-o",
+            name,
+        ];
+        run_in(&folder, &tin).works(&[]);
+    }
+    let wrong: &[(&[&str], i32, &[&str])] = &[
+        (
+            &["a.xyz"],
+            2,
+            &["the base of the volumes is missing", "--plane Z"],
+        ),
+        (
+            &["a.xyz", "b.xyz", "--plane", "1"],
+            2,
+            &["b.xyz: two bases", "leave out"],
+        ),
+        (
+            &["a.xyz", "b.xyz", "far.xyz"],
+            2,
+            &["far.xyz: a third surface", "quote a glob"],
+        ),
+        (&["a.xyz", "--plane", "nan"], 2, &["not a finite number"]),
+        (
+            &["a.xyz", "--plane", "1", "--levels", "1:2:1"],
+            2,
+            &["cannot be used with"],
+        ),
+        (&["a.xyz", "--levels", "2:1:1"], 2, &["FROM <= TO"]),
+        (
+            &["a.xyz", "--plane", "1e200"],
+            1,
+            &["extend over 1e200", "other units"],
+        ),
+        (&["a.xyz", "none.xyz"], 1, &["none.xyz: no such file"]),
+        (
+            &["a.xyz", "--plane", "1", "--within", "none.shp"],
+            1,
+            &["none.shp: no such file"],
+        ),
+        (
+            &["a.xyz", "--plane", "1", "--within", "thin.geojson"],
+            1,
+            &[
+                "thin.geojson: record 1: the polygon has no area",
+                "remove the record",
+            ],
+        ),
+        (
+            &["a.xyz", "--plane", "1", "--within", "line.geojson"],
+            1,
+            &["line.geojson: record 1: the lines are not closed"],
+        ),
+        (
+            &["m.ply", "u.ply"],
+            1,
+            &["two coordinate systems: m.ply is in", "u.ply in"],
+        ),
+        (
+            &["d.ply", "--plane", "1", "--force-degrees"],
+            1,
+            &["degrees", "reproject"],
+        ),
+        (
+            &["a.xyz", "--plane", "1", "-o", "t.json"],
+            2,
+            &["t.json", ".csv"],
+        ),
+        (
+            &[
+                "a.xyz",
+                "--plane",
+                "1",
+                "-o",
+                "a.csv",
+                "--crossing-report",
+                "r.csv",
+            ],
+            2,
+            &["leave out --crossing-report"],
+        ),
+        (
+            &["m.ply", "m.ply", "--class", "2"],
+            2,
+            &["m.ply: --class is for building a TIN"],
+        ),
+    ];
+    let before = files_of(folder.path());
+    for (words, code, said) in wrong {
+        run_in(&folder, &[&["volume"], *words].concat()).fails(*code, said);
+    }
+    run_in(&folder, &["volume", "a.xyz", "far.xyz"])
+        .works(&["warning: a.xyz and far.xyz do not overlap"]);
+    assert_eq!(files_of(folder.path()), before);
+}
