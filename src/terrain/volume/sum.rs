@@ -57,8 +57,9 @@ mod tests {
     fn small_numbers_count_beside_large_ones() {
         let unit = Unit::for_up_to(1e20);
         let mut sum = unit.of(1e20);
-        for _ in 0..1000 {
-            sum += unit.of(1e-3);
+        // The unit is 2^-33: what is added is a multiple of it, and lost beside 1e20 in an f64.
+        for _ in 0..1024 {
+            sum += unit.of(1.0 / 1024.0);
         }
         sum += unit.of(-1e20);
         assert_eq!(unit.value(sum), 1.0);
