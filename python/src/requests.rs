@@ -11,9 +11,12 @@ use breakline::io::OnDamage;
 use breakline::io::points;
 use breakline::run::{
     Degrees, EdgeLimit, FlatOptions, FlatRule, FrameOptions, Input, LineRequest, LowerEdge,
-    MemoryPoints, PerRecord, ReplacedPoints, SystemOptions, TinRequest, WallOptions, WrittenEdges,
+    MemoryPoints, PerRecord, QuantityOptions, ReplacedPoints, SystemOptions, TinRequest,
+    WallOptions, WrittenEdges,
 };
-use breakline::terrain::{Classes, CrossingRule, DuplicateRule, HighSide, Method};
+use breakline::terrain::{
+    Classes, CrossingRule, DuplicateRule, Gradient, HighSide, Method, Quantity, Ruggedness,
+};
 use breakline::triangulation::OnCrossing;
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -60,6 +63,60 @@ const METHODS: [(&str, Method); 6] = [
 /// Returns the method of interpolation with a name.
 pub(crate) fn method(name: &str) -> PyResult<Method> {
     choose("method", name, &METHODS)
+}
+
+const GRADIENTS: [(&str, Gradient); 2] = [
+    ("horn", Gradient::Horn),
+    ("zevenbergen-thorne", Gradient::ZevenbergenThorne),
+];
+
+const CURVATURES: [(&str, Quantity); 2] = [
+    ("profile", Quantity::ProfileCurvature),
+    ("plan", Quantity::PlanCurvature),
+];
+
+const RUGGEDNESS: [(&str, Ruggedness); 2] =
+    [("riley", Ruggedness::Riley), ("wilson", Ruggedness::Wilson)];
+
+/// Returns the quantity that a verb computes in cells, given its formula and whether it is in
+/// percent; `None` if there is no such verb.
+pub(crate) fn quantity(verb: &str, formula: &str, percent: bool) -> PyResult<Option<Quantity>> {
+    let gradient = || choose("formula", formula, &GRADIENTS);
+    Ok(Some(match verb {
+        "slope" if percent => Quantity::SlopePercent(gradient()?),
+        "slope" => Quantity::SlopeDegrees(gradient()?),
+        "aspect" => Quantity::Aspect(gradient()?),
+        "curvature" => choose("formula", formula, &CURVATURES)?,
+        "roughness" => Quantity::Roughness,
+        "tri" => Quantity::Ruggedness(choose("formula", formula, &RUGGEDNESS)?),
+        "tpi" => Quantity::Position,
+        _ => return Ok(None),
+    }))
+}
+
+/// Returns the options of a verb that computes a quantity in cells: its name and formula, whether
+/// it is in percent, and the factor for heights.
+pub(crate) fn quantity_options(
+    frame: FrameOptions,
+    method_name: &str,
+    (verb, formula, percent, z_factor): &(String, String, bool, Option<f64>),
+) -> PyResult<QuantityOptions> {
+    let quantity = quantity(verb, formula, *percent)?.ok_or_else(|| no_verb(verb))?;
+    Ok(QuantityOptions {
+        quantity,
+        frame,
+        method: method(method_name)?,
+        z_factor: *z_factor,
+    })
+}
+
+/// Returns the error for a verb that does not exist.
+pub(crate) fn no_verb(name: &str) -> PyErr {
+    errors::usage(
+        "there is no such verb",
+        &format!("'{name}'"),
+        "use dem, hillshade, slope, aspect, curvature, roughness, tri, tpi, contour or tin",
+    )
 }
 
 /// Returns the rule for crossing segments with a name.

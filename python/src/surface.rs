@@ -266,6 +266,29 @@ impl Surface {
         )
     }
 
+    /// Computes a quantity in cells: the verb, its formula, whether it is in percent, and the factor
+    /// for heights.
+    fn quantity<'py>(
+        &self,
+        py: Python<'py>,
+        frame: FrameArguments,
+        method: &str,
+        quantity: (String, String, bool, Option<f64>),
+        call: Call,
+    ) -> PyResult<Raster<'py>> {
+        let options = requests::quantity_options(frame.options()?, method, &quantity)?;
+        let product = &self.product;
+        let (frame, values) = work::run(py, &call, |context| -> Result<_> {
+            Ok(run::quantity(product, &options, context)?.collect_cells(context)?)
+        })?;
+        self.raster(
+            &frame,
+            arrays::column(py, values)
+                .reshape([frame.height, frame.width])?
+                .into_any(),
+        )
+    }
+
     /// Computes shades from 1 to 255, 0 where there is no height.
     fn hillshade<'py>(
         &self,

@@ -179,11 +179,12 @@ fn verb(name: &str, options: &Bound<'_, PyDict>) -> PyResult<Arc<dyn Verb>> {
             edges: requests::written_edges(options.as_any().get_item("plain")?.extract()?),
         }),
         _ => {
-            return Err(errors::usage(
-                "there is no such verb",
-                &format!("'{name}'"),
-                "use dem, hillshade, contour or tin",
-            ));
+            let Some(quantity) = options.get_item("quantity")? else {
+                return Err(requests::no_verb(name));
+            };
+            let method: String = options.as_any().get_item("method")?.extract()?;
+            let quantity = quantity.extract()?;
+            Arc::new(requests::quantity_options(frame()?, &method, &quantity)?)
         }
     })
 }

@@ -35,7 +35,8 @@ ELSEWHERE = {
 }
 
 #: Verbs that return what has a method `write`, which takes `output` and `overwrite`.
-WRITTEN = {"tin": breakline.Tin, "dem": breakline.Raster, "hillshade": breakline.Raster, "contour": breakline.Contours}
+RASTERS = ("dem", "hillshade", "slope", "aspect", "curvature", "roughness", "tri", "tpi")
+WRITTEN = {"tin": breakline.Tin, "contour": breakline.Contours, **dict.fromkeys(RASTERS, breakline.Raster)}
 
 #: Options that a verb does not need because of what it returns.
 OF_RESULTS = {"check": {"overwrite"}, "volume": {"output", "overwrite"}}

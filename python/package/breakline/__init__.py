@@ -15,6 +15,8 @@ heights             :meth:`Tin.elevation`
 a raster            :meth:`Tin.dem`, :func:`dem`
 contours            :meth:`Tin.contours`, :func:`contour`
 a picture           :meth:`Tin.hillshade`, :func:`hillshade`
+slopes              :func:`slope`, :func:`aspect`, :func:`curvature`
+ruggedness          :func:`roughness`, :func:`tri`, :func:`tpi`
 cut and fill        :func:`volume`
 flaws               :meth:`Tin.check`, :func:`check`
 facts about a file  :func:`info`
@@ -45,6 +47,7 @@ from ._errors import (
     UsageError,
 )
 from ._points import points, read_points
+from ._quantities import aspect, curvature, roughness, slope, tpi, tri
 from ._results import Contour, Contours, Raster
 from ._tin import EDGE_KINDS, Flaw, Notice, Tin, tin
 from ._verbs import (
@@ -92,15 +95,21 @@ __all__ = [
     "Volume",
     "Written",
     "__version__",
+    "aspect",
     "check",
     "contour",
+    "curvature",
     "dem",
     "describe",
     "hillshade",
     "info",
     "points",
     "read_points",
+    "roughness",
+    "slope",
     "tin",
+    "tpi",
+    "tri",
     "triangulate",
     "volume",
 ]

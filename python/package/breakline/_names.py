@@ -19,6 +19,9 @@ EdgeLimit = Union[float, Literal["auto", "none"], None]
 #: Arithmetic of predicates.
 Kernel = Literal["adaptive", "exact", "fast"]
 #: A verb that writes files.
-Verb = Literal["dem", "hillshade", "contour", "tin"]
+Verb = Literal["dem", "hillshade", "slope", "aspect", "curvature", "roughness", "tri", "tpi", "contour", "tin"]
+
+#: From which cells a gradient is computed.
+Gradient = Literal["horn", "zevenbergen-thorne"]
 #: How much a notice matters.
 Severity = Literal["detail", "note", "warning"]

@@ -53,6 +53,8 @@ class Raster(Compared):
         From column and row to coordinates, at the corners of cells.
     crs : str or None
         The coordinate system, as WKT.
+    quantity : str or None
+        What the cells hold, such as ``"slope"``; None for heights and shades.
 
     Examples
     --------
@@ -68,6 +70,7 @@ class Raster(Compared):
     array: np.ndarray
     transform: Any
     crs: Optional[str] = None
+    quantity: Optional[str] = None
 
     def __array__(self, dtype: Any = None, copy: Optional[bool] = None) -> np.ndarray:
         plain = np.asarray(np.ma.filled(self.array, self._fill))
@@ -129,7 +132,7 @@ class Raster(Compared):
         Parameters
         ----------
         name : str, optional
-            The name of the quantity; ``"elevation"`` or ``"hillshade"`` by default.
+            The name of the quantity; ``"elevation"``, ``"hillshade"`` or what it is by default.
 
         Examples
         --------
@@ -153,7 +156,7 @@ class Raster(Compared):
         if self.crs:
             attributes["crs_wkt"] = self.crs
         coordinates["spatial_ref"] = ((), 0, attributes)
-        quantity = "hillshade" if self._has_shades else "elevation"
+        quantity = self.quantity or ("hillshade" if self._has_shades else "elevation")
         fill = {} if self._fill is None else {"_FillValue": self._fill}
         return xarray.DataArray(
             np.asarray(self),
@@ -291,10 +294,10 @@ def light(azimuth: Any, altitude: Any, z_factor: Any) -> "tuple[float, float, Op
     )
 
 
-def of_cells(found: "tuple[Any, Any, Any]") -> Raster:
-    """Return a raster from what the library returns."""
+def of_cells(found: "tuple[Any, Any, Any]", quantity: Optional[str] = None) -> Raster:
+    """Return a raster of a quantity from what the library returns."""
     array, transform, crs = found
-    return Raster(array, _affine(transform), crs)
+    return Raster(array, _affine(transform), crs, quantity)
 
 
 class Contour(NamedTuple):

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
 
-def _surface(
+def surface_of(
     points: Any, surface: "dict[str, Any]", threads: Any, progress: Any, method: str = "linear"
 ) -> _breakline.Surface:
     """Return the surface of the library for a Tin, a raster, or what ``tin`` takes, for heights by a method."""
@@ -54,7 +54,7 @@ def _refuse(surface: "dict[str, Any]", what: str) -> None:
         raise usage(f"{name} is for building a TIN, but {what} is a surface already", value, f"leave {name} out")
 
 
-def _written(verb: "Callable[..., Any]", given: "dict[str, Any]") -> "Optional[Written]":
+def written_by(verb: "Callable[..., Any]", given: "dict[str, Any]") -> "Optional[Written]":
     """Write what the function of a verb makes, if it is asked to by its parameters."""
     surface, points = given.pop("surface"), given.pop("points")
     how = {name: given.pop(name) for name in HOW}
@@ -135,11 +135,11 @@ def dem(
     >>> breakline.dem("valley.laz", resolution=5, output="dem.tif", overwrite=True).path.name
     'dem.tif'
     """
-    written = _written(dem, dict(locals()))
+    written = written_by(dem, dict(locals()))
     if written is not None:
         return written
     by = _inputs.name(method, "method")
-    found = _surface(points, surface, threads, progress, by)
+    found = surface_of(points, surface, threads, progress, by)
     with call(threads, progress) as request:
         return of_cells(found.dem(frame_of(resolution, extent, align_to), by, request))
 
@@ -218,11 +218,11 @@ def hillshade(
     >>> breakline.hillshade([[0, 0, 1], [10, 0, 1], [10, 10, 3], [0, 10, 3]], resolution=5).shape
     (2, 2)
     """
-    written = _written(hillshade, dict(locals()))
+    written = written_by(hillshade, dict(locals()))
     if written is not None:
         return written
     by = _inputs.name(method, "method")
-    found = _surface(points, surface, threads, progress, by)
+    found = surface_of(points, surface, threads, progress, by)
     sun = light(azimuth, altitude, z_factor)
     with call(threads, progress) as request:
         frame = frame_of(resolution, extent, align_to)
@@ -289,10 +289,10 @@ def contour(
     >>> breakline.contour([[0, 0, 1], [10, 0, 1], [10, 10, 3], [0, 10, 3]], interval=0.5).levels.tolist()
     [1.5, 2.0, 2.5]
     """
-    written = _written(contour, dict(locals()))
+    written = written_by(contour, dict(locals()))
     if written is not None:
         return written
-    found = _surface(points, surface, threads, progress)
+    found = surface_of(points, surface, threads, progress)
     crs = found.crs[0] if found.crs else None
     return draw(found, crs, interval, base, levels, threads, progress)
 
@@ -379,9 +379,9 @@ def volume(
     >>> round(row.cut, 9), round(row.fill, 9), round(row.fill_area, 9)
     (56.25, 6.25, 25.0)
     """
-    if [b, plane, levels, base].count(None) != 3:
-        given = {"b": b, "plane": plane, "levels": levels, "base": base}
-        named = [name for name, value in given.items() if value is not None]
+    given = {"b": b, "plane": plane, "levels": levels, "base": base}
+    named = [name for name, value in given.items() if value is not None]
+    if len(named) != 1:
         raise usage("volumes have one base", named or None, "pass one of b, plane, levels and base")
     if base not in (None, "rim"):
         raise usage("base has an unknown value", base, 'use base="rim"')
@@ -399,7 +399,7 @@ def volume(
     of_any = {name: value for name, value in surface.items() if name in FOR_ANY}
     found = [
         # The options are for the other one, if that is built.
-        _surface(points, of_any if any(is_built) and not built else surface, threads, progress)
+        surface_of(points, of_any if any(is_built) and not built else surface, threads, progress)
         for points, built in zip(inputs, is_built)
     ]
     names = [os.fspath(item) if _inputs.is_path(item) else name for item, name in [(a, "a"), (b, "b")]]

@@ -102,7 +102,8 @@ class Job:
         Parameters
         ----------
         verb : str
-            ``"dem"``, ``"hillshade"``, ``"contour"`` or ``"tin"``.
+            ``"dem"``, ``"hillshade"``, ``"slope"``, ``"aspect"``, ``"curvature"``, ``"roughness"``, ``"tri"``,
+            ``"tpi"``, ``"contour"`` or ``"tin"``.
         points : path or list of paths
             Files of points.
         output : path
@@ -318,12 +319,26 @@ HOW = {
     "skip_bad": False,
 }  # fmt: skip
 
+#: Parameters of verbs that compute a quantity in cells, other than those of all of them.
+_QUANTITIES: "dict[str, dict[str, Any]]" = {
+    "slope": {"percent": False, "formula": "horn", "z_factor": None},
+    "aspect": {"formula": "horn", "z_factor": None},
+    "curvature": {"formula": "profile", "z_factor": None},
+    "roughness": {},
+    "tri": {"formula": "riley"},
+    "tpi": {},
+}
+
 #: Parameters of verbs other than those of a surface, and their defaults.
 _OF_VERBS: "dict[str, dict[str, Any]]" = {
     "dem": {"resolution": None, "extent": None, "align_to": None, "method": "linear"},
     "hillshade": {
         "resolution": None, "extent": None, "align_to": None, "method": "linear",
         "azimuth": 315.0, "altitude": 45.0, "z_factor": None,
+    },
+    **{
+        verb: {"resolution": None, "extent": None, "align_to": None, "method": "linear", **own}
+        for verb, own in _QUANTITIES.items()
     },
     "contour": {"interval": None, "base": 0.0, "levels": ()},
     "tin": {},
@@ -403,6 +418,12 @@ def _request(verb: str, inputs: "list[Any]", options: "dict[str, Any]", how: "di
     }
 
 
+def quantity_of(verb: str, own: "dict[str, Any]") -> "tuple[str, str, bool, Optional[float]]":
+    """Return what a verb computes in cells: its name, the formula, whether it is in percent, the factor for heights."""
+    factor = _inputs.optional_number(own.get("z_factor"), "z_factor")
+    return verb, _inputs.name(own.get("formula", ""), "formula"), bool(own.get("percent", False)), factor
+
+
 def _product(verb: str, own: "dict[str, Any]") -> "dict[str, Any]":
     if verb == "tin":
         return {"plain": False}
@@ -417,4 +438,6 @@ def _product(verb: str, own: "dict[str, Any]") -> "dict[str, Any]":
     product: "dict[str, Any]" = {"frame": frame, "method": _inputs.name(own["method"], "method")}
     if verb == "hillshade":
         product["light"] = light(own["azimuth"], own["altitude"], own["z_factor"])
+    elif verb != "dem":
+        product["quantity"] = quantity_of(verb, own)
     return product
