@@ -19,8 +19,8 @@ pub(crate) struct SurfaceArgs {
     /// lines, such as contours, is used like one of --breaklines; no points are needed then. Or one
     /// TIN: a .tin or a .ply of this program, with its breaklines and coordinate system, or an
     /// .obj. `@list.txt` contains one file name per line (`#` starts a comment), relative to the
-    /// list. The order of the files makes no difference, except for `--duplicates first` and
-    /// `last`.
+    /// list. Within a surface, the order of the files makes no difference, except for `--duplicates
+    /// first` and `last`.
     #[arg(
         required_unless_present_any = ["breaklines", "soft_lines", "walls", "flat", "rivers"],
         value_name = "IN"
