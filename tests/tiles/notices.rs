@@ -39,6 +39,8 @@ const NOT_IN_TILES: &[(&str, &str)] = &[
     ("DelaunayUnchecked", "of `check`"),
     ("RegionAreasUnused", "of `triangulate`"),
     ("SeedUnused", "of `triangulate`"),
+    ("NothingInCommon", "of `volume`"),
+    ("PolygonsOutside", "of `volume`"),
 ];
 
 /// The kinds of notices that only tiles have, and why.

@@ -170,7 +170,7 @@ def curvature(
     --------
     >>> import breakline
     >>> breakline.curvature([[0, 0, 0], [10, 0, 10], [10, 10, 10], [0, 10, 0]], resolution=5).array.tolist()
-    [[-0.0, -0.0], [-0.0, -0.0]]
+    [[0.0, 0.0], [0.0, 0.0]]
     """
     return _computed(curvature, dict(locals()))
 

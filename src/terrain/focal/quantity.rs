@@ -136,7 +136,8 @@ impl Rule for Scaled {
             }
             Quantity::Position => -beside().iter().sum::<f64>() / 8.0,
         };
-        value as f32
+        // A level surface has 0, not -0.0.
+        (value + 0.0) as f32
     }
 }
 
