@@ -244,8 +244,7 @@ where
     ///
     /// # Complexity
     /// In the plane linear in the degree of the vertex in practice, quadratic in the worst case. In
-    /// space the number of its neighbors times that of the cells that take its place; on the hull
-    /// that of triangulating the neighbors.
+    /// space that of triangulating the neighbors of the vertex.
     pub fn remove(&mut self, vertex: VertexId) -> Result<G::Point, RemovalError> {
         if !self.tds().is_vertex(vertex) {
             return Err(RemovalError::NoVertex);

@@ -3,7 +3,6 @@
 mod low_degree;
 mod plane;
 mod space;
-mod wrap;
 
 use crate::geometry::Geometry;
 use crate::tds::{CellId, VertexId};
