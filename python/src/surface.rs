@@ -266,8 +266,8 @@ impl Surface {
         )
     }
 
-    /// Computes a quantity in cells: the verb, its formula, whether it is in percent, and the factor
-    /// for heights.
+    /// Computes a quantity in cells. `quantity` has the name of the verb, its formula, whether it
+    /// is in percent, and the factor for heights.
     fn quantity<'py>(
         &self,
         py: Python<'py>,
