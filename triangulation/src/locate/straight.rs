@@ -89,7 +89,8 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
                 && side(self.tds.vertex(cell, cw(i))) != Sign::Negative
         };
         let (mut cell, mut i) = self.tds.corners_around(from).find(starts)?;
-        loop {
+        // The line meets no triangle twice, unless predicates contradict each other.
+        for _ in 0..self.tds.cell_slots() {
             // `r` and `l` are the ends of the edge opposite vertex `i`.
             let [r, l] = self.tds.edge_ends(cell, i);
             if self.geometry.orientation([self.point(r), self.point(l), q]) != Sign::Negative {
@@ -109,5 +110,6 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, C> {
             };
             cell = beyond;
         }
+        Some(cell)
     }
 }

@@ -51,14 +51,17 @@ const LOOKOUT: usize = 8;
 /// uniform points 4 to 5.
 pub(super) const LOOKS: [fn(f64) -> f64; 2] = [f64::cbrt, |n| 3.0 * n.sqrt()];
 
-/// The ratio of steps to cells at which a walk ends with an error. On a Delaunay triangulation no
-/// walk of exact steps visits a cell twice, and on others the chance is at least halved with each
-/// round.
+/// The ratio of steps to cells at which a walk ends: with an error if links may be damaged,
+/// otherwise with a test of all cells. On a Delaunay triangulation no walk of exact steps visits a
+/// cell twice, and on others the chance is at least halved with each round.
 const WANDERING: usize = 8;
 
 /// Returns where `q` lies, exactly, by a walk from a cell nearby, or without one from an infinite
 /// cell. A point that the geometry does not admit lies [`Nowhere`](Location::Nowhere): no predicate
 /// is evaluated for it.
+///
+/// It returns whatever the predicates say; if they contradict each other (the kernel
+/// [`Fast`](crate::kernel::Fast)), perhaps a cell that does not contain the point.
 ///
 /// The complex must fill its convex hull without overlap; it need not be Delaunay.
 ///
@@ -100,9 +103,10 @@ pub fn locate<const N: usize, T: Embedded<N>>(
     let mut steps = 0;
     let (mut patience, mut looks) = (PATIENCE, LOOKS.into_iter());
     loop {
-        complex.ensure(cell, || {
-            steps < WANDERING * (complex.cell_slots() + PATIENCE)
-        })?;
+        if steps >= WANDERING * (complex.cell_slots() + PATIENCE) {
+            complex.ensure(cell, || false)?;
+            return search(t, q, cell);
+        }
         let mut seems = Seems::Elsewhere;
         if width == N {
             let reached = approach(t, q, cell, patience.saturating_sub(steps))?;
@@ -149,6 +153,38 @@ pub fn locate<const N: usize, T: Embedded<N>>(
             }
         }
     }
+}
+
+/// Returns where a point lies, by a test of one cell after the other. If it lies in none and beyond
+/// no facet of the hull, predicates contradict each other: returns the given cell then.
+#[cold]
+fn search<const N: usize, T: Embedded<N>>(
+    t: &T,
+    q: &PointOf<T, N>,
+    otherwise: CellId,
+) -> Result<Location, T::Error> {
+    let complex = t.complex();
+    let numbers = (0..complex.cell_slots()).map(CellId::new);
+    for cell in numbers.filter(|&cell| complex.is_used(cell)) {
+        match complex.index_of(cell, VertexId::INFINITE)? {
+            Some(infinite) => {
+                if side_of_facet(t, cell, infinite, q)? == Sign::Positive {
+                    return Ok(Location::OutsideHull { cell });
+                }
+            }
+            None => {
+                if let CellSides::On(facets) = ask_sides(t, cell, q, 0, None)?
+                    && facets.len() < complex.width()
+                {
+                    return location_on(complex, cell, facets);
+                }
+            }
+        }
+    }
+    Ok(Location::Cell {
+        cell: otherwise,
+        facets: Facets::default(),
+    })
 }
 
 /// Returns where a point lies if there is a single vertex, that of a cell.
@@ -398,4 +434,44 @@ pub(super) fn nearest_of_some<const N: usize, T: Embedded<N>>(
         }
     }
     Ok(nearest)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Delaunay;
+    use crate::geometry::{Plane, Space};
+
+    /// Asserts that a search through all cells finds what walks find.
+    fn compare<G: Geometry<N>, const N: usize>(t: &Delaunay<G, N>, q: &G::Point) {
+        let complex = t.tds();
+        let Ok(found) = search(&t.inner, q, CellId::NONE);
+        let walked = t.locate(q, None);
+        let cells = |location: Location| {
+            let Ok(mut cells) = location.cells(complex);
+            cells.sort_unstable();
+            cells
+        };
+        assert_eq!(cells(found), cells(walked));
+        assert_eq!(found.vertex(), walked.vertex());
+        if let Location::OutsideHull { cell } = found {
+            let infinite = complex.index_of(cell, VertexId::INFINITE).unwrap();
+            let side = t.side_of_facet(cell, infinite, q);
+            assert_eq!(side, Sign::Positive);
+            assert!(matches!(walked, Location::OutsideHull { .. }));
+        }
+    }
+
+    #[test]
+    fn a_search_finds_what_walks_find() {
+        let halves = |k: u32, n: u32| f64::from(k % n) / 2.0 - 0.5;
+        let plane: Vec<_> = (0..16).map(|k| [k % 4, k / 4].map(f64::from)).collect();
+        let (t, _) = Delaunay::from_points(Plane::new(), &plane).unwrap();
+        (0..81).for_each(|k| compare(&t, &[halves(k, 9), halves(k / 9, 9)]));
+        let space: Vec<_> = (0..27)
+            .map(|k| [k % 3, k / 3 % 3, k / 9].map(f64::from))
+            .collect();
+        let (t, _) = Delaunay::from_points(Space::new(), &space).unwrap();
+        (0..343).for_each(|k| compare(&t, &[k, k / 7, k / 49].map(|k| halves(k, 7))));
+    }
 }

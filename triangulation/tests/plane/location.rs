@@ -325,6 +325,84 @@ fn rightly(simplex: [&Point; 3], q: &Point) -> Option<[f64; 3]> {
     Plane::<Adaptive>::default().rough_sides(simplex, q)
 }
 
+/// Contradicts itself about [`NOWHERE`](Self::NOWHERE): it lies outside of any triangle, and beyond
+/// no edge of the hull. A straight line that leads there goes around [`PIVOT`](Self::PIVOT).
+#[derive(Clone, Copy)]
+struct Contradictory;
+
+impl Contradictory {
+    const NOWHERE: Point = [0.5, 0.25];
+    const START: Point = [2.0, 1.0];
+    const PIVOT: Point = [2.0, 2.0];
+    /// The vertices are the sites of a lattice, and the corners of a square with this largest
+    /// coordinate: no triangle has two edges of the hull.
+    const REACH: f64 = 10.0;
+}
+
+impl Geometry<3> for Contradictory {
+    type Point = Point;
+
+    fn admits(&self, p: &Point) -> bool {
+        Plane::<Adaptive>::default().admits(p)
+    }
+
+    fn compare(&self, p: &Point, q: &Point) -> Ordering {
+        Plane::<Adaptive>::default().compare(p, q)
+    }
+
+    fn orientation(&self, simplex: [&Point; 3]) -> Sign {
+        let others: Vec<&Point> = simplex
+            .into_iter()
+            .filter(|&p| *p != Self::NOWHERE)
+            .collect();
+        let [p, q] = others[..] else {
+            return Plane::<Adaptive>::default().orientation(simplex);
+        };
+        ASKED.set(ASKED.get() + 1);
+        assert!(ASKED.get() < 100_000, "goes around forever");
+        if (0..2).any(|k| p[k] == q[k] && p[k].abs() == Self::REACH) {
+            Plane::<Adaptive>::default().orientation(simplex)
+        } else if simplex.map(|p| *p) == [Self::START, Self::NOWHERE, Self::PIVOT] {
+            Sign::Positive
+        } else {
+            Sign::Negative
+        }
+    }
+
+    fn side_of_sphere(&self, simplex: [&Point; 3], q: &Point) -> Sign {
+        Plane::<Adaptive>::default().side_of_sphere(simplex, q)
+    }
+}
+
+/// Walks end even if predicates contradict each other, as those of bare floating point may.
+#[test]
+fn contradictions_end() {
+    type Contradicting = Delaunay<Contradictory, 3>;
+    let mut t = Contradicting::new(Contradictory);
+    for k in 0..25 {
+        t.insert([k % 5, k / 5].map(f64::from)).unwrap();
+    }
+    for k in 0..4 {
+        let corner = [k % 2, k / 2].map(|k| (2.0 * f64::from(k) - 1.0) * Contradictory::REACH);
+        t.insert(corner).unwrap();
+    }
+    let start = t.locate(&Contradictory::START, None).vertex();
+    ASKED.set(0);
+    let q = &Contradictory::NOWHERE;
+    let found = [
+        t.locate(q, None),
+        JumpAndWalk.locate(&t, q),
+        StraightLine(start).locate(&t, q),
+    ];
+    for location in found {
+        assert!(
+            location.cell(&t).is_some_and(|cell| t.tds().is_used(cell)),
+            "{location:?}"
+        );
+    }
+    assert!(ASKED.get() > 3_000, "nothing went around");
+}
+
 thread_local!(static ASKED: Cell<usize> = const { Cell::new(0) });
 
 /// Returns the number of predicates for each of some points that are inserted in pseudo-random
