@@ -1,5 +1,6 @@
 // What triangulation/examples/bench_editing.rs does, by CGAL's Triangulation_hierarchy_2, in space by
-// Delaunay_triangulation_3 with Fast_location (alpha shapes by Alpha_shape_3), in the same line format.
+// Delaunay_triangulation_3 with Fast_location (alpha shapes by Alpha_shape_3), in the same line format. Hidden points
+// by Regular_triangulation_2 and _3; in space, CGAL has no vertices for them, and none can be removed alone.
 //
 //   g++ -std=c++17 -O3 -DNDEBUG benches/cgal_editing.cpp -o cgal_editing -lgmp -lmpfr     (Debian: libcgal-dev)
 //   ./cgal_editing FILE.xy|FILE.xyz
@@ -9,9 +10,12 @@
 #include <CGAL/Delaunay_triangulation_2.h>
 #include <CGAL/Delaunay_triangulation_3.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Regular_triangulation_2.h>
+#include <CGAL/Regular_triangulation_3.h>
 #include <CGAL/Triangulation_hierarchy_2.h>
 #include <algorithm>
 #include <chrono>
+#include <cfloat>
 #include <cstdio>
 #include <string>
 #include <vector>
@@ -24,6 +28,8 @@ typedef CGAL::Delaunay_triangulation_3<K, CGAL::Fast_location> InSpace;
 typedef CGAL::Triangulation_data_structure_3<CGAL::Alpha_shape_vertex_base_3<K>, CGAL::Alpha_shape_cell_base_3<K>> WithAlphas;
 typedef CGAL::Delaunay_triangulation_3<K, WithAlphas> ForAlphas;
 typedef CGAL::Alpha_shape_3<ForAlphas> Alphas;
+typedef CGAL::Regular_triangulation_2<K> Regular2;
+typedef CGAL::Regular_triangulation_3<K> Regular3;
 
 static std::string stem;
 static size_t count;
@@ -70,6 +76,40 @@ template <class T, class Point> void measure(const std::vector<Point>& points) {
     });
 }
 
+// All points under one cell around them, too light to be seen.
+static void hide(const std::vector<K::Point_2>& points) {
+    double low = DBL_MAX, high = -DBL_MAX;
+    for (auto& p : points) for (double x : {p.x(), p.y()}) low = std::min(low, x), high = std::max(high, x);
+    double span = high - low + 1, from = low - span, to = from + 8 * span;
+    Regular2 t;
+    for (auto& p : {K::Point_2(from, from), K::Point_2(to, from), K::Point_2(from, to)}) t.insert(K::Weighted_point_2(p, 0));
+    std::vector<Regular2::Vertex_handle> hidden;
+    hidden.reserve(points.size());
+    timed("hide", [&] {
+        for (auto& p : points) hidden.push_back(t.insert(K::Weighted_point_2(p, -100 * span * span)));
+        return t.number_of_hidden_vertices();
+    });
+    timed("remove_hidden", [&] {
+        for (auto v : hidden) t.remove(v);
+        return hidden.size();
+    });
+}
+
+static void hide(const std::vector<K::Point_3>& points) {
+    double low = DBL_MAX, high = -DBL_MAX;
+    for (auto& p : points) for (double x : {p.x(), p.y(), p.z()}) low = std::min(low, x), high = std::max(high, x);
+    double span = high - low + 1, from = low - span, to = from + 12 * span;
+    Regular3 t;
+    for (auto& p : {K::Point_3(from, from, from), K::Point_3(to, from, from), K::Point_3(from, to, from), K::Point_3(from, from, to)})
+        t.insert(K::Weighted_point_3(p, 0));
+    timed("hide", [&] {
+        for (auto& p : points) t.insert(K::Weighted_point_3(p, -100 * span * span));
+        size_t hidden = 0;
+        for (auto cell : t.finite_cell_handles()) hidden += std::distance(cell->hidden_points_begin(), cell->hidden_points_end());
+        return hidden;
+    });
+}
+
 static void alpha_shapes(const std::vector<K::Point_3>& points) {
     ForAlphas t(points.begin(), points.end());
     timed("alpha", [&] { return Alphas(t, 0, Alphas::GENERAL).number_of_alphas(); });
@@ -94,6 +134,10 @@ int main(int argc, char** argv) {
     fclose(file);
     if (in_space) {
         measure<InSpace>(points_in_space);
+        hide(points_in_space);
         alpha_shapes(points_in_space);
-    } else measure<Hierarchy>(points);
+    } else {
+        measure<Hierarchy>(points);
+        hide(points);
+    }
 }

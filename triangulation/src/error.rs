@@ -121,10 +121,12 @@ impl Error for InputError {}
 impl PointError {
     /// Returns the error of a point that a geometry does not admit; `None` if it does.
     pub(crate) fn of<G: Geometry<N>, const N: usize>(geometry: &G, p: &G::Point) -> Option<Self> {
-        match (geometry.admits(p), geometry.is_finite(p)) {
-            (true, _) => None,
-            (false, true) => Some(PointError::Coordinate),
-            (false, false) => Some(PointError::NotFinite),
+        if geometry.admits(p) {
+            None
+        } else if geometry.is_finite(p) {
+            Some(PointError::Coordinate)
+        } else {
+            Some(PointError::NotFinite)
         }
     }
 

@@ -50,6 +50,11 @@ impl<G: Geometry<N>, const N: usize> Geometry<N> for &G {
     }
 
     #[inline]
+    fn rough_lift(&self, p: &G::Point, origin: &G::Point) -> Option<[f64; 4]> {
+        (**self).rough_lift(p, origin)
+    }
+
+    #[inline]
     fn point_hash(&self, p: &G::Point) -> Option<u64> {
         (**self).point_hash(p)
     }

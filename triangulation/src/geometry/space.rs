@@ -1,9 +1,10 @@
 use std::cmp::Ordering;
 use std::marker::PhantomData;
 
-use super::{Coordinates, Geometry, lexicographic, manhattan, widths};
+use super::{Coordinates, Geometry, are_ordinary, lexicographic, manhattan};
 use crate::kernel::{
     Adaptive, InCircleOfPlane, InSphere, Kernel, Orientation2, Orientation3, Predicate,
+    facet_volumes, largest_minus,
 };
 use crate::num::{Bounded, Sign};
 
@@ -53,18 +54,25 @@ impl<K: Kernel> Geometry<4> for Space<K> {
 
     #[inline(always)]
     fn rough_sides(&self, [a, b, c, d]: [&[f64; 3]; 4], q: &[f64; 3]) -> Option<[f64; 4]> {
-        // Exchanging two points twice changes no sign.
-        let facets = [[b, d, c], [d, a, c], [b, a, d], [a, b, c]];
-        Some(facets.map(|[a, b, c]| Orientation3([*a, *b, *c, *q]).value(|x, y| x - y)))
+        Some(facet_volumes([*a, *b, *c, *d], *q))
     }
 
     #[inline(always)]
-    fn sides_error(&self, simplex: [&[f64; 3]; 4], q: &[f64; 3]) -> f64 {
-        let largest = widths(simplex.map(|p| *p), *q);
-        largest.map_or(f64::INFINITY, |widths| {
-            let volume = Orientation3([widths, widths, widths, [0.0; 3]]);
+    fn sides_error(&self, [a, b, c, d]: [&[f64; 3]; 4], q: &[f64; 3]) -> f64 {
+        // All differences are those from `q`.
+        let far = largest_minus([*a, *b, *c, *d], *q);
+        if are_ordinary(far) {
+            let volume = Orientation3([far, far, far, [0.0; 3]]);
             volume.value(Bounded::difference).error()
-        })
+        } else {
+            f64::INFINITY
+        }
+    }
+
+    #[inline]
+    fn rough_lift(&self, p: &[f64; 3], origin: &[f64; 3]) -> Option<[f64; 4]> {
+        let [x, y, z] = [0, 1, 2].map(|axis| p[axis] - origin[axis]);
+        Some([x, y, z, x * x + y * y + z * z])
     }
 
     #[inline(always)]

@@ -152,6 +152,11 @@ impl<K: Kernel> Geometry<4> for Unweighted<K> {
         Self::space().sides_error(simplex.map(site).each_ref(), &site(q))
     }
 
+    #[inline]
+    fn rough_lift(&self, p: &[f64; 4], origin: &[f64; 4]) -> Option<[f64; 4]> {
+        Self::space().rough_lift(&site(p), &site(origin))
+    }
+
     #[inline(always)]
     fn orientation(&self, simplex: [&[f64; 4]; 4]) -> Sign {
         Self::space().orientation(simplex.map(site).each_ref())

@@ -69,15 +69,21 @@ impl<K: Kernel> Geometry<4> for WeightedSpace<K> {
     }
 
     #[inline(always)]
-    fn rough_sides(&self, simplex: [&[f64; 4]; 4], q: &[f64; 4]) -> Option<[f64; 4]> {
-        self.space()
-            .rough_sides(simplex.map(site).each_ref(), &site(q))
+    fn rough_sides(&self, [a, b, c, d]: [&[f64; 4]; 4], q: &[f64; 4]) -> Option<[f64; 4]> {
+        let sites = [&site(a), &site(b), &site(c), &site(d)];
+        self.space().rough_sides(sites, &site(q))
     }
 
     #[inline(always)]
-    fn sides_error(&self, simplex: [&[f64; 4]; 4], q: &[f64; 4]) -> f64 {
-        self.space()
-            .sides_error(simplex.map(site).each_ref(), &site(q))
+    fn sides_error(&self, [a, b, c, d]: [&[f64; 4]; 4], q: &[f64; 4]) -> f64 {
+        let sites = [&site(a), &site(b), &site(c), &site(d)];
+        self.space().sides_error(sites, &site(q))
+    }
+
+    #[inline]
+    fn rough_lift(&self, p: &[f64; 4], origin: &[f64; 4]) -> Option<[f64; 4]> {
+        let lift = self.space().rough_lift(&site(p), &site(origin));
+        lift.map(|[x, y, z, square]| [x, y, z, square - p[3]])
     }
 
     #[inline]

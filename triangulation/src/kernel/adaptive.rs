@@ -2,17 +2,38 @@ use super::{Filter, Predicate, RANGE, Range};
 use crate::num::{self, Bounded, Sign, lattice};
 
 /// Floating point with an error bound that is computed along with the value: the semi-static
-/// filter.
+/// filter. If there is a [widest](Predicate::widest) predicate, the bound of that one is tried
+/// first.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct ErrorBound;
 
 impl Filter for ErrorBound {
     const RANGE: Range = RANGE;
 
+    /// The magnitudes of the widest predicate are sums and products of larger numbers, in the same
+    /// order: rounded alike, none is smaller. So a sign that is certain by them is certain.
     #[inline(always)]
     fn try_sign<P: Predicate>(predicate: &P) -> Option<Sign> {
-        predicate.value(Bounded::difference).sign()
+        let Some(widest) = predicate.widest() else {
+            return predicate.value(Bounded::difference).sign();
+        };
+        let value = predicate.value(|a, b| a - b);
+        let error = widest.value(Bounded::difference).error();
+        if value > error {
+            Some(Sign::Positive)
+        } else if value < -error {
+            Some(Sign::Negative)
+        } else {
+            bounded_by_terms(predicate.clone())
+        }
     }
+}
+
+/// Kept out of line, and given a copy, like what comes after a filter.
+#[cold]
+#[inline(never)]
+fn bounded_by_terms<P: Predicate>(predicate: P) -> Option<Sign> {
+    predicate.value(Bounded::difference).sign()
 }
 
 /// Like [`ErrorBound`], but for every finite coordinate: it gives up on zeros, and where

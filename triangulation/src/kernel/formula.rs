@@ -14,6 +14,20 @@ pub(super) fn square<T: Number>(a: &T) -> T {
     a.clone() * a.clone()
 }
 
+/// Returns the largest distance, axis by axis, of some points from `q`.
+#[inline(always)]
+pub(crate) fn largest_minus<const D: usize>(points: [[f64; D]; 4], q: [f64; D]) -> [f64; D] {
+    // `PERF:` one instruction each, unlike `f64::max`.
+    let larger = |x: f64, y: f64| if x > y { x } else { y };
+    let [a, b, c, d] = points;
+    let mut largest = [0.0; D];
+    for axis in 0..D {
+        let far = |p: &[f64; D]| (p[axis] - q[axis]).abs();
+        largest[axis] = larger(larger(far(&a), far(&b)), larger(far(&c), far(&d)));
+    }
+    largest
+}
+
 /// Returns the squared length of a vector.
 #[inline(always)]
 pub(super) fn squared_length<T: Number, const D: usize>(vector: &[T; D]) -> T {
@@ -28,6 +42,20 @@ pub(super) fn minus<T: Number, const D: usize>(
     difference: impl Fn(f64, f64) -> T,
 ) -> [T; D] {
     std::array::from_fn(|axis| difference(p[axis], q[axis]))
+}
+
+/// Returns `p - q` in space.
+#[inline(always)]
+pub(super) fn minus_in_space<T: Number>(
+    p: [f64; 3],
+    q: [f64; 3],
+    difference: impl Fn(f64, f64) -> T,
+) -> [T; 3] {
+    [
+        difference(p[0], q[0]),
+        difference(p[1], q[1]),
+        difference(p[2], q[2]),
+    ]
 }
 
 /// The orientation of three points in the plane: positive if they turn counter-clockwise, zero if
@@ -154,9 +182,28 @@ impl Predicate for InSphere {
     #[inline(always)]
     fn value<T: Number>(&self, difference: impl Fn(f64, f64) -> T + Copy) -> T {
         let [a, b, c, d, e] = self.0;
-        let vectors = [a, b, c, d].map(|p| minus(p, e, difference));
-        let lengths = vectors.each_ref().map(squared_length);
-        in_sphere(vectors, lengths)
+        // `PERF:` four by four written out, like the axes in `minus_in_space`. What maps arrays
+        // becomes a function of its own, whose results are passed through memory.
+        let [a, b, c, d] = [
+            minus_in_space(a, e, difference),
+            minus_in_space(b, e, difference),
+            minus_in_space(c, e, difference),
+            minus_in_space(d, e, difference),
+        ];
+        let lengths = [
+            squared_length(&a),
+            squared_length(&b),
+            squared_length(&c),
+            squared_length(&d),
+        ];
+        in_sphere([a, b, c, d], lengths)
+    }
+
+    #[inline(always)]
+    fn widest(&self) -> Option<Self> {
+        let [a, b, c, d, e] = self.0;
+        let far = largest_minus([a, b, c, d], e);
+        Some(InSphere([far, far, far, far, [0.0; 3]]))
     }
 }
 
@@ -239,6 +286,28 @@ impl Predicate for DotProduct {
     }
 }
 
+/// Returns the volumes, times six and rounded, that a point spans with the facets of a tetrahedron,
+/// in the order of the vertices opposite to them: positive where it is inside, if the tetrahedron
+/// is positively oriented.
+///
+/// The bits are those of [`Orientation3`] of each facet and the point, in two thirds of the
+/// operations.
+#[inline(always)]
+pub(crate) fn facet_volumes(tetrahedron: [[f64; 3]; 4], q: [f64; 3]) -> [f64; 4] {
+    let [a, b, c, d] = tetrahedron;
+    let from_q = |p| minus_in_space(p, q, |x, y| x - y);
+    let [a, b, c, d] = [from_q(a), from_q(b), from_q(c), from_q(d)];
+    let plane = |p: &[f64; 3], q: &[f64; 3]| cross(&p[0], &q[1], &p[1], &q[0]);
+    let (ab, bc, cd, ca) = (plane(&a, &b), plane(&b, &c), plane(&c, &d), plane(&c, &a));
+    let (ad, db) = (plane(&a, &d), plane(&d, &b));
+    [
+        d[2] * bc + b[2] * cd + c[2] * db,
+        d[2] * ca - a[2] * cd + c[2] * ad,
+        d[2] * ab - (a[2] * db + b[2] * ad),
+        -(b[2] * ca + a[2] * bc + c[2] * ab),
+    ]
+}
+
 /// Returns twice the signed area of a triangle, correct to the last bits: positive if the points
 /// turn counter-clockwise, zero only if they are collinear or the area is too small for a double.
 pub fn twice_area(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
@@ -277,4 +346,23 @@ pub fn crossing(a: [f64; 2], b: [f64; 2], c: [f64; 2], d: [f64; 2]) -> f64 {
 /// Returns true if expansions are exact for these coordinates.
 pub(super) fn in_range<P: Predicate>(predicate: &P) -> bool {
     (0..P::AXES).all(|axis| predicate.axis(axis).all(|x| RANGE.admits(x)))
+}
+
+#[cfg(test)]
+mod tests {
+    use testkit::random::Random;
+
+    use super::*;
+
+    #[test]
+    fn volumes_of_facets_have_the_bits_of_orientations() {
+        let mut random = Random(1);
+        for _ in 0..1000 {
+            let [a, b, c, d, q] = [(); 5].map(|()| [(); 3].map(|()| random.unit()));
+            let facets = [[b, d, c], [d, a, c], [b, a, d], [a, b, c]];
+            let each = facets.map(|[a, b, c]| Orientation3([a, b, c, q]).value(|x, y| x - y));
+            let volumes = facet_volumes([a, b, c, d], q);
+            assert_eq!(volumes.map(f64::to_bits), each.map(f64::to_bits));
+        }
+    }
 }

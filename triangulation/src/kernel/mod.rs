@@ -43,6 +43,7 @@ pub use formula::{
     CompareDistance, DotProduct, InCircle, InCircleOfPlane, InSphere, Orientation2, Orientation3,
     crossing, twice_area,
 };
+pub(crate) use formula::{facet_volumes, largest_minus};
 pub use pixel_sides::{CornerSide, CrossingSide};
 pub use power::{ComparePower, PowerInPlane, PowerOnLine, PowerTest2, PowerTest3};
 pub(crate) use radius::{Congruence, RoundedRadius, SquaredRadii, SquaredRadius};
@@ -74,6 +75,7 @@ use crate::num::{Dyadic, Expansion, Number, Sign};
 /// use breakline_triangulation::num::{Number, Sign};
 ///
 /// /// Positive if the third point lies inside of the circle that has the first two as its diameter.
+/// #[derive(Clone)]
 /// struct InDiameter([[f64; 2]; 3]);
 ///
 /// impl Predicate for InDiameter {
@@ -96,7 +98,7 @@ use crate::num::{Dyadic, Expansion, Number, Sign};
 /// assert_eq!(side([1e-20, 1.0]), Sign::Positive);
 /// assert_eq!(side([-1e-20, 1.0]), Exact::sign(&InDiameter([[0.0, 0.0], [1.0, 1.0], [-1e-20, 1.0]])));
 /// ```
-pub trait Predicate {
+pub trait Predicate: Clone {
     /// The degree in the differences: at most 5, with fewer than 2^7 terms. The arithmetics are
     /// proven for these limits.
     const DEGREE: i32;
@@ -110,6 +112,18 @@ pub trait Predicate {
 
     /// Returns the value of the polynomial, in the arithmetic that `difference` returns.
     fn value<T: Number>(&self, difference: impl Fn(f64, f64) -> T + Copy) -> T;
+
+    /// Returns the predicate of points that are further apart: each difference that its
+    /// [`value`](Self::value) takes is at least as large as the one that this predicate takes
+    /// there, both rounded. `None`, the default, if there is none that is quick to find.
+    ///
+    /// A bound on the error of the one is a bound on the error of the other. If all its points but
+    /// one are equal, the compiler is left with a few operations, and needs half of those that
+    /// bound each term on its own.
+    #[inline(always)]
+    fn widest(&self) -> Option<Self> {
+        None
+    }
 }
 
 /// The magnitudes of coordinates for which an arithmetic is proven: `min..=max`, zero, and
@@ -257,16 +271,19 @@ impl<Quick: Filter, Sure: Kernel> Kernel for Filtered<Quick, Sure> {
     fn sign<P: Predicate>(predicate: &P) -> Sign {
         match Quick::try_sign(predicate) {
             Some(sign) => sign,
-            None => surely::<Sure, P>(predicate),
+            None => surely::<Sure, P>(predicate.clone()),
         }
     }
 }
 
 /// Kept out of line, so that the filter's code stays small in hot loops.
+///
+/// `PERF:` by value. Through a reference, the filter would read the points from memory to which
+/// they have just been copied.
 #[cold]
 #[inline(never)]
-fn surely<K: Kernel, P: Predicate>(predicate: &P) -> Sign {
-    K::sign(predicate)
+fn surely<K: Kernel, P: Predicate>(predicate: P) -> Sign {
+    K::sign(&predicate)
 }
 
 /// Plain floating point: wrong near zero.

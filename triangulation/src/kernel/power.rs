@@ -6,7 +6,9 @@
 //! axes of their own.
 
 use super::Predicate;
-use super::formula::{cross, in_circle, in_sphere, minus, square, squared_length};
+use super::formula::{
+    cross, in_circle, in_sphere, largest_minus, minus, minus_in_space, square, squared_length,
+};
 use crate::num::Number;
 
 /// Returns the coordinates of weighted points on an axis: those in the plane or in space, weights,
@@ -78,10 +80,23 @@ impl Predicate for PowerTest3 {
     #[inline(always)]
     fn value<T: Number>(&self, difference: impl Fn(f64, f64) -> T + Copy) -> T {
         let [a, b, c, d, q] = self.0;
-        let vectors = [a, b, c, d].map(|p| minus(site(p), site(q), difference));
-        let lifts =
-            std::array::from_fn(|k| lift(squared_length(&vectors[k]), self.0[k], q, difference));
+        let from_q = |p| minus_in_space(site(p), site(q), difference);
+        let vectors = [from_q(a), from_q(b), from_q(c), from_q(d)];
+        let lift_of = |vector: &[T; 3], p: [f64; 4]| lift(squared_length(vector), p, q, difference);
+        let lifts = [
+            lift_of(&vectors[0], a),
+            lift_of(&vectors[1], b),
+            lift_of(&vectors[2], c),
+            lift_of(&vectors[3], d),
+        ];
         in_sphere(vectors, lifts)
+    }
+
+    #[inline(always)]
+    fn widest(&self) -> Option<Self> {
+        let [a, b, c, d, q] = self.0;
+        let far = largest_minus([a, b, c, d], q);
+        Some(PowerTest3([far, far, far, far, [0.0; 4]]))
     }
 }
 

@@ -38,6 +38,7 @@ fn power_of_two(exponent: i64) -> f64 {
 }
 
 /// A predicate whose coordinates are multiplied by a factor.
+#[derive(Clone)]
 struct Times<'a, P> {
     predicate: &'a P,
     factor: f64,

@@ -244,7 +244,8 @@ where
     ///
     /// # Complexity
     /// In the plane linear in the degree of the vertex in practice, quadratic in the worst case. In
-    /// space that of triangulating the neighbors of the vertex.
+    /// space the number of its neighbors times that of the cells that take its place; on the hull
+    /// that of triangulating the neighbors.
     pub fn remove(&mut self, vertex: VertexId) -> Result<G::Point, RemovalError> {
         if !self.tds().is_vertex(vertex) {
             return Err(RemovalError::NoVertex);

@@ -346,7 +346,7 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Regular<G, N, V, C> {
                 .host(vertex)
                 .filter(|_| !self.tds().is_vertex(vertex));
             if near.is_none() {
-                self.hidden.forget(vertex, self.hash_of(vertex));
+                self.hidden.forget(vertex);
             }
         }
     }
@@ -429,7 +429,7 @@ where
     /// for each hidden point.
     pub fn remove(&mut self, vertex: VertexId) -> Result<G::Point, RemovalError> {
         if self.is_hidden(vertex) {
-            self.hidden.remove(vertex, self.hash_of(vertex));
+            self.hidden.remove(vertex);
             self.inner.tds.attach();
             self.inner.tds.remove_vertex(vertex);
         } else if self.tds().is_vertex(vertex) {

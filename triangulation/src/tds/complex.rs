@@ -1,5 +1,7 @@
 use std::convert::Infallible;
 
+use crate::num::lanes::prefetch;
+
 use super::{CellId, Tds, VertexId};
 
 /// Read access to cells and their neighbors, for any storage: what [`Tds`], the [compact
@@ -208,12 +210,11 @@ impl<const N: usize, V, C: Copy + Default> Complex<N> for Tds<N, V, C> {
         Ok(self.cell_of(vertex))
     }
 
-    /// A read whose result is not used.
     #[inline(always)]
     fn fetch_neighbors(&self, cell: CellId) {
         for neighbor in self.links[cell.index()].neighbors {
             if let Some(links) = self.links.get(neighbor.index()) {
-                std::hint::black_box(links.vertices[0]);
+                prefetch(&links.vertices[0]);
             }
         }
     }

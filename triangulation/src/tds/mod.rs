@@ -67,6 +67,7 @@ mod raise;
 mod rebuild;
 mod refill;
 mod remove;
+mod ridges;
 pub mod space;
 mod zone;
 
@@ -79,6 +80,7 @@ pub use neighbors::Neighbors;
 pub use numbers::{Cells, FiniteCells, Vertices};
 pub(crate) use plane::Star;
 pub(crate) use rebuild::Parts;
+pub(crate) use refill::FacetSide;
 pub(crate) use zone::Zone;
 
 /// The vertices and neighbors of one cell.

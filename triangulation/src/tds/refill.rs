@@ -7,7 +7,7 @@ use super::{CellId, Links, Tds, VertexId, face_without};
 /// A side of a facet: a cell outside, or the position of a new cell; and the index of the vertex
 /// opposite.
 #[derive(Clone, Copy)]
-enum FacetSide {
+pub(crate) enum FacetSide {
     Outside(CellId, usize),
     New(usize, usize),
 }
@@ -35,11 +35,22 @@ impl<const N: usize, V, C: Copy + Default> Tds<N, V, C> {
         let Some(pairs) = self.paired(open, cells) else {
             return false;
         };
+        self.refill_star(star, cells, &pairs);
+        true
+    }
+
+    /// Replaces the cells around a vertex by others with the same border, given the two sides of
+    /// each facet of these.
+    pub(crate) fn refill_star(
+        &mut self,
+        star: &[(CellId, usize)],
+        cells: &[[VertexId; N]],
+        sides: &[[FacetSide; 2]],
+    ) {
         for &(cell, _) in star {
             self.remove_cell(cell);
         }
-        self.add_cells(cells, &pairs);
-        true
+        self.add_cells(cells, sides);
     }
 
     /// Replaces all cells by others of some dimension, given by their vertices. Vertices without a

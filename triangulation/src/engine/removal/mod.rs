@@ -3,6 +3,7 @@
 mod low_degree;
 mod plane;
 mod space;
+mod wrap;
 
 use crate::geometry::Geometry;
 use crate::tds::{CellId, VertexId};

@@ -1,11 +1,14 @@
 //! Removal of a vertex in space, from a triangulation of any dimension.
 //!
 //! The cells around the vertex leave a hole, and the triangulation of the other vertices has the
-//! same cells outside of it. Those within have vertices of its border only, and each of them is
-//! also a cell of the triangulation of these vertices alone; there they are the conflict zone of
-//! the removed point. So a small triangulation of the neighbors is built by insertion, and the zone
-//! is copied into the hole (Devillers and Teillaud 2003: with ties broken by a rule that depends on
-//! the points only, it fits). Points that a regular triangulation hides are inserted afterwards.
+//! same cells outside of it. Within the hull, the hole is nearly always filled cell by cell
+//! ([`wrap`](super::wrap)). Points that a regular triangulation hides are inserted afterwards.
+//!
+//! *Otherwise*: the cells within have vertices of its border only, and each of them is also a cell
+//! of the triangulation of these vertices alone; there they are the conflict zone of the removed
+//! point. So a small triangulation of the neighbors is built by insertion, and the zone is copied
+//! into the hole (Devillers and Teillaud 2003: with ties broken by a rule that depends on the
+//! points only, it fits).
 //!
 //! *Neighbors of a lower dimension.* If they lie in a plane and there are other vertices, then
 //! these are on the far side of that plane, and the removed point was a corner of the hull: each
@@ -22,6 +25,8 @@ use crate::geometry::Geometry;
 use crate::tds::{CellId, VertexId};
 use crate::triangulation::Triangulation;
 
+use super::wrap::{Filling, filling};
+
 /// A triangulation of some of the vertices, which are its payloads.
 type Local<'a, G> = Triangulation<&'a G, 4, VertexId>;
 
@@ -31,11 +36,20 @@ impl<G: Geometry<4>, V, C: Copy + Default> Triangulation<G, 4, V, C> {
     /// cells at the vertex were.
     ///
     /// # Complexity
-    /// That of inserting the neighbors, one by one, into a triangulation of their own.
+    /// A product: of the number of neighbors, and of the cells that fill the hole. On the hull, or
+    /// with many neighbors, that of inserting these, one by one, into a triangulation of their own.
     pub(crate) fn remove_vertex_in_space(&mut self, vertex: VertexId) -> bool {
         let star = self.tds.cells_around(vertex);
-        let hole = self.cells_without(vertex, &star);
-        let is_filled = hole.is_some_and(|cells| self.tds.replace_star(&star, &cells));
+        let is_filled = match filling(self, vertex, &star) {
+            Some(Filling { cells, sides }) => {
+                self.tds.refill_star(&star, &cells, &sides);
+                true
+            }
+            None => {
+                let hole = self.cells_without(vertex, &star);
+                hole.is_some_and(|cells| self.tds.replace_star(&star, &cells))
+            }
+        };
         if !is_filled {
             self.replace_all_without(vertex);
         }
@@ -45,7 +59,7 @@ impl<G: Geometry<4>, V, C: Copy + Default> Triangulation<G, 4, V, C> {
     }
 
     /// Returns the cells that fill the hole; `None` if the dimension changes.
-    fn cells_without(
+    pub(super) fn cells_without(
         &self,
         vertex: VertexId,
         star: &[(CellId, usize)],

@@ -14,12 +14,14 @@ mod plain;
 pub(crate) use plain::*;
 
 /// Asks for memory that will be needed soon. It changes no result.
+///
+/// Where there is no instruction for it, reads the memory, and does not use what it has read.
 #[inline(always)]
-pub(crate) fn prefetch<T>(wanted: &T) {
+pub(crate) fn prefetch<T: Copy>(wanted: &T) {
     #[cfg(all(feature = "simd", target_feature = "sse"))]
     safe_arch::prefetch_t0(wanted);
     #[cfg(not(all(feature = "simd", target_feature = "sse")))]
-    let _ = wanted;
+    std::hint::black_box(*wanted);
 }
 
 /// Returns the facets of a positive cell of vertices `v`, each as the cell sees it, and its

@@ -23,8 +23,6 @@ mod around;
 
 use std::iter::FusedIterator;
 
-use rustc_hash::FxHashSet;
-
 use super::{CellId, Complex, VertexId};
 
 /// An edge with a direction, in any dimension: a cell that has it, and the indices of its start and
@@ -221,17 +219,72 @@ struct StarSearch<'t, T> {
     vertex: VertexId,
     /// The cells found so far, each with the index of the vertex in it.
     cells: Vec<(CellId, usize)>,
-    /// All the cells, once there are many.
-    seen: FxHashSet<CellId>,
+    /// The same cells.
+    seen: CellSet,
     /// The number of cells whose neighbors have been added.
     done: usize,
     /// The other vertices of the cells, each at least once; for the caller, who may remove them.
     ends: Vec<VertexId>,
 }
 
-/// `PERF:` among so few cells (twice the average number) a search from one end to the other finds
-/// one sooner than a hash does.
-const FEW: usize = 48;
+/// A set of cells: an open hash table of their numbers.
+struct CellSet {
+    /// `1 << bits` of them, at most half of which are in use; the others are `NONE`.
+    slots: Vec<CellId>,
+    bits: u32,
+    len: usize,
+}
+
+impl CellSet {
+    /// Returns an empty set with room for twice the average number of cells around a vertex.
+    fn new() -> Self {
+        const BITS: u32 = 7;
+        CellSet {
+            slots: vec![CellId::NONE; 1 << BITS],
+            bits: BITS,
+            len: 0,
+        }
+    }
+
+    /// Adds a cell; returns false if it is there.
+    #[inline(always)]
+    fn insert(&mut self, cell: CellId) -> bool {
+        if 2 * self.len >= self.slots.len() {
+            self.grow();
+        }
+        let is_new = self.put(cell);
+        self.len += usize::from(is_new);
+        is_new
+    }
+
+    /// Puts a cell into a slot; returns false if it is there.
+    #[inline(always)]
+    fn put(&mut self, cell: CellId) -> bool {
+        let last = self.slots.len() - 1;
+        // The high bits of the product depend on all bits of the number.
+        let hash = u64::from(cell.stored().get()).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        let mut at = (hash >> (64 - self.bits)) as usize & last;
+        while self.slots[at] != CellId::NONE {
+            if self.slots[at] == cell {
+                return false;
+            }
+            at = (at + 1) & last;
+        }
+        self.slots[at] = cell;
+        true
+    }
+
+    #[cold]
+    fn grow(&mut self) {
+        self.bits += 1;
+        let twice = vec![CellId::NONE; 1 << self.bits];
+        for cell in std::mem::replace(&mut self.slots, twice) {
+            if cell != CellId::NONE {
+                self.put(cell);
+            }
+        }
+    }
+}
 
 impl<'t, T: Complex<4>> StarSearch<'t, T> {
     /// Returns one cell; none for a vertex without a cell.
@@ -240,7 +293,7 @@ impl<'t, T: Complex<4>> StarSearch<'t, T> {
             complex,
             vertex,
             cells: Vec::with_capacity(32),
-            seen: FxHashSet::default(),
+            seen: CellSet::new(),
             done: 0,
             ends: Vec::new(),
         };
@@ -258,15 +311,9 @@ impl<'t, T: Complex<4>> StarSearch<'t, T> {
 
     /// Adds a cell; returns false if it is there.
     fn add(&mut self, cell: CellId) -> Result<bool, T::Error> {
-        let is_new = if self.cells.len() < FEW {
-            self.cells.iter().all(|&(other, _)| other != cell)
-        } else {
-            if self.seen.is_empty() {
-                self.seen.extend(self.cells.iter().map(|&(cell, _)| cell));
-            }
-            self.seen.insert(cell)
-        };
+        let is_new = self.seen.insert(cell);
         if is_new {
+            self.complex.fetch_neighbors(cell);
             let index = self.complex.index_of(cell, self.vertex)?;
             self.complex.ensure(cell, || index.is_some())?;
             self.cells.extend(index.map(|index| (cell, index)));
@@ -353,4 +400,19 @@ pub fn cell_with<T: Complex<4>>(
         }
     }
     Ok(None)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_set_of_many_cells_has_each_once() {
+        let mut set = CellSet::new();
+        let cells = || (0..1000).map(|k| CellId::new(k * k % 1009));
+        let new = cells().filter(|&cell| set.insert(cell)).count();
+        assert_eq!(new, 505);
+        assert!(cells().all(|cell| !set.insert(cell)));
+        assert_eq!((set.len, set.slots.len()), (505, 1024));
+    }
 }
