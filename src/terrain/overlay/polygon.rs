@@ -23,6 +23,8 @@ pub(super) struct Clipper {
 }
 
 /// A corner while a triangle is clipped by another one.
+///
+/// `PERF:` corners are copied often, so that numbers of corners and sides are bytes.
 #[derive(Debug, Clone, Copy)]
 struct Tagged {
     at: [f64; 2],
@@ -34,18 +36,18 @@ struct Tagged {
 #[derive(Debug, Clone, Copy)]
 enum Kind {
     /// A corner of the first triangle.
-    First(usize),
+    First(u8),
     /// A corner of the second one.
-    Second(usize),
+    Second(u8),
     /// Where a side of the first crosses one of the second; sides begin at the corner of their
     /// number.
-    Crossing([usize; 2]),
+    Crossing([u8; 2]),
 }
 
 #[derive(Debug, Clone, Copy)]
 enum Side {
-    First(usize),
-    Second(usize),
+    First(u8),
+    Second(u8),
 }
 
 type Triangle = [[f64; 3]; 3];
@@ -66,8 +68,17 @@ impl Clipper {
         let origin = one[0];
         let local = |triangle: Triangle| triangle.map(|p| [0, 1, 2].map(|k| p[k] - origin[k]));
         let pair = [local(one), local(other)];
-        self.clip(pair);
         self.found.clear();
+        // Most pairs whose boxes overlap have nothing in common. (Sides of the other one are
+        // tested as it clips.)
+        let is_apart = |i| {
+            let line = side(pair[0], i).map(plan);
+            pair[1].iter().all(|&p| left_of(line, plan(p)) <= 0.0)
+        };
+        if (0..3).any(is_apart) {
+            return (origin, &self.found);
+        }
+        self.clip(pair);
         for corner in &self.corners {
             let [first, second] = heights(pair, corner);
             let heights = if is_swapped {
@@ -86,12 +97,12 @@ impl Clipper {
     /// Clips the first triangle by the sides of the second.
     fn clip(&mut self, [one, other]: [Triangle; 2]) {
         self.corners.clear();
-        self.corners.extend([0, 1, 2].map(|i| Tagged {
-            at: plan(one[i]),
+        self.corners.extend([0u8, 1, 2].map(|i| Tagged {
+            at: plan(one[i as usize]),
             is: Kind::First(i),
             side: Side::First(i),
         }));
-        for j in 0..3 {
+        for j in 0..3u8 {
             clip_by_side(&self.corners, &mut self.next, other, j);
             std::mem::swap(&mut self.corners, &mut self.next);
             if self.corners.len() < 3 {
@@ -104,9 +115,9 @@ impl Clipper {
 
 /// Clips a polygon by side `j` of the second triangle: what is to the left of its line, or on it,
 /// stays.
-fn clip_by_side(corners: &[Tagged], next: &mut Vec<Tagged>, other: Triangle, j: usize) {
+fn clip_by_side(corners: &[Tagged], next: &mut Vec<Tagged>, other: Triangle, j: u8) {
     next.clear();
-    let line = [other[j], other[(j + 1) % 3]].map(plan);
+    let line = side(other, j).map(plan);
     let Some(mut to) = corners.first() else {
         return;
     };
@@ -130,7 +141,7 @@ fn clip_by_side(corners: &[Tagged], next: &mut Vec<Tagged>, other: Triangle, j: 
             // Two sides of the second meet at its corner.
             Side::Second(k) => {
                 let corner = if (k + 1) % 3 == j { j } else { k };
-                (plan(other[corner]), Kind::Second(corner))
+                (plan(other[corner as usize]), Kind::Second(corner))
             }
         };
         // From here on along the line, or along the side that comes in.
@@ -143,14 +154,20 @@ fn clip_by_side(corners: &[Tagged], next: &mut Vec<Tagged>, other: Triangle, j: 
     }
 }
 
+/// Returns the ends of side `i` of a triangle, which begins at corner `i`.
+fn side(triangle: Triangle, i: u8) -> [[f64; 3]; 2] {
+    let i = i as usize;
+    [triangle[i], triangle[(i + 1) % 3]]
+}
+
 /// Returns the heights of both triangles at a corner of their polygon.
 fn heights([one, other]: [Triangle; 2], corner: &Tagged) -> [f64; 2] {
-    let side =
-        |triangle: Triangle, i: usize| along([triangle[i], triangle[(i + 1) % 3]], corner.at);
     match corner.is {
-        Kind::First(i) => [one[i][2], within(other, corner.at)],
-        Kind::Second(j) => [within(one, corner.at), other[j][2]],
-        Kind::Crossing([i, j]) => [side(one, i), side(other, j)],
+        Kind::First(i) => [one[i as usize][2], within(other, corner.at)],
+        Kind::Second(j) => [within(one, corner.at), other[j as usize][2]],
+        Kind::Crossing([i, j]) => {
+            [side(one, i), side(other, j)].map(|ends| along(ends, corner.at))
+        }
     }
 }
 

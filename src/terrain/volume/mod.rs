@@ -124,7 +124,11 @@ pub fn volumes(
             (common, TotalsByRow::default())
         }
     };
-    let surface_area = area_of(surface);
+    // A level is wherever the surface is.
+    let surface_area = match base {
+        VolumeBase::Surface(_) => Some(area_of(surface)),
+        VolumeBase::Level(_) => None,
+    };
     surface.ensure_intact()?;
     if let VolumeBase::Surface(other) = base {
         other.ensure_intact()?;
@@ -142,7 +146,7 @@ pub fn volumes(
                 cut_area: area(0),
                 fill_area: area(1),
                 common_area: units.area.value(of_both.area),
-                surface_only_area: only(&surface_area).max(0.0),
+                surface_only_area: surface_area.as_ref().map_or(0.0, |areas| only(areas).max(0.0)),
                 base_only_area: only(&base_area).max(0.0),
             }
         })
