@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use breakline::run::{self, VolumeBase, VolumeOptions, VolumeRow, VolumeUnit};
+use breakline::run::{self, Bulking, VolumeBase, VolumeOptions, VolumeRow, VolumeUnit};
 use pyo3::prelude::*;
 
 use crate::errors::Result;
@@ -10,9 +10,9 @@ use crate::requests::{self, LayerInput};
 use crate::surface::Surface;
 use crate::work::{self, Call};
 
-/// The record of the polygon, the level of the base, and the volumes and areas, in the order of the
-/// fields in Python.
-type Row = (Option<usize>, Option<f64>, [f64; 9]);
+/// The record of the polygon, the level of the base, the volumes and areas, and what is moved, in
+/// the order of the fields in Python.
+type Row = (Option<usize>, Option<f64>, [f64; 10], [Option<f64>; 3]);
 
 const UNITS: [(&str, VolumeUnit); 2] = [
     ("m3", VolumeUnit::CubicMeters),
@@ -30,6 +30,7 @@ pub(crate) fn volume(
     within: Option<LayerInput<'_>>,
     assign: Option<&str>,
     unit: Option<&str>,
+    bulking: Option<[f64; 2]>,
     names: [PathBuf; 2],
     call: Call,
 ) -> PyResult<(Vec<Row>, Option<&'static str>)> {
@@ -39,6 +40,7 @@ pub(crate) fn volume(
         unit: unit
             .map(|name| requests::choose("unit", name, &UNITS))
             .transpose()?,
+        bulking: bulking.map(|[swell, shrink]| Bulking { swell, shrink }),
         names,
     };
     let (surface, other) = (surface.product(), base.map(|base| base.product()));
@@ -66,6 +68,9 @@ fn row(row: &VolumeRow) -> Row {
         of.common_area,
         of.surface_only_area,
         of.base_only_area,
+        of.slope_area,
     ];
-    (row.record, row.level, numbers)
+    let moved = row.earthwork.map(|e| [e.loose_cut, e.bank_fill, e.balance]);
+    let moved = moved.map_or([None; 3], |numbers| numbers.map(Some));
+    (row.record, row.level, numbers, moved)
 }

@@ -38,6 +38,18 @@ def test_levels_polygons_and_units():
     assert yards.unit == "yd3" and yards.cut * 0.9144**3 == pytest.approx(whole.cut, rel=1e-12)
 
 
+def test_what_is_moved():
+    slope = breakline.tin(SLOPE)
+    (row,) = breakline.volume(slope, plane=2, swell=1.25, shrink=0.8)
+    assert row.cut == pytest.approx(25, rel=1e-12) and row.slope_area == pytest.approx(100 * 1.04**0.5, rel=1e-12)
+    assert [row.loose_cut, row.bank_fill, row.balance] == pytest.approx([31.25, 31.25, -6.25], rel=1e-12)
+    (row,) = breakline.volume(slope, plane=2)
+    assert row.loose_cut is row.bank_fill is row.balance is None
+    for factor in (0, -1, float("nan")):
+        with pytest.raises(breakline.UsageError, match="swell|multiple"):
+            breakline.volume(slope, plane=2, swell=factor)
+
+
 def test_a_pile_on_its_rim():
     pile = [[0, 0, 5], [4, 0, 5], [4, 4, 5], [0, 4, 5], [1, 1, 5], [3, 1, 5], [3, 3, 5], [1, 3, 5], [2, 2, 8]]
     (row,) = breakline.volume(pile, base="rim", within=np.array([[1, 1], [3, 1], [3, 3], [1, 3]]))

@@ -118,7 +118,7 @@ pub use products::surface::{
 };
 pub use products::tin::{BuildReport, ReplacedPoints, TinRequest};
 pub use products::volume::{
-    VolumeBase, VolumeOptions, VolumeProduct, VolumeRow, VolumeUnit, volume,
+    Bulking, Earthwork, VolumeBase, VolumeOptions, VolumeProduct, VolumeRow, VolumeUnit, volume,
 };
 pub use request::input::{Input, MemoryPoints, STDIN};
 pub use request::lines::{

@@ -198,6 +198,43 @@ fn units_of_plan_and_heights_are_converted() {
 }
 
 #[test]
+fn ground_swells_when_it_is_dug_out_and_shrinks_as_fill() {
+    let folder = folder_with(&[("a.xyz", SLOPE)]);
+    // 3.375 are cut, and as much is to be filled.
+    let plain = of(&folder, &["a.xyz", "--plane", "11.5"]);
+    assert!(plain["rows"][0].get("balance").is_none());
+    let both = &[
+        "a.xyz", "--plane", "11.5", "--swell", "1.25", "--shrink", "0.75",
+    ];
+    let moved = [
+        ("cut", 3.375),
+        ("loose_cut", 3.375 * 1.25),
+        ("bank_fill", 4.5),
+        ("balance", -1.125),
+        ("slope_area", 9.0 * 2.0_f64.sqrt()),
+    ];
+    near(&of(&folder, both)["rows"][0], &moved);
+    let shrinks = &["a.xyz", "--plane", "11.5", "--shrink", "0.75"];
+    near(
+        &of(&folder, shrinks)["rows"][0],
+        &[("loose_cut", 3.375), ("balance", -1.125)],
+    );
+    run_in(&folder, &[&["volume", "-o", "t.csv"], &both[..]].concat()).works(&[]);
+    let table = String::from_utf8(bytes(&folder, "t.csv")).unwrap();
+    assert!(
+        table.starts_with("record,level,cut,fill,net,cut_area,fill_area,level_area,common_area,surface_only,base_only,slope_area,loose_cut,bank_fill,balance,unit\n"),
+        "{table}"
+    );
+    for factor in ["0", "-1", "nan", "inf"] {
+        run_in(
+            &folder,
+            &["volume", "a.xyz", "--plane", "1", "--swell", factor],
+        )
+        .fails(2, &["--swell", factor]);
+    }
+}
+
+#[test]
 fn polygons_have_a_row_each() {
     let folder = folder_with(&[
         ("a.xyz", SLOPE),

@@ -11,11 +11,11 @@ use crate::judge::{exact, judge};
 type Ring = Vec<[f64; 2]>;
 
 fn between(a: &dyn Surface, b: &dyn Surface) -> Volume {
-    volumes(a, VolumeBase::Surface(b), None).unwrap()[0]
+    volumes(a, VolumeBase::Surface(b), None, 1.0).unwrap()[0]
 }
 
 fn above(a: &dyn Surface, level: f64) -> Volume {
-    volumes(a, VolumeBase::Level(level), None).unwrap()[0]
+    volumes(a, VolumeBase::Level(level), None, 1.0).unwrap()[0]
 }
 
 /// A surface over the triangulation of points; `None` if they have no triangle.
@@ -272,8 +272,8 @@ fn zones_of_a_partition_sum_to_the_whole() {
     ])
     .unwrap();
     for base in [VolumeBase::Surface(&b), VolumeBase::Level(0.4)] {
-        let whole = volumes(&a, base, None).unwrap()[0];
-        let rows = volumes(&a, base, Some(&zones)).unwrap();
+        let whole = volumes(&a, base, None, 1.0).unwrap()[0];
+        let rows = volumes(&a, base, Some(&zones), 1.0).unwrap();
         assert_eq!(rows.len(), zones.count());
         assert!(rows.iter().all(|row| row.cut > 1.0 && row.fill > 1.0));
         let sum = |of: fn(&Volume) -> f64| rows.iter().map(of).sum::<f64>();
@@ -298,7 +298,7 @@ fn zones_take_any_rings() {
     let hill = pyramid([0.0, 0.0], 0.0, 3.0);
     let inside = |rings: Vec<Ring>| {
         let zones = Zones::new(&[rings]).unwrap();
-        volumes(&hill, VolumeBase::Level(0.0), Some(&zones)).unwrap()[0]
+        volumes(&hill, VolumeBase::Level(0.0), Some(&zones), 1.0).unwrap()[0]
     };
     let whole = inside(vec![square([-5.0, -5.0], [5.0, 5.0])]);
     assert_near(whole.cut, 4.0, 1e-12, "whole");
@@ -334,13 +334,13 @@ fn zones_take_any_rings() {
 fn nothing_is_computed_of_what_is_no_number() {
     let hill = pyramid([0.0, 0.0], 0.0, 3.0);
     for level in [f64::NAN, f64::INFINITY] {
-        let error = volumes(&hill, VolumeBase::Level(level), None).unwrap_err();
+        let error = volumes(&hill, VolumeBase::Level(level), None, 1.0).unwrap_err();
         assert!(error.to_string().contains("is not a height"), "{error}");
     }
-    let error = volumes(&hill, VolumeBase::Level(1e300), None).unwrap_err();
+    let error = volumes(&hill, VolumeBase::Level(1e300), None, 1.0).unwrap_err();
     assert!(error.to_string().contains("extend over 1e300"), "{error}");
     let tiny = pyramid([0.0, 0.0], 0.0, 1e-200);
-    let error = volumes(&tiny, VolumeBase::Level(0.0), None).unwrap_err();
+    let error = volumes(&tiny, VolumeBase::Level(0.0), None, 1.0).unwrap_err();
     assert!(error.to_string().contains("extend over 1e-200"), "{error}");
 }
 
@@ -350,12 +350,40 @@ fn what_has_no_face_has_no_volume() {
     let hill = pyramid([0.0, 0.0], 0.0, 3.0);
     assert_eq!(between(&nothing, &nothing), Volume::default());
     assert_eq!(above(&nothing, 7.0), Volume::default());
+    let found = between(&hill, &nothing);
     let alone = Volume {
         surface_only_area: 4.0,
+        slope_area: found.slope_area,
         ..Volume::default()
     };
-    assert_eq!(between(&hill, &nothing), alone);
+    assert_eq!(found, alone);
     assert_eq!(between(&nothing, &hill).base_only_area, 4.0);
+}
+
+#[test]
+fn areas_along_slopes_depend_on_the_units_of_heights() {
+    let hill = pyramid([437_512.25, 5_812_004.5], 10.0, 13.0);
+    let beside = pyramid([437_513.25, 5_812_004.5], 10.0, 10.0);
+    let left = Zones::new(&[vec![square(
+        [437_511.0, 5_812_003.0],
+        [437_512.25, 5_812_006.0],
+    )]]);
+    let left = left.unwrap();
+    for height_unit in [1.0, 0.3048, 1e-3_f64] {
+        // Four faces of 1 in plan; they rise by 3 units over 1.
+        let along = (1.0 + (3.0 * height_unit).powi(2)).sqrt();
+        for base in [VolumeBase::Level(11.0), VolumeBase::Surface(&beside)] {
+            let slope_area =
+                |zones| volumes(&hill, base, zones, height_unit).unwrap()[0].slope_area;
+            assert_near(slope_area(None), 4.0 * along, 1e-12 * along, "whole");
+            assert_near(
+                slope_area(Some(&left)),
+                2.0 * along,
+                1e-12 * along,
+                "left half",
+            );
+        }
+    }
 }
 
 #[test]

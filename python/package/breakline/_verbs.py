@@ -313,6 +313,11 @@ class Volume:
         The areas in plan of both, where both are equally high, and of all three.
     surface_only, base_only : float
         The areas where only one of both is. Nothing is counted there.
+    slope_area : float
+        The area of the surface itself, along its slopes, wherever it is.
+    loose_cut, bank_fill, balance : float or None
+        With ``swell`` or ``shrink``: the cut once it is loose, the ground in place that the fill takes, and the ground in
+        place that is left over.
     unit : str or None
         ``"m3"`` or ``"yd3"``; areas are in its squares. None if no coordinate system is known: then volumes are in cubes
         of the unit of the data.
@@ -329,6 +334,10 @@ class Volume:
     common_area: float
     surface_only: float
     base_only: float
+    slope_area: float
+    loose_cut: Optional[float]
+    bank_fill: Optional[float]
+    balance: Optional[float]
     unit: Optional[str]
 
 
@@ -341,6 +350,8 @@ def volume(
     base: Optional[str] = None,
     within: Any = None,
     unit: Optional[str] = None,
+    swell: Optional[float] = None,
+    shrink: Optional[float] = None,
     threads: Optional[int] = None,
     progress: Progress = None,
     **surface: Any,
@@ -362,6 +373,8 @@ def volume(
         Polygons, with a row for each, as :func:`tin` takes them for ``boundary``.
     unit : "m3" or "yd3", optional
         The unit of volumes; areas are in its squares. Cubic meters if the coordinate system is known.
+    swell, shrink : float, optional
+        The volumes of loose and of compacted ground, as multiples of those in place, such as 1.25 and 0.9; 1 by default.
     threads, progress
         As for :func:`tin`.
     **surface
@@ -402,6 +415,7 @@ def volume(
         surface_of(points, of_any if any(is_built) and not built else surface, threads, progress)
         for points, built in zip(inputs, is_built)
     ]
+    factors = [_inputs.number(1 if factor is None else factor, name) for factor, name in [(swell, "swell"), (shrink, "shrink")]]
     names = [os.fspath(item) if _inputs.is_path(item) else name for item, name in [(a, "a"), (b, "b")]]
     # With another system as the target, the stated one is that of the points alone.
     assign = None if surface.get("to_crs") is not None else _inputs.crs_text(surface.get("crs"))
@@ -413,10 +427,11 @@ def volume(
             outlines[0] if outlines else None,
             assign,
             None if unit is None else _inputs.name(unit, "unit"),
+            None if swell is None and shrink is None else factors,
             names,
             request,
         )
-    return [Volume(record, level, *numbers, known) for record, level, numbers in rows]
+    return [Volume(record, level, *numbers, *moved, known) for record, level, numbers, moved in rows]
 
 
 def _is_built(points: Any) -> bool:

@@ -20,7 +20,7 @@ struct Field {
     of: fn(&VolumeRow) -> f64,
 }
 
-/// The numbers of a row, in the order of all outputs.
+/// The numbers of every row, in the order of all outputs.
 const FIELDS: &[Field] = &[
     Field::volume("cut", |row| row.volume.cut),
     Field::volume("fill", |row| row.volume.fill),
@@ -31,7 +31,26 @@ const FIELDS: &[Field] = &[
     Field::area("common area", |row| row.volume.common_area),
     Field::area("surface only", |row| row.volume.surface_only_area),
     Field::area("base only", |row| row.volume.base_only_area),
+    Field::area("slope area", |row| row.volume.slope_area),
 ];
+
+/// The numbers of rows that know what is moved; these follow.
+const OF_EARTHWORK: &[Field] = &[
+    Field::volume("loose cut", |row| {
+        row.earthwork.map_or(0.0, |e| e.loose_cut)
+    }),
+    Field::volume("bank fill", |row| {
+        row.earthwork.map_or(0.0, |e| e.bank_fill)
+    }),
+    Field::volume("balance", |row| row.earthwork.map_or(0.0, |e| e.balance)),
+];
+
+/// Returns the numbers that rows have; all rows have the same.
+fn fields(rows: &[VolumeRow]) -> Vec<&'static Field> {
+    let has_earthwork = rows.iter().any(|row| row.earthwork.is_some());
+    let more = OF_EARTHWORK.iter().filter(|_| has_earthwork);
+    FIELDS.iter().chain(more).collect()
+}
 
 impl Field {
     const fn volume(name: &'static str, of: fn(&VolumeRow) -> f64) -> Self {
@@ -80,7 +99,7 @@ fn lines(row: &VolumeRow, unit: Option<VolumeUnit>) -> String {
     for (name, value) in keys(row) {
         text += &format!("{name:<12} {value:>16}\n");
     }
-    for field in FIELDS {
+    for field in fields(std::slice::from_ref(row)) {
         let symbol = match field.measure {
             Measure::Volume => of_volumes,
             Measure::Area => of_areas,
@@ -94,19 +113,20 @@ fn lines(row: &VolumeRow, unit: Option<VolumeUnit>) -> String {
 fn table(rows: &[VolumeRow], unit: Option<VolumeUnit>) -> String {
     let [of_volumes, of_areas] = symbols(unit);
     let first = rows.first().map(keys).unwrap_or_default();
+    let fields = fields(rows);
     let mut cells: Vec<Vec<String>> = vec![
         first
             .iter()
             .map(|(name, _)| (*name).to_owned())
-            .chain(FIELDS.iter().map(|field| field.name.to_owned()))
+            .chain(fields.iter().map(|field| field.name.to_owned()))
             .collect(),
     ];
     cells.extend(rows.iter().map(|row| {
-        let values = FIELDS.iter().map(|field| number(plain((field.of)(row))));
+        let values = fields.iter().map(|field| number(plain((field.of)(row))));
         let keys = keys(row).into_iter().map(|(_, value)| value);
         keys.chain(values).collect()
     }));
-    let columns = first.len() + FIELDS.len();
+    let columns = first.len() + fields.len();
     let width = |column: usize| cells.iter().map(|row| row[column].len()).max().unwrap_or(0);
     let widths: Vec<usize> = (0..columns).map(width).collect();
     let mut text = format!("volumes in {of_volumes}, areas in {of_areas}\n");
@@ -134,6 +154,7 @@ pub(crate) fn json(product: &VolumeProduct) -> String {
         Some(unit) => unit.symbols().map(Value::from),
         None => [Value::Null, Value::Null],
     };
+    let fields = fields(&product.rows);
     let row = |row: &VolumeRow| {
         let mut object = Map::new();
         if let Some(record) = row.record {
@@ -142,7 +163,7 @@ pub(crate) fn json(product: &VolumeProduct) -> String {
         if let Some(level) = row.level {
             object.insert("level".to_owned(), plain(level).into());
         }
-        for field in FIELDS {
+        for field in &fields {
             object.insert(field.key(), plain((field.of)(row)).into());
         }
         Value::Object(object)
@@ -155,12 +176,13 @@ pub(crate) fn json(product: &VolumeProduct) -> String {
 /// Returns exact numbers as CSV.
 pub(crate) fn csv(product: &VolumeProduct) -> String {
     let unit = product.unit.map_or("", |unit| unit.symbols()[0]);
-    let names: Vec<String> = FIELDS.iter().map(Field::key).collect();
+    let fields = fields(&product.rows);
+    let names: Vec<String> = fields.iter().map(|field| field.key()).collect();
     let mut text = format!("record,level,{},unit\n", names.join(","));
     for row in &product.rows {
         let record = row.record.map(|record| record.to_string());
         let level = row.level.map(|level| plain(level).to_string());
-        let values = FIELDS
+        let values = fields
             .iter()
             .map(|field| plain((field.of)(row)).to_string());
         let cells: Vec<String> = [record, level]

@@ -12,7 +12,7 @@ use crate::cli::report::volumes;
 use crate::cli::report::written::commit;
 use crate::error::{Error, Result};
 use crate::run::targets::{TABLES, add_table};
-use crate::run::{self, Input, SurfaceProduct, SurfaceReport, VolumeBase, VolumeOptions};
+use crate::run::{self, Bulking, Input, SurfaceProduct, SurfaceReport, VolumeBase, VolumeOptions};
 
 /// Computes cut and fill between two surfaces, or above levels.
 pub(crate) fn run(args: &VolumeArgs, console: &Console) -> Result<Exit> {
@@ -54,6 +54,10 @@ pub(crate) fn run(args: &VolumeArgs, console: &Console) -> Result<Exit> {
             .filter(|systems| systems.target.is_none())
             .and_then(|systems| systems.assign.clone()),
         unit: args.unit.map(Into::into),
+        bulking: (args.swell.is_some() || args.shrink.is_some()).then(|| Bulking {
+            swell: args.swell.unwrap_or(1.0),
+            shrink: args.shrink.unwrap_or(1.0),
+        }),
         names: [named(0), named(1)],
     };
     let Some(surface) = surfaces.first() else {

@@ -35,6 +35,58 @@ pub enum VolumeBase<'a> {
     Rim,
 }
 
+/// What ground takes when it is dug out and when it is compacted. By default, what it takes in
+/// place.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bulking {
+    /// The volume of loose ground, as a multiple of its volume in place: 1.25 if it swells by a
+    /// quarter.
+    pub swell: f64,
+    /// The volume of compacted ground, as a multiple of its volume in place: 0.9 if it shrinks by a
+    /// tenth.
+    pub shrink: f64,
+}
+
+/// The ground that is moved to get from a surface to its base, in volumes that depend on whether it
+/// is in place or loose.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Earthwork {
+    /// The volume of the cut once it is loose: what is hauled.
+    pub loose_cut: f64,
+    /// The volume in place of the ground that the fill takes.
+    pub bank_fill: f64,
+    /// The ground that is left over, in place: the cut minus what the fill takes. Negative if some
+    /// is missing.
+    pub balance: f64,
+}
+
+impl Bulking {
+    /// Returns what is moved for a volume.
+    fn earthwork(self, of: &Volume) -> Earthwork {
+        let bank_fill = of.fill / self.shrink;
+        Earthwork {
+            loose_cut: of.cut * self.swell,
+            bank_fill,
+            balance: of.cut - bank_fill,
+        }
+    }
+
+    /// Returns an error for a factor that is no positive number.
+    fn check(self) -> Result<()> {
+        for (factor, setting) in [(self.swell, Setting::Swell), (self.shrink, Setting::Shrink)] {
+            if !(factor.is_finite() && factor > 0.0) {
+                return Err(Error::usage(wording![
+                    "the factor of ",
+                    setting,
+                    format!(" is {factor}: expected a number above 0")
+                ])
+                .cure("give the volume as a multiple of that in place, such as 1.25 or 0.9"));
+            }
+        }
+        Ok(())
+    }
+}
+
 /// How volumes are computed. By default, of all of the surface.
 #[derive(Debug, Clone, Default)]
 pub struct VolumeOptions {
@@ -44,6 +96,8 @@ pub struct VolumeOptions {
     pub assign: Option<Crs>,
     /// The unit of the result; cubic meters if it is `None` and units are known.
     pub unit: Option<VolumeUnit>,
+    /// What ground takes when it is moved; rows then have [`Earthwork`].
+    pub bulking: Option<Bulking>,
     /// What messages call the surface and its base, such as the names of their files.
     pub names: [PathBuf; 2],
 }
@@ -85,6 +139,8 @@ pub struct VolumeRow {
     pub level: Option<f64>,
     /// The volumes and areas.
     pub volume: Volume,
+    /// What is moved, if [`Bulking`] is known.
+    pub earthwork: Option<Earthwork>,
 }
 
 /// Volumes between a surface and its base.
@@ -118,6 +174,7 @@ pub fn volume(
 ) -> Result<VolumeProduct> {
     let journal = Journal::new(context);
     context.check()?;
+    options.bulking.map_or(Ok(()), Bulking::check)?;
     let within = options.within.as_slice();
     let layers = layers::read(within, &[], OnDamage::Refuse, &journal)?;
     let crs = common_system(surface, base, &layers, options, &journal)?;
@@ -125,6 +182,7 @@ pub fn volume(
     let outlines = layers.first().map(Outlines::read).transpose()?;
     let computing = Computing {
         outlines: outlines.as_ref(),
+        height_unit: scale.volume / (scale.area * scale.area.sqrt()),
         context,
     };
     let mut rows = with_faces(surface, context, |faces| match base {
@@ -137,6 +195,9 @@ pub fn volume(
     note_nothing(&rows, outlines.as_ref(), base, &options.names, &journal);
     for row in &mut rows {
         row.volume = scale.applied(&row.volume);
+        row.earthwork = options
+            .bulking
+            .map(|bulking| bulking.earthwork(&row.volume));
     }
     Ok(VolumeProduct {
         rows,
@@ -278,6 +339,7 @@ impl Scale {
             common_area: of.common_area * self.area,
             surface_only_area: of.surface_only_area * self.area,
             base_only_area: of.base_only_area * self.area,
+            slope_area: of.slope_area * self.area,
         }
     }
 }
@@ -316,6 +378,8 @@ impl<'a> Outlines<'a> {
 /// What volumes are computed in, and under which context.
 struct Computing<'a> {
     outlines: Option<&'a Outlines<'a>>,
+    /// The unit of the heights in units of the plan.
+    height_unit: f64,
     context: &'a Context<'a>,
 }
 
@@ -329,7 +393,7 @@ impl Computing<'_> {
         };
         let surface = watched(surface, !is_swapped)?;
         let base = watched(base, is_swapped)?;
-        let found = terrain::volumes(&surface, terrain::VolumeBase::Surface(&base), self.zones())?;
+        let found = self.volumes(&surface, terrain::VolumeBase::Surface(&base), self.zones())?;
         surface.end()?;
         base.end()?;
         Ok(self.rows(None, found).collect())
@@ -340,8 +404,7 @@ impl Computing<'_> {
         let watched = Watched::faces(surface, visits, Stage::ComputingVolumes, self.context)?;
         let mut rows = Vec::new();
         for &level in levels {
-            let found =
-                terrain::volumes(&watched, terrain::VolumeBase::Level(level), self.zones())?;
+            let found = self.volumes(&watched, terrain::VolumeBase::Level(level), self.zones())?;
             rows.extend(self.rows(Some(level), found));
         }
         watched.end()?;
@@ -370,16 +433,25 @@ impl Computing<'_> {
         for (&record, rings) in records.iter().zip(rings) {
             let zone = Zones::new(std::slice::from_ref(rings))?;
             let base = rim_base(&zone, &interpolant).map_err(|e| at_record(e, path, record))?;
-            let found =
-                terrain::volumes(&watched, terrain::VolumeBase::Surface(&base), Some(&zone))?;
+            let found = self.volumes(&watched, terrain::VolumeBase::Surface(&base), Some(&zone))?;
             rows.extend(found.into_iter().map(|volume| VolumeRow {
                 record: Some(record),
                 level: None,
                 volume,
+                earthwork: None,
             }));
         }
         watched.end()?;
         Ok(rows)
+    }
+
+    fn volumes(
+        &self,
+        surface: &dyn Surface,
+        base: terrain::VolumeBase<'_>,
+        zones: Option<&Zones>,
+    ) -> Result<Vec<Volume>> {
+        terrain::volumes(surface, base, zones, self.height_unit)
     }
 
     fn zones(&self) -> Option<&Zones> {
@@ -398,6 +470,7 @@ impl Computing<'_> {
                 record: self.outlines.map(|outlines| outlines.records[zone]),
                 level,
                 volume,
+                earthwork: None,
             })
     }
 }

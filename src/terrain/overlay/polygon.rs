@@ -165,9 +165,7 @@ fn heights([one, other]: [Triangle; 2], corner: &Tagged) -> [f64; 2] {
     match corner.is {
         Kind::First(i) => [one[i as usize][2], within(other, corner.at)],
         Kind::Second(j) => [within(one, corner.at), other[j as usize][2]],
-        Kind::Crossing([i, j]) => {
-            [side(one, i), side(other, j)].map(|ends| along(ends, corner.at))
-        }
+        Kind::Crossing([i, j]) => [side(one, i), side(other, j)].map(|ends| along(ends, corner.at)),
     }
 }
 

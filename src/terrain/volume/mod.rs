@@ -51,6 +51,8 @@ pub struct Volume {
     pub surface_only_area: f64,
     /// The area in plan where only the base is; 0 if that is a level plane.
     pub base_only_area: f64,
+    /// The area of the surface itself, along its slopes, wherever it is.
+    pub slope_area: f64,
 }
 
 impl Volume {
@@ -72,7 +74,8 @@ impl Volume {
 }
 
 /// Returns the volumes between a surface and its base: in each zone, or of the whole if there are
-/// none.
+/// none. `height_unit` is the unit of the heights in units of the plan, on which areas along slopes
+/// depend: 1 if they are the same.
 ///
 /// Sums are exact: results depend on the faces alone, not on their order or on the number of
 /// threads, and with the surfaces exchanged cut and fill are exchanged, bit for bit. What is added,
@@ -91,6 +94,7 @@ pub fn volumes(
     surface: &dyn Surface,
     base: VolumeBase<'_>,
     zones: Option<&Zones>,
+    height_unit: f64,
 ) -> Result<Vec<Volume>> {
     let around = Around::faces_of(surface);
     let units = match base {
@@ -107,14 +111,18 @@ pub fn volumes(
             around.with([level(around.min), level(around.max)])
         }
     }
-    .units()?;
-    let rows = Rows { units, zones };
+    .units(height_unit)?;
+    let rows = Rows {
+        units,
+        zones,
+        height_unit,
+    };
     let area_of = |surface| rows.of_faces(surface, |_| [0.0; 2]);
     let (common, base_area) = match base {
         VolumeBase::Surface(other) => {
             let mut common = TotalsByRow::default();
             let add = |sums: &mut RowBuffer, overlap: Overlap<'_>| {
-                rows.add(sums, overlap.origin, overlap.corners);
+                rows.add(sums, overlap.origin, overlap.corners, None);
             };
             overlay([surface, other], add, |sums| common.add(&sums.rows));
             (common, area_of(other))
@@ -126,8 +134,8 @@ pub fn volumes(
     };
     // A level is wherever the surface is.
     let surface_area = match base {
-        VolumeBase::Surface(_) => Some(area_of(surface)),
-        VolumeBase::Level(_) => None,
+        VolumeBase::Surface(_) => &area_of(surface),
+        VolumeBase::Level(_) => &common,
     };
     surface.ensure_intact()?;
     if let VolumeBase::Surface(other) = base {
@@ -146,8 +154,9 @@ pub fn volumes(
                 cut_area: area(0),
                 fill_area: area(1),
                 common_area: units.area.value(of_both.area),
-                surface_only_area: surface_area.as_ref().map_or(0.0, |areas| only(areas).max(0.0)),
+                surface_only_area: only(surface_area).max(0.0),
                 base_only_area: only(&base_area).max(0.0),
+                slope_area: units.slope_area.value(surface_area.row(row).slope_area),
             }
         })
         .collect())
@@ -158,6 +167,7 @@ pub fn volumes(
 struct Units {
     volume: Unit,
     area: Unit,
+    slope_area: Unit,
 }
 
 /// Sums of one row of the result.
@@ -166,6 +176,7 @@ struct Totals {
     volumes: [Sum; 2],
     areas: [Sum; 2],
     area: Sum,
+    slope_area: Sum,
 }
 
 /// Sums of all rows; those at the end that are 0 may be missing.
@@ -192,6 +203,7 @@ impl TotalsByRow {
                 sums.areas[k] += more.areas[k];
             }
             sums.area += more.area;
+            sums.slope_area += more.slope_area;
         }
     }
 }
@@ -208,27 +220,38 @@ struct RowBuffer {
 struct Rows<'a> {
     units: Units,
     zones: Option<&'a Zones>,
+    height_unit: f64,
 }
 
 impl Rows<'_> {
-    /// Adds a polygon, relative to an origin, to the row of each zone that it is in.
-    fn add(&self, sums: &mut RowBuffer, origin: [f64; 3], corners: &[Corner]) {
+    /// Adds a polygon, relative to an origin, to the row of each zone that it is in; its area along
+    /// the slope if the stretch of that is given.
+    fn add(
+        &self,
+        sums: &mut RowBuffer,
+        origin: [f64; 3],
+        corners: &[Corner],
+        stretch: Option<f64>,
+    ) {
         let RowBuffer { rows, part } = sums;
         match self.zones {
-            None => self.add_to(rows.of_row(0), corners),
+            None => self.add_to(rows.of_row(0), corners, stretch),
             Some(zones) => zones.parts(origin, corners, part, |zone, corners| {
-                self.add_to(rows.of_row(zone), corners);
+                self.add_to(rows.of_row(zone), corners, stretch);
             }),
         }
     }
 
-    fn add_to(&self, totals: &mut Totals, corners: &[Corner]) {
+    fn add_to(&self, totals: &mut Totals, corners: &[Corner], stretch: Option<f64>) {
         let part = integral(corners);
         for k in 0..2 {
             totals.volumes[k] += self.units.volume.of(part.volumes[k]);
             totals.areas[k] += self.units.area.of(part.areas[k]);
         }
         totals.area += self.units.area.of(part.area);
+        if let Some(stretch) = stretch {
+            totals.slope_area += self.units.slope_area.of(part.area * stretch);
+        }
     }
 
     /// Returns the sums over the faces of a surface; `heights` returns both heights at a corner
@@ -249,7 +272,8 @@ impl Rows<'_> {
                     at: [x - origin[0], y - origin[1]],
                     heights: heights(z),
                 });
-                self.add(&mut sums, origin, &corners);
+                let stretch = stretch(triangle, self.height_unit);
+                self.add(&mut sums, origin, &corners, Some(stretch));
             }
             sums.rows
         };
@@ -259,6 +283,16 @@ impl Rows<'_> {
         });
         all
     }
+}
+
+/// Returns the area of a triangle divided by its area in plan: 1 if it is level, or if its area in
+/// plan is 0.
+fn stretch([a, b, c]: [[f64; 3]; 3], height_unit: f64) -> f64 {
+    let [u, v] = [b, c].map(|p| [0, 1, 2].map(|k| p[k] - a[k]));
+    let cross = |i: usize, j: usize| u[i] * v[j] - u[j] * v[i];
+    let [x, y] = [cross(1, 2), cross(2, 0)].map(|area| area * height_unit);
+    let stretch = x.hypot(y).hypot(cross(0, 1)) / cross(0, 1);
+    if stretch.is_finite() { stretch } else { 1.0 }
 }
 
 /// The box around the faces of a surface.
@@ -299,7 +333,7 @@ impl Around {
     ///
     /// # Errors
     /// If a size is so large or so small that products of sizes are no numbers, or 0.
-    fn units(&self) -> Result<Units> {
+    fn units(&self, height_unit: f64) -> Result<Units> {
         let sizes = [0, 1, 2].map(|k| (self.max[k] - self.min[k]).max(0.0));
         if let Some(size) = sizes
             .iter()
@@ -317,6 +351,9 @@ impl Around {
         Ok(Units {
             volume: Unit::for_up_to(area * relief),
             area: Unit::for_up_to(area),
+            // Of a surface that rises once over its size; there is room for a hundred million times
+            // as much.
+            slope_area: Unit::for_up_to(area + relief * height_unit * (width + depth)),
         })
     }
 }

@@ -2,7 +2,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::parse::{LevelSteps, finite};
+use super::parse::{LevelSteps, finite, positive};
 use super::surface::SurfaceArgs;
 use crate::run::VolumeUnit;
 
@@ -18,7 +18,7 @@ use crate::run::VolumeUnit;
 #[command(after_long_help = "\
 Example:
   breakline volume june.laz may.laz --within site.shp -o volumes.csv
-  breakline volume ground.tin --plane 104.5
+  breakline volume ground.tin --plane 104.5 --swell 1.25 --shrink 0.9
   breakline volume lake.tin --levels 100:120:0.5 --json
   breakline volume flight.laz --class all --base rim --within stockpiles.shp")]
 pub(crate) struct VolumeArgs {
@@ -53,6 +53,18 @@ pub(crate) struct VolumeArgs {
     /// Unit of volumes; areas are in its squares [default: m3]
     #[arg(long, value_enum, value_name = "UNIT", help_heading = "Volume")]
     pub(crate) unit: Option<UnitArg>,
+
+    /// Volume of loose ground, as a multiple of that in place: 1.25 if it swells by a quarter
+    ///
+    /// With this or --shrink there are three more numbers: `loose cut`, what is hauled; `bank
+    /// fill`, the ground that the fill takes, in place; `balance`, the ground that is left over, in
+    /// place.
+    #[arg(long, value_name = "FACTOR", value_parser = positive, allow_negative_numbers = true, help_heading = "Volume")]
+    pub(crate) swell: Option<f64>,
+
+    /// Volume of compacted ground, as a multiple of that in place: 0.9 if it shrinks by a tenth
+    #[arg(long, value_name = "FACTOR", value_parser = positive, allow_negative_numbers = true, help_heading = "Volume")]
+    pub(crate) shrink: Option<f64>,
 
     /// Print a JSON object with exact numbers
     #[arg(long, help_heading = "Volume")]
