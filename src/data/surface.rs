@@ -288,6 +288,19 @@ pub trait Surface: Sync {
         }));
     }
 
+    /// Appends the faces that may contain a position, and in any case all that do, in any order.
+    /// Returns false if these are not known without a search of all faces; then nothing is
+    /// appended.
+    ///
+    /// `near` is where a walk starts: the face or triangle that the call before left there. The
+    /// faces that contain the position do not depend on it.
+    ///
+    /// # Complexity
+    /// That of a walk, for a triangulation; constant for a raster.
+    fn faces_at(&self, _q: [f64; 2], _near: &mut Option<u32>, _faces: &mut Vec<u32>) -> bool {
+        false
+    }
+
     /// Appends the faces in a range of numbers whose heights are wanted, in order, each with the
     /// heights of its corners.
     ///

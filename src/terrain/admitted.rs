@@ -1,4 +1,4 @@
-//! The error for points outside of the range of the arithmetic.
+//! Coordinates outside of the range of the arithmetic.
 
 use crate::error::Error;
 use crate::triangulation::kernel::{RANGE, Range};
@@ -13,4 +13,17 @@ pub(super) fn refused(p: [f64; 3]) -> Error {
         ));
     }
     Error::format(format!("{p:?} is not a finite point"))
+}
+
+/// Returns a position for a search: coordinates below the range of the arithmetic count as zero.
+/// Those above it are beyond all vertices.
+#[inline]
+pub(super) fn searched(q: [f64; 2]) -> [f64; 2] {
+    q.map(|c| {
+        if c.abs() < RANGE.min && !RANGE.admits(c) {
+            0.0
+        } else {
+            c
+        }
+    })
 }

@@ -344,6 +344,26 @@ impl Surface for GridSurface<'_> {
         }
     }
 
+    fn faces_at(&self, [x, y]: [f64; 2], _near: &mut Option<u32>, faces: &mut Vec<u32>) -> bool {
+        /// The distance from the border of a quad, in cells, within which rounding may hide on
+        /// which side a position is: `Frame::checked` ensures that a center is within 2^-13 of a
+        /// cell of its exact position.
+        const SLACK: f64 = 1e-3;
+        let [column, row] = self.grid.frame.inverse().apply(x, y);
+        let quads = |at: f64, count: usize| {
+            let [first, end] = [at - SLACK, at + SLACK].map(|at| at.max(0.0).min(count as f64));
+            first.floor() as usize..(end.floor() as usize + 1).min(count)
+        };
+        // The first quad begins at the center of the first cell.
+        let columns = quads(column - 0.5, self.quads[0]);
+        for row in quads(row - 0.5 - self.first_row as f64, self.quads[1]) {
+            for column in columns.clone() {
+                faces.extend((0..4).map(|which| self.face_at([column, row], which)));
+            }
+        }
+        true
+    }
+
     fn heights_in(
         &self,
         numbers: Range<u32>,

@@ -5,12 +5,14 @@
 //! | points of many classes | the ground | [`Selection`] |
 //! | points and breaklines | a surface | [`TinBuilder`], which builds a [`Tin`] |
 //! | a TIN | the height at a position | [`Tin::elevation`] |
+//! | any surface | heights and gradients at many positions | [`Sampler`] |
 //! | any surface | a DEM | [`Dem`] |
 //! | any surface | smooth heights between its vertices | [`Interpolant`], by a [`Method`] |
 //! | any surface | contours | [`contours()`], at [`Levels`] |
 //! | a DEM | contours | [`GridSurface`], a surface over its cells |
 //! | a DEM | shaded relief | [`Hillshade`] |
 //! | a DEM | slope, aspect, curvature, roughness | [`QuantityMap`], of a [`Quantity`] |
+//! | a surface, and points known better | how far they are apart | [`ErrorStatistics`], [`Histogram`] |
 //! | two surfaces, or one and a level | cut and fill | [`volumes()`], in [`Zones`] |
 //! | a TIN in a file | a surface, at once | [`CompactTin`] |
 //! | more points than fit into memory | their triangles, from tiles | [`tiles`] |
@@ -65,8 +67,10 @@ mod rasterize;
 mod regions;
 mod ridges;
 mod rim_rule;
+mod sample;
 mod selection;
 mod soundness;
+mod statistics;
 mod thin;
 pub mod tiles;
 mod tin;
@@ -96,8 +100,11 @@ pub(crate) use near_lines::NearLines;
 pub(crate) use point_rim::deciding;
 pub use rasterize::{Canvas, CanvasBlock, Dem, DemOfParts};
 pub use rim_rule::RimRule;
+pub(crate) use sample::along_curve;
+pub use sample::{Sample, Sampler};
 pub use selection::{Classes, Selection, SelectionReport};
 pub use soundness::{SurfaceFlaw, shape_flaws, surface_flaws};
+pub use statistics::{ErrorStatistics, Histogram};
 pub use tin::Tin;
 pub use tin_report::TinReport;
 pub use volume::{Volume, VolumeBase, Zones, volumes};

@@ -7,10 +7,10 @@ use crate::crs::Crs;
 use crate::data::{AT_ONCE, BaseFace, Bounds, Census, EdgeKind, Face, LineEdges, Surface};
 use crate::error::Result;
 use crate::triangulation::geometry::Terrain;
-use crate::triangulation::kernel::RANGE;
 use crate::triangulation::tds::{CellId, VertexId, ccw, cw};
 use crate::triangulation::{ConstrainedDelaunay, Flaw, Level, LineId, Location};
 
+use super::admitted::searched;
 use super::cut::SurfaceCut;
 use super::linear::{linear, plan_distance};
 use super::lines::kinds::LineKinds;
@@ -102,15 +102,7 @@ impl Tin {
     /// one at the position there: with the same variable for positions next to each other, walks
     /// are short. The result does not depend on it.
     pub fn elevation_near(&self, q: [f64; 2], near: &mut Option<CellId>) -> Option<f64> {
-        // Coordinates below the range of the arithmetic count as zero; those above are beyond all
-        // vertices.
-        let [x, y] = q.map(|c| {
-            if c.abs() < RANGE.min && !RANGE.admits(c) {
-                0.0
-            } else {
-                c
-            }
-        });
+        let [x, y] = searched(q);
         let location = self.triangulation.locate(&[x, y, 0.0], *near);
         *near = location.cell(&self.triangulation).or(*near);
         let in_whole = match location {
@@ -438,6 +430,37 @@ impl Surface for Tin {
                 edges: self.kinds(number),
             })
         }));
+    }
+
+    fn faces_at(&self, q: [f64; 2], near: &mut Option<u32>, faces: &mut Vec<u32>) -> bool {
+        let start = near.map(|cell| CellId::new(cell as usize));
+        let location = self.triangulation.locate(&[q[0], q[1], 0.0], start);
+        let tds = self.triangulation.tds();
+        if let Some(cell) = location.cell(&self.triangulation) {
+            *near = Some(cell.index() as u32);
+        }
+        // True if there may be fragments at the position.
+        let mut is_open = false;
+        let mut add = |cell: CellId| match self.inside[cell.index()] {
+            true => faces.push(cell.index() as u32),
+            false => is_open = true,
+        };
+        match location {
+            Location::Vertex(vertex) => tds.around(vertex).for_each(add),
+            Location::Cell { cell, .. } => {
+                add(cell);
+                location
+                    .facets()
+                    .for_each(|(cell, i)| add(tds.neighbor(cell, i)));
+            }
+            Location::OutsideHull { .. } | Location::OutsideAffineHull | Location::Nowhere => {
+                is_open = true;
+            }
+        }
+        if let Some(cut) = self.cut.as_ref().filter(|_| is_open) {
+            cut.faces_at(q, faces);
+        }
+        true
     }
 
     fn base_count(&self) -> usize {

@@ -151,6 +151,10 @@ impl<S: Surface + ?Sized> Surface for Watched<'_, S> {
         self.source.ensure_intact()
     }
 
+    fn faces_at(&self, q: [f64; 2], near: &mut Option<u32>, faces: &mut Vec<u32>) -> bool {
+        self.source.faces_at(q, near, faces)
+    }
+
     fn write_tin(&self, out: &mut dyn Write) -> Result<()> {
         self.source.write_tin(&mut Polled {
             out,

@@ -21,10 +21,10 @@ use crate::crs::Crs;
 use crate::data::{BaseFace, EdgeKind, Surface, SurfaceFacts};
 use crate::error::{Command, Error, Result, wording};
 use crate::triangulation::geometry::{Geometry, Terrain};
-use crate::triangulation::kernel::RANGE;
 use crate::triangulation::tds::{CellId, Complex, VertexId};
 use crate::triangulation::{Compact, CompactError, CompactSection, Location};
 
+use super::admitted::searched;
 use super::linear::linear;
 use attributes::Attributes;
 pub use index::{TinIndex, TinIndexPart};
@@ -251,13 +251,7 @@ impl<B: AsRef<[u8]>> CompactTin<B> {
     }
 
     fn find_elevation(&self, q: [f64; 2], near: &mut Option<CellId>) -> Found<Option<f64>> {
-        let q = q.map(|c| {
-            if c.abs() < RANGE.min && !RANGE.admits(c) {
-                0.0
-            } else {
-                c
-            }
-        });
+        let q = searched(q);
         let location = self.triangulation.locate(&[q[0], q[1], 0.0], *near)?;
         *near = location.cell_in(&self.triangulation)?.or(*near);
         // The first of them, however they were reached: rounded heights of two cells may differ.
@@ -275,6 +269,28 @@ impl<B: AsRef<[u8]>> CompactTin<B> {
             .corners(cell)?
             .map(|vertex| self.point(vertex.index() as u32));
         Ok(Some(linear([a?, b?, c?], q)))
+    }
+
+    /// Appends the faces at a position; returns false if fragments may be there, which are not
+    /// linked to a search.
+    fn find_faces(&self, q: [f64; 2], near: &mut Option<u32>, faces: &mut Vec<u32>) -> Found<bool> {
+        let start = near.map(|cell| CellId::new(cell as usize));
+        let location = self.triangulation.locate(&[q[0], q[1], 0.0], start)?;
+        if let Some(cell) = location.cell_in(&self.triangulation)? {
+            *near = Some(cell.index() as u32);
+        }
+        let cells = match location {
+            Location::Cell { cell, facets } if facets.is_empty() => vec![cell],
+            _ => location.cells(&self.triangulation)?,
+        };
+        let is_inside = |cell: &CellId| self.is_inside(cell.index());
+        let is_whole = !cells.is_empty() && cells.iter().all(is_inside);
+        if self.has_fragments() && !is_whole {
+            return Ok(false);
+        }
+        let inside = cells.into_iter().filter(is_inside);
+        faces.extend(inside.map(|cell| cell.index() as u32));
+        Ok(true)
     }
 
     fn face_numbers(&self) -> usize {
@@ -548,6 +564,10 @@ impl<B: AsRef<[u8]> + Sync> Surface for CompactTin<B> {
 
     fn crs(&self) -> Option<&Crs> {
         self.attributes.crs.as_ref()
+    }
+
+    fn faces_at(&self, q: [f64; 2], near: &mut Option<u32>, faces: &mut Vec<u32>) -> bool {
+        self.or_record(self.find_faces(q, near, faces), true)
     }
 
     fn base_count(&self) -> usize {

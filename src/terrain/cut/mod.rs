@@ -222,6 +222,18 @@ impl SurfaceCut {
         self.remains.clipped.contains(&(face, i))
     }
 
+    /// Appends the fragments at a position.
+    pub(super) fn faces_at(&self, [x, y]: [f64; 2], faces: &mut Vec<u32>) {
+        let triangulation = &self.patch.triangulation;
+        let location = triangulation.locate(&[x, y, 0.0], None);
+        let Ok(cells) = location.cells(triangulation.tds());
+        let fragments = cells
+            .into_iter()
+            .map(CellId::index)
+            .filter(|&cell| self.remains.is_fragment[cell]);
+        faces.extend(fragments.map(|cell| (self.first_fragment + cell) as u32));
+    }
+
     /// The height at a position in plan, if it lies in a fragment. The position must be admitted.
     pub(super) fn elevation(&self, [x, y]: [f64; 2]) -> Option<f64> {
         let triangulation = &self.patch.triangulation;

@@ -3,6 +3,7 @@
 mod quantity;
 mod shade;
 
+pub(crate) use self::quantity::direction;
 pub use self::quantity::{Gradient, Quantity, QuantityMap, Ruggedness};
 pub use self::shade::{Hillshade, Light};
 use crate::crs::Crs;

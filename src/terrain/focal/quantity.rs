@@ -184,7 +184,7 @@ impl Scaled {
 
 /// Returns the direction in which a surface with a gradient falls, in degrees clockwise from north
 /// and below 360; NaN if it is level.
-fn direction([p, q]: [f64; 2]) -> f64 {
+pub(crate) fn direction([p, q]: [f64; 2]) -> f64 {
     if p == 0.0 && q == 0.0 {
         return f64::NAN;
     }

@@ -126,6 +126,15 @@ impl<'a, S: Surface + ?Sized> Dem<'a, S> {
     }
 }
 
+/// Returns the height of a triangle at a position, bit for bit that of a cell of a north-up raster
+/// there before it is rounded to 32 bits; `None` outside.
+///
+/// The position must be finite.
+pub(super) fn height_at(corners: [[f64; 3]; 3], [x, y]: [f64; 2]) -> Option<f64> {
+    // In the plane of the scan, in which the rows of such a raster ascend.
+    scan::height_at(corners.map(|[x, y, z]| [x, -y, z]), [x, -y])
+}
+
 /// Draws the faces of a surface that meet a window into its cells.
 fn draw<S: Surface + ?Sized>(
     surface: &S,

@@ -59,14 +59,36 @@ impl Ink for Heights<'_> {
 
 /// Returns the height at each x of a segment with these ends.
 #[inline(always)]
-pub(super) fn heights_along(
-    centers: &[f64],
-    [left, right]: [(f64, f64); 2],
-) -> impl Iterator<Item = f32> {
+pub(super) fn heights_along(centers: &[f64], ends: [(f64, f64); 2]) -> impl Iterator<Item = f32> {
+    let height = height_along(ends);
+    centers.iter().map(move |&x| height(x) as f32)
+}
+
+/// Returns the function from x to the height on a segment with these ends.
+#[inline(always)]
+fn height_along([left, right]: [(f64, f64); 2]) -> impl Fn(f64) -> f64 {
     let slope = (right.1 - left.1) / (right.0 - left.0);
-    centers
-        .iter()
-        .map(move |x| (left.1 + (x - left.0) * slope) as f32)
+    move |x| left.1 + (x - left.0) * slope
+}
+
+/// Returns the height of a triangle at a position, bit for bit that of a cell with this center;
+/// `None` outside of the triangle, and on a triangle without area except at its corners. The
+/// corners may be in any order.
+pub(super) fn height_at(corners: [[f64; 3]; 3], [x, y]: [f64; 2]) -> Option<f64> {
+    let face = Face::new(corners);
+    let [low, _, high] = &face.corners;
+    if !(low[1] <= y && y <= high[1]) {
+        return None;
+    }
+    let ends = face.ends(y);
+    let [left, right] = ends.map(|end| end.0);
+    if x < left - face.error || x > right + face.error {
+        None
+    } else if x <= left + face.error || x >= right - face.error {
+        face.judge(x, y, ends)
+    } else {
+        Some(height_along(ends)(x))
+    }
 }
 
 /// Writes the number of the face.
@@ -113,7 +135,7 @@ impl Scan<'_> {
         ink: &mut impl Ink,
     ) {
         let face = Face::new(corners);
-        let [low, middle, high] = &face.corners;
+        let [low, _, high] = &face.corners;
         let first = self.rows.at_or_after(low[1]).max(rows.start);
         let end = self.rows.after(high[1]).min(rows.end);
         if first >= end {
@@ -123,15 +145,7 @@ impl Scan<'_> {
         let centers = columns_of_block.values();
         for row in first..end {
             let y = rows_of_block.values()[row];
-            let mut left = cut(low, high, y);
-            let mut right = if y < middle[1] {
-                cut(low, middle, y)
-            } else {
-                cut(middle, high, y)
-            };
-            if right.0 < left.0 {
-                std::mem::swap(&mut left, &mut right);
-            }
+            let [left, right] = face.ends(y);
             let from = columns_of_block
                 .at_or_after(left.0 - face.error)
                 .max(columns.start);
@@ -185,6 +199,23 @@ impl Face {
             corners,
             error: 8.0 * f64::EPSILON * largest,
         }
+    }
+
+    /// Returns the left and the right end of the segment in which the row of centers at `y` cuts
+    /// the face, each with its height.
+    #[inline(always)]
+    fn ends(&self, y: f64) -> [(f64, f64); 2] {
+        let [low, middle, high] = &self.corners;
+        let mut left = cut(low, high, y);
+        let mut right = if y < middle[1] {
+            cut(low, middle, y)
+        } else {
+            cut(middle, high, y)
+        };
+        if right.0 < left.0 {
+            std::mem::swap(&mut left, &mut right);
+        }
+        [left, right]
     }
 
     /// Returns the height of a cell whose center is close to the border of the face, unless it is
