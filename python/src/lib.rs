@@ -11,6 +11,7 @@
 use pyo3::prelude::*;
 
 mod arrays;
+mod compare;
 mod errors;
 mod files;
 mod names;
@@ -29,6 +30,8 @@ mod write;
 mod _breakline {
     use pyo3::prelude::*;
 
+    #[pymodule_export]
+    use super::compare::compare;
     #[pymodule_export]
     use super::files::{
         check_space, class_numbers, describe, info, is_of_space, main, read_points, triangulate,

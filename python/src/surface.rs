@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use breakline::crs::Crs;
 use breakline::data::{ContourLine, EdgeKind, Frame, Grid, Surface as _};
 use breakline::io::geotiff::CellFormat;
 use breakline::io::{Destination, formats, mapped, mesh};
@@ -12,7 +13,7 @@ use breakline::run::{
 };
 use breakline::terrain::CompactTin;
 use breakline::{Error, io};
-use numpy::{PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
+use numpy::{Element, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 
@@ -25,7 +26,7 @@ use crate::{arrays, notices, reports};
 
 /// A raster in Python: its cells by rows, its transform in GDAL's order, and its coordinate system
 /// as WKT.
-type Raster<'py> = (Bound<'py, PyAny>, [f64; 6], Option<String>);
+pub(crate) type Raster<'py> = (Bound<'py, PyAny>, [f64; 6], Option<String>);
 
 /// Contours in Python: all vertices, where each line begins among them (and where the last one
 /// ends), and the height of each line.
@@ -258,12 +259,7 @@ impl Surface {
         let (frame, heights) = work::run(py, &call, |context| -> Result<_> {
             Ok(run::dem(product, &options, context)?.collect_cells(context)?)
         })?;
-        self.raster(
-            &frame,
-            arrays::column(py, heights)
-                .reshape([frame.height, frame.width])?
-                .into_any(),
-        )
+        raster_of(py, &frame, heights, self.product.crs())
     }
 
     /// Computes a quantity in cells. `quantity` has the name of the verb, its formula, whether it
@@ -281,12 +277,7 @@ impl Surface {
         let (frame, values) = work::run(py, &call, |context| -> Result<_> {
             Ok(run::quantity(product, &options, context)?.collect_cells(context)?)
         })?;
-        self.raster(
-            &frame,
-            arrays::column(py, values)
-                .reshape([frame.height, frame.width])?
-                .into_any(),
-        )
+        raster_of(py, &frame, values, self.product.crs())
     }
 
     /// Computes shades from 1 to 255, 0 where there is no height.
@@ -322,12 +313,7 @@ impl Surface {
                     .collect::<Vec<u8>>(),
             ))
         })?;
-        self.raster(
-            &frame,
-            arrays::column(py, shades)
-                .reshape([frame.height, frame.width])?
-                .into_any(),
-        )
+        raster_of(py, &frame, shades, self.product.crs())
     }
 
     /// Draws contours.
@@ -403,14 +389,17 @@ impl Surface {
             Model::Parts(_) | Model::Raster(_) | Model::RasterFile(_) => None,
         }
     }
+}
 
-    fn raster<'py>(&self, frame: &Frame, cells: Bound<'py, PyAny>) -> PyResult<Raster<'py>> {
-        Ok((
-            cells,
-            frame.transform,
-            self.product.crs().map(breakline::crs::Crs::to_wkt),
-        ))
-    }
+/// Returns the cells of a raster as an array, with its transform and its coordinate system.
+pub(crate) fn raster_of<'py, T: Element>(
+    py: Python<'py>,
+    frame: &Frame,
+    cells: Vec<T>,
+    crs: Option<&Crs>,
+) -> PyResult<Raster<'py>> {
+    let cells = arrays::column(py, cells).reshape([frame.height, frame.width])?;
+    Ok((cells.into_any(), frame.transform, crs.map(Crs::to_wkt)))
 }
 
 /// Writes a file, unless there is one that must be kept.

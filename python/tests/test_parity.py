@@ -39,7 +39,7 @@ RASTERS = ("dem", "hillshade", "slope", "aspect", "curvature", "roughness", "tri
 WRITTEN = {"tin": breakline.Tin, "contour": breakline.Contours, **dict.fromkeys(RASTERS, breakline.Raster)}
 
 #: Options that a verb does not need because of what it returns.
-OF_RESULTS = {"check": {"overwrite"}, "volume": {"output", "overwrite"}}
+OF_RESULTS = {"check": {"overwrite"}, "volume": {"output", "overwrite"}, "compare": {"output", "overwrite"}}
 
 #: Names of positional arguments.
 POSITIONAL = {"inputs": {"points", "inputs", "a"}, "input": {"path"}, "files": {"path"}}
@@ -92,9 +92,9 @@ def test_a_verb_is_a_function_and_its_options_are_parameters(verb):
 def test_parameters_are_options(verb):
     known = {parameter_name(verb, option["name"]) for option in [*VERBS[verb]["options"], *PROGRAM["options"]]}
     known |= {"points", "inputs", "path", "progress"}
-    if verb in WRITTEN or verb in ("check", "volume"):
+    if verb in WRITTEN or verb in ("check", "volume", "compare"):
         known |= {"bounds"}
-    if verb == "volume":
+    if verb in ("volume", "compare"):
         known |= {"a", "b"}
     assert set(parameters(getattr(breakline, verb))) <= known
 

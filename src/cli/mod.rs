@@ -112,6 +112,7 @@ fn dispatch(verb: &Verb, how: &ConsoleArgs, console: &Console) -> Result<Exit> {
         Verb::Triangulate(args) => verbs::triangulate::run(args, console),
         Verb::Check(args) => verbs::check::run(args, console),
         Verb::Volume(args) => verbs::volume::run(args, console),
+        Verb::Compare(args) => verbs::compare::run(args, console),
         Verb::Job(args) => verbs::job::run(args, console),
         Verb::Demo(args) => verbs::demo::run(args, how, console, &|words| run(words)),
         Verb::Describe(args) => verbs::describe::run(args),

@@ -101,6 +101,7 @@ pub use products::cells::{
     quantity,
 };
 pub use products::check::{CheckProduct, FlawKind, LocatedFlaw, check, surface_flaws};
+pub use products::compare::{CompareOptions, CompareProduct, compare};
 pub use products::contour::{ContourOptions, ContourProduct, contour, write_contours};
 pub use products::edge_limit::EdgeLimit;
 pub use products::elevation::{Heights, elevations};

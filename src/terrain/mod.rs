@@ -14,6 +14,7 @@
 //! | a DEM | slope, aspect, curvature, roughness | [`QuantityMap`], of a [`Quantity`] |
 //! | a surface, and points known better | how far they are apart | [`ErrorStatistics`], [`Histogram`] |
 //! | two surfaces, or one and a level | cut and fill | [`volumes()`], in [`Zones`] |
+//! | two rasters of the same cells | their difference | [`Difference`] |
 //! | a TIN in a file | a surface, at once | [`CompactTin`] |
 //! | more points than fit into memory | their triangles, from tiles | [`tiles`] |
 //! | triangles from tiles | the contours of the whole | [`contour::parts`] |
@@ -49,6 +50,7 @@ mod compact;
 pub mod contour;
 mod crossings;
 mod cut;
+mod difference;
 mod duplicates;
 mod focal;
 mod grid_surface;
@@ -83,6 +85,7 @@ pub use caps::{LeftOutAtRim, LostCaps};
 pub use compact::{CompactTin, PartCell, TinIndex, TinIndexPart};
 pub use contour::{Contours, contours};
 pub use crossings::{CrossingHeights, CrossingRule};
+pub use difference::{Difference, LargeDifference, largest_differences};
 pub use duplicates::DuplicateRule;
 pub(crate) use duplicates::one_per_site;
 pub use focal::{Focal, Gradient, Hillshade, Light, Quantity, QuantityMap, Ruggedness};

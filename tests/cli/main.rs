@@ -4,6 +4,7 @@
 mod program;
 
 mod columns;
+mod comparisons;
 mod crossings;
 mod demo;
 mod habits;

@@ -23,6 +23,7 @@ fn help_goes_to_stdout_and_tells_each_verb_with_an_example() {
         "tri",
         "tpi",
         "volume",
+        "compare",
         "check",
         "demo",
     ] {

@@ -18,6 +18,7 @@ a picture           :meth:`Tin.hillshade`, :func:`hillshade`
 slopes              :func:`slope`, :func:`aspect`, :func:`curvature`
 ruggedness          :func:`roughness`, :func:`tri`, :func:`tpi`
 cut and fill        :func:`volume`
+a difference        :func:`compare`
 flaws               :meth:`Tin.check`, :func:`check`
 facts about a file  :func:`info`
 Triangle's files    :func:`triangulate`
@@ -30,6 +31,7 @@ a :class:`BreaklineWarning`.
 
 from ._breakline import __version__
 from ._columns import Points
+from ._differences import Comparison, compare
 from ._errors import (
     ArgumentTypeError,
     BreaklineError,
@@ -71,6 +73,7 @@ __all__ = [
     "BreaklineError",
     "BreaklineWarning",
     "CanceledError",
+    "Comparison",
     "Contour",
     "Contours",
     "FileError",
@@ -97,6 +100,7 @@ __all__ = [
     "__version__",
     "aspect",
     "check",
+    "compare",
     "contour",
     "curvature",
     "dem",

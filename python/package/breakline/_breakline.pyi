@@ -72,11 +72,35 @@ def volume(
     within: Any,
     assign: Optional[str],
     unit: Optional[str],
+    bulking: Optional[list[float]],
     names: list[str],
     call: _Call,
 ) -> tuple[
-    list[tuple[Optional[int], Optional[float], tuple[float, float, float, float, float, float, float, float, float]]],
+    list[
+        tuple[
+            Optional[int],
+            Optional[float],
+            tuple[float, float, float, float, float, float, float, float, float, float],
+            tuple[Optional[float], Optional[float], Optional[float]],
+        ]
+    ],
     Optional[str],
+]: ...
+def compare(
+    first: Surface,
+    second: Surface,
+    frame: dict[str, Any],
+    method: str,
+    worst: int,
+    changed: Optional[float],
+    names: list[str],
+    call: _Call,
+) -> tuple[
+    _Raster,
+    int,
+    tuple[float, float, float, float, float, float, float, float, float],
+    NDArray[np.float64],
+    Optional[tuple[int, int]],
 ]: ...
 def check_file(file: str, call: _Call) -> _Flaws: ...
 def check_space(file: str, weighted: bool, call: _Call) -> list[str]: ...

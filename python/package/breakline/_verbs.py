@@ -398,9 +398,7 @@ def volume(
         raise usage("volumes have one base", named or None, "pass one of b, plane, levels and base")
     if base not in (None, "rim"):
         raise usage("base has an unknown value", base, 'use base="rim"')
-    for name in [*HOW, "flat_points"]:
-        if name in surface:
-            raise usage(f"{name} is for a surface that is kept", surface[name], f"leave {name} out")
+    refuse_kept(surface)
     heights = None if levels is None else [_inputs.number(level, "levels") for level in levels]
     if plane is not None:
         heights = [_inputs.number(plane, "plane")]
@@ -408,15 +406,9 @@ def volume(
     if len(outlines) > 1:
         raise usage("polygons of several layers", len(outlines), "pass one file, or one list of polygons")
     inputs = [a] if b is None else [a, b]
-    is_built = [_is_built(points) for points in inputs]
-    of_any = {name: value for name, value in surface.items() if name in FOR_ANY}
-    found = [
-        # The options are for the other one, if that is built.
-        surface_of(points, of_any if any(is_built) and not built else surface, threads, progress)
-        for points, built in zip(inputs, is_built)
-    ]
+    found = surfaces_of(inputs, surface, threads, progress)
     factors = [_inputs.number(1 if factor is None else factor, name) for factor, name in [(swell, "swell"), (shrink, "shrink")]]
-    names = [os.fspath(item) if _inputs.is_path(item) else name for item, name in [(a, "a"), (b, "b")]]
+    names = names_of([(a, "a"), (b, "b")])
     # With another system as the target, the stated one is that of the points alone.
     assign = None if surface.get("to_crs") is not None else _inputs.crs_text(surface.get("crs"))
     with call(threads, progress) as request:
@@ -432,6 +424,28 @@ def volume(
             request,
         )
     return [Volume(record, level, *numbers, *moved, known) for record, level, numbers, moved in rows]
+
+
+def surfaces_of(
+    inputs: "list[Any]", surface: "dict[str, Any]", threads: Any, progress: Any, method: str = "linear"
+) -> "list[_breakline.Surface]":
+    """Return several surfaces; the options of building a TIN are for those that are built."""
+    is_built = [_is_built(points) for points in inputs]
+    of_any = {name: value for name, value in surface.items() if name in FOR_ANY}
+    options = [of_any if any(is_built) and not built else surface for built in is_built]
+    return [surface_of(points, own, threads, progress, method) for points, own in zip(inputs, options)]
+
+
+def names_of(inputs: "list[tuple[Any, str]]") -> "list[str]":
+    """Return what messages call some inputs: the names of files, or those of parameters."""
+    return [os.fspath(item) if _inputs.is_path(item) else name for item, name in inputs]
+
+
+def refuse_kept(surface: "dict[str, Any]") -> None:
+    """Refuse parameters of surfaces that are kept or written."""
+    for name in [*HOW, "flat_points"]:
+        if name in surface:
+            raise usage(f"{name} is for a surface that is kept", surface[name], f"leave {name} out")
 
 
 def _is_built(points: Any) -> bool:

@@ -55,6 +55,7 @@ const RASTERS: &[&str] = &[
     "roughness",
     "tri",
     "tpi",
+    "compare",
 ];
 const CONTOUR: &[&str] = &["contour"];
 const SHADE: &[&str] = &["hillshade"];
@@ -71,6 +72,7 @@ const OF_POINTS: &[&str] = &[
     "tri",
     "tpi",
     "volume",
+    "compare",
     "check",
     "points",
 ];

@@ -218,6 +218,7 @@ mod tests {
                 "tri",
                 "tpi",
                 "volume",
+                "compare",
                 "check",
                 "job",
                 "demo",

@@ -2,6 +2,7 @@
 
 mod asked;
 pub(super) mod check;
+pub(super) mod compare;
 mod contour;
 mod dem;
 pub(super) mod demo;
@@ -9,6 +10,7 @@ pub(super) mod describe;
 mod hillshade;
 pub(super) mod info;
 pub(super) mod job;
+mod pair;
 pub(super) mod points;
 mod quantity;
 mod tin;

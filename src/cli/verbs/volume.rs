@@ -1,45 +1,35 @@
 use std::io::Write;
 use std::path::PathBuf;
 
+use super::pair;
 use crate::cli::Exit;
-use crate::cli::input::args::{OutputArgs, VolumeArgs};
+use crate::cli::input::args::VolumeArgs;
 use crate::cli::input::plan::SurfacePlan;
 use crate::cli::input::{inputs, outputs};
 use crate::cli::report::console::Console;
 use crate::cli::report::stdout::print;
-use crate::cli::report::summary::print_surface;
 use crate::cli::report::volumes;
 use crate::cli::report::written::commit;
 use crate::error::{Error, Result};
 use crate::run::targets::{TABLES, add_table};
-use crate::run::{self, Bulking, Input, SurfaceProduct, SurfaceReport, VolumeBase, VolumeOptions};
+use crate::run::{self, Bulking, Input, VolumeBase, VolumeOptions};
 
 /// Computes cut and fill between two surfaces, or above levels.
 pub(crate) fn run(args: &VolumeArgs, console: &Console) -> Result<Exit> {
     let levels = levels(args)?;
     inputs::require(&args.within)?;
     let plans = SurfacePlan::resolve_each(&args.surface, console)?;
-    let read: Vec<PathBuf> = plans
-        .iter()
-        .flat_map(|plan| plan.targets.with_lists(plan.request.files()))
-        .chain(args.within.clone())
-        .collect();
-    let output = OutputArgs {
-        output: args.output.iter().cloned().collect(),
-        overwrite: args.overwrite,
-    };
+    let read: Vec<PathBuf> = pair::files(&plans).chain(args.within.clone()).collect();
+    let output = pair::output(&args.output, args.overwrite);
     let outputs = outputs::resolve(&output, TABLES, &read)?;
     let context = console.context();
-    let surfaces: Vec<SurfaceProduct> = plans
-        .iter()
-        .zip(["surface", "base"].iter().zip(&args.surface.inputs))
-        .map(|(plan, (role, input))| {
-            let mut product = run::surface(&plan.request, &context)?;
-            console.line(format_args!("{role:<11} {}", input.display()));
-            print_surface(&SurfaceReport::take(&mut product)?, console);
-            Ok(product)
-        })
-        .collect::<Result<_>>()?;
+    let surfaces = pair::read(
+        &plans,
+        ["surface", "base"],
+        &args.surface,
+        console,
+        &context,
+    )?;
     let base = match &surfaces[..] {
         [_, base] => VolumeBase::Surface(base),
         _ if args.base.is_some() => VolumeBase::Rim,
@@ -61,7 +51,7 @@ pub(crate) fn run(args: &VolumeArgs, console: &Console) -> Result<Exit> {
         names: [named(0), named(1)],
     };
     let Some(surface) = surfaces.first() else {
-        return Err(no_surface());
+        return Err(pair::no_surface());
     };
     let product = run::volume(surface, base, &options, &context)?;
     for target in &outputs.targets {
@@ -86,28 +76,20 @@ fn levels(args: &VolumeArgs) -> Result<Vec<f64>> {
     let levels = level.or_else(|| args.levels.as_ref().map(|steps| steps.0.clone()));
     let of_levels = levels.is_some() || args.base.is_some();
     let error = match (&args.surface.inputs[..], of_levels) {
-        ([], _) => no_surface(),
+        ([], _) => pair::no_surface(),
         ([_], false) => Error::usage("the base of the volumes is missing")
             .cure("name a second surface, or use --plane Z, --levels FROM:TO:STEP or --base rim"),
         ([_, base], true) => Error::usage("two bases: a surface and an option")
             .in_file(base)
             .cure("leave out the second surface, or --plane, --levels and --base"),
-        ([_, _, more, ..], _) => Error::usage("a third surface: expected a surface and its base")
-            .in_file(more)
-            .cure("quote a glob (\"tiles/*.laz\"), or use a list (@list.txt), for a surface of several files"),
+        ([_, _, more, ..], _) => pair::third(more, "a surface and its base"),
         _ if args.base.is_some() && args.within.is_none() => {
             Error::usage("--base rim: no outlines are named").cure("name them with --within FILE")
         }
-        _ if args.surface.crossing_report.is_some() || args.surface.lines.flat_points.is_some() => {
-            Error::usage("`volume` writes no tables of crossings or replaced points")
-                .cure("leave out --crossing-report and --flat-points; `breakline tin` has them")
+        _ => {
+            pair::refuse_tables(&args.surface, "volume")?;
+            return Ok(levels.unwrap_or_default());
         }
-        _ => return Ok(levels.unwrap_or_default()),
     };
     Err(error)
-}
-
-#[cold]
-fn no_surface() -> Error {
-    Error::usage("the surface is missing").cure("name a file of points, a TIN or a DEM")
 }

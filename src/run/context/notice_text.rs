@@ -126,7 +126,7 @@ fn text(notice: &Notice) -> Wording {
         Notice::Reprojecting(from, to) => format!("reprojecting from {from} to {to}").into(),
         Notice::Transform(text) => text.clone().into(),
         Notice::NothingInCommon(one, other) => {
-            format!("{one} and {other} do not overlap: there is no volume between them").into()
+            format!("{one} and {other} do not overlap: no position is on both").into()
         }
         Notice::PolygonsOutside(path, records) => polygons_outside(path, records),
         Notice::FarApart(before, after, gap) => far_apart(before, after, gap).into(),

@@ -213,7 +213,7 @@ fn heights<'a>(
 }
 
 /// Returns an error if options are given that only a TIN has a use for.
-fn refuse_options(DemOptions { frame, method }: &DemOptions) -> Result<()> {
+pub(super) fn refuse_options(DemOptions { frame, method }: &DemOptions) -> Result<()> {
     if frame.resolution.is_some() || frame.extent.is_some() || frame.align_to.is_some() {
         return Err(Error::usage(wording![
             Setting::Resolution,

@@ -110,7 +110,7 @@ fn area(surface: &dyn Surface) -> f64 {
         .sum()
 }
 
-fn cell_area(frame: &Frame) -> f64 {
+pub(super) fn cell_area(frame: &Frame) -> f64 {
     let t = &frame.transform;
     (t[1] * t[5] - t[2] * t[4]).abs()
 }

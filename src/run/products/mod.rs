@@ -2,6 +2,7 @@
 
 pub(crate) mod cells;
 pub(crate) mod check;
+pub(crate) mod compare;
 pub(crate) mod contour;
 mod contour_rows;
 pub(crate) mod edge_limit;

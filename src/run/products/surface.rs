@@ -17,7 +17,7 @@ use crate::run::sources::open::{self, Content, content};
 use crate::run::sources::raster_file::RasterFile;
 use crate::run::sources::systems::{self, Degrees, Role, Stated, SystemOptions};
 use crate::run::sources::tin_parts::TinParts;
-use crate::terrain::{CompactTin, Method, Tin};
+use crate::terrain::{CompactTin, GridSurface, Method, Tin};
 
 /// The surface that a verb works on, and its coordinate system.
 #[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
@@ -153,6 +153,36 @@ impl SurfaceProduct {
             Model::Raster(_) | Model::RasterFile(_) => Err(Error::usage(
                 "the surface is a raster; points, a .tin or a .ply are needed",
             )),
+        }
+    }
+
+    /// Calls a function with the triangles of the surface; those of a raster lie between the
+    /// centers of its cells.
+    pub(super) fn with_faces<T>(
+        &self,
+        context: &Context,
+        take: impl FnOnce(&dyn Surface) -> Result<T>,
+    ) -> Result<T> {
+        match &self.model {
+            Model::Raster(grid) => take(&GridSurface::new(grid)?),
+            Model::RasterFile(raster) => {
+                let cells = raster.cells();
+                let grid = Grid::collect(&Watched::cells(&cells, Stage::ReadingCells, context)?)?;
+                take(&GridSurface::new(&grid)?)
+            }
+            Model::Tin(_) | Model::Mesh(_) | Model::Compact(_) | Model::Parts(_) => {
+                take(self.triangles()?)
+            }
+        }
+    }
+
+    /// Returns the coordinate system that a surface states, by what messages call it.
+    pub(super) fn stated(&self, name: &Path) -> Stated {
+        Stated {
+            path: name.to_path_buf(),
+            crs: self.crs().cloned(),
+            unread: None,
+            role: Role::Whole,
         }
     }
 

@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use super::surface::{Model, SurfaceProduct};
+use super::surface::SurfaceProduct;
 use crate::crs::Crs;
-use crate::data::{Grid, Layer, Mesh, Surface};
+use crate::data::{Layer, Mesh, Surface};
 use crate::error::{Error, Result, Setting, wording};
 use crate::io::OnDamage;
 use crate::run::context::notice::Notice;
@@ -14,8 +14,8 @@ use crate::run::context::{Context, Journal, Stage};
 use crate::run::lines::layers::{self, Layers};
 use crate::run::lines::shapes::{self, Rings, at_record};
 use crate::run::request::input::Input;
-use crate::run::sources::systems::{self, Role, Stated, SystemOptions, reproject_first};
-use crate::terrain::{self, GridSurface, Interpolant, Method, Volume, Zones};
+use crate::run::sources::systems::{self, Stated, SystemOptions, reproject_first};
+use crate::terrain::{self, Interpolant, Method, Volume, Zones};
 
 /// How often each face is visited for the volumes of a surface.
 const VISITS: u64 = 3;
@@ -185,9 +185,9 @@ pub fn volume(
         height_unit: scale.volume / (scale.area * scale.area.sqrt()),
         context,
     };
-    let mut rows = with_faces(surface, context, |faces| match base {
+    let mut rows = surface.with_faces(context, |faces| match base {
         VolumeBase::Surface(base) => {
-            with_faces(base, context, |base| computing.above_surface(faces, base))
+            base.with_faces(context, |base| computing.above_surface(faces, base))
         }
         VolumeBase::Levels(levels) => computing.above_levels(faces, levels),
         VolumeBase::Rim => computing.above_rims(faces),
@@ -245,15 +245,9 @@ fn common_system(
     journal: &Journal,
 ) -> Result<Option<Crs>> {
     let [of_surface, of_base] = &options.names;
-    let whole = |path: &Path, product: &SurfaceProduct| Stated {
-        path: path.to_path_buf(),
-        crs: product.crs().cloned(),
-        unread: None,
-        role: Role::Whole,
-    };
-    let mut stated = vec![whole(of_surface, surface)];
+    let mut stated = vec![surface.stated(of_surface)];
     if let VolumeBase::Surface(base) = base {
-        stated.push(whole(of_base, base));
+        stated.push(base.stated(of_base));
     }
     for (path, layer) in layers {
         let of_layer = Stated::by_layer(path, layer);
@@ -267,26 +261,6 @@ fn common_system(
         });
     }
     Ok(systems::unify(&stated, &SystemOptions::default(), journal)?.crs)
-}
-
-/// Calls a function with the triangles of a surface; those of a raster lie between the centers of
-/// its cells.
-fn with_faces<T>(
-    product: &SurfaceProduct,
-    context: &Context,
-    take: impl FnOnce(&dyn Surface) -> Result<T>,
-) -> Result<T> {
-    match &product.model {
-        Model::Raster(grid) => take(&GridSurface::new(grid)?),
-        Model::RasterFile(raster) => {
-            let cells = raster.cells();
-            let grid = Grid::collect(&Watched::cells(&cells, Stage::ReadingCells, context)?)?;
-            take(&GridSurface::new(&grid)?)
-        }
-        Model::Tin(_) | Model::Mesh(_) | Model::Compact(_) | Model::Parts(_) => {
-            take(product.triangles()?)
-        }
-    }
 }
 
 /// The factors that convert areas and volumes from the units of the data.
@@ -501,6 +475,7 @@ mod tests {
     use super::*;
     use crate::error::Kind;
     use crate::run::context::{Monitor, Progress, Size};
+    use crate::run::products::surface::Model;
 
     /// Cancels the run as soon as volumes are computed.
     struct Cancels<'a>(&'a AtomicBool);

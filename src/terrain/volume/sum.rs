@@ -22,7 +22,7 @@ impl Unit {
 
     /// Returns a number in this unit.
     ///
-    /// `PERF:` of two surfaces, one is mostly higher everywhere in a part: half of all values are 0.
+    /// `PERF:` in most parts one surface is higher everywhere: half of all values are 0.
     pub(super) fn of(self, value: f64) -> Sum {
         if value == 0.0 {
             return Sum(0);

@@ -1,6 +1,7 @@
 //! The command line as it is typed. What it means is worked out elsewhere (`super::plan`,
 //! `super::outputs`, ...).
 
+mod compare;
 mod job;
 mod lines;
 mod parse;
@@ -21,6 +22,7 @@ use crate::cli::Exit;
 use crate::cli::report::console::Verbosity;
 use crate::io::formats;
 
+pub(crate) use compare::CompareArgs;
 pub(crate) use job::{JobAction, JobArgs};
 pub(crate) use lines::LineArgs;
 pub(crate) use parse::{ClassRange, EdgeLength, ReturnRange, finite};
@@ -118,6 +120,7 @@ pub(crate) enum Verb {
     Tri(TriArgs),
     Tpi(TpiArgs),
     Volume(VolumeArgs),
+    Compare(CompareArgs),
     Check(CheckArgs),
     Job(JobArgs),
     Demo(DemoArgs),

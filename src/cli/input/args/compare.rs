@@ -1,0 +1,64 @@
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::parse::positive;
+use super::surface::SurfaceArgs;
+use super::verbs::{FrameArgs, MethodArg};
+
+/// Difference of two surfaces: in numbers, in cells, and where it is largest
+///
+/// Heights of the first input minus those of the second, in the cells of a raster: those of an
+/// input that is a raster (of the first, if both are), or cells as for `dem`. Each input is a TIN
+/// (.tin, .ply, .obj), a DEM, or points, of which a TIN is built by the options below; those of
+/// several files are a quoted glob or `@list.txt`. Only cells on both surfaces count.
+#[derive(Debug, Clone, Args)]
+#[command(after_long_help = "\
+Example:
+  breakline compare june.laz may.laz --resolution 0.5 -o difference.tif
+  breakline compare delivered.tif check.tin --worst 20 --json
+  breakline compare new.tif old.tif --changed 0.25")]
+pub(crate) struct CompareArgs {
+    /// How many of the places with the largest differences are listed
+    ///
+    /// They are at least 8 cells apart.
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 10,
+        help_heading = "Comparison"
+    )]
+    pub(crate) worst: usize,
+
+    /// Also count the cells that differ by more than a height, and their area
+    #[arg(long, value_name = "HEIGHT", value_parser = positive, allow_negative_numbers = true, help_heading = "Comparison")]
+    pub(crate) changed: Option<f64>,
+
+    /// Print a JSON object with exact numbers
+    #[arg(long, help_heading = "Comparison")]
+    pub(crate) json: bool,
+
+    /// Raster to write (.tif): the difference in each cell
+    #[arg(short, long, value_name = "OUT.tif", help_heading = "Comparison")]
+    pub(crate) output: Option<PathBuf>,
+
+    /// Replace a raster that exists
+    #[arg(long, help_heading = "Comparison")]
+    pub(crate) overwrite: bool,
+
+    /// How heights between the vertices are computed, as in `dem`
+    #[arg(
+        long,
+        value_enum,
+        value_name = "METHOD",
+        default_value_t,
+        help_heading = "Raster"
+    )]
+    pub(crate) method: MethodArg,
+
+    #[command(flatten)]
+    pub(crate) frame: FrameArgs,
+
+    #[command(flatten)]
+    pub(crate) surface: SurfaceArgs,
+}

@@ -1,0 +1,66 @@
+//! A surface and another one, each an input of its own.
+
+use std::path::PathBuf;
+
+use crate::cli::input::args::{OutputArgs, SurfaceArgs};
+use crate::cli::input::plan::SurfacePlan;
+use crate::cli::report::console::Console;
+use crate::cli::report::summary::print_surface;
+use crate::error::{Error, Result};
+use crate::run::{self, Context, SurfaceProduct, SurfaceReport};
+
+/// Returns the files that are read for surfaces.
+pub(super) fn files(plans: &[SurfacePlan]) -> impl Iterator<Item = PathBuf> + '_ {
+    plans
+        .iter()
+        .flat_map(|plan| plan.targets.with_lists(plan.request.files()))
+}
+
+/// Returns the option of one file that may be left out, as a list.
+pub(super) fn output(file: &Option<PathBuf>, overwrite: bool) -> OutputArgs {
+    OutputArgs {
+        output: file.iter().cloned().collect(),
+        overwrite,
+    }
+}
+
+/// Builds or reads each surface, and prints what it is.
+pub(super) fn read(
+    plans: &[SurfacePlan],
+    roles: [&str; 2],
+    args: &SurfaceArgs,
+    console: &Console,
+    context: &Context,
+) -> Result<Vec<SurfaceProduct>> {
+    let named = roles.into_iter().zip(&args.inputs);
+    let each = plans.iter().zip(named).map(|(plan, (role, input))| {
+        let mut product = run::surface(&plan.request, context)?;
+        console.line(format_args!("{role:<11} {}", input.display()));
+        print_surface(&SurfaceReport::take(&mut product)?, console);
+        Ok(product)
+    });
+    each.collect()
+}
+
+/// Returns an error if tables are asked for that belong to one surface.
+pub(super) fn refuse_tables(args: &SurfaceArgs, verb: &str) -> Result<()> {
+    match args.crossing_report.is_some() || args.lines.flat_points.is_some() {
+        true => Err(Error::usage(format!(
+            "`{verb}` writes no tables of crossings or replaced points"
+        ))
+        .cure("leave out --crossing-report and --flat-points; `breakline tin` has them")),
+        false => Ok(()),
+    }
+}
+
+#[cold]
+pub(super) fn no_surface() -> Error {
+    Error::usage("the surface is missing").cure("name a file of points, a TIN or a DEM")
+}
+
+#[cold]
+pub(super) fn third(more: &PathBuf, expected: &str) -> Error {
+    Error::usage(format!("a third surface: expected {expected}"))
+        .in_file(more)
+        .cure("quote a glob (\"tiles/*.laz\"), or use a list (@list.txt), for a surface of several files")
+}
