@@ -5,10 +5,11 @@
 
 use std::path::Path;
 
-use breakline::data::{Bounds, Frame, Grid};
+use breakline::data::{Bounds, Frame, Grid, Stretch};
 use breakline::io;
-use breakline::terrain::{Dem, Levels, Selection, Tin, TinBuilder, contours};
+use breakline::terrain::{Dem, Levels, Locator, Selection, Tin, TinBuilder, contours};
 use divan::{Bencher, black_box, counter::ItemsCount};
+use rayon::prelude::*;
 
 /// Number of points.
 const SIZES: [usize; 2] = [100_000, 1_000_000];
@@ -95,6 +96,44 @@ fn contour(bencher: Bencher, count: usize) {
 
 /// Columns x, y and z.
 type Points = [Vec<f64>; 3];
+
+/// The number of lines of a kilometer that are followed.
+const LINES: usize = 10_000;
+
+/// Lines over 5 million triangles, with a point at every edge; the locator is prepared each time.
+#[divan::bench(sample_count = 5)]
+fn profile(bencher: Bencher) {
+    let points = points(Lay::Lidar, 2_500_000);
+    let tin = build(&points);
+    let ends = [0, 1].map(|k| {
+        let ends = [f64::INFINITY, f64::NEG_INFINITY];
+        let wider = |[low, high]: [f64; 2], c: &f64| [low.min(*c), high.max(*c)];
+        points[k].iter().fold(ends, wider)
+    });
+    // By the golden ratio, so that they are everywhere and in all directions.
+    let part = |number: usize, step: f64| (number as f64 * step).fract();
+    let lines: Vec<[[f64; 2]; 2]> = (0..LINES)
+        .map(|number| {
+            let angle = std::f64::consts::TAU * part(number, 0.618_033_988_749_895);
+            let half = [angle.cos(), angle.sin()].map(|c| 500.0 * c);
+            let steps = [0.754_877_666, 0.569_840_29];
+            let middle = [0, 1].map(|k| {
+                let [low, high] = ends[k];
+                let room = (high - low - 1000.0).max(0.0);
+                (low + high) / 2.0 + room * (part(number, steps[k]) - 0.5)
+            });
+            [1.0, -1.0].map(|sign| [0, 1].map(|k| middle[k] + sign * half[k]))
+        })
+        .collect();
+    bencher.counter(ItemsCount::new(LINES)).bench_local(|| {
+        let locator = Locator::new(black_box(&tin)).expect("a TIN in memory is sound");
+        let found: Vec<Vec<Stretch>> = lines
+            .par_iter()
+            .map(|line| locator.along(line).expect("coordinates are finite"))
+            .collect();
+        found
+    });
+}
 
 fn build([x, y, z]: &Points) -> Tin {
     let mut builder = TinBuilder::default();

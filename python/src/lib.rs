@@ -16,6 +16,7 @@ mod errors;
 mod files;
 mod names;
 mod notices;
+mod profile;
 mod reports;
 mod requests;
 mod spatial;
@@ -39,6 +40,8 @@ mod _breakline {
     };
     #[pymodule_export]
     use super::names::settings;
+    #[pymodule_export]
+    use super::profile::{drape, profile};
     #[pymodule_export]
     use super::surface::{Surface, check_file, edge_kinds, write_cells, write_contours};
 

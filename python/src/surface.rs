@@ -412,14 +412,21 @@ pub(crate) fn write_to(
 ) -> PyResult<()> {
     work::run(py, call, |context| -> Result<()> {
         if !overwrite {
-            let extension = formats::of_name(file).map_or("", |format| format.extensions[0]);
-            let beside = formats::of_name(file).map_or(&[][..], |format| format.beside);
-            formats::with_companions(file, extension, beside)
-                .iter()
-                .try_for_each(|(path, _)| io::require_absent(path))?;
+            require_free(file)?;
         }
         Ok(write(file.into(), context)?)
     })
+}
+
+/// Returns an error if a file exists, or one that is written with it.
+pub(crate) fn require_free(file: &Path) -> Result<()> {
+    let extension = formats::of_name(file).map_or("", |format| format.extensions[0]);
+    let beside = formats::of_name(file).map_or(&[][..], |format| format.beside);
+    let files = formats::with_companions(file, extension, beside);
+    files
+        .iter()
+        .try_for_each(|(path, _)| io::require_absent(path))?;
+    Ok(())
 }
 
 /// Returns numbers with a sign, as numpy's index arrays have.

@@ -42,7 +42,7 @@ WRITTEN = {"tin": breakline.Tin, "contour": breakline.Contours, **dict.fromkeys(
 OF_RESULTS = {"check": {"overwrite"}, "volume": {"output", "overwrite"}, "compare": {"output", "overwrite"}}
 
 #: Names of positional arguments.
-POSITIONAL = {"inputs": {"points", "inputs", "a"}, "input": {"path"}, "files": {"path"}}
+POSITIONAL = {"inputs": {"points", "inputs", "a", "surfaces"}, "input": {"path"}, "files": {"path"}}
 
 
 def parameters(function):
@@ -92,10 +92,12 @@ def test_a_verb_is_a_function_and_its_options_are_parameters(verb):
 def test_parameters_are_options(verb):
     known = {parameter_name(verb, option["name"]) for option in [*VERBS[verb]["options"], *PROGRAM["options"]]}
     known |= {"points", "inputs", "path", "progress"}
-    if verb in WRITTEN or verb in ("check", "volume", "compare"):
+    if verb in WRITTEN or verb in ("check", "volume", "compare", "drape", "profile"):
         known |= {"bounds"}
     if verb in ("volume", "compare"):
         known |= {"a", "b"}
+    if verb == "profile":
+        known |= {"surfaces"}
     assert set(parameters(getattr(breakline, verb))) <= known
 
 

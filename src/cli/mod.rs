@@ -113,6 +113,8 @@ fn dispatch(verb: &Verb, how: &ConsoleArgs, console: &Console) -> Result<Exit> {
         Verb::Check(args) => verbs::check::run(args, console),
         Verb::Volume(args) => verbs::volume::run(args, console),
         Verb::Compare(args) => verbs::compare::run(args, console),
+        Verb::Profile(args) => verbs::profile::run(args, console),
+        Verb::Drape(args) => verbs::drape::run(args, console),
         Verb::Job(args) => verbs::job::run(args, console),
         Verb::Demo(args) => verbs::demo::run(args, how, console, &|words| run(words)),
         Verb::Describe(args) => verbs::describe::run(args),

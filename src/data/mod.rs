@@ -8,7 +8,8 @@
 //! | what | record | stream |
 //! |---|---|---|
 //! | points | [`PointBatch`] (columns), [`Return`], [`PointInfo`], [`Columns`], [`Lattice`], [`LasHead`] | [`PointSource`], [`PointSink`] |
-//! | lines, polygons, points of a vector file | [`Shape`], [`Layer`], [`Column`] | |
+//! | lines, polygons, points of a vector file | [`Shape`], [`Layer`], [`Column`], [`Attributes`] | |
+//! | heights along lines | [`Profiles`] of [`LinePoint`] | |
 //! | contours | [`ContourLine`] | `Iterator<Item = ContourLine>` |
 //! | rasters | [`Grid`], georeferenced by its [`Frame`] | [`BlockSource`], read by [`Window`] |
 //! | triangles | [`Triangles`] as a file lists them, [`Mesh`] linked, [`SurfaceFacts`] counted | [`Surface`], also [`WithoutLines`] |
@@ -25,6 +26,7 @@
 //! Nothing here reads, writes or computes a result. With the feature `geo`, the module `geo`
 //! converts to and from the types of the crate `geo`.
 
+mod attributes;
 mod bounds;
 pub mod classes;
 mod columns;
@@ -37,6 +39,7 @@ mod las_head;
 mod lattice;
 mod mesh;
 mod points;
+mod profile;
 pub mod returns;
 mod shape;
 mod surface;
@@ -44,6 +47,7 @@ mod surface_facts;
 mod triangles;
 mod without_lines;
 
+pub use attributes::{Attributes, Value};
 pub use bounds::Bounds;
 pub(crate) use bounds::{AT_ONCE, higher, lower, lowest_and_highest};
 pub use columns::Columns;
@@ -57,6 +61,7 @@ pub use lattice::{Embedding, Lattice};
 pub use mesh::Mesh;
 pub(crate) use mesh::{area_of, not_finite, orientation};
 pub use points::{PointBatch, PointFlags, PointInfo, PointSink, PointSource, PointSummary};
+pub use profile::{LinePoint, Profile, Profiles, Station, Stretch};
 pub use returns::Return;
 pub use shape::{Column, Layer, Shape, ShapeKind};
 pub use surface::{BaseFace, Census, EdgeKind, Face, LineEdges, Surface};

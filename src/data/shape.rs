@@ -1,3 +1,4 @@
+use super::Attributes;
 use crate::crs::Crs;
 use crate::error::Wording;
 
@@ -94,6 +95,8 @@ pub struct Layer {
     pub fields: Vec<String>,
     /// The numbers of the attributes that were requested, in the order of the request.
     pub columns: Vec<Column>,
+    /// All attributes, if they were requested and the reader keeps them.
+    pub attributes: Option<Attributes>,
     /// Warnings for the user.
     pub warnings: Vec<Wording>,
 }

@@ -53,5 +53,5 @@ pub use bytes::output::{
 };
 pub use bytes::watch::Watch;
 pub use codec::{gdal, geojson, geotiff, las, png, shapefile, tetgen, text, triangle};
-pub use fronts::{contours, layer, mesh, points, raster};
+pub use fronts::{contours, layer, mesh, points, profiles, raster};
 pub use options::cut::OnDamage;

@@ -16,6 +16,8 @@
 //! | contours | [`ContourOptions`] | [`contour()`] | [`ContourProduct`] |
 //! | select, clip and merge points | [`PointsRequest`] | [`write_points`], [`read_points`] | [`PointsReport`] |
 //! | cut and fill above another surface or a level | [`VolumeOptions`] | [`volume()`] | [`VolumeProduct`] |
+//! | lines with the heights of a surface | [`DrapeOptions`] | [`drape`] | [`DrapeProduct`] |
+//! | heights along lines and across them | [`ProfileOptions`] | [`profile`] | [`ProfileProduct`] |
 //! | find flaws | [`SurfaceRequest`] | [`check()`] | [`CheckProduct`] |
 //! | count what is in a file | a path | [`facts()`] | [`Facts`] |
 //! | triangulate points in space | [`SpaceOptions`] | [`triangulate_space`] | [`SpaceProduct`] |
@@ -103,6 +105,7 @@ pub use products::cells::{
 pub use products::check::{CheckProduct, FlawKind, LocatedFlaw, check, surface_flaws};
 pub use products::compare::{CompareOptions, CompareProduct, compare};
 pub use products::contour::{ContourOptions, ContourProduct, contour, write_contours};
+pub use products::drape::{DrapeOptions, DrapeProduct, drape};
 pub use products::edge_limit::EdgeLimit;
 pub use products::elevation::{Heights, elevations};
 pub use products::facts::{
@@ -113,6 +116,10 @@ pub use products::overlaps::Overlap;
 pub use products::points::{
     PointsProduct, PointsReport, PointsRequest, Withheld, read_points, write_points,
 };
+pub use products::profile::{
+    ProfileOptions, ProfileProduct, SectionOptions, SectionStations, profile,
+};
+pub use products::station_format::StationFormat;
 pub use products::surface::{
     Model, Source, SurfaceProduct, SurfaceRequest, surface, surface_for, triangles, triangles_for,
     write_mesh,

@@ -46,7 +46,8 @@ impl Extent {
         }
     }
 
-    fn with(self, other: Extent) -> Self {
+    /// Returns the box around both.
+    pub(super) fn with(self, other: Extent) -> Self {
         Extent {
             min: [0, 1].map(|i| self.min[i].min(other.min[i])),
             max: [0, 1].map(|i| self.max[i].max(other.max[i])),
@@ -186,6 +187,15 @@ impl<T: Boxed> Boxes<T> {
     pub(super) fn find_in<R>(
         &self,
         extent: Extent,
+        each: impl FnMut(&T) -> Option<R>,
+    ) -> Option<R> {
+        self.find_where(|node| node.overlaps(&extent), each)
+    }
+
+    /// Calls `each` with the items of all nodes whose box is wanted, until it returns a value.
+    pub(super) fn find_where<R>(
+        &self,
+        is_wanted: impl Fn(&Extent) -> bool,
         mut each: impl FnMut(&T) -> Option<R>,
     ) -> Option<R> {
         // Each level leaves one node behind. `PERF:` a list of its own for each call would cost
@@ -196,7 +206,7 @@ impl<T: Boxed> Boxes<T> {
         while count > 0 {
             count -= 1;
             let (node, start, end) = left[count];
-            if start == end || !self.nodes[node].overlaps(&extent) {
+            if start == end || !is_wanted(&self.nodes[node]) {
                 continue;
             }
             if 2 * node + 2 < self.nodes.len() {

@@ -15,6 +15,8 @@
 //! | a surface, and points known better | how far they are apart | [`ErrorStatistics`], [`Histogram`] |
 //! | two surfaces, or one and a level | cut and fill | [`volumes()`], in [`Zones`] |
 //! | two rasters of the same cells | their difference | [`Difference`] |
+//! | a surface and a line | the heights along it | [`Locator`] |
+//! | an axis | the lines across it | [`sections()`] |
 //! | a TIN in a file | a surface, at once | [`CompactTin`] |
 //! | more points than fit into memory | their triangles, from tiles | [`tiles`] |
 //! | triangles from tiles | the contours of the whole | [`contour::parts`] |
@@ -70,6 +72,7 @@ mod regions;
 mod ridges;
 mod rim_rule;
 mod sample;
+mod sections;
 mod selection;
 mod soundness;
 mod statistics;
@@ -78,6 +81,7 @@ pub mod tiles;
 mod tin;
 mod tin_report;
 mod volume;
+mod walk;
 mod window;
 
 pub use builder::TinBuilder;
@@ -105,10 +109,13 @@ pub use rasterize::{Canvas, CanvasBlock, Dem, DemOfParts};
 pub use rim_rule::RimRule;
 pub(crate) use sample::along_curve;
 pub use sample::{Sample, Sampler};
+pub use sections::{SectionWidths, crossing_pairs, sections};
 pub use selection::{Classes, Selection, SelectionReport};
 pub use soundness::{SurfaceFlaw, shape_flaws, surface_flaws};
 pub use statistics::{ErrorStatistics, Histogram};
 pub use tin::Tin;
 pub use tin_report::TinReport;
 pub use volume::{Volume, VolumeBase, Zones, volumes};
+pub use walk::Locator;
+pub(crate) use walk::stepped;
 pub use window::ReadWindow;

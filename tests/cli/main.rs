@@ -7,12 +7,14 @@ mod columns;
 mod comparisons;
 mod crossings;
 mod demo;
+mod drape;
 mod habits;
 mod inputs;
 mod lines;
 mod methods;
 #[cfg(unix)]
 mod outputs;
+mod profiles;
 mod results;
 mod returns;
 mod usage;

@@ -24,6 +24,8 @@ fn help_goes_to_stdout_and_tells_each_verb_with_an_example() {
         "tpi",
         "volume",
         "compare",
+        "profile",
+        "drape",
         "check",
         "demo",
     ] {

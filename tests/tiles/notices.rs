@@ -41,6 +41,10 @@ const NOT_IN_TILES: &[(&str, &str)] = &[
     ("SeedUnused", "of `triangulate`"),
     ("NothingInCommon", "of `volume`"),
     ("PolygonsOutside", "of `volume`"),
+    ("LinesOff", "of `drape` and `profile`"),
+    ("LinesPartlyOff", "of `drape` and `profile`"),
+    ("SectionsCross", "of `profile`"),
+    ("AttributesLeftOut", "of `drape`"),
 ];
 
 /// The kinds of notices that only tiles have, and why.

@@ -19,6 +19,7 @@ slopes              :func:`slope`, :func:`aspect`, :func:`curvature`
 ruggedness          :func:`roughness`, :func:`tri`, :func:`tpi`
 cut and fill        :func:`volume`
 a difference        :func:`compare`
+along lines         :func:`profile`, :func:`drape`
 flaws               :meth:`Tin.check`, :func:`check`
 facts about a file  :func:`info`
 Triangle's files    :func:`triangulate`
@@ -49,6 +50,7 @@ from ._errors import (
     UsageError,
 )
 from ._points import points, read_points
+from ._profiles import Profile, drape, profile
 from ._quantities import aspect, curvature, roughness, slope, tpi, tri
 from ._results import Contour, Contours, Raster
 from ._tin import EDGE_KINDS, Flaw, Notice, Tin, tin
@@ -88,6 +90,7 @@ __all__ = [
     "Notice",
     "OtherJobError",
     "Points",
+    "Profile",
     "Raster",
     "SpaceTriangulation",
     "Task",
@@ -105,9 +108,11 @@ __all__ = [
     "curvature",
     "dem",
     "describe",
+    "drape",
     "hillshade",
     "info",
     "points",
+    "profile",
     "read_points",
     "roughness",
     "slope",

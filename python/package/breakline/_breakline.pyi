@@ -102,6 +102,39 @@ def compare(
     NDArray[np.float64],
     Optional[tuple[int, int]],
 ]: ...
+def profile(
+    surfaces: list[Surface],
+    along: Any,
+    assign: Optional[str],
+    step: Optional[float],
+    sections: Optional[tuple[Optional[float], list[float], float, list[float], float, str]],
+    plot: tuple[Optional[float], Optional[float], Optional[str]],
+    names: list[str],
+    output: tuple[list[str], bool],
+    call: _Call,
+) -> tuple[
+    list[
+        tuple[
+            int,
+            Optional[int],
+            Optional[float],
+            Optional[str],
+            tuple[float, float],
+            list[list[NDArray[np.float64]]],
+        ]
+    ],
+    list[str],
+    tuple[Optional[str], Optional[str]],
+]: ...
+def drape(
+    surface: Surface,
+    lines: Any,
+    assign: Optional[str],
+    step: Optional[float],
+    name: str,
+    output: tuple[list[str], bool],
+    call: _Call,
+) -> list[list[NDArray[np.float64]]]: ...
 def check_file(file: str, call: _Call) -> _Flaws: ...
 def check_space(file: str, weighted: bool, call: _Call) -> list[str]: ...
 def class_numbers(name: str) -> list[int]: ...

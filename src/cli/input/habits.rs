@@ -10,6 +10,7 @@ use clap::CommandFactory;
 use super::args::{Cli, expand_switches, finite};
 use crate::error::{Error, Result};
 use crate::io::formats::{self, Product};
+use crate::io::profiles;
 
 /// Words that are typed by habit, and what they mean.
 struct Habit {
@@ -73,6 +74,8 @@ const OF_POINTS: &[&str] = &[
     "tpi",
     "volume",
     "compare",
+    "profile",
+    "drape",
     "check",
     "points",
 ];
@@ -503,6 +506,8 @@ fn written(verb: &str) -> Vec<&'static str> {
             formats::extensions(Product::Heights)
         }
         "contour" => formats::extensions(Product::Contours),
+        "profile" => profiles::EXTENSIONS.to_vec(),
+        "drape" => formats::extensions(Product::Lines),
         "hillshade" => formats::extensions(Product::Shades),
         _ => Vec::new(),
     }

@@ -5,6 +5,7 @@ pub(super) mod console;
 pub(super) mod escape;
 pub(super) mod last_words;
 pub(super) mod names;
+pub(super) mod profiles;
 mod progress;
 pub(super) mod stdout;
 pub(super) mod summary;

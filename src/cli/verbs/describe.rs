@@ -219,6 +219,8 @@ mod tests {
                 "tpi",
                 "volume",
                 "compare",
+                "profile",
+                "drape",
                 "check",
                 "job",
                 "demo",

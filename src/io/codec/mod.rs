@@ -2,6 +2,7 @@
 //! listing of a surface, world files.
 
 pub(crate) mod contour_summary;
+pub(crate) mod dxf;
 pub mod gdal;
 pub mod geojson;
 pub mod geotiff;
@@ -11,6 +12,7 @@ pub(crate) mod obj;
 pub(crate) mod off;
 pub(crate) mod ply;
 pub mod png;
+pub(crate) mod profile;
 pub mod shapefile;
 pub(crate) mod stl;
 pub mod tetgen;

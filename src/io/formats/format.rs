@@ -68,6 +68,8 @@ pub enum Product {
     Surface,
     /// Contours.
     Contours,
+    /// Lines with heights and attributes.
+    Lines,
     /// Heights in cells.
     Heights,
     /// Shades in cells.
@@ -151,6 +153,7 @@ type WriteHeights = fn(Destination, &dyn BlockSource) -> Result<RasterSummary>;
 type WriteShades = fn(Destination, &dyn BlockSource) -> Result<()>;
 type WriteSpace = fn(&[Destination], &Tetrahedralized) -> Result<()>;
 type WritePlane = fn(&[Destination], &Triangulated) -> Result<()>;
+type WriteLines = fn(Destination, &Layer) -> Result<Vec<String>>;
 type WriteContours =
     fn(Destination, &mut dyn Iterator<Item = ContourLine>, Option<&Crs>) -> Result<ContourSummary>;
 
@@ -170,6 +173,8 @@ pub(crate) struct Writers {
     pub(crate) points: Option<PointWriter>,
     pub(crate) surface: Option<WriteSurface>,
     pub(crate) contours: Option<WriteContours>,
+    /// Writes lines with their attributes, and returns warnings.
+    pub(crate) lines: Option<WriteLines>,
     /// Returns an error if contours with this many vertices are too large for the format.
     pub(crate) check_size: Option<fn(u64) -> Result<()>>,
     pub(crate) heights: Option<WriteHeights>,
@@ -225,6 +230,7 @@ impl Format {
             Product::Points => self.writers.points.is_some(),
             Product::Surface => self.writers.surface.is_some(),
             Product::Contours => self.writers.contours.is_some(),
+            Product::Lines => self.writers.lines.is_some(),
             Product::Heights => self.writers.heights.is_some(),
             Product::Shades => self.writers.shades.is_some(),
             Product::Plane => self.writers.plane.is_some(),

@@ -157,10 +157,11 @@ impl Holding {
 }
 
 impl Product {
-    const ALL: [Product; 7] = [
+    const ALL: [Product; 8] = [
         Product::Points,
         Product::Surface,
         Product::Contours,
+        Product::Lines,
         Product::Heights,
         Product::Shades,
         Product::Plane,
@@ -172,6 +173,7 @@ impl Product {
             Product::Points => "points",
             Product::Surface => "surface",
             Product::Contours => "contours",
+            Product::Lines => "lines",
             Product::Heights => "heights",
             Product::Shades => "hillshade",
             Product::Plane => "triangulation",

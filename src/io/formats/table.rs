@@ -12,13 +12,14 @@ use crate::io::bytes::watch::bytes_of;
 use crate::io::codec::geotiff::CellFormat;
 use crate::io::codec::las::{Detail, Packing, Rounding};
 use crate::io::codec::{
-    geojson, geotiff, las, obj, off, ply, png, shapefile, stl, tetgen, text, tin, triangle,
+    dxf, geojson, geotiff, las, obj, off, ply, png, shapefile, stl, tetgen, text, tin, triangle,
 };
 
 const NOT_WRITTEN: Writers = Writers {
     points: None,
     surface: None,
     contours: None,
+    lines: None,
     check_size: None,
     heights: None,
     shades: None,
@@ -274,10 +275,11 @@ pub static FORMATS: &[Format] = &[
         reader: FormatReader::Layer(shapefile::read_layer_with),
         writers: Writers {
             contours: Some(|target, lines, crs| shapefile::write_contours(target, lines, crs)),
+            lines: Some(|target, layer| shapefile::write_lines(target, layer)),
             check_size: Some(shapefile::check_size),
             ..NOT_WRITTEN
         },
-        help: "lines, polygons and points; contours",
+        help: "lines, polygons and points; contours; draped lines",
         ..ROW
     },
     Format {
@@ -296,9 +298,10 @@ pub static FORMATS: &[Format] = &[
         reader: FormatReader::Layer(geojson::read_layer_with),
         writers: Writers {
             contours: Some(|target, lines, crs| geojson::write_contours(target, lines, crs)),
+            lines: Some(|target, layer| geojson::write_lines(target, layer)),
             ..NOT_WRITTEN
         },
-        help: "lines, polygons and points; contours",
+        help: "lines, polygons and points; contours; draped lines",
         ..ROW
     },
     Format {
@@ -311,9 +314,10 @@ pub static FORMATS: &[Format] = &[
         reader: FormatReader::Layer(geojson::read_lines_with),
         writers: Writers {
             contours: Some(|target, lines, crs| geojson::write_contour_lines(target, lines, crs)),
+            lines: Some(|target, layer| geojson::write_line_records(target, layer)),
             ..NOT_WRITTEN
         },
-        help: "lines, polygons and points; contours; one feature a line",
+        help: "lines, polygons and points; contours; draped lines; one feature a line",
         ..ROW
     },
     Format {
@@ -614,7 +618,13 @@ pub static FORMATS: &[Format] = &[
         &["kml", "gml"],
         &[Magic::At(0, b"<?xml")],
     ),
-    vector("DXF", "a DXF drawing", &["dxf"], &[]),
+    Format {
+        writers: Writers {
+            lines: Some(dxf::write_lines),
+            ..NOT_WRITTEN
+        },
+        ..vector("DXF", "a DXF drawing", &["dxf"], &[])
+    },
     vector("file geodatabase", "a file geodatabase", &["gdb"], &[]),
     vector("DWG", "a DWG drawing", &[], &[Magic::At(0, b"AC10")]),
     Format {

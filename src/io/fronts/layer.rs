@@ -1,11 +1,12 @@
-//! Reads vector layers of any format.
+//! Reads vector layers of any format, and writes lines.
 
 use std::path::{Path, PathBuf};
 
 use crate::data::Layer;
 use crate::error::{Error, Feature, Result, wording};
+use crate::io::bytes::output::Destination;
 use crate::io::bytes::watch::{Watch, unwatched};
-use crate::io::formats::{self, FormatReader};
+use crate::io::formats::{self, FormatReader, Product, Writers};
 use crate::io::options::cut::OnDamage;
 pub use crate::io::options::layer::Options;
 
@@ -70,6 +71,7 @@ impl Spec {
             height_field: self.field.as_deref(),
             columns,
             cut,
+            ..Options::default()
         }
     }
 }
@@ -143,6 +145,25 @@ pub fn read_with(path: &Path, options: &Options, watch: Watch) -> Result<Layer> 
     match formats::detect_file(path)?.map(|format| format.reader) {
         Some(FormatReader::Layer(read)) => read(path, options, watch),
         _ => Err(unsupported(path)),
+    }
+}
+
+/// Writes the lines of a layer with all its attributes, in the format that the extension of
+/// `target` names, see [`FORMATS`](formats::FORMATS). Returns warnings.
+///
+/// # Errors
+/// If lines cannot be written in a format with this extension, the format has no room for them, or
+/// a file cannot be written.
+pub fn write_lines<'a>(target: impl Into<Destination<'a>>, layer: &Layer) -> Result<Vec<String>> {
+    let target = target.into();
+    match formats::of_name(&target.format_path()).map(|format| format.writers) {
+        Some(Writers {
+            lines: Some(write), ..
+        }) => write(target, layer),
+        _ => {
+            let known = formats::extensions_or(Product::Lines);
+            Err(Error::usage(format!("lines are written as {known}")).in_file(target.path()))
+        }
     }
 }
 

@@ -4,4 +4,5 @@ pub mod contours;
 pub mod layer;
 pub mod mesh;
 pub mod points;
+pub mod profiles;
 pub mod raster;

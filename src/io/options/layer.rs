@@ -16,6 +16,10 @@ pub struct Options<'a> {
     /// [`Layer::columns`](crate::data::Layer::columns), in this order. One that does not exist is
     /// an error, and so is a value that is not a number.
     pub columns: &'a [&'a str],
+    /// Whether all attributes are returned in
+    /// [`Layer::attributes`](crate::data::Layer::attributes), for a copy of the layer. The readers
+    /// of shapefiles and of GeoJSON keep them.
+    pub keeps_attributes: bool,
     /// What to do with files of which a part is missing or damaged.
     pub cut: OnDamage,
 }

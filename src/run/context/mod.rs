@@ -107,6 +107,8 @@ pub enum Stage {
     ComputingHeights,
     /// Volumes are computed, counted in faces, each of which is visited a few times.
     ComputingVolumes,
+    /// Lines are followed over a surface, counted in lines.
+    FollowingLines,
     /// The tasks of a job run, counted in tasks.
     RunningTasks,
 }
@@ -131,6 +133,7 @@ impl Stage {
             Stage::Writing => "writing",
             Stage::ComputingHeights => "computing heights",
             Stage::ComputingVolumes => "computing volumes",
+            Stage::FollowingLines => "following lines",
             Stage::RunningTasks => "running tasks",
         }
     }

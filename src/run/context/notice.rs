@@ -118,6 +118,14 @@ pub enum Notice {
     /// In the polygons of these records of a file, the surface and its base have no area in
     /// common.
     PolygonsOutside(PathBuf, Vec<usize>),
+    /// These lines of a file, such as "record 3", are not on the surface, which is named.
+    LinesOff(PathBuf, String, Vec<String>),
+    /// These lines of a file are on the surface, which is named, only in part.
+    LinesPartlyOff(PathBuf, String, Vec<String>),
+    /// Cross-sections of the line of a record of a file cross: the stations of each pair.
+    SectionsCross(PathBuf, usize, Vec<[String; 2]>),
+    /// The attributes of a file are not kept, because its format is read without them.
+    AttributesLeftOut(PathBuf),
     /// The gap between two files is far wider than any file.
     FarApart(PathBuf, PathBuf, Quantity),
     /// The breaklines are this far from all points.
@@ -439,6 +447,10 @@ impl Notice {
             | Notice::PartForLinear
             | Notice::NothingInCommon(..)
             | Notice::PolygonsOutside(..)
+            | Notice::LinesOff(..)
+            | Notice::LinesPartlyOff(..)
+            | Notice::SectionsCross(..)
+            | Notice::AttributesLeftOut(_)
             | Notice::FarApart(..)
             | Notice::BreaklinesApart(_)
             | Notice::BreaklinesBeyond(_)

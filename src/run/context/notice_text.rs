@@ -129,6 +129,16 @@ fn text(notice: &Notice) -> Wording {
             format!("{one} and {other} do not overlap: no position is on both").into()
         }
         Notice::PolygonsOutside(path, records) => polygons_outside(path, records),
+        Notice::LinesOff(path, surface, lines) => {
+            of_listed(path, lines, &format!("not on {surface}"))
+        }
+        Notice::LinesPartlyOff(path, surface, lines) => {
+            of_listed(path, lines, &format!("only in part on {surface}"))
+        }
+        Notice::SectionsCross(path, record, pairs) => sections_cross(path, *record, pairs),
+        Notice::AttributesLeftOut(path) => {
+            of_file(path, "attributes are kept of shapefiles and GeoJSON only")
+        }
         Notice::FarApart(before, after, gap) => far_apart(before, after, gap).into(),
         Notice::BreaklinesApart(gap) => breaklines_apart(gap).into(),
         Notice::BreaklinesBeyond(reach) => breaklines_beyond(reach),
@@ -293,21 +303,35 @@ fn different_units(plan: &str, height: &str) -> String {
 }
 
 fn polygons_outside(path: &Path, records: &[usize]) -> Wording {
+    let s = if records.len() == 1 { "" } else { "s" };
+    let records = first_of(records);
+    of_file(
+        path,
+        &format!("record{s} {records}: nothing to compute a volume of is in the polygon{s}"),
+    )
+}
+
+/// Returns a text about several things in a file, of which the first are listed.
+fn of_listed(path: &Path, things: &[String], text: &str) -> Wording {
+    of_file(path, &format!("{}: {text}", first_of(things)))
+}
+
+fn sections_cross(path: &Path, record: usize, pairs: &[[String; 2]]) -> Wording {
+    let pairs: Vec<String> = pairs.iter().map(|[a, b]| format!("{a} and {b}")).collect();
+    let text = format!("record {record}: sections cross: {}", first_of(&pairs));
+    of_file(path, &text)
+}
+
+/// Returns the first of several things, and how many more there are.
+fn first_of(things: &[impl ToString]) -> String {
     const MOST_LISTED: usize = 5;
-    let first = records.iter().take(MOST_LISTED);
-    let listed: Vec<String> = first.map(usize::to_string).collect();
-    let more = match records.len().saturating_sub(MOST_LISTED) {
+    let first = things.iter().take(MOST_LISTED);
+    let listed: Vec<String> = first.map(ToString::to_string).collect();
+    let more = match things.len().saturating_sub(MOST_LISTED) {
         0 => String::new(),
         more => format!(" and {more} more"),
     };
-    let s = if records.len() == 1 { "" } else { "s" };
-    of_file(
-        path,
-        &format!(
-            "record{s} {}{more}: nothing to compute a volume of is in the polygon{s}",
-            listed.join(", ")
-        ),
-    )
+    listed.join(", ") + &more
 }
 
 fn far_apart(before: &Path, after: &Path, gap: &Quantity) -> String {

@@ -77,6 +77,11 @@ impl Units {
         (!self.is_angular).then_some([plan.factor, height.factor])
     }
 
+    /// Returns the symbols of the units in plan and of heights, such as `m`, if they are known.
+    pub(crate) fn symbols(&self) -> [Option<String>; 2] {
+        [&self.plan, &self.height].map(|unit| unit.as_ref().map(|unit| symbol(unit).to_owned()))
+    }
+
     /// Returns true if coordinates in plan are angles.
     pub(crate) fn is_angular(&self) -> bool {
         self.is_angular
@@ -106,15 +111,22 @@ pub struct Quantity {
 impl fmt::Display for Quantity {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let value = number(self.value);
-        match self.unit.as_ref().map(|unit| unit.name.as_str()) {
+        match &self.unit {
             None if value == "1" => f.write_str("1 unit"),
             None => write!(f, "{value} units"),
-            Some("metre" | "meter") => write!(f, "{value} m"),
-            Some("foot") => write!(f, "{value} ft"),
-            Some("US survey foot") => write!(f, "{value} ftUS"),
-            Some("degree") => write!(f, "{value} degrees"),
-            Some(name) => write!(f, "{value} {name}"),
+            Some(unit) => write!(f, "{value} {}", symbol(unit)),
         }
+    }
+}
+
+/// Returns the symbol of a unit, or its name if it has none.
+fn symbol(unit: &Unit) -> &str {
+    match unit.name.as_str() {
+        "metre" | "meter" => "m",
+        "foot" => "ft",
+        "US survey foot" => "ftUS",
+        "degree" => "degrees",
+        name => name,
     }
 }
 

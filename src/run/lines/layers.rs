@@ -32,16 +32,41 @@ pub(crate) fn read<'a>(
         let path = input.path();
         let layer =
             open::layer_of(input, columns, cut, &journal.context).map_err(|e| e.in_file(path))?;
-        let (format, records) = (layer.format.clone(), layer.shapes.len());
-        journal.add(Notice::LayerRead {
-            path: path.to_path_buf(),
-            format,
-            records,
-        });
-        journal.add_warnings(path, &layer.warnings);
+        note(path, &layer, journal);
         layers.push((path, layer));
     }
     Ok(layers)
+}
+
+/// Reads a layer with all its attributes, and adds a notice about it.
+///
+/// # Errors
+/// If it cannot be read, or the run is canceled.
+pub(crate) fn read_whole<'a>(
+    input: &'a Input<Layer>,
+    journal: &Journal,
+) -> Result<(&'a Path, Cow<'a, Layer>)> {
+    journal.context.check()?;
+    let path = input.path();
+    let layer = match input {
+        Input::File(path) => open::whole_layer(path, &journal.context).map(Cow::Owned),
+        Input::Memory(layer) => Ok(Cow::Borrowed(&**layer)),
+    };
+    let layer = layer.map_err(|e| e.in_file(path))?;
+    note(path, &layer, journal);
+    if layer.attributes.is_none() && !layer.fields.is_empty() {
+        journal.add(Notice::AttributesLeftOut(path.to_path_buf()));
+    }
+    Ok((path, layer))
+}
+
+fn note(path: &Path, layer: &Layer, journal: &Journal) {
+    journal.add(Notice::LayerRead {
+        path: path.to_path_buf(),
+        format: layer.format.clone(),
+        records: layer.shapes.len(),
+    });
+    journal.add_warnings(path, &layer.warnings);
 }
 
 /// Returns the polygons of several layers of boundaries in the coordinate system of the result.

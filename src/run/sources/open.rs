@@ -178,15 +178,32 @@ pub(crate) fn layer(
     cut: OnDamage,
     context: &Context,
 ) -> Result<Layer> {
-    let Some(text) = path.to_str() else {
-        return Err(Error::unsupported("the name is not valid Unicode").in_file(path));
+    let spec = spec(path)?;
+    read_layer(&spec.path, &spec.options(columns, cut), context)
+}
+
+/// Reads a vector layer with all its attributes, as far as the reader keeps them.
+pub(crate) fn whole_layer(path: &Path, context: &Context) -> Result<Layer> {
+    let spec = spec(path)?;
+    let options = layer::Options {
+        keeps_attributes: true,
+        ..spec.options(&[], OnDamage::Refuse)
     };
-    let spec = layer::Spec::parse(text)?;
-    let work = context.start(Stage::ReadingLayer, size(&spec.path))?;
+    read_layer(&spec.path, &options, context)
+}
+
+fn spec(path: &Path) -> Result<layer::Spec> {
+    match path.to_str() {
+        Some(text) => layer::Spec::parse(text),
+        None => Err(Error::unsupported("the name is not valid Unicode").in_file(path)),
+    }
+}
+
+fn read_layer(path: &Path, options: &layer::Options, context: &Context) -> Result<Layer> {
+    let work = context.start(Stage::ReadingLayer, size(path))?;
     let watch = |bytes| work.add(bytes);
-    let options = spec.options(columns, cut);
-    layer::read_with(&spec.path, &options, &watch).or_else(|error| match gdal_may_help(&error) {
-        true => gdal::read_layer_with(&spec.path, &options, &watch),
+    layer::read_with(path, options, &watch).or_else(|error| match gdal_may_help(&error) {
+        true => gdal::read_layer_with(path, options, &watch),
         false => Err(error),
     })
 }

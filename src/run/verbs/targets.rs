@@ -4,6 +4,8 @@ use std::path::{Path, PathBuf};
 
 use crate::error::{Error, Result, Setting, wording};
 use crate::io::formats::{self, Product};
+#[cfg(feature = "cli")]
+use crate::io::profiles;
 use crate::io::{self, Destination, Output, OutputSet, layer};
 use crate::run::context::Context;
 use crate::run::context::notice::Notice;
@@ -179,6 +181,19 @@ pub(crate) const TABLES: &[Format<()>] = &[Format {
     kind: (),
     companions: &[],
 }];
+
+/// The formats of profiles, see [`profiles`](crate::io::profiles).
+#[cfg(feature = "cli")]
+pub(crate) const PROFILES: &[Format<()>] = &[of_profiles(0), of_profiles(1), of_profiles(2)];
+
+#[cfg(feature = "cli")]
+const fn of_profiles(number: usize) -> Format<()> {
+    Format {
+        extension: profiles::EXTENSIONS[number],
+        kind: (),
+        companions: &[],
+    }
+}
 
 /// A file format that a verb can write.
 #[derive(Debug)]

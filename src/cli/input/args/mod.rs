@@ -2,9 +2,11 @@
 //! `super::outputs`, ...).
 
 mod compare;
+mod drape;
 mod job;
 mod lines;
 mod parse;
+mod profile;
 mod quantity;
 mod reading;
 mod surface;
@@ -23,9 +25,11 @@ use crate::cli::report::console::Verbosity;
 use crate::io::formats;
 
 pub(crate) use compare::CompareArgs;
+pub(crate) use drape::DrapeArgs;
 pub(crate) use job::{JobAction, JobArgs};
 pub(crate) use lines::LineArgs;
 pub(crate) use parse::{ClassRange, EdgeLength, ReturnRange, finite};
+pub(crate) use profile::ProfileArgs;
 pub(crate) use quantity::{
     AspectArgs, CurvatureArg, CurvatureArgs, QuantityArgs, RoughnessArgs, SlopeArgs, TpiArgs,
     TriArgs,
@@ -62,6 +66,8 @@ Examples:
   breakline dem ground.ply --resolution 0.5 -o dem.tif
   breakline contour ground.ply --interval 1 -o contours.shp
   breakline volume ground.ply --plane 104.5
+  breakline profile ground.ply design.ply --along axis.shp -o profile.svg
+  breakline drape ground.ply --lines roads.shp -o roads3d.shp
   breakline demo
 
 `breakline VERB --help` lists the options of a verb, with defaults and an example.";
@@ -121,6 +127,8 @@ pub(crate) enum Verb {
     Tpi(TpiArgs),
     Volume(VolumeArgs),
     Compare(CompareArgs),
+    Profile(ProfileArgs),
+    Drape(DrapeArgs),
     Check(CheckArgs),
     Job(JobArgs),
     Demo(DemoArgs),

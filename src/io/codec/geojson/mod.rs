@@ -8,7 +8,7 @@ mod tests;
 mod write;
 
 pub use read::{read_layer, read_layer_with, read_lines_with};
-pub use write::{write_contour_lines, write_contours};
+pub use write::{write_contour_lines, write_contours, write_line_records, write_lines};
 
 /// Longitude and latitude on WGS 84, the default of GeoJSON.
 const WGS_84: u32 = 4326;

@@ -8,7 +8,7 @@ use serde_json::{Map, Value};
 use super::shape::{Object, array, kind, shape_of};
 use super::{RECORD, WGS_84};
 use crate::crs::Crs;
-use crate::data::{Column, Layer, Shape};
+use crate::data::{Attributes, Column, Layer, Shape, Value as Attribute};
 use crate::error::{Error, Result, Setting, wording};
 use crate::io::bytes::decimal_mark::DecimalMark;
 use crate::io::bytes::field::{no_such_field, not_a_number, parse_number};
@@ -144,6 +144,8 @@ struct GeoJsonReader {
     without_geometry: usize,
     /// For each column, true if a feature has it, and the decimal mark of its texts.
     found_columns: Vec<(bool, DecimalMark)>,
+    /// For each shape, its properties, if all are kept.
+    kept: Option<Vec<Object>>,
 }
 
 impl GeoJsonReader {
@@ -161,6 +163,7 @@ impl GeoJsonReader {
         GeoJsonReader {
             layer,
             found_columns,
+            kept: options.keeps_attributes.then(Vec::new),
             ..GeoJsonReader::default()
         }
     }
@@ -256,6 +259,9 @@ impl GeoJsonReader {
             }
             column.values.resize(shapes, found);
         }
+        if let Some(kept) = &mut self.kept {
+            kept.resize(shapes, properties.clone());
+        }
         Ok(())
     }
 
@@ -290,6 +296,7 @@ impl GeoJsonReader {
             first_text,
             found_columns,
             without_geometry,
+            kept,
             ..
         } = self;
         if without_geometry > 0 {
@@ -324,8 +331,33 @@ impl GeoJsonReader {
             }
         }
         layer.fields = fields.into_iter().collect();
+        let kept = kept.map(|rows| attributes(&rows, &layer.fields, layer.shapes.len()));
+        layer.attributes = kept;
         add_system(&mut layer, root.get("crs"));
         Ok(layer)
+    }
+}
+
+/// Returns the properties of the shapes of a layer. What is an array or an object is kept as its
+/// text.
+fn attributes(rows: &[Object], names: &[String], shapes: usize) -> Attributes {
+    let value = |value: Option<&Value>| match value {
+        None | Some(Value::Null) => Attribute::Missing,
+        Some(Value::Bool(truth)) => Attribute::Truth(*truth),
+        Some(Value::String(text)) => Attribute::Text(text.clone()),
+        Some(Value::Number(number)) => match (number.as_i64(), number.as_f64()) {
+            (Some(whole), _) => Attribute::Whole(whole),
+            (None, Some(number)) => Attribute::Number(number),
+            (None, None) => Attribute::Missing,
+        },
+        Some(other) => Attribute::Text(other.to_string()),
+    };
+    let none = Map::new();
+    let rows = (0..shapes).map(|shape| rows.get(shape).unwrap_or(&none));
+    let rows = rows.map(|row| names.iter().map(|name| value(row.get(name))).collect());
+    Attributes {
+        names: names.to_vec(),
+        rows: rows.collect(),
     }
 }
 

@@ -1,10 +1,10 @@
-//! Writing: contours as a document or as lines.
+//! Writing: contours and lines, as a document or one feature on each line of the file.
 
 use std::io::Write;
 
 use super::{RECORD, WGS_84};
 use crate::crs::{Crs, CrsKind};
-use crate::data::ContourLine;
+use crate::data::{ContourLine, Layer, Shape, Value};
 use crate::error::{Error, Result};
 use crate::io::bytes::output::{Destination, Output};
 use crate::io::codec::contour_summary::ContourSummary;
@@ -26,7 +26,49 @@ pub fn write_contours<'a>(
     lines: &mut dyn Iterator<Item = ContourLine>,
     crs: Option<&Crs>,
 ) -> Result<ContourSummary> {
-    put_contours(target.into(), |out| write(out, lines, crs))
+    put(target.into(), |out| write(out, lines, crs))
+}
+
+/// Writes the lines of a layer as a FeatureCollection of LineStrings and MultiLineStrings, with all
+/// its attributes as properties, and returns warnings. Heights that are missing are left out. What
+/// is no line is a feature without geometry.
+///
+/// # Errors
+/// As [`write_contours`].
+pub fn write_lines<'a>(target: impl Into<Destination<'a>>, layer: &Layer) -> Result<Vec<String>> {
+    put(target.into(), |out| {
+        let mut warnings = Vec::new();
+        begin(out, layer.crs.as_ref(), &mut warnings)?;
+        for record in 0..layer.shapes.len() {
+            out.write_all(if record == 0 { b"\n" } else { b",\n" })?;
+            write_record(out, layer, record)?;
+        }
+        out.write_all(b"\n]}\n")?;
+        Ok(warnings)
+    })
+}
+
+/// Writes the lines of a layer as GeoJSON lines: a feature on each line of the file, as
+/// [`write_lines`] has them. See [`write_contour_lines`] for what the format does not state.
+///
+/// # Errors
+/// As [`write_contours`].
+pub fn write_line_records<'a>(
+    target: impl Into<Destination<'a>>,
+    layer: &Layer,
+) -> Result<Vec<String>> {
+    let target = target.into();
+    let is_sequence = is_sequence(&target);
+    put(target, |out| {
+        for record in 0..layer.shapes.len() {
+            if is_sequence {
+                out.write_all(&[RECORD])?;
+            }
+            write_record(out, layer, record)?;
+            out.write_all(b"\n")?;
+        }
+        Ok(unstated(layer.crs.as_ref()).into_iter().collect())
+    })
 }
 
 /// Writes contours as GeoJSON lines (GDAL's GeoJSONSeq): a feature on each line, as
@@ -44,18 +86,10 @@ pub fn write_contour_lines<'a>(
     crs: Option<&Crs>,
 ) -> Result<ContourSummary> {
     let target = target.into();
-    let is_sequence = target
-        .format_path()
-        .extension()
-        .is_some_and(|known| known.eq_ignore_ascii_case("geojsons"));
-    put_contours(target, |out| {
+    let is_sequence = is_sequence(&target);
+    put(target, |out| {
         let mut summary = ContourSummary::default();
-        if crs.is_none_or(|crs| !is_default(crs)) {
-            let name = crs.map_or_else(|| "unknown".to_owned(), ToString::to_string);
-            summary.warnings.push(format!(
-                "GeoJSON lines state no system, and readers take degrees: tell them that it is {name} (ogr2ogr -s_srs)"
-            ));
-        }
+        summary.warnings.extend(unstated(crs));
         for line in lines.filter(|line| line.points.len() > 1) {
             summary.add(&line);
             if is_sequence {
@@ -68,14 +102,28 @@ pub fn write_contour_lines<'a>(
     })
 }
 
-fn put_contours(
-    target: Destination,
-    write: impl FnOnce(&mut Output) -> std::io::Result<ContourSummary>,
-) -> Result<ContourSummary> {
+fn put<T>(target: Destination, write: impl FnOnce(&mut Output) -> std::io::Result<T>) -> Result<T> {
     let mut output = target.create()?;
-    let summary = write(&mut output).map_err(|e| Error::from(e).in_file(target.path()))?;
+    let written = write(&mut output).map_err(|e| Error::from(e).in_file(target.path()))?;
     target.put(output)?;
-    Ok(summary)
+    Ok(written)
+}
+
+/// Returns true if each record begins with the separator of RFC 8142.
+fn is_sequence(target: &Destination) -> bool {
+    let path = target.format_path();
+    let extension = path.extension();
+    extension.is_some_and(|known| known.eq_ignore_ascii_case("geojsons"))
+}
+
+/// Returns the warning for a system that GeoJSON lines cannot state.
+fn unstated(crs: Option<&Crs>) -> Option<String> {
+    crs.is_none_or(|crs| !is_default(crs)).then(|| {
+        let name = crs.map_or_else(|| "unknown".to_owned(), ToString::to_string);
+        format!(
+            "GeoJSON lines state no system, and readers take degrees: tell them that it is {name} (ogr2ogr -s_srs)"
+        )
+    })
 }
 
 fn is_default(crs: &Crs) -> bool {
@@ -88,6 +136,22 @@ pub(super) fn write(
     crs: Option<&Crs>,
 ) -> std::io::Result<ContourSummary> {
     let mut summary = ContourSummary::default();
+    begin(out, crs, &mut summary.warnings)?;
+    for line in lines.filter(|line| line.points.len() > 1) {
+        out.write_all(if summary.lines == 0 { b"\n" } else { b",\n" })?;
+        summary.add(&line);
+        write_feature(out, &line, summary.lines)?;
+    }
+    out.write_all(b"\n]}\n")?;
+    Ok(summary)
+}
+
+/// Writes a document up to its first feature.
+fn begin(
+    out: &mut impl Write,
+    crs: Option<&Crs>,
+    warnings: &mut Vec<String>,
+) -> std::io::Result<()> {
     out.write_all(b"{\"type\":\"FeatureCollection\",")?;
     match crs
         .filter(|crs| !is_default(crs))
@@ -100,19 +164,65 @@ pub(super) fn write(
                 "\"crs\":{{\"type\":\"name\",\"properties\":{{\"name\":\"{name}\"}}}},"
             )?;
         }
-        Some((crs, None)) => summary.warnings.push(format!(
+        Some((crs, None)) => warnings.push(format!(
             "GeoJSON cannot name a system without a code: {crs}"
         )),
         None => {}
     }
-    out.write_all(b"\"features\":[")?;
-    for line in lines.filter(|line| line.points.len() > 1) {
-        out.write_all(if summary.lines == 0 { b"\n" } else { b",\n" })?;
-        summary.add(&line);
-        write_feature(out, &line, summary.lines)?;
+    out.write_all(b"\"features\":[")
+}
+
+/// Writes a record of a layer as a feature, without a line break.
+fn write_record(out: &mut impl Write, layer: &Layer, record: usize) -> std::io::Result<()> {
+    out.write_all(b"{\"type\":\"Feature\",\"properties\":{")?;
+    if let Some(attributes) = &layer.attributes {
+        let row = attributes.rows.get(record).map_or(&[][..], Vec::as_slice);
+        for (i, (name, value)) in attributes.names.iter().zip(row).enumerate() {
+            let comma = if i == 0 { "" } else { "," };
+            write!(out, "{comma}{}:", serde_json::to_string(name)?)?;
+            match value {
+                Value::Missing => out.write_all(b"null")?,
+                Value::Whole(whole) => write!(out, "{whole}")?,
+                Value::Number(number) if number.is_finite() => write!(out, "{number:?}")?,
+                Value::Number(_) => out.write_all(b"null")?,
+                Value::Truth(truth) => write!(out, "{truth}")?,
+                Value::Text(text) => out.write_all(serde_json::to_string(text)?.as_bytes())?,
+            }
+        }
     }
-    out.write_all(b"\n]}\n")?;
-    Ok(summary)
+    out.write_all(b"},\"geometry\":")?;
+    match layer.shapes.get(record) {
+        Some(Shape::Lines(parts)) => match &parts[..] {
+            [] => out.write_all(b"null")?,
+            [part] => {
+                out.write_all(b"{\"type\":\"LineString\",\"coordinates\":")?;
+                write_positions(out, part)?;
+                out.write_all(b"}")?;
+            }
+            parts => {
+                out.write_all(b"{\"type\":\"MultiLineString\",\"coordinates\":[")?;
+                for (i, part) in parts.iter().enumerate() {
+                    out.write_all(if i == 0 { b"" } else { b"," })?;
+                    write_positions(out, part)?;
+                }
+                out.write_all(b"]}")?;
+            }
+        },
+        _ => out.write_all(b"null")?,
+    }
+    out.write_all(b"}")
+}
+
+fn write_positions(out: &mut impl Write, part: &[[f64; 3]]) -> std::io::Result<()> {
+    out.write_all(b"[")?;
+    for (i, [x, y, z]) in part.iter().enumerate() {
+        let comma = if i == 0 { "" } else { "," };
+        match z.is_finite() {
+            true => write!(out, "{comma}[{x},{y},{}]", unsigned_zero(*z))?,
+            false => write!(out, "{comma}[{x},{y}]")?,
+        }
+    }
+    out.write_all(b"]")
 }
 
 /// Writes a contour as a feature, without a line break.

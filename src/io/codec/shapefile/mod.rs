@@ -28,14 +28,16 @@
 //! | types that differ from the header's, or mixed | read, a warning |
 //! | an older copy of a record that the `.shx` lists elsewhere | left out, a warning |
 //!
-//! [`write_contours`] and [`write_layer`] write `.shp`, `.shx`, `.dbf`, `.prj` and `.cpg`, all of
-//! them or none.
+//! [`write_contours`], [`write_lines`] and [`write_layer`] write `.shp`, `.shx`, `.dbf`, `.prj` and
+//! `.cpg`, all of them or none.
 //!
 //! The crate `shapefile` is not used: it trusts counts in the file and stops at the first damage,
 //! and its writer stores the current date in the `.dbf` and ignores errors on closing.
 
 mod header;
 mod index;
+mod kept;
+mod number;
 mod patch;
 mod record;
 mod table;
@@ -49,7 +51,7 @@ use std::io::{BufReader, Read};
 use std::path::{Path, PathBuf};
 
 use crate::crs::Crs;
-use crate::data::{Column as Attribute, Layer, Shape};
+use crate::data::{Attributes, Column as Attribute, Layer, Shape, Value};
 use crate::error::{Error, Result, Wording, wording};
 use crate::io::OnDamage;
 use crate::io::bytes::field;
@@ -60,7 +62,7 @@ use index::Index;
 use record::type_name;
 use table::{Field, Numbers, Table};
 use walk::{Damage, Record, Shp, Walk};
-pub use write::{Column, check_size, write_contours, write_layer};
+pub use write::{Column, check_size, write_contours, write_layer, write_lines};
 
 /// Limit for the bytes of a `.prj`; a larger file is something else.
 const MAX_PRJ: u64 = 1 << 20;
@@ -177,6 +179,17 @@ fn read(path: &Path, options: &Options, watch: Watch) -> Result<Layer> {
     for (&name, numbers) in options.columns.iter().zip(&attributes.columns) {
         layer.columns.push(column(name, numbers, &origins)?);
     }
+    if let Some(rows) = attributes.kept {
+        let missing = vec![Value::Missing; layer.fields.len()];
+        let row = |&(_, row): &RecordAndRow| {
+            let known = row.and_then(|row| rows.get(row));
+            known.unwrap_or(&missing).clone()
+        };
+        layer.attributes = Some(Attributes {
+            names: layer.fields.clone(),
+            rows: origins.iter().map(row).collect(),
+        });
+    }
     layer.warnings = warnings;
     Ok(layer)
 }
@@ -283,11 +296,13 @@ fn read_prj(path: &Path, layer: &mut Layer, warnings: &mut Vec<Wording>) -> Resu
 
 /// What was read of the `.dbf`, by its rows.
 #[derive(Default)]
-struct Attributes {
+struct TableRows {
     /// For each row, true if it is marked as deleted.
     deleted: Vec<bool>,
     height: Option<Numbers>,
     columns: Vec<Numbers>,
+    /// For each row, its values, if all attributes are kept.
+    kept: Option<Vec<Vec<Value>>>,
 }
 
 fn read_table(
@@ -296,11 +311,11 @@ fn read_table(
     records: usize,
     fields: &mut Vec<String>,
     warnings: &mut Vec<Wording>,
-) -> Result<Attributes> {
+) -> Result<TableRows> {
     let first_wanted = options.height_field.or(options.columns.first().copied());
     let Some(dbf) = sibling(path, "dbf") else {
         return match first_wanted {
-            None => Ok(Attributes::default()),
+            None => Ok(TableRows::default()),
             Some(name) => Err(Error::usage(format!(
                 "there is no .dbf next to it with the field {name}"
             ))),
@@ -311,7 +326,7 @@ fn read_table(
         Ok(table) => table,
         Err(e) if first_wanted.is_none() => {
             warnings.push(format!(".dbf not used: {e}").into());
-            return Ok(Attributes::default());
+            return Ok(TableRows::default());
         }
         Err(e) => return Err(e.in_file(dbf)),
     };
@@ -327,8 +342,12 @@ fn read_table(
         .map(|name| table.find(name));
     let wanted: Vec<Field> = wanted.collect::<Result<_>>().map_err(|e| e.in_file(&dbf))?;
     let room = table.room()?;
+    let kept = match options.keeps_attributes {
+        true => table.fields.clone(),
+        false => Vec::new(),
+    };
     let rows = table
-        .rows(&wanted, records.saturating_add(1))
+        .rows(&wanted, &kept, records.saturating_add(1))
         .map_err(|e| e.in_file(&dbf))?;
     if table.stated > room {
         warnings.push(
@@ -360,10 +379,11 @@ fn read_table(
     if let (Some(numbers), Some(field)) = (&height, wanted.first()) {
         warn_of_texts(&field.name, numbers, warnings).map_err(|e| e.in_file(dbf))?;
     }
-    Ok(Attributes {
+    Ok(TableRows {
         deleted: rows.deleted,
         height,
         columns,
+        kept: (!kept.is_empty()).then_some(rows.kept),
     })
 }
 
@@ -413,7 +433,7 @@ fn column(name: &str, numbers: &Numbers, origins: &[RecordAndRow]) -> Result<Att
 fn join(
     records: Vec<Record>,
     rows: Option<Vec<Option<usize>>>,
-    attributes: &Attributes,
+    attributes: &TableRows,
     origins: &mut Vec<RecordAndRow>,
     warnings: &mut Vec<Wording>,
 ) -> Vec<Shape> {
@@ -457,7 +477,7 @@ fn join(
                 .unwrap_or(f64::NAN);
             shape.set_height(z);
         }
-        if !attributes.columns.is_empty() {
+        if !attributes.columns.is_empty() || attributes.kept.is_some() {
             origins.push((position, row));
         }
         shapes.push(shape);

@@ -8,6 +8,7 @@ use std::fs::File;
 use std::io::{BufReader, Read, Seek, SeekFrom};
 use std::path::Path;
 
+use crate::data::Value;
 use crate::error::{Error, Result};
 use crate::io::bytes::decimal_mark::DecimalMark;
 use crate::io::bytes::field::parse_number;
@@ -25,6 +26,8 @@ pub(super) struct Field {
     pub(super) name: String,
     /// The type letter.
     kind: u8,
+    /// The decimals of numbers.
+    decimals: u8,
     /// Offset in the row.
     at: usize,
     width: usize,
@@ -40,6 +43,8 @@ pub(super) struct Table {
     row: usize,
     /// Number of rows, as the header states it.
     pub(super) stated: u64,
+    /// The text of the `.cpg` file.
+    code_page: Option<String>,
 }
 
 /// The result of [`Table::rows`].
@@ -49,6 +54,8 @@ pub(super) struct Rows {
     pub(super) deleted: Vec<bool>,
     /// The numbers of each field that was requested, in the order of the request.
     pub(super) numbers: Vec<Numbers>,
+    /// For each row, the values of the fields that are kept as they are.
+    pub(super) kept: Vec<Vec<Value>>,
 }
 
 /// The numbers of one field.
@@ -101,6 +108,7 @@ impl Table {
             fields,
             row,
             stated: u64::from(stated),
+            code_page: code_page.map(str::to_owned),
         })
     }
 
@@ -136,12 +144,12 @@ impl Table {
         }
     }
 
-    /// Reads the existing rows, whatever their stated count, but at most `limit`, and the numbers
-    /// in these fields.
+    /// Reads the existing rows, whatever their stated count, but at most `limit`: the numbers in
+    /// these fields, and the values of those that are kept.
     ///
     /// # Errors
     /// If reading fails, or numbers of a field have different decimal marks.
-    pub(super) fn rows(&mut self, fields: &[Field], limit: usize) -> Result<Rows> {
+    pub(super) fn rows(&mut self, fields: &[Field], kept: &[Field], limit: usize) -> Result<Rows> {
         let mut rows = Rows::default();
         rows.numbers.resize_with(fields.len(), Numbers::default);
         let mut marks: Vec<DecimalMark> = fields.iter().map(|_| DecimalMark::default()).collect();
@@ -159,6 +167,13 @@ impl Table {
                 break;
             }
             rows.deleted.push(row[0] == DELETED);
+            if !kept.is_empty() {
+                let value = |field: &Field| {
+                    let cell = row[..got].get(field.at..field.at + field.width);
+                    value(field, cell.unwrap_or_default(), self.code_page.as_deref())
+                };
+                rows.kept.push(kept.iter().map(value).collect());
+            }
             for ((field, numbers), mark) in fields.iter().zip(&mut rows.numbers).zip(&mut marks) {
                 let cell = row[..got]
                     .get(field.at..field.at + field.width)
@@ -232,6 +247,7 @@ fn fields(list: &[u8], row: usize, code_page: Option<&str>) -> Result<Vec<Field>
             let field = Field {
                 name: decode(name, code_page),
                 kind: bytes[11],
+                decimals: bytes[17],
                 at,
                 width: width(bytes),
             };
@@ -286,6 +302,48 @@ fn number(kind: u8, cell: &[u8]) -> std::result::Result<f64, String> {
     parse_number(text.trim_matches(|c: char| c.is_whitespace() || c == '\0'))
 }
 
+/// Returns the value in a cell. Types that have no texts and no numbers (memos and pictures, which
+/// are in another file) are missing.
+fn value(field: &Field, cell: &[u8], code_page: Option<&str>) -> Value {
+    let text = || decode(cell, code_page).trim_matches('\0').trim().to_owned();
+    match field.kind {
+        b'C' => match text() {
+            text if text.is_empty() => Value::Missing,
+            text => Value::Text(text),
+        },
+        b'D' => date(&text()),
+        b'L' => match cell.first() {
+            Some(b'T' | b't' | b'Y' | b'y') => Value::Truth(true),
+            Some(b'F' | b'f' | b'N' | b'n') => Value::Truth(false),
+            _ => Value::Missing,
+        },
+        b'N' | b'F' if field.decimals == 0 && text().parse::<i64>().is_ok() => {
+            text().parse().map_or(Value::Missing, Value::Whole)
+        }
+        b'I' | b'+' => match number(field.kind, cell) {
+            Ok(number) if number.is_finite() => Value::Whole(number as i64),
+            _ => Value::Missing,
+        },
+        b'N' | b'F' | b'B' | b'O' | b'Y' => match number(field.kind, cell) {
+            Ok(number) if number.is_finite() => Value::Number(number),
+            Ok(_) => Value::Missing,
+            Err(text) => Value::Text(text),
+        },
+        _ => Value::Missing,
+    }
+}
+
+/// Returns a date of eight digits with hyphens.
+fn date(text: &str) -> Value {
+    match (text.get(..4), text.get(4..6), text.get(6..8)) {
+        (Some(year), Some(month), Some(day)) if text.len() == 8 => {
+            Value::Text(format!("{year}-{month}-{day}"))
+        }
+        _ if text.is_empty() => Value::Missing,
+        _ => Value::Text(text.to_owned()),
+    }
+}
+
 /// Reads until the buffer is full or the file ends; returns the number of bytes read.
 fn fill(file: &mut impl Read, buffer: &mut [u8]) -> Result<usize> {
     let mut got = 0;
@@ -337,7 +395,7 @@ mod tests {
     fn rows(file: &tempfile::NamedTempFile, names: &[&str]) -> Rows {
         let mut table = Table::open(file.path(), None).unwrap();
         let fields: Vec<Field> = names.iter().map(|name| table.find(name).unwrap()).collect();
-        table.rows(&fields, 100).unwrap()
+        table.rows(&fields, &[], 100).unwrap()
     }
 
     fn values(file: &tempfile::NamedTempFile, name: &str) -> Vec<f64> {
@@ -376,7 +434,7 @@ mod tests {
         );
         let mut opened = Table::open(file.path(), None).unwrap();
         let field = opened.find("TEXT").unwrap();
-        let error = opened.rows(&[field], 100).unwrap_err().to_string();
+        let error = opened.rows(&[field], &[], 100).unwrap_err().to_string();
         assert!(
             error.starts_with(
                 "field TEXT, row 3: 3.5 has a point and 500,000, in row 1, has a comma"
@@ -426,6 +484,44 @@ mod tests {
             bad.write_all(&bytes[..cut]).unwrap();
             assert!(Table::open(bad.path(), None).is_err(), "cut at {cut}");
         }
+    }
+
+    #[test]
+    fn values_are_kept_by_the_type_of_their_field() {
+        let fields = [
+            ("WHOLE", b'N', 4),
+            ("TEXT", b'C', 6),
+            ("DAY", b'D', 8),
+            ("OPEN", b'L', 1),
+            ("MEMO", b'M', 4),
+        ];
+        let lines = [
+            "   12Höhe 20240531T   1",
+            "  1,5      2024    ?    ",
+            " ****x                  ",
+        ];
+        let file = table(&fields, b"\r", &lines, 3);
+        let mut table = Table::open(file.path(), Some("UTF-8")).unwrap();
+        let kept = table.fields.clone();
+        let found = table.rows(&[], &kept, 100).unwrap().kept;
+        let text = |text: &str| Value::Text(text.to_owned());
+        let day = text("2024-05-31");
+        assert_eq!(
+            found[0],
+            [
+                Value::Whole(12),
+                text("Höhe"),
+                day,
+                Value::Truth(true),
+                Value::Missing
+            ]
+        );
+        assert_eq!(found[1][0], Value::Number(1.5));
+        assert_eq!(
+            found[1][1..],
+            [Value::Missing, text("2024"), Value::Missing, Value::Missing]
+        );
+        assert_eq!(found[2][..2], [Value::Missing, text("x")]);
     }
 
     #[test]

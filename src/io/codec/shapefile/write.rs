@@ -4,12 +4,13 @@ use std::io::{Seek, SeekFrom, Write};
 use std::path::Path;
 
 use super::header::{FILE_CODE, HEADER};
+use super::kept;
+use super::number::{NUMBER_DECIMALS, NUMBER_WIDTH, real};
 use crate::crs::Crs;
-use crate::data::{Bounds, ContourLine, Layer, Shape, ShapeKind};
+use crate::data::{Bounds, ContourLine, Layer, Shape, ShapeKind, Value};
 use crate::error::{Error, Result};
 use crate::io::codec::contour_summary::ContourSummary;
 use crate::io::{Destination, Output};
-use crate::triangulation::num::unsigned_zero;
 
 /// Limit for the bytes of each file: many programs read no more.
 const MAX_BYTES: u64 = i32::MAX as u64;
@@ -19,14 +20,6 @@ const TOO_LARGE: &str = "write GeoJSON, or less data: a larger interval or a par
 
 /// The stored value for a missing height; below [`record::NO_DATA`](super::record::NO_DATA).
 const NO_HEIGHT: f64 = -1e40;
-
-/// Width of a field for lengths and heights. The text in it is the shortest that reads back as the
-/// same number, which always fits.
-const NUMBER_WIDTH: u8 = 24;
-
-/// The decimals that the header of the field states and programs display. Readers use the text as
-/// it is, so a number that needs more decimals has them.
-const NUMBER_DECIMALS: u8 = 6;
 
 const ID_WIDTH: u8 = 10;
 
@@ -128,6 +121,43 @@ pub fn write_layer<'a>(
         set.write(&record, &bounds, &cells)?;
     }
     set.finish(target, layer.crs.as_ref())
+}
+
+/// Writes the lines of a layer with all its attributes, and returns warnings. Without attributes,
+/// the table has an `ID` from 1.
+///
+/// The type of a field is that of its values: whole numbers, numbers, true and false, or else
+/// texts. Names are cut to the ten bytes that the format has, and numbered where they would be
+/// equal; texts are cut to 254 bytes. Each is a warning.
+///
+/// # Errors
+/// Those of [`write_layer`], and if there are more attributes than the format has room for.
+pub fn write_lines<'a>(target: impl Into<Destination<'a>>, layer: &Layer) -> Result<Vec<String>> {
+    let target = target.into();
+    let Some(attributes) = layer.attributes.as_ref().filter(|of| !of.names.is_empty()) else {
+        write_layer(target, layer, &[])?;
+        return Ok(Vec::new());
+    };
+    let code = type_code(&layer.shapes).map_err(|e| e.in_file(target.path()))?;
+    let mut warnings = Vec::new();
+    let columns = kept::columns(attributes, &mut warnings).map_err(|e| e.in_file(target.path()))?;
+    let fields: Vec<[u8; 32]> = columns.iter().map(kept::KeptColumn::descriptor).collect();
+    let mut set = FileSet::create(target, code, &fields)?;
+    let mut record = Vec::new();
+    let none = Vec::new();
+    for (i, shape) in layer.shapes.iter().enumerate() {
+        let bounds = bounds(shape.vertices().copied());
+        record.clear();
+        content(&mut record, code, shape, &bounds);
+        let row = attributes.rows.get(i).unwrap_or(&none);
+        let cells = columns.iter().enumerate().map(|(k, column)| {
+            let value = row.get(k).unwrap_or(&Value::Missing);
+            column.cell(value)
+        });
+        set.write(&record, &bounds, &cells.collect::<Vec<String>>())?;
+    }
+    set.finish(target, layer.crs.as_ref())?;
+    Ok(warnings)
 }
 
 /// Returns an error if lines with heights and `vertices` vertices in total are too large for a
@@ -283,20 +313,6 @@ fn double(out: &mut Vec<u8>, value: f64) {
 
 fn id(number: usize) -> String {
     format!("{number:>width$}", width = usize::from(ID_WIDTH))
-}
-
-/// Returns the shortest text that reads back as the same number; blank for NaN.
-fn real(value: f64) -> String {
-    let width = usize::from(NUMBER_WIDTH);
-    if !value.is_finite() {
-        return " ".repeat(width);
-    }
-    let mut text = unsigned_zero(value).to_string();
-    if text.len() > width {
-        // At most 24 characters: 17 digits with their point, two signs, the e and three digits.
-        text = format!("{value:e}");
-    }
-    format!("{text:>width$}")
 }
 
 /// Returns a field descriptor of the `.dbf`.
@@ -505,28 +521,6 @@ mod tests {
             shapes,
             ..Layer::default()
         }
-    }
-
-    #[test]
-    fn numbers_read_back_and_fit() {
-        for value in [
-            0.0,
-            12.3,
-            -0.1,
-            678.3,
-            1e-300,
-            -1.234_567_890_123_456_7e-308,
-            1e22,
-            1e23,
-            f64::MAX,
-            f64::MIN,
-            1.0 / 3.0,
-        ] {
-            let text = real(value);
-            assert_eq!((text.len(), text.trim().parse()), (24, Ok(value)), "{text}");
-        }
-        assert_eq!(real(-0.0).trim(), "0");
-        assert_eq!(real(f64::NAN), " ".repeat(24));
     }
 
     #[test]

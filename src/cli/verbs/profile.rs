@@ -1,0 +1,107 @@
+use std::path::PathBuf;
+
+use crate::cli::Exit;
+use crate::cli::input::args::{OutputArgs, ProfileArgs};
+use crate::cli::input::plan::SurfacePlan;
+use crate::cli::input::{inputs, outputs};
+use crate::cli::report::console::Console;
+use crate::cli::report::profiles;
+use crate::cli::report::stdout::print;
+use crate::cli::report::summary::print_surface;
+use crate::cli::report::written::commit;
+use crate::error::{Error, Result};
+use crate::io::profiles::PlotOptions;
+use crate::run::targets::PROFILES;
+use crate::run::{
+    self, Input, ProfileOptions, SectionOptions, SectionStations, SurfaceProduct, SurfaceReport,
+};
+
+/// Computes heights along lines, or along sections across them.
+pub(crate) fn run(args: &ProfileArgs, console: &Console) -> Result<Exit> {
+    let sections = sections(args)?;
+    inputs::require([&args.along])?;
+    let plans = SurfacePlan::resolve_each(&args.surface, console)?;
+    let read: Vec<PathBuf> = plans
+        .iter()
+        .flat_map(|plan| plan.targets.with_lists(plan.request.files()))
+        .chain([args.along.clone()])
+        .collect();
+    let output = OutputArgs {
+        output: args.output.clone(),
+        overwrite: args.overwrite,
+    };
+    let outputs = outputs::resolve(&output, PROFILES, &read)?;
+    let context = console.context();
+    let surfaces: Vec<SurfaceProduct> = plans
+        .iter()
+        .zip(&args.surface.inputs)
+        .map(|(plan, input)| {
+            let mut product = run::surface(&plan.request, &context)?;
+            console.line(format_args!("surface     {}", input.display()));
+            print_surface(&SurfaceReport::take(&mut product)?, console);
+            Ok(product)
+        })
+        .collect::<Result<_>>()?;
+    let systems = plans.first().map(|plan| &plan.request.systems);
+    let options = ProfileOptions {
+        along: Input::File(args.along.clone()),
+        // With another system as the target, the assigned one is that of the points alone.
+        assign: systems
+            .filter(|systems| systems.target.is_none())
+            .and_then(|systems| systems.assign.clone()),
+        step: args.step,
+        sections,
+        names: args.surface.inputs.clone(),
+    };
+    let product = run::profile(&surfaces.iter().collect::<Vec<_>>(), &options, &context)?;
+    let plot = PlotOptions {
+        exaggeration: args.exaggeration,
+        datum: args.datum,
+        title: args.title.clone(),
+    };
+    for target in &outputs.targets {
+        product.write(target.within(&outputs.set), &plot)?;
+    }
+    commit(outputs, console)?;
+    match args.json {
+        true => print(&profiles::json(&product.profiles))?,
+        false => print(&profiles::text(&product.profiles))?,
+    }
+    Ok(Exit::Done)
+}
+
+/// Returns the sections that are asked for, if any.
+///
+/// # Errors
+/// If options do not go together.
+fn sections(args: &ProfileArgs) -> Result<Option<SectionOptions>> {
+    let at = match (args.interval, &args.stations[..]) {
+        (Some(interval), _) => Some(SectionStations::Every(interval)),
+        (None, []) => None,
+        (None, stations) => Some(SectionStations::At(stations.to_vec())),
+    };
+    let has_widths = args.left.is_some() || args.right.is_some();
+    let error = match &at {
+        _ if args.surface.inputs.is_empty() => {
+            Error::usage("the surface is missing").cure("name a file of points, a TIN or a DEM")
+        }
+        None if has_widths => Error::usage("--left and --right are for cross-sections")
+            .cure("choose where they are with --interval or --stations"),
+        Some(_) if !has_widths => Error::usage("the lengths of the cross-sections are missing")
+            .cure("give them with --left and --right"),
+        _ if args.surface.crossing_report.is_some() || args.surface.lines.flat_points.is_some() => {
+            Error::usage("`profile` writes no tables of crossings or replaced points")
+                .cure("leave out --crossing-report and --flat-points; `breakline tin` has them")
+        }
+        _ => {
+            return Ok(at.map(|at| SectionOptions {
+                at,
+                start: args.start,
+                widths: [args.left, args.right].map(Option::unwrap_or_default),
+                angle: args.angle,
+                format: args.station_format,
+            }));
+        }
+    };
+    Err(error)
+}

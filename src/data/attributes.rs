@@ -1,0 +1,34 @@
+/// What a record has for an attribute.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub enum Value {
+    /// Nothing.
+    #[default]
+    Missing,
+    /// A whole number.
+    Whole(i64),
+    /// A number.
+    Number(f64),
+    /// A text; dates are texts such as `2024-05-31`.
+    Text(String),
+    /// True or false.
+    Truth(bool),
+}
+
+/// The attributes of all records of a vector layer.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Attributes {
+    /// Their names, in order.
+    pub names: Vec<String>,
+    /// For each shape of the layer, a value for each name.
+    pub rows: Vec<Vec<Value>>,
+}
+
+impl Attributes {
+    /// Returns the values of an attribute, one for each shape.
+    pub fn column(&self, number: usize) -> impl Iterator<Item = &Value> {
+        let missing = &Value::Missing;
+        self.rows
+            .iter()
+            .map(move |row| row.get(number).unwrap_or(missing))
+    }
+}

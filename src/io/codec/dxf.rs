@@ -1,0 +1,325 @@
+//! DXF drawings of release 12 (AC1009), as text: lines, polylines and texts on layers. Every CAD
+//! program reads them.
+
+use std::collections::BTreeSet;
+use std::io::{Result, Write};
+
+use crate::data::{Bounds, Layer, Shape};
+use crate::error;
+use crate::io::bytes::output::Destination;
+
+/// The bytes of the name of a layer, at most.
+const NAME: usize = 31;
+
+/// Writes the lines of a layer as polylines in space, and returns warnings. Vertices without a
+/// height are at 0.
+///
+/// # Errors
+/// If the file cannot be written.
+pub(crate) fn write_lines(target: Destination, layer: &Layer) -> error::Result<Vec<String>> {
+    let mut bounds = Bounds::default();
+    let vertices = layer.shapes.iter().flat_map(Shape::vertices);
+    vertices.for_each(|p| bounds.add(*p));
+    let layers = vec![DxfLayer::new("LINES", 7, &mut BTreeSet::new())];
+    let mut output = target.create()?;
+    let write = |out: &mut dyn Write| {
+        let mut drawing = Dxf::begin(out, layers, &bounds)?;
+        for line in layer.lines() {
+            let height = |z: f64| if z.is_finite() { z } else { 0.0 };
+            drawing.polyline(0, line.iter().map(|&[x, y, z]| [x, y, height(z)]))?;
+        }
+        drawing.end()
+    };
+    write(&mut output).map_err(|e| error::Error::from(e).in_file(target.path()))?;
+    target.put(output)?;
+    let has_attributes = layer
+        .attributes
+        .as_ref()
+        .is_some_and(|of| !of.names.is_empty());
+    let left_out = "a DXF drawing has no attributes: they are left out";
+    Ok(has_attributes
+        .then(|| left_out.to_owned())
+        .into_iter()
+        .collect())
+}
+
+/// A layer of a drawing.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct DxfLayer {
+    name: String,
+    color: u8,
+}
+
+/// How a text lies at its position.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Align {
+    Left,
+    Center,
+    Right,
+}
+
+impl DxfLayer {
+    /// Returns a layer of one of the numbered colors: 1 red, 2 yellow, 3 green, 4 cyan, 5 blue, 6
+    /// magenta, 7 black or white, 8 gray.
+    ///
+    /// Names of this release have capital letters, digits, `$`, `-` and `_`; others become `_`.
+    /// One that is `taken` is numbered.
+    pub(crate) fn new(name: &str, color: u8, taken: &mut BTreeSet<String>) -> Self {
+        let plain = |c: char| match c.to_ascii_uppercase() {
+            c if c.is_ascii_alphanumeric() || "$-_".contains(c) => c,
+            _ => '_',
+        };
+        let whole: String = name.chars().map(plain).take(NAME).collect();
+        let whole = if whole.is_empty() {
+            "_".to_owned()
+        } else {
+            whole
+        };
+        let numbered = (2..).map(|number| {
+            let end = format!("_{number}");
+            let start: String = whole.chars().take(NAME - end.len().min(NAME)).collect();
+            start + &end
+        });
+        let name = std::iter::once(whole.clone())
+            .chain(numbered)
+            .find(|name| !taken.contains(name))
+            .unwrap_or_default();
+        taken.insert(name.clone());
+        DxfLayer { name, color }
+    }
+}
+
+/// A drawing while it is written.
+pub(crate) struct Dxf<'a> {
+    out: &'a mut dyn Write,
+    layers: Vec<DxfLayer>,
+}
+
+impl<'a> Dxf<'a> {
+    /// Begins a drawing with these layers, which later calls name by their positions.
+    pub(crate) fn begin(
+        out: &'a mut dyn Write,
+        layers: Vec<DxfLayer>,
+        bounds: &Bounds,
+    ) -> Result<Self> {
+        let mut drawing = Dxf { out, layers };
+        drawing.header(bounds)?;
+        Ok(drawing)
+    }
+
+    fn header(&mut self, Bounds { min, max }: &Bounds) -> Result<()> {
+        self.words(&[
+            (0, "SECTION"),
+            (2, "HEADER"),
+            (9, "$ACADVER"),
+            (1, "AC1009"),
+        ])?;
+        for (name, corner) in [("$EXTMIN", min), ("$EXTMAX", max)] {
+            self.word(9, name)?;
+            let is_known = corner.iter().all(|c| c.is_finite());
+            self.point(0, if is_known { *corner } else { [0.0; 3] })?;
+        }
+        self.words(&[(0, "ENDSEC"), (0, "SECTION"), (2, "TABLES")])?;
+        self.words(&[
+            (0, "TABLE"),
+            (2, "LTYPE"),
+            (70, "1"),
+            (0, "LTYPE"),
+            (2, "CONTINUOUS"),
+        ])?;
+        self.words(&[
+            (70, "0"),
+            (3, "Solid line"),
+            (72, "65"),
+            (73, "0"),
+            (40, "0.0"),
+        ])?;
+        self.words(&[(0, "ENDTAB"), (0, "TABLE"), (2, "LAYER")])?;
+        let layers = self.layers.clone();
+        self.word(70, &layers.len().to_string())?;
+        for DxfLayer { name, color } in &layers {
+            let color = color.to_string();
+            self.words(&[
+                (0, "LAYER"),
+                (2, name),
+                (70, "0"),
+                (62, &color),
+                (6, "CONTINUOUS"),
+            ])?;
+        }
+        self.words(&[
+            (0, "ENDTAB"),
+            (0, "TABLE"),
+            (2, "STYLE"),
+            (70, "1"),
+            (0, "STYLE"),
+        ])?;
+        self.words(&[
+            (2, "STANDARD"),
+            (70, "0"),
+            (40, "0.0"),
+            (41, "1.0"),
+            (50, "0.0"),
+        ])?;
+        self.words(&[
+            (71, "0"),
+            (42, "1.0"),
+            (3, "txt"),
+            (4, ""),
+            (0, "ENDTAB"),
+            (0, "ENDSEC"),
+        ])?;
+        self.words(&[(0, "SECTION"), (2, "ENTITIES")])
+    }
+
+    /// Draws a line between two points.
+    pub(crate) fn line(&mut self, layer: usize, [from, to]: [[f64; 3]; 2]) -> Result<()> {
+        self.entity("LINE", layer)?;
+        self.point(0, from)?;
+        self.point(1, to)
+    }
+
+    /// Draws a polyline in space.
+    pub(crate) fn polyline(
+        &mut self,
+        layer: usize,
+        points: impl IntoIterator<Item = [f64; 3]>,
+    ) -> Result<()> {
+        self.entity("POLYLINE", layer)?;
+        self.words(&[(66, "1")])?;
+        self.point(0, [0.0; 3])?;
+        self.word(70, "8")?;
+        for at in points {
+            self.entity("VERTEX", layer)?;
+            self.point(0, at)?;
+            self.word(70, "32")?;
+        }
+        self.entity("SEQEND", layer)
+    }
+
+    /// Writes a text above a position.
+    pub(crate) fn text(
+        &mut self,
+        layer: usize,
+        at: [f64; 3],
+        height: f64,
+        align: Align,
+        text: &str,
+    ) -> Result<()> {
+        self.entity("TEXT", layer)?;
+        self.point(0, at)?;
+        self.number(40, height)?;
+        self.word(1, &encoded(text))?;
+        let align = match align {
+            Align::Left => return Ok(()),
+            Align::Center => "1",
+            Align::Right => "2",
+        };
+        self.word(72, align)?;
+        self.point(1, at)
+    }
+
+    /// Ends the drawing.
+    pub(crate) fn end(mut self) -> Result<()> {
+        self.words(&[(0, "ENDSEC"), (0, "EOF")])
+    }
+
+    fn entity(&mut self, kind: &str, layer: usize) -> Result<()> {
+        self.word(0, kind)?;
+        let name = self
+            .layers
+            .get(layer)
+            .map_or("0", |layer| layer.name.as_str());
+        writeln!(self.out, "8\n{name}")
+    }
+
+    fn word(&mut self, code: u8, value: &str) -> Result<()> {
+        writeln!(self.out, "{code}\n{value}")
+    }
+
+    fn words(&mut self, pairs: &[(u8, &str)]) -> Result<()> {
+        pairs
+            .iter()
+            .try_for_each(|(code, value)| self.word(*code, value))
+    }
+
+    fn number(&mut self, code: u8, value: f64) -> Result<()> {
+        writeln!(self.out, "{code}\n{value:?}")
+    }
+
+    fn point(&mut self, which: u8, at: [f64; 3]) -> Result<()> {
+        (1..)
+            .zip(at)
+            .try_for_each(|(axis, c)| self.number(10 * axis + which, c))
+    }
+}
+
+/// Returns a text of one line, with characters beyond ASCII as CAD programs write them.
+fn encoded(text: &str) -> String {
+    let mut found = String::new();
+    for c in text.chars() {
+        match c {
+            ' '..='~' => found.push(c),
+            c if c.is_control() => found.push(' '),
+            c if (c as u32) < 0x1_0000 => found += &format!("\\U+{:04X}", c as u32),
+            _ => found.push('?'),
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_drawing_is_pairs_of_codes_and_values() {
+        let mut taken = BTreeSet::new();
+        let long = "a name of more than thirty-one bytes";
+        let layers: Vec<DxfLayer> = ["Höhe.tif", "H_he tif", "", long, long]
+            .iter()
+            .map(|name| DxfLayer::new(name, 3, &mut taken))
+            .collect();
+        let names: Vec<&str> = layers.iter().map(|layer| layer.name.as_str()).collect();
+        assert_eq!(
+            names,
+            [
+                "H_HE_TIF",
+                "H_HE_TIF_2",
+                "_",
+                "A_NAME_OF_MORE_THAN_THIRTY-ONE_",
+                "A_NAME_OF_MORE_THAN_THIRTY-ON_2"
+            ]
+        );
+        let mut bytes = Vec::new();
+        let bounds = Bounds {
+            min: [0.0; 3],
+            max: [4.0, 3.0, 0.0],
+        };
+        let mut drawing = Dxf::begin(&mut bytes, layers, &bounds).unwrap();
+        drawing.line(0, [[0.0; 3], [4.0, 3.0, 0.5]]).unwrap();
+        drawing.polyline(1, [[0.0; 3], [1e-7, 1e22, -0.5]]).unwrap();
+        drawing
+            .text(2, [1.0; 3], 2.5, Align::Right, "Höhe\n100 %")
+            .unwrap();
+        drawing.end().unwrap();
+        let text = String::from_utf8(bytes).unwrap();
+        let lines: Vec<&str> = text.lines().collect();
+        assert_eq!(lines.len() % 2, 0);
+        let pairs: Vec<(u8, &str)> = lines
+            .chunks(2)
+            .map(|pair| (pair[0].parse().unwrap(), pair[1]))
+            .collect();
+        assert_eq!(
+            (pairs[0], pairs[pairs.len() - 1]),
+            ((0, "SECTION"), (0, "EOF"))
+        );
+        assert!(pairs.contains(&(1, "H\\U+00F6he 100 %")));
+        assert!(pairs.contains(&(20, "1e22")) && pairs.contains(&(10, "1e-7")));
+        let count = |kind: &str| pairs.iter().filter(|pair| **pair == (0, kind)).count();
+        assert_eq!(
+            ["LINE", "POLYLINE", "VERTEX", "SEQEND", "TEXT", "LAYER"].map(count),
+            [1, 1, 2, 1, 1, 5]
+        );
+    }
+}

@@ -1,0 +1,161 @@
+//! Attributes that are kept: from their values to the fields of a table.
+
+use std::collections::BTreeSet;
+
+use super::number::{NUMBER_DECIMALS, NUMBER_WIDTH, real};
+use crate::data::{Attributes, Value};
+use crate::error::{Error, Result};
+
+/// The bytes of a name, at most.
+const NAME: usize = 10;
+
+/// The bytes of a text, at most.
+const TEXT: usize = 254;
+
+/// The digits of a whole number that other programs read, at most.
+const DIGITS: usize = 18;
+
+/// The bytes of a row, at most.
+const ROW: usize = u16::MAX as usize;
+
+/// The fields of a table, at most: their descriptors are in a header of 65 535 bytes.
+const FIELDS: usize = 2046;
+
+/// An attribute as a field of a table.
+#[derive(Debug)]
+pub(super) struct KeptColumn {
+    name: String,
+    kind: u8,
+    width: usize,
+}
+
+/// Returns the fields for attributes. Adds a warning for each name and for the texts that are cut.
+///
+/// # Errors
+/// If there are more attributes than a table has room for.
+pub(super) fn columns(
+    attributes: &Attributes,
+    warnings: &mut Vec<String>,
+) -> Result<Vec<KeptColumn>> {
+    let mut taken = BTreeSet::new();
+    let mut columns = Vec::new();
+    for (number, name) in attributes.names.iter().enumerate() {
+        let short = short_name(name, &taken);
+        if short != *name {
+            warnings.push(format!("attribute {name} is called {short}"));
+        }
+        taken.insert(short.to_ascii_uppercase());
+        let (column, cut) = column(short, attributes, number);
+        if cut > 0 {
+            warnings.push(format!(
+                "attribute {name}: {cut} texts are cut to {TEXT} bytes"
+            ));
+        }
+        columns.push(column);
+    }
+    let row = 1 + columns.iter().map(|column| column.width).sum::<usize>();
+    if columns.len() > FIELDS || row > ROW {
+        return Err(Error::limit(format!(
+            "{} attributes take {row} bytes of a row; a shapefile has at most {FIELDS}, in {ROW} bytes",
+            columns.len()
+        ))
+        .cure("write GeoJSON"));
+    }
+    Ok(columns)
+}
+
+/// Returns a name of at most ten bytes that is not taken, in any case.
+fn short_name(name: &str, taken: &BTreeSet<String>) -> String {
+    let start = |bytes: usize| {
+        let end = (0..=bytes.min(name.len()))
+            .rev()
+            .find(|&end| name.is_char_boundary(end));
+        &name[..end.unwrap_or(0)]
+    };
+    let is_free =
+        |short: &String| !short.is_empty() && !taken.contains(&short.to_ascii_uppercase());
+    let numbered = (1..).map(|number| {
+        let number = format!("_{number}");
+        format!("{}{number}", start(NAME.saturating_sub(number.len())))
+    });
+    std::iter::once(start(NAME).to_owned())
+        .chain(numbered)
+        .find(is_free)
+        .unwrap_or_default()
+}
+
+/// Returns the field for an attribute, and how many texts are cut.
+fn column(name: String, attributes: &Attributes, number: usize) -> (KeptColumn, usize) {
+    let of = |kind, width| KeptColumn {
+        name: name.clone(),
+        kind,
+        width,
+    };
+    let values = || {
+        attributes
+            .column(number)
+            .filter(|value| **value != Value::Missing)
+    };
+    let all = |is: fn(&Value) -> bool| values().all(is);
+    let has_values = values().next().is_some();
+    let longest = || values().map(|value| text(value).len()).max().unwrap_or(0);
+    if has_values && all(|value| matches!(value, Value::Truth(_))) {
+        return (of(b'L', 1), 0);
+    }
+    let is_whole = has_values && all(|value| matches!(value, Value::Whole(_)));
+    if is_whole && longest() <= DIGITS {
+        return (of(b'N', longest()), 0);
+    }
+    if has_values && all(|value| matches!(value, Value::Whole(_) | Value::Number(_))) {
+        return (of(b'F', usize::from(NUMBER_WIDTH)), 0);
+    }
+    let cut = values().filter(|value| text(value).len() > TEXT).count();
+    (of(b'C', longest().clamp(1, TEXT)), cut)
+}
+
+/// Returns a value as text.
+fn text(value: &Value) -> String {
+    match value {
+        Value::Missing => String::new(),
+        Value::Whole(whole) => whole.to_string(),
+        Value::Number(number) => number.to_string(),
+        Value::Text(text) => text.clone(),
+        Value::Truth(truth) => truth.to_string(),
+    }
+}
+
+impl KeptColumn {
+    /// Returns the field descriptor of the `.dbf`.
+    pub(super) fn descriptor(&self) -> [u8; 32] {
+        let mut bytes = [0; 32];
+        bytes[..self.name.len()].copy_from_slice(self.name.as_bytes());
+        bytes[11] = self.kind;
+        bytes[16] = self.width as u8;
+        if self.kind == b'F' {
+            bytes[17] = NUMBER_DECIMALS;
+        }
+        bytes
+    }
+
+    /// Returns a value in the full width of the field.
+    pub(super) fn cell(&self, value: &Value) -> String {
+        let width = self.width;
+        match (self.kind, value) {
+            (b'L', Value::Truth(truth)) => (if *truth { "T" } else { "F" }).to_owned(),
+            (b'L', _) => "?".to_owned(),
+            (b'F', Value::Whole(whole)) => real(*whole as f64),
+            (b'F', Value::Number(number)) => real(*number),
+            (b'N', Value::Whole(whole)) => format!("{whole:>width$}"),
+            (b'C', value) => {
+                let mut text = text(value);
+                while text.len() > width {
+                    text.pop();
+                }
+                // In bytes, which are more than characters.
+                text.push_str(&" ".repeat(width - text.len()));
+                text
+            }
+            _ => " ".repeat(width),
+        }
+    }
+}

@@ -1,0 +1,147 @@
+//! Lines that are followed over surfaces.
+
+use std::path::{Path, PathBuf};
+
+use rayon::prelude::*;
+
+use super::surface::SurfaceProduct;
+use crate::data::Stretch;
+use crate::error::{Error, Result, Setting, wording};
+use crate::run::context::watched::Watched;
+use crate::run::context::{Context, Size, Stage};
+use crate::run::lines::shapes::Drawn;
+use crate::terrain::{Locator, stepped};
+
+/// The points of all lines by a step, at most.
+const MOST_POINTS: f64 = 1e8;
+
+/// A line in plan.
+pub(crate) type PlanLine = Vec<[f64; 2]>;
+
+/// Returns lines without their heights.
+pub(crate) fn in_plan(lines: &[Drawn]) -> Vec<PlanLine> {
+    let plan = |line: &Drawn| line.points.iter().map(|p| [p[0], p[1]]).collect();
+    lines.iter().map(plan).collect()
+}
+
+/// Returns an error unless a step is above zero, and not so small that points along lines would not
+/// fit into memory.
+pub(crate) fn check_step(step: Option<f64>, lines: &[PlanLine]) -> Result<()> {
+    let Some(step) = step else { return Ok(()) };
+    if !(step > 0.0 && step.is_finite()) {
+        return Err(
+            Error::usage(format!("a step of {step}: expected a length above zero")).cure(wording![
+                "give a length with ",
+                Setting::Step.number("LENGTH"),
+                ", or leave it out for all edges of triangles"
+            ]),
+        );
+    }
+    let length: f64 = lines.iter().map(|line| length(line)).sum();
+    if length / step > MOST_POINTS {
+        return Err(Error::limit(format!(
+            "{:.0} points by a step of {step} along lines of {length} in all, at most {MOST_POINTS} are computed",
+            length / step
+        ))
+        .cure(wording!["choose a longer ", Setting::Step]));
+    }
+    Ok(())
+}
+
+/// Returns the length of a line in plan.
+pub(crate) fn length(line: &[[f64; 2]]) -> f64 {
+    vertices_along(line).last().copied().unwrap_or(0.0)
+}
+
+/// Returns the distance of each vertex from the start of a line, along it.
+pub(crate) fn vertices_along(line: &[[f64; 2]]) -> Vec<f64> {
+    let mut along = 0.0;
+    let mut found = vec![0.0];
+    for ends in line.windows(2) {
+        let [x, y] = [0, 1].map(|k| ends[1][k] - ends[0][k]);
+        along += x.hypot(y);
+        found.push(along);
+    }
+    found
+}
+
+/// Returns the parts of each line that are on a surface. With a step, their points are at multiples
+/// of it instead of at edges; `keeps_vertices` are the points that stay: the vertices of lines, or
+/// none.
+///
+/// # Errors
+/// If the surface is damaged or its faces overlap, or the run is canceled.
+pub(crate) fn follow(
+    product: &SurfaceProduct,
+    lines: &[PlanLine],
+    step: Option<(f64, Vertices)>,
+    context: &Context,
+) -> Result<Vec<Vec<Stretch>>> {
+    product.with_faces(context, |faces| {
+        let work = context.start(Stage::FollowingLines, Size::Items(lines.len() as u64))?;
+        let polled = Watched::polled(faces, context)?;
+        let locator = Locator::prepared(faces, &polled)?;
+        polled.end()?;
+        let one = |line: &PlanLine| {
+            let found = locator.along(line)?;
+            work.add(1)?;
+            let Some((step, vertices)) = step else {
+                return Ok(found);
+            };
+            let kept = match vertices {
+                Vertices::Kept => vertices_along(line),
+                Vertices::LeftOut => Vec::new(),
+            };
+            let stepped = found.iter().map(|stretch| stepped(stretch, step, &kept));
+            Ok(stepped.collect())
+        };
+        let found: Result<Vec<_>> = lines.par_iter().map(one).collect();
+        let found = found?;
+        work.end()?;
+        Ok(found)
+    })
+}
+
+/// What becomes of the vertices of lines that are followed by a step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Vertices {
+    Kept,
+    LeftOut,
+}
+
+/// How much of a line is on a surface.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Coverage {
+    Nothing,
+    Part,
+    Whole,
+}
+
+/// Returns how much of a line is on a surface, given its parts there.
+pub(crate) fn coverage(line: &PlanLine, stretches: &[Stretch]) -> Coverage {
+    match stretches {
+        [] => Coverage::Nothing,
+        [one] => {
+            let plan = |at: [f64; 3]| [at[0], at[1]];
+            let ends = [one.first(), one.last()].map(|p| p.map(|p| plan(p.at)));
+            if ends == [line.first().copied(), line.last().copied()] {
+                Coverage::Whole
+            } else {
+                Coverage::Part
+            }
+        }
+        _ => Coverage::Part,
+    }
+}
+
+/// Returns the error if no line is on any of some surfaces.
+#[cold]
+pub(crate) fn no_line(path: &Path, names: &[PathBuf]) -> Error {
+    let names: Vec<String> = names
+        .iter()
+        .map(|name| name.display().to_string())
+        .collect();
+    Error::usage(format!("no line is on {}", names.join(" or ")))
+        .in_file(path)
+        .cure("both have to be in one coordinate system and in one area: compare their extents")
+}

@@ -1,0 +1,362 @@
+//! Profiles and cross-sections as they are typed.
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+use super::{Run, SLOPE, bytes, files_of, folder_with, geojson, run_in};
+
+/// The corners of a rectangle at 11, which overlaps [`SLOPE`] from 1 to 3.
+const FLAT: &str = "1 0 11\n5 0 11\n5 3 11\n1 3 11\n";
+
+fn folder() -> TempDir {
+    folder_with(&[
+        ("a.xyz", SLOPE),
+        ("b.xyz", FLAT),
+        (
+            "l.geojson",
+            &geojson(25832, "LineString", "[[0.5,1.5],[4.5,1.5]]"),
+        ),
+    ])
+}
+
+#[track_caller]
+fn json(run: &Run) -> Value {
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    serde_json::from_str(&run.stdout).unwrap()
+}
+
+fn of(folder: &TempDir, words: &[&str]) -> Value {
+    json(&run_in(folder, &[&["profile", "--json"], words].concat()))
+}
+
+/// The points of a surface in a profile: stretches of distance, x, y, z.
+fn points(profile: &Value, surface: usize) -> Vec<Vec<[f64; 4]>> {
+    serde_json::from_value(profile["surfaces"][surface].clone()).unwrap()
+}
+
+#[test]
+fn several_surfaces_have_their_heights_and_their_gaps() {
+    let folder = folder();
+    let run = run_in(
+        &folder,
+        &[
+            "profile",
+            "a.xyz",
+            "b.xyz",
+            "--along",
+            "l.geojson",
+            "--json",
+        ],
+    );
+    run.works(&[
+        "warning: l.geojson: record 1: only in part on a.xyz",
+        "warning: l.geojson: record 1: only in part on b.xyz",
+    ]);
+    let found = json(&run);
+    assert_eq!(
+        (&found["unit"], &found["height_unit"]),
+        (&"m".into(), &"m".into())
+    );
+    assert_eq!(found["surfaces"], serde_json::json!(["a.xyz", "b.xyz"]));
+    let profile = &found["profiles"][0];
+    assert_eq!(
+        (&profile["from"], &profile["to"], &profile["record"]),
+        (&0.0.into(), &4.0.into(), &1.into())
+    );
+    let [slope, flat] = [0, 1].map(|surface| points(profile, surface).concat());
+    assert!(
+        slope
+            .iter()
+            .all(|[d, x, _, z]| (x - d - 0.5).abs() < 1e-15 && (z - 10.0 - x).abs() < 1e-14)
+    );
+    assert_eq!([slope[0][0], slope[slope.len() - 1][0]], [0.0, 2.5]);
+    assert_eq!(
+        [flat[0], flat[flat.len() - 1]],
+        [[0.5, 1.0, 1.5, 11.0], [4.0, 4.5, 1.5, 11.0]]
+    );
+    // By a step: multiples of it, and ends.
+    let found = of(&folder, &["a.xyz", "--along", "l.geojson", "--step", "1"]);
+    let distances: Vec<f64> = points(&found["profiles"][0], 0)
+        .concat()
+        .iter()
+        .map(|p| p[0])
+        .collect();
+    assert_eq!(distances, [0.0, 1.0, 2.0, 2.5]);
+}
+
+#[test]
+fn tables_plots_and_drawings_are_written_together() {
+    let folder = folder();
+    let words = [
+        "profile",
+        "a.xyz",
+        "b.xyz",
+        "--along",
+        "l.geojson",
+        "-o",
+        "t.csv",
+        "-o",
+        "t.svg",
+        "-o",
+        "t.dxf",
+        "--title",
+        "A < B & \"C\"",
+        "--exaggeration",
+        "2",
+        "--datum",
+        "8",
+    ];
+    let run = run_in(&folder, &words);
+    run.works(&[
+        "written     t.csv",
+        "written     t.svg",
+        "written     t.dxf",
+    ]);
+    assert!(
+        run.stdout
+            .starts_with("record 1, 4 m\n  a.xyz: 2.5 m on it, heights 10.5 .. 13 m, "),
+        "{}",
+        run.stdout
+    );
+    let table = String::from_utf8(bytes(&folder, "t.csv")).unwrap();
+    let rows: Vec<Vec<&str>> = table
+        .lines()
+        .map(|line| line.split(',').collect())
+        .collect();
+    assert_eq!(
+        rows[0].join(","),
+        "record,part,station,surface,stretch,distance,x,y,z"
+    );
+    assert_eq!(
+        rows[1],
+        ["1", "", "", "a.xyz", "1", "0", "0.5", "1.5", "10.5"]
+    );
+    assert_eq!(
+        rows[rows.len() - 1],
+        ["1", "", "", "b.xyz", "1", "4", "4.5", "1.5", "11"]
+    );
+    let plot = String::from_utf8(bytes(&folder, "t.svg")).unwrap();
+    for part in [
+        "A &lt; B &amp; &quot;C&quot;",
+        "vertical exaggeration 2 : 1, datum 8 m",
+        "record 1",
+        ">a.xyz</text>",
+        "height [m]",
+    ] {
+        assert!(plot.contains(part), "{part}: {plot}");
+    }
+    assert_eq!(plot.matches("<polyline class=\"ground\"").count(), 2);
+    let drawing = String::from_utf8(bytes(&folder, "t.dxf")).unwrap();
+    assert!(drawing.contains("\nB_XYZ\n") && drawing.ends_with("0\nEOF\n"));
+    // None is replaced by accident, and none is written if one cannot be.
+    let again = [
+        "profile",
+        "a.xyz",
+        "--along",
+        "l.geojson",
+        "-o",
+        "new.csv",
+        "-o",
+        "t.svg",
+    ];
+    run_in(&folder, &again).fails(1, &["t.svg", "--overwrite"]);
+    let wrong = [
+        "profile",
+        "a.xyz",
+        "--along",
+        "l.geojson",
+        "-o",
+        "new.csv",
+        "-o",
+        "new.svg",
+        "--datum",
+        "12",
+    ];
+    run_in(&folder, &wrong).fails(
+        2,
+        &[
+            "new.svg: a datum of 12 is above the lowest height of record 1, 10.5",
+            "--datum",
+        ],
+    );
+    assert!(
+        !files_of(folder.path())
+            .iter()
+            .any(|name| name.contains("new"))
+    );
+}
+
+#[test]
+fn sections_are_across_the_axis_at_its_stations() {
+    let folder = folder();
+    let axis = geojson(25832, "LineString", "[[0.5,1],[2.5,1]]");
+    std::fs::write(folder.path().join("axis.geojson"), axis).unwrap();
+    let words = [
+        "a.xyz",
+        "--along",
+        "axis.geojson",
+        "--left",
+        "1",
+        "--right",
+        "0.5",
+    ];
+    let found = of(
+        &folder,
+        &[&words[..], &["--interval", "1", "--start", "99.5"]].concat(),
+    );
+    let profiles = found["profiles"].as_array().unwrap();
+    let stations: Vec<(f64, &str)> = profiles
+        .iter()
+        .map(|profile| {
+            (
+                profile["station"].as_f64().unwrap(),
+                profile["name"].as_str().unwrap(),
+            )
+        })
+        .collect();
+    assert_eq!(stations, [(100.0, "0+100"), (101.0, "0+101")]);
+    for (profile, x) in profiles.iter().zip([1.0, 2.0]) {
+        assert_eq!(
+            (&profile["from"], &profile["to"]),
+            (&(-1.0).into(), &0.5.into())
+        );
+        let points = points(profile, 0).concat();
+        assert_eq!(
+            [points[0], points[points.len() - 1]],
+            [[-1.0, x, 2.0, 10.0 + x], [0.5, x, 0.5, 10.0 + x]]
+        );
+        assert!(points.iter().any(|p| p[0] == 0.0));
+    }
+    let listed = [
+        &words[..],
+        &[
+            "--stations",
+            "0,0.25,2",
+            "--station-format",
+            "0.00",
+            "--angle",
+            "45",
+        ],
+    ]
+    .concat();
+    let found = of(&folder, &listed);
+    assert_eq!(found["profiles"][1]["name"], "0.25");
+    let first = points(&found["profiles"][0], 0).concat()[0];
+    assert!(
+        (first[1] - 0.5 - 0.5f64.sqrt()).abs() < 1e-15 && first[0] == -1.0,
+        "{first:?}"
+    );
+    // Sections at the inside of a bend.
+    let bend = geojson(25832, "LineString", "[[0,1],[2,1],[2,3]]");
+    std::fs::write(folder.path().join("bend.geojson"), bend).unwrap();
+    let words = [
+        "profile",
+        "a.xyz",
+        "--along",
+        "bend.geojson",
+        "--interval",
+        "1.9",
+        "--left",
+        "1.9",
+        "-o",
+        "s.svg",
+    ];
+    run_in(&folder, &words)
+        .works(&["warning: bend.geojson: record 1: sections cross: 0+001.9 and 0+003.8"]);
+    let plot = String::from_utf8(bytes(&folder, "s.svg")).unwrap();
+    assert!(plot.contains("station 0+001.9") && plot.contains("negative to the left"));
+}
+
+#[test]
+fn what_has_no_profile_is_an_error_and_writes_nothing() {
+    let folder = folder();
+    let far = geojson(25832, "LineString", "[[50,50],[60,60]]");
+    std::fs::write(folder.path().join("far.geojson"), far).unwrap();
+    let before = files_of(folder.path());
+    let fails = |words: &[&str], code: i32, texts: &[&str]| {
+        run_in(&folder, &[&["profile", "-o", "t.csv"], words].concat()).fails(code, texts);
+    };
+    let line = ["a.xyz", "--along", "l.geojson"];
+    let and = |more: &[&'static str]| [&line[..], more].concat();
+    fails(
+        &["a.xyz", "--along", "far.geojson"],
+        2,
+        &["far.geojson: no line is on a.xyz"],
+    );
+    fails(&["--along", "l.geojson"], 2, &["required"]);
+    fails(&["a.xyz"], 2, &["--along"]);
+    fails(&and(&["--step", "-1"]), 2, &["-1 is not above zero"]);
+    fails(&and(&["--interval", "1"]), 2, &["--left and --right"]);
+    fails(&and(&["--left", "1"]), 2, &["--interval or --stations"]);
+    fails(
+        &and(&["--interval", "1", "--left", "0"]),
+        2,
+        &["one of them above zero"],
+    );
+    fails(
+        &and(&["--interval", "1", "--left", "1", "--angle", "180"]),
+        2,
+        &["between 0 and 180"],
+    );
+    fails(
+        &and(&["--interval", "1", "--stations", "1"]),
+        2,
+        &["cannot be used with"],
+    );
+    fails(
+        &and(&["--interval", "1e-9", "--left", "1"]),
+        1,
+        &["sections along", "--interval"],
+    );
+    fails(
+        &and(&["--interval", "70", "--start", "1", "--left", "1"]),
+        2,
+        &["no line has a station"],
+    );
+    fails(
+        &and(&["--stations", "1,5", "--left", "1"]),
+        2,
+        &[
+            "l.geojson: record 1: station 0+005 is beyond the line, which has 0+000 to 0+004",
+            "--stations",
+            "--start",
+        ],
+    );
+    fails(
+        &and(&["--stations", "1", "--left", "1", "--station-format", "km"]),
+        2,
+        &["0+000"],
+    );
+    run_in(
+        &folder,
+        &["profile", "a.xyz", "--along", "l.geojson", "-o", "t.tif"],
+    )
+    .fails(2, &["t.tif", ".csv, .svg, .dxf"]);
+    let steep = [
+        "profile",
+        "a.xyz",
+        "--along",
+        "l.geojson",
+        "-o",
+        "t.svg",
+        "--exaggeration",
+        "1e6",
+    ];
+    run_in(&folder, &steep).fails(2, &["times as high as it is wide", "--exaggeration"]);
+    // Other systems, and points without a height.
+    std::fs::write(
+        folder.path().join("other.geojson"),
+        geojson(25833, "LineString", "[[0,1],[2,1]]"),
+    )
+    .unwrap();
+    run_in(
+        &folder,
+        &["tin", "a.xyz", "--a-srs", "EPSG:25832", "-o", "a.ply"],
+    )
+    .works(&[]);
+    fails(&["a.ply", "--along", "other.geojson"], 1, &["25833"]);
+    for name in ["other.geojson", "a.ply"] {
+        std::fs::remove_file(folder.path().join(name)).unwrap();
+    }
+    assert_eq!(files_of(folder.path()), before);
+}
