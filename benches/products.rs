@@ -7,7 +7,9 @@ use std::path::Path;
 
 use breakline::data::{Bounds, Frame, Grid, Stretch};
 use breakline::io;
-use breakline::terrain::{Dem, Levels, Locator, Selection, Tin, TinBuilder, contours};
+use breakline::terrain::{
+    Dem, Levels, Locator, Method, Sampler, Selection, Tin, TinBuilder, contours,
+};
 use divan::{Bencher, black_box, counter::ItemsCount};
 use rayon::prelude::*;
 
@@ -83,6 +85,20 @@ fn dem(bencher: Bencher, count: usize) {
 }
 
 /// A metre apart.
+/// Heights and gradients of a TIN at as many positions as it has points, in rows and at random.
+#[divan::bench(args = [(Lay::Grid, 1_000_000), (Lay::Random, 1_000_000)], max_time = 10)]
+fn sample(bencher: Bencher, (lay, count): (Lay, usize)) {
+    let tin = build(&points(Lay::Random, count));
+    let [x, y, _] = points(lay, count);
+    // Beside the vertices.
+    let beside = |(x, y): (f64, f64)| [x + 0.1, y + 0.2];
+    let positions: Vec<[f64; 2]> = x.into_iter().zip(y).map(beside).collect();
+    let sampler = Sampler::new(&tin, Method::Linear).expect("nothing is prepared");
+    bencher
+        .counter(ItemsCount::new(count))
+        .bench_local(|| sampler.samples(black_box(&positions)));
+}
+
 #[divan::bench(args = SIZES, max_time = 10)]
 fn contour(bencher: Bencher, count: usize) {
     let tin = build(&points(Lay::Lidar, count));

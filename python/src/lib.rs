@@ -10,6 +10,7 @@
 
 use pyo3::prelude::*;
 
+mod accuracy;
 mod arrays;
 mod compare;
 mod errors;
@@ -31,6 +32,8 @@ mod write;
 mod _breakline {
     use pyo3::prelude::*;
 
+    #[pymodule_export]
+    use super::accuracy::accuracy;
     #[pymodule_export]
     use super::compare::compare;
     #[pymodule_export]

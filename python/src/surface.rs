@@ -9,15 +9,15 @@ use breakline::io::geotiff::CellFormat;
 use breakline::io::{Destination, formats, mapped, mesh};
 use breakline::run::{
     self, CellProduct, Context, ContourOptions, DemOptions, Heights, HillshadeOptions,
-    LightOptions, Model, Source, SurfaceProduct, SurfaceRequest,
+    LightOptions, Model, SampleOptions, SampledField, Source, SurfaceProduct, SurfaceRequest,
 };
-use breakline::terrain::CompactTin;
+use breakline::terrain::{CompactTin, SimplifyLimit, SimplifyRule};
 use breakline::{Error, io};
 use numpy::{Element, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 
-use crate::errors::{Failure, Result};
+use crate::errors::{self, Failure, Result};
 use crate::requests::{
     self, FrameArguments, PointInput, ReadArguments, SurfaceArguments, SystemArguments,
 };
@@ -241,6 +241,74 @@ impl Surface {
             Ok(heights.at(&positions, method, context)?)
         })?;
         Ok(arrays::column(py, heights).into_any())
+    }
+
+    /// Returns the names of columns, and a value in each for each position (n, 2), position by
+    /// position.
+    fn samples<'py>(
+        &self,
+        py: Python<'py>,
+        positions: PyReadonlyArray2<'py, f64>,
+        add: Vec<String>,
+        prefix: String,
+        method: &str,
+        call: Call,
+    ) -> PyResult<(Vec<String>, Bound<'py, PyAny>)> {
+        let known: Vec<(&str, SampledField)> = SampledField::ALL
+            .iter()
+            .map(|&(field, name)| (name, field))
+            .collect();
+        let options = SampleOptions {
+            add: add
+                .iter()
+                .map(|name| requests::choose("add", name, &known))
+                .collect::<PyResult<_>>()?,
+            prefix,
+            method: requests::method(method)?,
+            ..SampleOptions::default()
+        };
+        let positions = arrays::points::<2>(&positions);
+        let product = &self.product;
+        let values = work::run_on(py, &call, Some(positions.len()), |context| -> Result<_> {
+            Ok(run::sample_positions(
+                product, &positions, &options, context,
+            )?)
+        })?;
+        let names = options.column_names();
+        let shape = [positions.len(), names.len()];
+        Ok((names, arrays::shaped(py, values, shape)?))
+    }
+
+    /// Returns a surface of fewer vertices, within a bound or of at most so many.
+    fn simplify(
+        &self,
+        py: Python<'_>,
+        max_error: Option<f64>,
+        target: Option<u64>,
+        line_tolerance: Option<f64>,
+        call: Call,
+    ) -> PyResult<Self> {
+        let limit = match (max_error, target) {
+            (Some(bound), None) => SimplifyLimit::MaxError(bound),
+            (None, Some(target)) => SimplifyLimit::Target(target),
+            _ => {
+                return Err(errors::usage(
+                    "one of max_error and target is needed",
+                    "",
+                    "pass max_error=0.1",
+                ));
+            }
+        };
+        let rule = SimplifyRule {
+            limit,
+            line_tolerance,
+        };
+        rule.check().map_err(Failure)?;
+        let product = &self.product;
+        work::run(py, &call, |context| -> Result<_> {
+            Ok(run::simplify(product, &rule, context)?)
+        })
+        .map(Surface::of)
     }
 
     /// Computes heights at the centers of cells.

@@ -177,6 +177,7 @@ fn verb(name: &str, options: &Bound<'_, PyDict>) -> PyResult<Arc<dyn Verb>> {
         }
         "tin" => Arc::new(SurfaceOptions {
             edges: requests::written_edges(options.as_any().get_item("plain")?.extract()?),
+            simplify: None,
         }),
         _ => {
             let Some(quantity) = options.get_item("quantity")? else {

@@ -36,10 +36,22 @@ ELSEWHERE = {
 
 #: Verbs that return what has a method `write`, which takes `output` and `overwrite`.
 RASTERS = ("dem", "hillshade", "slope", "aspect", "curvature", "roughness", "tri", "tpi")
-WRITTEN = {"tin": breakline.Tin, "contour": breakline.Contours, **dict.fromkeys(RASTERS, breakline.Raster)}
+WRITTEN = {
+    **dict.fromkeys(("tin", "simplify"), breakline.Tin),
+    "contour": breakline.Contours,
+    **dict.fromkeys(RASTERS, breakline.Raster),
+}
 
 #: Options that a verb does not need because of what it returns.
-OF_RESULTS = {"check": {"overwrite"}, "volume": {"output", "overwrite"}, "compare": {"output", "overwrite"}}
+OF_RESULTS = {
+    "check": {"overwrite"},
+    "volume": {"output", "overwrite"},
+    "compare": {"output", "overwrite"},
+    "sample": {"output", "overwrite"},
+    "accuracy": {"output", "overwrite", "histogram"},
+    # `breakline.simplify` takes what `tin` takes, and returns a Tin.
+    "tin": {"max-error", "target", "line-tolerance"},
+}
 
 #: Names of positional arguments.
 POSITIONAL = {"inputs": {"points", "inputs", "a", "surfaces"}, "input": {"path"}, "files": {"path"}}
@@ -92,7 +104,7 @@ def test_a_verb_is_a_function_and_its_options_are_parameters(verb):
 def test_parameters_are_options(verb):
     known = {parameter_name(verb, option["name"]) for option in [*VERBS[verb]["options"], *PROGRAM["options"]]}
     known |= {"points", "inputs", "path", "progress"}
-    if verb in WRITTEN or verb in ("check", "volume", "compare", "drape", "profile"):
+    if verb in WRITTEN or verb in ("check", "volume", "compare", "drape", "profile", "sample", "accuracy"):
         known |= {"bounds"}
     if verb in ("volume", "compare"):
         known |= {"a", "b"}

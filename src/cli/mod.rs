@@ -100,6 +100,7 @@ fn dispatch(verb: &Verb, how: &ConsoleArgs, console: &Console) -> Result<Exit> {
         Verb::Info(args) => verbs::info::run(args, console),
         Verb::Points(args) => verbs::points::run(args, console),
         Verb::Tin(_)
+        | Verb::Simplify(_)
         | Verb::Dem(_)
         | Verb::Contour(_)
         | Verb::Hillshade(_)
@@ -115,6 +116,8 @@ fn dispatch(verb: &Verb, how: &ConsoleArgs, console: &Console) -> Result<Exit> {
         Verb::Compare(args) => verbs::compare::run(args, console),
         Verb::Profile(args) => verbs::profile::run(args, console),
         Verb::Drape(args) => verbs::drape::run(args, console),
+        Verb::Sample(args) => verbs::sample::run(args, console),
+        Verb::Accuracy(args) => verbs::accuracy::run(args, console),
         Verb::Job(args) => verbs::job::run(args, console),
         Verb::Demo(args) => verbs::demo::run(args, how, console, &|words| run(words)),
         Verb::Describe(args) => verbs::describe::run(args),

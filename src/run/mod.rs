@@ -7,10 +7,12 @@
 //! | verb | request | function | product |
 //! |---|---|---|---|
 //! | build or read a surface | [`SurfaceRequest`] | [`surface()`], [`triangles`] | [`SurfaceProduct`] |
+//! | simplify it, also a raster | [`SimplifyRule`](crate::terrain::SimplifyRule) | [`simplify`] | [`SurfaceProduct`] |
 //! | write it as a mesh | | [`write_mesh`] | |
 //! | write what a verb makes of it, in one piece or in tiles | [`WriteRequest`] | [`write()`] | [`WriteReport`] |
 //! | heights at the centers of cells | [`DemOptions`] | [`dem`] | [`CellProduct`] |
 //! | heights at positions | positions | [`elevations`], [`Heights`] | a list |
+//! | heights and slopes, added to points | [`SampleOptions`] | [`sample()`] | [`SampleReport`] |
 //! | shaded relief | [`HillshadeOptions`] | [`hillshade`] | [`CellProduct`] |
 //! | slope, aspect, curvature, roughness | [`QuantityOptions`] | [`quantity`] | [`CellProduct`] |
 //! | contours | [`ContourOptions`] | [`contour()`] | [`ContourProduct`] |
@@ -18,6 +20,7 @@
 //! | cut and fill above another surface or a level | [`VolumeOptions`] | [`volume()`] | [`VolumeProduct`] |
 //! | lines with the heights of a surface | [`DrapeOptions`] | [`drape`] | [`DrapeProduct`] |
 //! | heights along lines and across them | [`ProfileOptions`] | [`profile`] | [`ProfileProduct`] |
+//! | vertical accuracy by checkpoints | [`AccuracyOptions`] | [`accuracy()`] | [`AccuracyProduct`] |
 //! | find flaws | [`SurfaceRequest`] | [`check()`] | [`CheckProduct`] |
 //! | count what is in a file | a path | [`facts()`] | [`Facts`] |
 //! | triangulate points in space | [`SpaceOptions`] | [`triangulate_space`] | [`SpaceProduct`] |
@@ -98,6 +101,10 @@ pub use job::{
 };
 pub use lines::crossings::LineNames;
 pub use lines::notes::LineInput;
+pub use products::accuracy::{
+    AccuracyOptions, AccuracyProduct, CheckpointRow, CheckpointSet, ClassDecision, HeightMeasure,
+    SetAccuracy, accuracy,
+};
 pub use products::cells::{
     CellProduct, DemOptions, HillshadeOptions, LightOptions, QuantityOptions, dem, hillshade,
     quantity,
@@ -119,6 +126,10 @@ pub use products::points::{
 pub use products::profile::{
     ProfileOptions, ProfileProduct, SectionOptions, SectionStations, profile,
 };
+pub use products::sample::{
+    SampleOptions, SampleReport, SampleTarget, SampledField, sample, sample_positions,
+};
+pub use products::simplified::simplify;
 pub use products::station_format::StationFormat;
 pub use products::surface::{
     Model, Source, SurfaceProduct, SurfaceRequest, surface, surface_for, triangles, triangles_for,

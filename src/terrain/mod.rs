@@ -17,6 +17,7 @@
 //! | two rasters of the same cells | their difference | [`Difference`] |
 //! | a surface and a line | the heights along it | [`Locator`] |
 //! | an axis | the lines across it | [`sections()`] |
+//! | a surface, or a DEM | one of fewer vertices, within a bound | [`simplify()`], [`simplify_cells`] |
 //! | a TIN in a file | a surface, at once | [`CompactTin`] |
 //! | more points than fit into memory | their triangles, from tiles | [`tiles`] |
 //! | triangles from tiles | the contours of the whole | [`contour::parts`] |
@@ -41,7 +42,7 @@
 //! # What it does not do
 //!
 //! Coordinates are not reprojected, ground is not separated from vegetation (classes are taken as
-//! given), and points are neither smoothed nor thinned out.
+//! given), and points are not smoothed.
 
 mod admitted;
 mod boxes;
@@ -74,6 +75,7 @@ mod rim_rule;
 mod sample;
 mod sections;
 mod selection;
+mod simplify;
 mod soundness;
 mod statistics;
 mod thin;
@@ -111,6 +113,7 @@ pub(crate) use sample::along_curve;
 pub use sample::{Sample, Sampler};
 pub use sections::{SectionWidths, crossing_pairs, sections};
 pub use selection::{Classes, Selection, SelectionReport};
+pub use simplify::{SimplifyLimit, SimplifyReport, SimplifyRule, simplify, simplify_cells};
 pub use soundness::{SurfaceFlaw, shape_flaws, surface_flaws};
 pub use statistics::{ErrorStatistics, Histogram};
 pub use tin::Tin;

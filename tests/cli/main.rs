@@ -3,6 +3,7 @@
 #[path = "../common/program.rs"]
 mod program;
 
+mod accuracy;
 mod columns;
 mod comparisons;
 mod crossings;
@@ -17,6 +18,8 @@ mod outputs;
 mod profiles;
 mod results;
 mod returns;
+mod sampling;
+mod simplify;
 mod usage;
 mod volumes;
 

@@ -12,6 +12,7 @@ fn help_goes_to_stdout_and_tells_each_verb_with_an_example() {
         "info",
         "points",
         "tin",
+        "simplify",
         "triangulate",
         "dem",
         "contour",
@@ -26,6 +27,8 @@ fn help_goes_to_stdout_and_tells_each_verb_with_an_example() {
         "compare",
         "profile",
         "drape",
+        "sample",
+        "accuracy",
         "check",
         "demo",
     ] {

@@ -36,6 +36,7 @@ const NOT_IN_TILES: &[(&str, &str)] = &[
     ("Transform", "needs PROJ, see the tests of reprojection"),
     ("FlatTriangles", "of surfaces of lines; tiles need points"),
     ("RidgesAdded", "tiles refuse --add-ridges"),
+    ("Simplified", "of `tin`, in one piece only"),
     ("DelaunayUnchecked", "of `check`"),
     ("RegionAreasUnused", "of `triangulate`"),
     ("SeedUnused", "of `triangulate`"),
@@ -45,6 +46,10 @@ const NOT_IN_TILES: &[(&str, &str)] = &[
     ("LinesPartlyOff", "of `drape` and `profile`"),
     ("SectionsCross", "of `profile`"),
     ("AttributesLeftOut", "of `drape`"),
+    ("PointsOutside", "of `sample`"),
+    ("CheckpointsOutside", "of `accuracy`"),
+    ("FewCheckpoints", "of `accuracy`"),
+    ("HeightsInMeters", "of `accuracy`"),
 ];
 
 /// The kinds of notices that only tiles have, and why.

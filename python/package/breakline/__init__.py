@@ -11,6 +11,7 @@ what                function
 points to columns   :func:`read_points`
 points to a file    :func:`points`
 a surface           :func:`tin`, which returns a :class:`Tin`
+a lighter one       :func:`simplify`
 heights             :meth:`Tin.elevation`
 a raster            :meth:`Tin.dem`, :func:`dem`
 contours            :meth:`Tin.contours`, :func:`contour`
@@ -20,6 +21,8 @@ ruggedness          :func:`roughness`, :func:`tri`, :func:`tpi`
 cut and fill        :func:`volume`
 a difference        :func:`compare`
 along lines         :func:`profile`, :func:`drape`
+heights at points   :func:`sample`
+accuracy            :func:`accuracy`
 flaws               :meth:`Tin.check`, :func:`check`
 facts about a file  :func:`info`
 Triangle's files    :func:`triangulate`
@@ -53,6 +56,7 @@ from ._points import points, read_points
 from ._profiles import Profile, drape, profile
 from ._quantities import aspect, curvature, roughness, slope, tpi, tri
 from ._results import Contour, Contours, Raster
+from ._samples import Accuracy, SetAccuracy, accuracy, sample
 from ._tin import EDGE_KINDS, Flaw, Notice, Tin, tin
 from ._verbs import (
     SpaceTriangulation,
@@ -64,6 +68,7 @@ from ._verbs import (
     describe,
     hillshade,
     info,
+    simplify,
     triangulate,
     volume,
 )
@@ -71,6 +76,7 @@ from ._written import Job, Task, Written
 
 __all__ = [
     "EDGE_KINDS",
+    "Accuracy",
     "ArgumentTypeError",
     "BreaklineError",
     "BreaklineWarning",
@@ -92,6 +98,7 @@ __all__ = [
     "Points",
     "Profile",
     "Raster",
+    "SetAccuracy",
     "SpaceTriangulation",
     "Task",
     "Tin",
@@ -101,6 +108,7 @@ __all__ = [
     "Volume",
     "Written",
     "__version__",
+    "accuracy",
     "aspect",
     "check",
     "compare",
@@ -115,6 +123,8 @@ __all__ = [
     "profile",
     "read_points",
     "roughness",
+    "sample",
+    "simplify",
     "slope",
     "tin",
     "tpi",

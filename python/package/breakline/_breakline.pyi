@@ -52,6 +52,9 @@ class Surface:
     def list(self, call: _Call) -> tuple[NDArray[np.float64], NDArray[np.int32]]: ...
     def edges(self, call: _Call) -> tuple[NDArray[np.int32], NDArray[np.uint8]]: ...
     def elevations(self, positions: NDArray[np.float64], method: str, call: _Call) -> NDArray[np.float64]: ...
+    def simplify(
+        self, max_error: Optional[float], target: Optional[int], line_tolerance: Optional[float], call: _Call
+    ) -> Surface: ...
     def dem(self, frame: dict[str, Any], method: str, call: _Call) -> _Raster: ...
     def quantity(
         self, frame: dict[str, Any], method: str, quantity: tuple[str, str, bool, Optional[float]], call: _Call
@@ -59,12 +62,26 @@ class Surface:
     def hillshade(
         self, frame: dict[str, Any], method: str, light: tuple[float, float, Optional[float]], call: _Call
     ) -> _Raster: ...
+    def samples(
+        self, positions: NDArray[np.float64], add: List[str], prefix: str, method: str, call: _Call
+    ) -> tuple[List[str], NDArray[np.float64]]: ...
     def contours(
         self, interval: Optional[float], base: float, levels: List[float], call: _Call
     ) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.float64]]: ...
     def check(self, call: _Call) -> _Flaws: ...
     def write(self, file: str, plain: bool, overwrite: bool, call: _Call) -> None: ...
 
+def accuracy(
+    surface: Surface,
+    checkpoints: Any,
+    read: dict[str, Any],
+    groups: tuple[Optional[str], list[str], list[str]],
+    accuracy_class: Union[float, str, None],
+    checkpoint_error: Union[float, str, None],
+    method: str,
+    name: str,
+    call: _Call,
+) -> dict[str, Any]: ...
 def volume(
     surface: Surface,
     base: Optional[Surface],

@@ -144,6 +144,58 @@ def dem(
         return of_cells(found.dem(frame_of(resolution, extent, align_to), by, request))
 
 
+def simplify(
+    points: Any,
+    *,
+    max_error: Optional[float] = None,
+    target: Optional[int] = None,
+    line_tolerance: Optional[float] = None,
+    threads: Optional[int] = None,
+    progress: Progress = None,
+    **surface: Any,
+) -> Tin:
+    """Return a TIN of fewer vertices: every height that was given stays within a bound of it.
+
+    No height is moved. Lines stay, with fewer vertices; lakes stay level, walls stand, and the outer border of the surface
+    stays where it is. ``Tin.notices`` has the largest error and the root mean square.
+
+    Parameters
+    ----------
+    points
+        A :class:`Tin`, a :class:`Raster`, a file of a raster, or what :func:`tin` takes.
+    max_error : float, optional
+        The bound, in units of height.
+    target : int, optional
+        Instead of a bound: how many vertices are left at most. The bound is as small as is found for them.
+    line_tolerance : float, optional
+        How far in plan a vertex that is left out of a line may be from what is left of it; by default the bound, or 0 in
+        degrees.
+    threads, progress
+        As for :func:`tin`.
+    **surface
+        Parameters of :func:`tin`.
+
+    Examples
+    --------
+    >>> import breakline, numpy
+    >>> y, x = numpy.mgrid[0:50, 0:50]
+    >>> hill = numpy.stack([x, y, 0.01 * x * y], axis=-1).reshape(-1, 3)
+    >>> light = breakline.simplify(hill, max_error=0.5)
+    >>> light.report["vertices"] < 100
+    True
+    """
+    for name, value in [("max_error", max_error), ("line_tolerance", line_tolerance)]:
+        if value is not None and not isinstance(value, (int, float, np.integer, np.floating)):
+            raise usage(f"{name} is not a number", value, f"pass {name}=0.1", ArgumentTypeError)
+    if (max_error is None) == (target is None):
+        raise usage("one of max_error and target is needed", None, "pass max_error=0.1")
+    found = surface_of(points, surface, threads, progress)
+    with call(threads, progress) as request:
+        bound = None if max_error is None else float(max_error)
+        tolerance = None if line_tolerance is None else float(line_tolerance)
+        return Tin(found.simplify(bound, target, tolerance, request))
+
+
 @overload
 def hillshade(
     points: Any,
@@ -430,9 +482,9 @@ def surfaces_of(
     inputs: "list[Any]", surface: "dict[str, Any]", threads: Any, progress: Any, method: str = "linear"
 ) -> "list[_breakline.Surface]":
     """Return several surfaces; the options of building a TIN are for those that are built."""
-    is_built = [_is_built(points) for points in inputs]
+    are_built = [is_built(points) for points in inputs]
     of_any = {name: value for name, value in surface.items() if name in FOR_ANY}
-    options = [of_any if any(is_built) and not built else surface for built in is_built]
+    options = [of_any if any(are_built) and not built else surface for built in are_built]
     return [surface_of(points, own, threads, progress, method) for points, own in zip(inputs, options)]
 
 
@@ -448,8 +500,8 @@ def refuse_kept(surface: "dict[str, Any]") -> None:
             raise usage(f"{name} is for a surface that is kept", surface[name], f"leave {name} out")
 
 
-def _is_built(points: Any) -> bool:
-    """Return whether a TIN is built of what `volume` takes."""
+def is_built(points: Any) -> bool:
+    """Return whether a TIN is built of what `volume` and the like take."""
     if isinstance(points, (Tin, Raster)):
         return False
     return not _inputs.is_path(points) or _breakline.kind_of(os.fspath(points)) == "points"

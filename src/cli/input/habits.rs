@@ -63,6 +63,7 @@ const SHADE: &[&str] = &["hillshade"];
 /// The verbs that choose points.
 const OF_POINTS: &[&str] = &[
     "tin",
+    "simplify",
     "dem",
     "contour",
     "hillshade",
@@ -76,6 +77,8 @@ const OF_POINTS: &[&str] = &[
     "compare",
     "profile",
     "drape",
+    "sample",
+    "accuracy",
     "check",
     "points",
 ];
@@ -501,7 +504,7 @@ fn with_output(verb: &str, mut words: Vec<OsString>) -> Result<(Vec<OsString>, V
 fn written(verb: &str) -> Vec<&'static str> {
     match verb {
         "points" => formats::extensions(Product::Points),
-        "tin" => formats::extensions(Product::Surface),
+        "tin" | "simplify" => formats::extensions(Product::Surface),
         "dem" | "slope" | "aspect" | "curvature" | "roughness" | "tri" | "tpi" => {
             formats::extensions(Product::Heights)
         }

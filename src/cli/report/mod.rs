@@ -1,5 +1,6 @@
 //! What a run prints: messages, progress and the summary.
 
+pub(super) mod accuracy;
 pub(super) mod comparison;
 pub(super) mod console;
 pub(super) mod escape;

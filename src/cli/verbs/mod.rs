@@ -1,5 +1,6 @@
 //! The verbs, one file each: from arguments to a request, then the report.
 
+pub(super) mod accuracy;
 mod asked;
 pub(super) mod check;
 pub(super) mod compare;
@@ -15,6 +16,7 @@ mod pair;
 pub(super) mod points;
 pub(super) mod profile;
 mod quantity;
+pub(super) mod sample;
 mod tin;
 pub(super) mod triangulate;
 mod triangulate_space;

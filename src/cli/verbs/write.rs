@@ -25,6 +25,7 @@ pub(super) fn asked(verb: &Verb, console: &Console) -> Result<Asked> {
         Verb::Tri(args) => quantity::tri(args, console),
         Verb::Tpi(args) => quantity::tpi(args, console),
         Verb::Tin(args) => tin::asked(args, console),
+        Verb::Simplify(args) => tin::simplified(args, console),
         _ => Err(
             Error::usage("a job makes a DEM, contours, a hillshade, a TIN in parts, or slopes and the like")
                 .cure("begin the command with `dem`, `contour`, `hillshade`, `tin`, `slope`, `aspect`, `curvature`, `roughness`, `tri` or `tpi`"),

@@ -18,6 +18,11 @@ struct First {
 }
 
 impl DecimalMark {
+    /// Returns true if the mark is known to be a comma.
+    pub(crate) fn is_comma(&self) -> bool {
+        self.0.as_ref().is_some_and(|first| first.mark == b',')
+    }
+
     /// Returns true if a text may contain a number with the other mark, or the first one with any.
     pub(crate) fn concerns(&self, text: &[u8]) -> bool {
         match &self.0 {

@@ -89,6 +89,8 @@ pub enum Stage {
     Reading,
     /// Points and lines are triangulated.
     Triangulating,
+    /// A surface is simplified.
+    Simplifying,
     /// The surface is checked, counted in faces, once for each law.
     CheckingFaces,
     /// A mesh is written, counted in faces.
@@ -124,6 +126,7 @@ impl Stage {
             Stage::ReadingTriangles => "reading triangles",
             Stage::Reading => "reading",
             Stage::Triangulating => "triangulating",
+            Stage::Simplifying => "simplifying",
             Stage::CheckingFaces => "checking faces",
             Stage::WritingFaces => "writing faces",
             Stage::WritingCells => "writing cells",

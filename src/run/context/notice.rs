@@ -126,6 +126,28 @@ pub enum Notice {
     SectionsCross(PathBuf, usize, Vec<[String; 2]>),
     /// The attributes of a file are not kept, because its format is read without them.
     AttributesLeftOut(PathBuf),
+    /// Some of the points of a file are not on the surface that they are compared with.
+    PointsOutside {
+        /// The file.
+        path: PathBuf,
+        /// How many are outside.
+        outside: u64,
+        /// How many there are.
+        points: u64,
+    },
+    /// Some checkpoints are not on the surface.
+    CheckpointsOutside {
+        /// The file.
+        path: PathBuf,
+        /// What the numbers count, such as "line".
+        counted_by: &'static str,
+        /// The numbers of these checkpoints.
+        numbers: Vec<u64>,
+    },
+    /// There are fewer checkpoints than an assessment needs; with their number.
+    FewCheckpoints(usize),
+    /// No unit of heights is known: they are taken to be in meters.
+    HeightsInMeters,
     /// The gap between two files is far wider than any file.
     FarApart(PathBuf, PathBuf, Quantity),
     /// The breaklines are this far from all points.
@@ -143,6 +165,21 @@ pub enum Notice {
     },
     /// Vertices were added on ridges and valleys; with their number.
     RidgesAdded(usize),
+    /// The surface was simplified, and measured against all heights that were given.
+    Simplified {
+        /// The vertices that are left.
+        vertices: usize,
+        /// The number of heights.
+        heights: usize,
+        /// No height is further from the surface than this.
+        bound: Quantity,
+        /// The largest distance of a height from the surface.
+        largest: Quantity,
+        /// The root of the mean square of these distances.
+        root_mean_square: Quantity,
+        /// The vertices on lines that were given, and how many of them are left.
+        line_vertices: [usize; 2],
+    },
     /// Lakes have the lowest heights of their shores, which differ.
     UnevenShores {
         /// How many.
@@ -420,6 +457,7 @@ impl Notice {
             | Notice::DifferentUnits(..)
             | Notice::Reprojecting(..)
             | Notice::RidgesAdded(_)
+            | Notice::Simplified { .. }
             | Notice::UnevenShores { .. }
             | Notice::LakesJoined { .. }
             | Notice::WatersEnded { .. }
@@ -432,6 +470,7 @@ impl Notice {
             | Notice::DefaultResolution(_)
             | Notice::DefaultInterval(_)
             | Notice::HeightFactor(_)
+            | Notice::HeightsInMeters
             | Notice::AnglesAsLengths(_)
             | Notice::DelaunayUnchecked(_) => Severity::Note,
             Notice::Reader(..)
@@ -451,6 +490,9 @@ impl Notice {
             | Notice::LinesPartlyOff(..)
             | Notice::SectionsCross(..)
             | Notice::AttributesLeftOut(_)
+            | Notice::PointsOutside { .. }
+            | Notice::CheckpointsOutside { .. }
+            | Notice::FewCheckpoints(_)
             | Notice::FarApart(..)
             | Notice::BreaklinesApart(_)
             | Notice::BreaklinesBeyond(_)

@@ -97,6 +97,20 @@ fn step(
     format!("a step of {step} at {x} {y}, from {outer} to {inner}")
 }
 
+fn simplified(
+    [vertices, heights]: [usize; 2],
+    [bound, largest, root_mean_square]: [&Quantity; 3],
+    [before, after]: [usize; 2],
+) -> String {
+    let of_lines = match before {
+        0 => String::new(),
+        _ => format!(", {after} of {before} on lines"),
+    };
+    format!(
+        "simplified to {vertices} of {heights} vertices{of_lines}: all heights are within {bound}, the largest error is {largest}, the root mean square {root_mean_square}"
+    )
+}
+
 /// Returns the text of each notice; where it takes more than a line, a function below has it.
 #[rustfmt::skip]
 fn text(notice: &Notice) -> Wording {
@@ -139,11 +153,40 @@ fn text(notice: &Notice) -> Wording {
         Notice::AttributesLeftOut(path) => {
             of_file(path, "attributes are kept of shapefiles and GeoJSON only")
         }
+        Notice::PointsOutside {
+            path,
+            outside,
+            points,
+        } => of_file(
+            path,
+            &format!("{outside} of {points} points are outside of the surface"),
+        ),
+        Notice::CheckpointsOutside {
+            path,
+            counted_by,
+            numbers,
+        } => of_file(
+            path,
+            &format!(
+                "{}: outside of the surface, and not counted",
+                named(counted_by, numbers)
+            ),
+        ),
+        Notice::FewCheckpoints(count) => format!(
+            "{count} checkpoints decide: the standard of ASPRS (2023) asks for at least 30"
+        )
+        .into(),
+        Notice::HeightsInMeters => {
+            "no coordinate system states the unit of heights: they are taken to be in meters".into()
+        }
         Notice::FarApart(before, after, gap) => far_apart(before, after, gap).into(),
         Notice::BreaklinesApart(gap) => breaklines_apart(gap).into(),
         Notice::BreaklinesBeyond(reach) => breaklines_beyond(reach),
         Notice::FlatTriangles { count, share, has_ridges } => {
             flat_triangles(*count, *share, *has_ridges)
+        }
+        Notice::Simplified { vertices, heights, bound, largest, root_mean_square, line_vertices } => {
+            simplified([*vertices, *heights], [bound, largest, root_mean_square], *line_vertices).into()
         }
         Notice::RidgesAdded(count) => {
             format!("{count} vertices were added on ridges and valleys, with heights by the lines around them").into()
@@ -304,10 +347,10 @@ fn different_units(plan: &str, height: &str) -> String {
 
 fn polygons_outside(path: &Path, records: &[usize]) -> Wording {
     let s = if records.len() == 1 { "" } else { "s" };
-    let records = first_of(records);
+    let records = named("record", records);
     of_file(
         path,
-        &format!("record{s} {records}: nothing to compute a volume of is in the polygon{s}"),
+        &format!("{records}: nothing to compute a volume of is in the polygon{s}"),
     )
 }
 
@@ -332,6 +375,12 @@ fn first_of(things: &[impl ToString]) -> String {
         more => format!(" and {more} more"),
     };
     listed.join(", ") + &more
+}
+
+/// Returns the first of some records or lines by their numbers: "records 1, 2 and 3 more".
+fn named(noun: &str, numbers: &[impl ToString]) -> String {
+    let s = if numbers.len() == 1 { "" } else { "s" };
+    format!("{noun}{s} {}", first_of(numbers))
 }
 
 fn far_apart(before: &Path, after: &Path, gap: &Quantity) -> String {

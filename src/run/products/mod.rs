@@ -1,5 +1,6 @@
 //! What verbs make: surfaces, and what is computed from them; points; facts.
 
+pub(crate) mod accuracy;
 pub(crate) mod cells;
 pub(crate) mod check;
 pub(crate) mod compare;
@@ -16,6 +17,8 @@ pub(crate) mod overlaps;
 pub(crate) mod points;
 pub(crate) mod profile;
 mod reach;
+pub(crate) mod sample;
+pub(super) mod simplified;
 pub(crate) mod station_format;
 pub(crate) mod surface;
 pub(crate) mod tin;

@@ -11,13 +11,18 @@ use crate::io::Destination;
 use crate::io::formats::{self, Product};
 use crate::io::mesh::MeshSummary;
 use crate::run::context::Context;
-use crate::run::products::surface::{self, SurfaceProduct};
+use crate::run::products::simplified::simplify;
+use crate::run::products::surface::{self, Source, SurfaceProduct, SurfaceRequest};
+use crate::terrain::SimplifyRule;
 
 /// Options of writing a surface.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct SurfaceOptions {
     /// What files say of the edges.
     pub edges: WrittenEdges,
+    /// How far the surface is simplified before; not at all if it is `None`. A raster has to be.
+    #[serde(default)]
+    pub simplify: Option<SimplifyRule>,
 }
 
 /// What a file says of the edges of a surface.
@@ -57,11 +62,59 @@ impl Verb for SurfaceOptions {
         Product::Surface
     }
 
+    fn check(&self) -> Result<()> {
+        self.simplify.as_ref().map_or(Ok(()), SimplifyRule::check)
+    }
+
     fn list(&self, add: &mut dyn FnMut(Setting, &dyn Debug)) {
-        add(Setting::Plain, &self.edges);
+        let SurfaceOptions { edges, simplify } = self;
+        add(Setting::Plain, edges);
+        // Jobs do not simplify: those of today have the same list as those before.
+        if let Some(SimplifyRule {
+            limit,
+            line_tolerance,
+        }) = simplify
+        {
+            add(Setting::MaxError, limit);
+            add(Setting::LineTolerance, line_tolerance);
+        }
+    }
+
+    fn surface(&self, request: &SurfaceRequest, context: &Context) -> Result<SurfaceProduct> {
+        match &self.simplify {
+            Some(rule) => {
+                let given = surface::surface(request, context)?;
+                let in_file = |error: Error| match &request.files()[..] {
+                    [file] => error.in_file(file),
+                    _ => error,
+                };
+                simplify(&given, rule, context).map_err(in_file)
+            }
+            None => match &request.source {
+                Source::Raster(path) => Err(Error::usage(
+                    "a raster is simplified when it becomes a TIN, and no limit is given",
+                )
+                .in_file(path)
+                .cure(wording![
+                    "pass ",
+                    Setting::MaxError.number("HEIGHT"),
+                    " or ",
+                    Setting::Target.number("N")
+                ])),
+                _ => surface::triangles(request, context),
+            },
+        }
     }
 
     fn use_of_tiles(&self, targets: &[Target]) -> Result<TileUse> {
+        if self.simplify.is_some() {
+            let error = Error::usage("a surface is simplified in one piece")
+                .cure(wording!["write part by part, with ", Setting::Bounds]);
+            return match targets.iter().find(|target| is_in_parts(&target.path)) {
+                Some(target) => Err(error.in_file(&target.path)),
+                None => Ok(TileUse::Never(error)),
+            };
+        }
         let in_parts = targets.iter().find(|target| is_in_parts(&target.path));
         match (in_parts, targets) {
             (Some(target), [_, _, ..]) => Err(Error::usage("a TIN in parts is written alone")

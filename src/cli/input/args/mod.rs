@@ -1,6 +1,7 @@
 //! The command line as it is typed. What it means is worked out elsewhere (`super::plan`,
 //! `super::outputs`, ...).
 
+mod accuracy;
 mod compare;
 mod drape;
 mod job;
@@ -9,6 +10,7 @@ mod parse;
 mod profile;
 mod quantity;
 mod reading;
+mod sample;
 mod surface;
 mod switches;
 mod systems;
@@ -24,6 +26,7 @@ use crate::cli::Exit;
 use crate::cli::report::console::Verbosity;
 use crate::io::formats;
 
+pub(crate) use accuracy::AccuracyArgs;
 pub(crate) use compare::CompareArgs;
 pub(crate) use drape::DrapeArgs;
 pub(crate) use job::{JobAction, JobArgs};
@@ -34,13 +37,14 @@ pub(crate) use quantity::{
     AspectArgs, CurvatureArg, CurvatureArgs, QuantityArgs, RoughnessArgs, SlopeArgs, TpiArgs,
     TriArgs,
 };
+pub(crate) use sample::SampleArgs;
 pub(crate) use surface::{CrossingZArg, DuplicatesArg, OnCrossingArg, SurfaceArgs};
 pub(crate) use switches::expand_switches;
 pub(crate) use systems::SystemArgs;
 pub(crate) use tiles::TileArgs;
 pub(crate) use verbs::{
     CheckArgs, ContourArgs, DemArgs, DemoArgs, DescribeArgs, FrameArgs, HillshadeArgs, InfoArgs,
-    OutputArgs, PointsArgs, TinArgs, TriangulateArgs,
+    LimitArgs, OutputArgs, PointsArgs, SimplifyArgs, TinArgs, TriangulateArgs,
 };
 pub(crate) use volume::VolumeArgs;
 
@@ -115,6 +119,7 @@ pub(crate) enum Verb {
     Info(InfoArgs),
     Points(PointsArgs),
     Tin(TinArgs),
+    Simplify(SimplifyArgs),
     Triangulate(TriangulateArgs),
     Dem(DemArgs),
     Contour(ContourArgs),
@@ -129,6 +134,8 @@ pub(crate) enum Verb {
     Compare(CompareArgs),
     Profile(ProfileArgs),
     Drape(DrapeArgs),
+    Sample(SampleArgs),
+    Accuracy(AccuracyArgs),
     Check(CheckArgs),
     Job(JobArgs),
     Demo(DemoArgs),

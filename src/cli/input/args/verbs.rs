@@ -174,7 +174,8 @@ pub(crate) struct PointsArgs {
 Example:
   breakline tin tiles/*.laz --breaklines edges.shp --boundary site.shp -o ground.ply
   breakline tin tiles/*.laz -o ground.tin
-  breakline tin country/*.laz -o country.tins --memory 8GB")]
+  breakline tin country/*.laz -o country.tins --memory 8GB
+  breakline tin dem.tif --max-error 0.5 -o dem.tin")]
 pub(crate) struct TinArgs {
     #[command(flatten)]
     pub(crate) surface: SurfaceArgs,
@@ -189,7 +190,60 @@ pub(crate) struct TinArgs {
     pub(crate) plain: bool,
 
     #[command(flatten)]
+    pub(crate) limit: LimitArgs,
+
+    #[command(flatten)]
     pub(crate) tiles: TileArgs,
+}
+
+/// How far a surface is simplified.
+#[derive(Debug, Clone, Default, Args)]
+#[command(next_help_heading = "Simplification")]
+pub(crate) struct LimitArgs {
+    /// Leave out vertices as long as every height stays within this of the surface
+    ///
+    /// Heights are those of all vertices, or of all cells of a raster. None is moved. What is left
+    /// is measured at the end, and the largest error is printed.
+    #[arg(long, value_name = "HEIGHT", value_parser = finite, allow_negative_numbers = true, group = "limit")]
+    pub(crate) max_error: Option<f64>,
+
+    /// Leave out vertices until at most N are left, with as small an error as is found
+    #[arg(long, value_name = "N", group = "limit")]
+    pub(crate) target: Option<u64>,
+
+    /// How far from a line, in plan, its vertices may be that are left out [default: the bound of
+    /// errors; 0 in degrees]
+    ///
+    /// No point changes from one side of a line to the other. Lakes stay level and walls stand, and
+    /// the outer border of the surface stays where it is.
+    #[arg(long, value_name = "LENGTH", value_parser = finite, allow_negative_numbers = true, requires = "limit")]
+    pub(crate) line_tolerance: Option<f64>,
+}
+
+/// Simplify a TIN, a mesh or a DEM to an error bound
+///
+/// Vertices are left out as long as every height that was given stays within the bound of the
+/// surface: those of all vertices of a TIN or a mesh, of all points, or of all cells of a raster.
+/// The heights that stay are not changed. Lines stay, with fewer vertices; lakes stay level, walls
+/// stand. Like `tin` with the same options; outputs are those of `tin`.
+#[derive(Debug, Clone, Args)]
+#[command(group(clap::ArgGroup::new("needed").args(["max_error", "target"]).required(true)))]
+#[command(after_long_help = "\
+Example:
+  breakline simplify ground.tin --max-error 0.1 -o light.tin
+  breakline simplify dem.tif --target 100000 -o dem.ply")]
+pub(crate) struct SimplifyArgs {
+    #[command(flatten)]
+    pub(crate) surface: SurfaceArgs,
+    #[command(flatten)]
+    pub(crate) output: OutputArgs,
+
+    /// Write only vertices and triangles, not which edges are on lines
+    #[arg(long)]
+    pub(crate) plain: bool,
+
+    #[command(flatten)]
+    pub(crate) limit: LimitArgs,
 }
 
 /// Triangulate points and segments in the plane, or points in space; Triangle's and TetGen's files

@@ -29,6 +29,7 @@
 //! | LAZ: more points than so few bytes can hold | error |
 //! | LAZ: a chunk does not end where it should | error that names its points; the chunks before it are good |
 
+mod extra;
 mod head;
 mod header;
 mod input;
@@ -47,6 +48,7 @@ mod tests;
 mod write;
 
 pub use crate::io::options::las::{Detail, ReadOptions};
+pub use extra::{add_numbers, append_numbers};
 pub use header::{Header, RecordInfo};
 pub use merge::Rounding;
 pub use reader::{LasReader, from_stream, from_stream_with, open, open_with, stated};

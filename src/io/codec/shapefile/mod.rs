@@ -34,6 +34,7 @@
 //! The crate `shapefile` is not used: it trusts counts in the file and stops at the first damage,
 //! and its writer stores the current date in the `.dbf` and ignores errors on closing.
 
+mod append;
 mod header;
 mod index;
 mod kept;
@@ -57,6 +58,7 @@ use crate::io::OnDamage;
 use crate::io::bytes::field;
 use crate::io::bytes::watch::{Watch, unwatched};
 use crate::io::options::layer::Options;
+pub use append::append_fields;
 use header::{FILE_CODE, HEADER};
 use index::Index;
 use record::type_name;

@@ -1,6 +1,6 @@
 //! Assigns the fields of a line to columns, and reads points from them.
 
-use super::separator::Separator;
+use super::separator::{Axes, Separator};
 use crate::data::{Columns, PointBatch};
 use crate::error::{Error, Result, Setting, wording};
 
@@ -26,6 +26,10 @@ pub(super) struct Point {
 }
 
 impl Point {
+    pub(super) fn position(&self) -> [f64; 3] {
+        [self.x, self.y, self.z]
+    }
+
     pub(super) fn push(&self, batch: &mut PointBatch) {
         batch.x.push(self.x);
         batch.y.push(self.y);
@@ -35,16 +39,19 @@ impl Point {
 }
 
 impl ColumnLayout {
-    /// The layout without a header.
-    pub(super) const FIRST: Self = ColumnLayout {
-        separator: Separator::Blanks,
-        columns: Columns {
-            x: 1,
-            y: 2,
-            z: 3,
-            class: None,
-        },
-    };
+    /// Returns the layout without a header.
+    pub(super) fn first(axes: Axes) -> Self {
+        ColumnLayout {
+            separator: Separator::Blanks,
+            columns: Columns {
+                x: 1,
+                y: 2,
+                // Of points in plan, nobody asks for heights: the last column stands for them.
+                z: axes.count(),
+                class: None,
+            },
+        }
+    }
 
     /// Returns the layout of a header line, by the names of the columns.
     ///
@@ -53,6 +60,7 @@ impl ColumnLayout {
     pub(super) fn named(
         header: &[u8],
         separator: Separator,
+        axes: Axes,
     ) -> std::result::Result<Self, NameFlaw> {
         let names: Vec<String> = separator.fields(header).map(bare_name).collect();
         let find = |known: &[&str]| known.iter().find_map(|known| numbers(&names, known));
@@ -76,11 +84,11 @@ impl ColumnLayout {
             [number] => Ok(number),
             _ => Err(NameFlaw::Repeated(repeated(&numbers, &names, header))),
         };
-        let (x, y, z) = (
-            need("x", X_NAMES)?,
-            need("y", Y_NAMES)?,
-            need("z", Z_NAMES)?,
-        );
+        let (x, y) = (need("x", X_NAMES)?, need("y", Y_NAMES)?);
+        let z = match axes {
+            Axes::Space => need("z", Z_NAMES)?,
+            Axes::Plan => y.clone(),
+        };
         let columns = Columns {
             x: one(x)?,
             y: one(y)?,

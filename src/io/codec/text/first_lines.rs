@@ -3,7 +3,7 @@
 use super::columns::{ColumnLayout, NameFlaw, Point, quote};
 use super::first_column::FirstColumn;
 use super::lines::{Line, Lines};
-use super::separator::Separator;
+use super::separator::{Axes, Separator};
 use crate::data::Columns;
 use crate::error::{Error, Result, Setting, wording};
 use crate::io::bytes::decimal_mark::DecimalMark;
@@ -11,7 +11,8 @@ use crate::io::bytes::decimal_mark::DecimalMark;
 /// The result of reading the first lines.
 pub(super) struct Start {
     pub(super) layout: ColumnLayout,
-    pub(super) has_header: bool,
+    /// The number of the line with the names of the columns, from 1.
+    pub(super) header: Option<u64>,
     pub(super) count: Option<u64>,
     pub(super) first: Option<Point>,
     pub(super) first_column: Option<FirstColumn>,
@@ -19,25 +20,29 @@ pub(super) struct Start {
 }
 
 impl Start {
-    /// Reads the lines up to the first point, which is then the current line.
+    /// Reads the lines up to the first point, which is then the current line. `see` is called with
+    /// each of them.
     ///
     /// # Errors
     /// If a line is neither a header nor a point.
-    pub(super) fn read(lines: &mut Lines, columns: Option<Columns>) -> Result<Self> {
+    pub(super) fn read(
+        lines: &mut Lines,
+        columns: Option<Columns>,
+        axes: Axes,
+        see: &mut dyn FnMut(&Lines),
+    ) -> Result<Self> {
         let asked = columns.map(|columns| ColumnLayout {
             columns,
-            ..ColumnLayout::FIRST
+            ..ColumnLayout::first(axes)
         });
-        let mut head = Head {
-            asked,
-            ..Head::default()
-        };
+        let mut head = Head::new(asked, axes);
         while lines.next()? {
+            see(lines);
             match Line::new(&lines.line) {
                 Line::Blank => {}
-                Line::Comment(text) => head.add_comment(text),
+                Line::Comment(text) => head.add_comment(text, lines.number),
                 Line::Data(line) => {
-                    if let Some(separator) = head.add_line(line)? {
+                    if let Some(separator) = head.add_line(line, lines.number)? {
                         return head.with_point(separator, line, lines.number);
                     }
                 }
@@ -48,41 +53,67 @@ impl Start {
 }
 
 /// What is known before the first point.
-#[derive(Default)]
 struct Head {
+    axes: Axes,
     /// The layout that the caller gives.
     asked: Option<ColumnLayout>,
     /// The layout that a header names.
     named: Option<ColumnLayout>,
-    /// The layout that a comment names, and its number of names.
-    commented: Option<(std::result::Result<ColumnLayout, NameFlaw>, usize)>,
-    is_header_passed: bool,
+    /// The layout that a comment names.
+    commented: Option<Commented>,
+    /// The number of the header.
+    header: Option<u64>,
     /// The number of points that a line states.
     count: Option<u64>,
 }
 
+/// A comment that names columns.
+struct Commented {
+    layout: std::result::Result<ColumnLayout, NameFlaw>,
+    /// How many names it has.
+    names: usize,
+    /// The number of the line.
+    number: u64,
+}
+
 impl Head {
+    fn new(asked: Option<ColumnLayout>, axes: Axes) -> Self {
+        Head {
+            axes,
+            asked,
+            named: None,
+            commented: None,
+            header: None,
+            count: None,
+        }
+    }
+
     /// Adds a comment, which may name the columns.
-    fn add_comment(&mut self, text: &[u8]) {
+    fn add_comment(&mut self, text: &[u8], number: u64) {
         let names = text.rsplit(|&byte| byte == b':').next().unwrap_or(text);
-        if let Some(separator) = Separator::guess(names)
+        if let Some(separator) = Separator::guess(names, self.axes)
             && let layout @ (Ok(_) | Err(NameFlaw::Repeated(_))) =
-                ColumnLayout::named(names, separator)
+                ColumnLayout::named(names, separator, self.axes)
         {
-            self.commented = Some((layout, separator.fields(names).count()));
+            self.commented = Some(Commented {
+                layout,
+                names: separator.fields(names).count(),
+                number,
+            });
         }
     }
 
     /// Adds a line that is the count of points or a header. Returns the separator if it is a point.
-    fn add_line(&mut self, line: &[u8]) -> Result<Option<Separator>> {
+    fn add_line(&mut self, line: &[u8], number: u64) -> Result<Option<Separator>> {
         if self.count.is_none() && is_count(line) {
             self.count = std::str::from_utf8(line)
                 .ok()
                 .and_then(|text| text.trim().parse().ok());
             return Ok(None);
         }
-        let separator = Separator::guess(line).ok_or_else(|| not_a_point(line))?;
-        if separator.has_two_uses(line) {
+        let separator =
+            Separator::guess(line, self.axes).ok_or_else(|| not_a_point(line, self.axes))?;
+        if separator.has_two_uses(line, self.axes) {
             return Err(Error::format(format!(
                 "{}: commas separate numbers and stand before decimals",
                 quote(line)
@@ -97,28 +128,29 @@ impl Head {
         }
         // The points may have another separator than the names.
         self.named = match self.asked {
-            None => Some(ColumnLayout::named(line, separator)?),
-            Some(_) if self.is_header_passed => return Err(not_a_point(line)),
+            None => Some(ColumnLayout::named(line, separator, self.axes)?),
+            Some(_) if self.header.is_some() => return Err(not_a_point(line, self.axes)),
             Some(_) => None,
         };
-        self.is_header_passed = true;
+        self.header = Some(number);
         Ok(None)
     }
 
     /// Returns what follows from all lines before a point, and from its own.
     fn with_point(self, separator: Separator, line: &[u8], number: u64) -> Result<Start> {
         let Head {
+            axes,
             asked,
             named,
             commented,
-            is_header_passed,
+            header,
             count,
         } = self;
         // A comment with more words than a line has fields is prose.
-        let commented = commented.filter(|(_, names)| *names <= separator.fields(line).count());
-        let has_header = is_header_passed || commented.is_some();
+        let commented = commented.filter(|comment| comment.names <= separator.fields(line).count());
+        let header = header.or(commented.as_ref().map(|comment| comment.number));
         let named = match commented {
-            Some((layout, _)) if named.is_none() && asked.is_none() => Some(layout?),
+            Some(comment) if named.is_none() && asked.is_none() => Some(comment.layout?),
             _ => named,
         };
         let mut mark = DecimalMark::default();
@@ -126,7 +158,7 @@ impl Head {
         let known = asked.or(named);
         let layout = ColumnLayout {
             separator,
-            ..known.unwrap_or(ColumnLayout::FIRST)
+            ..known.unwrap_or(ColumnLayout::first(axes))
         };
         let first = layout.point(line).map_err(|error| match known {
             Some(_) => error,
@@ -143,7 +175,7 @@ impl Head {
         };
         Ok(Start {
             layout,
-            has_header,
+            header,
             count,
             first: Some(first),
             first_column,
@@ -153,12 +185,15 @@ impl Head {
 
     /// Returns what follows from the lines of a file that ends before the first point.
     fn without_points(self) -> Start {
-        let named = self
-            .named
-            .or(self.commented.and_then(|(layout, _)| layout.ok()));
+        let commented = self.commented;
+        let of_comment = commented.and_then(|comment| Some((comment.layout.ok()?, comment.number)));
+        let named = self.named.or(of_comment.map(|(layout, _)| layout));
         Start {
-            layout: self.asked.or(named).unwrap_or(ColumnLayout::FIRST),
-            has_header: self.is_header_passed || named.is_some(),
+            layout: self
+                .asked
+                .or(named)
+                .unwrap_or(ColumnLayout::first(self.axes)),
+            header: self.header.or(of_comment.map(|(_, number)| number)),
             count: self.count,
             first: None,
             first_column: None,
@@ -173,7 +208,7 @@ fn is_count(line: &[u8]) -> bool {
     !line.is_empty() && line.len() <= 18 && line.iter().all(u8::is_ascii_digit)
 }
 
-fn not_a_point(line: &[u8]) -> Error {
+fn not_a_point(line: &[u8], axes: Axes) -> Error {
     let error = Error::format(format!("{} is neither a point nor a header", quote(line)));
     if line
         .trim_ascii_start()
@@ -182,5 +217,11 @@ fn not_a_point(line: &[u8]) -> Error {
     {
         return error.cure("an ESRI ASCII grid is a raster, not a list of points");
     }
-    error.cure("expected x, y and z separated by semicolons, tabs, commas or blanks, or a header line that names them")
+    let needed = match axes {
+        Axes::Plan => "x and y",
+        Axes::Space => "x, y and z",
+    };
+    error.cure(format!(
+        "expected {needed} separated by semicolons, tabs, commas or blanks, or a header line that names them"
+    ))
 }

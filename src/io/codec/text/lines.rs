@@ -18,8 +18,12 @@ pub(super) struct Lines {
     pub(super) line: Vec<u8>,
     /// The number of the current line, from 1.
     pub(super) number: u64,
-    /// True after a carriage return, which a line feed may follow.
-    is_after_return: bool,
+    /// The end of the line before the current one; after the last line, the end of that.
+    pub(super) end_before: &'static [u8],
+    /// The mark of the encoding before the current line.
+    pub(super) mark: &'static [u8],
+    /// The end of the current line: a carriage return may be followed by a line feed.
+    end: &'static [u8],
     /// True if the last line has a point, but no end.
     pub(super) is_open: bool,
 }
@@ -32,7 +36,9 @@ impl Lines {
             name: name.to_path_buf(),
             line: Vec::new(),
             number: 0,
-            is_after_return: false,
+            end_before: b"",
+            mark: b"",
+            end: b"",
             is_open: false,
         }
     }
@@ -41,13 +47,16 @@ impl Lines {
     pub(super) fn next(&mut self) -> Result<bool> {
         self.line.clear();
         self.number += 1;
+        self.mark = b"";
+        self.end_before = std::mem::take(&mut self.end);
         let mut is_ended = false;
         while !is_ended {
             let bytes = match self.source.fill_buf() {
                 Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
                 bytes => bytes?,
             };
-            if std::mem::take(&mut self.is_after_return) && bytes.first() == Some(&b'\n') {
+            if self.line.is_empty() && self.end_before == b"\r" && bytes.first() == Some(&b'\n') {
+                self.end_before = b"\r\n";
                 self.source.consume(1);
                 continue;
             }
@@ -60,7 +69,11 @@ impl Lines {
             self.line
                 .extend_from_slice(&bytes[..end.unwrap_or(bytes.len())]);
             is_ended = end.is_some();
-            self.is_after_return = end.is_some_and(|end| bytes[end] == b'\r');
+            self.end = match end.map(|end| bytes[end]) {
+                Some(b'\r') => b"\r",
+                Some(_) => b"\n",
+                None => b"",
+            };
             let read = end.map_or(bytes.len(), |end| end + 1);
             self.source.consume(read);
             if self.line.len() > MAX_LINE_BYTES {
@@ -78,6 +91,7 @@ impl Lines {
             }
             if self.line.starts_with(b"\xef\xbb\xbf") {
                 self.line.drain(..3);
+                self.mark = b"\xef\xbb\xbf";
             }
         }
         self.is_open |= !is_ended && matches!(Line::new(&self.line), Line::Data(_));

@@ -37,6 +37,7 @@ mod first_column;
 mod first_lines;
 mod lines;
 mod separator;
+pub mod table;
 #[cfg(test)]
 mod tests;
 mod write;
@@ -49,6 +50,7 @@ use self::columns::{ColumnLayout, Point};
 use self::first_column::{FirstColumn, Guess};
 use self::first_lines::Start;
 use self::lines::{Line, Lines};
+pub use self::separator::Axes;
 pub use self::write::{TextWriter, create};
 use crate::data::{PointBatch, PointInfo, PointSource};
 use crate::error::{Error, Result, Wording};
@@ -109,8 +111,9 @@ pub fn from_stream(
     options: Options,
 ) -> Result<TextReader> {
     let mut lines = Lines::new(stream, name.as_ref());
-    let start = Start::read(&mut lines, options.columns).map_err(|error| lines.locate(error))?;
-    let header = if start.has_header {
+    let start = Start::read(&mut lines, options.columns, Axes::Space, &mut |_| ())
+        .map_err(|error| lines.locate(error))?;
+    let header = if start.header.is_some() {
         ", with header"
     } else {
         ""

@@ -12,28 +12,53 @@ pub(super) enum Separator {
     Blanks,
 }
 
+/// Which coordinates of points are needed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Axes {
+    /// x and y.
+    Plan,
+    /// x, y and z.
+    Space,
+}
+
+impl Axes {
+    /// Returns how many there are.
+    pub(super) fn count(self) -> usize {
+        match self {
+            Axes::Plan => 2,
+            Axes::Space => 3,
+        }
+    }
+}
+
 impl Separator {
-    /// Returns the first separator that divides the line into three numbers, or else into three
-    /// fields.
-    pub(super) fn guess(line: &[u8]) -> Option<Self> {
+    /// Returns the first separator that divides the line into three numbers, or else into as many
+    /// as there are axes, or else into as many fields.
+    pub(super) fn guess(line: &[u8], axes: Axes) -> Option<Self> {
         let all = [Self::Semicolon, Self::Tab, Self::Comma, Self::Blanks];
-        let has_numbers = |separator: &Self| {
+        let has_numbers = |separator: &Self, needed: usize| {
             separator
                 .fields(line)
                 .filter_map(|field| separator.number(field))
-                .take(3)
+                .take(needed)
                 .count()
-                == 3
+                == needed
         };
-        let has_fields = |separator: &Self| separator.fields(line).take(3).count() == 3;
-        all.into_iter()
-            .find(has_numbers)
+        let needed = axes.count();
+        let has_fields = |separator: &Self| separator.fields(line).take(needed).count() == needed;
+        let by_numbers = |needed| {
+            all.into_iter()
+                .find(|separator| has_numbers(separator, needed))
+        };
+        by_numbers(3)
+            .or_else(|| by_numbers(needed))
             .or_else(|| all.into_iter().find(has_fields))
     }
 
     /// Returns true if commas do two things in a line of numbers: they separate them, and stand
     /// before their decimals, as in `1,5, 2,5, 3,5`.
-    pub(super) fn has_two_uses(self, line: &[u8]) -> bool {
+    pub(super) fn has_two_uses(self, line: &[u8], axes: Axes) -> bool {
+        let needed = axes.count();
         let words = line
             .split(u8::is_ascii_whitespace)
             .filter(|word| !word.is_empty());
@@ -44,10 +69,20 @@ impl Separator {
         self == Self::Comma
             && words
                 .map(is_decimal)
-                .take(3)
+                .take(needed)
                 .filter(|is_decimal| *is_decimal)
                 .count()
-                == 3
+                == needed
+    }
+
+    /// Returns the byte that separates fields.
+    pub(super) fn byte(self) -> u8 {
+        match self {
+            Self::Semicolon => b';',
+            Self::Tab => b'\t',
+            Self::Comma => b',',
+            Self::Blanks => b' ',
+        }
     }
 
     pub(super) fn name(self) -> &'static str {
@@ -73,9 +108,7 @@ impl Separator {
 
     fn ends_field(self, byte: u8) -> bool {
         match self {
-            Self::Semicolon => byte == b';',
-            Self::Tab => byte == b'\t',
-            Self::Comma => byte == b',',
+            Self::Semicolon | Self::Tab | Self::Comma => byte == self.byte(),
             Self::Blanks => byte == b' ' || byte == b'\t',
         }
     }

@@ -1,0 +1,61 @@
+use std::io::Write;
+
+use super::sample::plan;
+use crate::cli::Exit;
+use crate::cli::input::args::{AccuracyArgs, OutputArgs};
+use crate::cli::input::outputs;
+use crate::cli::report::accuracy;
+use crate::cli::report::console::Console;
+use crate::cli::report::stdout::print;
+use crate::cli::report::summary::print_surface;
+use crate::cli::report::written::commit;
+use crate::error::Result;
+use crate::run::targets::{TABLES, add_table, is_same};
+use crate::run::{self, AccuracyOptions, Input, SurfaceReport};
+
+/// Compares a surface with checkpoints.
+pub(crate) fn run(args: &AccuracyArgs, console: &Console) -> Result<Exit> {
+    let (plan, read) = plan(&args.surface, &args.checkpoints, console)?;
+    let output = OutputArgs {
+        output: args.output.iter().chain(&args.histogram).cloned().collect(),
+        overwrite: args.overwrite,
+    };
+    let outputs = outputs::resolve(&output, TABLES, &read)?;
+    let context = console.context();
+    let mut surface = run::surface_for(args.method.into(), &plan.request, &context)?;
+    print_surface(&SurfaceReport::take(&mut surface)?, console);
+    let options = AccuracyOptions {
+        read: args.surface.read.options(),
+        group_by: args.group_by.clone(),
+        vegetated: args.vegetated.clone(),
+        groups: Vec::new(),
+        class: args.accuracy_class,
+        checkpoint_error: args.checkpoint_error,
+        method: args.method.into(),
+        surface: args.surface.inputs.first().cloned().unwrap_or_default(),
+    };
+    let checkpoints = Input::File(args.checkpoints.clone());
+    let product = run::accuracy(&surface, &checkpoints, &options, &context)?;
+    for target in &outputs.targets {
+        let is_of_bins = args
+            .histogram
+            .as_ref()
+            .is_some_and(|path| is_same(path, &target.path));
+        let text = match is_of_bins {
+            true => accuracy::bins_csv(&product),
+            false => accuracy::rows_csv(&product),
+        };
+        add_table(&target.path, &outputs.set, |out| {
+            out.write_all(text.as_bytes())
+        })?;
+    }
+    commit(outputs, console)?;
+    print(&match args.json {
+        true => accuracy::json(&product),
+        false => accuracy::text(&product),
+    })?;
+    Ok(match &product.decision {
+        Some(decision) if !decision.is_met() => Exit::Failed,
+        _ => Exit::Done,
+    })
+}

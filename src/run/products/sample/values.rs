@@ -1,0 +1,123 @@
+//! The values that are added to points.
+
+use std::path::Path;
+
+use super::options::{SampleOptions, SampledField};
+use crate::crs::Crs;
+use crate::data::Surface;
+use crate::error::{Error, Result, Setting, wording};
+use crate::run::context::notice::Notice;
+use crate::run::context::units::Units;
+use crate::run::context::{Journal, Work};
+use crate::run::sources::systems::reproject_first;
+use crate::terrain::{Method, Sample, Sampler};
+
+/// What is added to points, computed as they are read.
+pub(super) struct Values<'a> {
+    pub(super) sampling: Sampling<'a>,
+    pub(super) work: Work<'a>,
+    pub(super) points: u64,
+    pub(super) outside: u64,
+    pub(super) file: &'a Path,
+    pub(super) surface: &'a Path,
+}
+
+impl Values<'_> {
+    /// Returns the values of some points, position by position.
+    pub(super) fn at(&mut self, positions: &[[f64; 2]]) -> Result<Vec<f64>> {
+        let samples = self.sampling.samples(positions)?;
+        let mut values = Vec::new();
+        for sample in &samples {
+            self.outside += u64::from(!sample.is_some());
+            self.sampling.each_value(sample, |value| values.push(value));
+        }
+        self.points += samples.len() as u64;
+        self.work.add(samples.len() as u64)?;
+        Ok(values)
+    }
+
+    /// Returns an error if no point was on the surface. Called before an output appears.
+    pub(super) fn require_any(&self) -> Result<()> {
+        match self.points > 0 && self.outside == self.points {
+            true => Err(none_inside(self.points, self.file, self.surface)),
+            false => Ok(()),
+        }
+    }
+}
+
+/// Heights and slopes of a surface, as they are added to points.
+pub(super) struct Sampling<'a> {
+    sampler: Sampler<'a, dyn Surface + 'a>,
+    add: &'a [SampledField],
+    /// The units of plan in a unit of the heights.
+    z_factor: f64,
+}
+
+impl<'a> Sampling<'a> {
+    pub(super) fn new(
+        faces: &'a dyn Surface,
+        options: &'a SampleOptions,
+        crs: Option<&Crs>,
+        journal: &Journal,
+    ) -> Result<Self> {
+        let add = &options.add;
+        let is_height = |field: &SampledField| *field == SampledField::Height;
+        if options.method != Method::Linear && !add.iter().all(is_height) {
+            return Err(Error::usage(
+                "slopes are those of the triangles, and heights of this method are not",
+            )
+            .cure(wording!["add heights only, or leave out ", Setting::Method]));
+        }
+        let units = Units::of(crs);
+        let has_lengths = add.iter().any(|field| field.has_lengths());
+        if units.is_angular() && has_lengths {
+            return Err(
+                Error::unsupported("the coordinates are in degrees: slopes need lengths")
+                    .cure(reproject_first()),
+            );
+        }
+        let in_meters = units.in_metres();
+        let z_factor = in_meters.map_or(1.0, |[plan, height]| height / plan);
+        if has_lengths && z_factor != 1.0 {
+            journal.add(Notice::HeightFactor(z_factor));
+        }
+        Ok(Sampling {
+            sampler: Sampler::new(faces, options.method)?,
+            add,
+            z_factor,
+        })
+    }
+
+    pub(super) fn samples(&self, positions: &[[f64; 2]]) -> Result<Vec<Sample>> {
+        self.sampler.samples(positions)
+    }
+
+    /// Calls a function with each value that is added; NaN if it is missing.
+    pub(super) fn each_value(&self, sample: &Sample, mut each: impl FnMut(f64)) {
+        let slope_and_aspect = || sample.slope_and_aspect(self.z_factor, 1.0);
+        for field in self.add {
+            match field {
+                SampledField::Height => each(sample.height),
+                SampledField::Slope => each(slope_and_aspect()[0].atan().to_degrees()),
+                SampledField::SlopePercent => each(100.0 * slope_and_aspect()[0]),
+                SampledField::Aspect => each(slope_and_aspect()[1]),
+                SampledField::Gradient => sample.gradient.into_iter().for_each(&mut each),
+            }
+        }
+    }
+}
+
+#[cold]
+pub(in crate::run::products) fn none_inside(points: u64, path: &Path, surface: &Path) -> Error {
+    let what = match points {
+        1 => "the only point is".to_owned(),
+        points => format!("all {points} points are"),
+    };
+    Error::usage(format!("{what} outside of {}", surface.display()))
+        .in_file(path)
+        .cure(wording![
+            "are x and y in the coordinate system of the surface, and in this order? ",
+            Setting::Columns,
+            " says which columns they are in"
+        ])
+}

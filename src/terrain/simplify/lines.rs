@@ -1,0 +1,156 @@
+//! The constrained edges of a surface that is simplified: its lines, and its rim.
+
+use rustc_hash::{FxHashMap, FxHashSet};
+
+use crate::data::EdgeKind;
+use crate::triangulation::geometry::distance_to_segment;
+use crate::triangulation::kernel::{Adaptive, DotProduct, Kernel, Orientation2};
+use crate::triangulation::num::Sign;
+
+/// What an edge is part of. Edges are joined to one only if all of this is equal.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct EdgeRole {
+    /// [`EdgeKind::Rim`] where no line runs along it.
+    pub(super) kind: EdgeKind,
+    /// True at the rim of the surface.
+    pub(super) is_rim: bool,
+}
+
+/// An edge between two sites.
+#[derive(Debug, Clone)]
+pub(super) struct Edge {
+    pub(super) role: EdgeRole,
+    /// At the rim: true if the surface is left of it, seen from the site with the lower number.
+    is_left: bool,
+    /// The sites of the line that were removed between its ends.
+    gone: Vec<u32>,
+}
+
+/// The constrained edges, by their ends.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Lines {
+    edges: FxHashMap<[u32; 2], Edge>,
+    /// The largest distance in plan of a removed vertex from the edge that replaces it.
+    tolerance: f64,
+}
+
+fn ordered([a, b]: [u32; 2]) -> [u32; 2] {
+    [a.min(b), a.max(b)]
+}
+
+impl Lines {
+    /// Adds an edge; at the rim, the surface is left of it.
+    pub(super) fn add(&mut self, ends: [u32; 2], role: EdgeRole) {
+        let edge = Edge {
+            role,
+            is_left: ends[0] < ends[1],
+            gone: Vec::new(),
+        };
+        self.edges.insert(ordered(ends), edge);
+    }
+
+    /// The same edges with another tolerance.
+    pub(super) fn with_tolerance(&self, tolerance: f64) -> Self {
+        Lines {
+            edges: self.edges.clone(),
+            tolerance,
+        }
+    }
+
+    /// Returns true if an edge is at the rim, and the surface is right of it.
+    pub(super) fn is_surface_right_of(&self, ends: [u32; 2]) -> bool {
+        let edge = self.edges.get(&ordered(ends));
+        edge.is_some_and(|edge| edge.role.is_rim && edge.is_left != (ends[0] < ends[1]))
+    }
+
+    /// The number of sites on lines.
+    pub(super) fn vertices_on_lines(&self) -> usize {
+        let of_lines = self
+            .edges
+            .iter()
+            .filter(|(_, edge)| edge.role.kind.is_constrained());
+        let sites: FxHashSet<u32> = of_lines.flat_map(|(ends, _)| *ends).collect();
+        sites.len()
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.edges.is_empty()
+    }
+
+    /// The edges in the order of their ends, so that the result does not depend on hashes.
+    pub(super) fn sorted(&self) -> Vec<([u32; 2], &Edge)> {
+        let mut edges: Vec<_> = self
+            .edges
+            .iter()
+            .map(|(ends, edge)| (*ends, edge))
+            .collect();
+        edges.sort_unstable_by_key(|(ends, _)| *ends);
+        edges
+    }
+
+    /// The sites on edges, in the order of their numbers.
+    pub(super) fn sites(&self) -> Vec<u32> {
+        let mut sites: Vec<u32> = self.edges.keys().flatten().copied().collect();
+        sites.sort_unstable();
+        sites.dedup();
+        sites
+    }
+
+    /// The two edges at a vertex that would become one.
+    fn both(&self, vertex: u32, [a, b]: [u32; 2]) -> Option<[&Edge; 2]> {
+        let of = |end: u32| self.edges.get(&ordered([vertex, end]));
+        Some([of(a)?, of(b)?])
+    }
+
+    /// Returns true if a site was removed from one of the two edges at a vertex.
+    pub(super) fn is_gone_between(&self, site: u32, vertex: u32, ends: [u32; 2]) -> bool {
+        self.both(vertex, ends)
+            .is_some_and(|both| both.iter().any(|edge| edge.gone.contains(&site)))
+    }
+
+    /// Returns true if the two edges at a vertex may become one: of one role, and with all vertices
+    /// of the line near enough to it. The rim stays where it is: it loses only vertices that are
+    /// exactly on it.
+    pub(super) fn can_join(
+        &self,
+        vertex: u32,
+        ends: [u32; 2],
+        plan: &dyn Fn(u32) -> [f64; 2],
+    ) -> bool {
+        let Some([first, second]) = self.both(vertex, ends) else {
+            return false;
+        };
+        if first.role != second.role || self.edges.contains_key(&ordered(ends)) {
+            return false;
+        }
+        let [a, b] = ends.map(plan);
+        let is_near = |site: &u32| {
+            let q = plan(*site);
+            if first.role.is_rim || self.tolerance == 0.0 {
+                Adaptive::sign(&Orientation2([a, b, q])) == Sign::Zero
+                    && Adaptive::sign(&DotProduct([a, q, b])) == Sign::Negative
+            } else {
+                distance_to_segment(q, [a, b]) <= self.tolerance
+            }
+        };
+        [vertex]
+            .iter()
+            .chain(&first.gone)
+            .chain(&second.gone)
+            .all(is_near)
+    }
+
+    /// Joins the two edges at a vertex.
+    pub(super) fn join(&mut self, vertex: u32, [a, b]: [u32; 2]) {
+        let first = self.edges.remove(&ordered([vertex, a]));
+        let second = self.edges.remove(&ordered([vertex, b]));
+        if let (Some(mut edge), Some(second)) = (first, second) {
+            // Seen from `a`, the surface stays on its side.
+            let is_left_of_ab = edge.is_left == (a < vertex);
+            edge.is_left = is_left_of_ab == (a < b);
+            edge.gone.extend(second.gone);
+            edge.gone.push(vertex);
+            self.edges.insert(ordered([a, b]), edge);
+        }
+    }
+}
