@@ -3,7 +3,7 @@
 use std::convert::Infallible;
 
 use crate::embedded::{Embedded, sides};
-use crate::geometry::Geometry;
+use crate::geometry::{Geometry, in_sphere};
 use crate::num::Sign;
 use crate::tds::{CellId, FiniteCells, Tds, VertexId, Zone};
 
@@ -47,8 +47,8 @@ pub struct Triangulation<G: Geometry<N>, const N: usize, V = (), C = ()> {
     pub(crate) geometry: G,
     pub(crate) tds: Tds<N, V, C>,
     pub(crate) points: Vec<G::Point>,
-    /// Scratch memory of insertions.
-    pub(crate) zone: Zone,
+    /// Scratch memory of insertions; `None` before the first one, and during each.
+    pub(crate) zone: Option<Box<Zone>>,
     /// The cell where the last insertion ended; the next search starts there.
     pub(crate) last: Option<CellId>,
 }
@@ -71,7 +71,7 @@ impl<G: Geometry<N>, const N: usize, V, C> Triangulation<G, N, V, C> {
             geometry: geometry.clone(),
             tds: tds.clone(),
             points: points.clone(),
-            zone: Zone::default(),
+            zone: None,
             last: *last,
         }
     }
@@ -83,7 +83,7 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
             geometry,
             tds: Tds::new(),
             points: Vec::new(),
-            zone: Zone::default(),
+            zone: None,
             last: None,
         }
     }
@@ -92,6 +92,14 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
         let mut triangulation = Triangulation::new(geometry);
         triangulation.reserve(vertices);
         triangulation
+    }
+
+    /// Takes the zone that insertions keep for its memory. It is empty, and should be put back.
+    ///
+    /// `PERF:` boxed, because each insertion moves it to and fro.
+    #[inline]
+    pub(crate) fn take_zone(&mut self) -> Box<Zone> {
+        self.zone.take().unwrap_or_default()
     }
 
     /// Returns the geometry.
@@ -164,8 +172,26 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
         sign
     }
 
+    /// Returns true if a new point destroys a cell.
+    ///
+    /// `PERF:` the infinite vertex has no point, and nor have the unused corners of a cell below
+    /// full dimension, so that one look at each point tells the usual case.
     #[inline(always)]
     pub(crate) fn in_conflict(&self, cell: CellId, q: &G::Point) -> bool {
+        let corners = self.tds.corners(cell);
+        let mut simplex = [q; N];
+        for (corner, vertex) in simplex.iter_mut().zip(corners) {
+            match self.points.get(vertex.index()) {
+                Some(point) => *corner = point,
+                None => return self.in_conflict_with_infinite(cell, q),
+            }
+        }
+        in_sphere(&self.geometry, simplex, q)
+    }
+
+    /// Like [`in_conflict`](Self::in_conflict), for any cell.
+    #[inline(never)]
+    fn in_conflict_with_infinite(&self, cell: CellId, q: &G::Point) -> bool {
         let Ok(is_in_conflict) = sides::in_conflict(self, cell, q);
         is_in_conflict
     }

@@ -145,11 +145,22 @@ impl<G: Geometry<3>, V, C: Copy + Default> Triangulation<G, 3, V, ConstrainedEdg
     ) -> [CellId; 2] {
         let neighbor = self.tds.neighbor(cell, i);
         let j = self.tds.index_of_neighbor(neighbor, cell);
-        for (cell, i) in [(cell, i), (neighbor, j)] {
+        self.set_sides_constrained([(cell, i), (neighbor, j)], is_constrained);
+        [cell, neighbor]
+    }
+
+    /// Like [`set_constrained`](Self::set_constrained), given the edge as the cells on both sides
+    /// have it.
+    #[inline]
+    pub(crate) fn set_sides_constrained(
+        &mut self,
+        sides: [(CellId, usize); 2],
+        is_constrained: bool,
+    ) {
+        for (cell, i) in sides {
             let data = self.tds.cell_data_mut(cell);
             *data = data.with(i, is_constrained);
         }
-        [cell, neighbor]
     }
 
     /// Returns the ends of the constraint that a location lies on, between the ends.

@@ -155,8 +155,9 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
         let Some(mut zone) = self.collect(location, takes) else {
             return self.raise_dimension(vertex);
         };
-        self.last = self.tds.star(&mut zone, vertex, data).last().copied();
-        self.zone = zone;
+        let star = self.tds.star(&mut zone, vertex, data);
+        self.last = star.last().map(|&(cell, _)| cell);
+        self.zone = Some(zone);
     }
 
     /// Returns the zone of a point, given its location; `None` if the point is outside of the
@@ -166,14 +167,14 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Triangulation<G, N, V
         &mut self,
         location: Location,
         takes: impl Fn(&Self, CellId, usize, CellId) -> bool,
-    ) -> Option<Zone> {
+    ) -> Option<Box<Zone>> {
         let (cell, on) = match location {
             Location::OutsideAffineHull | Location::Nowhere => return None,
             Location::Vertex(vertex) => (self.tds.cell_of(vertex)?, Facets::default()),
             Location::Cell { cell, facets } => (cell, facets),
             Location::OutsideHull { cell } => (cell, Facets::default()),
         };
-        let mut zone = std::mem::take(&mut self.zone);
+        let mut zone = self.take_zone();
         zone.grow(&self.tds, cell, |from, i, beyond| {
             // A point on a facet destroys the cells on both sides, even if the facet is
             // constrained.

@@ -329,8 +329,8 @@ impl<G: Geometry<N>, const N: usize, V, C: Copy + Default> Regular<G, N, V, C> {
             .tds
             .star(&mut zone, vertex, |data, _| *data)
             .last()
-            .copied();
-        self.inner.zone = zone;
+            .map(|&(cell, _)| cell);
+        self.inner.zone = Some(zone);
         self.connect_again(hidden);
     }
 

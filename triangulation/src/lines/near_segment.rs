@@ -90,7 +90,7 @@ pub(super) fn near<G: Crossing, V, C: Copy + Default>(
     let Some(first) = t.tds.around(start).find(|&cell| !t.tds.is_infinite(cell)) else {
         return nearby;
     };
-    let mut zone = std::mem::take(&mut t.zone);
+    let mut zone = t.take_zone();
     let meets =
         |cell: CellId, i: usize| band.meets(t.tds.edge_ends(cell, i).map(|v| position(t, v)));
     let mut meet = |vertex: VertexId| {
@@ -113,7 +113,7 @@ pub(super) fn near<G: Crossing, V, C: Copy + Default>(
         }
     }
     zone.finish();
-    t.zone = zone;
+    t.zone = Some(zone);
     nearby.edges.sort_unstable();
     nearby.edges.dedup_by_key(|(edge, _)| *edge);
     nearby.vertices.sort_unstable();

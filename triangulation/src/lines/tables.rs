@@ -56,6 +56,11 @@ impl Lines {
         self.chains.split(a, b, at);
     }
 
+    /// Reserves memory for this many more splits.
+    pub(crate) fn reserve_splits(&mut self, splits: usize) {
+        self.chains.splits.reserve(splits);
+    }
+
     /// Records that constrained edges may belong to no line.
     pub(crate) fn expect_stray_edges(&mut self) {
         self.has_stray_edges = true;

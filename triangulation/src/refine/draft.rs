@@ -13,6 +13,9 @@ use super::shape::{area, is_in_lens, minus};
 use super::shells::Shells;
 
 /// The number of vertices for which there is room from the start, however few are given.
+const ROOM: usize = 256;
+
+/// The number of cells, or of constrained edges, for which lists have room from the start.
 const FEW: usize = 64;
 
 /// The region around a constrained edge in which a vertex encroaches upon it.
@@ -82,8 +85,9 @@ impl<G: Crossing, V: Default> Draft<G, V> {
     ) -> Self {
         // Lists that are full would grow as much, but each on its own, and small ones repeatedly.
         let count = t.tds().vertex_slots();
-        let room = count.max(FEW).min(budget);
+        let room = count.max(ROOM).min(budget);
         t.inner.reserve(room);
+        t.lines.reserve_splits(ROOM.min(budget));
         regions.reserve(2 * room);
         let mut origins = Vec::with_capacity(count + room);
         origins.resize(count, VertexOrigin::Given);
@@ -122,14 +126,19 @@ impl<G: Crossing, V: Default> Draft<G, V> {
 
     /// Returns true if an edge is constrained and a vertex encroaches upon it.
     pub(super) fn is_encroached(&self, cell: CellId, i: usize) -> bool {
-        let is_far_apex_near = || {
+        self.t.is_constrained(cell, i) && {
             let beside = self.t.tds().neighbor(cell, i);
-            self.is_apex_near(beside, self.t.tds().index_of_neighbor(beside, cell))
-        };
+            let j = self.t.tds().index_of_neighbor(beside, cell);
+            self.is_any_apex_near([(cell, i), (beside, j)])
+        }
+    }
+
+    /// Returns true if one of the vertices opposite an edge, given as the cells on both sides have
+    /// it, is too near to it.
+    pub(super) fn is_any_apex_near(&self, [left, right]: [(CellId, usize); 2]) -> bool {
         // Of four points in circles one test is enough.
         let is_symmetric = matches!(self.encroachment, Encroachment::Delaunay);
-        self.t.is_constrained(cell, i)
-            && (self.is_apex_near(cell, i) || !is_symmetric && is_far_apex_near())
+        self.is_apex_near(left.0, left.1) || !is_symmetric && self.is_apex_near(right.0, right.1)
     }
 
     /// Like [`is_encroached`](Self::is_encroached), but tests the vertex of this cell only: if the
@@ -142,45 +151,70 @@ impl<G: Crossing, V: Default> Draft<G, V> {
     #[inline]
     fn is_apex_near(&self, cell: CellId, i: usize) -> bool {
         let tds = self.t.tds();
-        let apex = tds.vertex(cell, i);
+        let corners = tds.corners(cell);
+        let [apex, a, b] = [i, ccw(i), cw(i)].map(|k| corners[k]);
         if apex == VertexId::INFINITE || !self.is_inside(cell) {
             return false;
         }
         if let Encroachment::Delaunay = self.encroachment {
-            let beside = tds.neighbor(cell, i);
-            return !tds.is_infinite(beside) && {
-                let corners = tds.corners(beside).map(|v| self.t.point(v));
-                self.t
-                    .geometry()
-                    .side_of_sphere(corners, self.t.point(apex))
-                    == Sign::Positive
-            };
+            return self.is_in_circle_of(tds.neighbor(cell, i), apex);
         }
-        self.encroaches(tds.edge_ends(cell, i), self.t.plan_of(apex))
+        self.encroaches([a, b].map(|v| self.t.point(v)), self.t.point(apex))
+    }
+
+    /// Returns true if a vertex is in the circle of a cell, and that one is finite.
+    #[inline(never)]
+    fn is_in_circle_of(&self, cell: CellId, vertex: VertexId) -> bool {
+        !self.t.tds().is_infinite(cell) && {
+            let corners = self.t.tds().corners(cell).map(|v| self.t.point(v));
+            let side = self
+                .t
+                .geometry()
+                .side_of_sphere(corners, self.t.point(vertex));
+            side == Sign::Positive
+        }
     }
 
     /// Returns true if a point is too near to an edge with these ends.
-    #[inline]
-    fn encroaches(&self, ends: [VertexId; 2], site: [f64; 2]) -> bool {
-        let [a, b] = ends.map(|v| self.t.plan_of(v));
-        let angle = || Wide::sign(&DotProduct([a, site, b]));
+    #[inline(always)]
+    fn encroaches(&self, ends: [&G::Point; 2], p: &G::Point) -> bool {
+        let geometry = self.t.geometry();
         match self.encroachment {
             Encroachment::Delaunay => false,
-            Encroachment::Gabriel => angle() != Sign::Positive,
-            Encroachment::Lens(cosine) => is_in_lens(minus(a, site), minus(b, site), cosine),
+            Encroachment::Gabriel => !is_acute(geometry, ends, p),
+            Encroachment::Lens(cosine) => {
+                let [u, v] = ends.map(|end| minus(geometry.plan(end), geometry.plan(p)));
+                is_in_lens(u, v, cosine)
+            }
         }
     }
 
     /// Returns true if a point encroaches upon an edge of a cell or is not strictly on its inner
     /// side.
     fn is_near(&self, cell: CellId, i: usize, p: &G::Point) -> bool {
-        self.encroaches(self.t.tds().edge_ends(cell, i), self.t.geometry().plan(p))
-            || self.t.inner.side_of_facet(cell, i, p) != Sign::Positive
+        let ends = self.points_of_edge(cell, i);
+        self.encroaches(ends, p) || is_not_left(self.t.geometry(), ends, p)
+    }
+
+    /// Returns the points at the ends of a finite edge.
+    #[inline(always)]
+    fn points_of_edge(&self, cell: CellId, i: usize) -> [&G::Point; 2] {
+        let corners = self.t.tds().corners(cell);
+        [ccw(i), cw(i)].map(|k| self.t.point(corners[k]))
+    }
+
+    /// Returns true if a point is on a finite edge of a cell or beyond it.
+    #[inline(always)]
+    pub(super) fn is_beyond(&self, cell: CellId, i: usize, p: &G::Point) -> bool {
+        is_not_left(self.t.geometry(), self.points_of_edge(cell, i), p)
     }
 
     /// Grows the zone of a point that is in conflict with a cell, up to constraints, or to the
     /// first constraint for which `stops` returns true, given as an edge of a cell in the zone.
     /// Returns that one.
+    ///
+    /// `PERF:` out of line, with the registers to itself.
+    #[inline(never)]
     pub(super) fn grow(
         &self,
         zone: &mut Zone,
@@ -206,24 +240,26 @@ impl<G: Crossing, V: Default> Draft<G, V> {
     /// border.
     pub(super) fn star(
         &mut self,
-        mut zone: Zone,
+        zone: &mut Zone,
         p: G::Point,
         origin: VertexOrigin,
         region: impl Fn(usize) -> u32,
     ) -> VertexId {
         let vertex = self.t.inner.add_vertex(p, V::default());
-        let star = self
-            .t
-            .inner
-            .tds
-            .star(&mut zone, vertex, |mask, i| mask.only(i));
-        self.t.inner.last = star.last().copied();
-        self.regions.resize(self.t.inner.tds.cell_slots(), OUTSIDE);
-        for (k, &cell) in star.iter().enumerate() {
-            self.regions[cell.index()] = region(k);
+        let star = self.t.inner.tds.star(zone, vertex, |mask, i| mask.only(i));
+        self.t.inner.last = star.last().map(|&(cell, _)| cell);
+        self.fresh.reserve(star.len());
+        for (k, &(cell, _)) in star.iter().enumerate() {
+            let region = region(k);
+            match self.regions.get_mut(cell.index()) {
+                Some(slot) => *slot = region,
+                None => {
+                    self.regions.resize(cell.index(), OUTSIDE);
+                    self.regions.push(region);
+                }
+            }
+            self.fresh.push(cell);
         }
-        self.fresh.extend(star);
-        self.t.inner.zone = zone;
         self.origins.resize(self.t.tds().vertex_slots(), origin);
         self.origins[vertex.index()] = origin;
         vertex
@@ -246,7 +282,8 @@ impl<G: Crossing, V: Default> Draft<G, V> {
         }
         // The first of several is enough: once it is split, most of the others need not be.
         // Often it is an edge of the triangle itself.
-        let is_near = |&i: &usize| self.t.is_constrained(cell, i) && self.is_near(cell, i, &p);
+        let constrained = *self.t.tds().cell_data(cell);
+        let is_near = |&i: &usize| constrained.has(i) && self.is_near(cell, i, &p);
         if let Some(i) = (0..3).find(is_near) {
             self.queue_edge((cell, i));
             return Attempt::Encroaches;
@@ -254,11 +291,11 @@ impl<G: Crossing, V: Default> Draft<G, V> {
         if !self.t.inner.in_conflict(cell, &p) {
             return Attempt::TooFine;
         }
-        let mut zone = std::mem::take(&mut self.t.inner.zone);
+        let mut zone = self.t.inner.take_zone();
         let is_near = |from, i| self.is_near(from, i, &p);
         if let Some((from, i)) = self.grow(&mut zone, cell, &p, is_near) {
             zone.finish();
-            self.t.inner.zone = zone;
+            self.t.inner.zone = Some(zone);
             self.queue_edge((from, i));
             return Attempt::Encroaches;
         }
@@ -268,7 +305,8 @@ impl<G: Crossing, V: Default> Draft<G, V> {
         } else {
             self.interpolate(zone.cells(), site)
         };
-        self.star(zone, p, VertexOrigin::Free, |_| region);
+        self.star(&mut zone, p, VertexOrigin::Free, |_| region);
+        self.t.inner.zone = Some(zone);
         self.budget -= 1;
         Attempt::Added
     }
@@ -304,4 +342,16 @@ impl<G: Crossing, V: Default> Draft<G, V> {
         let foot = self.t.geometry().meet(foot, &[[corners[j], corners[k]]]);
         self.t.geometry().meet(site, &[[corners[apex], &foot]])
     }
+}
+
+/// Returns true if a point is on a line, which has a direction, or to the right of it.
+#[inline(always)]
+fn is_not_left<G: Crossing>(geometry: &G, [a, b]: [&G::Point; 2], p: &G::Point) -> bool {
+    geometry.orientation([a, b, p]) != Sign::Positive
+}
+
+/// Returns true if an edge is seen from a point under an acute angle.
+#[inline(never)]
+fn is_acute<G: Crossing>(geometry: &G, [a, b]: [&G::Point; 2], p: &G::Point) -> bool {
+    Wide::sign(&DotProduct([a, p, b].map(|p| geometry.plan(p)))) == Sign::Positive
 }

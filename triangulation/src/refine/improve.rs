@@ -98,15 +98,15 @@ impl<'a, G: Crossing, V: Default> Refiner<'a, G, V> {
         }
     }
 
+    /// Returns the shape of a triangle; `None` for a cell that has the infinite vertex or is no
+    /// longer in use.
     #[inline(always)]
-    fn shape(&self, cell: CellId) -> Shape {
-        Shape::of(
-            self.draft
-                .t
-                .tds()
-                .corners(cell)
-                .map(|v| self.draft.t.plan_of(v)),
-        )
+    fn shape(&self, cell: CellId) -> Option<Shape> {
+        let t = &self.draft.t;
+        // Only vertices have points.
+        let point = |v: VertexId| t.points().get(v.index()).map(|p| t.geometry().plan(p));
+        let [a, b, c] = *t.tds().corners(cell);
+        Some(Shape::of([point(a)?, point(b)?, point(c)?]))
     }
 
     /// Queues a cell if it is a triangle of the domain that does not satisfy the bounds.
@@ -127,8 +127,7 @@ impl<'a, G: Crossing, V: Default> Refiner<'a, G, V> {
     /// bounds.
     #[inline(always)]
     fn bad(&self, cell: CellId) -> Option<Shape> {
-        let is_asked = self.draft.is_inside(cell) && self.draft.t.tds().is_used(cell);
-        let shape = is_asked.then(|| self.shape(cell))?;
+        let shape = self.draft.is_inside(cell).then(|| self.shape(cell))??;
         (self.is_too_large(cell, &shape) || self.is_too_thin(&shape)).then_some(shape)
     }
 
@@ -150,10 +149,12 @@ impl<'a, G: Crossing, V: Default> Refiner<'a, G, V> {
 
     #[inline]
     fn is_too_large(&self, cell: CellId, shape: &Shape) -> bool {
-        self.bounds_areas && self.exceeds_bounds(cell, shape)
+        self.bounds_areas && self.exceeds_bounds(cell, *shape)
     }
 
-    fn exceeds_bounds(&self, cell: CellId, shape: &Shape) -> bool {
+    /// `PERF:` given a copy, so that the shape of most triangles is never in memory.
+    #[inline(never)]
+    fn exceeds_bounds(&self, cell: CellId, shape: Shape) -> bool {
         let quality = self.quality;
         let region = (self.draft.regions[cell.index()] as usize).checked_sub(1);
         let of_region = region
@@ -225,12 +226,8 @@ impl<'a, G: Crossing, V: Default> Refiner<'a, G, V> {
             Shortfall::Coordinates
         };
         let why = |cell: CellId| {
-            let shape = self.shape(cell);
-            let reason = if self.is_too_thin(&shape) {
-                self.why_thin(cell, &shape)
-            } else {
-                None
-            };
+            let shape = self.shape(cell).filter(|shape| self.is_too_thin(shape));
+            let reason = shape.and_then(|shape| self.why_thin(cell, &shape));
             (cell, reason.unwrap_or(rest))
         };
         cells.into_iter().map(why).collect()

@@ -114,9 +114,10 @@ impl Shape {
     /// `PERF:` computed for every new triangle: without a division, and without branches, because
     /// which edge is the shortest is not predictable.
     #[inline(always)]
-    pub(super) fn is_thinner(&self, cosine: f64) -> bool {
+    pub(super) fn is_thinner(self, cosine: f64) -> bool {
         let [a, b, c] = self.squares;
-        let (low, high) = (least(a, b), largest(a, b));
+        // One comparison for both. Two are made at once, in one register, and then branched upon.
+        let (low, high) = if a < b { (a, b) } else { (b, a) };
         let (short, long) = (least(low, c), largest(high, c));
         if short > ORDINARY.start && long < ORDINARY.end {
             let middle = largest(low, least(high, c));
@@ -130,7 +131,7 @@ impl Shape {
     /// Returns the square of the cosine of the smallest angle, by unit vectors, so that nothing
     /// overflows or underflows.
     #[cold]
-    fn squared_cosine(&self) -> f64 {
+    fn squared_cosine(self) -> f64 {
         let [p, q, r] = self.shortest_first();
         let [u, v] = [minus(r, q), minus(p, r)].map(|edge| edge.map(|x| x / length(edge)));
         dot(u, v).powi(2)

@@ -1,9 +1,10 @@
 //! Splits constrained edges.
 
+use crate::engine::flip::WithConstraints;
 use crate::geometry::Crossing;
 use crate::kernel::{DotProduct, Kernel, Wide};
 use crate::num::{Sign, unsigned_zero};
-use crate::tds::{CellId, VertexId, Zone, cw};
+use crate::tds::{CellId, VertexId, Zone, ccw, cw};
 
 use super::draft::{Draft, Encroached, Encroachment, VertexOrigin};
 use super::shape::{length, minus};
@@ -38,19 +39,20 @@ impl<G: Crossing, V: Default> Draft<G, V> {
 
     /// Splits a constrained edge, given by the cell on its left, and its ends. Returns false if the
     /// coordinates are too coarse.
-    fn split(&mut self, mut edge: (CellId, usize), [a, b]: [VertexId; 2]) -> bool {
+    fn split(&mut self, edge: (CellId, usize), [a, b]: [VertexId; 2]) -> bool {
         let ends_of = |v: VertexId| match self.origin(v) {
             VertexOrigin::OnConstraint(ends) => Some(ends),
             _ => None,
         };
         let constraint = ends_of(a).or(ends_of(b)).unwrap_or([a, b]);
         self.shells.learn(&self.t, constraint);
+        let mut sides = [edge, self.beyond(edge)];
         if let Encroachment::Lens(_) = self.encroachment
             && !self.shells.is_in_cluster(constraint)
         {
-            edge = self.clear_circle(edge);
-            let beyond = self.clear_circle(self.beyond(edge));
-            edge = self.beyond(beyond);
+            sides = self.clear_circle(sides);
+            let [right, left] = self.clear_circle([sides[1], sides[0]]);
+            sides = [left, right];
         }
 
         // Phase 1: the new point.
@@ -74,24 +76,21 @@ impl<G: Crossing, V: Default> Draft<G, V> {
         // replaced if something is nearer to the edge than the rounding: another constraint or an
         // end. Other edges on the border cannot be: the circle within contains the vertex, that
         // beyond does not, and the edge is on their radical axis.
-        let (cell, beside) = (edge.0, self.beyond(edge).0);
-        let sides = [cell, beside].map(|side| self.regions[side.index()]);
-        self.t.inner.set_constrained(edge, false);
-        let mut zone = std::mem::take(&mut self.t.inner.zone);
+        let cells = sides.map(|(cell, _)| cell);
+        let regions = cells.map(|cell| self.regions[cell.index()]);
+        self.t.inner.set_sides_constrained(sides, false);
+        let mut zone = self.t.inner.take_zone();
         let mut hidden = None;
-        if let Some(start) = [cell, beside]
-            .into_iter()
-            .find(|&side| self.t.inner.in_conflict(side, &p))
-        {
-            hidden = self.grow(&mut zone, start, &p, |from, i| {
-                self.t.inner.side_of_facet(from, i, &p) != Sign::Positive
-            });
+        let mut starts = cells.into_iter();
+        if let Some(start) = starts.find(|&cell| self.t.inner.in_conflict(cell, &p)) {
+            let is_beyond = |from, i| self.is_beyond(from, i, &p);
+            hidden = self.grow(&mut zone, start, &p, is_beyond);
         }
         let rim = || self.rim(&zone, &p, [a, b]);
         let Some([after_a, after_b]) = hidden.map_or_else(rim, |_| None) else {
             zone.finish();
-            self.t.inner.zone = zone;
-            self.t.inner.set_constrained(edge, true);
+            self.t.inner.zone = Some(zone);
+            self.t.inner.set_sides_constrained(sides, true);
             return false;
         };
         // The border is counter-clockwise: from `a` to `b` it is on the right.
@@ -102,29 +101,29 @@ impl<G: Crossing, V: Default> Draft<G, V> {
                 !(after_b..after_a).contains(&k)
             }
         };
-        let vertex = self.star(zone, p, VertexOrigin::OnConstraint(constraint), |k| {
-            sides[usize::from(is_right(k))]
+        let vertex = self.star(&mut zone, p, VertexOrigin::OnConstraint(constraint), |k| {
+            regions[usize::from(is_right(k))]
         });
         self.t.lines.split_edge(a, b, vertex);
-        self.constrain_halves(vertex, [after_a, after_b]);
+        self.constrain_halves(&zone.star, [after_a, after_b]);
+        self.t.inner.zone = Some(zone);
         true
     }
 
-    /// Constrains the halves of an edge that a new vertex has split, given the positions of their
-    /// cells in its star, and queues the edges upon which something encroaches now.
-    fn constrain_halves(&mut self, vertex: VertexId, halves: [usize; 2]) {
-        for k in 0..self.t.inner.zone.star.len() {
-            let cell = self.t.inner.zone.star[k];
-            let Some(i) = self.t.tds().index_of(cell, vertex) else {
-                continue;
-            };
+    /// Constrains the halves of an edge that a new vertex has split, given its star and the
+    /// positions of their cells in it, and queues the edges upon which something encroaches now.
+    fn constrain_halves(&mut self, star: &[(CellId, u8)], [from, to]: [usize; 2]) {
+        for (k, &(cell, i)) in star.iter().enumerate() {
+            let i = usize::from(i);
             if self.is_encroached_by_apex(cell, i) {
                 self.queue_edge((cell, i));
             }
-            if halves.contains(&k) {
-                self.t.inner.set_constrained((cell, cw(i)), true);
-                if self.is_encroached(cell, cw(i)) {
-                    self.queue_edge((cell, cw(i)));
+            if k == from || k == to {
+                let (right, j) = star[k.checked_sub(1).unwrap_or(star.len() - 1)];
+                let half = [(cell, cw(i)), (right, ccw(usize::from(j)))];
+                self.t.inner.set_sides_constrained(half, true);
+                if self.is_any_apex_near(half) {
+                    self.queue_edge(half[0]);
                 }
             }
         }
@@ -136,11 +135,13 @@ impl<G: Crossing, V: Default> Draft<G, V> {
     fn rim(&self, zone: &Zone, p: &G::Point, [a, b]: [VertexId; 2]) -> Option<[usize; 2]> {
         let [mut first, mut second] = [None; 2];
         for (k, (cell, i)) in zone.border().enumerate() {
-            let [start, end] = self.t.tds().edge_ends(cell, i);
+            let corners = self.t.tds().corners(cell);
+            let start = corners[ccw(i)];
             if start != a && start != b {
                 continue;
             }
-            if (end == a || end == b) && self.t.inner.side_of_facet(cell, i, p) != Sign::Positive {
+            let end = corners[cw(i)];
+            if (end == a || end == b) && self.is_beyond(cell, i, p) {
                 return None;
             }
             let position = if start == a { &mut first } else { &mut second };
@@ -156,29 +157,31 @@ impl<G: Crossing, V: Default> Draft<G, V> {
     }
 
     /// Removes vertices that were added between constraints and now lie in the circle with a
-    /// constrained edge as its diameter, on the side of the cell, in sight (Chew 1993). Returns the
-    /// edge, whose cell may have changed.
-    fn clear_circle(&mut self, mut edge: (CellId, usize)) -> (CellId, usize) {
-        let [a, b] = self.t.tds().edge_ends(edge.0, edge.1);
+    /// constrained edge as its diameter, on the first side, in sight (Chew 1993). The edge is given
+    /// as the cells on both sides have it. Returns it so, because the first cell may have changed.
+    fn clear_circle(&mut self, [mut edge, outside]: [(CellId, usize); 2]) -> [(CellId, usize); 2] {
         loop {
-            let apex = self.t.tds().vertex(edge.0, edge.1);
+            let corners = self.t.tds().corners(edge.0);
+            let [apex, a, b] = [edge.1, ccw(edge.1), cw(edge.1)].map(|k| corners[k]);
             if apex == VertexId::INFINITE || self.origin(apex) != VertexOrigin::Free {
-                return edge;
+                return [edge, outside];
             }
             let angle = DotProduct([a, apex, b].map(|v| self.t.plan_of(v)));
             if Wide::sign(&angle) != Sign::Negative {
-                return edge;
+                return [edge, outside];
             }
-            let around: Vec<CellId> = self.t.tds().around(apex).collect();
-            let outside = self.beyond(edge);
-            if self.t.lines.remove_free(&mut self.t.inner, apex).is_none() {
-                return edge;
+            let first = self.fresh.len();
+            self.fresh.extend(self.t.inner.tds.around(apex));
+            // It is on no constraint, and in a triangle of others.
+            self.t.inner.remove_vertex(WithConstraints, apex);
+            let mut last = first;
+            for k in first..self.fresh.len() {
+                if self.t.tds().is_used(self.fresh[k]) {
+                    self.fresh[last] = self.fresh[k];
+                    last += 1;
+                }
             }
-            self.fresh.extend(
-                around
-                    .into_iter()
-                    .filter(|&cell| self.t.tds().is_used(cell)),
-            );
+            self.fresh.truncate(last);
             edge = self.beyond(outside);
         }
     }

@@ -124,7 +124,7 @@ impl<P, V, C: Copy + Default> ReadTriangulation<P, V, C> {
             geometry,
             tds,
             points,
-            zone: Zone::default(),
+            zone: None,
             last: None,
         };
         first(restored.flaws(Level::Orientation, |_, _| false))?;
