@@ -6,6 +6,7 @@ mod program;
 mod accuracy;
 mod columns;
 mod comparisons;
+mod jobs;
 mod crossings;
 mod demo;
 mod drape;
