@@ -71,7 +71,9 @@ impl Hints {
         let [width, height] = [0, 1].map(|k| max[k] / 2.0 - min[k] / 2.0);
         let squares = (count / FACES_PER_HINT).max(1) as f64;
         // At most as many squares along the longer side as there are in all.
-        let side = (width.max(height) / squares).max((width * height / squares).sqrt());
+        // Roots first: the product of tiny lengths would be zero.
+        let of_square = width.sqrt() * height.sqrt() / squares.sqrt();
+        let side = (width.max(height) / squares).max(of_square);
         let scale = if side > 0.0 { 0.5 / side } else { 0.0 };
         let scale = if scale.is_finite() { scale } else { 0.0 };
         let sides = [width, height]
@@ -137,5 +139,34 @@ impl Hints {
                 ends.find_map(|c| face(c, r))
             })
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::Mesh;
+
+    #[test]
+    fn hints_do_not_depend_on_the_unit() {
+        let sides = |unit: f64| {
+            let corner = |number: u32| {
+                let [x, y] = [number % 65, number / 65].map(f64::from);
+                [x * unit, y * unit, 0.0]
+            };
+            let lower = |corner: u32| [corner, corner + 1, corner + 66];
+            let upper = |corner: u32| [corner, corner + 66, corner + 65];
+            let cells = (0..65 * 32).filter(|corner| corner % 65 < 64);
+            let faces = cells.flat_map(|corner| [lower(corner), upper(corner)]);
+            let vertices = (0..65 * 33).map(corner).collect();
+            let mesh = Mesh::new(vertices, faces.collect(), &[], None).unwrap();
+            Hints::new(&mesh).0.sides
+        };
+        let [columns, rows] = sides(1.0);
+        assert!(columns > 20 && rows > 10, "{columns} {rows}");
+        // The product of two sides is zero, or infinite.
+        for power in [-600, 600] {
+            assert_eq!(sides(2f64.powi(power)), [columns, rows]);
+        }
     }
 }
