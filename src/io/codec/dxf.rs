@@ -259,6 +259,9 @@ fn encoded(text: &str) -> String {
     let mut found = String::new();
     for c in text.chars() {
         match c {
+            // A caret stands for a control character with the one behind it; before a blank, for
+            // itself.
+            '^' => found += "^ ",
             ' '..='~' => found.push(c),
             c if c.is_control() => found.push(' '),
             c if (c as u32) < 0x1_0000 => found += &format!("\\U+{:04X}", c as u32),
@@ -300,7 +303,7 @@ mod tests {
         drawing.line(0, [[0.0; 3], [4.0, 3.0, 0.5]]).unwrap();
         drawing.polyline(1, [[0.0; 3], [1e-7, 1e22, -0.5]]).unwrap();
         drawing
-            .text(2, [1.0; 3], 2.5, Align::Right, "Höhe\n100 %")
+            .text(2, [1.0; 3], 2.5, Align::Right, "Höhe\n^J 100 %")
             .unwrap();
         drawing.end().unwrap();
         let text = String::from_utf8(bytes).unwrap();
@@ -314,7 +317,7 @@ mod tests {
             (pairs[0], pairs[pairs.len() - 1]),
             ((0, "SECTION"), (0, "EOF"))
         );
-        assert!(pairs.contains(&(1, "H\\U+00F6he 100 %")));
+        assert!(pairs.contains(&(1, "H\\U+00F6he ^ J 100 %")));
         assert!(pairs.contains(&(20, "1e22")) && pairs.contains(&(10, "1e-7")));
         let count = |kind: &str| pairs.iter().filter(|pair| **pair == (0, kind)).count();
         assert_eq!(

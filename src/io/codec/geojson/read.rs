@@ -332,15 +332,34 @@ impl GeoJsonReader {
         }
         layer.fields = fields.into_iter().collect();
         let kept = kept.map(|rows| attributes(&rows, &layer.fields, layer.shapes.len()));
+        let kept = kept.transpose()?;
         layer.attributes = kept;
         add_system(&mut layer, root.get("crs"));
         Ok(layer)
     }
 }
 
+/// The values that a table of all properties has without a property, in any case.
+const MOST_MISSING: usize = 10_000_000;
+
+/// Such values for each that is there, besides.
+const MISSING_FOR_EACH: usize = 16;
+
 /// Returns the properties of the shapes of a layer. What is an array or an object is kept as its
 /// text.
-fn attributes(rows: &[Object], names: &[String], shapes: usize) -> Attributes {
+///
+/// # Errors
+/// If nearly all values are missing of so many that they would fill the memory.
+fn attributes(rows: &[Object], names: &[String], shapes: usize) -> Result<Attributes> {
+    let present: usize = rows.iter().map(Map::len).sum();
+    let most = MOST_MISSING.saturating_add(present.saturating_mul(MISSING_FOR_EACH));
+    if names.len().saturating_mul(shapes) > most {
+        return Err(Error::limit(format!(
+            "{} different properties of {shapes} features, which have {present} in all: a table of them is nearly empty",
+            names.len()
+        ))
+        .cure("remove properties that few features have, or join them to one"));
+    }
     let value = |value: Option<&Value>| match value {
         None | Some(Value::Null) => Attribute::Missing,
         Some(Value::Bool(truth)) => Attribute::Truth(*truth),
@@ -355,10 +374,10 @@ fn attributes(rows: &[Object], names: &[String], shapes: usize) -> Attributes {
     let none = Map::new();
     let rows = (0..shapes).map(|shape| rows.get(shape).unwrap_or(&none));
     let rows = rows.map(|row| names.iter().map(|name| value(row.get(name))).collect());
-    Attributes {
+    Ok(Attributes {
         names: names.to_vec(),
         rows: rows.collect(),
-    }
+    })
 }
 
 /// Returns the property with this name: as written, else in any case.

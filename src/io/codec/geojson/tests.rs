@@ -481,3 +481,30 @@ fn contours_come_back_from_lines() {
             .is_empty()
     );
 }
+
+#[test]
+fn a_table_that_is_nearly_empty_is_refused() {
+    let read = |features: usize, properties: &dyn Fn(usize) -> String| {
+        let feature = |i| {
+            let properties = properties(i);
+            format!(r#"{{"type":"Feature","geometry":null,"properties":{{{properties}}}}}"#)
+        };
+        let features: Vec<String> = (0..features).map(feature).collect();
+        let features = features.join(",");
+        let text = format!(r#"{{"type":"FeatureCollection","features":[{features}]}}"#);
+        let options = Options {
+            keeps_attributes: true,
+            ..Options::default()
+        };
+        parse(text.as_bytes(), "a", &options, &unwatched)
+    };
+    let error = read(3200, &|i| format!(r#""k{i}":{i}"#)).unwrap_err();
+    let text = "3200 different properties of 3200 features, which have 3200 in all";
+    assert!(error.to_string().contains(text), "{error}");
+    let few = read(100, &|i| format!(r#""k{i}":{i}"#)).unwrap();
+    let table = few.attributes.unwrap();
+    assert_eq!((table.names.len(), table.rows.len()), (100, 100));
+    // Many features with the same properties are none.
+    let same = read(5000, &|i| format!(r#""a":{i},"b":null"#)).unwrap();
+    assert_eq!(same.attributes.unwrap().rows.len(), 5000);
+}

@@ -15,6 +15,9 @@ const TEXT: usize = 254;
 /// The digits of a whole number that other programs read, at most.
 const DIGITS: usize = 18;
 
+/// Up to this, all whole numbers are floating-point numbers.
+const EXACT: u64 = 1 << 53;
+
 /// The bytes of a row, at most.
 const ROW: usize = u16::MAX as usize;
 
@@ -106,7 +109,13 @@ fn column(name: String, attributes: &Attributes, number: usize) -> (KeptColumn, 
     if is_whole && longest() <= DIGITS {
         return (of(b'N', longest()), 0);
     }
-    if has_values && all(|value| matches!(value, Value::Whole(_) | Value::Number(_))) {
+    // A field of floating-point numbers would change larger whole numbers silently.
+    let is_number = |value: &Value| match value {
+        Value::Whole(whole) => whole.unsigned_abs() <= EXACT,
+        Value::Number(_) => true,
+        _ => false,
+    };
+    if has_values && all(is_number) {
         return (of(b'F', usize::from(NUMBER_WIDTH)), 0);
     }
     let cut = values().filter(|value| text(value).len() > TEXT).count();
@@ -156,6 +165,41 @@ impl KeptColumn {
                 text
             }
             _ => " ".repeat(width),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn whole_numbers_stay_what_they_are() {
+        let exact = (1 << 53) + 1;
+        for (values, kind) in [
+            (vec![Value::Whole(exact), Value::Missing], b'N'),
+            (vec![Value::Whole(7), Value::Number(0.5)], b'F'),
+            (vec![Value::Whole(-(1 << 53)), Value::Number(0.5)], b'F'),
+            (vec![Value::Whole(exact), Value::Number(0.5)], b'C'),
+            (vec![Value::Whole(-exact), Value::Number(0.5)], b'C'),
+            (vec![Value::Whole(i64::MIN)], b'C'),
+        ] {
+            let attributes = Attributes {
+                names: vec!["id".to_owned()],
+                rows: values.iter().map(|value| vec![value.clone()]).collect(),
+            };
+            let columns = columns(&attributes, &mut Vec::new()).unwrap();
+            assert_eq!(columns[0].kind, kind, "{values:?}");
+            for value in values {
+                if let Value::Whole(whole) = value {
+                    let cell = columns[0].cell(&value);
+                    let cell = cell.trim();
+                    match kind {
+                        b'F' => assert_eq!(cell.parse::<f64>().unwrap(), whole as f64),
+                        _ => assert_eq!(cell, whole.to_string()),
+                    }
+                }
+            }
         }
     }
 }
