@@ -49,16 +49,26 @@ pub struct Profiles {
     pub height_unit: f64,
 }
 
-impl Profile {
-    /// Returns what the profile is of, for a title: `station 0+050`, `record 3, part 1`.
-    pub fn title(&self) -> String {
-        match (&self.station, self.part) {
-            (Some(station), _) => format!("station {}", station.text),
-            (None, Some(part)) => format!("record {}, part {part}", self.record),
-            (None, None) => format!("record {}", self.record),
+impl Profiles {
+    /// Returns what a profile is of, for a title: `record 3, part 1`; of sections `station 0+050`,
+    /// or `record 3, station 0+050` if they are across several lines.
+    pub fn title(&self, profile: &Profile) -> String {
+        let of = |profile: &Profile| (profile.record, profile.part);
+        // The profiles are in the order of the lines.
+        let is_one_line = self.list.first().map(of) == self.list.last().map(of);
+        let line = match profile.part {
+            Some(part) => format!("record {}, part {part}", profile.record),
+            None => format!("record {}", profile.record),
+        };
+        match &profile.station {
+            Some(station) if is_one_line => format!("station {}", station.text),
+            Some(station) => format!("{line}, station {}", station.text),
+            None => line,
         }
     }
+}
 
+impl Profile {
     /// Returns all its points, on all surfaces.
     pub fn points(&self) -> impl Iterator<Item = &LinePoint> {
         self.stretches.iter().flatten().flatten()

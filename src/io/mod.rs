@@ -48,8 +48,8 @@ pub use bytes::contain::is_contained;
 pub use bytes::mapped;
 pub(crate) use bytes::output::Temporary;
 pub use bytes::output::{
-    Abandoned, Destination, Output, OutputSet, abandon_outputs, is_stream, probe, remove_abandoned,
-    require_absent,
+    Abandoned, Destination, Output, OutputSet, abandon_outputs, is_standard_output, is_stream,
+    probe, remove_abandoned, require_absent,
 };
 pub use bytes::watch::Watch;
 pub use codec::{gdal, geojson, geotiff, las, png, shapefile, tetgen, text, triangle};

@@ -16,9 +16,9 @@ pub struct SectionWidths {
     pub angle: f64,
 }
 
-/// Returns the sections at distances along an axis: each from its left end to its right one. At a
-/// vertex of the axis, its direction is halfway between those of both segments. Distances beyond
-/// the axis, or on one without length, have none.
+/// Returns the sections at distances along an axis: each from its left end over its point on the
+/// axis to its right one. At a vertex of the axis, its direction is halfway between those of both
+/// segments. Distances beyond the axis, or on one without length, have none.
 ///
 /// # Complexity
 /// O(log n) for each section of an axis of n vertices.
@@ -26,7 +26,7 @@ pub fn sections(
     axis: &[[f64; 2]],
     distances: &[f64],
     across: &SectionWidths,
-) -> Vec<Option<[[f64; 2]; 2]>> {
+) -> Vec<Option<[[f64; 2]; 3]>> {
     let mut ends = vec![0.0];
     for pair in axis.windows(2) {
         let [x, y] = [0, 1].map(|k| pair[1][k] - pair[0][k]);
@@ -45,7 +45,7 @@ pub fn sections(
         let left = [x * cos - y * sin, x * sin + y * cos];
         let [to_left, to_right] = across.widths;
         let end = |by: f64| [0, 1].map(|k| at[k] + by * left[k]);
-        Some([end(to_left), end(-to_right)])
+        Some([end(to_left), at, end(-to_right)])
     };
     distances.iter().map(one).collect()
 }
@@ -92,11 +92,12 @@ fn on_axis(axis: &[[f64; 2]], ends: &[f64], distance: f64) -> Option<([f64; 2], 
     Some((axis[here], direction))
 }
 
-/// Returns the pairs of lines that cross or touch, by their positions, in order.
+/// Returns the pairs of lines that cross or touch, by their positions, in order: the first ones if
+/// there are more than `most`, and one more than that.
 ///
 /// # Complexity
 /// O((n + k) log n) for n lines and k pairs of which the boxes overlap.
-pub fn crossing_pairs(lines: &[[[f64; 2]; 2]]) -> Vec<[usize; 2]> {
+pub fn crossing_pairs(lines: &[[[f64; 2]; 2]], most: usize) -> Vec<[usize; 2]> {
     let items = lines.iter().enumerate().map(|(number, ends)| Line {
         number,
         extent: Extent::of_plan(*ends),
@@ -104,6 +105,9 @@ pub fn crossing_pairs(lines: &[[[f64; 2]; 2]]) -> Vec<[usize; 2]> {
     let tree = Boxes::new(items.collect());
     let mut found = Vec::new();
     for (number, ends) in lines.iter().enumerate() {
+        if found.len() > most {
+            break;
+        }
         let extent = Extent::of_plan(*ends);
         tree.find_in(extent, |other| {
             if other.number > number && other.extent.overlaps(&extent) {
@@ -114,6 +118,7 @@ pub fn crossing_pairs(lines: &[[[f64; 2]; 2]]) -> Vec<[usize; 2]> {
         });
     }
     found.sort_unstable();
+    found.truncate(most.saturating_add(1));
     found
 }
 
@@ -149,12 +154,12 @@ mod tests {
     fn sections_are_square_to_the_axis_and_halve_its_bends() {
         let axis = [[0.0, 0.0], [10.0, 0.0], [10.0, 0.0], [10.0, 10.0]];
         let at = |distance: f64| sections(&axis, &[distance], &SQUARE)[0];
-        assert_eq!(at(0.0), Some([[0.0, 2.0], [0.0, -1.0]]));
-        assert_eq!(at(4.0), Some([[4.0, 2.0], [4.0, -1.0]]));
-        assert_eq!(at(15.0), Some([[8.0, 5.0], [11.0, 5.0]]));
-        assert_eq!(at(20.0), Some([[8.0, 10.0], [11.0, 10.0]]));
+        assert_eq!(at(0.0), Some([[0.0, 2.0], [0.0, 0.0], [0.0, -1.0]]));
+        assert_eq!(at(4.0), Some([[4.0, 2.0], [4.0, 0.0], [4.0, -1.0]]));
+        assert_eq!(at(15.0), Some([[8.0, 5.0], [10.0, 5.0], [11.0, 5.0]]));
+        assert_eq!(at(20.0), Some([[8.0, 10.0], [10.0, 10.0], [11.0, 10.0]]));
         let half = 0.5f64.sqrt();
-        let [left, right] = at(10.0).unwrap();
+        let [left, _, right] = at(10.0).unwrap();
         for (found, expected) in [
             (left, [10.0 - 2.0 * half, 2.0 * half]),
             (right, [10.0 + half, -half]),
@@ -177,9 +182,13 @@ mod tests {
         };
         let found = sections(&[[0.0, 0.0], [10.0, 0.0]], &[5.0], &askew)[0].unwrap();
         let half = 0.5f64.sqrt();
-        let expected = [[5.0 + 2.0 * half, 2.0 * half], [5.0 - half, -half]];
+        let expected = [
+            [5.0 + 2.0 * half, 2.0 * half],
+            [5.0, 0.0],
+            [5.0 - half, -half],
+        ];
         let is_near = |k: usize, i: usize| (found[k][i] - expected[k][i]).abs() < 1e-12;
-        assert!((0..2).all(|k| is_near(k, 0) && is_near(k, 1)), "{found:?}");
+        assert!((0..3).all(|k| is_near(k, 0) && is_near(k, 1)), "{found:?}");
     }
 
     #[test]
@@ -193,14 +202,26 @@ mod tests {
         let lines: Vec<[[f64; 2]; 2]> = sections(&axis, &distances, &wide)
             .into_iter()
             .flatten()
+            .map(|[left, _, right]| [left, right])
             .collect();
-        assert_eq!(crossing_pairs(&lines), [[1, 2]]);
+        assert_eq!(crossing_pairs(&lines, 9), [[1, 2]]);
         // Touching counts.
         let touching = [
             [[0.0, 0.0], [2.0, 0.0]],
             [[1.0, 0.0], [1.0, 5.0]],
             [[3.0, 0.0], [4.0, 0.0]],
         ];
-        assert_eq!(crossing_pairs(&touching), [[0, 1]]);
+        assert_eq!(crossing_pairs(&touching, 9), [[0, 1]]);
+    }
+
+    #[test]
+    fn no_more_crossing_pairs_are_collected_than_are_asked_for() {
+        let star: Vec<[[f64; 2]; 2]> = (0..40)
+            .map(|i| [[f64::from(i), 0.0], [f64::from(40 - i), 9.0]])
+            .collect();
+        let all = crossing_pairs(&star, usize::MAX);
+        assert_eq!(all.len(), 40 * 39 / 2);
+        assert_eq!(crossing_pairs(&star, 50), all[..51]);
+        assert_eq!(crossing_pairs(&star, all.len()), all);
     }
 }

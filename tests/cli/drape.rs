@@ -218,3 +218,36 @@ fn what_cannot_be_draped_is_an_error_and_writes_nothing() {
     std::fs::remove_file(folder.path().join("a.ply")).unwrap();
     assert_eq!(files_of(folder.path()), before);
 }
+
+#[test]
+fn records_that_are_off_are_listed_by_their_numbers() {
+    let off = |count: usize| {
+        let line = |x: usize| format!("[[{},0],[{},1]]", x + 10, x + 10);
+        let feature = |coordinates: String| {
+            format!(
+                r#"{{"type":"Feature","properties":{{}},"geometry":{{"type":"LineString","coordinates":{coordinates}}}}}"#
+            )
+        };
+        let lines = std::iter::once("[[0,1],[2,1]]".to_owned()).chain((0..count).map(line));
+        lines.map(feature).collect::<Vec<_>>().join("\n")
+    };
+    let folder = folder_with(&[
+        ("a.xyz", SLOPE),
+        ("one.geojsonl", &off(1)),
+        ("few.geojsonl", &off(3)),
+        ("many.geojsonl", &off(9)),
+    ]);
+    for (name, text) in [
+        ("one", "record 2: not on a.xyz"),
+        ("few", "records 2, 3, 4: not on a.xyz"),
+        ("many", "records 2, 3, 4, 5, 6 and 4 more: not on a.xyz"),
+    ] {
+        let lines = format!("{name}.geojsonl");
+        let words = ["drape", "a.xyz", "--lines", &lines, "-o", "o.geojson"];
+        run_in(
+            &folder,
+            &[&words[..], &["--overwrite", "--a-srs", "EPSG:25832"]].concat(),
+        )
+        .works(&[&format!("warning: {lines}: {text}")]);
+    }
+}

@@ -360,3 +360,250 @@ fn what_has_no_profile_is_an_error_and_writes_nothing() {
     }
     assert_eq!(files_of(folder.path()), before);
 }
+
+/// A rectangle from 0 to 20 at a height; its edges are oblique, so that few lines meet one at a
+/// round distance.
+fn plain(z: f64) -> String {
+    format!("0 0 {z}\n20 0 {z}\n20 20 {z}\n0 20 {z}\n7.3 9.1 {z}\n")
+}
+
+/// A folder with a plain at 100, and lines in it.
+fn plain_folder(lines: &[(&str, &str)]) -> TempDir {
+    let folder = folder_with(&[("p.xyz", &plain(100.0))]);
+    for (name, coordinates) in lines {
+        let kind = match coordinates.starts_with("[[[") {
+            true => "MultiLineString",
+            false => "LineString",
+        };
+        let text = geojson(25832, kind, coordinates);
+        std::fs::write(folder.path().join(name), text).unwrap();
+    }
+    folder
+}
+
+#[test]
+fn stations_are_found_wherever_the_line_begins() {
+    let folder = plain_folder(&[("l.geojson", "[[5,5],[15,5]]")]);
+    let words = ["p.xyz", "--along", "l.geojson", "--left", "1"];
+    let names = |more: &[&str]| -> Vec<String> {
+        let found = of(&folder, &[&words[..], more].concat());
+        let profiles = found["profiles"].as_array().unwrap();
+        let names = profiles.iter().map(|profile| profile["name"].as_str());
+        names.map(|name| name.unwrap().to_owned()).collect()
+    };
+    // 16.1 - 6.1 is above 10.
+    assert_eq!(
+        names(&["--start", "6.1", "--stations", "16.1"]),
+        ["0+016.1"]
+    );
+    assert_eq!(
+        names(&["--start", "6.1", "--stations", "6.1,0+016.1"]),
+        ["0+006.1", "0+016.1"]
+    );
+    assert_eq!(
+        names(&["--start", "1+250", "--interval", "5"]),
+        ["1+250", "1+255", "1+260"]
+    );
+    assert_eq!(
+        names(&["--start", "-0+005", "--stations", "-0+005,-2,0+005"]),
+        ["-0+005", "-0+002", "0+005"]
+    );
+    let fails = |more: &[&str], texts: &[&str]| {
+        run_in(&folder, &[&["profile"], &words[..], more].concat()).fails(2, texts);
+    };
+    // Where numbers do not tell multiples apart.
+    let texts = ["at an interval of 50", "--start", "--interval"];
+    fails(&["--interval", "50", "--start", "1e300"], &texts);
+    fails(
+        &["--interval", "1e-3", "--start=-1e15"],
+        &["at an interval of 0.001"],
+    );
+    fails(&["--stations", "1+2x"], &["1+2x", "1+250"]);
+}
+
+#[test]
+fn sections_have_a_point_on_the_axis_and_count_from_it() {
+    let folder = plain_folder(&[("l.geojson", "[[5,3],[13,7]]")]);
+    let words = ["p.xyz", "--along", "l.geojson", "--interval", "4"];
+    let widths = ["--left", "2.5", "--right", "1.25"];
+    for step in [None, Some("1")] {
+        let step: Vec<&str> = step.iter().flat_map(|step| ["--step", step]).collect();
+        let found = of(&folder, &[&words[..], &widths, &step].concat());
+        let profiles = found["profiles"].as_array().unwrap();
+        assert_eq!(profiles.len(), 3);
+        for profile in profiles {
+            let points = points(profile, 0).concat();
+            let distances: Vec<f64> = points.iter().map(|p| p[0]).collect();
+            assert!(distances.is_sorted());
+            assert_eq!((distances[0], distances[distances.len() - 1]), (-2.5, 1.25));
+            let axis = points.iter().find(|p| p[0] == 0.0).unwrap();
+            let along = profile["station"].as_f64().unwrap() / 5f64.sqrt();
+            for (k, at) in [(1, 5.0 + 2.0 * along), (2, 3.0 + along)] {
+                assert!((axis[k] - at).abs() < 1e-12, "{axis:?}");
+            }
+            if !step.is_empty() {
+                assert_eq!(distances, [-2.5, -2.0, -1.0, 0.0, 1.0, 1.25]);
+            }
+        }
+    }
+    // On one side, the axis is an end.
+    let found = of(&folder, &[&words[..], &["--right", "2"]].concat());
+    let distances = points(&found["profiles"][0], 0).concat();
+    assert_eq!(
+        [distances[0][0], distances[distances.len() - 1][0]],
+        [0.0, 2.0]
+    );
+}
+
+#[test]
+fn sections_across_several_lines_are_titled_by_their_records() {
+    let folder = plain_folder(&[
+        ("two.geojson", "[[[5,5],[15,5]],[[5,9],[15,9]]]"),
+        ("one.geojson", "[[5,5],[15,5]]"),
+    ]);
+    let title = |along: &str| {
+        let words = [
+            "profile",
+            "p.xyz",
+            "--along",
+            along,
+            "--interval",
+            "5",
+            "--left",
+            "1",
+        ];
+        let run = run_in(&folder, &words);
+        run.works(&[]);
+        run.stdout.lines().next().unwrap().to_owned()
+    };
+    assert_eq!(title("one.geojson"), "station 0+000, 1 m");
+    assert_eq!(title("two.geojson"), "record 1, part 1, station 0+000, 1 m");
+}
+
+#[test]
+fn of_sections_that_cross_some_are_listed() {
+    let folder = plain_folder(&[("bend.geojson", "[[5,5],[10,5],[10,10]]")]);
+    let words = [
+        "profile",
+        "p.xyz",
+        "--along",
+        "bend.geojson",
+        "--left",
+        "5",
+        "--interval",
+    ];
+    let of = |interval| run_in(&folder, &[&words[..], &[interval]].concat());
+    of("1").works(&[
+        "sections cross: 0+000 and 0+006, 0+000 and 0+007, ",
+        " more",
+    ]);
+    of("0.05").works(&[" and at least 995 more"]);
+}
+
+#[test]
+fn plots_are_as_high_as_what_is_on_a_surface() {
+    let lines = "[[[1,5],[15,5]],[[50,50],[60,60]]]";
+    let folder = plain_folder(&[("l.geojson", lines), ("s.geojson", "[[3,5],[15,5]]")]);
+    let plot = |words: &[&str]| {
+        let all = ["profile", "--overwrite", "-o", "t.svg"];
+        run_in(&folder, &[&all[..], words].concat())
+    };
+    // The line beside the surface has no heights: neither for the datum nor for the exaggeration.
+    std::fs::write(
+        folder.path().join("slope.xyz"),
+        "0 0 500\n20 0 501\n20 20 501\n0 20 500\n",
+    )
+    .unwrap();
+    let exaggeration = |along: &str| {
+        plot(&["slope.xyz", "--along", along]).works(&[]);
+        let text = String::from_utf8(bytes(&folder, "t.svg")).unwrap();
+        let (_, note) = text.split_once("vertical exaggeration ").unwrap();
+        note.split_once(',').unwrap().0.to_owned()
+    };
+    assert_eq!(exaggeration("l.geojson"), exaggeration("s.geojson"));
+    let with_datum = ["slope.xyz", "--along", "l.geojson", "--datum", "499"];
+    plot(&with_datum).works(&[]);
+    let level = ["p.xyz", "--along", "s.geojson"];
+    plot(&level).works(&[]);
+    for factor in ["1e300", "1e308"] {
+        plot(&[&level[..], &["--exaggeration", factor]].concat()).fails(2, &["--exaggeration"]);
+    }
+}
+
+#[test]
+fn what_an_option_is_for_has_to_be_asked_for() {
+    let folder = plain_folder(&[("l.geojson", "[[5,5],[15,5]]")]);
+    let line = ["profile", "p.xyz", "--along", "l.geojson"];
+    let fails = |more: &[&str], texts: &[&str]| {
+        run_in(&folder, &[&line[..], more].concat()).fails(2, texts);
+    };
+    for option in ["--start", "--angle", "--station-format"] {
+        let value = if option == "--angle" { "45" } else { "0" };
+        let text = format!("{option} is for cross-sections");
+        fails(&[option, value], &[&text, "--interval or --stations"]);
+    }
+    for option in ["--exaggeration", "--datum", "--title"] {
+        let text = format!("{option} is for plots");
+        fails(&[option, "5"], &[&text, ".svg"]);
+        fails(&[option, "5", "-o", "t.csv"], &[&text, ".svg"]);
+        let with_plot = [option, "5", "-o", "t.csv", "-o", "t.DXF"];
+        run_in(&folder, &[&line[..], &with_plot, &["--overwrite"]].concat()).works(&[]);
+    }
+}
+
+#[test]
+fn sections_need_lengths() {
+    let folder = folder_with(&[
+        ("p.xyz", &plain(100.0)),
+        ("l.geojson", &geojson(4326, "LineString", "[[5,5],[15,5]]")),
+    ]);
+    let words = [
+        "profile",
+        "p.xyz",
+        "--a-srs",
+        "EPSG:4326",
+        "--force-degrees",
+        "--max-edge",
+        "none",
+        "--along",
+        "l.geojson",
+    ];
+    run_in(&folder, &words).works(&[]);
+    let sections = ["--interval", "1", "--left", "1"];
+    run_in(&folder, &[&words[..], &sections].concat())
+        .fails(1, &["in degrees: sections need lengths", "reproject"]);
+}
+
+#[test]
+fn lines_without_a_length_are_named() {
+    let folder = plain_folder(&[
+        ("one.geojson", "[[5,5],[5,5]]"),
+        ("two.geojson", "[[[5,5],[15,5]],[[5,5],[5,5]]]"),
+    ]);
+    let along = |name| run_in(&folder, &["profile", "p.xyz", "--along", name]);
+    along("one.geojson").fails(2, &["one.geojson: no line has a length"]);
+    let run = along("two.geojson");
+    run.works(&["warning: two.geojson: record 1, part 2: no length"]);
+    assert!(!run.stderr.contains("not on"), "{}", run.stderr);
+    let draped = |name| {
+        let words = ["drape", "p.xyz", "--lines", name, "-o", "o.geojson"];
+        run_in(&folder, &words)
+    };
+    draped("one.geojson").fails(2, &["one.geojson: no line has a length"]);
+    draped("two.geojson").works(&["warning: two.geojson: record 1: no length"]);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_table_on_stdout_is_alone_there() {
+    let folder = plain_folder(&[("l.geojson", "[[5,5],[15,5]]")]);
+    let words = ["profile", "p.xyz", "--along", "l.geojson", "-o"];
+    run_in(&folder, &[&words[..], &["t.csv"]].concat()).works(&[]);
+    std::os::unix::fs::symlink("/dev/stdout", folder.path().join("out.csv")).unwrap();
+    for target in ["/dev/stdout", "out.csv"] {
+        let run = run_in(&folder, &[&words[..], &[target]].concat());
+        run.works(&[]);
+        assert_eq!(run.stdout.as_bytes(), bytes(&folder, "t.csv"), "{target}");
+        run_in(&folder, &[&words[..], &[target, "--json"]].concat()).fails(2, &["--json"]);
+    }
+}

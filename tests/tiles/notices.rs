@@ -44,6 +44,7 @@ const NOT_IN_TILES: &[(&str, &str)] = &[
     ("PolygonsOutside", "of `volume`"),
     ("LinesOff", "of `drape` and `profile`"),
     ("LinesPartlyOff", "of `drape` and `profile`"),
+    ("LinesWithoutLength", "of `drape` and `profile`"),
     ("SectionsCross", "of `profile`"),
     ("AttributesLeftOut", "of `drape`"),
     ("PointsOutside", "of `sample`"),

@@ -20,7 +20,11 @@ pub(crate) fn text(profiles: &Profiles) -> String {
     let mut text = String::new();
     for profile in profiles.list.iter().take(MOST_SHOWN) {
         let [from, to] = profile.range;
-        text += &format!("{}, {} {plan}\n", profile.title(), number(to - from));
+        text += &format!(
+            "{}, {} {plan}\n",
+            profiles.title(profile),
+            number(to - from)
+        );
         for (surface, stretches) in profiles.surfaces.iter().zip(&profile.stretches) {
             text += &format!("  {surface}: {}\n", line(stretches, plan, height));
         }

@@ -10,6 +10,7 @@ use crate::cli::report::stdout::print;
 use crate::cli::report::summary::print_surface;
 use crate::cli::report::written::commit;
 use crate::error::{Error, Result};
+use crate::io::is_standard_output;
 use crate::io::profiles::PlotOptions;
 use crate::run::targets::PROFILES;
 use crate::run::{
@@ -19,6 +20,7 @@ use crate::run::{
 /// Computes heights along lines, or along sections across them.
 pub(crate) fn run(args: &ProfileArgs, console: &Console) -> Result<Exit> {
     let sections = sections(args)?;
+    require_plots(args)?;
     inputs::require([&args.along])?;
     let plans = SurfacePlan::resolve_each(&args.surface, console)?;
     let read: Vec<PathBuf> = plans
@@ -31,6 +33,13 @@ pub(crate) fn run(args: &ProfileArgs, console: &Console) -> Result<Exit> {
         overwrite: args.overwrite,
     };
     let outputs = outputs::resolve(&output, PROFILES, &read)?;
+    let is_stdout_taken = args.output.iter().any(|path| is_standard_output(path));
+    if args.json && is_stdout_taken {
+        return Err(
+            Error::usage("a file and the object of --json cannot both be on stdout")
+                .cure("leave one of them out"),
+        );
+    }
     let context = console.context();
     let surfaces: Vec<SurfaceProduct> = plans
         .iter()
@@ -65,9 +74,28 @@ pub(crate) fn run(args: &ProfileArgs, console: &Console) -> Result<Exit> {
     commit(outputs, console)?;
     match args.json {
         true => print(&profiles::json(&product.profiles))?,
+        false if is_stdout_taken => {}
         false => print(&profiles::text(&product.profiles))?,
     }
     Ok(Exit::Done)
+}
+
+/// Returns an error if there is an option of plots, but no plot.
+fn require_plots(args: &ProfileArgs) -> Result<()> {
+    let given = [
+        ("--exaggeration", args.exaggeration.is_some()),
+        ("--datum", args.datum.is_some()),
+        ("--title", args.title.is_some()),
+    ];
+    let extension = |path: &PathBuf| path.extension().map(|e| e.to_ascii_lowercase());
+    let is_plot = |path: &PathBuf| extension(path).is_some_and(|e| e == "svg" || e == "dxf");
+    match given.iter().find(|(_, is_given)| *is_given) {
+        Some((option, _)) if !args.output.iter().any(is_plot) => {
+            Err(Error::usage(format!("{option} is for plots"))
+                .cure("write one with -o FILE.svg or -o FILE.dxf"))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Returns the sections that are asked for, if any.
@@ -81,12 +109,22 @@ fn sections(args: &ProfileArgs) -> Result<Option<SectionOptions>> {
         (None, stations) => Some(SectionStations::At(stations.to_vec())),
     };
     let has_widths = args.left.is_some() || args.right.is_some();
+    let of_sections = [
+        ("--start", args.start.is_some()),
+        ("--angle", args.angle.is_some()),
+        ("--station-format", args.station_format.is_some()),
+    ];
+    let given = of_sections.iter().find(|(_, is_given)| *is_given);
     let error = match &at {
         _ if args.surface.inputs.is_empty() => {
             Error::usage("the surface is missing").cure("name a file of points, a TIN or a DEM")
         }
         None if has_widths => Error::usage("--left and --right are for cross-sections")
             .cure("choose where they are with --interval or --stations"),
+        None if let Some((option, _)) = given => {
+            Error::usage(format!("{option} is for cross-sections"))
+                .cure("choose where they are with --interval or --stations")
+        }
         Some(_) if !has_widths => Error::usage("the lengths of the cross-sections are missing")
             .cure("give them with --left and --right"),
         _ if args.surface.crossing_report.is_some() || args.surface.lines.flat_points.is_some() => {
@@ -96,10 +134,10 @@ fn sections(args: &ProfileArgs) -> Result<Option<SectionOptions>> {
         _ => {
             return Ok(at.map(|at| SectionOptions {
                 at,
-                start: args.start,
+                start: args.start.unwrap_or(0.0),
                 widths: [args.left, args.right].map(Option::unwrap_or_default),
-                angle: args.angle,
-                format: args.station_format,
+                angle: args.angle.unwrap_or(90.0),
+                format: args.station_format.unwrap_or_default(),
             }));
         }
     };

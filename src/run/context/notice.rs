@@ -122,8 +122,21 @@ pub enum Notice {
     LinesOff(PathBuf, String, Vec<String>),
     /// These lines of a file are on the surface, which is named, only in part.
     LinesPartlyOff(PathBuf, String, Vec<String>),
-    /// Cross-sections of the line of a record of a file cross: the stations of each pair.
-    SectionsCross(PathBuf, usize, Vec<[String; 2]>),
+    /// These lines of a file, such as "record 3", have no length.
+    LinesWithoutLength(PathBuf, Vec<String>),
+    /// Cross-sections of the line of a record of a file cross.
+    SectionsCross {
+        /// The file.
+        path: PathBuf,
+        /// The record, counted from 1.
+        record: usize,
+        /// The stations of the first pairs.
+        first: Vec<[String; 2]>,
+        /// How many more pairs were found.
+        more: usize,
+        /// True if these are all; otherwise, the search has ended early.
+        are_all: bool,
+    },
     /// The attributes of a file are not kept, because its format is read without them.
     AttributesLeftOut(PathBuf),
     /// Some of the points of a file are not on the surface that they are compared with.
@@ -488,7 +501,8 @@ impl Notice {
             | Notice::PolygonsOutside(..)
             | Notice::LinesOff(..)
             | Notice::LinesPartlyOff(..)
-            | Notice::SectionsCross(..)
+            | Notice::LinesWithoutLength(..)
+            | Notice::SectionsCross { .. }
             | Notice::AttributesLeftOut(_)
             | Notice::PointsOutside { .. }
             | Notice::CheckpointsOutside { .. }

@@ -149,7 +149,10 @@ fn text(notice: &Notice) -> Wording {
         Notice::LinesPartlyOff(path, surface, lines) => {
             of_listed(path, lines, &format!("only in part on {surface}"))
         }
-        Notice::SectionsCross(path, record, pairs) => sections_cross(path, *record, pairs),
+        Notice::LinesWithoutLength(path, lines) => of_listed(path, lines, "no length"),
+        Notice::SectionsCross { path, record, first, more, are_all } => {
+            sections_cross(path, *record, first, *more, *are_all)
+        }
         Notice::AttributesLeftOut(path) => {
             of_file(path, "attributes are kept of shapefiles and GeoJSON only")
         }
@@ -356,13 +359,36 @@ fn polygons_outside(path: &Path, records: &[usize]) -> Wording {
 
 /// Returns a text about several things in a file, of which the first are listed.
 fn of_listed(path: &Path, things: &[String], text: &str) -> Wording {
-    of_file(path, &format!("{}: {text}", first_of(things)))
+    // "records 1, 2 and 4 more" where all are plain records.
+    let numbers = things.iter().map(|thing| {
+        let number = thing.strip_prefix("record ")?;
+        number.bytes().all(|c| c.is_ascii_digit()).then_some(number)
+    });
+    let listed = match numbers.collect::<Option<Vec<&str>>>() {
+        Some(numbers) => named("record", &numbers),
+        None => first_of(things),
+    };
+    of_file(path, &format!("{listed}: {text}"))
 }
 
-fn sections_cross(path: &Path, record: usize, pairs: &[[String; 2]]) -> Wording {
-    let pairs: Vec<String> = pairs.iter().map(|[a, b]| format!("{a} and {b}")).collect();
-    let text = format!("record {record}: sections cross: {}", first_of(&pairs));
-    of_file(path, &text)
+fn sections_cross(
+    path: &Path,
+    record: usize,
+    first: &[[String; 2]],
+    more: usize,
+    are_all: bool,
+) -> Wording {
+    let pairs: Vec<String> = first.iter().map(|[a, b]| format!("{a} and {b}")).collect();
+    let more = match (more, are_all) {
+        (0, _) => String::new(),
+        (more, true) => format!(" and {more} more"),
+        (more, false) => format!(" and at least {more} more"),
+    };
+    let pairs = pairs.join(", ");
+    of_file(
+        path,
+        &format!("record {record}: sections cross: {pairs}{more}"),
+    )
 }
 
 /// Returns the first of several things, and how many more there are.
@@ -370,11 +396,10 @@ fn first_of(things: &[impl ToString]) -> String {
     const MOST_LISTED: usize = 5;
     let first = things.iter().take(MOST_LISTED);
     let listed: Vec<String> = first.map(ToString::to_string).collect();
-    let more = match things.len().saturating_sub(MOST_LISTED) {
-        0 => String::new(),
-        more => format!(" and {more} more"),
-    };
-    listed.join(", ") + &more
+    match things.len().saturating_sub(MOST_LISTED) {
+        0 => listed.join(", "),
+        more => format!("{} and {more} more", listed.join(", ")),
+    }
 }
 
 /// Returns the first of some records or lines by their numbers: "records 1, 2 and 3 more".

@@ -2,7 +2,9 @@
 
 use std::path::PathBuf;
 
-use super::followed::{Coverage, Vertices, check_step, coverage, follow, in_plan, no_line};
+use super::followed::{
+    Coverage, Vertices, check_lengths, check_step, coverage, follow, in_plan, no_line,
+};
 use super::surface::SurfaceProduct;
 use super::together::common_system;
 use crate::crs::Crs;
@@ -66,7 +68,9 @@ pub fn drape(
     let plan = in_plan(&lines);
     check_step(options.step, &plan)?;
     let step = options.step.map(|step| (step, Vertices::Kept));
-    let found = follow(surface, &plan, step, context)?;
+    let title = |record: usize| format!("record {record}");
+    check_lengths(&plan, path, |line| title(lines[line].fid + 1), &journal)?;
+    let found = follow(surface, &plan, |_, _| (), step, context)?;
     let records = |wanted: Coverage| {
         let each = lines.iter().zip(plan.iter().zip(&found));
         let of = each.filter(|(_, (line, stretches))| coverage(line, stretches) == wanted);
@@ -78,12 +82,7 @@ pub fn drape(
     if !found.is_empty() && found.iter().all(Vec::is_empty) {
         return Err(no_line(path, std::slice::from_ref(&options.name)));
     }
-    let titles = |records: &[usize]| {
-        records
-            .iter()
-            .map(|record| format!("record {record}"))
-            .collect()
-    };
+    let titles = |records: &[usize]| records.iter().map(|&record| title(record)).collect();
     let name = || options.name.display().to_string();
     if !off.is_empty() {
         journal.add(Notice::LinesOff(path.to_path_buf(), name(), titles(&off)));

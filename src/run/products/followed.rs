@@ -7,8 +7,9 @@ use rayon::prelude::*;
 use super::surface::SurfaceProduct;
 use crate::data::Stretch;
 use crate::error::{Error, Result, Setting, wording};
+use crate::run::context::notice::Notice;
 use crate::run::context::watched::Watched;
-use crate::run::context::{Context, Size, Stage};
+use crate::run::context::{Context, Journal, Size, Stage};
 use crate::run::lines::shapes::Drawn;
 use crate::terrain::{Locator, stepped};
 
@@ -65,15 +66,39 @@ pub(crate) fn vertices_along(line: &[[f64; 2]]) -> Vec<f64> {
     found
 }
 
-/// Returns the parts of each line that are on a surface. With a step, their points are at multiples
-/// of it instead of at edges; `keeps_vertices` are the points that stay: the vertices of lines, or
-/// none.
+/// Returns an error if no line has a length, and adds a notice about those without one. `title` is
+/// what a line is called, by its number.
+pub(crate) fn check_lengths(
+    lines: &[PlanLine],
+    path: &Path,
+    title: impl Fn(usize) -> String,
+    journal: &Journal,
+) -> Result<()> {
+    let has_none = |number: &usize| length(&lines[*number]) == 0.0;
+    let without: Vec<usize> = (0..lines.len()).filter(has_none).collect();
+    if without.len() == lines.len() && !lines.is_empty() {
+        return Err(Error::usage("no line has a length")
+            .in_file(path)
+            .cure("a line needs two vertices at different positions"));
+    }
+    let mut titles: Vec<String> = without.into_iter().map(title).collect();
+    titles.dedup();
+    if !titles.is_empty() {
+        journal.add(Notice::LinesWithoutLength(path.to_path_buf(), titles));
+    }
+    Ok(())
+}
+
+/// Returns the parts of each line that are on a surface. `count` gives the points of a line, by its
+/// number, other distances, still in order. With a step, points are at multiples of it instead of
+/// at edges; besides, the vertices of lines stay, or none.
 ///
 /// # Errors
 /// If the surface is damaged or its faces overlap, or the run is canceled.
 pub(crate) fn follow(
     product: &SurfaceProduct,
     lines: &[PlanLine],
+    count: impl Fn(usize, &mut Stretch) + Sync,
     step: Option<(f64, Vertices)>,
     context: &Context,
 ) -> Result<Vec<Vec<Stretch>>> {
@@ -82,8 +107,9 @@ pub(crate) fn follow(
         let polled = Watched::polled(faces, context)?;
         let locator = Locator::prepared(faces, &polled)?;
         polled.end()?;
-        let one = |line: &PlanLine| {
-            let found = locator.along(line)?;
+        let one = |(number, line): (usize, &PlanLine)| {
+            let mut found = locator.along(line)?;
+            found.iter_mut().for_each(|stretch| count(number, stretch));
             work.add(1)?;
             let Some((step, vertices)) = step else {
                 return Ok(found);
@@ -95,7 +121,7 @@ pub(crate) fn follow(
             let stepped = found.iter().map(|stretch| stepped(stretch, step, &kept));
             Ok(stepped.collect())
         };
-        let found: Result<Vec<_>> = lines.par_iter().map(one).collect();
+        let found: Result<Vec<_>> = lines.par_iter().enumerate().map(one).collect();
         let found = found?;
         work.end()?;
         Ok(found)
@@ -112,6 +138,8 @@ pub(crate) enum Vertices {
 /// How much of a line is on a surface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Coverage {
+    /// There is nothing that could be on it.
+    NoLength,
     Nothing,
     Part,
     Whole,
@@ -120,6 +148,7 @@ pub(crate) enum Coverage {
 /// Returns how much of a line is on a surface, given its parts there.
 pub(crate) fn coverage(line: &PlanLine, stretches: &[Stretch]) -> Coverage {
     match stretches {
+        [] if length(line) == 0.0 => Coverage::NoLength,
         [] => Coverage::Nothing,
         [one] => {
             let plan = |at: [f64; 3]| [at[0], at[1]];

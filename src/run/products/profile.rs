@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use super::followed::{
-    Coverage, PlanLine, Vertices, check_step, coverage, follow, in_plan, length, no_line,
+    Coverage, PlanLine, Vertices, check_lengths, check_step, coverage, follow, in_plan, length,
+    no_line, vertices_along,
 };
 use super::station_format::StationFormat;
 use super::surface::SurfaceProduct;
@@ -19,10 +20,18 @@ use crate::run::context::{Context, Journal};
 use crate::run::lines::layers;
 use crate::run::lines::shapes::{self, Drawn};
 use crate::run::request::input::Input;
+use crate::run::sources::systems::reproject_first;
 use crate::terrain::{SectionWidths, crossing_pairs, sections};
 
 /// The cross-sections of a run, at most.
 const MOST_SECTIONS: f64 = 1e5;
+
+/// The multiples of an interval that numbers tell apart, up to 2^53.
+const MOST_MULTIPLES: f64 = 9e15;
+
+/// The pairs of crossing sections that are counted, and those that are listed.
+const MOST_PAIRS: usize = 1000;
+const LISTED_PAIRS: usize = 5;
 
 /// Which profiles are computed, and how.
 #[derive(Debug, Clone)]
@@ -76,10 +85,7 @@ pub struct ProfileProduct {
 }
 
 /// A line with what its profile is called.
-struct Asked {
-    line: PlanLine,
-    profile: Profile,
-}
+type Asked = (PlanLine, Profile);
 
 /// Computes the heights of surfaces along lines, or along sections across them: exactly, at every
 /// edge of a triangle. A raster is a surface between the centers of its cells.
@@ -114,39 +120,50 @@ pub fn profile(
         options.assign.as_ref(),
         &journal,
     )?;
+    let units = Units::of(crs.as_ref());
+    if options.sections.is_some() && units.is_angular() {
+        return Err(
+            Error::unsupported("the coordinates are in degrees: sections need lengths")
+                .cure(reproject_first()),
+        );
+    }
     let drawn = shapes::in_plan(layer, path, Setting::Along)?;
-    let mut asked = match &options.sections {
+    let asked = match &options.sections {
         None => drawn.iter().map(along_line).collect(),
         Some(sections) => across(&drawn, sections, path, &journal)?,
     };
-    let lines: Vec<PlanLine> = asked
-        .iter_mut()
-        .map(|one| std::mem::take(&mut one.line))
-        .collect();
+    let (lines, list): (Vec<PlanLine>, Vec<Profile>) = asked.into_iter().unzip();
+    let mut profiles = Profiles {
+        surfaces: short_names(&names),
+        list,
+        units: units.symbols(),
+        height_unit: units
+            .in_metres()
+            .map_or(1.0, |[plan, height]| height / plan),
+    };
+    let title = |line: usize| profiles.title(&profiles.list[line]);
+    check_lengths(&lines, path, title, &journal)?;
     check_step(options.step, &lines)?;
     let step = options.step.map(|step| (step, Vertices::LeftOut));
-    let mut any = false;
+    let count = |line: usize, stretch: &mut Stretch| {
+        if let Some(sections) = &options.sections {
+            count_from_axis(stretch, &lines[line], sections.widths);
+        }
+    };
+    let mut any = lines.is_empty();
     for (surface, name) in surfaces.iter().zip(&names) {
-        let mut found = follow(surface, &lines, step, context)?;
-        any |= note_coverage(&lines, &found, &asked, [path, name], &journal);
-        for (stretches, one) in found.iter_mut().zip(&mut asked) {
-            shift(stretches, one.profile.range[0]);
-            one.profile.stretches.push(std::mem::take(stretches));
+        let found = follow(surface, &lines, count, step, context)?;
+        any |= found.iter().any(|stretches| !stretches.is_empty());
+        note_coverage(&lines, &found, &profiles, [path, name], &journal);
+        for (stretches, profile) in found.into_iter().zip(&mut profiles.list) {
+            profile.stretches.push(stretches);
         }
     }
-    if !any && !lines.is_empty() {
+    if !any {
         return Err(no_line(path, &names));
     }
-    let units = Units::of(crs.as_ref());
     Ok(ProfileProduct {
-        profiles: Profiles {
-            surfaces: short_names(&names),
-            list: asked.into_iter().map(|one| one.profile).collect(),
-            units: units.symbols(),
-            height_unit: units
-                .in_metres()
-                .map_or(1.0, |[plan, height]| height / plan),
-        },
+        profiles,
         notices: journal.take(),
     })
 }
@@ -171,15 +188,13 @@ fn short_names(names: &[PathBuf]) -> Vec<String> {
 /// Returns the line for a profile along itself.
 fn along_line(drawn: &Drawn) -> Asked {
     let line = in_plan(std::slice::from_ref(drawn)).concat();
-    Asked {
-        profile: Profile {
-            record: drawn.fid + 1,
-            part: drawn.part,
-            range: [0.0, length(&line)],
-            ..Profile::default()
-        },
-        line,
-    }
+    let profile = Profile {
+        record: drawn.fid + 1,
+        part: drawn.part,
+        range: [0.0, length(&line)],
+        ..Profile::default()
+    };
+    (line, profile)
 }
 
 /// Returns the sections across lines.
@@ -199,27 +214,19 @@ fn across(
         let axis = in_plan(std::slice::from_ref(drawn)).concat();
         let stations =
             stations(&axis, options).map_err(|e| shapes::at_record(e, path, drawn.fid + 1))?;
-        let distances: Vec<f64> = stations.iter().map(|at| at - options.start).collect();
+        // The difference of a station on the line can be beyond it by a rounding error.
+        let length = length(&axis);
+        let distance = |at: &f64| (at - options.start).max(0.0).min(length);
+        let distances: Vec<f64> = stations.iter().map(distance).collect();
         let found = sections(&axis, &distances, &across);
-        let lines: Vec<([[f64; 2]; 2], f64)> = found
+        let lines: Vec<([[f64; 2]; 3], f64)> = found
             .into_iter()
             .zip(stations)
             .filter_map(|(line, at)| Some((line?, at)))
             .collect();
-        let ends: Vec<[[f64; 2]; 2]> = lines.iter().map(|(line, _)| *line).collect();
-        let text = |number: usize| options.format.text(lines[number].1);
-        let crossing = crossing_pairs(&ends);
-        if !crossing.is_empty() {
-            let pairs = crossing.iter().map(|pair| pair.map(text)).collect();
-            journal.add(Notice::SectionsCross(
-                path.to_path_buf(),
-                drawn.fid + 1,
-                pairs,
-            ));
-        }
-        asked.extend(lines.into_iter().map(|(line, at)| Asked {
-            line: line.to_vec(),
-            profile: Profile {
+        note_crossings(&lines, options.format, (path, drawn.fid + 1), journal);
+        asked.extend(lines.into_iter().map(|(line, at)| {
+            let profile = Profile {
                 record: drawn.fid + 1,
                 part: drawn.part,
                 station: Some(Station {
@@ -228,7 +235,8 @@ fn across(
                 }),
                 range: [-options.widths[0], options.widths[1]],
                 ..Profile::default()
-            },
+            };
+            (line.to_vec(), profile)
         }));
     }
     if asked.is_empty() && !drawn.is_empty() {
@@ -237,6 +245,29 @@ fn across(
             .cure(wording!["choose a shorter ", Setting::Interval]));
     }
     Ok(asked)
+}
+
+/// Adds a notice if sections across a line cross, which are given with their stations.
+fn note_crossings(
+    lines: &[([[f64; 2]; 3], f64)],
+    format: StationFormat,
+    (path, record): (&Path, usize),
+    journal: &Journal,
+) {
+    let ends = lines.iter().map(|([left, _, right], _)| [*left, *right]);
+    let pairs = crossing_pairs(&ends.collect::<Vec<_>>(), MOST_PAIRS);
+    let counted = pairs.len().min(MOST_PAIRS);
+    let listed = &pairs[..counted.min(LISTED_PAIRS)];
+    if !listed.is_empty() {
+        let text = |line: usize| format.text(lines[line].1);
+        journal.add(Notice::SectionsCross {
+            path: path.to_path_buf(),
+            record,
+            first: listed.iter().map(|pair| pair.map(text)).collect(),
+            more: counted - listed.len(),
+            are_all: pairs.len() == counted,
+        });
+    }
 }
 
 fn check_sections(options: &SectionOptions) -> Result<()> {
@@ -308,8 +339,20 @@ fn stations(axis: &[[f64; 2]], options: &SectionOptions) -> Result<Vec<f64>> {
                 ))
                 .cure(wording!["choose a longer ", Setting::Interval]));
             }
+            if first.abs().max(last.abs()) / interval > MOST_MULTIPLES {
+                return Err(Error::usage(format!(
+                    "stations from {first} on are not told apart at an interval of {interval}"
+                ))
+                .cure(wording![
+                    "choose a ",
+                    Setting::Start,
+                    " nearer to zero, or a longer ",
+                    Setting::Interval
+                ]));
+            }
             let number = (first / interval).ceil();
-            Ok((0..)
+            // One more, as the first may be below by a rounding error.
+            Ok((0..=count as u32 + 1)
                 .map(|count| (number + f64::from(count)) * interval)
                 .skip_while(|at| *at < first)
                 .take_while(|at| *at <= last)
@@ -318,30 +361,37 @@ fn stations(axis: &[[f64; 2]], options: &SectionOptions) -> Result<Vec<f64>> {
     }
 }
 
-/// Counts distances from another start.
-fn shift(stretches: &mut [Stretch], start: f64) {
-    if start != 0.0 {
-        let points = stretches.iter_mut().flatten();
-        points.for_each(|point| point.along += start);
+/// Counts the distances along a section from its axis, negative to the left. Its ends have its
+/// widths as their distances, whatever the rounding errors of their positions.
+fn count_from_axis(stretch: &mut Stretch, section: &PlanLine, [left, right]: [f64; 2]) {
+    let [_, axis, end] = vertices_along(section)[..] else {
+        return;
+    };
+    for point in stretch {
+        point.along = match point.along {
+            at if at <= 0.0 => 0.0 - left,
+            at if at <= axis => (at - axis).max(-left),
+            at if at >= end => right,
+            at => (at - axis).min(right),
+        };
     }
 }
 
-/// Adds notices about lines that are not on a surface, or only in part. Returns true if any is.
+/// Adds notices about lines that are not on a surface, or only in part.
 fn note_coverage(
     lines: &[PlanLine],
     found: &[Vec<Stretch>],
-    asked: &[Asked],
+    profiles: &Profiles,
     [path, name]: [&Path; 2],
     journal: &Journal,
-) -> bool {
+) {
     let titles = |wanted: Coverage| {
-        let each = lines.iter().zip(found).zip(asked);
+        let each = lines.iter().zip(found).zip(&profiles.list);
         let of = each.filter(|((line, stretches), _)| coverage(line, stretches) == wanted);
-        of.map(|(_, one)| one.profile.title())
+        of.map(|(_, profile)| profiles.title(profile))
             .collect::<Vec<String>>()
     };
     let (off, partly) = (titles(Coverage::Nothing), titles(Coverage::Part));
-    let any = off.len() < lines.len();
     let (path, name) = (path.to_path_buf(), name.display().to_string());
     if !off.is_empty() {
         journal.add(Notice::LinesOff(path.clone(), name.clone(), off));
@@ -349,7 +399,6 @@ fn note_coverage(
     if !partly.is_empty() {
         journal.add(Notice::LinesPartlyOff(path, name, partly));
     }
-    any
 }
 
 impl ProfileProduct {

@@ -75,6 +75,25 @@ impl fmt::Display for StationFormat {
 }
 
 impl StationFormat {
+    /// Returns the distance that a text with a plus states, in whatever format: 1250 for `1+250`
+    /// and for `12+50`. `None` if it is no such text.
+    pub fn distance(text: &str) -> Option<f64> {
+        let (sign, digits) = match text.strip_prefix('-') {
+            Some(digits) => (-1.0, digits),
+            None => (1.0, text),
+        };
+        let (before, after) = digits.split_once('+')?;
+        let (whole, fraction) = after.split_once('.').unwrap_or((after, "0"));
+        let are_digits = |part: &&str| {
+            !part.is_empty() && part.len() <= MOST && part.bytes().all(|c| c.is_ascii_digit())
+        };
+        let is_station = [before, whole, fraction].iter().all(are_digits);
+        let number = format!("{before}{whole}.{fraction}");
+        is_station
+            .then(|| number.parse().ok())?
+            .map(|at: f64| sign * at)
+    }
+
     /// Returns a distance as text.
     pub fn text(&self, distance: f64) -> String {
         let decimals = self.decimals.unwrap_or(3);
@@ -122,9 +141,27 @@ mod tests {
         ] {
             let format: StationFormat = example.parse().unwrap();
             assert_eq!(format.text(distance), text, "{example}");
+            if example.contains('+') {
+                let read = StationFormat::distance(text).unwrap();
+                assert_eq!(format.text(read), text, "{example}");
+            }
             assert_eq!(format.to_string(), example);
         }
         assert_eq!(StationFormat::default(), "0+000".parse().unwrap());
+        for (text, distance) in [
+            ("1+250", 1250.0),
+            ("12+50", 1250.0),
+            ("0+005", 5.0),
+            ("-0+050", -50.0),
+            ("1+012.5", 1012.5),
+        ] {
+            assert_eq!(StationFormat::distance(text), Some(distance), "{text}");
+        }
+        for text in [
+            "", "1250", "+5", "5+", "1e+3", "1+-2", "1+2+3", "1.5+2", "1+2.", "-+1",
+        ] {
+            assert_eq!(StationFormat::distance(text), None, "{text}");
+        }
         for wrong in [
             "",
             "+",

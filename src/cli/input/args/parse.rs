@@ -3,6 +3,7 @@
 use std::str::FromStr;
 
 use crate::data::{Bounds, Return, classes, returns};
+use crate::run::StationFormat;
 
 /// A rectangle typed as `xmin,ymin,xmax,ymax`, with commas or blanks.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -171,6 +172,12 @@ pub(crate) fn finite(text: &str) -> Result<f64, String> {
         Ok(value) if value.is_finite() => Ok(value),
         _ => Err(format!("`{}` is not a finite number", text.trim())),
     }
+}
+
+/// Parses a station: a finite number, or one as outputs write it, such as `1+250`.
+pub(super) fn station(text: &str) -> Result<f64, String> {
+    let expected = |e| format!("{e}; expected a station such as 1+250 or 1250");
+    StationFormat::distance(text.trim()).map_or_else(|| finite(text).map_err(expected), Ok)
 }
 
 /// Parses the smallest angle that a triangle may have, in degrees: above 0, below 60.

@@ -2,7 +2,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::parse::{finite, not_negative, positive};
+use super::parse::{finite, not_negative, positive, station};
 use super::surface::SurfaceArgs;
 use crate::run::StationFormat;
 
@@ -39,20 +39,20 @@ pub(crate) struct ProfileArgs {
     #[arg(long, value_name = "LENGTH", value_parser = positive, allow_negative_numbers = true, conflicts_with = "stations", help_heading = "Sections")]
     pub(crate) interval: Option<f64>,
 
-    /// Cross-sections at these stations, which have to be on each line
+    /// Cross-sections at these stations, such as 1+250 or 1250, which have to be on each line
     #[arg(
         long,
         value_name = "STATION,..",
         value_delimiter = ',',
-        value_parser = finite,
+        value_parser = station,
         allow_hyphen_values = true,
         help_heading = "Sections"
     )]
     pub(crate) stations: Vec<f64>,
 
-    /// Station at which each line begins
-    #[arg(long, value_name = "STATION", value_parser = finite, default_value = "0", allow_negative_numbers = true, help_heading = "Sections")]
-    pub(crate) start: f64,
+    /// Station at which each line begins [default: 0]
+    #[arg(long, value_name = "STATION", value_parser = station, allow_hyphen_values = true, help_heading = "Sections")]
+    pub(crate) start: Option<f64>,
 
     /// Length of sections to the left of the line, seen along it
     #[arg(long, value_name = "LENGTH", value_parser = not_negative, allow_negative_numbers = true, help_heading = "Sections")]
@@ -62,23 +62,18 @@ pub(crate) struct ProfileArgs {
     #[arg(long, value_name = "LENGTH", value_parser = not_negative, allow_negative_numbers = true, help_heading = "Sections")]
     pub(crate) right: Option<f64>,
 
-    /// Angle in degrees from the direction of the line to the left half of a section
+    /// Angle in degrees from the direction of the line to the left half of a section [default: 90]
     ///
     /// 90 is square to the line. At a vertex of the line, its direction is halfway between those of
     /// both segments.
-    #[arg(long, value_name = "DEGREES", value_parser = positive, default_value = "90", allow_negative_numbers = true, help_heading = "Sections")]
-    pub(crate) angle: f64,
+    #[arg(long, value_name = "DEGREES", value_parser = positive, allow_negative_numbers = true, help_heading = "Sections")]
+    pub(crate) angle: Option<f64>,
 
-    /// How stations are written, by an example of zeros
+    /// How stations are written, by an example of zeros [default: 0+000]
     ///
     /// `0+000` writes 1250 as 1+250, `0+00.0` as 12+50.0, `0.00` as 1250.00.
-    #[arg(
-        long,
-        value_name = "EXAMPLE",
-        default_value = "0+000",
-        help_heading = "Sections"
-    )]
-    pub(crate) station_format: StationFormat,
+    #[arg(long, value_name = "EXAMPLE", help_heading = "Sections")]
+    pub(crate) station_format: Option<StationFormat>,
 
     /// By how much plots draw heights larger than distances [default: so that they can be seen]
     #[arg(long, value_name = "FACTOR", value_parser = positive, allow_negative_numbers = true, help_heading = "Plot")]

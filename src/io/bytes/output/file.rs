@@ -154,6 +154,11 @@ pub fn is_stream(target: &Path) -> bool {
     matches!(TargetKind::of(target), Ok(TargetKind::Stream))
 }
 
+/// Returns true if a target is the standard output, by a name such as `/dev/stdout`.
+pub fn is_standard_output(target: &Path) -> bool {
+    target::is_standard_output(target)
+}
+
 /// Returns an error if a file exists at the path of an output that must not replace it. Pipes and
 /// devices are not replaced.
 ///

@@ -5,7 +5,7 @@ mod set;
 mod target;
 mod temporary;
 
-pub use file::{Output, is_stream, probe, remove_abandoned, require_absent};
+pub use file::{Output, is_standard_output, is_stream, probe, remove_abandoned, require_absent};
 pub use set::{Destination, OutputSet};
 pub(crate) use temporary::Temporary;
 pub use temporary::{Abandoned, abandon_outputs};

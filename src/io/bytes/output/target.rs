@@ -62,6 +62,21 @@ fn open_file(path: &Path) -> Option<u32> {
         .ok()
 }
 
+/// Returns true if a path leads to the standard output, as `/dev/stdout` does.
+pub(super) fn is_standard_output(path: &Path) -> bool {
+    let mut path = path.to_path_buf();
+    for _ in 0..MAX_LINKS {
+        if let Some(number) = open_file(&path) {
+            return number == 1;
+        }
+        match std::fs::read_link(&path) {
+            Ok(to) => path = path.with_file_name("").join(to),
+            Err(_) => return false,
+        }
+    }
+    false
+}
+
 /// Opens a pipe or a device for writing. For the standard output, the program's own descriptor is
 /// used.
 pub(super) fn open_stream(path: &Path) -> Result<File> {

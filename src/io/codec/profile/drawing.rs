@@ -77,7 +77,7 @@ fn plot(
     let size = TEXT * layout.width;
     let title_at = [0.0, top + 0.5 * size, 0.0];
     if profile.heights().is_none() {
-        let title = format!("{}: not on a surface", profile.title());
+        let title = format!("{}: not on a surface", profiles.title(profile));
         return drawing.text(TEXTS, title_at, size, Align::Left, &title);
     }
     let axes = layout.axes(profile);
@@ -86,7 +86,7 @@ fn plot(
     let y = |z: f64| top - (heights[1] - z) * layout.height_scale;
     let (right, bottom) = (x(range[1]), y(heights[0]));
     let note = layout.note(&axes, profiles.units[1].as_deref());
-    let name = format!("{}, {note}", profile.title());
+    let name = format!("{}, {note}", profiles.title(profile));
     drawing.text(TEXTS, title_at, size, Align::Left, &name)?;
     for z in layout.lines(1, heights) {
         drawing.line(GRID, [[0.0, y(z), 0.0], [right, y(z), 0.0]])?;

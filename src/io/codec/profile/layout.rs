@@ -13,6 +13,12 @@ const TALLEST: f64 = 5.0;
 /// The plots of a file, at most.
 const MOST_PLOTS: usize = 1000;
 
+/// The relief that counts as none, as a part of the largest height.
+const LEVEL: f64 = 1e-9;
+
+/// The distance of grid lines in height, at least, as a part of the largest height.
+const FINEST: f64 = 1e-12;
+
 /// The distance of grid lines, at least, in widths.
 const GRID: [f64; 2] = [0.09, 0.03];
 
@@ -55,11 +61,11 @@ impl Layout {
         }
         let length = |profile: &Profile| profile.range[1] - profile.range[0];
         let width = profiles.list.iter().map(length).fold(0.0, f64::max);
-        let relief = |profile: &Profile| {
-            let [low, high] = profile.heights().unwrap_or_default();
-            high - options.datum.unwrap_or(low).min(high)
-        };
-        let relief = profiles.list.iter().map(relief).fold(0.0, f64::max);
+        // What is not on a surface has no plot.
+        let heights = || profiles.list.iter().filter_map(Profile::heights);
+        let relief = |[low, high]: [f64; 2]| high - options.datum.unwrap_or(low).min(high);
+        let relief = heights().map(relief).fold(0.0, f64::max);
+        let highest = heights().flatten().map(f64::abs).fold(0.0, f64::max);
         if !(width > 0.0 && width.is_finite() && relief.is_finite()) {
             return Err(Error::usage("there is no profile to draw"));
         }
@@ -70,7 +76,8 @@ impl Layout {
                     "an exaggeration of {factor}: expected a number above zero"
                 )));
             }
-            None if relief > 0.0 => {
+            // What is level but for rounding errors stays level.
+            None if relief > LEVEL * highest => {
                 let relief = relief * profiles.height_unit;
                 let fits = at_most(RELIEF * width / relief);
                 // Heights are not flattened unless a plot would be a tower.
@@ -102,19 +109,27 @@ impl Layout {
                 Setting::Datum
             ]));
         }
+        // So that all lines of the grid are at heights of their own, and finite.
+        let finest = FINEST * highest.max(options.datum.map_or(0.0, f64::abs));
+        if !(layout.grid[1] > finest && layout.grid[1].is_finite()) {
+            return Err(Error::usage(format!(
+                "heights up to {highest} exaggerated {exaggeration} times: the grid of a plot would be finer than numbers are"
+            ))
+            .cure(wording!["choose another ", Setting::Exaggeration]));
+        }
         profiles
             .list
             .iter()
-            .try_for_each(|profile| layout.check_datum(profile))?;
+            .try_for_each(|profile| layout.check_datum(profiles, profile))?;
         Ok(layout)
     }
 
-    fn check_datum(&self, profile: &Profile) -> Result<()> {
+    fn check_datum(&self, profiles: &Profiles, profile: &Profile) -> Result<()> {
         match (self.datum, profile.heights()) {
             (Some(datum), Some([low, _])) if datum.is_nan() || datum > low => {
                 Err(Error::usage(format!(
                     "a datum of {datum} is above the lowest height of {}, {low}",
-                    profile.title()
+                    profiles.title(profile)
                 ))
                 .cure(wording![
                     "choose a lower ",

@@ -73,7 +73,7 @@ fn plot(
             "name",
             at,
             "start",
-            &format!("{}: not on a surface", profile.title()),
+            &format!("{}: not on a surface", profiles.title(profile)),
         );
         return 0.0;
     }
@@ -86,7 +86,13 @@ fn plot(
     let (left, right, bottom) = (x(range[0]), x(range[1]), top + height);
     let [plan_unit, height_unit] = profiles.units.each_ref().map(Option::as_deref);
 
-    text(body, "name", [left, top - 10.0], "start", &profile.title());
+    text(
+        body,
+        "name",
+        [left, top - 10.0],
+        "start",
+        &profiles.title(profile),
+    );
     let note = layout.note(&axes, height_unit);
     text(body, "note", [MARGINS[0] + WIDTH, top - 10.0], "end", &note);
     for z in layout.lines(1, heights) {
