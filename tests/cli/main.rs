@@ -6,12 +6,12 @@ mod program;
 mod accuracy;
 mod columns;
 mod comparisons;
-mod jobs;
 mod crossings;
 mod demo;
 mod drape;
 mod habits;
 mod inputs;
+mod jobs;
 mod lines;
 mod methods;
 #[cfg(unix)]

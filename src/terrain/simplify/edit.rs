@@ -108,17 +108,20 @@ pub(super) fn thin(
     // One more than what is in the queue for a vertex, if that is still right.
     // PERF: zeros take no memory until they are written.
     let mut current: Vec<u64> = vec![0; mesh.sites.len()];
-    let try_vertex = |mesh: &Mesh, lines: &Lines, vertex: u32, star: &mut Star| {
+    let joint = |mesh: &Mesh, lines: &Lines, vertex: u32, ends: [u32; 2]| {
         let plan = |site: u32| {
             let [x, y, _] = mesh.sites[site as usize];
             [x, y]
         };
+        lines.joint(vertex, ends, &plan)
+    };
+    let try_vertex = |mesh: &Mesh, lines: &Lines, vertex: u32, star: &mut Star| {
         mesh.find_star(vertex, star);
         let can_go = may_go(vertex, &star.ring)
             && mesh.fill_star(vertex, star)
             && star
                 .new_edge()
-                .is_none_or(|ends| lines.can_join(vertex, ends, &plan));
+                .is_none_or(|ends| joint(mesh, lines, vertex, ends).is_some());
         can_go.then(|| mesh.cost(vertex, star, lines)).flatten()
     };
     for &vertex in vertices {
@@ -139,10 +142,13 @@ pub(super) fn thin(
             continue;
         }
         current[vertex as usize] = 0;
-        mesh.remove(vertex, &star);
         if let Some(ends) = star.new_edge() {
-            lines.join(vertex, ends);
+            let Some(joint) = joint(mesh, lines, vertex, ends) else {
+                continue;
+            };
+            lines.join(vertex, ends, joint);
         }
+        mesh.remove(vertex, &star);
         watch.edit()?;
         ring.clear();
         ring.extend_from_slice(&star.ring);

@@ -2,7 +2,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::atomic::AtomicBool;
 
 use super::*;
-use crate::data::{EdgeKind, Frame};
+use crate::data::{EdgeKind, Frame, Mesh};
 use crate::error::Kind;
 use crate::terrain::{Flat, FlatHeight, GridSurface, HighSide, TinBuilder, Wall};
 use crate::triangulation::Level;
@@ -507,4 +507,60 @@ fn what_has_no_surface_is_refused() {
     assert_eq!(refused(&huge, &rule(1.0)).kind(), Kind::Limit);
     let canceled = simplify_cells(&flat, &rule(1.0), &AtomicBool::new(true)).unwrap_err();
     assert_eq!(canceled.kind(), Kind::Canceled);
+}
+
+/// The area of a surface in plan.
+fn area(surface: &dyn Surface) -> f64 {
+    let triangles = (0..surface.face_count() as u32).filter_map(|face| surface.face(face));
+    triangles
+        .map(|corners| crate::data::area_of(corners.map(|vertex| surface.position(vertex))))
+        .sum()
+}
+
+#[test]
+fn faces_with_vertices_of_their_own_are_one_surface() {
+    let height = |x: u32, y: u32| f64::from(x * x + 3 * y) / 40.0;
+    let corner = |x: u32, y: u32| [f64::from(x), f64::from(y), height(x, y)];
+    let mut triangles: Vec<[[f64; 3]; 3]> = Vec::new();
+    for (x, y) in (0..12).flat_map(|x| (0..12).map(move |y| (x, y))) {
+        let [a, b, c, d] =
+            [(x, y), (x + 1, y), (x + 1, y + 1), (x, y + 1)].map(|(x, y)| corner(x, y));
+        triangles.extend([[a, b, c], [a, c, d]]);
+    }
+    let soup = |triangles: &[[[f64; 3]; 3]]| {
+        let faces = (0..triangles.len() as u32).map(|face| [0, 1, 2].map(|k| 3 * face + k));
+        Mesh::new(
+            triangles.as_flattened().to_vec(),
+            faces.collect(),
+            &[],
+            None,
+        )
+        .unwrap()
+    };
+    let forward = soup(&triangles);
+    triangles.reverse();
+    let backward = soup(&triangles);
+    let mut counts = BTreeSet::new();
+    for mesh in [forward, backward] {
+        let (tin, report) = run(&mesh, &rule(0.3));
+        assert_eq!(area(&tin), 144.0);
+        assert!(report.largest <= 0.3);
+        counts.insert(tin.vertex_count());
+    }
+    assert!(
+        counts.len() == 1 && counts.first() < Some(&120),
+        "{counts:?}"
+    );
+}
+
+#[test]
+fn a_long_straight_line_ends_as_one_edge() {
+    let mut builder = TinBuilder::default();
+    let count = 600;
+    let along = |y: f64| (0..=count).map(move |k| [f64::from(k), y, 0.0]);
+    builder.add_owned_points(along(0.0).chain(along(9.0)).collect());
+    builder.add_breakline(&along(4.0).collect::<Vec<_>>());
+    let tin = builder.build().unwrap();
+    let (simplified, _) = run(&tin, &rule(0.1));
+    assert_eq!(simplified.vertex_count(), 6);
 }
