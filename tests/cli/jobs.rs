@@ -1,4 +1,5 @@
-//! The pages of `docs/jobs`: their commands run as written, on the valley of the demo and on made files.
+//! The pages of `docs/jobs`: their commands run as written, on the valley of the demo and on made
+//! files.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -75,7 +76,7 @@ fn a_stockpile_from_two_flights() {
         &geojson(25832, "Polygon", &format!("[{outline}]")),
     );
     let printed = run_page(include_str!("../../docs/jobs/stockpile.md"), &folder);
-    // A pyramid of 40 m by 40 m that grew by 6 m has 3200; its edges are off the diagonals of cells.
+    // A pyramid of 40 m by 40 m that grew by 6 m has 3200; its edges are off diagonals of cells.
     assert!(printed.contains("3192 m3"), "{printed}");
     assert!(size(&folder, "difference.tif") > 0);
 }
@@ -112,7 +113,7 @@ fn a_road_with_its_profile_and_sections() {
 #[test]
 fn a_delivery_against_checkpoints() {
     let folder = valley();
-    // Heights of the DEM at centers of its cells are what a surveyor would find within millimeters.
+    // A surveyor finds exactly the heights of the DEM at centers of its cells.
     let centers: String = (0..40).fold("id,x,y\n".to_owned(), |mut text, i| {
         let [x, y] = [688101 + 10 * (i % 8), 5261101 + 10 * (i / 8)];
         writeln!(text, "{i},{x},{y}").unwrap();
