@@ -1,5 +1,8 @@
 //! The difference of two rasters, and where it is largest.
 
+use std::cmp::Reverse;
+use std::collections::{BTreeMap, BinaryHeap};
+
 use crate::crs::Crs;
 use crate::data::{BlockSource, Frame, Window};
 use crate::error::{Error, Result};
@@ -64,36 +67,90 @@ pub struct LargeDifference {
 /// most `count`, without cells that are 0 or NaN.
 ///
 /// # Complexity
-/// O(n count) for n cells.
+/// O(n + count log n) for n cells, with memory for n / 64.
 pub fn largest_differences(frame: &Frame, cells: &[f32], count: usize) -> Vec<LargeDifference> {
     let width = frame.width;
-    let mut extremes: Vec<(usize, f32)> = Vec::new();
-    while extremes.len() < count {
-        let is_near = |cell: usize| {
-            let (row, column) = (cell / width, cell % width);
-            extremes.iter().any(|&(extreme, _)| {
-                (extreme / width).abs_diff(row) < APART
-                    && (extreme % width).abs_diff(column) < APART
-            })
-        };
-        let mut largest: Option<(usize, f32)> = None;
-        for (cell, &value) in cells.iter().enumerate() {
-            if value.abs() > largest.map_or(0.0, |(_, other)| other.abs()) && !is_near(cell) {
-                largest = Some((cell, value));
-            }
+    let squares = Squares {
+        width,
+        height: cells.len() / width.max(1),
+        cells,
+    };
+    let mut extremes: BTreeMap<[usize; 2], usize> = BTreeMap::new();
+    // The largest cell of each square, or one that was it: none in the square that is free is
+    // before it.
+    let mut waiting: BinaryHeap<Candidate> = squares
+        .all()
+        .filter_map(|square| squares.largest(square, &[]))
+        .collect();
+    let mut found = Vec::new();
+    while found.len() < count
+        && let Some((_, Reverse(cell))) = waiting.pop()
+    {
+        let square = squares.of(cell);
+        let around = neighbors(square);
+        let near: Vec<usize> = around.filter_map(|n| extremes.get(&n).copied()).collect();
+        if near.iter().any(|&extreme| squares.are_near(cell, extreme)) {
+            waiting.extend(squares.largest(square, &near));
+            continue;
         }
-        match largest {
-            Some(extreme) => extremes.push(extreme),
-            None => break,
-        }
-    }
-    extremes
-        .into_iter()
-        .map(|(cell, value)| LargeDifference {
+        // All of its square is near it.
+        extremes.insert(square, cell);
+        found.push(LargeDifference {
             at: frame.center(cell % width, cell / width),
-            value: f64::from(value),
-        })
-        .collect()
+            value: f64::from(cells[cell]),
+        });
+    }
+    found
+}
+
+/// A cell by the bits of its amount, which have the order of amounts, and its number. Of equal
+/// ones, the first cell is the largest.
+type Candidate = (u32, Reverse<usize>);
+
+/// A raster in squares as wide as places are apart.
+struct Squares<'a> {
+    width: usize,
+    height: usize,
+    cells: &'a [f32],
+}
+
+impl Squares<'_> {
+    fn all(&self) -> impl Iterator<Item = [usize; 2]> {
+        let columns = self.width.div_ceil(APART);
+        (0..self.height.div_ceil(APART))
+            .flat_map(move |row| (0..columns).map(move |column| [row, column]))
+    }
+
+    /// Returns the square that a cell is in.
+    fn of(&self, cell: usize) -> [usize; 2] {
+        [cell / self.width, cell % self.width].map(|at| at / APART)
+    }
+
+    fn are_near(&self, cell: usize, other: usize) -> bool {
+        let is_near = |of: fn(usize, usize) -> usize| {
+            of(cell, self.width).abs_diff(of(other, self.width)) < APART
+        };
+        is_near(|cell, width| cell / width) && is_near(|cell, width| cell % width)
+    }
+
+    /// Returns the largest cell of a square that is not near some extremes, if one is not 0 or NaN.
+    fn largest(&self, square: [usize; 2], extremes: &[usize]) -> Option<Candidate> {
+        let [rows, columns] = [0, 1].map(|axis| {
+            let start = square[axis] * APART;
+            start..(start + APART).min([self.height, self.width][axis])
+        });
+        let is_free = |cell: usize| !extremes.iter().any(|&other| self.are_near(cell, other));
+        rows.flat_map(|row| columns.clone().map(move |column| row * self.width + column))
+            .filter(|&cell| self.cells[cell].abs() > 0.0 && is_free(cell))
+            .map(|cell| (self.cells[cell].abs().to_bits(), Reverse(cell)))
+            .max()
+    }
+}
+
+/// Returns a square and those around it.
+fn neighbors([row, column]: [usize; 2]) -> impl Iterator<Item = [usize; 2]> {
+    let around = |at: usize| at.saturating_sub(1)..=at + 1;
+    around(row).flat_map(move |row| around(column).map(move |column| [row, column]))
 }
 
 #[cfg(test)]
@@ -122,6 +179,53 @@ mod tests {
         assert_eq!(found[0].at, [115.0, 49.0]);
         assert_eq!(largest_differences(&frame, &cells, 1).len(), 1);
         assert!(largest_differences(&frame, &[f32::NAN; 90], 5).is_empty());
+    }
+
+    #[test]
+    fn places_are_those_of_a_search_of_all_cells() {
+        let mut random = testkit::random::Random(7);
+        for round in 0..300 {
+            let [width, height] = [0; 2].map(|_| 1 + random.index(40));
+            let frame = Frame::north_up(0.0, 0.0, 1.0, width, height);
+            let most = [1, 3, 1000][round % 3];
+            let cells: Vec<f32> = (0..width * height)
+                .map(|_| match random.index(9) {
+                    0 => f32::NAN,
+                    _ => random.around(most) as f32,
+                })
+                .collect();
+            let mut expected: Vec<[usize; 2]> = Vec::new();
+            loop {
+                let is_free = |cell: &usize| {
+                    let [row, column] = [cell / width, cell % width];
+                    let is_near =
+                        |[r, c]: &[usize; 2]| r.abs_diff(row) < 8 && c.abs_diff(column) < 8;
+                    cells[*cell].abs() > 0.0 && !expected.iter().any(is_near)
+                };
+                let free = (0..cells.len()).filter(is_free);
+                let before = |one: &usize, other: &usize| {
+                    let amount = |cell: usize| cells[cell].abs();
+                    let order = amount(*one).total_cmp(&amount(*other));
+                    order.then(other.cmp(one))
+                };
+                match free.max_by(before) {
+                    Some(cell) => expected.push([cell / width, cell % width]),
+                    None => break,
+                }
+            }
+            let expected: Vec<LargeDifference> = expected
+                .into_iter()
+                .map(|[row, column]| LargeDifference {
+                    at: frame.center(column, row),
+                    value: f64::from(cells[row * width + column]),
+                })
+                .collect();
+            for count in [usize::MAX, 3] {
+                let found = largest_differences(&frame, &cells, count);
+                assert_eq!(found, expected[..count.min(expected.len())]);
+            }
+        }
+        assert!(largest_differences(&Frame::north_up(0.0, 0.0, 1.0, 0, 0), &[], 5).is_empty());
     }
 
     #[test]
