@@ -7,6 +7,9 @@ const NORMAL: f64 = 1.4826;
 /// The largest number of bins of a [`Histogram`].
 const MOST_BINS: f64 = 20.0;
 
+/// Values that differ by no more than this part of the largest are equal but for rounding.
+const EQUAL: f64 = 1e-9;
+
 /// Statistics of differences between a surface and points that are known better.
 ///
 /// The numbers do not depend on the order of the differences.
@@ -104,9 +107,10 @@ impl Histogram {
         if !values.iter().all(|value| value.is_finite()) || !(high - low).is_finite() {
             return None;
         }
-        let width = match high > low {
+        let most = low.abs().max(high.abs());
+        let width = match high - low > EQUAL * most {
             true => step((high - low) / MOST_BINS)?,
-            false => step(low.abs() / MOST_BINS).unwrap_or(1.0),
+            false => step(most / MOST_BINS).unwrap_or(1.0),
         };
         let first = (low / width).floor();
         let bin = |value: f64| ((value / width).floor() - first).max(0.0) as usize;
@@ -272,6 +276,9 @@ mod tests {
             };
             assert!((0..found.counts.len()).all(|bin| count(bin) >= found.counts[bin]));
         }
+        let nearly = [13.0 - 13.3, 11.0 - 11.3, 1.0 - 1.3];
+        let found = Histogram::of(&nearly).unwrap();
+        assert!(nearly[0] != nearly[2] && found.width == 0.02 && found.counts.len() <= 2);
         let found = Histogram::of(&[-0.02, 0.0, 0.019, 0.02, 0.1]).unwrap();
         assert_eq!((found.start, found.width), (-0.02, 0.01));
     }
