@@ -28,7 +28,8 @@ const DOUBLE_BYTES: u16 = 8;
 const SIZES: [u32; 10] = [1, 1, 2, 2, 4, 4, 8, 8, 4, 8];
 
 /// Adds the descriptions of numbers that are appended to each record, and makes the records longer.
-/// [`append_numbers`] appends them. The head keeps all else, also extra bytes that it has already.
+/// [`append_numbers`] appends them. The head keeps all else, also extra bytes that it has already;
+/// if several records describe these, one does afterwards.
 ///
 /// # Errors
 /// If there is a dimension of that name already, a name is longer than 32 bytes, the descriptions
@@ -38,11 +39,13 @@ pub fn add_numbers(head: &mut LasHead, names: &[String]) -> Result<()> {
         record.get(2..18).map(until_zero).as_deref() == Some(USER) && u16_at(record, 18) == NUMBER
     };
     let at = head.records.iter().position(is_it);
-    let mut described: Vec<u8> = at
-        .and_then(|at| head.records[at].get(VLR_HEADER..))
-        .unwrap_or_default()
-        .to_vec();
-    described.truncate(described.len() / DESCRIPTION * DESCRIPTION);
+    let payloads = head.records.iter().filter(|record| is_it(record));
+    let mut described: Vec<u8> = payloads
+        .filter_map(|record| record.get(VLR_HEADER..))
+        .flat_map(|payload| payload.as_chunks::<DESCRIPTION>().0)
+        .flatten()
+        .copied()
+        .collect();
     let usual = usual_length(head.point_format);
     let there = u32::from(head.record_length.saturating_sub(usual));
     let mut undescribed = there
@@ -95,6 +98,9 @@ pub fn add_numbers(head: &mut LasHead, names: &[String]) -> Result<()> {
             record.truncate(VLR_HEADER);
             record[20..22].copy_from_slice(&payload.to_le_bytes());
             record.extend(described);
+            let mut number = 0..;
+            let is_kept = |record: &Vec<u8>| number.next() <= Some(at) || !is_it(record);
+            head.records.retain(is_kept);
         }
         None => {
             let mut record = record_header(USER, NUMBER, payload, "Extra Bytes");
@@ -203,6 +209,21 @@ mod tests {
         ];
         assert_eq!(names(&with), expected);
         assert_eq!(with.records[0][VLR_HEADER + DESCRIPTION + 3], 3);
+
+        // Two records, with another one between them.
+        let mut split = head(10, &[description(3, 0, "amplitude")]);
+        let other = head(10, &[description(10, 0, "width")]);
+        split.records.push(record_header("other", 4, 0, ""));
+        split.records.extend(other.records);
+        add_numbers(&mut split, &new[..1]).unwrap();
+        let expected = [
+            (3, "amplitude".into()),
+            (10, "width".into()),
+            (10, "z".into()),
+        ];
+        assert_eq!(names(&split), expected);
+        assert_eq!((split.records.len(), split.record_length), (2, 38));
+        assert!(add_numbers(&mut split, &["WIDTH".to_owned()]).is_err());
     }
 
     #[test]
