@@ -237,4 +237,28 @@ fn bad_input_is_refused_and_nothing_is_written() {
     ];
     let run = run_in(&folder, &words);
     assert_eq!(run.code, 2, "{}", run.stderr);
+    let words = [&words[..4], &["--checkpoint-error", "-1cm"]].concat();
+    run_in(&folder, &words).ends(2, &["expected a length that is not negative"]);
+}
+
+#[test]
+fn withheld_points_are_no_checkpoints() {
+    let folder = folder_with(&[("a.xyz", SLOPE)]);
+    let points = [([1.0, 1.0, 99.0], 2), ([1.0, 2.0, 10.5], 2)];
+    let mut file = testkit::lidar::las(&points, None);
+    let path = folder.path().join("s.las");
+    // The byte of class and flags.
+    let first = file.len() - 2 * 20 + 15;
+    file[first] |= 0x80;
+    std::fs::write(&path, &file).unwrap();
+    let base = ["accuracy", "a.xyz", "--checkpoints", "s.las"];
+    let run = run_in(&folder, &[&base[..], &["--json"]].concat());
+    run.works(&["warning: 1 checkpoint decides: "]);
+    let found: Value = serde_json::from_str(&run.stdout).unwrap();
+    assert_eq!(found["sets"][0]["n"], 1);
+    near(&found["sets"][0]["mean"], 0.5);
+    assert_eq!(found["points"][0]["point"], 2);
+    file[first + 20] |= 0x80;
+    std::fs::write(&path, &file).unwrap();
+    run_in(&folder, &base).fails(1, &["s.las: all points are withheld"]);
 }

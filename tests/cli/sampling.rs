@@ -44,7 +44,7 @@ fn ends_of_lines_marks_and_separators_stay() {
     for (text, expected) in [
         ("1 1\r\n2 2\r\n", "1 1 11\r\n2 2 12\r\n"),
         ("1\t1\t5\r2\t2\t6", "1\t1\t5\t11\r2\t2\t6\t12"),
-        ("\n1;1\n\n\n2;2;\n", "\n1;1;11\n\n\n2;2;;12\n"),
+        ("\n1;1;\n\n\n2;2;\n", "\n1;1;;11\n\n\n2;2;;12\n"),
         ("X;Y\n0,5;1,5\n", "X;Y;surface_z\n0,5;1,5;10,5\n"),
         ("\u{feff}x,y\n1,1\n", "\u{feff}x,y,surface_z\n1,1,11\n"),
         ("# x y\n1 1 \n", "# x y surface_z\n1 1  11\n"),
@@ -147,6 +147,8 @@ fn bad_input_is_refused_and_nothing_is_written() {
         ("odd.csv", odd),
         ("taken.csv", taken),
         ("text.csv", text),
+        ("ragged.csv", "x,y,note\n1,1,a\n2,2\n"),
+        ("cut.pts", "3\n1 1 0\n2 2 0\n"),
         (
             "line.geojson",
             &geojson(25832, "LineString", "[[1, 1], [2, 2]]"),
@@ -171,6 +173,24 @@ fn bad_input_is_refused_and_nothing_is_written() {
         ("text.csv", &[], 1, "neither a point nor a header"),
         ("none.csv", &[], 1, "none.csv: no such file"),
         ("far.csv", &["--add", "slope,slope"], 2, "named twice"),
+        (
+            "ragged.csv",
+            &[],
+            1,
+            "ragged.csv: line 3: 2 fields separated by commas, but the header has 3",
+        ),
+        (
+            "cut.pts",
+            &[],
+            1,
+            "cut.pts: the end: the first line states 3 points, but there are 2",
+        ),
+        (
+            "odd.csv",
+            &["--prefix", "a,b"],
+            2,
+            "is not one field between commas",
+        ),
         ("a.xyz", &["-o", "o.tif"], 2, "o.tif"),
         ("a.xyz", &["-o", "a.xyz", "--overwrite"], 2, "a.xyz"),
         ("p.las", &["-o", "o.csv"], 2, "written as .las or .laz"),
@@ -203,6 +223,16 @@ fn bad_input_is_refused_and_nothing_is_written() {
         run.fails(code, &[message]);
         assert_eq!(files_of(folder.path()), before, "{points}");
     }
+    let mut waves = las(&[([1.0, 1.0, 5.0], 2)], None);
+    waves[104] = 4;
+    waves[105] = 57;
+    waves.resize(waves.len() + 37, 0);
+    std::fs::write(folder.path().join("w.las"), waves).unwrap();
+    let run = run_in(
+        &folder,
+        &["sample", "a.xyz", "--at", "w.las", "-o", "o.las"],
+    );
+    run.fails(1, &["w.las: point format 4 refers to waveforms"]);
     let run = run_in(&folder, &["sample", "-", "--at", "-"]);
     run.fails(2, &["cannot both be stdin"]);
     let run = run_in(&folder, &["sample", "a.xyz", "--at", "a.xyz", "--json"]);
@@ -251,6 +281,25 @@ fn lidar_gets_extra_bytes_and_keeps_its_records() {
     run_in(&folder, &[&words[..], &["--prefix", "two_"]].concat()).works(&[]);
     let reader = ::las::Reader::from_path(folder.path().join("again.las")).unwrap();
     assert_eq!(reader.header().point_format().extra_bytes, 32);
+}
+
+#[test]
+fn what_is_left_of_points_that_were_cut_is_sampled() {
+    let folder = folder_with(&[("a.xyz", SLOPE), ("cut.pts", "3\n1 1 0\n2 2 0\n")]);
+    let points = las(&[([1.0, 1.0, 5.0], 2), ([2.0, 2.0, 5.0], 2)], None);
+    std::fs::write(folder.path().join("cut.las"), &points[..points.len() - 20]).unwrap();
+    run_in(&folder, &["tin", "a.xyz", "-o", "a.tin"]).works(&[]);
+    for surface in ["a.xyz", "a.tin"] {
+        for (points, to) in [("cut.las", "o.las"), ("cut.pts", "o.xyz")] {
+            let words = ["sample", surface, "--at", points, "-o", to, "--overwrite"];
+            run_in(&folder, &words).fails(1, &[points, "--partial"]);
+            let accepted = [&words[..], &["--partial"]].concat();
+            run_in(&folder, &accepted).works(&["warning: cut.", "sampled "]);
+        }
+        let words = ["accuracy", surface, "--checkpoints", "cut.las"];
+        run_in(&folder, &words).fails(1, &["cut.las", "--partial"]);
+        run_in(&folder, &[&words[..], &["--partial"]].concat()).works(&["warning: cut.las"]);
+    }
 }
 
 #[test]
@@ -303,10 +352,23 @@ fn a_shapefile_gets_fields_and_keeps_its_bytes() {
     );
     assert_eq!(number(1, "surface_z"), FieldValue::Numeric(None));
     let again = ["sample", "a.xyz", "--at", "o.shp", "-o", "again.shp"];
-    run_in(&folder, &again).fails(2, &["there is a field surface_z already"]);
+    run_in(&folder, &again).fails(2, &["a field surface_z already", "--prefix n, or rename"]);
+    let other = [&again[..5], &["other.shp", "--prefix", "n"]].concat();
+    run_in(&folder, &other).works(&[]);
     let long = ["--prefix", "much_too_"];
     run_in(&folder, &[&again[..], &long].concat()).fails(2, &["more than the 10 bytes"]);
     run_in(&folder, &["sample", "a.xyz", "--at", "p.shp"]).fails(2, &["written to a stream"]);
+    let table = bytes(&folder, "p.dbf");
+    std::fs::write(path("p.dbf"), &table[..table.len() - 6]).unwrap();
+    run_in(
+        &folder,
+        &["sample", "a.xyz", "--at", "p.shp", "-o", "short.shp"],
+    )
+    .fails(
+        1,
+        &["p.dbf: the table ends in row 2 of 2", "copy all files"],
+    );
+    std::fs::write(path("p.dbf"), &table).unwrap();
     // Rows are in the order of the index.
     let mut index = bytes(&folder, "p.shx");
     let (one, other) = index[100..].split_at_mut(8);

@@ -52,7 +52,7 @@ pub(crate) fn run(args: &SampleArgs, console: &Console) -> Result<Exit> {
         add: added(args)?,
         prefix: args.prefix.clone(),
         method: args.method.into(),
-        columns: args.surface.read.options().columns,
+        read: args.surface.read.options(),
         surface: args.surface.inputs.first().cloned().unwrap_or_default(),
     };
     let sample = |target: SampleTarget| run::sample(&surface, &args.at, &options, target, &context);
@@ -84,7 +84,7 @@ pub(crate) fn run(args: &SampleArgs, console: &Console) -> Result<Exit> {
 }
 
 /// Returns the request for a surface that is compared with the points of a file, and all files that
-/// are read. `--columns` is for all inputs of text.
+/// are read. `--columns` is for all inputs of text, `--partial` for all inputs.
 ///
 /// # Errors
 /// If a file does not exist, or the options do not go together.
@@ -120,6 +120,7 @@ pub(super) fn plan(
         // They are for the points.
         args.read.columns = None;
         args.read.parse = None;
+        args.read.partial = false;
     }
     let plan = SurfacePlan::resolve(&args, console)?;
     let mut read = plan.targets.with_lists(plan.request.files());

@@ -175,10 +175,13 @@ fn text(notice: &Notice) -> Wording {
                 named(counted_by, numbers)
             ),
         ),
-        Notice::FewCheckpoints(count) => format!(
-            "{count} checkpoints decide: the standard of ASPRS (2023) asks for at least 30"
-        )
-        .into(),
+        Notice::FewCheckpoints(count) => {
+            let decide = match count {
+                1 => "1 checkpoint decides".to_owned(),
+                count => format!("{count} checkpoints decide"),
+            };
+            format!("{decide}: the standard of ASPRS (2023) asks for at least 30").into()
+        }
         Notice::HeightsInMeters => {
             "no coordinate system states the unit of heights: they are taken to be in meters".into()
         }

@@ -1,6 +1,6 @@
 //! The vertical accuracy of a surface, by checkpoints.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
@@ -257,11 +257,7 @@ pub fn accuracy(
         });
     }
     let scale = Scale::new(crs.as_ref(), options, &journal);
-    let assessment = Assessment {
-        rows: &rows,
-        vegetated: &options.vegetated,
-        checkpoint_error: scale.checkpoint_error,
-    };
+    let assessment = Assessment::new(&rows, &options.vegetated, scale.checkpoint_error);
     let decisive = assessment.decisive();
     let tested = assessment.accuracy(decisive.clone());
     if let Some(tested) = &tested
@@ -326,12 +322,17 @@ impl Checkpoints {
             Content::Layer if !is_read_once(path) => {
                 Self::of_layer(path, group_by, options, journal)
             }
-            _ => Self::of_text(path, group_by, options),
+            _ => Self::of_text(path, group_by, options, journal),
         }
     }
 
-    fn of_text(path: &Path, group_by: Option<&str>, options: &AccuracyOptions) -> Result<Self> {
-        let mut table = table::open(path, options.read.columns, Axes::Space)?;
+    fn of_text(
+        path: &Path,
+        group_by: Option<&str>,
+        options: &AccuracyOptions,
+        journal: &Journal,
+    ) -> Result<Self> {
+        let mut table = table::open(path, options.read, Axes::Space)?;
         let column = match group_by {
             None => None,
             Some(name) => Some(table.column(name).ok_or_else(|| {
@@ -365,6 +366,7 @@ impl Checkpoints {
                 group: groups.next(),
             }));
         }
+        journal.add_warnings(path, table.warnings());
         Ok(Checkpoints {
             rows,
             counted_by: "line",
@@ -427,10 +429,11 @@ impl Checkpoints {
             );
         }
         let is_grouped = options.group_by.is_some();
-        Self::of_points(input, options, journal, |batch, i, _| {
+        let (read, _) = Self::of_points(input, options, journal, |batch, i, _| {
             let class = batch.class.get(i).filter(|_| is_grouped);
             class.map(u8::to_string)
-        })
+        })?;
+        Ok(read)
     }
 
     fn of_memory(
@@ -439,56 +442,64 @@ impl Checkpoints {
         journal: &Journal,
     ) -> Result<Self> {
         let groups = &options.groups;
-        let read = Self::of_points(input, options, journal, |_, _, number| {
-            groups.get(number).cloned()
+        let (read, points) = Self::of_points(input, options, journal, |_, _, before| {
+            groups.get(before).cloned()
         })?;
-        if !groups.is_empty() && groups.len() != read.rows.len() {
-            return Err(Error::usage(format!(
-                "{} groups for {} checkpoints",
-                groups.len(),
-                read.rows.len()
-            ))
-            .cure("pass a group for each checkpoint"));
+        if !groups.is_empty() && groups.len() != points {
+            return Err(
+                Error::usage(format!("{} groups for {points} checkpoints", groups.len()))
+                    .cure("pass a group for each checkpoint"),
+            );
         }
         Ok(read)
     }
 
-    /// Reads points, with the group that a function returns for a position in a batch and in the
-    /// whole.
+    /// Reads points without those that are withheld, with the group that a function returns for a
+    /// position in a batch and in the whole. Also returns how many points there are in the whole.
     fn of_points(
         input: &Input<MemoryPoints>,
         options: &AccuracyOptions,
         journal: &Journal,
         group: impl Fn(&PointBatch, usize, usize) -> Option<String>,
-    ) -> Result<Self> {
+    ) -> Result<(Self, usize)> {
         let path = input.path();
         let mut source: Box<dyn PointSource + Send> =
             open::points(input, options.read, &journal.context).map_err(|e| e.in_file(path))?;
         let (crs, unread_crs) = (source.info().crs.clone(), source.info().unread_crs.clone());
+        journal.add_warnings(path, &source.info().warnings);
         let mut rows: Vec<CheckpointRow> = Vec::new();
         let mut batch = PointBatch::default();
+        let mut before = 0;
         loop {
             journal.context.check()?;
             source.read(&mut batch).map_err(|e| e.in_file(path))?;
             if batch.is_empty() {
                 break;
             }
-            for i in 0..batch.len() {
-                let before = rows.len();
+            let is_withheld = |i: usize| batch.flags.get(i).is_some_and(|f| f.is_withheld());
+            for i in (0..batch.len()).filter(|&i| !is_withheld(i)) {
                 rows.push(CheckpointRow {
-                    number: before as u64 + 1,
+                    number: (before + i) as u64 + 1,
                     point: [batch.x[i], batch.y[i], batch.z[i]],
                     surface: f64::NAN,
-                    group: group(&batch, i, before),
+                    group: group(&batch, i, before + i),
                 });
             }
+            before += batch.len();
         }
-        Ok(Checkpoints {
+        journal.add_warnings(path, source.warnings());
+        if rows.is_empty() && before > 0 {
+            return Err(Error::format("all points are withheld")
+                .in_file(path)
+                .cure("withheld points are deleted ones: name a file with others"));
+        }
+        let read = Checkpoints {
             rows,
             counted_by: "point",
             crs,
             unread_crs,
-        })
+        };
+        Ok((read, before))
     }
 }
 
@@ -517,12 +528,26 @@ fn groups_of(rows: &[CheckpointRow]) -> BTreeSet<&str> {
 
 /// The differences of checkpoints, by sets.
 struct Assessment<'a> {
-    rows: &'a [CheckpointRow],
+    /// The differences at the checkpoints of each group that are on the surface.
+    groups: BTreeMap<Option<&'a str>, Vec<f64>>,
     vegetated: &'a [String],
     checkpoint_error: f64,
 }
 
-impl Assessment<'_> {
+impl<'a> Assessment<'a> {
+    fn new(rows: &'a [CheckpointRow], vegetated: &'a [String], checkpoint_error: f64) -> Self {
+        let mut groups: BTreeMap<Option<&str>, Vec<f64>> = BTreeMap::new();
+        for row in rows.iter().filter(|row| !row.difference().is_nan()) {
+            let group = groups.entry(row.group.as_deref()).or_default();
+            group.push(row.difference());
+        }
+        Assessment {
+            groups,
+            vegetated,
+            checkpoint_error,
+        }
+    }
+
     /// Returns the checkpoints that decide on a class.
     fn decisive(&self) -> CheckpointSet {
         match self.vegetated.is_empty() {
@@ -536,12 +561,8 @@ impl Assessment<'_> {
         if !self.vegetated.is_empty() {
             sets.extend([CheckpointSet::NonVegetated, CheckpointSet::Vegetated]);
         }
-        let groups = groups_of(self.rows);
-        sets.extend(
-            groups
-                .into_iter()
-                .map(|name| CheckpointSet::Group(name.to_owned())),
-        );
+        let groups = self.groups.keys().flatten();
+        sets.extend(groups.map(|&name| CheckpointSet::Group(name.to_owned())));
         sets.into_iter()
             .filter_map(|set| self.accuracy(set))
             .collect()
@@ -558,24 +579,22 @@ impl Assessment<'_> {
 
     /// Returns the differences at the checkpoints of a set that are on the surface.
     fn differences(&self, set: &CheckpointSet) -> Vec<f64> {
-        let is_vegetated = |row: &CheckpointRow| {
-            let group = row.group.as_deref();
-            group.is_some_and(|group| self.vegetated.iter().any(|name| name == group))
+        let is_vegetated = |group: Option<&str>| {
+            group.is_some_and(|group| self.vegetated.iter().any(|n| n == group))
         };
-        let is_in = |row: &&CheckpointRow| match set {
-            CheckpointSet::All => true,
-            CheckpointSet::NonVegetated => !is_vegetated(row),
-            CheckpointSet::Vegetated => is_vegetated(row),
-            CheckpointSet::Group(name) => row.group.as_ref() == Some(name),
+        let of_groups = |is_in: &dyn Fn(Option<&str>) -> bool| {
+            let groups = self.groups.iter().filter(|(group, _)| is_in(**group));
+            groups.flat_map(|(_, group)| group).copied().collect()
         };
-        let differences = self
-            .rows
-            .iter()
-            .filter(is_in)
-            .map(CheckpointRow::difference);
-        differences
-            .filter(|difference| !difference.is_nan())
-            .collect()
+        match set {
+            CheckpointSet::All => of_groups(&|_| true),
+            CheckpointSet::NonVegetated => of_groups(&|group| !is_vegetated(group)),
+            CheckpointSet::Vegetated => of_groups(&is_vegetated),
+            CheckpointSet::Group(name) => {
+                let group = self.groups.get(&Some(name.as_str()));
+                group.cloned().unwrap_or_default()
+            }
+        }
     }
 }
 

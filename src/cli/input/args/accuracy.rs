@@ -32,11 +32,21 @@ pub(crate) struct AccuracyArgs {
     ///
     /// With a unit (mm, cm, m, in, ft) or in the unit of the heights. The exit code is 1 if it is
     /// exceeded. With --vegetated, the other checkpoints decide.
-    #[arg(long, value_name = "RMSE", help_heading = "Accuracy")]
+    #[arg(
+        long,
+        value_name = "RMSE",
+        allow_hyphen_values = true,
+        help_heading = "Accuracy"
+    )]
     pub(crate) accuracy_class: Option<HeightMeasure>,
 
     /// The RMSE of the checkpoints themselves, such as `2cm` [default: 0]
-    #[arg(long, value_name = "RMSE", help_heading = "Accuracy")]
+    #[arg(
+        long,
+        value_name = "RMSE",
+        allow_hyphen_values = true,
+        help_heading = "Accuracy"
+    )]
     pub(crate) checkpoint_error: Option<HeightMeasure>,
 
     /// Statistics by a field of the checkpoints, such as land cover

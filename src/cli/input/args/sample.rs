@@ -25,6 +25,7 @@ pub(crate) struct SampleArgs {
     /// Points: text with x and y, LAS, LAZ, a shapefile or GeoJSON; `-` is text from stdin
     ///
     /// Columns of text are those that a header names, or --columns, else the first two.
+    /// All lines need as many fields as the header.
     #[arg(long, value_name = "FILE", help_heading = "Sample")]
     pub(crate) at: PathBuf,
 

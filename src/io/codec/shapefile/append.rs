@@ -1,7 +1,7 @@
 //! A shapefile as it is, with fields appended to its table.
 
 use std::fs::File;
-use std::io::{BufReader, Read, Write};
+use std::io::{BufReader, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 
 use super::header::HEADER;
@@ -118,7 +118,7 @@ fn append(
 ) -> Result<()> {
     let mut file = BufReader::new(File::open(table)?);
     let mut head = vec![0; BLOCK];
-    file.read_exact(&mut head)?;
+    fill(&mut file, &mut head, || "its header".to_owned())?;
     let word = |at: usize| usize::from(u16::from_le_bytes([head[at], head[at + 1]]));
     let (length, row) = (word(8), word(10));
     let rows = u32::from_le_bytes([head[4], head[5], head[6], head[7]]) as usize;
@@ -129,7 +129,7 @@ fn append(
         .cure("save the shapefile anew: records and rows have to agree"));
     }
     let mut list = vec![0; length - BLOCK];
-    file.read_exact(&mut list)?;
+    fill(&mut file, &mut list, || "its list of fields".to_owned())?;
     let fields: Vec<&[u8; BLOCK]> = list
         .as_chunks::<BLOCK>()
         .0
@@ -154,8 +154,10 @@ fn append(
     out.write_all(&list[end..])?;
     let mut bytes = vec![0; row];
     let count = names.len();
-    for (at, _) in (0..records).enumerate() {
-        file.read_exact(&mut bytes)?;
+    for at in 0..records {
+        fill(&mut file, &mut bytes, || {
+            format!("row {} of {records}", at + 1)
+        })?;
         out.write_all(&bytes)?;
         for number in numbers.iter().skip(at * count).take(count) {
             out.write_all(&shown(*number))?;
@@ -163,6 +165,18 @@ fn append(
     }
     std::io::copy(&mut file, out)?;
     Ok(())
+}
+
+/// Reads as many bytes as there is room for.
+///
+/// # Errors
+/// If the table ends before, in the part that a function names.
+fn fill(file: &mut impl Read, bytes: &mut [u8], part: impl FnOnce() -> String) -> Result<()> {
+    file.read_exact(bytes).map_err(|error| match error.kind() {
+        ErrorKind::UnexpectedEof => Error::format(format!("the table ends in {}", part()))
+            .cure("copy all files of the shapefile again"),
+        _ => error.into(),
+    })
 }
 
 fn check_names(fields: &[&[u8; BLOCK]], names: &[String]) -> Result<()> {
@@ -173,20 +187,40 @@ fn check_names(fields: &[&[u8; BLOCK]], names: &[String]) -> Result<()> {
             ))
             .cure(wording!["shorten ", Setting::Prefix]));
         }
-        let is_same = |field: &&&[u8; BLOCK]| {
-            let end = field.iter().position(|&byte| byte == 0).unwrap_or(NAME);
-            field[..end.min(NAME + 1)].eq_ignore_ascii_case(name.as_bytes())
-        };
-        if fields.iter().any(|field| is_same(&field)) {
-            return Err(
-                Error::usage(format!("there is a field {name} already")).cure(wording![
+        if has_field(fields, name) {
+            let error = Error::usage(format!("there is a field {name} already"));
+            return Err(error.cure(match free_prefix(fields, names) {
+                Some(prefix) => wording![
                     "give the new ones other names with ",
-                    Setting::Prefix.text("n_")
-                ]),
-            );
+                    Setting::Prefix.text(prefix),
+                    ", or rename the field"
+                ],
+                None => wording![
+                    "rename the field, or give the new ones names of 10 bytes at most with ",
+                    Setting::Prefix
+                ],
+            }));
         }
     }
     Ok(())
+}
+
+fn has_field(fields: &[&[u8; BLOCK]], name: &str) -> bool {
+    fields.iter().any(|field| {
+        let end = field.iter().position(|&byte| byte == 0).unwrap_or(NAME);
+        field[..end.min(NAME + 1)].eq_ignore_ascii_case(name.as_bytes())
+    })
+}
+
+/// Returns a letter before which all names are short enough and new, if there is one.
+fn free_prefix(fields: &[&[u8; BLOCK]], names: &[String]) -> Option<String> {
+    let is_free = |prefix: &String| {
+        names.iter().all(|name| {
+            let name = format!("{prefix}{name}");
+            name.len() <= NAME && !has_field(fields, &name)
+        })
+    };
+    ('n'..='z').map(String::from).find(is_free)
 }
 
 /// Returns the description of a field of numbers.

@@ -24,12 +24,12 @@ impl Start {
     /// each of them.
     ///
     /// # Errors
-    /// If a line is neither a header nor a point.
+    /// If a line is neither a header nor a point, and those of `see`.
     pub(super) fn read(
         lines: &mut Lines,
         columns: Option<Columns>,
         axes: Axes,
-        see: &mut dyn FnMut(&Lines),
+        see: &mut dyn FnMut(&Lines) -> Result<()>,
     ) -> Result<Self> {
         let asked = columns.map(|columns| ColumnLayout {
             columns,
@@ -37,7 +37,7 @@ impl Start {
         });
         let mut head = Head::new(asked, axes);
         while lines.next()? {
-            see(lines);
+            see(lines)?;
             match Line::new(&lines.line) {
                 Line::Blank => {}
                 Line::Comment(text) => head.add_comment(text, lines.number),

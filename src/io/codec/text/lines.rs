@@ -4,7 +4,8 @@ use std::io::{self, BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 
 use super::columns::quote;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, Wording};
+use crate::io::options::cut::{OPEN_LINE, OnDamage};
 
 /// Limit for the bytes of a line; text for people has shorter lines, and a binary file may have no
 /// line ends.
@@ -96,6 +97,35 @@ impl Lines {
         }
         self.is_open |= !is_ended && matches!(Line::new(&self.line), Line::Data(_));
         Ok(is_there)
+    }
+
+    /// Reports what the end of the file shows after `total` points, if its first line states a
+    /// count of them.
+    ///
+    /// # Errors
+    /// If there are fewer points than stated, and this is not accepted.
+    pub(super) fn finish(
+        &self,
+        stated: Option<u64>,
+        total: u64,
+        cut: OnDamage,
+        warnings: &mut Vec<Wording>,
+    ) -> Result<()> {
+        if self.is_open {
+            warnings.push(OPEN_LINE.into());
+        }
+        let Some(stated) = stated.filter(|&stated| stated != total) else {
+            return Ok(());
+        };
+        let text = format!("the first line states {stated} points, but there are {total}");
+        // More points than stated are not a file that was cut.
+        let cut = if total < stated {
+            cut
+        } else {
+            OnDamage::Accept
+        };
+        cut.refuse_or_warn(text, "the end", warnings)
+            .map_err(|e| e.in_file(&self.name))
     }
 
     /// Adds the file and the line to an error.

@@ -55,7 +55,7 @@ pub use self::write::{TextWriter, create};
 use crate::data::{PointBatch, PointInfo, PointSource};
 use crate::error::{Error, Result, Wording};
 use crate::io::bytes::decimal_mark::DecimalMark;
-use crate::io::options::cut::{OPEN_LINE, OnDamage};
+use crate::io::options::cut::OnDamage;
 use crate::io::options::points::Options;
 
 /// Points in a batch.
@@ -111,7 +111,7 @@ pub fn from_stream(
     options: Options,
 ) -> Result<TextReader> {
     let mut lines = Lines::new(stream, name.as_ref());
-    let start = Start::read(&mut lines, options.columns, Axes::Space, &mut |_| ())
+    let start = Start::read(&mut lines, options.columns, Axes::Space, &mut |_| Ok(()))
         .map_err(|error| lines.locate(error))?;
     let header = if start.header.is_some() {
         ", with header"
@@ -157,7 +157,10 @@ impl PointSource for TextReader {
                 Ok(Some(point)) => point.push(batch),
                 Ok(None) => {
                     self.is_done = true;
-                    self.finish(self.read + batch.len() as u64)?;
+                    let total = self.read + batch.len() as u64;
+                    let stated = self.info.count;
+                    self.lines
+                        .finish(stated, total, self.cut, &mut self.warnings)?;
                 }
                 Err(error) => {
                     self.is_done = true;
@@ -198,24 +201,5 @@ impl TextReader {
             }
         }
         Ok(None)
-    }
-
-    /// Reports what the end of the file shows.
-    fn finish(&mut self, total: u64) -> Result<()> {
-        if self.lines.is_open {
-            self.warnings.push(OPEN_LINE.into());
-        }
-        let Some(stated) = self.info.count.filter(|&stated| stated != total) else {
-            return Ok(());
-        };
-        let text = format!("the first line states {stated} points, but there are {total}");
-        // More points than stated are not a file that was cut.
-        let cut = if total < stated {
-            self.cut
-        } else {
-            OnDamage::Accept
-        };
-        cut.refuse_or_warn(text, "the end", &mut self.warnings)
-            .map_err(|e| e.in_file(&self.lines.name))
     }
 }

@@ -106,7 +106,8 @@ impl Separator {
         numbers.try_for_each(|text| mark.add(text, || format!("line {number}")))
     }
 
-    fn ends_field(self, byte: u8) -> bool {
+    /// Returns true if a byte is between two fields.
+    pub(super) fn ends_field(self, byte: u8) -> bool {
         match self {
             Self::Semicolon | Self::Tab | Self::Comma => byte == self.byte(),
             Self::Blanks => byte == b' ' || byte == b'\t',

@@ -5,7 +5,7 @@
 
 use std::fs::File;
 use std::io::{self, Read, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::columns::{ColumnLayout, quote};
 use super::first_column::{self, FirstColumn, Guess};
@@ -13,11 +13,19 @@ use super::first_lines::Start;
 use super::lines::{Line, Lines};
 use super::separator::{Axes, Separator};
 use crate::data::Columns;
-use crate::error::{Error, Result, Setting, wording};
+use crate::error::{Error, Result, Setting, Wording, wording};
 use crate::io::bytes::decimal_mark::DecimalMark;
+use crate::io::options::cut::OnDamage;
+use crate::io::options::points::Options;
 
-/// Points in a batch.
+/// Points in a batch, at most.
 const BATCH: usize = 1 << 16;
+
+/// Bytes of lines after which a batch ends.
+const BATCH_BYTES: usize = 4 << 20;
+
+/// Limit for the bytes of lines up to the first point, which are in one batch.
+const HEAD_BYTES: usize = 16 << 20;
 
 /// A reader of text with points, made by [`open`], which keeps all that it reads.
 pub struct TextTable {
@@ -28,7 +36,15 @@ pub struct TextTable {
     /// The lines up to the first point, that one included.
     head: Option<TableBatch>,
     first_column: Option<FirstColumn>,
+    /// How many fields the first point has.
+    first_fields: usize,
+    /// The count of points that the first line states.
+    stated: Option<u64>,
+    /// What to do if there are fewer.
+    cut: OnDamage,
+    read: u64,
     is_done: bool,
+    warnings: Vec<Wording>,
 }
 
 /// A header.
@@ -101,13 +117,13 @@ impl std::fmt::Debug for TextTable {
 ///
 /// # Errors
 /// If the file cannot be read, or its first lines are neither a header nor a point.
-pub fn open(path: impl AsRef<Path>, columns: Option<Columns>, axes: Axes) -> Result<TextTable> {
+pub fn open(path: impl AsRef<Path>, options: Options, axes: Axes) -> Result<TextTable> {
     let path = path.as_ref();
     if path.as_os_str() == "-" {
-        return from_stream(io::stdin(), "standard input", columns, axes);
+        return from_stream(io::stdin(), "standard input", options, axes);
     }
     let file = File::open(path).map_err(|error| Error::from(error).in_file(path))?;
-    from_stream(file, path, columns, axes)
+    from_stream(file, path, options, axes)
 }
 
 /// Reads points from a stream; messages call it `name`.
@@ -117,13 +133,20 @@ pub fn open(path: impl AsRef<Path>, columns: Option<Columns>, axes: Axes) -> Res
 pub fn from_stream(
     stream: impl Read + Send + 'static,
     name: impl AsRef<Path>,
-    columns: Option<Columns>,
+    options: Options,
     axes: Axes,
 ) -> Result<TextTable> {
     let mut lines = Lines::new(stream, name.as_ref());
     let mut head = TableBatch::default();
-    let start = Start::read(&mut lines, columns, axes, &mut |lines| {
+    let start = Start::read(&mut lines, options.columns, axes, &mut |lines| {
         head.push(lines, LineKind::Other);
+        match head.bytes() > HEAD_BYTES {
+            true => Err(
+                Error::limit("more than 16 MB of lines before the first point")
+                    .cure("remove comments and blank lines before the points"),
+            ),
+            false => Ok(()),
+        }
     })
     .map_err(|error| lines.locate(error))?;
     let mut header = None;
@@ -134,7 +157,13 @@ pub fn from_stream(
             line.kind = LineKind::Header;
         }
     }
+    let separator = start.layout.separator;
     let mut table = TextTable {
+        first_fields: separator.fields(&lines.line).count(),
+        stated: start.count,
+        cut: options.cut,
+        read: 0,
+        warnings: Vec::new(),
         lines,
         layout: start.layout,
         header,
@@ -183,13 +212,15 @@ impl TextTable {
     /// Reads some lines; the batch has none at the end.
     ///
     /// # Errors
-    /// If a line is not a point, or the system fails.
+    /// If a line is not a point, there are fewer points than the first line states, or the system
+    /// fails.
     pub fn read(&mut self, batch: &mut TableBatch) -> Result<()> {
         batch.clear();
+        let was_done = self.is_done && self.head.is_none();
         if let Some(head) = self.head.take() {
             *batch = head;
         }
-        while !self.is_done && batch.positions.len() < BATCH {
+        while !self.is_done && batch.positions.len() < BATCH && batch.bytes() < BATCH_BYTES {
             if let Err(error) = self.read_line(batch) {
                 self.is_done = true;
                 return Err(self.lines.locate(error));
@@ -200,7 +231,17 @@ impl TextTable {
             self.is_done = true;
             return Err(first_column::refuse().in_file(&self.lines.name));
         }
+        self.read += batch.positions.len() as u64;
+        if self.is_done && !was_done {
+            self.lines
+                .finish(self.stated, self.read, self.cut, &mut self.warnings)?;
+        }
         Ok(())
+    }
+
+    /// Returns what looks wrong so far.
+    pub fn warnings(&self) -> &[Wording] {
+        &self.warnings
     }
 
     fn read_line(&mut self, batch: &mut TableBatch) -> Result<()> {
@@ -228,7 +269,7 @@ impl TextTable {
     /// Returns a writer of fields, which are separated as those of this text.
     ///
     /// # Errors
-    /// If the header has one of the names already.
+    /// If the header has one of the names already, or a name is not one field.
     pub fn writer<'t>(&self, names: &'t [String]) -> Result<TableWriter<'t>> {
         if let Some(header) = &self.header {
             let is_there = |name: &&String| {
@@ -245,13 +286,32 @@ impl TextTable {
             }
         }
         let separator = self.layout.separator;
+        let of_header = self.header.as_ref();
+        let of_names = of_header.map_or(separator, |header| header.separator);
+        let is_odd =
+            |byte: u8| byte == b'"' || byte.is_ascii_control() || of_names.ends_field(byte);
+        if let Some(name) = names.iter().find(|name| name.bytes().any(is_odd)) {
+            return Err(Error::usage(format!(
+                "the name {} is not one field between {}",
+                quote(name.as_bytes()),
+                of_names.name()
+            ))
+            .in_file(&self.lines.name)
+            .cure(wording![
+                "use letters and digits only for ",
+                Setting::Prefix
+            ]));
+        }
         Ok(TableWriter {
             separator,
-            of_names: self
-                .header
-                .as_ref()
-                .map_or(separator, |header| header.separator),
+            of_names,
             names,
+            file: self.lines.name.clone(),
+            fields: of_header.map_or(self.first_fields, |header| header.names.len()),
+            counted_in: match of_header {
+                Some(_) => "the header",
+                None => "the first point",
+            },
         })
     }
 
@@ -287,6 +347,11 @@ impl TableBatch {
     /// Returns true if there is nothing left to write.
     pub fn is_empty(&self) -> bool {
         self.text.is_empty()
+    }
+
+    /// Returns the bytes of memory that the lines need.
+    fn bytes(&self) -> usize {
+        self.text.len() + self.lines.len() * size_of::<TableLine>()
     }
 
     fn clear(&mut self) {
@@ -343,6 +408,12 @@ pub struct TableWriter<'t> {
     /// The separator of the header.
     of_names: Separator,
     names: &'t [String],
+    /// What messages call the text.
+    file: PathBuf,
+    /// How many fields each point has before those that are appended.
+    fields: usize,
+    /// What has so many.
+    counted_in: &'static str,
 }
 
 impl TableWriter<'_> {
@@ -350,16 +421,16 @@ impl TableWriter<'_> {
     /// names; what is empty is an empty field, or `nan` where blanks separate.
     ///
     /// # Errors
-    /// Those of `out`.
-    pub fn write(
-        &self,
-        batch: &TableBatch,
-        fields: &Fields,
-        out: &mut dyn Write,
-    ) -> io::Result<()> {
+    /// If a line has more or fewer fields than the header, or without one the first point, or ends
+    /// in a comment: what is appended would be in another column; and those of `out`.
+    pub fn write(&self, batch: &TableBatch, fields: &Fields, out: &mut dyn Write) -> Result<()> {
         let mut written = 0;
         let mut next = 0;
-        for line in &batch.lines {
+        let mut numbers = batch.numbers.iter();
+        for (at, line) in batch.lines.iter().enumerate() {
+            if line.kind == LineKind::Point {
+                self.check(batch.line(at), numbers.next())?;
+            }
             out.write_all(&batch.text[written..line.end])?;
             written = line.end;
             match line.kind {
@@ -382,7 +453,42 @@ impl TableWriter<'_> {
                 LineKind::Other => {}
             }
         }
-        out.write_all(&batch.text[written..])
+        Ok(out.write_all(&batch.text[written..])?)
+    }
+
+    /// Returns an error unless what is appended to the line of a point is in the column of its
+    /// name.
+    fn check(&self, line: &[u8], number: Option<&u64>) -> Result<()> {
+        let is_comment = |field: &[u8]| field.starts_with(b"#") || field.starts_with(b"//");
+        let (mut count, mut has_comment) = (0, false);
+        for field in self.separator.fields(line) {
+            count += 1;
+            has_comment |= self.separator == Separator::Blanks && is_comment(field);
+        }
+        if count == self.fields && !has_comment {
+            return Ok(());
+        }
+        let shown = quote(line);
+        let separator = self.separator.name();
+        let Self {
+            fields, counted_in, ..
+        } = self;
+        let s = if count == 1 { "" } else { "s" };
+        let error = match has_comment {
+            true => Error::format(format!(
+                "a comment after a point, to which nothing can be appended: {shown}"
+            ))
+            .cure("move comments to lines of their own, or separate the fields by semicolons"),
+            false => Error::format(format!(
+                "{count} field{s} separated by {separator}, but {counted_in} has {fields}: {shown}"
+            ))
+            .cure(format!(
+                "give all lines {fields} fields: put text that has {separator} in quotes, and \
+                 complete short lines"
+            )),
+        };
+        let number = number.copied().unwrap_or_default();
+        Err(error.at(format!("line {number}")).in_file(&self.file))
     }
 }
 
@@ -442,7 +548,8 @@ mod tests {
 
     /// Returns the text with `appended` to each point, and the positions.
     fn kept(text: &[u8], axes: Axes) -> Result<(Vec<u8>, Vec<[f64; 2]>)> {
-        let mut table = from_stream(std::io::Cursor::new(text.to_vec()), "text", None, axes)?;
+        let text = std::io::Cursor::new(text.to_vec());
+        let mut table = from_stream(text, "text", Options::default(), axes)?;
         let names = ["new".to_owned()];
         let writer = table.writer(&names)?;
         let (mut out, mut positions) = (Vec::new(), Vec::new());
@@ -454,7 +561,7 @@ mod tests {
             }
             let mut fields = Fields::new(table.has_decimal_commas());
             batch.positions.iter().for_each(|_| fields.push(7.5));
-            writer.write(&batch, &fields, &mut out).unwrap();
+            writer.write(&batch, &fields, &mut out)?;
             positions.extend(&batch.positions);
         }
     }
@@ -475,7 +582,7 @@ mod tests {
             b"2,3",
         ];
         let mut read = 0;
-        for _ in 0..5000 {
+        for _ in 0..10_000 {
             let mut text: Vec<u8> = match random.index(4) {
                 0 => b"\xef\xbb\xbfx,y,z\n".to_vec(),
                 1 => b"x,y,z\r\n".to_vec(),
@@ -502,5 +609,83 @@ mod tests {
             }
         }
         assert!(read > 1000, "{read}");
+    }
+
+    #[test]
+    fn what_is_appended_is_in_the_column_of_its_name() {
+        for (text, is_kept) in [
+            ("x,y,note\n1,1,a\n2,2,\"b, c\"\n", true),
+            ("x,y,note\n1,1,a\n2,2\n", false),
+            ("x,y,note\n1,1,a,b\n", false),
+            ("x,y\n1,1,\n", false),
+            ("x,y,\n1,1,\n", true),
+            ("1,1\n2,2,\n", false),
+            ("1 1 # a\n2 2 # b\n", false),
+            ("1 1 //a\n", false),
+            ("1,1,#5\n", true),
+            ("x;y\n1 1\n2 2\n", true),
+            ("x y\n1 1\n2 2 # well\n", false),
+            ("# note: x y\n1 1\n 2  2 \n", true),
+            ("# x y\n1 1 5\n", false),
+        ] {
+            assert_eq!(kept(text.as_bytes(), Axes::Plan).is_ok(), is_kept, "{text}");
+        }
+        let error = kept(b"x,y,note\n\n1,1,a\n2,2\n", Axes::Plan).unwrap_err();
+        let shown = error.to_string();
+        let expected = "text: line 4: 2 fields separated by commas, but the header has 3: \"2,2\"";
+        assert!(shown.contains(expected), "{shown}");
+    }
+
+    #[test]
+    fn memory_is_bounded_by_bytes() {
+        let comment = [&b"# "[..], &[b'a'; 1 << 15], b"\n"].concat();
+        let mut text = b"1,1\n".to_vec();
+        (0..300).for_each(|_| text.extend(&comment));
+        let text = std::io::Cursor::new([text, b"2,2\n".to_vec()].concat());
+        let mut table = from_stream(text, "text", Options::default(), Axes::Plan).unwrap();
+        let (mut batch, mut points) = (TableBatch::default(), 0);
+        loop {
+            table.read(&mut batch).unwrap();
+            if batch.is_empty() {
+                break;
+            }
+            assert!(batch.bytes() < BATCH_BYTES + (1 << 16));
+            points += batch.positions.len();
+        }
+        assert_eq!(points, 2);
+        let endless = std::io::repeat(b'\n');
+        let error = from_stream(endless, "text", Options::default(), Axes::Plan).unwrap_err();
+        assert!(error.to_string().contains("before the first point"));
+    }
+
+    #[test]
+    fn a_text_that_was_cut_is_refused() {
+        let read = |text: &str, cut| {
+            let text = std::io::Cursor::new(text.as_bytes().to_vec());
+            let options = Options {
+                cut,
+                ..Options::default()
+            };
+            let mut table = from_stream(text, "text", options, Axes::Plan)?;
+            let mut batch = TableBatch::default();
+            loop {
+                table.read(&mut batch)?;
+                if batch.is_empty() {
+                    return Ok::<_, Error>(table.warnings().len());
+                }
+            }
+        };
+        for (text, warnings) in [
+            ("2\n1 1\n2 2\n", Some(0)),
+            ("1\n1 1\n2 2\n", Some(1)),
+            ("2\n1 1\n2 2", Some(1)),
+            ("3\n1 1\n2 2\n", None),
+            ("3\n", None),
+            ("", Some(0)),
+        ] {
+            assert_eq!(read(text, OnDamage::Refuse).ok(), warnings, "{text}");
+            let accepted = read(text, OnDamage::Accept).unwrap();
+            assert_eq!(accepted, warnings.unwrap_or(1), "{text}");
+        }
     }
 }

@@ -45,7 +45,8 @@ pub struct SampleReport {
 /// points, however many there are.
 ///
 /// # Errors
-/// If the points cannot be read, a line or a record is not a point, there is a column of that name,
+/// If the points cannot be read, a line or a record is not a point, a line has not as many fields
+/// as the header or the first point, there is a column of that name or it is not one field of text,
 /// the output is not of the format of the points, the coordinate systems differ, slopes cannot be
 /// computed from degrees or by a method other than [`Method::Linear`], no point is on the surface,
 /// the output cannot be written, a file is damaged, or the run is canceled.
@@ -72,6 +73,7 @@ pub fn sample(
             points: 0,
             outside: 0,
             file: points,
+            journal: &journal,
             surface: &options.surface,
         };
         source.write(&names, &mut values, target)?;

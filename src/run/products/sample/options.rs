@@ -3,8 +3,8 @@
 use std::io::Write;
 use std::path::PathBuf;
 
-use crate::data::Columns;
 use crate::io::Destination;
+use crate::io::points::Options;
 use crate::terrain::Method;
 
 /// What is added to points. By default, the height.
@@ -16,8 +16,8 @@ pub struct SampleOptions {
     pub prefix: String,
     /// How heights between the vertices of a TIN are computed.
     pub method: Method,
-    /// The columns of text; if `None`, a header or the first two columns are used.
-    pub columns: Option<Columns>,
+    /// How the file of points is read. Without columns of text, a header or the first two are used.
+    pub read: Options,
     /// What messages call the surface, such as the name of its file.
     pub surface: PathBuf,
 }
@@ -28,7 +28,7 @@ impl Default for SampleOptions {
             add: vec![SampledField::Height],
             prefix: String::new(),
             method: Method::Linear,
-            columns: None,
+            read: Options::default(),
             surface: PathBuf::new(),
         }
     }

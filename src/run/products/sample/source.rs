@@ -50,15 +50,15 @@ impl Source {
             return Self::of_text(path, options);
         }
         if is_lidar(path) {
-            return Self::of_lidar(path, names, journal);
+            return Self::of_lidar(path, options, names, journal);
         }
         if content(path) != Content::Layer {
             return Self::of_text(path, options);
         }
         let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
         match extension.to_str() {
-            Some("shp") => Self::of_shapefile(path, journal),
-            Some("geojson" | "json") => Self::of_geojson(path, names, journal),
+            Some("shp") => Self::of_shapefile(path, options.read.cut, journal),
+            Some("geojson" | "json") => Self::of_geojson(path, options.read.cut, names, journal),
             _ => Err(Error::unsupported(
                 "values are added to points of text, LAS, LAZ, shapefiles and GeoJSON",
             )
@@ -68,14 +68,19 @@ impl Source {
     }
 
     fn of_text(path: &Path, options: &SampleOptions) -> Result<Self> {
-        let table = table::open(path, options.columns, Axes::Plan)?;
+        let table = table::open(path, options.read, Axes::Plan)?;
         Ok(Source::Text(Box::new(table)))
     }
 
-    fn of_lidar(path: &Path, names: &[String], journal: &Journal) -> Result<Self> {
+    fn of_lidar(
+        path: &Path,
+        options: &SampleOptions,
+        names: &[String],
+        journal: &Journal,
+    ) -> Result<Self> {
         let options = Options {
             detail: Detail::Records,
-            ..Options::default()
+            ..options.read
         };
         let source =
             open::points_of_file(path, options, &journal.context).map_err(|e| e.in_file(path))?;
@@ -87,9 +92,8 @@ impl Source {
         Ok(Source::Lidar(Box::new(info), source))
     }
 
-    fn of_shapefile(path: &Path, journal: &Journal) -> Result<Self> {
-        let layer = open::layer(path, &[], OnDamage::Refuse, &journal.context)
-            .map_err(|e| e.in_file(path))?;
+    fn of_shapefile(path: &Path, cut: OnDamage, journal: &Journal) -> Result<Self> {
+        let layer = open::layer(path, &[], cut, &journal.context).map_err(|e| e.in_file(path))?;
         journal.add_warnings(path, &layer.warnings);
         let position = |(number, shape): (usize, &Shape)| match shape {
             Shape::Null => Ok([f64::NAN; 2]),
@@ -111,9 +115,8 @@ impl Source {
         })
     }
 
-    fn of_geojson(path: &Path, names: &[String], journal: &Journal) -> Result<Self> {
-        let layer = open::layer(path, &[], OnDamage::Refuse, &journal.context)
-            .map_err(|e| e.in_file(path))?;
+    fn of_geojson(path: &Path, cut: OnDamage, names: &[String], journal: &Journal) -> Result<Self> {
+        let layer = open::layer(path, &[], cut, &journal.context).map_err(|e| e.in_file(path))?;
         journal.add_warnings(path, &layer.warnings);
         let text = std::fs::read(path).map_err(|e| Error::from(e).in_file(path))?;
         let features = PointFeatures::read(text, names).map_err(|e| e.in_file(path))?;
@@ -240,6 +243,7 @@ fn write_text(
     loop {
         table.read(&mut batch)?;
         if batch.is_empty() {
+            values.journal.add_warnings(values.file, table.warnings());
             return values.require_any();
         }
         let mut fields = Fields::new(table.has_decimal_commas());
@@ -256,8 +260,10 @@ fn write_lidar(
     values: &mut Values,
     target: Destination,
 ) -> Result<()> {
-    let mut sink = points::create(target, &[info], Rounding::Refuse)?;
-    sink.next_source(info)?;
+    // What is refused is in the points, unless the error names the output.
+    let mut sink =
+        points::create(target, &[info], Rounding::Refuse).map_err(|e| e.in_file(values.file))?;
+    sink.next_source(info).map_err(|e| e.in_file(values.file))?;
     let mut batch = PointBatch::default();
     loop {
         source
@@ -272,6 +278,7 @@ fn write_lidar(
         las::append_numbers(&mut batch, &numbers, names.len());
         sink.write(&batch)?;
     }
+    values.journal.add_warnings(values.file, source.warnings());
     values.require_any()?;
     sink.finish().map(drop)
 }

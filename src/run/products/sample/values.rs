@@ -18,6 +18,7 @@ pub(super) struct Values<'a> {
     pub(super) work: Work<'a>,
     pub(super) points: u64,
     pub(super) outside: u64,
+    pub(super) journal: &'a Journal<'a>,
     pub(super) file: &'a Path,
     pub(super) surface: &'a Path,
 }
