@@ -21,7 +21,7 @@ use crate::error::{InputError, MAX_VERTICES};
 use crate::flaw::{Flaw, Level};
 use crate::geometry::Geometry;
 use crate::kinds::{Basic, Constrained, Delaunay, Regular};
-use crate::tds::{CellId, Parts, Tds, VertexId, Zone};
+use crate::tds::{CellId, Parts, Tds, VertexId};
 use crate::triangulation::Triangulation;
 
 /// What is saved. Written from slices, read into vectors.
