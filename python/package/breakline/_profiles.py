@@ -50,11 +50,11 @@ def profile(
     step: Optional[float] = None,
     interval: Optional[float] = None,
     stations: Any = None,
-    start: float = 0.0,
+    start: Optional[float] = None,
     left: Optional[float] = None,
     right: Optional[float] = None,
-    angle: float = 90.0,
-    station_format: str = "0+000",
+    angle: Optional[float] = None,
+    station_format: Optional[str] = None,
     output: Any = None,
     overwrite: bool = False,
     exaggeration: Optional[float] = None,
@@ -76,14 +76,14 @@ def profile(
         The distance of points along a line, instead of one at each edge of a triangle.
     interval, stations : float, sequence of float, optional
         Sections across each line instead: at all multiples of a distance, or at these stations.
-    start : float
-        The station at which each line begins.
+    start : float, optional
+        The station at which each line begins, 0 by default.
     left, right : float, optional
         The lengths of a section to the left and to the right of the line, seen along it.
-    angle : float
-        The angle in degrees from the direction of the line to the left half of a section.
-    station_format : str
-        How stations are written, by an example of zeros.
+    angle : float, optional
+        The angle in degrees from the direction of the line to the left half of a section, 90 by default.
+    station_format : str, optional
+        How stations are written, by an example of zeros, ``"0+000"`` by default.
     output : path or list of paths, optional
         Files to write: a table (.csv), a plot (.svg) or a drawing (.dxf).
     overwrite : bool
@@ -114,13 +114,19 @@ def profile(
         raise usage("sections are at an interval or at stations", None, "pass one of both")
     if is_across != (left is not None or right is not None):
         raise usage("sections have stations and lengths", None, "pass interval or stations, with left and right, or none")
+    of_sections = {"start": start, "angle": angle, "station_format": station_format}
+    for name, value in of_sections.items():
+        if value is not None and not is_across:
+            raise usage(f"{name} is for sections", value, f"pass interval or stations, or leave {name} out")
     sections = None
     if is_across:
         at = [] if stations is None else [_inputs.number(value, "stations") for value in stations]
         every = None if interval is None else _inputs.number(interval, "interval")
         widths = [0.0 if value is None else _inputs.number(value, name) for name, value in [("left", left), ("right", right)]]
-        first, turned = _inputs.number(start, "start"), _inputs.number(angle, "angle")
-        sections = (every, at, first, widths, turned, _inputs.name(station_format, "station_format"))
+        first = _inputs.number(0.0 if start is None else start, "start")
+        turned = _inputs.number(90.0 if angle is None else angle, "angle")
+        shown = _inputs.name("0+000" if station_format is None else station_format, "station_format")
+        sections = (every, at, first, widths, turned, shown)
     plot = (
         None if exaggeration is None else _inputs.number(exaggeration, "exaggeration"),
         None if datum is None else _inputs.number(datum, "datum"),
