@@ -3,6 +3,7 @@
 //! | file | law |
 //! |---|---|
 //! | [`written`] | what comes out is what Triangle's users expect, number by number |
+//! | [`refined`] | added vertices reach what is asked for, and carry attributes |
 //! | [`damaged`] | a damaged file gives an error with file, line, value and cure, and nothing is written |
 //! | [`check`] | `check` finds every kind of flaw and believes what is right |
 
@@ -11,6 +12,7 @@ mod program;
 
 mod check;
 mod damaged;
+mod refined;
 mod written;
 
 use program::{Run, files_of, folder_with, run_in};
