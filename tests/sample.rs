@@ -24,7 +24,8 @@ fn tin(points: &[[f64; 3]], bounds: Option<Bounds>) -> Option<Tin> {
         .filter(|tin| tin.report().triangles > 0)
 }
 
-/// The same triangles, with other numbers of vertices and faces, and other first corners.
+/// Returns a surface of the same triangles, whose vertices and faces have other numbers, and which
+/// begin at other corners.
 fn renumbered(surface: &dyn Surface) -> Mesh {
     let mut vertices = Vec::new();
     let mut faces = Vec::new();

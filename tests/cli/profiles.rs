@@ -411,7 +411,7 @@ fn stations_are_found_wherever_the_line_begins() {
     let fails = |more: &[&str], texts: &[&str]| {
         run_in(&folder, &[&["profile"], &words[..], more].concat()).fails(2, texts);
     };
-    // Where numbers do not tell multiples apart.
+    // There, multiples of the interval are equal numbers.
     let texts = ["at an interval of 50", "--start", "--interval"];
     fails(&["--interval", "50", "--start", "1e300"], &texts);
     fails(

@@ -26,7 +26,7 @@ use crate::terrain::{SectionWidths, crossing_pairs, sections};
 /// The cross-sections of a run, at most.
 const MOST_SECTIONS: f64 = 1e5;
 
-/// The multiples of an interval that numbers tell apart, up to 2^53.
+/// The largest multiple of an interval that is used: up to about 2^53, all are different numbers.
 const MOST_MULTIPLES: f64 = 9e15;
 
 /// The pairs of crossing sections that are counted, and those that are listed.

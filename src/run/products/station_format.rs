@@ -76,7 +76,7 @@ impl fmt::Display for StationFormat {
 
 impl StationFormat {
     /// Returns the distance that a text with a plus states, in whatever format: 1250 for `1+250`
-    /// and for `12+50`. `None` if it is no such text.
+    /// and for `12+50`. `None` for any other text.
     pub fn distance(text: &str) -> Option<f64> {
         let (sign, digits) = match text.strip_prefix('-') {
             Some(digits) => (-1.0, digits),

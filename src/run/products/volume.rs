@@ -71,7 +71,7 @@ impl Bulking {
         }
     }
 
-    /// Returns an error for a factor that is no positive number.
+    /// Returns an error if a factor is not a positive number.
     fn check(self) -> Result<()> {
         for (factor, setting) in [(self.swell, Setting::Swell), (self.shrink, Setting::Shrink)] {
             if !(factor.is_finite() && factor > 0.0) {

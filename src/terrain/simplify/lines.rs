@@ -88,7 +88,7 @@ impl Lines {
         self.edges.insert(key, edge);
     }
 
-    /// The same edges with another tolerance.
+    /// Returns a copy of the edges, with another tolerance.
     pub(super) fn with_tolerance(&self, tolerance: f64) -> Self {
         Lines {
             tolerance,

@@ -1,9 +1,9 @@
 //! Surfaces of fewer vertices, within a bound of all heights they are made from.
 //!
-//! Of the given sites some stay, with their heights; none is moved. In blocks, sites are inserted
-//! where the error is largest until the bound holds (Garland and Heckbert 1995, "Fast polygonal
-//! approximation of terrains and height fields"), then removed again, the cheapest first, as long
-//! as it still holds. The blocks are joined by one triangulation of all that is left; what is too
+//! Some of the given sites stay; neither they nor their heights are changed. In blocks, sites are
+//! inserted where the error is largest until the bound holds (Garland and Heckbert 1995, "Fast
+//! polygonal approximation of terrains and height fields"), then removed again, the cheapest first,
+//! as long as it still holds. The blocks are joined by one triangulation of all that is left; what is too
 //! far off there is inserted, and what the blocks needed only at their borders is removed. At the
 //! end every site is measured against the finished surface, exactly where rounding could decide.
 //!

@@ -82,8 +82,8 @@ fn shape(tin: &Tin) -> BTreeSet<String> {
     all.collect()
 }
 
-/// The naive judge, in whole numbers: each point lies in a face, and in each face that contains it,
-/// it is no further from the face than the bound. Returns the number of points on faces.
+/// The naive judge, in whole numbers: each point lies in a face, and is within the bound of each
+/// face that contains it. Returns the number of points on faces.
 fn judge(tin: &Tin, points: &[[f64; 3]], bound: i128) -> usize {
     let whole = |p: [f64; 3]| p.map(|x| x as i128);
     let by_site: BTreeMap<[i128; 2], i128> = points

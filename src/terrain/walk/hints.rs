@@ -115,7 +115,7 @@ impl Hints {
         })
     }
 
-    /// Returns a face near a position; `None` if there is no face.
+    /// Returns a face near a position; `None` if the surface has none.
     ///
     /// # Complexity
     /// Constant where there are faces.

@@ -30,8 +30,8 @@ pub fn write_contours<'a>(
 }
 
 /// Writes the lines of a layer as a FeatureCollection of LineStrings and MultiLineStrings, with all
-/// its attributes as properties, and returns warnings. Heights that are missing are left out. What
-/// is no line is a feature without geometry.
+/// its attributes as properties, and returns warnings. Heights that are missing are left out.
+/// Records other than lines become features without geometry.
 ///
 /// # Errors
 /// As [`write_contours`].

@@ -14,8 +14,7 @@ const AROUND: [f64; 2] = [34.0, 56.0];
 /// The height of a line of text.
 const LINE: f64 = 20.0;
 
-/// Colors that people with any color vision can tell apart (Okabe and Ito 2008), the darker ones
-/// first.
+/// Colors that color-blind people can distinguish, too (Okabe and Ito 2008); the darker ones first.
 const COLORS: [&str; 7] = [
     "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#000000", "#56b4e9", "#e69f00",
 ];
