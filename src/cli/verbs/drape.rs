@@ -2,6 +2,7 @@ use std::path::PathBuf;
 
 use serde_json::json;
 
+use super::pair;
 use crate::cli::Exit;
 use crate::cli::input::args::DrapeArgs;
 use crate::cli::input::plan::SurfacePlan;
@@ -12,14 +13,14 @@ use crate::cli::report::stdout::print;
 use crate::cli::report::summary::{counted, print_surface};
 use crate::cli::report::written::commit;
 use crate::data::{Layer, Shape};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::io::formats::Product;
 use crate::run::{self, DrapeOptions, DrapeProduct, Input, SurfaceReport};
 
 /// Drapes lines over a surface.
 pub(crate) fn run(args: &DrapeArgs, console: &Console) -> Result<Exit> {
     inputs::require([&args.lines])?;
-    refuse_tables(args)?;
+    pair::refuse_tables(&args.surface, "drape")?;
     let plan = SurfacePlan::resolve(&args.surface, console)?;
     let mut read = plan.targets.with_lists(plan.request.files());
     read.push(args.lines.clone());
@@ -61,17 +62,6 @@ pub(crate) fn run(args: &DrapeArgs, console: &Console) -> Result<Exit> {
         print(&as_json(&product))?;
     }
     Ok(Exit::Done)
-}
-
-/// Returns an error if tables are requested that this verb does not write.
-fn refuse_tables(args: &DrapeArgs) -> Result<()> {
-    if args.surface.crossing_report.is_some() || args.surface.lines.flat_points.is_some() {
-        return Err(
-            Error::usage("`drape` writes no tables of crossings or replaced points")
-                .cure("leave out --crossing-report and --flat-points; `breakline tin` has them"),
-        );
-    }
-    Ok(())
 }
 
 /// Returns the numbers of parts and of vertices of the lines of a layer.

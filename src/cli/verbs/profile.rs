@@ -1,5 +1,6 @@
 use std::path::PathBuf;
 
+use super::pair;
 use crate::cli::Exit;
 use crate::cli::input::args::{OutputArgs, ProfileArgs};
 use crate::cli::input::plan::SurfacePlan;
@@ -127,11 +128,8 @@ fn sections(args: &ProfileArgs) -> Result<Option<SectionOptions>> {
         }
         Some(_) if !has_widths => Error::usage("the lengths of the cross-sections are missing")
             .cure("give them with --left and --right"),
-        _ if args.surface.crossing_report.is_some() || args.surface.lines.flat_points.is_some() => {
-            Error::usage("`profile` writes no tables of crossings or replaced points")
-                .cure("leave out --crossing-report and --flat-points; `breakline tin` has them")
-        }
         _ => {
+            pair::refuse_tables(&args.surface, "profile")?;
             return Ok(at.map(|at| SectionOptions {
                 at,
                 start: args.start.unwrap_or(0.0),
