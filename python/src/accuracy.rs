@@ -15,9 +15,9 @@ use crate::requests::{self, PointInput, ReadArguments};
 use crate::surface::Surface;
 use crate::work::{self, Call};
 
-/// A set of checkpoints, its group, their number, and the statistics in the order of the fields in
-/// Python.
-type Set = (&'static str, Option<String>, usize, [f64; 10]);
+/// A set of checkpoints, its group, their number, the statistics in the order of the fields in
+/// Python, and the accuracy.
+type Set = (&'static str, Option<String>, usize, [f64; 9], f64);
 
 /// A difference of heights: a number in the unit of the data, or a text with a unit.
 #[derive(FromPyObject)]
@@ -126,18 +126,12 @@ fn name_of(set: &CheckpointSet) -> (&'static str, Option<String>) {
 
 fn set(accuracy: &SetAccuracy) -> Set {
     let (set, group) = name_of(&accuracy.set);
-    let of = &accuracy.statistics;
-    let numbers = [
-        of.mean,
-        of.median,
-        of.standard_deviation,
-        of.rmse,
-        of.nmad,
-        of.percentile_95,
-        of.min,
-        of.max,
-        of.skew,
+    let statistics = &accuracy.statistics;
+    (
+        set,
+        group,
+        statistics.count,
+        statistics.values(),
         accuracy.rmse,
-    ];
-    (set, group, of.count, numbers)
+    )
 }

@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 
 use breakline::run::{self, CompareOptions};
-use breakline::terrain::ErrorStatistics;
 use pyo3::prelude::*;
 
 use crate::arrays::table;
@@ -52,7 +51,9 @@ pub(crate) fn compare<'py>(
     })?;
     let extremes = product.worst.iter();
     let extremes = extremes.map(|extreme| [extreme.at[0], extreme.at[1], extreme.value]);
-    let numbers = product.statistics.as_ref().map_or([f64::NAN; 9], numbers);
+    let numbers = product
+        .statistics
+        .map_or([f64::NAN; 9], |statistics| statistics.values());
     let counts = changed.map(|height| product.changed(height).into());
     let grid = &product.difference;
     let cells: Vec<f32> = grid.values.iter().map(|&d| d as f32).collect();
@@ -64,18 +65,4 @@ pub(crate) fn compare<'py>(
         table(py, extremes.collect())?,
         counts,
     ))
-}
-
-fn numbers(of: &ErrorStatistics) -> [f64; 9] {
-    [
-        of.mean,
-        of.median,
-        of.standard_deviation,
-        of.rmse,
-        of.nmad,
-        of.percentile_95,
-        of.min,
-        of.max,
-        of.skew,
-    ]
 }

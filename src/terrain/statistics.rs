@@ -43,6 +43,35 @@ pub struct ErrorStatistics {
 }
 
 impl ErrorStatistics {
+    /// The names of the [values](Self::values), in their order.
+    pub const NAMES: [&'static str; 9] = [
+        "mean",
+        "median",
+        "standard_deviation",
+        "rmse",
+        "nmad",
+        "percentile_95",
+        "min",
+        "max",
+        "skew",
+    ];
+
+    /// Returns all numbers but the count, by [their names](Self::NAMES). Each is in the unit of the
+    /// differences; the skewness has none.
+    pub fn values(&self) -> [f64; 9] {
+        [
+            self.mean,
+            self.median,
+            self.standard_deviation,
+            self.rmse,
+            self.nmad,
+            self.percentile_95,
+            self.min,
+            self.max,
+            self.skew,
+        ]
+    }
+
     /// Returns the statistics; `None` if there are no differences, or one is not finite.
     ///
     /// # Complexity

@@ -3,35 +3,21 @@
 use serde_json::{Map, Value, json};
 
 use super::escape;
+use super::statistics::{TITLES, shown};
 use super::summary::counted;
 use crate::run::units::number;
 use crate::run::{
     AccuracyProduct, CheckpointRow, CheckpointSet, ClassDecision, Quantity, SetAccuracy,
 };
+use crate::terrain::ErrorStatistics;
 
-/// A number of a set.
-struct Field {
-    /// The name in tables.
-    title: &'static str,
-    /// The name in JSON.
-    key: &'static str,
-    of: fn(&SetAccuracy) -> f64,
+/// What the RMSE with that of the checkpoints is called.
+const ACCURACY: &str = "accuracy";
+
+/// Returns the numbers of a set: its statistics, and its accuracy.
+fn values(set: &SetAccuracy) -> impl Iterator<Item = f64> {
+    set.statistics.values().into_iter().chain([set.rmse])
 }
-
-/// The numbers of a set, in the order of all outputs.
-#[rustfmt::skip]
-const FIELDS: &[Field] = &[
-    Field { title: "mean", key: "mean", of: |set| set.statistics.mean },
-    Field { title: "median", key: "median", of: |set| set.statistics.median },
-    Field { title: "std dev", key: "standard_deviation", of: |set| set.statistics.standard_deviation },
-    Field { title: "RMSE", key: "rmse", of: |set| set.statistics.rmse },
-    Field { title: "NMAD", key: "nmad", of: |set| set.statistics.nmad },
-    Field { title: "95 %", key: "percentile_95", of: |set| set.statistics.percentile_95 },
-    Field { title: "min", key: "min", of: |set| set.statistics.min },
-    Field { title: "max", key: "max", of: |set| set.statistics.max },
-    Field { title: "skew", key: "skew", of: |set| set.statistics.skew },
-    Field { title: "accuracy", key: "accuracy", of: |set| set.rmse },
-];
 
 /// The longest bar of a histogram.
 const LONGEST: usize = 40;
@@ -44,9 +30,14 @@ pub(crate) fn text(product: &AccuracyProduct) -> String {
         number(product.checkpoint_error)
     );
     let mut cells: Vec<Vec<String>> = vec![["set", "n"].map(str::to_owned).into()];
-    cells[0].extend(FIELDS.iter().map(|field| field.title.to_owned()));
+    cells[0].extend(
+        TITLES
+            .iter()
+            .chain([&ACCURACY])
+            .map(|title| (*title).to_owned()),
+    );
     cells.extend(product.sets.iter().map(|set| {
-        let values = FIELDS.iter().map(|field| shown((field.of)(set)));
+        let values = values(set).map(shown);
         let first = [name(&set.set), set.statistics.count.to_string()];
         first.into_iter().chain(values).collect()
     }));
@@ -56,13 +47,6 @@ pub(crate) fn text(product: &AccuracyProduct) -> String {
         text += &decided(decision, product);
     }
     text
-}
-
-fn shown(value: f64) -> String {
-    match value.is_nan() {
-        true => "-".to_owned(),
-        false => number(value + 0.0),
-    }
 }
 
 fn name(set: &CheckpointSet) -> String {
@@ -152,8 +136,9 @@ pub(crate) fn json(product: &AccuracyProduct) -> String {
     let set = |accuracy: &SetAccuracy| {
         let mut object = named(&accuracy.set);
         object.insert("n".to_owned(), accuracy.statistics.count.into());
-        for field in FIELDS {
-            object.insert(field.key.to_owned(), finite((field.of)(accuracy)));
+        let names = ErrorStatistics::NAMES.iter().chain([&ACCURACY]);
+        for (name, value) in names.zip(values(accuracy)) {
+            object.insert((*name).to_owned(), finite(value));
         }
         Value::Object(object)
     };

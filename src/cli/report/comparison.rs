@@ -3,25 +3,10 @@
 use serde_json::{Map, Value, json};
 
 use super::escape;
+use super::statistics::{TITLES, shown};
 use crate::run::CompareProduct;
 use crate::run::units::number;
 use crate::terrain::ErrorStatistics;
-
-/// A number of the statistics: its name in text and in JSON.
-type Field = (&'static str, &'static str, fn(&ErrorStatistics) -> f64);
-
-/// The numbers, in the order of all outputs.
-const FIELDS: &[Field] = &[
-    ("mean", "mean", |s| s.mean),
-    ("median", "median", |s| s.median),
-    ("std dev", "standard_deviation", |s| s.standard_deviation),
-    ("RMSE", "rmse", |s| s.rmse),
-    ("NMAD", "nmad", |s| s.nmad),
-    ("95 %", "percentile_95", |s| s.percentile_95),
-    ("min", "min", |s| s.min),
-    ("max", "max", |s| s.max),
-    ("skew", "skew", |s| s.skew),
-];
 
 /// Returns rounded numbers for a terminal.
 pub(crate) fn text(product: &CompareProduct, changed: Option<f64>) -> String {
@@ -29,14 +14,8 @@ pub(crate) fn text(product: &CompareProduct, changed: Option<f64>) -> String {
         return "no cell is on both surfaces\n".to_owned();
     };
     let mut text = format!("{:<12} {:>16}\n", "cells", statistics.count);
-    for (name, _, of) in FIELDS {
-        let value = of(statistics);
-        let shown = if value.is_nan() {
-            "-".to_owned()
-        } else {
-            number(value + 0.0)
-        };
-        text += &format!("{name:<12} {shown:>16}\n");
+    for (title, value) in TITLES.iter().zip(statistics.values()) {
+        text += &format!("{title:<12} {:>16}\n", shown(value));
     }
     if let Some(height) = changed {
         let counts = product.changed(height);
@@ -60,9 +39,10 @@ pub(crate) fn json(product: &CompareProduct, changed: Option<f64>) -> String {
     let mut object = Map::new();
     let count = product.statistics.map_or(0, |statistics| statistics.count);
     object.insert("cells".to_owned(), count.into());
-    for (_, key, of) in FIELDS {
-        let value = product.statistics.as_ref().map(of);
-        object.insert((*key).to_owned(), value.map(|v| v + 0.0).into());
+    let values = product.statistics.map(|statistics| statistics.values());
+    for (k, name) in ErrorStatistics::NAMES.iter().enumerate() {
+        let value = values.map(|values| values[k] + 0.0);
+        object.insert((*name).to_owned(), value.into());
     }
     if let Some(height) = changed {
         let [raised, lowered] = product.changed(height);

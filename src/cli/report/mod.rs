@@ -8,6 +8,7 @@ pub(super) mod last_words;
 pub(super) mod names;
 pub(super) mod profiles;
 mod progress;
+mod statistics;
 pub(super) mod stdout;
 pub(super) mod summary;
 pub(super) mod volumes;
