@@ -5,6 +5,7 @@ use serde_json::{Map, Value, json};
 use super::escape;
 use super::statistics::{TITLES, shown};
 use super::summary::counted;
+use crate::io::csv_field;
 use crate::run::units::number;
 use crate::run::{
     AccuracyProduct, CheckpointRow, CheckpointSet, ClassDecision, Quantity, SetAccuracy,
@@ -207,7 +208,7 @@ pub(crate) fn rows_csv(product: &AccuracyProduct) -> String {
     for row in &product.rows {
         let numbers = row.point.into_iter().chain([row.surface, row.difference()]);
         let numbers: Vec<String> = numbers.map(field).collect();
-        let group = row.group.as_deref().map(quoted).unwrap_or_default();
+        let group = row.group.as_deref().map(csv_field).unwrap_or_default();
         text += &format!("{},{},{group}\n", row.number, numbers.join(","));
     }
     text
@@ -230,13 +231,5 @@ fn field(value: f64) -> String {
     match value.is_nan() {
         true => String::new(),
         false => (value + 0.0).to_string(),
-    }
-}
-
-/// Returns a text as a field.
-fn quoted(text: &str) -> String {
-    match text.contains([',', '"', '\n', '\r']) {
-        true => format!("\"{}\"", text.replace('"', "\"\"")),
-        false => text.to_owned(),
     }
 }

@@ -1,6 +1,7 @@
 //! What formats are made of: files and outputs, numbers and rows of text.
 
 pub(crate) mod contain;
+pub(crate) mod csv;
 pub(crate) mod decimal;
 pub(crate) mod decimal_mark;
 pub(crate) mod field;

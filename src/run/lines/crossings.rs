@@ -1,9 +1,10 @@
 //! Notices and a table of breaklines that meet with different heights.
 
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use super::shapes::Drawn;
+use crate::io::csv_field;
 use crate::run::context::Journal;
 use crate::run::context::notice::{CrossingNote, Notice};
 use crate::run::context::units::Units;
@@ -105,17 +106,11 @@ impl LineNames {
         let Some(LineName { file, fid, part }) = self.lines.get(line) else {
             return ",,".to_owned();
         };
-        format!("{},{fid},{}", quoted(&self.files[*file]), part.unwrap_or(1))
-    }
-}
-
-/// Formats a name as a field of a table, in quotes if necessary.
-fn quoted(path: &Path) -> String {
-    let text = path.to_string_lossy();
-    if text.contains([',', '"', '\n', '\r']) {
-        format!("\"{}\"", text.replace('"', "\"\""))
-    } else {
-        text.into_owned()
+        format!(
+            "{},{fid},{}",
+            csv_field(&self.files[*file].to_string_lossy()),
+            part.unwrap_or(1)
+        )
     }
 }
 

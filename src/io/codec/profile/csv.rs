@@ -3,6 +3,7 @@
 use std::io::{Result, Write};
 
 use crate::data::{Profiles, Stretch};
+use crate::io::csv_field;
 use crate::triangulation::num::unsigned_zero;
 
 /// Writes the points of profiles: each with the record and the part of its line, the station of a
@@ -17,7 +18,7 @@ pub(super) fn write(out: &mut dyn Write, profiles: &Profiles) -> Result<()> {
             unsigned_zero(station.at).to_string()
         });
         for (surface, stretches) in profiles.surfaces.iter().zip(&profile.stretches) {
-            let start = format!("{},{part},{station},{}", profile.record, cell(surface));
+            let start = format!("{},{part},{station},{}", profile.record, csv_field(surface));
             for (number, stretch) in (1..).zip(stretches) {
                 rows(out, &format!("{start},{number}"), stretch)?;
             }
@@ -31,12 +32,4 @@ fn rows(out: &mut dyn Write, start: &str, stretch: &Stretch) -> Result<()> {
         let [x, y, z] = point.at.map(unsigned_zero);
         writeln!(out, "{start},{},{x},{y},{z}", unsigned_zero(point.along))
     })
-}
-
-/// Returns a text as a cell, in quotes where it needs them.
-fn cell(text: &str) -> String {
-    match text.contains([',', '"', '\n', '\r']) {
-        true => format!("\"{}\"", text.replace('"', "\"\"")),
-        false => text.to_owned(),
-    }
 }
