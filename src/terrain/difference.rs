@@ -68,7 +68,7 @@ pub struct LargeDifference {
 ///
 /// # Complexity
 /// O(n + count log n) for n cells, with memory for n / 64.
-pub fn largest_differences(frame: &Frame, cells: &[f32], count: usize) -> Vec<LargeDifference> {
+pub fn largest_differences(frame: &Frame, cells: &[f64], count: usize) -> Vec<LargeDifference> {
     let width = frame.width;
     let squares = Squares {
         width,
@@ -76,8 +76,7 @@ pub fn largest_differences(frame: &Frame, cells: &[f32], count: usize) -> Vec<La
         cells,
     };
     let mut extremes: BTreeMap<[usize; 2], usize> = BTreeMap::new();
-    // The largest cell of each square, or one that was it: none in the square that is free is
-    // before it.
+    // For each square, a cell that is at least as large as all of it that may still be found.
     let mut waiting: BinaryHeap<Candidate> = squares
         .all()
         .filter_map(|square| squares.largest(square, &[]))
@@ -97,7 +96,7 @@ pub fn largest_differences(frame: &Frame, cells: &[f32], count: usize) -> Vec<La
         extremes.insert(square, cell);
         found.push(LargeDifference {
             at: frame.center(cell % width, cell / width),
-            value: f64::from(cells[cell]),
+            value: cells[cell],
         });
     }
     found
@@ -105,13 +104,13 @@ pub fn largest_differences(frame: &Frame, cells: &[f32], count: usize) -> Vec<La
 
 /// A cell by the bits of its amount, which have the order of amounts, and its number. Of equal
 /// ones, the first cell is the largest.
-type Candidate = (u32, Reverse<usize>);
+type Candidate = (u64, Reverse<usize>);
 
 /// A raster in squares as wide as places are apart.
 struct Squares<'a> {
     width: usize,
     height: usize,
-    cells: &'a [f32],
+    cells: &'a [f64],
 }
 
 impl Squares<'_> {
@@ -168,7 +167,7 @@ mod tests {
             (14, 2.0),
             (15, -3.0),
             (29, 0.5),
-            (40, f32::NAN),
+            (40, f64::NAN),
         ] {
             cells[cell] = value;
         }
@@ -178,7 +177,7 @@ mod tests {
         assert_eq!(values, [-3.0, -3.0, 0.5]);
         assert_eq!(found[0].at, [115.0, 49.0]);
         assert_eq!(largest_differences(&frame, &cells, 1).len(), 1);
-        assert!(largest_differences(&frame, &[f32::NAN; 90], 5).is_empty());
+        assert!(largest_differences(&frame, &[f64::NAN; 90], 5).is_empty());
     }
 
     #[test]
@@ -188,10 +187,10 @@ mod tests {
             let [width, height] = [0; 2].map(|_| 1 + random.index(40));
             let frame = Frame::north_up(0.0, 0.0, 1.0, width, height);
             let most = [1, 3, 1000][round % 3];
-            let cells: Vec<f32> = (0..width * height)
+            let cells: Vec<f64> = (0..width * height)
                 .map(|_| match random.index(9) {
-                    0 => f32::NAN,
-                    _ => random.around(most) as f32,
+                    0 => f64::NAN,
+                    _ => random.around(most) as f64,
                 })
                 .collect();
             let mut expected: Vec<[usize; 2]> = Vec::new();
@@ -237,7 +236,7 @@ mod tests {
         };
         let (a, b) = (grid(0.0, vec![5.0, f64::NAN]), grid(0.0, vec![3.5, 1.0]));
         let difference = Difference::new(&a, &b).unwrap();
-        let mut cells = [0.0; 2];
+        let mut cells = [0.0_f32; 2];
         difference.fill(a.frame.window(), &mut cells).unwrap();
         assert!(cells[0] == 1.5 && cells[1].is_nan());
         assert!(Difference::new(&a, &grid(1.0, vec![0.0; 2])).is_err());

@@ -111,9 +111,8 @@ pub fn compare(
         journal.add(Notice::NothingInCommon(one, other));
     }
     context.check()?;
-    let cells: Vec<f32> = difference.values.iter().map(|&d| d as f32).collect();
     Ok(CompareProduct {
-        worst: largest_differences(&difference.frame, &cells, options.worst),
+        worst: largest_differences(&difference.frame, &difference.values, options.worst),
         difference,
         statistics,
         notices: journal.take(),
