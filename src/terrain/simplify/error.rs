@@ -63,6 +63,25 @@ pub(super) fn exceeds(corners: [[f64; 3]; 3], point: [f64; 3], bound: f64) -> bo
     })
 }
 
+/// Returns a rounded error, corrected to be above the bound if, and only if, the real number is.
+///
+/// `is_beyond` says which, exactly. It is called only where the rounding errors could decide.
+#[inline(always)]
+pub(super) fn decided(
+    error: f64,
+    uncertainty: f64,
+    bound: f64,
+    is_beyond: impl FnOnce() -> bool,
+) -> f64 {
+    if (error - bound).abs() > uncertainty {
+        error
+    } else if is_beyond() {
+        error.max(bound.next_up())
+    } else {
+        error.min(bound)
+    }
+}
+
 /// The plane of a triangle, rounded: heights relative to one of its corners.
 #[derive(Clone, Copy)]
 pub(super) struct Slopes {

@@ -7,7 +7,7 @@ use crate::triangulation::kernel::{Adaptive, InCircle, Kernel, Orientation2};
 use crate::triangulation::num::Sign;
 use crate::triangulation::tds::{VertexId, ccw, cw};
 
-use super::error::{Slopes, Worst, exceeds};
+use super::error::{Slopes, Worst, decided, exceeds};
 use super::lattice::Lattice;
 
 /// No triangle, or no site.
@@ -236,14 +236,13 @@ impl<'a> Mesh<'a> {
         let mut below = Worst::NONE;
         let positions = corners.map(|site| self.sites[site as usize]);
         let mut judge = |error: f64, site: u32| {
-            if error < self.bound - uncertainty {
-                below.add(error, site);
-            } else if error > self.bound + uncertainty
-                || exceeds(positions, self.sites[site as usize], self.bound)
-            {
-                above.add(error.max(self.bound.next_up()), site);
+            let error = decided(error, uncertainty, self.bound, || {
+                exceeds(positions, self.sites[site as usize], self.bound)
+            });
+            if error > self.bound {
+                above.add(error, site);
             } else {
-                below.add(error.min(self.bound), site);
+                below.add(error, site);
             }
         };
         match &self.hidden {

@@ -3,7 +3,7 @@
 use crate::triangulation::num::Sign;
 use crate::triangulation::tds::{ccw, cw};
 
-use super::error::{Slopes, Worst, exceeds};
+use super::error::{Slopes, Worst, decided, exceeds};
 use super::lines::Lines;
 use super::mesh::{Hidden, Mesh, NONE, RimEdge};
 
@@ -272,13 +272,9 @@ impl Mesh<'_> {
             return f64::MAX;
         };
         let error = slopes.residual(q).abs();
-        if (error - self.bound).abs() > slopes.uncertainty {
-            error
-        } else if exceeds(of_sites(given), q, self.bound) {
-            error.max(self.bound.next_up())
-        } else {
-            error.min(self.bound)
-        }
+        decided(error, slopes.uncertainty, self.bound, || {
+            exceeds(of_sites(given), q, self.bound)
+        })
     }
 
     /// The first triangle of the filling of a star that contains a site, from `start` on; `None` if

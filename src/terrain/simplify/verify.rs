@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use rayon::prelude::*;
 
 use super::core::Sites;
-use super::error::{Slopes, exceeds};
+use super::error::{Slopes, decided, exceeds};
 use crate::data::Surface;
 use crate::terrain::Tin;
 use crate::triangulation::Location;
@@ -56,13 +56,7 @@ fn distance(corners: [[f64; 3]; 3], q: [f64; 3], bound: f64) -> f64 {
         Some(slopes) => (slopes.residual(q).abs(), slopes.uncertainty),
         None => (bound, f64::INFINITY),
     };
-    if (error - bound).abs() > uncertainty {
-        error
-    } else if exceeds(corners, q, bound) {
-        error.max(bound.next_up())
-    } else {
-        error.min(bound)
-    }
+    decided(error, uncertainty, bound, || exceeds(corners, q, bound))
 }
 
 /// The errors of sites, in an order in which each is near to the one before.
