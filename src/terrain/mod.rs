@@ -111,6 +111,7 @@ pub use rasterize::{Canvas, CanvasBlock, Dem, DemOfParts};
 pub use rim_rule::RimRule;
 pub(crate) use sample::along_curve;
 pub use sample::{Sample, Sampler};
+pub(crate) use sections::vertices_along;
 pub use sections::{SectionWidths, crossing_pairs, sections};
 pub use selection::{Classes, Selection, SelectionReport};
 pub use simplify::{SimplifyLimit, SimplifyReport, SimplifyRule, simplify, simplify_cells};

@@ -27,11 +27,7 @@ pub fn sections(
     distances: &[f64],
     across: &SectionWidths,
 ) -> Vec<Option<[[f64; 2]; 3]>> {
-    let mut ends = vec![0.0];
-    for pair in axis.windows(2) {
-        let [x, y] = [0, 1].map(|k| pair[1][k] - pair[0][k]);
-        ends.push(ends[ends.len() - 1] + x.hypot(y));
-    }
+    let ends = vertices_along(axis);
     let one = |&distance: &f64| {
         let (at, direction) = on_axis(axis, &ends, distance)?;
         let (sin, cos) = across.angle.to_radians().sin_cos();
@@ -48,6 +44,18 @@ pub fn sections(
         Some([end(to_left), at, end(-to_right)])
     };
     distances.iter().map(one).collect()
+}
+
+/// Returns the distance of each vertex from the start of a line, along it.
+pub(crate) fn vertices_along(line: &[[f64; 2]]) -> Vec<f64> {
+    let mut along = 0.0;
+    let mut found = vec![0.0];
+    for ends in line.windows(2) {
+        let [x, y] = [0, 1].map(|k| ends[1][k] - ends[0][k]);
+        along += x.hypot(y);
+        found.push(along);
+    }
+    found
 }
 
 /// Returns the position at a distance along an axis, and the direction there.

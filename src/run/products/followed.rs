@@ -11,7 +11,7 @@ use crate::run::context::notice::Notice;
 use crate::run::context::watched::Watched;
 use crate::run::context::{Context, Journal, Size, Stage};
 use crate::run::lines::shapes::Drawn;
-use crate::terrain::{Locator, stepped};
+use crate::terrain::{Locator, stepped, vertices_along};
 
 /// The points of all lines by a step, at most.
 const MOST_POINTS: f64 = 1e8;
@@ -52,18 +52,6 @@ pub(crate) fn check_step(step: Option<f64>, lines: &[PlanLine]) -> Result<()> {
 /// Returns the length of a line in plan.
 pub(crate) fn length(line: &[[f64; 2]]) -> f64 {
     vertices_along(line).last().copied().unwrap_or(0.0)
-}
-
-/// Returns the distance of each vertex from the start of a line, along it.
-pub(crate) fn vertices_along(line: &[[f64; 2]]) -> Vec<f64> {
-    let mut along = 0.0;
-    let mut found = vec![0.0];
-    for ends in line.windows(2) {
-        let [x, y] = [0, 1].map(|k| ends[1][k] - ends[0][k]);
-        along += x.hypot(y);
-        found.push(along);
-    }
-    found
 }
 
 /// Returns an error if no line has a length, and adds a notice about those without one. `title` is

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::followed::{
     Coverage, PlanLine, Vertices, check_lengths, check_step, coverage, follow, in_plan, length,
-    no_line, vertices_along,
+    no_line,
 };
 use super::station_format::StationFormat;
 use super::surface::SurfaceProduct;
@@ -21,7 +21,7 @@ use crate::run::lines::layers;
 use crate::run::lines::shapes::{self, Drawn};
 use crate::run::request::input::Input;
 use crate::run::sources::systems::reproject_first;
-use crate::terrain::{SectionWidths, crossing_pairs, sections};
+use crate::terrain::{SectionWidths, crossing_pairs, sections, vertices_along};
 
 /// The cross-sections of a run, at most.
 const MOST_SECTIONS: f64 = 1e5;
