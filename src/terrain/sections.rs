@@ -9,16 +9,18 @@ use crate::triangulation::num::Sign;
 /// How sections lie across an axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SectionWidths {
-    /// The lengths to the left and to the right of the axis, seen along it.
+    /// The lengths to the left and to the right of the axis, seen along it, in its units.
     pub widths: [f64; 2],
     /// The angle in degrees from the direction of the axis to the left half of the section; 90 is
     /// square to the axis.
     pub angle: f64,
 }
 
-/// Returns the sections at distances along an axis: each from its left end over its point on the
-/// axis to its right one. At a vertex of the axis, its direction is halfway between those of both
-/// segments. Distances beyond the axis, or on one without length, have none.
+/// Returns the section at each distance along an axis: its left end, its point on the axis, and its
+/// right end; `None` beyond the ends of the axis, or if the axis has no length.
+///
+/// Distances are in the units of the axis. At a vertex of the axis, its direction is halfway
+/// between those of both segments.
 ///
 /// # Complexity
 /// O(log n) for each section of an axis of n vertices.
@@ -28,15 +30,14 @@ pub fn sections(
     across: &SectionWidths,
 ) -> Vec<Option<[[f64; 2]; 3]>> {
     let ends = vertices_along(axis);
+    // The cosine of a rounded right angle is not 0.
+    let (sin, cos) = if across.angle == 90.0 {
+        (1.0, 0.0)
+    } else {
+        across.angle.to_radians().sin_cos()
+    };
     let one = |&distance: &f64| {
         let (at, direction) = on_axis(axis, &ends, distance)?;
-        let (sin, cos) = across.angle.to_radians().sin_cos();
-        // A right angle is one, without rounding.
-        let (sin, cos) = if across.angle == 90.0 {
-            (1.0, 0.0)
-        } else {
-            (sin, cos)
-        };
         let [x, y] = direction;
         let left = [x * cos - y * sin, x * sin + y * cos];
         let [to_left, to_right] = across.widths;
