@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::core::{LatticeFrame, Sites};
 use super::lattice::Lattice;
 use super::lines::{EdgeRole, Lines};
-use crate::data::{AT_ONCE, EdgeKind, Face, Grid, Surface};
+use crate::data::{AT_ONCE, EdgeKind, Face, Frame, Grid, Surface};
 use crate::error::{Error, Result};
 use crate::terrain::admitted::refused;
 use crate::triangulation::geometry::{Geometry, Terrain};
@@ -112,7 +112,8 @@ fn edges_of(
 /// The cells of a raster, with the rim around those that have heights.
 ///
 /// # Errors
-/// If the raster has no area, or too many cells; if a height is not admitted.
+/// If the raster has no cells or too many, or is rotated; if a height or a position is not
+/// admitted, or rounding makes two columns or rows one.
 pub(super) fn of_cells(grid: &Grid) -> Result<Intake> {
     let frame = &grid.frame;
     let (width, height) = (frame.width, frame.height);
@@ -127,74 +128,112 @@ pub(super) fn of_cells(grid: &Grid) -> Result<Intake> {
     }
     let bad = |z: &&f64| !z.is_nan() && !RANGE.admits(**z);
     if let Some(at) = grid.values.iter().position(|z| bad(&z)) {
-        let [column, row] = [at % width, at / width];
-        let [x, y] = frame.to_map(column as f64 + 0.5, row as f64 + 0.5);
+        let [x, y] = center(frame, [at % width, at / width]);
         return Err(refused([x, y, grid.values[at]]));
     }
-    let cells = Cells::of(grid);
     let t = &frame.transform;
-    if t[2] == 0.0 && t[4] == 0.0 {
-        let center =
-            |column: usize, row: usize| frame.to_map(column as f64 + 0.5, row as f64 + 0.5);
-        let mut x: Vec<f64> = (0..width).map(|k| unsigned_zero(center(k, 0)[0])).collect();
-        let mut y: Vec<f64> = (0..height)
-            .map(|k| unsigned_zero(center(0, k)[1]))
-            .collect();
-        let (is_mirrored, is_north_up) = (t[1] < 0.0, t[5] < 0.0);
-        if is_mirrored {
-            x.reverse();
-        }
-        if is_north_up {
-            y.reverse();
-        }
-        if !is_increasing(&x) || !is_increasing(&y) {
-            return Err(Error::format(
-                "the cells of the raster are smaller than a rounding of their coordinates",
-            ));
-        }
-        for end in [[x[0], y[0], 0.0], [x[width - 1], y[height - 1], 0.0]] {
-            check(end)?;
-        }
-        let cell_at = |site: usize| {
-            let (column, row) = (site / height, site % height);
-            let column = if is_mirrored {
-                width - 1 - column
-            } else {
-                column
-            };
-            let row = if is_north_up { height - 1 - row } else { row };
-            [column, row]
-        };
-        let is_flipped = is_mirrored != is_north_up;
-        let site_of = |[column, row]: [usize; 2]| {
-            let column = if is_mirrored {
-                width - 1 - column
-            } else {
-                column
-            };
-            let row = if is_north_up { height - 1 - row } else { row };
-            (column * height + row) as u32
-        };
-        let heights: Vec<f64> = (0..width * height)
-            .into_par_iter()
-            .with_min_len(AT_ONCE)
-            .map(|site| cells.height(cell_at(site)))
-            .collect();
-        let lattice = Lattice {
-            rows: height as u32,
-            heights,
-        };
-        let lines = cells.rim(&site_of, is_flipped);
-        return Ok(Intake {
-            sites: Sites::Lattice {
-                lattice,
-                frame: LatticeFrame { x, y },
-            },
-            lines,
-        });
+    if t[2] != 0.0 || t[4] != 0.0 {
+        return Err(Error::unsupported("a rotated raster cannot be simplified")
+            .cure("warp it to a grid along the axes"));
     }
-    Err(Error::unsupported("a rotated raster cannot be simplified")
-        .cure("warp it to a grid along the axes"))
+    let order = SiteOrder {
+        width,
+        height,
+        is_mirrored: t[1] < 0.0,
+        is_north_up: t[5] < 0.0,
+    };
+    let positions = lattice_frame(frame, &order)?;
+    let cells = Cells::of(grid);
+    let heights: Vec<f64> = (0..width * height)
+        .into_par_iter()
+        .with_min_len(AT_ONCE)
+        .map(|site| cells.height(order.cell(site)))
+        .collect();
+    let lattice = Lattice {
+        rows: height as u32,
+        heights,
+    };
+    let is_flipped = order.is_mirrored != order.is_north_up;
+    let lines = cells.rim(&|cell: [usize; 2]| order.site(cell), is_flipped);
+    Ok(Intake {
+        sites: Sites::Lattice {
+            lattice,
+            frame: positions,
+        },
+        lines,
+    })
+}
+
+/// Returns the position of the center of a cell, given its column and row.
+fn center(frame: &Frame, [column, row]: [usize; 2]) -> [f64; 2] {
+    frame.to_map(column as f64 + 0.5, row as f64 + 0.5)
+}
+
+/// Returns where the columns and rows of cells are, in the order of sites.
+///
+/// # Errors
+/// If rounding makes two of them one, or the raster is not in the range of the arithmetic.
+fn lattice_frame(frame: &Frame, order: &SiteOrder) -> Result<LatticeFrame> {
+    let at = |column: usize, row: usize| center(frame, [column, row]).map(unsigned_zero);
+    let mut x: Vec<f64> = (0..order.width).map(|k| at(k, 0)[0]).collect();
+    let mut y: Vec<f64> = (0..order.height).map(|k| at(0, k)[1]).collect();
+    if order.is_mirrored {
+        x.reverse();
+    }
+    if order.is_north_up {
+        y.reverse();
+    }
+    if !is_increasing(&x) || !is_increasing(&y) {
+        return Err(Error::format(
+            "the cells of the raster are smaller than a rounding of their coordinates",
+        ));
+    }
+    for end in [
+        [x[0], y[0], 0.0],
+        [x[order.width - 1], y[order.height - 1], 0.0],
+    ] {
+        check(end)?;
+    }
+    Ok(LatticeFrame { x, y })
+}
+
+/// How the cells of a raster are numbered as sites: column by column from west to east, each from
+/// the south.
+struct SiteOrder {
+    width: usize,
+    height: usize,
+    /// True if columns run from east to west.
+    is_mirrored: bool,
+    /// True if rows run from north to south.
+    is_north_up: bool,
+}
+
+impl SiteOrder {
+    /// Returns the column and row of a site.
+    fn cell(&self, site: usize) -> [usize; 2] {
+        self.turned([site / self.height, site % self.height])
+    }
+
+    /// Returns the site of a cell.
+    fn site(&self, cell: [usize; 2]) -> u32 {
+        let [column, row] = self.turned(cell);
+        (column * self.height + row) as u32
+    }
+
+    /// Maps a column and row of the raster to those of the lattice, or back.
+    fn turned(&self, [column, row]: [usize; 2]) -> [usize; 2] {
+        let column = if self.is_mirrored {
+            self.width - 1 - column
+        } else {
+            column
+        };
+        let row = if self.is_north_up {
+            self.height - 1 - row
+        } else {
+            row
+        };
+        [column, row]
+    }
 }
 
 fn is_increasing(x: &[f64]) -> bool {
@@ -220,7 +259,7 @@ impl<'a> Cells<'a> {
         !self.grid.value(column, row).is_nan()
     }
 
-    /// The corner of a quad that has no height, if the others have: 0 to 3, by rows.
+    /// Returns which corners of a quad have heights.
     fn quad(&self, column: usize, row: usize) -> Quad {
         let corners = [(0, 0), (1, 0), (0, 1), (1, 1)];
         let missing: Vec<usize> = (0..4)
@@ -321,7 +360,7 @@ impl<'a> Cells<'a> {
 /// Which corners of a quad have heights.
 enum Quad {
     Whole,
-    /// All but this one, counted by rows.
+    /// All but this one: 0 to 3, by rows.
     Without(usize),
     Nothing,
 }
