@@ -349,34 +349,26 @@ impl<'a> Mesh<'a> {
                 let beyond = self.neighbors[at][i];
                 let is_constrained = self.constrained[at] >> i & 1 == 1;
                 let ends = [self.corners[at][ccw(i)], self.corners[at][cw(i)]];
-                let mut is_crossed = false;
-                if beyond == NONE || is_constrained {
-                    is_crossed = self.orientation(ends[0], ends[1], site) == Sign::Zero;
-                    if is_crossed && beyond == NONE {
-                        continue;
-                    }
-                    if !is_crossed {
-                        self.rim.push(RimEdge {
-                            ends,
-                            beyond,
-                            is_constrained,
-                        });
-                        continue;
-                    }
-                }
-                if self.is_marked[beyond as usize] {
+                let is_closed = beyond == NONE || is_constrained;
+                let is_split = is_closed && self.orientation(ends[0], ends[1], site) == Sign::Zero;
+                if is_split && beyond == NONE {
                     continue;
                 }
-                if is_crossed || self.is_in_circle(self.corners[beyond as usize], site) {
-                    self.is_marked[beyond as usize] = true;
-                    self.cavity.push(beyond);
-                } else {
-                    self.rim.push(RimEdge {
-                        ends,
-                        beyond,
-                        is_constrained,
-                    });
+                if is_split || !is_closed {
+                    if self.is_marked[beyond as usize] {
+                        continue;
+                    }
+                    if is_split || self.is_in_circle(self.corners[beyond as usize], site) {
+                        self.is_marked[beyond as usize] = true;
+                        self.cavity.push(beyond);
+                        continue;
+                    }
                 }
+                self.rim.push(RimEdge {
+                    ends,
+                    beyond,
+                    is_constrained,
+                });
             }
         }
         for &cell in &self.cavity {
