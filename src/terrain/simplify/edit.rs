@@ -109,11 +109,7 @@ pub(super) fn thin(
     // PERF: zeros take no memory until they are written.
     let mut current: Vec<u64> = vec![0; mesh.sites.len()];
     let joint = |mesh: &Mesh, lines: &Lines, vertex: u32, ends: [u32; 2]| {
-        let plan = |site: u32| {
-            let [x, y, _] = mesh.sites[site as usize];
-            [x, y]
-        };
-        lines.joint(vertex, ends, &plan)
+        lines.joint(vertex, ends, &|site: u32| mesh.plan(site))
     };
     let try_vertex = |mesh: &Mesh, lines: &Lines, vertex: u32, star: &mut Star| {
         mesh.find_star(vertex, star);

@@ -129,7 +129,7 @@ impl<'a> Mesh<'a> {
     }
 
     #[inline(always)]
-    fn plan(&self, site: u32) -> [f64; 2] {
+    pub(super) fn plan(&self, site: u32) -> [f64; 2] {
         let [x, y, _] = self.sites[site as usize];
         [x, y]
     }

@@ -211,19 +211,11 @@ impl Mesh<'_> {
 
     /// The largest error if a vertex were removed, whose star is filled; `None` above the bound.
     pub(super) fn cost(&self, vertex: u32, star: &Star, lines: &Lines) -> Option<f64> {
-        let mut largest = 0.0;
-        if let Hidden::Lattice(_) = self.hidden {
-            // A vertex that is removed is hidden as any other cell.
-            for &triangle in &star.filling {
-                let Worst { error, .. } = self.worst_in(triangle, self.bound, NONE);
-                if error > self.bound {
-                    return None;
-                }
-                largest = f64::max(largest, error);
-            }
-            return Some(largest);
-        }
-        let mut triangle = 0;
+        let (first, next) = match &self.hidden {
+            Hidden::Lattice(_) => return self.cost_on_lattice(star),
+            Hidden::Lists { first, next } => (first, next),
+        };
+        let (mut largest, mut triangle) = (0.0, 0);
         let mut add = |site: u32, side: Side| {
             let Some(at) = self.triangle_with(star, side, triangle, site) else {
                 return false;
@@ -236,9 +228,6 @@ impl Mesh<'_> {
         if !add(vertex, Side::Either) {
             return None;
         }
-        let Hidden::Lists { first, next } = &self.hidden else {
-            return None;
-        };
         for (k, &cell) in star.cells.iter().enumerate() {
             let mut site = first[cell as usize];
             while site != NONE {
@@ -247,6 +236,20 @@ impl Mesh<'_> {
                 }
                 site = next[site as usize];
             }
+        }
+        Some(largest)
+    }
+
+    /// Like [`cost`](Self::cost), where the sites are on a lattice: a vertex that is removed is
+    /// hidden as any other cell, and the triangles find it themselves.
+    fn cost_on_lattice(&self, star: &Star) -> Option<f64> {
+        let mut largest = 0.0;
+        for &triangle in &star.filling {
+            let Worst { error, .. } = self.worst_in(triangle, self.bound, NONE);
+            if error > self.bound {
+                return None;
+            }
+            largest = f64::max(largest, error);
         }
         Some(largest)
     }
