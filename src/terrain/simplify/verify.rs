@@ -6,6 +6,7 @@ use rayon::prelude::*;
 
 use super::core::Sites;
 use super::error::{Slopes, decided, exceeds};
+use super::lattice::Lattice;
 use crate::data::Surface;
 use crate::terrain::Tin;
 use crate::triangulation::Location;
@@ -26,7 +27,7 @@ pub(super) struct Distances {
 pub(super) fn measure(sites: &Sites, tin: &Tin, site_of: &[u32], bound: f64) -> Distances {
     let (errors, mut beyond) = match sites {
         Sites::Scattered { positions, order } => of_scattered(positions, order, tin, bound),
-        Sites::Lattice { .. } => of_lattice(sites, tin, site_of, bound),
+        Sites::Lattice { lattice, .. } => of_lattice(sites, lattice, tin, site_of, bound),
     };
     beyond.sort_unstable();
     beyond.dedup();
@@ -59,7 +60,8 @@ fn distance(corners: [[f64; 3]; 3], q: [f64; 3], bound: f64) -> f64 {
     decided(error, uncertainty, bound, || exceeds(corners, q, bound))
 }
 
-/// The errors of sites, in an order in which each is near to the one before.
+/// The errors of sites, in an order in which each is near to the one before, and the sites beyond
+/// the bound.
 fn of_scattered(
     positions: &[[f64; 3]],
     order: &[u32],
@@ -92,10 +94,15 @@ fn of_scattered(
     (errors, beyond)
 }
 
-fn of_lattice(sites: &Sites, tin: &Tin, site_of: &[u32], bound: f64) -> (Vec<f64>, Vec<u32>) {
-    let Sites::Lattice { lattice, .. } = sites else {
-        return (Vec::new(), Vec::new());
-    };
+/// The errors of the cells of a lattice, by the columns of each face, and the cells beyond the
+/// bound.
+fn of_lattice(
+    sites: &Sites,
+    lattice: &Lattice,
+    tin: &Tin,
+    site_of: &[u32],
+    bound: f64,
+) -> (Vec<f64>, Vec<u32>) {
     // A cell on an edge is measured twice; the larger one counts, whoever comes first.
     let errors: Vec<AtomicU64> = (0..lattice.heights.len())
         .map(|_| AtomicU64::new(0))
