@@ -190,6 +190,14 @@ impl<'a> Mesh<'a> {
         }
     }
 
+    /// The site after another one in its list; `NONE` at the end, and on a lattice.
+    pub(super) fn after(&self, site: u32) -> u32 {
+        match &self.hidden {
+            Hidden::Lattice(_) => NONE,
+            Hidden::Lists { next, .. } => next[site as usize],
+        }
+    }
+
     /// Hides a site in a triangle that contains it.
     pub(super) fn hide(&mut self, cell: u32, site: u32) {
         if let Hidden::Lists { first, next } = &mut self.hidden {
@@ -457,10 +465,7 @@ impl<'a> Mesh<'a> {
         let mut at = fan[0];
         while list != NONE {
             let q = list;
-            list = match &self.hidden {
-                Hidden::Lists { next, .. } => next[q as usize],
-                Hidden::Lattice(_) => NONE,
-            };
+            list = self.after(q);
             at = self.turn_to(at, q);
             self.hide(at, q);
         }

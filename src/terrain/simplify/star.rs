@@ -353,6 +353,7 @@ impl Mesh<'_> {
         self.distribute(list, vertex, star, &new);
     }
 
+    /// Distributes a vertex that was removed, and a list, among the triangles that fill its star.
     fn distribute(&mut self, mut list: u32, vertex: u32, star: &Star, new: &[u32]) {
         if let Hidden::Lattice(_) = self.hidden {
             return;
@@ -369,9 +370,7 @@ impl Mesh<'_> {
                 return;
             }
             site = list;
-            if let Hidden::Lists { next, .. } = &self.hidden {
-                list = next[site as usize];
-            }
+            list = self.after(site);
         }
     }
 }
