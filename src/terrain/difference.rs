@@ -58,7 +58,7 @@ impl<A: BlockSource, B: BlockSource> BlockSource for Difference<A, B> {
 pub struct LargeDifference {
     /// The center of the cell.
     pub at: [f64; 2],
-    /// Its value.
+    /// The value of the cell, in the unit of the raster.
     pub value: f64,
 }
 

@@ -23,7 +23,7 @@ pub struct SectionWidths {
 /// between those of both segments.
 ///
 /// # Complexity
-/// O(log n) for each section of an axis of n vertices.
+/// O(n + m log n) for m sections across an axis of n vertices.
 pub fn sections(
     axis: &[[f64; 2]],
     distances: &[f64],

@@ -120,7 +120,7 @@ impl ErrorStatistics {
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Histogram {
-    /// Where the first bin begins: a multiple of the width.
+    /// Where the first bin begins, in the unit of the values: a multiple of the width.
     pub start: f64,
     /// The width of each bin: 1, 2 or 5 times a power of ten.
     pub width: f64,
@@ -130,6 +130,9 @@ pub struct Histogram {
 
 impl Histogram {
     /// Returns at most 21 bins for all values; `None` if there are no values, or one is not finite.
+    ///
+    /// # Complexity
+    /// Linear.
     pub fn of(values: &[f64]) -> Option<Self> {
         let low = values.iter().copied().reduce(f64::min)?;
         let high = values.iter().copied().fold(low, f64::max);

@@ -69,12 +69,11 @@ pub struct SimplifyReport {
     pub sites: usize,
     /// The vertices of the surface.
     pub vertices: usize,
-    /// The bound that holds for each of the heights.
+    /// The bound that holds for each of the heights, in units of height.
     pub bound: f64,
-    /// The largest distance of a height from the surface, and the root of the mean of their
-    /// squares, in units of height.
+    /// The largest distance of a height from the surface, in units of height.
     pub largest: f64,
-    /// The root of the mean square of the distances.
+    /// The root of the mean square of the distances, in units of height.
     pub root_mean_square: f64,
     /// The vertices on lines that were given, and those of them that are left. The rim does not
     /// count.
@@ -113,7 +112,10 @@ pub fn simplify(
 /// around the cells with heights, as in contours of a raster.
 ///
 /// # Errors
-/// Those of [`simplify`], and if the raster is rotated or too large.
+/// Those of [`simplify`], and if the raster is rotated, has no cells or is too large.
+///
+/// # Complexity
+/// O(n log n) for n cells in practice; the blocks on all threads.
 pub fn simplify_cells(
     grid: &Grid,
     rule: &SimplifyRule,

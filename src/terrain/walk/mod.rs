@@ -80,7 +80,11 @@ impl<'a> Locator<'a> {
         steps.point(at, q).map(|[_, _, z]| z)
     }
 
-    /// Returns a face at a position: one of those around it, if it is on an edge or at a vertex.
+    /// Returns a face at a position: one of those around it, if it is on an edge or at a vertex;
+    /// `None` outside of the surface, or if a coordinate is not finite.
+    ///
+    /// # Complexity
+    /// That of [`height`](Self::height).
     pub fn face(&self, q: [f64; 2]) -> Option<u32> {
         match self.locate(q, &mut Steps::new(self.surface)) {
             At::Off => None,
@@ -93,7 +97,11 @@ impl<'a> Locator<'a> {
         }
     }
 
-    /// Returns how much the height grows per unit of x and of y on the face at a position.
+    /// Returns how much the height grows per unit of x and of y on the [face](Self::face) at a
+    /// position; `None` if there is none. Not finite on a face without area.
+    ///
+    /// # Complexity
+    /// That of [`height`](Self::height).
     pub fn gradient(&self, q: [f64; 2]) -> Option<[f64; 2]> {
         let [a, b, c] = self.surface.triangle(self.face(q)?)?;
         let [u, v] = [b, c].map(|p| [0, 1, 2].map(|k| p[k] - a[k]));
