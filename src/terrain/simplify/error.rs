@@ -124,8 +124,9 @@ impl Slopes {
     }
 }
 
+/// Returns the larger of two numbers; the second one if one is NaN.
 #[inline(always)]
-fn larger(a: f64, b: f64) -> f64 {
+pub(super) fn larger(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
 

@@ -1,6 +1,6 @@
 //! Points on a lattice: the cells of a raster, found by columns instead of lists.
 
-use super::error::{Slopes, Worst};
+use super::error::{Slopes, Worst, larger};
 
 /// Heights at all positions of a lattice, column by column, each from the south. The number of a
 /// site is its position in this list. NaN is a cell without a height.
@@ -34,21 +34,13 @@ impl Column<'_> {
         for four in fours {
             for lane in 0..4 {
                 let error = (four[lane] - (self.base + self.step * at[lane])).abs();
-                largest[lane] = if error > largest[lane] {
-                    error
-                } else {
-                    largest[lane]
-                };
+                largest[lane] = larger(error, largest[lane]);
                 at[lane] += 4.0;
             }
         }
         for (lane, z) in rest.iter().enumerate() {
             let error = (z - (self.base + self.step * at[lane])).abs();
-            largest[lane] = if error > largest[lane] {
-                error
-            } else {
-                largest[lane]
-            };
+            largest[lane] = larger(error, largest[lane]);
         }
         largest.into_iter().fold(0.0, f64::max)
     }
