@@ -7,7 +7,8 @@ use crate::crs::Crs;
 use crate::data::{BlockSource, Frame, Window};
 use crate::error::{Error, Result};
 
-/// How many cells two [places](largest_differences) are apart, at least, along one axis.
+/// How many cells two [largest differences](largest_differences) are apart, at least, along one
+/// axis.
 const APART: usize = 8;
 
 /// The cells of a raster minus those of another one with the same frame; NaN where either is.
@@ -106,7 +107,7 @@ pub fn largest_differences(frame: &Frame, cells: &[f64], count: usize) -> Vec<La
 /// ones, the first cell is the largest.
 type Candidate = (u64, Reverse<usize>);
 
-/// A raster in squares as wide as places are apart.
+/// A raster in squares as wide as two largest differences are apart at least.
 struct Squares<'a> {
     width: usize,
     height: usize,

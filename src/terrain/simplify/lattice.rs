@@ -53,11 +53,15 @@ impl Lattice {
         [(site / self.rows) as i32, (site % self.rows) as i32]
     }
 
-    /// Calls a function with the columns of a triangle, from west to east, its edges included,
-    /// until it returns false. Returns a bound of rounding errors, or the first site strictly
-    /// inside of a triangle without an area, which cannot be judged.
+    /// Calls a function with each column of a triangle, from west to east, until it returns false.
+    /// Sites on edges belong to the columns. The second argument is a bound of the rounding errors
+    /// of [`Column::residual`].
     ///
-    /// Corners are sorted: the result is the same for all orders of them.
+    /// The corners may be in any order; the result does not depend on it.
+    ///
+    /// # Errors
+    /// If the triangle has no area, so that nothing can be measured: the first site on it that is
+    /// none of its corners, if there is any.
     #[inline]
     pub(super) fn columns(
         &self,
@@ -113,8 +117,8 @@ impl Lattice {
         Ok(())
     }
 
-    /// The first site on the segment between the first and the last of three sites in a row that is
-    /// none of them.
+    /// The first site with a height between the first and the last of three sites on a line, except
+    /// the one in the middle.
     fn between(&self, [a, b, c]: [u32; 3]) -> Option<u32> {
         let [p, r] = [a, c].map(|site| self.position(site));
         let (dx, dy) = (r[0] - p[0], r[1] - p[1]);

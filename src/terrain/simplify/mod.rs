@@ -86,10 +86,11 @@ const TRIES: usize = 24;
 /// How near to a number of vertices is near enough, as a share of it.
 const NEAR: f64 = 0.01;
 
-/// Simplifies a surface of triangles. Its lines and its rim stay: of a line, vertices are removed
-/// that are within the tolerance of what is left of it, and no point changes sides; of the rim,
-/// those that are exactly on it.
+/// Simplifies a surface of triangles. Its lines and its rim stay, with fewer vertices.
 ///
+/// A vertex of a line is removed only if it is within the tolerance of what is left of the line,
+/// and no point changes sides. A vertex of the rim is removed only if it is exactly on what is left
+/// of the rim.
 /// The bound holds at all vertices of the surface.
 ///
 /// # Errors
