@@ -1,4 +1,4 @@
-//! Heights on a triangle, linear between its corners.
+//! Heights and gradients on a triangle, linear between its corners.
 
 use crate::triangulation::geometry::height_along;
 
@@ -21,6 +21,19 @@ pub(super) fn linear([a, b, c]: [[f64; 3]; 3], q: [f64; 2]) -> f64 {
         return along_sliver([a, b, c], q);
     }
     a[2] + (at_b * (b[2] - a[2]) + at_c * (c[2] - a[2])) / area
+}
+
+/// Returns the rise of a triangle per unit of x and of y; not finite if it has no area.
+///
+/// Rounding depends on the order of the corners.
+#[inline]
+pub(super) fn gradient([a, b, c]: [[f64; 3]; 3]) -> [f64; 2] {
+    let [u, v] = [b, c].map(|p| [0, 1, 2].map(|k| p[k] - a[k]));
+    let area = u[0] * v[1] - u[1] * v[0];
+    [
+        (u[2] * v[1] - v[2] * u[1]) / area,
+        (u[0] * v[2] - v[0] * u[2]) / area,
+    ]
 }
 
 /// The height at `q` on a sliver, interpolated along its two shorter sides.

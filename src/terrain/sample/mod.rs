@@ -10,9 +10,11 @@ pub(crate) use self::curve::along_curve;
 use super::admitted::searched;
 use super::boxes::{Boxes, LocatedFace};
 use super::interpolate::{Interpolant, Method, QueryBuffers};
+use super::linear;
 use super::rasterize::height_at;
 use crate::data::Surface;
 use crate::error::Result;
+use crate::triangulation::num::unsigned_zero;
 
 /// Positions that a thread takes at a time.
 const BATCH: usize = 1 << 12;
@@ -226,14 +228,8 @@ fn gradient(mut corners: [[f64; 3]; 3]) -> [f64; 2] {
             .partial_cmp(&(q[0], q[1]))
             .unwrap_or(std::cmp::Ordering::Equal)
     });
-    let [a, b, c] = corners;
-    let [u, v] = [b, c].map(|p| [0, 1, 2].map(|k| p[k] - a[k]));
-    let area = u[0] * v[1] - u[1] * v[0];
     // A level triangle has 0, not -0.0.
-    [
-        (u[2] * v[1] - v[2] * u[1]) / area + 0.0,
-        (u[0] * v[2] - v[0] * u[2]) / area + 0.0,
-    ]
+    linear::gradient(corners).map(unsigned_zero)
 }
 
 /// Returns the steeper of two gradients; of two that are equally steep, the smaller one. One that

@@ -14,6 +14,7 @@ use self::segment::Segment;
 use self::step::{At, Steps};
 pub(crate) use self::stepped::stepped;
 use super::boxes::Boxes;
+use super::linear::gradient;
 use crate::data::{LinePoint, Stretch, Surface};
 use crate::error::{Error, Result};
 
@@ -103,13 +104,7 @@ impl<'a> Locator<'a> {
     /// # Complexity
     /// That of [`height`](Self::height).
     pub fn gradient(&self, q: [f64; 2]) -> Option<[f64; 2]> {
-        let [a, b, c] = self.surface.triangle(self.face(q)?)?;
-        let [u, v] = [b, c].map(|p| [0, 1, 2].map(|k| p[k] - a[k]));
-        let area = u[0] * v[1] - u[1] * v[0];
-        Some([
-            (u[2] * v[1] - v[2] * u[1]) / area,
-            (u[0] * v[2] - v[0] * u[2]) / area,
-        ])
+        self.surface.triangle(self.face(q)?).map(gradient)
     }
 
     /// Returns the parts of a line that are on the surface, in order.
