@@ -195,12 +195,12 @@ pub fn accuracy(
 ) -> Result<AccuracyProduct> {
     let journal = Journal::new(context);
     context.check()?;
-    let read = Checkpoints::read(checkpoints, options, &journal)?;
-    let checkpoints = checkpoints.path();
+    let mut read = Checkpoints::read(checkpoints, options, &journal)?;
+    let path = checkpoints.path();
     let stated = [
         surface.stated(&options.surface),
         Stated {
-            path: checkpoints.to_path_buf(),
+            path: path.to_path_buf(),
             crs: read.crs.clone(),
             unread: read.unread_crs.clone(),
             role: Role::Ground,
@@ -210,79 +210,11 @@ pub fn accuracy(
     if let Some(notice) = surface.unread_by(options.method) {
         journal.add(notice);
     }
-    let mut rows = read.rows;
-    if rows.is_empty() {
-        return Err(Error::format("the file has no points").in_file(checkpoints));
-    }
-    let is_finite = |row: &&CheckpointRow| row.point.iter().all(|c| c.is_finite());
-    if let Some(row) = rows.iter().find(|row| !is_finite(row)) {
-        return Err(
-            Error::format("the checkpoint has no height, or is not finite")
-                .at(format!("{} {}", read.counted_by, row.number))
-                .in_file(checkpoints)
-                .cure("leave it out; if a field of a layer has the heights, name it: FILE:FIELD"),
-        );
-    }
-    check_groups(&rows, &options.vegetated, checkpoints)?;
-    let work = journal.start(Stage::ComputingHeights, Size::Items(rows.len() as u64))?;
-    let positions: Vec<[f64; 2]> = rows
-        .iter()
-        .map(|row| [row.point[0], row.point[1]])
-        .collect();
-    let samples = surface.with_faces(context, |faces| {
-        Sampler::new(faces, options.method)?.samples(&positions)
-    })?;
-    for (row, sample) in rows.iter_mut().zip(samples) {
-        row.surface = sample.height;
-    }
-    work.add(rows.len() as u64)?;
-    work.end()?;
-    let outside: Vec<u64> = rows
-        .iter()
-        .filter(|row| row.surface.is_nan())
-        .map(|row| row.number)
-        .collect();
-    if outside.len() == rows.len() {
-        return Err(none_inside(
-            rows.len() as u64,
-            checkpoints,
-            &options.surface,
-        ));
-    }
-    if !outside.is_empty() {
-        journal.add(Notice::CheckpointsOutside {
-            path: checkpoints.to_path_buf(),
-            counted_by: read.counted_by,
-            numbers: outside,
-        });
-    }
+    read.check(&options.vegetated, path)?;
+    read.sample(surface, path, options, &journal)?;
     let scale = Scale::new(crs.as_ref(), options, &journal);
-    let assessment = Assessment::new(&rows, &options.vegetated, scale.checkpoint_error);
-    let decisive = assessment.decisive();
-    let tested = assessment.accuracy(decisive.clone());
-    if let Some(tested) = &tested
-        && tested.statistics.count < FEWEST
-    {
-        journal.add(Notice::FewCheckpoints(tested.statistics.count));
-    }
-    let decision = match (scale.class, tested) {
-        (None, _) => None,
-        (Some(limit), Some(SetAccuracy { set, rmse, .. })) => {
-            Some(ClassDecision { limit, set, rmse })
-        }
-        (Some(_), None) => {
-            return Err(Error::usage(
-                "no checkpoint outside of vegetation is on the surface: nothing decides",
-            )
-            .in_file(checkpoints)
-            .cure(wording![
-                "name fewer groups with ",
-                Setting::Vegetated,
-                ", or leave out ",
-                Setting::AccuracyClass
-            ]));
-        }
-    };
+    let assessment = Assessment::new(&read.rows, &options.vegetated, scale.checkpoint_error);
+    let decision = decide(&assessment, scale.class, path, &journal)?;
     let differences: Vec<f64> = assessment.differences(&CheckpointSet::All);
     Ok(AccuracyProduct {
         counted_by: read.counted_by,
@@ -291,9 +223,43 @@ pub fn accuracy(
         decision,
         checkpoint_error: scale.checkpoint_error,
         unit: scale.unit,
-        rows,
+        rows: read.rows,
         notices: journal.take(),
     })
+}
+
+/// Returns whether the class is met; `None` if there is no class. Few checkpoints are a notice.
+///
+/// # Errors
+/// If there is a class, and none of the checkpoints that decide is on the surface.
+fn decide(
+    assessment: &Assessment<'_>,
+    class: Option<f64>,
+    path: &Path,
+    journal: &Journal,
+) -> Result<Option<ClassDecision>> {
+    let tested = assessment.accuracy(assessment.decisive());
+    if let Some(tested) = &tested
+        && tested.statistics.count < FEWEST
+    {
+        journal.add(Notice::FewCheckpoints(tested.statistics.count));
+    }
+    match (class, tested) {
+        (None, _) => Ok(None),
+        (Some(limit), Some(SetAccuracy { set, rmse, .. })) => {
+            Ok(Some(ClassDecision { limit, set, rmse }))
+        }
+        (Some(_), None) => Err(Error::usage(
+            "no checkpoint outside of vegetation is on the surface: nothing decides",
+        )
+        .in_file(path)
+        .cure(wording![
+            "name fewer groups with ",
+            Setting::Vegetated,
+            ", or leave out ",
+            Setting::AccuracyClass
+        ])),
+    }
 }
 
 /// The checkpoints of a file.
@@ -500,6 +466,71 @@ impl Checkpoints {
             unread_crs,
         };
         Ok((read, before))
+    }
+
+    /// Returns an error if there are no checkpoints, one is not finite, or a group in vegetation
+    /// has none.
+    fn check(&self, vegetated: &[String], path: &Path) -> Result<()> {
+        if self.rows.is_empty() {
+            return Err(Error::format("the file has no points").in_file(path));
+        }
+        let is_finite = |row: &&CheckpointRow| row.point.iter().all(|c| c.is_finite());
+        if let Some(row) = self.rows.iter().find(|row| !is_finite(row)) {
+            return Err(
+                Error::format("the checkpoint has no height, or is not finite")
+                    .at(format!("{} {}", self.counted_by, row.number))
+                    .in_file(path)
+                    .cure(
+                        "leave it out; if a field of a layer has the heights, name it: FILE:FIELD",
+                    ),
+            );
+        }
+        check_groups(&self.rows, vegetated, path)
+    }
+
+    /// Computes the height of the surface at each checkpoint. Checkpoints outside are a notice.
+    ///
+    /// # Errors
+    /// If all are outside, the surface is damaged, or the run is canceled.
+    fn sample(
+        &mut self,
+        surface: &SurfaceProduct,
+        path: &Path,
+        options: &AccuracyOptions,
+        journal: &Journal,
+    ) -> Result<()> {
+        let count = self.rows.len() as u64;
+        let work = journal.start(Stage::ComputingHeights, Size::Items(count))?;
+        let positions: Vec<[f64; 2]> = self
+            .rows
+            .iter()
+            .map(|row| [row.point[0], row.point[1]])
+            .collect();
+        let samples = surface.with_faces(&journal.context, |faces| {
+            Sampler::new(faces, options.method)?.samples(&positions)
+        })?;
+        for (row, sample) in self.rows.iter_mut().zip(samples) {
+            row.surface = sample.height;
+        }
+        work.add(count)?;
+        work.end()?;
+        let outside: Vec<u64> = self
+            .rows
+            .iter()
+            .filter(|row| row.surface.is_nan())
+            .map(|row| row.number)
+            .collect();
+        if outside.len() == self.rows.len() {
+            return Err(none_inside(count, path, &options.surface));
+        }
+        if !outside.is_empty() {
+            journal.add(Notice::CheckpointsOutside {
+                path: path.to_path_buf(),
+                counted_by: self.counted_by,
+                numbers: outside,
+            });
+        }
+        Ok(())
     }
 }
 
