@@ -65,94 +65,120 @@ fn plot(
     layout: &Layout,
     top: f64,
 ) -> f64 {
+    let title = profiles.title(profile);
+    let title_at = [MARGINS[0], top - 10.0];
     if profile.heights().is_none() {
-        let at = [MARGINS[0], top - 10.0];
-        text(
-            body,
-            "name",
-            at,
-            "start",
-            &format!("{}: not on a surface", profiles.title(profile)),
-        );
+        let title = format!("{title}: not on a surface");
+        text(body, "name", title_at, "start", &title);
         return 0.0;
     }
-    let axes = layout.axes(profile);
-    let Axes { heights, range } = axes;
-    let scale = WIDTH / layout.width;
-    let height = (heights[1] - heights[0]) * layout.height_scale * scale;
-    let x = |along: f64| MARGINS[0] + (along - range[0]) * scale;
-    let y = |z: f64| top + (heights[1] - z) * layout.height_scale * scale;
-    let (left, right, bottom) = (x(range[0]), x(range[1]), top + height);
-    let [plan_unit, height_unit] = profiles.units.each_ref().map(Option::as_deref);
+    let plot = Plot {
+        axes: layout.axes(profile),
+        layout,
+        top,
+    };
+    text(body, "name", title_at, "start", &title);
+    let note = layout.note(&plot.axes, profiles.units[1].as_deref());
+    let note_at = [MARGINS[0] + WIDTH, top - 10.0];
+    text(body, "note", note_at, "end", &note);
+    plot.draw_grid(body, profile);
+    plot.draw_surfaces(body, profile);
+    plot.draw_names(body, profiles, profile);
+    plot.height()
+}
 
-    text(
-        body,
-        "name",
-        [left, top - 10.0],
-        "start",
-        &profiles.title(profile),
-    );
-    let note = layout.note(&axes, height_unit);
-    text(body, "note", [MARGINS[0] + WIDTH, top - 10.0], "end", &note);
-    for z in layout.lines(1, heights) {
-        line(body, "grid", [left, y(z)], [right, y(z)]);
-        text(
+/// A plot: maps distances and heights to positions in the drawing.
+struct Plot<'a> {
+    layout: &'a Layout,
+    axes: Axes,
+    top: f64,
+}
+
+impl Plot<'_> {
+    fn scale(&self) -> f64 {
+        WIDTH / self.layout.width
+    }
+
+    fn x(&self, along: f64) -> f64 {
+        MARGINS[0] + (along - self.axes.range[0]) * self.scale()
+    }
+
+    fn y(&self, z: f64) -> f64 {
+        self.top + (self.axes.heights[1] - z) * self.layout.height_scale * self.scale()
+    }
+
+    fn height(&self) -> f64 {
+        let [low, high] = self.axes.heights;
+        (high - low) * self.layout.height_scale * self.scale()
+    }
+
+    /// Returns the borders: left, right and bottom.
+    fn borders(&self) -> [f64; 3] {
+        let [left, right] = self.axes.range.map(|along| self.x(along));
+        [left, right, self.top + self.height()]
+    }
+
+    /// Draws the lines of the grid with their numbers, and the frame over them.
+    fn draw_grid(&self, body: &mut String, profile: &Profile) {
+        let Plot { layout, axes, top } = self;
+        let [left, right, bottom] = self.borders();
+        for z in layout.lines(1, axes.heights) {
+            let y = self.y(z);
+            line(body, "grid", [left, y], [right, y]);
+            let at = [left - 8.0, y + 4.0];
+            text(body, "number", at, "end", &layout.label(1, z));
+        }
+        for along in layout.lines(0, axes.range) {
+            let x = self.x(along);
+            let is_axis = profile.station.is_some() && along == 0.0;
+            let class = if is_axis { "zero" } else { "grid" };
+            line(body, class, [x, *top], [x, bottom]);
+            let at = [x, bottom + 17.0];
+            text(body, "number", at, "middle", &layout.label(0, along));
+        }
+        let (width, down) = (right - left, bottom - top);
+        let _ = writeln!(
             body,
-            "number",
-            [left - 8.0, y(z) + 4.0],
-            "end",
-            &layout.label(1, z),
+            "<rect class=\"axis\" x=\"{left:.2}\" y=\"{top:.2}\" width=\"{width:.2}\" height=\"{down:.2}\"/>"
         );
     }
-    for along in layout.lines(0, range) {
-        let is_axis = profile.station.is_some() && along == 0.0;
-        let class = if is_axis { "zero" } else { "grid" };
-        line(body, class, [x(along), top], [x(along), bottom]);
-        text(
-            body,
-            "number",
-            [x(along), bottom + 17.0],
-            "middle",
-            &layout.label(0, along),
-        );
-    }
-    let (width, down) = (right - left, bottom - top);
-    let _ = writeln!(
-        body,
-        "<rect class=\"axis\" x=\"{left:.2}\" y=\"{top:.2}\" width=\"{width:.2}\" height=\"{down:.2}\"/>"
-    );
-    for (number, stretches) in profile.stretches.iter().enumerate() {
-        let look = look(number);
-        for stretch in stretches {
-            let mut points = String::new();
-            for point in stretch {
-                let _ = write!(points, "{:.2},{:.2} ", x(point.along), y(point.at[2]));
+
+    /// Draws the stretches of each surface.
+    fn draw_surfaces(&self, body: &mut String, profile: &Profile) {
+        for (number, stretches) in profile.stretches.iter().enumerate() {
+            let look = look(number);
+            for stretch in stretches {
+                let mut points = String::new();
+                for point in stretch {
+                    let (x, y) = (self.x(point.along), self.y(point.at[2]));
+                    let _ = write!(points, "{x:.2},{y:.2} ");
+                }
+                let points = points.trim_end();
+                let _ = writeln!(
+                    body,
+                    "<polyline class=\"ground\"{look} points=\"{points}\"/>"
+                );
             }
-            let points = points.trim_end();
-            let _ = writeln!(
-                body,
-                "<polyline class=\"ground\"{look} points=\"{points}\"/>"
-            );
         }
     }
-    let what = match profile.station {
-        Some(_) => "distance from the axis, negative to the left",
-        None => "distance along the line",
-    };
-    text(
-        body,
-        "what",
-        [(left + right) / 2.0, bottom + 36.0],
-        "middle",
-        &with_unit(what, plan_unit),
-    );
-    let (x, y) = (left - 62.0, (top + bottom) / 2.0);
-    let _ = writeln!(
-        body,
-        "<text text-anchor=\"middle\" transform=\"translate({x:.2} {y:.2}) rotate(-90)\">{}</text>",
-        escaped(&with_unit("height", height_unit))
-    );
-    height
+
+    /// Draws what the numbers at both axes are.
+    fn draw_names(&self, body: &mut String, profiles: &Profiles, profile: &Profile) {
+        let [left, right, bottom] = self.borders();
+        let [plan_unit, height_unit] = profiles.units.each_ref().map(Option::as_deref);
+        let what = match profile.station {
+            Some(_) => "distance from the axis, negative to the left",
+            None => "distance along the line",
+        };
+        let at = [(left + right) / 2.0, bottom + 36.0];
+        text(body, "what", at, "middle", &with_unit(what, plan_unit));
+        let (x, y) = (left - 62.0, (self.top + bottom) / 2.0);
+        let _ = writeln!(
+            body,
+            "<text text-anchor=\"middle\" transform=\"translate({x:.2} {y:.2}) rotate(-90)\">{}</text>",
+            escaped(&with_unit("height", height_unit))
+        );
+    }
 }
 
 /// Returns the attributes for the line of a surface.
