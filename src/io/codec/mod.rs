@@ -1,5 +1,5 @@
 //! One file or folder for each format, and what several of them share: the summary of contours, the
-//! listing of a surface, world files.
+//! listing of a surface, world files, escapes of XML.
 
 pub(crate) mod contour_summary;
 pub(crate) mod dxf;
@@ -20,3 +20,4 @@ pub mod text;
 pub(crate) mod tin;
 pub mod triangle;
 pub(crate) mod world_file;
+mod xml;

@@ -5,14 +5,7 @@ use std::path::{Path, PathBuf};
 
 use crate::crs::Crs;
 use crate::error::{Error, Result};
-
-/// Characters and their escapes in XML; `&` is replaced first when writing, last when reading.
-const ESCAPES: [(&str, &str); 4] = [
-    ("&", "&amp;"),
-    ("<", "&lt;"),
-    (">", "&gt;"),
-    ("\"", "&quot;"),
-];
+use crate::io::codec::xml::{escaped, unescaped};
 
 /// Limit for the bytes of the file; a larger one contains statistics, which are not used.
 const MAX_BYTES: u64 = 1 << 20;
@@ -26,11 +19,7 @@ pub(crate) fn path_of(picture: &Path) -> PathBuf {
 
 /// Returns the text of an auxiliary file that states the coordinate system, with x before y.
 pub(crate) fn text(crs: &Crs) -> String {
-    let wkt = ESCAPES
-        .iter()
-        .fold(crs.to_wkt(), |text, (character, escape)| {
-            text.replace(character, escape)
-        });
+    let wkt = escaped(&crs.to_wkt());
     format!("<PAMDataset>\n  <SRS dataAxisToSRSAxisMapping=\"1,2\">{wkt}</SRS>\n</PAMDataset>\n")
 }
 
@@ -53,13 +42,7 @@ pub(crate) fn read_beside(picture: &Path) -> Result<Option<Crs>> {
             .split_once('>')
             .and_then(|(_, rest)| rest.split_once("</SRS>"));
         let (wkt, _) = wkt.ok_or_else(|| Error::format("the element SRS has no end"))?;
-        let wkt = ESCAPES
-            .iter()
-            .rev()
-            .fold(wkt.to_owned(), |text, (character, escape)| {
-                text.replace(escape, character)
-            });
-        Crs::from_user(&wkt).map(Some)
+        Crs::from_user(&unescaped(wkt)).map(Some)
     };
     read().map_err(|e: Error| e.in_file(&path))
 }

@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use super::layout::{Axes, Layout};
 use crate::data::{Profile, Profiles};
+use crate::io::codec::xml;
 
 /// The width of the drawing area of the longest line, in pixels.
 const WIDTH: f64 = 880.0;
@@ -211,16 +212,6 @@ fn with_unit(what: &str, unit: Option<&str>) -> String {
 
 /// Returns a text for XML. Characters that XML does not have are left out.
 fn escaped(text: &str) -> String {
-    let mut found = String::new();
-    for c in text.chars() {
-        match c {
-            '&' => found += "&amp;",
-            '<' => found += "&lt;",
-            '>' => found += "&gt;",
-            '"' => found += "&quot;",
-            c if c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}') => {}
-            c => found.push(c),
-        }
-    }
-    found
+    let is_allowed = |c: &char| !(c.is_control() || matches!(*c, '\u{fffe}' | '\u{ffff}'));
+    xml::escaped(&text.chars().filter(is_allowed).collect::<String>())
 }
