@@ -5,6 +5,7 @@ use clap::Args;
 use super::parse::positive;
 use super::surface::SurfaceArgs;
 use super::verbs::{FrameArgs, MethodArg};
+use crate::run::CompareOptions;
 
 /// Difference of two surfaces: in numbers, in cells, and where it is largest
 ///
@@ -25,7 +26,7 @@ pub(crate) struct CompareArgs {
     #[arg(
         long,
         value_name = "N",
-        default_value_t = 10,
+        default_value_t = CompareOptions::WORST,
         help_heading = "Comparison"
     )]
     pub(crate) worst: usize,
