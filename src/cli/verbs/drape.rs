@@ -34,11 +34,7 @@ pub(crate) fn run(args: &DrapeArgs, console: &Console) -> Result<Exit> {
     print_surface(&SurfaceReport::take(&mut surface)?, console);
     let options = DrapeOptions {
         lines: Input::File(args.lines.clone()),
-        // With another system as the target, the assigned one is that of the points alone.
-        assign: match &plan.request.systems.target {
-            None => plan.request.systems.assign.clone(),
-            Some(_) => None,
-        },
+        assign: pair::assigned(&plan),
         step: args.step,
         name: args
             .surface

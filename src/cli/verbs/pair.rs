@@ -1,4 +1,4 @@
-//! A surface and another one, each an input of its own.
+//! What verbs of several surfaces, each an input of its own, have in common.
 
 use std::path::PathBuf;
 
@@ -6,6 +6,7 @@ use crate::cli::input::args::{OutputArgs, SurfaceArgs};
 use crate::cli::input::plan::SurfacePlan;
 use crate::cli::report::console::Console;
 use crate::cli::report::summary::print_surface;
+use crate::crs::Crs;
 use crate::error::{Error, Result};
 use crate::run::{self, Context, SurfaceProduct, SurfaceReport};
 
@@ -24,10 +25,20 @@ pub(super) fn output(file: &Option<PathBuf>, overwrite: bool) -> OutputArgs {
     }
 }
 
-/// Builds or reads each surface, and prints what it is.
+/// Returns the coordinate system of lines that are read with a surface: the assigned one. With
+/// another system as the target, that is of the points alone.
+pub(super) fn assigned(plan: &SurfacePlan) -> Option<Crs> {
+    let systems = &plan.request.systems;
+    match systems.target {
+        None => systems.assign.clone(),
+        Some(_) => None,
+    }
+}
+
+/// Builds or reads each surface, and prints its role and what it is.
 pub(super) fn read(
     plans: &[SurfacePlan],
-    roles: [&str; 2],
+    roles: impl IntoIterator<Item = &'static str>,
     args: &SurfaceArgs,
     console: &Console,
     context: &Context,

@@ -8,15 +8,12 @@ use crate::cli::input::{inputs, outputs};
 use crate::cli::report::console::Console;
 use crate::cli::report::profiles;
 use crate::cli::report::stdout::print;
-use crate::cli::report::summary::print_surface;
 use crate::cli::report::written::commit;
 use crate::error::{Error, Result};
 use crate::io::is_standard_output;
 use crate::io::profiles::PlotOptions;
 use crate::run::targets::PROFILES;
-use crate::run::{
-    self, Input, ProfileOptions, SectionOptions, SectionStations, SurfaceProduct, SurfaceReport,
-};
+use crate::run::{self, Input, ProfileOptions, SectionOptions, SectionStations};
 
 /// Computes heights along lines, or along sections across them.
 pub(crate) fn run(args: &ProfileArgs, console: &Console) -> Result<Exit> {
@@ -24,11 +21,7 @@ pub(crate) fn run(args: &ProfileArgs, console: &Console) -> Result<Exit> {
     require_plots(args)?;
     inputs::require([&args.along])?;
     let plans = SurfacePlan::resolve_each(&args.surface, console)?;
-    let read: Vec<PathBuf> = plans
-        .iter()
-        .flat_map(|plan| plan.targets.with_lists(plan.request.files()))
-        .chain([args.along.clone()])
-        .collect();
+    let read: Vec<PathBuf> = pair::files(&plans).chain([args.along.clone()]).collect();
     let output = OutputArgs {
         output: args.output.clone(),
         overwrite: args.overwrite,
@@ -42,23 +35,11 @@ pub(crate) fn run(args: &ProfileArgs, console: &Console) -> Result<Exit> {
         );
     }
     let context = console.context();
-    let surfaces: Vec<SurfaceProduct> = plans
-        .iter()
-        .zip(&args.surface.inputs)
-        .map(|(plan, input)| {
-            let mut product = run::surface(&plan.request, &context)?;
-            console.line(format_args!("surface     {}", input.display()));
-            print_surface(&SurfaceReport::take(&mut product)?, console);
-            Ok(product)
-        })
-        .collect::<Result<_>>()?;
-    let systems = plans.first().map(|plan| &plan.request.systems);
+    let roles = std::iter::repeat("surface");
+    let surfaces = pair::read(&plans, roles, &args.surface, console, &context)?;
     let options = ProfileOptions {
         along: Input::File(args.along.clone()),
-        // With another system as the target, the assigned one is that of the points alone.
-        assign: systems
-            .filter(|systems| systems.target.is_none())
-            .and_then(|systems| systems.assign.clone()),
+        assign: plans.first().and_then(pair::assigned),
         step: args.step,
         sections,
         names: args.surface.inputs.clone(),
@@ -117,9 +98,7 @@ fn sections(args: &ProfileArgs) -> Result<Option<SectionOptions>> {
     ];
     let given = of_sections.iter().find(|(_, is_given)| *is_given);
     let error = match &at {
-        _ if args.surface.inputs.is_empty() => {
-            Error::usage("the surface is missing").cure("name a file of points, a TIN or a DEM")
-        }
+        _ if args.surface.inputs.is_empty() => pair::no_surface(),
         None if has_widths => Error::usage("--left and --right are for cross-sections")
             .cure("choose where they are with --interval or --stations"),
         None if let Some((option, _)) = given => {

@@ -3,8 +3,9 @@ use std::path::{Path, PathBuf};
 
 use serde_json::json;
 
+use super::pair;
 use crate::cli::Exit;
-use crate::cli::input::args::{OutputArgs, SampleArgs, SurfaceArgs};
+use crate::cli::input::args::{SampleArgs, SurfaceArgs};
 use crate::cli::input::inputs;
 use crate::cli::input::outputs::{self, Format};
 use crate::cli::input::plan::SurfacePlan;
@@ -40,10 +41,7 @@ const fn format(extension: &'static str, companions: &'static [&'static str]) ->
 /// Adds heights and slopes of a surface to points.
 pub(crate) fn run(args: &SampleArgs, console: &Console) -> Result<Exit> {
     let (plan, read) = plan(&args.surface, &args.at, console)?;
-    let output = OutputArgs {
-        output: args.output.iter().cloned().collect(),
-        overwrite: args.overwrite,
-    };
+    let output = pair::output(&args.output, args.overwrite);
     let outputs = outputs::resolve(&output, FORMATS, &read)?;
     let context = console.context();
     let mut surface = run::surface_for(args.method.into(), &plan.request, &context)?;

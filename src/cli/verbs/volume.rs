@@ -36,13 +36,9 @@ pub(crate) fn run(args: &VolumeArgs, console: &Console) -> Result<Exit> {
         _ => VolumeBase::Levels(&levels),
     };
     let named = |i: usize| args.surface.inputs.get(i).cloned().unwrap_or_default();
-    let systems = plans.first().map(|plan| &plan.request.systems);
     let options = VolumeOptions {
         within: args.within.clone().map(Input::File),
-        // With another system as the target, the assigned one is that of the points alone.
-        assign: systems
-            .filter(|systems| systems.target.is_none())
-            .and_then(|systems| systems.assign.clone()),
+        assign: plans.first().and_then(pair::assigned),
         unit: args.unit.map(Into::into),
         bulking: (args.swell.is_some() || args.shrink.is_some()).then(|| Bulking {
             swell: args.swell.unwrap_or(1.0),
