@@ -2,9 +2,7 @@
 
 use std::path::PathBuf;
 
-use breakline::run::{
-    self, AccuracyOptions, AccuracyProduct, CheckpointSet, HeightMeasure, SetAccuracy,
-};
+use breakline::run::{self, AccuracyOptions, AccuracyProduct, HeightMeasure, SetAccuracy};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -88,10 +86,7 @@ fn report<'py>(py: Python<'py>, product: &AccuracyProduct) -> PyResult<Bound<'py
     let decision = product.decision.as_ref();
     found.set_item("limit", decision.map(|decision| decision.limit))?;
     found.set_item("is_met", decision.map(|decision| decision.is_met()))?;
-    found.set_item(
-        "decisive",
-        decision.map(|decision| name_of(&decision.set).0),
-    )?;
+    found.set_item("decisive", decision.map(|decision| decision.set.kind()))?;
     found.set_item("checkpoint_error", product.checkpoint_error)?;
     found.set_item("unit", product.unit.as_ref().map(|unit| &unit.name))?;
     let histogram = product.histogram.as_ref();
@@ -115,21 +110,11 @@ fn report<'py>(py: Python<'py>, product: &AccuracyProduct) -> PyResult<Bound<'py
     Ok(found)
 }
 
-fn name_of(set: &CheckpointSet) -> (&'static str, Option<String>) {
-    match set {
-        CheckpointSet::All => ("all", None),
-        CheckpointSet::NonVegetated => ("non-vegetated", None),
-        CheckpointSet::Vegetated => ("vegetated", None),
-        CheckpointSet::Group(name) => ("group", Some(name.clone())),
-    }
-}
-
 fn set(accuracy: &SetAccuracy) -> Set {
-    let (set, group) = name_of(&accuracy.set);
     let statistics = &accuracy.statistics;
     (
-        set,
-        group,
+        accuracy.set.kind(),
+        accuracy.set.group().map(str::to_owned),
         statistics.count,
         statistics.values(),
         accuracy.rmse,

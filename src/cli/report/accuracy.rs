@@ -51,12 +51,10 @@ pub(crate) fn text(product: &AccuracyProduct) -> String {
 }
 
 fn name(set: &CheckpointSet) -> String {
-    match set {
-        CheckpointSet::All => "all".to_owned(),
-        CheckpointSet::NonVegetated => "non-vegetated".to_owned(),
-        CheckpointSet::Vegetated => "vegetated".to_owned(),
-        CheckpointSet::Group(name) if name.is_empty() => "(no group)".to_owned(),
-        CheckpointSet::Group(name) => name.clone(),
+    match set.group() {
+        None => set.kind().to_owned(),
+        Some("") => "(no group)".to_owned(),
+        Some(name) => name.to_owned(),
     }
 }
 
@@ -181,16 +179,10 @@ pub(crate) fn json(product: &AccuracyProduct) -> String {
 }
 
 fn named(set: &CheckpointSet) -> Map<String, Value> {
-    let (kind, group) = match set {
-        CheckpointSet::All => ("all", None),
-        CheckpointSet::NonVegetated => ("non-vegetated", None),
-        CheckpointSet::Vegetated => ("vegetated", None),
-        CheckpointSet::Group(name) => ("group", Some(name)),
-    };
     let mut object = Map::new();
-    object.insert("set".to_owned(), kind.into());
-    if let Some(name) = group {
-        object.insert("group".to_owned(), name.as_str().into());
+    object.insert("set".to_owned(), set.kind().into());
+    if let Some(name) = set.group() {
+        object.insert("group".to_owned(), name.into());
     }
     object
 }

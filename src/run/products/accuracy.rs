@@ -125,6 +125,26 @@ pub enum CheckpointSet {
     Group(String),
 }
 
+impl CheckpointSet {
+    /// Returns what outputs call it: `all`, `non-vegetated`, `vegetated`, or `group`.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            CheckpointSet::All => "all",
+            CheckpointSet::NonVegetated => "non-vegetated",
+            CheckpointSet::Vegetated => "vegetated",
+            CheckpointSet::Group(_) => "group",
+        }
+    }
+
+    /// Returns the name of the group; `None` if it is not one.
+    pub fn group(&self) -> Option<&str> {
+        match self {
+            CheckpointSet::Group(name) => Some(name.as_str()),
+            CheckpointSet::All | CheckpointSet::NonVegetated | CheckpointSet::Vegetated => None,
+        }
+    }
+}
+
 /// The accuracy by some checkpoints.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
