@@ -250,15 +250,7 @@ fn common_system(
         stated.push(base.stated(of_base));
     }
     for (path, layer) in layers {
-        let of_layer = Stated::by_layer(path, layer);
-        stated.push(match &options.assign {
-            Some(crs) => Stated {
-                crs: Some(crs.clone()),
-                unread: None,
-                ..of_layer
-            },
-            None => of_layer,
-        });
+        stated.push(Stated::by_layer(path, layer).assigned(options.assign.as_ref()));
     }
     Ok(systems::unify(&stated, &SystemOptions::default(), journal)?.crs)
 }

@@ -73,6 +73,18 @@ impl Stated {
         }
     }
 
+    /// Returns this with a coordinate system that is assigned, if any, whatever the file states.
+    pub(crate) fn assigned(self, crs: Option<&Crs>) -> Self {
+        match crs {
+            Some(crs) => Stated {
+                crs: Some(crs.clone()),
+                unread: None,
+                ..self
+            },
+            None => self,
+        }
+    }
+
     /// Returns true if the file states the same system as another one, or neither states any.
     pub(crate) fn agrees_with(&self, other: &Stated) -> bool {
         match (&self.crs, &other.crs) {
