@@ -1,5 +1,6 @@
 //! The values that are added to points.
 
+use std::cell::LazyCell;
 use std::path::Path;
 
 use super::options::{SampleOptions, SampledField};
@@ -95,13 +96,13 @@ impl<'a> Sampling<'a> {
 
     /// Calls a function with each value that is added; NaN if it is missing.
     pub(super) fn each_value(&self, sample: &Sample, mut each: impl FnMut(f64)) {
-        let slope_and_aspect = || sample.slope_and_aspect(self.z_factor, 1.0);
+        let slope_and_aspect = LazyCell::new(|| sample.slope_and_aspect(self.z_factor, 1.0));
         for field in self.add {
             match field {
                 SampledField::Height => each(sample.height),
-                SampledField::Slope => each(slope_and_aspect()[0].atan().to_degrees()),
-                SampledField::SlopePercent => each(100.0 * slope_and_aspect()[0]),
-                SampledField::Aspect => each(slope_and_aspect()[1]),
+                SampledField::Slope => each(slope_and_aspect[0].atan().to_degrees()),
+                SampledField::SlopePercent => each(100.0 * slope_and_aspect[0]),
+                SampledField::Aspect => each(slope_and_aspect[1]),
                 SampledField::Gradient => sample.gradient.into_iter().for_each(&mut each),
             }
         }
