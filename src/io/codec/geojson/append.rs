@@ -81,16 +81,20 @@ impl PointFeatures {
     /// Returns the text with numbers added to the properties of each feature; `null` for NaN.
     /// `numbers` has those of all features, as many for each as there are names.
     pub fn with_numbers(&self, names: &[String], numbers: &[f64]) -> Vec<u8> {
+        let quoted: Vec<String> = names
+            .iter()
+            .map(|name| Value::from(name.as_str()).to_string())
+            .collect();
         let mut out = Vec::with_capacity(self.text.len() + numbers.len() * 32);
         let mut copied = 0;
         for (i, feature) in self.features.iter().enumerate() {
             let of_feature = numbers.iter().skip(i * names.len());
-            let members: Vec<String> = names
+            let members: Vec<String> = quoted
                 .iter()
                 .zip(of_feature)
                 .map(|(name, number)| match number.is_finite() {
-                    true => format!("{}:{number}", Value::from(name.as_str())),
-                    false => format!("{}:null", Value::from(name.as_str())),
+                    true => format!("{name}:{number}"),
+                    false => format!("{name}:null"),
                 })
                 .collect();
             let members = members.join(",");
