@@ -21,17 +21,14 @@ pub(crate) fn write_lines(target: Destination, layer: &Layer) -> error::Result<V
     let vertices = layer.shapes.iter().flat_map(Shape::vertices);
     vertices.for_each(|p| bounds.add(*p));
     let layers = vec![DxfLayer::new("LINES", 7, &mut BTreeSet::new())];
-    let mut output = target.create()?;
-    let write = |out: &mut dyn Write| {
+    target.write_with(|out| {
         let mut drawing = Dxf::begin(out, layers, &bounds)?;
         for line in layer.lines() {
             let height = |z: f64| if z.is_finite() { z } else { 0.0 };
             drawing.polyline(0, line.iter().map(|&[x, y, z]| [x, y, height(z)]))?;
         }
         drawing.end()
-    };
-    write(&mut output).map_err(|e| error::Error::from(e).in_file(target.path()))?;
-    target.put(output)?;
+    })?;
     let has_attributes = layer
         .attributes
         .as_ref()

@@ -234,6 +234,20 @@ impl<'a> Destination<'a> {
         Ok(written)
     }
 
+    /// Creates an output, calls a function that writes it, and takes it.
+    ///
+    /// # Errors
+    /// Those of the function, of [`Output::create`] and of [`OutputSet::commit`].
+    pub(crate) fn write_with<T>(
+        self,
+        write: impl FnOnce(&mut Output) -> std::io::Result<T>,
+    ) -> Result<T> {
+        let mut output = self.create()?;
+        let written = write(&mut output).map_err(|e| Error::from(e).in_file(self.path))?;
+        self.put(output)?;
+        Ok(written)
+    }
+
     /// Takes a complete output.
     ///
     /// # Errors

@@ -5,8 +5,8 @@ use std::io::Write;
 use super::{RECORD, WGS_84};
 use crate::crs::{Crs, CrsKind};
 use crate::data::{ContourLine, Layer, Shape, Value};
-use crate::error::{Error, Result};
-use crate::io::bytes::output::{Destination, Output};
+use crate::error::Result;
+use crate::io::bytes::output::Destination;
 use crate::io::codec::contour_summary::ContourSummary;
 use crate::triangulation::num::unsigned_zero;
 
@@ -26,7 +26,7 @@ pub fn write_contours<'a>(
     lines: &mut dyn Iterator<Item = ContourLine>,
     crs: Option<&Crs>,
 ) -> Result<ContourSummary> {
-    put(target.into(), |out| write(out, lines, crs))
+    Destination::write_with(target.into(), |out| write(out, lines, crs))
 }
 
 /// Writes the lines of a layer as a FeatureCollection of LineStrings and MultiLineStrings, with all
@@ -36,7 +36,7 @@ pub fn write_contours<'a>(
 /// # Errors
 /// As [`write_contours`].
 pub fn write_lines<'a>(target: impl Into<Destination<'a>>, layer: &Layer) -> Result<Vec<String>> {
-    put(target.into(), |out| {
+    Destination::write_with(target.into(), |out| {
         let mut warnings = Vec::new();
         begin(out, layer.crs.as_ref(), &mut warnings)?;
         for record in 0..layer.shapes.len() {
@@ -57,9 +57,9 @@ pub fn write_line_records<'a>(
     target: impl Into<Destination<'a>>,
     layer: &Layer,
 ) -> Result<Vec<String>> {
-    let target = target.into();
+    let target: Destination<'a> = target.into();
     let is_sequence = is_sequence(&target);
-    put(target, |out| {
+    target.write_with(|out| {
         for record in 0..layer.shapes.len() {
             if is_sequence {
                 out.write_all(&[RECORD])?;
@@ -85,9 +85,9 @@ pub fn write_contour_lines<'a>(
     lines: &mut dyn Iterator<Item = ContourLine>,
     crs: Option<&Crs>,
 ) -> Result<ContourSummary> {
-    let target = target.into();
+    let target: Destination<'a> = target.into();
     let is_sequence = is_sequence(&target);
-    put(target, |out| {
+    target.write_with(|out| {
         let mut summary = ContourSummary::default();
         summary.warnings.extend(unstated(crs));
         for line in lines.filter(|line| line.points.len() > 1) {
@@ -100,13 +100,6 @@ pub fn write_contour_lines<'a>(
         }
         Ok(summary)
     })
-}
-
-fn put<T>(target: Destination, write: impl FnOnce(&mut Output) -> std::io::Result<T>) -> Result<T> {
-    let mut output = target.create()?;
-    let written = write(&mut output).map_err(|e| Error::from(e).in_file(target.path()))?;
-    target.put(output)?;
-    Ok(written)
 }
 
 /// Returns true if each record begins with the separator of RFC 8142.

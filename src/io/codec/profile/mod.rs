@@ -9,8 +9,8 @@ use std::io::Write;
 
 use self::layout::Layout;
 use crate::data::Profiles;
-use crate::error::{Error, Result};
-use crate::io::bytes::output::{Destination, Output};
+use crate::error::Result;
+use crate::io::bytes::output::Destination;
 use crate::io::options::plot::PlotOptions;
 
 /// Writes the points of profiles as a table (CSV) of exact numbers.
@@ -18,7 +18,7 @@ use crate::io::options::plot::PlotOptions;
 /// # Errors
 /// If the file cannot be written.
 pub(crate) fn write_csv(target: Destination, profiles: &Profiles) -> Result<()> {
-    put(target, |out| csv::write(out, profiles))
+    target.write_with(|out| csv::write(out, profiles))
 }
 
 /// Draws profiles as a picture (SVG), one below the other.
@@ -32,7 +32,7 @@ pub(crate) fn write_svg(
 ) -> Result<()> {
     let layout = Layout::new(profiles, options).map_err(|e| e.in_file(target.path()))?;
     let drawing = svg::drawing(profiles, &layout, options.title.as_deref());
-    put(target, |out| out.write_all(drawing.as_bytes()))
+    target.write_with(|out| out.write_all(drawing.as_bytes()))
 }
 
 /// Draws profiles as a DXF drawing, one below the other: distances are x, heights y.
@@ -45,13 +45,5 @@ pub(crate) fn write_dxf(
     options: &PlotOptions,
 ) -> Result<()> {
     let layout = Layout::new(profiles, options).map_err(|e| e.in_file(target.path()))?;
-    put(target, |out| {
-        drawing::write(out, profiles, &layout, options.title.as_deref())
-    })
-}
-
-fn put(target: Destination, write: impl FnOnce(&mut Output) -> std::io::Result<()>) -> Result<()> {
-    let mut output = target.create()?;
-    write(&mut output).map_err(|e| Error::from(e).in_file(target.path()))?;
-    target.put(output)
+    target.write_with(|out| drawing::write(out, profiles, &layout, options.title.as_deref()))
 }

@@ -165,12 +165,7 @@ impl Source {
                 let text = features.with_numbers(names, &numbers);
                 match target {
                     SampleTarget::Stream(out) => Ok(out.write_all(&text)?),
-                    SampleTarget::File(target) => {
-                        let mut out = target.create()?;
-                        out.write_all(&text)
-                            .map_err(|e| Error::from(e).in_file(target.path()))?;
-                        target.put(out)
-                    }
+                    SampleTarget::File(target) => target.write_with(|out| out.write_all(&text)),
                 }
             }
             (Source::Lidar(info, source), SampleTarget::File(target)) => {
