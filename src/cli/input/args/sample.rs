@@ -8,12 +8,12 @@ use crate::run::SampledField;
 
 /// Add heights, slopes and gradients of a surface to points
 ///
-/// Each point of --at gets the height of the surface: as one column more of text, one more extra
-/// dimension of LAS or LAZ, field of a shapefile or property of GeoJSON. All that the file has is
-/// kept byte by byte. Heights are those of the cells of a DEM with their centers there. Points
-/// outside of the surface are kept, with empty fields (NaN in LAS, null in GeoJSON). The surface is
-/// a TIN (.tin, .ply, .obj), a DEM (between the centers of its cells) or points, of which a TIN is
-/// built by the options below. Without -o, text goes to stdout.
+/// Each point of --at gets the height of the surface: as a new column of text, extra dimension of
+/// LAS or LAZ, field of a shapefile or property of GeoJSON. All that the file has is kept byte by
+/// byte. Heights are those that a DEM has in cells with their centers at the points. Points outside
+/// of the surface are kept, with empty fields (NaN in LAS, null in GeoJSON). The surface is a TIN
+/// (.tin, .ply, .obj), a DEM (between the centers of its cells) or points, of which a TIN is built
+/// by the options below. Without -o, text goes to stdout.
 #[derive(Debug, Clone, Args)]
 #[command(after_long_help = "\
 Example:

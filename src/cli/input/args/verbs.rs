@@ -211,8 +211,8 @@ pub(crate) struct LimitArgs {
     #[arg(long, value_name = "N", group = "limit")]
     pub(crate) target: Option<u64>,
 
-    /// How far from a line, in plan, its vertices may be that are left out [default: the bound of
-    /// errors; 0 in degrees]
+    /// How far the vertices of a line that are left out may be from it, in plan [default: the bound
+    /// of errors; 0 in degrees]
     ///
     /// No point changes from one side of a line to the other. Lakes stay level and walls stand, and
     /// the outer border of the surface stays where it is.
