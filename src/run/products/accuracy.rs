@@ -207,6 +207,10 @@ pub struct AccuracyProduct {
 /// If the checkpoints cannot be read or have no heights, the field or a group does not exist, the
 /// coordinate systems differ, no checkpoint is on the surface, or none of those that would decide;
 /// if a file is damaged, and if the run is canceled.
+///
+/// # Complexity
+/// That of [`Sampler::samples`], and O(n log n) for the statistics of n checkpoints, which are all
+/// in memory.
 pub fn accuracy(
     surface: &SurfaceProduct,
     checkpoints: &Input<MemoryPoints>,

@@ -50,6 +50,10 @@ pub struct DrapeProduct {
 /// # Errors
 /// If there are no lines or none is on the surface, a coordinate is not finite, the step is not
 /// above zero, the coordinate systems differ, a file is damaged, and if the run is canceled.
+///
+/// # Complexity
+/// That of [`Locator::new`](crate::terrain::Locator::new) for the surface, and of
+/// [`Locator::along`](crate::terrain::Locator::along) for each line, on all threads.
 pub fn drape(
     surface: &SurfaceProduct,
     options: &DrapeOptions,

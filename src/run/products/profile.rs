@@ -94,6 +94,10 @@ type Asked = (PlanLine, Profile);
 /// If there are no lines or none is on any of the surfaces, a coordinate is not finite, a length is
 /// not above zero, a station is beyond its line, the coordinate systems differ or are in degrees
 /// where sections are asked for, a file is damaged, and if the run is canceled.
+///
+/// # Complexity
+/// That of [`Locator::new`](crate::terrain::Locator::new) for each surface, and of
+/// [`Locator::along`](crate::terrain::Locator::along) for each line, on all threads.
 pub fn profile(
     surfaces: &[&SurfaceProduct],
     options: &ProfileOptions,

@@ -18,6 +18,9 @@ use crate::terrain::{SimplifyReport, SimplifyRule, Tin, TinReport, simplify_cell
 /// # Errors
 /// Those of [`simplify`](crate::terrain::simplify()) and [`simplify_cells`], and if a raster in its
 /// file is damaged.
+///
+/// # Complexity
+/// That of [`simplify`](crate::terrain::simplify()).
 pub fn simplify(
     product: &SurfaceProduct,
     rule: &SimplifyRule,

@@ -166,6 +166,10 @@ pub struct VolumeProduct {
 /// If the coordinate systems differ or are in degrees, the unit of the result cannot be known, a
 /// polygon has no area, a level is not finite, the base is the rim and there are no polygons or one
 /// is not on the surface; if a file is damaged, and if the run is canceled.
+///
+/// # Complexity
+/// That of [`terrain::volumes`](crate::terrain::volumes), once for each level, or for each outline
+/// if the base is the rim.
 pub fn volume(
     surface: &SurfaceProduct,
     base: VolumeBase<'_>,
