@@ -13,9 +13,9 @@ use crate::requests::{self, PointInput, ReadArguments};
 use crate::surface::Surface;
 use crate::work::{self, Call};
 
-/// A set of checkpoints, its group, their number, the statistics in the order of the fields in
-/// Python, and the accuracy.
-type Set = (&'static str, Option<String>, usize, [f64; 9], f64);
+/// A set of checkpoints, its group, their number, and the statistics and the accuracy in the order
+/// of the fields in Python.
+type Set = (&'static str, Option<String>, usize, Vec<f64>);
 
 /// A difference of heights: a number in the unit of the data, or a text with a unit.
 #[derive(FromPyObject)]
@@ -112,11 +112,11 @@ fn report<'py>(py: Python<'py>, product: &AccuracyProduct) -> PyResult<Bound<'py
 
 fn set(accuracy: &SetAccuracy) -> Set {
     let statistics = &accuracy.statistics;
+    let numbers = statistics.values().into_iter().chain([accuracy.rmse]);
     (
         accuracy.set.kind(),
         accuracy.set.group().map(str::to_owned),
         statistics.count,
-        statistics.values(),
-        accuracy.rmse,
+        numbers.collect(),
     )
 }

@@ -249,7 +249,7 @@ def test_control_c_ends_a_long_call_before_its_end(tmp_path):
         "def interrupt(*call):\n"
         "    calls.append(call)\n"
         "    os.kill(os.getpid(), signal.SIGINT)\n"
-        "for long_call in (breakline.tin, lambda _, progress: tin.write('x.ply', progress=progress)):\n"
+        "for long_call in (breakline.tin, lambda _, progress: tin.write('x.obj', progress=progress)):\n"
         "    try:\n"
         "        long_call(points, progress=interrupt)\n"
         "    except KeyboardInterrupt:\n"

@@ -241,7 +241,7 @@ def accuracy(
         )
     columns = ("number", "x", "y", "z", "surface_z", "difference", "group")
     rest = {name: value for name, value in report.items() if name not in (*columns, "sets")}
-    sets = [SetAccuracy(kind, group, count, *numbers, rmse) for kind, group, count, numbers, rmse in report["sets"]]
+    sets = [SetAccuracy(kind, group, count, *numbers) for kind, group, count, numbers in report["sets"]]
     return Accuracy(sets=sets, points={name: report[name] for name in columns}, **rest)
 
 
