@@ -174,9 +174,11 @@ def refinements(_, others):
     rim = np.column_stack([np.cos(turns), np.sin(turns)])
     disk = {"vertices": rim, "segments": np.column_stack([np.arange(200), np.roll(np.arange(200), -1)])}
     graphs = {name: theirs.get_data(name) for name in ("A", "double_hex", "double_hex2", "double_hex3", "face", "la")}
-    graphs["disk"] = disk
-    for name, graph in graphs.items():
-        given = {key: graph[key] for key in ("vertices", "segments", "holes") if key in graph}
+    read = ("vertices", "segments", "holes")
+    graphs = {name: {key: graph[key] for key in read if key in graph} for name, graph in graphs.items()}
+    attributes = theirs.get_data("A")["vertex_attributes"]
+    graphs |= {"A, with attributes": {**graphs["A"], "vertex_attributes": attributes}, "disk": disk}
+    for name, given in graphs.items():
         for switches in ("pq20", "pq28", "pq33", "pq30a0.0001" if name == "disk" else ""):
             if switches:
                 yield (
