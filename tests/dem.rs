@@ -1,7 +1,9 @@
 //! The raster of a surface: the values of its cells, independent of everything else.
 
 use breakline::data::{BlockSource, Frame, Grid, Mesh, Surface, Window};
-use breakline::terrain::{Dem, Gradient, Hillshade, Light, Quantity, QuantityMap, Ruggedness};
+use breakline::terrain::{
+    Dem, Gradient, Hillshade, Light, Quantity, QuantityMap, Ruggedness, Shading,
+};
 use rayon::prelude::*;
 use testkit::random::Random;
 
@@ -508,6 +510,31 @@ fn hillshades_are_those_of_gdaldem() {
                 azimuth: 100.0,
                 altitude: 25.0,
                 z_factor: 0.4,
+                ..Light::default()
+            },
+        ),
+        (
+            &["-combined", "-az", "200", "-z", "3"],
+            Light {
+                shading: Shading::Combined,
+                azimuth: 200.0,
+                z_factor: 3.0,
+                ..Light::default()
+            },
+        ),
+        (
+            &["-multidirectional", "-alt", "30"],
+            Light {
+                shading: Shading::Multidirectional,
+                altitude: 30.0,
+                ..Light::default()
+            },
+        ),
+        (
+            &["-igor", "-az", "100"],
+            Light {
+                shading: Shading::Igor,
+                azimuth: 100.0,
                 ..Light::default()
             },
         ),

@@ -10,12 +10,12 @@ use breakline::data::{
 use breakline::io::OnDamage;
 use breakline::io::points;
 use breakline::run::{
-    Degrees, EdgeLimit, FlatOptions, FlatRule, FrameOptions, Input, LineRequest, LowerEdge,
-    MemoryPoints, PerRecord, QuantityOptions, ReplacedPoints, SystemOptions, TinRequest,
+    Degrees, EdgeLimit, FlatOptions, FlatRule, FrameOptions, Input, LightOptions, LineRequest,
+    LowerEdge, MemoryPoints, PerRecord, QuantityOptions, ReplacedPoints, SystemOptions, TinRequest,
     WallOptions, WrittenEdges,
 };
 use breakline::terrain::{
-    Classes, CrossingRule, DuplicateRule, Gradient, HighSide, Method, Quantity, Ruggedness,
+    Classes, CrossingRule, DuplicateRule, Gradient, HighSide, Method, Quantity, Ruggedness, Shading,
 };
 use breakline::triangulation::OnCrossing;
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
@@ -77,6 +77,29 @@ const CURVATURES: [(&str, Quantity); 2] = [
 
 const RUGGEDNESS: [(&str, Ruggedness); 2] =
     [("riley", Ruggedness::Riley), ("wilson", Ruggedness::Wilson)];
+
+const SHADINGS: [(&str, Shading); 4] = [
+    ("standard", Shading::Standard),
+    ("combined", Shading::Combined),
+    ("multidirectional", Shading::Multidirectional),
+    ("igor", Shading::Igor),
+];
+
+/// How slopes are shaded, the direction of the light and its angle above the horizon, and the
+/// factor for heights.
+pub(crate) type LightArguments = (String, Option<f64>, Option<f64>, Option<f64>);
+
+/// Returns the options of the light of a hillshade.
+pub(crate) fn light_options(
+    (shading, azimuth, altitude, z_factor): LightArguments,
+) -> PyResult<LightOptions> {
+    Ok(LightOptions {
+        shading: choose("shading", &shading, &SHADINGS)?,
+        azimuth,
+        altitude,
+        z_factor,
+    })
+}
 
 /// Returns the quantity that a verb computes in cells, given its formula and whether it is in
 /// percent; `None` if there is no such verb.

@@ -8,8 +8,8 @@ use breakline::data::{ContourLine, EdgeKind, Frame, Grid, Surface as _};
 use breakline::io::geotiff::CellFormat;
 use breakline::io::{Destination, formats, mapped, mesh};
 use breakline::run::{
-    self, CellProduct, Context, ContourOptions, DemOptions, Heights, HillshadeOptions,
-    LightOptions, Model, SampleOptions, SampledField, Source, SurfaceProduct, SurfaceRequest,
+    self, CellProduct, Context, ContourOptions, DemOptions, Heights, HillshadeOptions, Model,
+    SampleOptions, SampledField, Source, SurfaceProduct, SurfaceRequest,
 };
 use breakline::terrain::{CompactTin, SimplifyLimit, SimplifyRule};
 use breakline::{Error, io};
@@ -19,7 +19,8 @@ use pyo3::types::{PyBytes, PyDict};
 
 use crate::errors::{self, Failure, Result};
 use crate::requests::{
-    self, FrameArguments, PointInput, ReadArguments, SurfaceArguments, SystemArguments,
+    self, FrameArguments, LightArguments, PointInput, ReadArguments, SurfaceArguments,
+    SystemArguments,
 };
 use crate::work::{self, Call};
 use crate::{arrays, notices, reports};
@@ -354,19 +355,13 @@ impl Surface {
         py: Python<'py>,
         frame: FrameArguments,
         method: &str,
-        light: (f64, f64, Option<f64>),
+        light: LightArguments,
         call: Call,
     ) -> PyResult<Raster<'py>> {
-        let (azimuth, altitude, z_factor) = light;
-        let light = LightOptions {
-            azimuth,
-            altitude,
-            z_factor,
-        };
         let options = HillshadeOptions {
             frame: frame.options()?,
             method: requests::method(method)?,
-            light,
+            light: requests::light_options(light)?,
         };
         let product = &self.product;
         let (frame, shades) = work::run(py, &call, |context| -> Result<_> {

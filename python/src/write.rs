@@ -7,8 +7,8 @@ use std::time::Duration;
 
 use breakline::run::{
     self, BadFiles, ContourOptions, DemOptions, Division, Execution, Existing, FoundJob,
-    HillshadeOptions, JobCommand, JobReport, LightOptions, Look, Origin, Source, StoredJob,
-    Summary, SurfaceOptions, SurfaceRequest, Targets, TileOptions, Verb, WorkOptions, WriteReport,
+    HillshadeOptions, JobCommand, JobReport, Look, Origin, Source, StoredJob, Summary,
+    SurfaceOptions, SurfaceRequest, Targets, TileOptions, Verb, WorkOptions, WriteReport,
     WriteRequest, Written, WrittenOf,
 };
 use pyo3::prelude::*;
@@ -155,16 +155,11 @@ fn verb(name: &str, options: &Bound<'_, PyDict>) -> PyResult<Arc<dyn Verb>> {
             method: method()?,
         }),
         "hillshade" => {
-            let (azimuth, altitude, z_factor) = options.as_any().get_item("light")?.extract()?;
-            let light = LightOptions {
-                azimuth,
-                altitude,
-                z_factor,
-            };
+            let light = options.as_any().get_item("light")?.extract()?;
             Arc::new(HillshadeOptions {
                 frame: frame()?,
                 method: method()?,
-                light,
+                light: requests::light_options(light)?,
             })
         }
         "contour" => {

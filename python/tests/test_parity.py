@@ -9,6 +9,7 @@ import typing
 import breakline
 import pytest
 from breakline._breakline import settings
+from breakline._names import Shading
 from breakline._surface import DEFAULTS, FOR_ANY, Building
 from breakline._written import HOW, Writing
 
@@ -163,6 +164,19 @@ def test_every_method_is_understood():
     tin = breakline.tin(SQUARE)
     for value in found["values"]:
         assert tin.dem(2, method=value["value"]).shape == (5, 5)
+
+
+def test_every_shading_is_understood():
+    (found,) = (option for option in VERBS["hillshade"]["options"] if option["name"] == "shading")
+    tin = breakline.tin(SQUARE)
+    named = [value["value"] for value in found["values"]]
+    assert named == list(typing.get_args(Shading))
+    shades = [tin.hillshade(2, shading=name).array for name in named]
+    assert all((a != b).any() for a, b in zip(shades, shades[1:]))
+    with pytest.raises(breakline.UsageError, match="azimuth.*four lights"):
+        tin.hillshade(2, shading="multidirectional", azimuth=10.0)
+    with pytest.raises(breakline.UsageError, match="shading"):
+        tin.hillshade(2, shading="moon")
 
 
 def test_functions_and_classes_are_documented():

@@ -92,6 +92,7 @@ settings! {
     RiverWidth = "river-width",
     Rivers = "rivers",
     Round = "round",
+    Shading = "shading",
     Shrink = "shrink",
     SkipBad = "skip-bad",
     SoftLines = "soft-lines",

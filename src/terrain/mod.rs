@@ -94,7 +94,7 @@ pub use crossings::{CrossingHeights, CrossingRule};
 pub use difference::{Difference, LargeDifference, largest_differences};
 pub use duplicates::DuplicateRule;
 pub(crate) use duplicates::one_per_site;
-pub use focal::{Focal, Gradient, Hillshade, Light, Quantity, QuantityMap, Ruggedness};
+pub use focal::{Focal, Gradient, Hillshade, Light, Quantity, QuantityMap, Ruggedness, Shading};
 pub use grid_surface::GridSurface;
 
 pub use inside::Inside;

@@ -144,6 +144,26 @@ fn wrong_usage_ends_with_2_and_leaves_nothing() {
             "between 0",
         ),
         (
+            &[
+                "hillshade",
+                "a.xyz",
+                "-o",
+                "t.png",
+                "-multidirectional",
+                "-az",
+                "10",
+            ],
+            "--azimuth is given, but multidirectional shades are those of four lights",
+        ),
+        (
+            &["hillshade", "a.xyz", "-o", "t.png", "-igor", "-alt", "10"],
+            "leave it out, or choose another --shading",
+        ),
+        (
+            &["hillshade", "a.xyz", "-o", "t.png", "-igor", "-combined"],
+            "cannot be used multiple times",
+        ),
+        (
             &["tin", "a.xyz", "-o", "a.xyz"],
             "not a format that can be written",
         ),

@@ -474,10 +474,10 @@ fn what_would_not_come_back_as_it_was_is_not_kept() {
         (shades(light(Some(f64::NAN))), "z-factor would be lost"),
         (
             shades(LightOptions {
-                azimuth: f64::NAN,
+                azimuth: Some(f64::NAN),
                 ..LightOptions::default()
             }),
-            "cannot be kept with a job",
+            "azimuth would be lost",
         ),
         (
             request(Own(DemOptions::default())),

@@ -60,7 +60,7 @@ class Surface:
         self, frame: dict[str, Any], method: str, quantity: tuple[str, str, bool, Optional[float]], call: _Call
     ) -> _Raster: ...
     def hillshade(
-        self, frame: dict[str, Any], method: str, light: tuple[float, float, Optional[float]], call: _Call
+        self, frame: dict[str, Any], method: str, light: tuple[str, Optional[float], Optional[float], Optional[float]], call: _Call
     ) -> _Raster: ...
     def samples(
         self, positions: NDArray[np.float64], add: List[str], prefix: str, method: str, call: _Call

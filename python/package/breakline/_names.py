@@ -21,6 +21,8 @@ Kernel = Literal["adaptive", "exact", "fast"]
 #: A verb that writes files.
 Verb = Literal["dem", "hillshade", "slope", "aspect", "curvature", "roughness", "tri", "tpi", "contour", "tin"]
 
+#: How shades follow from slopes.
+Shading = Literal["standard", "combined", "multidirectional", "igor"]
 #: From which cells a gradient is computed.
 Gradient = Literal["horn", "zevenbergen-thorne"]
 #: How much a notice matters.

@@ -12,6 +12,7 @@ from . import _breakline, _inputs, _masked
 from ._call import Progress, call
 from ._compare import Compared, same
 from ._errors import usage
+from ._names import Shading
 from ._pictures import SIDE, axes, missing, page
 
 
@@ -256,8 +257,9 @@ class Raster(Compared):
     def hillshade(
         self,
         *,
-        azimuth: float = 315.0,
-        altitude: float = 45.0,
+        shading: Shading = "standard",
+        azimuth: Optional[float] = None,
+        altitude: Optional[float] = None,
         z_factor: Optional[float] = None,
         threads: Optional[int] = None,
         progress: Progress = None,
@@ -273,7 +275,7 @@ class Raster(Compared):
         """
         frame = frame_of(None, None, None)
         with call(threads, progress) as request:
-            return of_cells(self._surface().hillshade(frame, "linear", light(azimuth, altitude, z_factor), request))
+            return of_cells(self._surface().hillshade(frame, "linear", light(shading, azimuth, altitude, z_factor), request))
 
 
 def frame_of(resolution: Any, extent: Any, align_to: Any) -> "dict[str, Any]":
@@ -285,11 +287,14 @@ def frame_of(resolution: Any, extent: Any, align_to: Any) -> "dict[str, Any]":
     }
 
 
-def light(azimuth: Any, altitude: Any, z_factor: Any) -> "tuple[float, float, Optional[float]]":
-    """Return where light comes from, and the factor of heights, as the library takes them."""
+def light(
+    shading: Any, azimuth: Any, altitude: Any, z_factor: Any
+) -> "tuple[str, Optional[float], Optional[float], Optional[float]]":
+    """Return how slopes are shaded, where light comes from, and the factor of heights, as the library takes them."""
     return (
-        _inputs.number(azimuth, "azimuth"),
-        _inputs.number(altitude, "altitude"),
+        _inputs.name(shading, "shading"),
+        _inputs.optional_number(azimuth, "azimuth"),
+        _inputs.optional_number(altitude, "altitude"),
         _inputs.optional_number(z_factor, "z_factor"),
     )
 

@@ -11,7 +11,7 @@ from ._call import Progress, call
 from ._compare import same
 from ._errors import ArgumentTypeError, FormatError, LimitError, usage
 from ._inputs import PathLike
-from ._names import CrossingHeight, EdgeLimit, Height, Method, OnCrossing, Severity, Side
+from ._names import CrossingHeight, EdgeLimit, Height, Method, OnCrossing, Severity, Shading, Side
 from ._points import _read, _systems
 from ._pictures import SIDE, axes, missing, page
 from ._results import Contours, Raster, draw, frame_of, light, of_cells
@@ -259,20 +259,24 @@ class Tin:
         extent: Any = None,
         align_to: Any = None,
         method: Method = "linear",
-        azimuth: float = 315.0,
-        altitude: float = 45.0,
+        shading: Shading = "standard",
+        azimuth: Optional[float] = None,
+        altitude: Optional[float] = None,
         z_factor: Optional[float] = None,
         threads: Optional[int] = None,
         progress: Progress = None,
     ) -> Raster:
-        """Return shades from 1 (dark) to 255 (facing the light), 0 where there is no surface.
+        """Return shades from 1 (dark) to 255 (bright), 0 where there is no surface.
 
         Parameters
         ----------
-        azimuth : float
-            Direction that the light comes from, in degrees clockwise from north.
-        altitude : float
-            Angle of the light above the horizon, in degrees.
+        shading : str
+            ``"standard"``, ``"combined"``, ``"multidirectional"`` or ``"igor"``, as gdaldem has them.
+        azimuth : float, optional
+            Direction that the light comes from, in degrees clockwise from north; 315 by default. Not for
+            ``"multidirectional"``, which has four lights.
+        altitude : float, optional
+            Angle of the light above the horizon, in degrees; 45 by default. Not for ``"igor"``.
         z_factor : float, optional
             Factor for heights; by default what converts them to the units of x and y.
         resolution, extent, align_to, method, threads, progress
@@ -290,7 +294,7 @@ class Tin:
         >>> tin.hillshade(5, azimuth=180.0).array.min() > 0
         np.True_
         """
-        sun = light(azimuth, altitude, z_factor)
+        sun = light(shading, azimuth, altitude, z_factor)
         with call(threads, progress) as request:
             frame = frame_of(resolution, extent, align_to)
             return of_cells(self._surface.hillshade(frame, _inputs.name(method, "method"), sun, request))

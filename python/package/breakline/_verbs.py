@@ -17,7 +17,7 @@ from ._call import Progress, call
 from ._errors import ArgumentTypeError, usage
 from ._compare import Compared
 from ._inputs import PathLike
-from ._names import Kernel, Method, OnCrossing
+from ._names import Kernel, Method, OnCrossing, Shading
 from ._points import _read, _systems
 from ._results import Contours, Raster, draw, frame_of, light, of_cells
 from ._surface import FOR_ANY, Building
@@ -204,8 +204,9 @@ def hillshade(
     extent: Any = ...,
     align_to: Any = ...,
     method: Method = ...,
-    azimuth: float = ...,
-    altitude: float = ...,
+    shading: Shading = ...,
+    azimuth: Optional[float] = ...,
+    altitude: Optional[float] = ...,
     z_factor: Optional[float] = ...,
     output: None = None,
     threads: Optional[int] = ...,
@@ -220,8 +221,9 @@ def hillshade(
     extent: Any = ...,
     align_to: Any = ...,
     method: Method = ...,
-    azimuth: float = ...,
-    altitude: float = ...,
+    shading: Shading = ...,
+    azimuth: Optional[float] = ...,
+    altitude: Optional[float] = ...,
     z_factor: Optional[float] = ...,
     output: PathLike,
     **writing: Unpack[Writing],
@@ -233,8 +235,9 @@ def hillshade(
     extent: Any = None,
     align_to: Any = None,
     method: Method = "linear",
-    azimuth: float = 315.0,
-    altitude: float = 45.0,
+    shading: Shading = "standard",
+    azimuth: Optional[float] = None,
+    altitude: Optional[float] = None,
     z_factor: Optional[float] = None,
     output: Any = None,
     overwrite: bool = False,
@@ -256,7 +259,7 @@ def hillshade(
         A :class:`Tin`, a :class:`Raster`, the path of a raster, or what :func:`tin` takes.
     resolution, extent, align_to, method
         As for :func:`dem`; a raster keeps its cells.
-    azimuth, altitude, z_factor, threads, progress
+    shading, azimuth, altitude, z_factor, threads, progress
         As for :meth:`Tin.hillshade`.
     output, overwrite, memory, tiles, job, resume, update, skip_bad
         Write a file, as for :func:`tin`, and return a :class:`Written`: files that need more memory are worked on in
@@ -275,7 +278,7 @@ def hillshade(
         return written
     by = _inputs.name(method, "method")
     found = surface_of(points, surface, threads, progress, by)
-    sun = light(azimuth, altitude, z_factor)
+    sun = light(shading, azimuth, altitude, z_factor)
     with call(threads, progress) as request:
         frame = frame_of(resolution, extent, align_to)
         return of_cells(found.hillshade(frame, by, sun, request))

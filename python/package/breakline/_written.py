@@ -334,7 +334,7 @@ _OF_VERBS: "dict[str, dict[str, Any]]" = {
     "dem": {"resolution": None, "extent": None, "align_to": None, "method": "linear"},
     "hillshade": {
         "resolution": None, "extent": None, "align_to": None, "method": "linear",
-        "azimuth": 315.0, "altitude": 45.0, "z_factor": None,
+        "shading": "standard", "azimuth": None, "altitude": None, "z_factor": None,
     },
     **{
         verb: {"resolution": None, "extent": None, "align_to": None, "method": "linear", **own}
@@ -437,7 +437,7 @@ def _product(verb: str, own: "dict[str, Any]") -> "dict[str, Any]":
     frame = frame_of(own["resolution"], own["extent"], own["align_to"])
     product: "dict[str, Any]" = {"frame": frame, "method": _inputs.name(own["method"], "method")}
     if verb == "hillshade":
-        product["light"] = light(own["azimuth"], own["altitude"], own["z_factor"])
+        product["light"] = light(own["shading"], own["azimuth"], own["altitude"], own["z_factor"])
     elif verb != "dem":
         product["quantity"] = quantity_of(verb, own)
     return product

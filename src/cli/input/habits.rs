@@ -139,6 +139,9 @@ const HABITS: &[Habit] = &[
     Habit { typed: &["-a"], verbs: &["dem"], meaning: Same("--method") },
     Habit { typed: &["-az"], verbs: SHADE, meaning: Same("--azimuth") },
     Habit { typed: &["-alt"], verbs: SHADE, meaning: Same("--altitude") },
+    Habit { typed: &["-combined"], verbs: SHADE, meaning: Words(&["--shading", "combined"]) },
+    Habit { typed: &["-multidirectional"], verbs: SHADE, meaning: Words(&["--shading", "multidirectional"]) },
+    Habit { typed: &["-igor"], verbs: SHADE, meaning: Words(&["--shading", "igor"]) },
     Habit { typed: &["-z"], verbs: SHADE, meaning: Same("--z-factor") },
     Habit { typed: &["-a_nodata", "-dstnodata", "-nodata"], verbs: &[], meaning: Refused("nodata is -9999, but 0 in shades") },
 ];
@@ -625,6 +628,10 @@ mod tests {
             (
                 "b hillshade -az 300 -alt 30 -z 2 a.tif s.png",
                 "b hillshade --azimuth 300 --altitude 30 --z-factor 2 a.tif -o s.png",
+            ),
+            (
+                "b hillshade -multidirectional a.tif s.png",
+                "b hillshade --shading multidirectional a.tif -o s.png",
             ),
             // Outputs of another verb, outputs with an option, inputs alone.
             ("b tin a.xyz b.tif", "b tin a.xyz b.tif"),

@@ -9,6 +9,7 @@ use crate::run::{HillshadeOptions, LightOptions, WriteRequest};
 pub(super) fn asked(args: &HillshadeArgs, console: &Console) -> Result<Asked> {
     let plan = SurfacePlan::resolve(&args.surface, console)?;
     let light = LightOptions {
+        shading: args.shading.into(),
         azimuth: args.azimuth,
         altitude: args.altitude,
         z_factor: args.z_factor,

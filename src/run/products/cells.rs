@@ -11,29 +11,46 @@ use crate::run::context::notice::Notice;
 use crate::run::context::units::Units;
 use crate::run::context::watched::Watched;
 use crate::run::context::{Context, Journal, Size, Stage};
-use crate::terrain::{Dem, Hillshade, Light, Method, Quantity, QuantityMap};
+use crate::terrain::{Dem, Hillshade, Light, Method, Quantity, QuantityMap, Shading};
 
 /// The light of a hillshade. By default it comes from the northwest, 45 degrees above the horizon.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct LightOptions {
-    /// The direction that the light comes from, in degrees clockwise from north.
-    pub azimuth: f64,
-    /// The angle of the light above the horizon, in degrees.
-    pub altitude: f64,
+    /// How shades follow from slopes.
+    #[serde(default)]
+    pub shading: Shading,
+    /// The direction that the light comes from, in degrees clockwise from north; if `None`, 315.
+    pub azimuth: Option<f64>,
+    /// The angle of the light above the horizon, in degrees; if `None`, 45.
+    pub altitude: Option<f64>,
     /// The factor for heights; if `None`, what converts them to the units of the plane.
     pub z_factor: Option<f64>,
 }
 
-impl Default for LightOptions {
-    fn default() -> Self {
-        let Light {
-            azimuth, altitude, ..
-        } = Light::default();
-        LightOptions {
-            azimuth,
-            altitude,
-            z_factor: None,
+impl LightOptions {
+    /// Returns an error if a direction is given that the shading has no use for.
+    ///
+    /// # Errors
+    /// Names the option.
+    pub fn check(&self) -> Result<()> {
+        if self.azimuth.is_some() && !self.shading.has_azimuth() {
+            return Err(Error::usage(wording![
+                Setting::Azimuth,
+                " is given, but multidirectional shades are those of four lights, from 225 to 360 degrees"
+            ])
+            .cure(wording!["leave it out, or choose another ", Setting::Shading]));
         }
+        if self.altitude.is_some() && !self.shading.has_altitude() {
+            return Err(Error::usage(wording![
+                Setting::Altitude,
+                " is given, but these shades follow from the direction of the light alone"
+            ])
+            .cure(wording![
+                "leave it out, or choose another ",
+                Setting::Shading
+            ]));
+        }
+        Ok(())
     }
 }
 
@@ -117,12 +134,11 @@ pub fn dem<'a>(
     })
 }
 
-/// Prepares a hillshade: whole numbers from 1 (dark) to 255 (facing the light), NaN where there is
-/// no height.
+/// Prepares a hillshade: whole numbers from 1 (dark) to 255 (bright), NaN where there is no height.
 ///
 /// # Errors
 /// If the frame cannot be chosen, or is chosen for a raster, which keeps its own; if a number of
-/// the light is not finite, or the run is canceled.
+/// the light is not finite, or of no use for the shading; or the run is canceled.
 ///
 /// # Complexity
 /// Linear in the triangles.
@@ -268,8 +284,9 @@ fn light_over(
         });
     }
     Light {
-        azimuth: options.azimuth,
-        altitude: options.altitude,
+        shading: options.shading,
+        azimuth: options.azimuth.unwrap_or(light.azimuth),
+        altitude: options.altitude.unwrap_or(light.altitude),
         ..light
     }
 }
@@ -292,6 +309,7 @@ impl<'a> CellProduct<'a> {
         crs: Option<&Crs>,
         journal: &Journal,
     ) -> Result<Self> {
+        options.check()?;
         let light = light_over(options, crs, &source.frame(), journal);
         let source = Box::new(Hillshade::new(source, light)?);
         Ok(CellProduct {

@@ -24,12 +24,17 @@ impl Verb for HillshadeOptions {
         Product::Shades
     }
 
+    fn check(&self) -> Result<()> {
+        self.light.check()
+    }
+
     fn list(&self, add: &mut dyn FnMut(Setting, &dyn Debug)) {
         let HillshadeOptions {
             frame,
             method,
             light:
                 LightOptions {
+                    shading,
                     azimuth,
                     altitude,
                     z_factor,
@@ -37,6 +42,7 @@ impl Verb for HillshadeOptions {
         } = self;
         list_frame(frame, add);
         add(Setting::Method, method);
+        add(Setting::Shading, shading);
         add(Setting::Azimuth, azimuth);
         add(Setting::Altitude, altitude);
         add(Setting::ZFactor, z_factor);

@@ -5,7 +5,7 @@ mod shade;
 
 pub(crate) use self::quantity::direction;
 pub use self::quantity::{Gradient, Quantity, QuantityMap, Ruggedness};
-pub use self::shade::{Hillshade, Light};
+pub use self::shade::{Hillshade, Light, Shading};
 use crate::crs::Crs;
 use crate::data::{BlockSource, Frame, ToPixels, Window};
 use crate::error::Result;

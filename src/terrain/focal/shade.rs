@@ -1,5 +1,7 @@
 //! Shaded relief.
 
+use std::f64::consts::{FRAC_PI_2, PI};
+
 use crate::crs::{Crs, CrsKind};
 use crate::data::{BlockSource, Frame};
 use crate::error::{Error, Result};
@@ -9,12 +11,45 @@ use super::{Focal, Neighbors, Rule};
 /// Meters in one radian of a great circle on the mean earth (6 371 008.8 m, Moritz 2000).
 const EARTH_RADIUS: f64 = 6_371_008.8;
 
-/// The direction of the light, and the ratio of heights to lengths.
+/// How the shade of a cell follows from its gradient.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+pub enum Shading {
+    /// The cosine of the angle between the surface and the light, 0 in the shadow.
+    #[default]
+    Standard,
+    /// That angle times the slope, so that steep ground is dark on either side: the combined
+    /// shading of `gdaldem`.
+    Combined,
+    /// Standard shades of four lights, from 225, 270, 315 and 360 degrees, weighted by the share
+    /// of the gradient that is along each: the multidirectional shading of `gdaldem`, after Mark
+    /// (1992).
+    Multidirectional,
+    /// Dark where steep ground faces away from the light; level ground is white, so that colors
+    /// below stay as they are: the shading of `gdaldem` named after Igor Brejc (Maperitive).
+    Igor,
+}
+
+impl Shading {
+    /// Returns true if shades depend on the direction that the light comes from.
+    pub fn has_azimuth(self) -> bool {
+        self != Shading::Multidirectional
+    }
+
+    /// Returns true if shades depend on the angle of the light above the horizon.
+    pub fn has_altitude(self) -> bool {
+        self != Shading::Igor
+    }
+}
+
+/// The direction of the light, how it shades, and the ratio of heights to lengths.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Light {
-    /// The direction that the light comes from, in degrees clockwise from north.
+    /// How shades follow from gradients.
+    pub shading: Shading,
+    /// The direction that the light comes from, in degrees clockwise from north; not used by
+    /// [`Shading::Multidirectional`].
     pub azimuth: f64,
-    /// The angle of the light above the horizon, in degrees.
+    /// The angle of the light above the horizon, in degrees; not used by [`Shading::Igor`].
     pub altitude: f64,
     /// The factor for heights: units of y per unit of z, times any exaggeration.
     pub z_factor: f64,
@@ -26,6 +61,7 @@ impl Default for Light {
     /// Light from the northwest at 45 degrees, as is usual on maps.
     fn default() -> Self {
         Light {
+            shading: Shading::default(),
             azimuth: 315.0,
             altitude: 45.0,
             z_factor: 1.0,
@@ -66,8 +102,8 @@ impl Light {
     }
 }
 
-/// The hillshade of a raster of heights: whole numbers from 1 (dark) to 255 (facing the light), NaN
-/// where there is no height.
+/// The hillshade of a raster of heights: whole numbers from 1 (dark) to 255 (bright), NaN where
+/// there is no height.
 ///
 /// Slopes are those of Horn (1981), "Hill shading and the reflectance map": weighted differences
 /// over the 3 x 3 cells around each cell, as in `gdaldem hillshade`. At the edge of the data the
@@ -78,11 +114,25 @@ pub type Hillshade<S> = Focal<S, Shade>;
 /// How light falls on a cell.
 #[derive(Debug, Clone, Copy)]
 pub struct Shade {
-    /// The unit vector towards the light: east, north, up.
-    towards: [f64; 3],
+    lights: Lights,
     z_factor: f64,
     x_scale: f64,
 }
+
+/// A unit vector towards a light: east, north, up.
+type Towards = [f64; 3];
+
+/// What each [`Shading`] needs to know of the light.
+#[derive(Debug, Clone, Copy)]
+enum Lights {
+    Standard(Towards),
+    Combined(Towards),
+    Multidirectional([Towards; 4]),
+    Igor(Towards),
+}
+
+/// The azimuths of the lights of [`Shading::Multidirectional`].
+const FOUR_AZIMUTHS: [f64; 4] = [225.0, 270.0, 315.0, 360.0];
 
 impl<S: BlockSource> Hillshade<S> {
     /// Creates the hillshade of `source`: a DEM, a grid, or a reference to one.
@@ -91,6 +141,7 @@ impl<S: BlockSource> Hillshade<S> {
     /// If a number of `light` is not finite, or the frame of the source has no inverse.
     pub fn new(source: S, light: Light) -> Result<Self> {
         let Light {
+            shading,
             azimuth,
             altitude,
             z_factor,
@@ -108,10 +159,16 @@ impl<S: BlockSource> Hillshade<S> {
                 )));
             }
         }
-        let (east, north) = azimuth.to_radians().sin_cos();
-        let (up, flat) = altitude.to_radians().sin_cos();
+        let lights = match shading {
+            Shading::Standard => Lights::Standard(towards(azimuth, altitude)),
+            Shading::Combined => Lights::Combined(towards(azimuth, altitude)),
+            Shading::Multidirectional => {
+                Lights::Multidirectional(FOUR_AZIMUTHS.map(|azimuth| towards(azimuth, altitude)))
+            }
+            Shading::Igor => Lights::Igor(towards(azimuth, 0.0)),
+        };
         let rule = Shade {
-            towards: [east * flat, north * flat, up],
+            lights,
             z_factor,
             x_scale,
         };
@@ -119,14 +176,68 @@ impl<S: BlockSource> Hillshade<S> {
     }
 }
 
+/// Returns the unit vector towards a light; angles are in degrees.
+fn towards(azimuth: f64, altitude: f64) -> Towards {
+    let (east, north) = azimuth.to_radians().sin_cos();
+    let (up, flat) = altitude.to_radians().sin_cos();
+    [east * flat, north * flat, up]
+}
+
 impl Rule for Shade {
     fn value(&self, around: &Neighbors) -> f32 {
         let [dx, dy] = around.gradient_by_horn(self.z_factor);
-        let dx = dx / self.x_scale;
-        let [east, north, up] = self.towards;
-        let lit = (up - dx * east - dy * north) / (1.0 + dx * dx + dy * dy).sqrt();
-        (1.0 + 254.0 * lit.max(0.0)).round() as f32
+        let gradient = [dx / self.x_scale, dy];
+        let shade = match &self.lights {
+            Lights::Standard(towards) => 1.0 + 254.0 * cosine(gradient, towards),
+            Lights::Combined(towards) => 1.0 + 254.0 * combined(gradient, towards),
+            Lights::Multidirectional(lights) => 1.0 + 254.0 * of_four(gradient, lights),
+            Lights::Igor(towards) => 255.0 * (1.0 - shadow(gradient, towards)),
+        };
+        // 0 is for cells without a height.
+        shade.max(1.0).round() as f32
     }
+}
+
+/// Returns the cosine of the angle between the normal of a surface with this gradient and the
+/// light; negative if the light is behind it.
+fn cosine([p, q]: [f64; 2], [east, north, up]: &Towards) -> f64 {
+    (up - p * east - q * north) / (1.0 + p * p + q * q).sqrt()
+}
+
+/// Returns 1 minus the product of the slope and the angle between normal and light, both as parts
+/// of a right angle.
+fn combined(gradient: [f64; 2], towards: &Towards) -> f64 {
+    let [p, q] = gradient;
+    let angle = cosine(gradient, towards).clamp(-1.0, 1.0).acos();
+    1.0 - angle * p.hypot(q).atan() / FRAC_PI_2.powi(2)
+}
+
+/// Returns the weighted mean of the cosines of four lights, 0 for those behind the surface. The
+/// weight of a light is the square of the gradient along it; these squares sum up to twice the
+/// square of the gradient.
+fn of_four(gradient: [f64; 2], lights: &[Towards; 4]) -> f64 {
+    let [p, q] = gradient;
+    let (mut sum, mut weights) = (0.0, 0.0);
+    for light in lights {
+        let [east, north, _] = light;
+        let along = p * east + q * north;
+        sum += along * along * cosine(gradient, light).max(0.0);
+        weights += along * along;
+    }
+    if weights == 0.0 {
+        // Level ground, or a light overhead: all four are the same.
+        return cosine(gradient, &lights[0]).max(0.0);
+    }
+    sum / weights
+}
+
+/// Returns the slope as a part of a right angle, times 1 where the surface faces away from the
+/// light, 0 where it faces the light.
+fn shadow([p, q]: [f64; 2], [east, north, _]: &Towards) -> f64 {
+    // The angle between the direction of fall and the one away from the light.
+    let (across, along) = (p * north - q * east, p * east + q * north);
+    let away = across.atan2(along).abs();
+    p.hypot(q).atan() / FRAC_PI_2 * (1.0 - away / PI)
 }
 
 #[cfg(test)]
@@ -231,6 +342,114 @@ mod tests {
                 .iter()
                 .all(|&v| v == 255.0)
         );
+    }
+
+    const ALL: [Shading; 4] = [
+        Shading::Standard,
+        Shading::Combined,
+        Shading::Multidirectional,
+        Shading::Igor,
+    ];
+
+    /// The naive judge: shades by angles, as the documentation of `gdaldem` has them.
+    fn by_angles([p, q]: [f64; 2], light: &Light) -> f64 {
+        let [altitude, slope] = [light.altitude.to_radians(), p.hypot(q).atan()];
+        // The direction of fall, clockwise from north.
+        let aspect = (-p).atan2(-q);
+        let lit = |azimuth: f64| {
+            altitude.sin() * slope.cos()
+                + altitude.cos() * slope.sin() * (azimuth.to_radians() - aspect).cos()
+        };
+        match light.shading {
+            Shading::Standard => 1.0 + 254.0 * lit(light.azimuth).max(0.0),
+            Shading::Combined => {
+                let angle = lit(light.azimuth).clamp(-1.0, 1.0).acos();
+                (1.0 + 254.0 * (1.0 - (angle / 90f64.to_radians()) * (slope / 90f64.to_radians())))
+                    .max(1.0)
+            }
+            Shading::Multidirectional if slope == 0.0 => 1.0 + 254.0 * altitude.sin(),
+            Shading::Multidirectional => {
+                let weighted = FOUR_AZIMUTHS.map(|azimuth| {
+                    (azimuth.to_radians() - aspect).cos().powi(2) * lit(azimuth).max(0.0)
+                });
+                1.0 + 254.0 * 0.5 * weighted.iter().sum::<f64>()
+            }
+            Shading::Igor => {
+                let away = (light.azimuth - 180.0 - aspect.to_degrees()).rem_euclid(360.0);
+                let strength = 1.0 - away.min(360.0 - away) / 180.0;
+                (255.0 * (1.0 - slope.to_degrees() / 90.0 * strength)).max(1.0)
+            }
+        }
+    }
+
+    #[test]
+    fn shades_are_those_of_angles() {
+        let frame = Frame::north_up(0.0, 0.0, 1.0, 3, 3);
+        // All gradients of small whole numbers, in which slopes along lights and level ground are
+        // common.
+        for shading in ALL {
+            for (azimuth, altitude) in [(315.0, 45.0), (90.0, 20.0), (200.0, 90.0)] {
+                let light = Light {
+                    shading,
+                    azimuth,
+                    altitude,
+                    ..Light::default()
+                };
+                for i in 0..81 {
+                    let [p, q] = [f64::from(i % 9 - 4), f64::from(i / 9 - 4)];
+                    let plane = grid(frame, |x, y| p * x + q * y);
+                    let (found, expected) = (shades(&plane, light)[4], by_angles([p, q], &light));
+                    assert!(
+                        (found - expected).abs() <= 0.5 + 1e-9,
+                        "{light:?} on ({p}, {q}): {found}, not {expected}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn no_shading_depends_on_how_the_raster_lies() {
+        let plane = |x: f64, y: f64| 0.8 * x - 0.4 * y;
+        for shading in ALL {
+            let light = Light {
+                shading,
+                azimuth: 20.0,
+                ..Light::default()
+            };
+            let expected = by_angles([0.8, -0.4], &light).round();
+            for t in [
+                [1.0, 0.0, 0.0, -1.0],
+                [-2.0, 0.0, 0.0, 0.5],
+                [0.6, 0.8, 0.8, -0.6],
+            ] {
+                let frame = Frame {
+                    width: 4,
+                    height: 4,
+                    transform: [10.0, t[0], t[1], 20.0, t[2], t[3]],
+                };
+                for shade in shades(&grid(frame, plane), light) {
+                    assert_eq!(shade, expected, "{shading:?} in {frame:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn level_ground_is_white_where_only_shadows_are_drawn() {
+        let frame = Frame::north_up(0.0, 0.0, 1.0, 4, 4);
+        let of = |shading, altitude| {
+            let light = Light {
+                shading,
+                altitude,
+                ..Light::default()
+            };
+            shades(&grid(frame, |_, _| 7.0), light)[5]
+        };
+        assert_eq!(of(Shading::Combined, 45.0), 255.0);
+        assert_eq!(of(Shading::Igor, 45.0), 255.0);
+        assert_eq!(of(Shading::Multidirectional, 45.0), 181.0);
+        assert_eq!(of(Shading::Multidirectional, 90.0), 255.0);
     }
 
     #[test]

@@ -8,7 +8,7 @@ use super::surface::{OnCrossingArg, SurfaceArgs};
 use super::systems::SystemArgs;
 use super::tiles::TileArgs;
 use crate::run::{Alpha, Arithmetic};
-use crate::terrain::Method;
+use crate::terrain::{Method, Shading};
 
 /// The files to write.
 #[derive(Debug, Clone, Args)]
@@ -535,7 +535,8 @@ pub(crate) struct ContourArgs {
 #[command(after_long_help = "\
 Example:
   breakline hillshade ground.ply --resolution 0.5 -o shade.png
-  breakline hillshade dem.tif --azimuth 300 --z-factor 2 -o shade.tif")]
+  breakline hillshade dem.tif --azimuth 300 --z-factor 2 -o shade.tif
+  breakline hillshade dem.tif --shading multidirectional -o shade.tif")]
 pub(crate) struct HillshadeArgs {
     #[command(flatten)]
     pub(crate) surface: SurfaceArgs,
@@ -558,13 +559,29 @@ pub(crate) struct HillshadeArgs {
     )]
     pub(crate) method: MethodArg,
 
-    /// Direction that the light comes from, in degrees clockwise from north
-    #[arg(long, value_name = "DEGREES", value_parser = finite, default_value = "315", allow_hyphen_values = true, help_heading = "Light")]
-    pub(crate) azimuth: f64,
+    /// How shades follow from slopes
+    ///
+    /// As gdaldem shades by default, and with its options of these names.
+    #[arg(
+        long,
+        value_enum,
+        value_name = "SHADING",
+        default_value_t,
+        help_heading = "Light"
+    )]
+    pub(crate) shading: ShadingArg,
 
-    /// Angle of the light above the horizon, in degrees
-    #[arg(long, value_name = "DEGREES", value_parser = altitude, allow_negative_numbers = true, default_value = "45", help_heading = "Light")]
-    pub(crate) altitude: f64,
+    /// Direction that the light comes from, in degrees clockwise from north [default: 315]
+    ///
+    /// Not for `multidirectional`, which has four.
+    #[arg(long, value_name = "DEGREES", value_parser = finite, allow_hyphen_values = true, help_heading = "Light")]
+    pub(crate) azimuth: Option<f64>,
+
+    /// Angle of the light above the horizon, in degrees [default: 45]
+    ///
+    /// Not for `igor`.
+    #[arg(long, value_name = "DEGREES", value_parser = altitude, allow_negative_numbers = true, help_heading = "Light")]
+    pub(crate) altitude: Option<f64>,
 
     /// Factor for heights [default: 1, or what converts them to the units of x and y]
     ///
@@ -575,6 +592,31 @@ pub(crate) struct HillshadeArgs {
 
     #[command(flatten)]
     pub(crate) tiles: TileArgs,
+}
+
+/// How shades follow from slopes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
+pub(crate) enum ShadingArg {
+    /// Bright where the surface faces the light
+    #[default]
+    Standard,
+    /// Also darker the steeper the surface is, on either side
+    Combined,
+    /// Four lights, from the southwest to the north: no slope is all dark
+    Multidirectional,
+    /// White, but for steep slopes away from the light: to lay over colors
+    Igor,
+}
+
+impl From<ShadingArg> for Shading {
+    fn from(arg: ShadingArg) -> Self {
+        match arg {
+            ShadingArg::Standard => Shading::Standard,
+            ShadingArg::Combined => Shading::Combined,
+            ShadingArg::Multidirectional => Shading::Multidirectional,
+            ShadingArg::Igor => Shading::Igor,
+        }
+    }
 }
 
 /// Prove a TIN correct, or list its flaws
