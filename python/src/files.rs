@@ -83,6 +83,9 @@ pub(crate) struct SelectionArguments {
     drop_withheld: bool,
     bounds: Option<[f64; 4]>,
     boundary: Vec<PathBuf>,
+    thin: Option<String>,
+    thin_keep: Option<String>,
+    seed: Option<u64>,
     round: bool,
 }
 
@@ -105,6 +108,11 @@ impl SelectionArguments {
             },
             bounds: bounds(self.bounds),
             boundary: self.boundary,
+            thinning: requests::thinning(
+                self.thin.as_deref(),
+                self.thin_keep.as_deref(),
+                self.seed,
+            )?,
             rounding: if self.round {
                 Rounding::Nearest
             } else {
@@ -125,6 +133,7 @@ fn report<'py>(py: Python<'py>, report: &PointsReport) -> PyResult<Bound<'py, Py
         ("of_other_classes", report.other_class),
         ("of_other_returns", report.other_return),
         ("outside", report.outside),
+        ("thinned", report.thinned),
     ] {
         counts.set_item(name, count)?;
     }

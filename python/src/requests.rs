@@ -15,7 +15,8 @@ use breakline::run::{
     WallOptions, WrittenEdges,
 };
 use breakline::terrain::{
-    Classes, CrossingRule, DuplicateRule, Gradient, HighSide, Method, Quantity, Ruggedness, Shading,
+    CellPoint, Classes, CrossingRule, DuplicateRule, Gradient, HighSide, Method, Quantity,
+    Ruggedness, Shading, Thinning,
 };
 use breakline::triangulation::OnCrossing;
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
@@ -577,6 +578,42 @@ pub(crate) fn returns_of(words: Option<&[String]>) -> PyResult<Vec<Return>> {
         found.extend(meant);
     }
     Ok(found)
+}
+
+const CELL_POINTS: [(&str, CellPoint); 3] = [
+    ("center", CellPoint::Center),
+    ("lowest", CellPoint::Lowest),
+    ("highest", CellPoint::Highest),
+];
+
+/// Returns the rule that points are thinned by, if any.
+pub(crate) fn thinning(
+    rule: Option<&str>,
+    keep: Option<&str>,
+    seed: Option<u64>,
+) -> PyResult<Option<Thinning>> {
+    let keep = keep
+        .map(|name| choose("thin_keep", name, &CELL_POINTS))
+        .transpose()?;
+    let Some(rule) = rule else {
+        return if keep.is_some() || seed.is_some() {
+            Err(errors::usage(
+                "thin_keep and seed are of a rule to thin points by",
+                "thin=None",
+                "pass thin, too",
+            ))
+        } else {
+            Ok(None)
+        };
+    };
+    let parsed = Thinning::parse(rule).map_err(|why| {
+        errors::usage(
+            &format!("thin: {why}"),
+            &format!("'{rule}'"),
+            "pass 'grid:SIZE', 'poisson:DISTANCE', 'nth:N' or 'random:SHARE'",
+        )
+    })?;
+    Ok(Some(parsed.with(keep, seed).map_err(Failure)?))
 }
 
 /// Returns a number if it is not below zero, and finite.

@@ -3,6 +3,7 @@
 //! | I have | I want | |
 //! |---|---|---|
 //! | points of many classes | the ground | [`Selection`] |
+//! | points | fewer of them | [`Thinner`], by a [`Thinning`] |
 //! | points and breaklines | a surface | [`TinBuilder`], which builds a [`Tin`] |
 //! | a TIN | the height at a position | [`Tin::elevation`] |
 //! | any surface | heights and gradients at many positions | [`Sampler`] |
@@ -79,6 +80,7 @@ mod simplify;
 mod soundness;
 mod statistics;
 mod thin;
+mod thinning;
 pub mod tiles;
 mod tin;
 mod tin_report;
@@ -117,6 +119,7 @@ pub use selection::{Classes, Selection, SelectionReport};
 pub use simplify::{SimplifyLimit, SimplifyReport, SimplifyRule, simplify, simplify_cells};
 pub use soundness::{SurfaceFlaw, shape_flaws, surface_flaws};
 pub use statistics::{ErrorStatistics, Histogram};
+pub use thinning::{CellPoint, Passes, Thinner, Thinning};
 pub use tin::Tin;
 pub use tin_report::TinReport;
 pub use volume::{Volume, VolumeBase, Zones, volumes};

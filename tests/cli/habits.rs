@@ -49,6 +49,14 @@ fn what_cannot_be_done_names_what_can() {
             "lasclip -i a.xyz -poly b.shp",
             "hint: `breakline points IN --boundary AREA.shp",
         ),
+        (
+            "lasthin -i a.xyz -step 1 -o b.xyz",
+            "hint: `breakline points IN --thin grid:1 --thin-keep lowest",
+        ),
+        (
+            "las2las -i a.xyz -keep_every_nth 2 -o b.xyz",
+            "hint: --thin nth:N keeps the first of every N points",
+        ),
         ("foo -tr 1 2 a.xyz", "unrecognized subcommand 'foo'"),
         (
             "contour a.xyz --smooth 5 -o c.shp",

@@ -21,6 +21,7 @@ mod results;
 mod returns;
 mod sampling;
 mod simplify;
+mod thinning;
 mod usage;
 mod volumes;
 

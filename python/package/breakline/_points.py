@@ -16,7 +16,15 @@ def _read(columns: Any, partial: bool) -> "dict[str, Any]":
 
 
 def _selection(
-    classes: Any, returns: Any, drop_withheld: bool, bounds: Any, boundary: Any, round: bool
+    classes: Any,
+    returns: Any,
+    drop_withheld: bool,
+    bounds: Any,
+    boundary: Any,
+    thin: Any,
+    thin_keep: Any,
+    seed: Any,
+    round: bool = False,
 ) -> "dict[str, Any]":
     return {
         "classes": _inputs.classes(classes),
@@ -24,6 +32,9 @@ def _selection(
         "drop_withheld": bool(drop_withheld),
         "bounds": _inputs.bounds(bounds),
         "boundary": [] if boundary is None else _inputs.files(boundary, "boundary"),
+        "thin": None if thin is None else _inputs.name(thin, "thin"),
+        "thin_keep": None if thin_keep is None else _inputs.name(thin_keep, "thin_keep"),
+        "seed": None if seed is None else _inputs.whole_numbers([seed], "seed", 2**64 - 1)[0],
         "round": bool(round),
     }
 
@@ -44,6 +55,9 @@ def read_points(
     drop_withheld: bool = False,
     bounds: Any = None,
     boundary: Any = None,
+    thin: Any = None,
+    thin_keep: Any = None,
+    seed: Any = None,
     crs: Any = None,
     to_crs: Any = None,
     columns: Any = None,
@@ -67,6 +81,15 @@ def read_points(
         A rectangle to clip to, including its border.
     boundary : path or list of paths, optional
         Polygons to clip to.
+    thin : str, optional
+        ``"grid:SIZE"`` keeps one point of each cell; cells begin at multiples of their size. ``"poisson:DISTANCE"`` keeps
+        points that are at least so far apart in plan, and leaves out only those that are closer to one of them.
+        ``"nth:N"`` keeps the first of every N, ``"random:SHARE"`` a share: a smaller one is part of a larger one.
+        Points are selected first, then thinned; those that stay keep their order.
+    thin_keep : str, optional
+        The point of a cell to keep: ``"center"`` (the nearest to it; the default), ``"lowest"`` or ``"highest"``.
+    seed : int, optional
+        Another choice of ``"poisson:DISTANCE"`` and ``"random:SHARE"``; 0 by default.
     crs : str, int or pyproj.CRS, optional
         Coordinate system to assign, whatever the files state.
     to_crs : str, int or pyproj.CRS, optional
@@ -104,7 +127,7 @@ def read_points(
     >>> set(ground.classification.tolist())
     {2}
     """
-    selection = _selection(classes, returns, drop_withheld, bounds, boundary, False)
+    selection = _selection(classes, returns, drop_withheld, bounds, boundary, thin, thin_keep, seed)
     with call(threads, progress) as request:
         found = _breakline.read_points(
             _inputs.files(paths, "paths"), _read(columns, partial), _systems(crs, to_crs), selection, request
@@ -121,6 +144,9 @@ def points(
     drop_withheld: bool = False,
     bounds: Any = None,
     boundary: Any = None,
+    thin: Any = None,
+    thin_keep: Any = None,
+    seed: Any = None,
     round: bool = False,
     crs: Any = None,
     to_crs: Any = None,
@@ -144,7 +170,9 @@ def points(
         Round coordinates to the nearest step of the first file's scale, if scales and offsets do not fit together.
     overwrite : bool
         Replace a file that exists.
-    classes, returns, drop_withheld, bounds, boundary, crs, to_crs, columns, partial, threads, progress
+    classes, returns, drop_withheld, bounds, boundary, thin, thin_keep, seed, crs, to_crs, columns, partial
+        As for :func:`read_points`.
+    threads, progress
         As for :func:`read_points`.
 
     Returns
@@ -164,7 +192,7 @@ def points(
     >>> import breakline
     >>> counts = breakline.points("valley.laz", "ground.laz", classes="ground", overwrite=True)
     """
-    selection = _selection(classes, returns, drop_withheld, bounds, boundary, round)
+    selection = _selection(classes, returns, drop_withheld, bounds, boundary, thin, thin_keep, seed, round)
     with call(threads, progress) as request:
         return _breakline.write_points(
             _inputs.files(inputs, "inputs"),

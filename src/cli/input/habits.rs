@@ -110,6 +110,8 @@ const HABITS: &[Habit] = &[
     Habit { typed: &["-i", "--input"], verbs: &[], meaning: Input(None) },
     Habit { typed: &["-keep_class", "--keep_class", "-keep_classification"], verbs: &[], meaning: List("--class") },
     Habit { typed: &["-drop_class", "--drop_class"], verbs: &[], meaning: Refused("--class N,.. lists the classes to use") },
+    Habit { typed: &["-keep_every_nth"], verbs: &["points"], meaning: Refused("--thin nth:N keeps the first of every N points") },
+    Habit { typed: &["-keep_random_fraction"], verbs: &["points"], meaning: Refused("--thin random:SHARE keeps a share of the points") },
     Habit { typed: &["-parse", "-iparse"], verbs: &[], meaning: Same("--parse") },
     Habit { typed: &["-kill", "-concavity"], verbs: SURFACES, meaning: Same("--max-edge") },
     Habit { typed: &["-first_only", "-keep_first"], verbs: OF_POINTS, meaning: Words(&["--return", "first"]) },
@@ -185,6 +187,10 @@ const OF_OTHERS: &[(&str, &str)] = &[
         "points must be classified before: `pdal translate` with `filters.smrf` does it",
     ),
     ("lasclassify", "points must be classified before"),
+    (
+        "lasthin",
+        "`breakline points IN --thin grid:1 --thin-keep lowest -o OUT.laz` keeps one point of each cell",
+    ),
     (
         "lastile",
         "verbs work in tiles by themselves where memory is short: `--tiles`",

@@ -9,6 +9,7 @@ use crate::error::{Error, Result};
 use crate::io::formats::Product;
 use crate::io::las::Rounding;
 use crate::run::{PointsRequest, Withheld, write_points};
+use crate::terrain::{CellPoint, Thinning};
 
 /// Selects, clips and merges points.
 pub(crate) fn run(args: &PointsArgs, console: &Console) -> Result<Exit> {
@@ -43,6 +44,7 @@ pub(crate) fn run(args: &PointsArgs, console: &Console) -> Result<Exit> {
         },
         bounds: args.bounds.map(|corners| corners.bounds()),
         boundary,
+        thinning: thinning(args)?,
         rounding: if args.round {
             Rounding::Nearest
         } else {
@@ -56,6 +58,7 @@ pub(crate) fn run(args: &PointsArgs, console: &Console) -> Result<Exit> {
         (report.other_class, "of other classes"),
         (report.other_return, "of other returns"),
         (report.outside, "outside"),
+        (report.thinned, "thinned"),
     ];
     let left_out = left_out
         .iter()
@@ -70,4 +73,13 @@ pub(crate) fn run(args: &PointsArgs, console: &Console) -> Result<Exit> {
     print_extent(report.written.bounds, report.crs.as_ref(), console);
     commit(outputs, console)?;
     Ok(Exit::Done)
+}
+
+fn thinning(args: &PointsArgs) -> Result<Option<Thinning>> {
+    let Some(rule) = args.thin else {
+        return Ok(None);
+    };
+    rule.0
+        .with(args.thin_keep.map(CellPoint::from), args.seed)
+        .map(Some)
 }

@@ -78,6 +78,23 @@ pub(crate) fn require_for_columns(count: usize) -> Result<()> {
     })
 }
 
+/// Returns an error if there is not enough memory to double points that are held and take this many
+/// bytes.
+///
+/// # Errors
+/// Those of [`require_for_points`].
+pub(crate) fn require_for_held(bytes: usize) -> Result<()> {
+    require(bytes as u64, "more points than are held already").map_err(|e| {
+        e.cure(wording![
+            "use fewer points: a larger length for ",
+            Setting::Thin,
+            ", or a part of the area (",
+            Setting::Bounds,
+            ")"
+        ])
+    })
+}
+
 /// Returns an error if there is not enough memory to triangulate this many points in space.
 ///
 /// # Errors

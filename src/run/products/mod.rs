@@ -21,6 +21,7 @@ pub(crate) mod sample;
 pub(super) mod simplified;
 pub(crate) mod station_format;
 pub(crate) mod surface;
+mod thinned;
 pub(crate) mod tin;
 mod together;
 pub(crate) mod volume;

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::lattice;
+use super::thinned::Thinned;
 use crate::crs::Crs;
 use crate::data::{
     Bounds, Layer, PointBatch, PointFlags, PointInfo, PointSink, PointSource, PointSummary, Return,
@@ -21,7 +22,7 @@ use crate::run::sources::open;
 use crate::run::sources::point_files::{ASK_EVERY, FILES_KEPT_OPEN};
 use crate::run::sources::systems::{self, Stated, SystemOptions, Systems};
 use crate::run::sources::transforms::Transforms;
-use crate::terrain::Inside;
+use crate::terrain::{Inside, Thinning};
 
 /// The files to read and the points to write. By default all points are written.
 #[derive(Debug, Clone, Default)]
@@ -40,6 +41,9 @@ pub struct PointsRequest {
     pub bounds: Option<Bounds>,
     /// Layers with polygons to clip to, including their borders.
     pub boundary: Vec<PathBuf>,
+    /// Which of the selected points to write; all by default. Lengths are in the units of the
+    /// output's coordinates.
+    pub thinning: Option<Thinning>,
     /// What to do with coordinates that are not on the lattice of a LAS output.
     pub rounding: Rounding,
     /// Options of coordinate systems. Points in degrees are written whatever these say. An output
@@ -76,6 +80,8 @@ pub struct PointsReport {
     pub other_return: u64,
     /// Points left out because they are outside of the bounds or the boundary.
     pub outside: u64,
+    /// Points that were selected, but left out by the thinning.
+    pub thinned: u64,
     /// The coordinate system of all files.
     pub crs: Option<Crs>,
     /// What was assumed and what looks wrong, in the order in which it was found.
@@ -84,7 +90,8 @@ pub struct PointsReport {
 
 /// Reads points file after file, and writes the selected ones in the same order.
 ///
-/// Needs memory for some chunks of points only, however large the files are.
+/// Needs memory for some chunks of points only, however large the files are, and for what a
+/// [`Thinning`] holds. By a smallest distance, large files are read several times.
 ///
 /// # Errors
 /// If a file cannot be read, the files are in different coordinate systems and no target is
@@ -170,39 +177,39 @@ fn transfer<'s>(
         .map(restated)
         .collect::<Result<_>>()?;
     share_lattice(&mut infos, of_points);
+    let mut thinned = match request.thinning {
+        Some(thinning) => Some(Thinned::new(thinning, &request.files)?),
+        None => None,
+    };
     let all: Vec<&PointInfo> = infos.iter().collect();
-    let mut report = PointsReport::default();
     let mut sink = create(&all)?;
-    let count = infos.iter().map(|info| info.count).sum::<Option<u64>>();
-    let work = journal.start(stage, count.map_or(Size::Unknown, Size::Items))?;
-    let mut batch = PointBatch::default();
-    for (((path, info), source), number) in
-        request.files.iter().zip(&infos).zip(sources).zip(of_points)
-    {
-        let mut source = source.map_or_else(|| open(path), Ok)?;
-        sink.next_source(info).map_err(|e| e.in_file(path))?;
-        if is_outside(info, *number, request.bounds.as_ref()) {
-            report.left_out += 1;
-            continue;
+    let pass = Pass {
+        request,
+        infos: &infos,
+        numbers: of_points,
+        plan: &plan,
+        inside: inside.as_ref(),
+        journal: &journal,
+        stage,
+    };
+    let mut report = pass.run(&mut sources, &open, &mut *sink, thinned.as_mut())?;
+    if let Some(thinned) = &mut thinned {
+        while !thinned.end_pass() {
+            // What is read again was reported already.
+            let silent = Journal::new(context);
+            let again = Pass {
+                journal: &silent,
+                ..pass
+            };
+            report = again.run(&mut sources, &open, &mut *sink, Some(&mut *thinned))?;
         }
-        loop {
-            source.read(&mut batch).map_err(|e| e.in_file(path))?;
-            if batch.is_empty() {
-                break;
-            }
-            let count = batch.len() as u64;
-            report.read += count;
-            plan.transforms
-                .apply_to_batch(*number, &mut batch)
+        for (file, batch) in thinned.held() {
+            let path = &request.files[file];
+            sink.next_source(&infos[file])
                 .map_err(|e| e.in_file(path))?;
-            if let (Some(_), Some(_), Some(lattice)) = (number, &info.head, &info.lattice) {
-                las::put_coordinates(&mut batch, lattice).map_err(|e| e.in_file(path))?;
-            }
-            select(&mut batch, request, inside.as_ref(), &mut report);
             sink.write(&batch).map_err(|e| e.in_file(path))?;
-            work.add(count)?;
+            report.written.count += batch.len() as u64;
         }
-        journal.add_warnings(path, source.warnings());
     }
     if report.left_out > 0 {
         journal.add(Notice::FilesOutside {
@@ -212,15 +219,88 @@ fn transfer<'s>(
             buffer: None,
         });
     }
-    if report.read == report.withheld + report.other_class + report.other_return + report.outside {
+    let left_out = report.withheld + report.other_class + report.other_return + report.outside;
+    report.thinned = report.read - left_out - report.written.count;
+    if report.written.count == 0 {
         return Err(nothing_left(&report, request));
     }
-    work.end()?;
     report.written = sink.finish()?;
     plan.transforms.warn(&journal);
     report.crs.clone_from(&plan.crs);
     report.notices = journal.take();
     Ok(report)
+}
+
+/// What is needed to read all points once.
+#[derive(Clone, Copy)]
+struct Pass<'a> {
+    request: &'a PointsRequest,
+    infos: &'a [PointInfo],
+    /// The transform of each file.
+    numbers: &'a [Option<usize>],
+    plan: &'a Plan,
+    inside: Option<&'a Inside>,
+    journal: &'a Journal<'a>,
+    stage: Stage,
+}
+
+impl Pass<'_> {
+    /// Reads the points of all files, and writes those that are selected and not held back by a
+    /// thinning. Files that are not open are opened.
+    fn run(
+        &self,
+        sources: &mut [Option<Box<dyn PointSource + Send>>],
+        open: &dyn Fn(&Path) -> Result<Box<dyn PointSource + Send>>,
+        sink: &mut dyn PointSink,
+        mut thinned: Option<&mut Thinned>,
+    ) -> Result<PointsReport> {
+        let mut report = PointsReport::default();
+        let count = self
+            .infos
+            .iter()
+            .map(|info| info.count)
+            .sum::<Option<u64>>();
+        let work = self
+            .journal
+            .start(self.stage, count.map_or(Size::Unknown, Size::Items))?;
+        let mut batch = PointBatch::default();
+        for (file, (path, info)) in self.request.files.iter().zip(self.infos).enumerate() {
+            let mut source = sources[file].take().map_or_else(|| open(path), Ok)?;
+            sink.next_source(info).map_err(|e| e.in_file(path))?;
+            let number = self.numbers[file];
+            if is_outside(info, number, self.request.bounds.as_ref()) {
+                report.left_out += 1;
+                continue;
+            }
+            loop {
+                source.read(&mut batch).map_err(|e| e.in_file(path))?;
+                if batch.is_empty() {
+                    break;
+                }
+                let count = batch.len() as u64;
+                report.read += count;
+                self.plan
+                    .transforms
+                    .apply_to_batch(number, &mut batch)
+                    .map_err(|e| e.in_file(path))?;
+                if let (Some(_), Some(_), Some(lattice)) = (number, &info.head, &info.lattice) {
+                    las::put_coordinates(&mut batch, lattice).map_err(|e| e.in_file(path))?;
+                }
+                select(&mut batch, self.request, self.inside, &mut report);
+                if let Some(thinned) = &mut thinned {
+                    thinned
+                        .choose(file, &mut batch)
+                        .map_err(|e| e.in_file(path))?;
+                }
+                report.written.count += batch.len() as u64;
+                sink.write(&batch).map_err(|e| e.in_file(path))?;
+                work.add(count)?;
+            }
+            self.journal.add_warnings(path, source.warnings());
+        }
+        work.end()?;
+        Ok(report)
+    }
 }
 
 /// A sink that keeps points in memory.
@@ -415,6 +495,7 @@ fn nothing_left(report: &PointsReport, request: &PointsRequest) -> Error {
         other_return,
         outside,
         left_out,
+        thinned,
         ..
     } = report;
     let boundary = named(
@@ -432,6 +513,10 @@ fn nothing_left(report: &PointsReport, request: &PointsRequest) -> Error {
         )
         .cure(wording![Command::Info, " shows the extent of each file"]),
         0 => Error::format("no points in the input").cure("pass files that contain points"),
+        _ if *thinned > 0 => Error::usage(format!(
+            "no point is left: the thinning leaves out all {thinned} that were selected"
+        ))
+        .cure(wording!["state a larger share for ", Setting::Thin]),
         _ => Error::usage(format!(
             "no point is left of {read} read: {withheld} withheld, {other_class} of other classes, {other_return} of \
              other returns, {outside} outside of {area}"

@@ -4,6 +4,7 @@ use std::str::FromStr;
 
 use crate::data::{Bounds, Return, classes, returns};
 use crate::run::StationFormat;
+use crate::terrain::Thinning;
 
 /// A rectangle typed as `xmin,ymin,xmax,ymax`, with commas or blanks.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -91,6 +92,18 @@ impl ReturnRange {
         } else {
             ranges.iter().flat_map(|range| range.0.clone()).collect()
         }
+    }
+}
+
+/// A rule to thin points by, with the number after it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct ThinRule(pub(crate) Thinning);
+
+impl FromStr for ThinRule {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        Thinning::parse(text).map(ThinRule)
     }
 }
 

@@ -2,13 +2,15 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::parse::{ClassRange, Corners, ReturnRange, altitude, finite, positive, smallest_angle};
+use super::parse::{
+    ClassRange, Corners, ReturnRange, ThinRule, altitude, finite, positive, smallest_angle,
+};
 use super::reading::ReadArgs;
 use super::surface::{OnCrossingArg, SurfaceArgs};
 use super::systems::SystemArgs;
 use super::tiles::TileArgs;
 use crate::run::{Alpha, Arithmetic};
-use crate::terrain::{Method, Shading};
+use crate::terrain::{CellPoint, Method, Shading};
 
 /// The files to write.
 #[derive(Debug, Clone, Args)]
@@ -91,6 +93,7 @@ pub(crate) struct InfoArgs {
 Example:
   breakline points tiles/*.laz --class ground,water --boundary site.shp -o site.laz
   breakline points a.las b.las -o merged.laz
+  breakline points tiles/*.laz --class ground --thin grid:1 --thin-keep lowest -o thin.laz
   breakline points tile.laz --a-srs EPSG:25832+7837 -o tile-with-crs.laz")]
 pub(crate) struct PointsArgs {
     /// Files, globs, `@list.txt` or `-` (stdin)
@@ -145,6 +148,33 @@ pub(crate) struct PointsArgs {
     #[arg(long, value_name = "FILE[:LAYER]", help_heading = "Selection")]
     pub(crate) boundary: Vec<PathBuf>,
 
+    /// Leave out points: `grid:SIZE`, `poisson:DISTANCE`, `nth:N` or `random:SHARE`
+    ///
+    /// `grid:1` keeps one point of each cell of 1 x 1, and cells begin at multiples of their size:
+    /// files that are thinned one by one agree. `poisson:1` keeps points that are at least 1 apart
+    /// in plan, and leaves out only those that are closer to one of them. `nth:10` keeps the first
+    /// of every ten. `random:0.1` keeps a tenth; a smaller share is part of a larger one. Points
+    /// are selected first, then thinned; those that stay keep their order and all attributes.
+    /// Lengths are in the units of the output's coordinates.
+    #[arg(long, value_name = "RULE:NUMBER", help_heading = "Selection")]
+    pub(crate) thin: Option<ThinRule>,
+
+    /// Which point of a cell to keep, with `--thin grid:SIZE` [default: center]
+    #[arg(
+        long,
+        value_enum,
+        value_name = "POINT",
+        requires = "thin",
+        help_heading = "Selection"
+    )]
+    pub(crate) thin_keep: Option<CellPointArg>,
+
+    /// Another choice of `--thin poisson:DISTANCE` and `--thin random:SHARE` [default: 0]
+    ///
+    /// The same number makes the same choice.
+    #[arg(long, value_name = "N", requires = "thin", help_heading = "Selection")]
+    pub(crate) seed: Option<u64>,
+
     /// Round coordinates to the nearest step of the first file's scale
     ///
     /// For files whose scales and offsets do not fit together. No coordinate moves by more than
@@ -157,6 +187,27 @@ pub(crate) struct PointsArgs {
 
     #[command(flatten)]
     pub(crate) read: ReadArgs,
+}
+
+/// Which point of a cell is kept.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum CellPointArg {
+    /// The nearest to the center of the cell
+    Center,
+    /// The lowest
+    Lowest,
+    /// The highest
+    Highest,
+}
+
+impl From<CellPointArg> for CellPoint {
+    fn from(arg: CellPointArg) -> Self {
+        match arg {
+            CellPointArg::Center => CellPoint::Center,
+            CellPointArg::Lowest => CellPoint::Lowest,
+            CellPointArg::Highest => CellPoint::Highest,
+        }
+    }
 }
 
 /// Build a TIN of points and breaklines
