@@ -2,7 +2,8 @@
 
 use std::path::PathBuf;
 
-use breakline::run::{self, CompareOptions};
+use breakline::run::{self, AreaOptions, CompareOptions};
+use breakline::terrain::ChangedArea;
 use pyo3::prelude::*;
 
 use crate::arrays::table;
@@ -11,14 +12,20 @@ use crate::requests::{self, FrameArguments};
 use crate::surface::{Raster, Surface, raster_of};
 use crate::work::{self, Call};
 
-/// The cells, how many are on both surfaces, their statistics, the worst places, and how many cells
-/// are higher and lower by more than a height.
+/// An area that differs: true if it is raised, its rings, its area and volume, the largest
+/// difference and where it is.
+type Area<'py> = (bool, Vec<Bound<'py, PyAny>>, [f64; 5]);
+
+/// The cells, how many are on both surfaces, their statistics, the worst places, how many cells are
+/// higher and lower by more than a height, and the areas that are, with the unit of volumes and the
+/// number of those that were left out.
 type Compared<'py> = (
     Raster<'py>,
     usize,
     [f64; 9],
     Bound<'py, PyAny>,
     Option<(usize, usize)>,
+    Option<(Vec<Area<'py>>, Option<&'static str>, usize)>,
 );
 
 /// Compares two surfaces in cells.
@@ -31,16 +38,20 @@ pub(crate) fn compare<'py>(
     method: &str,
     worst: usize,
     changed: Option<f64>,
+    min_area: Option<f64>,
     names: [PathBuf; 2],
     call: Call,
 ) -> PyResult<Compared<'py>> {
+    let changed = requests::positive("changed", changed)?;
     let options = CompareOptions {
         frame: frame.options()?,
         method: requests::method(method)?,
         worst,
+        areas: changed
+            .zip(min_area)
+            .map(|(height, min_area)| AreaOptions { height, min_area }),
         names,
     };
-    let changed = requests::positive("changed", changed)?;
     let surfaces = [first.product(), second.product()];
     let product = work::run(py, &call, |context| -> Result<_> {
         Ok(run::compare(
@@ -55,6 +66,17 @@ pub(crate) fn compare<'py>(
         .statistics
         .map_or([f64::NAN; 9], |statistics| statistics.values());
     let counts = changed.map(|height| product.changed(height).into());
+    let areas = product.areas.as_ref().map(|found| -> PyResult<_> {
+        let area = |of: &ChangedArea| -> PyResult<Area<'py>> {
+            let rings = of.rings.iter().map(|ring| table(py, ring.clone()));
+            let [x, y] = of.at;
+            let numbers = [of.area, of.volume, of.largest, x, y];
+            Ok((of.is_raised, rings.collect::<PyResult<_>>()?, numbers))
+        };
+        let areas = found.areas.iter().map(area).collect::<PyResult<_>>()?;
+        let unit = found.unit.map(|unit| unit.symbols()[0]);
+        Ok((areas, unit, found.left_out))
+    });
     let grid = &product.difference;
     let cells: Vec<f32> = grid.values.iter().map(|&d| d as f32).collect();
     let count = product.statistics.map_or(0, |statistics| statistics.count);
@@ -64,5 +86,6 @@ pub(crate) fn compare<'py>(
         numbers,
         table(py, extremes.collect())?,
         counts,
+        areas.transpose()?,
     ))
 }

@@ -11,8 +11,14 @@ use crate::surface::Surface;
 use crate::work::{self, Call};
 
 /// The record of the polygon, the level of the base, the volumes and areas, and what is moved, in
-/// the order of the fields in Python.
-type Row = (Option<usize>, Option<f64>, [f64; 10], [Option<f64>; 3]);
+/// the order of the fields in Python; then the name of the polygon.
+type Row = (
+    Option<usize>,
+    Option<f64>,
+    [f64; 10],
+    [Option<f64>; 3],
+    Option<String>,
+);
 
 const UNITS: [(&str, VolumeUnit); 2] = [
     ("m3", VolumeUnit::CubicMeters),
@@ -28,6 +34,7 @@ pub(crate) fn volume(
     base: Option<PyRef<'_, Surface>>,
     levels: Option<Vec<f64>>,
     within: Option<LayerInput<'_>>,
+    name_by: Option<String>,
     assign: Option<&str>,
     unit: Option<&str>,
     bulking: Option<[f64; 2]>,
@@ -36,6 +43,7 @@ pub(crate) fn volume(
 ) -> PyResult<(Vec<Row>, Option<&'static str>)> {
     let options = VolumeOptions {
         within: within.map(|layer| requests::layer(&layer)).transpose()?,
+        name_by,
         assign: requests::crs(assign)?,
         unit: unit
             .map(|name| requests::choose("unit", name, &UNITS))
@@ -72,5 +80,5 @@ fn row(row: &VolumeRow) -> Row {
     ];
     let moved = row.earthwork.map(|e| [e.loose_cut, e.bank_fill, e.balance]);
     let moved = moved.map_or([None; 3], |numbers| numbers.map(Some));
-    (row.record, row.level, numbers, moved)
+    (row.record, row.level, numbers, moved, row.name.clone())
 }

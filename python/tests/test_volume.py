@@ -74,3 +74,41 @@ def test_what_is_refused():
         assert said in f"{raised.value} {raised.value.cure}", wrong
     with pytest.warns(breakline.BreaklineWarning, match="do not overlap"):
         breakline.volume(slope, [[x + 50, y, 1] for x, y, _ in SLOPE])
+
+
+def test_areas_that_differ():
+    ground = [[0, 0, 10], [10, 0, 10], [10, 10, 10], [0, 10, 10]]
+    mound = [[2, 2, 10], [4, 2, 10], [4, 4, 10], [2, 4, 10], [3, 3, 14]]
+    found = breakline.compare(ground + mound, ground, resolution=1, changed=2, min_area=0, crs="EPSG:25832")
+    (area,) = found.areas
+    assert (area.change, area.largest, area.x, area.y) == ("raised", 4, 3, 3)
+    # At half of its height, a pyramid has a quarter of its foot.
+    assert (area.area, area.volume) == (pytest.approx(1, rel=1e-9), pytest.approx(1 * 2 + 2 / 3, rel=1e-9))
+    assert (found.unit, found.left_out) == ("m3", 0)
+    assert len(area.rings) == 1 and area.rings[0][0].tolist() == area.rings[0][-1].tolist()
+    shape = area.__geo_interface__
+    assert shape["geometry"]["type"] == "Polygon" and shape["properties"]["change"] == "raised"
+    assert breakline.compare(ground, ground, resolution=1, changed=2).areas is None
+    fewer = breakline.compare(ground + mound, ground, resolution=1, changed=2, min_area=1.5)
+    assert (fewer.areas, fewer.left_out, fewer.unit) == ([], 1, None)
+    for wrong in ({"min_area": 1}, {"min_area": -1, "changed": 1}, {"min_area": float("nan"), "changed": 1}):
+        with pytest.raises(breakline.UsageError, match="min_area"):
+            breakline.compare(ground, ground, resolution=1, **wrong)
+
+
+def test_an_attribute_names_polygons(tmp_path):
+    lots = tmp_path / "lots.geojson"
+    ring = "[[0,0],[5,0],[5,5],[0,5],[0,0]]"
+    lots.write_text(
+        '{"type":"FeatureCollection","crs":{"type":"name","properties":{"name":"urn:ogc:def:crs:EPSG::25832"}},'
+        '"features":[{"type":"Feature","properties":{"lot":"A 1"},'
+        f'"geometry":{{"type":"Polygon","coordinates":[{ring}]}}}}]}}'
+    )
+    slope = breakline.tin(SLOPE, crs="EPSG:25832")
+    (row,) = breakline.volume(SLOPE, plane=0, within=lots, name_by="lot")
+    assert (row.record, row.name) == (1, "A 1")
+    assert breakline.volume(slope, plane=0)[0].name is None
+    with pytest.raises(breakline.UsageError, match="no field street"):
+        breakline.volume(SLOPE, plane=0, within=lots, name_by="street")
+    with pytest.raises(breakline.UsageError, match="name_by"):
+        breakline.volume(SLOPE, plane=0, name_by="lot")

@@ -14,6 +14,19 @@ pub enum Value {
     Truth(bool),
 }
 
+impl Value {
+    /// Returns the value as text; empty if there is none.
+    pub(crate) fn text(&self) -> String {
+        match self {
+            Value::Missing => String::new(),
+            Value::Whole(whole) => whole.to_string(),
+            Value::Number(number) => number.to_string(),
+            Value::Text(text) => text.clone(),
+            Value::Truth(truth) => truth.to_string(),
+        }
+    }
+}
+
 /// The attributes of all records of a vector layer.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Attributes {

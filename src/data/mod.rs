@@ -63,6 +63,7 @@ pub(crate) use mesh::{area_of, not_finite, orientation};
 pub use points::{PointBatch, PointFlags, PointInfo, PointSink, PointSource, PointSummary};
 pub use profile::{LinePoint, Profile, Profiles, Station, Stretch};
 pub use returns::Return;
+pub(crate) use shape::doubled_area;
 pub use shape::{Column, Layer, Shape, ShapeKind};
 pub use surface::{BaseFace, Census, EdgeKind, Face, LineEdges, Surface};
 pub(crate) use surface::{corners, faces, faces_under, map_batches};

@@ -21,6 +21,15 @@ pub enum Shape {
     Faces(Vec<Vec<Vec<[f64; 3]>>>),
 }
 
+/// Returns twice the area of a ring that repeats its first vertex, negative if it is clockwise;
+/// relative to the first vertex, for precision.
+pub(crate) fn doubled_area<const N: usize>(ring: &[[f64; N]]) -> f64 {
+    let at = |p: &[f64; N]| [p[0] - ring[0][0], p[1] - ring[0][1]];
+    let cross = |[a, b]: [f64; 2], [c, d]: [f64; 2]| a * d - c * b;
+    let sides = ring.windows(2);
+    sides.map(|side| cross(at(&side[0]), at(&side[1]))).sum()
+}
+
 /// The kinds of [`Shape`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum ShapeKind {

@@ -46,6 +46,7 @@ mod options;
 pub(crate) use bytes::contain::contain;
 pub use bytes::contain::is_contained;
 pub(crate) use bytes::csv::csv_field;
+pub(crate) use bytes::field::no_such_field;
 pub use bytes::mapped;
 pub(crate) use bytes::output::Temporary;
 pub use bytes::output::{

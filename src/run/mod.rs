@@ -109,6 +109,7 @@ pub use products::cells::{
     CellProduct, DemOptions, HillshadeOptions, LightOptions, QuantityOptions, dem, hillshade,
     quantity,
 };
+pub use products::changed::{AreaOptions, ChangedAreas};
 pub use products::check::{CheckProduct, FlawKind, LocatedFlaw, check, surface_flaws};
 pub use products::compare::{CompareOptions, CompareProduct, compare};
 pub use products::contour::{ContourOptions, ContourProduct, contour, write_contours};

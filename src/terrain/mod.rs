@@ -15,6 +15,7 @@
 //! | a DEM | slope, aspect, curvature, roughness | [`QuantityMap`], of a [`Quantity`] |
 //! | a surface, and points known better | how far they are apart | [`ErrorStatistics`], [`Histogram`] |
 //! | two surfaces, or one and a level | cut and fill | [`volumes()`], in [`Zones`] |
+//! | two surfaces | where they differ by more than a height | [`changed_areas`] |
 //! | two rasters of the same cells | their difference | [`Difference`] |
 //! | a surface and a line | the heights along it | [`Locator`] |
 //! | an axis | the lines across it | [`sections()`] |
@@ -49,6 +50,7 @@ mod admitted;
 mod boxes;
 mod builder;
 mod caps;
+mod changes;
 mod clip;
 mod compact;
 pub mod contour;
@@ -90,6 +92,7 @@ mod window;
 
 pub use builder::TinBuilder;
 pub use caps::{LeftOutAtRim, LostCaps};
+pub use changes::{ChangedArea, changed_areas};
 pub use compact::{CompactTin, PartCell, TinIndex, TinIndexPart};
 pub use contour::{Contours, contours};
 pub use crossings::{CrossingHeights, CrossingRule};

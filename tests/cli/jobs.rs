@@ -79,6 +79,8 @@ fn a_stockpile_from_two_flights() {
     // A pyramid of 40 m by 40 m that grew by 6 m has 3200; its edges are off diagonals of cells.
     assert!(printed.contains("3192 m3"), "{printed}");
     assert!(size(&folder, "difference.tif") > 0);
+    // A header of 100 bytes, and one polygon.
+    assert!(size(&folder, "changed.shp") > 200);
 }
 
 #[test]

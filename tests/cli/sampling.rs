@@ -39,6 +39,78 @@ fn text_is_kept_byte_by_byte_and_gets_columns() {
     assert_eq!(lines[4], "3,9,9,far,,,,,,");
 }
 
+/// A surface in parts is asked from part to part, with the same results as in one piece.
+#[test]
+fn parts_have_what_the_whole_has() {
+    let mut random = testkit::random::Random(3);
+    // Positions on a small grid: many are on edges between parts, and on vertices.
+    let mut rows = |count: usize, has_height: bool| -> String {
+        let row = |_| {
+            let [x, y] = [0; 2].map(|_| random.index(41));
+            let z = if has_height { random.index(30) } else { 0 };
+            format!("{x} {y} {z}\n")
+        };
+        (0..count).map(row).collect()
+    };
+    let (ground, points) = (rows(900, true), rows(700, false));
+    let folder = folder_with(&[
+        ("g.xyz", &ground),
+        ("old.xyz", "0 0 9\n40 0 9\n40 40 12\n0 40 12\n"),
+        ("p.xyz", &points),
+    ]);
+    for (more, name) in [
+        (&[][..], "whole.tin"),
+        (&["--tiles", "3x2"][..], "parts.tins"),
+    ] {
+        let words = [&["tin", "g.xyz", "-o", name], more].concat();
+        run_in(&folder, &words).works(&[]);
+    }
+    run_in(
+        &folder,
+        &["tin", "old.xyz", "--max-edge", "none", "-o", "old.tin"],
+    )
+    .works(&[]);
+    let commands: &[&[&str]] = &[
+        &[
+            "sample",
+            "SURFACE",
+            "--at",
+            "p.xyz",
+            "--add",
+            "height,slope,aspect,gradient",
+        ],
+        &["accuracy", "SURFACE", "--checkpoints", "g.xyz", "--json"],
+        &["volume", "SURFACE", "--levels", "5:20:2.5", "--json"],
+        &["volume", "SURFACE", "old.tin", "--json"],
+        &["volume", "old.tin", "SURFACE", "--json"],
+        &[
+            "compare",
+            "SURFACE",
+            "old.tin",
+            "--resolution",
+            "1",
+            "--changed",
+            "3",
+            "--min-area",
+            "0",
+            "--json",
+        ],
+    ];
+    for command in commands {
+        let [whole, parts] = ["whole.tin", "parts.tins"].map(|name| {
+            let words: Vec<&str> = command
+                .iter()
+                .map(|word| if *word == "SURFACE" { name } else { word })
+                .collect();
+            let run = run_in(&folder, &words);
+            assert_eq!(run.code, 0, "{words:?}: {}", run.stderr);
+            run.stdout
+        });
+        assert!(whole.len() > 200, "{command:?}: {whole}");
+        assert_eq!(whole, parts, "{command:?}");
+    }
+}
+
 #[test]
 fn ends_of_lines_marks_and_separators_stay() {
     for (text, expected) in [

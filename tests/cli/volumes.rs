@@ -235,6 +235,51 @@ fn ground_swells_when_it_is_dug_out_and_shrinks_as_fill() {
 }
 
 #[test]
+fn an_attribute_names_polygons() {
+    let layer = r#"{"type":"FeatureCollection","crs":{"type":"name","properties":{"name":"urn:ogc:def:crs:EPSG::25832"}},"features":[
+        {"type":"Feature","properties":{"Lot":"north, \"1\"","n":7},"geometry":{"type":"Polygon",
+            "coordinates":[[[0,2],[3,2],[3,3],[0,3],[0,2]]]}},
+        {"type":"Feature","properties":{"Lot":null,"n":8},"geometry":{"type":"Polygon",
+            "coordinates":[[[0,0],[3,0],[3,1],[0,1],[0,0]]]}}]}"#;
+    let folder = folder_with(&[("a.xyz", SLOPE), ("lots.geojson", layer)]);
+    let words = |field: &'static str| {
+        [
+            "volume",
+            "a.xyz",
+            "--plane",
+            "10",
+            "--within",
+            "lots.geojson",
+            "--name-by",
+            field,
+        ]
+    };
+    let table = run_in(&folder, &[&words("LOT")[..], &["-o", "v.csv"]].concat());
+    table.works(&[]);
+    assert!(table.stdout.contains("north, \"1\""), "{}", table.stdout);
+    let csv = String::from_utf8(bytes(&folder, "v.csv")).unwrap();
+    let starts: Vec<&str> = csv
+        .lines()
+        .map(|line| &line[..line.len().min(23)])
+        .collect();
+    assert_eq!(starts[0], "record,name,level,cut,f");
+    assert!(starts[1].starts_with("1,\"north, \"\"1\"\"\",10,"), "{csv}");
+    assert!(starts[2].starts_with("2,,10,"), "{csv}");
+    let rows = json(&run_in(&folder, &[&words("n")[..], &["--json"]].concat()));
+    assert_eq!(
+        (&rows["rows"][0]["name"], &rows["rows"][1]["name"]),
+        (&"7".into(), &"8".into())
+    );
+    run_in(&folder, &words("street"))
+        .fails(2, &["lots.geojson: there is no field street", "Lot, n"]);
+    run_in(
+        &folder,
+        &["volume", "a.xyz", "--plane", "10", "--name-by", "n"],
+    )
+    .fails(2, &["--within"]);
+}
+
+#[test]
 fn polygons_have_a_row_each() {
     let folder = folder_with(&[
         ("a.xyz", SLOPE),

@@ -1,5 +1,6 @@
 //! Volumes between surfaces: against rational numbers, closed forms and laws.
 
+mod changes;
 mod judge;
 
 use breakline::data::{Mesh, Surface};

@@ -35,7 +35,7 @@ a :class:`BreaklineWarning`.
 
 from ._breakline import __version__
 from ._columns import Points
-from ._differences import Comparison, compare
+from ._differences import ChangedArea, Comparison, compare
 from ._errors import (
     ArgumentTypeError,
     BreaklineError,
@@ -81,6 +81,7 @@ __all__ = [
     "BreaklineError",
     "BreaklineWarning",
     "CanceledError",
+    "ChangedArea",
     "Comparison",
     "Contour",
     "Contours",

@@ -87,6 +87,7 @@ def volume(
     base: Optional[Surface],
     levels: Optional[list[float]],
     within: Any,
+    name_by: Optional[str],
     assign: Optional[str],
     unit: Optional[str],
     bulking: Optional[list[float]],
@@ -99,6 +100,7 @@ def volume(
             Optional[float],
             tuple[float, float, float, float, float, float, float, float, float, float],
             tuple[Optional[float], Optional[float], Optional[float]],
+            Optional[str],
         ]
     ],
     Optional[str],
@@ -110,6 +112,7 @@ def compare(
     method: str,
     worst: int,
     changed: Optional[float],
+    min_area: Optional[float],
     names: list[str],
     call: _Call,
 ) -> tuple[
@@ -118,6 +121,13 @@ def compare(
     tuple[float, float, float, float, float, float, float, float, float],
     NDArray[np.float64],
     Optional[tuple[int, int]],
+    Optional[
+        tuple[
+            list[tuple[bool, list[NDArray[np.float64]], tuple[float, float, float, float, float]]],
+            Optional[str],
+            int,
+        ]
+    ],
 ]: ...
 def profile(
     surfaces: list[Surface],

@@ -10,11 +10,51 @@ from numpy.typing import NDArray
 
 from . import _breakline, _inputs
 from ._call import Progress, call
+from ._errors import usage
 from ._names import Method
 from ._results import Raster, frame_of, of_cells
 from ._verbs import names_of, refuse_kept, surfaces_of
 
-__all__ = ["Comparison", "compare"]
+__all__ = ["ChangedArea", "Comparison", "compare"]
+
+
+@dataclass(frozen=True, eq=False)
+class ChangedArea:
+    """An area in which two surfaces differ by more than a height.
+
+    It has ``__geo_interface__``, so that shapely and ``geopandas.GeoDataFrame.from_features`` take it.
+
+    Attributes
+    ----------
+    change : str
+        ``"raised"`` if the first surface is above the second, else ``"lowered"``.
+    rings : list of (n, 2) array of float64
+        The outer ring, clockwise, and the holes; each repeats its first vertex at the end.
+    area, volume : float
+        The area in plan, and the volume between both surfaces.
+    largest : float
+        The largest difference of the heights, first minus second.
+    x, y : float
+        Where it is.
+    """
+
+    change: str
+    rings: "list[NDArray[np.float64]]"
+    area: float
+    volume: float
+    largest: float
+    x: float
+    y: float
+
+    @property
+    def __geo_interface__(self) -> "dict[str, Any]":
+        """The area as a feature of GeoJSON."""
+        numbers = {"area": self.area, "volume": self.volume, "largest": self.largest, "x": self.x, "y": self.y}
+        return {
+            "type": "Feature",
+            "properties": {"change": self.change, **numbers},
+            "geometry": {"type": "Polygon", "coordinates": [ring[::-1].tolist() for ring in self.rings]},
+        }
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,6 +73,14 @@ class Comparison:
         Places with the largest differences, the largest first, at least 8 cells apart: x, y and difference.
     changed : tuple of int or None
         How many cells are higher, and lower, by more than the height that was given.
+    areas : list of ChangedArea or None
+        The areas in which the surfaces differ by more, those with the largest volumes first; ``None`` unless
+        ``min_area`` was given.
+    unit : str or None
+        The unit of their volumes, such as ``"m3"``, whose squares are that of areas; ``None`` if no coordinate system
+        is known: then they are in cubes of the unit of the data.
+    left_out : int
+        How many areas were left out because they are smaller than ``min_area``.
     """
 
     raster: Raster
@@ -48,6 +96,9 @@ class Comparison:
     skew: float
     worst: NDArray[np.float64]
     changed: "Optional[tuple[int, int]]"
+    areas: "Optional[list[ChangedArea]]" = None
+    unit: Optional[str] = None
+    left_out: int = 0
 
 
 def compare(
@@ -60,6 +111,7 @@ def compare(
     method: Method = "linear",
     worst: int = 10,
     changed: Optional[float] = None,
+    min_area: Optional[float] = None,
     threads: Optional[int] = None,
     progress: Progress = None,
     **surface: Any,
@@ -77,6 +129,9 @@ def compare(
         How many of the places with the largest differences are listed.
     changed : float, optional
         A height: cells that differ by more are counted.
+    min_area : float, optional
+        With ``changed``: also find the areas in which the surfaces differ by more, exact on the triangles of both, and
+        leave out those that are smaller than this; 0 keeps all.
     threads, progress
         As for :func:`tin`.
     **surface
@@ -89,15 +144,28 @@ def compare(
     >>> found = breakline.compare(slope, [[0, 0, 1], [10, 0, 1], [10, 10, 1], [0, 10, 1]], resolution=5)
     >>> found.raster.array.tolist(), found.mean
     ([[1.5, 1.5], [0.5, 0.5]], 1.0)
+    >>> found = breakline.compare(slope, slope, resolution=5, changed=0.5, min_area=0)
+    >>> found.areas
+    []
     """
     refuse_kept(surface)
     by = _inputs.name(method, "method")
     frame = frame_of(resolution, extent, align_to)
     height = None if changed is None else _inputs.number(changed, "changed")
+    least = None if min_area is None else _inputs.number(min_area, "min_area")
+    if least is not None and (height is None or not least >= 0):
+        raise usage("min_area is not the size of areas", min_area, "pass a number from 0 on, together with changed")
     places = _inputs.whole_numbers([worst], "worst", 1_000_000)[0]
     first, second = surfaces_of([a, b], surface, threads, progress, by)
     with call(threads, progress) as request:
-        cells, count, numbers, found, counts = _breakline.compare(
-            first, second, frame, by, places, height, names_of([(a, "a"), (b, "b")]), request
+        cells, count, numbers, found, counts, changes = _breakline.compare(
+            first, second, frame, by, places, height, least, names_of([(a, "a"), (b, "b")]), request
         )
-    return Comparison(of_cells(cells, "difference"), count, *numbers, found, counts)
+    raster = of_cells(cells, "difference")
+    if changes is None:
+        return Comparison(raster, count, *numbers, found, counts)
+    areas, unit, left_out = changes
+    changed_areas = [
+        ChangedArea("raised" if is_raised else "lowered", rings, *of_area) for is_raised, rings, of_area in areas
+    ]
+    return Comparison(raster, count, *numbers, found, counts, changed_areas, unit, left_out)

@@ -376,6 +376,8 @@ class Volume:
     unit : str or None
         ``"m3"`` or ``"yd3"``; areas are in its squares. None if no coordinate system is known: then volumes are in cubes
         of the unit of the data.
+    name : str or None
+        The name of the polygon, with ``name_by``.
     """
 
     record: Optional[int]
@@ -394,6 +396,7 @@ class Volume:
     bank_fill: Optional[float]
     balance: Optional[float]
     unit: Optional[str]
+    name: Optional[str] = None
 
 
 def volume(
@@ -404,6 +407,7 @@ def volume(
     levels: Any = None,
     base: Optional[str] = None,
     within: Any = None,
+    name_by: Optional[str] = None,
     unit: Optional[str] = None,
     swell: Optional[float] = None,
     shrink: Optional[float] = None,
@@ -426,6 +430,8 @@ def volume(
         stockpile that is outlined at its foot.
     within : path or polygons, optional
         Polygons, with a row for each, as :func:`tin` takes them for ``boundary``.
+    name_by : str, optional
+        The attribute of the polygons in a file that names them.
     unit : "m3" or "yd3", optional
         The unit of volumes; areas are in its squares. Cubic meters if the coordinate system is known.
     swell, shrink : float, optional
@@ -460,6 +466,8 @@ def volume(
     outlines = [] if within is None else _inputs.layers(within, "within", True)
     if len(outlines) > 1:
         raise usage("polygons of several layers", len(outlines), "pass one file, or one list of polygons")
+    if name_by is not None and within is None:
+        raise usage("name_by is for polygons", name_by, "pass them as within")
     inputs = [a] if b is None else [a, b]
     found = surfaces_of(inputs, surface, threads, progress)
     factors = [_inputs.number(1 if factor is None else factor, name) for factor, name in [(swell, "swell"), (shrink, "shrink")]]
@@ -472,13 +480,14 @@ def volume(
             found[1] if b is not None else None,
             heights,
             outlines[0] if outlines else None,
+            None if name_by is None else _inputs.name(name_by, "name_by"),
             assign,
             None if unit is None else _inputs.name(unit, "unit"),
             None if swell is None and shrink is None else factors,
             names,
             request,
         )
-    return [Volume(record, level, *numbers, *moved, known) for record, level, numbers, moved in rows]
+    return [Volume(record, level, *numbers, *moved, known, name) for record, level, numbers, moved, name in rows]
 
 
 def surfaces_of(

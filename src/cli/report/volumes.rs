@@ -3,6 +3,7 @@
 use serde_json::{Map, Value, json};
 
 use super::escape;
+use crate::io::csv_field;
 use crate::run::units::number;
 use crate::run::{VolumeProduct, VolumeRow, VolumeUnit};
 
@@ -75,11 +76,6 @@ impl Field {
     }
 }
 
-/// Returns the symbols of volumes and of areas.
-fn symbols(unit: Option<VolumeUnit>) -> [&'static str; 2] {
-    unit.map_or(["cubic units", "square units"], VolumeUnit::symbols)
-}
-
 /// Returns a number without a sign if it is 0.
 fn plain(value: f64) -> f64 {
     value + 0.0
@@ -94,7 +90,7 @@ pub(crate) fn text(product: &VolumeProduct) -> String {
 }
 
 fn lines(row: &VolumeRow, unit: Option<VolumeUnit>) -> String {
-    let [of_volumes, of_areas] = symbols(unit);
+    let [of_volumes, of_areas] = VolumeUnit::symbols_of(unit);
     let mut text = String::new();
     for (name, value) in keys(row) {
         text += &format!("{name:<12} {value:>16}\n");
@@ -111,7 +107,7 @@ fn lines(row: &VolumeRow, unit: Option<VolumeUnit>) -> String {
 }
 
 fn table(rows: &[VolumeRow], unit: Option<VolumeUnit>) -> String {
-    let [of_volumes, of_areas] = symbols(unit);
+    let [of_volumes, of_areas] = VolumeUnit::symbols_of(unit);
     let first = rows.first().map(keys).unwrap_or_default();
     let fields = fields(rows);
     let mut cells: Vec<Vec<String>> = vec![
@@ -127,7 +123,13 @@ fn table(rows: &[VolumeRow], unit: Option<VolumeUnit>) -> String {
         keys.chain(values).collect()
     }));
     let columns = first.len() + fields.len();
-    let width = |column: usize| cells.iter().map(|row| row[column].len()).max().unwrap_or(0);
+    let width = |column: usize| {
+        cells
+            .iter()
+            .map(|row| row[column].chars().count())
+            .max()
+            .unwrap_or(0)
+    };
     let widths: Vec<usize> = (0..columns).map(width).collect();
     let mut text = format!("volumes in {of_volumes}, areas in {of_areas}\n");
     for row in &cells {
@@ -144,8 +146,12 @@ fn table(rows: &[VolumeRow], unit: Option<VolumeUnit>) -> String {
 /// Returns what a row is about: its polygon and its level, if there are any.
 fn keys(row: &VolumeRow) -> Vec<(&'static str, String)> {
     let record = row.record.map(|record| ("record", record.to_string()));
+    let name = row
+        .name
+        .as_deref()
+        .map(|name| ("name", escape::line(name).into_owned()));
     let level = row.level.map(|level| ("level", plain(level).to_string()));
-    record.into_iter().chain(level).collect()
+    record.into_iter().chain(name).chain(level).collect()
 }
 
 /// Returns exact numbers as JSON.
@@ -159,6 +165,9 @@ pub(crate) fn json(product: &VolumeProduct) -> String {
         let mut object = Map::new();
         if let Some(record) = row.record {
             object.insert("record".to_owned(), record.into());
+        }
+        if let Some(name) = &row.name {
+            object.insert("name".to_owned(), name.as_str().into());
         }
         if let Some(level) = row.level {
             object.insert("level".to_owned(), plain(level).into());
@@ -178,16 +187,22 @@ pub(crate) fn csv(product: &VolumeProduct) -> String {
     let unit = product.unit.map_or("", |unit| unit.symbols()[0]);
     let fields = fields(&product.rows);
     let names: Vec<String> = fields.iter().map(|field| field.key()).collect();
-    let mut text = format!("record,level,{},unit\n", names.join(","));
+    let has_names = product.rows.iter().any(|row| row.name.is_some());
+    let name = if has_names { "name," } else { "" };
+    let mut text = format!("record,{name}level,{},unit\n", names.join(","));
     for row in &product.rows {
-        let record = row.record.map(|record| record.to_string());
+        let record = row
+            .record
+            .map(|record| record.to_string())
+            .unwrap_or_default();
+        let name = has_names.then(|| csv_field(row.name.as_deref().unwrap_or_default()));
         let level = row.level.map(|level| plain(level).to_string());
         let values = fields
             .iter()
             .map(|field| plain((field.of)(row)).to_string());
-        let cells: Vec<String> = [record, level]
-            .map(Option::unwrap_or_default)
-            .into_iter()
+        let cells: Vec<String> = std::iter::once(record)
+            .chain(name)
+            .chain([level.unwrap_or_default()])
             .chain(values)
             .chain([unit.to_owned()])
             .collect();

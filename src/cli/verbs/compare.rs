@@ -2,8 +2,8 @@ use std::path::PathBuf;
 
 use super::pair;
 use crate::cli::Exit;
-use crate::cli::input::args::CompareArgs;
-use crate::cli::input::outputs::{self, formats_of};
+use crate::cli::input::args::{CompareArgs, OutputArgs};
+use crate::cli::input::outputs::{self, Format, Outputs, formats_of};
 use crate::cli::input::plan::{SurfacePlan, frame};
 use crate::cli::report::comparison;
 use crate::cli::report::console::Console;
@@ -11,7 +11,14 @@ use crate::cli::report::stdout::print;
 use crate::cli::report::written::commit;
 use crate::error::{Error, Result};
 use crate::io::formats::Product;
-use crate::run::{self, CompareOptions};
+use crate::run::{self, AreaOptions, CompareOptions};
+
+/// What is written to a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Written {
+    Cells,
+    Areas,
+}
 
 /// Compares two surfaces.
 pub(crate) fn run(args: &CompareArgs, console: &Console) -> Result<Exit> {
@@ -29,13 +36,20 @@ pub(crate) fn run(args: &CompareArgs, console: &Console) -> Result<Exit> {
     let read: Vec<PathBuf> = pair::files(&plans)
         .chain(args.frame.align_to.clone())
         .collect();
-    let output = pair::output(&args.output, args.overwrite);
-    let outputs = outputs::resolve(&output, &formats_of(Product::Heights, |_| ()), &read)?;
+    let outputs = outputs::resolve(
+        &OutputArgs {
+            output: args.output.clone(),
+            overwrite: args.overwrite,
+        },
+        &formats(),
+        &read,
+    )?;
     let named = |i: usize| args.surface.inputs.get(i).cloned().unwrap_or_default();
     let options = CompareOptions {
         frame: frame(&args.frame)?,
         method: args.method.into(),
         worst: args.worst,
+        areas: areas(args, &outputs)?,
         names: [named(0), named(1)],
     };
     let context = console.context();
@@ -51,9 +65,11 @@ pub(crate) fn run(args: &CompareArgs, console: &Console) -> Result<Exit> {
     };
     let product = run::compare([first, second], &options, &context)?;
     for target in &outputs.targets {
-        product
-            .cells()
-            .write(target.within(&outputs.set), &context)?;
+        let file = target.within(&outputs.set);
+        match (target.kind, &product.areas) {
+            (Written::Areas, Some(areas)) => areas.write(file, &context)?,
+            _ => drop(product.cells().write(file, &context)?),
+        }
     }
     commit(outputs, console)?;
     print(&match args.json {
@@ -61,4 +77,32 @@ pub(crate) fn run(args: &CompareArgs, console: &Console) -> Result<Exit> {
         false => comparison::text(&product, args.changed),
     })?;
     Ok(Exit::Done)
+}
+
+/// Returns the formats of rasters and of polygons.
+fn formats() -> Vec<Format<Written>> {
+    let mut formats = formats_of(Product::Heights, |_| Written::Cells);
+    formats.extend(formats_of(Product::Lines, |_| Written::Areas));
+    formats
+}
+
+/// Returns which areas are found; `None` if they are not asked for.
+///
+/// # Errors
+/// If a file of areas is named, but no height.
+fn areas(args: &CompareArgs, outputs: &Outputs<Written>) -> Result<Option<AreaOptions>> {
+    let mut targets = outputs.targets.iter();
+    let file = targets.find(|target| target.kind == Written::Areas);
+    match (args.changed, file) {
+        (None, Some(target)) => Err(Error::usage("polygons of what differs by which height?")
+            .in_file(&target.path)
+            .cure("add --changed HEIGHT")),
+        (Some(height), file) if file.is_some() || args.min_area.is_some() => {
+            Ok(Some(AreaOptions {
+                height,
+                min_area: args.min_area.unwrap_or(0.0),
+            }))
+        }
+        _ => Ok(None),
+    }
 }

@@ -38,6 +38,7 @@ pub(crate) fn run(args: &VolumeArgs, console: &Console) -> Result<Exit> {
     let named = |i: usize| args.surface.inputs.get(i).cloned().unwrap_or_default();
     let options = VolumeOptions {
         within: args.within.clone().map(Input::File),
+        name_by: args.name_by.clone(),
         assign: plans.first().and_then(pair::assigned),
         unit: args.unit.map(Into::into),
         bulking: (args.swell.is_some() || args.shrink.is_some()).then(|| Bulking {

@@ -52,7 +52,9 @@ pub(crate) fn require_for_points(count: usize) -> Result<()> {
             Setting::Bounds,
             "), a class (",
             Setting::Class,
-            "), or tiles one by one"
+            "); or write the surface in parts (.tins) with ",
+            Command::Tin,
+            ", which works in tiles: heights at points, volumes, rasters and contours are computed from part to part"
         ])
     })
 }
@@ -151,7 +153,9 @@ pub(crate) fn require_for_parts(triangles: usize) -> Result<()> {
         &format!("a mesh of {triangles} triangles"),
     )
     .map_err(|e| {
-        e.cure("rasters with linear heights, contours and heights at positions need no mesh")
+        e.cure(
+            "rasters with linear heights, contours, heights at positions and volumes need no mesh",
+        )
     })
 }
 

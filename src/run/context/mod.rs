@@ -110,6 +110,8 @@ pub enum Stage {
     ComputingHeights,
     /// Volumes are computed, counted in faces, each of which is visited a few times.
     ComputingVolumes,
+    /// The triangles of two surfaces are compared.
+    ComparingTriangles,
     /// Lines are followed over a surface, counted in lines.
     FollowingLines,
     /// The tasks of a job run, counted in tasks.
@@ -137,6 +139,7 @@ impl Stage {
             Stage::Writing => "writing",
             Stage::ComputingHeights => "computing heights",
             Stage::ComputingVolumes => "computing volumes",
+            Stage::ComparingTriangles => "comparing triangles",
             Stage::FollowingLines => "following lines",
             Stage::RunningTasks => "running tasks",
         }

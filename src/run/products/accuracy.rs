@@ -530,7 +530,7 @@ impl Checkpoints {
             .iter()
             .map(|row| [row.point[0], row.point[1]])
             .collect();
-        let samples = surface.with_faces(&journal.context, |faces| {
+        let samples = surface.with_faces_for(options.method, &journal.context, |faces| {
             Sampler::new(faces, options.method)?.samples(&positions)
         })?;
         for (row, sample) in self.rows.iter_mut().zip(samples) {

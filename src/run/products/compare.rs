@@ -3,10 +3,11 @@
 use std::path::PathBuf;
 
 use super::cells::{CellProduct, DemOptions, refuse_options};
+use super::changed::{AreaOptions, ChangedAreas, changed_areas};
 use super::frame::{self, FrameOptions};
 use super::surface::{Model, SurfaceProduct};
 use crate::data::{BlockSource, Frame, Grid};
-use crate::error::Result;
+use crate::error::{Error, Result, Setting, wording};
 use crate::io::geotiff::CellFormat;
 use crate::run::context::notice::Notice;
 use crate::run::context::watched::Watched;
@@ -25,6 +26,8 @@ pub struct CompareOptions {
     pub method: Method,
     /// How many of the worst places are listed.
     pub worst: usize,
+    /// Also find the areas in which the surfaces differ, on their triangles.
+    pub areas: Option<AreaOptions>,
     /// What messages call the surfaces, such as the names of their files.
     pub names: [PathBuf; 2],
 }
@@ -40,6 +43,7 @@ impl Default for CompareOptions {
             frame: FrameOptions::default(),
             method: Method::default(),
             worst: Self::WORST,
+            areas: None,
             names: Default::default(),
         }
     }
@@ -56,6 +60,8 @@ pub struct CompareProduct {
     pub statistics: Option<ErrorStatistics>,
     /// Where surfaces differ most, the worst first, at least 8 cells apart.
     pub worst: Vec<LargeDifference>,
+    /// The areas in which the surfaces differ, if they were asked for.
+    pub areas: Option<ChangedAreas>,
     /// What was assumed and what looks wrong, in the order in which it was found.
     pub notices: Vec<Notice>,
 }
@@ -68,12 +74,12 @@ pub struct CompareProduct {
 ///
 /// # Errors
 /// If the coordinate systems differ; if the frame cannot be chosen, or is chosen for a raster,
-/// which keeps its own; if a file is damaged, the cells do not fit into memory, or the run is
-/// canceled.
+/// which keeps its own; if areas are asked for and the method is not linear or the system is in
+/// degrees; if a file is damaged, the cells do not fit into memory, or the run is canceled.
 ///
 /// # Complexity
 /// Linear in the triangles, and O(n log n) for n cells, on all threads; about 40 bytes for each
-/// cell.
+/// cell. For areas, that of [`terrain::changed_areas`](crate::terrain::changed_areas) besides.
 pub fn compare(
     surfaces: [&SurfaceProduct; 2],
     options: &CompareOptions,
@@ -82,8 +88,14 @@ pub fn compare(
     let journal = Journal::new(context);
     context.check()?;
     let [first, second] = surfaces;
+    if options.areas.is_some() && options.method != Method::Linear {
+        return Err(Error::usage(
+            "areas are those of triangles, on which heights are linear: another method has none",
+        )
+        .cure(wording!["leave out ", Setting::Method]));
+    }
     let stated = [0, 1].map(|k| surfaces[k].stated(&options.names[k]));
-    systems::unify(&stated, &SystemOptions::default(), &journal)?;
+    let crs = systems::unify(&stated, &SystemOptions::default(), &journal)?.crs;
     let frame = cells_of(surfaces, options, &journal)?;
     let method = options.method;
     let difference = with_heights(first, frame, method, context, |first| {
@@ -110,8 +122,13 @@ pub fn compare(
             .map(|name| name.display().to_string());
         journal.add(Notice::NothingInCommon(one, other));
     }
+    let areas = options
+        .areas
+        .map(|areas| changed_areas(surfaces, crs, &areas, context))
+        .transpose()?;
     context.check()?;
     Ok(CompareProduct {
+        areas,
         worst: largest_differences(&difference.frame, &difference.values, options.worst),
         difference,
         statistics,

@@ -2,6 +2,7 @@
 
 pub(crate) mod accuracy;
 pub(crate) mod cells;
+pub(crate) mod changed;
 pub(crate) mod check;
 pub(crate) mod compare;
 pub(crate) mod contour;

@@ -176,6 +176,33 @@ impl SurfaceProduct {
         }
     }
 
+    /// Like [`with_faces`](Self::with_faces), but a surface in parts stays in its files: faces of
+    /// different parts are not linked.
+    pub(super) fn with_unlinked_faces<T>(
+        &self,
+        context: &Context,
+        take: impl FnOnce(&dyn Surface) -> Result<T>,
+    ) -> Result<T> {
+        match &self.model {
+            Model::Parts(parts) => take(&parts.unjoined()?),
+            _ => self.with_faces(context, take),
+        }
+    }
+
+    /// Calls a function with the faces by which heights of a method are computed at positions:
+    /// linear ones need no links.
+    pub(super) fn with_faces_for<T>(
+        &self,
+        method: Method,
+        context: &Context,
+        take: impl FnOnce(&dyn Surface) -> Result<T>,
+    ) -> Result<T> {
+        match method {
+            Method::Linear => self.with_unlinked_faces(context, take),
+            _ => self.with_faces(context, take),
+        }
+    }
+
     /// Returns the coordinate system that a surface states, by what messages call it.
     pub(super) fn stated(&self, name: &Path) -> Stated {
         Stated {

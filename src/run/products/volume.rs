@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 
 use super::surface::SurfaceProduct;
 use crate::crs::Crs;
-use crate::data::{Layer, Mesh, Surface};
+use crate::data::{Layer, Mesh, Surface, Value};
 use crate::error::{Error, Result, Setting, wording};
-use crate::io::OnDamage;
+use crate::io::{OnDamage, no_such_field};
 use crate::run::context::notice::Notice;
 use crate::run::context::units::Units;
 use crate::run::context::watched::Watched;
@@ -92,6 +92,8 @@ impl Bulking {
 pub struct VolumeOptions {
     /// Polygons: each has volumes of its own.
     pub within: Option<Input<Layer>>,
+    /// The attribute of these polygons that names them.
+    pub name_by: Option<String>,
     /// The coordinate system of these polygons, whatever their file states.
     pub assign: Option<Crs>,
     /// The unit of the result; cubic meters if it is `None` and units are known.
@@ -120,6 +122,12 @@ impl VolumeUnit {
         }
     }
 
+    /// Returns the [symbols](Self::symbols) of a unit, or words if it is not known.
+    #[cfg(feature = "cli")]
+    pub(crate) fn symbols_of(unit: Option<VolumeUnit>) -> [&'static str; 2] {
+        unit.map_or(["cubic units", "square units"], VolumeUnit::symbols)
+    }
+
     /// Returns the meters in the length whose cube it is.
     fn length(self) -> f64 {
         match self {
@@ -130,11 +138,13 @@ impl VolumeUnit {
 }
 
 /// The volumes in one polygon, or of all of the surface, above one base.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct VolumeRow {
     /// The record of the polygon, counted from 1; `None` if there are no polygons.
     pub record: Option<usize>,
+    /// The name of the polygon, if names were asked for; empty if it has none.
+    pub name: Option<String>,
     /// The height of the base, if it is level.
     pub level: Option<f64>,
     /// The volumes and areas.
@@ -179,19 +189,25 @@ pub fn volume(
     let journal = Journal::new(context);
     context.check()?;
     options.bulking.map_or(Ok(()), Bulking::check)?;
-    let within = options.within.as_slice();
-    let layers = layers::read(within, &[], OnDamage::Refuse, &journal)?;
+    let layers = match (&options.within, &options.name_by) {
+        (Some(within), Some(_)) => vec![layers::read_whole(within, &journal)?],
+        (within, _) => layers::read(within.as_slice(), &[], OnDamage::Refuse, &journal)?,
+    };
     let crs = common_system(surface, base, &layers, options, &journal)?;
     let scale = Scale::new(crs.as_ref(), options.unit)?;
-    let outlines = layers.first().map(Outlines::read).transpose()?;
+    let name_by = options.name_by.as_deref();
+    let outlines = layers
+        .first()
+        .map(|layer| Outlines::read(layer, name_by))
+        .transpose()?;
     let computing = Computing {
         outlines: outlines.as_ref(),
         height_unit: scale.volume / (scale.area * scale.area.sqrt()),
         context,
     };
-    let mut rows = surface.with_faces(context, |faces| match base {
+    let mut rows = surface.with_unlinked_faces(context, |faces| match base {
         VolumeBase::Surface(base) => {
-            base.with_faces(context, |base| computing.above_surface(faces, base))
+            base.with_unlinked_faces(context, |base| computing.above_surface(faces, base))
         }
         VolumeBase::Levels(levels) => computing.above_levels(faces, levels),
         VolumeBase::Rim => computing.above_rims(faces),
@@ -260,14 +276,14 @@ fn common_system(
 }
 
 /// The factors that convert areas and volumes from the units of the data.
-struct Scale {
-    area: f64,
-    volume: f64,
-    unit: Option<VolumeUnit>,
+pub(super) struct Scale {
+    pub(super) area: f64,
+    pub(super) volume: f64,
+    pub(super) unit: Option<VolumeUnit>,
 }
 
 impl Scale {
-    fn new(crs: Option<&Crs>, asked: Option<VolumeUnit>) -> Result<Self> {
+    pub(super) fn new(crs: Option<&Crs>, asked: Option<VolumeUnit>) -> Result<Self> {
         let units = Units::of(crs);
         match (units.in_metres(), crs) {
             (Some([plan, height]), _) => {
@@ -319,12 +335,17 @@ struct Outlines<'a> {
     path: &'a Path,
     /// Their records, counted from 1.
     records: Vec<usize>,
+    /// Their names, if these were asked for.
+    names: Option<Vec<String>>,
     rings: Vec<Rings>,
     zones: Zones,
 }
 
 impl<'a> Outlines<'a> {
-    fn read((path, layer): &'a (&Path, std::borrow::Cow<'_, Layer>)) -> Result<Self> {
+    fn read(
+        (path, layer): &'a (&Path, std::borrow::Cow<'_, Layer>),
+        name_by: Option<&str>,
+    ) -> Result<Self> {
         let polygons = shapes::polygons(layer, path, Setting::Within)?;
         let (records, rings): (Vec<usize>, Vec<Rings>) = polygons
             .into_iter()
@@ -336,13 +357,43 @@ impl<'a> Outlines<'a> {
                 Error::format("the polygon has no area").cure("repair or remove the record");
             return Err(at_record(error, path, records[empty]));
         }
+        let names = name_by
+            .map(|field| names_of(layer, field, &records))
+            .transpose()
+            .map_err(|e| e.in_file(path))?;
         Ok(Outlines {
             path,
             records,
+            names,
             rings,
             zones,
         })
     }
+}
+
+/// Returns the values of an attribute of some records.
+///
+/// # Errors
+/// If there is no such attribute.
+fn names_of(layer: &Layer, field: &str, records: &[usize]) -> Result<Vec<String>> {
+    let kept = layer.attributes.as_ref();
+    let known = kept.map_or(&[][..], |attributes| &attributes.names);
+    let exact = known.iter().position(|name| name == field);
+    let column = exact
+        .or_else(|| {
+            known
+                .iter()
+                .position(|name| name.eq_ignore_ascii_case(field))
+        })
+        .ok_or_else(|| no_such_field(field, known.iter().map(String::as_str)))?;
+    let value = |record: &usize| {
+        let row = kept.and_then(|attributes| attributes.rows.get(record.checked_sub(1)?));
+        row.and_then(|row| row.get(column)).map(Value::text)
+    };
+    Ok(records
+        .iter()
+        .map(|record| value(record).unwrap_or_default())
+        .collect())
 }
 
 /// What volumes are computed in, and under which context.
@@ -385,6 +436,7 @@ impl Computing<'_> {
         let Some(Outlines {
             path,
             records,
+            names,
             rings,
             ..
         }) = self.outlines
@@ -400,12 +452,14 @@ impl Computing<'_> {
         let watched = Watched::faces(surface, visits, Stage::ComputingVolumes, self.context)?;
         let interpolant = Interpolant::new(surface, Method::Linear)?;
         let mut rows = Vec::new();
-        for (&record, rings) in records.iter().zip(rings) {
-            let zone = Zones::new(std::slice::from_ref(rings))?;
-            let base = rim_base(&zone, &interpolant).map_err(|e| at_record(e, path, record))?;
-            let found = self.volumes(&watched, terrain::VolumeBase::Surface(&base), Some(&zone))?;
+        for (zone, (&record, rings)) in records.iter().zip(rings).enumerate() {
+            let outline = Zones::new(std::slice::from_ref(rings))?;
+            let base = rim_base(&outline, &interpolant).map_err(|e| at_record(e, path, record))?;
+            let base = terrain::VolumeBase::Surface(&base);
+            let found = self.volumes(&watched, base, Some(&outline))?;
             rows.extend(found.into_iter().map(|volume| VolumeRow {
                 record: Some(record),
+                name: names.as_ref().map(|names| names[zone].clone()),
                 level: None,
                 volume,
                 earthwork: None,
@@ -438,6 +492,9 @@ impl Computing<'_> {
             .enumerate()
             .map(move |(zone, volume)| VolumeRow {
                 record: self.outlines.map(|outlines| outlines.records[zone]),
+                name: self
+                    .outlines
+                    .and_then(|of| Some(of.names.as_ref()?[zone].clone())),
                 level,
                 volume,
                 earthwork: None,

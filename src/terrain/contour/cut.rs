@@ -346,7 +346,7 @@ impl<S: Surface + ?Sized> Iterator for Fan<'_, '_, S> {
 /// It is computed from the smaller end of the edge to the larger one, so that both faces get the
 /// same bits, and lies in the box of the ends. Along an edge, points are in the order of their
 /// levels.
-fn crossing(a: [f64; 3], b: [f64; 3], level: f64) -> [f64; 2] {
+pub(in crate::terrain) fn crossing(a: [f64; 3], b: [f64; 3], level: f64) -> [f64; 2] {
     let (a, b) = if a <= b { (a, b) } else { (b, a) };
     // Differences of halves cannot overflow; otherwise halving does not change the result.
     let t = (0.5 * level - 0.5 * a[2]) / (0.5 * b[2] - 0.5 * a[2]);

@@ -117,6 +117,8 @@ use super::Levels;
 use crate::data::{ContourLine, Surface};
 use crate::error::Result;
 use bands::Bands;
+pub(super) use cut::crossing;
+use join::Joined;
 use narrow::{Bends, NarrowArcs};
 use trace::Traces;
 
@@ -186,6 +188,21 @@ impl<S: Surface + ?Sized> Contours<'_, S> {
         let draw = |level, traces| finished(surface, level, traces, bends);
         Some(self.bands.next(draw)?.into_iter().flatten().collect())
     }
+}
+
+/// Returns the rings that consist of some arcs, by the turn rule and the loop rule: each repeats
+/// its first point at the end, and has no other point twice. High ground is on the right of arcs.
+/// What does not close is left out.
+pub(super) fn simple_rings(arcs: Vec<[[f64; 2]; 2]>) -> Vec<Vec<[f64; 2]>> {
+    let arcs = arcs.into_iter().map(|arc| Joined {
+        points: arc.to_vec(),
+        closed: false,
+    });
+    let lines = line::finish_level(0.0, arcs.collect(), true, &Bends::default());
+    let rings = lines.into_iter().map(|line| line.points);
+    rings
+        .filter(|ring| ring.len() > 3 && ring.first() == ring.last())
+        .collect()
 }
 
 /// Returns the lines of a level.

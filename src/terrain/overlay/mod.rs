@@ -5,7 +5,7 @@ mod polygon;
 use std::convert::Infallible;
 
 use self::polygon::Clipper;
-pub(super) use self::polygon::{Corner, clipped, from_least};
+pub(super) use self::polygon::{Corner, clipped, from_least, within};
 use super::boxes::{Boxes, Extent, LocatedFace};
 use crate::data::{Surface, map_batches};
 
@@ -14,6 +14,8 @@ use crate::data::{Surface, map_batches};
 pub(super) struct Overlap<'a> {
     /// Corners are relative to it.
     pub(super) origin: [f64; 3],
+    /// The numbers of both faces.
+    pub(super) faces: [u32; 2],
     /// The corners of a convex polygon, counter-clockwise: three or more.
     pub(super) corners: &'a [Corner],
 }
@@ -38,21 +40,26 @@ pub(super) fn overlay<R: Default + Send>(
     let make = |triangles: &[(u32, [[f64; 3]; 3])]| {
         let mut value = R::default();
         let mut clipper = Clipper::default();
-        for &(_, triangle) in triangles {
+        for &(number, triangle) in triangles {
             let extent = Extent::of(triangle);
             faces.find_in(extent, |face| {
                 if !face.extent.overlaps(&extent) {
                     return None;
                 }
                 let other = searched.triangle(face.number)?;
-                let pair = if is_swapped {
-                    [other, triangle]
+                let (pair, numbers) = if is_swapped {
+                    ([other, triangle], [face.number, number])
                 } else {
-                    [triangle, other]
+                    ([triangle, other], [number, face.number])
                 };
                 let (origin, corners) = clipper.common(pair);
                 if corners.len() > 2 {
-                    add(&mut value, Overlap { origin, corners });
+                    let overlap = Overlap {
+                        origin,
+                        faces: numbers,
+                        corners,
+                    };
+                    add(&mut value, overlap);
                 }
                 None::<Infallible>
             });

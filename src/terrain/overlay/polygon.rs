@@ -170,7 +170,7 @@ fn heights([one, other]: [Triangle; 2], corner: &Tagged) -> [f64; 2] {
 }
 
 /// Returns the height of a triangle at a position in it: exact at its corners.
-fn within(triangle: Triangle, at: [f64; 2]) -> f64 {
+pub(crate) fn within(triangle: Triangle, at: [f64; 2]) -> f64 {
     triangle
         .iter()
         .find(|p| plan(**p) == at)

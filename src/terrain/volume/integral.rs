@@ -4,19 +4,19 @@ use crate::terrain::overlay::Corner;
 
 /// Volumes and areas over a polygon: where the first surface is higher, and where the second is.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(super) struct Integral {
+pub(in crate::terrain) struct Integral {
     /// Of each surface: the volume below it and above the other one.
-    pub(super) volumes: [f64; 2],
+    pub(in crate::terrain) volumes: [f64; 2],
     /// The areas of these.
-    pub(super) areas: [f64; 2],
+    pub(in crate::terrain) areas: [f64; 2],
     /// The area of the polygon.
-    pub(super) area: f64,
+    pub(in crate::terrain) area: f64,
 }
 
 /// Returns the volumes and areas over a convex polygon, counter-clockwise.
 ///
 /// With the surfaces exchanged, the same numbers are exchanged.
-pub(super) fn integral(corners: &[Corner]) -> Integral {
+pub(in crate::terrain) fn integral(corners: &[Corner]) -> Integral {
     let mut sum = Integral::default();
     let Some((first, others)) = corners.split_first() else {
         return sum;

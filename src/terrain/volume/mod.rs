@@ -7,8 +7,9 @@ mod zones;
 use std::convert::Infallible;
 use std::ops::RangeInclusive;
 
-use self::integral::integral;
-use self::sum::{Sum, Unit};
+pub(super) use self::integral::integral;
+pub(super) use self::sum::Sum;
+use self::sum::Unit;
 pub use self::zones::Zones;
 use super::overlay::{Corner, Overlap, from_least, overlay};
 use crate::data::{Surface, map_batches};
@@ -164,9 +165,9 @@ pub fn volumes(
 
 /// The units of sums.
 #[derive(Debug, Clone, Copy)]
-struct Units {
-    volume: Unit,
-    area: Unit,
+pub(super) struct Units {
+    pub(super) volume: Unit,
+    pub(super) area: Unit,
     slope_area: Unit,
 }
 
@@ -297,9 +298,9 @@ fn stretch([a, b, c]: [[f64; 3]; 3], height_unit: f64) -> f64 {
 
 /// The box around the faces of a surface.
 #[derive(Debug, Clone, Copy)]
-struct Around {
-    min: [f64; 3],
-    max: [f64; 3],
+pub(super) struct Around {
+    pub(super) min: [f64; 3],
+    pub(super) max: [f64; 3],
 }
 
 impl Around {
@@ -308,7 +309,7 @@ impl Around {
         max: [f64::NEG_INFINITY; 3],
     };
 
-    fn faces_of(surface: &dyn Surface) -> Self {
+    pub(super) fn faces_of(surface: &dyn Surface) -> Self {
         let mut all = Self::NOTHING;
         let ask = |numbers, triangles: &mut _| surface.triangles_in(numbers, triangles);
         let make = |triangles: &[(u32, [[f64; 3]; 3])]| {
@@ -322,7 +323,7 @@ impl Around {
         all
     }
 
-    fn with(self, [min, max]: [[f64; 3]; 2]) -> Self {
+    pub(super) fn with(self, [min, max]: [[f64; 3]; 2]) -> Self {
         Around {
             min: [0, 1, 2].map(|k| self.min[k].min(min[k])),
             max: [0, 1, 2].map(|k| self.max[k].max(max[k])),
@@ -333,7 +334,7 @@ impl Around {
     ///
     /// # Errors
     /// If a size is so large or so small that products of sizes are no numbers, or 0.
-    fn units(&self, height_unit: f64) -> Result<Units> {
+    pub(super) fn units(&self, height_unit: f64) -> Result<Units> {
         let sizes = [0, 1, 2].map(|k| (self.max[k] - self.min[k]).max(0.0));
         if let Some(size) = sizes
             .iter()

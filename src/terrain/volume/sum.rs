@@ -7,11 +7,11 @@ const BITS: i32 = 100;
 
 /// A unit that is so small that rounding numbers to it does not matter: 2^-100 of the largest.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Unit(f64);
+pub(in crate::terrain) struct Unit(f64);
 
 impl Unit {
     /// Returns the unit for sums of numbers that are at most about as large as this one.
-    pub(super) fn for_up_to(largest: f64) -> Self {
+    pub(in crate::terrain) fn for_up_to(largest: f64) -> Self {
         let exponent = if largest > 0.0 {
             largest.log2().ceil()
         } else {
@@ -23,7 +23,7 @@ impl Unit {
     /// Returns a number in this unit.
     ///
     /// `PERF:` in most parts one surface is higher everywhere: half of all values are 0.
-    pub(super) fn of(self, value: f64) -> Sum {
+    pub(in crate::terrain) fn of(self, value: f64) -> Sum {
         if value == 0.0 {
             return Sum(0);
         }
@@ -31,14 +31,14 @@ impl Unit {
     }
 
     /// Returns a sum as a number.
-    pub(super) fn value(self, sum: Sum) -> f64 {
+    pub(in crate::terrain) fn value(self, sum: Sum) -> f64 {
         sum.0 as f64 * self.0
     }
 }
 
 /// A sum of numbers in some [`Unit`]. Sums are exact: their order does not matter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub(super) struct Sum(i128);
+pub(in crate::terrain) struct Sum(i128);
 
 impl AddAssign for Sum {
     fn add_assign(&mut self, other: Self) {

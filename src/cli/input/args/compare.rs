@@ -2,7 +2,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::parse::positive;
+use super::parse::{not_negative, positive};
 use super::surface::SurfaceArgs;
 use super::verbs::{FrameArgs, MethodArg};
 use crate::run::CompareOptions;
@@ -18,7 +18,8 @@ use crate::run::CompareOptions;
 Example:
   breakline compare june.laz may.laz --resolution 0.5 -o difference.tif
   breakline compare delivered.tif check.tin --worst 20 --json
-  breakline compare new.tif old.tif --changed 0.25")]
+  breakline compare new.tif old.tif --changed 0.25
+  breakline compare june.tin may.tin --changed 0.25 --min-area 10 -o changed.shp")]
 pub(crate) struct CompareArgs {
     /// How many of the places with the largest differences are listed
     ///
@@ -32,18 +33,29 @@ pub(crate) struct CompareArgs {
     pub(crate) worst: usize,
 
     /// Also count the cells that differ by more than a height, and their area
+    ///
+    /// With an output of polygons, also find the areas that differ by more, exact on the triangles
+    /// of both inputs. Attributes of each are CHANGE (raised or lowered), AREA, VOLUME (between
+    /// both), LARGEST (the largest difference), and where that is, LARGEST_X and LARGEST_Y.
     #[arg(long, value_name = "HEIGHT", value_parser = positive, allow_negative_numbers = true, help_heading = "Comparison")]
     pub(crate) changed: Option<f64>,
+
+    /// Find the areas that differ, and leave out those that are smaller than this
+    ///
+    /// In m2 if units are known, else in squares of the unit of x and y.
+    #[arg(long, value_name = "AREA", value_parser = not_negative, allow_negative_numbers = true, requires = "changed", help_heading = "Comparison")]
+    pub(crate) min_area: Option<f64>,
 
     /// Print a JSON object with exact numbers
     #[arg(long, help_heading = "Comparison")]
     pub(crate) json: bool,
 
-    /// Raster to write (.tif): the difference in each cell
-    #[arg(short, long, value_name = "OUT.tif", help_heading = "Comparison")]
-    pub(crate) output: Option<PathBuf>,
+    /// File to write (repeatable): .tif has the difference in each cell; .shp, .geojson, .geojsonl
+    /// and .dxf have the areas that differ, as polygons
+    #[arg(short, long, value_name = "OUT", help_heading = "Comparison")]
+    pub(crate) output: Vec<PathBuf>,
 
-    /// Replace a raster that exists
+    /// Replace files that exist
     #[arg(long, help_heading = "Comparison")]
     pub(crate) overwrite: bool,
 

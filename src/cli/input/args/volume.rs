@@ -17,7 +17,7 @@ use crate::run::VolumeUnit;
 #[derive(Debug, Clone, Args)]
 #[command(after_long_help = "\
 Example:
-  breakline volume june.laz may.laz --within site.shp -o volumes.csv
+  breakline volume june.laz may.laz --within site.shp --name-by LOT -o volumes.csv
   breakline volume ground.tin --plane 104.5 --swell 1.25 --shrink 0.9
   breakline volume lake.tin --levels 100:120:0.5 --json
   breakline volume flight.laz --class all --base rim --within stockpiles.shp")]
@@ -49,6 +49,15 @@ pub(crate) struct VolumeArgs {
     /// polygon. `FILE:LAYER` names the layer of a file with several.
     #[arg(long, value_name = "FILE[:LAYER]", help_heading = "Volume")]
     pub(crate) within: Option<PathBuf>,
+
+    /// Attribute of the polygons that names them: rows have its value besides the record
+    #[arg(
+        long,
+        value_name = "FIELD",
+        requires = "within",
+        help_heading = "Volume"
+    )]
+    pub(crate) name_by: Option<String>,
 
     /// Unit of volumes; areas are in its squares [default: m3]
     #[arg(long, value_enum, value_name = "UNIT", help_heading = "Volume")]

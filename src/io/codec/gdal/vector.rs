@@ -10,7 +10,7 @@ use gdal_sys::OGRwkbGeometryType as Type;
 
 use super::messages;
 use crate::crs::Crs;
-use crate::data::{Column, Layer, Shape};
+use crate::data::{Column, Layer, Shape, doubled_area};
 use crate::error::{Error, Result};
 use crate::io::bytes::field::{no_such_field, not_a_number, parse_number};
 use crate::io::bytes::watch::{Watch, unwatched};
@@ -414,23 +414,12 @@ fn parts(polygon: &Geometry) -> Vec<Vec<[f64; 3]>> {
 fn rings(polygon: &Geometry) -> Vec<Vec<[f64; 3]>> {
     let mut rings = parts(polygon);
     for (i, ring) in rings.iter_mut().enumerate() {
-        let is_clockwise = area(ring) < 0.0;
+        let is_clockwise = doubled_area(ring) < 0.0;
         if is_clockwise != (i == 0) {
             ring.reverse();
         }
     }
     rings
-}
-
-/// Returns twice the signed area, positive if counter-clockwise; relative to the first vertex, for
-/// precision.
-fn area(ring: &[[f64; 3]]) -> f64 {
-    let Some(&[x0, y0, _]) = ring.first() else {
-        return 0.0;
-    };
-    ring.windows(2)
-        .map(|pair| (pair[0][0] - x0) * (pair[1][1] - y0) - (pair[1][0] - x0) * (pair[0][1] - y0))
-        .sum()
 }
 
 /// Returns faces if all are triangles, else a polygon with the rings of all.

@@ -4,7 +4,7 @@ use std::io::Write;
 
 use super::{RECORD, WGS_84};
 use crate::crs::{Crs, CrsKind};
-use crate::data::{ContourLine, Layer, Shape, Value};
+use crate::data::{ContourLine, Layer, Shape, Value, doubled_area};
 use crate::error::Result;
 use crate::io::bytes::output::Destination;
 use crate::io::codec::contour_summary::ContourSummary;
@@ -29,9 +29,9 @@ pub fn write_contours<'a>(
     Destination::write_with(target.into(), |out| write(out, lines, crs))
 }
 
-/// Writes the lines of a layer as a FeatureCollection of LineStrings and MultiLineStrings, with all
-/// its attributes as properties, and returns warnings. Heights that are missing are left out.
-/// Records other than lines become features without geometry.
+/// Writes the lines and polygons of a layer as a FeatureCollection, with all its attributes as
+/// properties, and returns warnings. Heights that are missing are left out. Other records become
+/// features without geometry.
 ///
 /// # Errors
 /// As [`write_contours`].
@@ -201,9 +201,32 @@ fn write_record(out: &mut impl Write, layer: &Layer, record: usize) -> std::io::
                 out.write_all(b"]}")?;
             }
         },
+        Some(Shape::Polygon(rings)) => write_polygons(out, rings)?,
         _ => out.write_all(b"null")?,
     }
     out.write_all(b"}")
+}
+
+/// Writes rings as a polygon, or several if there are several outer rings: these are clockwise, and
+/// each is followed by its holes. GeoJSON has both the other way around.
+fn write_polygons(out: &mut impl Write, rings: &[Vec<[f64; 3]>]) -> std::io::Result<()> {
+    let is_hole = |_: &Vec<[f64; 3]>, ring: &Vec<[f64; 3]>| doubled_area(ring) > 0.0;
+    let polygons: Vec<&[Vec<[f64; 3]>]> = rings.chunk_by(is_hole).collect();
+    match polygons[..] {
+        [] => return out.write_all(b"null"),
+        [_] => out.write_all(b"{\"type\":\"Polygon\",\"coordinates\":")?,
+        _ => out.write_all(b"{\"type\":\"MultiPolygon\",\"coordinates\":[")?,
+    }
+    for (i, polygon) in polygons.iter().enumerate() {
+        out.write_all(if i == 0 { b"[" } else { b",[" })?;
+        for (k, ring) in polygon.iter().enumerate() {
+            out.write_all(if k == 0 { b"" } else { b"," })?;
+            let reversed: Vec<[f64; 3]> = ring.iter().rev().copied().collect();
+            write_positions(out, &reversed)?;
+        }
+        out.write_all(b"]")?;
+    }
+    out.write_all(if polygons.len() > 1 { b"]}" } else { b"}" })
 }
 
 fn write_positions(out: &mut impl Write, part: &[[f64; 3]]) -> std::io::Result<()> {

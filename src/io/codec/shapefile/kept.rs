@@ -101,7 +101,7 @@ fn column(name: String, attributes: &Attributes, number: usize) -> (KeptColumn, 
     };
     let all = |is: fn(&Value) -> bool| values().all(is);
     let has_values = values().next().is_some();
-    let longest = || values().map(|value| text(value).len()).max().unwrap_or(0);
+    let longest = || values().map(|value| value.text().len()).max().unwrap_or(0);
     if has_values && all(|value| matches!(value, Value::Truth(_))) {
         return (of(b'L', 1), 0);
     }
@@ -118,19 +118,8 @@ fn column(name: String, attributes: &Attributes, number: usize) -> (KeptColumn, 
     if has_values && all(is_number) {
         return (of(b'F', usize::from(NUMBER_WIDTH)), 0);
     }
-    let cut = values().filter(|value| text(value).len() > TEXT).count();
+    let cut = values().filter(|value| value.text().len() > TEXT).count();
     (of(b'C', longest().clamp(1, TEXT)), cut)
-}
-
-/// Returns a value as text.
-fn text(value: &Value) -> String {
-    match value {
-        Value::Missing => String::new(),
-        Value::Whole(whole) => whole.to_string(),
-        Value::Number(number) => number.to_string(),
-        Value::Text(text) => text.clone(),
-        Value::Truth(truth) => truth.to_string(),
-    }
 }
 
 impl KeptColumn {
@@ -156,7 +145,7 @@ impl KeptColumn {
             (b'F', Value::Number(number)) => real(*number),
             (b'N', Value::Whole(whole)) => format!("{whole:>width$}"),
             (b'C', value) => {
-                let mut text = text(value);
+                let mut text = value.text();
                 while text.len() > width {
                     text.pop();
                 }

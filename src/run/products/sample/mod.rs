@@ -66,7 +66,7 @@ pub fn sample(
     if let Some(notice) = surface.unread_by(options.method) {
         journal.add(notice);
     }
-    let mut report = surface.with_faces(context, |faces| {
+    let mut report = surface.with_faces_for(options.method, context, |faces| {
         let mut values = Values {
             sampling: Sampling::new(faces, options, crs.as_ref(), &journal)?,
             work: journal.start(Stage::ComputingHeights, Size::Unknown)?,
@@ -120,7 +120,7 @@ pub fn sample_positions(
         journal.add(notice);
     }
     let mut values = Vec::with_capacity(positions.len() * options.column_names().len());
-    surface.with_faces(context, |faces| {
+    surface.with_faces_for(options.method, context, |faces| {
         let sampling = Sampling::new(faces, options, surface.crs(), &journal)?;
         let size = Size::Items(positions.len() as u64);
         let work = journal.start(Stage::ComputingHeights, size)?;

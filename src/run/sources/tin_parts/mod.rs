@@ -4,6 +4,7 @@ mod contours;
 mod heights;
 mod join;
 mod joined;
+mod unjoined;
 mod written;
 
 pub(crate) use contours::contours;
@@ -22,8 +23,8 @@ use crate::terrain::{CompactTin, DemOfParts, TinIndex};
 
 /// A surface in parts, each of which is a TIN in a file. [`TinIndex`] says which.
 ///
-/// Rasters with linear heights, contours and heights at positions are computed from part to part,
-/// and so need not have the surface in memory. For all else the parts are joined.
+/// Rasters with linear heights, contours, heights at positions and volumes are computed from part
+/// to part, and so need not have the surface in memory. For all else the parts are joined.
 pub struct TinParts {
     path: PathBuf,
     folder: PathBuf,
