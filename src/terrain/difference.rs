@@ -217,7 +217,7 @@ mod tests {
                 .into_iter()
                 .map(|[row, column]| LargeDifference {
                     at: frame.center(column, row),
-                    value: f64::from(cells[row * width + column]),
+                    value: cells[row * width + column],
                 })
                 .collect();
             for count in [usize::MAX, 3] {

@@ -102,8 +102,8 @@ pub(super) fn difference_over(
             })
         })
         .collect();
-    // Where a triangle is thin, a rounded crossing beside it may be on it, at any of its heights. So
-    // the height of a vertex is that of the largest cell around it.
+    // Where a triangle is thin, a rounded crossing beside it may be on it, at any of its heights.
+    // So the height of a vertex is that of the largest cell around it.
     let mut heights = vec![(0.0, f64::NAN); triangulation.points().len()];
     for cell in &inside {
         for (&v, height) in cell.corners.iter().zip(cell.heights) {
