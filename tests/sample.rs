@@ -282,6 +282,20 @@ fn a_raster_has_its_cells_at_their_centers_and_holes_where_they_are() {
             bits(&samples(&surface, &between)),
             bits(&samples(&mesh, &between))
         );
+        let nearest = Sampler::new(&surface, Method::Nearest).unwrap();
+        let found = nearest.samples(&between).unwrap();
+        let mut counted = 0;
+        for (sample, &q) in found.iter().zip(&between).filter(|(s, _)| s.is_some()) {
+            let away = |cell: usize| (centers[cell][0] - q[0]).hypot(centers[cell][1] - q[1]);
+            let known = (0..values.len()).filter(|&cell| values[cell].is_finite());
+            let cell = known.min_by(|&a, &b| away(a).total_cmp(&away(b))).unwrap();
+            // A cell among missing ones is not part of a triangle, and so none of the nearest.
+            if samples(&surface, &[centers[cell]])[0].is_some() {
+                assert_eq!(sample.height, values[cell]);
+                counted += 1;
+            }
+        }
+        assert!(counted > 1000, "{counted}");
     }
 }
 

@@ -188,6 +188,12 @@ pub trait Surface: Sync {
         false
     }
 
+    /// Returns true if the vertex was added between the heights that are given, as in the middle of
+    /// four cells. Methods that take the nearest heights pass over it.
+    fn is_between(&self, _vertex: u32) -> bool {
+        false
+    }
+
     /// A lower bound of the width of each face, in steps of an `f64` at the largest coordinate of
     /// the surface in plan; 0 if none is known. The width is twice the area, divided by the sum of
     /// the sides of the box around the face.

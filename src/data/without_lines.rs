@@ -41,6 +41,10 @@ impl Surface for WithoutLines<'_> {
         false
     }
 
+    fn is_between(&self, vertex: u32) -> bool {
+        self.0.is_between(vertex)
+    }
+
     fn faces_at(&self, q: [f64; 2], near: &mut Option<u32>, faces: &mut Vec<u32>) -> bool {
         self.0.faces_at(q, near, faces)
     }

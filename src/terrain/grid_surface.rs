@@ -293,6 +293,10 @@ impl Surface for GridSurface<'_> {
         ]
     }
 
+    fn is_between(&self, vertex: u32) -> bool {
+        vertex as usize >= self.grid.values.len()
+    }
+
     fn face_count(&self) -> usize {
         4 * self.quads[0] * self.quads[1]
     }

@@ -139,6 +139,10 @@ impl<S: Surface + ?Sized> Surface for Watched<'_, S> {
         self.source.is_fragment(face)
     }
 
+    fn is_between(&self, vertex: u32) -> bool {
+        self.source.is_between(vertex)
+    }
+
     fn least_width(&self) -> f64 {
         self.source.least_width()
     }

@@ -71,14 +71,17 @@ impl Bulking {
         }
     }
 
-    /// Returns an error if a factor is not a positive number.
+    /// Returns an error if a factor is none of ground: a percentage, or the part that is added.
     fn check(self) -> Result<()> {
-        for (factor, setting) in [(self.swell, Setting::Swell), (self.shrink, Setting::Shrink)] {
-            if !(factor.is_finite() && factor > 0.0) {
+        for (factor, setting, [least, most]) in [
+            (self.swell, Setting::Swell, [1.0, 5.0]),
+            (self.shrink, Setting::Shrink, [0.2, 2.0]),
+        ] {
+            if !(least..=most).contains(&factor) {
                 return Err(Error::usage(wording![
                     "the factor of ",
                     setting,
-                    format!(" is {factor}: expected a number above 0")
+                    format!(" is {factor}: expected a number from {least} to {most}")
                 ])
                 .cure("give the volume as a multiple of that in place, such as 1.25 or 0.9"));
             }

@@ -32,7 +32,7 @@ pub(super) struct Search {
 }
 
 impl Vertices {
-    /// Collects the vertices of the triangles under a surface.
+    /// Collects the vertices of the triangles under a surface, without those between heights.
     ///
     /// # Complexity
     /// O(n log n); about 35 bytes for each vertex.
@@ -44,7 +44,7 @@ impl Vertices {
         let used = is_used
             .into_par_iter()
             .enumerate()
-            .filter(|(_, is_used)| *is_used);
+            .filter(|&(v, is_used)| is_used && !surface.is_between(v as u32));
         Vertices(Boxes::new(
             used.map(|(v, _)| Vertex(surface.position(v as u32)))
                 .collect(),

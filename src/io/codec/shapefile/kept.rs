@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::number::{NUMBER_DECIMALS, NUMBER_WIDTH, real};
+use super::number::{NUMBER_WIDTH, decimals, real};
 use crate::data::{Attributes, Value};
 use crate::error::{Error, Result};
 
@@ -30,6 +30,7 @@ pub(super) struct KeptColumn {
     name: String,
     kind: u8,
     width: usize,
+    decimals: u8,
 }
 
 /// Returns the fields for attributes. Adds a warning for each name and for the texts that are cut.
@@ -93,6 +94,7 @@ fn column(name: String, attributes: &Attributes, number: usize) -> (KeptColumn, 
         name: name.clone(),
         kind,
         width,
+        decimals: 0,
     };
     let values = || {
         attributes
@@ -116,7 +118,15 @@ fn column(name: String, attributes: &Attributes, number: usize) -> (KeptColumn, 
         _ => false,
     };
     if has_values && all(is_number) {
-        return (of(b'F', usize::from(NUMBER_WIDTH)), 0);
+        let numbers = values().filter_map(|value| match value {
+            Value::Number(number) => Some(*number),
+            _ => None,
+        });
+        let field = KeptColumn {
+            decimals: decimals(numbers),
+            ..of(b'F', usize::from(NUMBER_WIDTH))
+        };
+        return (field, 0);
     }
     let cut = values().filter(|value| value.text().len() > TEXT).count();
     (of(b'C', longest().clamp(1, TEXT)), cut)
@@ -129,9 +139,7 @@ impl KeptColumn {
         bytes[..self.name.len()].copy_from_slice(self.name.as_bytes());
         bytes[11] = self.kind;
         bytes[16] = self.width as u8;
-        if self.kind == b'F' {
-            bytes[17] = NUMBER_DECIMALS;
-        }
+        bytes[17] = self.decimals;
         bytes
     }
 
