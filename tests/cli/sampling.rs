@@ -58,13 +58,6 @@ fn parts_have_what_the_whole_has() {
         ("old.xyz", "0 0 9\n40 0 9\n40 40 12\n0 40 12\n"),
         ("p.xyz", &points),
     ]);
-    for (more, name) in [
-        (&[][..], "whole.tin"),
-        (&["--tiles", "3x2"][..], "parts.tins"),
-    ] {
-        let words = [&["tin", "g.xyz", "-o", name], more].concat();
-        run_in(&folder, &words).works(&[]);
-    }
     run_in(
         &folder,
         &["tin", "old.xyz", "--max-edge", "none", "-o", "old.tin"],
@@ -96,18 +89,25 @@ fn parts_have_what_the_whole_has() {
             "--json",
         ],
     ];
-    for command in commands {
-        let [whole, parts] = ["whole.tin", "parts.tins"].map(|name| {
-            let words: Vec<&str> = command
-                .iter()
-                .map(|word| if *word == "SURFACE" { name } else { word })
-                .collect();
-            let run = run_in(&folder, &words);
-            assert_eq!(run.code, 0, "{words:?}: {}", run.stderr);
-            run.stdout
-        });
-        assert!(whole.len() > 200, "{command:?}: {whole}");
-        assert_eq!(whole, parts, "{command:?}");
+    // Bounds cut triangles: parts have fragments.
+    for clip in [&[][..], &["--bounds", "3.3,3.7,33.1,30.9"]] {
+        for (more, name) in [(&[][..], "whole.tin"), (&["--tiles", "3x2"], "parts.tins")] {
+            let words = [&["tin", "g.xyz", "--overwrite", "-o", name][..], clip, more];
+            run_in(&folder, &words.concat()).works(&[]);
+        }
+        for command in commands {
+            let [whole, parts] = ["whole.tin", "parts.tins"].map(|name| {
+                let words: Vec<&str> = command
+                    .iter()
+                    .map(|word| if *word == "SURFACE" { name } else { word })
+                    .collect();
+                let run = run_in(&folder, &words);
+                assert_eq!(run.code, 0, "{words:?}: {}", run.stderr);
+                run.stdout
+            });
+            assert!(whole.len() > 200, "{command:?}: {whole}");
+            assert_eq!(whole, parts, "{command:?}, {clip:?}");
+        }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value};
 
-use crate::data::Shape;
+use crate::data::{Shape, doubled_area};
 use crate::error::{Error, Result};
 
 /// The members of an object of JSON.
@@ -90,19 +90,10 @@ fn rings(parts: &[Value]) -> Result<Vec<Vec<[f64; 3]>>> {
         {
             ring.push(first);
         }
-        let clockwise = twice_area(ring) < 0.0;
+        let clockwise = doubled_area(ring) < 0.0;
         if clockwise != (i == 0) {
             ring.reverse();
         }
     }
     Ok(rings)
-}
-
-/// Returns twice the signed area of a ring, positive if it runs counter-clockwise.
-pub(super) fn twice_area(ring: &[[f64; 3]]) -> f64 {
-    let Some(o) = ring.first() else { return 0.0 };
-    // Relative to the first vertex, so that small rings keep their precision at large coordinates.
-    ring.windows(2)
-        .map(|w| (w[0][0] - o[0]) * (w[1][1] - o[1]) - (w[1][0] - o[0]) * (w[0][1] - o[1]))
-        .sum()
 }

@@ -1,9 +1,8 @@
 use super::read::{parse, parse_lines};
-use super::shape::twice_area;
 use super::write::write;
 use super::*;
 use crate::crs::Crs;
-use crate::data::{ContourLine, Layer, Shape};
+use crate::data::{ContourLine, Layer, Shape, doubled_area};
 use crate::error::Result;
 use crate::io::bytes::watch::unwatched;
 use crate::io::options::layer::Options;
@@ -118,7 +117,7 @@ fn rings_get_the_order_of_shapefiles() {
         let Shape::Polygon(rings) = read(&text).unwrap().shapes.remove(0) else {
             panic!()
         };
-        let signs: Vec<bool> = rings.iter().map(|ring| twice_area(ring) < 0.0).collect();
+        let signs: Vec<bool> = rings.iter().map(|ring| doubled_area(ring) < 0.0).collect();
         assert_eq!(signs, [true, false, true]);
         assert!(
             rings
@@ -507,4 +506,64 @@ fn a_table_that_is_nearly_empty_is_refused() {
     // Many features with the same properties are none.
     let same = read(5000, &|i| format!(r#""a":{i},"b":null"#)).unwrap();
     assert_eq!(same.attributes.unwrap().rows.len(), 5000);
+}
+
+#[test]
+fn polygons_are_written_with_their_holes() {
+    let ring = |low: f64, high: f64, is_clockwise: bool| -> Vec<[f64; 3]> {
+        let mut ring: Vec<[f64; 3]> = [
+            [low, low],
+            [low, high],
+            [high, high],
+            [high, low],
+            [low, low],
+        ]
+        .map(|[x, y]| [x, y, f64::NAN])
+        .to_vec();
+        if !is_clockwise {
+            ring.reverse();
+        }
+        ring
+    };
+    let around = vec![
+        ring(0.0, 9.0, true),
+        ring(1.0, 2.0, false),
+        ring(3.0, 4.0, false),
+    ];
+    let island = vec![ring(1.25, 1.75, true)];
+    let layer = Layer {
+        shapes: vec![
+            Shape::Polygon(around.clone()),
+            Shape::Polygon([around, island].concat()),
+            Shape::Polygon(Vec::new()),
+        ],
+        ..Layer::default()
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let target = folder.path().join("x.geojson");
+    super::write_lines(&target, &layer).unwrap();
+    let text = std::fs::read_to_string(&target).unwrap();
+    let written: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let geometry = |i: usize| &written["features"][i]["geometry"];
+    assert_eq!(geometry(0)["type"], "Polygon");
+    assert_eq!(geometry(0)["coordinates"].as_array().unwrap().len(), 3);
+    // Outer rings are counter-clockwise.
+    let outer = serde_json::json!([[0.0, 0.0], [9.0, 0.0], [9.0, 9.0], [0.0, 9.0], [0.0, 0.0]]);
+    let as_numbers = |ring: &serde_json::Value| -> Vec<f64> {
+        let points = ring.as_array().unwrap().iter();
+        points
+            .flat_map(|p| [p[0].as_f64().unwrap(), p[1].as_f64().unwrap()])
+            .collect()
+    };
+    assert_eq!(
+        as_numbers(&geometry(0)["coordinates"][0]),
+        as_numbers(&outer)
+    );
+    assert_eq!(geometry(1)["type"], "MultiPolygon");
+    let sizes = geometry(1)["coordinates"].as_array().unwrap().iter();
+    let sizes: Vec<usize> = sizes
+        .map(|polygon| polygon.as_array().unwrap().len())
+        .collect();
+    assert_eq!(sizes, [3, 1]);
+    assert!(geometry(2).is_null());
 }
