@@ -75,15 +75,17 @@ impl<S: BlockSource, R: Rule> BlockSource for Focal<S, R> {
         }
         let around = Around::new(&self.source, &self.frame, window)?;
         for (row, line) in out.chunks_exact_mut(window.width).enumerate() {
-            let lines = [0, 1, 2].map(|i| around.line(row + i));
-            for (column, cell) in line.iter_mut().enumerate() {
-                let height = |i: usize| f64::from(lines[i / 3][column + i % 3]);
-                let mut heights: [f64; 9] = std::array::from_fn(height);
+            let [above, beside, below] = [0, 1, 2].map(|i| around.line(row + i).windows(3));
+            let lines = above.zip(beside).zip(below);
+            for (cell, ((above, beside), below)) in line.iter_mut().zip(lines) {
+                let lines = [above, beside, below];
+                let mut heights: [f64; 9] = std::array::from_fn(|i| f64::from(lines[i / 3][i % 3]));
                 if heights[4].is_nan() {
                     *cell = f32::NAN;
                     continue;
                 }
-                if heights.iter().any(|z| z.is_nan()) {
+                // All nine without a branch: this is faster than to stop at the first.
+                if heights.iter().fold(false, |any, z| any | z.is_nan()) {
                     continue_straight(&mut heights);
                 }
                 *cell = self.rule.value(&Neighbors {

@@ -144,7 +144,8 @@ impl Rule for Scaled {
 impl Scaled {
     fn slope(&self, by: Gradient, around: &Neighbors) -> f64 {
         let [p, q] = self.gradient(by, around);
-        p.hypot(q)
+        // Heights are 32-bit floats: squares do not overflow, and this is faster than `hypot`.
+        (p * p + q * q).sqrt()
     }
 
     /// Returns the rise per length along x and y.
