@@ -138,6 +138,7 @@ fn products_have_the_extensions_that_they_had() {
         ),
         (Product::Heights, &["tif", "tiff"]),
         (Product::Shades, &["tif", "tiff", "png"]),
+        (Product::Colors, &["tif", "tiff", "png"]),
         (Product::Plane, &["ele", "node", "poly", "edge", "neigh"]),
     ] {
         assert_eq!(formats::extensions(product), extensions, "{product:?}");

@@ -5,14 +5,14 @@ use std::sync::Arc;
 
 use breakline::crs::Crs;
 use breakline::data::{
-    Bounds, Column, Lattice, Layer, PointBatch, PointFlags, Return, Shape, returns,
+    Bounds, ColorMatch, Column, Lattice, Layer, PointBatch, PointFlags, Return, Shape, returns,
 };
 use breakline::io::OnDamage;
 use breakline::io::points;
 use breakline::run::{
-    Degrees, EdgeLimit, FlatOptions, FlatRule, FrameOptions, Input, LightOptions, LineRequest,
-    LowerEdge, MemoryPoints, PerRecord, QuantityOptions, ReplacedPoints, SystemOptions, TinRequest,
-    WallOptions, WrittenEdges,
+    self, ColorReliefOptions, Degrees, EdgeLimit, FlatOptions, FlatRule, FrameOptions, Input,
+    LightOptions, LineRequest, LowerEdge, MemoryPoints, PerRecord, QuantityOptions, ReplacedPoints,
+    SystemOptions, TinRequest, WallOptions, WrittenEdges,
 };
 use breakline::terrain::{
     CellPoint, Classes, CrossingRule, DuplicateRule, Gradient, HighSide, Method, Quantity,
@@ -86,6 +86,30 @@ const SHADINGS: [(&str, Shading); 4] = [
     ("igor", Shading::Igor),
 ];
 
+const MATCHES: [(&str, ColorMatch); 3] = [
+    ("linear", ColorMatch::Linear),
+    ("nearest", ColorMatch::Nearest),
+    ("exact", ColorMatch::Exact),
+];
+
+/// A color ramp by its name or in a file, and the colors of heights between those of the ramp.
+type ColorArguments = (PathBuf, String);
+
+/// What a color relief is drawn by: its frame, the method of interpolation and the colors.
+pub(crate) type ReliefArguments = (FrameArguments, String, ColorArguments);
+
+/// Returns the options of a color relief.
+pub(crate) fn relief_options(
+    (frame, method_name, (ramp, matching)): ReliefArguments,
+) -> PyResult<ColorReliefOptions> {
+    Ok(ColorReliefOptions {
+        ramp: run::color_ramp(&ramp).map_err(Failure)?,
+        matching: choose("match", &matching, &MATCHES)?,
+        frame: frame.options()?,
+        method: method(&method_name)?,
+    })
+}
+
 /// How slopes are shaded, the direction of the light and its angle above the horizon, and the
 /// factor for heights.
 pub(crate) type LightArguments = (String, Option<f64>, Option<f64>, Option<f64>);
@@ -139,7 +163,7 @@ pub(crate) fn no_verb(name: &str) -> PyErr {
     errors::usage(
         "there is no such verb",
         &format!("'{name}'"),
-        "use dem, hillshade, slope, aspect, curvature, roughness, tri, tpi, contour or tin",
+        "use dem, hillshade, color_relief, slope, aspect, curvature, roughness, tri, tpi, contour or tin",
     )
 }
 

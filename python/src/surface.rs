@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use breakline::crs::Crs;
 use breakline::data::{ContourLine, EdgeKind, Frame, Grid, Surface as _};
+use breakline::io::formats::{Content, Product};
 use breakline::io::geotiff::CellFormat;
 use breakline::io::{Destination, formats, mapped, mesh};
 use breakline::run::{
@@ -19,8 +20,8 @@ use pyo3::types::{PyBytes, PyDict};
 
 use crate::errors::{self, Failure, Result};
 use crate::requests::{
-    self, FrameArguments, LightArguments, PointInput, ReadArguments, SurfaceArguments,
-    SystemArguments,
+    self, FrameArguments, LightArguments, PointInput, ReadArguments, ReliefArguments,
+    SurfaceArguments, SystemArguments,
 };
 use crate::work::{self, Call};
 use crate::{arrays, notices, reports};
@@ -377,6 +378,51 @@ impl Surface {
             ))
         })?;
         raster_of(py, &frame, shades, self.product.crs())
+    }
+
+    /// Computes the colors of heights in cells: red, green, blue and opacity.
+    fn color_relief<'py>(
+        &self,
+        py: Python<'py>,
+        asked: ReliefArguments,
+        call: Call,
+    ) -> PyResult<Raster<'py>> {
+        let options = requests::relief_options(asked)?;
+        let product = &self.product;
+        let (frame, colors) = work::run(py, &call, |context| -> Result<_> {
+            Ok(run::color_relief(product, &options, context)?.collect_colors(context)?)
+        })?;
+        let cells = arrays::column(py, colors.into_flattened());
+        let cells = cells.reshape([frame.height, frame.width, 4])?;
+        let crs = self.product.crs().map(Crs::to_wkt);
+        Ok((cells.into_any(), frame.transform, crs))
+    }
+
+    /// Writes the colors of heights in cells.
+    fn write_color_relief(
+        &self,
+        py: Python<'_>,
+        asked: ReliefArguments,
+        file: PathBuf,
+        overwrite: bool,
+        call: Call,
+    ) -> PyResult<()> {
+        let options = requests::relief_options(asked)?;
+        let format = formats::for_output(&file, Product::Colors).ok_or_else(|| {
+            Failure(
+                Error::usage("the extension is not that of a color relief")
+                    .in_file(&file)
+                    .cure("write .tif or .png"),
+            )
+        })?;
+        let product = &self.product;
+        write_to(py, &file, overwrite, &call, |target, context| {
+            let cells = run::color_relief(product, &options, context)?;
+            match format.content {
+                Content::Picture => cells.write_picture(target, context),
+                _ => cells.write(target, context).map(drop),
+            }
+        })
     }
 
     /// Draws contours.

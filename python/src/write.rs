@@ -162,6 +162,15 @@ fn verb(name: &str, options: &Bound<'_, PyDict>) -> PyResult<Arc<dyn Verb>> {
                 light: requests::light_options(light)?,
             })
         }
+        "color_relief" => {
+            let of = |name: &str| options.as_any().get_item(name);
+            let asked = (
+                of("frame")?.extract()?,
+                of("method")?.extract()?,
+                of("colors")?.extract()?,
+            );
+            Arc::new(requests::relief_options(asked)?)
+        }
         "contour" => {
             let (interval, base, levels) = options.as_any().get_item("levels")?.extract()?;
             Arc::new(ContourOptions {

@@ -14,7 +14,7 @@ from breakline._surface import DEFAULTS, FOR_ANY, Building
 from breakline._written import HOW, Writing
 
 PROGRAM = breakline.describe()
-VERBS = {verb["name"]: verb for verb in PROGRAM["verbs"]}
+VERBS = {verb["name"].replace("-", "_"): verb for verb in PROGRAM["verbs"]}
 
 #: Options of the program whose parameters here have other names.
 RENAMED = {"a-srs": "crs", "t-srs": "to_crs", "te": "extent", "class": "classes", "return": "returns", "3d": "in_space"}
@@ -40,6 +40,7 @@ RASTERS = ("dem", "hillshade", "slope", "aspect", "curvature", "roughness", "tri
 WRITTEN = {
     **dict.fromkeys(("tin", "simplify"), breakline.Tin),
     "contour": breakline.Contours,
+    "color_relief": breakline.Relief,
     **dict.fromkeys(RASTERS, breakline.Raster),
 }
 

@@ -104,6 +104,7 @@ fn dispatch(verb: &Verb, how: &ConsoleArgs, console: &Console) -> Result<Exit> {
         | Verb::Dem(_)
         | Verb::Contour(_)
         | Verb::Hillshade(_)
+        | Verb::ColorRelief(_)
         | Verb::Slope(_)
         | Verb::Aspect(_)
         | Verb::Curvature(_)

@@ -75,6 +75,40 @@ pub fn cells(source: &dyn BlockSource) -> Result<Vec<f32>> {
     collected(source)
 }
 
+/// Columns and rows of the blocks of which the range is found: the tiles of most files.
+const SIDE: usize = 256;
+
+/// Returns the lowest and the highest of all cells, with all cores; `None` if none has a finite
+/// value.
+///
+/// # Errors
+/// If the source fails.
+///
+/// # Complexity
+/// Linear in the cells, of which some blocks are in memory at a time.
+pub fn range_of(source: &dyn BlockSource) -> Result<Option<[f64; 2]>> {
+    let Frame { width, height, .. } = source.frame();
+    let across = width.div_ceil(SIDE);
+    let none = [f32::INFINITY, f32::NEG_INFINITY];
+    let [low, high] = (0..across * height.div_ceil(SIDE))
+        .into_par_iter()
+        .map(|block| -> Result<[f32; 2]> {
+            let [column, row] = [block % across * SIDE, block / across * SIDE];
+            let window = Window {
+                column,
+                row,
+                width: SIDE.min(width - column),
+                height: SIDE.min(height - row),
+            };
+            let mut cells = vec![f32::NAN; window.width * window.height];
+            source.fill(window, &mut cells)?;
+            let finite = cells.into_iter().filter(|cell| cell.is_finite());
+            Ok(finite.fold(none, |[low, high], cell| [low.min(cell), high.max(cell)]))
+        })
+        .try_reduce(|| none, |a, b| Ok([a[0].min(b[0]), a[1].max(b[1])]))?;
+    Ok((low <= high).then(|| [low, high].map(f64::from)))
+}
+
 fn collected<T: From<f32> + Copy + Send>(source: &dyn BlockSource) -> Result<Vec<T>> {
     let frame = source.frame();
     let count = frame.width.saturating_mul(frame.height);

@@ -12,6 +12,7 @@
 //! | heights along lines | [`Profiles`] of [`LinePoint`] | |
 //! | contours | [`ContourLine`] | `Iterator<Item = ContourLine>` |
 //! | rasters | [`Grid`], georeferenced by its [`Frame`] | [`BlockSource`], read by [`Window`] |
+//! | colors of heights | [`ColorRamp`], [`Colors`] | |
 //! | triangles | [`Triangles`] as a file lists them, [`Mesh`] linked, [`SurfaceFacts`] counted | [`Surface`], also [`WithoutLines`] |
 //! | a box | [`Bounds`] | |
 //!
@@ -40,6 +41,7 @@ mod lattice;
 mod mesh;
 mod points;
 mod profile;
+mod ramp;
 pub mod returns;
 mod shape;
 mod surface;
@@ -55,13 +57,14 @@ pub use contour_line::ContourLine;
 pub(crate) use frame::GridLines;
 pub use frame::{Frame, MAX_SIDE, ToPixels, Window};
 pub(crate) use grid::range_of_finite;
-pub use grid::{BlockSource, Grid, cells};
+pub use grid::{BlockSource, Grid, cells, range_of};
 pub use las_head::LasHead;
 pub use lattice::{Embedding, Lattice};
 pub use mesh::Mesh;
 pub(crate) use mesh::{area_of, not_finite, orientation};
 pub use points::{PointBatch, PointFlags, PointInfo, PointSink, PointSource, PointSummary};
 pub use profile::{LinePoint, Profile, Profiles, Station, Stretch};
+pub use ramp::{ColorMatch, ColorRamp, ColorStop, Colors, Rgba, StopAt};
 pub use returns::Return;
 pub(crate) use shape::doubled_area;
 pub use shape::{Column, Layer, Shape, ShapeKind};

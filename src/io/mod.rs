@@ -7,7 +7,8 @@
 //! | write points | [`points::create`] | [`las::create`], [`text::create`] |
 //! | read lines and polygons | [`layer::read`] | [`shapefile::read_layer`], [`geojson::read_layer`], [`gdal::read_layer`] |
 //! | read a raster | [`raster::open`] | [`geotiff::open`], [`gdal::open_raster`] |
-//! | write a raster | | [`geotiff::write()`]; as a picture: [`png::write_gray`] |
+//! | write a raster | | [`geotiff::write()`]; as a picture: [`png::write_gray`], [`png::write_colors`] |
+//! | read a color ramp | | [`ramp::read`] |
 //! | read or write a mesh | [`mesh::read`], [`mesh::write`] | |
 //! | map a TIN to memory | [`mapped::open`], for a [`CompactTin`](crate::terrain::CompactTin) | |
 //! | read or write Triangle's files: points and segments in the plane, and their triangulation | | [`triangle::read`], [`triangle::write`] |
@@ -54,6 +55,6 @@ pub use bytes::output::{
     probe, remove_abandoned, require_absent,
 };
 pub use bytes::watch::Watch;
-pub use codec::{gdal, geojson, geotiff, las, png, shapefile, tetgen, text, triangle};
+pub use codec::{gdal, geojson, geotiff, las, png, ramp, shapefile, tetgen, text, triangle};
 pub use fronts::{contours, layer, mesh, points, profiles, raster};
 pub use options::cut::OnDamage;

@@ -14,6 +14,7 @@
 //! | heights at positions | positions | [`elevations`], [`Heights`] | a list |
 //! | heights and slopes, added to points | [`SampleOptions`] | [`sample()`] | [`SampleReport`] |
 //! | shaded relief | [`HillshadeOptions`] | [`hillshade`] | [`CellProduct`] |
+//! | heights in colors | [`ColorReliefOptions`] | [`color_relief`] | [`CellProduct`] |
 //! | slope, aspect, curvature, roughness | [`QuantityOptions`] | [`quantity`] | [`CellProduct`] |
 //! | contours | [`ContourOptions`] | [`contour()`] | [`ContourProduct`] |
 //! | select, clip and merge points | [`PointsRequest`] | [`write_points`], [`read_points`] | [`PointsReport`] |
@@ -127,6 +128,7 @@ pub use products::points::{
 pub use products::profile::{
     ProfileOptions, ProfileProduct, SectionOptions, SectionStations, profile,
 };
+pub use products::relief::{ColorReliefOptions, color_ramp, color_relief};
 pub use products::sample::{
     SampleOptions, SampleReport, SampleTarget, SampledField, sample, sample_positions,
 };

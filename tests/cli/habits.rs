@@ -71,8 +71,8 @@ fn what_cannot_be_done_names_what_can() {
             "hint: switches of Triangle are for `breakline triangulate`",
         ),
         (
-            "color-relief d.tif",
-            "`gdaldem color-relief dem.tif OUT.tif`",
+            "color-relief d.tif -of JPEG -o c.tif",
+            "-of JPEG: the extension",
         ),
         ("a.xyz", "hint: `breakline info a.xyz` shows what is in it"),
         (

@@ -17,6 +17,7 @@ mod methods;
 #[cfg(unix)]
 mod outputs;
 mod profiles;
+mod relief;
 mod results;
 mod returns;
 mod sampling;

@@ -17,6 +17,7 @@ fn help_goes_to_stdout_and_tells_each_verb_with_an_example() {
         "dem",
         "contour",
         "hillshade",
+        "color-relief",
         "slope",
         "aspect",
         "curvature",

@@ -2,7 +2,7 @@
 
 use super::{Hills, written};
 use breakline::crs::Crs;
-use breakline::data::{BlockSource, Frame, Window};
+use breakline::data::{BlockSource, ColorMatch, ColorRamp, ColorStop, Frame, StopAt, Window};
 use breakline::error::{Error, Result};
 use breakline::io::geotiff::{self, CellFormat, WriteOptions};
 use breakline::io::png;
@@ -214,6 +214,59 @@ fn overviews_of_shades_are_shades_and_holes_stay() {
             (a + b) / 2.0
         };
         assert_eq!(f32::from(*found), mean.round(), "column {x}");
+    }
+}
+
+#[test]
+fn colors_are_those_of_heights_and_tiles_without_any_are_stored_if_holes_have_one() {
+    let ramp = |missing| ColorRamp {
+        stops: vec![
+            ColorStop {
+                at: StopAt::NoHeight,
+                color: missing,
+            },
+            ColorStop {
+                at: StopAt::Height(0.0),
+                color: [10, 20, 30, 255],
+            },
+            ColorStop {
+                at: StopAt::Height(254.0),
+                color: [200, 0, 255, 0],
+            },
+        ],
+    };
+    for missing in [[0; 4], [0, 0, 7, 0]] {
+        let colors = ramp(missing).over(None, ColorMatch::Linear);
+        // The second of three tiles has no cell with a value.
+        let height = |column: usize, row: usize| match column {
+            256..512 => f32::NAN,
+            _ => shade(column, row),
+        };
+        let source = Cells(Frame::north_up(0.0, 0.0, 1.0, 600, 3), height);
+        let (reader, summary, bytes) = written(&source, CellFormat::Colors(&colors));
+        assert_eq!(reader.info().bands, 4);
+        assert_eq!(reader.info().overviews, [] as [[u64; 2]; 0]);
+        assert_eq!(
+            summary.valid,
+            (0..600).filter(|&x| !height(x, 0).is_nan()).count() as u64 * 3
+        );
+        let mut decoder = tiff::decoder::Decoder::new(std::io::Cursor::new(&bytes)).unwrap();
+        let lengths = decoder
+            .get_tag_u64_vec(tiff::tags::Tag::TileByteCounts)
+            .unwrap();
+        assert_eq!(lengths[1] == 0, missing == [0; 4]);
+        assert_eq!(decoder.colortype().unwrap(), tiff::ColorType::RGBA(8));
+        for tile in [0, 2] {
+            let decoded = decoder.read_chunk(tile).unwrap();
+            let tiff::decoder::DecodingResult::U8(samples) = decoded else {
+                panic!("not bytes")
+            };
+            let [width, first] = [if tile == 0 { 256 } else { 88 }, 256 * tile as usize];
+            for (i, found) in samples.as_chunks::<4>().0.iter().enumerate() {
+                let expected = colors.of(height(first + i % width, i / width));
+                assert_eq!(*found, expected, "tile {tile}, cell {i}");
+            }
+        }
     }
 }
 

@@ -56,6 +56,17 @@ fn the_valley_in_tiles_is_the_valley() {
     let part = "--te 688100.3,5261050,688300,5261222.2 --resolution 0.9";
     assert_same(&folder, &format!("dem {valley} {part}"), &few);
     assert_same(&folder, &format!("hillshade {valley} --azimuth 200"), &few);
+    assert_same(
+        &folder,
+        &format!("hillshade {valley} --shading combined"),
+        &few,
+    );
+    // Colors by the range of all cells.
+    assert_same(
+        &folder,
+        &format!("color-relief {valley} --ramp viridis"),
+        &few,
+    );
     for quantity in [
         "slope --percent",
         "aspect",

@@ -15,7 +15,7 @@ a lighter one       :func:`simplify`
 heights             :meth:`Tin.elevation`
 a raster            :meth:`Tin.dem`, :func:`dem`
 contours            :meth:`Tin.contours`, :func:`contour`
-a picture           :meth:`Tin.hillshade`, :func:`hillshade`
+a picture           :meth:`Tin.hillshade`, :func:`hillshade`, :func:`color_relief`
 slopes              :func:`slope`, :func:`aspect`, :func:`curvature`
 ruggedness          :func:`roughness`, :func:`tri`, :func:`tpi`
 cut and fill        :func:`volume`
@@ -55,6 +55,7 @@ from ._errors import (
 from ._points import points, read_points
 from ._profiles import Profile, drape, profile
 from ._quantities import aspect, curvature, roughness, slope, tpi, tri
+from ._relief import Relief, color_relief
 from ._results import Contour, Contours, Raster
 from ._samples import Accuracy, SetAccuracy, accuracy, sample
 from ._tin import EDGE_KINDS, Flaw, Notice, Tin, tin
@@ -99,6 +100,7 @@ __all__ = [
     "Points",
     "Profile",
     "Raster",
+    "Relief",
     "SetAccuracy",
     "SpaceTriangulation",
     "Task",
@@ -112,6 +114,7 @@ __all__ = [
     "accuracy",
     "aspect",
     "check",
+    "color_relief",
     "compare",
     "contour",
     "curvature",

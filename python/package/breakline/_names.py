@@ -19,10 +19,14 @@ EdgeLimit = Union[float, Literal["auto", "none"], None]
 #: Arithmetic of predicates.
 Kernel = Literal["adaptive", "exact", "fast"]
 #: A verb that writes files.
-Verb = Literal["dem", "hillshade", "slope", "aspect", "curvature", "roughness", "tri", "tpi", "contour", "tin"]
+Verb = Literal[
+    "dem", "hillshade", "color_relief", "slope", "aspect", "curvature", "roughness", "tri", "tpi", "contour", "tin"
+]  # fmt: skip
 
 #: How shades follow from slopes.
 Shading = Literal["standard", "combined", "multidirectional", "igor"]
+#: The colors of heights between those of a ramp.
+Match = Literal["linear", "nearest", "exact"]
 #: From which cells a gradient is computed.
 Gradient = Literal["horn", "zevenbergen-thorne"]
 #: How much a notice matters.

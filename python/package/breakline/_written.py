@@ -102,8 +102,8 @@ class Job:
         Parameters
         ----------
         verb : str
-            ``"dem"``, ``"hillshade"``, ``"slope"``, ``"aspect"``, ``"curvature"``, ``"roughness"``, ``"tri"``,
-            ``"tpi"``, ``"contour"`` or ``"tin"``.
+            ``"dem"``, ``"hillshade"``, ``"color_relief"``, ``"slope"``, ``"aspect"``, ``"curvature"``, ``"roughness"``,
+            ``"tri"``, ``"tpi"``, ``"contour"`` or ``"tin"``.
         points : path or list of paths
             Files of points.
         output : path
@@ -336,6 +336,9 @@ _OF_VERBS: "dict[str, dict[str, Any]]" = {
         "resolution": None, "extent": None, "align_to": None, "method": "linear",
         "shading": "standard", "azimuth": None, "altitude": None, "z_factor": None,
     },
+    "color_relief": {
+        "resolution": None, "extent": None, "align_to": None, "method": "linear", "ramp": "elevation", "match": "linear",
+    },
     **{
         verb: {"resolution": None, "extent": None, "align_to": None, "method": "linear", **own}
         for verb, own in _QUANTITIES.items()
@@ -424,6 +427,11 @@ def quantity_of(verb: str, own: "dict[str, Any]") -> "tuple[str, str, bool, Opti
     return verb, _inputs.name(own.get("formula", ""), "formula"), bool(own.get("percent", False)), factor
 
 
+def colors_of(ramp: Any, match: Any) -> "tuple[str, str]":
+    """Return the colors of heights as the library takes them: a ramp, and how it is applied."""
+    return _inputs.path(ramp, "ramp"), _inputs.name(match, "match")
+
+
 def _product(verb: str, own: "dict[str, Any]") -> "dict[str, Any]":
     if verb == "tin":
         return {"plain": False}
@@ -438,6 +446,8 @@ def _product(verb: str, own: "dict[str, Any]") -> "dict[str, Any]":
     product: "dict[str, Any]" = {"frame": frame, "method": _inputs.name(own["method"], "method")}
     if verb == "hillshade":
         product["light"] = light(own["shading"], own["azimuth"], own["altitude"], own["z_factor"])
+    elif verb == "color_relief":
+        product["colors"] = colors_of(own["ramp"], own["match"])
     elif verb != "dem":
         product["quantity"] = quantity_of(verb, own)
     return product

@@ -50,6 +50,7 @@ use Meaning::{Corners, Creation, Format, Input, List, Nothing, Refused, Same, Sq
 const RASTERS: &[&str] = &[
     "dem",
     "hillshade",
+    "color-relief",
     "slope",
     "aspect",
     "curvature",
@@ -60,6 +61,7 @@ const RASTERS: &[&str] = &[
 ];
 const CONTOUR: &[&str] = &["contour"];
 const SHADE: &[&str] = &["hillshade"];
+const COLOR: &[&str] = &["color-relief"];
 /// The verbs that choose points.
 const OF_POINTS: &[&str] = &[
     "tin",
@@ -67,6 +69,7 @@ const OF_POINTS: &[&str] = &[
     "dem",
     "contour",
     "hillshade",
+    "color-relief",
     "slope",
     "aspect",
     "curvature",
@@ -144,6 +147,9 @@ const HABITS: &[Habit] = &[
     Habit { typed: &["-combined"], verbs: SHADE, meaning: Words(&["--shading", "combined"]) },
     Habit { typed: &["-multidirectional"], verbs: SHADE, meaning: Words(&["--shading", "multidirectional"]) },
     Habit { typed: &["-igor"], verbs: SHADE, meaning: Words(&["--shading", "igor"]) },
+    Habit { typed: &["-alpha"], verbs: COLOR, meaning: Nothing },
+    Habit { typed: &["-nearest_color_entry", "--nearest"], verbs: COLOR, meaning: Words(&["--match", "nearest"]) },
+    Habit { typed: &["-exact_color_entry", "--exact"], verbs: COLOR, meaning: Words(&["--match", "exact"]) },
     Habit { typed: &["-z"], verbs: SHADE, meaning: Same("--z-factor") },
     Habit { typed: &["-a_nodata", "-dstnodata", "-nodata"], verbs: &[], meaning: Refused("nodata is -9999, but 0 in shades") },
 ];
@@ -197,9 +203,6 @@ const OF_OTHERS: &[(&str, &str)] = &[
     ),
 ];
 
-/// A mode of `gdaldem` that this program does not have.
-const OF_RASTERS: &str = "color-relief";
-
 /// Creation options that describe how a GeoTIFF is always written.
 const AS_WRITTEN: &[&str] = &[
     "TILED=YES",
@@ -239,7 +242,7 @@ pub(crate) fn understood(args: impl IntoIterator<Item = OsString>) -> Result<Vec
         return Ok(args);
     }
     let (words, formats) = translated(&verb, rest)?;
-    let (words, targets) = with_output(&verb, words)?;
+    let (words, targets) = with_output(&verb, with_ramp(&verb, words))?;
     formats
         .iter()
         .try_for_each(|format| confirm(format, &targets))?;
@@ -266,11 +269,6 @@ fn verb(typed: &OsStr) -> Result<Option<String>> {
     }
     if let Some((_, instead)) = OF_OTHERS.iter().find(|(theirs, _)| *theirs == word) {
         return Err(Error::usage(format!("`{word}` is not a verb")).cure(*instead));
-    }
-    if !is_ours && word == OF_RASTERS {
-        return Err(Error::usage(format!("`{word}` is not a verb")).cure(format!(
-            "write heights with `breakline dem ... -o dem.tif`, then `gdaldem {word} dem.tif OUT.tif`"
-        )));
     }
     if !is_ours && (Path::new(typed).extension().is_some() || Path::new(typed).exists()) {
         return Err(
@@ -425,6 +423,22 @@ fn require_as_written(name: &str, value: &str) -> Result<()> {
     ))
 }
 
+/// Returns the words with `--ramp` before a text file that follows a raster: `gdaldem color-relief`
+/// has its ramp there, and a raster is the only input.
+fn with_ramp(verb: &str, mut words: Vec<OsString>) -> Vec<OsString> {
+    let content = |word: &OsString| formats::of_name(Path::new(word)).map(|format| format.content);
+    if COLOR.contains(&verb) && !words.iter().any(|word| word == "--ramp") {
+        let is_ramp = |pair: &[OsString]| {
+            content(&pair[0]) == Some(formats::Content::Raster)
+                && Path::new(&pair[1]).extension().is_some_and(|e| e == "txt")
+        };
+        if let Some(at) = words.windows(2).position(is_ramp) {
+            words.insert(at + 1, "--ramp".into());
+        }
+    }
+    words
+}
+
 /// Returns the words, and the outputs among them. If none is named, the last file is the output if
 /// it does not exist and has the extension of a format that the verb writes, as in
 /// `gdal_contour IN OUT`.
@@ -521,6 +535,7 @@ fn written(verb: &str) -> Vec<&'static str> {
         "profile" => profiles::EXTENSIONS.to_vec(),
         "drape" => formats::extensions(Product::Lines),
         "hillshade" => formats::extensions(Product::Shades),
+        "color-relief" => formats::extensions(Product::Colors),
         _ => Vec::new(),
     }
 }
@@ -636,6 +651,11 @@ mod tests {
                 "b hillshade --azimuth 300 --altitude 30 --z-factor 2 a.tif -o s.png",
             ),
             (
+                "b color-relief -alpha a.tif ramp.txt -nearest_color_entry c.tif",
+                "b color-relief a.tif --ramp ramp.txt --match nearest -o c.tif",
+            ),
+            ("b color-relief a.txt b.txt", "b color-relief a.txt b.txt"),
+            (
                 "b hillshade -multidirectional a.tif s.png",
                 "b hillshade --shading multidirectional a.tif -o s.png",
             ),
@@ -682,11 +702,6 @@ mod tests {
                 "b dem -co COMPRESS=LZW a.laz -o b.tif",
                 "-co COMPRESS=LZW: there are no creation options",
                 "gdal_translate",
-            ),
-            (
-                "b color-relief dem.tif",
-                "`color-relief` is not a verb",
-                "gdaldem color-relief dem.tif",
             ),
             (
                 "b a.laz -o b.tif",

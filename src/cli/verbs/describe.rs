@@ -212,6 +212,7 @@ mod tests {
                 "dem",
                 "contour",
                 "hillshade",
+                "color-relief",
                 "slope",
                 "aspect",
                 "curvature",

@@ -16,6 +16,7 @@ mod pair;
 pub(super) mod points;
 pub(super) mod profile;
 mod quantity;
+mod relief;
 pub(super) mod sample;
 mod tin;
 pub(super) mod triangulate;

@@ -1,7 +1,7 @@
 //! Verbs that write what they make of a surface, in one piece or in tiles.
 
 use super::asked::Asked;
-use super::{contour, dem, hillshade, quantity, tin};
+use super::{contour, dem, hillshade, quantity, relief, tin};
 use crate::cli::Exit;
 use crate::cli::input::args::{TileArgs, Verb};
 use crate::cli::report::console::Console;
@@ -18,6 +18,7 @@ pub(super) fn asked(verb: &Verb, console: &Console) -> Result<Asked> {
         Verb::Dem(args) => dem::asked(args, console),
         Verb::Contour(args) => contour::asked(args, console),
         Verb::Hillshade(args) => hillshade::asked(args, console),
+        Verb::ColorRelief(args) => relief::asked(args, console),
         Verb::Slope(args) => quantity::slope(args, console),
         Verb::Aspect(args) => quantity::aspect(args, console),
         Verb::Curvature(args) => quantity::curvature(args, console),
@@ -27,8 +28,8 @@ pub(super) fn asked(verb: &Verb, console: &Console) -> Result<Asked> {
         Verb::Tin(args) => tin::asked(args, console),
         Verb::Simplify(args) => tin::simplified(args, console),
         _ => Err(
-            Error::usage("a job makes a DEM, contours, a hillshade, a TIN in parts, or slopes and the like")
-                .cure("begin the command with `dem`, `contour`, `hillshade`, `tin`, `slope`, `aspect`, `curvature`, `roughness`, `tri` or `tpi`"),
+            Error::usage("a job makes a DEM, contours, a hillshade, a color relief, a TIN in parts, or slopes and the like")
+                .cure("begin the command with `dem`, `contour`, `hillshade`, `color-relief`, `tin`, `slope`, `aspect`, `curvature`, `roughness`, `tri` or `tpi`"),
         ),
     }
 }

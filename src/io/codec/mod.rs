@@ -13,6 +13,7 @@ pub(crate) mod off;
 pub(crate) mod ply;
 pub mod png;
 pub(crate) mod profile;
+pub mod ramp;
 pub mod shapefile;
 pub(crate) mod stl;
 pub mod tetgen;

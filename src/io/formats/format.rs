@@ -4,7 +4,9 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use crate::crs::Crs;
-use crate::data::{BlockSource, ContourLine, Layer, PointInfo, PointSink, PointSource, Triangles};
+use crate::data::{
+    BlockSource, Colors, ContourLine, Layer, PointInfo, PointSink, PointSource, Triangles,
+};
 use crate::error::{Result, Wording};
 use crate::io::bytes::mapped::Mapped;
 use crate::io::bytes::output::Destination;
@@ -74,6 +76,8 @@ pub enum Product {
     Heights,
     /// Shades in cells.
     Shades,
+    /// The colors of heights in cells.
+    Colors,
     /// Points and segments in the plane, and their triangulation.
     Plane,
     /// Points in space, and their triangulation.
@@ -151,6 +155,7 @@ pub(crate) type Origin = Option<([f64; 3], PathBuf)>;
 pub(super) type WriteSurface = fn(Destination, &Listing, Option<&Crs>) -> Result<Origin>;
 type WriteHeights = fn(Destination, &dyn BlockSource) -> Result<RasterSummary>;
 type WriteShades = fn(Destination, &dyn BlockSource) -> Result<()>;
+type WriteColors = fn(Destination, &dyn BlockSource, &Colors) -> Result<()>;
 type WriteSpace = fn(&[Destination], &Tetrahedralized) -> Result<()>;
 type WritePlane = fn(&[Destination], &Triangulated) -> Result<()>;
 type WriteLines = fn(Destination, &Layer) -> Result<Vec<String>>;
@@ -179,6 +184,7 @@ pub(crate) struct Writers {
     pub(crate) check_size: Option<fn(u64) -> Result<()>>,
     pub(crate) heights: Option<WriteHeights>,
     pub(crate) shades: Option<WriteShades>,
+    pub(crate) colors: Option<WriteColors>,
     /// Writes several files together, see [`triangle::write`](crate::io::triangle::write).
     pub(crate) plane: Option<WritePlane>,
     /// Writes several files together, see [`tetgen::write`](crate::io::tetgen::write).
@@ -233,6 +239,7 @@ impl Format {
             Product::Lines => self.writers.lines.is_some(),
             Product::Heights => self.writers.heights.is_some(),
             Product::Shades => self.writers.shades.is_some(),
+            Product::Colors => self.writers.colors.is_some(),
             Product::Plane => self.writers.plane.is_some(),
             Product::Space => self.writers.space.is_some(),
         }

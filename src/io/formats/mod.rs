@@ -157,13 +157,14 @@ impl Holding {
 }
 
 impl Product {
-    const ALL: [Product; 8] = [
+    const ALL: [Product; 9] = [
         Product::Points,
         Product::Surface,
         Product::Contours,
         Product::Lines,
         Product::Heights,
         Product::Shades,
+        Product::Colors,
         Product::Plane,
         Product::Space,
     ];
@@ -176,6 +177,7 @@ impl Product {
             Product::Lines => "lines",
             Product::Heights => "heights",
             Product::Shades => "hillshade",
+            Product::Colors => "color relief",
             Product::Plane => "triangulation",
             Product::Space => "triangulation in space",
         }

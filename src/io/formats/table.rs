@@ -23,6 +23,7 @@ const NOT_WRITTEN: Writers = Writers {
     check_size: None,
     heights: None,
     shades: None,
+    colors: None,
     plane: None,
     space: None,
 };
@@ -344,10 +345,13 @@ pub static FORMATS: &[Format] = &[
             shades: Some(|target, source| {
                 geotiff::write(target, source, CellFormat::Shades.into()).map(drop)
             }),
+            colors: Some(|target, source, colors| {
+                geotiff::write(target, source, CellFormat::Colors(colors).into()).map(drop)
+            }),
             ..NOT_WRITTEN
         },
         cure: AS_RASTER,
-        help: "heights in cells; hillshade",
+        help: "heights in cells; hillshade; color relief",
         ..ROW
     },
     Format {
@@ -364,10 +368,11 @@ pub static FORMATS: &[Format] = &[
         reader: FormatReader::InfoOnly,
         writers: Writers {
             shades: Some(|target, source| png::write_gray(target, source)),
+            colors: Some(|target, source, colors| png::write_colors(target, source, colors)),
             ..NOT_WRITTEN
         },
         cure: AS_RASTER,
-        help: "hillshade",
+        help: "hillshade; color relief",
         ..ROW
     },
     Format {

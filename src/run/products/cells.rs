@@ -1,9 +1,10 @@
-//! Rasters of a surface: heights, hillshades, and quantities such as the slope.
+//! Rasters of a surface: heights, hillshades, and quantities such as the slope. Their colors are in
+//! [`relief`](super::relief).
 
 use super::frame::{self, FrameOptions};
 use super::surface::{Model, SurfaceProduct};
 use crate::crs::Crs;
-use crate::data::{self, BlockSource, Frame, Grid, Surface, Window};
+use crate::data::{self, BlockSource, Colors, Frame, Grid, Rgba, Surface, Window};
 use crate::error::{Error, Result, Setting, wording};
 use crate::io::geotiff::{self, CellFormat, RasterSummary, WriteOptions};
 use crate::io::{Destination, png};
@@ -106,9 +107,28 @@ pub struct CellProduct<'a> {
     /// The triangles that cells are computed from; `None` for those of a TIN in parts, and for
     /// cells of a raster.
     surface: Option<&'a dyn Surface>,
-    cells: CellFormat,
+    content: Content,
     /// What was assumed and what looks wrong, in the order in which it was found.
     pub notices: Vec<Notice>,
+}
+
+/// What the cells of a raster are.
+#[derive(Debug)]
+enum Content {
+    Heights,
+    Shades,
+    /// Heights that are drawn in these colors.
+    Colors(Colors),
+}
+
+impl Content {
+    fn format(&self) -> CellFormat<'_> {
+        match self {
+            Content::Heights => CellFormat::Heights,
+            Content::Shades => CellFormat::Shades,
+            Content::Colors(colors) => CellFormat::Colors(colors),
+        }
+    }
 }
 
 /// Prepares a DEM: the heights of a surface at the centers of cells, NaN where there is none.
@@ -129,7 +149,7 @@ pub fn dem<'a>(
     Ok(CellProduct {
         source,
         surface,
-        cells: CellFormat::Heights,
+        content: Content::Heights,
         notices: journal.take(),
     })
 }
@@ -154,7 +174,7 @@ pub fn hillshade<'a>(
     };
     let (source, surface) = given_or_drawn(product, &heights_by, &journal)?;
     let shades = CellProduct::shades_of(source, &options.light, product.crs(), &journal)?;
-    Ok(CellProduct { surface, ..shades })
+    Ok(shades.over(surface))
 }
 
 /// Prepares a quantity in cells, such as the slope; NaN where there is none.
@@ -177,11 +197,11 @@ pub fn quantity<'a>(
     };
     let (source, surface) = given_or_drawn(product, &heights_by, &journal)?;
     let cells = CellProduct::quantity_of(source, options, product.crs(), &journal)?;
-    Ok(CellProduct { surface, ..cells })
+    Ok(cells.over(surface))
 }
 
 /// Returns the cells of a raster, or the heights of another surface in cells.
-fn given_or_drawn<'a>(
+pub(super) fn given_or_drawn<'a>(
     product: &'a SurfaceProduct,
     options: &DemOptions,
     journal: &Journal,
@@ -202,7 +222,7 @@ fn given_or_drawn<'a>(
 }
 
 /// Heights, and the triangles that they are computed from unless these are in parts.
-type HeightSource<'a> = (Box<dyn BlockSource + 'a>, Option<&'a dyn Surface>);
+pub(super) type HeightSource<'a> = (Box<dyn BlockSource + 'a>, Option<&'a dyn Surface>);
 
 /// Returns the heights of a surface.
 fn heights<'a>(
@@ -297,7 +317,7 @@ impl<'a> CellProduct<'a> {
         CellProduct {
             source,
             surface: None,
-            cells: CellFormat::Heights,
+            content: Content::Heights,
             notices: Vec::new(),
         }
     }
@@ -315,7 +335,7 @@ impl<'a> CellProduct<'a> {
         Ok(CellProduct {
             source,
             surface: None,
-            cells: CellFormat::Shades,
+            content: Content::Shades,
             notices: journal.take(),
         })
     }
@@ -345,7 +365,7 @@ impl<'a> CellProduct<'a> {
         Ok(CellProduct {
             source,
             surface: None,
-            cells: CellFormat::Heights,
+            content: Content::Heights,
             notices: journal.take(),
         })
     }
@@ -355,9 +375,32 @@ impl<'a> CellProduct<'a> {
         CellProduct {
             source: Box::new(grid),
             surface: None,
-            cells,
+            content: match cells {
+                CellFormat::Heights => Content::Heights,
+                CellFormat::Shades => Content::Shades,
+                CellFormat::Colors(colors) => Content::Colors(colors.clone()),
+            },
             notices: Vec::new(),
         }
+    }
+
+    /// Heights that were drawn already, in colors.
+    pub(super) fn colors(
+        source: Box<dyn BlockSource + 'a>,
+        colors: Colors,
+        journal: &Journal,
+    ) -> Self {
+        CellProduct {
+            source,
+            surface: None,
+            content: Content::Colors(colors),
+            notices: journal.take(),
+        }
+    }
+
+    /// Returns the cells with the triangles that they are computed from.
+    pub(super) fn over(self, surface: Option<&'a dyn Surface>) -> Self {
+        CellProduct { surface, ..self }
     }
 }
 
@@ -391,26 +434,45 @@ impl CellProduct<'_> {
     }
 
     /// Computes all cells, on all cores, and writes them as GeoTIFF: heights as 32-bit floats,
-    /// shades as bytes.
+    /// shades as bytes, colors as four bytes.
     ///
     /// # Errors
     /// If the file cannot be written, or the run is canceled.
     pub fn write(&self, target: Destination, context: &Context) -> Result<RasterSummary> {
-        let cells = geotiff::cells_written(self.frame());
+        let format = self.content.format();
+        let cells = geotiff::cells_written(self.frame(), format);
         let work = context.start(self.stage(), Size::Items(cells))?;
         let options = WriteOptions {
-            cells: self.cells,
+            cells: format,
             watch: &|cells| work.add(cells),
         };
         geotiff::write(target, self.source.as_ref(), options)
     }
 
-    /// Computes all cells, on all cores, and writes them as a gray PNG, 0 to 255.
+    /// Computes all cells, on all cores, and writes them as a PNG: in gray, 0 to 255, or in colors.
     ///
     /// # Errors
     /// If the file cannot be written, or the run is canceled.
     pub fn write_picture(&self, target: Destination, context: &Context) -> Result<()> {
-        png::write_gray(target, &self.watched(context)?)
+        let cells = self.watched(context)?;
+        match &self.content {
+            Content::Heights | Content::Shades => png::write_gray(target, &cells),
+            Content::Colors(colors) => png::write_colors(target, &cells, colors),
+        }
+    }
+
+    /// Computes the colors of all cells, on all cores. Cells that are not drawn in colors are
+    /// transparent.
+    ///
+    /// # Errors
+    /// Those of [`collect`](Self::collect).
+    pub fn collect_colors(&self, context: &Context) -> Result<(Frame, Vec<Rgba>)> {
+        let (frame, cells) = self.collect_cells(context)?;
+        let colors = match &self.content {
+            Content::Colors(colors) => cells.into_iter().map(|cell| colors.of(cell)).collect(),
+            Content::Heights | Content::Shades => vec![[0; 4]; cells.len()],
+        };
+        Ok((frame, colors))
     }
 
     fn watched<'b>(&'b self, context: &Context<'b>) -> Result<Watched<'b, dyn BlockSource + 'b>> {
@@ -418,9 +480,9 @@ impl CellProduct<'_> {
     }
 
     fn stage(&self) -> Stage {
-        match self.cells {
-            CellFormat::Heights => Stage::WritingCells,
-            CellFormat::Shades => Stage::ShadingCells,
+        match self.content {
+            Content::Heights | Content::Colors(_) => Stage::WritingCells,
+            Content::Shades => Stage::ShadingCells,
         }
     }
 }

@@ -18,6 +18,7 @@ pub(crate) mod overlaps;
 pub(crate) mod points;
 pub(crate) mod profile;
 mod reach;
+pub(crate) mod relief;
 pub(crate) mod sample;
 pub(super) mod simplified;
 pub(crate) mod station_format;

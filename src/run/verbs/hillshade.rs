@@ -4,11 +4,11 @@ use std::fmt::Debug;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::raster::{announce, list_frame};
+use super::raster::{announce, is_picture, list_frame};
 use super::targets::{Outputs, Target};
 use super::{Keeps, Summary, Tiles, Verb};
 use crate::error::{Result, Setting};
-use crate::io::formats::{Content, FORMATS, Format, Product};
+use crate::io::formats::Product;
 use crate::io::geotiff::COPIES_ON_DISK;
 use crate::run::context::{Context, Journal};
 use crate::run::products::cells::{self, CellProduct, HillshadeOptions, LightOptions};
@@ -108,16 +108,6 @@ fn write(cells: &CellProduct, outputs: &Outputs, context: &Context) -> Result<Su
         }
     }
     Ok(Summary::Shades)
-}
-
-fn is_picture(target: &Target) -> bool {
-    let is_of_target = |format: &&Format| {
-        format.writes(Product::Shades) && format.extensions.contains(&target.extension)
-    };
-    FORMATS
-        .iter()
-        .find(is_of_target)
-        .is_some_and(|format| format.content == Content::Picture)
 }
 
 /// Returns the bytes of a cell before compression, and how many times they are on the disk.

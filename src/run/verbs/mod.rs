@@ -8,6 +8,7 @@ mod dem;
 mod hillshade;
 mod quantity;
 mod raster;
+mod relief;
 mod stored;
 pub(crate) mod targets;
 mod tin;

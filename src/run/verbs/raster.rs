@@ -5,6 +5,7 @@ use std::fmt::Debug;
 use super::targets::{Outputs, Target};
 use crate::data::BlockSource;
 use crate::error::{Error, Result, Setting, wording};
+use crate::io::formats::{self, Content, Product};
 use crate::run::context::Context;
 use crate::run::context::event::Event;
 use crate::run::context::notice::Notice;
@@ -28,6 +29,12 @@ pub(super) fn list_frame(
     add(Setting::Resolution, resolution);
     add(Setting::Extent, &extent.map(in_plan::corners));
     add(Setting::AlignTo, align_to);
+}
+
+/// Returns true if a target of shades or colors is a picture, and not a raster.
+pub(super) fn is_picture(target: &Target) -> bool {
+    formats::for_output(&target.path, Product::Shades)
+        .is_some_and(|format| format.content == Content::Picture)
 }
 
 /// Reports the size of a raster, and makes sure that the disk has room for its cells. `cell_bytes`

@@ -11,6 +11,7 @@ use super::Verb;
 use super::tin::SurfaceOptions;
 use crate::run::products::cells::{DemOptions, HillshadeOptions, QuantityOptions};
 use crate::run::products::contour::ContourOptions;
+use crate::run::products::relief::ColorReliefOptions;
 
 /// How the options of a verb are kept with a job.
 struct StoredVerb {
@@ -37,6 +38,7 @@ impl StoredVerb {
 const STORED: &[StoredVerb] = &[
     StoredVerb::of::<DemOptions>("dem"),
     StoredVerb::of::<HillshadeOptions>("hillshade"),
+    StoredVerb::of::<ColorReliefOptions>("color-relief"),
     StoredVerb::of::<QuantityOptions>("slope"),
     StoredVerb::of::<ContourOptions>("contour"),
     StoredVerb::of::<SurfaceOptions>("tin"),

@@ -10,6 +10,7 @@ mod parse;
 mod profile;
 mod quantity;
 mod reading;
+mod relief;
 mod sample;
 mod surface;
 mod switches;
@@ -37,6 +38,7 @@ pub(crate) use quantity::{
     AspectArgs, CurvatureArg, CurvatureArgs, QuantityArgs, RoughnessArgs, SlopeArgs, TpiArgs,
     TriArgs,
 };
+pub(crate) use relief::ColorReliefArgs;
 pub(crate) use sample::SampleArgs;
 pub(crate) use surface::{CrossingZArg, DuplicatesArg, OnCrossingArg, SurfaceArgs};
 pub(crate) use switches::expand_switches;
@@ -124,6 +126,7 @@ pub(crate) enum Verb {
     Dem(DemArgs),
     Contour(ContourArgs),
     Hillshade(HillshadeArgs),
+    ColorRelief(ColorReliefArgs),
     Slope(SlopeArgs),
     Aspect(AspectArgs),
     Curvature(CurvatureArgs),

@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::cell_format::{CellFormat, NO_HEIGHT};
+use super::cell_format::CellFormat;
 use super::directory::{self, Offsets, Values};
 use super::tile::{SIDE, Tile, TileBuffers};
 use super::{GeoTiffReader, MAX_BLOCKS, read, tags};
@@ -86,7 +86,7 @@ impl Tiling {
     /// Returns the most bytes that the tiles can take. DEFLATE adds at most 5 bytes to 16 kB of
     /// incompressible data; 1 % is ample.
     pub(super) fn most_bytes(&self, cells: CellFormat) -> u64 {
-        let raw = (self.count * SIDE * SIDE) as u64 * u64::from(cells.bits() / 8);
+        let raw = (self.count * SIDE * SIDE) as u64 * cells.cell_bytes() as u64;
         raw + raw / 100
     }
 }
@@ -96,7 +96,7 @@ impl Tiling {
 pub(super) struct Image {
     file: File,
     tiling: Tiling,
-    /// For each tile, its position in the file and its length; 0 if no cell has a value.
+    /// For each tile, its position in the file and its length; 0 if nothing is stored of its cells.
     starts: Vec<u64>,
     lengths: Vec<u32>,
     /// Where the tiles begin, and where they end.
@@ -170,7 +170,8 @@ impl Image {
     }
 
     fn append(&mut self, first: usize, tiles: &[Tile], out: &mut impl Write) -> Result<()> {
-        for (i, tile) in tiles.iter().enumerate().filter(|(_, tile)| tile.valid > 0) {
+        let is_stored = |(_, tile): &(usize, &Tile)| !tile.bytes.is_empty();
+        for (i, tile) in tiles.iter().enumerate().filter(is_stored) {
             // The length before, and the last bytes once more behind: so GDAL's COG driver does it.
             let length = tile.bytes.len() as u32;
             let behind = &tile.bytes[tile.bytes.len().saturating_sub(LEADER)..];
@@ -225,20 +226,10 @@ impl Image {
             }
         };
         let long = |value: usize| Values::Long(vec![value as u32]);
-        let (predictor, sample_format, nodata) = match cells {
-            CellFormat::Heights => (3, 3, format!("{NO_HEIGHT}")),
-            CellFormat::Shades => (2, 1, "0".to_owned()),
-        };
         let mut all = vec![
             (tags::IMAGE_WIDTH, long(self.tiling.frame.width)),
             (tags::IMAGE_LENGTH, long(self.tiling.frame.height)),
-            (tags::BITS_PER_SAMPLE, short(cells.bits())),
             (tags::COMPRESSION, short(tags::COMPRESSION_DEFLATE)),
-            // BlackIsZero.
-            (tags::PHOTOMETRIC, short(1)),
-            (tags::SAMPLES_PER_PIXEL, short(1)),
-            (tags::PLANAR_CONFIGURATION, short(1)),
-            (tags::PREDICTOR, short(predictor)),
             (tags::TILE_WIDTH, short(SIDE as u16)),
             (tags::TILE_LENGTH, short(SIDE as u16)),
             (
@@ -246,13 +237,13 @@ impl Image {
                 Values::Offset(self.starts.iter().map(moved).collect()),
             ),
             (tags::TILE_BYTE_COUNTS, Values::Long(self.lengths.clone())),
-            (tags::SAMPLE_FORMAT, short(sample_format)),
         ];
+        all.extend(cells.tags());
         all.extend(directory::placement(&self.tiling.frame));
         all.extend(directory::geo_keys(
             source.crs().map(GeoKeys::from_crs).unwrap_or_default(),
         ));
-        all.push((tags::GDAL_NODATA, Values::Text(nodata)));
+        all.sort_by_key(|(tag, _)| *tag);
         all
     }
 

@@ -1,4 +1,4 @@
-//! GeoTIFF: reads heights, writes heights and hillshades.
+//! GeoTIFF: reads heights, writes heights, hillshades and colors.
 //!
 //! Reading takes three layers: `ifd` fetches raw tags and trusts no offset; `layout` checks and
 //! bounds what they say about blocks; `block` turns one block into values with the decoders of the

@@ -19,7 +19,7 @@ const EFFORT: u32 = 1;
 /// An encoded tile.
 #[derive(Debug)]
 pub(super) struct Tile {
-    /// Compressed bytes; empty if no cell has a value.
+    /// Compressed bytes; empty if nothing is stored of any cell.
     pub(super) bytes: Vec<u8>,
     pub(super) valid: u64,
     pub(super) min: f32,
@@ -59,7 +59,7 @@ impl TileBuffers {
                 tile.max = tile.max.max(*cell);
             }
         }
-        if tile.valid > 0 {
+        if tile.valid > 0 || format.stores_missing() {
             self.predict(window, format);
             let mut encoder = ZlibEncoder::new(
                 Vec::with_capacity(self.packed.len() / 2),
@@ -74,7 +74,7 @@ impl TileBuffers {
     /// Fills `packed` with the bytes before compression. Cells of a full tile outside of the raster
     /// repeat the last ones inside, which compresses best.
     fn predict(&mut self, window: Window, format: CellFormat) {
-        let size = format.bits() as usize / 8;
+        let size = format.cell_bytes();
         self.packed.clear();
         self.packed.resize(SIDE * SIDE * size, 0);
         for (y, line) in self.packed.chunks_exact_mut(SIDE * size).enumerate() {
@@ -98,10 +98,16 @@ impl TileBuffers {
                         *byte = *cell as u8;
                     }
                 }
+                CellFormat::Colors(colors) => {
+                    for (color, cell) in line.chunks_exact_mut(size).zip(&self.row) {
+                        color.copy_from_slice(&colors.of(*cell));
+                    }
+                }
             }
-            // Both predictors end with the differences of neighboring bytes.
-            for x in (1..line.len()).rev() {
-                line[x] = line[x].wrapping_sub(line[x - 1]);
+            // Both predictors end with the differences of neighboring bytes, of one sample.
+            let step = format.samples();
+            for x in (step..line.len()).rev() {
+                line[x] = line[x].wrapping_sub(line[x - step]);
             }
         }
     }

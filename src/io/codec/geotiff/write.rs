@@ -13,7 +13,7 @@ use crate::io::{Destination, Output, Watch};
 #[derive(Clone, Copy)]
 pub struct WriteOptions<'a> {
     /// What the cells contain.
-    pub cells: CellFormat,
+    pub cells: CellFormat<'a>,
     /// Called with the cells that were computed since the last call, [`cells_written`] in all, from
     /// any thread.
     pub watch: Watch<'a>,
@@ -26,8 +26,8 @@ impl Default for WriteOptions<'_> {
 }
 
 /// Options for these contents, unwatched.
-impl From<CellFormat> for WriteOptions<'_> {
-    fn from(cells: CellFormat) -> Self {
+impl<'a> From<CellFormat<'a>> for WriteOptions<'a> {
+    fn from(cells: CellFormat<'a>) -> Self {
         WriteOptions {
             cells,
             watch: &unwatched,
@@ -46,11 +46,12 @@ impl std::fmt::Debug for WriteOptions<'_> {
 /// A raster of at most this many columns and rows has no overviews, as with GDAL's COG driver.
 const LARGEST_WITHOUT: usize = 512;
 
-/// Writes a cloud-optimized GeoTIFF: one band, DEFLATE, tiles of 256 x 256, PixelIsArea, with the
-/// coordinate system of the source.
+/// Writes a cloud-optimized GeoTIFF: one band, or four of colors, DEFLATE, tiles of 256 x 256,
+/// PixelIsArea, with the coordinate system of the source.
 ///
 /// A raster of more than 512 columns or rows has overviews, each with half the columns and rows of
-/// the one before, down to 512; a cell has the mean of those of its four that have a value.
+/// the one before, down to 512; a cell has the mean of those of its four that have a value. Colors
+/// have no overviews.
 ///
 /// All cores compute and compress tiles, a few at a time, which are written in order. Memory stays
 /// at some megabytes whatever the size of the raster, and the bytes do not depend on the number of
@@ -96,22 +97,23 @@ pub fn write<'a>(
 pub const COPIES_ON_DISK: f64 = 8.0 / 3.0;
 
 /// Returns the number of cells that [`write()`] computes, those of overviews included.
-pub fn cells_written(frame: Frame) -> u64 {
-    levels(frame)
+pub fn cells_written(frame: Frame, cells: CellFormat) -> u64 {
+    levels(frame, cells)
         .map(|Frame { width, height, .. }| (width as u64).saturating_mul(height as u64))
         .fold(0, u64::saturating_add)
 }
 
 /// Returns the frame of a raster, and frames with the sizes of its overviews.
-fn levels(frame: Frame) -> impl Iterator<Item = Frame> {
+fn levels(frame: Frame, cells: CellFormat) -> impl Iterator<Item = Frame> {
+    let has_overviews = cells.has_overviews();
     std::iter::successors(
         Some(frame),
-        |&Frame {
-             width,
-             height,
-             transform,
-         }| {
-            let is_large = width.max(height) > LARGEST_WITHOUT;
+        move |&Frame {
+                  width,
+                  height,
+                  transform,
+              }| {
+            let is_large = has_overviews && width.max(height) > LARGEST_WITHOUT;
             is_large.then(|| Frame {
                 width: width.div_ceil(2),
                 height: height.div_ceil(2),
@@ -123,7 +125,7 @@ fn levels(frame: Frame) -> impl Iterator<Item = Frame> {
 
 /// Returns 32-bit offsets if they are certain to suffice for a raster and its overviews.
 fn offsets_for(frame: Frame, cells: CellFormat) -> Result<Offsets> {
-    let most: u64 = levels(frame)
+    let most: u64 = levels(frame, cells)
         .map(|frame| Ok(Tiling::new(frame)?.most_bytes(cells)))
         .sum::<Result<_>>()?;
     // If the tiles do not exceed 4 GiB, 2 MB is ample for the header.
@@ -145,7 +147,7 @@ fn write_levels(
     let WriteOptions { cells, watch } = options;
     let mut output = target.create()?;
     let mut images = vec![Image::pack(target, source, cells, watch)?];
-    for _ in levels(source.frame()).skip(1) {
+    for _ in levels(source.frame(), cells).skip(1) {
         let finer = images[images.len() - 1].reader(target)?;
         images.push(Image::pack(target, &Halved::new(finer), cells, watch)?);
     }
@@ -284,7 +286,10 @@ mod tests {
     #[test]
     fn overviews_halve_down_to_512() {
         let sizes = |width, height| -> Vec<[usize; 2]> {
-            let all = levels(Frame::north_up(0.0, 0.0, 1.0, width, height));
+            let all = levels(
+                Frame::north_up(0.0, 0.0, 1.0, width, height),
+                CellFormat::Heights,
+            );
             all.map(|Frame { width, height, .. }| [width, height])
                 .collect()
         };
@@ -292,7 +297,7 @@ mod tests {
         assert_eq!(sizes(513, 2), [[513, 2], [257, 1]]);
         assert_eq!(sizes(1, 2500), [[1, 2500], [1, 1250], [1, 625], [1, 313]]);
         assert_eq!(
-            cells_written(Frame::north_up(0.0, 0.0, 1.0, 600, 300)),
+            cells_written(Frame::north_up(0.0, 0.0, 1.0, 600, 300), CellFormat::Shades),
             600 * 300 + 300 * 150
         );
     }

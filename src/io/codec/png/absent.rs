@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::Picture;
-use crate::data::BlockSource;
+use crate::data::{BlockSource, Colors};
 use crate::error::{Error, Result};
 use crate::io::bytes::output::Destination;
 
@@ -12,6 +12,18 @@ use crate::io::bytes::output::Destination;
 /// # Errors
 /// Always; the message says which feature is missing.
 pub fn write_gray<'a>(target: impl Into<Destination<'a>>, _source: &dyn BlockSource) -> Result<()> {
+    Err(missing(target.into().path()))
+}
+
+/// Returns an error: this build writes no pictures.
+///
+/// # Errors
+/// Always; the message says which feature is missing.
+pub fn write_colors<'a>(
+    target: impl Into<Destination<'a>>,
+    _source: &dyn BlockSource,
+    _colors: &Colors,
+) -> Result<()> {
     Err(missing(target.into().path()))
 }
 

@@ -1,5 +1,5 @@
-//! Shaded relief as a PNG picture, behind the feature `png`. The position is stored in a world
-//! file, the coordinate system in an auxiliary file of GDAL.
+//! Shaded and colored relief as PNG pictures, behind the feature `png`. The position is stored in a
+//! world file, the coordinate system in an auxiliary file of GDAL.
 //!
 //! Without the feature the functions exist and return an error that says so.
 
@@ -15,9 +15,9 @@ mod auxiliary;
 mod with_png;
 
 #[cfg(not(feature = "png"))]
-pub use absent::{describe, write_gray};
+pub use absent::{describe, write_colors, write_gray};
 #[cfg(feature = "png")]
-pub use with_png::{describe, write_gray};
+pub use with_png::{describe, write_colors, write_gray};
 
 /// Returns the path of the world file of a picture: `relief.png` has `relief.pgw`.
 pub fn world_file_of(target: &Path) -> PathBuf {

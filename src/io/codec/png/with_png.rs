@@ -7,7 +7,7 @@ use ::png::{BitDepth, ColorType, Compression, Decoder, Encoder};
 use rayon::prelude::*;
 
 use super::{Picture, auxiliary, world_file_of};
-use crate::data::{BlockSource, Frame, Window};
+use crate::data::{BlockSource, Colors, Frame, Window};
 use crate::error::{Error, Kind, Result};
 use crate::io::bytes::output::Destination;
 use crate::io::codec::world_file;
@@ -22,17 +22,55 @@ const BLOCK: usize = 256;
 /// the coordinate system is known, its auxiliary file (`relief.png.aux.xml`).
 ///
 /// Values are rounded and clamped to 0..255; NaN is transparent. All cores compute one band of rows
-/// while the previous one is compressed, so memory is needed for 512 rows, 10 bytes per cell.
+/// while the previous one is compressed, so memory is needed for 512 rows, 10 bytes per
+/// cell.
 ///
 /// # Errors
 /// If the raster has no cells or more than 2^31 - 1 in a row or column, the source fails, or a file
 /// cannot be written.
 pub fn write_gray<'a>(target: impl Into<Destination<'a>>, source: &dyn BlockSource) -> Result<()> {
-    let target = target.into();
-    write(target, source).map_err(|e| e.in_file(target.path()))
+    write(
+        target.into(),
+        source,
+        ColorType::GrayscaleAlpha,
+        |cell| match cell.is_nan() {
+            true => [0, 0],
+            false => [cell.round().clamp(0.0, 255.0) as u8, 255],
+        },
+    )
 }
 
-fn write(target: Destination, source: &dyn BlockSource) -> Result<()> {
+/// Like [`write_gray`], but writes the colors of heights, with 8 bits for each of red, green, blue
+/// and opacity.
+///
+/// # Errors
+/// Those of [`write_gray`].
+pub fn write_colors<'a>(
+    target: impl Into<Destination<'a>>,
+    source: &dyn BlockSource,
+    colors: &Colors,
+) -> Result<()> {
+    write(target.into(), source, ColorType::Rgba, |cell| {
+        colors.of(cell)
+    })
+}
+
+/// Writes a picture, a pixel of `N` bytes for each cell.
+fn write<const N: usize>(
+    target: Destination,
+    source: &dyn BlockSource,
+    kind: ColorType,
+    pixel: impl Fn(f32) -> [u8; N] + Sync,
+) -> Result<()> {
+    write_pixels(target, source, kind, &pixel).map_err(|e| e.in_file(target.path()))
+}
+
+fn write_pixels<const N: usize>(
+    target: Destination,
+    source: &dyn BlockSource,
+    kind: ColorType,
+    pixel: &(impl Fn(f32) -> [u8; N] + Sync),
+) -> Result<()> {
     let frame = source.frame();
     let Frame { width, height, .. } = frame;
     let side = |cells: usize| {
@@ -49,15 +87,18 @@ fn write(target: Destination, source: &dyn BlockSource) -> Result<()> {
     };
     let mut out = target.create()?;
     let mut encoder = Encoder::new(&mut out, columns, rows);
-    encoder.set_color(ColorType::GrayscaleAlpha);
+    encoder.set_color(kind);
     encoder.set_depth(BitDepth::Eight);
     encoder.set_compression(Compression::Fast);
     let mut writer = encoder.write_header().map_err(from_png)?;
     let mut stream = writer.stream_writer().map_err(from_png)?;
-    let mut ready = band(source, frame, 0)?;
+    let mut ready = band(source, frame, 0, pixel)?;
     let mut row = BAND;
     while !ready.is_empty() {
-        let (written, next) = rayon::join(|| stream.write_all(&ready), || band(source, frame, row));
+        let (written, next) = rayon::join(
+            || stream.write_all(&ready),
+            || band(source, frame, row, pixel),
+        );
         written?;
         ready = next?;
         row += BAND;
@@ -82,8 +123,13 @@ fn from_png(error: ::png::EncodingError) -> Error {
     }
 }
 
-/// Returns gray and alpha of a band of rows, which ends with the last row of the raster.
-fn band(source: &dyn BlockSource, frame: Frame, row: usize) -> Result<Vec<u8>> {
+/// Returns the pixels of a band of rows, which ends with the last row of the raster.
+fn band<const N: usize>(
+    source: &dyn BlockSource,
+    frame: Frame,
+    row: usize,
+    pixel: &(impl Fn(f32) -> [u8; N] + Sync),
+) -> Result<Vec<u8>> {
     let height = BAND.min(frame.height.saturating_sub(row));
     if height == 0 {
         return Ok(Vec::new());
@@ -101,14 +147,12 @@ fn band(source: &dyn BlockSource, frame: Frame, row: usize) -> Result<Vec<u8>> {
     let columns: Vec<usize> = (0..frame.width).step_by(BLOCK).collect();
     let blocks: Vec<(Window, Vec<f32>)> =
         columns.into_par_iter().map(block).collect::<Result<_>>()?;
-    let mut out = vec![0; 2 * frame.width * height];
+    let mut out = vec![0; N * frame.width * height];
     for (window, cells) in blocks {
         for (line, cells) in cells.chunks_exact(window.width).enumerate() {
-            let start = 2 * (line * frame.width + window.column);
-            for (pixel, cell) in out[start..].chunks_exact_mut(2).zip(cells) {
-                if !cell.is_nan() {
-                    pixel.copy_from_slice(&[cell.round().clamp(0.0, 255.0) as u8, 255]);
-                }
+            let start = N * (line * frame.width + window.column);
+            for (bytes, cell) in out[start..].chunks_exact_mut(N).zip(cells) {
+                bytes.copy_from_slice(&pixel(*cell));
             }
         }
     }

@@ -1,0 +1,102 @@
+//! The heights of a surface in colors.
+
+use std::fmt::Debug;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use super::raster::{announce, is_picture, list_frame};
+use super::targets::{Outputs, Target};
+use super::{Keeps, Summary, Tiles, Verb};
+use crate::error::{Result, Setting};
+use crate::io::formats::Product;
+use crate::run::context::{Context, Journal};
+use crate::run::products::cells::CellProduct;
+use crate::run::products::relief::{self, ColorReliefOptions};
+use crate::run::products::surface::{self, SurfaceProduct, SurfaceRequest};
+use crate::terrain::Method;
+
+impl Verb for ColorReliefOptions {
+    fn name(&self) -> &'static str {
+        "color-relief"
+    }
+
+    fn product(&self) -> Product {
+        Product::Colors
+    }
+
+    fn list(&self, add: &mut dyn FnMut(Setting, &dyn Debug)) {
+        let ColorReliefOptions {
+            ramp,
+            matching,
+            frame,
+            method,
+        } = self;
+        list_frame(frame, add);
+        add(Setting::Method, method);
+        add(Setting::Ramp, &ramp.stops);
+        add(Setting::Match, matching);
+    }
+
+    fn method(&self) -> Method {
+        self.method
+    }
+
+    fn also_reads(&self) -> Option<&PathBuf> {
+        self.frame.align_to.as_ref()
+    }
+
+    fn reading(&self, file: PathBuf) -> Option<Arc<dyn Verb>> {
+        Some(Arc::new(ColorReliefOptions {
+            frame: self.frame.aligned_to(file),
+            ..self.clone()
+        }))
+    }
+
+    fn surface(&self, request: &SurfaceRequest, context: &Context) -> Result<SurfaceProduct> {
+        surface::surface_for(self.method, request, context)
+    }
+
+    fn write(
+        &self,
+        surface: &SurfaceProduct,
+        outputs: &Outputs,
+        context: &Context,
+    ) -> Result<Summary> {
+        let cells = relief::color_relief(surface, self, context)?;
+        write(&cells, outputs, context)
+    }
+
+    fn keeps(&self) -> Keeps<'_> {
+        Keeps::Heights(&self.frame)
+    }
+
+    fn write_tiles(
+        &self,
+        tiles: &dyn Tiles,
+        outputs: &Outputs,
+        context: &Context,
+    ) -> Result<Summary> {
+        let heights = tiles.heights(&self.frame, context)?;
+        let cells = relief::colors_of(heights, self, &Journal::new(context))?;
+        write(&cells, outputs, context)
+    }
+}
+
+fn write(cells: &CellProduct, outputs: &Outputs, context: &Context) -> Result<Summary> {
+    announce(cells, outputs, cell_bytes, context)?;
+    for target in &outputs.targets {
+        let destination = target.within(&outputs.set);
+        if is_picture(target) {
+            cells.write_picture(destination, context)?;
+        } else {
+            cells.write(destination, context)?;
+        }
+    }
+    Ok(Summary::Shades)
+}
+
+/// Returns the bytes of a cell before compression, and how many times they are on the disk.
+fn cell_bytes(target: &Target) -> (u64, f64) {
+    // A GeoTIFF without overviews is joined from a scratch file.
+    (4, if is_picture(target) { 1.0 } else { 2.0 })
+}

@@ -1,0 +1,127 @@
+//! Heights in colors.
+
+use super::{SLOPE, bytes, files_of, folder_with, run_in};
+
+/// All cells of a GeoTIFF with four bytes each.
+fn colors(bytes: Vec<u8>) -> (u32, Vec<[u8; 4]>) {
+    let mut decoder = tiff::decoder::Decoder::new(std::io::Cursor::new(bytes)).unwrap();
+    let (width, _) = decoder.dimensions().unwrap();
+    assert_eq!(
+        decoder.colortype().unwrap(),
+        tiff::ColorType::RGBA(8),
+        "GDAL and others read opacity"
+    );
+    let tiff::decoder::DecodingResult::U8(samples) = decoder.read_image().unwrap() else {
+        panic!("not bytes")
+    };
+    let pixels = samples.as_chunks::<4>().0.to_vec();
+    (width, pixels)
+}
+
+#[test]
+fn colors_follow_from_heights_in_a_tin_and_in_a_dem() {
+    let folder = folder_with(&[
+        ("a.xyz", SLOPE),
+        (
+            "r.txt",
+            "nv 1 2 3 4\n10 blue\n11:0,100\t0 128 # here\n/ end\n13 red\n",
+        ),
+    ]);
+    let dem = ["dem", "a.xyz", "--resolution", "1", "--te", "-1,0,3,3"];
+    run_in(&folder, &[&dem[..], &["-o", "d.tif"]].concat()).works(&[]);
+    // Heights of a row: none, 10.5, 11.5, 12.5.
+    let linear = [
+        [1, 2, 3, 4],
+        [0, 50, 128, 192],
+        [64, 75, 0, 160],
+        [191, 25, 0, 223],
+    ];
+    let nearest = [
+        [1, 2, 3, 4],
+        [0, 100, 0, 128],
+        [0, 100, 0, 128],
+        [255, 0, 0, 255],
+    ];
+    for (matching, expected) in [("linear", linear), ("nearest", nearest)] {
+        for surface in [
+            &["d.tif"][..],
+            &["a.xyz", "--resolution", "1", "--te", "-1,0,3,3"],
+        ] {
+            let mut words = vec!["color-relief", "--ramp", "r.txt", "--match", matching];
+            words.extend(surface);
+            words.extend(["-o", "c.tif", "-o", "c.png", "--overwrite"]);
+            run_in(&folder, &words).works(&[
+                "4 x 3 cells",
+                "written     c.tif",
+                "written     c.png",
+            ]);
+            let (width, found) = colors(bytes(&folder, "c.tif"));
+            assert_eq!(width, 4);
+            for row in found.chunks(4) {
+                assert_eq!(row, expected, "{matching} of {surface:?}");
+            }
+            assert!(files_of(folder.path()).contains(&"c.pgw".to_owned()));
+            run_in(&folder, &["info", "c.png"]).works(&[]);
+        }
+    }
+    run_in(&folder, &["info", "c.tif"]).works(&[]);
+    // As gdaldem is typed.
+    let typed = [
+        "color-relief",
+        "d.tif",
+        "r.txt",
+        "g.tif",
+        "-alpha",
+        "-nearest_color_entry",
+    ];
+    run_in(&folder, &typed).works(&["written     g.tif"]);
+    assert_eq!(bytes(&folder, "g.tif"), bytes(&folder, "c.tif"));
+}
+
+#[test]
+fn ramps_that_are_built_in_go_from_the_lowest_to_the_highest_cell() {
+    let folder = folder_with(&[("a.xyz", SLOPE)]);
+    let words = "color-relief a.xyz --resolution 1 --ramp gray -o c.tif";
+    run_in(&folder, &words.split(' ').collect::<Vec<_>>()).works(&[]);
+    let grays: Vec<u8> = colors(bytes(&folder, "c.tif"))
+        .1
+        .iter()
+        .map(|c| c[0])
+        .collect();
+    assert_eq!(grays, [0, 128, 255, 0, 128, 255, 0, 128, 255]);
+    // By default, colors that are not gray.
+    run_in(&folder, &["color-relief", "a.xyz", "-o", "d.tif"]).works(&[]);
+    let [red, green, ..] = colors(bytes(&folder, "d.tif")).1[0];
+    assert_ne!(red, green);
+}
+
+#[test]
+fn what_is_no_ramp_is_refused_and_nothing_is_written() {
+    let folder = folder_with(&[
+        ("a.xyz", SLOPE),
+        ("bad.txt", "0 red\n100 1 2 256\n"),
+        ("r.png", "0 red\n100 blue\n"),
+    ]);
+    let before = files_of(folder.path());
+    for (code, words, said) in [
+        (
+            2,
+            "--ramp rainbow -o c.tif",
+            "--ramp rainbow: there is no such ramp",
+        ),
+        (2, "--ramp rainbow -o c.tif", "elevation, gray, viridis"),
+        (
+            1,
+            "--ramp bad.txt -o c.tif",
+            "bad.txt: line 2: `256` in a color",
+        ),
+        (1, "--ramp bad.txt -o c.tif", "`50% red`"),
+        (2, "--match best -o c.tif", "linear, nearest, exact"),
+        (2, "-o c.jpg", ".tif, .tiff, .png"),
+        (2, "--ramp r.png -o r.png --overwrite", "one of the inputs"),
+    ] {
+        let words = format!("color-relief a.xyz {words}");
+        run_in(&folder, &words.split(' ').collect::<Vec<_>>()).fails(code, &[said]);
+    }
+    assert_eq!(files_of(folder.path()), before);
+}
