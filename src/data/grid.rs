@@ -244,6 +244,24 @@ mod tests {
     use super::*;
 
     #[test]
+    fn the_range_is_that_of_all_finite_cells_in_all_blocks() {
+        let frame = Frame::north_up(0.0, 0.0, 1.0, 300, 270);
+        let mut grid = Grid {
+            frame,
+            crs: None,
+            values: vec![f64::NAN; 300 * 270],
+        };
+        assert_eq!(range_of(&grid).unwrap(), None);
+        // In the first of four blocks, and in the last.
+        for (at, value) in [(0, 5.0), (1, f64::INFINITY), (300 * 269 + 299, -2.5)] {
+            grid.values[at] = value;
+        }
+        assert_eq!(range_of(&grid).unwrap(), Some([-2.5, 5.0]));
+        grid.values[300 * 100 + 280] = 7.0;
+        assert_eq!(range_of(&grid).unwrap(), Some([-2.5, 7.0]));
+    }
+
+    #[test]
     fn a_grid_gives_its_blocks_and_is_collected_from_them() {
         let (width, height) = (37, 150);
         let values: Vec<f64> = (0..width * height)
