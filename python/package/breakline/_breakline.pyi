@@ -60,7 +60,11 @@ class Surface:
         self, frame: dict[str, Any], method: str, quantity: tuple[str, str, bool, Optional[float]], call: _Call
     ) -> _Raster: ...
     def hillshade(
-        self, frame: dict[str, Any], method: str, light: tuple[str, Optional[float], Optional[float], Optional[float]], call: _Call
+        self,
+        frame: dict[str, Any],
+        method: str,
+        light: tuple[str, Optional[float], Optional[float], Optional[float]],
+        call: _Call,
     ) -> _Raster: ...
     def color_relief(self, asked: tuple[dict[str, Any], str, tuple[str, str]], call: _Call) -> _Raster: ...
     def write_color_relief(

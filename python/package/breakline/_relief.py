@@ -121,8 +121,8 @@ def color_relief(
         A :class:`Tin`, a :class:`Raster`, the path of a raster, or what :func:`tin` takes. Surfaces other than rasters
         are drawn as heights in cells first.
     ramp : str or path
-        ``"elevation"``, ``"gray"`` or ``"viridis"``, from the lowest to the highest of all cells; or a file with a height
-        and its color on each line, as gdaldem reads it.
+        ``"elevation"``, ``"gray"`` or ``"viridis"``, from the lowest to the highest of all cells; or a file with a
+        height and its color on each line, as gdaldem reads it.
     match : str
         Colors of heights between those of the ramp: ``"linear"`` in proportion; ``"nearest"`` that of the nearest;
         ``"exact"`` none.

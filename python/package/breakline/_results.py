@@ -273,9 +273,9 @@ class Raster(Compared):
         >>> dem.hillshade(azimuth=180.0).array.dtype
         dtype('uint8')
         """
-        frame = frame_of(None, None, None)
+        frame, sun = frame_of(None, None, None), light(shading, azimuth, altitude, z_factor)
         with call(threads, progress) as request:
-            return of_cells(self._surface().hillshade(frame, "linear", light(shading, azimuth, altitude, z_factor), request))
+            return of_cells(self._surface().hillshade(frame, "linear", sun, request))
 
 
 def frame_of(resolution: Any, extent: Any, align_to: Any) -> "dict[str, Any]":

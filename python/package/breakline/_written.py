@@ -337,7 +337,8 @@ _OF_VERBS: "dict[str, dict[str, Any]]" = {
         "shading": "standard", "azimuth": None, "altitude": None, "z_factor": None,
     },
     "color_relief": {
-        "resolution": None, "extent": None, "align_to": None, "method": "linear", "ramp": "elevation", "match": "linear",
+        "resolution": None, "extent": None, "align_to": None, "method": "linear",
+        "ramp": "elevation", "match": "linear",
     },
     **{
         verb: {"resolution": None, "extent": None, "align_to": None, "method": "linear", **own}
