@@ -47,6 +47,7 @@ pub(crate) fn accuracy<'py>(
     surface: PyRef<'_, Surface>,
     checkpoints: PointInput<'py>,
     read: ReadArguments,
+    assign: Option<&str>,
     groups: (Option<String>, Vec<String>, Vec<String>),
     class: Option<Measure>,
     checkpoint_error: Option<Measure>,
@@ -60,6 +61,7 @@ pub(crate) fn accuracy<'py>(
     };
     let options = AccuracyOptions {
         read: read.options()?,
+        assign: requests::crs(assign)?,
         group_by,
         groups: labels,
         vegetated,

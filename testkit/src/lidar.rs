@@ -2,9 +2,21 @@
 
 /// A LAS 1.2 file of point format 0, in steps of 0.01: points as x, y, z and class.
 pub fn las(points: &[([f64; 3], u8)], epsg: Option<u16>) -> Vec<u8> {
-    let keys: Vec<u16> = epsg.map_or(Vec::new(), |code| {
+    let keys = epsg.map_or(Vec::new(), |code| {
         vec![1, 1, 0, 2, 1024, 0, 1, 1, 3072, 0, 1, code]
     });
+    with_keys(points, &keys)
+}
+
+/// Returns the bytes of a LAS file with a coordinate system whose heights are in US survey feet.
+pub fn las_with_heights_in_feet(points: &[([f64; 3], u8)], epsg: u16) -> Vec<u8> {
+    let keys = [
+        1, 1, 0, 3, 1024, 0, 1, 1, 3072, 0, 1, epsg, 4099, 0, 1, 9003,
+    ];
+    with_keys(points, &keys)
+}
+
+fn with_keys(points: &[([f64; 3], u8)], keys: &[u16]) -> Vec<u8> {
     let records = if keys.is_empty() { 0u32 } else { 1 };
     let points_start = 227 + records * (54 + 2 * keys.len() as u32);
     let mut file = b"LASF".to_vec();

@@ -16,7 +16,7 @@ use breakline::run::{
     WriteRequest,
 };
 use breakline::terrain::Classes;
-use testkit::lidar::{las, tile};
+use testkit::lidar::{las, las_with_heights_in_feet, tile};
 
 use super::layer;
 
@@ -234,6 +234,8 @@ fn case(request: TinRequest, kinds: &'static [&'static str]) -> Case {
 fn cases_of_points(files: &Files) -> Vec<Case> {
     let [a, b] = [("a.las", 0.0), ("b.las", 10.0)].map(|(name, x)| files.tile(name, [x, 0.0], 2));
     let high = files.tile("high.las", [20.0, 0.0], 5);
+    let in_feet = las_with_heights_in_feet(&[([5.0, 5.0, 1.0], 2)], 25832);
+    let in_feet = files.write("feet.las", in_feet);
     let far = files.tile("far.las", [1e5, 0.0], 2);
     let text = files.slope("t.xyz", 8, 1.0);
     let wide = files.slope("w.xyz", 8, 60.0);
@@ -384,6 +386,7 @@ fn cases_of_points(files: &Files) -> Vec<Case> {
             verb: Arc::new(HillshadeOptions::default()),
             ..case(points(&[&text]), &["DifferentUnits", "HeightFactor"])
         },
+        case(points(&[&a, &in_feet]), &["HeightsOfOthers"]),
         shaded_degrees(None, &["AnglesAsLengths"]),
         shaded_degrees(Some(2.0), &["SteepAngles"]),
         case(points(&[&text]), &["ExtentApart"]).of(te(100.0, 104.0)),

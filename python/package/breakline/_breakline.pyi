@@ -83,6 +83,7 @@ def accuracy(
     surface: Surface,
     checkpoints: Any,
     read: dict[str, Any],
+    assign: Optional[str],
     groups: tuple[Optional[str], list[str], list[str]],
     accuracy_class: Union[float, str, None],
     checkpoint_error: Union[float, str, None],

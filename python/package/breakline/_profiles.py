@@ -11,7 +11,7 @@ import numpy as np
 from . import _breakline, _inputs
 from ._call import Progress, call
 from ._errors import usage
-from ._verbs import names_of, refuse_kept, surface_of, surfaces_of
+from ._verbs import assigned, names_of, refuse_kept, surface_of, surfaces_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,7 +138,7 @@ def profile(
     names = names_of([(points, f"surface {number}") for number, points in enumerate(surfaces, 1)])
     with call(threads, progress) as request:
         rows, _, _ = _breakline.profile(
-            found, lines, _assigned(surface), _step(step), sections, plot, names, _outputs(output, overwrite), request
+            found, lines, assigned(surface), _step(step), sections, plot, names, _outputs(output, overwrite), request
         )
     return [Profile(record, part, at, name, *ends, of) for record, part, at, name, ends, of in rows]
 
@@ -191,7 +191,7 @@ def drape(
     found = surface_of(points, surface, threads, progress)
     with call(threads, progress) as request:
         return _breakline.drape(
-            found, layer, _assigned(surface), _step(step), names_of([(points, "the surface")])[0], _outputs(output, overwrite), request
+            found, layer, assigned(surface), _step(step), names_of([(points, "the surface")])[0], _outputs(output, overwrite), request
         )
 
 
@@ -201,11 +201,6 @@ def _one_layer(lines: Any, parameter: str) -> Any:
     if len(found) != 1:
         raise usage(f"{parameter} is lines of one layer", len(found), "pass one file, or one list of lines")
     return found[0]
-
-
-def _assigned(surface: "dict[str, Any]") -> Optional[str]:
-    """Return the system of lines, which is that of points unless these are reprojected."""
-    return None if surface.get("to_crs") is not None else _inputs.crs_text(surface.get("crs"))
 
 
 def _step(step: Any) -> Optional[float]:

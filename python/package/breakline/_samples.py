@@ -13,7 +13,7 @@ from ._call import Progress, call
 from ._errors import usage
 from ._names import Method
 from ._points import _read
-from ._verbs import is_built, refuse_kept, surface_of
+from ._verbs import assigned, is_built, refuse_kept, surface_of
 
 #: How text is read.
 _READING = ("columns", "partial")
@@ -232,6 +232,7 @@ def accuracy(
             found,
             inputs[0],
             _read(reading["columns"], bool(reading["partial"])),
+            assigned(surface),
             (field, labels, [_inputs.name(group, "vegetated") for group in named]),
             _measure(accuracy_class, "accuracy_class"),
             _measure(checkpoint_error, "checkpoint_error"),

@@ -28,6 +28,11 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
 
+def assigned(surface: "dict[str, Any]") -> Optional[str]:
+    """Return the system of lines or points read with a surface: that of its points unless these are reprojected."""
+    return None if surface.get("to_crs") is not None else _inputs.crs_text(surface.get("crs"))
+
+
 def surface_of(
     points: Any, surface: "dict[str, Any]", threads: Any, progress: Any, method: str = "linear"
 ) -> _breakline.Surface:
@@ -472,8 +477,6 @@ def volume(
     found = surfaces_of(inputs, surface, threads, progress)
     factors = [_inputs.number(1 if factor is None else factor, name) for factor, name in [(swell, "swell"), (shrink, "shrink")]]
     names = names_of([(a, "a"), (b, "b")])
-    # With another system as the target, the stated one is that of the points alone.
-    assign = None if surface.get("to_crs") is not None else _inputs.crs_text(surface.get("crs"))
     with call(threads, progress) as request:
         rows, known = _breakline.volume(
             found[0],
@@ -481,7 +484,7 @@ def volume(
             heights,
             outlines[0] if outlines else None,
             None if name_by is None else _inputs.name(name_by, "name_by"),
-            assign,
+            assigned(surface),
             None if unit is None else _inputs.name(unit, "unit"),
             None if swell is None and shrink is None else factors,
             names,

@@ -1,5 +1,6 @@
 use std::io::Write;
 
+use super::pair;
 use super::sample::plan;
 use crate::cli::Exit;
 use crate::cli::input::args::{AccuracyArgs, OutputArgs};
@@ -26,6 +27,7 @@ pub(crate) fn run(args: &AccuracyArgs, console: &Console) -> Result<Exit> {
     print_surface(&SurfaceReport::take(&mut surface)?, console);
     let options = AccuracyOptions {
         read: args.surface.read.options(),
+        assign: pair::assigned(&plan),
         group_by: args.group_by.clone(),
         vegetated: args.vegetated.clone(),
         groups: Vec::new(),

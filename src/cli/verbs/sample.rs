@@ -51,6 +51,7 @@ pub(crate) fn run(args: &SampleArgs, console: &Console) -> Result<Exit> {
         prefix: args.prefix.clone(),
         method: args.method.into(),
         read: args.surface.read.options(),
+        assign: pair::assigned(&plan),
         surface: args.surface.inputs.first().cloned().unwrap_or_default(),
     };
     let sample = |target: SampleTarget| run::sample(&surface, &args.at, &options, target, &context);

@@ -105,6 +105,9 @@ pub enum Notice {
     },
     /// A file states no coordinate system: that of the other files is used.
     SystemOfOthers(PathBuf, Box<Crs>),
+    /// The heights of a file are taken to be in the unit of other files, with its name, because its
+    /// coordinate system states none.
+    HeightsOfOthers(PathBuf, String),
     /// No coordinate system is known: lengths are in the units of the data.
     NoSystem,
     /// Coordinates in the plane and heights have different units; with the names of both.
@@ -495,6 +498,7 @@ impl Notice {
             | Notice::NoPointOfClass { .. }
             | Notice::PointsWithoutReturnUsed(_)
             | Notice::AllClassesUsed
+            | Notice::HeightsOfOthers(..)
             | Notice::Transform(_)
             | Notice::PartForLinear
             | Notice::NothingInCommon(..)

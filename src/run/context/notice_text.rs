@@ -136,6 +136,7 @@ fn text(notice: &Notice) -> Wording {
         Notice::AllClassesUsed => all_classes_used(),
         Notice::Reassigned { path, stated, assigned } => reassigned(path, stated, assigned),
         Notice::SystemOfOthers(path, crs) => system_of_others(path, crs).into(),
+        Notice::HeightsOfOthers(path, unit) => heights_of_others(path, unit).into(),
         Notice::NoSystem => no_system().into(),
         Notice::DifferentUnits(plan, height) => different_units(plan, height).into(),
         Notice::Reprojecting(from, to) => format!("reprojecting from {from} to {to}").into(),
@@ -336,6 +337,13 @@ fn reassigned(path: &Path, stated: &Crs, assigned: &Crs) -> Wording {
 fn system_of_others(path: &Path, crs: &Crs) -> String {
     format!(
         "{} states no coordinate system; {crs} is used, as in the other files",
+        path.display()
+    )
+}
+
+fn heights_of_others(path: &Path, unit: &str) -> String {
+    format!(
+        "{} states no unit of heights: they are taken to be in units of the {unit}, as in the other files",
         path.display()
     )
 }

@@ -28,6 +28,8 @@ const FEWEST: usize = 30;
 pub struct AccuracyOptions {
     /// How the file of checkpoints is read.
     pub read: Options,
+    /// The coordinate system of the checkpoints, whatever their file states.
+    pub assign: Option<Crs>,
     /// The field by which checkpoints are grouped: a column of text, a number of a vector layer, or
     /// `class` of LAS.
     pub group_by: Option<String>,
@@ -221,14 +223,15 @@ pub fn accuracy(
     context.check()?;
     let mut read = Checkpoints::read(checkpoints, options, &journal)?;
     let path = checkpoints.path();
+    let of_checkpoints = Stated {
+        path: path.to_path_buf(),
+        crs: read.crs.clone(),
+        unread: read.unread_crs.clone(),
+        role: Role::Ground,
+    };
     let stated = [
         surface.stated(&options.surface),
-        Stated {
-            path: path.to_path_buf(),
-            crs: read.crs.clone(),
-            unread: read.unread_crs.clone(),
-            role: Role::Ground,
-        },
+        of_checkpoints.assigned(options.assign.as_ref()),
     ];
     let crs = systems::unify(&stated, &SystemOptions::default(), &journal)?.crs;
     if let Some(notice) = surface.unread_by(options.method) {

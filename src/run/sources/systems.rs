@@ -218,6 +218,15 @@ fn agree(files: &[Stated], journal: &Journal) -> Result<Option<Crs>> {
         }
     }
     let best = best.1;
+    let unit = |crs: &Crs| Units::of(Some(crs)).height(0.0).unit;
+    for (file, crs) in files.iter().filter_map(|f| Some((f, f.crs.as_ref()?))) {
+        if let (Some(own), Some(taken)) = (unit(crs), unit(best))
+            && !own.is_same(&taken)
+        {
+            let path = file.path.clone();
+            journal.add(Notice::HeightsOfOthers(path, taken.name));
+        }
+    }
     for file in files.iter().filter(|file| file.crs.is_none()) {
         journal.add(Notice::SystemOfOthers(
             file.path.clone(),
@@ -290,10 +299,16 @@ fn rank<'a>(file: &Stated, crs: &'a Crs) -> impl PartialOrd + use<'a> {
 }
 
 fn two_systems((a, a_crs): (&Stated, &Crs), (b, b_crs): (&Stated, &Crs)) -> Error {
+    let shown = |crs: &Crs| match (a_crs.to_string() == b_crs.to_string(), &crs.vertical_unit) {
+        (true, Some(unit)) => format!("{crs} with heights in units of the {}", unit.name),
+        _ => crs.to_string(),
+    };
     Error::unsupported(format!(
-        "two coordinate systems: {} is in {a_crs}, {} in {b_crs}",
+        "two coordinate systems: {} is in {}, {} in {}",
         a.path.display(),
-        b.path.display()
+        shown(a_crs),
+        b.path.display(),
+        shown(b_crs)
     ))
     .cure(wording![
         reproject_first(),

@@ -61,7 +61,8 @@ pub fn sample(
     context.check()?;
     let names = options.column_names();
     let source = Source::open(points, options, &names, &journal)?;
-    let stated = [surface.stated(&options.surface), source.stated(points)];
+    let of_points = source.stated(points).assigned(options.assign.as_ref());
+    let stated = [surface.stated(&options.surface), of_points];
     let crs = systems::unify(&stated, &SystemOptions::default(), &journal)?.crs;
     if let Some(notice) = surface.unread_by(options.method) {
         journal.add(notice);

@@ -3,6 +3,7 @@
 use std::io::Write;
 use std::path::PathBuf;
 
+use crate::crs::Crs;
 use crate::io::Destination;
 use crate::io::points::Options;
 use crate::terrain::Method;
@@ -18,6 +19,8 @@ pub struct SampleOptions {
     pub method: Method,
     /// How the file of points is read. Without columns of text, a header or the first two are used.
     pub read: Options,
+    /// The coordinate system of these points, whatever their file states.
+    pub assign: Option<Crs>,
     /// What messages call the surface, such as the name of its file.
     pub surface: PathBuf,
 }
@@ -29,6 +32,7 @@ impl Default for SampleOptions {
             prefix: String::new(),
             method: Method::Linear,
             read: Options::default(),
+            assign: None,
             surface: PathBuf::new(),
         }
     }
