@@ -1,6 +1,7 @@
 //! Which sites a surface needs to stay within a bound of all of them.
 
 use std::borrow::Cow;
+use std::ops::Range;
 use std::sync::atomic::AtomicBool;
 
 use rayon::prelude::*;
@@ -18,6 +19,14 @@ const BLOCK_CELLS: u32 = 128;
 
 /// About how many sites a block has that are on no lattice.
 const BLOCK_SITES: usize = 10_000;
+
+/// If removal leaves a share within this range of the vertices of a block, it is worth the time to
+/// choose some of them again: where it takes more, there is little left to take; where it takes
+/// next to nothing, nearly every site is needed.
+const WORTH_MORE: Range<f64> = 0.83..0.9;
+
+/// To choose again, vertices are removed up to these multiples of the bound.
+const BEYOND: [f64; 2] = [1.5, 1.25];
 
 /// Why sites could not be chosen.
 #[derive(Debug)]
@@ -377,12 +386,44 @@ fn choose_in(
     else {
         return Ok(named(&is_site));
     };
-    first.extend(refine(&mut mesh, cancel)?);
-    first.sort_unstable();
     let may_go = |vertex: u32, _: &[u32]| fixed.binary_search(&vertex).is_err();
+    first.extend(refine(&mut mesh, cancel)?);
+    let inserted = first.len();
     thin(&mut mesh, &mut Lines::default(), &first, &may_go, cancel)?;
     first.retain(|&site| mesh.is_vertex(site));
+    if WORTH_MORE.contains(&(first.len() as f64 / inserted as f64)) {
+        for beyond in BEYOND {
+            choose_again(&mut mesh, &mut first, beyond * bound, &may_go, cancel)?;
+        }
+    }
+    first.sort_unstable();
     Ok(named(&first))
+}
+
+/// Removes too many of the vertices, up to a larger bound, then inserts what is missing: fewer, as
+/// these are where most is missing.
+fn choose_again(
+    mesh: &mut Mesh,
+    vertices: &mut Vec<u32>,
+    larger: f64,
+    may_go: &dyn Fn(u32, &[u32]) -> bool,
+    cancel: &AtomicBool,
+) -> Result<(), Canceled> {
+    let mut no_lines = Lines::default();
+    let bound = mesh.bound;
+    mesh.bound = larger;
+    thin(mesh, &mut no_lines, vertices, may_go, cancel)?;
+    mesh.bound = bound;
+    mesh.measure_new();
+    let inserted = refine(mesh, cancel)?;
+    // All others could not even be removed up to the larger bound.
+    let changed = mesh.with_neighbors(&inserted);
+    thin(mesh, &mut no_lines, &changed, may_go, cancel)?;
+    vertices.extend(inserted);
+    vertices.sort_unstable();
+    vertices.dedup();
+    vertices.retain(|&site| mesh.is_vertex(site));
+    Ok(())
 }
 
 /// The corners of the convex hull of some sites, in the order of their numbers.

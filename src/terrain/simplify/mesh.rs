@@ -292,6 +292,16 @@ impl<'a> Mesh<'a> {
         self.worst_in(self.corners[cell as usize], f64::INFINITY, list)
     }
 
+    /// Finds the worst hidden sites of the triangles of which none is known: those that removals
+    /// made, and those that are exact.
+    pub(super) fn measure_new(&mut self) {
+        for cell in 0..self.cell_slots() {
+            if self.is_used(cell) && self.worst[cell as usize] == Worst::NONE {
+                self.measure(cell);
+            }
+        }
+    }
+
     fn list(&self, cell: u32) -> u32 {
         match &self.hidden {
             Hidden::Lattice(_) => NONE,

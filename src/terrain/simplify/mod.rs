@@ -218,7 +218,11 @@ impl Run<'_> {
         let range = self.sites.range_of_heights();
         // Bounds that were tried, with too many vertices and with few enough.
         let (mut low, mut high): (Option<(f64, f64)>, Option<Chosen>) = (None, None);
-        let mut bound = (range / 100.0).max(RANGE.min.sqrt());
+        // Below this, a bound is as good as none.
+        let least = (range * 1e-12).max(RANGE.min.sqrt());
+        let mut bound = (range / 100.0).max(least);
+        // Few steps lead down to the least, where the target is near the number of sites.
+        let mut step = 4.0;
         for _ in 0..TRIES {
             let chosen = self.choose(bound)?;
             let count = chosen.sites.len() as f64;
@@ -238,10 +242,12 @@ impl Run<'_> {
                     low * 4.0
                 }
                 (None, Some((high, count))) => {
-                    if count >= target as f64 * (1.0 - NEAR) || high <= range * 1e-12 {
+                    if count >= target as f64 * (1.0 - NEAR) || high <= least {
                         break;
                     }
-                    high / 4.0
+                    let smaller = (high / step).max(least);
+                    step *= step;
+                    smaller
                 }
                 (Some((low, more)), Some((high, fewer))) => {
                     if fewer >= target as f64 * (1.0 - NEAR) || high <= low * (1.0 + NEAR / 10.0) {

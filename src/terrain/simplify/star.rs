@@ -68,6 +68,19 @@ impl Mesh<'_> {
         }
     }
 
+    /// Returns some vertices and all that are adjacent to them, in the order of their numbers.
+    pub(super) fn with_neighbors(&self, vertices: &[u32]) -> Vec<u32> {
+        let mut star = Star::default();
+        let mut all = vertices.to_vec();
+        for &vertex in vertices {
+            self.find_star(vertex, &mut star);
+            all.extend_from_slice(&star.ring);
+        }
+        all.sort_unstable();
+        all.dedup();
+        all
+    }
+
     /// Finds the star of a vertex from one of its triangles on. Returns false if that ends at the
     /// hull.
     fn turn_around(&self, vertex: u32, first: u32, star: &mut Star) -> bool {

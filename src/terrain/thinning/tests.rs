@@ -29,6 +29,20 @@ fn part(batch: &PointBatch, keep: impl Fn(usize) -> bool) -> PointBatch {
     part
 }
 
+/// The points of a range.
+fn stretch(batch: &PointBatch, range: std::ops::Range<usize>) -> PointBatch {
+    PointBatch {
+        x: batch.x[range.clone()].to_vec(),
+        y: batch.y[range.clone()].to_vec(),
+        z: batch.z[range.clone()].to_vec(),
+        class: batch.class[range.clone()].to_vec(),
+        flags: batch.flags[range.clone()].to_vec(),
+        return_number: batch.return_number[range.clone()].to_vec(),
+        return_count: batch.return_count[range.clone()].to_vec(),
+        records: batch.records[range.start * 8..range.end * 8].to_vec(),
+    }
+}
+
 /// The numbers of the points that are kept, by their records, of a cloud in batches of two sources.
 fn kept_by(mut thinner: Thinner, all: &PointBatch) -> Vec<usize> {
     let half = all.len() / 2;
@@ -38,11 +52,9 @@ fn kept_by(mut thinner: Thinner, all: &PointBatch) -> Vec<usize> {
     let mut kept = Vec::new();
     let mut passes = 0;
     loop {
-        for source in 0..2 {
-            for start in (0..all.len()).step_by(7) {
-                let mut batch = part(all, |i| {
-                    (start..start + 7).contains(&i) && (i >= half) == (source == 1)
-                });
+        for (source, whole) in [0..half, half..all.len()].into_iter().enumerate() {
+            for start in whole.clone().step_by(7) {
+                let mut batch = stretch(all, start..whole.end.min(start + 7));
                 thinner.choose(source, &mut batch).unwrap();
                 kept.extend(numbers(&batch));
             }
