@@ -181,6 +181,32 @@ fn any_surface_is_sampled() {
 }
 
 #[test]
+fn points_take_the_assigned_system() {
+    let zone = |code| geojson(code, "Point", "[1, 1, 11.5]");
+    let folder = folder_with(&[("a.xyz", SLOPE), ("p.geojson", &zone(25833))]);
+    run_in(
+        &folder,
+        &["tin", "a.xyz", "--a-srs", "EPSG:25832", "-o", "a.tin"],
+    )
+    .works(&[]);
+    for verb in [
+        &["sample", "a.tin", "--at"],
+        &["accuracy", "a.tin", "--checkpoints"],
+    ] {
+        let words = [&verb[..], &["p.geojson"]].concat();
+        run_in(&folder, &words).fails(
+            1,
+            &[
+                "two coordinate systems",
+                "EPSG:25833",
+                "state the system of all files with --a-srs",
+            ],
+        );
+        run_in(&folder, &[&words[..], &["--a-srs", "EPSG:25832"]].concat()).works(&[]);
+    }
+}
+
+#[test]
 fn columns_are_those_that_are_named() {
     let folder = folder_with(&[("a.xyz", SLOPE), ("p.txt", "1 2.5 0.5 a\n2 1.5 2 b\n")]);
     run_in(&folder, &["tin", "a.xyz", "-o", "a.tin"]).works(&[]);
@@ -225,7 +251,6 @@ fn bad_input_is_refused_and_nothing_is_written() {
             "line.geojson",
             &geojson(25832, "LineString", "[[1, 1], [2, 2]]"),
         ),
-        ("degrees.geojson", &geojson(4326, "Point", "[1, 1]")),
     ]);
     std::fs::write(
         folder.path().join("p.las"),
@@ -277,12 +302,6 @@ fn bad_input_is_refused_and_nothing_is_written() {
             &["-o", "o.geojson"],
             1,
             "feature 1: the geometry is not a point",
-        ),
-        (
-            "degrees.geojson",
-            &["-o", "o.geojson", "--a-srs", "EPSG:25832"],
-            1,
-            "degrees.geojson",
         ),
     ] {
         let base = ["sample", "a.xyz", "--at", points, "-o", "o.csv"];

@@ -231,7 +231,7 @@ pub fn accuracy(
     };
     let stated = [
         surface.stated(&options.surface),
-        of_checkpoints.assigned(options.assign.as_ref()),
+        of_checkpoints.assigned(options.assign.as_ref(), &journal),
     ];
     let crs = systems::unify(&stated, &SystemOptions::default(), &journal)?.crs;
     if let Some(notice) = surface.unread_by(options.method) {

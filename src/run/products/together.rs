@@ -20,7 +20,7 @@ pub(crate) fn common_system<'a>(
     assign: Option<&Crs>,
     journal: &Journal,
 ) -> Result<Option<Crs>> {
-    let of_layer = Stated::by_layer(path, layer).assigned(assign);
+    let of_layer = Stated::by_layer(path, layer).assigned(assign, journal);
     let of_surfaces = surfaces.map(|(name, product)| product.stated(name));
     let stated: Vec<Stated> = of_surfaces.chain([of_layer]).collect();
     Ok(systems::unify(&stated, &SystemOptions::default(), journal)?.crs)

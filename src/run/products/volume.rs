@@ -273,7 +273,7 @@ fn common_system(
         stated.push(base.stated(of_base));
     }
     for (path, layer) in layers {
-        stated.push(Stated::by_layer(path, layer).assigned(options.assign.as_ref()));
+        stated.push(Stated::by_layer(path, layer).assigned(options.assign.as_ref(), journal));
     }
     Ok(systems::unify(&stated, &SystemOptions::default(), journal)?.crs)
 }

@@ -74,14 +74,22 @@ impl Stated {
     }
 
     /// Returns this with a coordinate system that is assigned, if any, whatever the file states.
-    pub(crate) fn assigned(self, crs: Option<&Crs>) -> Self {
-        match crs {
-            Some(crs) => Stated {
-                crs: Some(crs.clone()),
-                unread: None,
-                ..self
-            },
-            None => self,
+    pub(crate) fn assigned(self, crs: Option<&Crs>, journal: &Journal) -> Self {
+        let Some(assigned) = crs else {
+            return self;
+        };
+        if let Some(stated) = self.crs.filter(|stated| !stated.is_same(assigned)) {
+            journal.add(Notice::Reassigned {
+                path: self.path.clone(),
+                stated: Box::new(stated),
+                assigned: Box::new(assigned.clone()),
+            });
+        }
+        Stated {
+            crs: Some(assigned.clone()),
+            unread: None,
+            path: self.path,
+            role: self.role,
         }
     }
 
@@ -176,26 +184,10 @@ pub(crate) fn reconcile_some(
 }
 
 fn assigned(files: &[Stated], options: &SystemOptions, journal: &Journal) -> Vec<Stated> {
-    let Some(assign) = &options.assign else {
-        return files.to_vec();
-    };
+    let assign = options.assign.as_ref();
     files
         .iter()
-        .map(|file| {
-            if let Some(crs) = file.crs.as_ref().filter(|crs| !crs.is_same(assign)) {
-                let (stated, assigned) = (Box::new(crs.clone()), Box::new(assign.clone()));
-                journal.add(Notice::Reassigned {
-                    path: file.path.clone(),
-                    stated,
-                    assigned,
-                });
-            }
-            Stated {
-                crs: Some(assign.clone()),
-                unread: None,
-                ..file.clone()
-            }
-        })
+        .map(|file| file.clone().assigned(assign, journal))
         .collect()
 }
 
@@ -461,6 +453,36 @@ mod tests {
         for part in ["f1", "EPSG:25832", "f2", "EPSG:3005"] {
             assert!(text.contains(part), "{text}");
         }
+    }
+
+    #[test]
+    fn units_of_heights_are_named_where_they_are_what_differs() {
+        let of = |factors: [Option<f64>; 2]| {
+            let mut files = files(&[Some(26910), Some(26910)]);
+            for (file, factor) in files.iter_mut().zip(factors) {
+                let unit = factor.map(|factor| Unit {
+                    name: format!("unit of {factor}"),
+                    factor,
+                });
+                file.crs.as_mut().unwrap().vertical_unit = unit;
+            }
+            let journal = quiet();
+            let found = unify(&files, &SystemOptions::default(), &journal);
+            (found.map_err(|e| e.to_string()), journal.take())
+        };
+        let (found, _) = of([Some(1.0), Some(0.3048)]);
+        let text = found.unwrap_err();
+        for part in [
+            "f0 is in EPSG:26910 (S26910) with heights in units of the unit of 1, f1",
+            "unit of 0.3048",
+        ] {
+            assert!(text.contains(part), "{text}");
+        }
+        let (found, notices) = of([None, Some(0.3048)]);
+        assert!(found.is_ok());
+        let told = Notice::HeightsOfOthers("f0".into(), "unit of 0.3048".to_owned());
+        assert_eq!(notices, [told]);
+        assert_eq!(of([None, Some(1.0)]).1, []);
     }
 
     #[test]

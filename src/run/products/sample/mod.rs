@@ -61,7 +61,9 @@ pub fn sample(
     context.check()?;
     let names = options.column_names();
     let source = Source::open(points, options, &names, &journal)?;
-    let of_points = source.stated(points).assigned(options.assign.as_ref());
+    let of_points = source
+        .stated(points)
+        .assigned(options.assign.as_ref(), &journal);
     let stated = [surface.stated(&options.surface), of_points];
     let crs = systems::unify(&stated, &SystemOptions::default(), &journal)?.crs;
     if let Some(notice) = surface.unread_by(options.method) {
