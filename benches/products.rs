@@ -84,7 +84,6 @@ fn dem(bencher: Bencher, count: usize) {
         });
 }
 
-/// A metre apart.
 /// Heights and gradients of a TIN at as many positions as it has points, in rows and at random.
 #[divan::bench(args = [(Lay::Grid, 1_000_000), (Lay::Random, 1_000_000)], max_time = 10)]
 fn sample(bencher: Bencher, (lay, count): (Lay, usize)) {
@@ -99,6 +98,7 @@ fn sample(bencher: Bencher, (lay, count): (Lay, usize)) {
         .bench_local(|| sampler.samples(black_box(&positions)));
 }
 
+/// A metre apart.
 #[divan::bench(args = SIZES, max_time = 10)]
 fn contour(bencher: Bencher, count: usize) {
     let tin = build(&points(Lay::Lidar, count));

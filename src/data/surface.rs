@@ -44,6 +44,19 @@ pub struct Face {
     pub edges: [EdgeKind; 3],
 }
 
+/// A face on the other side of an edge.
+///
+/// See [`Surface::across`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FaceAcross {
+    /// The number of the face.
+    pub number: u32,
+    /// The corner of the face that is not on the edge.
+    pub corner: usize,
+    /// The position of this corner.
+    pub apex: [f64; 3],
+}
+
 /// A triangle under a surface, linked to its neighbors.
 ///
 /// See [`Surface::base_faces_in`].
@@ -164,6 +177,15 @@ pub trait Surface: Sync {
 
     /// The face across the edge opposite corner `i`; `None` at the rim of the surface.
     fn neighbor(&self, face: u32, i: usize) -> Option<u32>;
+
+    /// Returns the face across the edge opposite corner `i`, with the corner beyond the edge; `None`
+    /// at the rim of the surface.
+    ///
+    /// `PERF:` all that a walk needs of the next face, by one virtual call. A surface in memory also
+    /// prefetches the faces after it.
+    fn across(&self, face: u32, i: usize) -> Option<FaceAcross> {
+        across(self, face, i)
+    }
 
     /// The kind of the edge opposite corner `i`; both faces of an edge return the same.
     ///
@@ -327,6 +349,20 @@ pub trait Surface: Sync {
             is_wanted(a.min(b).min(c), a.max(b).max(c)).then_some((number, [a, b, c]))
         }));
     }
+}
+
+/// Returns the face across an edge, see [`Surface::across`], by the numbers of corners.
+pub(crate) fn across<S: Surface + ?Sized>(surface: &S, face: u32, i: usize) -> Option<FaceAcross> {
+    let number = surface.neighbor(face, i)?;
+    let own = surface.face(face)?;
+    let corners = surface.face(number)?;
+    let is_on_edge = |v: u32| v == own[(i + 1) % 3] || v == own[(i + 2) % 3];
+    let corner = corners.iter().position(|&v| !is_on_edge(v))?;
+    Some(FaceAcross {
+        number,
+        corner,
+        apex: surface.position(corners[corner]),
+    })
 }
 
 /// The numbers of edges of a surface that lie on lines, by their kinds.

@@ -1,7 +1,7 @@
 use std::io::Write;
 use std::ops::Range;
 
-use super::{Census, EdgeKind, LineEdges, Surface};
+use super::{Census, EdgeKind, FaceAcross, LineEdges, Surface};
 use crate::crs::Crs;
 use crate::error::{Error, Result, Setting, wording};
 
@@ -28,6 +28,10 @@ impl Surface for WithoutLines<'_> {
 
     fn neighbor(&self, face: u32, i: usize) -> Option<u32> {
         self.0.neighbor(face, i)
+    }
+
+    fn across(&self, face: u32, i: usize) -> Option<FaceAcross> {
+        self.0.across(face, i)
     }
 
     fn edge_kind(&self, face: u32, i: usize) -> EdgeKind {

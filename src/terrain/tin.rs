@@ -4,7 +4,9 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use crate::crs::Crs;
-use crate::data::{AT_ONCE, BaseFace, Bounds, Census, EdgeKind, Face, LineEdges, Surface};
+use crate::data::{
+    AT_ONCE, BaseFace, Bounds, Census, EdgeKind, Face, FaceAcross, LineEdges, Surface, across,
+};
 use crate::error::Result;
 use crate::triangulation::geometry::Terrain;
 use crate::triangulation::tds::{CellId, VertexId, ccw, cw};
@@ -277,6 +279,22 @@ impl Tin {
         })
     }
 
+    /// Reads the points across two edges of a cell, those at a corner, so that they are in the cache
+    /// when a walk comes there.
+    ///
+    /// `PERF:` memory answers while the walk is busy with the cell. Points are in any order, so
+    /// nearly each of them is waited for otherwise.
+    #[inline(always)]
+    fn fetch_apexes(&self, cell: CellId, corner: usize) {
+        let tds = self.triangulation.tds();
+        for i in [ccw(corner), cw(corner)] {
+            let beyond = tds.neighbor(cell, i);
+            let apex = tds.vertex(beyond, tds.index_of_neighbor(beyond, cell));
+            let point = self.triangulation.points().get(apex.index());
+            std::hint::black_box(point.map(|point| point[0]));
+        }
+    }
+
     /// The numbers of edges of the surface that lie on lines.
     pub(super) fn count_lines(&self) -> LineEdges {
         let has_lines = |&face: &u32| {
@@ -372,6 +390,25 @@ impl Surface for Tin {
             }
         }
         self.cut.as_ref()?.neighbor(face, i)
+    }
+
+    fn across(&self, face: u32, i: usize) -> Option<FaceAcross> {
+        let tds = self.triangulation.tds();
+        if (face as usize) < self.inside.len() {
+            let cell = CellId::new(face as usize);
+            let beyond = tds.neighbor(cell, i);
+            if self.inside[beyond.index()] {
+                let corner = tds.index_of_neighbor(beyond, cell);
+                self.fetch_apexes(beyond, corner);
+                return Some(FaceAcross {
+                    number: beyond.index() as u32,
+                    corner,
+                    apex: *self.triangulation.point(tds.vertex(beyond, corner)),
+                });
+            }
+        }
+        self.cut.as_ref()?;
+        across(self, face, i)
     }
 
     #[inline]

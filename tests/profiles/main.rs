@@ -2,8 +2,8 @@
 
 mod judge;
 
-use breakline::data::{Frame, Grid, LinePoint, Mesh, Stretch, Surface};
-use breakline::terrain::{GridSurface, Locator, TinBuilder};
+use breakline::data::{Frame, Grid, LinePoint, Mesh, Stretch, Surface, WithoutLines};
+use breakline::terrain::{CompactTin, GridSurface, Locator, TinBuilder};
 use dashu_ratio::RBig;
 use rayon::prelude::*;
 use testkit::random::Random;
@@ -209,6 +209,54 @@ fn numbers_of_faces_make_no_difference() {
             [one, other].map(|mesh| Locator::new(&mesh).unwrap().along(&line).unwrap());
         assert_eq!(one, other, "seed {seed}");
     }
+}
+
+/// The number, the corner and the apex of a face across an edge, one by one.
+fn across(surface: &dyn Surface, face: u32, i: usize) -> Option<(u32, usize, [f64; 3])> {
+    let next = surface.neighbor(face, i)?;
+    let own = surface.face(face)?;
+    let theirs = surface.face(next)?;
+    let beyond = |k: &usize| !own.contains(&theirs[*k]) || theirs[*k] == own[i];
+    let corner = (0..3).find(beyond)?;
+    Some((next, corner, surface.position(theirs[corner])))
+}
+
+#[test]
+fn every_kind_of_surface_finds_the_face_across_an_edge() {
+    let mut linked = 0;
+    for seed in 0..200 {
+        let mut random = Random(seed);
+        let points = points(&mut random, [0.0; 2], 1.0);
+        let column = |k: usize| points.iter().map(|p| p[k]).collect::<Vec<f64>>();
+        let mut builder = TinBuilder::default();
+        builder.add_points(&column(0), &column(1), &column(2));
+        if seed % 2 == 0 {
+            builder.add_boundary(&[line(&mut random, [0.0; 2], 1.0)]);
+        }
+        let Ok(tin) = builder.build() else {
+            continue;
+        };
+        let mut bytes = Vec::new();
+        tin.write_tin(&mut bytes).unwrap();
+        let opened = CompactTin::open(bytes, "a.tin").unwrap();
+        let surfaces: [&dyn Surface; 3] = [&tin, &opened, &WithoutLines(&tin)];
+        for surface in surfaces {
+            let faces = 0..surface.face_count() as u32;
+            for face in faces.filter(|&face| surface.face(face).is_some()) {
+                for i in 0..3 {
+                    let found = surface
+                        .across(face, i)
+                        .map(|a| (a.number, a.corner, a.apex));
+                    assert_eq!(found, across(surface, face, i), "seed {seed}: {face} {i}");
+                    linked += usize::from(found.is_some());
+                }
+            }
+        }
+        opened.ensure_intact().unwrap();
+        let line = line(&mut random, [0.0; 2], 1.0);
+        assert_eq!(along(&tin, &line), along(&opened, &line), "seed {seed}");
+    }
+    assert!(linked > 5000, "{linked}");
 }
 
 #[test]

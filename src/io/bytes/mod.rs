@@ -5,6 +5,7 @@ pub(crate) mod csv;
 pub(crate) mod decimal;
 pub(crate) mod decimal_mark;
 pub(crate) mod field;
+pub(crate) mod lines;
 pub mod mapped;
 pub(crate) mod output;
 pub(crate) mod rows;

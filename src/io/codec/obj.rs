@@ -3,11 +3,11 @@
 use std::io::Write;
 
 use super::listing::polygon::POLYGONS_AT_ONCE;
-use super::listing::text::write_lines;
 use super::listing::{Listing, crs_text, polygon};
 use crate::crs::Crs;
 use crate::data::Triangles;
 use crate::error::{Error, Result};
+use crate::io::bytes::lines::write_lines;
 use crate::io::bytes::watch::Meter;
 use crate::io::options::cut::open_line;
 use crate::io::{Destination, Watch};

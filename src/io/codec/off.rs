@@ -6,12 +6,12 @@
 
 use std::io::Write;
 
-use super::listing::text::write_lines;
 use super::listing::{Listing, crs_text, polygon};
 use crate::crs::Crs;
 use crate::data::Triangles;
 use crate::error::{Error, Result};
 use crate::io::bytes::decimal::Decimal;
+use crate::io::bytes::lines::write_lines;
 use crate::io::bytes::rows::{Row, Rows, shown};
 use crate::io::options::cut::open_line;
 use crate::io::{Destination, Watch};

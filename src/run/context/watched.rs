@@ -5,7 +5,7 @@ use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::crs::Crs;
-use crate::data::{BlockSource, Census, EdgeKind, Face, Frame, Surface, Window};
+use crate::data::{BlockSource, Census, EdgeKind, Face, FaceAcross, Frame, Surface, Window};
 use crate::error::{Error, Result};
 use crate::run::context::{Context, Size, Stage, Work};
 
@@ -125,6 +125,10 @@ impl<S: Surface + ?Sized> Surface for Watched<'_, S> {
 
     fn neighbor(&self, face: u32, i: usize) -> Option<u32> {
         self.source.neighbor(face, i)
+    }
+
+    fn across(&self, face: u32, i: usize) -> Option<FaceAcross> {
+        self.source.across(face, i)
     }
 
     fn edge_kind(&self, face: u32, i: usize) -> EdgeKind {

@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 use crate::crs::Crs;
-use crate::data::{BaseFace, EdgeKind, Surface, SurfaceFacts};
+use crate::data::{BaseFace, EdgeKind, FaceAcross, Surface, SurfaceFacts};
 use crate::error::{Command, Error, Result, wording};
 use crate::triangulation::geometry::{Geometry, Terrain};
 use crate::triangulation::tds::{CellId, Complex, VertexId};
@@ -94,6 +94,13 @@ enum Damage {
     Side(usize),
     /// The counts or the extent are not those of the faces.
     Facts,
+}
+
+/// A face and its corner that is not on an edge.
+struct Linked {
+    face: u32,
+    corner: usize,
+    vertex: u32,
 }
 
 /// What was read, or the damage there.
@@ -425,7 +432,7 @@ impl<B: AsRef<[u8]>> CompactTin<B> {
     }
 
     /// The face across an edge. It links back, so that no walk from face to face is endless.
-    fn linked_neighbor(&self, face: u32, i: usize) -> Found<Option<u32>> {
+    fn linked_neighbor(&self, face: u32, i: usize) -> Found<Option<Linked>> {
         let Some(corners) = self.corners(face)?.filter(|_| i < 3) else {
             return Ok(None);
         };
@@ -439,10 +446,26 @@ impl<B: AsRef<[u8]>> CompactTin<B> {
             .find(|j| [theirs[(j + 1) % 3], theirs[(j + 2) % 3]] == edge)
             .ok_or_else(broken)?;
         if beside != face && self.stated_neighbor(beside, j)? == Some(face) {
-            Ok(Some(beside))
+            Ok(Some(Linked {
+                face: beside,
+                corner: j,
+                vertex: theirs[j],
+            }))
         } else {
             Err(broken())
         }
+    }
+
+    /// Returns the face across an edge, with the corner beyond it.
+    fn face_across(&self, face: u32, i: usize) -> Found<Option<FaceAcross>> {
+        let Some(linked) = self.linked_neighbor(face, i)? else {
+            return Ok(None);
+        };
+        Ok(Some(FaceAcross {
+            number: linked.face,
+            corner: linked.corner,
+            apex: self.point(linked.vertex)?,
+        }))
     }
 
     /// The kind of an edge of a whole triangle, if the file states kinds beside the triangulation.
@@ -547,7 +570,12 @@ impl<B: AsRef<[u8]> + Sync> Surface for CompactTin<B> {
     }
 
     fn neighbor(&self, face: u32, i: usize) -> Option<u32> {
-        self.or_record(self.linked_neighbor(face, i), None)
+        let linked = self.or_record(self.linked_neighbor(face, i), None);
+        linked.map(|linked| linked.face)
+    }
+
+    fn across(&self, face: u32, i: usize) -> Option<FaceAcross> {
+        self.or_record(self.face_across(face, i), None)
     }
 
     fn edge_kind(&self, face: u32, i: usize) -> EdgeKind {

@@ -151,8 +151,7 @@ impl<'a, S: Surface + ?Sized> Sampler<'a, S> {
         samples: &mut [Sample],
         find: impl Fn([f64; 2], &mut Scratch) -> bool + Sync,
     ) -> Vec<u32> {
-        let sample = |&number: &u32, scratch: &mut Scratch| {
-            let q = positions[number as usize];
+        let sample = |q: [f64; 2], scratch: &mut Scratch| {
             if !q.iter().all(|c| c.is_finite()) {
                 return Some(Sample::NONE);
             }
@@ -164,8 +163,9 @@ impl<'a, S: Surface + ?Sized> Sampler<'a, S> {
             .par_chunks(BATCH)
             .map(|batch| {
                 let mut scratch = Scratch::default();
-                let found = batch.iter().map(|number| sample(number, &mut scratch));
-                found.collect()
+                // `PERF:` all are read before the first is used: memory answers several at a time.
+                let at: Vec<[f64; 2]> = batch.iter().map(|&i| positions[i as usize]).collect();
+                at.into_iter().map(|q| sample(q, &mut scratch)).collect()
             })
             .collect();
         let mut unknown = Vec::new();

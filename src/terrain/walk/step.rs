@@ -4,7 +4,7 @@
 //! the real line; positions and heights are rounded once they are known.
 
 use super::segment::{Event, Seen, Segment, turn};
-use crate::data::Surface;
+use crate::data::{FaceAcross, Surface};
 use crate::terrain::linear::linear;
 use crate::terrain::overlay::from_least;
 use crate::triangulation::geometry::height_along;
@@ -36,14 +36,49 @@ pub(super) enum Toward {
     },
 }
 
-/// The edge through which a segment leaves a face: opposite a corner, with the number of each end
-/// and how the segment sees it.
+/// The edge through which a segment leaves a face: opposite a corner, with its ends as the segment
+/// sees them.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Exit {
     pub(super) face: u32,
     corner: usize,
-    right: (u32, Seen),
-    left: (u32, Seen),
+    right: Seen,
+    left: Seen,
+}
+
+impl Exit {
+    /// Goes over to the edge through which the segment leaves the face across this one.
+    ///
+    /// # Errors
+    /// Returns the corner of that face that the segment comes to instead.
+    #[inline(always)]
+    fn pass(&mut self, across: &FaceAcross, segment: &Segment) -> Result<(), Toward> {
+        let FaceAcross {
+            number: face,
+            corner,
+            apex,
+        } = *across;
+        let apex = segment.seen(apex);
+        match apex.side {
+            Sign::Positive => {
+                self.left = apex;
+                self.corner = (corner + 1) % 3;
+            }
+            Sign::Negative => {
+                self.right = apex;
+                self.corner = (corner + 2) % 3;
+            }
+            Sign::Zero => {
+                return Err(Toward::Vertex {
+                    face,
+                    corner,
+                    along: None,
+                });
+            }
+        }
+        self.face = face;
+        Ok(())
+    }
 }
 
 /// What a step comes to.
@@ -61,6 +96,10 @@ pub(super) struct Steps<'a> {
     /// The number of faces that may still be passed. A surface of faces that do not overlap is
     /// never passed through for longer.
     left: u64,
+}
+
+fn plan([x, y, _]: [f64; 3]) -> [f64; 2] {
+    [x, y]
 }
 
 /// Where a position on the edge between two points is, with its height.
@@ -104,52 +143,25 @@ impl<'a> Steps<'a> {
         })
     }
 
-    /// Goes on to an edge or a vertex, unless the segment ends before.
+    /// Goes on to the edge or vertex that comes next, and over all edges that follow, unless the
+    /// segment ends before.
     pub(super) fn step(
         &mut self,
         toward: Toward,
         segment: &Segment,
         take: &mut impl FnMut(Option<[f64; 3]>),
     ) -> Stepped {
-        let nowhere = Stepped::Reached(Event::Point(segment.to), None);
-        if self.count().is_none() {
-            return nowhere;
-        }
-        let plan = |[x, y, _]: [f64; 3]| [x, y];
         match toward {
-            Toward::Edge(exit) => {
-                let Exit {
-                    face,
-                    corner,
-                    right: (_, right),
-                    left: (_, left),
-                } = &exit;
-                let (face, corner) = (*face, *corner);
-                let position = segment.crossing(right, left);
-                let [from, to] = [right, left].map(|end| plan(end.at));
-                let side = if segment.surely_goes_on(position, right, left) {
-                    Sign::Negative
-                } else {
-                    turn(from, to, segment.to)
-                };
-                let at = match side {
-                    Sign::Positive => At::Inside { face },
-                    Sign::Zero => At::Edge { face, corner },
-                    Sign::Negative => {
-                        take(Some(position));
-                        let next = self.surface.neighbor(face, corner);
-                        let next = next.and_then(|next| self.through(next, &exit, segment));
-                        return Stepped::Reached(Event::Crossing([to, from]), next);
-                    }
-                };
-                take(self.point(at, segment.to));
-                Stepped::Ended(at)
-            }
+            Toward::Edge(exit) => self.cross(exit, segment, take),
             Toward::Vertex {
                 face,
                 corner,
                 along,
             } => {
+                let nowhere = Stepped::Reached(Event::Point(segment.to), None);
+                if self.count().is_none() {
+                    return nowhere;
+                }
                 let Some(corners) = self.surface.triangle(face) else {
                     return nowhere;
                 };
@@ -171,25 +183,61 @@ impl<'a> Steps<'a> {
         }
     }
 
-    /// Returns what a segment comes to in a face that it enters through the edge by which it leaves
-    /// another one.
-    fn through(&self, face: u32, exit: &Exit, segment: &Segment) -> Option<Toward> {
-        let corners = self.surface.face(face)?;
-        let Exit { right, left, .. } = *exit;
-        let apex = corners.iter().position(|&v| v != right.0 && v != left.0)?;
-        let seen = segment.seen(self.surface.position(corners[apex]));
-        Some(into(face, apex, (corners[apex], seen), [left, right]))
+    /// Goes over edges, as long as one comes after the other.
+    fn cross(
+        &mut self,
+        mut exit: Exit,
+        segment: &Segment,
+        take: &mut impl FnMut(Option<[f64; 3]>),
+    ) -> Stepped {
+        loop {
+            if self.count().is_none() {
+                return Stepped::Reached(Event::Point(segment.to), None);
+            }
+            let (face, corner) = (exit.face, exit.corner);
+            // `PERF:` asked for first, so that memory answers while the crossing is computed.
+            let across = self.surface.across(face, corner);
+            let position = segment.crossing(&exit.right, &exit.left);
+            let edge = [exit.left, exit.right].map(|end| plan(end.at));
+            if !segment.surely_goes_on(position, &exit.right, &exit.left) {
+                let at = match turn(edge[1], edge[0], segment.to) {
+                    Sign::Positive => Some(At::Inside { face }),
+                    Sign::Zero => Some(At::Edge { face, corner }),
+                    Sign::Negative => None,
+                };
+                if let Some(at) = at {
+                    take(self.point(at, segment.to));
+                    return Stepped::Ended(at);
+                }
+            }
+            take(Some(position));
+            let Some(across) = across else {
+                return Stepped::Reached(Event::Crossing(edge), None);
+            };
+            if let Err(vertex) = exit.pass(&across, segment) {
+                return Stepped::Reached(Event::Crossing(edge), Some(vertex));
+            }
+        }
     }
 
     /// Returns what a segment comes to in a face that it enters through the edge opposite a corner.
     pub(super) fn enter(&self, face: u32, corner: usize, segment: &Segment) -> Option<Toward> {
         let corners = self.surface.face(face)?;
-        let seen = |k: usize| {
-            let vertex = corners[(corner + k) % 3];
-            (vertex, segment.seen(self.surface.position(vertex)))
+        let [apex, left, right] =
+            [0, 1, 2].map(|k| self.surface.position(corners[(corner + k) % 3]));
+        let mut exit = Exit {
+            face,
+            corner,
+            right: segment.seen(right),
+            left: segment.seen(left),
         };
-        // The first end of the edge is to the left of the segment.
-        Some(into(face, corner, seen(0), [seen(1), seen(2)]))
+        let across = FaceAcross {
+            number: face,
+            corner,
+            apex,
+        };
+        let vertex = exit.pass(&across, segment).err();
+        Some(vertex.unwrap_or(Toward::Edge(exit)))
     }
 
     /// Returns what a segment comes to from its start; `None` if that is not on the surface, or the
@@ -199,10 +247,10 @@ impl<'a> Steps<'a> {
             At::Off => None,
             At::Inside { face } => {
                 let corners = self.surface.face(face)?;
-                let seen = corners.map(|v| (v, segment.seen(self.surface.position(v))));
+                let seen = corners.map(|v| segment.seen(self.surface.position(v)));
                 (0..3).find_map(|corner| {
                     let [own, right, left] = [0, 1, 2].map(|i| seen[(corner + i) % 3]);
-                    match [own, right, left].map(|(_, seen)| seen.side) {
+                    match [own, right, left].map(|seen| seen.side) {
                         [_, Sign::Negative, Sign::Positive] => Some(Toward::Edge(Exit {
                             face,
                             corner,
@@ -220,20 +268,20 @@ impl<'a> Steps<'a> {
             }
             At::Edge { face, corner } => {
                 let corners = self.surface.face(face)?;
-                let ends = [1, 2].map(|k| corners[(corner + k) % 3]);
-                let [a, b] = ends.map(|v| self.surface.position(v));
+                let [a, b] = [1, 2].map(|k| self.surface.position(corners[(corner + k) % 3]));
                 let [of_a, of_b] = [a, b].map(|end| segment.seen(end));
                 match (of_a.side, of_b.side) {
                     (Sign::Positive, Sign::Negative) => self.enter(face, corner, segment),
                     (Sign::Negative, Sign::Positive) => {
-                        let exit = Exit {
+                        let mut exit = Exit {
                             face,
                             corner,
-                            right: (ends[0], of_a),
-                            left: (ends[1], of_b),
+                            right: of_a,
+                            left: of_b,
                         };
-                        let next = self.surface.neighbor(face, corner)?;
-                        self.through(next, &exit, segment)
+                        let across = self.surface.across(face, corner)?;
+                        let vertex = exit.pass(&across, segment).err();
+                        Some(vertex.unwrap_or(Toward::Edge(exit)))
                     }
                     (Sign::Zero, Sign::Zero) => {
                         self.surface.neighbor(face, corner)?;
@@ -284,10 +332,8 @@ impl<'a> Steps<'a> {
     /// Returns what a segment through a corner of a face comes to in this face, or along the edges
     /// from this corner unless these are at the rim.
     fn in_wedge(&self, face: u32, corner: usize, segment: &Segment) -> Option<Toward> {
-        let numbers = self.surface.face(face)?;
-        let corners = numbers.map(|v| self.surface.position(v));
+        let corners = self.surface.triangle(face)?;
         let [own, right, left] = [0, 1, 2].map(|k| corners[(corner + k) % 3]);
-        let plan = |[x, y, _]: [f64; 3]| [x, y];
         let seen = [right, left].map(|p| segment.seen(p));
         let sides = seen.map(|of| of.side);
         // A face without area has no inside.
@@ -297,8 +343,8 @@ impl<'a> Steps<'a> {
             return Some(Toward::Edge(Exit {
                 face,
                 corner,
-                right: (numbers[(corner + 1) % 3], seen[0]),
-                left: (numbers[(corner + 2) % 3], seen[1]),
+                right: seen[0],
+                left: seen[1],
             }));
         }
         [1, 2].into_iter().find_map(|k| {
@@ -314,29 +360,5 @@ impl<'a> Steps<'a> {
                 along: Some(opposite),
             })
         })
-    }
-}
-
-/// Returns what a segment comes to in a face that it enters through the edge opposite a corner. The
-/// first end of this edge is to the left of the segment, the second one to its right.
-fn into(face: u32, corner: usize, apex: (u32, Seen), [left, right]: [(u32, Seen); 2]) -> Toward {
-    match apex.1.side {
-        Sign::Positive => Toward::Edge(Exit {
-            face,
-            corner: (corner + 1) % 3,
-            right,
-            left: apex,
-        }),
-        Sign::Negative => Toward::Edge(Exit {
-            face,
-            corner: (corner + 2) % 3,
-            right: apex,
-            left,
-        }),
-        Sign::Zero => Toward::Vertex {
-            face,
-            corner,
-            along: None,
-        },
     }
 }

@@ -31,6 +31,14 @@ impl Pair {
         self.high
     }
 
+    /// Returns the double nearest to every number that is at most `error` away; `None` if there is
+    /// none.
+    #[inline(always)]
+    pub fn rounded(self, error: f64) -> Option<f64> {
+        let Pair { high, low } = self;
+        (high + (low - error) == high && high + (low + error) == high).then_some(high)
+    }
+
     /// Returns what the [estimate](Self::estimate) leaves.
     #[inline(always)]
     pub(super) fn rest(self) -> f64 {

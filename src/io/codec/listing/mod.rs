@@ -2,7 +2,6 @@
 
 pub(crate) mod crs_text;
 pub(crate) mod polygon;
-pub(crate) mod text;
 
 use std::ops::Range;
 

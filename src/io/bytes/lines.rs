@@ -1,8 +1,9 @@
+//! Lines of text that are made by all threads.
+
+use std::io::{Result, Write};
+
 use rayon::prelude::*;
 
-use std::io::Write;
-
-use crate::error::Result;
 use crate::io::Output;
 
 /// Lines that a task writes; there are as many tasks at a time as cores.
@@ -12,7 +13,7 @@ const LINES: usize = 1 << 14;
 pub(crate) fn write_lines<T: Copy + Sync>(
     output: &mut Output,
     mut items: impl Iterator<Item = T>,
-    line: impl Fn(&mut Vec<u8>, T) -> std::io::Result<()> + Sync,
+    line: impl Fn(&mut Vec<u8>, T) -> Result<()> + Sync,
 ) -> Result<()> {
     let mut batch = Vec::new();
     loop {
@@ -21,7 +22,7 @@ pub(crate) fn write_lines<T: Copy + Sync>(
         if batch.is_empty() {
             return Ok(());
         }
-        let texts: Vec<std::io::Result<Vec<u8>>> = batch
+        let texts: Vec<Result<Vec<u8>>> = batch
             .par_chunks(LINES)
             .map(|chunk| {
                 let mut text = Vec::with_capacity(chunk.len() * 40);
