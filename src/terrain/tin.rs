@@ -9,7 +9,7 @@ use crate::data::{
 };
 use crate::error::Result;
 use crate::triangulation::geometry::Terrain;
-use crate::triangulation::tds::{CellId, VertexId, ccw, cw};
+use crate::triangulation::tds::{CellId, Complex, VertexId, ccw, cw};
 use crate::triangulation::{ConstrainedDelaunay, Flaw, Level, LineId, Location};
 
 use super::admitted::searched;
@@ -279,22 +279,6 @@ impl Tin {
         })
     }
 
-    /// Reads the points across two edges of a cell, those at a corner, so that they are in the cache
-    /// when a walk comes there.
-    ///
-    /// `PERF:` memory answers while the walk is busy with the cell. Points are in any order, so
-    /// nearly each of them is waited for otherwise.
-    #[inline(always)]
-    fn fetch_apexes(&self, cell: CellId, corner: usize) {
-        let tds = self.triangulation.tds();
-        for i in [ccw(corner), cw(corner)] {
-            let beyond = tds.neighbor(cell, i);
-            let apex = tds.vertex(beyond, tds.index_of_neighbor(beyond, cell));
-            let point = self.triangulation.points().get(apex.index());
-            std::hint::black_box(point.map(|point| point[0]));
-        }
-    }
-
     /// The numbers of edges of the surface that lie on lines.
     pub(super) fn count_lines(&self) -> LineEdges {
         let has_lines = |&face: &u32| {
@@ -398,8 +382,8 @@ impl Surface for Tin {
             let cell = CellId::new(face as usize);
             let beyond = tds.neighbor(cell, i);
             if self.inside[beyond.index()] {
+                tds.fetch_neighbors(beyond);
                 let corner = tds.index_of_neighbor(beyond, cell);
-                self.fetch_apexes(beyond, corner);
                 return Some(FaceAcross {
                     number: beyond.index() as u32,
                     corner,
