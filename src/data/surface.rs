@@ -178,11 +178,11 @@ pub trait Surface: Sync {
     /// The face across the edge opposite corner `i`; `None` at the rim of the surface.
     fn neighbor(&self, face: u32, i: usize) -> Option<u32>;
 
-    /// Returns the face across the edge opposite corner `i`, with the corner beyond the edge; `None`
-    /// at the rim of the surface.
+    /// Returns the face across the edge opposite corner `i`, with the corner beyond the edge;
+    /// `None` at the rim of the surface.
     ///
-    /// `PERF:` all that a walk needs of the next face, by one virtual call. A surface in memory also
-    /// prefetches the faces after it.
+    /// `PERF:` all that a walk needs of the next face, by one virtual call. A surface in memory
+    /// also prefetches the faces after it.
     fn across(&self, face: u32, i: usize) -> Option<FaceAcross> {
         across(self, face, i)
     }

@@ -25,8 +25,8 @@ pub(super) fn output(file: &Option<PathBuf>, overwrite: bool) -> OutputArgs {
     }
 }
 
-/// Returns the coordinate system of lines or points that are read with a surface: the assigned one. With
-/// another system as the target, that is of the points alone.
+/// Returns the coordinate system of lines or points that are read with a surface: the assigned
+/// one. With another system as the target, that is of the points of the surface alone.
 pub(super) fn assigned(plan: &SurfacePlan) -> Option<Crs> {
     let systems = &plan.request.systems;
     match systems.target {

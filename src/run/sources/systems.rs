@@ -480,8 +480,8 @@ mod tests {
         }
         let (found, notices) = of([None, Some(0.3048)]);
         assert!(found.is_ok());
-        let told = Notice::HeightsOfOthers("f0".into(), "unit of 0.3048".to_owned());
-        assert_eq!(notices, [told]);
+        let notice = Notice::HeightsOfOthers("f0".into(), "unit of 0.3048".to_owned());
+        assert_eq!(notices, [notice]);
         assert_eq!(of([None, Some(1.0)]).1, []);
     }
 

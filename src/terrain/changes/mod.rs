@@ -22,9 +22,9 @@ const ROUNDING: f64 = f64::EPSILON * 256.0;
 /// The polygons are those of the triangles: the difference is linear on what a triangle of each
 /// surface has in common, and is known there up to a few rounding errors. Positions at which
 /// triangles cross are rounded, relative to the least coordinates; vertices of polygons are rounded
-/// to the numbers that there are. Areas that meet only in a vertex are separate; what meets along an
-/// edge is one area, also if the difference is just the height there. With the surfaces exchanged,
-/// areas have the other sign and are equal otherwise, bit for bit.
+/// to the numbers that there are. Areas that meet only in a vertex are separate; what meets along
+/// an edge is one area, also if the difference is just the height there. With the surfaces
+/// exchanged, areas have the other sign and are equal otherwise, bit for bit.
 ///
 /// # Errors
 /// If the height is not above zero, a coordinate is not covered by the arithmetic, the surfaces
