@@ -11,13 +11,14 @@ use crate::surface::Surface;
 use crate::work::{self, Call};
 
 /// The record of the polygon, the level of the base, the volumes and areas, and what is moved, in
-/// the order of the fields in Python; then the name of the polygon.
+/// the order of the fields in Python; then the name of the polygon and its area.
 type Row = (
     Option<usize>,
     Option<f64>,
     [f64; 10],
     [Option<f64>; 3],
     Option<String>,
+    Option<f64>,
 );
 
 const UNITS: [(&str, VolumeUnit); 2] = [
@@ -80,5 +81,12 @@ fn row(row: &VolumeRow) -> Row {
     ];
     let moved = row.earthwork.map(|e| [e.loose_cut, e.bank_fill, e.balance]);
     let moved = moved.map_or([None; 3], |numbers| numbers.map(Some));
-    (row.record, row.level, numbers, moved, row.name.clone())
+    (
+        row.record,
+        row.level,
+        numbers,
+        moved,
+        row.name.clone(),
+        row.polygon_area,
+    )
 }

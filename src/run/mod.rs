@@ -90,7 +90,7 @@ mod write;
 pub(crate) use context::event::listed;
 pub use context::event::{Awaited, Event, JobSize};
 pub use context::notice::{
-    CrossingNote, LoweredRiver, Notice, Seed, SeedFlaw, Severity, WaterStep,
+    CrossingNote, LoweredRiver, Notice, PartlyCounted, Seed, SeedFlaw, Severity, WaterStep,
 };
 #[cfg(feature = "cli")] // what is printed has the units of notices
 pub(crate) use context::units;

@@ -304,7 +304,10 @@ fn polygons_have_a_row_each() {
             "--json",
         ],
     );
-    run.works(&["warning: zones.geojson: record 3: nothing"]);
+    run.works(&[
+        "warning: zones.geojson: record 3: nothing",
+        "zones.geojson: 2 polygons are counted only where the surface and its base are (record 1: 3 of 18 m2, record 2: 3 of 70 m2)",
+    ]);
     let found = json(&run);
     assert_eq!(found["unit"], "m3");
     let rows = &found["rows"];
@@ -312,6 +315,7 @@ fn polygons_have_a_row_each() {
         &rows[0],
         &[
             ("record", 1.0),
+            ("polygon_area", 18.0),
             ("cut", 1.5),
             ("surface_only", 3.0),
             ("base_only", 0.0),

@@ -110,6 +110,7 @@ def volume(
             tuple[float, float, float, float, float, float, float, float, float, float],
             tuple[Optional[float], Optional[float], Optional[float]],
             Optional[str],
+            Optional[float],
         ]
     ],
     Optional[str],

@@ -383,6 +383,8 @@ class Volume:
         of the unit of the data.
     name : str or None
         The name of the polygon, with ``name_by``.
+    polygon_area : float or None
+        The area of the polygon itself, also where nothing is counted.
     """
 
     record: Optional[int]
@@ -402,6 +404,7 @@ class Volume:
     balance: Optional[float]
     unit: Optional[str]
     name: Optional[str] = None
+    polygon_area: Optional[float] = None
 
 
 def volume(
@@ -490,7 +493,7 @@ def volume(
             names,
             request,
         )
-    return [Volume(record, level, *numbers, *moved, known, name) for record, level, numbers, moved, name in rows]
+    return [Volume(record, level, *numbers, *moved, known, name, area) for record, level, numbers, moved, name, area in rows]
 
 
 def surfaces_of(

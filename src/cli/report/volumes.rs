@@ -46,11 +46,18 @@ const OF_EARTHWORK: &[Field] = &[
     Field::volume("balance", |row| row.earthwork.map_or(0.0, |e| e.balance)),
 ];
 
+/// The number of rows of polygons; it follows.
+const OF_POLYGONS: &[Field] = &[Field::area("polygon area", |row| {
+    row.polygon_area.unwrap_or(0.0)
+})];
+
 /// Returns the numbers that rows have; all rows have the same.
 fn fields(rows: &[VolumeRow]) -> Vec<&'static Field> {
     let has_earthwork = rows.iter().any(|row| row.earthwork.is_some());
+    let has_polygons = rows.iter().any(|row| row.polygon_area.is_some());
+    let of_polygons = OF_POLYGONS.iter().filter(|_| has_polygons);
     let more = OF_EARTHWORK.iter().filter(|_| has_earthwork);
-    FIELDS.iter().chain(more).collect()
+    FIELDS.iter().chain(of_polygons).chain(more).collect()
 }
 
 impl Field {

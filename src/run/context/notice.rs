@@ -121,6 +121,15 @@ pub enum Notice {
     /// In the polygons of these records of a file, the surface and its base have no area in
     /// common.
     PolygonsOutside(PathBuf, Vec<usize>),
+    /// Polygons of a layer are only in part where the surface and its base are.
+    PolygonsPartlyOutside {
+        /// The layer.
+        path: PathBuf,
+        /// The polygons.
+        partly: Vec<PartlyCounted>,
+        /// The unit of areas.
+        unit: &'static str,
+    },
     /// These lines of a file, such as "record 3", are not on the surface, which is named.
     LinesOff(PathBuf, String, Vec<String>),
     /// These lines of a file are on the surface, which is named, only in part.
@@ -441,6 +450,17 @@ pub enum SeedFlaw {
     OutsideHull,
 }
 
+/// A polygon that is only in part where the surface and its base are.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PartlyCounted {
+    /// The number of its record, counted from 1.
+    pub record: usize,
+    /// Its area.
+    pub area: f64,
+    /// The area in which there is something to compute a volume of.
+    pub counted: f64,
+}
+
 /// How much a notice matters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
@@ -503,6 +523,7 @@ impl Notice {
             | Notice::PartForLinear
             | Notice::NothingInCommon(..)
             | Notice::PolygonsOutside(..)
+            | Notice::PolygonsPartlyOutside { .. }
             | Notice::LinesOff(..)
             | Notice::LinesPartlyOff(..)
             | Notice::LinesWithoutLength(..)

@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use super::notice::PartlyCounted;
+use super::units::number;
 use crate::error::Wording;
 
 /// Returns a text about a file.
@@ -16,6 +18,25 @@ pub(super) fn polygons_outside(path: &Path, records: &[usize]) -> Wording {
         path,
         &format!("{records}: nothing to compute a volume of is in the polygon{s}"),
     )
+}
+
+pub(super) fn polygons_partly_outside(
+    path: &Path,
+    partly: &[PartlyCounted],
+    unit: &str,
+) -> Wording {
+    let areas = |one: &PartlyCounted| {
+        let [counted, area] = [one.counted, one.area].map(number);
+        format!("record {}: {counted} of {area} {unit}", one.record)
+    };
+    let listed: Vec<String> = partly.iter().map(areas).collect();
+    let polygons = match partly.len() {
+        1 => "a polygon is".to_owned(),
+        count => format!("{count} polygons are"),
+    };
+    let listed = first_of(&listed);
+    let text = format!("{polygons} counted only where the surface and its base are ({listed})");
+    of_file(path, &text)
 }
 
 /// Returns a text about several things in a file, of which the first are listed.

@@ -4,7 +4,9 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 
 use super::notice::{CrossingNote, LoweredRiver, Notice, Seed, SeedFlaw, WaterStep};
-use super::notice_lists::{named, of_file, of_listed, polygons_outside, sections_cross};
+use super::notice_lists::{
+    named, of_file, of_listed, polygons_outside, polygons_partly_outside, sections_cross,
+};
 use super::units::{Quantity, bytes, neat, number};
 use crate::crs::Crs;
 use crate::data::Bounds;
@@ -145,6 +147,9 @@ fn text(notice: &Notice) -> Wording {
             format!("{one} and {other} do not overlap: no position is on both").into()
         }
         Notice::PolygonsOutside(path, records) => polygons_outside(path, records),
+        Notice::PolygonsPartlyOutside { path, partly, unit } => {
+            polygons_partly_outside(path, partly, unit)
+        }
         Notice::LinesOff(path, surface, lines) => {
             of_listed(path, lines, &format!("not on {surface}"))
         }

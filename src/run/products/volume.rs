@@ -7,7 +7,7 @@ use crate::crs::Crs;
 use crate::data::{Layer, Mesh, Surface, Value};
 use crate::error::{Error, Result, Setting, wording};
 use crate::io::{OnDamage, no_such_field};
-use crate::run::context::notice::Notice;
+use crate::run::context::notice::{Notice, PartlyCounted};
 use crate::run::context::units::Units;
 use crate::run::context::watched::Watched;
 use crate::run::context::{Context, Journal, Stage};
@@ -22,6 +22,10 @@ const VISITS: u64 = 3;
 
 /// The meters in an international yard.
 const YARD: f64 = 0.9144;
+
+/// The share of its area that a polygon may miss before that is worth a notice: corners on the rim
+/// of a surface are rounded.
+const ALL_OF_IT: f64 = 1e-6;
 
 /// What a surface is compared with.
 #[derive(Debug, Clone, Copy)]
@@ -126,7 +130,6 @@ impl VolumeUnit {
     }
 
     /// Returns the [symbols](Self::symbols) of a unit, or words if it is not known.
-    #[cfg(feature = "cli")]
     pub(crate) fn symbols_of(unit: Option<VolumeUnit>) -> [&'static str; 2] {
         unit.map_or(["cubic units", "square units"], VolumeUnit::symbols)
     }
@@ -150,6 +153,8 @@ pub struct VolumeRow {
     pub name: Option<String>,
     /// The height of the base, if it is level.
     pub level: Option<f64>,
+    /// The area of the polygon itself, wherever the surface is; `None` if there are no polygons.
+    pub polygon_area: Option<f64>,
     /// The volumes and areas.
     pub volume: Volume,
     /// What is moved, if [`Bulking`] is known.
@@ -215,12 +220,16 @@ pub fn volume(
         VolumeBase::Levels(levels) => computing.above_levels(faces, levels),
         VolumeBase::Rim => computing.above_rims(faces),
     })?;
-    note_nothing(&rows, outlines.as_ref(), base, &options.names, &journal);
     for row in &mut rows {
         row.volume = scale.applied(&row.volume);
+        row.polygon_area = row.polygon_area.map(|area| area * scale.area);
         row.earthwork = options
             .bulking
             .map(|bulking| bulking.earthwork(&row.volume));
+    }
+    match &outlines {
+        Some(outlines) => outlines.note_outside(&rows, scale.unit, &journal),
+        None => note_nothing(&rows, base, &options.names, &journal),
     }
     Ok(VolumeProduct {
         rows,
@@ -229,33 +238,12 @@ pub fn volume(
     })
 }
 
-/// Adds a notice if there is nothing to compute a volume of, in all or in some polygons.
-fn note_nothing(
-    rows: &[VolumeRow],
-    outlines: Option<&Outlines>,
-    base: VolumeBase,
-    names: &[PathBuf; 2],
-    journal: &Journal,
-) {
-    let has_nothing = |row: &&VolumeRow| row.volume.common_area == 0.0;
-    match outlines {
-        Some(Outlines { path, records, .. }) => {
-            let rows = rows.iter().take(records.len());
-            let outside: Vec<usize> = rows
-                .filter(has_nothing)
-                .filter_map(|row| row.record)
-                .collect();
-            if !outside.is_empty() {
-                journal.add(Notice::PolygonsOutside(path.to_path_buf(), outside));
-            }
-        }
-        None if matches!(base, VolumeBase::Surface(_))
-            && rows.iter().all(|row| has_nothing(&row)) =>
-        {
-            let [one, other] = names.each_ref().map(|name| name.display().to_string());
-            journal.add(Notice::NothingInCommon(one, other));
-        }
-        None => {}
+/// Adds a notice if two surfaces have nothing in common.
+fn note_nothing(rows: &[VolumeRow], base: VolumeBase, names: &[PathBuf; 2], journal: &Journal) {
+    let have_nothing = rows.iter().all(|row| row.volume.common_area == 0.0);
+    if have_nothing && matches!(base, VolumeBase::Surface(_)) {
+        let [one, other] = names.each_ref().map(|name| name.display().to_string());
+        journal.add(Notice::NothingInCommon(one, other));
     }
 }
 
@@ -372,6 +360,39 @@ impl<'a> Outlines<'a> {
             zones,
         })
     }
+
+    /// Adds notices of the polygons in which there is nothing, or that are only in part where the
+    /// surface and its base are.
+    fn note_outside(&self, rows: &[VolumeRow], unit: Option<VolumeUnit>, journal: &Journal) {
+        // All levels have the same areas.
+        let rows = rows.iter().take(self.records.len());
+        let areas = rows.filter_map(|row| {
+            let counted = row.volume.common_area;
+            Some((row.record?, row.polygon_area?, counted))
+        });
+        let (outside, others): (Vec<_>, Vec<_>) =
+            areas.partition(|(_, _, counted)| *counted == 0.0);
+        if !outside.is_empty() {
+            let records = outside.into_iter().map(|(record, ..)| record).collect();
+            journal.add(Notice::PolygonsOutside(self.path.to_path_buf(), records));
+        }
+        let partly = others
+            .into_iter()
+            .filter(|(_, area, counted)| *counted < (1.0 - ALL_OF_IT) * area)
+            .map(|(record, area, counted)| PartlyCounted {
+                record,
+                area,
+                counted,
+            });
+        let partly: Vec<_> = partly.collect();
+        if !partly.is_empty() {
+            journal.add(Notice::PolygonsPartlyOutside {
+                path: self.path.to_path_buf(),
+                partly,
+                unit: VolumeUnit::symbols_of(unit)[1],
+            });
+        }
+    }
 }
 
 /// Returns the values of an attribute of some records.
@@ -464,6 +485,7 @@ impl Computing<'_> {
                 record: Some(record),
                 name: names.as_ref().map(|names| names[zone].clone()),
                 level: None,
+                polygon_area: Some(outline.area(0)),
                 volume,
                 earthwork: None,
             }));
@@ -499,6 +521,7 @@ impl Computing<'_> {
                     .outlines
                     .and_then(|of| Some(of.names.as_ref()?[zone].clone())),
                 level,
+                polygon_area: self.outlines.map(|of| of.zones.area(zone)),
                 volume,
                 earthwork: None,
             })

@@ -1,5 +1,6 @@
 //! Areas within which volumes are computed.
 
+use crate::data::area_of;
 use crate::error::{Error, Result};
 use crate::terrain::admitted::refused;
 use crate::terrain::boxes::{Boxed, Boxes, Extent};
@@ -14,6 +15,7 @@ pub struct Zones {
     triangles: Boxes<ZoneTriangle>,
     /// The number of triangles of each polygon.
     counts: Vec<usize>,
+    areas: Vec<f64>,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -40,9 +42,11 @@ impl Zones {
     pub fn new(polygons: &[Vec<Vec<[f64; 2]>>]) -> Result<Self> {
         let mut triangles = Vec::new();
         let mut counts = Vec::with_capacity(polygons.len());
+        let mut areas = Vec::with_capacity(polygons.len());
         for (zone, rings) in polygons.iter().enumerate() {
             let found = triangles_of(rings)?;
             counts.push(found.len());
+            areas.push(found.iter().map(|corners| area(*corners)).sum());
             triangles.extend(
                 found
                     .into_iter()
@@ -52,6 +56,7 @@ impl Zones {
         Ok(Zones {
             triangles: Boxes::new(triangles),
             counts,
+            areas,
         })
     }
 
@@ -63,6 +68,12 @@ impl Zones {
     /// Returns true if a polygon has no area.
     pub fn is_empty(&self, zone: usize) -> bool {
         self.counts.get(zone).is_none_or(|&count| count == 0)
+    }
+
+    /// Returns the area of a polygon, in squares of the unit of the plan; 0 if there is no such
+    /// polygon.
+    pub fn area(&self, zone: usize) -> f64 {
+        self.areas.get(zone).copied().unwrap_or(0.0)
     }
 
     /// Returns the triangles of all polygons, counter-clockwise.
@@ -97,6 +108,11 @@ impl Zones {
             None::<()>
         });
     }
+}
+
+/// Returns the area of a triangle.
+fn area(corners: [[f64; 2]; 3]) -> f64 {
+    area_of(corners.map(|[x, y]| [x, y, 0.0]))
 }
 
 /// Returns the triangles inside of a polygon, counter-clockwise.
