@@ -1,4 +1,4 @@
-//! What a surface loses with the caps that are left out at its rim.
+//! What a surface loses with the triangles that are left out at its rim.
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
@@ -6,8 +6,17 @@ use super::linear::plan_distance;
 use crate::data::area_of;
 use crate::triangulation::tds::{ccw, cw};
 
-/// What a surface loses with the caps that the [rule of the rim](super::RimRule) leaves out: those
-/// without an edge longer than the limit.
+/// What a surface loses with the triangles that the [rule of the rim](super::RimRule) leaves out,
+/// and with the caps among them: those without an edge longer than the limit.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct LostAtRim {
+    /// The area in plan of all that is left out, as a share of the convex hull: from 0 to 1.
+    pub share: f64,
+    /// What is lost with caps.
+    pub caps: LostCaps,
+}
+
+/// What a surface loses with caps.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct LostCaps {
     /// Their number.
@@ -19,7 +28,7 @@ pub struct LostCaps {
     pub vertices: u64,
 }
 
-/// A collection of what is left out at the rim, to find out what the surface loses with caps.
+/// A collection of what is left out at the rim, to find out what the surface loses.
 ///
 /// A vertex has lost all of its triangles if each edge at it has nothing else on either side: a
 /// triangle that was left out, or the outside of the hull.
@@ -73,22 +82,27 @@ impl LeftOutAtRim {
     }
 
     /// Returns what the surface loses, once all of the hull and all that is left out was added.
-    pub fn lost(mut self) -> LostCaps {
+    pub fn lost(mut self) -> LostAtRim {
         for (ends, sides) in &self.sides {
             if *sides < 2 {
                 ends.iter().for_each(|end| _ = self.vertices.remove(end));
             }
         }
         let kept = (self.area_of_hull() - self.area_of_all).max(0.0);
-        let all = kept + self.area_of_caps;
-        LostCaps {
-            faces: self.faces,
-            share: if all > 0.0 && all.is_finite() {
-                self.area_of_caps / all
-            } else {
-                0.0
+        let share = |lost: f64| {
+            let all = kept + lost;
+            match all > 0.0 && all.is_finite() {
+                true => lost / all,
+                false => 0.0,
+            }
+        };
+        LostAtRim {
+            share: share(self.area_of_all),
+            caps: LostCaps {
+                faces: self.faces,
+                share: share(self.area_of_caps),
+                vertices: self.vertices.len() as u64,
             },
-            vertices: self.vertices.len() as u64,
         }
     }
 
@@ -126,13 +140,34 @@ mod tests {
             (builder.max_edge, builder.leave_out_caps) = (Some(limit), true);
             builder.build().unwrap().report().clone()
         };
-        let both = lost(true, 50.0).lost_caps;
+        let both = lost(true, 50.0).lost_at_rim.caps;
         assert_eq!(both.vertices, 40, "{both:?}");
         assert!(both.faces > 30 && both.share < 0.01, "{both:?}");
         // What long edges reach is not due to the shape.
         let long = lost(true, 5.0);
-        assert_eq!(long.lost_caps, LostCaps::default());
-        let alone = lost(false, 50.0).lost_caps;
+        assert_eq!(long.lost_at_rim.caps, LostCaps::default());
+        let alone = lost(false, 50.0).lost_at_rim.caps;
         assert!(alone.share > 0.9 && alone.vertices > 30, "{alone:?}");
+    }
+
+    /// A square of 3 by 3, and a point 9 beside it.
+    #[test]
+    fn the_share_of_what_is_left_out_is_that_of_the_hull() {
+        let mut builder = TinBuilder::default();
+        for i in 0..16 {
+            let [x, y] = [i % 4, i / 4].map(f64::from);
+            builder.add_points(&[x], &[y], &[x + y]);
+        }
+        builder.add_points(&[12.0], &[0.0], &[0.0]);
+        let share = |max_edge, leave_out_caps| {
+            let mut builder = builder.clone();
+            (builder.max_edge, builder.leave_out_caps) = (max_edge, leave_out_caps);
+            builder.build().unwrap().report().lost_at_rim.share
+        };
+        // Beside the square is a triangle of 3 by 9.
+        assert!((share(Some(5.0), false) - 13.5 / 22.5).abs() < 1e-12);
+        assert!((share(Some(5.0), true) - 13.5 / 22.5).abs() < 1e-12);
+        assert_eq!(share(Some(50.0), false), 0.0);
+        assert_eq!(share(None, false), 0.0);
     }
 }

@@ -91,7 +91,7 @@ mod walk;
 mod window;
 
 pub use builder::TinBuilder;
-pub use caps::{LeftOutAtRim, LostCaps};
+pub use caps::{LeftOutAtRim, LostAtRim, LostCaps};
 pub use changes::{ChangedArea, changed_areas};
 pub use compact::{CompactTin, PartCell, TinIndex, TinIndexPart};
 pub use contour::{Contours, contours};

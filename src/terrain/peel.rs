@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::caps::{LeftOutAtRim, LostCaps};
+use super::caps::{LeftOutAtRim, LostAtRim};
 use super::rim_rule::RimRule;
 use crate::data::AT_ONCE;
 use crate::triangulation::ConstrainedDelaunay;
@@ -44,12 +44,15 @@ pub(super) fn peel(
     peeled
 }
 
-/// Returns what is lost with the caps among faces that were left out.
-pub(super) fn lost_caps(
+/// Returns what is lost with faces that were left out.
+pub(super) fn lost_at_rim(
     triangulation: &ConstrainedDelaunay<Terrain>,
     peeled: &[CellId],
     rule: RimRule,
-) -> LostCaps {
+) -> LostAtRim {
+    if peeled.is_empty() {
+        return LostAtRim::default();
+    }
     let tds = triangulation.tds();
     let number = |vertex: VertexId| vertex.index() as u64;
     let point = |vertex: VertexId| *triangulation.point(vertex);

@@ -16,10 +16,10 @@ use super::admitted::searched;
 use super::cut::SurfaceCut;
 use super::linear::{linear, plan_distance};
 use super::lines::kinds::LineKinds;
-use super::peel::{finite_faces, lost_caps, peel};
+use super::peel::{finite_faces, lost_at_rim, peel};
 use super::ridges::Contoured;
 use super::rim_rule::RimRule;
-use super::{LostCaps, TinReport, compact};
+use super::{LostAtRim, TinReport, compact};
 
 /// A surface of triangles over points and breaklines.
 ///
@@ -141,12 +141,9 @@ impl Tin {
 
     /// Leaves out the faces that can be reached from outside of the hull over unconstrained edges
     /// that are open to them. Returns their number, and what is lost with the caps among them.
-    pub(super) fn peel(&mut self, rule: RimRule) -> (usize, LostCaps) {
+    pub(super) fn peel(&mut self, rule: RimRule) -> (usize, LostAtRim) {
         let peeled = peel(&self.triangulation, &mut self.inside, rule);
-        let lost = match rule.opens_caps {
-            true => lost_caps(&self.triangulation, &peeled, rule),
-            false => LostCaps::default(),
-        };
+        let lost = lost_at_rim(&self.triangulation, &peeled, rule);
         (peeled.len(), lost)
     }
 

@@ -1,4 +1,4 @@
-use super::{CrossingHeights, JoinedLake, LostCaps, WaterOverlap};
+use super::{CrossingHeights, JoinedLake, LostAtRim, WaterOverlap};
 use crate::data::{Bounds, LineEdges};
 use crate::triangulation::Rounding;
 
@@ -53,8 +53,8 @@ pub struct TinReport {
     pub extent: Bounds,
     /// Triangles left out at the rim, by `max_edge` and as caps.
     pub faces_beyond_max_edge: usize,
-    /// What the surface loses with the caps among them.
-    pub lost_caps: LostCaps,
+    /// What the surface loses with them.
+    pub lost_at_rim: LostAtRim,
     /// Triangles left out by `max_edge_inside`, wherever they are.
     pub faces_with_long_edges: usize,
     /// Triangles within the bounds that points outside of the

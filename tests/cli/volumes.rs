@@ -404,6 +404,26 @@ fn the_valley_and_its_dem_are_nearly_one_surface() {
     );
 }
 
+/// A square of 3 by 3, beside which a point makes a triangle of 13.5.
+#[test]
+fn a_surface_that_has_lost_half_of_its_hull_is_named() {
+    let square = (0..16).map(|i| format!("{} {} 2\n", i % 4, i / 4));
+    let points = square.chain(["12 0 2\n".to_owned()]).collect::<String>();
+    let folder = folder_with(&[("a.xyz", &points)]);
+    let words = |limit| ["volume", "a.xyz", "--plane", "0", "--max-edge", limit];
+    run_in(&folder, &words("5")).works(&[
+        "warning: 60.0 % of the area of the convex hull is left out at the rim",
+        "--max-edge LENGTH or --max-edge none",
+    ]);
+    let whole = run_in(&folder, &words("50"));
+    whole.works(&[]);
+    assert!(
+        !whole.stderr.contains("convex hull is left out"),
+        "{}",
+        whole.stderr
+    );
+}
+
 #[test]
 fn what_makes_no_sense_is_refused_with_the_cure() {
     let folder = folder_with(&[

@@ -348,6 +348,14 @@ fn cases_of_points(files: &Files) -> Vec<Case> {
         case(points(&[&rails, &text]), &["CapsLost"]).of(te(0.0, 4.0)),
         case(points(&[&rails, &beside]), &["CapsLost"]).of(te(40.0, 180.0)),
         case(points(&[&a, &far]), &["FarApart"]).of(te(0.0, 4.0)),
+        case(
+            TinRequest {
+                max_edge: EdgeLimit::Length(5.0),
+                ..points(&[&a, &far])
+            },
+            &["HullLost"],
+        )
+        .of(te(0.0, 4.0)),
         case(partial(points(&[&cut, &b])), &["Reader"]),
         case(partial(points(&[&counted])), &["Reader"]),
         case(

@@ -294,6 +294,8 @@ pub enum Notice {
         /// Points all of whose triangles are left out.
         points: u64,
     },
+    /// More than half of the convex hull was left out at the rim: its share in the area.
+    HullLost(f64),
     /// Points inside of closed breaklines of one height have other heights: the lines may be
     /// shores.
     LevelRings {
@@ -539,6 +541,7 @@ impl Notice {
             | Notice::CrossingHeights { .. }
             | Notice::EdgeLimitUnusual { .. }
             | Notice::CapsLost { .. }
+            | Notice::HullLost(_)
             | Notice::SteepAngles { .. }
             | Notice::LevelRings { .. }
             | Notice::RiverHeights { .. }

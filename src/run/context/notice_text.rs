@@ -224,6 +224,7 @@ fn text(notice: &Notice) -> Wording {
         Notice::CrossingsRounded { unit, on_grid } => rounded(unit, *on_grid).into(),
         Notice::EdgeLimitUnusual { limit, spacing } => unusual_edge_limit(limit, spacing),
         Notice::CapsLost { faces, share, points } => caps_lost(*faces, *share, *points),
+        Notice::HullLost(share) => hull_lost(*share),
         Notice::LevelRings { rings, points, name, largest } => {
             level_rings(*rings, *points, name, largest)
         }
@@ -483,6 +484,19 @@ fn caps_lost(faces: u64, share: f64, points: u64) -> Wording {
         format!(
             "{faces} triangles with an angle over 165 degrees are left out at the rim, {:.1} % of the area{of_points} \
              (keep them with ",
+            100.0 * share
+        ),
+        Setting::MaxEdge.number("LENGTH"),
+        " or ",
+        Setting::MaxEdge.text("none"),
+        ")"
+    ]
+}
+
+fn hull_lost(share: f64) -> Wording {
+    wording![
+        format!(
+            "{:.1} % of the area of the convex hull is left out at the rim (keep it with ",
             100.0 * share
         ),
         Setting::MaxEdge.number("LENGTH"),

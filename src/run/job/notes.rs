@@ -18,7 +18,7 @@ use crate::run::products::tin::TinRequest;
 use crate::run::request::lines::LineRole;
 use crate::run::sources::extents;
 use crate::run::verbs::{Keeps, Verb};
-use crate::terrain::{Classes, LostCaps};
+use crate::terrain::{Classes, LostAtRim};
 
 /// Returns the lines that may be shores and have points of other heights within, as a task keeps
 /// them.
@@ -110,7 +110,7 @@ pub(super) struct Found {
     /// Triangles that holes and other clip lines cut, or leave out.
     met: u64,
     draped: u64,
-    lost_caps: LostCaps,
+    lost_at_rim: LostAtRim,
     /// Points that are used and not merged into others.
     sites: u64,
 }
@@ -121,7 +121,7 @@ impl Found {
         self.notices
             .extend(facts.notices.iter().filter_map(TaskNotice::notice));
         self.met += facts.met + facts.kept.clipped;
-        self.lost_caps = facts.lost_caps.map_or(self.lost_caps, LostCaps::from);
+        self.lost_at_rim = facts.lost_at_rim.map_or(self.lost_at_rim, LostAtRim::from);
         self.draped += facts.draped;
         if let Some(points) = facts.read() {
             self.sites += points.used.saturating_sub(points.replaced);
@@ -156,8 +156,9 @@ impl Found {
         self.note_points(job, journal);
         let units = Units::of(job.plan.crs.as_ref());
         let request = &job.request;
-        let lost = request.max_edge.lost(&self.lost_caps, self.sites);
-        lost.into_iter().for_each(|notice| journal.add(notice));
+        request
+            .max_edge
+            .note_lost(&self.lost_at_rim, self.sites, journal);
         if job.plan.has_lines
             && let Some(lines) = &job.known(context)?.lines
         {

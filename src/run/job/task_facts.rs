@@ -6,7 +6,7 @@ use super::planned_file::FileState;
 use crate::data::Bounds;
 use crate::error::Wording;
 use crate::run::context::notice::{Notice, Severity};
-use crate::terrain::LostCaps;
+use crate::terrain::{LostAtRim, LostCaps};
 
 /// The facts of a task. Tasks of one kind have some of them; the others have their defaults.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -33,8 +33,8 @@ pub(super) struct TaskFacts {
     pub(super) groups: u32,
     /// Triangles that were removed at the rim.
     pub(super) removed: u64,
-    /// What the surface loses with caps, as the task of the rim finds it.
-    pub(super) lost_caps: Option<LostCapsFacts>,
+    /// What the surface loses at its rim, as the task of the rim finds it.
+    pub(super) lost_at_rim: Option<LostAtRimFacts>,
     /// Triangles that were left out because they reach into the extents of skipped files.
     pub(super) over_skipped: u64,
     /// The triangles that stay.
@@ -44,24 +44,25 @@ pub(super) struct TaskFacts {
     pub(super) draped: u64,
 }
 
-/// What a surface loses with caps: their number, their share of the area, and the number of
-/// vertices.
+/// What a surface loses at its rim: the share of the hull; and with caps: their number, their share
+/// of the area, and the number of vertices.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub(super) struct LostCapsFacts(u64, f64, u64);
+pub(super) struct LostAtRimFacts(f64, u64, f64, u64);
 
-impl From<LostCaps> for LostCapsFacts {
-    fn from(lost: LostCaps) -> Self {
-        LostCapsFacts(lost.faces, lost.share, lost.vertices)
+impl From<LostAtRim> for LostAtRimFacts {
+    fn from(LostAtRim { share, caps }: LostAtRim) -> Self {
+        LostAtRimFacts(share, caps.faces, caps.share, caps.vertices)
     }
 }
 
-impl From<LostCapsFacts> for LostCaps {
-    fn from(LostCapsFacts(faces, share, vertices): LostCapsFacts) -> Self {
-        LostCaps {
+impl From<LostAtRimFacts> for LostAtRim {
+    fn from(LostAtRimFacts(share, faces, of_caps, vertices): LostAtRimFacts) -> Self {
+        let caps = LostCaps {
             faces,
-            share,
+            share: of_caps,
             vertices,
-        }
+        };
+        LostAtRim { share, caps }
     }
 }
 

@@ -425,7 +425,7 @@ impl Job {
     ) -> Result<TaskFacts> {
         let mut rim = Rim::default();
         let rule = self.rim_rule().unwrap_or_default();
-        let mut left_out = rule.opens_caps.then(|| LeftOutAtRim::new(rule.max_edge));
+        let mut left_out = LeftOutAtRim::new(rule.max_edge);
         for step in 0..self.steps.len() {
             let mut file = sources.open(self.task_of_step(step))?;
             let bytes = file.section("gates")?;
@@ -436,12 +436,9 @@ impl Job {
                 let root = bytes::to_residual(&file.section("residual")?);
                 let root = root.ok_or_else(|| file.damaged())?;
                 rim.add_outside(&root);
-                if let Some(left_out) = &mut left_out {
-                    let add = |ends: [TileVertex; 2]| {
-                        left_out.add_hull(ends.map(|end| end.key()), ends.map(|end| end.position));
-                    };
-                    root.hull().for_each(add);
-                }
+                root.hull().for_each(|ends: [TileVertex; 2]| {
+                    left_out.add_hull(ends.map(|end| end.key()), ends.map(|end| end.position));
+                });
             }
         }
         let mut removed = 0_u64;
@@ -455,10 +452,8 @@ impl Job {
                     Some(true) => {
                         removed += 1;
                         kept.add_removed(&triangle);
-                        if let Some(left_out) = &mut left_out {
-                            let corners = triangle.corners;
-                            left_out.add(corners.map(|c| c.key()), corners.map(|c| c.position));
-                        }
+                        let corners = triangle.corners;
+                        left_out.add(corners.map(|c| c.key()), corners.map(|c| c.position));
                     }
                     Some(false) => kept.add(&triangle, writer)?,
                     None => return Err(file.damaged()),
@@ -469,7 +464,7 @@ impl Job {
         Ok(TaskFacts {
             kept: kept.finish(None, writer)?,
             removed,
-            lost_caps: left_out.map(|left_out| left_out.lost().into()),
+            lost_at_rim: Some(left_out.lost().into()),
             ..TaskFacts::default()
         })
     }

@@ -1,10 +1,11 @@
 //! The longest edge at the rim, and what it is by default.
 
 use crate::data::Bounds;
+use crate::run::context::Journal;
 use crate::run::context::notice::Notice;
 use crate::run::context::units::Units;
 use crate::run::sources::file_extent::FileExtent;
-use crate::terrain::LostCaps;
+use crate::terrain::{LostAtRim, LostCaps};
 
 /// The default longest edge at the rim, and width of the buffer around bounds.
 const DEFAULT_MAX_EDGE_METRES: f64 = 100.0;
@@ -25,6 +26,9 @@ const USUAL_SPACINGS: std::ops::Range<f64> = 10.0..1000.0;
 /// caps.
 const USUAL_SHARE_OF_CAPS: f64 = 0.05;
 const USUAL_SHARE_OF_POINTS: f64 = 0.01;
+
+/// No more than this share of the convex hull is left out at the rim of most surveys.
+const USUAL_SHARE_OF_HULL: f64 = 0.5;
 
 /// The longest edge that a triangle at the rim may have in plan. Triangles that can be reached from
 /// outside across longer edges are left out; breaklines are not crossed.
@@ -90,20 +94,25 @@ impl EdgeLimit {
             .unwrap_or_else(|| units.of_metres(DEFAULT_MAX_EDGE_METRES))
     }
 
-    /// Returns a notice if much of a surface over so many sites was left out with caps.
-    pub(crate) fn lost(self, lost: &LostCaps, sites: u64) -> Option<Notice> {
+    /// Adds notices if much of a surface over so many sites was left out, or much with caps.
+    pub(crate) fn note_lost(self, lost: &LostAtRim, sites: u64, journal: &Journal) {
         let LostCaps {
             faces,
             share,
             vertices,
-        } = *lost;
+        } = lost.caps;
         let is_much =
             share > USUAL_SHARE_OF_CAPS || vertices as f64 > USUAL_SHARE_OF_POINTS * sites as f64;
-        (self.leaves_out_caps() && is_much).then_some(Notice::CapsLost {
-            faces,
-            share,
-            points: vertices,
-        })
+        if self.leaves_out_caps() && is_much {
+            journal.add(Notice::CapsLost {
+                faces,
+                share,
+                points: vertices,
+            });
+        }
+        if lost.share > USUAL_SHARE_OF_HULL {
+            journal.add(Notice::HullLost(lost.share));
+        }
     }
 
     /// Returns a notice if the default looks wrong for points with this mean distance.

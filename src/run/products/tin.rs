@@ -599,9 +599,7 @@ impl Rim {
             .for_each(|notice| journal.add(notice));
         let sites = report.points.saturating_sub(report.duplicates);
         self.limit
-            .lost(&report.lost_caps, sites as u64)
-            .into_iter()
-            .for_each(|notice| journal.add(notice));
+            .note_lost(&report.lost_at_rim, sites as u64, journal);
     }
 }
 

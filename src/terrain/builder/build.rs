@@ -351,7 +351,7 @@ impl Build<'_> {
             ..
         } = self;
         let all = tin.triangulation.vertex_count();
-        (report.faces_beyond_max_edge, report.lost_caps) = tin.peel(builder.rim_rule());
+        (report.faces_beyond_max_edge, report.lost_at_rim) = tin.peel(builder.rim_rule());
         if let Some(limit) = builder.max_edge_inside {
             report.faces_with_long_edges = tin.leave_out_long(limit, is_water);
         }
