@@ -68,6 +68,7 @@ mod linear;
 mod lines;
 mod near_lines;
 mod nearest;
+mod nesting;
 mod overlay;
 mod peel;
 mod point_rim;
@@ -111,6 +112,7 @@ pub use lines::{
     densified,
 };
 pub(crate) use near_lines::NearLines;
+pub(crate) use nesting::Nesting;
 pub(crate) use point_rim::deciding;
 pub use rasterize::{Canvas, CanvasBlock, Dem, DemOfParts};
 pub use rim_rule::RimRule;

@@ -11,17 +11,22 @@ const FLAT: &str = "1 0 11\n5 0 11\n5 3 11\n1 3 11\n";
 /// A pile of 4 cubic units on ground that falls to the west.
 const PILE: &str = "0 0 5\n4 0 7\n4 4 7\n0 4 5\n1 1 5.5\n3 1 6.5\n3 3 6.5\n1 3 5.5\n2 2 9\n";
 
-/// Returns a GeoJSON layer of polygons, each a list of corners.
-fn polygons(rings: &[&str]) -> String {
-    let features = rings.iter().map(|ring| {
-        format!(r#"{{"type":"Feature","properties":{{}},"geometry":{{"type":"Polygon","coordinates":[{ring}]}}}}"#)
-    });
+/// Returns a GeoJSON layer of features.
+fn collection(features: impl Iterator<Item = String>) -> String {
     let features: Vec<String> = features.collect();
     let system = r#"{"type":"name","properties":{"name":"urn:ogc:def:crs:EPSG::25832"}}"#;
     format!(
         r#"{{"type":"FeatureCollection","crs":{system},"features":[{}]}}"#,
         features.join(",")
     )
+}
+
+/// Returns a GeoJSON layer of polygons, each a list of corners.
+fn polygons(rings: &[&str]) -> String {
+    let features = rings.iter().map(|ring| {
+        format!(r#"{{"type":"Feature","properties":{{}},"geometry":{{"type":"Polygon","coordinates":[{ring}]}}}}"#)
+    });
+    collection(features)
 }
 
 #[track_caller]
@@ -402,6 +407,59 @@ fn the_valley_and_its_dem_are_nearly_one_surface() {
         number("cut") / area < 0.05 && number("fill") / area < 0.05,
         "{row}"
     );
+}
+
+/// Returns a GeoJSON layer of features, each a type of geometry and its coordinates.
+fn features(shapes: &[(&str, &str)]) -> String {
+    let feature = |(kind, coordinates): &(&str, &str)| {
+        format!(
+            r#"{{"type":"Feature","properties":{{}},"geometry":{{"type":"{kind}","coordinates":{coordinates}}}}}"#
+        )
+    };
+    collection(shapes.iter().map(feature))
+}
+
+#[test]
+fn closed_lines_have_a_row_each_and_those_within_them_are_holes() {
+    let lines = features(&[
+        ("LineString", "[[0,0],[2,0],[2,2],[0,2],[0,0]]"),
+        ("LineString", "[[1,1],[3,1],[3,3],[1,3],[1,1]]"),
+        ("Polygon", "[[[0,0],[1,0],[1,1],[0,1],[0,0]]]"),
+        ("LineString", "[[0.5,0.5],[1,0.5],[1,1],[0.5,1],[0.5,0.5]]"),
+        ("LineString", "[[2,0],[3,0],[3,1]]"),
+        ("LineString", "[[3,1],[2,1],[2,0]]"),
+    ]);
+    let twice = features(&[(
+        "MultiPolygon",
+        "[[[[0,0],[2,0],[2,2],[0,2],[0,0]]],[[[1,1],[3,1],[3,3],[1,3],[1,1]]]]",
+    )]);
+    let folder = folder_with(&[("a.xyz", SLOPE), ("l.json", &lines), ("m.json", &twice)]);
+    let within = |name| {
+        [
+            "volume", "a.xyz", "--plane", "0", "--json", "--within", name,
+        ]
+    };
+    let run = run_in(&folder, &within("l.json"));
+    assert!(!run.stderr.contains("overlap"), "{}", run.stderr);
+    let rows = &json(&run)["rows"];
+    let areas = [(1.0, 3.75), (2.0, 4.0), (3.0, 1.0), (5.0, 1.0)];
+    assert_eq!(rows.as_array().unwrap().len(), areas.len());
+    for (row, (record, area)) in rows.as_array().unwrap().iter().zip(areas) {
+        near(
+            row,
+            &[
+                ("record", record),
+                ("common_area", area),
+                ("polygon_area", area),
+            ],
+        );
+    }
+    let run = run_in(&folder, &within("m.json"));
+    run.works(&[
+        "warning: m.json: record 1: rings overlap each other",
+        "repair",
+    ]);
+    near(&json(&run)["rows"][0], &[("common_area", 6.0)]);
 }
 
 /// A square of 3 by 3, beside which a point makes a triangle of 13.5.

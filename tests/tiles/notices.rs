@@ -42,6 +42,7 @@ const NOT_IN_TILES: &[(&str, &str)] = &[
     ("SeedUnused", "of `triangulate`"),
     ("NothingInCommon", "of `volume`"),
     ("PolygonsOutside", "of `volume`"),
+    ("RingsOverlap", "of `volume`"),
     ("PolygonsPartlyOutside", "of `volume`"),
     ("LinesOff", "of `drape` and `profile`"),
     ("LinesPartlyOff", "of `drape` and `profile`"),

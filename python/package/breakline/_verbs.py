@@ -437,7 +437,7 @@ def volume(
         In each polygon, the triangulation of its vertices, at the heights of the surface there: the ground under a
         stockpile that is outlined at its foot.
     within : path or polygons, optional
-        Polygons, with a row for each, as :func:`tin` takes them for ``boundary``.
+        Polygons, with a row for each, as :func:`tin` takes them for ``boundary``; each closed line is one, too.
     name_by : str, optional
         The attribute of the polygons in a file that names them.
     unit : "m3" or "yd3", optional

@@ -121,6 +121,8 @@ pub enum Notice {
     /// In the polygons of these records of a file, the surface and its base have no area in
     /// common.
     PolygonsOutside(PathBuf, Vec<usize>),
+    /// The rings of polygons of a layer overlap each other; with the records, counted from 1.
+    RingsOverlap(PathBuf, Vec<usize>),
     /// Polygons of a layer are only in part where the surface and its base are.
     PolygonsPartlyOutside {
         /// The layer.
@@ -525,6 +527,7 @@ impl Notice {
             | Notice::PartForLinear
             | Notice::NothingInCommon(..)
             | Notice::PolygonsOutside(..)
+            | Notice::RingsOverlap(..)
             | Notice::PolygonsPartlyOutside { .. }
             | Notice::LinesOff(..)
             | Notice::LinesPartlyOff(..)

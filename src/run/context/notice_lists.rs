@@ -20,6 +20,14 @@ pub(super) fn polygons_outside(path: &Path, records: &[usize]) -> Wording {
     )
 }
 
+pub(super) fn rings_overlap(path: &Path, records: &[usize]) -> Wording {
+    let records = named("record", records);
+    let text = format!(
+        "{records}: rings overlap each other: what an even number of them covers is not counted (repair the polygons)"
+    );
+    of_file(path, &text)
+}
+
 pub(super) fn polygons_partly_outside(
     path: &Path,
     partly: &[PartlyCounted],

@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 
 use super::notice::{CrossingNote, LoweredRiver, Notice, Seed, SeedFlaw, WaterStep};
 use super::notice_lists::{
-    named, of_file, of_listed, polygons_outside, polygons_partly_outside, sections_cross,
+    named, of_file, of_listed, polygons_outside, polygons_partly_outside, rings_overlap,
+    sections_cross,
 };
 use super::units::{Quantity, bytes, neat, number};
 use crate::crs::Crs;
@@ -147,6 +148,7 @@ fn text(notice: &Notice) -> Wording {
             format!("{one} and {other} do not overlap: no position is on both").into()
         }
         Notice::PolygonsOutside(path, records) => polygons_outside(path, records),
+        Notice::RingsOverlap(path, records) => rings_overlap(path, records),
         Notice::PolygonsPartlyOutside { path, partly, unit } => {
             polygons_partly_outside(path, partly, unit)
         }

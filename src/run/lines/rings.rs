@@ -19,6 +19,15 @@ pub(crate) struct Gap {
     nearest: Option<[f64; 2]>,
 }
 
+/// A ring of lines.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Ring {
+    /// The position of its first line.
+    pub(crate) line: usize,
+    /// Its points; the last is the first.
+    pub(crate) points: Vec<[f64; 2]>,
+}
+
 /// Joins lines that meet end to end, in exactly the same point, to rings. If more than two meet,
 /// any two can be joined: by the even-odd rule all choices bound the same area.
 ///
@@ -27,7 +36,7 @@ pub(crate) struct Gap {
 ///
 /// # Complexity
 /// Linear.
-pub(crate) fn close(lines: &[Vec<[f64; 2]>]) -> Result<Vec<Vec<[f64; 2]>>, Gap> {
+pub(crate) fn close(lines: &[Vec<[f64; 2]>]) -> Result<Vec<Ring>, Gap> {
     let flat: Vec<Vec<[f64; 2]>> = lines
         .iter()
         .map(|line| {
@@ -77,7 +86,10 @@ pub(crate) fn close(lines: &[Vec<[f64; 2]>]) -> Result<Vec<Vec<[f64; 2]>>, Gap> 
                 false => ring.extend(flat[next].iter().rev().skip(1)),
             }
         }
-        rings.push(ring);
+        rings.push(Ring {
+            line: first,
+            points: ring,
+        });
     }
     Ok(rings)
 }
@@ -124,7 +136,8 @@ mod tests {
     use super::*;
 
     fn rings(lines: &[&[[f64; 2]]]) -> Result<Vec<Vec<[f64; 2]>>, Gap> {
-        close(&lines.iter().map(|line| line.to_vec()).collect::<Vec<_>>())
+        let rings = close(&lines.iter().map(|line| line.to_vec()).collect::<Vec<_>>())?;
+        Ok(rings.into_iter().map(|ring| ring.points).collect())
     }
 
     #[test]

@@ -5,6 +5,7 @@ use std::path::Path;
 use super::rings;
 use crate::data::{Layer, Shape};
 use crate::error::{Error, Result, Setting, Wording, wording};
+use crate::terrain::Nesting;
 
 /// The rings of a polygon, in plan.
 pub(crate) type Rings = Vec<Vec<[f64; 2]>>;
@@ -83,6 +84,57 @@ fn read(
 /// # Errors
 /// If there are none, a coordinate is not finite, or the lines leave a gap.
 pub(crate) fn polygons(layer: &Layer, path: &Path, setting: Setting) -> Result<Vec<Polygon>> {
+    let (mut polygons, rings) = areas(layer, path, setting)?;
+    if let Some(&(record, _)) = rings.first() {
+        let rings = rings.into_iter().map(|(_, ring)| ring).collect();
+        polygons.push(Polygon { record, rings });
+    }
+    Ok(polygons)
+}
+
+/// Returns the polygons of a layer by their records. Its lines, if any, are joined to rings, each of
+/// which is a polygon; a ring within another is a hole of that, and one within the hole a polygon.
+///
+/// # Errors
+/// Those of [`polygons`]; if a coordinate of a line is so large or small that the arithmetic does
+/// not cover it.
+pub(crate) fn outlines(layer: &Layer, path: &Path, setting: Setting) -> Result<Vec<Polygon>> {
+    let (mut polygons, rings) = areas(layer, path, setting)?;
+    let (records, rings): (Vec<usize>, Rings) = rings.into_iter().unzip();
+    let around = Nesting::of(&rings).map_err(|e| e.in_file(path))?.around;
+    let mut by_depth: Vec<usize> = (0..rings.len()).collect();
+    by_depth.sort_by_key(|&ring| around[ring].len());
+    let mut depths = vec![0_usize; rings.len()];
+    for ring in by_depth {
+        let outer = around[ring].iter().map(|&outer| depths[outer] + 1);
+        depths[ring] = outer.max().unwrap_or(0);
+    }
+    let is_hole = |ring: usize| depths[ring] % 2 == 1;
+    let mut holes: Vec<Vec<usize>> = vec![Vec::new(); rings.len()];
+    for hole in (0..rings.len()).filter(|&ring| is_hole(ring)) {
+        let outer = around[hole]
+            .iter()
+            .filter(|&&ring| depths[ring] + 1 == depths[hole]);
+        outer.for_each(|&ring| holes[ring].push(hole));
+    }
+    for ring in (0..rings.len()).filter(|&ring| !is_hole(ring)) {
+        let all = std::iter::once(ring).chain(holes[ring].iter().copied());
+        polygons.push(Polygon {
+            record: records[ring],
+            rings: all.map(|ring| rings[ring].clone()).collect(),
+        });
+    }
+    polygons.sort_by_key(|polygon| polygon.record);
+    Ok(polygons)
+}
+
+/// Returns the polygons of a layer, and its lines joined to rings, each with the record of its first
+/// line.
+fn areas(
+    layer: &Layer,
+    path: &Path,
+    setting: Setting,
+) -> Result<(Vec<Polygon>, Vec<(usize, Vec<[f64; 2]>)>)> {
     let mut polygons = Vec::new();
     let mut lines: Vec<Drawn> = Vec::new();
     for (record, shape) in (1..).zip(&layer.shapes) {
@@ -100,23 +152,21 @@ pub(crate) fn polygons(layer: &Layer, path: &Path, setting: Setting) -> Result<V
             _ => lines.extend(drawn(parts, record - 1)),
         }
     }
-    if !lines.is_empty() {
-        let flat: Rings = lines.iter().map(|line| in_two(&line.points)).collect();
-        let record = |line: usize| lines[line].fid + 1;
-        polygons.push(Polygon {
-            record: record(0),
-            rings: rings::close(&flat)
-                .map_err(|gap| at_record(gap.error(), path, record(gap.line)))?,
-        });
-    }
-    if polygons.is_empty() {
+    let flat: Rings = lines.iter().map(|line| in_two(&line.points)).collect();
+    let record = |line: usize| lines[line].fid + 1;
+    let rings =
+        rings::close(&flat).map_err(|gap| at_record(gap.error(), path, record(gap.line)))?;
+    if polygons.is_empty() && rings.is_empty() {
         return Err(
             Error::format(format!("{} holds no polygons and no lines", kind_of(layer)))
                 .in_file(path)
                 .cure(wording![setting, " takes polygons, or lines that close"]),
         );
     }
-    Ok(polygons)
+    let rings = rings
+        .into_iter()
+        .map(|ring| (record(ring.line), ring.points));
+    Ok((polygons, rings.collect()))
 }
 
 /// Returns points without their heights.
@@ -305,6 +355,45 @@ mod tests {
             ),
             "{text}"
         );
+    }
+
+    /// A square at (x, y) as a closed line.
+    fn square(x: f64, y: f64, size: f64) -> Vec<[f64; 3]> {
+        let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.0, 0.0]];
+        let corner = |[u, v]: [f64; 2]| [x + size * u, y + size * v, f64::NAN];
+        corners.map(corner).to_vec()
+    }
+
+    #[test]
+    fn closed_lines_are_outlines_of_their_own_and_lines_within_them_holes() {
+        let line = |x, y, size| Shape::Lines(vec![square(x, y, size)]);
+        let half = |points: &[[f64; 3]]| Shape::Lines(vec![points.to_vec()]);
+        let divided = square(40.0, 0.0, 5.0);
+        let layer = layer(vec![
+            // An island in a hole, the hole, another one of the same square, and the square.
+            line(4.0, 4.0, 1.0),
+            line(3.0, 3.0, 3.0),
+            line(7.0, 7.0, 2.0),
+            line(0.0, 0.0, 10.0),
+            // Overlaps the square in part.
+            line(8.0, 0.0, 4.0),
+            Shape::Polygon(vec![square(20.0, 0.0, 4.0), square(21.0, 1.0, 1.0)]),
+            // A ring of two lines.
+            half(&divided[2..]),
+            half(&divided[..3]),
+            // Equal to a line above.
+            line(8.0, 0.0, 4.0),
+        ]);
+        let found = outlines(&layer, Path::new("l"), SETTING).unwrap();
+        let found: Vec<(usize, usize)> = found
+            .iter()
+            .map(|polygon| (polygon.record, polygon.rings.len()))
+            .collect();
+        assert_eq!(found, [(1, 1), (4, 3), (5, 1), (6, 2), (7, 1), (9, 1)]);
+        // A boundary is one polygon of all lines.
+        let found = polygons(&layer, Path::new("l"), SETTING).unwrap();
+        let records: Vec<usize> = found.iter().map(|polygon| polygon.record).collect();
+        assert_eq!(records, [6, 1]);
     }
 
     #[test]

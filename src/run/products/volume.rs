@@ -15,7 +15,7 @@ use crate::run::lines::layers::{self, Layers};
 use crate::run::lines::shapes::{self, Rings, at_record};
 use crate::run::request::input::Input;
 use crate::run::sources::systems::{self, Stated, SystemOptions, reproject_first};
-use crate::terrain::{self, Interpolant, Method, Volume, Zones};
+use crate::terrain::{self, Interpolant, Method, Nesting, Volume, Zones};
 
 /// How often each face is visited for the volumes of a surface.
 const VISITS: u64 = 3;
@@ -23,9 +23,9 @@ const VISITS: u64 = 3;
 /// The meters in an international yard.
 const YARD: f64 = 0.9144;
 
-/// The share of its area that a polygon may miss before that is worth a notice: corners on the rim
-/// of a surface are rounded.
-const ALL_OF_IT: f64 = 1e-6;
+/// The share of the area of a polygon that makes no difference: corners on the rim of a surface, or
+/// on another ring, are rounded.
+const ROUNDED: f64 = 1e-6;
 
 /// What a surface is compared with.
 #[derive(Debug, Clone, Copy)]
@@ -228,7 +228,7 @@ pub fn volume(
             .map(|bulking| bulking.earthwork(&row.volume));
     }
     match &outlines {
-        Some(outlines) => outlines.note_outside(&rows, scale.unit, &journal),
+        Some(outlines) => outlines.note_flaws(&rows, scale.unit, &journal),
         None => note_nothing(&rows, base, &options.names, &journal),
     }
     Ok(VolumeProduct {
@@ -330,6 +330,8 @@ struct Outlines<'a> {
     names: Option<Vec<String>>,
     rings: Vec<Rings>,
     zones: Zones,
+    /// The records of polygons whose rings overlap each other.
+    overlapping: Vec<usize>,
 }
 
 impl<'a> Outlines<'a> {
@@ -337,7 +339,7 @@ impl<'a> Outlines<'a> {
         (path, layer): &'a (&Path, std::borrow::Cow<'_, Layer>),
         name_by: Option<&str>,
     ) -> Result<Self> {
-        let polygons = shapes::polygons(layer, path, Setting::Within)?;
+        let polygons = shapes::outlines(layer, path, Setting::Within)?;
         let (records, rings): (Vec<usize>, Vec<Rings>) = polygons
             .into_iter()
             .map(|polygon| (polygon.record, polygon.rings))
@@ -352,18 +354,30 @@ impl<'a> Outlines<'a> {
             .map(|field| names_of(layer, field, &records))
             .transpose()
             .map_err(|e| e.in_file(path))?;
+        let overlap = |zone: usize| Nesting::of(&rings[zone]).map(|found| found.overlap);
+        let mut overlapping = Vec::new();
+        for (zone, &record) in records.iter().enumerate() {
+            if overlap(zone).map_err(|e| at_record(e, path, record))? > ROUNDED * zones.area(zone) {
+                overlapping.push(record);
+            }
+        }
         Ok(Outlines {
             path,
             records,
             names,
             rings,
             zones,
+            overlapping,
         })
     }
 
-    /// Adds notices of the polygons in which there is nothing, or that are only in part where the
-    /// surface and its base are.
-    fn note_outside(&self, rows: &[VolumeRow], unit: Option<VolumeUnit>, journal: &Journal) {
+    /// Adds notices of the polygons whose rings overlap, in which there is nothing, or that are only
+    /// in part where the surface and its base are.
+    fn note_flaws(&self, rows: &[VolumeRow], unit: Option<VolumeUnit>, journal: &Journal) {
+        if !self.overlapping.is_empty() {
+            let records = self.overlapping.clone();
+            journal.add(Notice::RingsOverlap(self.path.to_path_buf(), records));
+        }
         // All levels have the same areas.
         let rows = rows.iter().take(self.records.len());
         let areas = rows.filter_map(|row| {
@@ -378,7 +392,7 @@ impl<'a> Outlines<'a> {
         }
         let partly = others
             .into_iter()
-            .filter(|(_, area, counted)| *counted < (1.0 - ALL_OF_IT) * area)
+            .filter(|(_, area, counted)| *counted < (1.0 - ROUNDED) * area)
             .map(|(record, area, counted)| PartlyCounted {
                 record,
                 area,

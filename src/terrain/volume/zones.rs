@@ -2,12 +2,9 @@
 
 use crate::data::area_of;
 use crate::error::{Error, Result};
-use crate::terrain::admitted::refused;
 use crate::terrain::boxes::{Boxed, Boxes, Extent};
+use crate::terrain::nesting::triangulated;
 use crate::terrain::overlay::{Corner, clipped};
-use crate::triangulation::geometry::Terrain;
-use crate::triangulation::kernel::RANGE;
-use crate::triangulation::{ConstrainedDelaunay, OnCrossing};
 
 /// Polygons in plan, divided into triangles. Those of different polygons may overlap.
 #[derive(Debug)]
@@ -117,27 +114,7 @@ fn area(corners: [[f64; 2]; 3]) -> f64 {
 
 /// Returns the triangles inside of a polygon, counter-clockwise.
 fn triangles_of(rings: &[Vec<[f64; 2]>]) -> Result<Vec<[[f64; 2]; 3]>> {
-    let mut points: Vec<[f64; 3]> = Vec::new();
-    let mut lines: Vec<Vec<u32>> = Vec::new();
-    for ring in rings {
-        let first = points.len() as u32;
-        for &[x, y] in ring {
-            if ![x, y].iter().all(|&c| RANGE.admits(c)) {
-                return Err(refused([x, y, 0.0]));
-            }
-            points.push([x, y, 0.0]);
-        }
-        // Ends that are equal share a vertex; others are closed by the last segment.
-        let numbers = first..points.len() as u32;
-        lines.push(numbers.chain((!ring.is_empty()).then_some(first)).collect());
-    }
-    let (triangulation, _) = ConstrainedDelaunay::<Terrain>::from_lines(
-        Terrain::default(),
-        &points,
-        &lines,
-        OnCrossing::Split,
-    )
-    .map_err(|e| Error::limit(e.to_string()))?;
+    let triangulation = triangulated(rings)?;
     let nesting = triangulation
         .nesting_of(triangulation.lines())
         .map_err(|e| Error::format(e.to_string()))?;

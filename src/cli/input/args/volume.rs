@@ -45,8 +45,9 @@ pub(crate) struct VolumeArgs {
 
     /// Polygons, with a row of volumes for each
     ///
-    /// Rows have the number of the record, counted from 1. Lines that close to rings count as one
-    /// polygon. `FILE:LAYER` names the layer of a file with several.
+    /// Rows have the number of the record, counted from 1. Lines count as polygons where they close
+    /// to rings; a ring within another is a hole. `FILE:LAYER` names the layer of a file with
+    /// several.
     #[arg(long, value_name = "FILE[:LAYER]", help_heading = "Volume")]
     pub(crate) within: Option<PathBuf>,
 
