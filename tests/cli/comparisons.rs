@@ -286,6 +286,11 @@ fn what_makes_no_sense_is_refused_and_nothing_is_written() {
             2,
             &["another method has none", "--method"],
         ),
+        (
+            &["a.tif", "a.tif", "--method", "nearest"],
+            2,
+            &["--method is for a TIN", "leave it out"],
+        ),
         (&["a.xyz", "a.tif", "-o", "a.tif"], 2, &["a.tif"]),
         (&["a.xyz", "a.tif", "-o", "d.ply"], 2, &["d.ply"]),
         (&["m.ply", "u.ply"], 1, &["two coordinate systems"]),

@@ -74,7 +74,7 @@ pub struct CompareProduct {
 ///
 /// # Errors
 /// If the coordinate systems differ; if the frame cannot be chosen, or is chosen for a raster,
-/// which keeps its own; if areas are asked for and the method is not linear or the system is in
+/// which keeps its own, or a method is for two rasters; if areas are asked for and the method is not linear or the system is in
 /// degrees; if a file is damaged, the cells do not fit into memory, or the run is canceled.
 ///
 /// # Complexity
@@ -167,7 +167,10 @@ fn cells_of(
     if let Some(frame) = raster_frame(first) {
         refuse_options(&DemOptions {
             frame: options.frame.clone(),
-            method: Method::default(),
+            method: match raster_frame(second) {
+                Some(_) => options.method,
+                None => Method::default(),
+            },
         })?;
         return Ok(frame);
     }
