@@ -62,9 +62,7 @@ pub(crate) fn compare<'py>(
     })?;
     let extremes = product.worst.iter();
     let extremes = extremes.map(|extreme| [extreme.at[0], extreme.at[1], extreme.value]);
-    let numbers = product
-        .statistics
-        .map_or([f64::NAN; 9], |statistics| statistics.values());
+    let numbers = product.statistics.values();
     let counts = changed.map(|height| product.changed(height).into());
     let areas = product.areas.as_ref().map(|found| -> PyResult<_> {
         let area = |of: &ChangedArea| -> PyResult<Area<'py>> {
@@ -79,10 +77,9 @@ pub(crate) fn compare<'py>(
     });
     let grid = &product.difference;
     let cells: Vec<f32> = grid.values.iter().map(|&d| d as f32).collect();
-    let count = product.statistics.map_or(0, |statistics| statistics.count);
     Ok((
         raster_of(py, &grid.frame, cells, grid.crs.as_ref())?,
-        count,
+        product.statistics.count,
         numbers,
         table(py, extremes.collect())?,
         counts,

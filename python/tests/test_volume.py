@@ -72,7 +72,7 @@ def test_what_is_refused():
         with pytest.raises(breakline.BreaklineError) as raised:
             breakline.volume(slope, **wrong)
         assert said in f"{raised.value} {raised.value.cure}", wrong
-    with pytest.warns(breakline.BreaklineWarning, match="do not overlap"):
+    with pytest.raises(breakline.BreaklineError, match="do not overlap"):
         breakline.volume(slope, [[x + 50, y, 1] for x, y, _ in SLOPE])
 
 

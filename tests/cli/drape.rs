@@ -165,6 +165,10 @@ fn what_cannot_be_draped_is_an_error_and_writes_nothing() {
         ("a.xyz", SLOPE),
         ("far.geojson", &far),
         ("points.geojson", &points),
+        (
+            "empty.geojson",
+            r#"{"type":"FeatureCollection","features":[]}"#,
+        ),
         ("other.geojson", &other),
     ]);
     let before = files_of(folder.path());
@@ -179,6 +183,16 @@ fn what_cannot_be_draped_is_an_error_and_writes_nothing() {
         &["far.geojson: no line is on a.xyz", "coordinate system"],
     );
     draped(&["--lines", "points.geojson"]).fails(1, &["points.geojson", "no lines"]);
+    draped(&["--lines", "empty.geojson"]).fails(1, &["empty.geojson", "no lines"]);
+    let profile = [
+        "profile",
+        "a.xyz",
+        "--along",
+        "empty.geojson",
+        "-o",
+        "o.csv",
+    ];
+    run_in(&folder, &profile).fails(1, &["empty.geojson", "no lines"]);
     draped(&["--lines", "missing.shp"]).fails(1, &["missing.shp"]);
     draped(&["--lines", "far.geojson", "--step", "0"]).fails(2, &["0 is not above zero"]);
     draped(&[]).fails(2, &["--lines"]);

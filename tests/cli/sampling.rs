@@ -39,6 +39,29 @@ fn text_is_kept_byte_by_byte_and_gets_columns() {
     assert_eq!(lines[4], "3,9,9,far,,,,,,");
 }
 
+#[test]
+fn files_without_points_are_refused_and_nothing_is_written() {
+    let nothing = r#"{"type":"FeatureCollection","features":[]}"#;
+    let folder = folder_with(&[
+        ("a.xyz", SLOPE),
+        ("empty.xyz", ""),
+        ("names.csv", "id,x,y\n"),
+        ("empty.geojson", nothing),
+    ]);
+    std::fs::write(folder.path().join("empty.las"), las(&[], Some(25832))).unwrap();
+    let before = files_of(folder.path());
+    for (points, output) in [
+        ("empty.xyz", "o.xyz"),
+        ("names.csv", "o.csv"),
+        ("empty.geojson", "o.geojson"),
+        ("empty.las", "o.las"),
+    ] {
+        run_in(&folder, &["sample", "a.xyz", "--at", points, "-o", output])
+            .fails(1, &[points, "no points"]);
+    }
+    assert_eq!(files_of(folder.path()), before);
+}
+
 /// A surface in parts is asked from part to part, with the same results as in one piece.
 #[test]
 fn parts_have_what_the_whole_has() {

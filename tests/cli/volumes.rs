@@ -488,6 +488,7 @@ fn what_makes_no_sense_is_refused_with_the_cure() {
         ("a.xyz", SLOPE),
         ("b.xyz", FLAT),
         ("far.xyz", "70 0 1\n71 0 1\n70 1 1\n"),
+        ("far.geojson", &polygons(&["[[70,0],[80,0],[80,1],[70,0]]"])),
         ("thin.geojson", &polygons(&["[[0,0],[1,1],[2,2],[0,0]]"])),
         (
             "line.geojson",
@@ -539,6 +540,16 @@ fn what_makes_no_sense_is_refused_with_the_cure() {
             &["a.xyz", "--plane", "1e200"],
             1,
             &["extend over 1e200", "other units"],
+        ),
+        (
+            &["a.xyz", "far.xyz", "-o", "t.csv"],
+            2,
+            &["a.xyz and far.xyz do not overlap", "compare their extents"],
+        ),
+        (
+            &["a.xyz", "--plane", "1", "--within", "far.geojson"],
+            2,
+            &["far.geojson: no polygon is where", "compare their extents"],
         ),
         (&["a.xyz", "none.xyz"], 1, &["none.xyz: no such file"]),
         (
@@ -597,7 +608,5 @@ fn what_makes_no_sense_is_refused_with_the_cure() {
     for (words, code, said) in wrong {
         run_in(&folder, &[&["volume"], *words].concat()).fails(*code, said);
     }
-    run_in(&folder, &["volume", "a.xyz", "far.xyz"])
-        .works(&["warning: a.xyz and far.xyz do not overlap"]);
     assert_eq!(files_of(folder.path()), before);
 }

@@ -40,7 +40,6 @@ const NOT_IN_TILES: &[(&str, &str)] = &[
     ("DelaunayUnchecked", "of `check`"),
     ("RegionAreasUnused", "of `triangulate`"),
     ("SeedUnused", "of `triangulate`"),
-    ("NothingInCommon", "of `volume`"),
     ("PolygonsOutside", "of `volume`"),
     ("RingsOverlap", "of `volume`"),
     ("PolygonsPartlyOutside", "of `volume`"),

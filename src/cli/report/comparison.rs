@@ -10,9 +10,7 @@ use crate::terrain::ErrorStatistics;
 
 /// Returns rounded numbers for a terminal.
 pub(crate) fn text(product: &CompareProduct, changed: Option<f64>) -> String {
-    let Some(statistics) = &product.statistics else {
-        return "no cell is on both surfaces\n".to_owned();
-    };
+    let statistics = &product.statistics;
     let symbols = Units::of(product.difference.crs.as_ref()).symbols();
     let [plan, height] = symbols;
     let square = plan.map_or_else(|| "square units".to_owned(), |plan| plan + "2");
@@ -80,12 +78,10 @@ pub(crate) fn json(product: &CompareProduct, changed: Option<f64>) -> String {
     let [plan, height] = Units::of(product.difference.crs.as_ref()).symbols();
     object.insert("plan_unit".to_owned(), plan.into());
     object.insert("height_unit".to_owned(), height.into());
-    let count = product.statistics.map_or(0, |statistics| statistics.count);
-    object.insert("cells".to_owned(), count.into());
-    let values = product.statistics.map(|statistics| statistics.values());
+    object.insert("cells".to_owned(), product.statistics.count.into());
+    let values = product.statistics.values();
     for (k, name) in ErrorStatistics::NAMES.iter().enumerate() {
-        let value = values.map(|values| values[k] + 0.0);
-        object.insert((*name).to_owned(), value.into());
+        object.insert((*name).to_owned(), (values[k] + 0.0).into());
     }
     if let Some(height) = changed {
         let [raised, lowered] = product.changed(height);

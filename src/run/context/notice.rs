@@ -116,8 +116,6 @@ pub enum Notice {
     Reprojecting(Box<Crs>, Box<Crs>),
     /// A message about a transform: the operation and its accuracy.
     Transform(String),
-    /// The surface and its base, which are named, have no area in common.
-    NothingInCommon(String, String),
     /// In the polygons of these records of a file, the surface and its base have no area in
     /// common.
     PolygonsOutside(PathBuf, Vec<usize>),
@@ -525,7 +523,6 @@ impl Notice {
             | Notice::HeightsOfOthers(..)
             | Notice::Transform(_)
             | Notice::PartForLinear
-            | Notice::NothingInCommon(..)
             | Notice::PolygonsOutside(..)
             | Notice::RingsOverlap(..)
             | Notice::PolygonsPartlyOutside { .. }

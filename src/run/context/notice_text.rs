@@ -144,9 +144,6 @@ fn text(notice: &Notice) -> Wording {
         Notice::DifferentUnits(plan, height) => different_units(plan, height).into(),
         Notice::Reprojecting(from, to) => format!("reprojecting from {from} to {to}").into(),
         Notice::Transform(text) => text.clone().into(),
-        Notice::NothingInCommon(one, other) => {
-            format!("{one} and {other} do not overlap: no position is on both").into()
-        }
         Notice::PolygonsOutside(path, records) => polygons_outside(path, records),
         Notice::RingsOverlap(path, records) => rings_overlap(path, records),
         Notice::PolygonsPartlyOutside { path, partly, unit } => {

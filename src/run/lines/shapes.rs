@@ -66,16 +66,20 @@ fn read(
     }
     // An empty layer is fine, as of a tile without lakes; a layer of points, say, is a mistake.
     if lines.is_empty() && !layer.shapes.is_empty() {
-        return Err(
-            Error::format(format!("{} holds no lines and no polygons", kind_of(layer)))
-                .in_file(path)
-                .cure(wording![
-                    setting,
-                    " takes lines or polygons; points are inputs without an option"
-                ]),
-        );
+        return Err(no_lines(layer, path, setting));
     }
     Ok(lines)
+}
+
+/// Returns the error for a layer without lines.
+#[cold]
+pub(crate) fn no_lines(layer: &Layer, path: &Path, setting: Setting) -> Error {
+    Error::format(format!("{} holds no lines and no polygons", kind_of(layer)))
+        .in_file(path)
+        .cure(wording![
+            setting,
+            " takes lines or polygons; points are inputs without an option"
+        ])
 }
 
 /// Returns the polygons of a layer; its lines, if any, are joined to rings and form one more

@@ -6,6 +6,7 @@ use super::cells::{CellProduct, DemOptions, refuse_options};
 use super::changed::{AreaOptions, ChangedAreas, changed_areas};
 use super::frame::{self, FrameOptions};
 use super::surface::{Model, SurfaceProduct};
+use super::together::no_overlap;
 use crate::data::{BlockSource, Frame, Grid};
 use crate::error::{Error, Result, Setting, wording};
 use crate::io::geotiff::CellFormat;
@@ -56,8 +57,8 @@ pub struct CompareProduct {
     /// The heights of the first surface minus those of the second in cells; NaN where either has
     /// none.
     pub difference: Grid,
-    /// Their statistics; `None` if no cell is on both surfaces.
-    pub statistics: Option<ErrorStatistics>,
+    /// Their statistics.
+    pub statistics: ErrorStatistics,
     /// Where surfaces differ most, the worst first, at least 8 cells apart.
     pub worst: Vec<LargeDifference>,
     /// The areas in which the surfaces differ, if they were asked for.
@@ -73,7 +74,7 @@ pub struct CompareProduct {
 /// other cells is a surface between the centers of its cells.
 ///
 /// # Errors
-/// If the coordinate systems differ; if the frame cannot be chosen, or is chosen for a raster,
+/// If no cell is on both surfaces, or the coordinate systems differ; if the frame cannot be chosen, or is chosen for a raster,
 /// which keeps its own, or a method is for two rasters; if areas are asked for and the method is not linear or the system is in
 /// degrees; if a file is damaged, the cells do not fit into memory, or the run is canceled.
 ///
@@ -114,14 +115,9 @@ pub fn compare(
         }
     }
     let known = difference.values.iter().copied().filter(|d| !d.is_nan());
-    let statistics = ErrorStatistics::of(&known.collect::<Vec<f64>>());
-    if statistics.is_none() {
-        let [one, other] = options
-            .names
-            .each_ref()
-            .map(|name| name.display().to_string());
-        journal.add(Notice::NothingInCommon(one, other));
-    }
+    let Some(statistics) = ErrorStatistics::of(&known.collect::<Vec<f64>>()) else {
+        return Err(no_cell(surfaces, &options.names));
+    };
     let areas = options
         .areas
         .map(|areas| changed_areas(surfaces, crs, &areas, context))
@@ -184,6 +180,19 @@ fn cells_of(
         Some(frame) => Ok(frame),
         None => frame::choose(&options.frame, first.triangles()?, first.extent(), journal),
     }
+}
+
+/// Returns the error for surfaces of which no cell has two heights.
+#[cold]
+fn no_cell(surfaces: [&SurfaceProduct; 2], names: &[PathBuf; 2]) -> Error {
+    let [first, second] = surfaces.map(SurfaceProduct::extent);
+    let are_apart = (0..2).any(|k| first.max[k] < second.min[k] || second.max[k] < first.min[k]);
+    if are_apart || raster_frame(surfaces[0]).is_some() {
+        return no_overlap(names);
+    }
+    let [one, other] = names.each_ref().map(|name| name.display());
+    Error::usage(format!("no center of a cell is on both {one} and {other}"))
+        .cure(wording!["choose smaller cells with ", Setting::Resolution])
 }
 
 /// Returns the frame of a raster; `None` of another surface.

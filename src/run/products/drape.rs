@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::followed::{
-    Coverage, Vertices, check_lengths, check_step, coverage, follow, in_plan, no_line,
+    Coverage, Vertices, check_lengths, check_step, coverage, follow, in_plan, lines_of, no_line,
 };
 use super::surface::SurfaceProduct;
 use super::together::common_system;
@@ -13,7 +13,7 @@ use crate::error::{Result, Setting};
 use crate::io::{Destination, layer};
 use crate::run::context::notice::Notice;
 use crate::run::context::{Context, Journal};
-use crate::run::lines::{layers, shapes};
+use crate::run::lines::layers;
 use crate::run::request::input::Input;
 
 /// Which lines are draped over a surface, and how.
@@ -68,7 +68,7 @@ pub fn drape(
         options.assign.as_ref(),
         &journal,
     )?;
-    let lines = shapes::in_plan(&read, path, Setting::Lines)?;
+    let lines = lines_of(&read, path, Setting::Lines)?;
     let plan = in_plan(&lines);
     check_step(options.step, &plan)?;
     let step = options.step.map(|step| (step, Vertices::Kept));
@@ -83,7 +83,7 @@ pub fn drape(
         records
     };
     let (off, partly_off) = (records(Coverage::Nothing), records(Coverage::Part));
-    if !found.is_empty() && found.iter().all(Vec::is_empty) {
+    if found.iter().all(Vec::is_empty) {
         return Err(no_line(path, std::slice::from_ref(&options.name)));
     }
     let titles = |records: &[usize]| records.iter().map(|&record| title(record)).collect();

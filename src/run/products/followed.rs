@@ -5,12 +5,13 @@ use std::path::{Path, PathBuf};
 use rayon::prelude::*;
 
 use super::surface::SurfaceProduct;
-use crate::data::Stretch;
+use super::together::COMPARE_EXTENTS;
+use crate::data::{Layer, Stretch};
 use crate::error::{Error, Result, Setting, wording};
 use crate::run::context::notice::Notice;
 use crate::run::context::watched::Watched;
 use crate::run::context::{Context, Journal, Size, Stage};
-use crate::run::lines::shapes::Drawn;
+use crate::run::lines::shapes::{self, Drawn};
 use crate::terrain::{Locator, stepped, vertices_along};
 
 /// The points of all lines by a step, at most.
@@ -18,6 +19,18 @@ const MOST_POINTS: f64 = 1e8;
 
 /// A line in plan.
 pub(crate) type PlanLine = Vec<[f64; 2]>;
+
+/// Returns the lines of a layer and the rings of its polygons.
+///
+/// # Errors
+/// If there are none, or a coordinate in plan is not finite.
+pub(super) fn lines_of(layer: &Layer, path: &Path, setting: Setting) -> Result<Vec<Drawn>> {
+    let lines = shapes::in_plan(layer, path, setting)?;
+    match lines.is_empty() {
+        true => Err(shapes::no_lines(layer, path, setting)),
+        false => Ok(lines),
+    }
+}
 
 /// Returns lines without their heights.
 pub(crate) fn in_plan(lines: &[Drawn]) -> Vec<PlanLine> {
@@ -160,5 +173,5 @@ pub(crate) fn no_line(path: &Path, names: &[PathBuf]) -> Error {
         .collect();
     Error::usage(format!("no line is on {}", names.join(" or ")))
         .in_file(path)
-        .cure("both have to be in one coordinate system and in one area: compare their extents")
+        .cure(COMPARE_EXTENTS)
 }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::followed::{
     Coverage, PlanLine, Vertices, check_lengths, check_step, coverage, follow, in_plan, length,
-    no_line,
+    lines_of, no_line,
 };
 use super::station_format::StationFormat;
 use super::surface::SurfaceProduct;
@@ -131,7 +131,7 @@ pub fn profile(
                 .cure(reproject_first()),
         );
     }
-    let drawn = shapes::in_plan(layer, path, Setting::Along)?;
+    let drawn = lines_of(layer, path, Setting::Along)?;
     let asked = match &options.sections {
         None => drawn.iter().map(along_line).collect(),
         Some(sections) => across(&drawn, sections, path, &journal)?,
@@ -154,7 +154,7 @@ pub fn profile(
             count_from_axis(stretch, &lines[line], sections.widths);
         }
     };
-    let mut any = lines.is_empty();
+    let mut any = false;
     for (surface, name) in surfaces.iter().zip(&names) {
         let found = follow(surface, &lines, count, step, context)?;
         any |= found.iter().any(|stretches| !stretches.is_empty());
@@ -243,7 +243,7 @@ fn across(
             (line.to_vec(), profile)
         }));
     }
-    if asked.is_empty() && !drawn.is_empty() {
+    if asked.is_empty() {
         return Err(Error::usage("no line has a station at which a section is")
             .in_file(path)
             .cure(wording!["choose a shorter ", Setting::Interval]));

@@ -1,11 +1,11 @@
 //! Surfaces together with a layer.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::surface::SurfaceProduct;
 use crate::crs::Crs;
 use crate::data::Layer;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::run::context::Journal;
 use crate::run::sources::systems::{self, Stated, SystemOptions};
 
@@ -24,4 +24,15 @@ pub(crate) fn common_system<'a>(
     let of_surfaces = surfaces.map(|(name, product)| product.stated(name));
     let stated: Vec<Stated> = of_surfaces.chain([of_layer]).collect();
     Ok(systems::unify(&stated, &SystemOptions::default(), journal)?.crs)
+}
+
+/// What helps if two inputs have nothing in common.
+pub(super) const COMPARE_EXTENTS: &str =
+    "both have to be in one coordinate system and in one area: compare their extents";
+
+/// Returns the error for two surfaces without a common position.
+#[cold]
+pub(super) fn no_overlap(names: &[PathBuf; 2]) -> Error {
+    let [one, other] = names.each_ref().map(|name| name.display());
+    Error::usage(format!("{one} and {other} do not overlap")).cure(COMPARE_EXTENTS)
 }

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::surface::SurfaceProduct;
+use super::together::{COMPARE_EXTENTS, no_overlap};
 use crate::crs::Crs;
 use crate::data::{Layer, Mesh, Surface, Value};
 use crate::error::{Error, Result, Setting, wording};
@@ -181,7 +182,8 @@ pub struct VolumeProduct {
 /// Lengths and heights in different units are converted.
 ///
 /// # Errors
-/// If the coordinate systems differ or are in degrees, the unit of the result cannot be known, a
+/// If the surface and its base, or all polygons, have no area in common, the coordinate systems
+/// differ or are in degrees, the unit of the result cannot be known, a
 /// polygon has no area, a level is not finite, the base is the rim and there are no polygons or one
 /// is not on the surface; if a file is damaged, and if the run is canceled.
 ///
@@ -227,9 +229,9 @@ pub fn volume(
             .bulking
             .map(|bulking| bulking.earthwork(&row.volume));
     }
-    match &outlines {
-        Some(outlines) => outlines.note_flaws(&rows, scale.unit, &journal),
-        None => note_nothing(&rows, base, &options.names, &journal),
+    require_any(&rows, outlines.as_ref(), base, &options.names)?;
+    if let Some(outlines) = &outlines {
+        outlines.note_flaws(&rows, scale.unit, &journal);
     }
     Ok(VolumeProduct {
         rows,
@@ -238,12 +240,25 @@ pub fn volume(
     })
 }
 
-/// Adds a notice if two surfaces have nothing in common.
-fn note_nothing(rows: &[VolumeRow], base: VolumeBase, names: &[PathBuf; 2], journal: &Journal) {
-    let have_nothing = rows.iter().all(|row| row.volume.common_area == 0.0);
-    if have_nothing && matches!(base, VolumeBase::Surface(_)) {
-        let [one, other] = names.each_ref().map(|name| name.display().to_string());
-        journal.add(Notice::NothingInCommon(one, other));
+/// Returns an error if two surfaces, or the surface and all polygons, have nothing in common.
+fn require_any(
+    rows: &[VolumeRow],
+    outlines: Option<&Outlines>,
+    base: VolumeBase,
+    names: &[PathBuf; 2],
+) -> Result<()> {
+    if rows.iter().any(|row| row.volume.common_area > 0.0) {
+        return Ok(());
+    }
+    match (outlines, base) {
+        (Some(outlines), _) => Err(Error::usage(
+            "no polygon is where the surface and its base are",
+        )
+        .in_file(outlines.path)
+        .cure(COMPARE_EXTENTS)),
+        (None, VolumeBase::Surface(_)) => Err(no_overlap(names)),
+        // A mesh may stand upright.
+        (None, VolumeBase::Levels(_) | VolumeBase::Rim) => Ok(()),
     }
 }
 

@@ -38,11 +38,13 @@ impl Values<'_> {
         Ok(values)
     }
 
-    /// Returns an error if no point was on the surface. Called before an output appears.
+    /// Returns an error if there was no point, or none on the surface. Called before an output
+    /// appears.
     pub(super) fn require_any(&self) -> Result<()> {
-        match self.points > 0 && self.outside == self.points {
-            true => Err(none_inside(self.points, self.file, self.surface)),
-            false => Ok(()),
+        match self.points {
+            0 => Err(Error::format("the file has no points").in_file(self.file)),
+            all if self.outside == all => Err(none_inside(all, self.file, self.surface)),
+            _ => Ok(()),
         }
     }
 }
