@@ -463,6 +463,14 @@ pub struct PartlyCounted {
     pub counted: f64,
 }
 
+impl PartlyCounted {
+    /// Returns true if more is missing than at the rim of a raster, where a surface ends at the
+    /// centers of cells: a twentieth of the area.
+    fn misses_much(&self) -> bool {
+        self.counted < 0.95 * self.area
+    }
+}
+
 /// How much a notice matters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
@@ -479,6 +487,12 @@ impl Notice {
     pub fn severity(&self) -> Severity {
         match self {
             Notice::OfTask { severity, .. } => *severity,
+            Notice::PolygonsPartlyOutside { partly, .. } => {
+                match partly.iter().any(|one| one.misses_much()) {
+                    true => Severity::Warning,
+                    false => Severity::Note,
+                }
+            }
             Notice::Opened(..)
             | Notice::WithoutClasses(_)
             | Notice::LayerRead { .. }
@@ -525,7 +539,6 @@ impl Notice {
             | Notice::PartForLinear
             | Notice::PolygonsOutside(..)
             | Notice::RingsOverlap(..)
-            | Notice::PolygonsPartlyOutside { .. }
             | Notice::LinesOff(..)
             | Notice::LinesPartlyOff(..)
             | Notice::LinesWithoutLength(..)
