@@ -2,7 +2,7 @@
 
 use super::separator::{Axes, Separator};
 use crate::data::{Columns, PointBatch};
-use crate::error::{Error, Result, Setting, wording};
+use crate::error::{Error, Result, Setting, Wording, wording};
 
 const X_NAMES: &[&str] = &["x", "easting", "east", "e", "lon", "long", "longitude"];
 const Y_NAMES: &[&str] = &["y", "northing", "north", "n", "lat", "latitude"];
@@ -56,7 +56,7 @@ impl ColumnLayout {
     /// Returns the layout of a header line, by the names of the columns.
     ///
     /// # Errors
-    /// Says which column is missing, or which two have the same name.
+    /// Says which column is missing, or which two have the same name or are both heights.
     pub(super) fn named(
         header: &[u8],
         separator: Separator,
@@ -86,7 +86,12 @@ impl ColumnLayout {
         };
         let (x, y) = (need("x", X_NAMES)?, need("y", Y_NAMES)?);
         let z = match axes {
-            Axes::Space => need("z", Z_NAMES)?,
+            Axes::Space => match several_heights(&names) {
+                Some(numbers) => {
+                    return Err(NameFlaw::Repeated(of_heights(&numbers, &names, header)));
+                }
+                None => need("z", Z_NAMES)?,
+            },
             Axes::Plan => y.clone(),
         };
         let columns = Columns {
@@ -163,7 +168,7 @@ impl ColumnLayout {
 pub(super) enum NameFlaw {
     /// No column has a name for one of the coordinates.
     Missing(Error),
-    /// Two columns have the same name, and it is one of those that are used.
+    /// Two columns have the same name, and it is one of those that are used, or both are heights.
     Repeated(Error),
 }
 
@@ -185,6 +190,40 @@ fn numbers(names: &[String], wanted: &str) -> Option<Vec<usize>> {
     (!found.is_empty()).then_some(found)
 }
 
+/// Returns the numbers of the columns that are heights by different names, none of which is `z`.
+fn several_heights(names: &[String]) -> Option<Vec<usize>> {
+    let [z, others @ ..] = Z_NAMES else {
+        return None;
+    };
+    let mut found: Vec<usize> = others
+        .iter()
+        .filter_map(|known| numbers(names, known))
+        .map(|numbers| numbers[0])
+        .collect();
+    found.sort_unstable();
+    (found.len() > 1 && numbers(names, z).is_none()).then_some(found)
+}
+
+#[cold]
+fn of_heights(numbers: &[usize], names: &[String], header: &[u8]) -> Error {
+    let named = |&number: &usize| format!("{number} (\"{}\")", names[number - 1]);
+    let list: Vec<String> = numbers.iter().map(named).collect();
+    Error::format(format!(
+        "columns {} all have names of heights in the header {}",
+        list.join(" and "),
+        quote(header)
+    ))
+    .cure(rename_or_number())
+}
+
+fn rename_or_number() -> Wording {
+    wording![
+        "rename one of them, or say which columns to take: ",
+        Setting::Columns.text("1,2,3"),
+        " names those of x, y and z"
+    ]
+}
+
 #[cold]
 fn repeated(numbers: &[usize], names: &[String], header: &[u8]) -> Error {
     let name = numbers
@@ -197,11 +236,7 @@ fn repeated(numbers: &[usize], names: &[String], header: &[u8]) -> Error {
         "columns {list} are both called \"{name}\" in the header {}",
         quote(header)
     ))
-    .cure(wording![
-        "rename one of them, or say which columns to take: ",
-        Setting::Columns.text("1,2,3"),
-        " names those of x, y and z"
-    ])
+    .cure(rename_or_number())
 }
 
 /// Returns a name in lower case, without text in brackets.

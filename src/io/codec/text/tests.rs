@@ -214,6 +214,14 @@ fn a_name_of_two_columns_is_refused() {
             "# x y z z\n1 2 3 4\n",
             "line 2: columns 3 and 4 are both called \"z\"",
         ),
+        (
+            "id,x,y,height,elev\n1,2,3,4,5\n",
+            "line 1: columns 4 (\"height\") and 5 (\"elev\") all have names of heights in",
+        ),
+        (
+            "# x y Alt (m) h\n1 2 3 4\n",
+            "line 2: columns 3 (\"alt\") and 4 (\"h\") all have names of heights",
+        ),
     ] {
         let error = read(text).map(|_| ()).expect_err(text);
         assert!(
@@ -237,6 +245,7 @@ fn a_name_of_two_columns_is_refused() {
     // Other columns may share a name; of two names for an axis the first of the table counts.
     assert_eq!(points("x y z r r\n1 2 3 4 5\n"), [[1.0, 2.0, 3.0]]);
     assert_eq!(points("lon lat x y z\n1 2 3 4 5\n"), [[3.0, 4.0, 5.0]]);
+    assert_eq!(points("x y h z\n1 2 3 4\n"), [[1.0, 2.0, 4.0]]);
 }
 
 #[test]
