@@ -132,13 +132,11 @@ pub(crate) fn outlines(layer: &Layer, path: &Path, setting: Setting) -> Result<V
     Ok(polygons)
 }
 
-/// Returns the polygons of a layer, and its lines joined to rings, each with the record of its first
-/// line.
-fn areas(
-    layer: &Layer,
-    path: &Path,
-    setting: Setting,
-) -> Result<(Vec<Polygon>, Vec<(usize, Vec<[f64; 2]>)>)> {
+/// The record of the first of some lines, and the ring that they are joined to.
+type Joined = (usize, Vec<[f64; 2]>);
+
+/// Returns the polygons of a layer, and its lines joined to rings.
+fn areas(layer: &Layer, path: &Path, setting: Setting) -> Result<(Vec<Polygon>, Vec<Joined>)> {
     let mut polygons = Vec::new();
     let mut lines: Vec<Drawn> = Vec::new();
     for (record, shape) in (1..).zip(&layer.shapes) {
