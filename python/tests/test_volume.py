@@ -33,6 +33,7 @@ def test_levels_polygons_and_units():
     whole = breakline.volume(slope, plane=2)[0]
     rows = breakline.volume(slope, plane=2, within=halves)
     assert [row.record for row in rows] == [1, 2] and rows[0].unit == "m3"
+    assert [row.polygon_area for row in rows] == [50, 50] and whole.polygon_area is None
     assert sum(row.cut for row in rows) == pytest.approx(whole.cut, rel=1e-12)
     (yards,) = breakline.volume(slope, plane=2, unit="yd3")
     assert yards.unit == "yd3" and yards.cut * 0.9144**3 == pytest.approx(whole.cut, rel=1e-12)

@@ -8,8 +8,8 @@ pub struct Columns {
     pub x: usize,
     /// Northings, or latitudes.
     pub y: usize,
-    /// Heights.
-    pub z: usize,
+    /// Heights; `None` of points in plan.
+    pub z: Option<usize>,
     /// Classification codes, if there are any.
     pub class: Option<usize>,
 }
@@ -17,13 +17,15 @@ pub struct Columns {
 /// Formats the columns as "x 3, y 2, z 4".
 impl fmt::Display for Columns {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "x {}, y {}, z {}", self.x, self.y, self.z)?;
+        write!(f, "x {}, y {}", self.x, self.y)?;
+        self.z.map_or(Ok(()), |z| write!(f, ", z {z}"))?;
         self.class
             .map_or(Ok(()), |class| write!(f, ", class {class}"))
     }
 }
 
-/// Parses one letter per column, `PNEZD` or `XYZ`, or the numbers of x, y and z, `2,1,3`.
+/// Parses one letter per column, `PNEZD` or `XYZ`, or the numbers of x, y and z, `2,1,3`. Points in
+/// plan have no z: `PNE`, `2,1`.
 impl FromStr for Columns {
     type Err = String;
 
@@ -45,7 +47,7 @@ impl FromStr for Columns {
         Ok(Columns {
             x: find("x", ['E', 'X'])?,
             y: find("y", ['N', 'Y'])?,
-            z: find("z", ['Z', 'Z'])?,
+            z: find_any(text, "z", |c| c.eq_ignore_ascii_case(&'z'))?,
             class: None,
         })
     }
@@ -56,22 +58,24 @@ fn numbered(text: &str) -> Result<Columns, String> {
         .split(',')
         .map_while(|part| part.trim().parse().ok())
         .collect();
+    let are_all = text.split(',').count() == numbers.len() && !numbers.contains(&0);
     match *numbers.as_slice() {
-        [x, y, z]
-            if text.split(',').count() == 3
-                && x.min(y).min(z) > 0
-                && x != y
-                && y != z
-                && x != z =>
-        {
-            Ok(Columns {
-                x,
-                y,
-                z,
-                class: None,
-            })
-        }
-        _ => Err("expected the numbers of three columns, from 1 on, for x, y and z".to_owned()),
+        [x, y] if are_all && x != y => Ok(Columns {
+            x,
+            y,
+            z: None,
+            class: None,
+        }),
+        [x, y, z] if are_all && x != y && y != z && x != z => Ok(Columns {
+            x,
+            y,
+            z: Some(z),
+            class: None,
+        }),
+        _ => Err(
+            "expected the numbers of three columns, from 1 on, for x, y and z; two for points in plan"
+                .to_owned(),
+        ),
     }
 }
 
@@ -79,7 +83,7 @@ impl Columns {
     /// Parses the letters of LAStools: `sxyz`.
     ///
     /// # Errors
-    /// If a letter is unknown, or x, y or z is missing or there twice.
+    /// If a letter is unknown, x or y is missing, or one is there twice.
     pub fn of_las_tools(text: &str) -> Result<Self, String> {
         const SKIPPED: &str = "saitrnRGBHIhgukwpedloSC0123456789";
         if let Some(unknown) = text
@@ -91,17 +95,20 @@ impl Columns {
             ));
         }
         let one = |axis: &str, letter: char| find(text, axis, |c| c == letter);
-        let class = if text.contains('c') {
-            Some(one("the class", 'c')?)
-        } else {
-            None
-        };
         Ok(Columns {
             x: one("x", 'x')?,
             y: one("y", 'y')?,
-            z: one("z", 'z')?,
-            class,
+            z: find_any(text, "z", |c| c == 'z')?,
+            class: find_any(text, "the class", |c| c == 'c')?,
         })
+    }
+}
+
+/// Like [`find`], but `None` if there is no such letter.
+fn find_any(text: &str, axis: &str, is_it: impl Fn(char) -> bool) -> Result<Option<usize>, String> {
+    match text.contains(&is_it) {
+        true => find(text, axis, is_it).map(Some),
+        false => Ok(None),
     }
 }
 
@@ -133,11 +140,15 @@ mod tests {
             ("ssENSZ", "x 3, y 4, z 6"),
             ("2,1,3", "x 2, y 1, z 3"),
             ("1, 2 ,10", "x 1, y 2, z 10"),
+            ("2,3", "x 2, y 3"),
+            ("NE", "x 2, y 1"),
+            ("PXYD", "x 2, y 3"),
         ] {
             assert_eq!(shown(typed.parse()).as_deref(), Ok(meant), "{typed}");
         }
         for typed in [
-            "", "XY", "XYZZ", "XEZ", "XYH", "0,1,2", "1,2", "1,2,3,4", "1,1,2", "1,x,2", "-1,2,3",
+            "", "XZ", "XYZZ", "XEZ", "XYH", "0,1,2", "1", "1,1", "0,1", "1,2,", "1,2,x", "1,2,3,4",
+            "1,1,2", "1,x,2", "-1,2,3",
         ] {
             assert!(typed.parse::<Columns>().is_err(), "{typed}");
         }
@@ -145,6 +156,7 @@ mod tests {
             ("sxyz", "x 2, y 3, z 4"),
             ("txyzicRGB", "x 2, y 3, z 4, class 6"),
             ("sszyx", "x 5, y 4, z 3"),
+            ("sxy", "x 2, y 3"),
         ] {
             assert_eq!(
                 shown(Columns::of_las_tools(typed)).as_deref(),
@@ -152,7 +164,7 @@ mod tests {
                 "{typed}"
             );
         }
-        for typed in ["", "xy", "xyzz", "XYZ", "xyz c", "xyzcc", "x,y,z"] {
+        for typed in ["", "xz", "xyzz", "XYZ", "xyz c", "xyzcc", "x,y,z"] {
             assert!(Columns::of_las_tools(typed).is_err(), "{typed}");
         }
     }

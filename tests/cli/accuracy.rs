@@ -161,6 +161,23 @@ fn thirty_checkpoints_are_enough_and_layers_are_read() {
 }
 
 #[test]
+fn the_columns_that_are_read_are_named() {
+    let folder = folder_with(&[
+        ("a.xyz", SLOPE),
+        ("two.csv", "id,x,y,height,elev\n1,1,1,11,5\n"),
+    ]);
+    let words = [
+        "accuracy",
+        "a.xyz",
+        "--checkpoints",
+        "two.csv",
+        "--columns",
+        "2,3,4",
+    ];
+    run_in(&folder, &words).works(&["columns     x 2, y 3, z 4"]);
+}
+
+#[test]
 fn bad_input_is_refused_and_nothing_is_written() {
     let flat = super::geojson(25832, "Point", "[1, 1]");
     let folder = folder_with(&[
@@ -171,6 +188,7 @@ fn bad_input_is_refused_and_nothing_is_written() {
         ("nan.csv", "1,1,1\n1,1,nan\n"),
         ("flat.geojson", &flat),
         ("empty.csv", "x,y,z\n"),
+        ("two.csv", "id,x,y,height,elev\n1,1,1,11,5\n"),
         ("none.csv", "x,y,height\n"),
     ]);
     let before = files_of(folder.path());
@@ -183,6 +201,12 @@ fn bad_input_is_refused_and_nothing_is_written() {
         ),
         ("nan.csv", &[], 1, "nan.csv: line 2: z is \"nan\""),
         ("empty.csv", &[], 1, "empty.csv: the file has no points"),
+        (
+            "two.csv",
+            &[],
+            1,
+            "two.csv: line 1: columns 4 (\"height\") and 5 (\"elev\") all have names of heights",
+        ),
         (
             "flat.geojson",
             &[],

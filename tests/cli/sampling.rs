@@ -62,6 +62,41 @@ fn files_without_points_are_refused_and_nothing_is_written() {
     assert_eq!(files_of(folder.path()), before);
 }
 
+#[test]
+fn columns_of_points_in_plan_need_no_heights() {
+    let folder = folder_with(&[
+        ("a.xyz", SLOPE),
+        ("n.csv", "A,1,0.5\nB,2,2.5\n"),
+        ("two.xyz", "1 0.5\n2 2.5\n"),
+    ]);
+    let sample = |words: &[&str]| run_in(&folder, &[&["sample", "a.xyz", "--at"], words].concat());
+    for (columns, said, heights) in [
+        ("2,3", "columns     x 2, y 3", ["11", "12"]),
+        ("SNE", "columns     x 3, y 2", ["10.5", "12.5"]),
+    ] {
+        let run = sample(&["n.csv", "--columns", columns]);
+        run.works(&[said]);
+        let [one, other] = heights;
+        assert_eq!(run.stdout, format!("A,1,0.5,{one}\nB,2,2.5,{other}\n"));
+    }
+    let run = sample(&["two.xyz", "--columns", "XY"]);
+    run.works(&["columns     x 1, y 2\n"]);
+    assert_eq!(run.stdout, "1 0.5 11\n2 2.5 12\n");
+    // Points of a surface have heights.
+    run_in(
+        &folder,
+        &["tin", "a.xyz", "--columns", "1,2", "-o", "o.ply"],
+    )
+    .fails(
+        2,
+        &[
+            "a.xyz",
+            "no column has heights: x 1, y 2",
+            "--columns 1,2,3",
+        ],
+    );
+}
+
 /// A surface in parts is asked from part to part, with the same results as in one piece.
 #[test]
 fn parts_have_what_the_whole_has() {
@@ -144,8 +179,6 @@ fn ends_of_lines_marks_and_separators_stay() {
         ("\u{feff}x,y\n1,1\n", "\u{feff}x,y,surface_z\n1,1,11\n"),
         ("# x y\n1 1 \n", "# x y surface_z\n1 1  11\n"),
         ("2\n1 1 0\n9 9 0\n", "2\n1 1 0 11\n9 9 0 nan\n"),
-        ("# no points\n", "# no points\n"),
-        ("", ""),
     ] {
         let folder = folder_with(&[("a.xyz", SLOPE)]);
         let words = ["sample", "a.xyz", "--at", "-"];

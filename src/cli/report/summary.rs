@@ -18,7 +18,7 @@ pub(crate) fn print_surface(report: &SurfaceReport, console: &Console) {
                 points_line(&built.points, built.sources)
             ));
             if !built.columns.is_empty() {
-                console.line(format_args!("columns     {}", columns_line(&built.columns)));
+                columns_are(&columns_line(&built.columns), console);
             }
             print_tin(built, console);
             console.line(format_args!(
@@ -172,6 +172,17 @@ fn left_out(tin: &TinReport) -> String {
         (tin.faces_clipped, "clipped"),
         (tin.faces_cut, "cut"),
     ])
+}
+
+/// Prints the columns of a file of text, if it is one.
+pub(crate) fn print_columns(columns: Option<Columns>, console: &Console) {
+    if let Some(columns) = columns {
+        columns_are(&columns.to_string(), console);
+    }
+}
+
+fn columns_are(columns: &str, console: &Console) {
+    console.line(format_args!("columns     {columns}"));
 }
 
 /// Returns the columns of text files, such as "x 3, y 2, z 4"; with the number of files of each if

@@ -8,7 +8,7 @@ use crate::cli::input::outputs;
 use crate::cli::report::accuracy;
 use crate::cli::report::console::Console;
 use crate::cli::report::stdout::print;
-use crate::cli::report::summary::print_surface;
+use crate::cli::report::summary::{print_columns, print_surface};
 use crate::cli::report::written::commit;
 use crate::error::Result;
 use crate::run::targets::{TABLES, add_table, is_same};
@@ -38,6 +38,7 @@ pub(crate) fn run(args: &AccuracyArgs, console: &Console) -> Result<Exit> {
     };
     let checkpoints = Input::File(args.checkpoints.clone());
     let product = run::accuracy(&surface, &checkpoints, &options, &context)?;
+    print_columns(product.columns, console);
     for target in &outputs.targets {
         let is_of_bins = args
             .histogram

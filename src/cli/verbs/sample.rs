@@ -11,7 +11,7 @@ use crate::cli::input::outputs::{self, Format};
 use crate::cli::input::plan::SurfacePlan;
 use crate::cli::report::console::Console;
 use crate::cli::report::stdout::{Stdout, print};
-use crate::cli::report::summary::{counted, print_surface};
+use crate::cli::report::summary::{counted, print_columns, print_surface};
 use crate::cli::report::written::commit;
 use crate::error::{Error, Result};
 use crate::run::{
@@ -71,6 +71,7 @@ pub(crate) fn run(args: &SampleArgs, console: &Console) -> Result<Exit> {
         0 => String::new(),
         outside => format!(", {outside} outside"),
     };
+    print_columns(report.read, console);
     console.line(format_args!(
         "sampled     {}{outside}",
         counted(report.points, "point")

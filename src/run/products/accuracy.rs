@@ -7,7 +7,7 @@ use std::str::FromStr;
 use super::sample::none_inside;
 use super::surface::SurfaceProduct;
 use crate::crs::{Crs, Unit};
-use crate::data::{PointBatch, PointSource, Shape};
+use crate::data::{Columns, PointBatch, PointSource, Shape};
 use crate::error::{Error, Result, Setting, wording};
 use crate::io::points::Options;
 use crate::io::text::Axes;
@@ -186,6 +186,8 @@ pub struct AccuracyProduct {
     pub rows: Vec<CheckpointRow>,
     /// What the numbers of rows count: lines or records.
     pub counted_by: &'static str,
+    /// The columns of the coordinates, if the checkpoints are text.
+    pub columns: Option<Columns>,
     /// The statistics: of all, then of those without and with vegetation, then of each group. A set
     /// without a checkpoint on the surface is left out.
     pub sets: Vec<SetAccuracy>,
@@ -245,6 +247,7 @@ pub fn accuracy(
     let differences: Vec<f64> = assessment.differences(&CheckpointSet::All);
     Ok(AccuracyProduct {
         counted_by: read.counted_by,
+        columns: read.columns,
         sets: assessment.sets(),
         histogram: Histogram::of(&differences),
         decision,
@@ -293,6 +296,7 @@ fn decide(
 struct Checkpoints {
     rows: Vec<CheckpointRow>,
     counted_by: &'static str,
+    columns: Option<Columns>,
     crs: Option<Crs>,
     unread_crs: Option<String>,
 }
@@ -363,6 +367,7 @@ impl Checkpoints {
         Ok(Checkpoints {
             rows,
             counted_by: "line",
+            columns: Some(table.columns()),
             crs: None,
             unread_crs: None,
         })
@@ -402,6 +407,7 @@ impl Checkpoints {
         Ok(Checkpoints {
             rows,
             counted_by: "record",
+            columns: None,
             crs: layer.crs,
             unread_crs: layer.unread_crs,
         })
@@ -489,6 +495,7 @@ impl Checkpoints {
         let read = Checkpoints {
             rows,
             counted_by: "point",
+            columns: None,
             crs,
             unread_crs,
         };

@@ -300,12 +300,10 @@ fn read(path: &Path, journal: &Journal) -> Result<Cloud> {
         .as_ref()
         .is_some_and(|crs| crs.kind == CrsKind::Geographic);
     let weight_column = info.columns.map(|columns| {
-        let after = [columns.x, columns.y, columns.z]
-            .into_iter()
-            .fold(0, usize::max)
-            + 1;
+        let coordinates = [Some(columns.x), Some(columns.y), columns.z];
+        let after = coordinates.into_iter().flatten().fold(0, usize::max) + 1;
         Columns {
-            z: after + usize::from(columns.class == Some(after)),
+            z: Some(after + usize::from(columns.class == Some(after))),
             class: None,
             ..columns
         }

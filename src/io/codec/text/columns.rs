@@ -21,6 +21,7 @@ pub(super) struct ColumnLayout {
 pub(super) struct Point {
     x: f64,
     y: f64,
+    /// NaN if there is no column of heights.
     z: f64,
     class: Option<u8>,
 }
@@ -46,8 +47,10 @@ impl ColumnLayout {
             columns: Columns {
                 x: 1,
                 y: 2,
-                // Of points in plan, nobody asks for heights: the last column stands for them.
-                z: axes.count(),
+                z: match axes {
+                    Axes::Plan => None,
+                    Axes::Space => Some(3),
+                },
                 class: None,
             },
         }
@@ -86,18 +89,18 @@ impl ColumnLayout {
         };
         let (x, y) = (need("x", X_NAMES)?, need("y", Y_NAMES)?);
         let z = match axes {
+            Axes::Plan => None,
             Axes::Space => match several_heights(&names) {
                 Some(numbers) => {
                     return Err(NameFlaw::Repeated(of_heights(&numbers, &names, header)));
                 }
-                None => need("z", Z_NAMES)?,
+                None => Some(need("z", Z_NAMES)?),
             },
-            Axes::Plan => y.clone(),
         };
         let columns = Columns {
             x: one(x)?,
             y: one(y)?,
-            z: one(z)?,
+            z: z.map(one).transpose()?,
             class: find(CLASS_NAMES).map(one).transpose()?,
         };
         Ok(ColumnLayout { separator, columns })
@@ -106,7 +109,7 @@ impl ColumnLayout {
     pub(super) fn point(&self, line: &[u8]) -> Result<Point> {
         let mut found: [&[u8]; 4] = [b""; 4];
         let Columns { x, y, z, class } = self.columns;
-        let wanted = [Some(x), Some(y), Some(z), class];
+        let wanted = [Some(x), Some(y), z, class];
         let last = wanted.into_iter().flatten().fold(0, usize::max);
         let mut count = 0;
         for (number, field) in (1..=last).zip(self.separator.fields(line)) {
@@ -131,7 +134,10 @@ impl ColumnLayout {
         Ok(Point {
             x: self.coordinate("x", found[0], line)?,
             y: self.coordinate("y", found[1], line)?,
-            z: self.coordinate("z", found[2], line)?,
+            z: match z {
+                Some(_) => self.coordinate("z", found[2], line)?,
+                None => f64::NAN,
+            },
             class: class.map(|_| self.class_code(found[3], line)).transpose()?,
         })
     }

@@ -31,10 +31,9 @@ impl Start {
         axes: Axes,
         see: &mut dyn FnMut(&Lines) -> Result<()>,
     ) -> Result<Self> {
-        let asked = columns.map(|columns| ColumnLayout {
-            columns,
-            ..ColumnLayout::first(axes)
-        });
+        let asked = columns
+            .map(|columns| layout_for(columns, axes))
+            .transpose()?;
         let mut head = Head::new(asked, axes);
         while lines.next()? {
             see(lines)?;
@@ -200,6 +199,29 @@ impl Head {
             mark: DecimalMark::default(),
         }
     }
+}
+
+/// Returns the layout of columns that the caller gives.
+///
+/// # Errors
+/// If heights are needed, and no column has them.
+fn layout_for(columns: Columns, axes: Axes) -> Result<ColumnLayout> {
+    let z = match axes {
+        Axes::Plan => None,
+        Axes::Space if columns.z.is_none() => {
+            return Err(
+                Error::usage(format!("no column has heights: {columns}")).cure(wording![
+                    "name that of z, too, such as ",
+                    Setting::Columns.text("1,2,3")
+                ]),
+            );
+        }
+        Axes::Space => columns.z,
+    };
+    Ok(ColumnLayout {
+        columns: Columns { z, ..columns },
+        ..ColumnLayout::first(axes)
+    })
 }
 
 /// Returns true if the line is a single integer.

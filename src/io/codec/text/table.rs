@@ -75,7 +75,7 @@ impl Header {
 pub struct TableBatch {
     /// x and y of each point.
     pub positions: Vec<[f64; 2]>,
-    /// The height of each point, if heights are read.
+    /// The height of each point; NaN with [`Axes::Plan`].
     pub heights: Vec<f64>,
     /// The number of the line of each point, from 1.
     pub numbers: Vec<u64>,

@@ -12,6 +12,7 @@ pub(super) use self::values::none_inside;
 use self::values::{Sampling, Values};
 use super::surface::SurfaceProduct;
 use crate::crs::Crs;
+use crate::data::Columns;
 use crate::error::Result;
 use crate::run::context::notice::Notice;
 use crate::run::context::{Context, Journal, Size, Stage};
@@ -28,6 +29,8 @@ pub struct SampleReport {
     pub points: u64,
     /// Those of them that are not on the surface: what is added to them is empty.
     pub outside: u64,
+    /// The columns of x and y, if the points are text.
+    pub read: Option<Columns>,
     /// The names of the columns that were added.
     pub columns: Vec<String>,
     /// The coordinate system.
@@ -61,6 +64,7 @@ pub fn sample(
     context.check()?;
     let names = options.column_names();
     let source = Source::open(points, options, &names, &journal)?;
+    let read = source.columns();
     let of_points = source
         .stated(points)
         .assigned(options.assign.as_ref(), &journal);
@@ -100,6 +104,7 @@ pub fn sample(
             points: report.points,
         });
     }
+    report.read = read;
     report.columns = names;
     report.crs = crs;
     report.notices = journal.take();

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use super::options::{SampleOptions, SampleTarget};
 use super::values::Values;
 use crate::crs::Crs;
-use crate::data::{PointBatch, PointInfo, PointSource, Shape};
+use crate::data::{Columns, PointBatch, PointInfo, PointSource, Shape};
 use crate::error::{Error, Result};
 use crate::io::geojson::PointFeatures;
 use crate::io::las::{self, Detail, Rounding};
@@ -138,6 +138,14 @@ impl Source {
             crs,
             unread,
             role: Role::Ground,
+        }
+    }
+
+    /// Returns the columns of x and y of text.
+    pub(super) fn columns(&self) -> Option<Columns> {
+        match self {
+            Source::Text(table) => Some(table.columns()),
+            Source::Lidar(..) | Source::Shapefile { .. } | Source::GeoJson { .. } => None,
         }
     }
 
