@@ -462,6 +462,27 @@ fn closed_lines_have_a_row_each_and_those_within_them_are_holes() {
     near(&json(&run)["rows"][0], &[("common_area", 6.0)]);
 }
 
+/// Two squares of 10 by 10, of which the second begins in the middle of the first.
+#[test]
+fn faces_that_overlap_are_named() {
+    let square = |x: i32| [[x, 0], [x + 10, 0], [x + 10, 10], [x, 10]];
+    let mesh = |second: i32| {
+        let corners = [square(0), square(second)].concat();
+        let vertices = corners.iter().map(|[x, y]| format!("v {x} {y} 5\n"));
+        let faces = "f 1 2 3\nf 1 3 4\nf 5 6 7\nf 5 7 8\n".to_owned();
+        vertices.chain([faces]).collect::<String>()
+    };
+    let folder = folder_with(&[("a.obj", &mesh(5)), ("b.obj", &mesh(20))]);
+    let volume = |name| run_in(&folder, &["volume", name, "--plane", "0"]);
+    volume("a.obj").works(&[
+        "warning: a.obj: faces may overlap in plan (face 0, edge 2",
+        "`breakline check a.obj` names all such places",
+    ]);
+    let apart = volume("b.obj");
+    apart.works(&[]);
+    assert!(!apart.stderr.contains("overlap"), "{}", apart.stderr);
+}
+
 /// A square of 3 by 3, beside which a point makes a triangle of 13.5.
 #[test]
 fn a_surface_that_has_lost_half_of_its_hull_is_named() {

@@ -41,6 +41,7 @@ const NOT_IN_TILES: &[(&str, &str)] = &[
     ("RegionAreasUnused", "of `triangulate`"),
     ("SeedUnused", "of `triangulate`"),
     ("PolygonsOutside", "of `volume`"),
+    ("FacesOverlap", "of `volume`"),
     ("RingsOverlap", "of `volume`"),
     ("PolygonsPartlyOutside", "of `volume`"),
     ("LinesOff", "of `drape` and `profile`"),

@@ -119,6 +119,8 @@ pub enum Notice {
     /// In the polygons of these records of a file, the surface and its base have no area in
     /// common.
     PolygonsOutside(PathBuf, Vec<usize>),
+    /// Faces of a mesh may overlap in plan; with the first position where they do.
+    FacesOverlap(PathBuf, String),
     /// The rings of polygons of a layer overlap each other; with the records, counted from 1.
     RingsOverlap(PathBuf, Vec<usize>),
     /// Polygons of a layer are only in part where the surface and its base are.
@@ -538,6 +540,7 @@ impl Notice {
             | Notice::Transform(_)
             | Notice::PartForLinear
             | Notice::PolygonsOutside(..)
+            | Notice::FacesOverlap(..)
             | Notice::RingsOverlap(..)
             | Notice::LinesOff(..)
             | Notice::LinesPartlyOff(..)

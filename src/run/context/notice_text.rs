@@ -11,7 +11,7 @@ use super::notice_lists::{
 use super::units::{Quantity, bytes, neat, number};
 use crate::crs::Crs;
 use crate::data::Bounds;
-use crate::error::{Setting, Wording, wording};
+use crate::error::{Command, Setting, Wording, wording};
 use crate::run::request::lines::LineRole;
 
 /// Formats the text of the notice with plain names of settings, without its
@@ -145,6 +145,7 @@ fn text(notice: &Notice) -> Wording {
         Notice::Reprojecting(from, to) => format!("reprojecting from {from} to {to}").into(),
         Notice::Transform(text) => text.clone().into(),
         Notice::PolygonsOutside(path, records) => polygons_outside(path, records),
+        Notice::FacesOverlap(path, first) => faces_overlap(path, first),
         Notice::RingsOverlap(path, records) => rings_overlap(path, records),
         Notice::PolygonsPartlyOutside { path, partly, unit } => {
             polygons_partly_outside(path, partly, unit)
@@ -489,6 +490,17 @@ fn caps_lost(faces: u64, share: f64, points: u64) -> Wording {
         " or ",
         Setting::MaxEdge.text("none"),
         ")"
+    ]
+}
+
+fn faces_overlap(path: &Path, first: &str) -> Wording {
+    let path = path.display();
+    wording![
+        format!(
+            "{path}: faces may overlap in plan ({first}): where several are, all of them count; "
+        ),
+        Command::Check.on(path.to_string()),
+        " names all such places"
     ]
 }
 

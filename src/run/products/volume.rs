@@ -2,7 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use super::surface::SurfaceProduct;
+use super::overlaps::overlaps;
+use super::surface::{Model, SurfaceProduct};
 use super::together::{COMPARE_EXTENTS, no_overlap};
 use crate::crs::Crs;
 use crate::data::{Layer, Mesh, Surface, Value};
@@ -230,6 +231,10 @@ pub fn volume(
             .map(|bulking| bulking.earthwork(&row.volume));
     }
     require_any(&rows, outlines.as_ref(), base, &options.names)?;
+    note_overlaps(surface, &options.names[0], &journal);
+    if let VolumeBase::Surface(base) = base {
+        note_overlaps(base, &options.names[1], &journal);
+    }
     if let Some(outlines) = &outlines {
         outlines.note_flaws(&rows, scale.unit, &journal);
     }
@@ -259,6 +264,15 @@ fn require_any(
         (None, VolumeBase::Surface(_)) => Err(no_overlap(names)),
         // A mesh may stand upright.
         (None, VolumeBase::Levels(_) | VolumeBase::Rim) => Ok(()),
+    }
+}
+
+/// Adds a notice if faces of a mesh overlap: those of a TIN and of a raster do not.
+fn note_overlaps(product: &SurfaceProduct, name: &Path, journal: &Journal) {
+    if let Model::Mesh(mesh) = &product.model
+        && let Some(first) = overlaps(mesh.as_ref()).first()
+    {
+        journal.add(Notice::FacesOverlap(name.to_path_buf(), first.to_string()));
     }
 }
 
@@ -583,7 +597,6 @@ mod tests {
     use super::*;
     use crate::error::Kind;
     use crate::run::context::{Monitor, Progress, Size};
-    use crate::run::products::surface::Model;
 
     /// Cancels the run as soon as volumes are computed.
     struct Cancels<'a>(&'a AtomicBool);
