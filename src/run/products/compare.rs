@@ -74,9 +74,10 @@ pub struct CompareProduct {
 /// other cells is a surface between the centers of its cells.
 ///
 /// # Errors
-/// If no cell is on both surfaces, or the coordinate systems differ; if the frame cannot be chosen, or is chosen for a raster,
-/// which keeps its own, or a method is for two rasters; if areas are asked for and the method is not linear or the system is in
-/// degrees; if a file is damaged, the cells do not fit into memory, or the run is canceled.
+/// If no cell is on both surfaces, or the coordinate systems differ; if the frame cannot be chosen,
+/// or is chosen for a raster, which keeps its own, or a method is for two rasters; if areas are
+/// asked for and the method is not linear or the system is in degrees; if a file is damaged, the
+/// cells do not fit into memory, or the run is canceled.
 ///
 /// # Complexity
 /// Linear in the triangles, and O(n log n) for n cells, on all threads; about 40 bytes for each

@@ -400,8 +400,8 @@ impl<'a> Outlines<'a> {
         })
     }
 
-    /// Adds notices of the polygons whose rings overlap, in which there is nothing, or that are only
-    /// in part where the surface and its base are.
+    /// Adds notices of the polygons whose rings overlap, in which there is nothing, or that are
+    /// only in part where the surface and its base are.
     fn note_flaws(&self, rows: &[VolumeRow], unit: Option<VolumeUnit>, journal: &Journal) {
         if !self.overlapping.is_empty() {
             let records = self.overlapping.clone();

@@ -15,8 +15,8 @@ pub(crate) struct ReadArgs {
     ///
     /// Either one letter per column: E or X is the easting, N or Y the northing, Z the height; P
     /// (point number), D (description) and S (anything else) are skipped. Or the numbers of the
-    /// columns of x, y and z, counted from 1. Points in plan need no z: `NE`, `2,1`. With this option a header line is skipped. `info` and
-    /// the summary show which columns were used.
+    /// columns of x, y and z, counted from 1. Points in plan need no z: `NE`, `2,1`. With this
+    /// option a header line is skipped. `info` and the summary show which columns were used.
     #[arg(long, value_name = "PNEZD|XYZ|2,1,3", conflicts_with = "parse")]
     pub(crate) columns: Option<Columns>,
 

@@ -21,7 +21,8 @@
 //! A unit in brackets after a name is ignored: `Height (m)`. Comments begin with `#` or `//`. A
 //! comment before the points may be the header if it has no more names than a line has fields
 //! (words up to a colon do not count). Of several names for one axis, the first of the table
-//! counts; a name that two columns have is an error, as are several heights if none of them is `z`. Fields may be in double quotes.
+//! counts; a name that two columns have is an error, as are several heights if none of them is
+//! `z`. Fields may be in double quotes.
 //!
 //! A decimal comma is accepted unless commas separate the fields; numbers with a comma and numbers
 //! with a point in one file are an error, since one of the marks groups digits. A first line with a

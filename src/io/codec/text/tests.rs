@@ -219,7 +219,7 @@ fn a_name_of_two_columns_is_refused() {
             "line 1: columns 4 (\"height\") and 5 (\"elev\") all have names of heights in",
         ),
         (
-            "# x y Alt (m) h\n1 2 3 4\n",
+            "# x y Alt h\n1 2 3 4\n",
             "line 2: columns 3 (\"alt\") and 4 (\"h\") all have names of heights",
         ),
     ] {

@@ -51,8 +51,9 @@ pub struct SampleReport {
 /// If the points cannot be read, a line or a record is not a point, a line has not as many fields
 /// as the header or the first point, there is a column of that name or it is not one field of text,
 /// the output is not of the format of the points, the coordinate systems differ, slopes are asked
-/// for from degrees or by a method other than [`Linear`](crate::terrain::Method), there is no
-/// point or none on the surface, the output cannot be written, a file is damaged, or the run is canceled.
+/// for from degrees or by a method other than [`Linear`](crate::terrain::Method), none of the
+/// points is on the surface or the file has none, the output cannot be written, a file is damaged,
+/// or the run is canceled.
 pub fn sample(
     surface: &SurfaceProduct,
     points: &Path,
