@@ -166,9 +166,10 @@ fn the_columns_that_are_read_are_named() {
         ("a.xyz", SLOPE),
         ("two.csv", "id,x,y,height,elev\n1,1,1,11,5\n"),
     ]);
+    run_in(&folder, &["tin", "a.xyz", "-o", "a.tin"]).works(&[]);
     let words = [
         "accuracy",
-        "a.xyz",
+        "a.tin",
         "--checkpoints",
         "two.csv",
         "--columns",

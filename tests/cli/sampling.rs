@@ -69,7 +69,9 @@ fn columns_of_points_in_plan_need_no_heights() {
         ("n.csv", "A,1,0.5\nB,2,2.5\n"),
         ("two.xyz", "1 0.5\n2 2.5\n"),
     ]);
-    let sample = |words: &[&str]| run_in(&folder, &[&["sample", "a.xyz", "--at"], words].concat());
+    // --columns is for the points of a surface, too.
+    run_in(&folder, &["tin", "a.xyz", "-o", "a.tin"]).works(&[]);
+    let sample = |words: &[&str]| run_in(&folder, &[&["sample", "a.tin", "--at"], words].concat());
     for (columns, said, heights) in [
         ("2,3", "columns     x 2, y 3", ["11", "12"]),
         ("SNE", "columns     x 3, y 2", ["10.5", "12.5"]),
@@ -89,11 +91,7 @@ fn columns_of_points_in_plan_need_no_heights() {
     )
     .fails(
         2,
-        &[
-            "a.xyz",
-            "no column has heights: x 1, y 2",
-            "--columns 1,2,3",
-        ],
+        &["a.xyz: no column has heights: x 1, y 2", "--columns 1,2,3"],
     );
 }
 

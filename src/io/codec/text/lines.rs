@@ -130,9 +130,12 @@ impl Lines {
 
     /// Adds the file and the line to an error.
     pub(super) fn locate(&self, error: Error) -> Error {
-        error
-            .at(format!("line {}", self.number))
-            .in_file(&self.name)
+        // Before the first line, the options are wrong.
+        match self.number {
+            0 => error,
+            number => error.at(format!("line {number}")),
+        }
+        .in_file(&self.name)
     }
 }
 
