@@ -143,6 +143,7 @@ def test_a_surface_of_lines_alone(tmp_path):
         breakline.tin([])
 
 
+@pytest.mark.filterwarnings("ignore:.* of the convex hull is left out")
 def test_what_is_lost_with_flat_triangles_is_a_warning():
     rails = [[i, (i % 2) * 0.04 - 300, i] for i in range(40)]
     field = [[2 * (i % 20) + i // 20 % 3, 2 * (i // 20), 7] for i in range(400)]
