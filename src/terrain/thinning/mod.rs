@@ -57,8 +57,8 @@ pub enum Passes {
 /// thinner.choose(0, &mut batch)?;
 /// assert!(batch.is_empty(), "a later point could be nearer to the center");
 /// assert!(thinner.end_pass());
-/// let [(0, kept)] = thinner.held().collect::<Vec<_>>().try_into().unwrap() else { panic!() };
-/// assert_eq!(kept.z, [8.0, 9.0]);
+/// let kept: Vec<f64> = thinner.held().flat_map(|(_, batch)| batch.z).collect();
+/// assert_eq!(kept, [8.0, 9.0]);
 /// # Ok::<(), breakline::Error>(())
 /// ```
 #[derive(Debug)]
