@@ -22,6 +22,7 @@ mod results;
 mod returns;
 mod sampling;
 mod simplify;
+mod systems;
 mod thinning;
 mod usage;
 mod volumes;
