@@ -104,7 +104,8 @@ impl Columns {
     }
 }
 
-/// Like [`find`], but `None` if there is no such letter.
+/// Returns the number of the only column whose letter satisfies `is_it`; `None` if there is none,
+/// an error if there is more than one.
 fn find_any(text: &str, axis: &str, is_it: impl Fn(char) -> bool) -> Result<Option<usize>, String> {
     match text.contains(&is_it) {
         true => find(text, axis, is_it).map(Some),

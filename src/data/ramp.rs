@@ -222,7 +222,7 @@ mod tests {
             [0, 0, 25, 50, 125, 200]
         );
         assert_eq!(colors.of(f32::NAN), [0; 4]);
-        // Without any cell there is no range.
+        // No cell has a height: only stops at heights count.
         assert_eq!(relative.over(None, ColorMatch::Linear).of(3.0), red(50));
         let gray = ramp(&[(StopAt::NoHeight, [9, 9, 9, 9])]);
         let colors = gray.over(None, ColorMatch::Linear);

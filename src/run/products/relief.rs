@@ -40,7 +40,7 @@ impl ColorReliefOptions {
 /// Returns the color ramp that is built in under a name, or the one in a file.
 ///
 /// # Errors
-/// If there is neither, or the file is no ramp (see [`ramp::read`]).
+/// If no ramp and no file has this name, or the file is not a ramp (see [`ramp::read`]).
 pub fn color_ramp(name_or_file: &Path) -> Result<ColorRamp> {
     let built_in = name_or_file.to_str().and_then(ramp::built_in);
     match built_in {

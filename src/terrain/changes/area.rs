@@ -16,6 +16,6 @@ pub struct ChangedArea {
     pub volume: f64,
     /// The largest difference of the heights, first minus second.
     pub largest: f64,
-    /// Where it is; of several positions, the least by x and then y.
+    /// The position of the largest difference; of several, the least by x and then y.
     pub at: [f64; 2],
 }

@@ -48,7 +48,7 @@ impl CellFormat<'_> {
         !matches!(self, CellFormat::Colors(_))
     }
 
-    /// Returns true if cells without a value are stored as something else than nothing.
+    /// Returns true if cells without a value are stored: a ramp may have a color for them.
     pub(super) fn stores_missing(self) -> bool {
         match self {
             CellFormat::Heights | CellFormat::Shades => false,

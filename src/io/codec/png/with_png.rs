@@ -22,8 +22,7 @@ const BLOCK: usize = 256;
 /// the coordinate system is known, its auxiliary file (`relief.png.aux.xml`).
 ///
 /// Values are rounded and clamped to 0..255; NaN is transparent. All cores compute one band of rows
-/// while the previous one is compressed, so memory is needed for 512 rows, 10 bytes per
-/// cell.
+/// while the previous one is compressed, so memory is needed for 512 rows, 10 bytes per cell.
 ///
 /// # Errors
 /// If the raster has no cells or more than 2^31 - 1 in a row or column, the source fails, or a file

@@ -63,8 +63,8 @@ pub fn built_in(name: &str) -> Option<ColorRamp> {
 /// Reads a ramp file.
 ///
 /// # Errors
-/// If the file cannot be read or is larger than 1 MiB, no line has a height, or a line has not a
-/// height and a color; the error names the line.
+/// If the file cannot be read or is larger than 1 MiB, no line has a height, or a line lacks a
+/// height or a color; the error names the line.
 pub fn read(path: &Path) -> Result<ColorRamp> {
     let read = || {
         if std::fs::metadata(path)?.len() > MAX_BYTES {

@@ -32,9 +32,8 @@ const BLOCK: usize = 32;
 /// `numbers` has those of all rows, as many for each as there are names.
 ///
 /// # Errors
-/// If there is no table, or its rows are not as many as the records; if the index lists records in
-/// another order; if a field has one of the names already, or a name is longer than 10 bytes; or if
-/// a file cannot be read or written.
+/// If the table is missing or has more or fewer rows than there are records, the index lists these
+/// in another order, a name is taken or longer than 10 bytes, or a file cannot be read or written.
 pub fn append_fields(
     path: &Path,
     records: usize,

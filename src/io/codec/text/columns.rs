@@ -21,7 +21,7 @@ pub(super) struct ColumnLayout {
 pub(super) struct Point {
     x: f64,
     y: f64,
-    /// NaN if there is no column of heights.
+    /// NaN if only x and y are read.
     z: f64,
     class: Option<u8>,
 }
