@@ -53,6 +53,12 @@ fn along_sliver([a, b, c]: [[f64; 3]; 3], q: [f64; 2]) -> f64 {
     }
 }
 
+/// Returns the position of a point in plan.
+#[inline(always)]
+pub(super) fn plan([x, y, _]: [f64; 3]) -> [f64; 2] {
+    [x, y]
+}
+
 /// The distance of two points in plan.
 pub(super) fn plan_distance(p: [f64; 3], q: [f64; 3]) -> f64 {
     (p[0] - q[0]).hypot(p[1] - q[1])

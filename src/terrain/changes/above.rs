@@ -7,6 +7,7 @@ use super::area::ChangedArea;
 use crate::data::{Surface, corners, doubled_area};
 use crate::error::{Error, Result};
 use crate::terrain::contour::{crossing, simple_rings};
+use crate::terrain::linear::plan;
 use crate::terrain::overlay::Corner;
 use crate::terrain::volume::{Around, Sum, Units, integral};
 use crate::triangulation::geometry::Terrain;
@@ -148,10 +149,6 @@ impl Part {
             y + sum[1] / self.count as f64,
         ]
     }
-}
-
-fn plan([x, y, _]: [f64; 3]) -> [f64; 2] {
-    [x, y]
 }
 
 /// Sums over the parts of one polygon.

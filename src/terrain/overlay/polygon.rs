@@ -1,6 +1,6 @@
 //! The convex polygon that two triangles have in common.
 
-use crate::terrain::linear::linear;
+use crate::terrain::linear::{linear, plan};
 
 /// A corner of a polygon, relative to the origin of its [`Overlap`](super::Overlap).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -190,10 +190,6 @@ fn along([from, to]: [[f64; 3]; 2], at: [f64; 2]) -> f64 {
 /// Twice the area of a triangle from a line to a position, positive to its left.
 fn left_of([a, b]: [[f64; 2]; 2], p: [f64; 2]) -> f64 {
     (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0])
-}
-
-fn plan([x, y, _]: [f64; 3]) -> [f64; 2] {
-    [x, y]
 }
 
 /// Returns the triangle with its least corner first, so that it does not show how it was listed.

@@ -7,6 +7,7 @@ use super::segment::{Event, Segment, turn};
 use super::step::{At, Steps, Toward, height_on};
 use crate::data::Surface;
 use crate::terrain::boxes::{Boxed, Boxes, Extent};
+use crate::terrain::linear::plan;
 use crate::triangulation::num::Sign;
 
 /// An edge at the rim of a surface: that of a face opposite a corner.
@@ -86,7 +87,6 @@ fn entry(steps: &mut Steps<'_>, edge: &RimEdge, segment: &Segment) -> Option<Ent
     let corners = steps.surface.face(face)?;
     // The face is to the left of the edge from `a` to `b`.
     let [a, b] = [1, 2].map(|k| steps.surface.position(corners[(i + k) % 3]));
-    let plan = |[x, y, _]: [f64; 3]| [x, y];
     let is_within = |p: [f64; 3]| {
         segment.compare_points(segment.from, plan(p)).is_le()
             && segment.compare_points(plan(p), segment.to).is_lt()

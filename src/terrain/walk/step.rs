@@ -5,7 +5,7 @@
 
 use super::segment::{Event, Seen, Segment, turn};
 use crate::data::{FaceAcross, Surface};
-use crate::terrain::linear::linear;
+use crate::terrain::linear::{linear, plan};
 use crate::terrain::overlay::from_least;
 use crate::triangulation::geometry::height_along;
 use crate::triangulation::num::Sign;
@@ -96,10 +96,6 @@ pub(super) struct Steps<'a> {
     /// The number of faces that may still be passed. A surface of faces that do not overlap is
     /// never passed through for longer.
     left: u64,
-}
-
-fn plan([x, y, _]: [f64; 3]) -> [f64; 2] {
-    [x, y]
 }
 
 /// Where a position on the edge between two points is, with its height.
