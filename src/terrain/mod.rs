@@ -47,6 +47,7 @@
 //! given), and points are not smoothed.
 
 mod admitted;
+mod arranged;
 mod boxes;
 mod builder;
 mod caps;

@@ -1,12 +1,13 @@
 //! Which rings lie within which.
 
 use super::admitted::refused;
+use super::arranged::arranged;
 use super::lines::divided::Divided;
 use crate::data::area_of;
-use crate::error::{Error, Result};
+use crate::error::Result;
+use crate::triangulation::ConstrainedDelaunay;
 use crate::triangulation::geometry::Terrain;
 use crate::triangulation::kernel::RANGE;
-use crate::triangulation::{ConstrainedDelaunay, OnCrossing};
 
 /// Which of some rings lie within which, and where they overlap in part.
 #[derive(Debug, Default)]
@@ -96,14 +97,7 @@ pub(super) fn triangulated(rings: &[Vec<[f64; 2]>]) -> Result<ConstrainedDelauna
         let numbers = first..points.len() as u32;
         lines.push(numbers.chain((!ring.is_empty()).then_some(first)).collect());
     }
-    ConstrainedDelaunay::<Terrain>::from_lines(
-        Terrain::default(),
-        &points,
-        &lines,
-        OnCrossing::Split,
-    )
-    .map(|(triangulation, _)| triangulation)
-    .map_err(|e| Error::limit(e.to_string()))
+    arranged(&points, &lines)
 }
 
 #[cfg(test)]

@@ -6,13 +6,14 @@ use super::apart::Apart;
 use super::area::ChangedArea;
 use crate::data::{Surface, corners, doubled_area};
 use crate::error::{Error, Result};
+use crate::terrain::arranged::arranged;
 use crate::terrain::contour::{crossing, simple_rings};
 use crate::terrain::linear::plan;
 use crate::terrain::overlay::Corner;
 use crate::terrain::volume::{Around, Sum, Units, integral};
+use crate::triangulation::ConstrainedDelaunay;
 use crate::triangulation::geometry::Terrain;
 use crate::triangulation::tds::CellId;
-use crate::triangulation::{ConstrainedDelaunay, OnCrossing};
 
 /// Parts of faces that a thread takes at a time.
 const BATCH: usize = 1 << 10;
@@ -197,13 +198,7 @@ impl Polygons {
     fn new(arcs: &[[[f64; 2]; 2]]) -> Result<Self> {
         let points: Vec<[f64; 3]> = arcs.iter().flatten().map(|&[x, y]| [x, y, 0.0]).collect();
         let lines: Vec<[u32; 2]> = (0..arcs.len() as u32).map(|i| [2 * i, 2 * i + 1]).collect();
-        let (triangulation, _) = ConstrainedDelaunay::<Terrain>::from_lines(
-            Terrain::default(),
-            &points,
-            &lines,
-            OnCrossing::Split,
-        )
-        .map_err(|e| Error::limit(e.to_string()))?;
+        let triangulation = arranged(&points, &lines)?;
         let nesting = triangulation
             .nesting_of(triangulation.lines())
             .map_err(|e| Error::format(e.to_string()))?;

@@ -5,13 +5,12 @@ use rayon::prelude::*;
 use crate::data::{Mesh, Surface, orientation};
 use crate::error::{Error, Result};
 use crate::terrain::admitted::refused;
+use crate::terrain::arranged::arranged;
 use crate::terrain::boxes::{Boxes, Extent, LocatedFace};
 use crate::terrain::overlay::{from_least, within};
 use crate::terrain::rasterize::height_at;
-use crate::triangulation::geometry::Terrain;
 use crate::triangulation::kernel::RANGE;
 use crate::triangulation::num::Sign;
-use crate::triangulation::{ConstrainedDelaunay, OnCrossing};
 
 type Triangle = [[f64; 3]; 3];
 
@@ -62,13 +61,7 @@ pub(super) fn difference_over(
     let count = u32::try_from(points.len())
         .map_err(|_| Error::limit("more than a billion triangles differ"))?;
     let lines: Vec<[u32; 2]> = (0..count).step_by(3).flat_map(sides).collect();
-    let (triangulation, _) = ConstrainedDelaunay::<Terrain>::from_lines(
-        Terrain::default(),
-        &points,
-        &lines,
-        OnCrossing::Split,
-    )
-    .map_err(|e| Error::limit(e.to_string()))?;
+    let triangulation = arranged(&points, &lines)?;
     let plan = |v: usize| {
         let [x, y, _] = triangulation.points()[v];
         [x, y]

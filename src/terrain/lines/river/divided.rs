@@ -1,8 +1,7 @@
 //! Triangles of a simple polygon.
 
-use crate::triangulation::geometry::Terrain;
+use crate::terrain::arranged::arranged;
 use crate::triangulation::tds::VertexId;
-use crate::triangulation::{ConstrainedDelaunay, OnCrossing};
 
 /// Divides a simple polygon into triangles between its vertices; `None` if it has no area.
 ///
@@ -11,13 +10,7 @@ use crate::triangulation::{ConstrainedDelaunay, OnCrossing};
 pub(super) fn divided(polygon: &[[f64; 3]]) -> Option<Vec<[[f64; 3]; 3]>> {
     let count = polygon.len() as u32;
     let sides: Vec<[u32; 2]> = (0..count).map(|k| [k, (k + 1) % count]).collect();
-    let built = ConstrainedDelaunay::<Terrain>::from_lines(
-        Terrain::default(),
-        polygon,
-        &sides,
-        OnCrossing::Split,
-    );
-    let (triangulation, _) = built.ok()?;
+    let triangulation = arranged(polygon, &sides).ok()?;
     if triangulation.dimension() != 2 {
         return None;
     }
