@@ -1,5 +1,7 @@
 //! Points that wait until all others are known, with everything that is to be written of them.
 
+use std::ops::Range;
+
 use super::position::point;
 use crate::data::{PointBatch, PointFlags};
 use crate::error::{Error, Result};
@@ -43,6 +45,11 @@ impl Held {
         &self.rows
     }
 
+    /// Returns where the record of a row, or of a point of a batch, is among all records.
+    fn record(&self, at: usize) -> Range<usize> {
+        at * self.stride..(at + 1) * self.stride
+    }
+
     pub(super) fn bytes(&self) -> usize {
         self.rows.len() * size_of::<Row>() + self.records.len()
     }
@@ -80,7 +87,7 @@ impl Held {
     /// Adds point `i` of a batch that was announced.
     pub(super) fn push(&mut self, source: usize, batch: &PointBatch, i: usize, number: u64) {
         self.rows.push(row(source, batch, i, number));
-        let record = i * self.stride..(i + 1) * self.stride;
+        let record = self.record(i);
         self.records.extend_from_slice(&batch.records[record]);
     }
 
@@ -94,7 +101,7 @@ impl Held {
         number: u64,
     ) {
         self.rows[at] = row(source, batch, i, number);
-        let [to, from] = [at, i].map(|k| k * self.stride..(k + 1) * self.stride);
+        let [to, from] = [at, i].map(|k| self.record(k));
         self.records[to].copy_from_slice(&batch.records[from]);
     }
 
@@ -107,7 +114,7 @@ impl Held {
             self.sources.clone_from(&others.sources);
         }
         self.rows.push(others.rows[at]);
-        let record = at * self.stride..(at + 1) * self.stride;
+        let record = self.record(at);
         self.records.extend_from_slice(&others.records[record]);
     }
 
@@ -165,8 +172,9 @@ impl Held {
                 batch.return_number.push(row.return_number);
                 batch.return_count.push(row.return_count);
             }
-            let record = at * self.stride..(at + 1) * self.stride;
-            batch.records.extend_from_slice(&self.records[record]);
+            batch
+                .records
+                .extend_from_slice(&self.records[self.record(at)]);
         }
         batch
     }

@@ -68,10 +68,7 @@ impl Spaced {
                 continue;
             }
             let cell = cell_of(found, self.distance * CELL)?;
-            if self
-                .near
-                .covers(self.kept.rows(), found, cell, self.distance)
-            {
+            if self.is_covered(found, cell) {
                 continue;
             }
             self.candidates.push(source, batch, i, number);
@@ -84,6 +81,12 @@ impl Spaced {
             }
         }
         Ok(())
+    }
+
+    /// Returns true if a point in this cell is too close to one that is kept.
+    fn is_covered(&self, point: [f64; 3], cell: [i64; 2]) -> bool {
+        let rows = self.kept.rows();
+        self.near.covers(rows, point, cell, self.distance)
     }
 
     /// Returns the candidates in the order in which they are taken.
@@ -120,10 +123,7 @@ impl Spaced {
             let Ok(cell) = cell_of(found, self.distance * CELL) else {
                 continue;
             };
-            if !self
-                .near
-                .covers(self.kept.rows(), found, cell, self.distance)
-            {
+            if !self.is_covered(found, cell) {
                 self.near.add(cell);
                 self.kept.push_from(&self.candidates, at);
             }
