@@ -76,7 +76,8 @@ impl Thinner {
     /// Creates a chooser for a rule.
     ///
     /// # Errors
-    /// If the number of the rule makes no sense.
+    /// If the number of the rule is not in its range: a length that is not above zero and finite,
+    /// every 0th point, or a share that is not above 0 and at most 1.
     pub fn new(thinning: Thinning, passes: Passes) -> Result<Self> {
         if let Some(flaw) = thinning.flaw() {
             return Err(Error::usage(flaw));
@@ -101,6 +102,10 @@ impl Thinner {
     /// # Errors
     /// If a point is too far from the origin for cells of this size, or records have different
     /// lengths.
+    ///
+    /// # Complexity
+    /// Linear in the points; for [`Thinning::Poisson`] also in the points that are kept around
+    /// each, and O(log n) for n candidates.
     pub fn choose(&mut self, source: usize, batch: &mut PointBatch) -> Result<()> {
         match &mut self.0 {
             Chooser::Nth { step, seen } => {
@@ -126,6 +131,9 @@ impl Thinner {
 
     /// Ends a pass over all points. Returns true if all are decided; otherwise all points must be
     /// given again. Always true for [`Passes::One`].
+    ///
+    /// # Complexity
+    /// O(n log n) for n candidates of [`Thinning::Poisson`]; constant for all other rules.
     pub fn end_pass(&mut self) -> bool {
         match &mut self.0 {
             Chooser::Nth { .. } | Chooser::Random { .. } | Chooser::Cells(_) => true,
@@ -135,6 +143,9 @@ impl Thinner {
 
     /// Returns the points that were held and are kept, in the order in which they were given: in
     /// batches, each with the number of its source.
+    ///
+    /// # Complexity
+    /// O(n log n) for n points that were held.
     pub fn held(&mut self) -> impl Iterator<Item = (usize, PointBatch)> {
         let held = match &mut self.0 {
             Chooser::Nth { .. } | Chooser::Random { .. } => Held::default(),

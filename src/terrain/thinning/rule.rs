@@ -50,7 +50,8 @@ impl Thinning {
     /// the center of a cell and the seed 0; see [`with`](Self::with) for others.
     ///
     /// # Errors
-    /// If the text is none of these, or the number makes no sense; the error says what is expected.
+    /// If the text is none of these, or the number is not in the range of the rule; the error says
+    /// what is expected.
     pub fn parse(text: &str) -> std::result::Result<Self, String> {
         let text = text.trim();
         let unknown = || {
