@@ -1,5 +1,6 @@
 //! One point of each square cell in plan.
 
+use std::cmp::Ordering;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
@@ -45,7 +46,7 @@ impl Cells {
                     let row = *taken.get();
                     let key = |point| key(point, cell, self.size, self.keep);
                     let (new, old) = (key(found), key(self.held.rows()[row].point));
-                    if new.iter().map(ordered).lt(old.iter().map(ordered)) {
+                    if is_less(&new, &old) {
                         self.held.replace(row, source, batch, i, self.seen);
                     }
                 }
@@ -81,8 +82,8 @@ fn key(point: [f64; 3], cell: [i64; 2], size: f64, keep: CellPoint) -> [f64; 4] 
     [first, x, y, z].map(|number| number + 0.0)
 }
 
-/// Returns a whole number in the order of a number that is no NaN.
-fn ordered(number: &f64) -> i64 {
-    let bits = number.to_bits().cast_signed();
-    bits ^ ((bits >> 63).cast_unsigned() >> 1).cast_signed()
+/// Compares two keys; in the total order of numbers, so that NaN has a place in it, too.
+fn is_less(a: &[f64; 4], b: &[f64; 4]) -> bool {
+    let mut orders = a.iter().zip(b).map(|(a, b)| a.total_cmp(b));
+    orders.find(|order| order.is_ne()) == Some(Ordering::Less)
 }
