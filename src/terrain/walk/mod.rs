@@ -194,9 +194,8 @@ struct Stretches {
 impl Stretches {
     /// Goes on to the next segment of the line.
     fn begin(&mut self, segment: &Segment) {
-        let [x, y] = [0, 1].map(|k| segment.to[k] - segment.from[k]);
         self.start = self.end;
-        self.end = self.start + x.hypot(y);
+        self.end = self.start + distance(segment.to, segment.from);
         self.segment = Some(*segment);
     }
 

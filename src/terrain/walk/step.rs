@@ -79,6 +79,14 @@ impl Exit {
         self.face = face;
         Ok(())
     }
+
+    /// Returns what the segment comes to in the face across this edge.
+    fn toward(mut self, across: &FaceAcross, segment: &Segment) -> Toward {
+        match self.pass(across, segment) {
+            Ok(()) => Toward::Edge(self),
+            Err(vertex) => vertex,
+        }
+    }
 }
 
 /// What a step comes to.
@@ -221,7 +229,7 @@ impl<'a> Steps<'a> {
         let corners = self.surface.face(face)?;
         let [apex, left, right] =
             [0, 1, 2].map(|k| self.surface.position(corners[(corner + k) % 3]));
-        let mut exit = Exit {
+        let exit = Exit {
             face,
             corner,
             right: segment.seen(right),
@@ -232,8 +240,7 @@ impl<'a> Steps<'a> {
             corner,
             apex,
         };
-        let vertex = exit.pass(&across, segment).err();
-        Some(vertex.unwrap_or(Toward::Edge(exit)))
+        Some(exit.toward(&across, segment))
     }
 
     /// Returns what a segment comes to from its start; `None` if that is not on the surface, or the
@@ -269,15 +276,14 @@ impl<'a> Steps<'a> {
                 match (of_a.side, of_b.side) {
                     (Sign::Positive, Sign::Negative) => self.enter(face, corner, segment),
                     (Sign::Negative, Sign::Positive) => {
-                        let mut exit = Exit {
+                        let exit = Exit {
                             face,
                             corner,
                             right: of_a,
                             left: of_b,
                         };
                         let across = self.surface.across(face, corner)?;
-                        let vertex = exit.pass(&across, segment).err();
-                        Some(vertex.unwrap_or(Toward::Edge(exit)))
+                        Some(exit.toward(&across, segment))
                     }
                     (Sign::Zero, Sign::Zero) => {
                         self.surface.neighbor(face, corner)?;
