@@ -198,16 +198,13 @@ fn numbers(names: &[String], wanted: &str) -> Option<Vec<usize>> {
 
 /// Returns the numbers of the columns that are heights by different names, none of which is `z`.
 fn several_heights(names: &[String]) -> Option<Vec<usize>> {
-    let [z, others @ ..] = Z_NAMES else {
-        return None;
-    };
-    let mut found: Vec<usize> = others
+    let mut found: Vec<usize> = Z_NAMES
         .iter()
         .filter_map(|known| numbers(names, known))
         .map(|numbers| numbers[0])
         .collect();
     found.sort_unstable();
-    (found.len() > 1 && numbers(names, z).is_none()).then_some(found)
+    (found.len() > 1 && numbers(names, "z").is_none()).then_some(found)
 }
 
 #[cold]
