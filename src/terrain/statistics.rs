@@ -56,8 +56,8 @@ impl ErrorStatistics {
         "skew",
     ];
 
-    /// Returns all numbers but the count, by [their names](Self::NAMES). Each is in the unit of the
-    /// differences; the skewness has none.
+    /// Returns all numbers but the count, in the order of [their names](Self::NAMES). The unit is
+    /// that of the differences; the skewness has none.
     pub fn values(&self) -> [f64; 9] {
         [
             self.mean,

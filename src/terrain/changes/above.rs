@@ -47,6 +47,7 @@ pub(super) fn above(
     }
     let polygons = Polygons::new(&arcs)?;
     let around = Around::faces_of(mesh);
+    // Volumes reach down to 0.
     let [x, y, _] = around.min;
     let units = around.with([[x, y, 0.0]; 2]).units(1.0)?;
     let batches: Vec<Vec<Option<usize>>> = parts
@@ -180,7 +181,7 @@ impl Totals {
     }
 }
 
-/// Polygons by their borders.
+/// Polygons, and a triangulation of their borders in which they are found.
 struct Polygons {
     triangulation: ConstrainedDelaunay<Terrain>,
     /// The polygon that each cell is in.
@@ -190,8 +191,8 @@ struct Polygons {
 }
 
 impl Polygons {
-    /// Finds the polygons with some borders, which bound areas together; where two coincide, they
-    /// cancel. So the result is valid, however the ends of arcs were rounded.
+    /// Returns the polygons that arcs bound together. Two arcs that coincide cancel, so that the
+    /// polygons are valid however the ends of arcs were rounded.
     ///
     /// # Errors
     /// If the arcs leave a gap, or a coordinate is not covered by the arithmetic.

@@ -16,14 +16,14 @@ type Triangle = [[f64; 3]; 3];
 
 /// The difference of two surfaces as a surface.
 pub(super) struct Apart {
-    /// Its triangles are each in one face of both.
+    /// Each triangle is within one face of either surface.
     pub(super) mesh: Mesh,
     /// Where the mesh has its origin.
     pub(super) origin: [f64; 2],
 }
 
-/// Returns the heights of the first of two surfaces minus those of the second, where some faces of
-/// each have something in common. Heights are mapped by a function.
+/// Returns the difference of two surfaces, first minus second, over all that the given faces of
+/// both have in common. Its heights are mapped by `map`.
 ///
 /// # Errors
 /// If a coordinate is not covered by the arithmetic.
@@ -109,7 +109,7 @@ pub(super) fn difference_over(
     }
     let vertices = heights.iter().enumerate().map(|(v, &(_, height))| {
         let [x, y] = plan(v);
-        // No face has the others.
+        // The other vertices are in no face.
         [x, y, if height.is_nan() { 0.0 } else { map(height) }]
     });
     let faces = inside.iter().map(|cell| cell.corners.map(|v| v as u32));

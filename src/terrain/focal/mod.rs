@@ -84,7 +84,7 @@ impl<S: BlockSource, R: Rule> BlockSource for Focal<S, R> {
                     *cell = f32::NAN;
                     continue;
                 }
-                // All nine without a branch: this is faster than to stop at the first.
+                // `PERF:` all nine without a branch, which is faster than to stop at the first.
                 if heights.iter().fold(false, |any, z| any | z.is_nan()) {
                     continue_straight(&mut heights);
                 }

@@ -3,10 +3,10 @@
 //! Some of the given sites stay; neither they nor their heights are changed. In blocks, sites are
 //! inserted where the error is largest until the bound holds (Garland and Heckbert 1995, "Fast
 //! polygonal approximation of terrains and height fields"), then removed again, the cheapest first,
-//! as long as it still holds. The blocks are joined by one triangulation of all that is left;
-//! what is too far off there is inserted, and what the blocks needed only at their borders is
-//! removed. At the end every site is measured against the finished surface, exactly where rounding
-//! could decide.
+//! as long as it still holds. The blocks are joined by one triangulation of all that is left; what
+//! is too far off there is inserted, and what the blocks needed only at their borders is removed.
+//! At the end every site is measured against the finished surface, exactly where rounding could
+//! decide.
 //!
 //! Each step is a function of the set of sites, so that neither their order nor the number of
 //! threads shows in the result.

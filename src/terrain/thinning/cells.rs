@@ -67,8 +67,7 @@ impl Cells {
     }
 }
 
-/// Returns numbers whose order, one after the other, is the order in which points of a cell are
-/// preferred.
+/// Returns the key of a point in its cell: the point with the least key is kept.
 fn key(point: [f64; 3], cell: [i64; 2], size: f64, keep: CellPoint) -> [f64; 4] {
     let [x, y, z] = point;
     let first = match keep {
@@ -82,7 +81,8 @@ fn key(point: [f64; 3], cell: [i64; 2], size: f64, keep: CellPoint) -> [f64; 4] 
     [first, x, y, z].map(|number| number + 0.0)
 }
 
-/// Compares two keys; in the total order of numbers, so that NaN has a place in it, too.
+/// Returns true if a key is before another one: by the first numbers that differ, in their total
+/// order, in which NaN has a place, too.
 fn is_less(a: &[f64; 4], b: &[f64; 4]) -> bool {
     let mut orders = a.iter().zip(b).map(|(a, b)| a.total_cmp(b));
     orders.find(|order| order.is_ne()) == Some(Ordering::Less)

@@ -21,7 +21,7 @@ pub enum Thinning {
         /// Each seed has its own order.
         seed: u64,
     },
-    /// The first point, and then every so many.
+    /// The first point, and each n-th one after it.
     Nth(u64),
     /// A share of the points, by a hash of their positions. A smaller share is a part of a larger
     /// one with the same seed.

@@ -104,7 +104,8 @@ impl TileBuffers {
                     }
                 }
             }
-            // Both predictors end with the differences of neighboring bytes, of one sample.
+            // Both predictors end with differences of bytes, each from the one of the same sample
+            // before it.
             let step = format.samples();
             for x in (step..line.len()).rev() {
                 line[x] = line[x].wrapping_sub(line[x - step]);
