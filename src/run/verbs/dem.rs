@@ -4,12 +4,11 @@ use std::fmt::Debug;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::raster::{announce, list_frame};
+use super::raster::{list_frame, write_numbers};
 use super::targets::Outputs;
 use super::{Keeps, Summary, Tiles, Verb};
 use crate::error::{Result, Setting};
 use crate::io::formats::Product;
-use crate::io::geotiff::{COPIES_ON_DISK, RasterSummary};
 use crate::run::context::Context;
 use crate::run::products::cells::{self, CellProduct, DemOptions};
 use crate::run::products::surface::SurfaceProduct;
@@ -51,7 +50,8 @@ impl Verb for DemOptions {
         outputs: &Outputs,
         context: &Context,
     ) -> Result<Summary> {
-        write(&cells::dem(surface, self, context)?, outputs, context)
+        let cells = cells::dem(surface, self, context)?;
+        Ok(Summary::Heights(write_numbers(&cells, outputs, context)?))
     }
 
     fn keeps(&self) -> Keeps<'_> {
@@ -64,23 +64,7 @@ impl Verb for DemOptions {
         outputs: &Outputs,
         context: &Context,
     ) -> Result<Summary> {
-        write(
-            &CellProduct::heights_of(tiles.heights(&self.frame, context)?),
-            outputs,
-            context,
-        )
+        let cells = CellProduct::heights_of(tiles.heights(&self.frame, context)?);
+        Ok(Summary::Heights(write_numbers(&cells, outputs, context)?))
     }
-}
-
-fn write(cells: &CellProduct, outputs: &Outputs, context: &Context) -> Result<Summary> {
-    announce(cells, outputs, |_| (4, COPIES_ON_DISK), context)?;
-    let mut written = RasterSummary {
-        min: f64::NAN,
-        max: f64::NAN,
-        valid: 0,
-    };
-    for target in &outputs.targets {
-        written = cells.write(target.within(&outputs.set), context)?;
-    }
-    Ok(Summary::Heights(written))
 }

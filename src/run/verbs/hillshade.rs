@@ -4,7 +4,7 @@ use std::fmt::Debug;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::raster::{announce, is_picture, list_frame};
+use super::raster::{is_picture, list_frame, write_drawn};
 use super::targets::{Outputs, Target};
 use super::{Keeps, Summary, Tiles, Verb};
 use crate::error::{Result, Setting};
@@ -73,7 +73,8 @@ impl Verb for HillshadeOptions {
         outputs: &Outputs,
         context: &Context,
     ) -> Result<Summary> {
-        write(&cells::hillshade(surface, self, context)?, outputs, context)
+        let cells = cells::hillshade(surface, self, context)?;
+        write_drawn(&cells, outputs, cell_bytes, context)
     }
 
     fn keeps(&self) -> Keeps<'_> {
@@ -89,25 +90,9 @@ impl Verb for HillshadeOptions {
         let heights = tiles.heights(&self.frame, context)?;
         let crs = heights.crs().cloned();
         let journal = Journal::new(context);
-        write(
-            &CellProduct::shades_of(heights, &self.light, crs.as_ref(), &journal)?,
-            outputs,
-            context,
-        )
+        let cells = CellProduct::shades_of(heights, &self.light, crs.as_ref(), &journal)?;
+        write_drawn(&cells, outputs, cell_bytes, context)
     }
-}
-
-fn write(cells: &CellProduct, outputs: &Outputs, context: &Context) -> Result<Summary> {
-    announce(cells, outputs, cell_bytes, context)?;
-    for target in &outputs.targets {
-        let destination = target.within(&outputs.set);
-        if is_picture(target) {
-            cells.write_picture(destination, context)?;
-        } else {
-            cells.write(destination, context)?;
-        }
-    }
-    Ok(Summary::Shades)
 }
 
 /// Returns the bytes of a cell before compression, and how many times they are on the disk.

@@ -4,12 +4,11 @@ use std::fmt::Debug;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::raster::{announce, list_frame};
+use super::raster::{list_frame, write_numbers};
 use super::targets::Outputs;
 use super::{Keeps, Summary, Tiles, Verb};
 use crate::error::{Result, Setting};
 use crate::io::formats::Product;
-use crate::io::geotiff::{COPIES_ON_DISK, RasterSummary};
 use crate::run::context::{Context, Journal};
 use crate::run::products::cells::{self, CellProduct, QuantityOptions};
 use crate::run::products::surface::{self, SurfaceProduct, SurfaceRequest};
@@ -67,7 +66,8 @@ impl Verb for QuantityOptions {
         context: &Context,
     ) -> Result<Summary> {
         let cells = cells::quantity(surface, self, context)?;
-        write(&cells, self.quantity, outputs, context)
+        let written = write_numbers(&cells, outputs, context)?;
+        Ok(Summary::Quantity(self.quantity, written))
     }
 
     fn keeps(&self) -> Keeps<'_> {
@@ -84,24 +84,7 @@ impl Verb for QuantityOptions {
         let crs = heights.crs().cloned();
         let journal = Journal::new(context);
         let cells = CellProduct::quantity_of(heights, self, crs.as_ref(), &journal)?;
-        write(&cells, self.quantity, outputs, context)
+        let written = write_numbers(&cells, outputs, context)?;
+        Ok(Summary::Quantity(self.quantity, written))
     }
-}
-
-fn write(
-    cells: &CellProduct,
-    quantity: Quantity,
-    outputs: &Outputs,
-    context: &Context,
-) -> Result<Summary> {
-    announce(cells, outputs, |_| (4, COPIES_ON_DISK), context)?;
-    let mut cells_written = RasterSummary {
-        min: f64::NAN,
-        max: f64::NAN,
-        valid: 0,
-    };
-    for target in &outputs.targets {
-        cells_written = cells.write(target.within(&outputs.set), context)?;
-    }
-    Ok(Summary::Quantity(quantity, cells_written))
 }

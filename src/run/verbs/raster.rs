@@ -2,10 +2,12 @@
 
 use std::fmt::Debug;
 
+use super::Summary;
 use super::targets::{Outputs, Target};
 use crate::data::BlockSource;
 use crate::error::{Error, Result, Setting, wording};
 use crate::io::formats::{self, Content, Product};
+use crate::io::geotiff::{COPIES_ON_DISK, RasterSummary};
 use crate::run::context::Context;
 use crate::run::context::event::Event;
 use crate::run::context::notice::Notice;
@@ -37,13 +39,58 @@ pub(super) fn is_picture(target: &Target) -> bool {
         .is_some_and(|format| format.content == Content::Picture)
 }
 
+/// Writes shades or colors to all targets, as pictures or rasters. `cell_bytes` is that of
+/// [`announce`].
+///
+/// # Errors
+/// Those of [`announce`]; and if a file cannot be written, or the run is canceled.
+pub(super) fn write_drawn(
+    cells: &CellProduct,
+    outputs: &Outputs,
+    cell_bytes: impl Fn(&Target) -> (u64, f64),
+    context: &Context,
+) -> Result<Summary> {
+    announce(cells, outputs, cell_bytes, context)?;
+    for target in &outputs.targets {
+        let destination = target.within(&outputs.set);
+        if is_picture(target) {
+            cells.write_picture(destination, context)?;
+        } else {
+            cells.write(destination, context)?;
+        }
+    }
+    Ok(Summary::Shades)
+}
+
+/// Writes heights or a quantity to all targets, as rasters of 32-bit floats. Returns a summary of
+/// the cells.
+///
+/// # Errors
+/// Those of [`announce`]; and if a file cannot be written, or the run is canceled.
+pub(super) fn write_numbers(
+    cells: &CellProduct,
+    outputs: &Outputs,
+    context: &Context,
+) -> Result<RasterSummary> {
+    announce(cells, outputs, |_| (4, COPIES_ON_DISK), context)?;
+    let mut written = RasterSummary {
+        min: f64::NAN,
+        max: f64::NAN,
+        valid: 0,
+    };
+    for target in &outputs.targets {
+        written = cells.write(target.within(&outputs.set), context)?;
+    }
+    Ok(written)
+}
+
 /// Reports the size of a raster, and makes sure that the disk has room for its cells. `cell_bytes`
 /// returns the bytes of a cell before compression, and how many times they are on the disk. Of a
 /// surface, only the cells that it covers count.
 ///
 /// # Errors
 /// If the cells cannot fit, however well they are compressed.
-pub(super) fn announce(
+fn announce(
     cells: &CellProduct,
     outputs: &Outputs,
     cell_bytes: impl Fn(&Target) -> (u64, f64),

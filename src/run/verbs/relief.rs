@@ -4,13 +4,12 @@ use std::fmt::Debug;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::raster::{announce, is_picture, list_frame};
+use super::raster::{is_picture, list_frame, write_drawn};
 use super::targets::{Outputs, Target};
 use super::{Keeps, Summary, Tiles, Verb};
 use crate::error::{Result, Setting};
 use crate::io::formats::Product;
 use crate::run::context::{Context, Journal};
-use crate::run::products::cells::CellProduct;
 use crate::run::products::relief::{self, ColorReliefOptions};
 use crate::run::products::surface::{self, SurfaceProduct, SurfaceRequest};
 use crate::terrain::Method;
@@ -63,7 +62,7 @@ impl Verb for ColorReliefOptions {
         context: &Context,
     ) -> Result<Summary> {
         let cells = relief::color_relief(surface, self, context)?;
-        write(&cells, outputs, context)
+        write_drawn(&cells, outputs, cell_bytes, context)
     }
 
     fn keeps(&self) -> Keeps<'_> {
@@ -78,21 +77,8 @@ impl Verb for ColorReliefOptions {
     ) -> Result<Summary> {
         let heights = tiles.heights(&self.frame, context)?;
         let cells = relief::colors_of(heights, self, &Journal::new(context))?;
-        write(&cells, outputs, context)
+        write_drawn(&cells, outputs, cell_bytes, context)
     }
-}
-
-fn write(cells: &CellProduct, outputs: &Outputs, context: &Context) -> Result<Summary> {
-    announce(cells, outputs, cell_bytes, context)?;
-    for target in &outputs.targets {
-        let destination = target.within(&outputs.set);
-        if is_picture(target) {
-            cells.write_picture(destination, context)?;
-        } else {
-            cells.write(destination, context)?;
-        }
-    }
-    Ok(Summary::Shades)
 }
 
 /// Returns the bytes of a cell before compression, and how many times they are on the disk.
