@@ -145,7 +145,7 @@ pub fn dem<'a>(
     context: &Context,
 ) -> Result<CellProduct<'a>> {
     let journal = Journal::new(context);
-    let (source, surface) = heights(product, options, &journal)?;
+    let (source, surface) = heights(product, &options.frame, options.method, &journal)?;
     Ok(CellProduct {
         source,
         surface,
@@ -168,11 +168,7 @@ pub fn hillshade<'a>(
     context: &Context,
 ) -> Result<CellProduct<'a>> {
     let journal = Journal::new(context);
-    let heights_by = DemOptions {
-        frame: options.frame.clone(),
-        method: options.method,
-    };
-    let (source, surface) = given_or_drawn(product, &heights_by, &journal)?;
+    let (source, surface) = given_or_drawn(product, &options.frame, options.method, &journal)?;
     let shades = CellProduct::shades_of(source, &options.light, product.crs(), &journal)?;
     Ok(shades.over(surface))
 }
@@ -191,11 +187,7 @@ pub fn quantity<'a>(
     context: &Context,
 ) -> Result<CellProduct<'a>> {
     let journal = Journal::new(context);
-    let heights_by = DemOptions {
-        frame: options.frame.clone(),
-        method: options.method,
-    };
-    let (source, surface) = given_or_drawn(product, &heights_by, &journal)?;
+    let (source, surface) = given_or_drawn(product, &options.frame, options.method, &journal)?;
     let cells = CellProduct::quantity_of(source, options, product.crs(), &journal)?;
     Ok(cells.over(surface))
 }
@@ -203,20 +195,21 @@ pub fn quantity<'a>(
 /// Returns the cells of a raster, or the heights of another surface in cells.
 pub(super) fn given_or_drawn<'a>(
     product: &'a SurfaceProduct,
-    options: &DemOptions,
+    frame: &FrameOptions,
+    method: Method,
     journal: &Journal,
 ) -> Result<HeightSource<'a>> {
     match &product.model {
         Model::Raster(grid) => {
-            refuse_options(options)?;
+            refuse_options(frame, method)?;
             Ok((Box::new(grid.as_ref()), None))
         }
         Model::RasterFile(raster) => {
-            refuse_options(options)?;
+            refuse_options(frame, method)?;
             Ok((Box::new(raster.cells()), None))
         }
         Model::Tin(_) | Model::Mesh(_) | Model::Compact(_) | Model::Parts(_) => {
-            heights(product, options, journal)
+            heights(product, frame, method, journal)
         }
     }
 }
@@ -227,15 +220,16 @@ pub(super) type HeightSource<'a> = (Box<dyn BlockSource + 'a>, Option<&'a dyn Su
 /// Returns the heights of a surface.
 fn heights<'a>(
     product: &'a SurfaceProduct,
-    DemOptions { frame, method }: &DemOptions,
+    frame: &FrameOptions,
+    method: Method,
     journal: &Journal,
 ) -> Result<HeightSource<'a>> {
     journal.context.check()?;
-    if let Some(notice) = product.unread_by(*method) {
+    if let Some(notice) = product.unread_by(method) {
         journal.add(notice);
     }
     if let Model::Parts(parts) = &product.model
-        && *method == Method::Linear
+        && method == Method::Linear
     {
         let chosen = frame::over_extent(frame, product.extent(), product.crs(), journal)?;
         frame::require_filled(frame, &chosen, &product.extent(), || parts.index().area)?;
@@ -245,11 +239,11 @@ fn heights<'a>(
     let frame = frame::choose(frame, surface, product.extent(), journal)?;
     let dem = Dem::new(surface, frame)?;
     journal.context.check()?;
-    Ok((Box::new(dem.with_method(*method)?), Some(surface)))
+    Ok((Box::new(dem.with_method(method)?), Some(surface)))
 }
 
 /// Returns an error if options are given that only a TIN has a use for.
-pub(super) fn refuse_options(DemOptions { frame, method }: &DemOptions) -> Result<()> {
+pub(super) fn refuse_options(frame: &FrameOptions, method: Method) -> Result<()> {
     if frame.resolution.is_some() || frame.extent.is_some() || frame.align_to.is_some() {
         return Err(Error::usage(wording![
             Setting::Resolution,
@@ -260,7 +254,7 @@ pub(super) fn refuse_options(DemOptions { frame, method }: &DemOptions) -> Resul
             " are for a TIN; a DEM keeps its own cells"
         ]));
     }
-    if *method != Method::default() {
+    if method != Method::default() {
         return Err(Error::usage(wording![
             Setting::Method,
             " is for a TIN; a DEM has a height in each of its cells already"

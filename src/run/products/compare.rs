@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::cells::{CellProduct, DemOptions, refuse_options};
+use super::cells::{CellProduct, refuse_options};
 use super::changed::{AreaOptions, ChangedAreas, changed_areas};
 use super::frame::{self, FrameOptions};
 use super::surface::{Model, SurfaceProduct};
@@ -162,13 +162,11 @@ fn cells_of(
     journal: &Journal,
 ) -> Result<Frame> {
     if let Some(frame) = raster_frame(first) {
-        refuse_options(&DemOptions {
-            frame: options.frame.clone(),
-            method: match raster_frame(second) {
-                Some(_) => options.method,
-                None => Method::default(),
-            },
-        })?;
+        let method = match raster_frame(second) {
+            Some(_) => options.method,
+            None => Method::default(),
+        };
+        refuse_options(&options.frame, method)?;
         return Ok(frame);
     }
     let FrameOptions {

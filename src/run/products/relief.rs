@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::cells::{CellProduct, DemOptions, given_or_drawn};
+use super::cells::{CellProduct, given_or_drawn};
 use super::frame::FrameOptions;
 use super::surface::SurfaceProduct;
 use crate::data::{self, BlockSource, ColorMatch, ColorRamp};
@@ -79,11 +79,7 @@ pub fn color_relief<'a>(
     context: &Context,
 ) -> Result<CellProduct<'a>> {
     let journal = Journal::new(context);
-    let heights_by = DemOptions {
-        frame: options.frame.clone(),
-        method: options.method,
-    };
-    let (source, surface) = given_or_drawn(product, &heights_by, &journal)?;
+    let (source, surface) = given_or_drawn(product, &options.frame, options.method, &journal)?;
     let cells = colors_of(source, options, &journal)?;
     Ok(cells.over(surface))
 }
