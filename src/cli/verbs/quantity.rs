@@ -59,8 +59,8 @@ fn asked(
     let plan = SurfacePlan::resolve(&args.surface, console)?;
     let options = QuantityOptions {
         quantity,
-        frame: frame(&args.frame)?,
-        method: args.method.into(),
+        frame: frame(&args.cells.frame)?,
+        method: args.cells.method.into(),
         z_factor,
     };
     let targets = plan.targets(&args.output);

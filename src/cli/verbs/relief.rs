@@ -10,8 +10,8 @@ pub(super) fn asked(args: &ColorReliefArgs, console: &Console) -> Result<Asked> 
     let plan = SurfacePlan::resolve(&args.surface, console)?;
     let options = ColorReliefOptions {
         matching: args.matching.into(),
-        frame: frame(&args.frame)?,
-        method: args.method.into(),
+        frame: frame(&args.cells.frame)?,
+        method: args.cells.method.into(),
         ..ColorReliefOptions::new(color_ramp(&args.ramp)?)
     };
     let mut targets = plan.targets(&args.output);

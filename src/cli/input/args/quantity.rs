@@ -5,7 +5,7 @@ use clap::{Args, ValueEnum};
 use super::parse::positive;
 use super::surface::SurfaceArgs;
 use super::tiles::TileArgs;
-use super::verbs::{FrameArgs, MethodArg, OutputArgs};
+use super::verbs::{CellArgs, OutputArgs};
 use crate::terrain::{Gradient, Ruggedness};
 
 /// What all of them have.
@@ -16,20 +16,7 @@ pub(crate) struct QuantityArgs {
     #[command(flatten)]
     pub(crate) output: OutputArgs,
     #[command(flatten)]
-    pub(crate) frame: FrameArgs,
-
-    /// How heights between the vertices are computed
-    ///
-    /// For a TIN; a DEM has its heights.
-    #[arg(
-        long,
-        value_enum,
-        value_name = "METHOD",
-        default_value_t,
-        help_heading = "Raster"
-    )]
-    pub(crate) method: MethodArg,
-
+    pub(crate) cells: CellArgs,
     #[command(flatten)]
     pub(crate) tiles: TileArgs,
 }

@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 
 use super::surface::SurfaceArgs;
 use super::tiles::TileArgs;
-use super::verbs::{FrameArgs, MethodArg, OutputArgs};
+use super::verbs::{CellArgs, OutputArgs};
 use crate::data::ColorMatch;
 
 /// Draw the heights of a TIN or a DEM in colors
@@ -52,20 +52,7 @@ pub(crate) struct ColorReliefArgs {
     pub(crate) matching: MatchArg,
 
     #[command(flatten)]
-    pub(crate) frame: FrameArgs,
-
-    /// How heights between the vertices are computed
-    ///
-    /// For a TIN; a DEM has its heights.
-    #[arg(
-        long,
-        value_enum,
-        value_name = "METHOD",
-        default_value_t,
-        help_heading = "Raster"
-    )]
-    pub(crate) method: MethodArg,
-
+    pub(crate) cells: CellArgs,
     #[command(flatten)]
     pub(crate) tiles: TileArgs,
 }

@@ -55,6 +55,25 @@ pub(crate) struct FrameArgs {
     pub(crate) align_to: Option<PathBuf>,
 }
 
+/// The cells in which a TIN is drawn, and its heights there. A DEM keeps its cells.
+#[derive(Debug, Clone, Args)]
+pub(crate) struct CellArgs {
+    #[command(flatten)]
+    pub(crate) frame: FrameArgs,
+
+    /// How heights between the vertices are computed
+    ///
+    /// For a TIN; a DEM has its heights.
+    #[arg(
+        long,
+        value_enum,
+        value_name = "METHOD",
+        default_value_t,
+        help_heading = "Raster"
+    )]
+    pub(crate) method: MethodArg,
+}
+
 /// Show what is in files: counts, bounds, classes, coordinate system, defects
 ///
 /// Reads points, vector layers, rasters and meshes to their end. If a file cannot be read, that is
