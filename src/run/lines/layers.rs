@@ -1,4 +1,4 @@
-//! Vector layers: read, and reprojected to the coordinate system of the result.
+//! Vector layers: read, reprojected to the coordinate system of the result, and written.
 
 use std::borrow::Cow;
 use std::path::Path;
@@ -6,15 +6,31 @@ use std::path::Path;
 use super::shapes::{self, Polygon, Rings};
 use crate::data::Layer;
 use crate::error::{Result, Setting};
-use crate::io::OnDamage;
-use crate::run::context::Journal;
+use crate::io::{Destination, OnDamage, layer};
 use crate::run::context::notice::Notice;
+use crate::run::context::{Context, Journal};
 use crate::run::request::input::Input;
 use crate::run::sources::open;
 use crate::run::sources::transforms::Transforms;
 
 /// Layers, each with its path.
 pub(crate) type Layers<'a> = Vec<(&'a Path, Cow<'a, Layer>)>;
+
+/// Writes a layer in the format that the extension of `target` names. What the format cannot keep
+/// is a notice.
+///
+/// # Errors
+/// If the format cannot be written, has no room for the shapes or their attributes, or the file
+/// cannot be written.
+pub(crate) fn write(layer: &Layer, target: Destination, context: &Context) -> Result<()> {
+    let path = target.path();
+    let warnings = target.put_whole(|target| layer::write_lines(target, layer))?;
+    for text in warnings {
+        let notice = Notice::Reader(path.to_path_buf(), text.into());
+        context.monitor.notice(&notice);
+    }
+    Ok(())
+}
 
 /// Reads layers with these columns, and adds a notice about each layer.
 ///

@@ -5,10 +5,10 @@ use super::volume::{Scale, VolumeUnit};
 use crate::crs::Crs;
 use crate::data::{Attributes, Layer, Shape, Value};
 use crate::error::Result;
-use crate::io::{Destination, layer};
-use crate::run::context::notice::Notice;
+use crate::io::Destination;
 use crate::run::context::watched::Watched;
 use crate::run::context::{Context, Stage};
+use crate::run::lines::layers;
 use crate::terrain::{self, ChangedArea};
 
 /// How often each face is visited.
@@ -120,13 +120,6 @@ impl ChangedAreas {
     /// If the format cannot be written, has no room for the polygons, or the file cannot be
     /// written.
     pub fn write(&self, target: Destination, context: &Context) -> Result<()> {
-        let path = target.path();
-        let layer = self.layer();
-        let warnings = target.put_whole(|target| layer::write_lines(target, &layer))?;
-        for text in warnings {
-            let notice = Notice::Reader(path.to_path_buf(), text.into());
-            context.monitor.notice(&notice);
-        }
-        Ok(())
+        layers::write(&self.layer(), target, context)
     }
 }

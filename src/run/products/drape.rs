@@ -10,7 +10,7 @@ use super::together::common_system;
 use crate::crs::Crs;
 use crate::data::{Layer, Shape};
 use crate::error::{Result, Setting};
-use crate::io::{Destination, layer};
+use crate::io::Destination;
 use crate::run::context::notice::Notice;
 use crate::run::context::{Context, Journal};
 use crate::run::lines::layers;
@@ -135,12 +135,6 @@ impl DrapeProduct {
     /// If the format cannot be written, has no room for the lines or their attributes, or the file
     /// cannot be written.
     pub fn write(&self, target: Destination, context: &Context) -> Result<()> {
-        let path = target.path();
-        let warnings = target.put_whole(|target| layer::write_lines(target, &self.layer))?;
-        for text in warnings {
-            let notice = Notice::Reader(path.to_path_buf(), text.into());
-            context.monitor.notice(&notice);
-        }
-        Ok(())
+        layers::write(&self.layer, target, context)
     }
 }
