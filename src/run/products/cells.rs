@@ -244,7 +244,7 @@ fn heights<'a>(
 
 /// Returns an error if options are given that only a TIN has a use for.
 pub(super) fn refuse_options(frame: &FrameOptions, method: Method) -> Result<()> {
-    if frame.resolution.is_some() || frame.extent.is_some() || frame.align_to.is_some() {
+    if frame.is_chosen() {
         return Err(Error::usage(wording![
             Setting::Resolution,
             ", ",

@@ -169,13 +169,7 @@ fn cells_of(
         refuse_options(&options.frame, method)?;
         return Ok(frame);
     }
-    let FrameOptions {
-        resolution,
-        extent,
-        align_to,
-    } = &options.frame;
-    let are_chosen = resolution.is_some() || extent.is_some() || align_to.is_some();
-    match raster_frame(second).filter(|_| !are_chosen) {
+    match raster_frame(second).filter(|_| !options.frame.is_chosen()) {
         Some(frame) => Ok(frame),
         None => frame::choose(&options.frame, first.triangles()?, first.extent(), journal),
     }

@@ -37,6 +37,11 @@ pub struct FrameOptions {
 }
 
 impl FrameOptions {
+    /// Returns true if the size, the extent or the grid of the cells is chosen.
+    pub(crate) fn is_chosen(&self) -> bool {
+        self.resolution.is_some() || self.extent.is_some() || self.align_to.is_some()
+    }
+
     /// Returns these options with a raster to align to.
     pub(crate) fn aligned_to(&self, raster: PathBuf) -> Self {
         FrameOptions {
