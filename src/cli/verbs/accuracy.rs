@@ -3,7 +3,7 @@ use std::io::Write;
 use super::pair;
 use super::sample::plan;
 use crate::cli::Exit;
-use crate::cli::input::args::{AccuracyArgs, OutputArgs};
+use crate::cli::input::args::AccuracyArgs;
 use crate::cli::input::outputs;
 use crate::cli::report::accuracy;
 use crate::cli::report::console::Console;
@@ -17,10 +17,7 @@ use crate::run::{self, AccuracyOptions, Input, SurfaceReport};
 /// Compares a surface with checkpoints.
 pub(crate) fn run(args: &AccuracyArgs, console: &Console) -> Result<Exit> {
     let (plan, read) = plan(&args.surface, &args.checkpoints, console)?;
-    let output = OutputArgs {
-        output: args.output.iter().chain(&args.histogram).cloned().collect(),
-        overwrite: args.overwrite,
-    };
+    let output = pair::output(args.output.iter().chain(&args.histogram), args.overwrite);
     let outputs = outputs::resolve(&output, TABLES, &read)?;
     let context = console.context();
     let mut surface = run::surface_for(args.method.into(), &plan.request, &context)?;

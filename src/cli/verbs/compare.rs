@@ -2,7 +2,7 @@ use std::path::PathBuf;
 
 use super::pair;
 use crate::cli::Exit;
-use crate::cli::input::args::{CompareArgs, OutputArgs};
+use crate::cli::input::args::CompareArgs;
 use crate::cli::input::outputs::{self, Format, Outputs, formats_of};
 use crate::cli::input::plan::{SurfacePlan, frame};
 use crate::cli::report::comparison;
@@ -36,14 +36,8 @@ pub(crate) fn run(args: &CompareArgs, console: &Console) -> Result<Exit> {
     let read: Vec<PathBuf> = pair::files(&plans)
         .chain(args.frame.align_to.clone())
         .collect();
-    let outputs = outputs::resolve(
-        &OutputArgs {
-            output: args.output.clone(),
-            overwrite: args.overwrite,
-        },
-        &formats(),
-        &read,
-    )?;
+    let output = pair::output(&args.output, args.overwrite);
+    let outputs = outputs::resolve(&output, &formats(), &read)?;
     let named = |i: usize| args.surface.inputs.get(i).cloned().unwrap_or_default();
     let options = CompareOptions {
         frame: frame(&args.frame)?,

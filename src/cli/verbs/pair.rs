@@ -17,10 +17,13 @@ pub(super) fn files(plans: &[SurfacePlan]) -> impl Iterator<Item = PathBuf> + '_
         .flat_map(|plan| plan.targets.with_lists(plan.request.files()))
 }
 
-/// Returns the option of one file that may be left out, as a list.
-pub(super) fn output(file: &Option<PathBuf>, overwrite: bool) -> OutputArgs {
+/// Returns the options of outputs for these files, of which there may be none.
+pub(super) fn output<'a>(
+    files: impl IntoIterator<Item = &'a PathBuf>,
+    overwrite: bool,
+) -> OutputArgs {
     OutputArgs {
-        output: file.iter().cloned().collect(),
+        output: files.into_iter().cloned().collect(),
         overwrite,
     }
 }

@@ -2,7 +2,7 @@ use std::path::PathBuf;
 
 use super::pair;
 use crate::cli::Exit;
-use crate::cli::input::args::{OutputArgs, ProfileArgs};
+use crate::cli::input::args::ProfileArgs;
 use crate::cli::input::plan::SurfacePlan;
 use crate::cli::input::{inputs, outputs};
 use crate::cli::report::console::Console;
@@ -22,10 +22,7 @@ pub(crate) fn run(args: &ProfileArgs, console: &Console) -> Result<Exit> {
     inputs::require([&args.along])?;
     let plans = SurfacePlan::resolve_each(&args.surface, console)?;
     let read: Vec<PathBuf> = pair::files(&plans).chain([args.along.clone()]).collect();
-    let output = OutputArgs {
-        output: args.output.clone(),
-        overwrite: args.overwrite,
-    };
+    let output = pair::output(&args.output, args.overwrite);
     let outputs = outputs::resolve(&output, PROFILES, &read)?;
     let is_stdout_taken = args.output.iter().any(|path| is_standard_output(path));
     if args.json && is_stdout_taken {
