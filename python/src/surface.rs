@@ -350,7 +350,7 @@ impl Surface {
         raster_of(py, &frame, values, self.product.crs())
     }
 
-    /// Computes shades from 1 to 255, 0 where there is no height.
+    /// Computes shades from 1 (dark) to 255 (bright), and 0 in cells without a height.
     fn hillshade<'py>(
         &self,
         py: Python<'py>,

@@ -89,7 +89,7 @@ def read_points(
     thin_keep : str, optional
         The point of a cell to keep: ``"center"`` (the nearest to it; the default), ``"lowest"`` or ``"highest"``.
     seed : int, optional
-        Another choice of ``"poisson:DISTANCE"`` and ``"random:SHARE"``; 0 by default.
+        For ``"poisson:DISTANCE"`` and ``"random:SHARE"``: with another seed, other points are kept; 0 by default.
     crs : str, int or pyproj.CRS, optional
         Coordinate system to assign, whatever the files state.
     to_crs : str, int or pyproj.CRS, optional

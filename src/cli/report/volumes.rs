@@ -46,7 +46,7 @@ const OF_EARTHWORK: &[Field] = &[
     Field::volume("balance", |row| row.earthwork.map_or(0.0, |e| e.balance)),
 ];
 
-/// The number of rows of polygons; it follows.
+/// What only rows of polygons have, after [`FIELDS`].
 const OF_POLYGONS: &[Field] = &[Field::area("polygon area", |row| {
     row.polygon_area.unwrap_or(0.0)
 })];

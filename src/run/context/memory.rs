@@ -80,8 +80,7 @@ pub(crate) fn require_for_columns(count: usize) -> Result<()> {
     })
 }
 
-/// Returns an error if there is not enough memory to double points that are held and take this many
-/// bytes.
+/// Returns an error unless there is memory for as many bytes again as points hold already.
 ///
 /// # Errors
 /// Those of [`require_for_points`].

@@ -296,7 +296,7 @@ pub enum Notice {
         /// Points all of whose triangles are left out.
         points: u64,
     },
-    /// More than half of the convex hull was left out at the rim: its share in the area.
+    /// Most of the convex hull was left out at the rim; with the share of its area, above 0.5.
     HullLost(f64),
     /// Points inside of closed breaklines of one height have other heights: the lines may be
     /// shores.

@@ -96,9 +96,9 @@ pub(crate) fn polygons(layer: &Layer, path: &Path, setting: Setting) -> Result<V
     Ok(polygons)
 }
 
-/// Returns the polygons of a layer by their records. Its lines, if any, are joined to rings, each
-/// of which is a polygon; a ring within another is a hole of that, and one within the hole a
-/// polygon.
+/// Returns the polygons of a layer by their records. Its lines, if any, are joined to rings. Each
+/// ring is a polygon, but a ring within a polygon is a hole of it, in which rings are polygons
+/// again.
 ///
 /// # Errors
 /// Those of [`polygons`]; if a coordinate of a line is so large or small that the arithmetic does

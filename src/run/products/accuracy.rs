@@ -258,10 +258,11 @@ pub fn accuracy(
     })
 }
 
-/// Returns whether the class is met; `None` if there is no class. Few checkpoints are a notice.
+/// Compares the accuracy of the decisive checkpoints with the limit of a class; `None` if there is
+/// no limit. Adds a notice if these checkpoints are few.
 ///
 /// # Errors
-/// If there is a class, and none of the checkpoints that decide is on the surface.
+/// If there is a limit, and none of these checkpoints is on the surface.
 fn decide(
     assessment: &Assessment<'_>,
     class: Option<f64>,

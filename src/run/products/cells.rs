@@ -154,7 +154,8 @@ pub fn dem<'a>(
     })
 }
 
-/// Prepares a hillshade: whole numbers from 1 (dark) to 255 (bright), NaN where there is no height.
+/// Prepares a hillshade: whole numbers from 1 (dark) to 255 (bright), and NaN in cells without a
+/// height.
 ///
 /// # Errors
 /// If the frame cannot be chosen, or is chosen for a raster, which keeps its own; if a number of
@@ -316,7 +317,11 @@ impl<'a> CellProduct<'a> {
         }
     }
 
-    /// The hillshade of heights that were drawn already.
+    /// Returns the hillshade of heights in cells.
+    ///
+    /// # Errors
+    /// If a number of the light is not finite or of no use for the shading, or the frame has no
+    /// inverse.
     pub(crate) fn shades_of(
         source: Box<dyn BlockSource + 'a>,
         options: &LightOptions,
@@ -334,7 +339,10 @@ impl<'a> CellProduct<'a> {
         })
     }
 
-    /// A quantity of heights that were drawn already.
+    /// Returns a quantity of heights in cells.
+    ///
+    /// # Errors
+    /// If the frame has no inverse.
     pub(crate) fn quantity_of(
         source: Box<dyn BlockSource + 'a>,
         options: &QuantityOptions,
@@ -378,7 +386,7 @@ impl<'a> CellProduct<'a> {
         }
     }
 
-    /// Heights that were drawn already, in colors.
+    /// Returns heights in cells, to be written in these colors.
     pub(super) fn colors(
         source: Box<dyn BlockSource + 'a>,
         colors: Colors,

@@ -17,9 +17,9 @@ const VISITS: u64 = 2;
 /// Which areas are listed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AreaOptions {
-    /// Areas in which the surfaces differ by more than this height.
+    /// Areas in which the surfaces differ by more than this height, in the unit of the data.
     pub height: f64,
-    /// Smaller areas are left out; in the unit of the result.
+    /// Smaller areas are left out; in the unit of the result: square meters if units are known.
     pub min_area: f64,
 }
 
@@ -43,6 +43,9 @@ pub struct ChangedAreas {
 ///
 /// # Errors
 /// Those of [`terrain::changed_areas`], if the system is in degrees, and if the run is canceled.
+///
+/// # Complexity
+/// That of [`terrain::changed_areas`].
 pub(super) fn changed_areas(
     [first, second]: [&SurfaceProduct; 2],
     crs: Option<Crs>,

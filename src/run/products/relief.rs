@@ -84,7 +84,11 @@ pub fn color_relief<'a>(
     Ok(cells.over(surface))
 }
 
-/// The colors of heights that were drawn already.
+/// Returns heights in cells, to be written in the colors of a ramp.
+///
+/// # Errors
+/// If the colors depend on the lowest and the highest cell, and a cell cannot be computed or the
+/// run is canceled.
 pub(crate) fn colors_of<'a>(
     source: Box<dyn BlockSource + 'a>,
     ColorReliefOptions { ramp, matching, .. }: &ColorReliefOptions,

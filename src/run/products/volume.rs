@@ -77,7 +77,8 @@ impl Bulking {
         }
     }
 
-    /// Returns an error if a factor is none of ground: a percentage, or the part that is added.
+    /// Returns an error for a factor that no ground has: it may be meant as a percentage, or as the
+    /// part that is added.
     fn check(self) -> Result<()> {
         for (factor, setting, [least, most]) in [
             (self.swell, Setting::Swell, [1.0, 5.0]),
@@ -183,10 +184,11 @@ pub struct VolumeProduct {
 /// Lengths and heights in different units are converted.
 ///
 /// # Errors
-/// If the surface and its base, or all polygons, have no area in common, the coordinate systems
-/// differ or are in degrees, the unit of the result cannot be known, a
-/// polygon has no area, a level is not finite, the base is the rim and there are no polygons or one
-/// is not on the surface; if a file is damaged, and if the run is canceled.
+/// If the surface and its base have no area in common, or none in any polygon; if the coordinate
+/// systems differ or are in degrees, the unit of the result cannot be known, the polygons lack the
+/// attribute of their names, a polygon has no area, a level is not finite, or a factor of
+/// [`Bulking`] is out of range; if the base is the rim, and there are no polygons or one is not on
+/// the surface; if a file is damaged, and if the run is canceled.
 ///
 /// # Complexity
 /// That of [`terrain::volumes`](crate::terrain::volumes), once for each level, or for each outline
@@ -441,7 +443,7 @@ impl<'a> Outlines<'a> {
 /// Returns the values of an attribute of some records.
 ///
 /// # Errors
-/// If there is no such attribute.
+/// If the layer has no attribute of this name.
 fn names_of(layer: &Layer, field: &str, records: &[usize]) -> Result<Vec<String>> {
     let kept = layer.attributes.as_ref();
     let known = kept.map_or(&[][..], |attributes| &attributes.names);

@@ -198,7 +198,7 @@ pub enum Summary {
     Heights(RasterSummary),
     /// A quantity in cells.
     Quantity(Quantity, RasterSummary),
-    /// Shades in cells.
+    /// Shades or colors in cells.
     Shades,
     /// Contours.
     Contours(ContourSummary),

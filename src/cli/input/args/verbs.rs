@@ -188,9 +188,9 @@ pub(crate) struct PointsArgs {
     )]
     pub(crate) thin_keep: Option<CellPointArg>,
 
-    /// Another choice of `--thin poisson:DISTANCE` and `--thin random:SHARE` [default: 0]
+    /// Seed of `--thin poisson:DISTANCE` and `--thin random:SHARE` [default: 0]
     ///
-    /// The same number makes the same choice.
+    /// With another seed, other points are kept; with the same seed, the same points.
     #[arg(long, value_name = "N", requires = "thin", help_heading = "Selection")]
     pub(crate) seed: Option<u64>,
 

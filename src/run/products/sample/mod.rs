@@ -54,6 +54,9 @@ pub struct SampleReport {
 /// for from degrees or by a method other than [`Linear`](crate::terrain::Method), none of the
 /// points is on the surface or the file has none, the output cannot be written, a file is damaged,
 /// or the run is canceled.
+///
+/// # Complexity
+/// That of [`Sampler::samples`](crate::terrain::Sampler::samples).
 pub fn sample(
     surface: &SurfaceProduct,
     points: &Path,
@@ -118,6 +121,9 @@ pub fn sample(
 /// # Errors
 /// Those of [`sample`], except those of the points: positions may all be outside, and what is not
 /// finite is outside.
+///
+/// # Complexity
+/// That of [`Sampler::samples`](crate::terrain::Sampler::samples).
 pub fn sample_positions(
     surface: &SurfaceProduct,
     positions: &[[f64; 2]],
