@@ -69,7 +69,7 @@ pub(crate) fn compare<'py>(
             let rings = of.rings.iter().map(|ring| table(py, ring.clone()));
             let [x, y] = of.at;
             let numbers = [of.area, of.volume, of.largest, x, y];
-            Ok((of.is_raised, rings.collect::<PyResult<_>>()?, numbers))
+            Ok((of.is_raised(), rings.collect::<PyResult<_>>()?, numbers))
         };
         let areas = found.areas.iter().map(area).collect::<PyResult<_>>()?;
         let unit = found.unit.map(|unit| unit.symbols()[0]);

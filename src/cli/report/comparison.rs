@@ -54,7 +54,7 @@ fn of_areas(changed: &ChangedAreas) -> String {
             changed
                 .areas
                 .iter()
-                .filter(|area| area.is_raised == is_raised)
+                .filter(|area| area.is_raised() == is_raised)
         };
         let [area, volume] = [of().map(|of| of.area).sum(), of().map(|of| of.volume).sum()]
             .map(|sum: f64| number(sum + 0.0));
@@ -101,7 +101,7 @@ pub(crate) fn json(product: &CompareProduct, changed: Option<f64>) -> String {
         let rows = changed.areas.iter().map(|of| {
             let [x, y] = of.at;
             json!({
-                "change": if of.is_raised { "raised" } else { "lowered" },
+                "change": if of.is_raised() { "raised" } else { "lowered" },
                 "area": of.area,
                 "volume": of.volume,
                 "largest": of.largest,

@@ -93,7 +93,11 @@ impl ChangedAreas {
             "LARGEST_Y",
         ];
         let row = |area: &ChangedArea| {
-            let change = if area.is_raised { "raised" } else { "lowered" };
+            let change = if area.is_raised() {
+                "raised"
+            } else {
+                "lowered"
+            };
             let [x, y] = area.at;
             let numbers = [area.area, area.volume, area.largest, x, y].map(Value::Number);
             let change = Value::Text(change.to_owned());

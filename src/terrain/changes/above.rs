@@ -18,13 +18,12 @@ use crate::triangulation::tds::CellId;
 /// Parts of faces that a thread takes at a time.
 const BATCH: usize = 1 << 10;
 
-/// Returns the areas in which a difference of surfaces, or else its negative, is above a height.
+/// Returns the areas in which a difference of surfaces, times a sign of 1 or -1, is above a height.
 pub(super) fn above(
     Apart { mesh, origin }: &Apart,
     height: f64,
-    is_raised: bool,
+    sign: f64,
 ) -> Result<Vec<ChangedArea>> {
-    let sign = if is_raised { 1.0 } else { -1.0 };
     let mut arcs = Vec::new();
     let mut parts = Vec::new();
     for (face, vertices) in corners(mesh) {
@@ -68,7 +67,6 @@ pub(super) fn above(
     let areas = polygons.rings.into_iter().zip(totals);
     Ok(areas
         .map(|(rings, totals)| ChangedArea {
-            is_raised,
             rings,
             area: units.area.value(totals.area),
             volume: units.volume.value(totals.volume),

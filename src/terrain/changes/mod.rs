@@ -68,8 +68,8 @@ pub fn changed_areas(surfaces: [&dyn Surface; 2], height: f64) -> Result<Vec<Cha
     };
     let difference = difference_over(surfaces, &faces, at_height)?;
     surfaces.iter().try_for_each(|of| of.ensure_intact())?;
-    let mut areas = above(&difference, height, true)?;
-    areas.extend(above(&difference, height, false)?);
+    let mut areas = above(&difference, height, 1.0)?;
+    areas.extend(above(&difference, height, -1.0)?);
     areas.sort_by(|one, other| {
         let by_volume = other.volume.total_cmp(&one.volume);
         by_volume.then_with(|| one.rings.partial_cmp(&other.rings).unwrap_or(by_volume))
