@@ -136,14 +136,21 @@ impl Output {
     }
 }
 
-/// Checks that an output could be written, without leaving a trace. A pipe or a device is not
-/// opened.
+/// Checks that an output could be written, without leaving a trace, even if the program is killed.
+/// A pipe or a device is not opened.
 ///
 /// # Errors
 /// As [`Output::create`].
 pub fn probe(target: &Path) -> Result<()> {
     let probe = || match TargetKind::of(target)? {
-        TargetKind::File(path) => temporary_for(&path, None).map(drop),
+        TargetKind::File(path) => {
+            let replaced = target::replaceable(&path)?;
+            let nameless = tempfile::tempfile_in(target::folder_of(&path))?;
+            match replaced {
+                Some(old) => Ok(target::take_over(&nameless, &old)?),
+                None => Ok(()),
+            }
+        }
         TargetKind::Stream => Ok(()),
     };
     probe().map_err(|e: Error| e.in_file(target))
