@@ -111,8 +111,8 @@ fn files_are_known_by_bytes_and_name() {
         (b"", "", Some("text")),
         (b"\xff\xfe1\0", "a.txt", Some("text")),
         (b"\x7fELF\0", "a.bin", None),
-        (b"SQLite format 3\0", "a.gpkg", Some("GeoPackage (SQLite)")),
-        (b"SQLite format 3\0", "a.db", None),
+        (b"SQLite format 3\0", "a.gpkg", Some("GeoPackage")),
+        (b"SQLite format 3\0", "a.db", Some("GeoPackage")),
         (b"", "a.vrt", Some("GDAL virtual raster")),
     ] {
         assert_eq!(
@@ -134,7 +134,7 @@ fn products_have_the_extensions_that_they_had() {
         ),
         (
             Product::Contours,
-            &["shp", "geojson", "json", "geojsonl", "geojsons"],
+            &["shp", "geojson", "json", "geojsonl", "geojsons", "gpkg"],
         ),
         (Product::Heights, &["tif", "tiff"]),
         (Product::Shades, &["tif", "tiff", "png"]),

@@ -30,6 +30,25 @@ pub(crate) fn doubled_area<const N: usize>(ring: &[[f64; N]]) -> f64 {
     sides.map(|side| cross(at(&side[0]), at(&side[1]))).sum()
 }
 
+/// Returns the rings of one polygon, the outer one first, in the directions of [`Shape::Polygon`]:
+/// the outer one clockwise, its holes counter-clockwise.
+pub(crate) fn oriented(mut rings: Vec<Vec<[f64; 3]>>) -> Vec<Vec<[f64; 3]>> {
+    for (i, ring) in rings.iter_mut().enumerate() {
+        let is_clockwise = doubled_area(ring) < 0.0;
+        if is_clockwise != (i == 0) {
+            ring.reverse();
+        }
+    }
+    rings
+}
+
+/// Returns the rings of each polygon of a [`Shape::Polygon`]: an outer one, which is clockwise, and
+/// its holes after it.
+pub(crate) fn polygons(rings: &[Vec<[f64; 3]>]) -> Vec<&[Vec<[f64; 3]>]> {
+    let is_hole = |_: &Vec<[f64; 3]>, ring: &Vec<[f64; 3]>| doubled_area(ring) > 0.0;
+    rings.chunk_by(is_hole).collect()
+}
+
 /// The kinds of [`Shape`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum ShapeKind {
@@ -46,6 +65,16 @@ pub enum ShapeKind {
 }
 
 impl Shape {
+    /// Returns the faces of a surface if all are triangles, else a polygon with the rings of all.
+    pub(crate) fn of_faces(faces: Vec<Vec<Vec<[f64; 3]>>>) -> Self {
+        let is_triangle =
+            |face: &Vec<Vec<[f64; 3]>>| matches!(&face[..], [ring] if ring.len() == 4);
+        match faces.iter().all(is_triangle) {
+            true => Shape::Faces(faces),
+            false => Shape::Polygon(faces.into_iter().flatten().collect()),
+        }
+    }
+
     /// Returns the kind of the geometry.
     pub fn kind(&self) -> ShapeKind {
         match self {

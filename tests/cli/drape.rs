@@ -21,6 +21,61 @@ fn features(text: &[u8]) -> Vec<Value> {
 }
 
 #[test]
+fn a_geopackage_keeps_what_geojson_has() {
+    let folder = folder_with(&[("a.xyz", SLOPE), ("l.geojson", &lines())]);
+    let drape = |lines: &str, output: &str| {
+        let words = ["drape", "a.xyz", "--lines", lines, "-o", output];
+        run_in(&folder, &words).works(&[output]);
+    };
+    drape("l.geojson", "o.gpkg");
+    drape("l.geojson", "direct.geojson");
+    drape("o.gpkg:o", "again.geojson");
+    let [again, direct] =
+        ["again.geojson", "direct.geojson"].map(|name| features(&bytes(&folder, name)));
+    for (again, direct) in again.iter().zip(&direct) {
+        for (name, value) in direct["properties"].as_object().unwrap() {
+            assert_eq!(&again["properties"][name], value, "{name}");
+        }
+        assert_eq!(again["geometry"]["type"], direct["geometry"]["type"]);
+    }
+    // Lines that lie on the surface stay as they are, up to the last bit of a crossing.
+    assert_eq!(again.len(), direct.len());
+    run_in(
+        &folder,
+        &["tin", "a.xyz", "--breaklines", "o.gpkg", "-o", "t.ply"],
+    )
+    .works(&["breaklines  2 in, 9 edges out"]);
+    run_in(
+        &folder,
+        &[
+            "tin",
+            "a.xyz",
+            "--breaklines",
+            "o.gpkg:p",
+            "-o",
+            "t.ply",
+            "--overwrite",
+        ],
+    )
+    .fails(2, &["there is no layer \"p\"", "FILE:LAYER: o"]);
+    run_in(&folder, &["contour", "a.xyz", "-o", "c.gpkg"]).works(&["c.gpkg"]);
+    let facts = run_in(&folder, &["info", "c.gpkg"]).stdout;
+    assert!(facts.contains("GeoPackage LINESTRING") && facts.contains("ID, ELEV"));
+    assert_eq!(
+        files_of(folder.path()),
+        [
+            "a.xyz",
+            "again.geojson",
+            "c.gpkg",
+            "direct.geojson",
+            "l.geojson",
+            "o.gpkg",
+            "t.ply"
+        ]
+    );
+}
+
+#[test]
 fn lines_get_heights_at_every_edge_and_keep_their_attributes() {
     let folder = folder_with(&[("a.xyz", SLOPE), ("l.geojson", &lines())]);
     let words = [

@@ -39,9 +39,9 @@ fn expected() -> Vec<Vec<[f64; 3]>> {
 }
 
 #[test]
-fn contours_come_back_from_both_formats() {
+fn contours_come_back_from_each_format() {
     let folder = tempfile::tempdir().unwrap();
-    for name in ["c.shp", "c.geojson", "c.JSON", "c.geojsonl"] {
+    for name in ["c.shp", "c.gpkg", "c.geojson", "c.JSON", "c.geojsonl"] {
         let target = folder.path().join(name);
         let summary = contours::write(&target, &mut lines().into_iter(), None).unwrap();
         assert_eq!(
@@ -54,7 +54,7 @@ fn contours_come_back_from_both_formats() {
         );
         for spec in [
             target.display().to_string(),
-            format!("{}:elev", target.display()),
+            format!("{}::elev", target.display()),
         ] {
             let layer = layer::read(&spec).unwrap();
             let shapes: Vec<Shape> = expected()
@@ -69,7 +69,7 @@ fn contours_come_back_from_both_formats() {
         contours::write(&folder.path().join("c.dxf"), &mut lines().into_iter(), None).unwrap_err();
     assert!(
         error.to_string().ends_with(
-            "c.dxf: contours are written as .shp, .geojson, .json, .geojsonl or .geojsons"
+            "c.dxf: contours are written as .shp, .geojson, .json, .geojsonl, .geojsons or .gpkg"
         )
     );
 }

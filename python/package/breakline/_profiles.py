@@ -165,7 +165,7 @@ def drape(
     step : float, optional
         The distance of heights along a line, instead of one at each edge of a triangle. Vertices of lines stay.
     output : path or list of paths, optional
-        Files to write: .shp, .geojson, .geojsonl or .dxf. Attributes of shapefiles and GeoJSON are kept.
+        Files to write: .shp, .gpkg, .geojson, .geojsonl or .dxf. Attributes of shapefiles, GeoPackage and GeoJSON are kept.
     overwrite : bool
         Replace files that exist.
     threads, progress

@@ -6,6 +6,7 @@ pub(crate) mod dxf;
 pub mod gdal;
 pub mod geojson;
 pub mod geotiff;
+pub mod gpkg;
 pub mod las;
 pub(crate) mod listing;
 pub(crate) mod obj;

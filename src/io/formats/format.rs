@@ -121,6 +121,7 @@ impl Magic {
 }
 
 type Points = Result<Box<dyn PointSource + Send>>;
+type ReadLayer = fn(&Path, &layer_options::Options, Watch) -> Result<Layer>;
 
 /// The function that reads a format.
 #[derive(Debug, Clone, Copy)]
@@ -130,7 +131,10 @@ pub(crate) enum FormatReader {
         /// Reads input that can be read only once; messages show the path as its name.
         stream: fn(Box<dyn Read + Send>, &Path, Options) -> Points,
     },
-    Layer(fn(&Path, &layer_options::Options, Watch) -> Result<Layer>),
+    /// A file is one layer.
+    Layer(ReadLayer),
+    /// A file has any number of layers.
+    Layers(ReadLayer),
     Raster(fn(&Path) -> Result<GeoTiffReader>),
     Mesh(fn(&Path, Watch) -> Result<Triangles>),
     /// A TIN, which is not read, but used where its bytes are.
@@ -147,6 +151,16 @@ pub(crate) enum FormatReader {
     Gdal,
     /// Not read at all.
     Unread,
+}
+
+impl FormatReader {
+    /// Returns the function that reads a layer.
+    pub(crate) fn layer(self) -> Option<ReadLayer> {
+        match self {
+            FormatReader::Layer(read) | FormatReader::Layers(read) => Some(read),
+            _ => None,
+        }
+    }
 }
 
 /// A local origin: what was subtracted from all coordinates, and the file that states it.

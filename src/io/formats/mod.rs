@@ -188,7 +188,7 @@ impl FormatReader {
     const fn name(self) -> &'static str {
         match self {
             FormatReader::Points { .. } => "points",
-            FormatReader::Layer(_) => "lines, polygons, points",
+            FormatReader::Layer(_) | FormatReader::Layers(_) => "lines, polygons, points",
             FormatReader::Raster(_) => "heights",
             FormatReader::Mesh(_) | FormatReader::Tin(_) | FormatReader::Parts(_) => "surface",
             FormatReader::Own => "points and segments",

@@ -12,7 +12,7 @@ use crate::io::bytes::watch::bytes_of;
 use crate::io::codec::geotiff::CellFormat;
 use crate::io::codec::las::{Detail, Packing, Rounding};
 use crate::io::codec::{
-    dxf, geojson, geotiff, las, obj, off, ply, png, shapefile, stl, tetgen, text, tin, triangle,
+    dxf, geojson, geotiff, gpkg, las, obj, off, ply, png, shapefile, stl, tetgen, text, tin, triangle,
 };
 
 const NOT_WRITTEN: Writers = Writers {
@@ -77,6 +77,12 @@ const LIDAR: FormatReader = FormatReader::Points {
 const TEXT: FormatReader = FormatReader::Points {
     file: |path, options| Ok(Box::new(text::open(path, options)?)),
     stream: |stream, name, options| Ok(Box::new(text::from_stream(stream, name, options)?)),
+};
+
+/// GeoPackage is left to GDAL by a build that does not read it itself.
+const DATABASE: FormatReader = match gpkg::IS_AVAILABLE {
+    true => FormatReader::Layers(gpkg::read_layer_with),
+    false => FormatReader::Gdal,
 };
 
 const fn lidar_writer(
@@ -319,6 +325,30 @@ pub static FORMATS: &[Format] = &[
             ..NOT_WRITTEN
         },
         help: "lines, polygons and points; contours; draped lines; one feature a line",
+        ..ROW
+    },
+    Format {
+        name: "GeoPackage",
+        noun: "a GeoPackage or another SQLite database",
+        extensions: &["gpkg"],
+        magic: &[Magic::At(0, b"SQLite format 3\0")],
+        known_by: KnownBy::Bytes,
+        content: Content::Layer,
+        holds: &[
+            Holding::Points,
+            Holding::Lines,
+            Holding::Polygons,
+            Holding::Crs,
+        ],
+        read_along: &["gpkg-wal"],
+        gdal_names: &["GPKG"],
+        reader: DATABASE,
+        writers: Writers {
+            contours: Some(|target, lines, crs| gpkg::write_contours(target, lines, crs)),
+            lines: Some(|target, layer| gpkg::write_lines(target, layer)),
+            ..NOT_WRITTEN
+        },
+        help: "lines, polygons and points in named layers; contours; draped lines",
         ..ROW
     },
     Format {
@@ -602,15 +632,6 @@ pub static FORMATS: &[Format] = &[
         &[],
         &[Magic::At(4, b"jP  "), Magic::At(0, b"\xff\x4f\xff\x51")],
     ),
-    Format {
-        read_along: &["gpkg-wal"],
-        ..vector(
-            "GeoPackage (SQLite)",
-            "a GeoPackage or another SQLite database",
-            &["gpkg"],
-            &[Magic::At(0, b"SQLite format 3\0")],
-        )
-    },
     vector(
         "FlatGeobuf",
         "a FlatGeobuf file",

@@ -142,9 +142,9 @@ pub fn read_with(path: &Path, options: &Options, watch: Watch) -> Result<Layer> 
                 whole_path.display()
             )));
     }
-    match formats::detect_file(path)?.map(|format| format.reader) {
-        Some(FormatReader::Layer(read)) => read(path, options, watch),
-        _ => Err(unsupported(path)),
+    match formats::detect_file(path)?.and_then(|format| format.reader.layer()) {
+        Some(read) => read(path, options, watch),
+        None => Err(unsupported(path)),
     }
 }
 
@@ -170,7 +170,7 @@ pub fn write_lines<'a>(target: impl Into<Destination<'a>>, layer: &Layer) -> Res
 /// Returns the error for formats that only GDAL may read.
 fn unsupported(path: &Path) -> Error {
     Error::unsupported(
-        "not a vector format of this build, which reads shapefiles (.shp) and GeoJSON (.geojson)",
+        "not a vector format of this build, which reads shapefiles (.shp), GeoJSON (.geojson) and GeoPackage (.gpkg)",
     )
     .in_file(path)
     .cure(wording![
@@ -290,11 +290,11 @@ mod tests {
     #[test]
     fn other_formats_are_refused_with_the_cure() {
         let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("a.gpkg");
-        std::fs::write(&path, "SQLite format 3").unwrap();
+        let path = folder.path().join("a.fgb");
+        std::fs::write(&path, "fgb\x03fgb").unwrap();
         let error = read(&format!("{}:roads", path.display())).unwrap_err();
         assert!(error.to_string().ends_with(
-            "a.gpkg: not a vector format of this build, which reads shapefiles (.shp) and GeoJSON (.geojson)"
+            "a.fgb: not a vector format of this build, which reads shapefiles (.shp), GeoJSON (.geojson) and GeoPackage (.gpkg)"
         ));
         assert!(
             error
@@ -310,10 +310,10 @@ mod tests {
                 .contains("no name")
         );
         assert!(
-            read("nowhere/a.gpkg")
+            read("nowhere/a.fgb")
                 .unwrap_err()
                 .to_string()
-                .starts_with("nowhere/a.gpkg: ")
+                .starts_with("nowhere/a.fgb: ")
         );
         let error = read("nowhere/a.dbf").unwrap_err();
         assert_eq!(*error.cure_text().unwrap(), "name its .shp: nowhere/a.shp");

@@ -48,7 +48,7 @@ pub fn open_with(path: impl AsRef<Path>, options: Options) -> Result<Box<dyn Poi
     let head = head(&mut file).map_err(named)?;
     match formats::detect(&head, path).map(|format| format.reader) {
         Some(FormatReader::Points { file, .. }) => file(path, options),
-        Some(FormatReader::Layer(read)) => {
+        Some(FormatReader::Layer(read) | FormatReader::Layers(read)) => {
             let of_layer = layer_options::Options {
                 cut: options.cut,
                 ..layer_options::Options::default()
@@ -77,6 +77,11 @@ fn open_stream(
         )
         .in_file(name)
         .cure("give its path: it is a set of files")),
+        Some(FormatReader::Layers(_)) => Err(Error::unsupported(
+            "a GeoPackage cannot be read from a stream",
+        )
+        .in_file(name)
+        .cure("give its path: it is a database")),
         _ => Err(refusal(&head, name)),
     }
 }
@@ -296,7 +301,7 @@ mod tests {
                 "a TIFF file; points are read from LAS, LAZ",
                 "raster",
             ),
-            (b"SQLite format 3\0", "a GeoPackage", "the feature `gdal`"),
+            (b"fgb\x03fgb", "a FlatGeobuf file", "the feature `gdal`"),
             (
                 b"{\"type\": \"FeatureCollection\"}",
                 "a JSON file",

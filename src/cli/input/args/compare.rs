@@ -50,8 +50,8 @@ pub(crate) struct CompareArgs {
     #[arg(long, help_heading = "Comparison")]
     pub(crate) json: bool,
 
-    /// File to write (repeatable): .tif has the difference in each cell; .shp, .geojson, .geojsonl
-    /// and .dxf have the areas that differ, as polygons
+    /// File to write (repeatable): .tif has the difference in each cell; .shp, .gpkg,
+    /// .geojson, .geojsonl and .dxf have the areas that differ, as polygons
     #[arg(short, long, value_name = "OUT", help_heading = "Comparison")]
     pub(crate) output: Vec<PathBuf>,
 

@@ -557,8 +557,8 @@ impl From<MethodArg> for Method {
 ///
 /// Contours are drawn exactly on the triangles (of a DEM: between the centers of its cells), joined
 /// to the longest possible lines, with higher ground on the right. The output is .shp (PolyLineZ
-/// with field ELEV) or .geojson. Points may need more memory than there is: then the work is done
-/// in tiles (--tiles, --memory).
+/// with field ELEV), .gpkg or .geojson. Points may need more memory than there is: then the work is
+/// done in tiles (--tiles, --memory).
 #[derive(Debug, Clone, Args)]
 #[command(after_long_help = "\
 Example:

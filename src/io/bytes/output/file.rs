@@ -106,6 +106,15 @@ impl Output {
         }
     }
 
+    /// Returns the path of the hidden file, for formats that a library writes by path; `None` if
+    /// the output is a pipe or a device.
+    pub(crate) fn hidden_path(&self) -> Option<&Path> {
+        match &self.sink {
+            Sink::Renamed(temporary, _) => Some(temporary.path()),
+            Sink::Stream | Sink::Copied(_) => None,
+        }
+    }
+
     /// Returns the file's final name.
     pub fn target(&self) -> &Path {
         &self.target

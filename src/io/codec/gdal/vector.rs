@@ -10,11 +10,11 @@ use gdal_sys::OGRwkbGeometryType as Type;
 
 use super::messages;
 use crate::crs::Crs;
-use crate::data::{Column, Layer, Shape, doubled_area};
+use crate::data::{Column, Layer, Shape, oriented};
 use crate::error::{Error, Result};
-use crate::io::bytes::field::{no_such_field, not_a_number, parse_number};
+use crate::io::bytes::field::{not_a_number, parse_number};
 use crate::io::bytes::watch::{Watch, unwatched};
-use crate::io::options::layer::Options;
+use crate::io::options::layer::{Fields, Options};
 
 /// Limit for the nesting of geometry collections; deeper ones lead to an error.
 const MAX_DEPTH: usize = 16;
@@ -54,10 +54,19 @@ pub fn read_layer_with(path: &Path, options: &Options, watch: Watch) -> Result<L
     };
     let dataset = Dataset::open_ex(path, open)
         .map_err(|error| messages::cannot_open(path, "vector", error))?;
-    let (layer_name, height_field) =
-        choose(&dataset, options).map_err(|error| error.in_file(path))?;
+    let layers: Vec<String> = dataset.layers().map(|layer| layer.name()).collect();
+    let is_field = |name: &str| {
+        dataset.layers().any(|layer| {
+            let mut fields = layer.defn().fields();
+            fields.any(|field| field.name().eq_ignore_ascii_case(name))
+        })
+    };
+    let (at, height_field) = options
+        .choose(&layers, is_field)
+        .map_err(|error| error.in_file(path))?;
+    let layer_name = &layers[at];
     let mut source = dataset
-        .layer_by_name(&layer_name)
+        .layer_by_name(layer_name)
         .map_err(|error| messages::error(path, error))?;
     let names: Vec<String> = source.defn().fields().map(|field| field.name()).collect();
     let fields = Fields::of(&names, height_field.as_deref(), columns)
@@ -112,33 +121,6 @@ pub fn read_layer_with(path: &Path, options: &Options, watch: Watch) -> Result<L
     Ok(layer)
 }
 
-/// The positions of the requested fields in a layer.
-struct Fields {
-    height: Option<usize>,
-    columns: Vec<usize>,
-}
-
-impl Fields {
-    /// Finds the fields among the names of all.
-    ///
-    /// # Errors
-    /// If a field does not exist.
-    fn of(names: &[String], height: Option<&str>, columns: &[&str]) -> Result<Self> {
-        let find = |wanted: &str| {
-            position(names, wanted)
-                .ok_or_else(|| no_such_field(wanted, names.iter().map(String::as_str)))
-        };
-        let height = height.map(find).transpose()?;
-        Ok(Fields {
-            height,
-            columns: columns
-                .iter()
-                .map(|name| find(name))
-                .collect::<Result<_>>()?,
-        })
-    }
-}
-
 /// Adds the shapes of a record, at the height in a field if one is given. Returns true if that is
 /// not a number.
 fn add_shapes(
@@ -186,67 +168,6 @@ fn add_values(
         column.values.resize(shapes, value);
     }
     Ok(())
-}
-
-/// Returns the name of the layer, and the field of the heights.
-fn choose(dataset: &Dataset, options: &Options) -> Result<(String, Option<String>)> {
-    let layers: Vec<String> = dataset.layers().map(|layer| layer.name()).collect();
-    let field = options.height_field.map(str::to_owned);
-    let list = || {
-        format!(
-            "name one after a colon, as FILE:LAYER: {}",
-            layers.join(", ")
-        )
-    };
-    let Some(wanted) = options.layer else {
-        return match layers.as_slice() {
-            [] => Err(Error::format("there is no layer in it")),
-            [only] => Ok((only.clone(), field)),
-            _ => Err(Error::usage(format!("there are {} layers in it", layers.len())).cure(list())),
-        };
-    };
-    let find = |name: &str| position(&layers, name).map(|at| layers[at].clone());
-    if let Some(layer) = find(wanted) {
-        return Ok((layer, field));
-    }
-    // The name of a layer may contain colons.
-    let whole = field
-        .as_ref()
-        .map_or_else(|| wanted.to_owned(), |field| format!("{wanted}:{field}"));
-    if let Some(layer) = find(&whole) {
-        return Ok((layer, None));
-    }
-    let mut parts = whole
-        .match_indices(':')
-        .map(|(at, _)| (&whole[..at], &whole[at + 1..]));
-    if let Some((layer, field)) = parts.find_map(|(layer, field)| Some((find(layer)?, field))) {
-        return Ok((layer, Some(field.to_owned())));
-    }
-    let is_field = layers.len() == 1
-        && dataset.layers().any(|layer| {
-            layer
-                .defn()
-                .fields()
-                .any(|field| field.name().eq_ignore_ascii_case(wanted))
-        });
-    let cure = match is_field {
-        true => format!(
-            "{}; for heights of the attribute, write FILE::{wanted}",
-            list()
-        ),
-        false => list(),
-    };
-    Err(Error::usage(format!("there is no layer \"{wanted}\"")).cure(cure))
-}
-
-/// Returns the position of a name: as written, else in any case.
-fn position(names: &[String], wanted: &str) -> Option<usize> {
-    let exact = names.iter().position(|name| name == wanted);
-    exact.or_else(|| {
-        names
-            .iter()
-            .position(|name| name.eq_ignore_ascii_case(wanted))
-    })
 }
 
 /// Sets the coordinate system of a layer.
@@ -322,10 +243,10 @@ fn shapes(geometry: &Geometry, depth: usize, into: &mut Vec<Shape>) -> Result<()
         Type::wkbMultiPoint => Shape::Points(members().flat_map(|part| vertices(&part)).collect()),
         Type::wkbLineString | Type::wkbLinearRing => Shape::Lines(vec![vertices(geometry)]),
         Type::wkbMultiLineString => Shape::Lines(members().map(|part| vertices(&part)).collect()),
-        Type::wkbPolygon | Type::wkbTriangle => Shape::Polygon(rings(geometry)),
-        Type::wkbMultiPolygon => Shape::Polygon(members().flat_map(|part| rings(&part)).collect()),
+        Type::wkbPolygon | Type::wkbTriangle => Shape::Polygon(oriented(parts(geometry))),
+        Type::wkbMultiPolygon => Shape::Polygon(members().flat_map(|part| oriented(parts(&part))).collect()),
         Type::wkbTIN | Type::wkbPolyhedralSurface => {
-            surface(members().map(|part| parts(&part)).collect())
+            Shape::of_faces(members().map(|part| parts(&part)).collect())
         }
         Type::wkbGeometryCollection => {
             for part in members() {
@@ -407,28 +328,4 @@ fn parts(polygon: &Geometry) -> Vec<Vec<[f64; 3]>> {
         .map(|i| vertices(&polygon.get_geometry(i)))
         .filter(|ring| !ring.is_empty())
         .collect()
-}
-
-/// Returns the rings of one polygon, the outer one clockwise and the others counter-clockwise, as
-/// in [`Shape::Polygon`].
-fn rings(polygon: &Geometry) -> Vec<Vec<[f64; 3]>> {
-    let mut rings = parts(polygon);
-    for (i, ring) in rings.iter_mut().enumerate() {
-        let is_clockwise = doubled_area(ring) < 0.0;
-        if is_clockwise != (i == 0) {
-            ring.reverse();
-        }
-    }
-    rings
-}
-
-/// Returns faces if all are triangles, else a polygon with the rings of all.
-fn surface(faces: Vec<Vec<Vec<[f64; 3]>>>) -> Shape {
-    if faces
-        .iter()
-        .all(|face| matches!(face.as_slice(), [ring] if ring.len() == 4))
-    {
-        return Shape::Faces(faces);
-    }
-    Shape::Polygon(faces.into_iter().flatten().collect())
 }

@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value};
 
-use crate::data::{Shape, doubled_area};
+use crate::data::{Shape, oriented};
 use crate::error::{Error, Result};
 
 /// The members of an object of JSON.
@@ -84,16 +84,12 @@ fn lines(parts: &[Value]) -> Result<Vec<Vec<[f64; 3]>>> {
 /// Returns the rings of one polygon, the outer one first.
 fn rings(parts: &[Value]) -> Result<Vec<Vec<[f64; 3]>>> {
     let mut rings = lines(parts)?;
-    for (i, ring) in rings.iter_mut().enumerate() {
+    for ring in &mut rings {
         if let (Some(&first), Some(&last)) = (ring.first(), ring.last())
             && first[..2] != last[..2]
         {
             ring.push(first);
         }
-        let clockwise = doubled_area(ring) < 0.0;
-        if clockwise != (i == 0) {
-            ring.reverse();
-        }
     }
-    Ok(rings)
+    Ok(oriented(rings))
 }

@@ -4,7 +4,7 @@ use std::io::Write;
 
 use super::{RECORD, WGS_84};
 use crate::crs::{Crs, CrsKind};
-use crate::data::{ContourLine, Layer, Shape, Value, doubled_area};
+use crate::data::{ContourLine, Layer, Shape, Value, polygons};
 use crate::error::Result;
 use crate::io::bytes::output::Destination;
 use crate::io::codec::contour_summary::ContourSummary;
@@ -207,11 +207,10 @@ fn write_record(out: &mut impl Write, layer: &Layer, record: usize) -> std::io::
     out.write_all(b"}")
 }
 
-/// Writes rings as a polygon, or several if there are several outer rings: these are clockwise, and
-/// each is followed by its holes. GeoJSON has both the other way around.
+/// Writes rings as a polygon, or several if there are several outer rings. GeoJSON has all rings
+/// the other way around.
 fn write_polygons(out: &mut impl Write, rings: &[Vec<[f64; 3]>]) -> std::io::Result<()> {
-    let is_hole = |_: &Vec<[f64; 3]>, ring: &Vec<[f64; 3]>| doubled_area(ring) > 0.0;
-    let polygons: Vec<&[Vec<[f64; 3]>]> = rings.chunk_by(is_hole).collect();
+    let polygons = polygons(rings);
     match polygons[..] {
         [] => return out.write_all(b"null"),
         [_] => out.write_all(b"{\"type\":\"Polygon\",\"coordinates\":")?,

@@ -1,0 +1,303 @@
+//! Reading: a layer, its attributes and its system.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use rusqlite::types::ValueRef;
+use rusqlite::{Connection, OpenFlags, OptionalExtension, Row};
+
+use super::geometry;
+use crate::crs::Crs;
+use crate::data::{Attributes, Column, Layer, Shape, Value};
+use crate::error::{Error, Result};
+use crate::io::bytes::field::{not_a_number, parse_number};
+use crate::io::bytes::watch::Watch;
+use crate::io::options::layer::{Fields, Options};
+
+/// Records that are read between two looks at the watch.
+const RECORDS_AT_ONCE: usize = 1024;
+
+/// Reads a layer of a GeoPackage, watched; nothing is counted. Of a file with several layers one
+/// has to be named.
+///
+/// Polygons are oriented as in [`Shape::Polygon`]. The parts of a collection become separate
+/// shapes. Records come in the order of their identifiers, which are no attribute. Attributes of
+/// bytes are left out.
+///
+/// # Errors
+/// If the file is not a GeoPackage or is damaged, it has no such layer or attribute, or a value of
+/// a requested column is not a number; if a geometry has arcs; that of the watch.
+///
+/// # Complexity
+/// Linear in the size of the layer.
+pub fn read_layer_with(path: &Path, options: &Options, watch: Watch) -> Result<Layer> {
+    let read = || {
+        let database = open(path)?;
+        let source = Source::choose(&database, options)?;
+        source.read(&database, options, watch)
+    };
+    read().map_err(|error| error.in_file(path))
+}
+
+/// Returns the error of a database that cannot be read.
+fn damaged(error: rusqlite::Error) -> Error {
+    Error::format(format!("SQLite: {error}"))
+}
+
+fn open(path: &Path) -> Result<Connection> {
+    check_size(path)?;
+    let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX;
+    let database = Connection::open_with_flags(path, flags).map_err(damaged)?;
+    // Views and triggers of a file call no functions that have effects.
+    database
+        .execute_batch("PRAGMA trusted_schema = OFF; PRAGMA cell_size_check = ON;")
+        .map_err(damaged)?;
+    Ok(database)
+}
+
+/// Returns an error if the last page is not whole: SQLite would take what is missing as zeros.
+fn check_size(path: &Path) -> Result<()> {
+    let mut file = File::open(path)?;
+    let mut head = [0; 18];
+    // A shorter one is no database; SQLite says so.
+    if file.read_exact(&mut head).is_err() {
+        return Ok(());
+    }
+    let page = match u64::from(u16::from_be_bytes([head[16], head[17]])) {
+        1 => 1 << 16,
+        size => size,
+    };
+    let size = file.metadata()?.len();
+    if page > 0 && size % page != 0 {
+        return Err(Error::format(format!(
+            "{size} bytes are no whole number of pages, which have {page}: it is cut"
+        )));
+    }
+    Ok(())
+}
+
+/// Returns a name as SQL has it.
+pub(super) fn quoted(name: &str) -> String {
+    format!("\"{}\"", name.replace('"', "\"\""))
+}
+
+/// A column of a table.
+struct Field {
+    name: String,
+    is_truth: bool,
+}
+
+/// What is read of a database.
+struct Source {
+    table: String,
+    geometry: String,
+    kind: String,
+    system: i64,
+    key: Option<String>,
+    fields: Vec<Field>,
+    height_field: Option<String>,
+}
+
+impl Source {
+    fn choose(database: &Connection, options: &Options) -> Result<Self> {
+        let is_package = "SELECT 1 FROM sqlite_master WHERE name = 'gpkg_geometry_columns'";
+        let is_package = database
+            .query_row(is_package, [], |_| Ok(()))
+            .optional()
+            .map_err(damaged)?;
+        if is_package.is_none() {
+            return Err(Error::unsupported(
+                "an SQLite database that is not a GeoPackage, or one without layers of geometries",
+            ));
+        }
+        let layers = "SELECT table_name, column_name, geometry_type_name, srs_id \
+                      FROM gpkg_geometry_columns ORDER BY rowid";
+        let mut statement = database.prepare(layers).map_err(damaged)?;
+        let layers = statement.query_map([], |row| {
+            Ok((row.get(0)?, row.get(1)?, row.get(2)?, row.get(3)?))
+        });
+        let layers: Vec<(String, String, String, i64)> =
+            layers.and_then(Iterator::collect).map_err(damaged)?;
+        let names: Vec<String> = layers.iter().map(|(table, ..)| table.clone()).collect();
+        let is_field = |wanted: &str| {
+            let fields = names
+                .iter()
+                .filter_map(|table| columns(database, table).ok());
+            let mut fields = fields.flatten();
+            fields.any(|(field, ..)| field.eq_ignore_ascii_case(wanted))
+        };
+        let (at, height_field) = options.choose(&names, is_field)?;
+        let (table, geometry, kind, system) = layers.into_iter().nth(at).unwrap_or_default();
+        let mut key = None;
+        let mut fields = Vec::new();
+        for (name, kind, is_key) in columns(database, &table)? {
+            if is_key {
+                key = Some(name);
+            } else if !name.eq_ignore_ascii_case(&geometry) {
+                let is_truth = kind.eq_ignore_ascii_case("BOOLEAN");
+                fields.push(Field { name, is_truth });
+            }
+        }
+        Ok(Source {
+            table,
+            geometry,
+            kind,
+            system,
+            key,
+            fields,
+            height_field,
+        })
+    }
+
+    fn read(&self, database: &Connection, options: &Options, watch: Watch) -> Result<Layer> {
+        let names: Vec<String> = self.fields.iter().map(|field| field.name.clone()).collect();
+        let fields = Fields::of(&names, self.height_field.as_deref(), options.columns)?;
+        let column = |name: &&str| Column {
+            name: (*name).to_owned(),
+            ..Column::default()
+        };
+        let mut layer = Layer {
+            format: format!("GeoPackage {}", self.kind),
+            columns: options.columns.iter().map(column).collect(),
+            attributes: options.keeps_attributes.then(|| Attributes {
+                names: names.clone(),
+                rows: Vec::new(),
+            }),
+            fields: names,
+            ..Layer::default()
+        };
+        self.read_system(database, &mut layer)?;
+        let mut statement = database.prepare(&self.query()).map_err(damaged)?;
+        let mut rows = statement.query([]).map_err(damaged)?;
+        let mut without_height = 0;
+        let mut record = 0;
+        while let Some(row) = rows.next().map_err(damaged)? {
+            if record % RECORDS_AT_ONCE == 0 {
+                watch(0)?;
+            }
+            record += 1;
+            let added = self.add(row, &fields, &mut layer);
+            without_height += usize::from(added.map_err(|e| e.at(format!("record {record}")))?);
+        }
+        if without_height > 0 {
+            let lacking = "records without a number in the field of the heights";
+            layer
+                .warnings
+                .push(format!("{without_height} {lacking}").into());
+        }
+        Ok(layer)
+    }
+
+    /// Returns the query for the geometry, and after it the attributes.
+    fn query(&self) -> String {
+        let fields = self.fields.iter().map(|field| &field.name);
+        let columns = std::iter::once(&self.geometry).chain(fields);
+        let columns: Vec<String> = columns.map(|name| quoted(name)).collect();
+        let mut query = format!("SELECT {} FROM {}", columns.join(", "), quoted(&self.table));
+        if let Some(key) = &self.key {
+            query += &format!(" ORDER BY {}", quoted(key));
+        }
+        query
+    }
+
+    /// Adds the shapes and the values of a record. Returns true if it lacks the height that the
+    /// attribute of the heights is to have.
+    fn add(&self, row: &Row, fields: &Fields, layer: &mut Layer) -> Result<bool> {
+        let first = layer.shapes.len();
+        match row.get_ref(0).map_err(damaged)? {
+            ValueRef::Null => layer.shapes.push(Shape::Null),
+            ValueRef::Blob(blob) => geometry::read(blob, &mut layer.shapes)?,
+            other => {
+                let found = other.data_type();
+                return Err(Error::format(format!("{found} in place of a geometry")));
+            }
+        }
+        let count = layer.shapes.len();
+        let value = |field: usize| row.get_ref(field + 1).map_err(damaged);
+        for (column, &field) in layer.columns.iter_mut().zip(&fields.columns) {
+            let number = number(value(field)?).map_err(|text| not_a_number(&column.name, &text))?;
+            column.values.resize(count, number);
+        }
+        if let Some(attributes) = &mut layer.attributes {
+            let values = self.fields.iter().enumerate();
+            let values = values.map(|(at, field)| Ok(kept(value(at)?, field.is_truth)));
+            attributes
+                .rows
+                .resize(count, values.collect::<Result<_>>()?);
+        }
+        let Some(field) = fields.height else {
+            return Ok(false);
+        };
+        let height = number(value(field)?).unwrap_or(f64::NAN);
+        let shapes = layer.shapes[first..].iter_mut();
+        shapes.for_each(|shape| shape.set_height(height));
+        Ok(height.is_nan())
+    }
+
+    fn read_system(&self, database: &Connection, layer: &mut Layer) -> Result<()> {
+        let query = "SELECT organization, organization_coordsys_id, definition \
+                     FROM gpkg_spatial_ref_sys WHERE srs_id = ?1";
+        let found = database.query_row(query, [self.system], |row| {
+            Ok((
+                row.get::<_, String>(0)?,
+                row.get::<_, i64>(1)?,
+                row.get::<_, String>(2)?,
+            ))
+        });
+        let Some((organization, code, definition)) = found.optional().map_err(damaged)? else {
+            return Ok(());
+        };
+        // -1 and 0 are systems that are not known.
+        if matches!(self.system, -1 | 0) {
+            return Ok(());
+        }
+        let by_code = organization
+            .eq_ignore_ascii_case("EPSG")
+            .then(|| u32::try_from(code).ok())
+            .flatten()
+            .and_then(|code| Crs::from_epsg(code).ok());
+        match by_code.map_or_else(|| Crs::from_wkt(&definition), Ok) {
+            Ok(crs) => layer.crs = crs.unless_undefined(),
+            Err(error) => {
+                let unread = format!("the coordinate system is not understood: {error}");
+                layer.warnings.push(unread.into());
+                layer.unread_crs = Some(definition);
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Returns the name of each column of a table, its type, and whether it is the key.
+fn columns(database: &Connection, table: &str) -> Result<Vec<(String, String, bool)>> {
+    let query = "SELECT name, type, pk FROM pragma_table_info(?1)";
+    let mut statement = database.prepare(query).map_err(damaged)?;
+    let columns = statement.query_map([table], |row| {
+        Ok((row.get(0)?, row.get(1)?, row.get::<_, i64>(2)? == 1))
+    });
+    columns.and_then(Iterator::collect).map_err(damaged)
+}
+
+/// Returns a number, or that in a text; NaN if there is none or it is not finite. If the value is
+/// something else, the error is its text.
+fn number(value: ValueRef) -> std::result::Result<f64, String> {
+    let number = match value {
+        ValueRef::Null => f64::NAN,
+        ValueRef::Integer(whole) => whole as f64,
+        ValueRef::Real(number) => number,
+        ValueRef::Text(text) => parse_number(String::from_utf8_lossy(text).trim())?,
+        ValueRef::Blob(bytes) => return Err(format!("{} bytes", bytes.len())),
+    };
+    Ok(if number.is_finite() { number } else { f64::NAN })
+}
+
+fn kept(value: ValueRef, is_truth: bool) -> Value {
+    match value {
+        ValueRef::Null | ValueRef::Blob(_) => Value::Missing,
+        ValueRef::Integer(whole) if is_truth => Value::Truth(whole != 0),
+        ValueRef::Integer(whole) => Value::Whole(whole),
+        ValueRef::Real(number) => Value::Number(number),
+        ValueRef::Text(text) => Value::Text(String::from_utf8_lossy(text).into_owned()),
+    }
+}
