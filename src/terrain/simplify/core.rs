@@ -7,12 +7,13 @@ use std::sync::atomic::AtomicBool;
 use rayon::prelude::*;
 
 use crate::triangulation::geometry::Terrain;
-use crate::triangulation::{ConstrainedDelaunay, InputError, OnCrossing, spatial_order};
+use crate::triangulation::{ConstrainedDelaunay, InputError, OnCrossing};
 
-use super::edit::{Canceled, go_on, hide_all, refine, thin};
+use super::edit::{Canceled, MayGo, go_on, hide_all, refine, thin};
 use super::lattice::Lattice;
 use super::lines::Lines;
-use super::mesh::{Hidden, Mesh};
+use super::mesh::Mesh;
+use super::sites::Sites;
 
 /// The side of a block of a lattice, in cells.
 const BLOCK_CELLS: u32 = 128;
@@ -48,124 +49,6 @@ impl From<InputError> for Refused {
     }
 }
 
-/// The sites that a surface is to be close to.
-pub(super) enum Sites {
-    Scattered {
-        /// From west to east, and from south to north where x is equal; each position once.
-        positions: Vec<[f64; 3]>,
-        /// All of them in an order in which each is near to the one before.
-        order: Vec<u32>,
-    },
-    /// The cells of a raster.
-    Lattice {
-        lattice: Lattice,
-        /// The position in plan of a column and a row.
-        frame: LatticeFrame,
-    },
-}
-
-/// Where the columns and rows of a lattice are.
-#[derive(Debug, Clone)]
-pub(super) struct LatticeFrame {
-    /// The x of each column, increasing.
-    pub(super) x: Vec<f64>,
-    /// The y of each row, increasing.
-    pub(super) y: Vec<f64>,
-}
-
-impl Sites {
-    /// Sites that are sorted by x, then y; each position once.
-    ///
-    /// # Errors
-    /// If there are too many.
-    pub(super) fn scattered(positions: Vec<[f64; 3]>) -> Result<Self, InputError> {
-        let plan = |site: usize| {
-            let [x, y, _] = positions[site];
-            [x, y]
-        };
-        let order = spatial_order(positions.len(), plan)?;
-        Ok(Sites::Scattered { positions, order })
-    }
-
-    fn count(&self) -> usize {
-        match self {
-            Sites::Scattered { positions, .. } => positions.len(),
-            Sites::Lattice { lattice, .. } => lattice.heights.len(),
-        }
-    }
-
-    pub(super) fn position(&self, site: u32) -> [f64; 3] {
-        match self {
-            Sites::Scattered { positions, .. } => positions[site as usize],
-            Sites::Lattice { lattice, frame } => {
-                let [column, row] = lattice.position(site);
-                let z = lattice.heights[site as usize];
-                [frame.x[column as usize], frame.y[row as usize], z]
-            }
-        }
-    }
-
-    /// The number of sites that have heights.
-    pub(super) fn count_of_heights(&self) -> usize {
-        match self {
-            Sites::Scattered { positions, .. } => positions.len(),
-            Sites::Lattice { lattice, .. } => {
-                lattice.heights.iter().filter(|z| !z.is_nan()).count()
-            }
-        }
-    }
-
-    /// The difference between the highest and the lowest height.
-    pub(super) fn range_of_heights(&self) -> f64 {
-        let range = |mut heights: &mut dyn Iterator<Item = f64>| {
-            let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-            for z in &mut heights {
-                // NaN is neither.
-                (low, high) = (low.min(z), high.max(z));
-            }
-            if low <= high { high - low } else { 0.0 }
-        };
-        match self {
-            Sites::Scattered { positions, .. } => range(&mut positions.iter().map(|p| p[2])),
-            Sites::Lattice { lattice, .. } => range(&mut lattice.heights.iter().copied()),
-        }
-    }
-
-    /// An order in which each site is near to the one before; empty for a lattice, which needs
-    /// none.
-    fn order(&self) -> &[u32] {
-        match self {
-            Sites::Scattered { order, .. } => order,
-            Sites::Lattice { .. } => &[],
-        }
-    }
-
-    fn lattice(&self) -> Option<&Lattice> {
-        match self {
-            Sites::Scattered { .. } => None,
-            Sites::Lattice { lattice, .. } => Some(lattice),
-        }
-    }
-
-    fn all(&self) -> Vec<[f64; 3]> {
-        match self {
-            Sites::Scattered { positions, .. } => positions.clone(),
-            Sites::Lattice { .. } => (0..self.count() as u32)
-                .into_par_iter()
-                .map(|site| self.position(site))
-                .collect(),
-        }
-    }
-
-    /// The blocks in which sites are chosen first: a function of the set of sites.
-    fn blocks(&self) -> Blocks {
-        match self {
-            Sites::Scattered { positions, .. } => Blocks::of_scattered(positions),
-            Sites::Lattice { lattice, .. } => Blocks::of_lattice(lattice),
-        }
-    }
-}
-
 /// A division of the sites.
 enum Blocks {
     /// Squares of cells; with the numbers of columns and rows of all.
@@ -179,6 +62,14 @@ enum Blocks {
 }
 
 impl Blocks {
+    /// The blocks in which sites are chosen first: a function of the set of sites.
+    fn of(sites: &Sites) -> Self {
+        match sites {
+            Sites::Scattered { positions, .. } => Blocks::of_scattered(positions),
+            Sites::Lattice { lattice, .. } => Blocks::of_lattice(lattice),
+        }
+    }
+
     fn of_lattice(lattice: &Lattice) -> Self {
         let columns = lattice.heights.len() / lattice.rows.max(1) as usize;
         Blocks::OfLattice([columns as u32, lattice.rows])
@@ -279,7 +170,7 @@ pub(super) fn choose(
     bound: f64,
     cancel: &AtomicBool,
 ) -> Result<Vec<u32>, Refused> {
-    let blocks = sites.blocks();
+    let blocks = Blocks::of(sites);
     let on_lines = lines.sites();
     let mut fixed: Vec<Vec<u32>> = vec![Vec::new(); blocks.count()];
     for &site in &on_lines {
@@ -299,8 +190,7 @@ pub(super) fn choose(
         return Ok(chosen);
     }
     let edges: Vec<[u32; 2]> = lines.sorted().iter().map(|(ends, _)| *ends).collect();
-    let (all, order) = (sites.all(), sites.order());
-    let Some(mut mesh) = triangulated(all, sites.lattice(), bound, &chosen, &edges, order)? else {
+    let Some(mut mesh) = triangulated(sites, bound, &chosen, &edges)? else {
         return Ok(chosen);
     };
     go_on(cancel)?;
@@ -323,14 +213,12 @@ pub(super) fn choose(
 /// The triangulation of chosen sites, with all others hidden and the worst of each triangle found;
 /// `None` if they are on one line.
 fn triangulated<'a>(
-    sites: Vec<[f64; 3]>,
-    lattice: Option<&'a Lattice>,
+    sites: &'a Sites,
     bound: f64,
     chosen: &[u32],
     edges: &[[u32; 2]],
-    order: &[u32],
 ) -> Result<Option<Mesh<'a>>, InputError> {
-    let points: Vec<[f64; 3]> = chosen.iter().map(|&site| sites[site as usize]).collect();
+    let points: Vec<[f64; 3]> = chosen.iter().map(|&site| sites.position(site)).collect();
     let position = |site: u32| chosen.partition_point(|&other| other < site) as u32;
     let lines: Vec<[u32; 2]> = edges.iter().map(|ends| ends.map(position)).collect();
     let (triangulation, vertices) =
@@ -338,8 +226,8 @@ fn triangulated<'a>(
     if triangulation.dimension() < 2 {
         return Ok(None);
     }
-    let mut mesh = Mesh::new(sites, lattice, bound, chosen, &triangulation, &vertices);
-    if let Hidden::Lists { .. } = mesh.hidden {
+    let mut mesh = Mesh::new(sites, bound, chosen, &triangulation, &vertices);
+    if let Sites::Scattered { order, .. } = sites {
         hide_all(&mut mesh, order);
     }
     let measured: Vec<_> = (0..mesh.cell_slots())
@@ -361,30 +249,16 @@ fn choose_in(
     cancel: &AtomicBool,
 ) -> Result<Vec<u32>, Refused> {
     go_on(cancel)?;
-    let lattice = match (sites, rows) {
-        (Sites::Lattice { lattice, .. }, Some(rows)) => Some(Lattice {
-            rows,
-            heights: block
-                .iter()
-                .map(|&site| lattice.heights[site as usize])
-                .collect(),
-        }),
-        _ => None,
-    };
-    let local: Vec<[f64; 3]> = block.iter().map(|&site| sites.position(site)).collect();
-    let is_site: Vec<u32> = (0..local.len() as u32)
-        .filter(|&site| !local[site as usize][2].is_nan())
-        .collect();
-    let mut first = hull(&local, &is_site);
+    let local = sites.part(block, rows);
+    let mut first = hull(&local, &local.may_be_at_hull());
     let position = |site: &u32| block.partition_point(|other| other < site) as u32;
     let fixed: Vec<u32> = fixed.iter().map(position).collect();
     first.extend(&fixed);
     first.sort_unstable();
     first.dedup();
     let named = |chosen: &[u32]| chosen.iter().map(|&site| block[site as usize]).collect();
-    let Some(mut mesh) = triangulated(local, lattice.as_ref(), bound, &first, &[], &is_site)?
-    else {
-        return Ok(named(&is_site));
+    let Some(mut mesh) = triangulated(&local, bound, &first, &[])? else {
+        return Ok(named(&local.with_heights().collect::<Vec<_>>()));
     };
     let may_go = |vertex: u32, _: &[u32]| fixed.binary_search(&vertex).is_err();
     first.extend(refine(&mut mesh, cancel)?);
@@ -406,7 +280,7 @@ fn choose_again(
     mesh: &mut Mesh,
     vertices: &mut Vec<u32>,
     larger: f64,
-    may_go: &dyn Fn(u32, &[u32]) -> bool,
+    may_go: &MayGo,
     cancel: &AtomicBool,
 ) -> Result<(), Canceled> {
     let mut no_lines = Lines::default();
@@ -427,13 +301,10 @@ fn choose_again(
 }
 
 /// The corners of the convex hull of some sites, in the order of their numbers.
-fn hull(sites: &[[f64; 3]], some: &[u32]) -> Vec<u32> {
+fn hull(sites: &Sites, some: &[u32]) -> Vec<u32> {
     use crate::triangulation::kernel::{Adaptive, Kernel, Orientation2};
     use crate::triangulation::num::Sign;
-    let plan = |site: u32| {
-        let [x, y, _] = sites[site as usize];
-        [x, y]
-    };
+    let plan = |site: u32| sites.plan(site);
     let half = |order: &mut dyn Iterator<Item = u32>| {
         let mut half: Vec<u32> = Vec::new();
         for site in order {

@@ -14,6 +14,12 @@ use super::star::Star;
 /// How many edits are made before it is asked whether the run is canceled.
 const EDITS: usize = 1 << 12;
 
+/// How many sites are dealt with one after the other, on one thread.
+const CHUNK: usize = 1 << 12;
+
+/// Returns true if a vertex may be removed, given its neighbors.
+pub(super) type MayGo<'a> = dyn Fn(u32, &[u32]) -> bool + Sync + 'a;
+
 /// The run was canceled.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Canceled;
@@ -99,7 +105,7 @@ pub(super) fn thin(
     mesh: &mut Mesh,
     lines: &mut Lines,
     vertices: &[u32],
-    may_go: &dyn Fn(u32, &[u32]) -> bool,
+    may_go: &MayGo,
     cancel: &AtomicBool,
 ) -> Result<(), Canceled> {
     let mut watch = Watch::new(cancel);
@@ -107,7 +113,7 @@ pub(super) fn thin(
     let mut queue = BinaryHeap::new();
     // One more than what is in the queue for a vertex, if that is still right.
     // PERF: zeros take no memory until they are written.
-    let mut current: Vec<u64> = vec![0; mesh.sites.len()];
+    let mut current: Vec<u64> = vec![0; mesh.sites.count()];
     let joint = |mesh: &Mesh, lines: &Lines, vertex: u32, ends: [u32; 2]| {
         lines.joint(vertex, ends, &|site: u32| mesh.plan(site))
     };
@@ -120,12 +126,19 @@ pub(super) fn thin(
                 .is_none_or(|ends| joint(mesh, lines, vertex, ends).is_some());
         can_go.then(|| mesh.cost(vertex, star, lines)).flatten()
     };
-    for &vertex in vertices {
-        if let Some(cost) = try_vertex(mesh, lines, vertex, &mut star) {
-            current[vertex as usize] = key(cost) + 1;
-            queue.push(Reverse((key(cost), extent(mesh, &star.ring), vertex)));
-        }
-        watch.edit()?;
+    let first: Vec<_> = {
+        let (mesh, lines) = (&*mesh, &*lines);
+        let tried = vertices.par_iter().with_min_len(CHUNK);
+        let tried = tried.map_init(Star::default, |star, &vertex| {
+            go_on(cancel)?;
+            let cost = try_vertex(mesh, lines, vertex, star);
+            Ok(cost.map(|cost| (cost, extent(mesh, &star.ring), vertex)))
+        });
+        tried.collect::<Result<_, Canceled>>()?
+    };
+    for (cost, extent, vertex) in first.into_iter().flatten() {
+        current[vertex as usize] = key(cost) + 1;
+        queue.push(Reverse((key(cost), extent, vertex)));
     }
     let mut ring = Vec::new();
     while let Some(Reverse((cost, _, vertex))) = queue.pop() {
@@ -174,9 +187,6 @@ fn extent(mesh: &Mesh, ring: &[u32]) -> u64 {
     }
     key((high[0] - low[0]) * (high[1] - low[1]))
 }
-
-/// How many sites are looked for one from another.
-const CHUNK: usize = 1 << 12;
 
 /// Hides all sites that are no vertices. They are looked for in the order given, each from the one
 /// before it on, some thousands together.

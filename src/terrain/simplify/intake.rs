@@ -2,9 +2,9 @@
 
 use rayon::prelude::*;
 
-use super::core::{LatticeFrame, Sites};
 use super::lattice::Lattice;
 use super::lines::{EdgeRole, Lines};
+use super::sites::{LatticeFrame, Sites};
 use crate::data::{AT_ONCE, EdgeKind, Face, Frame, Grid, Surface};
 use crate::error::{Error, Result};
 use crate::terrain::admitted::refused;
@@ -14,6 +14,11 @@ use crate::triangulation::num::unsigned_zero;
 
 /// How many faces are asked for at a time.
 const FACES: u32 = 1 << 14;
+
+/// How many columns of a raster are turned at a time.
+///
+/// PERF: so many cells of a row are next to each other in memory.
+const STRIP: usize = 16;
 
 /// The sites of a surface, and its constrained edges between them.
 pub(super) struct Intake {
@@ -126,8 +131,9 @@ pub(super) fn of_cells(grid: &Grid) -> Result<Intake> {
     if grid.values.is_empty() {
         return Err(Error::format("a raster without cells has no surface"));
     }
-    let bad = |z: &&f64| !z.is_nan() && !RANGE.admits(**z);
-    if let Some(at) = grid.values.iter().position(|z| bad(&z)) {
+    let bad = |z: &f64| !z.is_nan() && !RANGE.admits(*z);
+    let values = grid.values.par_iter().with_min_len(AT_ONCE);
+    if let Some(at) = values.position_first(bad) {
         let [x, y] = center(frame, [at % width, at / width]);
         return Err(refused([x, y, grid.values[at]]));
     }
@@ -144,15 +150,16 @@ pub(super) fn of_cells(grid: &Grid) -> Result<Intake> {
     };
     let positions = lattice_frame(frame, &order)?;
     let cells = Cells::of(grid);
-    let heights: Vec<f64> = (0..width * height)
-        .into_par_iter()
-        .with_min_len(AT_ONCE)
-        .map(|site| cells.height(order.cell(site)))
-        .collect();
-    let lattice = Lattice {
-        rows: height as u32,
-        heights,
-    };
+    let mut heights = vec![0.0; width * height];
+    let strips = heights.par_chunks_mut(height * STRIP).enumerate();
+    strips.for_each(|(strip, heights)| {
+        for row in 0..height {
+            for (k, column) in heights.chunks_mut(height).enumerate() {
+                column[row] = cells.height(order.turned([strip * STRIP + k, row]));
+            }
+        }
+    });
+    let lattice = Lattice::new(height as u32, heights);
     let is_flipped = order.is_mirrored != order.is_north_up;
     let lines = cells.rim(&|cell: [usize; 2]| order.site(cell), is_flipped);
     Ok(Intake {
@@ -209,11 +216,6 @@ struct SiteOrder {
 }
 
 impl SiteOrder {
-    /// Returns the column and row of a site.
-    fn cell(&self, site: usize) -> [usize; 2] {
-        self.turned([site / self.height, site % self.height])
-    }
-
     /// Returns the site of a cell.
     fn site(&self, cell: [usize; 2]) -> u32 {
         let [column, row] = self.turned(cell);

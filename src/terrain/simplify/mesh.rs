@@ -8,7 +8,8 @@ use crate::triangulation::num::Sign;
 use crate::triangulation::tds::{VertexId, ccw, cw};
 
 use super::error::{Slopes, Worst, decided, exceeds};
-use super::lattice::Lattice;
+use super::lattice::{Columns, Lattice};
+use super::sites::Sites;
 
 /// No triangle, or no site.
 pub(super) const NONE: u32 = u32::MAX;
@@ -28,7 +29,7 @@ pub(super) enum Hidden<'a> {
 /// circles are broken as in [`ConstrainedDelaunay`], so that the triangulation is a function of the
 /// vertices and the constraints alone.
 pub(super) struct Mesh<'a> {
-    pub(super) sites: Vec<[f64; 3]>,
+    pub(super) sites: &'a Sites,
     pub(super) hidden: Hidden<'a>,
     pub(super) bound: f64,
     /// Counter-clockwise; the first is `NONE` if the number is unused.
@@ -61,8 +62,7 @@ pub(super) struct RimEdge {
 impl<'a> Mesh<'a> {
     /// The triangulation of some sites, with all others hidden in it.
     pub(super) fn new(
-        sites: Vec<[f64; 3]>,
-        lattice: Option<&'a Lattice>,
+        sites: &'a Sites,
         bound: f64,
         vertices: &[u32],
         triangulation: &ConstrainedDelaunay<Terrain>,
@@ -78,15 +78,15 @@ impl<'a> Mesh<'a> {
         for (number, cell) in triangulation.finite_cells().enumerate() {
             number_of[cell.index()] = number as u32;
         }
-        let hidden = match lattice {
-            Some(lattice) => Hidden::Lattice(lattice),
-            None => Hidden::Lists {
+        let hidden = match sites {
+            Sites::Lattice { lattice, .. } => Hidden::Lattice(lattice),
+            Sites::Scattered { .. } => Hidden::Lists {
                 first: vec![NONE; count],
-                next: vec![NONE; sites.len()],
+                next: vec![NONE; sites.count()],
             },
         };
         let mut mesh = Mesh {
-            cell_of: vec![NONE; sites.len()],
+            cell_of: vec![NONE; sites.count()],
             sites,
             hidden,
             bound,
@@ -130,8 +130,7 @@ impl<'a> Mesh<'a> {
 
     #[inline(always)]
     pub(super) fn plan(&self, site: u32) -> [f64; 2] {
-        let [x, y, _] = self.sites[site as usize];
-        [x, y]
+        self.sites.plan(site)
     }
 
     #[inline(always)]
@@ -222,7 +221,7 @@ impl<'a> Mesh<'a> {
     #[inline]
     fn worst_of_list(&self, mut corners: [u32; 3], list: u32, next: &[u32]) -> (Worst, f64) {
         corners.sort_unstable();
-        let Some(slopes) = Slopes::of(corners.map(|site| self.sites[site as usize])) else {
+        let Some(slopes) = Slopes::of(corners.map(|site| self.sites.position(site))) else {
             // Rounded, not really: whatever is in it is in doubt.
             let error = if list == NONE { 0.0 } else { f64::MAX };
             return (Worst { error, site: list }, 0.0);
@@ -230,7 +229,7 @@ impl<'a> Mesh<'a> {
         let mut worst = Worst::NONE;
         let mut site = list;
         while site != NONE {
-            worst.add(slopes.residual(self.sites[site as usize]).abs(), site);
+            worst.add(slopes.residual(self.sites.position(site)).abs(), site);
             site = next[site as usize];
         }
         (worst, slopes.uncertainty)
@@ -242,10 +241,10 @@ impl<'a> Mesh<'a> {
     fn worst_at_bound(&self, corners: [u32; 3], uncertainty: f64, list: u32) -> Worst {
         let mut above = Worst::NONE;
         let mut below = Worst::NONE;
-        let positions = corners.map(|site| self.sites[site as usize]);
+        let positions = corners.map(|site| self.sites.position(site));
         let mut judge = |error: f64, site: u32| {
             let error = decided(error, uncertainty, self.bound, || {
-                exceeds(positions, self.sites[site as usize], self.bound)
+                exceeds(positions, self.sites.position(site), self.bound)
             });
             if error > self.bound {
                 above.add(error, site);
@@ -256,7 +255,8 @@ impl<'a> Mesh<'a> {
         match &self.hidden {
             Hidden::Lattice(lattice) => {
                 // A triangle without an area in the lattice was dealt with before.
-                let _ = lattice.columns(corners, |column, _| {
+                let columns = lattice.columns(corners).into_iter();
+                for column in columns.flat_map(Columns::all) {
                     for k in 0..column.heights.len() {
                         let error = column.residual(k).abs();
                         let site = column.first + k as u32;
@@ -264,16 +264,15 @@ impl<'a> Mesh<'a> {
                             judge(error, site);
                         }
                     }
-                    true
-                });
+                }
             }
             Hidden::Lists { next, .. } => {
                 let mut sorted = corners;
                 sorted.sort_unstable();
-                if let Some(slopes) = Slopes::of(sorted.map(|site| self.sites[site as usize])) {
+                if let Some(slopes) = Slopes::of(sorted.map(|site| self.sites.position(site))) {
                     let mut site = list;
                     while site != NONE {
-                        judge(slopes.residual(self.sites[site as usize]).abs(), site);
+                        judge(slopes.residual(self.sites.position(site)).abs(), site);
                         site = next[site as usize];
                     }
                 }

@@ -18,6 +18,7 @@ mod intake;
 mod lattice;
 mod lines;
 mod mesh;
+mod sites;
 mod star;
 #[cfg(test)]
 mod tests;
@@ -28,9 +29,10 @@ use std::sync::atomic::AtomicBool;
 
 use rustc_hash::FxHashSet;
 
-use self::core::{Refused, Sites, choose};
+use self::core::{Refused, choose};
 use self::intake::Intake;
 use self::lines::{EdgeRole, Lines};
+use self::sites::Sites;
 use super::Tin;
 use super::lines::kinds::LineKinds;
 use super::tin_report::TinReport;

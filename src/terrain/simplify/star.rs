@@ -282,8 +282,8 @@ impl Mesh<'_> {
     fn error_of(&self, mut corners: [u32; 3], site: u32) -> f64 {
         let given = corners;
         corners.sort_unstable();
-        let q = self.sites[site as usize];
-        let of_sites = |corners: [u32; 3]| corners.map(|site| self.sites[site as usize]);
+        let q = self.sites.position(site);
+        let of_sites = |corners: [u32; 3]| corners.map(|site| self.sites.position(site));
         let Some(slopes) = Slopes::of(of_sites(corners)) else {
             return f64::MAX;
         };

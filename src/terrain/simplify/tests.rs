@@ -564,3 +564,66 @@ fn a_long_straight_line_ends_as_one_edge() {
     let (simplified, _) = run(&tin, &rule(0.1));
     assert_eq!(simplified.vertex_count(), 6);
 }
+
+#[test]
+fn triangles_on_a_lattice_are_measured_as_cell_by_cell() {
+    use super::error::Worst;
+    use super::lattice::Lattice;
+    let mut random = Random(7);
+    let mut left_out = 0;
+    for round in 0..40 {
+        let [columns, rows] = [1 + random.below(90), 1 + random.below(90)].map(|n| n as usize);
+        let slope = random.below(3) as f64 / 4.0;
+        // Level water or an even slope, with a few rocks and gaps.
+        let heights: Vec<f64> = (0..columns * rows)
+            .map(|site| match random.below(400) {
+                0 => f64::NAN,
+                1 => random.below(9) as f64,
+                _ => 1.25 + slope * (site / rows) as f64,
+            })
+            .collect();
+        let lattice = Lattice::new(rows as u32, heights.clone());
+        for _ in 0..60 {
+            let corners = [0; 3].map(|_| random.below(heights.len() as u64) as u32);
+            let at = |site: u32| [i64::from(site) / rows as i64, i64::from(site) % rows as i64];
+            let turn = |a: u32, b: u32, c: u32| {
+                let [[ax, ay], [bx, by], [cx, cy]] = [a, b, c].map(at);
+                (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
+            };
+            let [a, b, c] = corners;
+            if turn(a, b, c) == 0 || corners.iter().any(|&k| heights[k as usize].is_nan()) {
+                assert!(turn(a, b, c) != 0 || lattice.columns(corners).is_err());
+                continue;
+            }
+            let contains = |q: &u32| {
+                let sides = [turn(a, b, *q), turn(b, c, *q), turn(c, a, *q)];
+                sides.iter().all(|s| *s >= 0) || sides.iter().all(|s| *s <= 0)
+            };
+            let cells: Vec<u32> = (0..heights.len() as u32).filter(contains).collect();
+            let (mut found, mut naive) = (Vec::new(), Worst::NONE);
+            for column in lattice.columns(corners).unwrap().all() {
+                for k in 0..column.heights.len() {
+                    found.push(column.first + k as u32);
+                    let error = column.residual(k).abs();
+                    if error > naive.error {
+                        naive = Worst {
+                            error,
+                            site: column.first + k as u32,
+                        };
+                    }
+                }
+            }
+            assert_eq!(found, cells, "round {round}, {corners:?}");
+            assert_eq!(lattice.worst(corners, f64::INFINITY).0, naive);
+            let limit = random.below(8) as f64;
+            let (worst, _) = lattice.worst(corners, limit);
+            assert_eq!(worst.error > limit, naive.error > limit);
+            left_out += found.len();
+            let mut some = lattice.columns(corners).unwrap();
+            while let Some(column) = some.next_above(naive.error) {
+                left_out -= column.heights.len();
+            }
+        }
+    }
+    assert!(left_out > 10_000, "{left_out}");
+}

@@ -4,9 +4,9 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use rayon::prelude::*;
 
-use super::core::Sites;
 use super::error::{Slopes, decided, exceeds};
 use super::lattice::Lattice;
+use super::sites::Sites;
 use crate::data::Surface;
 use crate::terrain::Tin;
 use crate::triangulation::Location;
@@ -20,28 +20,43 @@ pub(super) struct Distances {
     pub(super) root_mean_square: f64,
 }
 
+/// How many sites are summed up together: the result does not depend on the number of threads.
+const TOGETHER: usize = 1 << 16;
+
 /// Measures all sites. `site_of` has the site of each vertex.
 ///
 /// # Complexity
-/// Linear for a lattice; else a walk for each site, on all threads.
+/// Linear for a lattice; else a walk for each site; on all threads.
 pub(super) fn measure(sites: &Sites, tin: &Tin, site_of: &[u32], bound: f64) -> Distances {
-    let (errors, mut beyond) = match sites {
+    match sites {
         Sites::Scattered { positions, order } => of_scattered(positions, order, tin, bound),
         Sites::Lattice { lattice, .. } => of_lattice(sites, lattice, tin, site_of, bound),
-    };
-    beyond.sort_unstable();
-    beyond.dedup();
-    let is_known = errors.iter().filter(|error| !error.is_nan());
-    let (mut count, mut squares, mut largest) = (0_u64, 0.0, 0.0);
-    for &error in is_known {
-        count += 1;
-        squares += error * error;
-        largest = f64::max(largest, error);
     }
-    Distances {
-        beyond,
-        largest,
-        root_mean_square: (squares / count.max(1) as f64).sqrt(),
+}
+
+impl Distances {
+    /// `error` has the distance of each of some sites; NaN where there is none.
+    fn of(mut beyond: Vec<u32>, count: usize, error: impl Fn(usize) -> f64 + Sync) -> Self {
+        beyond.sort_unstable();
+        beyond.dedup();
+        let parts = (0..count.div_ceil(TOGETHER)).into_par_iter().map(|part| {
+            let (mut count_of, mut squares, mut largest) = (0_u64, 0.0, 0.0);
+            let sites = part * TOGETHER..count.min((part + 1) * TOGETHER);
+            for error in sites.map(&error).filter(|error| !error.is_nan()) {
+                count_of += 1;
+                squares += error * error;
+                largest = f64::max(largest, error);
+            }
+            (count_of, squares, largest)
+        });
+        let parts: Vec<(u64, f64, f64)> = parts.collect();
+        let known: u64 = parts.iter().map(|(count_of, ..)| count_of).sum();
+        let squares: f64 = parts.iter().map(|(_, squares, _)| squares).sum();
+        Distances {
+            beyond,
+            largest: parts.iter().fold(0.0, |most, part| f64::max(most, part.2)),
+            root_mean_square: (squares / known.max(1) as f64).sqrt(),
+        }
     }
 }
 
@@ -60,14 +75,8 @@ fn distance(corners: [[f64; 3]; 3], q: [f64; 3], bound: f64) -> f64 {
     decided(error, uncertainty, bound, || exceeds(corners, q, bound))
 }
 
-/// The errors of sites, in an order in which each is near to the one before, and the sites beyond
-/// the bound.
-fn of_scattered(
-    positions: &[[f64; 3]],
-    order: &[u32],
-    tin: &Tin,
-    bound: f64,
-) -> (Vec<f64>, Vec<u32>) {
+/// Measures sites in an order in which each is near to the one before.
+fn of_scattered(positions: &[[f64; 3]], order: &[u32], tin: &Tin, bound: f64) -> Distances {
     let triangulation = tin.triangulation();
     let error_of = |near: &mut Option<CellId>, q: [f64; 3]| {
         let location = triangulation.locate(&q, *near);
@@ -91,20 +100,20 @@ fn of_scattered(
         .collect();
     let is_beyond = |(&site, &error): (&u32, &f64)| (error > bound).then_some(site);
     let beyond = order.iter().zip(&errors).filter_map(is_beyond).collect();
-    (errors, beyond)
+    Distances::of(beyond, errors.len(), |k| errors[k])
 }
 
-/// The errors of the cells of a lattice, by the columns of each face, and the cells beyond the
-/// bound.
+/// Measures the cells of a lattice, by the columns of each face.
 fn of_lattice(
     sites: &Sites,
     lattice: &Lattice,
     tin: &Tin,
     site_of: &[u32],
     bound: f64,
-) -> (Vec<f64>, Vec<u32>) {
+) -> Distances {
     // A cell on an edge is measured twice; the larger one counts, whoever comes first.
     let errors: Vec<AtomicU64> = (0..lattice.heights.len())
+        .into_par_iter()
         .map(|_| AtomicU64::new(0))
         .collect();
     let faces = (0..tin.face_count() as u32).into_par_iter();
@@ -116,7 +125,12 @@ fn of_lattice(
                 return beyond;
             };
             let corners = vertices.map(|vertex| site_of[vertex as usize]);
-            let of_flat = lattice.columns(corners, |column, uncertainty| {
+            let columns = match lattice.columns(corners) {
+                Ok(columns) => columns,
+                Err(flat) => return flat.into_iter().collect(),
+            };
+            let uncertainty = columns.uncertainty();
+            for column in columns.all() {
                 for k in 0..column.heights.len() {
                     let site = column.first + k as u32;
                     let mut error = column.residual(k).abs();
@@ -132,17 +146,14 @@ fn of_lattice(
                         beyond.push(site);
                     }
                 }
-                true
-            });
-            if let Err(Some(site)) = of_flat {
-                beyond.push(site);
             }
             beyond
         })
         .collect();
-    let error = |(site, error): (usize, AtomicU64)| match lattice.heights[site].is_nan() {
-        true => f64::NAN,
-        false => f64::from_bits(error.into_inner()),
-    };
-    (errors.into_iter().enumerate().map(error).collect(), beyond)
+    Distances::of(beyond, errors.len(), |site| {
+        match lattice.heights[site].is_nan() {
+            true => f64::NAN,
+            false => f64::from_bits(errors[site].load(Ordering::Relaxed)),
+        }
+    })
 }
